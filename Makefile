@@ -1,0 +1,109 @@
+# landmass: the menu. `make` alone prints it. Each part adds its own programs and tests in a *.mk beside its sources.
+.DEFAULT_GOAL := help
+BOARD ?= bench-linux
+O     := build/$(BOARD)
+include bsp/$(BOARD)/board.mk
+
+OPT    ?= -O2 -g
+WARN   := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+CSTD   := -std=c11
+DEPGEN  = -MMD -MP
+pkgs    = $(shell pkg-config --$(1) $(2) 2>/dev/null)
+
+# Each layer sees its own headers and those below it, and no more (docs/DESIGN.md, "Who may include whom").
+# The two lowest layers do not even see the C library: -nostdinc leaves the compiler's own headers only.
+FREESTANDING := -ffreestanding -nostdinc -isystem $(shell $(CC) -print-file-name=include)
+INC_fixed    := -Ifixed/include
+INC_firmware := $(INC_fixed) -Ifirmware/include
+INC_drivers  := $(INC_firmware) -Idrivers/include
+INC_bsp      := $(INC_drivers) -Ibsp/$(BOARD)
+INC_host     := $(INC_bsp) -Ihost-sim/common/include
+
+CFLAGS_fixed    = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_fixed)
+CFLAGS_firmware = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_firmware)
+CFLAGS_drivers  = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_drivers)
+CFLAGS_bsp      = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_bsp)
+CFLAGS_host     = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_host)
+
+objs = $(patsubst %.c,$(O)/%.o,$(1))
+LIB_fixed    := $(O)/libfixed.a
+LIB_firmware := $(O)/libfirmware.a
+LIB_hs       := $(O)/libhs.a
+
+PROGRAMS :=
+TESTS    :=
+include $(sort $(wildcard drivers/*.mk bsp/$(BOARD)/*/*.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk))
+
+.PHONY: help deps all run check bench gallery lint format clean
+
+help: ## Print this menu
+	@echo 'landmass: make TARGET'
+	@sed -n 's/^\([a-z-]*\):.*## /  \1\t/p' $(MAKEFILE_LIST) | expand -t 14
+
+deps: ## Install the Debian packages of bsp/bench-linux/packages.txt (as root or through sudo)
+	@sh bsp/bench-linux/deps.sh
+
+all: $(PROGRAMS) ## Build every program, without running anything
+
+run: deps ## Build, make the database of the built-in scene, fly over it, leave pictures
+	@$(MAKE) --no-print-directory all
+	@sh host-sim/run/run.sh $(O)
+
+check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
+	@$(MAKE) --no-print-directory -j2 check-built
+
+bench: deps ## Measure: instructions a pixel, ratios against peers, memory
+	@$(MAKE) --no-print-directory all
+	@sh tests/bench/bench.sh $(O)
+
+gallery: deps ## Fly the real data of ../shared/data and leave the pictures in build/gallery
+	@$(MAKE) --no-print-directory all
+	@sh host-sim/run/gallery.sh $(O)
+
+lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
+	@sh tests/discipline/lint.sh
+
+format: ## Apply clang-format to every C file
+	@git ls-files -co --exclude-standard '*.c' '*.h' | xargs clang-format -i
+
+clean: ## Remove everything that was built
+	rm -rf build
+
+.PHONY: check-built
+check-built: $(PROGRAMS) $(TESTS)
+	@sh tests/run.sh $(O) $(TESTS)
+
+$(LIB_fixed): $(call objs,$(wildcard fixed/src/*.c))
+$(LIB_firmware): $(call objs,$(wildcard firmware/src/*.c))
+$(LIB_hs): $(call objs,$(wildcard host-sim/common/src/*.c))
+$(O)/%.a:
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+# A folder's flags are those of its layer, and INC_<folder's program> may add to them (see the *.mk files).
+$(O)/fixed/%.o: fixed/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_fixed) $(DEPGEN) -c $< -o $@
+$(O)/firmware/%.o: firmware/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_firmware) $(DEPGEN) -c $< -o $@
+$(O)/drivers/%.o: drivers/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_drivers) $(DEPGEN) -c $< -o $@
+$(O)/bsp/%.o: bsp/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_bsp) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+$(O)/host-sim/%.o: host-sim/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+$(O)/tests/%.o: tests/%.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+
+# Link: objects and archives in the order of the prerequisites, then what LDLIBS says for this target.
+$(O)/bin/%:
+	@mkdir -p $(@D)
+	$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
+
+-include $(shell find $(O) -name '*.d' 2>/dev/null)

@@ -1,0 +1,27 @@
+/* How every host program reports that something is wrong: what, where, why and what to do about it.
+ */
+#ifndef HS_ERROR_H
+#define HS_ERROR_H
+
+/* Exit codes of all landmass programs. */
+enum hs_exit {
+    HS_EXIT_OK = 0,
+    HS_EXIT_FAILED = 1, /* the work could not be done: bad input, full disk */
+    HS_EXIT_USAGE = 2   /* the command line makes no sense */
+};
+
+/* Print "<program>: <place>: <cause>; <remedy>" on standard error as one line.
+ * `place` is a file, option or record ("lake.tif", "exemplars.tsv line 12"); `remedy` may be NULL.
+ * `cause` and its arguments are as for printf. Returns -1, so that a caller can `return
+ * hs_error(...)`. */
+int hs_error(const char *place, const char *remedy, const char *cause, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The same line with "warning: " before the cause; returns 0. */
+int hs_warn(const char *place, const char *remedy, const char *cause, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Name the program in the messages; call once at the start of main. Keeps the pointer. */
+void hs_set_program(const char *name);
+
+#endif

@@ -1,0 +1,17 @@
+/* Pictures to look at. Rows run from the top; the file appears whole or not at all. */
+#ifndef HS_PNG_H
+#define HS_PNG_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* `stride_bytes` is the distance between rows. Return 0, or -1 with the error reported. */
+int hs_png_write_grey(const char *path, const uint8_t *pixels, int width, int height,
+                      size_t stride_bytes);
+int hs_png_write_rgb(const char *path, const uint8_t *pixels, int width, int height,
+                     size_t stride_bytes);
+/* Pixels 0x00RRGGBB, as the bench's framebuffer holds them; `stride_pixels` between rows. */
+int hs_png_write_xrgb(const char *path, const uint32_t *pixels, int width, int height,
+                      size_t stride_pixels);
+
+#endif

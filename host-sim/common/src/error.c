@@ -1,0 +1,41 @@
+#include "hs/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static const char *program_name = "landmass";
+
+void hs_set_program(const char *name)
+{
+    program_name = name;
+}
+
+static void report(const char *place, const char *severity, const char *remedy, const char *cause,
+                   va_list arguments)
+{
+    fflush(stdout);
+    fprintf(stderr, "%s: %s: %s", program_name, place, severity);
+    vfprintf(stderr, cause, arguments);
+    if (remedy) {
+        fprintf(stderr, "; %s", remedy);
+    }
+    fputc('\n', stderr);
+}
+
+int hs_error(const char *place, const char *remedy, const char *cause, ...)
+{
+    va_list arguments;
+    va_start(arguments, cause);
+    report(place, "", remedy, cause, arguments);
+    va_end(arguments);
+    return -1;
+}
+
+int hs_warn(const char *place, const char *remedy, const char *cause, ...)
+{
+    va_list arguments;
+    va_start(arguments, cause);
+    report(place, "warning: ", remedy, cause, arguments);
+    va_end(arguments);
+    return 0;
+}

@@ -1,0 +1,38 @@
+#include "hs/progress.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+enum { BAR_WIDTH = 40 };
+
+void hs_progress_begin(struct hs_progress *p, const char *label, uint64_t total)
+{
+    p->label = label;
+    p->total = total ? total : 1;
+    p->shown_permille = -1;
+    p->is_terminal = isatty(STDERR_FILENO);
+    hs_progress_update(p, 0);
+}
+
+void hs_progress_update(struct hs_progress *p, uint64_t done)
+{
+    const int permille = (int)(1000.0 * (double)done / (double)p->total);
+    if (!p->is_terminal || permille == p->shown_permille) {
+        return;
+    }
+    p->shown_permille = permille;
+    const int filled = permille * BAR_WIDTH / 1000;
+    fprintf(stderr, "\r%-24s [", p->label);
+    for (int i = 0; i < BAR_WIDTH; i++) {
+        fputc(i < filled ? '#' : '.', stderr);
+    }
+    fprintf(stderr, "] %3d.%d %%", permille / 10, permille % 10);
+    fflush(stderr);
+}
+
+void hs_progress_end(struct hs_progress *p)
+{
+    if (p->is_terminal) {
+        fputs("\r\033[K", stderr);
+    }
+}
