@@ -29,6 +29,7 @@ objs = $(patsubst %.c,$(O)/%.o,$(1))
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a
 LIB_hs       := $(O)/libhs.a
+TEST_SUPPORT := $(O)/tests/support/support.o
 
 PROGRAMS :=
 TESTS    :=
@@ -99,7 +100,7 @@ $(O)/host-sim/%.o: host-sim/%.c
 	$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 $(O)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(CC) $(CFLAGS_host) -Itests/support $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 
 # Link: objects and archives in the order of the prerequisites, then what LDLIBS says for this target.
 $(O)/bin/%:

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Run every test program given, in TAP form, and add up. Usage: run.sh BUILD-DIR TEST...
-# A test program prints "ok N - name", "not ok N - name" or "ok N - name # SKIP why".
+# A test program prints "ok N - name", "not ok N - name", or "ok N # SKIP name" (cmocka says "not ok" there too).
 # A program that dies, or prints no result at all, counts as one failure.
 set -u
 o=$1
@@ -12,16 +12,16 @@ for test in "$@"; do
     log=$o/test-logs/$(echo "$name" | tr / -).tap
     CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o timeout -k 5 "${TEST_TIMEOUT:-900}" "$test" >"$log" 2>&1
     status=$?
-    s=$(grep -c '^ok .*# SKIP' "$log")
-    p=$(($(grep -c '^ok ' "$log") - s))
-    f=$(grep -c '^not ok ' "$log")
+    s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
+    p=$(grep -E '^ok ' "$log" | grep -vc '# SKIP')
+    f=$(grep -E '^not ok ' "$log" | grep -vc '# SKIP')
     if [ $status -ne 0 ] && [ "$f" -eq 0 ]; then f=1; echo "not ok - $name ended with status $status" >>"$log"; fi
     if [ $((p + f + s)) -eq 0 ]; then f=1; echo "not ok - $name printed no result" >>"$log"; fi
     printf '%-48s %3d passed' "$name" "$p"
     [ "$f" -eq 0 ] || printf ', %d FAILED' "$f"
     [ "$s" -eq 0 ] || printf ', %d skipped' "$s"
     printf '\n'
-    [ "$s" -eq 0 ] || sed -n 's/^ok .*- \(.*# SKIP.*\)/    \1/p' "$log"
+    [ "$s" -eq 0 ] || sed -n 's/^# skipped: /    skipped: /p' "$log"
     [ "$f" -eq 0 ] || { sed 's/^/    /' "$log" | tail -n 60; }
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
 done

@@ -48,7 +48,7 @@ static void a_full_disk_is_an_error_and_leaves_no_file(void **state)
 {
     (void)state;
     if (access("/dev/full", W_OK) != 0) {
-        print_message("# no /dev/full here\n");
+        print_message("# skipped: no /dev/full here\n");
         skip();
     }
     struct hs_atomic_file f = {fopen("/dev/full", "wb"), strdup("/tmp/landmass-never"),
