@@ -1,0 +1,36 @@
+/* Sizes and choices of the firmware, each with meaning, allowed range and default. A board may override one with
+ * -DLM_...; nothing else in the firmware is conditional. */
+#ifndef LM_CONFIG_H
+#define LM_CONFIG_H
+
+/* Range cells a scan line may have, guard cells included. 64..1024. */
+#ifndef LM_CELLS_MAX
+#define LM_CELLS_MAX 528
+#endif
+_Static_assert(LM_CELLS_MAX >= 64 && LM_CELLS_MAX <= 1024, "LM_CELLS_MAX out of range");
+
+/* Tile requests that may wait for the flash at one time. 16..1024, a power of two. */
+#ifndef LM_TILE_REQUESTS
+#define LM_TILE_REQUESTS 256
+#endif
+_Static_assert(LM_TILE_REQUESTS >= 16 && LM_TILE_REQUESTS <= 1024 &&
+                   (LM_TILE_REQUESTS & (LM_TILE_REQUESTS - 1)) == 0,
+               "LM_TILE_REQUESTS out of range");
+
+/* Tiles the cache may hold; the board lends the memory, this bounds the index. 16..4096. */
+#ifndef LM_TILE_SLOTS_MAX
+#define LM_TILE_SLOTS_MAX 512
+#endif
+_Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
+               "LM_TILE_SLOTS_MAX out of range");
+
+/* Frames taken from the bus in one step, and scan lines drawn in one step. */
+#ifndef LM_STEP_FRAMES
+#define LM_STEP_FRAMES 64
+#endif
+#ifndef LM_STEP_LINES
+#define LM_STEP_LINES 8
+#endif
+_Static_assert(LM_STEP_FRAMES >= 1 && LM_STEP_LINES >= 1, "a step must do something");
+
+#endif

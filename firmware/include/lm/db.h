@@ -1,0 +1,127 @@
+/* The database image in flash: its parts as the firmware sees them, and what is checked before any is believed.
+ * docs/FORMATS.md, "Flash image", is the description of every byte; the offsets here are the same ones.
+ *
+ * Numbers are little-endian, as on every machine the firmware is built for (checked at compile time in db.c).
+ *
+ * The grid. Latitude and longitude are binary angles (2^32 = 360 degrees). A cell of level L is 2^(shift0 + L)
+ * units of latitude high; in longitude it is wider by 2^zone, where the zone depends on latitude only
+ * (lm_db_zone). A tile is 64 x 64 cells; tile row = (latitude + 90 degrees) >> (shift + 6) counts from the south
+ * pole, tile column = longitude >> (shift + zone + 6) from Greenwich eastward and wraps at the antimeridian by
+ * itself. The parent of a tile is (level + 1, row / 2, column / 2): zone borders fall on tile borders at every
+ * level because they are multiples of 2^26 and shift + 6 <= 26. */
+#ifndef LM_DB_H
+#define LM_DB_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fx/types.h"
+#include "lm/port.h"
+
+enum {
+    LM_DB_VERSION = 1,
+    LM_DB_HEADER_BYTES = 512,
+    LM_DB_LEVELS_MAX = 12,
+    LM_DB_BANDS_MAX = 64,
+    LM_DB_SHIFT_MIN = 4,  /* a level-0 cell of 0.15 m */
+    LM_DB_SHIFT_MAX = 20, /* a cell of the coarsest level: 9.8 km */
+    LM_DB_CLASSES = 16,
+    LM_DB_CLASS_NONE = 15, /* no data: drawn as nothing */
+    LM_TILE_CELLS = 64,    /* along one side */
+    LM_TILE_CELLS_LOG2 = 6,
+    LM_TILE_POSTS = 65,    /* elevation posts at the cells' corners, shared with the neighbours */
+    LM_TILE_BYTES = 16704
+};
+
+/* What a class is to the radar, apart from how bright. */
+enum lm_kind { LM_KIND_GROUND = 0, LM_KIND_WATER = 1, LM_KIND_STRUCTURE = 2, LM_KIND_TREES = 3 };
+
+/* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */
+enum { LM_GAMMA_CODE_STEP_Q8 = 128, LM_GAMMA_CODE_ZERO_Q8 = -80 * 256 };
+
+/* A tile record, in flash and in the cache alike. 16,704 bytes. */
+struct lm_tile {
+    uint32_t crc; /* CRC-32C of all bytes after this field */
+    uint8_t level, zone;
+    uint16_t reserved0;
+    uint32_t row, column; /* the record says which tile it is; an answer to another question is refused */
+    int32_t base_q6;      /* elevation of post code 0, metres * 64 */
+    uint8_t post_shift;   /* one post step is 2^post_shift / 64 metres; 0..12 */
+    uint8_t reserved1[11];
+    /* Row 0 is the southernmost, column 0 the westernmost.
+     * Bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code. */
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
+    /* posts[r][c] is the elevation at the south-west corner of cell (r, c); row and column 64 repeat the
+     * neighbours' row and column 0. */
+    uint16_t posts[LM_TILE_POSTS][LM_TILE_POSTS];
+    uint8_t reserved2[30];
+};
+_Static_assert(sizeof(struct lm_tile) == LM_TILE_BYTES, "the record must be what FORMATS.md says");
+
+/* A rectangle of tiles of one level in one latitude zone, with its run of directory entries. */
+struct lm_band {
+    uint8_t level, zone;
+    uint16_t reserved;
+    uint32_t row0, rows;       /* rows >= 1 */
+    uint32_t column0, columns; /* columns >= 1; column0 + columns may pass the antimeridian */
+    uint32_t entry0;           /* directory entry of (row0, column0); row by row from there */
+};
+_Static_assert(sizeof(struct lm_band) == 24, "the record must be what FORMATS.md says");
+
+struct lm_class {
+    char name[16];    /* zero-padded; may fill all 16 */
+    uint8_t kind;     /* enum lm_kind */
+    uint8_t colour[3]; /* for host pictures */
+    int16_t gamma_q8; /* mean reflectivity, dB * 256 */
+    uint16_t spread_q8;
+    uint16_t height_dm;
+    uint16_t looks;
+    uint8_t reserved[36];
+};
+_Static_assert(sizeof(struct lm_class) == 64, "the record must be what FORMATS.md says");
+
+struct lm_classes {
+    struct lm_class entry[LM_DB_CLASSES];
+    uint16_t height_dm[16]; /* what the height codes mean; [0] is 0 */
+};
+_Static_assert(sizeof(struct lm_classes) == 1056, "the record must be what FORMATS.md says");
+
+/* The image after its header, class table and band table were read and checked. */
+struct lm_db {
+    const struct lm_flash *flash; /* borrowed */
+    uint8_t level_count, shift0;
+    uint16_t band_count;
+    uint32_t entry_count, record_count;
+    uint64_t directory_offset, records_offset;
+    int32_t mean_elevation_q6; /* of the land in the image, metres * 64 */
+    int32_t geoid_q6;          /* height of mean sea level above the ellipsoid here, metres * 64 */
+    fx_bam_t centre_latitude, centre_longitude;
+    struct lm_classes classes;
+    struct lm_band bands[LM_DB_BANDS_MAX];
+};
+
+/* Read and check header, class table and band table. Polls each read at most `poll_limit` times.
+ * LM_OK, or LM_ERR_IO, LM_ERR_CORRUPT, LM_ERR_VERSION with *db unspecified.
+ * After LM_OK every offset and count in *db has been checked against the size of the flash. */
+int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
+
+/* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders at 61.875, 73.125 and 84.375 degrees
+ * (11, 13 and 15 sixteenths of a quarter turn), symmetric about the equator. */
+uint8_t lm_db_zone(fx_bam_t latitude);
+
+/* Directory entry of a tile, or -1 when no band holds it. Cost: one pass over the level's bands. */
+int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column);
+
+/* Check 8 bytes read from the directory against the entry they should be. LM_OK and *record (UINT32_MAX for a
+ * tile that the image leaves out); LM_ERR_CORRUPT when the checksum or the bound does not hold. */
+int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t bytes[8],
+                      uint32_t *record);
+
+/* Check a record read from flash: checksum, identity, bounds. LM_OK or LM_ERR_CORRUPT.
+ * Cost: one CRC over 16.7 kB. */
+int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column);
+
+/* Cell height of a level in millimetres along the meridian (2^shift * 9.3146 mm). */
+uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t level);
+
+#endif
