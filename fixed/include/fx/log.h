@@ -1,0 +1,35 @@
+/* Logarithms and powers: base 2 in Q16, decibels in Q8. */
+#ifndef FX_LOG_H
+#define FX_LOG_H
+
+#include "fx/bits.h"
+#include "fx/tables.h"
+
+#include <stdint.h>
+
+/* log2(x) in Q16 for x >= 1: 0..32 * 65536. log2(0) is answered as if x were one half, -65536,
+ * which is less than any other answer. Worst error TBM lsb. Cost about 15 instructions. */
+int32_t fx_log2_q16(uint32_t x);
+int32_t fx_log2_q16_u64(uint64_t x); /* 0..64 * 65536 */
+
+/* 2^x in Q16, for x in Q16. UINT32_MAX from x = 16.0 up; 0 below -17.0, where the result rounds to
+ * nothing. Worst error TBM. Cost about 20 instructions. */
+uint32_t fx_exp2_q16(int32_t x_q16);
+
+/* 10 * log10(power) in Q8 dB: 0..24661 for power >= 1; power 0 counts as one half, -3.01 dB.
+ * The cell of the table, 1/256 octave start to end, makes the worst error TBM dB. Made for
+ * every pixel: about 8 instructions, one of them a load. */
+static inline int32_t fx_db_q8(uint32_t power)
+{
+    /* The table holds dB in Q14 with the half for rounding added; at most 31 * 49321 + 49321 + 32
+     * fits 21 bits. When power is 0 the shift is by 0 (32 modulo 32) and the mantissa is 0. */
+    const int zeros = fx_clz32(power);
+    const uint32_t mantissa = power << ((uint32_t)zeros & 31u);
+    return ((31 - zeros) * FX_DB_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 23 & 255u]) >> 6;
+}
+
+/* 10^(dB / 10) in Q16, for dB in Q8. UINT32_MAX from 48.165 dB (12331) up; 0 below -51.2 dB.
+ * Worst error TBM. Cost about 25 instructions. */
+uint32_t fx_power_q16_from_db_q8(int32_t db_q8);
+
+#endif
