@@ -21,7 +21,8 @@ typedef uint32_t fx_bam_t;
 #define FX_BAM_180 ((fx_bam_t)0x80000000u)
 
 /* A whole number of degrees, -3600..3600, to the nearest count. Integer arithmetic only, so it
- * serves as a constant. 45 * 2^k never divides a tie, hence FX_BAM_DEG(-d) == -FX_BAM_DEG(d). */
+ * serves as a constant. Thirds, fifths and ninths of a count occur but never halves, hence
+ * FX_BAM_DEG(-d) == -FX_BAM_DEG(d). */
 #define FX_BAM_DEG(d) ((fx_bam_t)((((uint64_t)((int64_t)(d) + 3600) << 32) + 180u) / 360u))
 
 #endif
