@@ -8,7 +8,7 @@
  * t_q16 0..65536. The difference takes 33 bits and the product 50. */
 static inline int32_t fx_lerp_i32(int32_t a, int32_t b, uint32_t t_q16)
 {
-    return (int32_t)(a + (((int64_t)b - a) * (int64_t)t_q16 + 32768) >> 16);
+    return (int32_t)(a + ((((int64_t)b - a) * (int64_t)t_q16 + 32768) >> 16));
 }
 
 /* Blend four samples; tx and ty run 0..256, where 0 is the c00 corner and 256 exactly the far one.

@@ -8,17 +8,18 @@
 #include <stdint.h>
 
 /* log2(x) in Q16 for x >= 1: 0..32 * 65536. log2(0) is answered as if x were one half, -65536,
- * which is less than any other answer. Worst error TBM lsb. Cost about 15 instructions. */
+ * which is less than any other answer. Worst error 0.60 lsb; exact for powers of
+ * two. Cost 24 instructions. */
 int32_t fx_log2_q16(uint32_t x);
 int32_t fx_log2_q16_u64(uint64_t x); /* 0..64 * 65536 */
 
 /* 2^x in Q16, for x in Q16. UINT32_MAX from x = 16.0 up; 0 below -17.0, where the result rounds to
- * nothing. Worst error TBM. Cost about 20 instructions. */
+ * nothing. Worst error 0.5 lsb or 4e-9 of the result, added up. Cost 30 instructions. */
 uint32_t fx_exp2_q16(int32_t x_q16);
 
-/* 10 * log10(power) in Q8 dB: 0..24661 for power >= 1; power 0 counts as one half, -3.01 dB.
- * The cell of the table, 1/256 octave start to end, makes the worst error TBM dB. Made for
- * every pixel: about 8 instructions, one of them a load. */
+/* 10 * log10(power) in Q8 dB: 2..24659 for power >= 1; power 0 counts as one half, -768.
+ * Worst error 0.0108 dB, most of it from a mantissa of 8 bits. Made for every pixel: 7 instructions
+ * in a loop, one of them a load, and 5 that a loop hoists. */
 static inline int32_t fx_db_q8(uint32_t power)
 {
     /* The table holds dB in Q14 with the half for rounding added; at most 31 * 49321 + 49321 + 32
@@ -28,8 +29,8 @@ static inline int32_t fx_db_q8(uint32_t power)
     return ((31 - zeros) * FX_DB_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 23 & 255u]) >> 6;
 }
 
-/* 10^(dB / 10) in Q16, for dB in Q8. UINT32_MAX from 48.165 dB (12331) up; 0 below -51.2 dB.
- * Worst error TBM. Cost about 25 instructions. */
+/* 10^(dB / 10) in Q16, for dB in Q8. UINT32_MAX from 12331 (48.168 dB) up; 0 below -13100
+ * (-51.17 dB). Worst error 0.5 lsb or 4e-9 of the result, added up. Cost 35 instructions. */
 uint32_t fx_power_q16_from_db_q8(int32_t db_q8);
 
 #endif

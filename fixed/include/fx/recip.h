@@ -8,7 +8,7 @@
  * one part in 2^31: r is floor(2^s / d) exactly, and no error at all when d is a power of two.
  * x / d is then ((uint64_t)x * r) >> s for x below 2^32, which is the true floor or one less.
  * d = 0 gives the largest, r = 2^32 - 1 with s = 0.
- * Cost about 25 instructions, no division. */
+ * Cost 35 instructions, no division. */
 uint32_t fx_recip_q(uint32_t d, int *s);
 
 #endif

@@ -5,23 +5,23 @@
 #include "fx/types.h"
 
 /* Sine and cosine, -2^30..2^30 for -1..1. Exact at 0, 90, 180 and 270 degrees; sine exactly odd and
- * cosine exactly even, and both the same in every quadrant. Worst error TBM lsb (TBM), cost about
- * 30 instructions, five of them multiplications. */
+ * cosine exactly even, and both the same in every quadrant. Worst error 0.76 lsb (7.1e-10) over 2^24
+ * angles. Cost 38 instructions, six of them multiplications. */
 int32_t fx_sin_q30(fx_bam_t angle);
 int32_t fx_cos_q30(fx_bam_t angle);
 
 /* The quick pair, -32768..32768 for -1..1, with the same symmetries and exact points. Worst error
- * TBM lsb over all angles, cost about 15 instructions. */
+ * 0.58 lsb over 2^24 angles. Cost 21 instructions, one multiplication. */
 int32_t fx_sin_q15(fx_bam_t angle);
 int32_t fx_cos_q15(fx_bam_t angle);
 
 /* Tangent in Q16; beyond +-32768 it saturates at INT32_MIN or INT32_MAX, and at +-90 degrees it is
- * INT32_MAX. Worst error TBM for angles up to 89 degrees. Cost about 90 instructions. */
+ * INT32_MAX. Worst error 0.51 lsb up to 60 degrees, 0.7 lsb up to 89. Cost 180 instructions. */
 int32_t fx_tan_q16(fx_bam_t angle);
 
 /* The angle from the x axis towards the y axis of the vector (x, y), for every pair of inputs
- * including INT32_MIN; atan2(0, 0) = 0. Exact along the axes and the diagonals. Worst error TBM
- * counts (TBM degree). Cost about 60 instructions, no division. */
+ * including INT32_MIN; atan2(0, 0) = 0. Exact along the axes and the diagonals. Worst error 2.6
+ * counts (2.2e-7 degree). Cost 100 instructions, no division. */
 fx_bam_t fx_atan2(int32_t y, int32_t x);
 
 #endif

@@ -4,6 +4,7 @@
  * is 1 << 30. The suffix replaces a type for each format, because the width of the integer and the
  * place of the point are chosen apart. A quantity without a suffix is a whole number of its unit.
  *
+ * A cost in these headers counts instructions of a Cortex-A53 (clang 14, -O2), constants included.
  * All of fixed/ relies on two's complement and on `>>` of a negative number rounding down, which C
  * leaves to the compiler and every compiler in use here promises. */
 #ifndef FX_TYPES_H
