@@ -87,9 +87,50 @@ static const struct table fixed_tables[] = {
      crc32c},
 };
 
+/* The regularised lower incomplete gamma function P(k, x) of a whole k: 1 - e^-x (1 + x + .. + x^(k-1) / (k-1)!). */
+static long double gamma_below(int k, long double x)
+{
+    long double term = expl(-x), sum = term;
+    for (int j = 1; j < k; j++) {
+        term *= x / j;
+        sum += term;
+    }
+    return 1 - sum;
+}
+
+/* Where P(k, x) reaches p, by halving an interval that surely holds it. */
+static long double gamma_quantile(int k, long double p)
+{
+    long double low = 0, high = 200;
+    for (int i = 0; i < 200; i++) {
+        const long double middle = (low + high) / 2;
+        *(gamma_below(k, middle) < p ? &low : &high) = middle;
+    }
+    return low;
+}
+
+/* Mean of the n-th of 1024 equally likely slices of a Gamma(L) variable of mean 1: x times the density of Gamma(L) is the
+ * density of Gamma(L + 1), so that the mean is a difference of its distribution function. */
+static int64_t speckle(int looks_log2, int n)
+{
+    const int looks = 1 << looks_log2;
+    const long double slices = 1024;
+    const long double from = n == 0 ? 0 : gamma_below(looks + 1, gamma_quantile(looks, n / slices));
+    const long double to =
+        n == 1023 ? 1 : gamma_below(looks + 1, gamma_quantile(looks, (n + 1) / slices));
+    return rounded(10 * log10l(slices * (to - from)), 8);
+}
+
+static const struct table speckle_tables[] = {
+    {"lm_speckle_q8", "int16_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5, 1024,
+     speckle},
+};
+
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
 const struct table_set table_sets[] = {
     {"fixed", "fixed/src/tables.c", "fx/tables.h", fixed_tables, COUNT(fixed_tables)},
+    {"speckle", "firmware/src/speckle_table.c", "lm/speckle.h", speckle_tables,
+     COUNT(speckle_tables)},
 };
 const int table_set_count = COUNT(table_sets);

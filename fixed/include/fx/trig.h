@@ -5,8 +5,8 @@
 #include "fx/types.h"
 
 /* Sine and cosine, -2^30..2^30 for -1..1. Exact at 0, 90, 180 and 270 degrees; sine exactly odd and
- * cosine exactly even, and both the same in every quadrant. Worst error 0.76 lsb (7.1e-10) over 2^24
- * angles. Cost 38 instructions, six of them multiplications. */
+ * cosine exactly even, and both the same in every quadrant. Worst error 0.76 lsb (7.1e-10) over
+ * 2^24 angles. Cost 38 instructions, six of them multiplications. */
 int32_t fx_sin_q30(fx_bam_t angle);
 int32_t fx_cos_q30(fx_bam_t angle);
 

@@ -1,0 +1,180 @@
+/* Logarithms, powers and decibels against the C library; the errors are those of fx/log.h. */
+#include "fx/log.h"
+#include "hs/rng.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static void leading_zeros_are_counted_for_every_width(void **state)
+{
+    (void)state;
+    assert_int_equal(fx_clz32(0), 32);
+    assert_int_equal(fx_clz64(0), 64);
+    for (int bit = 0; bit < 64; bit++) {
+        const uint64_t smallest = 1ull << bit, largest = smallest | (smallest - 1);
+        assert_int_equal(fx_clz64(smallest), 63 - bit);
+        assert_int_equal(fx_clz64(largest), 63 - bit);
+        if (bit < 32) {
+            assert_int_equal(fx_clz32((uint32_t)smallest), 31 - bit);
+            assert_int_equal(fx_clz32((uint32_t)largest), 31 - bit);
+        }
+    }
+}
+
+static void log2_is_within_0_60_lsb(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (uint32_t x = 1; x < 1u << 22; x++) {
+        worst = fmax(worst, fabs(fx_log2_q16(x) - 65536 * log2(x)));
+    }
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 1);
+    for (int i = 0; i < 4000000; i++) {
+        const uint64_t x = hs_rng_u64(&rng) >> hs_rng_below(&rng, 64);
+        if (x != 0) {
+            worst = fmax(worst, fabs(fx_log2_q16_u64(x) - 65536 * log2((double)x)));
+        }
+    }
+    print_message("# log2 Q16: worst %.3f lsb\n", worst);
+    assert_true(worst <= 0.60);
+}
+
+static void log2_is_exact_for_powers_of_two_and_minus_one_for_zero(void **state)
+{
+    (void)state;
+    for (int power = 0; power < 64; power++) {
+        assert_int_equal(fx_log2_q16_u64(1ull << power), power * 65536);
+        if (power < 32) {
+            assert_int_equal(fx_log2_q16(1u << power), power * 65536);
+        }
+    }
+    assert_int_equal(fx_log2_q16(0), -65536);
+    assert_int_equal(fx_log2_q16_u64(0), -65536);
+    assert_int_equal(fx_log2_q16(UINT32_MAX), 32 * 65536);
+    assert_int_equal(fx_log2_q16_u64(UINT64_MAX), 64 * 65536);
+}
+
+static void log2_never_falls(void **state)
+{
+    (void)state;
+    for (uint32_t x = 0; x < 1u << 20; x++) {
+        assert_true(fx_log2_q16(x + 1) >= fx_log2_q16(x));
+    }
+}
+
+/* The error of `got`, less the half lsb that rounding may take, as a fraction of the truth. */
+static double error_beyond_rounding(uint32_t got, double want)
+{
+    return (fabs(got - want) - 0.5) / want;
+}
+
+static void exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int32_t x_q16 = -17 * 65536; x_q16 < 16 * 65536; x_q16++) {
+        const double want = 65536 * exp2(x_q16 / 65536.0);
+        worst = fmax(worst, error_beyond_rounding(fx_exp2_q16(x_q16), want));
+    }
+    print_message("# exp2 Q16: worst 0.5 lsb and %.2e\n", worst);
+    assert_true(worst <= 4e-9);
+}
+
+static void exp2_saturates_above_and_vanishes_below(void **state)
+{
+    (void)state;
+    assert_int_equal(fx_exp2_q16(0), 65536);
+    assert_int_equal(fx_exp2_q16(15 * 65536), 1u << 31);
+    assert_int_equal(fx_exp2_q16(16 * 65536), UINT32_MAX);
+    assert_int_equal(fx_exp2_q16(INT32_MAX), UINT32_MAX);
+    assert_int_equal(fx_exp2_q16(-17 * 65536), 1);
+    assert_int_equal(fx_exp2_q16(-17 * 65536 - 1), 0);
+    assert_int_equal(fx_exp2_q16(INT32_MIN), 0);
+}
+
+static void exp2_of_log2_comes_back(void **state)
+{
+    (void)state;
+    for (uint32_t x = 1; x < 65536; x++) {
+        /* 1.1 lsb of Q16 in the exponent is 1.2e-5 of the number. */
+        const double back = fx_exp2_q16(fx_log2_q16(x)) / 65536.0;
+        assert_true(fabs(back / x - 1) < 1.2e-5);
+    }
+}
+
+static void decibels_are_within_0_0108_dB_for_powers_of_every_size(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (uint32_t power = 1; power < 1u << 22; power++) {
+        worst = fmax(worst, fabs(fx_db_q8(power) / 256.0 - 10 * log10(power)));
+    }
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 2);
+    for (int i = 0; i < 4000000; i++) {
+        const uint32_t power = (uint32_t)hs_rng_u64(&rng) | 1u << hs_rng_below(&rng, 32);
+        worst = fmax(worst, fabs(fx_db_q8(power) / 256.0 - 10 * log10(power)));
+    }
+    print_message("# decibels Q8: worst %.5f dB\n", worst);
+    assert_true(worst <= 0.0108);
+}
+
+static void decibels_never_fall_and_keep_to_their_range(void **state)
+{
+    (void)state;
+    for (uint32_t power = 0; power < 1u << 20; power++) {
+        assert_true(fx_db_q8(power + 1) >= fx_db_q8(power));
+    }
+    assert_int_equal(fx_db_q8(0), -768);
+    assert_int_equal(fx_db_q8(1), 2);
+    assert_int_equal(fx_db_q8(UINT32_MAX), 24659);
+}
+
+static void power_from_decibels_is_within_half_an_lsb_and_4e_9(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int32_t db_q8 = -13100; db_q8 < 12331; db_q8++) {
+        const double want = 65536 * pow(10, db_q8 / 2560.0);
+        worst = fmax(worst, error_beyond_rounding(fx_power_q16_from_db_q8(db_q8), want));
+    }
+    print_message("# power from decibels: worst 0.5 lsb and %.2e\n", worst);
+    assert_true(worst <= 4e-9);
+}
+
+static void power_from_decibels_saturates_above_and_vanishes_below(void **state)
+{
+    (void)state;
+    assert_int_equal(fx_power_q16_from_db_q8(0), 65536);
+    assert_int_equal(fx_power_q16_from_db_q8(10 * 256), 655360);
+    assert_true(fx_power_q16_from_db_q8(12330) < UINT32_MAX);
+    assert_int_equal(fx_power_q16_from_db_q8(12331), UINT32_MAX);
+    assert_int_equal(fx_power_q16_from_db_q8(INT32_MAX), UINT32_MAX);
+    assert_int_equal(fx_power_q16_from_db_q8(-13100), 1);
+    assert_int_equal(fx_power_q16_from_db_q8(-13101), 0);
+    assert_int_equal(fx_power_q16_from_db_q8(INT32_MIN), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(leading_zeros_are_counted_for_every_width),
+        cmocka_unit_test(log2_is_within_0_60_lsb),
+        cmocka_unit_test(log2_is_exact_for_powers_of_two_and_minus_one_for_zero),
+        cmocka_unit_test(log2_never_falls),
+        cmocka_unit_test(exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range),
+        cmocka_unit_test(exp2_saturates_above_and_vanishes_below),
+        cmocka_unit_test(exp2_of_log2_comes_back),
+        cmocka_unit_test(decibels_are_within_0_0108_dB_for_powers_of_every_size),
+        cmocka_unit_test(decibels_never_fall_and_keep_to_their_range),
+        cmocka_unit_test(power_from_decibels_is_within_half_an_lsb_and_4e_9),
+        cmocka_unit_test(power_from_decibels_saturates_above_and_vanishes_below),
+    };
+    return cmocka_run_group_tests_name("log", tests, NULL, NULL);
+}

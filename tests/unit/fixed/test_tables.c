@@ -1,0 +1,96 @@
+/* The generated tables in the tree are those that the generator makes today. */
+#include "support.h"
+#include "tables.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static char *whole_file(const char *path)
+{
+    FILE *in = fopen(path, "r");
+    assert_non_null(in);
+    char *text = NULL;
+    size_t size = 0;
+    assert_true(getdelim(&text, &size, '\0', in) > 0);
+    fclose(in);
+    return text;
+}
+
+static void the_tables_in_the_tree_are_the_generated_ones(void **state)
+{
+    (void)state;
+    for (int i = 0; i < table_set_count; i++) {
+        char *made = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&made, &size);
+        assert_non_null(out);
+        assert_int_equal(table_set_print(out, &table_sets[i]), 0);
+        fclose(out);
+        char *stored = whole_file(table_sets[i].file);
+        if (strcmp(stored, made) != 0) {
+            fail_msg("%s is out of date: landmass-tables %s %s", table_sets[i].file,
+                     table_sets[i].name, table_sets[i].file);
+        }
+        free(stored);
+        free(made);
+    }
+}
+
+static int64_t one_too_large(int row, int i)
+{
+    (void)row;
+    return i == 2 ? 65536 : 0;
+}
+
+static void an_entry_that_does_not_fit_its_type_is_refused(void **state)
+{
+    (void)state;
+    const struct table wide = {"wide", "uint32_t", "fits", 0, 3, one_too_large};
+    const struct table narrow = {"narrow", "uint16_t", "does not fit", 0, 3, one_too_large};
+    const struct table_set fits = {"test", "", "", &wide, 1};
+    const struct table_set does_not = {"test", "", "", &narrow, 1};
+    FILE *out = fopen("/dev/null", "w");
+    assert_non_null(out);
+    assert_int_equal(table_set_print(out, &fits), 0);
+    assert_int_equal(table_set_print(out, &does_not), -1);
+    fclose(out);
+}
+
+static void the_program_writes_the_same_text_to_a_file_and_to_its_output(void **state)
+{
+    (void)state;
+    const char *build = support_build_dir();
+    assert_int_equal(support_run("mkdir -p %s/tmp", build), 0);
+    assert_int_equal(support_run("%s/bin/landmass-tables fixed %s/tmp/tables.c && "
+                                 "%s/bin/landmass-tables fixed | cmp - %s/tmp/tables.c && "
+                                 "cmp %s/tmp/tables.c fixed/src/tables.c",
+                                 build, build, build, build, build),
+                     0);
+}
+
+static void the_program_explains_itself_and_refuses_what_makes_no_sense(void **state)
+{
+    (void)state;
+    const char *build = support_build_dir();
+    assert_int_equal(support_run("%s/bin/landmass-tables --help | grep -q 'usage:'", build), 0);
+    assert_int_equal(support_run("%s/bin/landmass-tables 2>/dev/null", build), 2);
+    assert_int_equal(support_run("%s/bin/landmass-tables nonsense 2>/dev/null", build), 2);
+    assert_int_equal(support_run("%s/bin/landmass-tables fixed /nowhere/x.c 2>/dev/null", build),
+                     1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_tables_in_the_tree_are_the_generated_ones),
+        cmocka_unit_test(an_entry_that_does_not_fit_its_type_is_refused),
+        cmocka_unit_test(the_program_writes_the_same_text_to_a_file_and_to_its_output),
+        cmocka_unit_test(the_program_explains_itself_and_refuses_what_makes_no_sense),
+    };
+    return cmocka_run_group_tests_name("tables", tests, NULL, NULL);
+}
