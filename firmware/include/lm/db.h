@@ -30,6 +30,7 @@ enum {
     LM_TILE_CELLS = 64,    /* along one side */
     LM_TILE_CELLS_LOG2 = 6,
     LM_TILE_POSTS = 65,    /* elevation posts at the cells' corners, shared with the neighbours */
+    LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
     LM_TILE_BYTES = 16704
 };
 
@@ -46,7 +47,7 @@ struct lm_tile {
     uint16_t reserved0;
     uint32_t row, column; /* the record says which tile it is; an answer to another question is refused */
     int32_t base_q6;      /* elevation of post code 0, metres * 64 */
-    uint8_t post_shift;   /* one post step is 2^post_shift / 64 metres; 0..12 */
+    uint8_t post_shift;   /* one post step is 2^post_shift / 64 metres; 0..4 */
     uint8_t reserved1[11];
     /* Row 0 is the southernmost, column 0 the westernmost.
      * Bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code. */
@@ -121,7 +122,7 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t byte
  * Cost: one CRC over 16.7 kB. */
 int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column);
 
-/* Cell height of a level in millimetres along the meridian (2^shift * 9.3146 mm). */
+/* Cell height of a level in millimetres along the meridian (2^shift * 9.31506 mm). */
 uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t level);
 
 #endif

@@ -1,0 +1,55 @@
+/* What the radar sees of a line: horizon, shadow, slope, walls, edges, in one pass from near to far.
+ * Equations: docs/DESIGN.md, "What the radar sees of it". */
+#ifndef LM_ASPECT_H
+#define LM_ASPECT_H
+
+#include <stdint.h>
+
+#include "lm/db.h"
+#include "lm/scan_line.h"
+
+/* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
+enum { LM_LEVEL_SHADOW = -0x8000 };
+
+/* Nothing nearer than this is shown: a ground-map beam does not look straight down. */
+enum { LM_RANGE_MIN_M = 256 };
+
+struct lm_aspect_config {
+    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB */
+    int16_t shore_q8;                         /* far shore, dB */
+    uint16_t shore_width_m;
+};
+
+/* What depends on range and height alone, worked out once for many lines. */
+struct lm_range_grid {
+    uint32_t cells;
+    uint32_t cell_q8;                  /* length, metres * 256 */
+    int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain; metres * 1024 */
+    uint32_t first;                    /* cells before this are nearer than LM_RANGE_MIN_M */
+    int32_t shore_fall_q8;             /* a cell, see aspect.c */
+    int32_t flat_rise_q30;             /* rise of the tangent in the first cell over flat ground */
+    uint32_t inverse_range_q40[LM_CELLS_MAX]; /* 1 / s, s in metres */
+    int32_t fall_q10[LM_CELLS_MAX];           /* the Earth's drop and the antenna's height, metres * 1024 */
+    int32_t gain_q8[LM_CELLS_MAX];            /* K_i, and the scale of the tangent's Q30 */
+};
+
+/* Cell i is centred at first_q8 + i * cell_q8 (metres * 256); cell_q8 > 0, last centre below 400 km.
+ * Cost: about 150 instructions a cell. */
+void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *config,
+                       uint32_t first_q8, uint32_t cell_q8, uint32_t cells, int32_t height_q10,
+                       int32_t reference_q10);
+
+/* The running horizon: tangent of the highest look so far, Q30. */
+typedef int64_t lm_horizon_q30_t;
+
+/* No terrain seen yet: the first cell that is looked at will be lit as flat ground is. */
+#define LM_HORIZON_OPEN INT64_MIN
+
+/* Levels of the line's cells into level_q8[0..cells-1]; LM_LEVEL_SHADOW where nothing is lit or known.
+ * Returns the horizon behind the last cell. */
+lm_horizon_q30_t lm_aspect_run(const struct lm_range_grid *grid,
+                               const struct lm_aspect_config *config,
+                               const struct lm_classes *classes, const struct lm_scan_line *line,
+                               lm_horizon_q30_t horizon, int32_t *level_q8);
+
+#endif

@@ -1,0 +1,241 @@
+#include "lm/db.h"
+
+#include "fx/crc32c.h"
+#include "fx/mem.h"
+
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "records are used in place: landmass needs a little-endian machine"
+#endif
+
+enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES, SECTIONS_MAX = 16 };
+
+struct section {
+    uint32_t type, crc;
+    uint64_t offset, bytes;
+};
+
+/* FORMATS.md 1.1. Laid out so that no compiler pads it. */
+struct header {
+    char magic[8];
+    uint32_t version, header_bytes;
+    uint64_t image_bytes;
+    uint8_t shift0, level_count;
+    uint16_t band_count;
+    uint32_t entry_count, record_count, record_bytes;
+    int32_t mean_elevation_q6, geoid_q6;
+    uint32_t centre_latitude, centre_longitude;
+    uint32_t section_count, reserved0;
+    struct section sections[SECTIONS_MAX];
+    char title[32];
+    uint8_t reserved1[28];
+    uint32_t crc;
+};
+_Static_assert(sizeof(struct header) == LM_DB_HEADER_BYTES, "the header must be what FORMATS.md says");
+
+static int read_blocking(const struct lm_flash *flash, uint64_t offset, void *destination,
+                         uint32_t length, uint32_t poll_limit)
+{
+    int status = flash->read_start(flash->ctx, offset, destination, length);
+    if (status != LM_OK) {
+        return LM_ERR_IO;
+    }
+    for (uint32_t i = 0; i < poll_limit; i++) {
+        status = flash->read_poll(flash->ctx);
+        if (status != LM_BUSY) {
+            return status == LM_OK ? LM_OK : LM_ERR_IO;
+        }
+    }
+    return LM_ERR_IO;
+}
+
+static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
+{
+    return h->header_bytes == LM_DB_HEADER_BYTES && h->image_bytes <= flash_bytes &&
+           h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 &&
+           h->level_count <= LM_DB_LEVELS_MAX &&
+           h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
+           h->band_count <= LM_DB_BANDS_MAX && h->record_bytes == LM_TILE_BYTES &&
+           h->section_count <= SECTIONS_MAX;
+}
+
+/* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL. */
+static const struct section *find_section(const struct header *h, uint32_t type, uint64_t bytes)
+{
+    for (uint32_t i = 0; i < h->section_count; i++) {
+        const struct section *s = &h->sections[i];
+        if (s->type == type) {
+            const bool fits = s->bytes == bytes && s->offset % 64 == 0 &&
+                              s->bytes <= h->image_bytes && s->offset <= h->image_bytes - s->bytes;
+            return fits ? s : NULL;
+        }
+    }
+    return NULL;
+}
+
+static int read_section(struct lm_db *db, const struct section *s, void *destination,
+                        uint32_t poll_limit)
+{
+    const uint32_t length = (uint32_t)s->bytes; /* bounded by find_section */
+    const int status = read_blocking(db->flash, s->offset, destination, length, poll_limit);
+    if (status != LM_OK) {
+        return status;
+    }
+    return fx_crc32c(0, destination, length) == s->crc ? LM_OK : LM_ERR_CORRUPT;
+}
+
+/* Columns that go once round the Earth at this shift and zone. */
+static uint32_t columns_round(uint8_t shift, uint8_t zone)
+{
+    return 1u << (32 - LM_TILE_CELLS_LOG2 - shift - zone);
+}
+
+static bool band_is_sound(const struct lm_db *db, const struct lm_band *b)
+{
+    if (b->level >= db->level_count || b->zone > 3 || b->rows == 0 || b->columns == 0) {
+        return false;
+    }
+    const uint8_t shift = (uint8_t)(db->shift0 + b->level);
+    const uint32_t rows_all = 1u << (31 - LM_TILE_CELLS_LOG2 - shift); /* pole to pole */
+    const uint32_t columns_all = columns_round(shift, b->zone);
+    if (b->row0 >= rows_all || b->rows > rows_all - b->row0 || b->column0 >= columns_all ||
+        b->columns > columns_all) {
+        return false;
+    }
+    const uint64_t entries = (uint64_t)b->rows * b->columns;
+    return entries <= db->entry_count && b->entry0 <= db->entry_count - entries;
+}
+
+static bool classes_are_sound(const struct lm_classes *c)
+{
+    for (int i = 0; i < LM_DB_CLASSES; i++) {
+        if (c->entry[i].kind > LM_KIND_TREES) {
+            return false;
+        }
+    }
+    for (int i = 1; i < 16; i++) {
+        if (c->height_dm[i] < c->height_dm[i - 1]) {
+            return false;
+        }
+    }
+    return c->height_dm[0] == 0;
+}
+
+static int read_tables(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+{
+    const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
+    const struct section *classes = find_section(h, SECTION_CLASSES, sizeof db->classes);
+    const struct section *bands = find_section(h, SECTION_BANDS, band_bytes);
+    const struct section *directory =
+        find_section(h, SECTION_DIRECTORY, (uint64_t)db->entry_count * 8);
+    const struct section *tiles =
+        find_section(h, SECTION_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
+    if (!classes || !bands || !directory || !tiles) {
+        return LM_ERR_CORRUPT;
+    }
+    db->directory_offset = directory->offset;
+    db->records_offset = tiles->offset;
+    int status = read_section(db, classes, &db->classes, poll_limit);
+    if (status == LM_OK) {
+        status = read_section(db, bands, db->bands, poll_limit);
+    }
+    if (status != LM_OK) {
+        return status;
+    }
+    for (uint32_t i = 0; i < db->band_count; i++) {
+        if (!band_is_sound(db, &db->bands[i])) {
+            return LM_ERR_CORRUPT;
+        }
+    }
+    return classes_are_sound(&db->classes) ? LM_OK : LM_ERR_CORRUPT;
+}
+
+int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit)
+{
+    struct header h;
+    if (flash->size_bytes < sizeof h) {
+        return LM_ERR_CORRUPT;
+    }
+    const int status = read_blocking(flash, 0, &h, sizeof h, poll_limit);
+    if (status != LM_OK) {
+        return status;
+    }
+    if (memcmp(h.magic, "LANDMASS", 8) != 0 ||
+        fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
+        return LM_ERR_CORRUPT;
+    }
+    if (h.version != LM_DB_VERSION) {
+        return LM_ERR_VERSION;
+    }
+    if (!header_is_sound(&h, flash->size_bytes)) {
+        return LM_ERR_CORRUPT;
+    }
+    db->flash = flash;
+    db->shift0 = h.shift0;
+    db->level_count = h.level_count;
+    db->band_count = h.band_count;
+    db->entry_count = h.entry_count;
+    db->record_count = h.record_count;
+    db->mean_elevation_q6 = h.mean_elevation_q6;
+    db->geoid_q6 = h.geoid_q6;
+    db->centre_latitude = h.centre_latitude;
+    db->centre_longitude = h.centre_longitude;
+    return read_tables(db, &h, poll_limit);
+}
+
+uint8_t lm_db_zone(fx_bam_t latitude)
+{
+    static const uint8_t zone_of_sixteenth[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 2, 2, 3};
+    /* 0..31 from pole to pole; 32, the north pole itself, belongs to the last one. */
+    const uint32_t sixteenth = (uint32_t)(latitude + FX_BAM_90) >> 26;
+    if (sixteenth >= 32) {
+        return 3;
+    }
+    return zone_of_sixteenth[sixteenth >= 16 ? sixteenth - 16 : 15 - sixteenth];
+}
+
+int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column)
+{
+    for (uint32_t i = 0; i < db->band_count; i++) {
+        const struct lm_band *b = &db->bands[i];
+        if (b->level != level || row < b->row0 || row - b->row0 >= b->rows) {
+            continue;
+        }
+        const uint32_t round = columns_round((uint8_t)(db->shift0 + level), b->zone);
+        const uint32_t east = (column - b->column0) & (round - 1);
+        if (column < round && east < b->columns) {
+            return (int64_t)b->entry0 + (int64_t)(row - b->row0) * b->columns + east;
+        }
+    }
+    return -1;
+}
+
+int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t bytes[8],
+                      uint32_t *record)
+{
+    uint32_t stored[2];
+    memcpy(stored, bytes, sizeof stored);
+    const uint32_t covered[2] = {entry, stored[0]};
+    if (fx_crc32c(0, covered, sizeof covered) != stored[1] ||
+        (stored[0] != UINT32_MAX && stored[0] >= db->record_count)) {
+        return LM_ERR_CORRUPT;
+    }
+    *record = stored[0];
+    return LM_OK;
+}
+
+int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column)
+{
+    const uint8_t *bytes = (const uint8_t *)tile;
+    const int32_t base_limit_q6 = 1 << 20;
+    const bool is_sound = tile->level == level && tile->row == row && tile->column == column &&
+                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX && tile->base_q6 >= -base_limit_q6 &&
+                          tile->base_q6 <= base_limit_q6 &&
+                          fx_crc32c(0, bytes + 4, LM_TILE_BYTES - 4) == tile->crc;
+    return is_sound ? LM_OK : LM_ERR_CORRUPT;
+}
+
+uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t level)
+{
+    /* 40,007,862.917 m of meridian / 2^32 = 9.31506 mm = 610,472 / 65,536 mm. */
+    return (uint32_t)(((uint64_t)610472 << (db->shift0 + level)) >> 16);
+}

@@ -1,0 +1,286 @@
+#include "lm/tile_cache.h"
+
+#include "fx/hash.h"
+#include "fx/mem.h"
+
+static uint32_t bucket_of(uint8_t level, uint32_t row, uint32_t column)
+{
+    return fx_hash_u32(row * 0x9E3779B1u ^ column ^ (uint32_t)level << 27) & (LM_TILE_HASH - 1);
+}
+
+static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+{
+    uint16_t i = c->heads[bucket_of(level, row, column)];
+    /* A chain holds each slot at most once, so this ends. */
+    while (i != LM_SLOT_NONE) {
+        const struct lm_tile_slot *s = &c->slots[i];
+        if (s->row == row && s->column == column && s->level == level) {
+            return i;
+        }
+        i = s->next;
+    }
+    return LM_SLOT_NONE;
+}
+
+static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
+{
+    const struct lm_tile_slot *s = &c->slots[victim];
+    uint16_t *link = &c->heads[bucket_of(s->level, s->row, s->column)];
+    while (*link != victim) {
+        link = &c->slots[*link].next;
+    }
+    *link = s->next;
+}
+
+/* A free slot, or the one that was used longest ago. Pinned slots and the one being read stay. */
+static uint16_t take_slot(struct lm_tile_cache *c)
+{
+    uint16_t best = LM_SLOT_NONE;
+    uint32_t best_age = 0;
+    for (uint32_t i = 0; i < c->slot_count; i++) {
+        const struct lm_tile_slot *s = &c->slots[i];
+        if (s->state == LM_SLOT_FREE) {
+            return (uint16_t)i;
+        }
+        const uint32_t age = c->clock - s->last_use;
+        if (!s->is_pinned && s->state != LM_SLOT_READING &&
+            (best == LM_SLOT_NONE || age > best_age)) {
+            best = (uint16_t)i;
+            best_age = age;
+        }
+    }
+    unlink_slot(c, best);
+    c->count.evicted++;
+    return best;
+}
+
+static void claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *key)
+{
+    const uint16_t i = take_slot(c);
+    struct lm_tile_slot *s = &c->slots[i];
+    uint16_t *head = &c->heads[bucket_of(key->level, key->row, key->column)];
+    *s = (struct lm_tile_slot){.row = key->row,
+                               .column = key->column,
+                               .level = key->level,
+                               .last_use = c->clock,
+                               .state = LM_SLOT_READING,
+                               .next = *head};
+    *head = i;
+    c->reading_slot = i;
+}
+
+static void finish(struct lm_tile_cache *c, enum lm_slot_state state)
+{
+    struct lm_tile_slot *s = &c->slots[c->reading_slot];
+    s->state = (uint8_t)state;
+    s->failed_us = c->now_us;
+    s->is_pinned = s->level == c->db->level_count - 1 && state == LM_SLOT_RESIDENT;
+    c->reading_slot = LM_SLOT_NONE;
+}
+
+static void fail(struct lm_tile_cache *c, uint32_t *counter)
+{
+    (*counter)++;
+    finish(c, LM_SLOT_BAD);
+}
+
+static void start_read(struct lm_tile_cache *c, uint64_t offset, void *to, uint32_t length)
+{
+    const struct lm_flash *flash = c->db->flash;
+    c->count.bytes_read += length;
+    if (flash->read_start(flash->ctx, offset, to, length) != LM_OK) {
+        fail(c, &c->count.io_errors);
+    }
+}
+
+static bool is_settled(const struct lm_tile_cache *c, uint16_t i)
+{
+    const struct lm_tile_slot *s = &c->slots[i];
+    return s->state != LM_SLOT_BAD || c->now_us - s->failed_us < LM_TILE_RETRY_US;
+}
+
+/* Begin with the next tile that is wanted and not there yet. */
+static void start_next(struct lm_tile_cache *c)
+{
+    const struct lm_tile_key key = c->wanted[c->wanted_tail % LM_TILE_REQUESTS];
+    c->wanted_tail++;
+    const uint16_t known = find(c, key.level, key.row, key.column);
+    if (known != LM_SLOT_NONE) {
+        if (is_settled(c, known)) {
+            return;
+        }
+        c->slots[known].state = LM_SLOT_READING;
+        c->reading_slot = known;
+    } else {
+        claim_slot(c, &key);
+    }
+    c->reading_entry = key.entry;
+    c->is_reading_entry = true;
+    start_read(c, c->db->directory_offset + 8u * (uint64_t)key.entry, c->entry_bytes, 8);
+}
+
+static void take_entry(struct lm_tile_cache *c)
+{
+    uint32_t record = 0;
+    const uint8_t *bytes = (const uint8_t *)c->entry_bytes;
+    if (lm_db_entry_check(c->db, c->reading_entry, bytes, &record) != LM_OK) {
+        fail(c, &c->count.corrupt);
+    } else if (record == UINT32_MAX) {
+        finish(c, LM_SLOT_ABSENT);
+    } else {
+        c->is_reading_entry = false;
+        start_read(c, c->db->records_offset + (uint64_t)record * LM_TILE_BYTES,
+                   &c->pool[c->reading_slot], LM_TILE_BYTES);
+    }
+}
+
+static void take_record(struct lm_tile_cache *c)
+{
+    const struct lm_tile_slot *s = &c->slots[c->reading_slot];
+    if (lm_tile_check(&c->pool[c->reading_slot], s->level, s->row, s->column) != LM_OK) {
+        fail(c, &c->count.corrupt);
+        return;
+    }
+    c->count.tiles_read++;
+    finish(c, LM_SLOT_RESIDENT);
+}
+
+void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads)
+{
+    const struct lm_flash *flash = c->db->flash;
+    c->now_us = now_us;
+    for (uint32_t i = 0; i < reads; i++) {
+        if (c->reading_slot == LM_SLOT_NONE) {
+            if (c->wanted_tail == c->wanted_head) {
+                return;
+            }
+            start_next(c);
+            continue;
+        }
+        const int status = flash->read_poll(flash->ctx);
+        if (status == LM_BUSY) {
+            return;
+        }
+        if (status != LM_OK) {
+            fail(c, &c->count.io_errors);
+        } else if (c->is_reading_entry) {
+            take_entry(c);
+        } else {
+            take_record(c);
+        }
+    }
+}
+
+void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+{
+    const uint16_t known = find(c, level, row, column);
+    if (known != LM_SLOT_NONE) {
+        c->slots[known].last_use = c->clock;
+        if (is_settled(c, known)) {
+            return;
+        }
+    }
+    /* The same tile is asked for by many cells in a row; the newest requests are looked through for it. */
+    for (uint32_t back = 1; back <= 8 && back <= c->wanted_head - c->wanted_tail; back++) {
+        const struct lm_tile_key *k = &c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS];
+        if (k->row == row && k->column == column && k->level == level) {
+            return;
+        }
+    }
+    if (c->wanted_head - c->wanted_tail == LM_TILE_REQUESTS) {
+        c->count.requests_dropped++;
+        return;
+    }
+    const int64_t entry = lm_db_entry(c->db, level, row, column);
+    if (entry < 0) {
+        return;
+    }
+    c->wanted[c->wanted_head % LM_TILE_REQUESTS] =
+        (struct lm_tile_key){row, column, (uint32_t)entry, level};
+    c->wanted_head++;
+}
+
+/* The answer is not the tile that was asked for: ask for it, and count that unless the image never had it. */
+static void note_miss(struct lm_tile_cache *c, const struct lm_tile_key *asked, bool is_on_map)
+{
+    const uint16_t i = find(c, asked->level, asked->row, asked->column);
+    if (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT) {
+        c->slots[i].last_use = c->clock;
+        return;
+    }
+    c->count.misses++;
+    if (is_on_map) {
+        c->count.substituted++;
+    }
+    lm_tile_cache_want(c, asked->level, asked->row, asked->column);
+}
+
+const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
+                                        uint32_t column)
+{
+    c->clock++;
+    const struct lm_tile_key asked = {.row = row, .column = column, .level = level};
+    for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
+        const uint16_t i = find(c, level, row, column);
+        if (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_RESIDENT) {
+            c->slots[i].last_use = c->clock;
+            if (level == asked.level) {
+                c->count.hits++;
+            } else {
+                note_miss(c, &asked, true);
+            }
+            return &c->pool[i];
+        }
+    }
+    c->count.off_map++;
+    note_miss(c, &asked, false);
+    return NULL;
+}
+
+bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
+{
+    return c->reading_slot == LM_SLOT_NONE && c->wanted_head == c->wanted_tail;
+}
+
+/* Read every tile of the coarsest level, waiting for each: this happens once, before the first picture. */
+static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
+{
+    const uint8_t level = (uint8_t)(c->db->level_count - 1);
+    uint32_t total = 0;
+    for (uint32_t b = 0; b < c->db->band_count; b++) {
+        const struct lm_band *band = &c->db->bands[b];
+        if (band->level != level) {
+            continue;
+        }
+        const uint64_t tiles = (uint64_t)band->rows * band->columns;
+        if (total + tiles + 16 > c->slot_count) {
+            return LM_ERR_NO_MEMORY;
+        }
+        total += (uint32_t)tiles;
+        const uint32_t round =
+            1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - level - band->zone);
+        for (uint32_t t = 0; t < tiles; t++) {
+            const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
+            lm_tile_cache_want(c, level, band->row0 + t / band->columns, column);
+            for (uint32_t polls = 0; polls < poll_limit && !lm_tile_cache_is_idle(c); polls++) {
+                lm_tile_cache_service(c, 0, 1);
+            }
+        }
+    }
+    return LM_OK;
+}
+
+int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
+                       size_t pool_bytes, uint32_t poll_limit)
+{
+    memset(c, 0, sizeof *c);
+    c->db = db;
+    c->pool = pool;
+    const size_t slots = pool_bytes / sizeof(struct lm_tile);
+    c->slot_count = slots < LM_TILE_SLOTS_MAX ? (uint32_t)slots : LM_TILE_SLOTS_MAX;
+    c->reading_slot = LM_SLOT_NONE;
+    for (uint32_t i = 0; i < LM_TILE_HASH; i++) {
+        c->heads[i] = LM_SLOT_NONE;
+    }
+    return read_coarsest(c, poll_limit);
+}
