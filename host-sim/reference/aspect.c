@@ -1,0 +1,100 @@
+/* What the radar sees: DESIGN.md, "What the radar sees of it". */
+#include "reference.h"
+
+#include <math.h>
+
+double ref_tangent(double antenna_m, double range_m, double top_m)
+{
+    return (top_m - antenna_m - range_m * range_m / (2 * REF_EFFECTIVE_EARTH_M)) / range_m;
+}
+
+double ref_grazing(const struct ref_view *view, double range_m)
+{
+    const double flat =
+        (view->antenna_m - view->reference_m) / range_m - range_m / (2 * REF_EFFECTIVE_EARTH_M);
+    return fmax(flat, 1.0 / 256);
+}
+
+double ref_gain_db(const struct ref_view *view, double range_m)
+{
+    return 10 * log10(range_m / (view->cell_m * ref_grazing(view, range_m)));
+}
+
+static double bin_tangent(const struct ref_bin *bin, double antenna_m)
+{
+    return ref_tangent(antenna_m, bin->range_m, bin->elevation_m + bin->height_m);
+}
+
+double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view)
+{
+    return bin_tangent(first, view->antenna_m) -
+           ref_grazing(view, first->range_m) * view->cell_m / first->range_m;
+}
+
+double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m)
+{
+    double highest = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        highest = fmax(highest, bin_tangent(&bins[i], antenna_m));
+    }
+    return highest;
+}
+
+/* Where the line is behind its last shore. */
+struct shore {
+    int cells_since; /* -1: no water yet, or in it */
+    bool is_after_water;
+};
+
+/* The far shore is a ramp of whole steps of 1/256 dB, as DESIGN.md defines it: that rounding is
+ * part of the equation, not of the arithmetic. */
+static double shore_db(struct shore *shore, const struct ref_bin *bin,
+                       const struct ref_params *params, double cell_m)
+{
+    if (bin->kind == LM_KIND_WATER) {
+        *shore = (struct shore){-1, true};
+        return 0;
+    }
+    if (shore->is_after_water) {
+        *shore = (struct shore){0, false};
+    } else if (shore->cells_since >= 0) {
+        shore->cells_since++;
+    }
+    if (shore->cells_since < 0) {
+        return 0;
+    }
+    const double full = round(params->shore_db * 256);
+    const double step = floor(full / fmax(1, round(params->shore_width_m / cell_m)));
+    return fmax(full - shore->cells_since * step, 0) / 256;
+}
+
+static double leading_edge_db(const struct ref_bin *before, const struct ref_bin *bin,
+                              const struct ref_params *params)
+{
+    if (before == NULL || before->kind == bin->kind) {
+        return 0;
+    }
+    return bin->kind == LM_KIND_STRUCTURE ? params->edge_structure_db
+           : bin->kind == LM_KIND_TREES   ? params->edge_trees_db
+                                          : 0;
+}
+
+void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                const struct ref_params *params, double horizon)
+{
+    struct shore shore = {-1, false};
+    for (size_t i = 0; i < count; i++) {
+        struct ref_bin *bin = &bins[i];
+        bin->tangent = bin_tangent(bin, view->antenna_m);
+        bin->horizon = horizon;
+        bin->rise = bin->tangent - horizon;
+        bin->is_lit = bin->rise > 0;
+        bin->gain_db = ref_gain_db(view, bin->range_m);
+        bin->edge_db = leading_edge_db(i > 0 ? bin - 1 : NULL, bin, params) +
+                       shore_db(&shore, bin, params, view->cell_m);
+        bin->level_db = bin->is_lit && bin->has_data
+                            ? bin->gamma_db + 10 * log10(bin->rise) + bin->gain_db + bin->edge_db
+                            : params->noise_floor_db;
+        horizon = fmax(horizon, bin->tangent);
+    }
+}

@@ -1,0 +1,326 @@
+/* The flash image as docs/FORMATS.md, section 1, describes it, and what stands at a place in it. */
+#include "reference.h"
+
+#include "fx/crc32c.h"
+#include "hs/error.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TILE_LOG2 = 6, SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES };
+enum verdict { UNKNOWN = 0, GOOD, BAD };
+
+static const char rebuild[] = "build the image again with landmass-db";
+
+static uint32_t get_u32(const uint8_t *at)
+{
+    uint32_t value;
+    memcpy(&value, at, sizeof value);
+    return value;
+}
+
+static uint64_t get_u64(const uint8_t *at)
+{
+    uint64_t value;
+    memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/* The bytes of a section, or NULL when it is absent, misplaced, or not `bytes` long. */
+static const uint8_t *find_section(const struct ref_db *db, uint32_t type, uint64_t bytes)
+{
+    const uint32_t count = get_u32(db->bytes + 56);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint8_t *entry = db->bytes + 64 + 24 * i;
+        const uint64_t offset = get_u64(entry + 8);
+        if (get_u32(entry) == type) {
+            return get_u64(entry + 16) == bytes && offset % 64 == 0 && offset <= db->size &&
+                           bytes <= db->size - offset
+                       ? db->bytes + offset
+                       : NULL;
+        }
+    }
+    return NULL;
+}
+
+static bool has_good_section_crc(const struct ref_db *db, uint32_t type, const uint8_t *at,
+                                 uint64_t bytes)
+{
+    const uint32_t count = get_u32(db->bytes + 56);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint8_t *entry = db->bytes + 64 + 24 * i;
+        if (get_u32(entry) == type) {
+            return get_u32(entry + 4) == fx_crc32c(0, at, (size_t)bytes);
+        }
+    }
+    return false;
+}
+
+static int read_header(struct ref_db *db, const char *name)
+{
+    const uint8_t *h = db->bytes;
+    if (db->size < LM_DB_HEADER_BYTES || memcmp(h, "LANDMASS", 8) != 0) {
+        return hs_error(name, "give an image made by landmass-db", "this is no landmass image");
+    }
+    if (get_u32(h + 508) != fx_crc32c(0, h, 508)) {
+        return hs_error(name, rebuild, "the header's checksum does not hold");
+    }
+    if (get_u32(h + 8) != LM_DB_VERSION) {
+        return hs_error(name, rebuild, "version %u, this program knows %d", get_u32(h + 8),
+                        LM_DB_VERSION);
+    }
+    db->shift0 = h[24];
+    db->level_count = h[25];
+    db->band_count = (uint32_t)(h[26] | h[27] << 8);
+    db->entry_count = get_u32(h + 28);
+    db->record_count = get_u32(h + 32);
+    const bool is_sound = db->shift0 >= LM_DB_SHIFT_MIN && db->level_count >= 1 &&
+                          db->level_count <= LM_DB_LEVELS_MAX &&
+                          db->shift0 + db->level_count - 1 <= LM_DB_SHIFT_MAX &&
+                          db->band_count >= 1 && db->band_count <= LM_DB_BANDS_MAX &&
+                          get_u32(h + 36) == LM_TILE_BYTES && get_u64(h + 16) <= db->size &&
+                          get_u32(h + 56) >= 5 && get_u32(h + 56) <= 16;
+    if (!is_sound) {
+        return hs_error(name, rebuild, "a number of the header is out of its range");
+    }
+    db->mean_elevation_m = (int32_t)get_u32(h + 40) / 64.0;
+    db->geoid_m = (int32_t)get_u32(h + 44) / 64.0;
+    db->centre.latitude_deg = (int32_t)get_u32(h + 48) * (360 / 4294967296.0);
+    db->centre.longitude_deg = (int32_t)get_u32(h + 52) * (360 / 4294967296.0);
+    return 0;
+}
+
+static bool is_sound_band(const struct ref_db *db, const struct lm_band *band)
+{
+    const uint64_t entries = (uint64_t)band->rows * band->columns;
+    return band->level < db->level_count && band->zone <= 3 && band->rows >= 1 &&
+           band->columns >= 1 && entries / band->columns == band->rows &&
+           entries <= db->entry_count && band->entry0 <= db->entry_count - entries;
+}
+
+static int find_sections(struct ref_db *db, const char *name)
+{
+    const uint64_t classes_bytes = sizeof(struct lm_classes);
+    const uint64_t bands_bytes = db->band_count * sizeof(struct lm_band);
+    const uint8_t *classes = find_section(db, SECTION_CLASSES, classes_bytes);
+    const uint8_t *bands = find_section(db, SECTION_BANDS, bands_bytes);
+    db->directory = find_section(db, SECTION_DIRECTORY, (uint64_t)db->entry_count * 8);
+    db->records = find_section(db, SECTION_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
+    if (!classes || !bands || !db->directory || !db->records) {
+        return hs_error(name, rebuild, "a section is missing or lies outside the file");
+    }
+    if (!has_good_section_crc(db, SECTION_CLASSES, classes, classes_bytes) ||
+        !has_good_section_crc(db, SECTION_BANDS, bands, bands_bytes)) {
+        return hs_error(name, rebuild, "the checksum of the classes or bands does not hold");
+    }
+    /* Sections start at multiples of 64 in a block from malloc, so the casts are aligned. */
+    db->classes = (const struct lm_classes *)(const void *)classes;
+    db->bands = (const struct lm_band *)(const void *)bands;
+    for (uint32_t i = 0; i < db->band_count; i++) {
+        if (!is_sound_band(db, &db->bands[i])) {
+            return hs_error(name, rebuild, "band %u is out of range", i);
+        }
+    }
+    return 0;
+}
+
+static int open_bytes(struct ref_db *db, const char *name)
+{
+    if (read_header(db, name) == 0 && find_sections(db, name) == 0) {
+        db->verdicts = calloc((size_t)db->record_count + 1, 1);
+        if (db->verdicts != NULL) {
+            return 0;
+        }
+        hs_error(name, NULL, "not enough memory");
+    }
+    ref_db_close(db);
+    return -1;
+}
+
+int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const char *name)
+{
+    *db = (struct ref_db){.bytes = malloc(size + 1), .size = size};
+    if (db->bytes == NULL) {
+        return hs_error(name, NULL, "not enough memory for %zu bytes", size);
+    }
+    memcpy(db->bytes, bytes, size);
+    return open_bytes(db, name);
+}
+
+/* The whole file in one block; `*size` bytes. NULL with the error reported. */
+static uint8_t *read_whole(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        hs_error(path, "check the path", "cannot be opened: %s", strerror(errno));
+        return NULL;
+    }
+    uint8_t *bytes = NULL;
+    const long length = fseek(file, 0, SEEK_END) == 0 ? ftell(file) : -1;
+    if (length >= 0 && fseek(file, 0, SEEK_SET) == 0) {
+        bytes = malloc((size_t)length + 1);
+    }
+    if (bytes == NULL || fread(bytes, 1, (size_t)length, file) != (size_t)length) {
+        hs_error(path, NULL, "cannot be read whole");
+        free(bytes);
+        bytes = NULL;
+    }
+    fclose(file);
+    *size = (size_t)length;
+    return bytes;
+}
+
+int ref_db_open(struct ref_db *db, const char *path)
+{
+    *db = (struct ref_db){0};
+    db->bytes = read_whole(path, &db->size);
+    return db->bytes == NULL ? -1 : open_bytes(db, path);
+}
+
+void ref_db_close(struct ref_db *db)
+{
+    free(db->bytes);
+    free(db->verdicts);
+    *db = (struct ref_db){0};
+}
+
+double ref_db_cell_m(const struct ref_db *db, unsigned level)
+{
+    return ldexp(REF_MERIDIAN_M, (int)(db->shift0 + level) - 32);
+}
+
+unsigned ref_db_level_for(const struct ref_db *db, double cell_m)
+{
+    unsigned level = 0;
+    while (level + 1 < db->level_count && ref_db_cell_m(db, level + 1) <= cell_m) {
+        level++;
+    }
+    return level;
+}
+
+/* A place on the grid of one level: which tile, which cell in it, and where in the cell (0..1). */
+struct grid_place {
+    uint32_t zone, row, column, r, c;
+    double north, east;
+};
+
+/* A border of latitude belongs to the tile north of it, in either hemisphere (assumed). */
+static uint32_t zone_of(int64_t latitude_bam)
+{
+    const int64_t sixteenth = (latitude_bam >= 0 ? latitude_bam : -latitude_bam - 1) >> 26;
+    return (uint32_t)((sixteenth >= 11) + (sixteenth >= 13) + (sixteenth >= 15));
+}
+
+static struct grid_place locate(const struct ref_db *db, unsigned level, struct ref_place place)
+{
+    const double circle = 4294967296.0;
+    const double latitude = place.latitude_deg / 360 * circle;
+    const double turns = place.longitude_deg / 360;
+    struct grid_place g = {.zone = zone_of((int64_t)floor(latitude))};
+    const int shift = (int)(db->shift0 + level);
+    const double y = ldexp(fmin(fmax(latitude + circle / 4, 0), circle / 2 - 1), -shift);
+    const double x = ldexp((turns - floor(turns)) * circle, -shift - (int)g.zone);
+    const uint32_t columns = UINT32_C(1) << (32 - shift - (int)g.zone);
+    const uint32_t whole_y = (uint32_t)floor(y), whole_x = (uint32_t)floor(x) % columns;
+    g.row = whole_y >> TILE_LOG2;
+    g.column = whole_x >> TILE_LOG2;
+    g.r = whole_y % LM_TILE_CELLS;
+    g.c = whole_x % LM_TILE_CELLS;
+    g.north = y - floor(y);
+    g.east = x - floor(x);
+    return g;
+}
+
+static bool is_good_record(const struct ref_db *db, uint32_t record, const struct lm_tile *tile)
+{
+    if (db->verdicts[record] == UNKNOWN) {
+        const uint8_t *checked = (const uint8_t *)tile + sizeof tile->crc;
+        const bool is_good = tile->crc == fx_crc32c(0, checked, LM_TILE_BYTES - sizeof tile->crc);
+        db->verdicts[record] = is_good ? GOOD : BAD;
+    }
+    return db->verdicts[record] == GOOD;
+}
+
+/* The record of a directory entry, or NULL: no such tile, or something is wrong with it. */
+static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry, unsigned level,
+                                        const struct grid_place *g)
+{
+    const uint8_t *at = db->directory + (size_t)entry * 8;
+    uint8_t checked[8];
+    memcpy(checked, &entry, 4);
+    memcpy(checked + 4, at, 4);
+    const uint32_t record = get_u32(at);
+    if (get_u32(at + 4) != fx_crc32c(0, checked, 8) || record >= db->record_count) {
+        return NULL;
+    }
+    const struct lm_tile *tile =
+        (const struct lm_tile *)(const void *)(db->records + (size_t)record * LM_TILE_BYTES);
+    const bool is_asked_for = tile->level == level && tile->zone == g->zone &&
+                              tile->row == g->row && tile->column == g->column;
+    return is_good_record(db, record, tile) && is_asked_for && tile->post_shift <= 12 ? tile : NULL;
+}
+
+static const struct lm_tile *find_tile(const struct ref_db *db, unsigned level,
+                                       const struct grid_place *g)
+{
+    const uint32_t columns = UINT32_C(1) << (32 - TILE_LOG2 - db->shift0 - level - g->zone);
+    for (uint32_t i = 0; i < db->band_count; i++) {
+        const struct lm_band *band = &db->bands[i];
+        const uint32_t along = (g->column - band->column0) & (columns - 1);
+        if (band->level == level && band->zone == g->zone && g->row >= band->row0 &&
+            g->row - band->row0 < band->rows && along < band->columns) {
+            return entry_tile(db, band->entry0 + (g->row - band->row0) * band->columns + along,
+                              level, g);
+        }
+    }
+    return NULL;
+}
+
+/* The tile that holds the place at this level or the nearest coarser one that has it. */
+static const struct lm_tile *find_nearest(const struct ref_db *db, unsigned level,
+                                          struct ref_place place, struct grid_place *g)
+{
+    for (; level < db->level_count; level++) {
+        *g = locate(db, level, place);
+        const struct lm_tile *tile = find_tile(db, level, g);
+        if (tile != NULL) {
+            return tile;
+        }
+    }
+    return NULL;
+}
+
+void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place,
+                 struct ref_bin *bin)
+{
+    struct grid_place g;
+    const struct lm_tile *tile = find_nearest(db, level, place, &g);
+    const uint32_t cell = tile ? tile->cells[g.r][g.c] : LM_DB_CLASS_NONE << 4;
+    bin->class_index = (int)(cell >> 4 & 15);
+    bin->has_data = bin->class_index != LM_DB_CLASS_NONE;
+    bin->kind = db->classes->entry[bin->class_index].kind;
+    bin->gamma_db = (cell >> 8) / 2.0 - 80;
+    bin->height_m = db->classes->height_dm[cell & 15] / 10.0;
+}
+
+bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
+                      bool is_exact, double *elevation_m)
+{
+    struct grid_place g;
+    const struct lm_tile *tile = find_nearest(db, level, place, &g);
+    if (tile == NULL) {
+        *elevation_m = db->mean_elevation_m;
+        return false;
+    }
+    const double north = is_exact ? g.north : floor(g.north * 256) / 256;
+    const double east = is_exact ? g.east : floor(g.east * 256) / 256;
+    const uint16_t *low = &tile->posts[g.r][g.c], *high = &tile->posts[g.r + 1][g.c];
+    const double south_side = low[0] * (1 - east) + low[1] * east;
+    const double north_side = high[0] * (1 - east) + high[1] * east;
+    const double code = south_side * (1 - north) + north_side * north;
+    *elevation_m = (tile->base_q6 + ldexp(code, tile->post_shift)) / 64;
+    return true;
+}

@@ -1,0 +1,309 @@
+/* landmass-reference: the picture of the firmware, computed in double precision. */
+#include "dump.h"
+#include "hs/error.h"
+#include "hs/png.h"
+#include "reference.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FOR_SAR = 1, FOR_GM = 2, FOR_BOTH = 3 };
+
+/* What the command line says; NAN stands for "from the image". */
+struct request {
+    const char *image, *out, *dump;
+    bool has_exact_weights;
+    double latitude_deg, longitude_deg, antenna_m, azimuth_deg, range_m, cell_m, cells;
+    double half_angle_deg, lines, size_px, scale, epoch, looks;
+    struct ref_params params;
+};
+
+struct option {
+    const char *name, *help;
+    size_t offset; /* of the double in struct request */
+    int modes;
+    double low, high, usual;
+    bool is_whole;
+};
+
+#define AT(field) offsetof(struct request, field)
+
+static const struct option options[] = {
+    {"latitude", "degrees, of the patch's centre or the antenna; the image's centre by default",
+     AT(latitude_deg), FOR_BOTH, -90, 90, NAN, false},
+    {"longitude", "degrees, likewise", AT(longitude_deg), FOR_BOTH, -360, 360, NAN, false},
+    {"azimuth", "degrees from north: line of sight at the patch, or middle of the sector",
+     AT(azimuth_deg), FOR_BOTH, -720, 720, 0, false},
+    {"height", "metres of the antenna above mean sea level", AT(antenna_m), FOR_BOTH, 1, 30000,
+     6000, false},
+    {"range", "metres along the ground: antenna to patch, or to the last cell's end", AT(range_m),
+     FOR_BOTH, 100, 300000, 37040, false},
+    {"cells", "range cells of a line (and lines of a patch)", AT(cells), FOR_BOTH, 8, 4096, 256,
+     true},
+    {"cell", "metres of a patch's cell", AT(cell_m), FOR_SAR, 0.1, 1000, 10, false},
+    {"half-angle", "degrees to either side of the sector's middle", AT(half_angle_deg), FOR_GM, 1,
+     90, 60, false},
+    {"lines", "azimuth lines of the sector", AT(lines), FOR_GM, 1, 8192, 256, true},
+    {"size", "pixels of the picture's height", AT(size_px), FOR_GM, 16, 4096, 512, true},
+    {"scale", "pixels along a cell's side", AT(scale), FOR_SAR, 1, 16, 2, true},
+    {"epoch", "number of the look: another one, another speckle", AT(epoch), FOR_BOTH, 0,
+     4294967295.0, 0, true},
+    {"looks", "independent looks averaged", AT(looks), FOR_BOTH, 1, 64, 4, true},
+    {"edge-structure", "dB at the leading edge of structures", AT(params.edge_structure_db),
+     FOR_BOTH, 0, 40, NAN, false},
+    {"edge-trees", "dB at the leading edge of trees", AT(params.edge_trees_db), FOR_BOTH, 0, 40,
+     NAN, false},
+    {"shore", "dB at the far shore", AT(params.shore_db), FOR_BOTH, 0, 40, NAN, false},
+    {"shore-width", "metres in which that falls to nothing", AT(params.shore_width_m), FOR_BOTH, 0,
+     10000, NAN, false},
+    {"floor", "dB of the noise floor", AT(params.noise_floor_db), FOR_BOTH, -120, 60, NAN, false},
+    {"black", "dB shown black", AT(params.black_db), FOR_BOTH, -120, 60, NAN, false},
+    {"white", "dB shown white", AT(params.white_db), FOR_BOTH, -120, 60, NAN, false},
+    {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_BOTH, 0.1, 10, NAN,
+     false},
+};
+enum { OPTION_COUNT = sizeof options / sizeof options[0] };
+
+static double *option_value(struct request *request, const struct option *option)
+{
+    return (double *)(void *)((char *)request + option->offset);
+}
+
+static void print_options(int mode)
+{
+    struct request usual = {.params = ref_params_default()};
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        const struct option *o = &options[i];
+        if ((o->modes & mode) == 0) {
+            continue;
+        }
+        const double value = isnan(o->usual) ? *option_value(&usual, o) : o->usual;
+        printf("  --%-15s %s", o->name, o->help);
+        if (strstr(o->help, "likewise") == NULL && strstr(o->help, "by default") == NULL) {
+            printf(" [%g]", value);
+        }
+        putchar('\n');
+    }
+    printf("  --%-15s %s\n", "exact-weights", "do not cut the weights between posts to 8 bits");
+    printf("  --%-15s %s\n", "out FILE", "the picture, a grey PNG [reference.png]");
+    printf("  --%-15s %s\n", "dump FILE",
+           "every stage of every cell: CSV, or raw doubles if FILE ends in .f64");
+    printf("\nColumns of the dump: %s\n", ref_dump_columns);
+}
+
+static void print_help(int mode)
+{
+    if (mode == FOR_BOTH) {
+        printf(
+            "usage: landmass-reference sar|gm IMAGE [options]\n\n"
+            "Render a picture from a flash image in double precision, by the equations of "
+            "docs/DESIGN.md.\nIt is what the firmware's picture is judged by.\n\n"
+            "  sar   a patch, the line of sight upwards\n"
+            "  gm    a sector seen from above, the antenna in the middle of the lower edge\n\n"
+            "landmass-reference sar --help and landmass-reference gm --help list the options.\n");
+        return;
+    }
+    printf("usage: landmass-reference %s IMAGE [options]\n\n", mode == FOR_SAR ? "sar" : "gm");
+    print_options(mode);
+}
+
+static const struct option *find_option(const char *name, int mode)
+{
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (strcmp(name, options[i].name) == 0 && (options[i].modes & mode) != 0) {
+            return &options[i];
+        }
+    }
+    return NULL;
+}
+
+static int set_number(struct request *request, const struct option *option, const char *text)
+{
+    char *end;
+    const double value = strtod(text, &end);
+    const bool is_number =
+        end != text && *end == '\0' && (!option->is_whole || fmod(value, 1) == 0);
+    if (!is_number || !(value >= option->low && value <= option->high)) {
+        return hs_error(option->name, NULL, "'%s' is no %s from %g to %g", text,
+                        option->is_whole ? "whole number" : "number", option->low, option->high);
+    }
+    *option_value(request, option) = value;
+    return 0;
+}
+
+/* One option and its value; the number of arguments used, or -1. */
+static int parse_option(struct request *request, int mode, char **argv)
+{
+    const char *name = argv[0] + 2;
+    if (strcmp(name, "exact-weights") == 0) {
+        request->has_exact_weights = true;
+        return 1;
+    }
+    const struct option *option = find_option(name, mode);
+    const char **file = strcmp(name, "out") == 0    ? &request->out
+                        : strcmp(name, "dump") == 0 ? &request->dump
+                                                    : NULL;
+    if (option == NULL && file == NULL) {
+        return hs_error(argv[0], "landmass-reference sar --help and gm --help list them",
+                        "there is no such option");
+    }
+    if (argv[1] == NULL) {
+        return hs_error(argv[0], NULL, "a value must follow");
+    }
+    if (file != NULL) {
+        *file = argv[1];
+        return 2;
+    }
+    return set_number(request, option, argv[1]) == 0 ? 2 : -1;
+}
+
+static int parse(struct request *request, int mode, char **argv)
+{
+    *request = (struct request){.out = "reference.png", .params = ref_params_default()};
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        double *value = option_value(request, &options[i]);
+        *value = options[i].offset >= AT(params) ? *value : options[i].usual;
+    }
+    for (int used = 1; *argv != NULL; argv += used) {
+        used = 1;
+        if (strncmp(*argv, "--", 2) == 0) {
+            used = parse_option(request, mode, argv);
+        } else if (request->image == NULL) {
+            request->image = *argv;
+        } else {
+            used = hs_error(*argv, "give one image", "one argument too many");
+        }
+        if (used < 0) {
+            return -1;
+        }
+    }
+    request->params.looks = (unsigned)request->looks;
+    request->params.has_exact_weights = request->has_exact_weights;
+    if (request->params.white_db <= request->params.black_db) {
+        return hs_error("--white", NULL, "white must lie above black");
+    }
+    return request->image ? 0 : hs_error("command line", "name one", "no image is given");
+}
+
+static struct ref_place place_of(const struct request *request, const struct ref_db *db)
+{
+    return (struct ref_place){
+        isnan(request->latitude_deg) ? db->centre.latitude_deg : request->latitude_deg,
+        isnan(request->longitude_deg) ? db->centre.longitude_deg : request->longitude_deg};
+}
+
+/* Write the dump and the picture; `pixels` is freed. */
+static int write_out(const struct request *request, const struct ref_picture *picture,
+                     uint8_t *pixels, unsigned width, unsigned height)
+{
+    int status = request->dump ? ref_dump(picture, request->dump) : 0;
+    if (status == 0) {
+        status = hs_png_write_grey(request->out, pixels, (int)width, (int)height, (size_t)width);
+    }
+    free(pixels);
+    return status;
+}
+
+static int render_sar(const struct request *request, const struct ref_db *db)
+{
+    const struct ref_sar sar = {.centre = place_of(request, db),
+                                .azimuth_deg = request->azimuth_deg,
+                                .range_m = request->range_m,
+                                .antenna_m = request->antenna_m,
+                                .cell_m = request->cell_m,
+                                .cell_count = (unsigned)request->cells,
+                                .epoch = (uint32_t)request->epoch};
+    const double near_m = sar.range_m - (sar.cell_count / 2.0 + REF_GUARD_CELLS) * sar.cell_m;
+    if (near_m <= 0) {
+        return hs_error("--range", "give a longer range or a smaller patch",
+                        "the patch would begin behind the antenna, at %g m", near_m);
+    }
+    struct ref_picture picture;
+    if (ref_sar_patch(&picture, db, &sar, &request->params) != 0) {
+        return -1;
+    }
+    const unsigned scale = (unsigned)request->scale, side = sar.cell_count * scale;
+    uint8_t *pixels = malloc((size_t)side * side);
+    int status = -1;
+    if (pixels == NULL) {
+        hs_error("picture", "lower --scale", "not enough memory for %u x %u pixels", side, side);
+    } else {
+        ref_glass_sar(&picture, scale, pixels);
+        status = write_out(request, &picture, pixels, side, side);
+    }
+    ref_picture_free(&picture);
+    return status;
+}
+
+/* Width of a sector's picture whose radius is its height. */
+static unsigned sector_width(double half_angle_deg, double height_px)
+{
+    return (unsigned)(2 * ceil(height_px * sin(half_angle_deg * acos(-1.0) / 180)));
+}
+
+static int render_gm(const struct request *request, const struct ref_db *db)
+{
+    const struct ref_gm gm = {.antenna = place_of(request, db),
+                              .antenna_m = request->antenna_m,
+                              .cell_m = request->range_m / floor(request->cells),
+                              .centre_azimuth_deg = request->azimuth_deg,
+                              .half_angle_deg = request->half_angle_deg,
+                              .cell_count = (unsigned)request->cells,
+                              .line_count = (unsigned)request->lines,
+                              .epoch = (uint32_t)request->epoch};
+    struct ref_picture picture;
+    if (ref_gm_sweep(&picture, db, &gm, &request->params) != 0) {
+        return -1;
+    }
+    const unsigned height = (unsigned)request->size_px;
+    const unsigned width = sector_width(gm.half_angle_deg, height);
+    uint8_t *pixels = malloc((size_t)width * height);
+    int status = -1;
+    if (pixels == NULL) {
+        hs_error("picture", "lower --size", "not enough memory for %u x %u pixels", width, height);
+    } else {
+        ref_glass_gm(&picture, &gm, width, height, pixels);
+        status = write_out(request, &picture, pixels, width, height);
+    }
+    ref_picture_free(&picture);
+    return status;
+}
+
+static bool asks_for_help(const char *argument)
+{
+    return strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0;
+}
+
+int main(int argc, char **argv)
+{
+    hs_set_program("landmass-reference");
+    if (argc >= 2 && asks_for_help(argv[1])) {
+        print_help(FOR_BOTH);
+        return HS_EXIT_OK;
+    }
+    const int mode = argc < 2                      ? 0
+                     : strcmp(argv[1], "sar") == 0 ? FOR_SAR
+                     : strcmp(argv[1], "gm") == 0  ? FOR_GM
+                                                   : 0;
+    if (mode == 0) {
+        hs_error("command line", "try landmass-reference --help", "expected sar or gm");
+        return HS_EXIT_USAGE;
+    }
+    if (argc >= 3 && asks_for_help(argv[2])) {
+        print_help(mode);
+        return HS_EXIT_OK;
+    }
+    struct request request;
+    if (parse(&request, mode, argv + 2) != 0) {
+        return HS_EXIT_USAGE;
+    }
+    struct ref_db db;
+    if (ref_db_open(&db, request.image) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const int status = mode == FOR_SAR ? render_sar(&request, &db) : render_gm(&request, &db);
+    ref_db_close(&db);
+    return status == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}

@@ -1,0 +1,182 @@
+/* Whole pictures: the stages in their order, line by line. */
+#include "reference.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void sample(const struct ref_db *db, unsigned level, const struct ref_params *params,
+                   struct ref_bin *bin)
+{
+    ref_db_cell(db, level, bin->place, bin);
+    ref_db_elevation(db, level, bin->place, params->has_exact_weights, &bin->elevation_m);
+}
+
+/* The stages behind aspect, for a line whose levels are known. */
+static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, uint32_t epoch,
+                   const struct ref_params *params, const double table_db[REF_SPECKLE_SLICES])
+{
+    ref_speckle_slices(bins, count, speckle_shift, epoch, NULL);
+    ref_speckle(bins, count, table_db, params->noise_floor_db);
+    ref_tone(bins, count, params);
+}
+
+static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm)
+{
+    return (struct ref_view){gm->antenna_m, db->mean_elevation_m, gm->cell_m};
+}
+
+static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
+                      const struct ref_params *params, double azimuth_deg,
+                      const double table_db[REF_SPECKLE_SLICES])
+{
+    const struct ref_view view = gm_view(db, gm);
+    const unsigned level = ref_db_level_for(db, gm->cell_m);
+    const double length_m = gm->cell_count * gm->cell_m;
+    const struct ref_path path = ref_gm_path(gm->antenna, azimuth_deg, length_m);
+    for (unsigned i = 0; i < gm->cell_count; i++) {
+        bins[i].range_m = (i + 0.5) * gm->cell_m;
+        bins[i].place = ref_path_at(&path, bins[i].range_m / length_m);
+        sample(db, level, params, &bins[i]);
+    }
+    const double horizon = ref_gm_horizon(&bins[0], &view);
+    ref_aspect(bins, gm->cell_count, &view, params, horizon);
+    finish(bins, gm->cell_count, ref_speckle_shift(gm->cell_m), gm->epoch, params, table_db);
+    return horizon;
+}
+
+double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
+                   const struct ref_params *params, double azimuth_deg)
+{
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(params->looks, table_db);
+    return gm_line(bins, db, gm, params, azimuth_deg, table_db);
+}
+
+double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line)
+{
+    return gm->centre_azimuth_deg + gm->half_angle_deg * ((2.0 * line + 1) / gm->line_count - 1);
+}
+
+/* Room for a picture; also says so when there is none. */
+static int allocate(struct ref_picture *picture)
+{
+    const size_t bins = (size_t)picture->cell_count + picture->guard_count;
+    picture->bins = calloc(picture->line_count * bins, sizeof *picture->bins);
+    picture->start_horizons = calloc(picture->line_count, sizeof *picture->start_horizons);
+    if (picture->bins != NULL && picture->start_horizons != NULL) {
+        return 0;
+    }
+    ref_picture_free(picture);
+    return hs_error("picture", "ask for fewer lines or cells",
+                    "not enough memory for %u x %zu cells", picture->line_count, bins);
+}
+
+void ref_picture_free(struct ref_picture *picture)
+{
+    free(picture->bins);
+    free(picture->start_horizons);
+    picture->bins = NULL;
+    picture->start_horizons = NULL;
+}
+
+struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell)
+{
+    const size_t bins = (size_t)picture->cell_count + picture->guard_count;
+    return picture->bins + line * bins + (size_t)((int)picture->guard_count + cell);
+}
+
+int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
+                 const struct ref_params *params)
+{
+    *picture = (struct ref_picture){.line_count = gm->line_count,
+                                    .cell_count = gm->cell_count,
+                                    .view = gm_view(db, gm),
+                                    .level = ref_db_level_for(db, gm->cell_m),
+                                    .speckle_shift = ref_speckle_shift(gm->cell_m)};
+    if (allocate(picture) != 0) {
+        return -1;
+    }
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(params->looks, table_db);
+    for (unsigned line = 0; line < gm->line_count; line++) {
+        picture->start_horizons[line] = gm_line(ref_picture_bin(picture, line, 0), db, gm, params,
+                                                ref_gm_azimuth_deg(gm, line), table_db);
+    }
+    return 0;
+}
+
+/* x_k of a line, and y_i of a cell, which count alike from the middle of the patch. */
+static double sar_offset_m(const struct ref_sar *sar, int index)
+{
+    return (index + 0.5 - sar->cell_count / 2.0) * sar->cell_m;
+}
+
+double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
+                       const struct ref_params *params, unsigned line)
+{
+    const double across_m = sar_offset_m(sar, (int)line);
+    const double end_m = sar->range_m + sar_offset_m(sar, -REF_GUARD_CELLS) - sar->cell_m / 2;
+    const double start_m = end_m / 16, cell_m = (end_m - start_m) / REF_COARSE_CELLS;
+    const unsigned level = ref_db_level_for(db, cell_m);
+    struct ref_path path;
+    for (int i = 0; i < 3; i++) {
+        const double range_m = start_m + (end_m - start_m) * i / 2;
+        const struct ref_place p =
+            ref_patch_offset(sar->centre, sar->azimuth_deg, across_m, range_m - sar->range_m);
+        path.latitude_deg[i] = p.latitude_deg;
+        path.longitude_deg[i] = p.longitude_deg;
+    }
+    struct ref_bin bins[REF_COARSE_CELLS] = {{0}};
+    for (int i = 0; i < REF_COARSE_CELLS; i++) {
+        bins[i].range_m = start_m + (i + 0.5) * cell_m;
+        bins[i].place = ref_path_at(&path, (i + 0.5) / REF_COARSE_CELLS);
+        sample(db, level, params, &bins[i]);
+    }
+    return ref_highest_tangent(bins, REF_COARSE_CELLS, sar->antenna_m);
+}
+
+static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
+                     const struct ref_sar *sar, const struct ref_params *params,
+                     const struct ref_surface *surface, unsigned line)
+{
+    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
+        struct ref_bin *bin = ref_picture_bin(picture, line, i);
+        const double along_m = sar_offset_m(sar, i);
+        bin->range_m = sar->range_m + along_m;
+        bin->place = ref_surface_at(surface, sar_offset_m(sar, (int)line), along_m);
+        sample(db, picture->level, params, bin);
+    }
+    ref_aspect(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
+               &picture->view, params, picture->start_horizons[line]);
+}
+
+int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
+                  const struct ref_params *params)
+{
+    *picture = (struct ref_picture){.line_count = sar->cell_count,
+                                    .cell_count = sar->cell_count,
+                                    .guard_count = REF_GUARD_CELLS,
+                                    .view = {sar->antenna_m, 0, sar->cell_m},
+                                    .level = ref_db_level_for(db, sar->cell_m),
+                                    .speckle_shift = ref_speckle_shift(sar->cell_m)};
+    if (allocate(picture) != 0) {
+        return -1;
+    }
+    ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
+                     &picture->view.reference_m);
+    const struct ref_surface surface =
+        ref_sar_surface(sar->centre, sar->azimuth_deg, sar->cell_count * sar->cell_m / 2);
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(params->looks, table_db);
+    for (unsigned line = 0; line < sar->cell_count; line++) {
+        picture->start_horizons[line] = line % REF_COARSE_EVERY == 0
+                                            ? ref_sar_horizon(db, sar, params, line)
+                                            : picture->start_horizons[line - 1];
+        sar_line(picture, db, sar, params, &surface, line);
+        finish(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
+               picture->speckle_shift, sar->epoch, params, table_db);
+    }
+    return 0;
+}

@@ -1,0 +1,260 @@
+/* The radar picture in double precision: the judge of the fixed-point firmware.
+ *
+ * Written from docs/DESIGN.md ("The picture, as equations") and docs/FORMATS.md (section 1) and
+ * from nothing else; of the firmware it uses only the record structures of lm/db.h, and of fixed/
+ * the checksum and the speckle hash, which are exact integers by definition. Where DESIGN.md leaves
+ * a choice, the choice is stated here with the word "assumed".
+ *
+ * Every stage works on an array of struct ref_bin, one element a range cell, near to far, and fills
+ * its own fields from those of the stages before: a test may fill any of them by hand instead.
+ * Angles are degrees, lengths metres, levels decibels (10 log10 of power). */
+#ifndef REFERENCE_H
+#define REFERENCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "lm/db.h"
+
+#define REF_EARTH_M           6371000.0 /* mean radius, DESIGN.md */
+#define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
+#define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
+
+enum {
+    REF_SPECKLE_SLICES = 1024,
+    REF_GUARD_CELLS = 4,
+    REF_COARSE_CELLS = 128,
+    REF_COARSE_EVERY = 8
+};
+
+struct ref_place {
+    double latitude_deg, longitude_deg; /* longitude: any turn */
+};
+
+/* A range cell and what every stage found for it. */
+struct ref_bin {
+    /* geo, ground_path */
+    double range_m;
+    struct ref_place place; /* of the centre */
+    /* scan_line */
+    bool has_data; /* false: class 15, or no tile */
+    int class_index;
+    int kind; /* enum lm_kind */
+    double gamma_db, height_m, elevation_m;
+    /* aspect */
+    double tangent, horizon, rise; /* t, T, d */
+    bool is_lit;
+    double gain_db, edge_db; /* K, E */
+    double level_db;         /* the noise floor where there is no echo */
+    /* speckle and noise */
+    uint32_t slice; /* 0..1023 */
+    double speckle_db, echo_db;
+    /* tone */
+    double brightness; /* v, before the table */
+    uint8_t grey;
+};
+
+/* Every choice that is not geometry. */
+struct ref_params {
+    double edge_structure_db, edge_trees_db; /* leading edges */
+    double shore_db, shore_width_m;          /* far shore */
+    double noise_floor_db;
+    unsigned looks;            /* 1..64 */
+    double black_db, white_db; /* white_db > black_db */
+    double gamma_exponent;     /* > 0 */
+    bool has_exact_weights;    /* bilinear weights not cut to 8 bits */
+};
+
+/* 6, 3 and 8 dB of edges, 90 m of shore, floor and black -45 dB, white 5 dB, 4 looks, exponent 1.
+ * Values to look at pictures with; the firmware's come from its own parameter table. */
+struct ref_params ref_params_default(void);
+
+/* ---- the image (image.c) ---- */
+
+struct ref_db {
+    uint8_t *bytes; /* owned: the whole file */
+    size_t size;
+    const struct lm_classes *classes;
+    const struct lm_band *bands;
+    const uint8_t *directory, *records;
+    uint32_t band_count, entry_count, record_count, level_count, shift0;
+    double mean_elevation_m, geoid_m;
+    struct ref_place centre;
+    uint8_t *verdicts; /* owned: by record, whether its checksum was found good */
+};
+
+/* Read and check header, classes, bands and the bounds of everything. Records are checked when
+ * first used; a bad one counts as a missing tile. Returns 0, or -1 with the error reported. */
+int ref_db_open(struct ref_db *db, const char *path);
+
+/* The same for an image in memory, which is copied; `name` is for messages. */
+int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const char *name);
+
+void ref_db_close(struct ref_db *db);
+
+/* Height of a cell along the meridian, and the level to read for range cells of `cell_m`: the
+ * largest cell not longer than that. Assumed: level 0 when every cell is longer, and the length of
+ * a cell is its share of the meridian, whatever the latitude. */
+double ref_db_cell_m(const struct ref_db *db, unsigned level);
+unsigned ref_db_level_for(const struct ref_db *db, double cell_m);
+
+/* Fill the scan_line fields `has_data`, `class_index`, `kind`, `gamma_db`, `height_m` from the cell
+ * that holds the place, at `level` or in the nearest coarser level that has the tile. Without any:
+ * class 15. */
+void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place,
+                 struct ref_bin *bin);
+
+/* Terrain elevation, bilinear between the four posts around the place, with the weights cut to 8
+ * bits unless `is_exact`. False, with *elevation_m the mean of the image (assumed), where no level
+ * has a tile. */
+bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
+                      bool is_exact, double *elevation_m);
+
+/* ---- geometry (geo.c) ---- */
+
+/* The place at a distance and azimuth (clockwise from north) on WGS-84, by DESIGN.md's formula. */
+struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, double distance_m);
+
+/* The parabola through the points at u = 0, 1/2 and 1 of a line. Longitudes do not jump. */
+struct ref_path {
+    double latitude_deg[3], longitude_deg[3];
+};
+struct ref_path ref_gm_path(struct ref_place antenna, double azimuth_deg, double length_m);
+struct ref_place ref_path_at(const struct ref_path *path, double u);
+
+/* The biquadratic surface through nine points of a patch: [across][along] at -w, 0, +w.
+ * Assumed: `azimuth_deg` is the line of sight's at the centre, pointing away from the radar; the
+ * point at across x and along y lies at azimuth + atan2(x, y) and distance hypot(x, y) from the
+ * centre; w is half the side of the patch. */
+struct ref_surface {
+    double half_side_m;
+    double latitude_deg[3][3], longitude_deg[3][3];
+};
+struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, double across_m,
+                                  double along_m);
+struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, double half_side_m);
+struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m);
+
+/* ---- aspect (aspect.c) ---- */
+
+struct ref_view {
+    double antenna_m;   /* H, above mean sea level */
+    double reference_m; /* z0, of the receiver's time gain */
+    double cell_m;      /* ds */
+};
+
+/* t: tangent of the elevation angle at which a point at height `top_m` appears. */
+double ref_tangent(double antenna_m, double range_m, double top_m);
+
+/* g and K. */
+double ref_grazing(const struct ref_view *view, double range_m);
+double ref_gain_db(const struct ref_view *view, double range_m);
+
+/* T_0 of a GM line, whose first cell shows flat ground's share. */
+double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
+
+/* Largest t of the bins (range, elevation and height are read), -INFINITY for none. */
+double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
+
+/* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
+ * Assumed: the first bin has no bin before it, so enters nothing and follows no water; a bin
+ * without data has no echo but hides what lies behind it, and its kind is that of class 15. */
+void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                const struct ref_params *params, double horizon);
+
+/* ---- speckle (speckle.c) ---- */
+
+/* 10 log10 of the mean of each of 1024 equally likely slices of a Gamma variable of shape `looks`
+ * and mean 1, from the incomplete gamma function. looks 1..64. */
+void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES]);
+
+/* k: 2^k BAM of latitude is the largest power of two not longer than cell_m / sqrt 2. 0..31. */
+unsigned ref_speckle_shift(double cell_m);
+
+/* The hash of a place; slice = hash >> 22. NULL stands for fx_hash3. */
+typedef uint32_t (*ref_hash_fn)(uint32_t latitude, uint32_t longitude, uint32_t epoch);
+
+/* Fill `slice` from the places: latitude and longitude as unsigned BAM (rounded down), >> shift. */
+void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
+                        ref_hash_fn hash);
+
+/* Fill `speckle_db` from `slice`, and echo_db = max(level_db, floor) + speckle_db. */
+void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
+                 double noise_floor_db);
+
+/* ---- tone (tone.c) ---- */
+
+/* v, clamped to 0..1, and the grey level through the 1024-entry table: round(255 (i / 1023)^gamma)
+ * with i = floor(1023 v + 1/2). */
+double ref_brightness(double level_db, const struct ref_params *params);
+uint8_t ref_grey(double brightness, const struct ref_params *params);
+void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params);
+
+/* ---- whole pictures (picture.c) ---- */
+
+struct ref_picture {
+    unsigned line_count, cell_count, guard_count; /* guard cells come before the shown ones */
+    struct ref_bin *bins;   /* owned: line_count x (guard_count + cell_count) */
+    double *start_horizons; /* owned: T before the first bin of each line */
+    struct ref_view view;
+    unsigned level; /* of the image */
+    unsigned speckle_shift;
+};
+
+struct ref_gm {
+    struct ref_place antenna;
+    double antenna_m, cell_m;
+    double centre_azimuth_deg,
+        half_angle_deg;              /* sector; line j is centred in wedge j of line_count */
+    unsigned cell_count, line_count; /* >= 1 */
+    uint32_t epoch;
+};
+
+struct ref_sar {
+    struct ref_place centre;
+    double azimuth_deg; /* of the line of sight at the centre, away from the radar */
+    double
+        range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
+    double antenna_m, cell_m;
+    unsigned cell_count; /* along either side */
+    uint32_t epoch;
+};
+
+/* One GM line: all stages, into `bins` (gm->cell_count of them). Returns T_0. */
+double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
+                   const struct ref_params *params, double azimuth_deg);
+
+/* Azimuth of the middle of line j. */
+double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
+
+/* T before the first guard cell of line k: the coarse line. Assumed: the coarse line is the patch's
+ * line prolonged towards the radar at the same across offset, its places on the parabola through
+ * the two ends and the middle; its cells end where the first guard cell begins. */
+double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
+                       const struct ref_params *params, unsigned line);
+
+/* Whole pictures. Return 0, or -1 with the error reported (no memory); ref_picture_free afterwards.
+ */
+int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
+                 const struct ref_params *params);
+int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
+                  const struct ref_params *params);
+void ref_picture_free(struct ref_picture *picture);
+
+/* The bin of a line and cell; cells -guard_count..-1 are the guard cells. */
+struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell);
+
+/* ---- on the glass (glass.c) ---- */
+
+/* A patch as cell_count x cell_count pixels of scale x scale each: far on top, right of the line of
+ * sight to the right. */
+void ref_glass_sar(const struct ref_picture *picture, unsigned scale, uint8_t *pixels);
+
+/* A sweep seen from above, the sector's middle upwards: `width` x `height` pixels, the antenna in
+ * the middle of the lower edge, the last cell's far end at the top. A pixel takes the line in whose
+ * half-open wedge its centre lies and the cell of its projection on that line's middle. */
+void ref_glass_gm(const struct ref_picture *picture, const struct ref_gm *gm, unsigned width,
+                  unsigned height, uint8_t *pixels);
+
+#endif

@@ -1,0 +1,97 @@
+/* Speckle and noise: DESIGN.md, "Speckle, noise, tone". */
+#include "reference.h"
+
+#include "fx/hash.h"
+
+#include <math.h>
+
+/* Regularised incomplete gamma functions of whole shape: P by its series (DLMF 8.11.4), which has
+ * no cancellation for x small, and Q = 1 - P by its finite sum (DLMF 8.4.10), which has none
+ * anywhere. */
+static double lower_p(unsigned shape, double x)
+{
+    double term = exp(-x);
+    for (unsigned k = 1; k <= shape; k++) {
+        term *= x / k;
+    }
+    double sum = 0;
+    for (unsigned k = shape + 1; term > 1e-18 * sum && term > 0; k++) {
+        sum += term;
+        term *= x / k;
+    }
+    return sum;
+}
+
+static double upper_q(unsigned shape, double x)
+{
+    double term = exp(-x), sum = 0;
+    for (unsigned k = 1; k <= shape; k++) {
+        sum += term;
+        term *= x / k;
+    }
+    return sum;
+}
+
+/* x with P(shape, x) = p, by bisection: exact to the last bit and in no hurry. The smaller of P and
+ * Q is compared, so that neither tail loses digits. */
+static double quantile(unsigned shape, double p)
+{
+    double low = 0, high = 4.0 * shape + 64;
+    for (int i = 0; i < 100; i++) {
+        const double x = (low + high) / 2;
+        const bool is_below = p < 0.5 ? lower_p(shape, x) < p : upper_q(shape, x) > 1 - p;
+        *(is_below ? &low : &high) = x;
+    }
+    return (low + high) / 2;
+}
+
+/* The share of the mean that lies below x is P(shape + 1, x), so a slice's mean is a difference. */
+static double slice_mean(unsigned shape, double from, double to)
+{
+    const double share = from < shape ? lower_p(shape + 1, to) - lower_p(shape + 1, from)
+                                      : upper_q(shape + 1, from) - upper_q(shape + 1, to);
+    return share * REF_SPECKLE_SLICES;
+}
+
+void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES])
+{
+    double from = 0;
+    for (int i = 0; i < REF_SPECKLE_SLICES; i++) {
+        const bool is_last = i + 1 == REF_SPECKLE_SLICES;
+        const double to = is_last ? 800.0 : quantile(looks, (i + 1.0) / REF_SPECKLE_SLICES);
+        table_db[i] = 10 * log10(slice_mean(looks, from, to));
+        from = to;
+    }
+}
+
+unsigned ref_speckle_shift(double cell_m)
+{
+    const double bam = cell_m / sqrt(2) * 4294967296.0 / REF_MERIDIAN_M;
+    return (unsigned)fmin(fmax(floor(log2(bam)), 0), 31);
+}
+
+static uint32_t bam_from_deg(double deg)
+{
+    return (uint32_t)(int64_t)floor(deg / 360 * 4294967296.0);
+}
+
+void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
+                        ref_hash_fn hash)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t latitude = bam_from_deg(bins[i].place.latitude_deg) >> shift;
+        const uint32_t longitude = bam_from_deg(bins[i].place.longitude_deg) >> shift;
+        const uint32_t h =
+            hash ? hash(latitude, longitude, epoch) : fx_hash3(latitude, longitude, epoch);
+        bins[i].slice = h >> 22;
+    }
+}
+
+void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
+                 double noise_floor_db)
+{
+    for (size_t i = 0; i < count; i++) {
+        bins[i].speckle_db = table_db[bins[i].slice];
+        bins[i].echo_db = fmax(bins[i].level_db, noise_floor_db) + bins[i].speckle_db;
+    }
+}
