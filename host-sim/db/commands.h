@@ -1,0 +1,10 @@
+/* The sub-commands of landmass-db. Each takes its own argv (argv[0] is its name) and returns an hs_exit. */
+#ifndef DB_COMMANDS_H
+#define DB_COMMANDS_H
+
+int db_cmd_train(int argc, char **argv);
+int db_cmd_segment(int argc, char **argv);
+int db_cmd_correct(int argc, char **argv);
+int db_cmd_reflect(int argc, char **argv);
+
+#endif
