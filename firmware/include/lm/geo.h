@@ -25,7 +25,7 @@ struct lm_geo_origin {
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place);
 
 /* The point `distance_q8` (metres * 256, 0..300 km) away at `azimuth` (from north by east).
- * Against the geodesic: under 2 m at 148 km; the fixed point adds under 0.1 m (tests/unit/firmware/test_geo.c).
+ * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89 (tests/unit/firmware/test_geo.c).
  * Cost: about 600 instructions. */
 struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, uint32_t distance_q8);
 

@@ -1,0 +1,81 @@
+#include "bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "hs/error.h"
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    const struct bench *b = ctx;
+    *surface = (struct lm_surface){.pixels = b->glass,
+                                   .stride_px = b->display.width_px,
+                                   .width_px = b->display.width_px,
+                                   .height_px = b->display.height_px};
+    return LM_OK;
+}
+
+static int present(void *ctx)
+{
+    struct bench *b = ctx;
+    b->pictures++;
+    return LM_OK;
+}
+
+static int lend_memory(struct bench *b)
+{
+    const size_t pixels = (size_t)b->display.width_px * b->display.height_px;
+    b->board.tile_pool_bytes = BENCH_TILE_SLOTS * sizeof(struct lm_tile);
+    b->board.tile_pool = malloc(b->board.tile_pool_bytes);
+    b->board.plane = malloc(pixels);
+    b->glass = calloc(pixels, sizeof *b->glass);
+    b->unit = malloc(sizeof *b->unit);
+    return b->board.tile_pool && b->board.plane && b->glass && b->unit ? 0 : -1;
+}
+
+int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
+               const struct lm_can *can, const struct lm_controls *controls)
+{
+    memset(b, 0, sizeof *b);
+    const int cause = drv_flash_file_open(&b->flash, database);
+    if (cause != 0) {
+        return hs_error(database, "make one with landmass-db build", "cannot be opened: %s",
+                        strerror(cause));
+    }
+    b->display = (struct lm_display){.ctx = b,
+                                     .width_px = width_px,
+                                     .height_px = height_px,
+                                     .acquire = acquire,
+                                     .present = present};
+    b->board = (struct lm_board){.radar = &lm_radar_default,
+                                 .flash = &b->flash.port,
+                                 .can = can,
+                                 .controls = controls,
+                                 .display = &b->display,
+                                 .flash_poll_limit = 1000};
+    int status = lend_memory(b);
+    if (status != 0) {
+        hs_error(database, NULL, "out of memory");
+    } else {
+        status = lm_unit_init(b->unit, &b->board);
+        if (status != LM_OK) {
+            hs_error(database, "256..1024 pixels, and a coarsest level of few tiles",
+                     "the display unit refuses to start (%d)", status);
+        }
+    }
+    if (status != 0) {
+        bench_close(b);
+        return -1;
+    }
+    return 0;
+}
+
+void bench_close(struct bench *b)
+{
+    drv_flash_file_close(&b->flash);
+    free(b->board.tile_pool);
+    free(b->board.plane);
+    free(b->glass);
+    free(b->unit);
+    memset(b, 0, sizeof *b);
+}

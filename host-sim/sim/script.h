@@ -1,0 +1,41 @@
+/* Scripted operation of the bench: what happens when, one line each.
+ *
+ *   SECONDS gm
+ *   SECONDS range 10|20|40|80                 nautical miles
+ *   SECONDS azimuth 60|30|10                  degrees to each side
+ *   SECONDS sar LAT LON CELL_M                a patch seen from the ownship
+ *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M
+ *   SECONDS gain DB                           -30..30
+ *   SECONDS freeze on|off
+ *   SECONDS picture NAME                      write NAME.png into the folder of --png
+ *
+ * Times do not fall from line to line; '#' begins a remark. */
+#ifndef SIM_SCRIPT_H
+#define SIM_SCRIPT_H
+
+#include "lm/controls.h"
+#include "lm/port.h"
+
+struct script_event {
+    uint64_t time_us;
+    bool is_picture;
+    char picture[64];
+    struct lm_control control;
+};
+
+struct script {
+    struct script_event *events; /* owned */
+    int count, next;
+    uint64_t now_us;
+    struct lm_controls port; /* its ctx is this struct, which must not move */
+};
+
+/* Read a script; NULL gives an empty one. 0, or -1 with the error reported (file and line). */
+int script_read(struct script *s, const char *path);
+void script_free(struct script *s);
+
+/* Controls up to `now_us` are handed out through the port. A picture that is due by then is taken out of the way and its name
+ * returned, else NULL. */
+const char *script_advance(struct script *s, uint64_t now_us);
+
+#endif

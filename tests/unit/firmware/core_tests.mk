@@ -1,0 +1,5 @@
+CORE_TESTS := geo
+CORE_TEST_BINS := $(CORE_TESTS:%=$(O)/bin/tests/unit/firmware/test_%)
+TESTS += $(CORE_TEST_BINS)
+$(CORE_TEST_BINS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(LIB_firmware) $(LIB_fixed)
+$(CORE_TEST_BINS): LDLIBS := -lcmocka $(call pkgs,libs,proj)

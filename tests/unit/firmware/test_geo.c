@@ -1,0 +1,187 @@
+/* Positions along a scan line, against PROJ's geodesics. */
+#include "lm/geo.h"
+
+#include <geodesic.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double bam_degrees = 360.0 / 4294967296.0;
+
+static struct lm_place place_of(double latitude, double longitude)
+{
+    return (struct lm_place){(fx_bam_t)(int64_t)llround(latitude / bam_degrees),
+                             (fx_bam_t)(int64_t)llround(longitude / bam_degrees)};
+}
+
+static double latitude_of(struct lm_place p)
+{
+    return (int32_t)p.latitude * bam_degrees;
+}
+
+static double longitude_of(struct lm_place p)
+{
+    return (int32_t)p.longitude * bam_degrees;
+}
+
+static double metres_between(double lat1, double lon1, double lat2, double lon2)
+{
+    struct geod_geodesic earth;
+    double distance;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_inverse(&earth, lat1, lon1, lat2, lon2, &distance, NULL, NULL);
+    return distance;
+}
+
+static void geodesic_direct(double lat, double lon, double azimuth, double metres, double *to_lat,
+                            double *to_lon)
+{
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_direct(&earth, lat, lon, azimuth, metres, to_lat, to_lon, NULL);
+}
+
+/* Worst distance between our direct problem and the geodesic, over azimuths. */
+static double worst_direct(double lat, double lon, double metres)
+{
+    struct lm_geo_origin o;
+    const struct lm_place start = place_of(lat, lon);
+    lm_geo_set_origin(&o, start);
+    double worst = 0;
+    for (int deg = 0; deg < 360; deg += 7) {
+        const struct lm_place p = lm_geo_direct(&o, FX_BAM_DEG(deg), (uint32_t)(metres * 256));
+        double to_lat, to_lon;
+        geodesic_direct(latitude_of(start), longitude_of(start), deg, metres, &to_lat, &to_lon);
+        const double miss = metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p));
+        worst = fmax(worst, miss);
+    }
+    return worst;
+}
+
+static const double latitudes[] = {0, 45, 70, -33, 80, -89};
+
+static void the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
+        const double worst = worst_direct(latitudes[i], 179.9, 148160);
+        print_message("# latitude %g: direct problem off by %.2f m at 80 nm\n", latitudes[i], worst);
+        assert_true(worst < 0.1);
+    }
+}
+
+static void nearby_points_are_within_5_cm(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
+        assert_true(worst_direct(latitudes[i], -71, 640) < 0.05);
+    }
+}
+
+/* Worst distance of any cell of a GM line from where the geodesic puts it. */
+static double worst_cell(double lat, double lon, double metres, uint32_t cells)
+{
+    struct lm_geo_origin o;
+    const struct lm_place start = place_of(lat, lon);
+    lm_geo_set_origin(&o, start);
+    double worst = 0;
+    for (int deg = 3; deg < 360; deg += 11) {
+        const uint32_t length_q8 = (uint32_t)(metres * 256);
+        const fx_bam_t azimuth = FX_BAM_DEG(deg);
+        const struct lm_place points[3] = {start, lm_geo_direct(&o, azimuth, length_q8 / 2),
+                                           lm_geo_direct(&o, azimuth, length_q8)};
+        struct lm_ground_path path;
+        lm_ground_path_fit(&path, points, cells);
+        for (uint32_t i = 0; i < cells; i++, lm_ground_path_step(&path)) {
+            const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
+                                       (fx_bam_t)(path.longitude >> 32)};
+            double to_lat, to_lon;
+            geodesic_direct(latitude_of(start), longitude_of(start), deg,
+                            (i + 0.5) * metres / cells, &to_lat, &to_lon);
+            worst = fmax(worst, metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p)));
+        }
+    }
+    return worst;
+}
+
+static void every_cell_of_an_80_mile_line_is_within_half_a_cell(void **state)
+{
+    (void)state;
+    static const double places[][2] = {{0, 10}, {45, -100}, {70, 20}, {45, 179.5}, {-70, -179.8}};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        const double worst = worst_cell(places[i][0], places[i][1], 148160, 256);
+        print_message("# line from %g, %g: worst cell %.1f m off, half a cell is %.1f m\n",
+                      places[i][0], places[i][1], worst, 148160 / 512.0);
+        assert_true(worst < 148160 / 512.0);
+    }
+}
+
+static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
+{
+    (void)state;
+    struct lm_ground_patch patch;
+    const double lat = 61.8, lon = 179.99, side = 2560, azimuth = 37;
+    const struct lm_place centre = place_of(lat, lon);
+    lm_ground_patch_set(&patch, centre, FX_BAM_DEG(37), (uint32_t)(side * 128));
+    double worst = 0;
+    for (uint32_t line = 0; line < 256; line += 5) {
+        struct lm_place points[3];
+        struct lm_ground_path path;
+        lm_ground_patch_line(&patch, line, 256, points);
+        lm_ground_path_fit(&path, points, 256);
+        lm_ground_path_skip(&path, -4);
+        for (int i = -4; i < 256; i++, lm_ground_path_step(&path)) {
+            const double across = (line + 0.5 - 128) * side / 256, along = (i + 0.5 - 128) * side / 256;
+            double to_lat, to_lon;
+            geodesic_direct(latitude_of(centre), longitude_of(centre),
+                            azimuth + atan2(across, along) * 180 / 3.14159265358979,
+                            hypot(across, along), &to_lat, &to_lon);
+            const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
+                                       (fx_bam_t)(path.longitude >> 32)};
+            worst = fmax(worst, metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p)));
+        }
+    }
+    print_message("# patch of 10 m cells: worst cell %.3f m off\n", worst);
+    assert_true(worst < 0.1);
+}
+
+static void the_inverse_problem_finds_distance_and_azimuth(void **state)
+{
+    (void)state;
+    for (int deg = 0; deg < 360; deg += 13) {
+        double to_lat, to_lon;
+        geodesic_direct(52, 179.9, deg, 60000, &to_lat, &to_lon);
+        uint32_t distance_q8;
+        fx_bam_t azimuth;
+        lm_geo_inverse(place_of(52, 179.9), place_of(to_lat, to_lon), &distance_q8, &azimuth);
+        assert_true(fabs(distance_q8 / 256.0 - 60000) < 120);
+        assert_true(fabs(remainder(azimuth * bam_degrees - deg, 360)) < 0.1);
+    }
+}
+
+static void a_hopeless_distance_does_not_overflow(void **state)
+{
+    (void)state;
+    uint32_t distance_q8;
+    fx_bam_t azimuth;
+    lm_geo_inverse(place_of(-90, 0), place_of(90, 180), &distance_q8, &azimuth);
+    assert_true(distance_q8 / 256 > 300000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles),
+        cmocka_unit_test(nearby_points_are_within_5_cm),
+        cmocka_unit_test(every_cell_of_an_80_mile_line_is_within_half_a_cell),
+        cmocka_unit_test(patch_lines_lie_where_across_and_along_offsets_say),
+        cmocka_unit_test(the_inverse_problem_finds_distance_and_azimuth),
+        cmocka_unit_test(a_hopeless_distance_does_not_overflow),
+    };
+    return cmocka_run_group_tests_name("geo", tests, NULL, NULL);
+}
