@@ -5,6 +5,7 @@ O     := build/$(BOARD)
 include bsp/$(BOARD)/board.mk
 
 OPT    ?= -O2 -g
+Q      := $(if $(V),,@)
 WARN   := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 CSTD   := -std=c11
 DEPGEN  = -MMD -MP
@@ -80,31 +81,39 @@ $(LIB_hs): $(call objs,$(wildcard host-sim/common/src/*.c))
 $(O)/%.a:
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(if $(V),,@echo '  AR   $@')
+	$(Q)$(AR) rcs $@ $^
 
 # A folder's flags are those of its layer, and INC_<folder's program> may add to them (see the *.mk files).
 $(O)/fixed/%.o: fixed/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_fixed) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_fixed) $(DEPGEN) -c $< -o $@
 $(O)/firmware/%.o: firmware/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_firmware) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_firmware) $(DEPGEN) -c $< -o $@
 $(O)/drivers/%.o: drivers/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_drivers) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_drivers) $(DEPGEN) -c $< -o $@
 $(O)/bsp/%.o: bsp/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_bsp) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_bsp) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 $(O)/host-sim/%.o: host-sim/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 $(O)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_host) -Itests/support $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(if $(V),,@echo '  CC   $<')
+	$(Q)$(CC) $(CFLAGS_host) -Itests/support $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 
 # Link: objects and archives in the order of the prerequisites, then what LDLIBS says for this target.
 $(O)/bin/%:
 	@mkdir -p $(@D)
-	$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
+	$(if $(V),,@echo '  LINK $@')
+	$(Q)$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
 
 -include $(shell find $(O) -name '*.d' 2>/dev/null)

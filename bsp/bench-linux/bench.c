@@ -34,7 +34,7 @@ static int lend_memory(struct bench *b)
 }
 
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
-               const struct lm_can *can, const struct lm_controls *controls)
+               uint32_t noise_seed, const struct lm_can *can, const struct lm_controls *controls)
 {
     memset(b, 0, sizeof *b);
     const int cause = drv_flash_file_open(&b->flash, database);
@@ -52,6 +52,7 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
                                  .can = can,
                                  .controls = controls,
                                  .display = &b->display,
+                                 .noise_seed = noise_seed,
                                  .flash_poll_limit = 1000};
     int status = lend_memory(b);
     if (status != 0) {

@@ -21,7 +21,7 @@ struct bench {
  * stay the caller's. 0, or -1 with the error reported. A database that the firmware cannot use is no error here: the unit
  * runs, shows it on the glass, and unit->has_db is false. */
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
-               const struct lm_can *can, const struct lm_controls *controls);
+               uint32_t noise_seed, const struct lm_can *can, const struct lm_controls *controls);
 void bench_close(struct bench *b);
 
 #endif

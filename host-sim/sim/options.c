@@ -21,8 +21,7 @@ static const char help[] =
     "  --window           show the glass in a window, in real time; Escape ends\n"
     "  --size WxH         pixels of the glass, 256..1024 each (default 768x768)\n"
     "  --seconds S        flight time to run (default: to the end of the log)\n"
-    "  --seed N           accepted for scripts: the noise depends on place and sweep alone, so every\n"
-    "                     run of the same inputs gives the same pictures\n"
+    "  --seed N           another speckle (default 0); the same inputs and seed give the same pictures\n"
     "  --quiet            no summary\n"
     "  --help             this text\n"
     "\n"
@@ -99,7 +98,8 @@ static bool take_value(struct options *o, int option)
         o->seconds = strtod(optarg, &end);
         return end != optarg && *end == 0 && o->seconds > 0 && o->seconds < 1e6;
     case OPT_SEED:
-        return whole(optarg, 0, 0x7fffffff, &n);
+        o->seed = whole(optarg, 0, 0x7fffffff, &n) ? (uint32_t)n : UINT32_MAX;
+        return o->seed != UINT32_MAX;
     default:
         return false;
     }

@@ -1,0 +1,79 @@
+/* The display unit: bus and controls in, pictures out. This alone knows the order of things. */
+#ifndef LM_UNIT_H
+#define LM_UNIT_H
+
+#include <stddef.h>
+
+#include "lm/controls.h"
+#include "lm/ground_map.h"
+#include "lm/nav.h"
+#include "lm/overlay.h"
+#include "lm/sar.h"
+
+/* What a board lends, for as long as the unit lives. */
+struct lm_board {
+    const struct lm_radar *radar;
+    const struct lm_flash *flash;
+    const struct lm_can *can;
+    const struct lm_controls *controls;
+    const struct lm_display *display;
+    void *tile_pool; /* 8-byte aligned */
+    size_t tile_pool_bytes;
+    uint8_t *plane; /* display width * height bytes */
+    uint32_t noise_seed;       /* another one gives other speckle, everything else the same */
+    uint32_t flash_poll_limit; /* polls after which a read at start-up is given up */
+};
+
+enum lm_mode { LM_MODE_GM, LM_MODE_SAR };
+
+enum { LM_FRAME_US = 33333, LM_SAR_ACQUIRE_US = 500000, LM_BUS_SILENT_US = 1000000 };
+
+struct lm_unit {
+    const struct lm_board *board; /* borrowed */
+    struct lm_db db;
+    bool has_db;
+    struct lm_tile_cache tiles;
+    struct lm_nav nav;
+    struct lm_ownship ownship; /* extrapolated to the last step */
+
+    enum lm_mode mode;
+    struct lm_ground_map ground_map;
+    struct lm_sar sar;
+    bool is_acquiring; /* the patch's tiles are being read */
+    uint64_t acquire_until_us;
+    uint64_t next_line_us, next_frame_us;
+    bool is_frozen; /* by the operator */
+    int16_t gain_db;
+
+    struct lm_tone gm_tone, sar_tone;
+    struct lm_line line;
+    struct lm_plane plane;
+    struct lm_frame frame;
+    uint32_t flags;            /* enum lm_flag, of the last step */
+    uint64_t last_bus_us;      /* when a frame last came */
+    uint32_t jumps_seen;       /* of the nav */
+    uint32_t tile_faults_seen; /* of the cache, and when they last grew */
+    uint64_t tile_fault_us;
+    uint32_t cells_none, cells_seen; /* sampled, of the running sweep or patch */
+    bool is_off_map;
+
+    struct {
+        uint32_t frames, lines, bus_frames;
+        uint32_t lines_dropped;   /* due, but the step had its fill */
+        uint32_t bus_errors;      /* the driver reported the bus down */
+        uint32_t display_errors, display_busy;
+        uint32_t commands_refused;
+    } count; /* only ever grow */
+};
+
+/* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest level.
+ * LM_OK also when the database cannot be used: the unit then runs and says so on the glass.
+ * LM_ERR_NO_MEMORY when the pool is too small for the database, LM_ERR_RANGE when the display is. */
+int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
+
+/* Do what is due at `now_us` (which never goes back): take at most LM_STEP_FRAMES frames from the bus and 8 controls, move the
+ * reading of tiles on, draw at most LM_STEP_LINES lines, and show a picture when one is due. Call at least every
+ * 4 ms for a smooth sweep. */
+void lm_unit_step(struct lm_unit *u, uint64_t now_us);
+
+#endif

@@ -1,0 +1,110 @@
+#include "lm/ground_map.h"
+
+/* Tiles are asked for this many lines ahead of the beam: a tenth of a second. */
+enum { LINES_AHEAD = 24 };
+
+void lm_ground_map_start(struct lm_ground_map *g, const struct lm_radar *radar, uint8_t range,
+                         uint8_t azimuth, uint32_t epoch)
+{
+    g->radar = radar;
+    g->range = range;
+    g->azimuth = azimuth;
+    g->line = 0;
+    g->is_leftward = false;
+    g->sweep = epoch;
+    g->grid.cells = 0; /* none yet: the first line makes it */
+}
+
+uint32_t lm_ground_map_lines(const struct lm_ground_map *g)
+{
+    return 2 * (g->radar->azimuth_half[g->azimuth] / g->radar->gm_line);
+}
+
+uint32_t lm_ground_map_line_us(const struct lm_ground_map *g)
+{
+    return (uint32_t)((uint64_t)g->radar->gm_line * 1000 / g->radar->sweep_bam_per_ms);
+}
+
+int32_t lm_ground_map_edge_bam(const struct lm_ground_map *g, uint32_t line)
+{
+    const int32_t from_middle = (int32_t)line - (int32_t)(lm_ground_map_lines(g) / 2);
+    return from_middle * (int32_t)g->radar->gm_line;
+}
+
+/* The grid depends on the height: it is made again when that has changed by a hundredth and a metre. Until then the whole
+ * geometry stays that of the old height, gain and horizon alike. */
+static void refresh_grid(struct lm_ground_map *g, const struct lm_db *db, int32_t height_q10)
+{
+    const int32_t change = height_q10 - g->grid.height_q10;
+    const int32_t limit = (height_q10 < 0 ? -height_q10 : height_q10) / 128 + 1024;
+    if (g->grid.cells != 0 && change <= limit && change >= -limit) {
+        return;
+    }
+    const uint32_t cell_q8 = g->radar->range_m[g->range] * 256u / g->radar->gm_cells;
+    lm_range_grid_set(&g->grid, &g->radar->aspect, cell_q8 / 2, cell_q8, g->radar->gm_cells,
+                      height_q10, db->mean_elevation_q6 * 16);
+}
+
+static struct lm_ground_path path_of(const struct lm_ground_map *g,
+                                     const struct lm_geo_origin *origin, fx_bam_t heading,
+                                     uint32_t line)
+{
+    struct lm_ground_path path;
+    const fx_bam_t middle = (fx_bam_t)lm_ground_map_edge_bam(g, line) + g->radar->gm_line / 2;
+    const uint32_t range_q8 = g->radar->range_m[g->range] * 256u;
+    const struct lm_place points[3] = {
+        origin->place,
+        lm_geo_direct(origin, heading + middle, range_q8 / 2),
+        lm_geo_direct(origin, heading + middle, range_q8),
+    };
+    lm_ground_path_fit(&path, points, g->radar->gm_cells);
+    return path;
+}
+
+/* The line that the beam will be on `ahead` lines from now; ahead is less than a sweep. */
+static uint32_t line_ahead(const struct lm_ground_map *g, uint32_t ahead)
+{
+    const uint32_t last = lm_ground_map_lines(g) - 1;
+    const uint32_t to_edge = g->is_leftward ? g->line : last - g->line;
+    if (ahead <= to_edge) {
+        return g->is_leftward ? g->line - ahead : g->line + ahead;
+    }
+    const uint32_t beyond = ahead - to_edge - 1;
+    return g->is_leftward ? beyond : last - beyond;
+}
+
+static void move_on(struct lm_ground_map *g)
+{
+    const bool at_edge = g->is_leftward ? g->line == 0 : g->line == lm_ground_map_lines(g) - 1;
+    if (at_edge) {
+        g->is_leftward = !g->is_leftward;
+        g->sweep++;
+    } else {
+        g->line += g->is_leftward ? UINT32_MAX : 1;
+    }
+}
+
+uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *tiles,
+                                 const struct lm_antenna *antenna, const struct lm_tone *tone,
+                                 struct lm_line *line)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, antenna->place);
+    refresh_grid(g, tiles->db, antenna->height_q10);
+    const uint32_t cell_mm = g->radar->range_m[g->range] * 1000u / g->radar->gm_cells;
+    const struct lm_line_setup setup = {
+        .grid = &g->grid,
+        .aspect = &g->radar->aspect,
+        .speckle = &g->radar->gm_speckle,
+        .tone = tone,
+        .sampling = lm_sampling_for(tiles->db, cell_mm, g->sweep),
+    };
+    const uint32_t drawn = g->line;
+    lm_line_render(line, tiles, &setup, path_of(g, &origin, antenna->heading, drawn),
+                   LM_HORIZON_OPEN);
+    lm_scan_line_prefetch(tiles, &setup.sampling,
+                          path_of(g, &origin, antenna->heading, line_ahead(g, LINES_AHEAD)),
+                          g->radar->gm_cells);
+    move_on(g);
+    return drawn;
+}

@@ -1,0 +1,98 @@
+#include "lm/sar.h"
+
+static uint32_t metres_q8_of_mm(uint32_t mm)
+{
+    return (uint32_t)(((uint64_t)mm * 256 + 500) / 1000);
+}
+
+static uint32_t mm_of_metres_q8(uint32_t metres_q8)
+{
+    return (uint32_t)((uint64_t)metres_q8 * 1000 / 256);
+}
+
+int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
+                 const struct lm_sar_command *command, int32_t reference_q10, uint32_t epoch)
+{
+    const int32_t highest_q6 = 30000 * 64;
+    const uint32_t cell_q8 = metres_q8_of_mm(command->cell_mm);
+    const uint32_t before_centre_q8 = (radar->sar_cells / 2u + LM_SAR_GUARD) * cell_q8;
+    const uint32_t range_q8 = command->range_m * 256u;
+    if (command->cell_mm < radar->sar_cell_min_mm || command->cell_mm > radar->sar_cell_max_mm ||
+        command->range_m < 1000 || command->range_m > 250000 ||
+        command->height_q6 < -highest_q6 || command->height_q6 > highest_q6 ||
+        range_q8 < before_centre_q8 + ((uint32_t)LM_RANGE_MIN_M << 12)) {
+        return LM_ERR_RANGE;
+    }
+    s->radar = radar;
+    s->command = *command;
+    s->line = 0;
+    s->horizon = LM_HORIZON_OPEN;
+    lm_ground_patch_set(&s->ground, command->centre, command->look_azimuth,
+                        radar->sar_cells * cell_q8 / 2);
+    s->sampling = lm_sampling_for(db, command->cell_mm, epoch);
+    const int32_t height_q10 = command->height_q6 * 16;
+    const uint32_t near_q8 = range_q8 - before_centre_q8;
+    lm_range_grid_set(&s->grid, &radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
+                      radar->sar_cells + LM_SAR_GUARD, height_q10, reference_q10);
+
+    const uint32_t runup_cell_q8 = (near_q8 - near_q8 / 16) / LM_SAR_RUNUP;
+    s->runup_sampling = lm_sampling_for(db, mm_of_metres_q8(runup_cell_q8), epoch);
+    lm_range_grid_set(&s->runup_grid, &radar->aspect, near_q8 / 16 + runup_cell_q8 / 2,
+                      runup_cell_q8, LM_SAR_RUNUP, height_q10, reference_q10);
+    return LM_OK;
+}
+
+/* The path of a line over patch and guard cells. */
+static struct lm_ground_path patch_path(const struct lm_sar *s, uint32_t line)
+{
+    struct lm_place points[3];
+    struct lm_ground_path path;
+    lm_ground_patch_line(&s->ground, line, s->radar->sar_cells, points);
+    lm_ground_path_fit(&path, points, s->radar->sar_cells);
+    lm_ground_path_skip(&path, -LM_SAR_GUARD);
+    return path;
+}
+
+/* The path of the run-up: back from the near end of the line towards the antenna, then forward along it. */
+static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t line)
+{
+    struct lm_place points[3];
+    struct lm_geo_origin near_end;
+    struct lm_ground_path path;
+    lm_ground_patch_line(&s->ground, line, s->radar->sar_cells, points);
+    lm_geo_set_origin(&near_end, points[0]);
+    const fx_bam_t back = s->command.look_azimuth + FX_BAM_180;
+    const uint32_t guard_q8 = LM_SAR_GUARD * s->grid.cell_q8;
+    const uint32_t length_q8 = LM_SAR_RUNUP * s->runup_grid.cell_q8;
+    for (uint32_t i = 0; i < 3; i++) {
+        points[i] = lm_geo_direct(&near_end, back, guard_q8 + length_q8 * (2 - i) / 2);
+    }
+    lm_ground_path_fit(&path, points, LM_SAR_RUNUP);
+    return path;
+}
+
+void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
+{
+    lm_scan_line_prefetch(tiles, &s->sampling, patch_path(s, line), s->grid.cells);
+    lm_scan_line_prefetch(tiles, &s->runup_sampling, runup_path(s, line), LM_SAR_RUNUP);
+}
+
+void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
+                      struct lm_line *line)
+{
+    struct lm_line_setup setup = {.grid = &s->runup_grid,
+                                  .aspect = &s->radar->aspect,
+                                  .speckle = &s->radar->sar_speckle,
+                                  .tone = tone,
+                                  .sampling = s->runup_sampling};
+    if (s->line % LM_SAR_RUNUP_LINES == 0) {
+        struct lm_ground_path path = runup_path(s, s->line);
+        lm_scan_line_run(&line->ground, tiles, &setup.sampling, &path, LM_SAR_RUNUP);
+        s->horizon = lm_aspect_run(setup.grid, setup.aspect, &tiles->db->classes, &line->ground,
+                                   LM_HORIZON_OPEN, line->level_q8);
+    }
+    setup.grid = &s->grid;
+    setup.sampling = s->sampling;
+    lm_line_render(line, tiles, &setup, patch_path(s, s->line), s->horizon);
+    s->line++;
+}
