@@ -1,0 +1,164 @@
+/* Speckle and tone of the reference, against the theory of the Gamma distribution. */
+#include "reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const unsigned looks[] = {1, 2, 4, 8, 16};
+enum { LOOKS = 5 };
+
+static void speckle_has_mean_one_and_the_spread_of_its_looks(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 0; k < REF_SPECKLE_SLICES; k++) {
+            const double power = pow(10, table_db[k] / 10);
+            sum += power / REF_SPECKLE_SLICES;
+            squares += power * power / REF_SPECKLE_SLICES;
+        }
+        assert_true(fabs(sum - 1) < 1e-9);
+        const double theory = 1 / sqrt(looks[i]);
+        assert_true(fabs(sqrt(squares - sum * sum) / theory - 1) < 0.01);
+    }
+}
+
+/* dB std of RADAR.md 2.1. */
+static void speckle_in_decibels_has_the_published_spread(void **state)
+{
+    (void)state;
+    const double published_db[LOOKS] = {5.57, 3.49, 2.31, 1.58, 1.10};
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 0; k < REF_SPECKLE_SLICES; k++) {
+            sum += table_db[k] / REF_SPECKLE_SLICES;
+            squares += table_db[k] * table_db[k] / REF_SPECKLE_SLICES;
+        }
+        assert_true(fabs(sqrt(squares - sum * sum) - published_db[i]) < 0.01 * published_db[i]);
+    }
+}
+
+/* One look is exponential: slices end at -ln(1 - p), and the share of the mean below x is
+ * 1 - (1 + x) exp(-x). */
+static void slices_of_one_look_are_those_of_the_exponential(void **state)
+{
+    (void)state;
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(1, table_db);
+    double below = 0;
+    for (int k = 0; k < REF_SPECKLE_SLICES; k++) {
+        const double end = -log1p(-(k + 1.0) / REF_SPECKLE_SLICES);
+        const double share = k == REF_SPECKLE_SLICES - 1 ? 1 : 1 - (1 + end) * exp(-end);
+        const double mean = (share - below) * REF_SPECKLE_SLICES;
+        assert_true(fabs(table_db[k] - 10 * log10(mean)) < 1e-5);
+        below = share;
+    }
+}
+
+static void speckle_rises_from_slice_to_slice(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES];
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 1; k < REF_SPECKLE_SLICES; k++) {
+            assert_true(table_db[k] > table_db[k - 1]);
+        }
+    }
+}
+
+static uint32_t the_place_itself(uint32_t latitude, uint32_t longitude, uint32_t epoch)
+{
+    return (latitude << 6 ^ longitude ^ epoch) << 22;
+}
+
+static void neighbours_never_share_a_sample_and_a_place_keeps_its_own(void **state)
+{
+    (void)state;
+    for (double cell_m = 0.3; cell_m < 700; cell_m *= 1.17) {
+        const unsigned shift = ref_speckle_shift(cell_m);
+        const double step_m = ldexp(REF_MERIDIAN_M, (int)shift - 32);
+        assert_true(step_m <= cell_m / sqrt(2) && 2 * step_m > cell_m / sqrt(2));
+        /* The four neighbours of a diagonal line lie cell_m away, at least step_m in one of the
+         * axes. */
+        const double deg = cell_m / REF_MERIDIAN_M * 360 / sqrt(2);
+        struct ref_bin bins[3] = {
+            {.place = {0.5, 0.5}}, {.place = {0.5 + deg, 0.5 + deg}}, {.place = {0.5, 0.5}}};
+        ref_speckle_slices(bins, 3, shift, 0, the_place_itself);
+        assert_int_not_equal(bins[0].slice, bins[1].slice);
+        assert_int_equal(bins[0].slice, bins[2].slice);
+    }
+}
+
+static void another_epoch_is_another_speckle(void **state)
+{
+    (void)state;
+    struct ref_bin bins[2][64];
+    int same = 0;
+    for (uint32_t epoch = 0; epoch < 2; epoch++) {
+        for (int i = 0; i < 64; i++) {
+            bins[epoch][i] = (struct ref_bin){.place = {-45.0 + i * 0.001, -120}};
+        }
+        ref_speckle_slices(bins[epoch], 64, 8, epoch, NULL);
+    }
+    for (int i = 0; i < 64; i++) {
+        same += bins[0][i].slice == bins[1][i].slice;
+        assert_true(bins[0][i].slice < REF_SPECKLE_SLICES);
+    }
+    assert_in_range(same, 0, 3);
+}
+
+static void noise_has_a_floor_before_speckle(void **state)
+{
+    (void)state;
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(4, table_db);
+    struct ref_bin bins[2] = {{.level_db = -90, .slice = 7}, {.level_db = -10, .slice = 1000}};
+    ref_speckle(bins, 2, table_db, -45);
+    assert_true(fabs(bins[0].echo_db - (-45 + table_db[7])) < 1e-12);
+    assert_true(fabs(bins[1].echo_db - (-10 + table_db[1000])) < 1e-12);
+}
+
+static void tone_rises_from_black_to_white(void **state)
+{
+    (void)state;
+    struct ref_params params = ref_params_default();
+    const double exponents[] = {0.4, 1, 2.2};
+    for (int i = 0; i < 3; i++) {
+        params.gamma_exponent = exponents[i];
+        uint8_t before = 0;
+        assert_int_equal(ref_grey(ref_brightness(params.black_db - 30, &params), &params), 0);
+        assert_int_equal(ref_grey(ref_brightness(params.white_db + 30, &params), &params), 255);
+        for (double db = params.black_db; db <= params.white_db; db += 1.0 / 256) {
+            const uint8_t grey = ref_grey(ref_brightness(db, &params), &params);
+            assert_true(grey >= before);
+            before = grey;
+        }
+        assert_int_equal(before, 255);
+        const double middle = (params.black_db + params.white_db) / 2;
+        assert_int_equal(ref_grey(ref_brightness(middle, &params), &params),
+                         lround(255 * pow(512 / 1023.0, exponents[i])));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(speckle_has_mean_one_and_the_spread_of_its_looks),
+        cmocka_unit_test(speckle_in_decibels_has_the_published_spread),
+        cmocka_unit_test(slices_of_one_look_are_those_of_the_exponential),
+        cmocka_unit_test(speckle_rises_from_slice_to_slice),
+        cmocka_unit_test(neighbours_never_share_a_sample_and_a_place_keeps_its_own),
+        cmocka_unit_test(another_epoch_is_another_speckle),
+        cmocka_unit_test(noise_has_a_floor_before_speckle),
+        cmocka_unit_test(tone_rises_from_black_to_white),
+    };
+    return cmocka_run_group_tests_name("reference tone", tests, NULL, NULL);
+}
