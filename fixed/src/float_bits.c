@@ -5,7 +5,7 @@
 /* `size` * 2^shift with its sign, if that fits; `size` is below 2^53. */
 static bool scale(uint64_t size, int64_t shift, bool is_negative, int64_t *out)
 {
-    if (shift < -54) {
+    if (shift < -53) {
         size = 0; /* below one half */
     } else if (shift < 0) {
         size = (size + (1ull << (-shift - 1))) >> -shift;

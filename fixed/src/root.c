@@ -4,14 +4,12 @@
 #include "fx/tables.h"
 
 /* One step of Heron's rule with 1/(2s) taken from the inverse root: s + (n - s^2) / (2s). The
- * difference is right modulo 2^64 whatever its size; `drop` sheds bits so that the product with the
- * inverse root, below 2^31.1, stays below 2^63. */
-static inline uint64_t closer(uint64_t s, uint64_t n, uint32_t inverse_q30, int drop)
+ * difference, below 2^50, is right modulo 2^64 whatever the sizes of its parts. Shedding 20 of its
+ * bits keeps the product with the inverse root below 2^62 and costs 2^-12 of the result. */
+static inline uint64_t closer(uint64_t s, uint64_t n, uint32_t inverse_q30)
 {
     const int64_t miss = (int64_t)(n - s * s);
-    const int64_t step = (miss >> drop) * (int64_t)inverse_q30 >> (63 - drop);
-    const uint64_t root = s + (uint64_t)step;
-    return root > UINT32_MAX ? UINT32_MAX : root;
+    return s + (uint64_t)((miss >> 20) * (int64_t)inverse_q30 >> 43);
 }
 
 uint32_t fx_sqrt_u64(uint64_t x)
@@ -30,15 +28,12 @@ uint32_t fx_sqrt_u64(uint64_t x)
     const uint64_t factor_q30 = (3ull << 30) - (v_q32 * (table_q15 * table_q15) >> 32);
     const uint32_t inverse_q30 = (uint32_t)(table_q15 * factor_q30 >> 16);
 
-    /* The first guess misses by up to 2^17, so n - s^2 by 2^50; the second by up to 5, or 2^36;
-     * the third by one at most. */
+    /* The first guess misses by up to 2^17, the second by 5 and the third by one. None of the two
+     * steps lands above the truth, for both curves bend that way and every shift rounds down. */
     uint64_t s = v_q32 * inverse_q30 >> 30;
-    s = s > UINT32_MAX ? UINT32_MAX : s;
-    s = closer(s, n, inverse_q30, 20);
-    s = closer(s, n, inverse_q30, 6);
-    if (s * s > n) {
-        s--;
-    } else if (n - s * s > 2 * s) {
+    s = closer(s, n, inverse_q30);
+    s = closer(s, n, inverse_q30);
+    if (n - s * s > 2 * s) {
         s++;
     }
     return (uint32_t)(s >> (zeros / 2));
