@@ -1,0 +1,310 @@
+"""The rules that keep the firmware portable, each as a function from a source tree to its violations.
+
+A violation is one line of text, "place: what is wrong". The functions look at nothing outside the tree
+they are given, so that rules_test.py can show each of them a planted one.
+"""
+import concurrent.futures
+import os
+import re
+import subprocess
+from pathlib import Path
+
+LOW_LAYERS = ("fixed", "firmware")  # freestanding: no library, no float, no state of their own
+LAYERS = ("fixed", "firmware", "drivers", "bsp")
+SYSTEM_HEADERS = {"stdint.h", "stddef.h", "stdbool.h", "limits.h"}
+MEMORY_FUNCTIONS = {"memcpy", "memmove", "memset", "memcmp"}
+LONGEST_FUNCTION_LINES = 100
+DEEPEST_STACK_BYTES = 8192
+
+
+class Tree:
+    """A source tree and the flags that each of its layers is compiled with."""
+
+    def __init__(self, root, flags, scratch):
+        self.root = Path(root)
+        self.flags = flags  # "CC" and each layer's name -> list of words
+        self.scratch = Path(scratch)
+        self.built = {}  # kind -> what objects() found
+
+    def files(self, layer, *suffixes):
+        return sorted(p.relative_to(self.root) for p in (self.root / layer).rglob("*") if p.suffix in suffixes)
+
+    def sources(self, *layers):
+        return [p for layer in layers for p in self.files(layer, ".c", ".h")]
+
+    def text(self, path):
+        return (self.root / path).read_text()
+
+    def compile(self, layer, source, output, *more, compiler=None):
+        """Compile one file as the Makefile would, with `more` flags. Returns the compiler's complaints, or ""."""
+        command = (compiler or self.flags["CC"]) + self.flags[layer] + list(more) + ["-c", str(source), "-o", str(output)]
+        result = subprocess.run(command, cwd=self.root, capture_output=True, text=True)
+        return "" if result.returncode == 0 else result.stderr or f"exit status {result.returncode}"
+
+    def objects(self, kind, *more, compiler=None):
+        """Compile the low layers, once for each `kind` of flags. Returns the objects and the complaints."""
+        if kind not in self.built:
+            self.built[kind] = self.build(self.scratch / kind, more, compiler)
+        objects, complaints = self.built[kind]
+        return objects, list(complaints)
+
+    def build(self, folder, more, compiler):
+        jobs = []
+        for layer in LOW_LAYERS:
+            for source in self.files(layer, ".c"):
+                target = folder / source.with_suffix(".o")
+                target.parent.mkdir(parents=True, exist_ok=True)
+                jobs.append((layer, source, target))
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            complaints = list(pool.map(lambda job: self.compile(*job, *more, compiler=compiler), jobs))
+        bad = [first_error(text) for text in complaints if text]
+        return [job[2] for job in jobs], bad
+
+
+def first_error(complaint):
+    lines = complaint.strip().splitlines()
+    return next((line for line in lines if "error:" in line), lines[0])
+
+
+def read_flags(path):
+    """The file that discipline.mk writes: a name and its words on each line."""
+    lines = (line.split() for line in Path(path).read_text().splitlines())
+    return {words[0]: words[1:] for words in lines}
+
+
+def without_comments(text):
+    """The text with comments, strings and characters blanked; lines keep their numbers."""
+    pattern = r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\''
+    return re.sub(pattern, lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S)
+
+
+def numbered_lines(text):
+    return enumerate(text.splitlines(), 1)
+
+
+def floating_point(tree):
+    """No float: the compiler may use none, and the source may not name one."""
+    bad = tree.objects("general-regs", "-mgeneral-regs-only")[1]
+    for path in tree.sources(*LOW_LAYERS):
+        for number, line in numbered_lines(without_comments(tree.text(path))):
+            found = re.search(r"\b(float|double|_Float\w+|__fp16|_Complex)\b", line)
+            if found:
+                bad.append(f"{path}:{number}: names {found.group()}")
+    return bad
+
+
+def symbols(objects, *options):
+    """(object, type, name) of each symbol that nm lists."""
+    if not objects:
+        return []
+    out = subprocess.run(["nm", "-A", *options, *map(str, objects)], capture_output=True, text=True, check=True).stdout
+    rows = (re.match(r"(.*?):\S*\s+(\S)\s+(\S+)$", line) for line in out.splitlines())
+    return [row.groups() for row in rows if row]
+
+
+def strangers(tree, objects, allowed):
+    """Names that the objects need, that none of them has and that are not allowed."""
+    have = {name for _, _, name in symbols(objects, "--defined-only")}
+    needed = [(place, name) for place, _, name in symbols(objects, "-u") if name not in have and name not in allowed]
+    return [f"{Path(place).relative_to(tree.scratch)}: needs {name}" for place, name in needed]
+
+
+def foreign_symbols(tree):
+    """Nothing from outside but the four functions that a compiler may call by itself."""
+    objects, bad = tree.objects("plain", "-fno-pie")
+    return bad or strangers(tree, objects, MEMORY_FUNCTIONS)
+
+
+def cortex_m7(tree):
+    """Both low layers build for a 32-bit microcontroller. A compiler's library is where a floating multiplication would
+    show; firmware may have it divide 64 bits, which fixed does without. None when there is no clang to ask."""
+    try:
+        where = subprocess.run(["clang", "-print-file-name=include"], capture_output=True, text=True, check=True)
+    except FileNotFoundError:
+        return None
+    compiler = ["clang", "--target=thumbv7em-none-eabi", "-mcpu=cortex-m7"]
+    own_headers = ["-isystem", where.stdout.strip()]
+    objects, bad = tree.objects("cortex-m7", *own_headers, "-mfloat-abi=soft", compiler=compiler)
+    aeabi = {"__aeabi_" + name for name in ("memcpy", "memcpy4", "memcpy8", "memmove", "memmove4", "memmove8",
+                                            "memset", "memset4", "memset8", "memclr", "memclr4", "memclr8")}
+    divisions = {"__aeabi_ldivmod", "__aeabi_uldivmod"}
+    fixed = [path for path in objects if path.relative_to(tree.scratch / "cortex-m7").parts[0] == "fixed"]
+    return (bad or strangers(tree, fixed, MEMORY_FUNCTIONS | aeabi)
+            or strangers(tree, objects, MEMORY_FUNCTIONS | aeabi | divisions))
+
+
+class CallGraph:
+    """What gcc's -fcallgraph-info=su tells about the objects of a tree."""
+
+    def __init__(self):
+        self.stack_bytes = {}  # function -> its own frame
+        self.calls = {}  # function -> set of functions
+        self.dynamic = []  # functions whose frame is not constant
+        self.indirect = []  # functions that call through a pointer
+
+    def read(self, path):
+        text = path.read_text()
+        for name, label in re.findall(r'node: \{ title: "([^"]+)" label: "([^"]*)"', text):
+            size = re.search(r"(\d+) bytes \(([a-z,]+)\)", label)
+            if size:
+                self.stack_bytes[name] = int(size.group(1))
+                if size.group(2) == "dynamic":
+                    self.dynamic.append(name)
+        for source, target in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+            if target == "__indirect_call":
+                self.indirect.append(source)
+            else:
+                self.calls.setdefault(source, set()).add(target)
+
+    def cycles(self):
+        """Each function from which a call may come back to itself."""
+        return sorted(name for name in self.calls if name in self.reachable(name))
+
+    def reachable(self, start):
+        seen, waiting = set(), list(self.calls.get(start, ()))
+        while waiting:
+            name = waiting.pop()
+            if name not in seen:
+                seen.add(name)
+                waiting.extend(self.calls.get(name, ()))
+        return seen
+
+    def deepest(self):
+        """(bytes, path) of the deepest chain of calls; only for a graph without cycles."""
+        known = {}
+
+        def below(name):
+            if name not in known:
+                deepest = max((below(callee) for callee in self.calls.get(name, ())), default=(0, []))
+                known[name] = (deepest[0] + self.stack_bytes.get(name, 0), [name] + deepest[1])
+            return known[name]
+
+        return max((below(name) for name in self.stack_bytes), default=(0, []))
+
+
+def call_graph(tree):
+    objects, bad = tree.objects("call-graph", "-fcallgraph-info=su")
+    graph = CallGraph()
+    if not bad:
+        for path in objects:
+            graph.read(path.with_suffix(".ci"))
+    return graph, bad
+
+
+def recursion_and_stack(tree):
+    """No function calls itself in the end, each frame has a constant size, and the deepest chain fits."""
+    graph, bad = call_graph(tree)
+    bad += [f"{name}: may call itself" for name in graph.cycles()]
+    bad += [f"{name}: has a stack frame of variable size" for name in graph.dynamic]
+    if not bad and graph.deepest()[0] > DEEPEST_STACK_BYTES:
+        bad.append(f"{' > '.join(graph.deepest()[1])}: takes {graph.deepest()[0]} bytes of stack")
+    return bad
+
+
+def includes(tree, path):
+    for number, line in numbered_lines(tree.text(path)):
+        found = re.match(r'\s*#\s*include\s*([<"])([^>"]+)', line)
+        if found:
+            yield number, found.group(1), found.group(2)
+
+
+def resolve(tree, layer, path, name):
+    """Where an #include "name" leads, from the root of the tree, or None."""
+    folders = [path.parent] + [Path(word[2:]) for word in tree.flags[layer] if word.startswith("-I")]
+    for folder in folders:
+        target = os.path.normpath(tree.root / folder / name)
+        if os.path.isfile(target):
+            return Path(os.path.relpath(target, tree.root))
+    return None
+
+
+def includes_upwards(tree):
+    """A layer includes itself and the layers below, a board's folder no other board's, and the two lowest layers
+    four headers of the compiler. A driver may bring libraries of its own board."""
+    bad = []
+    for level, layer in enumerate(LAYERS):
+        for path in tree.sources(layer):
+            for number, bracket, name in includes(tree, path):
+                place = f"{path}:{number}"
+                if bracket == "<":
+                    if layer in LOW_LAYERS and name not in SYSTEM_HEADERS:
+                        bad.append(f"{place}: includes <{name}>")
+                    continue
+                target = resolve(tree, layer, path, name)
+                if target is None and layer in LOW_LAYERS:
+                    bad.append(f'{place}: includes "{name}", which is in no layer below')
+                elif target is not None and target.parts[0] not in LAYERS[: level + 1]:
+                    bad.append(f"{place}: includes {target}")
+                elif target is not None and target.parts[0] == "bsp" and target.parts[:2] != path.parts[:2]:
+                    bad.append(f"{place}: includes another board's {target}")
+    return bad
+
+
+def probe(tree, layer, header):
+    """Whether a file of this layer could include `header`."""
+    folder = tree.scratch / "probe"
+    folder.mkdir(parents=True, exist_ok=True)
+    source = folder / f"{layer}.c"
+    source.write_text(f"#include {header}\nextern int probe;\n")
+    return tree.compile(layer, source, folder / f"{layer}.o") == ""
+
+
+def public_headers(tree, layer):
+    """As they are written in an #include."""
+    return [f'"{path.relative_to(Path(layer) / "include")}"' for path in tree.files(layer, ".h")
+            if path.parts[1] == "include"]
+
+
+def open_doors(tree):
+    """The flags of the Makefile hide from a layer what it may not include, and show it what it may."""
+    bad = []
+    may_not = {"fixed": public_headers(tree, "firmware") + public_headers(tree, "drivers"),
+               "firmware": public_headers(tree, "drivers"), "drivers": [], "bsp": []}
+    for layer in LOW_LAYERS:
+        may_not[layer] += ["<stdio.h>", "<stdlib.h>", "<string.h>", "<math.h>", "<unistd.h>"]
+    for layer in LAYERS:
+        may_not[layer] += ['"hs/error.h"', '"support.h"']
+        bad += [f"{layer}: could include {header}" for header in may_not[layer] if probe(tree, layer, header)]
+        for below in LAYERS[: LAYERS.index(layer) + 1]:
+            bad += [f"{layer}: {header} does not compile by itself" for header in public_headers(tree, below)
+                    if below in (layer, "fixed") and not probe(tree, layer, header)]
+    return bad
+
+
+def conditionals(tree):
+    """One firmware for all boards: #if only in lm/config.h, for include guards, and to refuse a machine (#error)."""
+    bad = []
+    for path in tree.sources(*LOW_LAYERS):
+        if path == Path("firmware/include/lm/config.h"):
+            continue
+        lines = tree.text(path).splitlines()
+        for number, line in enumerate(lines, 1):
+            found = re.match(r"\s*#\s*(?:if|ifdef|elif|ifndef)\b\s*(.*)", line)
+            following = lines[number] if number < len(lines) else ""
+            is_harmless = found and (following == f"#define {found.group(1)}" or following.startswith("#error "))
+            if found and not is_harmless:
+                bad.append(f"{path}:{number}: {line.strip()}")
+    return bad
+
+
+def long_functions(tree):
+    """A body runs from a brace in the first column to the next; clang-format sees to that."""
+    bad = []
+    for path in tree.sources(*LOW_LAYERS):
+        start = None
+        for number, line in numbered_lines(tree.text(path)):
+            if line == "{":
+                start = number
+            elif line == "}" and start is not None:
+                if number - start + 1 > LONGEST_FUNCTION_LINES:
+                    bad.append(f"{path}:{start}: a function of {number - start + 1} lines")
+                start = None
+    return bad
+
+
+def mutable_data(tree):
+    """Nothing that a second radar in the same program would share. Without -fno-pie a constant table of pointers
+    would look like data."""
+    objects, bad = tree.objects("plain", "-fno-pie")
+    return bad or [f"{Path(place).relative_to(tree.scratch)}: {name} can be written to"
+                   for place, kind, name in symbols(objects, "--defined-only") if kind in "bBdDcCsSgG"]

@@ -1,0 +1,144 @@
+"""Runs the rules of rules.py on the tree, and each of them on a small tree in which it is broken. Prints TAP."""
+import os
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import rules
+
+GOOD = {
+    "fixed/include/fx/one.h": "#ifndef FX_ONE_H\n#define FX_ONE_H\n#include <stdint.h>\nint32_t fx_one(int32_t x);\n#endif\n",
+    "fixed/src/one.c": '#include "fx/one.h"\n\nint32_t fx_one(int32_t x)\n{\n    return x + 1;\n}\n',
+    "firmware/include/lm/two.h": "#ifndef LM_TWO_H\n#define LM_TWO_H\nint lm_two(int x);\n#endif\n",
+    "firmware/src/two.c": '#include "lm/two.h"\n#include "fx/one.h"\n\n'
+                          "static const char *const names[] = {\"float\", \"double\"};\n\n"
+                          "int lm_two(int x)\n{\n    return fx_one(x) + names[x & 1][0];\n}\n",
+    "drivers/include/drv/three.h": "extern int three;\n",
+    "drivers/three.c": '#include "drv/three.h"\n#include "lm/two.h"\n#include <stdio.h>\nint three;\n',
+    "bsp/here/four.c": '#include "drv/three.h"\n#include "four.h"\n',
+    "bsp/here/four.h": "extern int four;\n",
+    "bsp/other/five.h": "extern int five;\n",
+}
+
+FUNCTION = "int lm_bad(int x);\nint lm_bad(int x)\n{\n%s\n}\n"
+
+# What is planted: the sentence proved, the rule that must see it, what its violation must say, the file and its text
+# (None: the flags are loosened instead).
+PLANTED = [
+    ("a product of doubles is seen", rules.floating_point, "SSE|general-regs",
+     "firmware/src/bad.c", FUNCTION % "    return (int)(x * 0.5);"),
+    ("a float hidden in a header is seen", rules.floating_point, "bad.h:1: names float",
+     "fixed/include/fx/bad.h", "typedef float fx_bad;\n"),
+    ("a call of malloc is seen", rules.foreign_symbols, "needs malloc", "firmware/src/bad.c",
+     "void *malloc(unsigned long);\n" + FUNCTION % "    return malloc((unsigned long)x) == 0;"),
+    ("a division of 64 bits in fixed is seen on the microcontroller", rules.cortex_m7, "needs __aeabi_uldivmod", "fixed/src/bad.c",
+     "unsigned long long fx_bad(unsigned long long a, unsigned long long b);\n"
+     "unsigned long long fx_bad(unsigned long long a, unsigned long long b)\n{\n    return a / b;\n}\n"),
+    ("recursion through two functions is seen", rules.recursion_and_stack, "lm_[ab]: may call itself", "firmware/src/bad.c",
+     "int lm_a(int x);\nint lm_b(int x);\nint lm_b(int x)\n{\n    return lm_a(x) * 3;\n}\n"
+     "int lm_a(int x)\n{\n    return x < 2 ? x : lm_b(x - 1) + lm_b(x - 2);\n}\n"),
+    ("a frame of variable size is seen", rules.recursion_and_stack, "variable size", "firmware/src/bad.c",
+     FUNCTION % "    volatile char *p = __builtin_alloca((unsigned long)x);\n    p[0] = 1;\n    return p[x - 1];"),
+    ("a stack deeper than the limit is seen", rules.recursion_and_stack, "bytes of stack", "firmware/src/bad.c",
+     FUNCTION % "    volatile char big[9000];\n    big[x] = 1;\n    return big[x + 1];"),
+    ("fixed including firmware by a path is seen", rules.includes_upwards, "bad.c:1: includes firmware/",
+     "fixed/src/bad.c", '#include "../../firmware/include/lm/two.h"\n'),
+    ("firmware including a driver by a path is seen", rules.includes_upwards, "bad.c:1: includes drivers/",
+     "firmware/src/bad.c", '#include "../../drivers/include/drv/three.h"\n'),
+    ("firmware including the C library is seen", rules.includes_upwards, "includes <string.h>",
+     "firmware/src/bad.c", "#include <string.h>\n"),
+    ("a driver including its board is seen", rules.includes_upwards, "includes bsp/here/four.h",
+     "drivers/bad.c", '#include "../bsp/here/four.h"\n'),
+    ("a board including another board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
+     "bsp/here/bad.c", '#include "../other/five.h"\n'),
+    ("an include path too many in the Makefile is seen", rules.open_doors, 'fixed: could include "lm/two.h"', None, None),
+    ("a header that needs another one first is seen", rules.open_doors, '"lm/bad.h" does not compile by itself',
+     "firmware/include/lm/bad.h", "uint32_t lm_bad(void);\n"),
+    ("an #ifdef for the host is seen", rules.conditionals, "bad.c:1: #ifdef HOST",
+     "firmware/src/bad.c", "#ifdef HOST\n#endif\n"),
+    ("a function of 101 lines is seen", rules.long_functions, "a function of 101 lines", "firmware/src/bad.c",
+     FUNCTION % "\n".join(["    x++;"] * 98 + ["    return x;"])),
+    ("a static counter is seen", rules.mutable_data, r"calls\S* can be written to", "firmware/src/bad.c",
+     FUNCTION % "    static int calls;\n    return calls += x;"),
+    ("a global with a value is seen", rules.mutable_data, "fx_bad can be written to",
+     "fixed/src/bad.c", "extern int fx_bad;\nint fx_bad = 3;\n"),
+]
+
+KEPT = [
+    ("fixed and firmware compile without floating point and name none", rules.floating_point),
+    ("fixed and firmware need nothing but memcpy, memmove, memset and memcmp", rules.foreign_symbols),
+    ("fixed and firmware build for a Cortex-M7, and need of a compiler's library but division", rules.cortex_m7),
+    ("no function calls itself and the deepest stack is known and fits", rules.recursion_and_stack),
+    ("every layer includes only itself and the layers below", rules.includes_upwards),
+    ("the flags hide what a layer may not include, and its headers stand alone", rules.open_doors),
+    ("there are no conditionals in fixed and firmware but in lm/config.h", rules.conditionals),
+    ("no function in fixed and firmware is longer than 100 lines", rules.long_functions),
+    ("fixed and firmware have no data that can be written to", rules.mutable_data),
+]
+
+
+class Report:
+    def __init__(self, count):
+        self.number = 0
+        self.failed = 0
+        print(f"1..{count}")
+
+    def result(self, sentence, complaints, skipped=None):
+        self.number += 1
+        self.failed += bool(complaints)
+        verdict = "not ok" if complaints else "ok"
+        print(f"{verdict} {self.number} - {sentence}" + (f" # SKIP {skipped}" if skipped else ""))
+        for complaint in complaints:
+            print(f"# {complaint}")
+        sys.stdout.flush()
+
+
+def planted_tree(folder, flags, path, text):
+    """The small tree with one file more, or with one folder more to be seen by the lowest layer."""
+    root = Path(folder) / "tree"
+    for name, content in {**GOOD, **({path: text} if path else {})}.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(content)
+    flags = dict(flags)
+    if path is None:
+        flags["fixed"] = flags["fixed"] + ["-Ifirmware/include"]
+    return rules.Tree(root, flags, Path(folder) / "scratch")
+
+
+def judge(report, sentence, violations, wanted=None):
+    """`wanted` is a pattern that one of the violations must match; without it there may be none."""
+    if violations is None:
+        report.result(sentence, [], skipped="no clang here")
+    elif wanted is None:
+        report.result(sentence, violations)
+    elif any(re.search(wanted, violation) for violation in violations):
+        report.result(sentence, [])
+    else:
+        report.result(sentence, [f"none of these is {wanted}:"] + violations)
+
+
+def main():
+    build = os.environ.get("BUILD", "build/bench-linux")
+    flags = rules.read_flags(f"{build}/tests/discipline/flags")
+    report = Report(len(KEPT) + len(PLANTED) + 1)
+    with tempfile.TemporaryDirectory() as folder:
+        tree = rules.Tree(".", flags, folder)
+        for sentence, rule in KEPT:
+            judge(report, sentence, rule(tree))
+        graph, _ = rules.call_graph(tree)
+        size, path = graph.deepest() if not graph.cycles() else (0, [])
+        print(f"# deepest stack: {size} bytes, {' > '.join(path)}")
+        print(f"# calls through a pointer: {', '.join(sorted(set(graph.indirect))) or 'none'}")
+    for sentence, rule, wanted, path, text in PLANTED:
+        with tempfile.TemporaryDirectory() as folder:
+            judge(report, sentence, rule(planted_tree(folder, flags, path, text)), wanted)
+    with tempfile.TemporaryDirectory() as folder:
+        tree = planted_tree(folder, flags, "firmware/src/harmless.c", "/* No float, no #ifdef. */\n#include <stdint.h>\n")
+        found = [text for _, rule in KEPT for text in rule(tree) or []]
+        report.result("a tree that keeps the rules is left in peace", found)
+    return 1 if report.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
