@@ -306,18 +306,18 @@ static void leading_edges_brighten_the_first_cell_of_structures_and_trees(void *
     assert_edges("ssg", &params, none_before_the_first);
 }
 
-/* Shore 1 dB over 32 m of 10 m cells: round(3.2) = 3 cells, steps of floor(256 / 3) = 85, so 256,
- * 171, 86, 1, 0; water ends the ramp and the next shore begins another. */
+/* Shore 1 dB over 58 m of 10 m cells: round(5.8) = 6 cells, steps of floor(256 / 6) = 42, so 256,
+ * 214, .. 46, 4, 0; water ends the ramp and the next shore begins another. */
 static void the_far_shore_is_a_ramp_that_water_ends(void **state)
 {
     (void)state;
     struct ref_params params = no_edges();
     params.shore_db = 1;
-    params.shore_width_m = 32;
-    const double expected[] = {0, 0, 0, 256, 171, 86, 1, 0, 0, 0, 256, 171, 0, 256, 171};
-    assert_edges("ggwggggggwggwgg", &params, expected);
+    params.shore_width_m = 58;
+    const double expected[] = {0, 0, 256, 214, 172, 130, 88, 46, 4, 0, 0, 256, 214, 0, 256, 214};
+    assert_edges("gwggggggggwggwgg", &params, expected);
     params.edge_structure_db = 6;
-    const double both[] = {0, 256 + 1536, 171, 86, 1, 0};
+    const double both[] = {0, 256 + 1536, 214, 172, 130, 88};
     assert_edges("wsssgg", &params, both);
 }
 
