@@ -1,9 +1,8 @@
 #include "bench.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "hs/error.h"
 
 static int acquire(void *ctx, struct lm_surface *surface)
 {
@@ -39,8 +38,8 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
     memset(b, 0, sizeof *b);
     const int cause = drv_flash_file_open(&b->flash, database);
     if (cause != 0) {
-        return hs_error(database, "make one with landmass-db build", "cannot be opened: %s",
-                        strerror(cause));
+        snprintf(b->error, sizeof b->error, "cannot be opened: %s", strerror(cause));
+        return -1;
     }
     b->display = (struct lm_display){.ctx = b,
                                      .width_px = width_px,
@@ -54,18 +53,13 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
                                  .display = &b->display,
                                  .noise_seed = noise_seed,
                                  .flash_poll_limit = 1000};
-    int status = lend_memory(b);
-    if (status != 0) {
-        hs_error(database, NULL, "out of memory");
-    } else {
-        status = lm_unit_init(b->unit, &b->board);
-        if (status != LM_OK) {
-            hs_error(database, "256..1024 pixels, and a coarsest level of few tiles",
-                     "the display unit refuses to start (%d)", status);
-        }
-    }
-    if (status != 0) {
+    const int status = lend_memory(b) == 0 ? lm_unit_init(b->unit, &b->board) : LM_ERR_NO_MEMORY;
+    if (status != LM_OK) {
         bench_close(b);
+        snprintf(b->error, sizeof b->error, "%s",
+                 status == LM_ERR_RANGE
+                     ? "the glass must have 256..1024 pixels each way"
+                     : "out of memory: the coarsest level of the database has too many tiles");
         return -1;
     }
     return 0;

@@ -21,7 +21,8 @@ static const char help[] =
     "  --window           show the glass in a window, in real time; Escape ends\n"
     "  --size WxH         pixels of the glass, 256..1024 each (default 768x768)\n"
     "  --seconds S        flight time to run (default: to the end of the log)\n"
-    "  --seed N           another speckle (default 0); the same inputs and seed give the same pictures\n"
+    "  --seed N           another speckle (default 0); the same inputs and seed give the same "
+    "pictures\n"
     "  --quiet            no summary\n"
     "  --help             this text\n"
     "\n"
@@ -36,16 +37,34 @@ static const char help[] =
     "\n"
     "Exit codes: 0 done, 1 failed, 2 wrong command line.\n";
 
-enum { OPT_DB = 1, OPT_BUS, OPT_CAN, OPT_SCRIPT, OPT_PNG, OPT_EVERY, OPT_WINDOW, OPT_SIZE,
-       OPT_SECONDS, OPT_SEED, OPT_QUIET, OPT_HELP };
+enum {
+    OPT_DB = 1,
+    OPT_BUS,
+    OPT_CAN,
+    OPT_SCRIPT,
+    OPT_PNG,
+    OPT_EVERY,
+    OPT_WINDOW,
+    OPT_SIZE,
+    OPT_SECONDS,
+    OPT_SEED,
+    OPT_QUIET,
+    OPT_HELP
+};
 
 static const struct option table[] = {
-    {"db", required_argument, NULL, OPT_DB},         {"bus", required_argument, NULL, OPT_BUS},
-    {"can", required_argument, NULL, OPT_CAN},       {"script", required_argument, NULL, OPT_SCRIPT},
-    {"png", required_argument, NULL, OPT_PNG},       {"every", required_argument, NULL, OPT_EVERY},
-    {"window", no_argument, NULL, OPT_WINDOW},       {"size", required_argument, NULL, OPT_SIZE},
-    {"seconds", required_argument, NULL, OPT_SECONDS}, {"seed", required_argument, NULL, OPT_SEED},
-    {"quiet", no_argument, NULL, OPT_QUIET},         {"help", no_argument, NULL, OPT_HELP},
+    {"db", required_argument, NULL, OPT_DB},
+    {"bus", required_argument, NULL, OPT_BUS},
+    {"can", required_argument, NULL, OPT_CAN},
+    {"script", required_argument, NULL, OPT_SCRIPT},
+    {"png", required_argument, NULL, OPT_PNG},
+    {"every", required_argument, NULL, OPT_EVERY},
+    {"window", no_argument, NULL, OPT_WINDOW},
+    {"size", required_argument, NULL, OPT_SIZE},
+    {"seconds", required_argument, NULL, OPT_SECONDS},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"quiet", no_argument, NULL, OPT_QUIET},
+    {"help", no_argument, NULL, OPT_HELP},
     {0},
 };
 
@@ -140,7 +159,8 @@ enum options_result options_read(struct options *o, int argc, char **argv)
         } else if (option == '?') {
             return OPTIONS_WRONG; /* getopt has said why */
         } else if (!take_value(o, option)) {
-            hs_error("command line", "landmass-sim --help", "\"%s\" is no value for that option", optarg);
+            hs_error("command line", "landmass-sim --help", "\"%s\" is no value for that option",
+                     optarg);
             return OPTIONS_WRONG;
         }
     }

@@ -43,9 +43,9 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
         !number(words[3], -180, 180, &lon) || !number(words[4], 0.1, 1000, &cell)) {
         return false;
     }
-    if (!is_from_ownship && (!number(words[5], -360, 360, &look) ||
-                             !number(words[6], 0, 1e6, &range) ||
-                             !number(words[7], -500, 30000, &height))) {
+    if (!is_from_ownship &&
+        (!number(words[5], -360, 360, &look) || !number(words[6], 0, 1e6, &range) ||
+         !number(words[7], -500, 30000, &height))) {
         return false;
     }
     c->kind = LM_CONTROL_SAR;

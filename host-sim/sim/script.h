@@ -34,8 +34,8 @@ struct script {
 int script_read(struct script *s, const char *path);
 void script_free(struct script *s);
 
-/* Controls up to `now_us` are handed out through the port. A picture that is due by then is taken out of the way and its name
- * returned, else NULL. */
+/* Controls up to `now_us` are handed out through the port. A picture that is due by then is taken
+ * out of the way and its name returned, else NULL. */
 const char *script_advance(struct script *s, uint64_t now_us);
 
 #endif

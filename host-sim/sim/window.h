@@ -7,7 +7,8 @@
 
 struct window; /* opaque */
 
-/* Open a window of that size. NULL, with the reason reported as a warning, when there is no screen. */
+/* Open a window of that size. NULL, with the reason reported as a warning, when there is no screen.
+ */
 struct window *window_open(uint16_t width_px, uint16_t height_px);
 void window_close(struct window *w); /* NULL is fine */
 
