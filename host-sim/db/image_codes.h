@@ -1,5 +1,5 @@
-/* What a cell and a post of the image hold, packed and unpacked, and how four cells become one of the next
- * coarser level (docs/FORMATS.md, 1.6). */
+/* What a cell and a post of the image hold, packed and unpacked, and how four cells become one of
+ * the next coarser level (docs/FORMATS.md, 1.6). */
 #ifndef IMAGE_CODES_H
 #define IMAGE_CODES_H
 
@@ -10,11 +10,12 @@
 #include <stdint.h>
 
 enum {
-    IMAGE_CELL_NONE = LM_DB_CLASS_NONE << 4,  /* a cell without data */
-    IMAGE_ELEVATION_LIMIT_Q6 = 1 << 20        /* 16,384 m; no place on Earth comes near */
+    IMAGE_CELL_NONE = LM_DB_CLASS_NONE << 4, /* a cell without data */
+    IMAGE_ELEVATION_LIMIT_Q6 = 1 << 20       /* 16,384 m; no place on Earth comes near */
 };
 
-/* Nearest code of a constant-gamma coefficient in dB; ends of the scale for what lies beyond them. */
+/* Nearest code of a constant-gamma coefficient in dB; ends of the scale for what lies beyond them.
+ */
 uint8_t image_gamma_code(double gamma_db);
 double image_gamma_db(uint8_t code);
 
@@ -41,14 +42,15 @@ static inline uint8_t image_cell_height(uint16_t cell)
     return cell & 15;
 }
 
-/* Halve a square of cells, `coarse_side` the side of the result: reflectivity is the mean in power of the cells
- * with data, class the commonest (of equals the lower number; "no data" only when all four are), height the
- * mean of the cells of that class. Strides in cells. `fine` and `coarse` may be the same array. */
+/* Halve a square of cells, `coarse_side` the side of the result: reflectivity is the mean in power
+ * of the cells with data, class the commonest (of equals the lower number; "no data" only when all
+ * four are), height the mean of the cells of that class. Strides in cells. `fine` and `coarse` may
+ * be the same array. */
 void image_reduce(const uint16_t *fine, size_t fine_stride, uint16_t *coarse, size_t coarse_stride,
                   int coarse_side, const uint16_t heights_dm[16]);
 
-/* Elevations of 65 x 65 posts, metres x 64, into base, post_shift and posts of `tile`. The step is the smallest
- * that spans them, and the base a multiple of it: sea level stays exactly 0.
+/* Elevations of 65 x 65 posts, metres x 64, into base, post_shift and posts of `tile`. The step is
+ * the smallest that spans them, and the base a multiple of it: sea level stays exactly 0.
  * Elevations must be within IMAGE_ELEVATION_LIMIT_Q6. */
 void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], struct lm_tile *tile);
 

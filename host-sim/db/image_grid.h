@@ -1,6 +1,6 @@
-/* Where things lie in the image: angles, areas that may cross Greenwich or the antimeridian, and the tiles
- * that cover them (docs/FORMATS.md, 1.2). Latitudes are signed BAM, -2^30 (south pole) to 2^30; longitudes are
- * BAM modulo 2^32 from Greenwich eastward. */
+/* Where things lie in the image: angles, areas that may cross Greenwich or the antimeridian, and
+ * the tiles that cover them (docs/FORMATS.md, 1.2). Latitudes are signed BAM, -2^30 (south pole) to
+ * 2^30; longitudes are BAM modulo 2^32 from Greenwich eastward. */
 #ifndef IMAGE_GRID_H
 #define IMAGE_GRID_H
 
@@ -37,8 +37,8 @@ void image_area_centre(const struct image_area *area, int64_t *latitude, uint32_
 struct image_frame {
     uint8_t shift, zone;
     uint32_t row, column;
-    int64_t south;                       /* of row 0 */
-    uint32_t west;                       /* of column 0 */
+    int64_t south;                         /* of row 0 */
+    uint32_t west;                         /* of column 0 */
     int64_t latitude_step, longitude_step; /* of one cell */
 };
 

@@ -18,6 +18,7 @@ static const struct command commands[] = {
     {"segment", "give each pixel of an image its class", db_cmd_segment},
     {"correct", "apply manual corrections to a class raster", db_cmd_correct},
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
+    {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

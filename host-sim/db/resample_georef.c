@@ -79,7 +79,8 @@ int resample_georef_open(struct resample_georef *g, GDALDatasetH dataset, const 
     *g = (struct resample_georef){.width = GDALGetRasterXSize(dataset),
                                   .height = GDALGetRasterYSize(dataset)};
     if (GDALGetGeoTransform(dataset, g->geotransform) != CE_None || !settle(g)) {
-        return hs_error(path, "add a geotransform with gdal_edit.py -a_ullr, or warp it with gdalwarp",
+        return hs_error(path,
+                        "add a geotransform with gdal_edit.py -a_ullr, or warp it with gdalwarp",
                         "says not where on Earth its pixels lie");
     }
     g->crs = horizontal_crs(dataset);
@@ -186,7 +187,8 @@ struct bounds {
     double middle;
 };
 
-/* Widen the bounds by a lattice of samples over the whole raster. Returns how many were on Earth. */
+/* Widen the bounds by a lattice of samples over the whole raster. Returns how many were on Earth.
+ */
 static int sample_bounds(const struct resample_georef *g, struct bounds *b)
 {
     int found = 0;
@@ -245,7 +247,8 @@ int resample_pixel_bam(const struct resample_georef *g, double *latitude, double
         x[i] = wrap_near(x[i], x[0], 360.0) - x[0];
         y[i] -= y[0];
     }
-    /* On the ground, so that the two axes of a rotated raster can be told apart from its pixel's sides. */
+    /* On the ground, so that the two axes of a rotated raster can be told apart from its pixel's
+     * sides. */
     const double narrowing = cos(middle * (3.14159265358979323846 / 180.0));
     const double along_x = hypot(x[1] * narrowing, y[1]), along_y = hypot(x[2] * narrowing, y[2]);
     const bool x_is_north = fabs(y[1]) > fabs(x[1] * narrowing);
@@ -259,7 +262,8 @@ static bool is_close(double a, double b, double tolerance)
     return fabs(a - b) <= tolerance;
 }
 
-bool resample_is_aligned(const struct resample_georef *a, const struct resample_georef *b, int *x, int *y)
+bool resample_is_aligned(const struct resample_georef *a, const struct resample_georef *b, int *x,
+                         int *y)
 {
     const double *s = a->geotransform, *t = b->geotransform;
     const double pixel = hypot(s[1], s[4]);

@@ -56,8 +56,8 @@ static double blend(double a, double b, double t)
     return (1.0 - t) * a + t * b;
 }
 
-/* Along a column first: on an edge of the tile the weights are exactly 0 and 1, and nothing but that edge's
- * nodes goes into the result. */
+/* Along a column first: on an edge of the tile the weights are exactly 0 and 1, and nothing but
+ * that edge's nodes goes into the result. */
 static double between(const double node[RESAMPLE_NODES][RESAMPLE_NODES], double row, double column)
 {
     const int i = row >= LM_TILE_CELLS ? RESAMPLE_NODES - 2 : (int)row / SPAN;
@@ -102,10 +102,11 @@ void resample_mesh_posts(const struct resample_mesh *m, double *x, double *y)
     for (int side = 0; side < 2; side++) {
         const int node = side * NODE_LAST;
         const size_t first = (size_t)side * LAST;
-        const struct line row = {side * LAST, 0, 0, 1, N,
-                                 line_is_smooth(m->x[node], m->y[node], 1)};
-        const struct line column = {0, side * LAST, 1, 0, N,
-                                    line_is_smooth(&m->x[0][node], &m->y[0][node], RESAMPLE_NODES)};
+        const struct line row = {side * LAST, 0, 0,
+                                 1,           N, line_is_smooth(m->x[node], m->y[node], 1)};
+        const struct line column = {
+            0, side * LAST, 1,
+            0, N,           line_is_smooth(&m->x[0][node], &m->y[0][node], RESAMPLE_NODES)};
         /* An edge that agrees with the inside has been done with it. */
         if (row.is_smooth != m->is_smooth) {
             map_line(m, &row, x + first * N, y + first * N, 1);

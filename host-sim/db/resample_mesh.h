@@ -1,9 +1,9 @@
 /* The pixels of a raster under a tile of the image.
  *
- * PROJ is asked at 5 x 5 nodes a tile, every 16 cells, and the mapping is bilinear between them. Where that would
- * be out by more than 1/500 pixel (very coarse cells, the seam of a projection) every point is worked out on its
- * own. Each of the tile's four edges decides this from its own five nodes, so that the posts that two tiles share
- * come out the same in both, bit for bit. */
+ * PROJ is asked at 5 x 5 nodes a tile, every 16 cells, and the mapping is bilinear between them.
+ * Where that would be out by more than 1/500 pixel (very coarse cells, the seam of a projection)
+ * every point is worked out on its own. Each of the tile's four edges decides this from its own
+ * five nodes, so that the posts that two tiles share come out the same in both, bit for bit. */
 #ifndef RESAMPLE_MESH_H
 #define RESAMPLE_MESH_H
 
@@ -36,8 +36,8 @@ struct resample_window {
     int x, y, width, height; /* width 0: none */
 };
 
-/* The window of the raster that holds all positions and `margin` pixels around them. Positions that are NaN or
- * further than `margin` outside are left out. */
+/* The window of the raster that holds all positions and `margin` pixels around them. Positions that
+ * are NaN or further than `margin` outside are left out. */
 struct resample_window resample_window_of(const struct resample_georef *georef, size_t count,
                                           const double *x, const double *y, int margin);
 

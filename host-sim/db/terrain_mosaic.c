@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Land lies between the Dead Sea and Everest, sea beds reach -11 km; what is beyond is a marker for "void". */
+/* Land lies between the Dead Sea and Everest, sea beds reach -11 km; what is beyond is a marker for
+ * "void". */
 static const double lowest_m = -12000.0, highest_m = 9500.0;
 
 static int clamp(int value, int low, int high)
@@ -17,7 +18,8 @@ static int clamp(int value, int low, int high)
 }
 
 /* The part of the window that a member covers. */
-static struct resample_window overlap(const struct terrain_member *m, const struct resample_window *w)
+static struct resample_window overlap(const struct terrain_member *m,
+                                      const struct resample_window *w)
 {
     const int x0 = clamp(w->x, m->x, m->x + m->width);
     const int x1 = clamp(w->x + w->width, m->x, m->x + m->width);

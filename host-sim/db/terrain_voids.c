@@ -10,17 +10,70 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NO_REGION = UINT32_MAX, FILL_MARGIN = 2, FILL_SMOOTHINGS = 2 };
+enum { FILL_MARGIN = 2, FILL_SMOOTHINGS = 2, STRIP_PIXELS = 8 << 20 };
 
-/* The search for voids, one row after the other. */
+/* The mosaic a strip of rows at a time: some formats hold whole columns in a block, and row by row
+ * they would be decoded over and over. */
+struct strip {
+    const struct terrain_mosaic *m;
+    int first, rows, capacity; /* rows held now, and at most */
+    float *metres;
+    uint8_t *state;
+};
+
+/* The search for voids. */
 struct search {
     struct terrain_mosaic *m;
+    struct strip strip;
     size_t run_capacity;
     uint32_t *parents; /* union-find over runs */
-    float *metres[2];  /* the row before and this row */
-    uint8_t *state[2];
-    size_t previous_first, previous_end; /* runs of the row before */
 };
+
+/* A row of pixels, or NULLs above the first one. Good until the next row is asked for. */
+struct row {
+    const float *metres;
+    const uint8_t *state;
+};
+
+static int strip_open(struct strip *s, const struct terrain_mosaic *m)
+{
+    const size_t width = (size_t)m->georef.width;
+    const size_t fitting = STRIP_PIXELS / width + 2;
+    *s = (struct strip){.m = m};
+    s->capacity = fitting < (size_t)m->georef.height ? (int)fitting : m->georef.height;
+    s->metres = malloc((size_t)s->capacity * width * sizeof *s->metres);
+    s->state = malloc((size_t)s->capacity * width);
+    return s->metres && s->state
+               ? 0
+               : hs_error(m->members[0].path, NULL, "out of memory for its voids");
+}
+
+static void strip_close(struct strip *s)
+{
+    free(s->metres);
+    free(s->state);
+}
+
+/* Row y and the one above it. */
+static int strip_rows(struct strip *s, int y, struct row *above, struct row *here)
+{
+    const int need = y > 0 ? y - 1 : 0;
+    const int height = s->m->georef.height;
+    if (need < s->first || y >= s->first + s->rows) {
+        s->first = need;
+        s->rows = s->capacity < height - need ? s->capacity : height - need;
+        const struct resample_window w = {0, s->first, s->m->georef.width, s->rows};
+        if (terrain_mosaic_read(s->m, &w, s->metres, s->state) != 0) {
+            s->rows = 0;
+            return -1;
+        }
+    }
+    const size_t width = (size_t)s->m->georef.width, at = (size_t)(y - s->first) * width;
+    *here = (struct row){s->metres + at, s->state + at};
+    *above =
+        y > 0 ? (struct row){here->metres - width, here->state - width} : (struct row){NULL, NULL};
+    return 0;
+}
 
 static uint32_t root_of(uint32_t *parents, uint32_t i)
 {
@@ -59,9 +112,8 @@ static int add_run(struct search *s, int y, int x0, int x1)
     return 0;
 }
 
-static int find_runs(struct search *s, int y)
+static int find_runs(struct search *s, int y, const uint8_t *state)
 {
-    const uint8_t *state = s->state[1];
     const int width = s->m->georef.width;
     for (int x = 0; x < width; x++) {
         if (state[x] != TERRAIN_VOID) {
@@ -78,11 +130,12 @@ static int find_runs(struct search *s, int y)
     return 0;
 }
 
-static void join_rows(struct search *s, size_t first, size_t end)
+/* Runs first..middle-1 are those of a row, middle..end-1 those of the next. */
+static void join_rows(struct search *s, size_t first, size_t middle, size_t end)
 {
     const struct terrain_run *runs = s->m->voids.runs;
-    size_t i = s->previous_first, j = first;
-    while (i < s->previous_end && j < end) {
+    size_t i = first, j = middle;
+    while (i < middle && j < end) {
         if (runs[i].x0 <= runs[j].x1 && runs[j].x0 <= runs[i].x1) {
             join(s->parents, (uint32_t)i, (uint32_t)j);
         }
@@ -96,19 +149,15 @@ static void join_rows(struct search *s, size_t first, size_t end)
 
 static int search_rows(struct search *s)
 {
-    const int width = s->m->georef.width;
+    size_t first = 0;
     for (int y = 0; y < s->m->georef.height; y++) {
-        const struct resample_window row = {0, y, width, 1};
-        if (terrain_mosaic_read(s->m, &row, s->metres[1], s->state[1]) != 0) {
+        const size_t middle = s->m->voids.run_count;
+        struct row above, here;
+        if (strip_rows(&s->strip, y, &above, &here) != 0 || find_runs(s, y, here.state) != 0) {
             return -1;
         }
-        const size_t first = s->m->voids.run_count;
-        if (find_runs(s, y) != 0) {
-            return -1;
-        }
-        join_rows(s, first, s->m->voids.run_count);
-        s->previous_first = first;
-        s->previous_end = s->m->voids.run_count;
+        join_rows(s, first, middle, s->m->voids.run_count);
+        first = middle;
     }
     return 0;
 }
@@ -150,71 +199,51 @@ static void count_rim(const struct terrain_mosaic *m, struct terrain_region *r, 
     }
 }
 
-/* Rim pixels left and right of the row's runs, and those of `beside`, the row above or below, that touch one. */
-static void count_row_rim(struct search *s, size_t first, size_t end, bool with_ends, int beside)
+/* Rim pixels left and right of a run in its own row. */
+static void count_ends(struct search *s, const struct terrain_run *run, const struct row *here)
 {
-    struct terrain_voids *v = &s->m->voids;
-    for (size_t i = first; i < end; i++) {
-        const struct terrain_run *run = &v->runs[i];
-        struct terrain_region *r = &v->regions[run->region];
-        if (with_ends && run->x0 > 0) {
-            count_rim(s->m, r, s->metres[1][run->x0 - 1], s->state[1][run->x0 - 1]);
-        }
-        if (with_ends && run->x1 + 1 < s->m->georef.width) {
-            count_rim(s->m, r, s->metres[1][run->x1 + 1], s->state[1][run->x1 + 1]);
-        }
-        for (int x = run->x0; x <= run->x1; x++) {
-            count_rim(s->m, r, s->metres[beside][x], s->state[beside][x]);
-        }
+    struct terrain_region *r = &s->m->voids.regions[run->region];
+    if (run->x0 > 0) {
+        count_rim(s->m, r, here->metres[run->x0 - 1], here->state[run->x0 - 1]);
+    }
+    if (run->x1 + 1 < s->m->georef.width) {
+        count_rim(s->m, r, here->metres[run->x1 + 1], here->state[run->x1 + 1]);
     }
 }
 
-static void swap_rows(struct search *s)
+/* Rim pixels that touch a run from the row above or below. */
+static void count_side(struct search *s, const struct terrain_run *run, const struct row *beside)
 {
-    float *metres = s->metres[0];
-    uint8_t *state = s->state[0];
-    s->metres[0] = s->metres[1];
-    s->state[0] = s->state[1];
-    s->metres[1] = metres;
-    s->state[1] = state;
+    struct terrain_region *r = &s->m->voids.regions[run->region];
+    for (int x = run->x0; x <= run->x1; x++) {
+        count_rim(s->m, r, beside->metres[x], beside->state[x]);
+    }
 }
 
-/* Second pass: what borders each region. Rows far from any void are not read again. */
+/* Second pass: what borders each region. */
 static int measure_rims(struct search *s)
 {
     const struct terrain_voids *v = &s->m->voids;
-    const int width = s->m->georef.width, height = s->m->georef.height;
-    size_t first = 0, end = 0;
-    int held = -1; /* the row in slot 0 */
-    while (end < v->run_count || first < end) {
-        const size_t above_first = first, above_end = end;
-        const int y = above_first < above_end ? v->runs[above_first].y + 1 : v->runs[end].y;
-        if (held != y - 1 && y > 0) {
-            const struct resample_window row = {0, y - 1, width, 1};
-            if (terrain_mosaic_read(s->m, &row, s->metres[0], s->state[0]) != 0) {
-                return -1;
-            }
+    size_t first = 0, middle = 0, end = 0; /* runs of the row above, and of this row */
+    for (int y = 0; y < s->m->georef.height; y++) {
+        struct row above, here;
+        if (strip_rows(&s->strip, y, &above, &here) != 0) {
+            return -1;
         }
-        first = end;
+        first = middle;
+        middle = end;
         while (end < v->run_count && v->runs[end].y == y) {
             end++;
         }
-        if (y == height) {
-            break;
+        for (size_t i = first; i < middle; i++) {
+            count_side(s, &v->runs[i], &here);
         }
-        const struct resample_window row = {0, y, width, 1};
-        if (terrain_mosaic_read(s->m, &row, s->metres[1], s->state[1]) != 0) {
-            return -1;
+        for (size_t i = middle; i < end; i++) {
+            count_ends(s, &v->runs[i], &here);
+            if (above.state) {
+                count_side(s, &v->runs[i], &above);
+            }
         }
-        count_row_rim(s, above_first, above_end, false, 1);
-        if (y > 0) {
-            count_row_rim(s, first, end, true, 0);
-        } else {
-            memset(s->state[0], TERRAIN_NONE, (size_t)width);
-            count_row_rim(s, first, end, true, 0);
-        }
-        swap_rows(s);
-        held = y;
     }
     return 0;
 }
@@ -224,7 +253,8 @@ static struct resample_window window_around(const struct terrain_mosaic *m,
 {
     const int x0 = r->x0 > FILL_MARGIN ? r->x0 - FILL_MARGIN : 0;
     const int y0 = r->y0 > FILL_MARGIN ? r->y0 - FILL_MARGIN : 0;
-    const int x1 = r->x1 + FILL_MARGIN < m->georef.width ? r->x1 + FILL_MARGIN : m->georef.width - 1;
+    const int x1 =
+        r->x1 + FILL_MARGIN < m->georef.width ? r->x1 + FILL_MARGIN : m->georef.width - 1;
     const int y1 =
         r->y1 + FILL_MARGIN < m->georef.height ? r->y1 + FILL_MARGIN : m->georef.height - 1;
     return (struct resample_window){x0, y0, x1 - x0 + 1, y1 - y0 + 1};
@@ -240,7 +270,8 @@ static enum terrain_filling choose_filling(const struct terrain_mosaic *m,
         return TERRAIN_SEA;
     }
     const struct resample_window w = window_around(m, r);
-    return (int64_t)w.width * w.height <= TERRAIN_FILL_MAX ? TERRAIN_INTERPOLATED : TERRAIN_LEFT_VOID;
+    return (int64_t)w.width * w.height <= TERRAIN_FILL_MAX ? TERRAIN_INTERPOLATED
+                                                           : TERRAIN_LEFT_VOID;
 }
 
 /* A dataset in memory over pixels that stay ours. */
@@ -268,8 +299,8 @@ static int interpolate(const struct resample_window *w, float *metres, uint8_t *
     const double reach = hypot(w->width, w->height);
     int result = -1;
     if (picture && holes) {
-        result = GDALFillNodata(GDALGetRasterBand(picture, 1), GDALGetRasterBand(holes, 1), reach, 0,
-                                FILL_SMOOTHINGS, options, NULL, NULL) == CE_None
+        result = GDALFillNodata(GDALGetRasterBand(picture, 1), GDALGetRasterBand(holes, 1), reach,
+                                0, FILL_SMOOTHINGS, options, NULL, NULL) == CE_None
                      ? 0
                      : -1;
         GDALFlushCache(picture);
@@ -284,8 +315,8 @@ static int interpolate(const struct resample_window *w, float *metres, uint8_t *
 }
 
 /* Keep the elevations of the region's own pixels, run after run from values[at]. */
-static uint64_t keep_values(struct terrain_voids *v, uint32_t region, const struct resample_window *w,
-                            const float *metres, uint64_t at)
+static uint64_t keep_values(struct terrain_voids *v, uint32_t region,
+                            const struct resample_window *w, const float *metres, uint64_t at)
 {
     for (size_t i = 0; i < v->run_count; i++) {
         struct terrain_run *run = &v->runs[i];
@@ -373,22 +404,9 @@ static int search_and_fill(struct search *s)
 
 int terrain_voids_fill(struct terrain_mosaic *m)
 {
-    const size_t width = (size_t)m->georef.width;
     struct search s = {.m = m};
-    int result = -1;
-    for (int i = 0; i < 2; i++) {
-        s.metres[i] = malloc(width * sizeof(float));
-        s.state[i] = malloc(width);
-    }
-    if (s.metres[0] && s.metres[1] && s.state[0] && s.state[1]) {
-        result = search_and_fill(&s);
-    } else {
-        hs_error(m->members[0].path, NULL, "out of memory for its voids");
-    }
-    for (int i = 0; i < 2; i++) {
-        free(s.metres[i]);
-        free(s.state[i]);
-    }
+    const int result = strip_open(&s.strip, m) == 0 && search_and_fill(&s) == 0 ? 0 : -1;
+    strip_close(&s.strip);
     free(s.parents);
     return result;
 }
@@ -423,8 +441,8 @@ void terrain_voids_apply(const struct terrain_mosaic *m, const struct resample_w
         const int x0 = run->x0 > window->x ? run->x0 : window->x;
         const int x1 = run->x1 < end_x - 1 ? run->x1 : end_x - 1;
         for (int x = x0; filling != TERRAIN_LEFT_VOID && x <= x1; x++) {
-            const size_t at = (size_t)(run->y - window->y) * (size_t)window->width +
-                              (size_t)(x - window->x);
+            const size_t at =
+                (size_t)(run->y - window->y) * (size_t)window->width + (size_t)(x - window->x);
             metres[at] = filling == TERRAIN_SEA ? (float)m->sea_level_m
                                                 : v->values[run->value + (uint64_t)(x - run->x0)];
             state[at] = TERRAIN_FILLED;
