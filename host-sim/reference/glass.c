@@ -20,8 +20,9 @@ void ref_glass_gm(const struct ref_picture *picture, const struct ref_gm *gm, un
     const double pixel_m = gm->cell_m * gm->cell_count / height;
     memset(pixels, 0, (size_t)width * height);
     for (unsigned i = 0; i < width * height; i++) {
-        const double x = (i % width + 0.5 - width / 2.0) * pixel_m;
-        const double y = (height - i / width - 0.5) * pixel_m;
+        const unsigned row = i / width, column = i % width;
+        const double x = (column + 0.5 - width / 2.0) * pixel_m;
+        const double y = (height - row - 0.5) * pixel_m;
         const double wedge = (atan2(x, y) / rad / gm->half_angle_deg + 1) / 2 * gm->line_count;
         if (wedge < 0 || wedge >= gm->line_count) {
             continue;

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE_LOG2 = 6, SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES };
+enum { TILE_LOG2 = 6, POST_SHIFT_MAX = 4 };
+enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES };
 enum verdict { UNKNOWN = 0, GOOD, BAD };
 
 static const char rebuild[] = "build the image again with landmass-db";
@@ -34,7 +35,7 @@ static const uint8_t *find_section(const struct ref_db *db, uint32_t type, uint6
 {
     const uint32_t count = get_u32(db->bytes + 56);
     for (uint32_t i = 0; i < count; i++) {
-        const uint8_t *entry = db->bytes + 64 + 24 * i;
+        const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
         const uint64_t offset = get_u64(entry + 8);
         if (get_u32(entry) == type) {
             return get_u64(entry + 16) == bytes && offset % 64 == 0 && offset <= db->size &&
@@ -51,7 +52,7 @@ static bool has_good_section_crc(const struct ref_db *db, uint32_t type, const u
 {
     const uint32_t count = get_u32(db->bytes + 56);
     for (uint32_t i = 0; i < count; i++) {
-        const uint8_t *entry = db->bytes + 64 + 24 * i;
+        const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
         if (get_u32(entry) == type) {
             return get_u32(entry + 4) == fx_crc32c(0, at, (size_t)bytes);
         }
@@ -260,7 +261,9 @@ static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry,
         (const struct lm_tile *)(const void *)(db->records + (size_t)record * LM_TILE_BYTES);
     const bool is_asked_for = tile->level == level && tile->zone == g->zone &&
                               tile->row == g->row && tile->column == g->column;
-    return is_good_record(db, record, tile) && is_asked_for && tile->post_shift <= 12 ? tile : NULL;
+    return is_good_record(db, record, tile) && is_asked_for && tile->post_shift <= POST_SHIFT_MAX
+               ? tile
+               : NULL;
 }
 
 static const struct lm_tile *find_tile(const struct ref_db *db, unsigned level,

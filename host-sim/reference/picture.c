@@ -69,8 +69,9 @@ static int allocate(struct ref_picture *picture)
         return 0;
     }
     ref_picture_free(picture);
-    return hs_error("picture", "ask for fewer lines or cells",
-                    "not enough memory for %u x %zu cells", picture->line_count, bins);
+    hs_error("picture", "ask for fewer lines or cells", "not enough memory for %u x %zu cells",
+             picture->line_count, bins);
+    return -1;
 }
 
 void ref_picture_free(struct ref_picture *picture)

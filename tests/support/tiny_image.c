@@ -7,7 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE_LOG2 = 6, TILE = 64, SECTION_COUNT = 5, SECTION_ENTRY = 24, NO_RECORD = -1 };
+enum {
+    POST_SHIFT_MAX = 4,
+    TILE_LOG2 = 6,
+    TILE = 64,
+    SECTION_COUNT = 5,
+    SECTION_ENTRY = 24,
+    NO_RECORD = -1
+};
 
 static const double semi_axis_m = 6378137.0, e2 = 0.00669437999014;
 
@@ -169,7 +176,8 @@ static int choose_bands(struct builder *b)
     if (asked == 0 && b->spec->margin > 0) {
         return -1;
     }
-    for (uint8_t level = 0; level < LM_DB_LEVELS_MAX; level++) {
+    for (uint32_t i = 0; i < LM_DB_LEVELS_MAX; i++) {
+        const uint8_t level = (uint8_t)i;
         if (b->spec->shift0 + level > LM_DB_SHIFT_MAX) {
             break;
         }
@@ -323,7 +331,7 @@ static int make_posts(struct builder *b, struct lm_tile *tile)
             tile->posts[r][c] = (uint16_t)lround((posts_m[r][c] * 64 - tile->base_q6) / step);
         }
     }
-    return shift <= 12 && abs(tile->base_q6) <= 1 << 20 ? 0 : -1;
+    return shift <= POST_SHIFT_MAX && abs(tile->base_q6) <= 1 << 20 ? 0 : -1;
 }
 
 /* Posts of land count towards the mean elevation of the header. */
@@ -430,7 +438,7 @@ static void put_header(const struct builder *b, struct tiny_image *image, size_t
         {image->tiles_offset, (size_t)b->record_count * LM_TILE_BYTES},
         {image->manifest_offset, manifest_bytes}};
     for (uint32_t i = 0; i < SECTION_COUNT; i++) {
-        uint8_t *entry = h + 64 + i * SECTION_ENTRY;
+        uint8_t *entry = h + 64 + (size_t)i * SECTION_ENTRY;
         put_u32(entry, i + 1);
         put_u64(entry + 8, sections[i][0]);
         put_u64(entry + 16, sections[i][1]);
@@ -511,7 +519,7 @@ void tiny_image_seal(struct tiny_image *image)
         put_u32(entry + 4, fx_crc32c(0, checked, sizeof checked));
     }
     for (uint32_t i = 0; i < SECTION_COUNT; i++) {
-        uint8_t *section = image->bytes + 64 + i * SECTION_ENTRY;
+        uint8_t *section = image->bytes + 64 + (size_t)i * SECTION_ENTRY;
         uint64_t offset, bytes;
         memcpy(&offset, section + 8, sizeof offset);
         memcpy(&bytes, section + 16, sizeof bytes);

@@ -49,7 +49,8 @@ struct tiny_spec {
     double latitude_deg, longitude_deg; /* the centre of the image */
     uint8_t shift0;                     /* 4..20 */
     uint8_t level_count; /* 1..12; 0: up to the level with 4 tiles or fewer, or shift 20 */
-    uint8_t post_shift; /* post steps of 2^post_shift / 64 m; more where a tile's relief needs it */
+    uint8_t post_shift; /* 0..4: post steps of 2^post_shift / 64 m; more where a tile's relief needs
+                           it */
     uint8_t rows, columns; /* tiles of level 0 around the centre, >= 1 (columns as in its zone) */
     uint8_t margin; /* tiles more on each side at each coarser level than the finer one needs; 0
                      * when level_count is 0 */

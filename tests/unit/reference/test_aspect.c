@@ -101,7 +101,7 @@ static void shadows_on_the_curved_earth_end_where_the_ray_meets_the_ground(void 
     (void)state;
     const double cell_m = 30, antenna_m = 3000;
     const struct ref_params params = no_edges();
-    for (double range_nm = 10; range_nm <= 80; range_nm += 10) {
+    for (int range_nm = 10; range_nm <= 80; range_nm += 10) {
         const double wall_range_m = range_nm * nautical_mile_m, wall_m = 40;
         struct ref_bin *bins = flat_line(CELLS, wall_range_m - 10.5 * cell_m, cell_m);
         bins[10].height_m = wall_m;
@@ -122,7 +122,7 @@ static void the_shadow_of_a_cone_starts_and_ends_where_its_tangent_does(void **s
     const double top_m = 300, m = 0.5, cone_range_m = 60000, cell_m = 10;
     const double antenna_m = cone_range_m * (tan_deg(10) + cone_range_m / (2 * a));
     const struct ref_params params = no_edges();
-    for (double x = 0; x < 500; x += 120) {
+    for (int x = 0; x < 500; x += 120) {
         double y = 0, z = 0, p = tan_deg(10);
         for (int i = 0; i < 5; i++) {
             y = p * x / sqrt(m * m - p * p);

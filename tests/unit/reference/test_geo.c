@@ -41,7 +41,7 @@ static double worst_direct_m(struct ref_place from, double range_m)
 {
     const struct geod_geodesic g = wgs84();
     double worst = 0;
-    for (double azimuth = 0; azimuth < 360; azimuth += 5) {
+    for (int azimuth = 0; azimuth < 360; azimuth += 5) {
         worst = fmax(worst, distance_m(&g, ref_geo_direct(from, azimuth, range_m),
                                        geodesic(&g, from, azimuth, range_m)));
     }
@@ -81,7 +81,7 @@ static double worst_parabola_m(double latitude_deg, double length_m)
     const struct geod_geodesic g = wgs84();
     const struct ref_place from = {latitude_deg, 179.5};
     double worst = 0;
-    for (double azimuth = 0; azimuth < 360; azimuth += 10) {
+    for (int azimuth = 0; azimuth < 360; azimuth += 10) {
         const struct ref_path path = ref_gm_path(from, azimuth, length_m);
         for (int i = 0; i <= 64; i++) {
             worst = fmax(worst, distance_m(&g, ref_path_at(&path, i / 64.0),
@@ -125,10 +125,11 @@ static void the_surface_of_a_patch_is_right_within_5_cm(void **state)
     const struct geod_geodesic g = wgs84();
     const struct ref_place centre = {70, -179.95};
     double worst = 0;
-    for (double azimuth = 0; azimuth < 360; azimuth += 30) {
+    for (int azimuth = 0; azimuth < 360; azimuth += 30) {
         const struct ref_surface s = ref_sar_surface(centre, azimuth, 10000);
         for (int i = 0; i < 441; i++) {
-            const double x = (i % 21 - 10) * 1000, y = (i / 21 - 10) * 1000;
+            const int column = i % 21, row = i / 21;
+            const double x = (column - 10) * 1000.0, y = (row - 10) * 1000.0;
             const struct ref_place expected =
                 geodesic(&g, centre, azimuth + atan2(x, y) * 180 / acos(-1.0), hypot(x, y));
             worst = fmax(worst, distance_m(&g, ref_surface_at(&s, x, y), expected));

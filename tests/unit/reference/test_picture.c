@@ -54,7 +54,7 @@ static struct tiny_spec checkered_spec(const double *corner)
     spec.rows = spec.columns = 2;
     spec.cell = checkered;
     spec.elevation_m = plane_m;
-    spec.ctx = (void *)(uintptr_t)corner;
+    spec.ctx = (void *)corner;
     return spec;
 }
 
@@ -106,7 +106,7 @@ static void a_plane_comes_back_from_its_posts(void **state)
         for (int i = 0; i < 400; i++) {
             const struct ref_place place = scattered(corners[k], i);
             const struct tiny_place asked = {place.latitude_deg, place.longitude_deg, 0, 0};
-            const double expected_m = plane_m((void *)(uintptr_t)corners[k], &asked);
+            const double expected_m = plane_m((void *)corners[k], &asked);
             double exact_m, cut_m;
             assert_true(ref_db_elevation(&db, 0, place, true, &exact_m));
             assert_true(ref_db_elevation(&db, 0, place, false, &cut_m));
@@ -268,11 +268,11 @@ static void a_patch_shows_a_block_and_its_shadow_where_they_are(void **state)
     }
     const double front_db = 10 * log10(1 + 20 / (0.1763 * 2)) + params.edge_structure_db;
     assert_true(fabs(front->level_db - front_db) < 0.2);
-    uint8_t *pixels = malloc(256 * 256);
+    uint8_t *pixels = malloc((size_t)256 * 256);
     assert_non_null(pixels);
     ref_glass_sar(&picture, 2, pixels);
-    assert_int_equal(pixels[(255 - 2 * 90) * 256 + 2 * 94],
-                     ref_picture_bin(&picture, 94, 90)->grey);
+    const uint8_t *at = pixels + (size_t)256 * (255 - 2 * 90);
+    assert_int_equal(at[2 * 94], ref_picture_bin(&picture, 94, 90)->grey);
     assert_false(ref_picture_bin(&picture, 94, 90)->is_lit);
     assert_true(ref_picture_bin(&picture, 94, 37)->is_lit);
     free(pixels);
@@ -372,7 +372,7 @@ static void a_sweep_has_its_coast_where_it_is_and_its_brightness(void **state)
             assert_true(fabs(bin->level_db - expected) < 0.25);
         }
     }
-    uint8_t *pixels = calloc(444 * 256, 1);
+    uint8_t *pixels = calloc(444, 256);
     assert_non_null(pixels);
     ref_glass_gm(&picture, &gm, 444, 256, pixels);
     assert_int_equal(pixels[255 * 444 + 10], 0); /* outside the sector */
