@@ -41,7 +41,16 @@ static void mark_runway(struct builder *b)
 
 static void lay_pavements(struct builder *b)
 {
-    put(b, -1450, -160, 1450, 520, GRASS, 0);
+    static const struct point corner[] = {{-1480, -90}, {-1250, -170}, {1180, -190},
+                                          {1500, -100}, {1480, 120},   {1010, 500},
+                                          {-640, 540},  {-760, 330},   {-1470, 260}};
+    struct point outline[9];
+    for (int i = 0; i < 9; i++) {
+        outline[i] = frame_point(&b->frame, corner[i].u, corner[i].v);
+    }
+    const struct brush grass = scene_solid(GRASS, 128, 0), road = scene_solid(ASPHALT_OLD, 140, 0);
+    canvas_polygon(&b->scene->canvas, outline, 9, &grass);
+    canvas_line(&b->scene->canvas, outline, 9, 5, &road);
     put(b, -half_runway - 60, -half_width - 7, half_runway + 60, half_width + 7, ASPHALT_OLD, 0);
     put(b, -half_runway, -half_width, half_runway, half_width, ASPHALT_NEW, 0);
     put(b, -half_runway, -half_width, -half_runway + 150, half_width, CONCRETE_OLD, 0);

@@ -15,9 +15,9 @@ static enum material pick_crop(struct hs_rng *r)
     static const struct {
         enum material crop;
         double share;
-    } mix[] = {{WHEAT, 0.22},    {MAIZE, 0.17},     {MEADOW, 0.15},
-               {STUBBLE, 0.12},  {SOIL_DARK, 0.08}, {SOIL_LIGHT, 0.07},
-               {SOIL_RED, 0.06}, {ORCHARD, 0.07},   {RAPE, 0.06}};
+    } mix[] = {{WHEAT, 0.20},    {MAIZE, 0.18},     {MEADOW, 0.22},
+               {STUBBLE, 0.09},  {SOIL_DARK, 0.08}, {SOIL_LIGHT, 0.05},
+               {SOIL_RED, 0.04}, {ORCHARD, 0.08},   {RAPE, 0.06}};
     double x = hs_rng_uniform(r);
     for (size_t i = 0; i < sizeof mix / sizeof *mix; i++) {
         x -= mix[i].share;
@@ -102,7 +102,7 @@ static void lay_border(struct scene *s, struct point a, struct point b)
 
 static void farm_district(struct scene *s, int i, int j)
 {
-    static const struct division fields = {22000, {5, 4.5, 0}, 0.22, 5};
+    static const struct division fields = {17000, {5, 4.5, 0}, 0.3, 5};
     const uint64_t seed = s->seed + SEED_FARMS;
     struct hs_rng r;
     hs_rng_seed(&r, noise_hash(seed, i, j));

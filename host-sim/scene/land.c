@@ -51,16 +51,14 @@ struct frame land_airfield(void)
 
 struct point land_to_design(double east_m, double north_m)
 {
-    const struct frame f = frame_at((struct point){0, 0}, -LAND_TURN_DEG);
-    return frame_point(&f, east_m, north_m);
+    return (struct point){LAND_TURN_COS * east_m + LAND_TURN_SIN * north_m,
+                          LAND_TURN_COS * north_m - LAND_TURN_SIN * east_m};
 }
 
 void land_from_design(struct point p, double *east_m, double *north_m)
 {
-    const struct frame f = frame_at((struct point){0, 0}, LAND_TURN_DEG);
-    const struct point q = frame_point(&f, p.u, p.v);
-    *east_m = q.u;
-    *north_m = q.v;
+    *east_m = LAND_TURN_COS * p.u - LAND_TURN_SIN * p.v;
+    *north_m = LAND_TURN_SIN * p.u + LAND_TURN_COS * p.v;
 }
 
 double land_river_level(double along_m)
@@ -71,7 +69,7 @@ double land_river_level(double along_m)
 
 double land_river_width(double along_m)
 {
-    return 14 + 46 * exp(-along_m / 3500) + 90 * exp(-along_m / 260);
+    return 20 + 45 * exp(-along_m / 6000) + 100 * exp(-along_m / 300);
 }
 
 /* The coast runs along v with a bay in the middle; at the head of the bay it is kept straight for
@@ -83,7 +81,7 @@ static double shore_at(const struct land *l, struct point p)
     const double wander =
         760 * noise_fractal(stream(l, NOISE_COAST), p.u / 1900, p.v / 1900, 3) +
         calm * 260 * noise_fractal(stream(l, NOISE_COAST_FINE), p.u / 420, p.v / 420, 4);
-    const double bay = 2250 * exp(-from_port * from_port / 2.4);
+    const double bay = 2250 * exp(-pow(from_port / 1.6, 4));
     const double main_land = p.u + 3750 - bay + (0.12 + 0.88 * calm) * wander - 50 * (1 - calm);
     const struct point island = {-5150, 2350};
     const double ring = 430 + 300 * noise_fractal(stream(l, NOISE_ISLAND), p.u / 600, p.v / 600, 4);
@@ -400,6 +398,29 @@ static void fill_grid(struct land *l, const struct erosion *e)
     }
 }
 
+/* Slope, and the sun's light on it, from the heights of the neighbours. */
+static void light_grid(struct land *l)
+{
+    const int last = l->posts - 1;
+    for (int y = 0; y <= last; y++) {
+        for (int x = 0; x <= last; x++) {
+            const size_t row = (size_t)y * (size_t)l->posts;
+            const size_t i = row + (size_t)x;
+            const size_t west = row + (size_t)(x > 0 ? x - 1 : x);
+            const size_t east = row + (size_t)(x < last ? x + 1 : x);
+            const size_t north = y > 0 ? i - (size_t)l->posts : i;
+            const size_t south = y < last ? i + (size_t)l->posts : i;
+            const double run = 2 * l->spacing_m;
+            const double to_east = (double)(l->height_m[east] - l->height_m[west]) / run;
+            const double to_north = (double)(l->height_m[north] - l->height_m[south]) / run;
+            const double facing = LAND_SUN_UP - LAND_SUN_EAST * to_east - LAND_SUN_NORTH * to_north;
+            const double squared = to_east * to_east + to_north * to_north;
+            l->slope[i] = (float)sqrt(squared);
+            l->light[i] = (float)(fmax(0, facing) / sqrt(1 + squared) / LAND_SUN_UP);
+        }
+    }
+}
+
 static int allocate_grid(struct land *l, double extent_m)
 {
     /* Posts reach past the image on every side, so that none of its pixels lies off the terrain. */
@@ -412,7 +433,9 @@ static int allocate_grid(struct land *l, double extent_m)
     l->shore_m = malloc(n * sizeof(float));
     l->lake_m = malloc(n * sizeof(float));
     l->wood = malloc(n * sizeof(float));
-    if (!l->height_m || !l->shore_m || !l->lake_m || !l->wood) {
+    l->slope = malloc(n * sizeof(float));
+    l->light = malloc(n * sizeof(float));
+    if (!l->height_m || !l->shore_m || !l->lake_m || !l->wood || !l->slope || !l->light) {
         return hs_error("terrain", "make the scene smaller", "out of memory");
     }
     return 0;
@@ -434,6 +457,7 @@ int land_make(struct land *l, uint64_t seed, double extent_m)
     const int failed = find_streams(l, &e);
     if (!failed) {
         fill_grid(l, &e);
+        light_grid(l);
     }
     erosion_free(&e);
     if (failed) {
@@ -448,19 +472,34 @@ void land_free(struct land *l)
     free(l->shore_m);
     free(l->lake_m);
     free(l->wood);
+    free(l->slope);
+    free(l->light);
     free(l->stream);
     *l = (struct land){0};
+}
+
+struct land_reader land_reader_at(const struct land *l, double east_m, double north_m)
+{
+    const double last = l->posts - 1.001;
+    const double x = fmin(fmax((east_m + l->edge_m) / l->spacing_m, 0), last);
+    const double y = fmin(fmax((l->edge_m - north_m) / l->spacing_m, 0), last);
+    const int ix = (int)x, iy = (int)y;
+    return (struct land_reader){(size_t)iy * (size_t)l->posts + (size_t)ix, (size_t)l->posts,
+                                x - ix, y - iy};
+}
+
+double land_read(const struct land_reader *r, const float *field)
+{
+    const float *a = field + r->post, *b = a + r->posts;
+    const double top = (double)a[0] + (double)(a[1] - a[0]) * r->tx;
+    const double bottom = (double)b[0] + (double)(b[1] - b[0]) * r->tx;
+    return top + (bottom - top) * r->ty;
 }
 
 double land_at(const struct land *l, const float *field, struct point p)
 {
     double east, north;
     land_from_design(p, &east, &north);
-    const double last = l->posts - 1.001;
-    const double x = fmin(fmax((east + l->edge_m) / l->spacing_m, 0), last);
-    const double y = fmin(fmax((l->edge_m - north) / l->spacing_m, 0), last);
-    const int ix = (int)x, iy = (int)y;
-    const float *a = field + (size_t)iy * (size_t)l->posts + ix, *b = a + l->posts;
-    const double top = a[0] + (a[1] - a[0]) * (x - ix), bottom = b[0] + (b[1] - b[0]) * (x - ix);
-    return top + (bottom - top) * (y - iy);
+    const struct land_reader r = land_reader_at(l, east, north);
+    return land_read(&r, field);
 }

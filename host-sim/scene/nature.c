@@ -41,6 +41,7 @@ struct site {
     double height_m, shore_m, lake_m, wood, slope;
     double edge;  /* fine noise, -1..1 */
     double broad; /* coarse noise, -1..1 */
+    struct point at, mouth;
 };
 
 struct cell {
@@ -48,10 +49,10 @@ struct cell {
     double height_m;
 };
 
-static struct cell sea_cell(const struct site *s, double from_mouth_m)
+static struct cell sea_cell(const struct site *s)
 {
     const double out = -s->shore_m + 60 * s->broad + 25 * s->edge;
-    if (out + 0.12 * from_mouth_m < 420 + 150 * s->broad) {
+    if (out + 0.12 * point_distance(s->at, s->mouth) < 420 + 150 * s->broad) {
         return (struct cell){SEA_TURBID, 0};
     }
     return (struct cell){out < 190 ? SEA_SHALLOW : SEA_DEEP, 0};
@@ -78,56 +79,28 @@ static struct cell land_cell(const struct site *s)
     if (s->shore_m < (s->slope > 0.22 ? 22 : beach)) {
         return shore_cell(s);
     }
-    if (s->slope > 0.80 + 0.15 * s->edge || s->height_m > 520 + 120 * s->edge + 90 * s->broad) {
+    if (s->slope > 0.86 + 0.2 * s->edge || s->height_m > 520 + 120 * s->edge + 90 * s->broad) {
         return (struct cell){ROCK, 0};
     }
     if (s->wood + 0.05 * s->edge > 0) {
         return wood_cell(s);
     }
-    if (s->slope > 0.17 || s->height_m > 190 + 40 * s->broad) {
+    if (s->slope > 0.16 + 0.03 * s->edge || s->height_m > 190 + 40 * s->broad) {
         return s->broad + 0.5 * s->edge > -0.1 ? (struct cell){MAQUIS, 1} : (struct cell){GRASS, 0};
     }
     return (struct cell){MEADOW, 0};
 }
 
-static struct cell cell_at(const struct site *s, double from_mouth_m)
+static struct cell cell_at(const struct site *s)
 {
     if (s->shore_m + 3 * s->edge < 0) {
-        return sea_cell(s, from_mouth_m);
+        return sea_cell(s);
     }
     if (s->lake_m + 3 * s->edge > 0) {
         const bool has_algae = s->lake_m + 70 * s->edge < 60 && s->broad > 0;
         return (struct cell){has_algae ? LAKE_ALGAE : LAKE_WATER, 0};
     }
     return land_cell(s);
-}
-
-/* Bilinear reading of the land's posts along one row of the canvas. */
-struct reader {
-    const struct land *land;
-    size_t post; /* the post before the place, in the row before it */
-    double tx, ty;
-};
-
-static struct reader reader_at(const struct land *l, double east_m, double north_m)
-{
-    const double x = (east_m + l->edge_m) / l->spacing_m, y = (l->edge_m - north_m) / l->spacing_m;
-    const int ix = (int)x, iy = (int)y;
-    return (struct reader){l, (size_t)iy * (size_t)l->posts + (size_t)ix, x - ix, y - iy};
-}
-
-static double read(const struct reader *r, const float *field)
-{
-    const float *a = field + r->post, *b = a + r->land->posts;
-    const double top = a[0] + (double)(a[1] - a[0]) * r->tx;
-    const double bottom = b[0] + (double)(b[1] - b[0]) * r->tx;
-    return top + (bottom - top) * r->ty;
-}
-
-static double read_slope(const struct reader *r)
-{
-    const float *a = r->land->height_m + r->post, *b = a + r->land->posts;
-    return hypot(a[1] - a[0] + b[1] - b[0], b[0] - a[0] + b[1] - a[1]) / (2 * r->land->spacing_m);
 }
 
 static void paint_row(struct scene *s, const struct texture *t, int y)
@@ -138,19 +111,20 @@ static void paint_row(struct scene *s, const struct texture *t, int y)
     const struct land *l = &s->land;
     for (int x = 0; x < c->side; x++) {
         const double east = (x + 0.5) * c->cell_m - half_m;
-        const struct reader r = reader_at(l, east, north);
-        const struct site site = {read(&r, l->height_m),
-                                  read(&r, l->shore_m),
-                                  read(&r, l->lake_m),
-                                  read(&r, l->wood),
-                                  read_slope(&r),
+        const struct land_reader r = land_reader_at(l, east, north);
+        const struct site site = {land_read(&r, l->height_m),
+                                  land_read(&r, l->shore_m),
+                                  land_read(&r, l->lake_m),
+                                  land_read(&r, l->wood),
+                                  land_read(&r, l->slope),
                                   texture_at(t, east, north, 3.1),
-                                  texture_at(t, north, -east, 37)};
-        const double mouth = point_distance(land_to_design(east, north), l->river[0]);
-        const struct cell cell = cell_at(&site, mouth);
+                                  texture_at(t, north, -east, 37),
+                                  land_to_design(east, north),
+                                  l->river[0]};
+        const struct cell cell = cell_at(&site);
         const size_t i = (size_t)y * (size_t)c->side + (size_t)x;
         c->material[i] = (uint8_t)cell.material;
-        c->height_hm[i] = (uint8_t)lround(2 * cell.height_m);
+        c->height_hm[i] = (uint8_t)(2 * cell.height_m + 0.5);
         /* Two scales of difference from place to place, within one standard deviation or so. */
         const double shade = 128 + 60 * texture_at(t, -north, east, 9) + 50 * site.edge;
         c->variant[i] = (uint8_t)shade;

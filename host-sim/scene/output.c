@@ -289,13 +289,8 @@ int output_preview_terrain(const struct scene *s, const char *path)
     if (!grey) {
         return hs_error(path, NULL, "out of memory");
     }
-    for (int y = 0; y < l->posts; y++) {
-        for (int x = 0; x < l->posts; x++) {
-            const struct point p =
-                land_to_design(x * l->spacing_m - l->edge_m, l->edge_m - y * l->spacing_m);
-            grey[(size_t)y * (size_t)l->posts + (size_t)x] =
-                (uint8_t)fmin(255, 150 * render_sun(l, p));
-        }
+    for (size_t i = 0; i < (size_t)l->posts * (size_t)l->posts; i++) {
+        grey[i] = (uint8_t)fmin(255, 150 * (double)l->light[i]);
     }
     const int result = hs_png_write_grey(path, grey, l->posts, l->posts, (size_t)l->posts);
     free(grey);

@@ -90,8 +90,11 @@ static void stack_containers(struct scene *s, struct hs_rng *r, const struct fra
     put(s, f, -110, 350, 270, 780, &b);
     for (double x = -95; x < 240; x += 34) {
         for (double y = 365; y < 740; y += 78) {
-            b = random_solid(r, CONTAINER, 2.6 * (1 + hs_rng_below(r, 4)));
-            put(s, f, x, y, x + 21, y + 66, &b);
+            static const enum material paint[] = {CONTAINER, CONTAINER, ROOF_BLUE, ROOF_TILE};
+            for (double row = 0; row < 21; row += 7) {
+                b = random_solid(r, paint[hs_rng_below(r, 4)], 2.6 * (1 + hs_rng_below(r, 4)));
+                put(s, f, x + row, y, x + row + 6, y + 66, &b);
+            }
         }
     }
     for (double y = 380; y < 760; y += 110) {

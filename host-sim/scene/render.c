@@ -9,18 +9,17 @@
 
 enum { NOISE_SENSOR = 900, VARIANTS = 256 };
 
-/* The sun of a late morning in the south-east, 48 degrees high. */
-#define SUN_EAST    0.47
-#define SUN_NORTH   (-0.47)
-#define SUN_UP      0.743
-#define SUN_SLOPE   1.11 /* tangent of its height */
 #define SHADE_LIGHT 0.42 /* of the light that remains in a shadow, from the sky */
 #define NOISE_DN    22.0 /* one standard deviation of the sensor's noise, plus 0.8 % of the signal */
 #define NOISE_SHARE 0.008
 
-/* The spectra of all materials in all their looks. */
+enum { REACH_MAX = 64 };
+
+/* The spectra of all materials in all their looks, and the way of a ray towards the sun. */
 struct palette {
     float reflectance[MATERIAL_COUNT][VARIANTS][BAND_COUNT];
+    int reach; /* steps after which a ray is above everything */
+    int dx[REACH_MAX], dy[REACH_MAX], rise_hm[REACH_MAX];
 };
 
 static void mix_palette(struct palette *p)
@@ -40,34 +39,29 @@ static void mix_palette(struct palette *p)
     }
 }
 
-double render_sun(const struct land *l, struct point p)
+/* The highest thing stands 50 m tall. */
+static void aim_at_sun(struct palette *p, double cell_m)
 {
-    double east, north;
-    land_from_design(p, &east, &north);
-    const double h = l->spacing_m;
-    const double east_slope = (land_at(l, l->height_m, land_to_design(east + h, north)) -
-                               land_at(l, l->height_m, land_to_design(east - h, north))) /
-                              (2 * h);
-    const double north_slope = (land_at(l, l->height_m, land_to_design(east, north + h)) -
-                                land_at(l, l->height_m, land_to_design(east, north - h))) /
-                               (2 * h);
-    const double facing = SUN_UP - SUN_EAST * east_slope - SUN_NORTH * north_slope;
-    return fmax(0, facing) / sqrt(1 + east_slope * east_slope + north_slope * north_slope) / SUN_UP;
+    const double flat = hypot(LAND_SUN_EAST, LAND_SUN_NORTH);
+    const double rise_hm = 2 * cell_m * LAND_SUN_UP / flat;
+    p->reach = 0;
+    for (int k = 1; k * rise_hm < 100 && p->reach < REACH_MAX; k++) {
+        p->dx[p->reach] = (int)lround(k * LAND_SUN_EAST / flat);
+        p->dy[p->reach] = (int)lround(-k * LAND_SUN_NORTH / flat);
+        p->rise_hm[p->reach++] = (int)(k * rise_hm);
+    }
 }
 
 /* Does something towards the sun stand high enough to shade this sub-pixel? */
-static bool is_shaded(const struct canvas *c, int x, int y)
+static bool is_shaded(const struct canvas *c, const struct palette *p, int x, int y)
 {
     const int height = c->height_hm[(size_t)y * (size_t)c->side + (size_t)x];
-    const double flat = hypot(SUN_EAST, SUN_NORTH);
-    const double rise_hm = 2 * c->cell_m * SUN_SLOPE; /* of the ray, in half metres a step */
-    for (int k = 1; height + k * rise_hm < 80; k++) {
-        const int sx = x + (int)lround(k * SUN_EAST / flat);
-        const int sy = y - (int)lround(k * SUN_NORTH / flat);
+    for (int k = 0; k < p->reach && height + p->rise_hm[k] < 100; k++) {
+        const int sx = x + p->dx[k], sy = y + p->dy[k];
         if (sx >= c->side || sy >= c->side) {
             return false;
         }
-        if (c->height_hm[(size_t)sy * (size_t)c->side + (size_t)sx] > height + k * rise_hm) {
+        if (c->height_hm[(size_t)sy * (size_t)c->side + (size_t)sx] > height + p->rise_hm[k]) {
             return true;
         }
     }
@@ -88,7 +82,7 @@ static void add_sub_pixel(const struct scene *s, const struct palette *p, int x,
     const struct canvas *c = &s->canvas;
     const size_t i = (size_t)y * (size_t)c->side + (size_t)x;
     const float *look = p->reflectance[c->material[i]][c->variant[i]];
-    const double light = is_shaded(c, x, y) ? SHADE_LIGHT : 1;
+    const double light = is_shaded(c, p, x, y) ? SHADE_LIGHT : 1;
     for (int b = 0; b < BAND_COUNT; b++) {
         sum->reflectance[b] += light * (double)look[b];
     }
@@ -126,7 +120,7 @@ static void finish_pixel(const struct scene *s, const struct sum *sum, double su
         const double signal = light * sum->reflectance[b] / parts;
         const uint64_t bits = noise_hash(s->seed + NOISE_SENSOR, (int64_t)i, b);
         const double dn = signal + (NOISE_DN + NOISE_SHARE * signal) * quick_normal(bits);
-        p->image[i * BAND_COUNT + (size_t)b] = (uint16_t)lround(fmin(fmax(dn, 1), 65535));
+        p->image[i * BAND_COUNT + (size_t)b] = (uint16_t)(fmin(fmax(dn, 1), 65534) + 0.5);
     }
     p->truth[i] = (uint8_t)group;
     p->height_m[i] =
@@ -143,9 +137,9 @@ static void render_row(const struct scene *s, const struct palette *palette, int
             add_sub_pixel(s, palette, CANVAS_SUB * x + k % CANVAS_SUB,
                           CANVAS_SUB * y + k / CANVAS_SUB, &sum);
         }
-        const struct point place =
-            land_to_design((x + 0.5) * s->cell_m - half_m, half_m - (y + 0.5) * s->cell_m);
-        finish_pixel(s, &sum, render_sun(&s->land, place), x, y, p);
+        const struct land_reader r = land_reader_at(&s->land, (x + 0.5) * s->cell_m - half_m,
+                                                    half_m - (y + 0.5) * s->cell_m);
+        finish_pixel(s, &sum, land_read(&r, s->land.light), x, y, p);
     }
 }
 
@@ -162,6 +156,7 @@ int render_picture(const struct scene *s, struct picture *p)
         return hs_error("image", "make the scene smaller", "out of memory");
     }
     mix_palette(palette);
+    aim_at_sun(palette, s->canvas.cell_m);
     struct hs_progress progress;
     hs_progress_begin(&progress, "imaging the scene", (uint64_t)s->size);
     for (int y = 0; y < s->size; y++) {

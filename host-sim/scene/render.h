@@ -16,7 +16,4 @@ struct picture {
 int render_picture(const struct scene *s, struct picture *p);
 void render_free(struct picture *p);
 
-/* The cosine of the sun's angle to the ground there divided by that to level ground. */
-double render_sun(const struct land *l, struct point p);
-
 #endif

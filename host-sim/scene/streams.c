@@ -6,17 +6,14 @@
 
 enum { SEED_BANKS = 1100 };
 
-/* Trees on both banks, with gaps that come and go along the way. */
-static void plant_banks(struct scene *s, const struct point *p, int count, double width_m,
-                        int64_t name)
+/* Trees on both banks of stretch `i` of a stream, with gaps that come and go along the way. */
+static void plant_banks(struct scene *s, const struct point *p, int i, double width_m, int64_t name)
 {
-    for (int i = 0; i + 1 < count; i++) {
-        const double luck = noise_value(s->seed + SEED_BANKS, i * 0.21, (double)name * 7.3);
-        struct brush trees = scene_solid(BROADLEAF, noise_hash(s->seed, name, i), 9);
-        trees.over = SCENE_OPEN | MATERIAL_BIT(GRASS) | MATERIAL_BIT(MAQUIS);
-        if (luck > -0.25) {
-            canvas_line(&s->canvas, p + i, 2, width_m + 14 + 22 * fmax(0, luck), &trees);
-        }
+    const double luck = noise_value(s->seed + SEED_BANKS, i * 0.21, (double)name * 7.3);
+    struct brush trees = scene_solid(BROADLEAF, noise_hash(s->seed, name, i), 9);
+    trees.over = SCENE_OPEN | MATERIAL_BIT(GRASS) | MATERIAL_BIT(MAQUIS);
+    if (luck > -0.1) {
+        canvas_line(&s->canvas, p + i, 2, width_m + 7 + 20 * fmax(0, luck), &trees);
     }
 }
 
@@ -28,7 +25,9 @@ static material_set land_set(void)
 static void paint_stream(struct scene *s, int index)
 {
     const struct land_stream *stream = &s->land.stream[index];
-    plant_banks(s, stream->p, stream->count, stream->width_m, index);
+    for (int i = 0; i + 1 < stream->count; i++) {
+        plant_banks(s, stream->p, i, stream->width_m, index);
+    }
     const struct brush water = scene_ground(RIVER_WATER, 128, land_set());
     canvas_line(&s->canvas, stream->p, stream->count, stream->width_m, &water);
 }
@@ -39,7 +38,7 @@ static void paint_river(struct scene *s)
     const struct land *l = &s->land;
     for (int i = 0; i + 1 < l->river_count; i++) {
         const double width = land_river_width(l->river_m[i]);
-        plant_banks(s, l->river + i, 2, width, 1000 + i / 9);
+        plant_banks(s, l->river, i, width, 1000);
         const double bar = 22 * noise_value(s->seed + SEED_BANKS, i * 0.3, 99);
         const struct brush gravel = scene_ground(GRAVEL, noise_hash(s->seed, i, 3), land_set());
         if (bar > 3 && l->river_m[i] > 2500) {

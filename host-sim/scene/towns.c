@@ -138,17 +138,18 @@ static void residential_block(void *context, struct hs_rng *r, const struct shap
 
 static void build_hall(void *context, struct hs_rng *r, const struct shape *lot)
 {
-    static const enum material roofs[] = {ROOF_METAL, ROOF_METAL, ROOF_WHITE, ROOF_BLUE, ROOF_DARK};
-    const struct shape hall = shape_inset(lot, 9 + 8 * hs_rng_uniform(r));
+    static const enum material roofs[] = {ROOF_METAL, ROOF_METAL, ROOF_WHITE, ROOF_BLUE,
+                                          ROOF_DARK,  ROOF_DARK,  ROOF_TILE};
+    const struct shape hall = shape_inset(lot, 11 + 14 * hs_rng_uniform(r));
     if (hall.count > 0 && shape_area(&hall) > 300) {
-        put(context, &hall, roofs[hs_rng_below(r, 5)], hs_rng_u64(r), 8 + hs_rng_below(r, 7));
+        put(context, &hall, roofs[hs_rng_below(r, 7)], hs_rng_u64(r), 8 + hs_rng_below(r, 7));
     }
 }
 
 static void industrial_block(void *context, struct hs_rng *r, const struct shape *block)
 {
     static const struct division lots = {9000, {0, 0, 0}, 0.2, 1};
-    static const enum material yards[] = {ASPHALT_OLD, CONCRETE_OLD, CONCRETE, GRAVEL};
+    static const enum material yards[] = {ASPHALT_OLD, ASPHALT_OLD, CONCRETE_OLD, GRAVEL};
     put(context, block, yards[hs_rng_below(r, 4)], hs_rng_u64(r), 0);
     district_divide(block, &lots, r, build_hall, context);
 }
@@ -230,7 +231,7 @@ void scene_paint_towns(struct scene *s)
         double radius_m;
     } villages[] = {{{2900, -450}, 230},  {{-2300, -3500}, 210}, {{1750, 1650}, 190},
                     {{5450, -1250}, 240}, {{2900, -5400}, 200},  {{-1900, 2350}, 200},
-                    {{3150, 2250}, 170},  {{-900, -2750}, 160},  {{2300, -2200}, 180}};
+                    {{2820, 2300}, 170},  {{-900, -2750}, 160},  {{2300, -2200}, 180}};
     struct builder b = {s, ~material_set_of_class(CLASS_WATER)};
     for (int i = 0; i < (int)(sizeof villages / sizeof *villages); i++) {
         build_village(&b, i, villages[i].at, villages[i].radius_m);
