@@ -61,7 +61,8 @@ struct db_class_table {
 /* Read and check the whole file. Returns 0, or -1 with file, line, cause and remedy reported. */
 int db_class_table_read(struct db_class_table *table, const char *path);
 
-/* Write the table so that reading it back gives the same. Returns 0, or -1 with the error reported. */
+/* Write the table so that reading it back gives the same. Returns 0, or -1 with the error reported.
+ */
 int db_class_table_write(const struct db_class_table *table, const char *path);
 
 /* The index of the class called `name`, or -1. */

@@ -1,4 +1,5 @@
-/* The sub-commands of landmass-db. Each takes its own argv (argv[0] is its name) and returns an hs_exit. */
+/* The sub-commands of landmass-db. Each takes its own argv (argv[0] is its name) and returns an
+ * hs_exit. */
 #ifndef DB_COMMANDS_H
 #define DB_COMMANDS_H
 

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A fair draw of at most `cap` pixels of each class from a stream of unknown length (reservoir sampling,
- * algorithm R: Vitter, ACM TOMS 11, 1985, p. 38). */
+/* A fair draw of at most `cap` pixels of each class from a stream of unknown length (reservoir
+ * sampling, algorithm R: Vitter, ACM TOMS 11, 1985, p. 38). */
 struct reservoir {
     struct db_exemplar *items; /* owned */
     size_t count, capacity;
@@ -87,7 +87,8 @@ static void report_left_out(const struct left_out *l, const char *what)
                (unsigned long long)l->items[i].count, what);
     }
     if (l->others > 0) {
-        printf("further labels: not mapped, %llu %s ignored\n", (unsigned long long)l->others, what);
+        printf("further labels: not mapped, %llu %s ignored\n", (unsigned long long)l->others,
+               what);
     }
 }
 
@@ -103,8 +104,8 @@ static int compare_pixels(const void *a, const void *b)
     return (p->region > q->region) - (p->region < q->region);
 }
 
-/* Overlapping polygons claim a pixel more than once: keep it once when they agree, and not at all when they
- * do not. */
+/* Overlapping polygons claim a pixel more than once: keep it once when they agree, and not at all
+ * when they do not. */
 static void drop_doubles(struct db_exemplars *e)
 {
     size_t kept = 0;
@@ -139,8 +140,7 @@ static int gather(struct db_exemplars *e, const struct sampler *s)
     size_t used = 0;
     for (int i = 0; i < DB_CLASS_MAX; i++) {
         if (s->classes[i].count > 0) {
-            memcpy(e->items + used, s->classes[i].items,
-                   s->classes[i].count * sizeof *e->items);
+            memcpy(e->items + used, s->classes[i].items, s->classes[i].count * sizeof *e->items);
             used += s->classes[i].count;
         }
     }
@@ -434,8 +434,8 @@ static void count_regions(struct db_exemplars *e)
     }
 }
 
-/* Every class the map names must have come out of the source. Without a map each class stands for itself,
- * and those that are absent are simply not learnt. */
+/* Every class the map names must have come out of the source. Without a map each class stands for
+ * itself, and those that are absent are simply not learnt. */
 static int check_classes(const struct db_exemplars *e, const struct db_exemplar_source *source,
                          const char *path)
 {
@@ -449,7 +449,8 @@ static int check_classes(const struct db_exemplars *e, const struct db_exemplar_
         const char *name = source->table->items[c].name, *label = source->map->items[i].label;
         if (e->available[c] == 0 && !source->map->is_default) {
             return hs_error(path, "check the label's spelling, or drop the line from the map",
-                            "class `%s` has no exemplar pixel: label `%s` covers none", name, label);
+                            "class `%s` has no exemplar pixel: label `%s` covers none", name,
+                            label);
         }
         if (e->available[c] > 0 && kept[c] == 0) {
             return hs_error(path, "draw the polygons apart",
@@ -477,8 +478,10 @@ int db_exemplars_find(struct db_exemplars *e, const struct db_exemplar_source *s
     if (result == 0) {
         count_regions(e);
         if (e->conflicting > 0) {
-            hs_warn(path, "draw the polygons apart", "%llu pixels lie in polygons of two classes "
-                    "and are left out", (unsigned long long)e->conflicting);
+            hs_warn(path, "draw the polygons apart",
+                    "%llu pixels lie in polygons of two classes "
+                    "and are left out",
+                    (unsigned long long)e->conflicting);
         }
         result = check_classes(e, source, path);
     }

@@ -1,11 +1,11 @@
 /* Exemplars: the pixels of an image whose class is known, from polygons or from a label raster.
  *
- * Each exemplar belongs to a region, and a region to one class: a polygon, or in a label raster the 8-connected
- * patch of one label. A hold-out by regions keeps neighbouring pixels on one side.
+ * Each exemplar belongs to a region, and a region to one class: a polygon, or in a label raster the
+ * 8-connected patch of one label. A hold-out by regions keeps neighbouring pixels on one side.
  *
- * A label raster covers the same extent as the image, at any whole or broken ratio of resolution. The image's
- * grid rules: a pixel takes the most frequent label among the label cells whose centres lie in it (the smallest
- * of equals), or, where labels are coarser, the label at its centre. */
+ * A label raster covers the same extent as the image, at any whole or broken ratio of resolution.
+ * The image's grid rules: a pixel takes the most frequent label among the label cells whose centres
+ * lie in it (the smallest of equals), or, where labels are coarser, the label at its centre. */
 #ifndef DB_EXEMPLARS_H
 #define DB_EXEMPLARS_H
 
@@ -48,10 +48,10 @@ struct db_exemplar_source {
     uint64_t seed;
 };
 
-/* Find the exemplars on `grid`. Labels the map leaves out are reported with their counts on standard output.
- * A mapped class without a pixel, polygons that all lie outside and labels of another shape are errors.
- * Returns 0, or -1 with the error reported and nothing to free. Memory: 16 bytes an exemplar kept, 4 bytes a
- * patch of a label raster. */
+/* Find the exemplars on `grid`. Labels the map leaves out are reported with their counts on
+ * standard output. A mapped class without a pixel, polygons that all lie outside and labels of
+ * another shape are errors. Returns 0, or -1 with the error reported and nothing to free. Memory:
+ * 16 bytes an exemplar kept, 4 bytes a patch of a label raster. */
 int db_exemplars_find(struct db_exemplars *e, const struct db_exemplar_source *source,
                       const struct db_grid *grid);
 

@@ -18,8 +18,8 @@ struct db_label_map {
     bool is_default; /* each class stands for itself, and need not occur */
 };
 
-/* Read the map; every class must be in the table. `path` may be NULL: then each class stands for itself.
- * Returns 0, or -1 with file, line, cause and remedy reported. */
+/* Read the map; every class must be in the table. `path` may be NULL: then each class stands for
+ * itself. Returns 0, or -1 with file, line, cause and remedy reported. */
 int db_label_map_read(struct db_label_map *map, const char *path,
                       const struct db_class_table *table);
 

@@ -33,8 +33,8 @@ static int check_extent(const struct db_raster *labels, const struct db_grid *gr
     return 0;
 }
 
-/* Label cells first..end-1 along one axis have their centres in image pixel i; where there is none, the one
- * at the pixel's centre. */
+/* Label cells first..end-1 along one axis have their centres in image pixel i; where there is none,
+ * the one at the pixel's centre. */
 static void cells_of(int i, int cells, int pixels, int *first, int *end)
 {
     const double ratio = (double)cells / pixels;
@@ -79,7 +79,8 @@ static int32_t label_of(float value, uint8_t valid)
                                                                                 : -1;
 }
 
-/* The most frequent label of a small rectangle; the smallest of equals. Quadratic in its few cells. */
+/* The most frequent label of a small rectangle; the smallest of equals. Quadratic in its few cells.
+ */
 static int32_t majority(const struct db_label_rows *l, int rows, int x_first, int x_end)
 {
     const int width = l->raster.grid.width;

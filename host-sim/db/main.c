@@ -25,9 +25,10 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_menu(FILE *out)
 {
-    fputs("landmass-db: build the radar database of the display unit\n\n"
-          "Usage: landmass-db COMMAND [options]\n\nCommands:\n",
-          out);
+    fputs(
+        "landmass-db: build the radar database of the display unit\n\n"
+        "Usage: landmass-db COMMAND [options]\n\nCommands:\n",
+        out);
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(out, "  %-9s %s\n", commands[i].name, commands[i].help);
     }

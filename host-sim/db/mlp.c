@@ -88,8 +88,8 @@ void db_mlp_forward(const struct db_mlp *net, const struct db_mlp_batch *batch)
 {
     const struct db_mlp_parts p = db_mlp_split(net, net->weights);
     const size_t count = (size_t)batch->count;
-    weigh(batch->inputs, p.hidden, p.hidden_bias, batch->count, net->input_count,
-          net->hidden_count, batch->hidden);
+    weigh(batch->inputs, p.hidden, p.hidden_bias, batch->count, net->input_count, net->hidden_count,
+          batch->hidden);
     squash(batch->hidden, count * (size_t)net->hidden_count, net->unit);
     weigh(batch->hidden, p.output, p.output_bias, batch->count, net->hidden_count,
           net->output_count, batch->outputs);
@@ -137,11 +137,11 @@ void db_mlp_backward(const struct db_mlp *net, const struct db_mlp_batch *batch,
     const struct db_mlp_parts g = db_mlp_split(net, gradient);
     const int hidden = net->hidden_count;
     find_output_delta(net, batch);
-    find_layer_gradient(batch->output_delta, batch->hidden, batch->count, hidden,
-                        net->output_count, g.output, g.output_bias);
+    find_layer_gradient(batch->output_delta, batch->hidden, batch->count, hidden, net->output_count,
+                        g.output, g.output_bias);
     cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, batch->count, hidden, net->output_count,
-                1, batch->output_delta, net->output_count, p.output, hidden, 0,
-                batch->hidden_delta, hidden);
+                1, batch->output_delta, net->output_count, p.output, hidden, 0, batch->hidden_delta,
+                hidden);
     for (size_t i = 0; i < (size_t)batch->count * (size_t)hidden; i++) {
         const float h = batch->hidden[i];
         batch->hidden_delta[i] *= net->unit == DB_UNIT_TANH ? 1 - h * h : h * (1 - h);

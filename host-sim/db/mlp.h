@@ -1,5 +1,6 @@
-/* The feed-forward network of Heaton (section "Database preparation overview", figure 3): one hidden layer, trained by
- * back-propagation of the error (Rumelhart, Hinton and Williams, Nature 323, 1986, p. 533).
+/* The feed-forward network of Heaton (section "Database preparation overview", figure 3): one
+ * hidden layer, trained by back-propagation of the error (Rumelhart, Hinton and Williams, Nature
+ * 323, 1986, p. 533).
  *
  * All matrices are row-major; a batch holds one exemplar a row. Single precision throughout. */
 #ifndef DB_MLP_H
@@ -30,8 +31,9 @@ struct db_mlp_parts {
 };
 struct db_mlp_parts db_mlp_split(const struct db_mlp *net, float *weights);
 
-/* Fill in the counts first. Draws the weights evenly from +-sqrt(6 / (inputs + outputs of the layer)) (Glorot and
- * Bengio, AISTATS 2010, eq. 16); biases are zero. Returns 0, or -1 out of memory. */
+/* Fill in the counts first. Draws the weights evenly from +-sqrt(6 / (inputs + outputs of the
+ * layer)) (Glorot and Bengio, AISTATS 2010, eq. 16); biases are zero. Returns 0, or -1 out of
+ * memory. */
 int db_mlp_init(struct db_mlp *net, uint64_t seed);
 
 void db_mlp_free(struct db_mlp *net);
@@ -55,8 +57,9 @@ void db_mlp_backward(const struct db_mlp *net, const struct db_mlp_batch *batch,
 /* The mean loss over the batch after the forward pass. */
 double db_mlp_loss(const struct db_mlp *net, const struct db_mlp_batch *batch);
 
-/* Hidden units unless told: inputs x outputs (Heaton, "a conservative starting point" for three bands), at most 128, beyond
- * which many-banded images gain nothing that was measurable and lose speed. */
+/* Hidden units unless told: inputs x outputs (Heaton, "a conservative starting point" for three
+ * bands), at most 128, beyond which many-banded images gain nothing that was measurable and lose
+ * speed. */
 int db_mlp_default_hidden(int input_count, int output_count);
 
 #endif

@@ -12,14 +12,15 @@
 #include <string.h>
 
 enum {
-    CLASSES = 256,       /* as many as a target can name */
-    SCORE_BATCH = 1024,  /* exemplars at a time when only looking */
+    CLASSES = 256,      /* as many as a target can name */
+    SCORE_BATCH = 1024, /* exemplars at a time when only looking */
     ACTIONS_BEFORE_NEW_WEIGHTS = 3,
 };
 
 /* An exemplar's RMS error over the outputs counts as high or low beyond these. */
 static const double high_error = 0.4, low_error = 0.2;
-/* Recognition of 95 % switches between the two in up to a tenth of the presentations: more is the symptom. */
+/* Recognition of 95 % switches between the two in up to a tenth of the presentations: more is the
+ * symptom. */
 static const double alternating = 0.1;
 /* Relative fall of the error that still counts as progress. */
 static const double error_progress = 2e-3;
@@ -95,7 +96,7 @@ double db_mlp_recognition(const struct db_mlp *net, const struct db_train_data *
 
 /* Endless rounds through the exemplars of each class, in an order drawn anew for each round. */
 struct presenter {
-    uint32_t *order;         /* owned: exemplars sorted by class */
+    uint32_t *order;           /* owned: exemplars sorted by class */
     size_t begin[CLASSES + 1]; /* of each class in `order` */
     size_t next[CLASSES];
     uint32_t *epoch; /* owned: those of the present epoch */
@@ -166,8 +167,8 @@ struct trainer {
     struct db_train_report *report;
     struct presenter presenter;
     struct db_mlp_batch batch;
-    float *inputs;    /* owned: the batch with its noise */
-    uint8_t *targets; /* owned */
+    float *inputs;                     /* owned: the batch with its noise */
+    uint8_t *targets;                  /* owned */
     float *gradient, *velocity, *best; /* owned; laid out as the weights */
     struct hs_rng rng;
     double rate, momentum, noise; /* as they are by now */
@@ -236,8 +237,8 @@ static void change_weights(struct trainer *t)
     const float rate = (float)t->rate, momentum = (float)t->momentum;
     const float decay = (float)t->options->decay;
     for (size_t i = 0; i < size; i++) {
-        t->velocity[i] = momentum * t->velocity[i] -
-                         rate * (t->gradient[i] + decay * t->net->weights[i]);
+        t->velocity[i] =
+            momentum * t->velocity[i] - rate * (t->gradient[i] + decay * t->net->weights[i]);
         t->net->weights[i] += t->velocity[i];
     }
 }
@@ -362,8 +363,7 @@ static bool is_over(struct trainer *t, const struct db_epoch *epoch, int number)
     }
     if (number - t->progress_epoch >= t->options->patience) {
         t->progress_epoch = number;
-        if (epoch->alternation < alternating ||
-            !act_on_minimum(t, number, epoch->alternation)) {
+        if (epoch->alternation < alternating || !act_on_minimum(t, number, epoch->alternation)) {
             t->report->stop = DB_STOP_PLATEAU;
             return true;
         }
@@ -377,8 +377,11 @@ int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
                  struct db_train_report *report)
 {
     *report = (struct db_train_report){0};
-    struct trainer t = {.net = net, .options = options, .training = training,
-                        .validation = validation, .report = report};
+    struct trainer t = {.net = net,
+                        .options = options,
+                        .training = training,
+                        .validation = validation,
+                        .report = report};
     if (trainer_init(&t) != 0) {
         trainer_free(&t);
         return hs_error("training", "lower --per-class or --hidden", "out of memory");

@@ -36,8 +36,7 @@ static void print_help(const struct db_usage *usage, const struct db_option *opt
         if (o->kind == DB_REAL) {
             printf("      Range %g to %g; default %g.\n", o->low, o->high, *(double *)o->target);
         } else if (o->kind == DB_INTEGER) {
-            printf("      Range %.0f to %.0f; default %ld.\n", o->low, o->high,
-                   *(long *)o->target);
+            printf("      Range %.0f to %.0f; default %ld.\n", o->low, o->high, *(long *)o->target);
         }
     }
     printf("  --help\n      Print this text.\n");

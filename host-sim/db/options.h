@@ -1,5 +1,5 @@
-/* The command lines of landmass-db: one table a sub-command, from which options are read, checked and
- * explained, so that --help can never disagree with what is accepted. */
+/* The command lines of landmass-db: one table a sub-command, from which options are read, checked
+ * and explained, so that --help can never disagree with what is accepted. */
 #ifndef DB_OPTIONS_H
 #define DB_OPTIONS_H
 
@@ -38,15 +38,16 @@ struct db_usage {
     const char *description; /* whole paragraphs */
 };
 
-/* Read argv[1..]. Returns true when the command shall go on. Otherwise `*exit_code` is HS_EXIT_OK after
+/* Read argv[1..]. Returns true when the command shall go on. Otherwise `*exit_code` is HS_EXIT_OK
+ * after
  * --help, or HS_EXIT_USAGE with the error reported. Lists read so far must be freed either way. */
 bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
 
 void db_list_free(struct db_list *list);
 
-/* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after it.
- * Returns 0, or -1 when there is no colon, no number, or the word does not fit. */
+/* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after
+ * it. Returns 0, or -1 when there is no colon, no number, or the word does not fit. */
 int db_split_word_number(const char *text, char *word, size_t word_size, double *number);
 
 #endif

@@ -59,8 +59,9 @@ static int begin_patch(struct db_patches *p, int learn, uint32_t *number)
     return 0;
 }
 
-/* Take the number of the first neighbour that has the same label, and note that all such are one patch. Both
- * passes meet the same neighbours in the same order, hence the same provisional numbers. */
+/* Take the number of the first neighbour that has the same label, and note that all such are one
+ * patch. Both passes meet the same neighbours in the same order, hence the same provisional
+ * numbers. */
 static int number_pixel(struct db_patches *p, const int32_t *labels, uint32_t *numbers, int x,
                         int learn)
 {

@@ -164,8 +164,8 @@ static int prepare_transformation(struct reader *r, OGRLayerH layer, const struc
     return 0;
 }
 
-static int read_layer(struct db_polygons *p, const char *path, GDALDatasetH file,
-                      const char *field, const struct db_grid *grid)
+static int read_layer(struct db_polygons *p, const char *path, GDALDatasetH file, const char *field,
+                      const struct db_grid *grid)
 {
     struct reader r = {.path = path};
     OGRLayerH layer = find_layer(file, field, &r.field);
@@ -253,8 +253,8 @@ static int add_crossing(struct crossings *all, int row, double x)
     return 0;
 }
 
-/* Rows whose centre lies at or above one end of the edge and below the other: each vertex belongs to exactly
- * one of two edges that meet there. Coordinates that are not finite cross nothing. */
+/* Rows whose centre lies at or above one end of the edge and below the other: each vertex belongs
+ * to exactly one of two edges that meet there. Coordinates that are not finite cross nothing. */
 static int cross_edge(struct crossings *all, const double *a, const double *b, int y_begin,
                       int y_end)
 {

@@ -1,5 +1,5 @@
-/* Polygons with a label from any vector format that OGR reads (a TSV or CSV with a WKT column included), in
- * the pixel coordinates of an image. */
+/* Polygons with a label from any vector format that OGR reads (a TSV or CSV with a WKT column
+ * included), in the pixel coordinates of an image. */
 #ifndef DB_POLYGONS_H
 #define DB_POLYGONS_H
 
@@ -22,8 +22,8 @@ struct db_polygons {
     size_t count;
 };
 
-/* Read every feature of the first layer that has a field called `field`. Geometries are reprojected when
- * source and image both name a CRS; a source without one is taken to be in the image's.
+/* Read every feature of the first layer that has a field called `field`. Geometries are reprojected
+ * when source and image both name a CRS; a source without one is taken to be in the image's.
  * Features without an area are warned of and left out. Returns 0, or -1 with the error reported. */
 int db_polygons_read(struct db_polygons *p, const char *path, const char *field,
                      const struct db_grid *grid);
@@ -33,8 +33,8 @@ void db_polygons_free(struct db_polygons *p);
 /* Pixels x_begin .. x_end - 1 of row y; a result other than 0 ends the walk. */
 typedef int db_span_fn(void *context, int y, int x_begin, int x_end);
 
-/* Hand the pixels whose centre lies inside the polygon (even-odd over all its rings, so that holes are holes)
- * to `take`, rows ascending and clipped to y_begin <= y < y_end and 0 <= x < width.
+/* Hand the pixels whose centre lies inside the polygon (even-odd over all its rings, so that holes
+ * are holes) to `take`, rows ascending and clipped to y_begin <= y < y_end and 0 <= x < width.
  * Returns 0, what `take` returned, or -1 out of memory. */
 int db_polygon_walk(const struct db_polygon *p, int y_begin, int y_end, int width, db_span_fn *take,
                     void *context);

@@ -8,6 +8,7 @@
 #include <cpl_string.h>
 #include <math.h>
 #include <ogr_srs_api.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -254,8 +255,8 @@ int db_raster_read(const struct db_raster *r, int y, int rows, float *pixels, ui
     const size_t count = (size_t)rows * (size_t)width;
     for (int b = 0; b < r->band_count; b++) {
         CPLErrorReset();
-        if (GDALRasterIO(r->bands[b].handle, GF_Read, 0, y, width, rows,
-                         pixels + (size_t)b * count, width, rows, GDT_Float32, 0, 0) != CE_None) {
+        if (GDALRasterIO(r->bands[b].handle, GF_Read, 0, y, width, rows, pixels + (size_t)b * count,
+                         width, rows, GDT_Float32, 0, 0) != CE_None) {
             return hs_error(r->name, "the file may be cut short; fetch it again",
                             "band %d cannot be read at rows %d..%d: %s", b + 1, y, y + rows - 1,
                             db_gdal_complaint());
@@ -284,11 +285,10 @@ int db_raster_create(struct db_raster_out *out, const char *path, const struct d
     out->path = strdup(path);
     out->temporary = hs_atomic_temporary_name(path);
     CPLErrorReset();
-    out->dataset =
-        out->path && out->temporary ? create_dataset(out->temporary, grid, type) : NULL;
+    out->dataset = out->path && out->temporary ? create_dataset(out->temporary, grid, type) : NULL;
     if (!out->dataset) {
-        hs_error(path, "check that the folder exists and can be written",
-                 "cannot be created: %s", db_gdal_complaint());
+        hs_error(path, "check that the folder exists and can be written", "cannot be created: %s",
+                 db_gdal_complaint());
         db_raster_abort(out);
         return -1;
     }
@@ -314,6 +314,27 @@ int db_raster_write(struct db_raster_out *out, int y, int rows, const void *pixe
     return 0;
 }
 
+/* GDAL keeps what TIFF has no place for, such as category names, in a file beside it. */
+static char *side_name(const char *path)
+{
+    char *name = NULL;
+    return asprintf(&name, "%s.aux.xml", path) < 0 ? NULL : name;
+}
+
+static int rename_side_file(const struct db_raster_out *out)
+{
+    char *from = side_name(out->temporary), *to = side_name(out->path);
+    int result = from && to ? 0 : hs_error(out->path, NULL, "out of memory");
+    if (result == 0 && access(from, F_OK) == 0) {
+        result = hs_atomic_rename(from, to);
+    } else if (result == 0) {
+        unlink(to); /* It belonged to the file that is replaced. */
+    }
+    free(from);
+    free(to);
+    return result;
+}
+
 int db_raster_commit(struct db_raster_out *out)
 {
     /* GDALClose of this version returns nothing: a full disk shows only as a complaint. */
@@ -326,7 +347,10 @@ int db_raster_commit(struct db_raster_out *out)
         db_raster_abort(out);
         return -1;
     }
-    const int result = hs_atomic_rename(out->temporary, out->path);
+    int result = rename_side_file(out);
+    if (result == 0) {
+        result = hs_atomic_rename(out->temporary, out->path);
+    }
     db_raster_abort(out);
     return result;
 }
@@ -337,7 +361,12 @@ void db_raster_abort(struct db_raster_out *out)
         GDALClose(out->dataset);
     }
     if (out->temporary) {
+        char *side = side_name(out->temporary);
         unlink(out->temporary);
+        if (side) {
+            unlink(side);
+        }
+        free(side);
     }
     free(out->path);
     free(out->temporary);

@@ -1,5 +1,5 @@
-/* Several raster files as one stack of bands on one grid, read a few rows at a time, and the rasters that
- * are written on the same grid. All pixels pass as float; the formats are GDAL's. */
+/* Several raster files as one stack of bands on one grid, read a few rows at a time, and the
+ * rasters that are written on the same grid. All pixels pass as float; the formats are GDAL's. */
 #ifndef DB_RASTER_H
 #define DB_RASTER_H
 
@@ -21,8 +21,8 @@ struct db_raster_options {
 struct db_grid {
     int width, height;
     bool has_geotransform;
-    double geotransform[6];    /* pixel corner to CRS as in GDAL; identity when there is none */
-    OGRSpatialReferenceH crs;  /* owned; NULL when the files name none; axis order is x, y */
+    double geotransform[6];   /* pixel corner to CRS as in GDAL; identity when there is none */
+    OGRSpatialReferenceH crs; /* owned; NULL when the files name none; axis order is x, y */
 };
 
 struct db_raster_band {
@@ -52,15 +52,17 @@ int db_raster_open_one(struct db_raster *r, const char *path);
 
 void db_raster_close(struct db_raster *r);
 
-/* Rows to read at a time so that `bytes_per_pixel` times the block stays within 64 MiB; at least 1. */
+/* Rows to read at a time so that `bytes_per_pixel` times the block stays within 64 MiB; at least 1.
+ */
 int db_raster_block_rows(const struct db_grid *grid, size_t bytes_per_pixel);
 
-/* Read rows y .. y + rows - 1 of all bands. `pixels` holds band_count planes of rows * width; `valid` (rows *
- * width) becomes 1 or 0.
+/* Read rows y .. y + rows - 1 of all bands. `pixels` holds band_count planes of rows * width;
+ * `valid` (rows * width) becomes 1 or 0.
  *
- * A pixel holds no data in a file when every band of that file that declares a nodata value has it there (a
- * lone zero in one band of dark water is data), and in the stack when it holds none in any of its files, or when
- * any band is not a finite number. Returns 0, or -1 with the error (file and row) reported. */
+ * A pixel holds no data in a file when every band of that file that declares a nodata value has it
+ * there (a lone zero in one band of dark water is data), and in the stack when it holds none in any
+ * of its files, or when any band is not a finite number. Returns 0, or -1 with the error (file and
+ * row) reported. */
 int db_raster_read(const struct db_raster *r, int y, int rows, float *pixels, uint8_t *valid);
 
 /* Whether two grids are the same pixels: size and, where both have it, geotransform. */
@@ -74,12 +76,13 @@ struct db_raster_out {
     GDALDataType type;
 };
 
-/* Create a one-band, tiled, DEFLATE compressed GeoTIFF on `grid`. Returns 0, or -1 with the error reported
- * and nothing left. */
+/* Create a one-band, tiled, DEFLATE compressed GeoTIFF on `grid`. Returns 0, or -1 with the error
+ * reported and nothing left. */
 int db_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                      GDALDataType type, double nodata);
 
-/* `pixels` are rows * width values of the type given at creation. Returns 0 or -1 with the error reported. */
+/* `pixels` are rows * width values of the type given at creation. Returns 0 or -1 with the error
+ * reported. */
 int db_raster_write(struct db_raster_out *out, int y, int rows, const void *pixels);
 
 /* Put the file in place. Returns 0, or -1 with the error reported and nothing left. */

@@ -17,8 +17,8 @@ static void shuffle(uint32_t *items, size_t count, struct hs_rng *rng)
     }
 }
 
-static void give_pixels(struct db_samples *s, int class_index, double fraction,
-                        struct hs_rng *rng, enum db_part part, uint32_t *order)
+static void give_pixels(struct db_samples *s, int class_index, double fraction, struct hs_rng *rng,
+                        enum db_part part, uint32_t *order)
 {
     size_t count = 0;
     for (size_t i = 0; i < s->count; i++) {
@@ -133,8 +133,9 @@ static uint64_t hash_cell(const struct db_samples *s, size_t i, const float *sca
     return hash;
 }
 
-/* Two different cells share a 64-bit hash about once in 10^9 sets of 10^5 exemplars: a lost exemplar in that
- * event does no harm, so the hash alone decides. An open table of at least twice the exemplars. */
+/* Two different cells share a 64-bit hash about once in 10^9 sets of 10^5 exemplars: a lost
+ * exemplar in that event does no harm, so the hash alone decides. An open table of at least twice
+ * the exemplars. */
 long db_thin(struct db_samples *s, const float *scale, double cell)
 {
     size_t size = 1024;

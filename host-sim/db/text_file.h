@@ -16,8 +16,8 @@ struct db_text_file {
 /* Returns 0, or -1 with the error reported. */
 int db_text_open(struct db_text_file *f, const char *path);
 
-/* Step to the next line that holds more than a remark. Returns 1, 0 at the end of the file, or -1 with a
- * read error reported. */
+/* Step to the next line that holds more than a remark. Returns 1, 0 at the end of the file, or -1
+ * with a read error reported. */
 int db_text_next(struct db_text_file *f);
 
 /* Report an error at the current line; returns -1. */

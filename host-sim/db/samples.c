@@ -1,4 +1,4 @@
-#include "features.h"
+#include "samples.h"
 
 #include "hs/error.h"
 #include "hs/progress.h"
@@ -10,17 +10,18 @@
 size_t db_feature_bytes(int band_count, int context)
 {
     /* The bands with their halo are held beside the features. */
-    const size_t planes = (size_t)db_feature_count(band_count, context) +
-                          (context > 1 ? (size_t)band_count : 0);
+    const size_t planes =
+        (size_t)db_feature_count(band_count, context) + (context > 1 ? (size_t)band_count : 0);
     return planes * sizeof(float) + 2;
 }
 
-/* Rows of one band with the halo that the windows need, and running sums over each column of the window. */
+/* Rows of one band with the halo that the windows need, and running sums over each column of the
+ * window. */
 struct window {
     const float *plane;
     const uint8_t *valid;
-    int width, height;          /* of the plane */
-    int half;                   /* the window reaches so far each way */
+    int width, height;           /* of the plane */
+    int half;                    /* the window reaches so far each way */
     double *sum, *square, *sure; /* of each column, over the window's rows */
 };
 
@@ -79,8 +80,8 @@ static void fill_windows(struct window *w, int first, int rows, float *mean, flo
     }
 }
 
-static int read_with_context(const struct db_raster *r, int context, int y, int rows,
-                             float *planes, uint8_t *valid)
+static int read_with_context(const struct db_raster *r, int context, int y, int rows, float *planes,
+                             uint8_t *valid)
 {
     const int half = context / 2, width = r->grid.width;
     const int top = y > half ? y - half : 0;
@@ -100,8 +101,8 @@ static int read_with_context(const struct db_raster *r, int context, int y, int 
     for (size_t b = 0; result == 0 && b < bands; b++) {
         const float *plane = pixels + b * with_halo;
         memcpy(planes + b * count, plane + skip, count * sizeof *planes);
-        struct window w = {plane, sure, width, bottom - top, half, sums, sums + width,
-                           sums + 2 * width};
+        struct window w = {plane, sure, width,        bottom - top,
+                           half,  sums, sums + width, sums + 2 * width};
         fill_windows(&w, y - top, rows, planes + (bands + b) * count,
                      planes + (2 * bands + b) * count);
     }
@@ -176,8 +177,8 @@ int db_samples_read(struct db_samples *s, const struct db_raster *r, int context
     *s = (struct db_samples){.input_count = db_feature_count(r->band_count, context)};
     const int rows = db_raster_block_rows(&r->grid, db_feature_bytes(r->band_count, context));
     const size_t pixels = (size_t)rows * (size_t)r->grid.width;
-    struct block block = {malloc((size_t)s->input_count * pixels * sizeof(float)), malloc(pixels), 0,
-                          0};
+    struct block block = {malloc((size_t)s->input_count * pixels * sizeof(float)), malloc(pixels),
+                          0, 0};
     s->inputs = malloc((e->count + 1) * (size_t)s->input_count * sizeof *s->inputs);
     s->items = malloc((e->count + 1) * sizeof *s->items);
     int result = -1;

@@ -1,7 +1,7 @@
-/* What the network sees of a pixel: its bands, and with a context window also their mean and standard
- * deviation over the window around it. */
-#ifndef DB_FEATURES_H
-#define DB_FEATURES_H
+/* What the network sees of a pixel: its bands, and with a context window also their mean and
+ * standard deviation over the window around it. */
+#ifndef DB_SAMPLES_H
+#define DB_SAMPLES_H
 
 #include "exemplars.h"
 #include "raster.h"
@@ -17,9 +17,9 @@ static inline int db_feature_count(int band_count, int context)
 /* Bytes a pixel that db_features_read needs while it works, for db_raster_block_rows. */
 size_t db_feature_bytes(int band_count, int context);
 
-/* The features of rows y .. y + rows - 1 into planes of rows * width each: all bands, then all means, then all
- * deviations. The window is cut at the image's edge, and its nodata pixels do not count.
- * `valid` as in db_raster_read. Returns 0, or -1 with the error reported. */
+/* The features of rows y .. y + rows - 1 into planes of rows * width each: all bands, then all
+ * means, then all deviations. The window is cut at the image's edge, and its nodata pixels do not
+ * count. `valid` as in db_raster_read. Returns 0, or -1 with the error reported. */
 int db_features_read(const struct db_raster *r, int context, int y, int rows, float *planes,
                      uint8_t *valid);
 
@@ -32,8 +32,8 @@ struct db_samples {
     uint64_t without_data; /* exemplars left out because the image has no data there */
 };
 
-/* Read the features of all exemplars, block by block. Returns 0, or -1 with the error reported and nothing to
- * free. Memory: 4 bytes an input an exemplar, beside the block. */
+/* Read the features of all exemplars, block by block. Returns 0, or -1 with the error reported and
+ * nothing to free. Memory: 4 bytes an input an exemplar, beside the block. */
 int db_samples_read(struct db_samples *s, const struct db_raster *r, int context,
                     const struct db_exemplars *e);
 
