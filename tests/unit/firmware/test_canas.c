@@ -1,0 +1,744 @@
+/* The decoder of the avionics bus: what an independent library sent is read to the last digit, and
+ * what nobody should have sent changes nothing but a counter. */
+#include "bus_frames.h"
+#include "drv/can_log.h"
+#include "hs/rng.h"
+#include "support.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <zlib.h>
+
+#include <cmocka.h>
+
+static enum lm_canas_outcome take(struct lm_canas *c, struct lm_can_frame frame,
+                                  struct lm_canas_event *event)
+{
+    return lm_canas_take(c, &frame, event);
+}
+
+/* ---- against the other library ---- */
+
+enum { PEER_VALUES = 8000 };
+
+struct peer_value {
+    uint64_t time_us;
+    enum lm_canas_field field;
+    int32_t value;
+};
+
+struct peer_log {
+    struct lm_canas canas;
+    struct peer_value value[PEER_VALUES];
+    size_t count;
+};
+
+static void decode_peer_frames(struct peer_log *log, const char *path)
+{
+    gzFile file = gzopen(path, "rb");
+    assert_non_null(file);
+    char line[256];
+    while (gzgets(file, line, sizeof line) != NULL) {
+        struct lm_can_frame frame;
+        struct lm_canas_event event;
+        assert_null(drv_can_log_parse(strtok(line, "\n"), &frame));
+        if (lm_canas_take(&log->canas, &frame, &event) == LM_CANAS_VALUE) {
+            assert_true(log->count < PEER_VALUES);
+            log->value[log->count++] = (struct peer_value){frame.time_us, event.field, event.value};
+        }
+    }
+    gzclose(file);
+}
+
+static int field_of(unsigned id)
+{
+    for (int i = 0; i < LM_CANAS_FIELDS; i++) {
+        if (lm_canas_table[i].id == id) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static const struct peer_value *find_value(const struct peer_log *log, uint64_t time_us,
+                                           enum lm_canas_field field)
+{
+    for (size_t i = 0; i < log->count; i++) {
+        if (log->value[i].time_us == time_us && log->value[i].field == field) {
+            return &log->value[i];
+        }
+    }
+    return NULL;
+}
+
+/* The file prints 12 digits, 10 of them behind the point for a longitude; the fixed point rounds to
+ * half a count. */
+static void compare_peer_line(const struct peer_log *log, const char *line,
+                              unsigned compared[LM_CANAS_FIELDS])
+{
+    char name[32], unit[32], type[32];
+    unsigned long seconds, micros;
+    double value, tolerance;
+    unsigned id, node, service, code, redundancy;
+    if (sscanf(line, "%lu.%6lu,%31[^,],%lf,%31[^,],%31[^,],%u,%u,%u,%u,%u,%lf", &seconds, &micros,
+               name, &value, unit, type, &id, &node, &service, &code, &redundancy,
+               &tolerance) != 12) {
+        return; /* the header, and frames without a value */
+    }
+    const int field = redundancy == 0 ? field_of(id) : -1;
+    if (field < 0) {
+        return;
+    }
+    const struct peer_value *found =
+        find_value(log, seconds * 1000000ull + micros, (enum lm_canas_field)field);
+    if (found == NULL) {
+        fail_msg("not decoded: %s", line);
+    }
+    const double counts = bus_counts_per_unit((enum lm_canas_field)field);
+    const double error = fabs(bus_unit_of((enum lm_canas_field)field, found->value) - value);
+    if (error > tolerance + 5e-11 + 0.503 / counts) {
+        fail_msg("wrong by %g: %s", error, line);
+    }
+    compared[field]++;
+}
+
+static void every_value_that_another_library_sent_is_decoded_within_its_tolerance(void **state)
+{
+    (void)state;
+    char frames[512], expected[512];
+    if (!support_data_path("can_peer/peer_frames_3s.log.gz", frames, sizeof frames) ||
+        !support_data_path("can_peer/peer_expected_3s.csv.gz", expected, sizeof expected)) {
+        skip();
+    }
+    struct peer_log *log = calloc(1, sizeof *log);
+    lm_canas_init(&log->canas);
+    decode_peer_frames(log, frames);
+    unsigned compared[LM_CANAS_FIELDS] = {0};
+    gzFile file = gzopen(expected, "rb");
+    assert_non_null(file);
+    char line[256];
+    while (gzgets(file, line, sizeof line) != NULL) {
+        compare_peer_line(log, line, compared);
+    }
+    gzclose(file);
+    unsigned total = 0;
+    for (int i = 0; i < LM_CANAS_FIELDS; i++) {
+        const uint32_t period_us = lm_canas_table[i].period_us;
+        assert_int_equal(compared[i], 3000000 / period_us);
+        total += compared[i];
+    }
+    assert_int_equal(total, log->count); /* nothing was decoded that was not sent */
+    assert_int_equal(log->canas.count.frames, 3192);
+    assert_int_equal(log->canas.count.outcome[LM_CANAS_HALF], 60);
+    assert_int_equal(log->canas.count.outcome[LM_CANAS_OTHER_CHANNEL], 90);
+    assert_int_equal(log->canas.count.torn_pairs, 0);
+    assert_int_equal(log->canas.count.sequence_breaks, 0);
+    for (int i = LM_CANAS_BAD_LENGTH; i < LM_CANAS_OUTCOMES; i++) {
+        assert_int_equal(log->canas.count.outcome[i], 0);
+    }
+    free(log);
+}
+
+/* ---- the table ---- */
+
+static const char *bus_unit_name(enum lm_canas_field field)
+{
+    switch ((enum lm_canas_unit)lm_canas_table[field].unit) {
+    case LM_CANAS_BAM:
+        return field == LM_CANAS_PITCH_RATE || field == LM_CANAS_YAW_RATE ? "deg/s" : "deg";
+    case LM_CANAS_Q6:
+        return "m";
+    case LM_CANAS_MM_S:
+        return "m/s";
+    case LM_CANAS_SECONDS:
+        break;
+    }
+    return "s";
+}
+
+static void the_table_agrees_with_the_specifications_identifiers(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!support_data_path("can_peer/canas_ids.csv", path, sizeof path)) {
+        skip();
+    }
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    char line[256];
+    int found = 0;
+    while (fgets(line, sizeof line, file) != NULL) {
+        char name[64] = "", unit[16] = "", types[64] = "";
+        unsigned id;
+        const int field = sscanf(line, "%u,", &id) == 1 ? field_of(id) : -1;
+        if (field < 0) {
+            continue;
+        }
+        const struct lm_canas_row *row = &lm_canas_table[field];
+        found++;
+        if (field == LM_CANAS_UTC) {
+            assert_non_null(strstr(line, ",$4B0,UTC,,CHAR4,"));
+            continue;
+        }
+        assert_int_equal(sscanf(line, "%*u,$%*x,%63[^,],%15[^,],%63[^,]", name, unit, types), 3);
+        assert_string_equal(name, row->name);
+        assert_string_equal(unit, bus_unit_name((enum lm_canas_field)field));
+        assert_true((strstr(types, "DOUBLEH") != NULL) ==
+                    ((row->types >> LM_CANAS_DOUBLEH & 1) != 0));
+        const double interval_ms = strtod(strrchr(line, ',') + 1, NULL);
+        assert_true(interval_ms == 0.0 || interval_ms * 1000.0 == row->period_us);
+    }
+    fclose(file);
+    assert_int_equal(found, LM_CANAS_FIELDS);
+}
+
+/* A row of the table in docs/FORMATS.md, section 2.2. */
+static void format_row(enum lm_canas_field field, char *text, size_t size)
+{
+    static const char *const kept_as[] = {
+        [LM_CANAS_BAM] = "BAM",
+        [LM_CANAS_Q6] = "m x 64",
+        [LM_CANAS_MM_S] = "mm/s",
+        [LM_CANAS_SECONDS] = "s",
+    };
+    const struct lm_canas_row *row = &lm_canas_table[field];
+    const char *types = row->types >> LM_CANAS_CHAR4 & 1     ? "CHAR4"
+                        : row->types >> LM_CANAS_DOUBLEH & 1 ? "FLOAT, SHORT2, LONG, DOUBLEH/L"
+                                                             : "FLOAT, SHORT2";
+    const bool is_rate = strcmp(bus_unit_name(field), "deg/s") == 0;
+    snprintf(text, size, "| %u | %X | %s | %s | %s | %d..%d | %s%s | %g | %u | %u |", row->id,
+             row->id, row->name, types, bus_unit_name(field), row->low, row->high,
+             kept_as[row->unit], is_rate ? "/s" : "", row->period_us / 1000.0, row->stale_ms,
+             row->dead_ms);
+}
+
+static void the_document_says_what_the_table_says(void **state)
+{
+    (void)state;
+    FILE *file = fopen("docs/FORMATS.md", "r");
+    if (file == NULL) {
+        print_message("# skipped: no docs/FORMATS.md here; run from the top of the checkout\n");
+        skip();
+    }
+    static char document[1 << 18];
+    const size_t length = fread(document, 1, sizeof document - 1, file);
+    fclose(file);
+    assert_true(length < sizeof document - 1);
+    document[length] = '\0';
+    int missing = 0;
+    for (int i = 0; i < LM_CANAS_FIELDS; i++) {
+        char row[256];
+        format_row((enum lm_canas_field)i, row, sizeof row);
+        if (strstr(document, row) == NULL) {
+            print_message("# docs/FORMATS.md section 2.2 lacks: %s\n", row);
+            missing++;
+        }
+    }
+    assert_int_equal(missing, 0);
+}
+
+/* ---- numbers ---- */
+
+static void any_float_in_range_is_within_half_a_count_of_double_arithmetic(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 11);
+    struct lm_canas c;
+    lm_canas_init(&c);
+    for (int i = 0; i < 200000; i++) {
+        const enum lm_canas_field field = (enum lm_canas_field)(i % LM_CANAS_UTC);
+        const struct lm_canas_row *row = &lm_canas_table[field];
+        const double span = (double)row->high - row->low;
+        const float value = (float)(row->low + span * hs_rng_uniform(&rng));
+        struct lm_canas_event event;
+        assert_int_equal(take(&c, bus_float(field, value, 0), &event), LM_CANAS_VALUE);
+        assert_int_equal(event.field, field);
+        const double exact = (double)value * bus_counts_per_unit(field);
+        const double wrapped = row->unit == LM_CANAS_BAM ? remainder(event.value - exact, 0x1p32)
+                                                         : event.value - exact;
+        assert_true(fabs(wrapped) <= 0.503);
+    }
+}
+
+static void a_double_keeps_the_last_count(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 12);
+    struct lm_canas c;
+    lm_canas_init(&c);
+    for (int i = 0; i < 100000; i++) {
+        const double degrees = -180.0 + 360.0 * hs_rng_uniform(&rng);
+        const uint64_t bits = bus_double_bits(degrees), time_us = (uint64_t)i * 100000u;
+        const uint8_t code = (uint8_t)(2 * i);
+        struct lm_canas_event event;
+        assert_int_equal(
+            take(&c, bus_frame(1037, 30, code, (uint32_t)(bits >> 32), time_us), &event),
+            LM_CANAS_HALF);
+        assert_int_equal(
+            take(&c, bus_frame(1037, 31, (uint8_t)(code + 1), (uint32_t)bits, time_us + 125),
+                 &event),
+            LM_CANAS_VALUE);
+        /* Half a count, and half of the 1/180 count that the decoder rounds to on the way. */
+        assert_true(fabs(event.value - degrees * 0x1p32 / 360.0) <= 0.503);
+        assert_true(event.time_us == time_us);
+    }
+}
+
+static void a_short2_is_value_times_scale_over_32767(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    /* The specification's example: $4000 of scale $05DC is 750.0229. */
+    assert_int_equal(take(&c, bus_frame(320, 12, 0, 0x400005dcu, 0), &event), LM_CANAS_VALUE);
+    assert_int_equal(event.value, lround(16384.0 * 1500 / 32767 * 64));
+    assert_true(event.is_coarse);
+    assert_int_equal(take(&c, bus_frame(312, 12, 0, 0xc00000b4u, 0), &event), LM_CANAS_VALUE);
+    assert_int_equal(event.value, lround(-16384.0 * 180 / 32767 * 0x1p32 / 360));
+    assert_int_equal(take(&c, bus_frame(312, 12, 0, 0x80000000u | 179, 0), &event), LM_CANAS_VALUE);
+    assert_int_equal(event.value, lround(-32768.0 * 179 / 32767 * 0x1p32 / 360));
+}
+
+static void a_long_position_counts_ten_millionths_of_a_degree(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    const int32_t tests[] = {0, 1, -1, 472500445, -899999999, 900000000};
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        assert_int_equal(take(&c, bus_frame(1036, 3, 0, (uint32_t)tests[i], 0), &event),
+                         LM_CANAS_VALUE);
+        assert_int_equal(event.value, lround(tests[i] * 1e-7 * 0x1p32 / 360));
+    }
+    assert_int_equal(take(&c, bus_frame(1036, 3, 0, 0x80000000u, 0), &event),
+                     LM_CANAS_OUT_OF_RANGE);
+    assert_int_equal(take(&c, bus_frame(1037, 3, 0, 0x7fffffffu, 0), &event),
+                     LM_CANAS_OUT_OF_RANGE);
+}
+
+static void both_ends_of_every_range_are_taken_and_the_next_float_is_not(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    for (int i = 0; i < LM_CANAS_UTC; i++) {
+        const enum lm_canas_field field = (enum lm_canas_field)i;
+        const struct lm_canas_row *row = &lm_canas_table[i];
+        const float low = (float)row->low, high = (float)row->high;
+        /* The resolution of the metres inside is 1/64: a float beside the end may round onto it. */
+        const float above = row->unit == LM_CANAS_Q6 ? high + 1 : nextafterf(high, INFINITY);
+        const float below = low == 0                   ? -0.001f
+                            : row->unit == LM_CANAS_Q6 ? low - 1
+                                                       : nextafterf(low, -INFINITY);
+        assert_int_equal(take(&c, bus_float(field, low, 0), &event), LM_CANAS_VALUE);
+        assert_int_equal(take(&c, bus_float(field, high, 0), &event), LM_CANAS_VALUE);
+        assert_int_equal(take(&c, bus_float(field, above, 0), &event), LM_CANAS_OUT_OF_RANGE);
+        assert_int_equal(take(&c, bus_float(field, below, 0), &event), LM_CANAS_OUT_OF_RANGE);
+    }
+}
+
+/* ---- frames that must not be believed ---- */
+
+static struct lm_can_frame with_length(struct lm_can_frame frame, uint8_t length)
+{
+    frame.length = length;
+    return frame;
+}
+
+static struct lm_can_frame with_node(struct lm_can_frame frame, uint8_t node)
+{
+    frame.data[0] = node;
+    return frame;
+}
+
+static struct lm_can_frame with_extended_id(struct lm_can_frame frame, uint32_t id)
+{
+    frame.is_extended = true;
+    frame.id = id;
+    return frame;
+}
+
+static void every_malformed_frame_is_refused_for_its_own_reason(void **state)
+{
+    (void)state;
+    const struct lm_can_frame good = bus_float(LM_CANAS_LATITUDE, 47.25, 0);
+    struct lm_can_frame remote = good, error = good, wide = good;
+    remote.is_remote = true;
+    error.is_error = true;
+    wide.id = 0x10040c;
+    const struct {
+        const char *what;
+        struct lm_can_frame frame;
+        enum lm_canas_outcome outcome;
+    } tests[] = {
+        {"a remote frame", remote, LM_CANAS_NOT_DATA},
+        {"the controller's error frame", error, LM_CANAS_NOT_DATA},
+        {"bits 11 to 15 set", with_extended_id(good, 0x1f40c), LM_CANAS_FOREIGN},
+        {"bit 11 set", with_extended_id(good, 0x10c0c), LM_CANAS_FOREIGN},
+        {"29 bits on channel 0", with_extended_id(good, 0x40c), LM_CANAS_FOREIGN},
+        {"30 bits", with_extended_id(good, 0x2001040c), LM_CANAS_FOREIGN},
+        {"11 bits with 21", wide, LM_CANAS_FOREIGN},
+        {"channel 1", with_extended_id(good, 0x1040c), LM_CANAS_OTHER_CHANNEL},
+        {"channel 8191", with_extended_id(good, 0x1fff040c), LM_CANAS_OTHER_CHANNEL},
+        {"magnetic heading", bus_frame(1069, 2, 0, 0, 0), LM_CANAS_UNUSED},
+        {"no bytes", with_length(good, 0), LM_CANAS_BAD_LENGTH},
+        {"three bytes", with_length(good, 3), LM_CANAS_BAD_LENGTH},
+        {"a FLOAT of three bytes", with_length(good, 7), LM_CANAS_BAD_LENGTH},
+        {"a FLOAT without data", with_length(good, 4), LM_CANAS_BAD_LENGTH},
+        {"more than CAN carries", with_length(good, 9), LM_CANAS_BAD_LENGTH},
+        {"more than the array", with_length(good, 255), LM_CANAS_BAD_LENGTH},
+        {"NODATA with data", bus_frame(1036, 0, 0, 0, 0), LM_CANAS_BAD_LENGTH},
+        {"NODATA", with_length(bus_frame(1036, 0, 0, 0, 0), 4), LM_CANAS_NO_DATA},
+        {"ERROR", bus_frame(1036, 1, 0, 0x07ff0000, 0), LM_CANAS_NO_DATA},
+        {"a broadcast as the sender", with_node(good, 0), LM_CANAS_BAD_NODE},
+        {"a ULONG latitude", bus_frame(1036, 4, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"a LONG pitch", bus_frame(311, 3, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"a DOUBLEH pitch", bus_frame(311, 30, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"a FLOAT clock", bus_frame(1200, 2, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"a reserved type", bus_frame(1036, 34, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"a user's type", bus_frame(1036, 255, 0, 0, 0), LM_CANAS_BAD_TYPE},
+        {"NaN", bus_frame(1036, 2, 0, 0x7fc00000, 0), LM_CANAS_NOT_A_NUMBER},
+        {"a signalling NaN", bus_frame(1036, 2, 0, 0xff800001, 0), LM_CANAS_NOT_A_NUMBER},
+        {"infinity", bus_frame(1036, 2, 0, 0x7f800000, 0), LM_CANAS_NOT_A_NUMBER},
+        {"minus infinity", bus_frame(1036, 2, 0, 0xff800000, 0), LM_CANAS_NOT_A_NUMBER},
+        {"latitude 180", bus_float(LM_CANAS_LATITUDE, 180, 0), LM_CANAS_OUT_OF_RANGE},
+        {"longitude 200", bus_float(LM_CANAS_LONGITUDE, 200, 0), LM_CANAS_OUT_OF_RANGE},
+        {"the largest float", bus_frame(1036, 2, 0, 0x7f7fffff, 0), LM_CANAS_OUT_OF_RANGE},
+        {"SHORT2 without a scale", bus_frame(320, 12, 0, 0x40000000, 0), LM_CANAS_NOT_A_NUMBER},
+        {"SHORT2 of scale -1", bus_frame(320, 12, 0, 0x4000ffff, 0), LM_CANAS_NOT_A_NUMBER},
+        {"24:00:00", bus_frame(1200, 15, 0, 0x18000000, 0), LM_CANAS_OUT_OF_RANGE},
+        {"12:60:00", bus_frame(1200, 15, 0, 0x0c3c0000, 0), LM_CANAS_OUT_OF_RANGE},
+        {"12:30:60", bus_frame(1200, 15, 0, 0x0c1e3c00, 0), LM_CANAS_OUT_OF_RANGE},
+        {"24:60:60", bus_frame(1200, 15, 0, 0x183c3c00, 0), LM_CANAS_OUT_OF_RANGE},
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        struct lm_canas c;
+        lm_canas_init(&c);
+        struct lm_canas_event event;
+        memset(&event, 0x5a, sizeof event);
+        const struct lm_canas_event before = event;
+        const enum lm_canas_outcome outcome = take(&c, tests[i].frame, &event);
+        if (outcome != tests[i].outcome || memcmp(&event, &before, sizeof event) != 0) {
+            fail_msg("%s: outcome %d instead of %d", tests[i].what, (int)outcome,
+                     (int)tests[i].outcome);
+        }
+        assert_int_equal(c.count.outcome[outcome], 1);
+        assert_int_equal(c.count.frames, 1);
+    }
+}
+
+static void a_leap_second_is_a_time(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    assert_int_equal(take(&c, bus_frame(1200, 15, 0, 0x0d2b1600, 0), &event), LM_CANAS_VALUE);
+    assert_int_equal(event.value, 13 * 3600 + 43 * 60 + 22); /* the specification's example */
+    assert_int_equal(take(&c, bus_frame(1200, 15, 0, 0x173b3c00, 0), &event), LM_CANAS_VALUE);
+    assert_int_equal(event.value, 86400);
+}
+
+static void no_message_is_lost_when_a_sender_restarts_repeats_or_jumps(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    lm_canas_init(&c);
+    const uint8_t codes[] = {200, 201, 0, 1, 2, 2, 2, 130, 131, 3, 255, 0, 1};
+    for (size_t i = 0; i < sizeof codes; i++) {
+        struct lm_canas_event event;
+        const struct lm_can_frame frame =
+            bus_frame(311, LM_CANAS_FLOAT, codes[i], bus_float_bits((double)i), i * 12500);
+        assert_int_equal(take(&c, frame, &event), LM_CANAS_VALUE);
+        assert_int_equal(lround(bus_unit_of(LM_CANAS_PITCH, event.value)), i);
+    }
+    assert_int_equal(c.count.sequence_breaks, 6);
+}
+
+/* ---- halves of doubles ---- */
+
+enum { PAIRS = 5, HALVES = 2 * PAIRS };
+
+struct sender {
+    bool is_low_first; /* DOUBLEL carries the first code */
+    bool is_swapped;   /* of two halves, the one with the second code arrives first */
+    uint8_t first_code;
+    uint64_t period_us, gap_us;
+};
+
+/* Values whose every mixture is none of them. */
+static uint64_t pair_bits(int pair)
+{
+    const uint32_t number = (uint32_t)pair;
+    return (uint64_t)(0x40479001u + number) << 32 | 0x11111111u * (number + 1);
+}
+
+static int32_t pair_value(int pair)
+{
+    const uint64_t bits = pair_bits(pair);
+    double degrees;
+    memcpy(&degrees, &bits, sizeof degrees);
+    return (int32_t)lround(degrees * 0x1p32 / 360);
+}
+
+/* Half number i in order of arrival. */
+static struct lm_can_frame half_of(const struct sender *s, int i)
+{
+    const int pair = i / 2, place = i % 2;
+    const int code_place = s->is_swapped ? 1 - place : place;
+    const bool is_low = (code_place == 0) == s->is_low_first;
+    const uint64_t bits = pair_bits(pair);
+    return bus_frame(1036, is_low ? LM_CANAS_DOUBLEL : LM_CANAS_DOUBLEH,
+                     (uint8_t)(s->first_code + 2 * pair + code_place),
+                     (uint32_t)(is_low ? bits : bits >> 32),
+                     (uint64_t)pair * s->period_us + (uint64_t)place * s->gap_us);
+}
+
+struct tally {
+    int whole, mixed, mixed_after_whole;
+    struct lm_canas canas;
+};
+
+/* Send the halves of which `mask` has the bit. */
+static struct tally send_halves(const struct sender *s, unsigned mask)
+{
+    struct tally t = {0};
+    lm_canas_init(&t.canas);
+    for (int i = 0; i < HALVES; i++) {
+        struct lm_canas_event event;
+        if ((mask >> i & 1) == 0 || take(&t.canas, half_of(s, i), &event) != LM_CANAS_VALUE) {
+            continue;
+        }
+        const bool is_whole = event.value == pair_value(i / 2);
+        t.mixed_after_whole += !is_whole && t.whole > 0;
+        t.whole += is_whole;
+        t.mixed += !is_whole;
+    }
+    return t;
+}
+
+static int complete_pairs(unsigned mask)
+{
+    int complete = 0;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        complete += (mask >> 2 * pair & 3) == 3;
+    }
+    return complete;
+}
+
+static void whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value(void **state)
+{
+    (void)state;
+    for (unsigned variant = 0; variant < 16; variant++) {
+        const struct sender s = {
+            .is_low_first = (variant & 1) != 0,
+            .is_swapped = (variant & 2) != 0,
+            .first_code = variant & 4 ? 251 : 0, /* wraps within, and between the halves */
+            .period_us = 100000,
+            .gap_us = variant & 8 ? 12500 : 125,
+        };
+        for (unsigned mask = 0; mask < 1u << HALVES; mask++) {
+            const struct tally t = send_halves(&s, mask);
+            assert_int_equal(t.whole, complete_pairs(mask));
+            assert_int_equal(t.mixed, 0);
+            const uint32_t waiting = t.canas.pair[0].state == LM_CANAS_WAITING;
+            assert_int_equal(t.canas.count.frames,
+                             2 * (uint32_t)t.whole + t.canas.count.torn_pairs + waiting);
+        }
+    }
+}
+
+static void
+a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair(void **state)
+{
+    (void)state;
+    for (unsigned variant = 0; variant < 4; variant++) {
+        const struct sender s = {
+            .is_low_first = (variant & 1) != 0,
+            .is_swapped = (variant & 2) != 0,
+            .first_code = 7,
+            .period_us = 20000,
+            .gap_us = 125,
+        };
+        for (unsigned mask = 0; mask < 1u << HALVES; mask++) {
+            const struct tally t = send_halves(&s, mask);
+            assert_int_equal(t.whole, complete_pairs(mask));
+            assert_int_equal(t.mixed_after_whole, 0);
+            assert_true((mask & 3) != 3 || t.mixed == 0);
+        }
+    }
+}
+
+/* Send a first half, something, and the second half; what becomes of the last? */
+static enum lm_canas_outcome half_something_half(const struct lm_can_frame *something,
+                                                 uint64_t gap_us, uint8_t code, uint32_t *torn)
+{
+    const struct sender s = {.period_us = 100000, .gap_us = gap_us};
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    assert_int_equal(take(&c, half_of(&s, 0), &event), LM_CANAS_HALF);
+    if (something != NULL) {
+        lm_canas_take(&c, something, &event);
+    }
+    struct lm_can_frame second = half_of(&s, 1);
+    second.data[3] = code;
+    const enum lm_canas_outcome outcome = take(&c, second, &event);
+    *torn = c.count.torn_pairs;
+    return outcome;
+}
+
+static void anything_else_of_that_identifier_between_the_halves_tears_them(void **state)
+{
+    (void)state;
+    struct lm_can_frame other_node = bus_frame(1036, LM_CANAS_DOUBLEL, 1, 0, 50);
+    other_node.data[0] = 10;
+    const struct lm_can_frame tearing[] = {
+        bus_float(LM_CANAS_LATITUDE, 47, 50),
+        with_length(bus_frame(1036, LM_CANAS_NODATA, 1, 0, 50), 4),
+        bus_frame(1036, 77, 1, 0, 50),
+        with_length(bus_frame(1036, LM_CANAS_DOUBLEL, 1, 0, 50), 7),
+        bus_frame(1036, LM_CANAS_DOUBLEH, 0, 0, 50),
+        other_node,
+    };
+    uint32_t torn;
+    for (size_t i = 0; i < sizeof tearing / sizeof *tearing; i++) {
+        if (i == 4) {
+            continue; /* another DOUBLEH takes the first one's place: below */
+        }
+        assert_int_equal(half_something_half(&tearing[i], 125, 1, &torn), LM_CANAS_HALF);
+        assert_true(torn >= 1);
+    }
+    half_something_half(&tearing[4], 125, 1, &torn);
+    assert_int_equal(torn, 1);
+}
+
+static void other_identifiers_and_channels_between_the_halves_do_not_matter(void **state)
+{
+    (void)state;
+    const struct lm_can_frame half = bus_frame(1036, LM_CANAS_DOUBLEL, 1, 0, 50);
+    struct lm_can_frame error = half, remote = half;
+    error.is_error = true;
+    remote.is_remote = true;
+    const struct lm_can_frame harmless[] = {
+        bus_frame(1037, LM_CANAS_DOUBLEH, 0, 0, 50),
+        bus_float(LM_CANAS_PITCH, 3, 50),
+        with_extended_id(half, 0x1040c),
+        with_extended_id(half, 0x1f40c),
+        error,
+        remote,
+    };
+    uint32_t torn;
+    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
+        assert_int_equal(half_something_half(&harmless[i], 125, 1, &torn), LM_CANAS_VALUE);
+        assert_int_equal(torn, 0);
+    }
+}
+
+static void a_code_gap_or_age_tears_the_halves(void **state)
+{
+    (void)state;
+    uint32_t torn;
+    assert_int_equal(half_something_half(NULL, 125, 1, &torn), LM_CANAS_VALUE);
+    assert_int_equal(half_something_half(NULL, 125, 2, &torn), LM_CANAS_HALF);
+    assert_int_equal(torn, 1);
+    assert_int_equal(half_something_half(NULL, 125, 0, &torn), LM_CANAS_HALF);
+    assert_int_equal(half_something_half(NULL, 50000, 1, &torn), LM_CANAS_VALUE);
+    assert_int_equal(half_something_half(NULL, 50001, 1, &torn), LM_CANAS_HALF);
+    assert_int_equal(half_something_half(NULL, 100001, 1, &torn), LM_CANAS_HALF);
+    /* Once the order is known, a whole period is allowed. */
+    for (uint64_t late_us = 100000; late_us <= 100001; late_us++) {
+        const struct sender s = {.period_us = 1000000, .gap_us = 125};
+        struct lm_canas c;
+        struct lm_canas_event event;
+        lm_canas_init(&c);
+        for (int i = 0; i < 3; i++) {
+            take(&c, half_of(&s, i), &event);
+        }
+        struct lm_can_frame last = half_of(&s, 3);
+        last.time_us = 1000000 + late_us;
+        assert_int_equal(take(&c, last, &event),
+                         late_us == 100000 ? LM_CANAS_VALUE : LM_CANAS_HALF);
+    }
+}
+
+static void a_sender_that_changes_its_habit_is_understood_again(void **state)
+{
+    (void)state;
+    struct lm_canas c;
+    lm_canas_init(&c);
+    int whole = 0;
+    for (int round = 0; round < 4; round++) {
+        const struct sender s = {
+            .is_low_first = round % 2 == 1, .period_us = 100000, .gap_us = 5000};
+        for (int i = 0; i < HALVES; i++) {
+            struct lm_can_frame half = half_of(&s, i);
+            struct lm_canas_event event;
+            half.time_us += (uint64_t)round * 3000000u;
+            half.data[0] = (uint8_t)(9 + round / 2); /* a new node twice as rarely */
+            whole += take(&c, half, &event) == LM_CANAS_VALUE && event.value == pair_value(i / 2);
+        }
+    }
+    assert_true(whole >= 4 * PAIRS - 4);
+}
+
+static void a_double_that_is_no_position_is_refused_whole(void **state)
+{
+    (void)state;
+    const struct {
+        uint64_t bits;
+        enum lm_canas_outcome outcome;
+    } tests[] = {
+        {0x7ff8000000000000u, LM_CANAS_NOT_A_NUMBER},
+        {0xfff0000000000000u, LM_CANAS_NOT_A_NUMBER},
+        {0x7ff0000000000001u, LM_CANAS_NOT_A_NUMBER}, /* only the low half tells */
+        {bus_double_bits(90.0001), LM_CANAS_OUT_OF_RANGE},
+        {bus_double_bits(-1e300), LM_CANAS_OUT_OF_RANGE},
+        {bus_double_bits(-90.0), LM_CANAS_VALUE},
+        {bus_double_bits(1e-300), LM_CANAS_VALUE},
+    };
+    struct lm_canas c;
+    struct lm_canas_event event;
+    lm_canas_init(&c);
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        const uint8_t code = (uint8_t)(2 * i);
+        const uint64_t bits = tests[i].bits;
+        take(&c, bus_frame(1036, 30, code, (uint32_t)(bits >> 32), i * 100000), &event);
+        const struct lm_can_frame low =
+            bus_frame(1036, 31, (uint8_t)(code + 1), (uint32_t)bits, i * 100000 + 125);
+        assert_int_equal(take(&c, low, &event), tests[i].outcome);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_value_that_another_library_sent_is_decoded_within_its_tolerance),
+        cmocka_unit_test(the_table_agrees_with_the_specifications_identifiers),
+        cmocka_unit_test(the_document_says_what_the_table_says),
+        cmocka_unit_test(any_float_in_range_is_within_half_a_count_of_double_arithmetic),
+        cmocka_unit_test(a_double_keeps_the_last_count),
+        cmocka_unit_test(a_short2_is_value_times_scale_over_32767),
+        cmocka_unit_test(a_long_position_counts_ten_millionths_of_a_degree),
+        cmocka_unit_test(both_ends_of_every_range_are_taken_and_the_next_float_is_not),
+        cmocka_unit_test(every_malformed_frame_is_refused_for_its_own_reason),
+        cmocka_unit_test(a_leap_second_is_a_time),
+        cmocka_unit_test(no_message_is_lost_when_a_sender_restarts_repeats_or_jumps),
+        cmocka_unit_test(whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value),
+        cmocka_unit_test(
+            a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair),
+        cmocka_unit_test(anything_else_of_that_identifier_between_the_halves_tears_them),
+        cmocka_unit_test(other_identifiers_and_channels_between_the_halves_do_not_matter),
+        cmocka_unit_test(a_code_gap_or_age_tears_the_halves),
+        cmocka_unit_test(a_sender_that_changes_its_habit_is_understood_again),
+        cmocka_unit_test(a_double_that_is_no_position_is_refused_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

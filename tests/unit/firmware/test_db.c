@@ -1,0 +1,214 @@
+/* Nothing in the image is believed before it was checked. */
+#include "lm/db.h"
+
+#include "fx/crc32c.h"
+#include "hs/rng.h"
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { POLLS = 10 };
+
+static struct tiny_cell soil(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return (struct tiny_cell){-20, TINY_SOIL, 0};
+}
+
+static void build(struct tiny_image *image)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = soil;
+    spec.rows = spec.columns = 3;
+    assert_int_equal(tiny_image_build(image, &spec), 0);
+}
+
+static int open_bytes(struct lm_db *db, const uint8_t *bytes, size_t size)
+{
+    struct memory_flash flash;
+    memory_flash_open(&flash, bytes, size);
+    return lm_db_open(db, &flash.port, POLLS);
+}
+
+static void a_sound_image_opens(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_OK);
+    assert_int_equal(db.shift0, 9);
+    assert_string_equal(db.classes.entry[TINY_WATER].name, tiny_classes()->entry[TINY_WATER].name);
+    tiny_image_free(&image);
+}
+
+static void every_flipped_bit_of_header_and_tables_is_refused(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    const size_t spans[][2] = {
+        {0, LM_DB_HEADER_BYTES},
+        {image.classes_offset, sizeof(struct lm_classes)},
+        {image.bands_offset, image.band_count * sizeof(struct lm_band)},
+    };
+    for (size_t s = 0; s < 3; s++) {
+        for (size_t bit = 0; bit < spans[s][1] * 8; bit++) {
+            uint8_t *byte = image.bytes + spans[s][0] + bit / 8;
+            *byte = (uint8_t)(*byte ^ 1u << bit % 8);
+            assert_true(open_bytes(&db, image.bytes, image.size) < 0);
+            *byte = (uint8_t)(*byte ^ 1u << bit % 8);
+        }
+    }
+    tiny_image_free(&image);
+}
+
+static void a_truncated_image_is_refused_at_every_length(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    for (size_t size = 0; size < image.size; size += size < 4096 ? 1 : 997) {
+        assert_true(open_bytes(&db, image.bytes, size) < 0);
+    }
+    tiny_image_free(&image);
+}
+
+/* Whatever a header with a right checksum says, what is accepted lies inside the flash. */
+static void hostile_headers_never_lead_outside_the_flash(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    build(&image);
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    uint8_t *copy = malloc(image.size);
+    int accepted = 0;
+    for (int round = 0; round < 20000; round++) {
+        memcpy(copy, image.bytes, image.size);
+        for (int n = 0; n < 3; n++) {
+            const uint32_t at = hs_rng_below(&rng, 3) ? hs_rng_below(&rng, 508)
+                                                      : (uint32_t)image.bands_offset + hs_rng_below(&rng, 24);
+            const uint64_t value = hs_rng_u64(&rng) >> hs_rng_below(&rng, 64);
+            memcpy(copy + at, &value, 1u << hs_rng_below(&rng, 3));
+        }
+        /* Put the checksums of what the firmware checks right again, so that only its judgement stands in the way. */
+        for (uint32_t s = 0; s < 5; s++) {
+            uint64_t offset, bytes;
+            memcpy(&offset, copy + 64 + 24 * s + 8, 8);
+            memcpy(&bytes, copy + 64 + 24 * s + 16, 8);
+            if (offset <= image.size && bytes <= image.size - offset) {
+                const uint32_t crc = fx_crc32c(0, copy + offset, bytes);
+                memcpy(copy + 64 + 24 * s + 4, &crc, 4);
+            }
+        }
+        const uint32_t crc = fx_crc32c(0, copy, 508);
+        memcpy(copy + 508, &crc, 4);
+        struct lm_db db;
+        if (open_bytes(&db, copy, image.size) != LM_OK) {
+            continue;
+        }
+        accepted++;
+        assert_true(db.directory_offset + 8u * (uint64_t)db.entry_count <= image.size);
+        assert_true(db.records_offset + (uint64_t)db.record_count * LM_TILE_BYTES <= image.size);
+        assert_in_range(db.shift0 + db.level_count, 1, LM_DB_SHIFT_MAX + 1);
+        for (uint32_t i = 0; i < db.band_count; i++) {
+            const struct lm_band *b = &db.bands[i];
+            const int64_t entry = lm_db_entry(&db, b->level, b->row0 + b->rows - 1, b->column0);
+            assert_true(entry < (int64_t)db.entry_count);
+        }
+    }
+    assert_true(accepted > 100);
+    free(copy);
+    tiny_image_free(&image);
+}
+
+static void a_newer_version_is_told_from_damage(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    image.bytes[8] = LM_DB_VERSION + 1;
+    tiny_image_seal(&image);
+    assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_ERR_VERSION);
+    tiny_image_free(&image);
+}
+
+static void failing_and_hanging_flash_is_an_io_error(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    for (uint32_t read = 1; read <= 3; read++) {
+        struct memory_flash flash;
+        memory_flash_open(&flash, image.bytes, image.size);
+        flash.fail_read = read;
+        assert_int_equal(lm_db_open(&db, &flash.port, POLLS), LM_ERR_IO);
+    }
+    struct memory_flash flash;
+    memory_flash_open(&flash, image.bytes, image.size);
+    flash.busy_polls = POLLS + 1;
+    assert_int_equal(lm_db_open(&db, &flash.port, POLLS), LM_ERR_IO);
+    tiny_image_free(&image);
+}
+
+static fx_bam_t bam(double degrees)
+{
+    return (fx_bam_t)(int64_t)llround(degrees * 4294967296.0 / 360);
+}
+
+static void zones_change_where_the_format_says(void **state)
+{
+    (void)state;
+    static const struct {
+        double degrees;
+        int below, above;
+    } border[] = {{61.875, 0, 1}, {73.125, 1, 2}, {84.375, 2, 3}};
+    for (size_t i = 0; i < 3; i++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            assert_int_equal(lm_db_zone(bam(sign * (border[i].degrees - 1e-5))), border[i].below);
+            assert_int_equal(lm_db_zone(bam(sign * (border[i].degrees + 1e-5))), border[i].above);
+        }
+    }
+    assert_int_equal(lm_db_zone(bam(90)), 3);
+    assert_int_equal(lm_db_zone(bam(-90)), 3);
+    assert_int_equal(lm_db_zone(0), 0);
+}
+
+static void a_level_0_cell_of_shift_9_is_4769_mm(void **state)
+{
+    (void)state;
+    struct lm_db db = {.shift0 = 9};
+    /* 512 / 2^32 of the meridian, 40,007,862.9 m. */
+    assert_int_equal(lm_db_cell_mm(&db, 0), 4769);
+    assert_int_equal(lm_db_cell_mm(&db, 3), 38154);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sound_image_opens),
+        cmocka_unit_test(every_flipped_bit_of_header_and_tables_is_refused),
+        cmocka_unit_test(a_truncated_image_is_refused_at_every_length),
+        cmocka_unit_test(hostile_headers_never_lead_outside_the_flash),
+        cmocka_unit_test(a_newer_version_is_told_from_damage),
+        cmocka_unit_test(failing_and_hanging_flash_is_an_io_error),
+        cmocka_unit_test(zones_change_where_the_format_says),
+        cmocka_unit_test(a_level_0_cell_of_shift_9_is_4769_mm),
+    };
+    return cmocka_run_group_tests_name("db", tests, NULL, NULL);
+}

@@ -1,0 +1,302 @@
+/* The cache between flash and sweep: right tile, its ancestor, or nothing, and every fault counted. */
+#include "lm/tile_cache.h"
+
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SLOTS = 40, POLLS = 100, SIDE = 8 };
+
+struct fixture {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache cache;
+    void *pool;
+};
+
+static struct tiny_cell soil(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return (struct tiny_cell){-20, TINY_SOIL, 0};
+}
+
+static int open_cache(struct fixture *f)
+{
+    f->pool = malloc(SLOTS * sizeof(struct lm_tile));
+    assert_int_equal(lm_db_open(&f->db, &f->flash.port, POLLS), LM_OK);
+    return lm_tile_cache_init(&f->cache, &f->db, f->pool, SLOTS * sizeof(struct lm_tile), POLLS);
+}
+
+static struct fixture *make_fixture(void)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = soil;
+    spec.rows = spec.columns = SIDE;
+    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+    memory_flash_open(&f->flash, f->image.bytes, f->image.size);
+    assert_int_equal(open_cache(f), LM_OK);
+    return f;
+}
+
+static void free_fixture(struct fixture *f)
+{
+    tiny_image_free(&f->image);
+    free(f->pool);
+    free(f);
+}
+
+static const struct lm_band *finest_band(const struct fixture *f)
+{
+    for (uint32_t i = 0; i < f->db.band_count; i++) {
+        if (f->db.bands[i].level == 0) {
+            return &f->db.bands[i];
+        }
+    }
+    return NULL;
+}
+
+static const struct lm_tile *get(struct fixture *f, uint32_t row, uint32_t column)
+{
+    const struct lm_band *b = finest_band(f);
+    return lm_tile_cache_get(&f->cache, 0, b->row0 + row, b->column0 + column);
+}
+
+static void serve(struct fixture *f, uint64_t now_us)
+{
+    int rounds = 0;
+    do {
+        lm_tile_cache_service(&f->cache, now_us, 1);
+    } while (++rounds < 10000 && !lm_tile_cache_is_idle(&f->cache));
+}
+
+static void the_coarsest_level_is_resident_from_the_start(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    const struct lm_tile *tile = get(f, 3, 3);
+    assert_non_null(tile);
+    assert_int_equal(tile->level, f->db.level_count - 1);
+    assert_int_equal(f->cache.count.substituted, 1);
+    free_fixture(f);
+}
+
+static void a_tile_that_was_asked_for_is_the_tile_itself_later(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    for (uint32_t i = 0; i < SIDE; i++) {
+        get(f, i, SIDE - 1 - i);
+        serve(f, 0);
+        const struct lm_tile *tile = get(f, i, SIDE - 1 - i);
+        assert_int_equal(tile->level, 0);
+        assert_int_equal(tile->row, finest_band(f)->row0 + i);
+        assert_int_equal(tile->column, finest_band(f)->column0 + SIDE - 1 - i);
+    }
+    free_fixture(f);
+}
+
+static void a_lookup_never_waits_for_a_late_read(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    f->flash.busy_polls = 50;
+    get(f, 0, 0);
+    for (int i = 0; i < 30; i++) {
+        lm_tile_cache_service(&f->cache, 0, 8);
+        const struct lm_tile *tile = get(f, 0, 0);
+        assert_non_null(tile);
+        assert_true(tile->level > 0 || i > 10);
+    }
+    serve(f, 0);
+    assert_int_equal(get(f, 0, 0)->level, 0);
+    free_fixture(f);
+}
+
+static void every_read_that_fails_is_counted_and_answered_by_an_ancestor(void **state)
+{
+    (void)state;
+    for (uint32_t bad = 1; bad <= 2; bad++) { /* directory entry, record */
+        struct fixture *f = make_fixture();
+        f->flash.fail_read = f->flash.reads + bad;
+        get(f, 2, 2);
+        serve(f, 1);
+        assert_int_equal(f->cache.count.io_errors, 1);
+        const struct lm_tile *tile = get(f, 2, 2);
+        assert_non_null(tile);
+        assert_true(tile->level > 0);
+        /* Not tried again at once, but after a while, and then all is well. */
+        serve(f, 2);
+        assert_true(get(f, 2, 2)->level > 0);
+        serve(f, 2 + 2 * LM_TILE_RETRY_US);
+        get(f, 2, 2);
+        serve(f, 3 + 2 * LM_TILE_RETRY_US);
+        assert_int_equal(get(f, 2, 2)->level, 0);
+        free_fixture(f);
+    }
+}
+
+static void any_flipped_bit_in_a_record_or_entry_is_caught(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    const struct lm_band *b = finest_band(f);
+    const int64_t entry = lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
+    assert_true(entry >= 0);
+    uint32_t record;
+    uint8_t *entry_bytes = f->image.bytes + f->image.directory_offset + 8 * (size_t)entry;
+    memcpy(&record, entry_bytes, 4);
+    uint8_t *record_bytes = f->image.bytes + f->image.tiles_offset + (size_t)record * LM_TILE_BYTES;
+    uint32_t faults = 0;
+    for (uint32_t i = 0; i < 64 + 200; i++) {
+        const uint32_t bit = i < 64 ? i : (i - 64) * 667u % (LM_TILE_BYTES * 8u);
+        uint8_t *byte = (i < 64 ? entry_bytes : record_bytes) + bit / 8;
+        *byte = (uint8_t)(*byte ^ 1u << bit % 8);
+        free(f->pool);
+        assert_int_equal(open_cache(f), LM_OK);
+        get(f, 1, 1);
+        serve(f, 0);
+        const struct lm_tile *tile = get(f, 1, 1);
+        faults += f->cache.count.corrupt;
+        assert_int_equal(f->cache.count.corrupt, 1);
+        assert_true(tile->level > 0);
+        *byte = (uint8_t)(*byte ^ 1u << bit % 8);
+    }
+    assert_int_equal(faults, 264);
+    free_fixture(f);
+}
+
+static void a_record_that_answers_for_another_tile_is_refused(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    const struct lm_band *b = finest_band(f);
+    uint8_t *directory = f->image.bytes + f->image.directory_offset;
+    const size_t one = 8 * (size_t)lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
+    const size_t two = 8 * (size_t)lm_db_entry(&f->db, 0, b->row0 + 4, b->column0 + 1);
+    memcpy(directory + one, directory + two, 4); /* with its checksum put right */
+    tiny_image_seal(&f->image);
+    free(f->pool);
+    assert_int_equal(open_cache(f), LM_OK);
+    get(f, 1, 1);
+    serve(f, 0);
+    assert_int_equal(f->cache.count.corrupt, 1);
+    assert_true(get(f, 1, 1)->level > 0);
+    free_fixture(f);
+}
+
+static bool leave_out_middle(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    const uint32_t *hole = ctx;
+    return level == 0 && row == hole[0] && column == hole[1];
+}
+
+static void a_tile_the_image_leaves_out_is_no_fault(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    uint32_t hole[2] = {finest_band(f)->row0 + 2, finest_band(f)->column0 + 5};
+    free_fixture(f);
+    f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = soil;
+    spec.rows = spec.columns = SIDE;
+    spec.leave_out = leave_out_middle;
+    spec.ctx = hole;
+    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+    memory_flash_open(&f->flash, f->image.bytes, f->image.size);
+    assert_int_equal(open_cache(f), LM_OK);
+    get(f, 2, 5);
+    serve(f, 0);
+    const uint32_t misses = f->cache.count.misses, reads = f->flash.reads;
+    for (int i = 0; i < 5; i++) {
+        get(f, 2, 5);
+        serve(f, 0);
+    }
+    assert_true(get(f, 2, 5)->level > 0);
+    assert_int_equal(f->cache.count.misses, misses);
+    assert_int_equal(f->flash.reads, reads);
+    assert_int_equal(f->cache.count.corrupt, 0);
+    free_fixture(f);
+}
+
+static void the_tile_used_longest_ago_leaves_first(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) { /* more tiles than slots */
+        get(f, 0, 0);                            /* but this one is always wanted */
+        get(f, i / SIDE, i % SIDE);
+        serve(f, 0);
+    }
+    assert_true(f->cache.count.evicted > 0);
+    assert_int_equal(get(f, 0, 0)->level, 0);
+    assert_int_equal(get(f, SIDE - 1, SIDE - 1)->level, 0);
+    assert_true(get(f, 0, 1)->level > 0);
+    free_fixture(f);
+}
+
+static void off_the_map_there_is_nothing(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    assert_null(lm_tile_cache_get(&f->cache, 0, 5, 5));
+    assert_int_equal(f->cache.count.off_map, 1);
+    assert_true(lm_tile_cache_is_idle(&f->cache));
+    free_fixture(f);
+}
+
+static void a_pool_too_small_for_the_coarsest_level_is_refused(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    struct lm_tile_cache *cache = calloc(1, sizeof *cache);
+    assert_int_equal(lm_tile_cache_init(cache, &f->db, f->pool, 16 * sizeof(struct lm_tile), POLLS),
+                     LM_ERR_NO_MEMORY);
+    free(cache);
+    free_fixture(f);
+}
+
+static void a_full_queue_drops_requests_and_counts_them(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    const struct lm_band *b = finest_band(f);
+    for (uint32_t i = 0; i < 10 * LM_TILE_REQUESTS; i++) {
+        lm_tile_cache_want(&f->cache, 0, b->row0 + i * 7 % SIDE, b->column0 + i * 13 / 3 % SIDE);
+    }
+    assert_true(f->cache.count.requests_dropped > 0);
+    serve(f, 0);
+    get(f, 7, 7);
+    serve(f, 0);
+    assert_int_equal(get(f, 7, 7)->level, 0);
+    free_fixture(f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_coarsest_level_is_resident_from_the_start),
+        cmocka_unit_test(a_tile_that_was_asked_for_is_the_tile_itself_later),
+        cmocka_unit_test(a_lookup_never_waits_for_a_late_read),
+        cmocka_unit_test(every_read_that_fails_is_counted_and_answered_by_an_ancestor),
+        cmocka_unit_test(any_flipped_bit_in_a_record_or_entry_is_caught),
+        cmocka_unit_test(a_record_that_answers_for_another_tile_is_refused),
+        cmocka_unit_test(a_tile_the_image_leaves_out_is_no_fault),
+        cmocka_unit_test(the_tile_used_longest_ago_leaves_first),
+        cmocka_unit_test(off_the_map_there_is_nothing),
+        cmocka_unit_test(a_pool_too_small_for_the_coarsest_level_is_refused),
+        cmocka_unit_test(a_full_queue_drops_requests_and_counts_them),
+    };
+    return cmocka_run_group_tests_name("tile_cache", tests, NULL, NULL);
+}
