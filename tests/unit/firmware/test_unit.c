@@ -1,0 +1,517 @@
+/* The display unit as a whole, on a bus, a flash and a glass that misbehave on demand. */
+#include "lm/unit.h"
+
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include "fx/crc32c.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120 };
+
+/* A bus that flies north at 150 m/s from 46 N 11 E, 2,000 m up, until told to stop. */
+struct fake_bus {
+    uint64_t now_us, sent_us, stop_us;
+    int queue_next;
+    int is_down;
+    double jump_degrees;
+    uint8_t code;
+};
+
+struct rig {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct fake_bus bus;
+    struct lm_control control;
+    int has_control;
+    uint32_t glass[WIDTH * HEIGHT];
+    int is_display_busy, is_display_broken;
+    uint8_t plane[WIDTH * HEIGHT];
+    uint64_t pool[POOL_TILES * sizeof(struct lm_tile) / 8];
+    struct lm_can can;
+    struct lm_controls controls;
+    struct lm_display display;
+    struct lm_board board;
+    struct lm_unit unit;
+    uint64_t now_us;
+};
+
+static void put_float(struct lm_can_frame *f, uint32_t id, double value, uint8_t code)
+{
+    const float v = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &v, 4);
+    const uint8_t data[8] = {9,
+                             2,
+                             0,
+                             code,
+                             (uint8_t)(bits >> 24),
+                             (uint8_t)(bits >> 16),
+                             (uint8_t)(bits >> 8),
+                             (uint8_t)bits};
+    *f = (struct lm_can_frame){.id = id, .length = 8};
+    memcpy(f->data, data, 8);
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct fake_bus *b = ctx;
+    if (b->is_down) {
+        return LM_ERR_IO;
+    }
+    if (b->queue_next == 0) {
+        if (b->now_us < b->sent_us || b->now_us >= b->stop_us) {
+            return 0;
+        }
+        b->sent_us += 50000;
+        b->code++;
+    }
+    const double north = 150.0 * (double)b->now_us / 1e6;
+    const struct {
+        uint32_t id;
+        double value;
+    } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
+                 {1037, 11.0},
+                 {1038, 2000},
+                 {1133, 0},
+                 {321, 0},
+                 {1039, 150},
+                 {1040, 0},
+                 {311, 2},
+                 {312, 0}};
+    put_float(frame, items[b->queue_next].id, items[b->queue_next].value, b->code);
+    frame->time_us = b->now_us;
+    b->queue_next = (b->queue_next + 1) % 9;
+    return 1;
+}
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct rig *r = ctx;
+    if (!r->has_control) {
+        return 0;
+    }
+    r->has_control = 0;
+    *control = r->control;
+    return 1;
+}
+
+static int acquire(void *ctx, struct lm_surface *s)
+{
+    struct rig *r = ctx;
+    *s = (struct lm_surface){r->glass, WIDTH, WIDTH, HEIGHT};
+    return r->is_display_broken ? LM_ERR_IO : r->is_display_busy ? LM_BUSY : LM_OK;
+}
+
+static int present(void *ctx)
+{
+    (void)ctx;
+    return LM_OK;
+}
+
+static struct tiny_cell scene(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    if (hypot(p->east_m, p->north_m) < 700) {
+        return (struct tiny_cell){-40, TINY_WATER, 0};
+    }
+    const int is_house =
+        fabs(remainder(p->east_m, 300)) < 40 && fabs(remainder(p->north_m, 300)) < 40;
+    return is_house ? (struct tiny_cell){0, TINY_STRUCTURE, 5}
+                    : (struct tiny_cell){-18, TINY_SOIL, 0};
+}
+
+static double hills(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 100 + 50 * sin(p->east_m / 900);
+}
+
+static struct rig *make_rig(void)
+{
+    struct rig *r = calloc(1, sizeof *r);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = scene;
+    spec.elevation_m = hills;
+    spec.shift0 = 11;
+    spec.rows = spec.columns = 10;
+    assert_int_equal(tiny_image_build(&r->image, &spec), 0);
+    memory_flash_open(&r->flash, r->image.bytes, r->image.size);
+    r->bus.stop_us = UINT64_MAX;
+    r->can = (struct lm_can){&r->bus, receive};
+    r->controls = (struct lm_controls){r, next_control};
+    r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};
+    r->board = (struct lm_board){.radar = &lm_radar_default,
+                                 .flash = &r->flash.port,
+                                 .can = &r->can,
+                                 .controls = &r->controls,
+                                 .display = &r->display,
+                                 .tile_pool = r->pool,
+                                 .tile_pool_bytes = sizeof r->pool,
+                                 .plane = r->plane,
+                                 .flash_poll_limit = 100};
+    return r;
+}
+
+static struct rig *start_rig(void)
+{
+    struct rig *r = make_rig();
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    return r;
+}
+
+static void run(struct rig *r, double seconds)
+{
+    const uint64_t until = r->now_us + (uint64_t)(seconds * 1e6);
+    for (; r->now_us < until; r->now_us += STEP_US) {
+        r->bus.now_us = r->now_us;
+        lm_unit_step(&r->unit, r->now_us);
+    }
+}
+
+static void command(struct rig *r, struct lm_control control)
+{
+    r->control = control;
+    r->has_control = 1;
+}
+
+static void free_rig(struct rig *r)
+{
+    tiny_image_free(&r->image);
+    free(r);
+}
+
+static uint32_t plane_sum(const struct rig *r)
+{
+    return fx_crc32c(0, r->plane, sizeof r->plane);
+}
+
+static uint32_t lit_pixels(const struct rig *r)
+{
+    uint32_t lit = 0;
+    for (size_t i = 0; i < sizeof r->plane; i++) {
+        lit += r->plane[i] > 20;
+    }
+    return lit;
+}
+
+static const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .value = 0};
+static const struct lm_control patch_here = {
+    .kind = LM_CONTROL_SAR,
+    .sar = {.centre = {0x20B90000, 0x07D27D28}, .cell_mm = 5000, .is_from_ownship = true}};
+
+static void a_good_flight_paints_a_sector_without_a_flag(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 3);
+    assert_int_equal(r->unit.flags & ~(uint32_t)LM_FLAG_OFF_MAP, 0);
+    assert_true(lit_pixels(r) > 10000);
+    assert_int_equal(r->unit.count.lines_dropped, 0);
+    free_rig(r);
+}
+
+static void frames_come_thirty_times_a_second_and_lines_at_the_radars_rate(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1); /* nav must come first */
+    const uint32_t frames = r->unit.count.frames, lines = r->unit.count.lines;
+    run(r, 10);
+    assert_in_range(r->unit.count.frames - frames, 294, 306); /* 30 Hz within 2 % */
+    assert_in_range(r->unit.count.lines - lines, 2509, 2611); /* 256 a second within 2 % */
+    free_rig(r);
+}
+
+static void two_runs_give_the_same_pixels(void **state)
+{
+    (void)state;
+    struct rig *a = start_rig(), *b = start_rig();
+    run(a, 2);
+    run(b, 2);
+    assert_memory_equal(a->glass, b->glass, sizeof a->glass);
+    free_rig(a);
+    free_rig(b);
+}
+
+static void another_seed_gives_other_speckle(void **state)
+{
+    (void)state;
+    struct rig *a = start_rig(), *b = make_rig();
+    b->board.noise_seed = 1;
+    assert_int_equal(lm_unit_init(&b->unit, &b->board), LM_OK);
+    run(a, 2);
+    run(b, 2);
+    assert_memory_not_equal(a->plane, b->plane, sizeof a->plane);
+    free_rig(a);
+    free_rig(b);
+}
+
+static void without_a_bus_the_glass_says_so_and_shows_no_picture(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    r->bus.is_down = 1;
+    run(r, 2);
+    assert_true(r->unit.flags & LM_FLAG_BUS);
+    assert_true(r->unit.flags & LM_FLAG_NAV_DEAD);
+    assert_int_equal(lit_pixels(r), 0);
+    assert_true(r->unit.count.frames > 50); /* and the display lives */
+    assert_true(r->unit.count.bus_errors > 0);
+    free_rig(r);
+}
+
+static void stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 3);
+    r->bus.stop_us = r->now_us;
+    run(r, 0.5);
+    assert_true(r->unit.flags & LM_FLAG_NAV_STALE);
+    const uint32_t frozen = plane_sum(r), lines = r->unit.count.lines;
+    run(r, 0.3);
+    assert_int_equal(plane_sum(r), frozen);
+    assert_int_equal(r->unit.count.lines, lines);
+    run(r, 3);
+    assert_true(r->unit.flags & LM_FLAG_NAV_DEAD);
+    assert_int_equal(lit_pixels(r), 0);
+    r->bus.stop_us = UINT64_MAX;
+    r->bus.sent_us = r->now_us;
+    run(r, 2);
+    assert_int_equal(r->unit.flags & (LM_FLAG_NAV_DEAD | LM_FLAG_NAV_STALE | LM_FLAG_BUS), 0);
+    assert_true(lit_pixels(r) > 10000);
+    free_rig(r);
+}
+
+static void the_warning_is_on_the_glass(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1);
+    uint32_t before = 0, after = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        before += r->glass[i] == 0x00FFB020;
+    }
+    r->bus.stop_us = r->now_us;
+    run(r, 0.8);
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        after += r->glass[i] == 0x00FFB020;
+    }
+    assert_true(after > before + 100);
+    free_rig(r);
+}
+
+static void an_unusable_database_is_shown_not_hidden(void **state)
+{
+    (void)state;
+    struct rig *r = make_rig();
+    r->image.bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    run(r, 2);
+    assert_true(r->unit.flags & LM_FLAG_DB);
+    assert_int_equal(lit_pixels(r), 0);
+    assert_true(r->unit.count.frames > 50);
+    command(r, patch_here);
+    run(r, 0.1);
+    assert_int_equal(r->unit.count.commands_refused, 1);
+    free_rig(r);
+}
+
+static void every_read_may_fail_once_and_the_sweep_goes_on(void **state)
+{
+    (void)state;
+    struct rig *clean = start_rig();
+    command(clean, range_10);
+    run(clean, 4);
+    const uint32_t reads = clean->flash.reads;
+    for (uint32_t bad = 4; bad < reads; bad += 3) { /* the first three are the database's tables */
+        struct rig *r = make_rig();
+        r->flash.fail_read = bad;
+        assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+        command(r, range_10);
+        run(r, 4);
+        assert_int_equal(r->unit.count.lines, clean->unit.count.lines);
+        assert_int_equal(r->unit.tiles.count.io_errors, 1);
+        free_rig(r);
+    }
+    free_rig(clean);
+}
+
+static void a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    for (size_t i = 0; i < r->image.record_count; i++) {
+        r->image.bytes[r->image.tiles_offset + i * LM_TILE_BYTES + 500] ^= 0x10;
+    }
+    command(r, range_10);
+    run(r, 2);
+    assert_true(r->unit.tiles.count.corrupt > 0);
+    assert_true(r->unit.flags & LM_FLAG_TILE);
+    assert_true(lit_pixels(r) > 10000); /* from the coarsest level, read before the damage */
+    free_rig(r);
+}
+
+static void late_flash_never_holds_the_sweep(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    r->flash.busy_polls = 200;
+    command(r, range_10);
+    run(r, 3);
+    assert_int_equal(r->unit.count.lines_dropped, 0);
+    assert_true(r->unit.count.lines > 600);
+    assert_true(r->unit.tiles.count.substituted > 0);
+    free_rig(r);
+}
+
+static void a_patch_completes_and_stays(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1);
+    command(r, patch_here);
+    run(r, 4);
+    assert_int_equal(r->unit.count.commands_refused, 0);
+    assert_int_equal(r->unit.mode, LM_MODE_SAR);
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
+    const uint32_t done = plane_sum(r);
+    assert_true(lit_pixels(r) > 10000);
+    run(r, 2);
+    assert_int_equal(plane_sum(r), done);
+    free_rig(r);
+}
+
+static void a_mode_change_leaves_nothing_of_the_last_picture(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 3);
+    command(r, patch_here);
+    r->bus.now_us = r->now_us;
+    lm_unit_step(&r->unit, r->now_us);
+    assert_int_equal(lit_pixels(r), 0);
+    free_rig(r);
+}
+
+static void a_jump_of_the_aircraft_starts_the_picture_anew(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 3);
+    const uint32_t lit = lit_pixels(r);
+    r->bus.jump_degrees = 0.02;
+    run(r, 0.08);
+    assert_true(r->unit.nav.position_jumps > 0);
+    assert_true(lit_pixels(r) < lit / 4);
+    free_rig(r);
+}
+
+static void hostile_commands_are_refused_and_counted(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1);
+    const struct lm_control bad[] = {
+        {.kind = LM_CONTROL_RANGE, .value = 4},
+        {.kind = LM_CONTROL_RANGE, .value = -1},
+        {.kind = LM_CONTROL_AZIMUTH, .value = 3},
+        {.kind = LM_CONTROL_GAIN, .value = 31},
+        {.kind = (enum lm_control_kind)99},
+        {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 1, .range_m = 20000}},
+        {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 5000, .range_m = 0xFFFFFFFF}},
+        {.kind = LM_CONTROL_SAR,
+         .sar = {.cell_mm = 5000, .range_m = 20000, .height_q6 = INT32_MIN}},
+        {.kind = LM_CONTROL_SAR,
+         .sar = {.centre = {0xE0000000, 0}, .cell_mm = 5000, .is_from_ownship = true}},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        command(r, bad[i]);
+        run(r, 0.01);
+        assert_int_equal(r->unit.count.commands_refused, i + 1);
+        assert_int_equal(r->unit.mode, LM_MODE_GM);
+    }
+    free_rig(r);
+}
+
+static void freeze_holds_the_picture_and_says_so(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
+    run(r, 0.1);
+    const uint32_t frozen = plane_sum(r);
+    run(r, 1);
+    assert_int_equal(plane_sum(r), frozen);
+    assert_true(r->unit.flags & LM_FLAG_FROZEN);
+    free_rig(r);
+}
+
+static void a_busy_or_broken_display_is_counted_and_survived(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1);
+    r->is_display_busy = 1;
+    run(r, 0.1);
+    assert_true(r->unit.count.display_busy > 0);
+    r->is_display_broken = 1;
+    run(r, 0.1);
+    assert_true(r->unit.count.display_errors > 0);
+    r->is_display_busy = r->is_display_broken = 0;
+    const uint32_t frames = r->unit.count.frames;
+    run(r, 1);
+    assert_in_range(r->unit.count.frames - frames, 28, 32);
+    free_rig(r);
+}
+
+static void a_display_of_a_size_nobody_promised_is_refused(void **state)
+{
+    (void)state;
+    struct rig *r = make_rig();
+    r->display.width_px = 255;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_RANGE);
+    r->display.width_px = 1025;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_RANGE);
+    free_rig(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_good_flight_paints_a_sector_without_a_flag),
+        cmocka_unit_test(frames_come_thirty_times_a_second_and_lines_at_the_radars_rate),
+        cmocka_unit_test(two_runs_give_the_same_pixels),
+        cmocka_unit_test(another_seed_gives_other_speckle),
+        cmocka_unit_test(without_a_bus_the_glass_says_so_and_shows_no_picture),
+        cmocka_unit_test(stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers),
+        cmocka_unit_test(the_warning_is_on_the_glass),
+        cmocka_unit_test(an_unusable_database_is_shown_not_hidden),
+        cmocka_unit_test(every_read_may_fail_once_and_the_sweep_goes_on),
+        cmocka_unit_test(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser),
+        cmocka_unit_test(late_flash_never_holds_the_sweep),
+        cmocka_unit_test(a_patch_completes_and_stays),
+        cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
+        cmocka_unit_test(a_jump_of_the_aircraft_starts_the_picture_anew),
+        cmocka_unit_test(hostile_commands_are_refused_and_counted),
+        cmocka_unit_test(freeze_holds_the_picture_and_says_so),
+        cmocka_unit_test(a_busy_or_broken_display_is_counted_and_survived),
+        cmocka_unit_test(a_display_of_a_size_nobody_promised_is_refused),
+    };
+    return cmocka_run_group_tests_name("unit", tests, NULL, NULL);
+}
