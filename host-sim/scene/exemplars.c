@@ -11,8 +11,9 @@
 
 enum {
     SEED_EXEMPLARS = 1500,
-    TRIES = 60000, /* places looked at for each material */
-    PER_MATERIAL = 7,
+    TRIES = 60000,  /* places looked at for each material */
+    PER_CLASS = 42, /* polygons aimed at, shared among its materials */
+    PER_MATERIAL_MAX = 24,
     CORNERS = 8,
     LARGEST_PIXELS = 26, /* across */
     SMALLEST_PIXELS = 4
@@ -120,14 +121,26 @@ static bool is_far_from(const struct exemplar *e, int count, const struct exempl
     return true;
 }
 
+/* How many polygons a material is due. */
+static int quota(enum material m)
+{
+    int sharing = 0;
+    for (int k = 0; k < MATERIAL_COUNT; k++) {
+        sharing += material_look((enum material)k)->group == material_look(m)->group;
+    }
+    const int due = PER_CLASS / sharing;
+    return due < PER_MATERIAL_MAX ? due : PER_MATERIAL_MAX;
+}
+
 /* Look at random places for those made of `m`; returns how many exemplars were found. */
 static int search(const struct scene *s, const struct picture *p, enum material m,
                   struct exemplar *found)
 {
     struct hs_rng r;
     hs_rng_seed(&r, noise_hash(s->seed + SEED_EXEMPLARS, m, 0));
+    const int due = quota(m);
     int count = 0;
-    for (int t = 0; t < TRIES && count < PER_MATERIAL; t++) {
+    for (int t = 0; t < TRIES && count < due; t++) {
         const uint32_t x = hs_rng_below(&r, (uint32_t)s->size);
         const uint32_t y = hs_rng_below(&r, (uint32_t)s->size);
         const size_t sub = (size_t)(CANVAS_SUB * y) * (size_t)s->canvas.side + CANVAS_SUB * x;
@@ -175,7 +188,7 @@ int exemplars_write(const struct scene *s, const struct picture *p, const char *
           file.stream);
     int written = 0;
     for (int m = 0; m < MATERIAL_COUNT; m++) {
-        struct exemplar found[PER_MATERIAL];
+        struct exemplar found[PER_MATERIAL_MAX];
         const int count = search(s, p, (enum material)m, found);
         for (int i = 0; i < count; i++) {
             if (print_exemplar(file.stream, &found[i], written++ == 0) != 0) {

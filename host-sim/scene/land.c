@@ -88,18 +88,24 @@ static double shore_at(const struct land *l, struct point p)
     return fmax(main_land, ring - point_distance(p, island));
 }
 
+static struct point lake_island_place(void)
+{
+    return (struct point){land_lake().u - 190, land_lake().v + 150};
+}
+
+/* However the shore wanders, it keeps away from the island. */
 static double lake_ring(const struct land *l, struct point p)
 {
     const double wander = noise_fractal(stream(l, NOISE_LAKE), p.u / 900, p.v / 900, 4);
     const struct point c = land_lake();
-    return 760 + 620 * wander - hypot((p.u - c.u) * 1.15, p.v - c.v);
+    const double shore = 760 + 620 * wander - hypot((p.u - c.u) * 1.15, p.v - c.v);
+    return fmax(shore, 480 + 200 * wander - point_distance(p, lake_island_place()));
 }
 
 static double lake_island(const struct land *l, struct point p)
 {
     const double wander = noise_fractal(stream(l, NOISE_ISLAND), p.u / 260, p.v / 260, 3);
-    const struct point c = {land_lake().u - 190, land_lake().v + 150};
-    return 150 + 110 * wander - point_distance(p, c);
+    return 150 + 110 * wander - point_distance(p, lake_island_place());
 }
 
 static double lake_at(const struct land *l, struct point p)
