@@ -22,24 +22,24 @@
  * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same. */
 /* clang-format off */
 const struct lm_canas_row lm_canas_table[LM_CANAS_FIELDS] = {
-    ROW(LATITUDE,       "GPS latitude",            1036, POSITION, BAM,       -90,    90,  100000,  300,  2000),
-    ROW(LONGITUDE,      "GPS longitude",           1037, POSITION, BAM,      -180,   180,  100000,  300,  2000),
-    ROW(GPS_HEIGHT,     "GPS height",              1038, ANALOGUE, Q6,      -1000, 30000,  100000,  500,  5000),
-    ROW(GROUND_SPEED,   "GPS ground speed",        1039, ANALOGUE, MM_S,        0,  1500,  100000,  300,  2000),
-    ROW(TRUE_TRACK,     "GPS true track",          1040, ANALOGUE, BAM,      -180,   360,  100000,  300,  2000),
-    ROW(PITCH,          "body pitch angle",         311, ANALOGUE, BAM,       -90,    90,   12500,  100,  1000),
-    ROW(ROLL,           "body roll angle",          312, ANALOGUE, BAM,      -180,   180,   12500,  100,  1000),
-    ROW(HEADING,        "heading angle",            321, ANALOGUE, BAM,      -180,   360,   12500,  100,  1000),
-    ROW(TRUE_HEADING,   "true heading",            1133, ANALOGUE, BAM,      -180,   360,  100000,  300,  1000),
-    ROW(BARO_ALTITUDE,  "baro corrected altitude",  320, ANALOGUE, Q6,      -1000, 30000,  100000,  500,  5000),
-    ROW(TRUE_ALTITUDE,  "true altitude",            332, ANALOGUE, Q6,      -1000, 30000,  100000,  500,  5000),
-    ROW(ALTITUDE_RATE,  "altitude rate",            314, ANALOGUE, MM_S,     -500,   500,  100000,  300,  2000),
-    ROW(EAST_VELOCITY,  "true east velocity",      1130, ANALOGUE, MM_S,    -1500,  1500,  100000,  300,  2000),
-    ROW(NORTH_VELOCITY, "true north velocity",     1131, ANALOGUE, MM_S,    -1500,  1500,  100000,  300,  2000),
-    ROW(UP_VELOCITY,    "true up velocity",        1132, ANALOGUE, MM_S,     -500,   500,  100000,  300,  2000),
-    ROW(PITCH_RATE,     "body pitch rate",          303, ANALOGUE, BAM,      -170,   170,   12500,  100,  1000),
-    ROW(YAW_RATE,       "body yaw rate",            305, ANALOGUE, BAM,      -170,   170,   12500,  100,  1000),
-    ROW(UTC,            "UTC",                     1200, CLOCK,    SECONDS,     0, 86400, 1000000, 3000, 10000),
+    ROW(LATITUDE,        "GPS latitude",                 1036, POSITION,  BAM,         -90,     90,   100000,   300,   2000),
+    ROW(LONGITUDE,       "GPS longitude",                1037, POSITION,  BAM,        -180,    180,   100000,   300,   2000),
+    ROW(GPS_HEIGHT,      "GPS height above ellipsoid",   1038, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
+    ROW(GROUND_SPEED,    "GPS ground speed",             1039, ANALOGUE,  MM_S,          0,   1500,   100000,   300,   2000),
+    ROW(TRUE_TRACK,      "GPS true track",               1040, ANALOGUE,  BAM,        -180,    360,   100000,   300,   2000),
+    ROW(PITCH,           "body pitch angle",              311, ANALOGUE,  BAM,         -90,     90,    12500,   100,   1000),
+    ROW(ROLL,            "body roll angle",               312, ANALOGUE,  BAM,        -180,    180,    12500,   100,   1000),
+    ROW(HEADING,         "heading angle",                 321, ANALOGUE,  BAM,        -180,    360,    12500,   100,   1000),
+    ROW(TRUE_HEADING,    "true heading",                 1133, ANALOGUE,  BAM,        -180,    360,   100000,   300,   1000),
+    ROW(BARO_ALTITUDE,   "baro corrected altitude",       320, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
+    ROW(TRUE_ALTITUDE,   "true altitude",                 332, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
+    ROW(ALTITUDE_RATE,   "altitude rate",                 314, ANALOGUE,  MM_S,       -500,    500,   100000,   300,   2000),
+    ROW(EAST_VELOCITY,   "true east velocity",           1130, ANALOGUE,  MM_S,      -1500,   1500,   100000,   300,   2000),
+    ROW(NORTH_VELOCITY,  "true north velocity",          1131, ANALOGUE,  MM_S,      -1500,   1500,   100000,   300,   2000),
+    ROW(UP_VELOCITY,     "true up velocity",             1132, ANALOGUE,  MM_S,       -500,    500,   100000,   300,   2000),
+    ROW(PITCH_RATE,      "body pitch rate",               303, ANALOGUE,  BAM,        -170,    170,    12500,   100,   1000),
+    ROW(YAW_RATE,        "body yaw rate",                 305, ANALOGUE,  BAM,        -170,    170,    12500,   100,   1000),
+    ROW(UTC,             "UTC",                          1200, CLOCK,     SECONDS,       0,  86400,  1000000,  3000,  10000),
 };
 /* clang-format on */
 _Static_assert(LM_CANAS_LATITUDE == 0 && LM_CANAS_LONGITUDE == 1, "they index `pair`");
@@ -142,28 +142,42 @@ static void drop_half(struct lm_canas *c, struct lm_canas_pair *p)
     p->state = LM_CANAS_EMPTY;
 }
 
-/* Is `half` the mate of the one in `p`, given that their codes put DOUBLEL `order` after DOUBLEH?
- * Learns the order on the way: of two ways to pair a run of halves, the one that leaves less time
- * between mates is right. A factor of two keeps jitter from turning an evenly spaced sender over
- * and over. */
-static bool is_mate(struct lm_canas_pair *p, int8_t order, uint64_t gap_us, uint32_t period_us)
+/* Are two halves mates that are arranged by this habit? Learns on the way: of two ways to pair a
+ * run of halves, the one that leaves less time between mates is right. A factor of two keeps jitter
+ * from turning an evenly spaced sender over and over. */
+static bool are_mates(struct lm_canas_pair *p, int8_t habit, uint64_t gap_us, uint32_t period_us)
 {
     if (gap_us > period_us) {
-        if (p->order == order) {
-            p->order =
-                0; /* the halves that ought to be mates are not: another habit, learn it anew */
+        if (p->habit == habit) {
+            p->habit = 0; /* what ought to be mates is not: learn the habit anew */
         }
         return false;
     }
-    const uint32_t limit_us = p->order == order ? period_us
-                              : p->order == 0   ? period_us / 2
-                                                : p->order_gap_us / 2;
+    const uint32_t limit_us = p->habit == habit ? period_us
+                              : p->habit == 0   ? period_us / 2
+                                                : p->habit_gap_us / 2;
     if (gap_us > limit_us) {
         return false;
     }
-    p->order = order;
-    p->order_gap_us = (uint32_t)gap_us;
+    p->habit = habit;
+    p->habit_gap_us = (uint32_t)gap_us;
     return true;
+}
+
+/* Does a half complete the one that is held? */
+static bool completes(struct lm_canas_pair *p, const struct lm_can_frame *half, uint32_t period_us)
+{
+    const uint8_t type = half->data[1], code = half->data[3];
+    if (p->state == LM_CANAS_EMPTY || type == p->type || half->time_us < p->time_us) {
+        return false;
+    }
+    const bool is_low_last = type == LM_CANAS_DOUBLEL;
+    const uint8_t difference = (uint8_t)(is_low_last ? code - p->code : p->code - code);
+    if (difference != 1 && difference != 0xff) {
+        return false;
+    }
+    const int habit = (difference == 1 ? 1 : -1) * (is_low_last ? 1 : 2);
+    return are_mates(p, (int8_t)habit, half->time_us - p->time_us, period_us);
 }
 
 /* Take a half. True when it completes a value: *bits is the double, *time_us when its first half
@@ -174,18 +188,11 @@ static bool take_half(struct lm_canas *c, enum lm_canas_field field,
     struct lm_canas_pair *p = &c->pair[field];
     const uint8_t node = frame->data[0], type = frame->data[1], code = frame->data[3];
     const uint32_t word = big_endian_32(frame->data + 4);
-    bool is_joined = false;
     if (p->state != LM_CANAS_EMPTY && node != p->node) {
         drop_half(c, p);
-        p->order = 0;
+        p->habit = 0;
     }
-    if (p->state != LM_CANAS_EMPTY && type != p->type && frame->time_us >= p->time_us) {
-        const uint8_t difference =
-            (uint8_t)(type == LM_CANAS_DOUBLEL ? code - p->code : p->code - code);
-        const int8_t order = difference == 1 ? 1 : difference == 0xff ? -1 : 0;
-        is_joined = order != 0 &&
-                    is_mate(p, order, frame->time_us - p->time_us, lm_canas_table[field].period_us);
-    }
+    const bool is_joined = completes(p, frame, lm_canas_table[field].period_us);
     if (is_joined) {
         const uint64_t high = type == LM_CANAS_DOUBLEH ? word : p->word;
         const uint64_t low = type == LM_CANAS_DOUBLEL ? word : p->word;

@@ -101,14 +101,16 @@ struct lm_canas_event {
                          existed already */
 };
 
-/* A half of a DOUBLE, and what is known of the way its sender orders halves. */
+/* A half of a DOUBLE, and what is known of the way its sender arranges them. */
 struct lm_canas_pair {
     enum { LM_CANAS_EMPTY, LM_CANAS_WAITING, LM_CANAS_JOINED } state;
     uint8_t type, node, code; /* of the half that came last */
     uint32_t word;
     uint64_t time_us;
-    int8_t order; /* code of DOUBLEL minus code of DOUBLEH: 1, -1, or 0 while it is not known */
-    uint32_t order_gap_us; /* time between the halves that told */
+    /* How this sender arranges its halves: the code of DOUBLEL minus that of DOUBLEH, 1 or -1,
+     * times 2 when DOUBLEH comes last; 0 while it is not known. */
+    int8_t habit;
+    uint32_t habit_gap_us; /* time between the two halves that told */
 };
 
 /* What the decoder remembers; the caller owns it. Counters only ever grow. */
@@ -134,8 +136,8 @@ void lm_canas_init(struct lm_canas *c);
  * Halves of a DOUBLE are joined when they have the same identifier and node, adjacent message
  * codes, nothing of that identifier between them, and at most one nominal period between their
  * arrivals. That alone would join the second half of one value to the first half of the next
- * whenever a frame is lost, and then for ever; so the order of a sender's halves is learnt (mates
- * are those nearer in time) and only mates are joined. While the order is not known the limit is
+ * whenever a frame is lost, and then for ever; so a sender's habit is learnt (mates
+ * are those nearer in time) and only mates are joined. While the habit is not known the limit is
  * half a period, so that a sender at the nominal rate is never misread; one that is faster, and
  * whose very first half was lost, may give one value whose halves are neighbours, wrong by 14 m at
  * most. A lone half never makes a value. Cost: about 150 instructions. */
