@@ -1,0 +1,250 @@
+#include "drv/can_log.h"
+
+#include <string.h>
+
+/* The longest line that candump writes is 72 characters for classic CAN; FD's are refused anyway.
+ */
+enum { LINE_BYTES = 256 };
+
+static int digit_value(char c)
+{
+    return c >= '0' && c <= '9' ? c - '0' : -1;
+}
+
+static int hex_value(char c)
+{
+    return c >= 'A' && c <= 'F'   ? c - 'A' + 10
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                                  : digit_value(c);
+}
+
+/* "(seconds.decimals)" at *text, which moves past it. Up to 12 digits of seconds, so that
+ * microseconds fit. */
+static bool parse_time(const char **text, uint64_t *time_us)
+{
+    const char *c = *text;
+    uint64_t us = 0;
+    int digits = 0, decimals = 0;
+    if (*c++ != '(') {
+        return false;
+    }
+    for (; digit_value(*c) >= 0; c++, digits++) {
+        us = us * 10 + (uint64_t)digit_value(*c);
+        if (digits >= 12) {
+            return false;
+        }
+    }
+    if (digits == 0 || *c++ != '.') {
+        return false;
+    }
+    for (; digit_value(*c) >= 0; c++, decimals++) {
+        if (decimals < 6) {
+            us = us * 10 + (uint64_t)digit_value(*c);
+        }
+    }
+    if (decimals < 6 || *c++ != ')') {
+        return false;
+    }
+    *time_us = us;
+    *text = c;
+    return true;
+}
+
+/* The identifier before '#', which *text moves to. */
+static const char *parse_identifier(const char **text, struct lm_can_frame *frame)
+{
+    const char *c = *text;
+    uint32_t id = 0;
+    int digits = 0;
+    for (; hex_value(*c) >= 0 && digits <= 8; c++, digits++) {
+        id = id << 4 | (uint32_t)hex_value(*c);
+    }
+    if (*c != '#' || (digits != 3 && digits != 8)) {
+        return "the identifier is not 3 or 8 hexadecimal digits before a '#'";
+    }
+    frame->is_error = digits == 8 && (id & 0x20000000u) != 0;
+    frame->is_extended = digits == 8 && !frame->is_error;
+    frame->id = frame->is_error ? id & 0x1fffffffu : id;
+    if (frame->id > (digits == 3 ? 0x7ffu : 0x1fffffffu)) {
+        return "the identifier has more than 11 or 29 bits";
+    }
+    *text = c;
+    return NULL;
+}
+
+/* What follows '#'. */
+static const char *parse_data(const char **text, struct lm_can_frame *frame)
+{
+    const char *c = *text;
+    if (*c == '#') {
+        return "a CAN FD frame; only classic frames are understood";
+    }
+    if (*c == 'R') {
+        frame->is_remote = true;
+        c++;
+        if (digit_value(*c) >= 0 && digit_value(*c) <= 8) {
+            frame->length = (uint8_t)digit_value(*c++);
+        }
+        *text = c;
+        return NULL;
+    }
+    for (; hex_value(c[0]) >= 0 && hex_value(c[1]) >= 0; c += 2) {
+        if (frame->length == 8) {
+            return "more than 8 data bytes";
+        }
+        frame->data[frame->length++] = (uint8_t)(hex_value(c[0]) << 4 | hex_value(c[1]));
+    }
+    if (hex_value(c[0]) >= 0) {
+        return "half a data byte";
+    }
+    *text = c;
+    return NULL;
+}
+
+/* Nothing but spaces and perhaps the direction. */
+static bool is_end(const char *c)
+{
+    c += strspn(c, " \t\r");
+    if (*c == 'R' || *c == 'T') {
+        c++;
+    }
+    return c[strspn(c, " \t\r")] == '\0';
+}
+
+const char *drv_can_log_parse(const char *line, struct lm_can_frame *frame)
+{
+    *frame = (struct lm_can_frame){0};
+    const char *c = line + strspn(line, " \t");
+    if (!parse_time(&c, &frame->time_us)) {
+        return "no time stamp such as (1436509052.249713); written by candump without -L?";
+    }
+    const size_t gap = strspn(c, " \t");
+    c += gap;
+    const size_t name = strcspn(c, " \t\r#");
+    c += name;
+    const size_t second_gap = strspn(c, " \t");
+    c += second_gap;
+    if (gap == 0 || name == 0 || second_gap == 0) {
+        return "no interface name between the time and the frame";
+    }
+    const char *cause = parse_identifier(&c, frame);
+    if (cause != NULL) {
+        return cause;
+    }
+    c++;
+    cause = parse_data(&c, frame);
+    if (cause != NULL) {
+        return cause;
+    }
+    return is_end(c) ? NULL : "something follows the frame";
+}
+
+/* Read a line of any length; what does not fit is dropped and *is_whole is false, as it is when the
+ * line holds a NUL. Returns false at the end of the file. */
+static bool read_line(FILE *lines, char text[LINE_BYTES], bool *is_whole)
+{
+    size_t length = 0;
+    int c = getc(lines);
+    if (c == EOF) {
+        return false;
+    }
+    *is_whole = true;
+    for (; c != EOF && c != '\n'; c = getc(lines)) {
+        if (c == '\0' || length == LINE_BYTES - 1) {
+            *is_whole = false;
+        } else {
+            text[length++] = (char)c;
+        }
+    }
+    text[length] = '\0';
+    return true;
+}
+
+static void refuse(struct drv_can_log *log, const char *cause)
+{
+    log->count.malformed++;
+    if (log->report != NULL) {
+        log->report(log->report_ctx, log->count.lines, cause);
+    }
+}
+
+/* The log's clock becomes the flight's, which starts at 0 and never goes back. */
+static void stamp(struct drv_can_log *log, struct lm_can_frame *frame)
+{
+    if (!log->has_origin) {
+        log->origin_us = frame->time_us;
+        log->has_origin = true;
+    }
+    const uint64_t last_us = log->next.time_us; /* 0 before the first frame */
+    if (frame->time_us < log->origin_us + last_us) {
+        frame->time_us = last_us;
+        log->count.backward++;
+    } else {
+        frame->time_us -= log->origin_us;
+    }
+}
+
+/* Fill `next`, or set is_over. */
+static int read_next(struct drv_can_log *log)
+{
+    char text[LINE_BYTES];
+    bool is_whole;
+    while (read_line(log->lines, text, &is_whole)) {
+        struct lm_can_frame frame;
+        log->count.lines++;
+        const bool is_empty = text[strspn(text, " \t\r")] == '\0';
+        if (is_empty && is_whole) {
+            continue;
+        }
+        const char *cause =
+            is_whole ? drv_can_log_parse(text, &frame) : "the line is too long, or not text";
+        if (cause != NULL) {
+            refuse(log, cause);
+            continue;
+        }
+        stamp(log, &frame);
+        log->next = frame;
+        log->has_next = true;
+        return LM_OK;
+    }
+    log->is_over = true;
+    return ferror(log->lines) ? LM_ERR_IO : LM_OK;
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct drv_can_log *log = ctx;
+    if (!log->has_next && !log->is_over) {
+        const int status = read_next(log);
+        if (status != LM_OK) {
+            return status;
+        }
+    }
+    if (!log->has_next || log->next.time_us > log->now_us) {
+        return 0;
+    }
+    *frame = log->next;
+    log->has_next = false;
+    log->count.frames++;
+    return 1;
+}
+
+void drv_can_log_init(struct drv_can_log *log, FILE *lines, drv_can_log_report *report, void *ctx)
+{
+    *log = (struct drv_can_log){.lines = lines, .report = report, .report_ctx = ctx};
+}
+
+void drv_can_log_set_now(struct drv_can_log *log, uint64_t now_us)
+{
+    log->now_us = now_us;
+}
+
+struct lm_can drv_can_log_port(struct drv_can_log *log)
+{
+    return (struct lm_can){.ctx = log, .receive = receive};
+}
+
+bool drv_can_log_is_over(const struct drv_can_log *log)
+{
+    return log->is_over;
+}
