@@ -62,14 +62,28 @@ static uint16_t encode(const struct build_context *b, int class_number, double g
     return image_cell(image_gamma_code(gamma_db), (uint8_t)class_number, height);
 }
 
-static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s)
+/* The random reflectivity of a cell, or of one of the `parts` x `parts` of one: by where it lies
+ * alone. */
+static double assigned_gamma_db(const struct build_context *b, int class_number,
+                                const struct image_frame *f, int parts, int r, int c)
 {
-    if (s->class_number == LM_DB_CLASS_NONE) {
+    const uint64_t level_seed = b->seed + ((uint64_t)f->shift << 32);
+    const uint32_t side = (uint32_t)(CELLS * parts);
+    return db_reflect_assign(&b->laws[class_number], level_seed,
+                             (int)(f->column * side + (uint32_t)c),
+                             (int)(f->row * side + (uint32_t)r));
+}
+
+static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s,
+                              const struct image_frame *f, int r, int c)
+{
+    const int k = s->class_number;
+    if (k == LM_DB_CLASS_NONE) {
         return IMAGE_CELL_NONE;
     }
-    const struct db_class *class = &b->table.items[s->class_number];
-    return encode(b, s->class_number, s->has_gamma ? (double)s->gamma_db : class->gamma_db,
-                  s->has_height ? (double)s->height_m : class->height_m);
+    const double gamma_db =
+        s->has_gamma ? (double)s->gamma_db : assigned_gamma_db(b, k, f, b->parts, r, c);
+    return encode(b, k, gamma_db, s->has_height ? (double)s->height_m : b->table.items[k].height_m);
 }
 
 /* Cells of the finest level that the class raster gives. Returns how many samples it had, or -1. */
@@ -86,7 +100,7 @@ static int cover_cells(const struct build_context *b, const struct image_frame *
     }
     if (found > 0) {
         for (size_t i = 0; i < side * side; i++) {
-            fine[i] = encode_sample(b, &samples[i]);
+            fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
         }
         for (int parts = b->parts; parts > 1; parts /= 2) {
             image_reduce(fine, (size_t)(CELLS * parts), fine, (size_t)(CELLS * parts / 2),
@@ -118,7 +132,8 @@ static void fill_by_rule(struct build_context *b, const struct image_frame *f, s
             const bool is_given = is_below[2 * (r / HALF) + c / HALF] || *cell != IMAGE_CELL_NONE;
             if (!is_given && has_terrain(&t->posts, r, c)) {
                 const int k = rule_class(b, &t->posts, f, r, c);
-                *cell = encode(b, k, b->table.items[k].gamma_db, b->table.items[k].height_m);
+                *cell =
+                    encode(b, k, assigned_gamma_db(b, k, f, 1, r, c), b->table.items[k].height_m);
                 b->counts.cells_by_rule++;
             }
         }

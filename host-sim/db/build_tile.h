@@ -4,6 +4,7 @@
 
 #include "build_plan.h"
 #include "class_table.h"
+#include "reflect.h"
 #include "resample_cover.h"
 #include "terrain_surface.h"
 
@@ -30,6 +31,7 @@ struct build_context {
     struct resample_cover cover;
     struct terrain terrain;
     struct db_class_table table;
+    struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */
     struct lm_classes classes;
     struct build_rule rule;
     struct build_plan plan;

@@ -181,6 +181,9 @@ static int read_table(struct build_context *b, const struct settings *s)
                         b->table.count, LM_DB_CLASS_NONE);
     }
     fill_classes(&b->classes, &b->table);
+    for (int i = 0; i < b->table.count; i++) {
+        db_reflect_law_init(&b->laws[i], &b->table.items[i]);
+    }
     return make_rule(&b->rule, s, &b->table);
 }
 

@@ -19,6 +19,9 @@ static const struct command commands[] = {
     {"correct", "apply manual corrections to a class raster", db_cmd_correct},
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
+    {"inspect", "print what a database image holds", db_cmd_inspect},
+    {"verify", "check every byte of a database image", db_cmd_verify},
+    {"picture", "draw a plane of a database image", db_cmd_picture},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
