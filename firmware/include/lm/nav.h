@@ -73,16 +73,27 @@ void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame);
  * dead until it is heard again.
  *
  * Position: latitude and longitude each from its own time, along the velocity on WGS-84's two radii
- * at the present height, for at most the 2 s until they are dead. Against a course of constant
- * velocity, 2 s at 300 m/s: within 0.05 m up to 80 degrees of latitude; against the geodesic, whose
- * course turns, within 0.2 m (test_nav.c). Within 0.6 degree of a pole longitude moves too slowly.
- * Stale at best when the velocity is dead, because then it stands still, or when a coordinate came
- * as SHORT2. Velocity: 1131 and 1130, or else 1039 along 1040. Height: 1038, or else 332, or else
- * 320; moved on by 1132, or else 314. Heading: 1133, or else 321; turned on by the body's pitch and
- * yaw rates while these and the attitude are good. Attitude: 311 and 312 as they came. "Or else"
- * means when the former is dead, not already when it is stale: sources differ, and a picture that
- * changes its mind at every lost frame is worse than one 300 ms old.
- * Cost: about 1,000 instructions; once a picture or a line. */
+ * at the present height, for at most the 2 s until they are dead. Worst errors after 2 s at 300 m/s
+ * up to 80 degrees of latitude (test_nav.c): 0.016 m against a course of constant velocity, 0.16 m
+ * against the geodesic, whose course turns (0.06 m up to 60 degrees). Within 0.6 degree of a pole
+ * longitude moves too slowly. Stale at best when the velocity is dead, because then it stands
+ * still, or when a coordinate came as SHORT2.
+ *
+ * Velocity: 1131 and 1130, or else 1039 along 1040.
+ *
+ * Height: 1038, or else 332, or else 320; moved on by 1132, or else 314.
+ *
+ * Heading: 1133, or else 321; turned on by the body's pitch and yaw rates while these and the
+ * attitude are good, within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60 degrees of
+ * pitch.
+ *
+ * Attitude: 311 and 312 as they came.
+ *
+ * "Or else" means when the former is dead, not already when it is stale: sources differ, and a
+ * picture that changes its mind at every lost frame is worse than one 300 ms old.
+ *
+ * Cost: about 1,000 instructions; once a picture or a line.
+ */
 void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out);
 
 #endif

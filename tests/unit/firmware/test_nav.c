@@ -102,7 +102,7 @@ static struct lm_ownship fly_in_firmware(struct course *c, uint64_t age_us)
     return ownship;
 }
 
-static void two_seconds_of_constant_velocity_are_within_5_cm(void **state)
+static void two_seconds_of_constant_velocity_are_within_2_cm(void **state)
 {
     (void)state;
     double worst = 0;
@@ -127,10 +127,10 @@ static void two_seconds_of_constant_velocity_are_within_5_cm(void **state)
         }
     }
     print_message("# worst error against constant velocity: %.4f m\n", worst);
-    assert_true(worst < 0.05);
+    assert_true(worst < 0.02);
 }
 
-static void two_seconds_are_within_20_cm_of_the_geodesic(void **state)
+static void two_seconds_are_within_17_cm_of_the_geodesic(void **state)
 {
     (void)state;
     struct geod_geodesic earth;
@@ -158,7 +158,7 @@ static void two_seconds_are_within_20_cm_of_the_geodesic(void **state)
     }
     print_message("# worst error against the geodesic: %.4f m, up to 60 degrees %.4f m\n", worst,
                   worst_below_60);
-    assert_true(worst < 0.2 && worst_below_60 < 0.07);
+    assert_true(worst < 0.17 && worst_below_60 < 0.07);
 }
 
 static void each_coordinate_moves_from_its_own_time(void **state)
@@ -509,8 +509,8 @@ static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_seconds_of_constant_velocity_are_within_5_cm),
-        cmocka_unit_test(two_seconds_are_within_20_cm_of_the_geodesic),
+        cmocka_unit_test(two_seconds_of_constant_velocity_are_within_2_cm),
+        cmocka_unit_test(two_seconds_are_within_17_cm_of_the_geodesic),
         cmocka_unit_test(each_coordinate_moves_from_its_own_time),
         cmocka_unit_test(near_a_pole_the_position_stays_one),
         cmocka_unit_test(ground_speed_and_track_serve_when_there_is_no_velocity),
