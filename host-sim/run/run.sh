@@ -1,0 +1,67 @@
+#!/bin/sh
+# The main job, from nothing: invent a place, classify its image, build the database, fly over it, leave pictures.
+# Usage: run.sh BUILD-DIR. Everything goes into build/run.
+set -eu
+bin=$1/bin
+out=build/run
+classes=host-sim/db/classes/heaton6.classes
+start=$(date +%s)
+
+say() {
+    printf '\n== %s\n' "$*"
+}
+
+mkdir -p $out
+say "The built-in scene: image, terrain, exemplars (build/run/scene)"
+"$bin"/landmass-scene --out $out/scene --preview
+
+say "Train the network on the photo-analyst's exemplars, a third of the polygons held out"
+"$bin"/landmass-db train --image $out/scene/image.tif --exemplars $out/scene/exemplars.geojson \
+    --classes $classes --net $out/scene.net --hold-out polygons:0.33 --report $out/training
+
+say "Segment the whole image"
+"$bin"/landmass-db segment --image $out/scene/image.tif --net $out/scene.net --classes $classes \
+    --exemplars $out/scene/exemplars.geojson --report $out/segmentation \
+    --out $out/classes.tif --picture $out/classes.png
+
+say "Assign reflectivity"
+"$bin"/landmass-db reflect --class-raster $out/classes.tif --classes $classes --method assign \
+    --out $out/reflectivity.tif
+
+say "Build the flash image and check every byte of it"
+"$bin"/landmass-db build --classes $classes --class-raster $out/classes.tif \
+    --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif \
+    --heights $out/scene/heights.tif --title "built-in scene" --out $out/scene.lmdb
+"$bin"/landmass-db verify $out/scene.lmdb
+
+place() { # latitude and longitude of a place of the scene
+    awk -v name="$1" '/^# place/ { is_list = 1 } is_list && $1 == name { print $2, $3 }' $out/scene/scene.txt
+}
+
+say "Fly in from the sea at 3,000 m: ground map, then patches of places on the way"
+"$bin"/landmass-nav --straight 41.985,-29.19,80,3000,180 --seconds 60 --out $out/flight.log
+cat >$out/flight.script <<EOF
+0   range 20
+5   picture ground-map-20nm
+5   range 10
+9   picture ground-map-10nm
+10  sar $(place town) 5
+16  picture sar-town
+17  sar $(place harbour) 4
+23  picture sar-harbour
+24  sar $(place airfield) 5
+30  picture sar-airfield
+31  sar $(place lake) 8
+37  picture sar-lake
+38  sar $(place river-valley) 12
+44  picture sar-river-valley
+45  range 10
+49  picture ground-map-coast
+EOF
+window=
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then window=--window; fi
+"$bin"/landmass-sim --db $out/scene.lmdb --bus $out/flight.log --script $out/flight.script \
+    --png $out/pictures --every 150 --seconds 50 $window
+
+say "Done in $(($(date +%s) - start)) s. Look at:"
+ls $out/scene/preview.png $out/classes.png $out/pictures/*.png
