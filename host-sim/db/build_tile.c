@@ -102,11 +102,7 @@ static int cover_cells(const struct build_context *b, const struct image_frame *
         for (size_t i = 0; i < side * side; i++) {
             fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
         }
-        for (int parts = b->parts; parts > 1; parts /= 2) {
-            image_reduce(fine, (size_t)(CELLS * parts), fine, (size_t)(CELLS * parts / 2),
-                         CELLS * parts / 2, b->classes.height_dm);
-        }
-        memcpy(cells, fine, CELLS * CELLS * sizeof *cells);
+        image_reduce(fine, side, b->parts, cells, CELLS, CELLS, b->classes.height_dm);
     }
     free(samples);
     free(fine);
@@ -168,7 +164,7 @@ static void take_child(const struct build_context *b, struct build_tile *t,
                        const struct build_tile *child, int quarter)
 {
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
-    image_reduce(&child->record.cells[0][0], CELLS, &t->record.cells[row][column], CELLS, HALF,
+    image_reduce(&child->record.cells[0][0], CELLS, 2, &t->record.cells[row][column], CELLS, HALF,
                  b->classes.height_dm);
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {

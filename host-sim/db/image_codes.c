@@ -27,52 +27,60 @@ uint8_t image_height_code(const uint16_t table_dm[16], double height_dm)
     return (uint8_t)best;
 }
 
-static uint8_t commonest_class(const uint16_t cell[4])
+/* Sums over the cells that become one. */
+struct sums {
+    int count[LM_DB_CLASSES];
+    double height_dm[LM_DB_CLASSES];
+    double power; /* of the cells with data */
+};
+
+static void add_cell(struct sums *s, uint16_t cell, const double power[256],
+                     const uint16_t heights_dm[16])
 {
-    uint8_t best = LM_DB_CLASS_NONE;
-    int best_count = 0;
-    for (int i = 0; i < 4; i++) {
-        const uint8_t c = image_cell_class(cell[i]);
-        int count = 0;
-        for (int j = 0; j < 4; j++) {
-            count += image_cell_class(cell[j]) == c;
-        }
-        const bool wins = count > best_count || (count == best_count && c < best);
-        if (c != LM_DB_CLASS_NONE && wins) {
-            best = c;
-            best_count = count;
-        }
-    }
-    return best;
+    const uint8_t k = image_cell_class(cell);
+    s->count[k]++;
+    s->height_dm[k] += heights_dm[image_cell_height(cell)];
+    s->power += k == LM_DB_CLASS_NONE ? 0.0 : power[image_cell_gamma(cell)];
 }
 
-static uint16_t reduce_four(const uint16_t cell[4], const double power[256],
-                            const uint16_t heights_dm[16])
+static uint16_t cell_of_sums(const struct sums *s, const uint16_t heights_dm[16])
 {
-    const uint8_t class_number = commonest_class(cell);
-    if (class_number == LM_DB_CLASS_NONE) {
+    int best = 0, count = 0;
+    for (int k = 0; k < LM_DB_CLASS_NONE; k++) {
+        best = s->count[k] > s->count[best] ? k : best;
+        count += s->count[k];
+    }
+    if (count == 0) {
         return IMAGE_CELL_NONE;
     }
-    double power_sum = 0.0, height_sum = 0.0;
-    int data_count = 0, class_count = 0;
-    for (int i = 0; i < 4; i++) {
-        const uint8_t c = image_cell_class(cell[i]);
-        if (c != LM_DB_CLASS_NONE) {
-            power_sum += power[image_cell_gamma(cell[i])];
-            data_count++;
-        }
-        if (c == class_number) {
-            height_sum += heights_dm[image_cell_height(cell[i])];
-            class_count++;
-        }
-    }
-    const uint8_t gamma = image_gamma_code(10.0 * log10(power_sum / data_count));
-    const uint8_t height = image_height_code(heights_dm, height_sum / class_count);
-    return image_cell(gamma, class_number, height);
+    const uint8_t gamma = image_gamma_code(10.0 * log10(s->power / count));
+    const uint8_t height = image_height_code(heights_dm, s->height_dm[best] / s->count[best]);
+    return image_cell(gamma, (uint8_t)best, height);
 }
 
-void image_reduce(const uint16_t *fine, size_t fine_stride, uint16_t *coarse, size_t coarse_stride,
-                  int coarse_side, const uint16_t heights_dm[16])
+static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
+                             const double power[256], const uint16_t heights_dm[16])
+{
+    struct sums sums = {0};
+    bool are_equal = true;
+    for (int r = 0; r < factor; r++) {
+        for (int c = 0; c < factor; c++) {
+            are_equal = are_equal && fine[(size_t)r * stride + (size_t)c] == fine[0];
+        }
+    }
+    if (are_equal) {
+        return fine[0];
+    }
+    for (int r = 0; r < factor; r++) {
+        for (int c = 0; c < factor; c++) {
+            add_cell(&sums, fine[(size_t)r * stride + (size_t)c], power, heights_dm);
+        }
+    }
+    return cell_of_sums(&sums, heights_dm);
+}
+
+void image_reduce(const uint16_t *fine, size_t fine_stride, int factor, uint16_t *coarse,
+                  size_t coarse_stride, int coarse_side, const uint16_t heights_dm[16])
 {
     double power[256];
     for (int i = 0; i < 256; i++) {
@@ -80,11 +88,9 @@ void image_reduce(const uint16_t *fine, size_t fine_stride, uint16_t *coarse, si
     }
     for (int r = 0; r < coarse_side; r++) {
         for (int c = 0; c < coarse_side; c++) {
-            const uint16_t *f = fine + 2 * (size_t)r * fine_stride + 2 * (size_t)c;
-            const uint16_t four[4] = {f[0], f[1], f[fine_stride], f[fine_stride + 1]};
-            const bool are_equal = four[0] == four[1] && four[0] == four[2] && four[0] == four[3];
+            const size_t from = (size_t)(factor * r) * fine_stride + (size_t)(factor * c);
             coarse[(size_t)r * coarse_stride + (size_t)c] =
-                are_equal ? four[0] : reduce_four(four, power, heights_dm);
+                reduce_block(fine + from, fine_stride, factor, power, heights_dm);
         }
     }
 }

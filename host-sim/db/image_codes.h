@@ -42,12 +42,12 @@ static inline uint8_t image_cell_height(uint16_t cell)
     return cell & 15;
 }
 
-/* Halve a square of cells, `coarse_side` the side of the result: reflectivity is the mean in power
- * of the cells with data, class the commonest (of equals the lower number; "no data" only when all
- * four are), height the mean of the cells of that class. Strides in cells. `fine` and `coarse` may
- * be the same array. */
-void image_reduce(const uint16_t *fine, size_t fine_stride, uint16_t *coarse, size_t coarse_stride,
-                  int coarse_side, const uint16_t heights_dm[16]);
+/* Make each `factor` x `factor` cells of a square one, `coarse_side` the side of the result:
+ * reflectivity is the mean in power of the cells with data, class the commonest (of equals the
+ * lower number; "no data" only when all are), height the mean of the cells of that class. Strides
+ * in cells. `fine` and `coarse` may be the same array. */
+void image_reduce(const uint16_t *fine, size_t fine_stride, int factor, uint16_t *coarse,
+                  size_t coarse_stride, int coarse_side, const uint16_t heights_dm[16]);
 
 /* Elevations of 65 x 65 posts, metres x 64, into base, post_shift and posts of `tile`. The step is
  * the smallest that spans them, and the base a multiple of it: sea level stays exactly 0.

@@ -339,7 +339,7 @@ static bool child_fits(const struct image *image, const struct lm_tile *parent,
     enum { HALF = LM_TILE_CELLS / 2 };
     uint16_t reduced[HALF][HALF];
     const int row = (int)(child->row & 1) * HALF, column = (int)(child->column & 1) * HALF;
-    image_reduce(&child->cells[0][0], LM_TILE_CELLS, &reduced[0][0], HALF, HALF,
+    image_reduce(&child->cells[0][0], LM_TILE_CELLS, 2, &reduced[0][0], HALF, HALF,
                  image->db.classes.height_dm);
     for (int r = 0; r < HALF; r++) {
         if (memcmp(reduced[r], &parent->cells[row + r][column], sizeof reduced[r]) != 0) {
