@@ -87,7 +87,8 @@ static const struct table fixed_tables[] = {
      crc32c},
 };
 
-/* The regularised lower incomplete gamma function P(k, x) of a whole k: 1 - e^-x (1 + x + .. + x^(k-1) / (k-1)!). */
+/* The regularised lower incomplete gamma function P(k, x) of a whole k: 1 - e^-x (1 + x + .. +
+ * x^(k-1) / (k-1)!). */
 static long double gamma_below(int k, long double x)
 {
     long double term = expl(-x), sum = term;
@@ -109,8 +110,9 @@ static long double gamma_quantile(int k, long double p)
     return low;
 }
 
-/* Mean of the n-th of 1024 equally likely slices of a Gamma(L) variable of mean 1: x times the density of Gamma(L) is the
- * density of Gamma(L + 1), so that the mean is a difference of its distribution function. */
+/* Mean of the n-th of 1024 equally likely slices of a Gamma(L) variable of mean 1: x times the
+ * density of Gamma(L) is the density of Gamma(L + 1), so that the mean is a difference of its
+ * distribution function. */
 static int64_t speckle(int looks_log2, int n)
 {
     const int looks = 1 << looks_log2;
@@ -122,8 +124,8 @@ static int64_t speckle(int looks_log2, int n)
 }
 
 static const struct table speckle_tables[] = {
-    {"lm_speckle_q8", "int16_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5, 1024,
-     speckle},
+    {"lm_speckle_q8", "int16_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5,
+     1024, speckle},
 };
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))

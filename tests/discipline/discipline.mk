@@ -11,3 +11,8 @@ $(O)/tests/discipline/flags: Makefile bsp/$(BOARD)/board.mk tests/discipline/dis
 	@mkdir -p $(@D)
 	@printf '%s\n' 'CC $(CC)' 'fixed $(CFLAGS_fixed)' 'firmware $(CFLAGS_firmware)' 'drivers $(CFLAGS_drivers)' \
 	    'bsp $(CFLAGS_bsp)' >$@
+
+# For lint.sh: compile everything, tests included, and run nothing.
+.PHONY: lint-build
+lint-build:
+	@$(MAKE) --no-print-directory -j2 $(PROGRAMS) $(TESTS)

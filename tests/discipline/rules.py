@@ -37,7 +37,8 @@ class Tree:
 
     def compile(self, layer, source, output, *more, compiler=None):
         """Compile one file as the Makefile would, with `more` flags. Returns the compiler's complaints, or ""."""
-        command = (compiler or self.flags["CC"]) + self.flags[layer] + list(more) + ["-c", str(source), "-o", str(output)]
+        command = (compiler or self.flags["CC"]) + self.flags[layer] + list(more)
+        command += ["-c", str(source), "-o", str(output)]
         result = subprocess.run(command, cwd=self.root, capture_output=True, text=True)
         return "" if result.returncode == 0 else result.stderr or f"exit status {result.returncode}"
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import rules
 
 GOOD = {
-    "fixed/include/fx/one.h": "#ifndef FX_ONE_H\n#define FX_ONE_H\n#include <stdint.h>\nint32_t fx_one(int32_t x);\n#endif\n",
+    "fixed/include/fx/one.h": "#ifndef FX_ONE_H\n#define FX_ONE_H\n#include <stdint.h>\n"
+                            "int32_t fx_one(int32_t x);\n#endif\n",
     "fixed/src/one.c": '#include "fx/one.h"\n\nint32_t fx_one(int32_t x)\n{\n    return x + 1;\n}\n',
     "firmware/include/lm/two.h": "#ifndef LM_TWO_H\n#define LM_TWO_H\nint lm_two(int x);\n#endif\n",
     "firmware/src/two.c": '#include "lm/two.h"\n#include "fx/one.h"\n\n'
@@ -32,10 +33,12 @@ PLANTED = [
      "fixed/include/fx/bad.h", "typedef float fx_bad;\n"),
     ("a call of malloc is seen", rules.foreign_symbols, "needs malloc", "firmware/src/bad.c",
      "void *malloc(unsigned long);\n" + FUNCTION % "    return malloc((unsigned long)x) == 0;"),
-    ("a division of 64 bits in fixed is seen on the microcontroller", rules.cortex_m7, "needs __aeabi_uldivmod", "fixed/src/bad.c",
+    ("a division of 64 bits in fixed is seen on the microcontroller", rules.cortex_m7, "needs __aeabi_uldivmod",
+     "fixed/src/bad.c",
      "unsigned long long fx_bad(unsigned long long a, unsigned long long b);\n"
      "unsigned long long fx_bad(unsigned long long a, unsigned long long b)\n{\n    return a / b;\n}\n"),
-    ("recursion through two functions is seen", rules.recursion_and_stack, "lm_[ab]: may call itself", "firmware/src/bad.c",
+    ("recursion through two functions is seen", rules.recursion_and_stack, "lm_[ab]: may call itself",
+     "firmware/src/bad.c",
      "int lm_a(int x);\nint lm_b(int x);\nint lm_b(int x)\n{\n    return lm_a(x) * 3;\n}\n"
      "int lm_a(int x)\n{\n    return x < 2 ? x : lm_b(x - 1) + lm_b(x - 2);\n}\n"),
     ("a frame of variable size is seen", rules.recursion_and_stack, "variable size", "firmware/src/bad.c",
@@ -52,7 +55,8 @@ PLANTED = [
      "drivers/bad.c", '#include "../bsp/here/four.h"\n'),
     ("a board including another board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
      "bsp/here/bad.c", '#include "../other/five.h"\n'),
-    ("an include path too many in the Makefile is seen", rules.open_doors, 'fixed: could include "lm/two.h"', None, None),
+    ("an include path too many in the Makefile is seen", rules.open_doors,
+     'fixed: could include "lm/two.h"', None, None),
     ("a header that needs another one first is seen", rules.open_doors, '"lm/bad.h" does not compile by itself',
      "firmware/include/lm/bad.h", "uint32_t lm_bad(void);\n"),
     ("an #ifdef for the host is seen", rules.conditionals, "bad.c:1: #ifdef HOST",
@@ -134,7 +138,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             judge(report, sentence, rule(planted_tree(folder, flags, path, text)), wanted)
     with tempfile.TemporaryDirectory() as folder:
-        tree = planted_tree(folder, flags, "firmware/src/harmless.c", "/* No float, no #ifdef. */\n#include <stdint.h>\n")
+        harmless = "/* No float, no #ifdef. */\n#include <stdint.h>\n"
+        tree = planted_tree(folder, flags, "firmware/src/harmless.c", harmless)
         found = [text for _, rule in KEPT for text in rule(tree) or []]
         report.result("a tree that keeps the rules is left in peace", found)
     return 1 if report.failed else 0
