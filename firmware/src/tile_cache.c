@@ -3,6 +3,9 @@
 #include "fx/hash.h"
 #include "fx/mem.h"
 
+/* Requests looked through for one that is the same. */
+enum { REMEMBERED = 32 };
+
 static uint32_t bucket_of(uint8_t level, uint32_t row, uint32_t column)
 {
     return fx_hash_u32(row * 0x9E3779B1u ^ column ^ (uint32_t)level << 27) & (LM_TILE_HASH - 1);
@@ -171,19 +174,19 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
     }
 }
 
-void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+/* Queue a tile of the image unless it is resident, settled as absent or bad, or among the newest
+ * requests: neighbouring lines ask for the same tiles. */
+static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
-    const uint16_t known = find(c, level, row, column);
+    const uint16_t known = find(c, key->level, key->row, key->column);
     if (known != LM_SLOT_NONE) {
         c->slots[known].last_use = c->clock;
         if (is_settled(c, known)) {
             return;
         }
     }
-    /* The same tile is asked for by many cells in a row; the newest requests are looked through for it. */
-    for (uint32_t back = 1; back <= 8 && back <= c->wanted_head - c->wanted_tail; back++) {
-        const struct lm_tile_key *k = &c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS];
-        if (k->row == row && k->column == column && k->level == level) {
+    for (uint32_t back = 1; back <= REMEMBERED && back <= c->wanted_head - c->wanted_tail; back++) {
+        if (c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS].entry == key->entry) {
             return;
         }
     }
@@ -191,49 +194,51 @@ void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, ui
         c->count.requests_dropped++;
         return;
     }
-    const int64_t entry = lm_db_entry(c->db, level, row, column);
-    if (entry < 0) {
-        return;
-    }
-    c->wanted[c->wanted_head % LM_TILE_REQUESTS] =
-        (struct lm_tile_key){row, column, (uint32_t)entry, level};
+    c->wanted[c->wanted_head % LM_TILE_REQUESTS] = *key;
     c->wanted_head++;
 }
 
-/* The answer is not the tile that was asked for: ask for it, and count that unless the image never had it. */
-static void note_miss(struct lm_tile_cache *c, const struct lm_tile_key *asked, bool is_on_map)
+void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
 {
-    const uint16_t i = find(c, asked->level, asked->row, asked->column);
-    if (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT) {
-        c->slots[i].last_use = c->clock;
+    const int64_t entry = lm_db_entry(c->db, level, row, column);
+    if (entry >= 0) {
+        request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+    }
+}
+
+/* The answer is not the tile that was asked for: ask for it, and count that unless the image never
+ * had it. */
+static void note_miss(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column,
+                      bool is_answered)
+{
+    const int64_t entry = lm_db_entry(c->db, level, row, column);
+    const uint16_t i = find(c, level, row, column);
+    if (entry < 0 || (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT)) {
         return;
     }
     c->count.misses++;
-    if (is_on_map) {
-        c->count.substituted++;
-    }
-    lm_tile_cache_want(c, asked->level, asked->row, asked->column);
+    c->count.substituted += is_answered;
+    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
 }
 
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
                                         uint32_t column)
 {
     c->clock++;
-    const struct lm_tile_key asked = {.row = row, .column = column, .level = level};
-    for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
-        const uint16_t i = find(c, level, row, column);
+    for (uint32_t up = 0; level + up < c->db->level_count; up++) {
+        const uint16_t i = find(c, (uint8_t)(level + up), row >> up, column >> up);
         if (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_RESIDENT) {
             c->slots[i].last_use = c->clock;
-            if (level == asked.level) {
+            if (up == 0) {
                 c->count.hits++;
             } else {
-                note_miss(c, &asked, true);
+                note_miss(c, level, row, column, true);
             }
             return &c->pool[i];
         }
     }
     c->count.off_map++;
-    note_miss(c, &asked, false);
+    note_miss(c, level, row, column, false);
     return NULL;
 }
 
@@ -242,7 +247,8 @@ bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
     return c->reading_slot == LM_SLOT_NONE && c->wanted_head == c->wanted_tail;
 }
 
-/* Read every tile of the coarsest level, waiting for each: this happens once, before the first picture. */
+/* Read every tile of the coarsest level, waiting for each: this happens once, before the first
+ * picture. */
 static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
 {
     const uint8_t level = (uint8_t)(c->db->level_count - 1);
@@ -257,8 +263,7 @@ static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
             return LM_ERR_NO_MEMORY;
         }
         total += (uint32_t)tiles;
-        const uint32_t round =
-            1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - level - band->zone);
+        const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - level - band->zone);
         for (uint32_t t = 0; t < tiles; t++) {
             const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
             lm_tile_cache_want(c, level, band->row0 + t / band->columns, column);

@@ -273,7 +273,7 @@ static void a_full_queue_drops_requests_and_counts_them(void **state)
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     for (uint32_t i = 0; i < 10 * LM_TILE_REQUESTS; i++) {
-        lm_tile_cache_want(&f->cache, 0, b->row0 + i * 7 % SIDE, b->column0 + i * 13 / 3 % SIDE);
+        lm_tile_cache_want(&f->cache, 0, b->row0 + i / SIDE % SIDE, b->column0 + i % SIDE);
     }
     assert_true(f->cache.count.requests_dropped > 0);
     serve(f, 0);
