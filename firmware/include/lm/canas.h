@@ -140,7 +140,10 @@ void lm_canas_init(struct lm_canas *c);
  * are those nearer in time) and only mates are joined. While the habit is not known the limit is
  * half a period, so that a sender at the nominal rate is never misread; one that is faster, and
  * whose very first half was lost, may give one value whose halves are neighbours, wrong by 14 m at
- * most. A lone half never makes a value. Cost: about 150 instructions. */
+ * most. A lone half never makes a value.
+ *
+ * Cost: 270 instructions for a value (x86-64, gcc -O2, counted), a third of it the search for the
+ * row. */
 enum lm_canas_outcome lm_canas_take(struct lm_canas *c, const struct lm_can_frame *frame,
                                     struct lm_canas_event *event);
 

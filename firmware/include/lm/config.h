@@ -1,5 +1,5 @@
-/* Sizes and choices of the firmware, each with meaning, allowed range and default. A board may override one with
- * -DLM_...; nothing else in the firmware is conditional. */
+/* Sizes and choices of the firmware, each with meaning, allowed range and default. A board may
+ * override one with -DLM_...; nothing else in the firmware is conditional. */
 #ifndef LM_CONFIG_H
 #define LM_CONFIG_H
 

@@ -16,8 +16,8 @@ enum lm_control_kind {
     LM_CONTROL_FREEZE   /* value: 1 on, 0 off */
 };
 
-/* A patch of cells x cells around a place. Either seen from where the ownship is when the command comes, or, for training
- * and tests, from a commanded range and heading. */
+/* A patch of cells x cells around a place. Either seen from where the ownship is when the command
+ * comes, or, for training and tests, from a commanded range and heading. */
 struct lm_sar_command {
     struct lm_place centre;
     uint32_t cell_mm;      /* within the radar table's limits */

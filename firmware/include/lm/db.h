@@ -1,14 +1,17 @@
-/* The database image in flash: its parts as the firmware sees them, and what is checked before any is believed.
- * docs/FORMATS.md, "Flash image", is the description of every byte; the offsets here are the same ones.
+/* The database image in flash: its parts as the firmware sees them, and what is checked before any
+ * is believed. docs/FORMATS.md, "Flash image", is the description of every byte; the offsets here
+ * are the same ones.
  *
- * Numbers are little-endian, as on every machine the firmware is built for (checked at compile time in db.c).
+ * Numbers are little-endian, as on every machine the firmware is built for (checked at compile time
+ * in db.c).
  *
- * The grid. Latitude and longitude are binary angles (2^32 = 360 degrees). A cell of level L is 2^(shift0 + L)
- * units of latitude high; in longitude it is wider by 2^zone, where the zone depends on latitude only
- * (lm_db_zone). A tile is 64 x 64 cells; tile row = (latitude + 90 degrees) >> (shift + 6) counts from the south
- * pole, tile column = longitude >> (shift + zone + 6) from Greenwich eastward and wraps at the antimeridian by
- * itself. The parent of a tile is (level + 1, row / 2, column / 2): zone borders fall on tile borders at every
- * level because they are multiples of 2^26 and shift + 6 <= 26. */
+ * The grid. Latitude and longitude are binary angles (2^32 = 360 degrees). A cell of level L is
+ * 2^(shift0 + L) units of latitude high; in longitude it is wider by 2^zone, where the zone depends
+ * on latitude only (lm_db_zone). A tile is 64 x 64 cells; tile row = (latitude + 90 degrees) >>
+ * (shift + 6) counts from the south pole, tile column = longitude >> (shift + zone + 6) from
+ * Greenwich eastward and wraps at the antimeridian by itself. The parent of a tile is (level + 1,
+ * row / 2, column / 2): zone borders fall on tile borders at every level because they are multiples
+ * of 2^26 and shift + 6 <= 26. */
 #ifndef LM_DB_H
 #define LM_DB_H
 
@@ -29,7 +32,7 @@ enum {
     LM_DB_CLASS_NONE = 15, /* no data: drawn as nothing */
     LM_TILE_CELLS = 64,    /* along one side */
     LM_TILE_CELLS_LOG2 = 6,
-    LM_TILE_POSTS = 65,    /* elevation posts at the cells' corners, shared with the neighbours */
+    LM_TILE_POSTS = 65, /* elevation posts at the cells' corners, shared with the neighbours */
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
     LM_TILE_BYTES = 16704
 };
@@ -45,15 +48,16 @@ struct lm_tile {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint8_t level, zone;
     uint16_t reserved0;
-    uint32_t row, column; /* the record says which tile it is; an answer to another question is refused */
-    int32_t base_q6;      /* elevation of post code 0, metres * 64 */
-    uint8_t post_shift;   /* one post step is 2^post_shift / 64 metres; 0..4 */
+    uint32_t row,
+        column; /* the record says which tile it is; an answer to another question is refused */
+    int32_t base_q6;    /* elevation of post code 0, metres * 64 */
+    uint8_t post_shift; /* one post step is 2^post_shift / 64 metres; 0..4 */
     uint8_t reserved1[11];
     /* Row 0 is the southernmost, column 0 the westernmost.
      * Bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code. */
     uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
-    /* posts[r][c] is the elevation at the south-west corner of cell (r, c); row and column 64 repeat the
-     * neighbours' row and column 0. */
+    /* posts[r][c] is the elevation at the south-west corner of cell (r, c); row and column 64
+     * repeat the neighbours' row and column 0. */
     uint16_t posts[LM_TILE_POSTS][LM_TILE_POSTS];
     uint8_t reserved2[30];
 };
@@ -70,10 +74,10 @@ struct lm_band {
 _Static_assert(sizeof(struct lm_band) == 24, "the record must be what FORMATS.md says");
 
 struct lm_class {
-    char name[16];    /* zero-padded; may fill all 16 */
-    uint8_t kind;     /* enum lm_kind */
+    char name[16];     /* zero-padded; may fill all 16 */
+    uint8_t kind;      /* enum lm_kind */
     uint8_t colour[3]; /* for host pictures */
-    int16_t gamma_q8; /* mean reflectivity, dB * 256 */
+    int16_t gamma_q8;  /* mean reflectivity, dB * 256 */
     uint16_t spread_q8;
     uint16_t height_dm;
     uint16_t looks;
@@ -106,15 +110,16 @@ struct lm_db {
  * After LM_OK every offset and count in *db has been checked against the size of the flash. */
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
 
-/* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders at 61.875, 73.125 and 84.375 degrees
- * (11, 13 and 15 sixteenths of a quarter turn), symmetric about the equator. */
+/* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders at 61.875, 73.125
+ * and 84.375 degrees (11, 13 and 15 sixteenths of a quarter turn), symmetric about the equator. */
 uint8_t lm_db_zone(fx_bam_t latitude);
 
 /* Directory entry of a tile, or -1 when no band holds it. Cost: one pass over the level's bands. */
 int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column);
 
-/* Check 8 bytes read from the directory against the entry they should be. LM_OK and *record (UINT32_MAX for a
- * tile that the image leaves out); LM_ERR_CORRUPT when the checksum or the bound does not hold. */
+/* Check 8 bytes read from the directory against the entry they should be. LM_OK and *record
+ * (UINT32_MAX for a tile that the image leaves out); LM_ERR_CORRUPT when the checksum or the bound
+ * does not hold. */
 int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t bytes[8],
                       uint32_t *record);
 

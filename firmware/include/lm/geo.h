@@ -1,5 +1,5 @@
-/* Positions on WGS-84: the point at a distance and azimuth, and the path of a scan line over the ground.
- * Equations: docs/DESIGN.md, "Where a cell lies". */
+/* Positions on WGS-84: the point at a distance and azimuth, and the path of a scan line over the
+ * ground. Equations: docs/DESIGN.md, "Where a cell lies". */
 #ifndef LM_GEO_H
 #define LM_GEO_H
 
@@ -15,9 +15,9 @@ struct lm_place {
 /* What the direct problem needs of its starting point, worked out once. Lengths in metres * 256. */
 struct lm_geo_origin {
     struct lm_place place;
-    int32_t sin_q30, cos_q30;         /* of the latitude */
-    int32_t x_q8, z_q8;               /* in the meridian plane: distance from the axis, from the equator */
-    uint32_t meridian_radius_q8;      /* M */
+    int32_t sin_q30, cos_q30; /* of the latitude */
+    int32_t x_q8, z_q8;       /* in the meridian plane: distance from the axis, from the equator */
+    uint32_t meridian_radius_q8;       /* M */
     uint32_t prime_vertical_radius_q8; /* N */
 };
 
@@ -25,20 +25,21 @@ struct lm_geo_origin {
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place);
 
 /* The point `distance_q8` (metres * 256, 0..300 km) away at `azimuth` (from north by east).
- * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89 (tests/unit/firmware/test_geo.c).
- * Cost: about 600 instructions. */
-struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, uint32_t distance_q8);
+ * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89
+ * (tests/unit/firmware/test_geo.c). Cost: about 600 instructions. */
+struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
+                              uint32_t distance_q8);
 
-/* A path over the ground in equal steps: latitude and longitude are parabolas of the step number, kept as forward
- * differences in units of 2^-32 BAM. Longitudes wrap, as they should. */
+/* A path over the ground in equal steps: latitude and longitude are parabolas of the step number,
+ * kept as forward differences in units of 2^-32 BAM. Longitudes wrap, as they should. */
 struct lm_ground_path {
     uint64_t latitude, longitude;
     uint64_t latitude_step, longitude_step;
     uint64_t latitude_bend, longitude_bend; /* what a step adds to the step */
 };
 
-/* The path whose cell i (0..cells-1) is centred (i + 1/2) / cells of the way, through three points at the start, middle
- * and end. cells >= 1. */
+/* The path whose cell i (0..cells-1) is centred (i + 1/2) / cells of the way, through three points
+ * at the start, middle and end. cells >= 1. */
 void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3], uint32_t cells);
 
 /* Move the path by `cells` steps (either way, |cells| <= 4096) before the first cell is read. */
@@ -52,8 +53,9 @@ static inline void lm_ground_path_step(struct lm_ground_path *p)
     p->longitude_step += p->longitude_bend;
 }
 
-/* A square patch of ground around a centre, its `along` axis at `azimuth`: nine points that carry a biquadratic surface
- * in latitude and longitude, rows from near to far, columns from left to right as seen along the azimuth. */
+/* A square patch of ground around a centre, its `along` axis at `azimuth`: nine points that carry a
+ * biquadratic surface in latitude and longitude, rows from near to far, columns from left to right
+ * as seen along the azimuth. */
 struct lm_ground_patch {
     struct lm_place points[3][3];
 };
@@ -61,13 +63,14 @@ struct lm_ground_patch {
 void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place centre, fx_bam_t azimuth,
                          uint32_t half_side_q8);
 
-/* The three points of line `line` of `lines`, whose across offset is (line + 1/2 - lines/2) / lines of the side. */
+/* The three points of line `line` of `lines`, whose across offset is (line + 1/2 - lines/2) / lines
+ * of the side. */
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
                           struct lm_place points[3]);
 
-/* Great-circle style distance and azimuth of a point up to 300 km away, by the midpoint's radii; error under 0.2 % of
- * the distance below 75 degrees of latitude. For looking at a place, not for navigation.
- * Cost: about 300 instructions. */
+/* Great-circle style distance and azimuth of a point up to 300 km away, by the midpoint's radii;
+ * error under 0.2 % of the distance below 75 degrees of latitude. For looking at a place, not for
+ * navigation. Cost: about 300 instructions. */
 void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
                     fx_bam_t *azimuth);
 

@@ -24,20 +24,20 @@ struct lm_page {
     uint32_t flags;
     bool is_sar;
     bool is_sweeping;
-    int32_t sweep_bam;         /* antenna from the nose, right positive */
-    fx_bam_t azimuth_half;     /* of the sector */
+    int32_t sweep_bam;     /* antenna from the nose, right positive */
+    fx_bam_t azimuth_half; /* of the sector */
     uint16_t range_nm;
-    uint8_t azimuth_tens;      /* 6, 3, 1 */
+    uint8_t azimuth_tens; /* 6, 3, 1 */
     fx_bam_t heading;
     bool has_heading;
-    uint16_t sar_cell_dm;      /* cell of the patch */
-    uint16_t sar_percent;      /* of the lines drawn */
-    uint16_t sar_look_deg;     /* line of sight */
-    uint32_t frame;            /* turns the mark that shows the display is alive */
+    uint16_t sar_cell_dm;  /* cell of the patch */
+    uint16_t sar_percent;  /* of the lines drawn */
+    uint16_t sar_look_deg; /* line of sight */
+    uint32_t frame;        /* turns the mark that shows the display is alive */
 };
 
-/* Fill the whole surface: the plane through a grey palette, then the symbols. The surface is as large as the plane.
- * Cost: about 4 instructions a pixel. */
+/* Fill the whole surface: the plane through a grey palette, then the symbols. The surface is as
+ * large as the plane. Cost: about 4 instructions a pixel. */
 void lm_overlay_draw(const struct lm_surface *surface, const struct lm_plane *plane,
                      const struct lm_frame *frame, const struct lm_page *page);
 

@@ -1,5 +1,6 @@
-/* What the firmware asks of a board. The firmware owns these interfaces; drivers implement them. Every call is
- * bounded in time and none is made more often than once a line, a tile, a bus frame or a picture. */
+/* What the firmware asks of a board. The firmware owns these interfaces; drivers implement them.
+ * Every call is bounded in time and none is made more often than once a line, a tile, a bus frame
+ * or a picture. */
 #ifndef LM_PORT_H
 #define LM_PORT_H
 
@@ -13,12 +14,13 @@ struct lm_flash {
     void *ctx;
     uint64_t size_bytes;
 
-    /* Begin to copy `length` bytes at `offset` into `destination`, which stays lent until read_poll answers
-     * something else than LM_BUSY. Returns LM_OK, LM_ERR_RANGE past the end, or LM_ERR_IO. Never waits. */
+    /* Begin to copy `length` bytes at `offset` into `destination`, which stays lent until read_poll
+     * answers something else than LM_BUSY. Returns LM_OK, LM_ERR_RANGE past the end, or LM_ERR_IO.
+     * Never waits. */
     int (*read_start)(void *ctx, uint64_t offset, void *destination, uint32_t length);
 
-    /* LM_BUSY while the read is under way, then once LM_OK or LM_ERR_IO; after an error the contents of the
-     * destination are unspecified. Never waits. */
+    /* LM_BUSY while the read is under way, then once LM_OK or LM_ERR_IO; after an error the
+     * contents of the destination are unspecified. Never waits. */
     int (*read_poll)(void *ctx);
 };
 
@@ -27,8 +29,8 @@ struct lm_can_frame {
     uint32_t id;      /* 11 or 29 bits */
     bool is_extended; /* 29-bit identifier */
     bool is_remote;
-    bool is_error;    /* the controller's report, not a frame of somebody's */
-    uint8_t length;   /* data bytes, 0..8 */
+    bool is_error;  /* the controller's report, not a frame of somebody's */
+    uint8_t length; /* data bytes, 0..8 */
     uint8_t data[8];
     uint64_t time_us; /* of arrival, on the clock that lm_unit_step is given */
 };
@@ -36,7 +38,8 @@ struct lm_can_frame {
 struct lm_can {
     void *ctx;
 
-    /* The next frame that waits: 1 and *frame is filled; 0 when none waits; LM_ERR_IO when the bus is down. */
+    /* The next frame that waits: 1 and *frame is filled; 0 when none waits; LM_ERR_IO when the bus
+     * is down. */
     int (*receive)(void *ctx, struct lm_can_frame *frame);
 };
 
@@ -51,8 +54,8 @@ struct lm_display {
     void *ctx;
     uint16_t width_px, height_px; /* 256..1024, constant from start to end */
 
-    /* Lend a surface to draw the next picture in; its old contents are unspecified. LM_OK, LM_BUSY when none is
-     * free yet (the picture is drawn a step later), or LM_ERR_IO. */
+    /* Lend a surface to draw the next picture in; its old contents are unspecified. LM_OK, LM_BUSY
+     * when none is free yet (the picture is drawn a step later), or LM_ERR_IO. */
     int (*acquire)(void *ctx, struct lm_surface *surface);
 
     /* Show the surface that was lent. LM_OK or LM_ERR_IO; the surface is given back either way. */

@@ -10,8 +10,8 @@
 #include "lm/radar.h"
 
 enum {
-    LM_SAR_GUARD = 4,    /* cells before the patch that are traced and not shown */
-    LM_SAR_RUNUP = 128,  /* coarse cells between the antenna and the patch */
+    LM_SAR_GUARD = 4,      /* cells before the patch that are traced and not shown */
+    LM_SAR_RUNUP = 128,    /* coarse cells between the antenna and the patch */
     LM_SAR_RUNUP_LINES = 8 /* lines that share a run-up */
 };
 
@@ -27,15 +27,16 @@ struct lm_sar {
 };
 
 /* LM_OK, or LM_ERR_RANGE for a cell, range or height outside the limits, with *s unchanged.
- * `reference_q10` is the elevation of the patch, metres * 1024; `epoch` that of its noise. The command's geometry must be complete
- * (is_from_ownship already resolved by the caller). */
+ * `reference_q10` is the elevation of the patch, metres * 1024; `epoch` that of its noise. The
+ * command's geometry must be complete (is_from_ownship already resolved by the caller). */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, int32_t reference_q10, uint32_t epoch);
 
 /* Ask for the tiles of line `line` and of its run-up. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
-/* Draw the next line: its sar_cells greys are line->grey[LM_SAR_GUARD ..]. Call while s->line < sar_cells. */
+/* Draw the next line: its sar_cells greys are line->grey[LM_SAR_GUARD ..]. Call while s->line <
+ * sar_cells. */
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
                       struct lm_line *line);
 

@@ -1,5 +1,6 @@
-/* What a function of the firmware answers. Zero is success, failures are small negative numbers, so that one int
- * can carry a count or a failure. A caller's mistake is not a status: it is excluded by contract. */
+/* What a function of the firmware answers. Zero is success, failures are small negative numbers, so
+ * that one int can carry a count or a failure. A caller's mistake is not a status: it is excluded
+ * by contract. */
 #ifndef LM_STATUS_H
 #define LM_STATUS_H
 

@@ -1,8 +1,10 @@
-/* A fixed pool of tiles between the flash and the scan line. The sweep never waits for it: a lookup answers at once
- * from what is resident, and what is missing is read in the background, one record at a time.
+/* A fixed pool of tiles between the flash and the scan line. The sweep never waits for it: a lookup
+ * answers at once from what is resident, and what is missing is read in the background, one record
+ * at a time.
  *
- * A tile that is late, lost or corrupt is answered by its nearest resident ancestor and counted; the coarsest level
- * is read at the start and never leaves, so there is always one inside the map. */
+ * A tile that is late, lost or corrupt is answered by its nearest resident ancestor and counted;
+ * the coarsest level is read at the start and never leaves, so there is always one inside the map.
+ */
 #ifndef LM_TILE_CACHE_H
 #define LM_TILE_CACHE_H
 
@@ -17,8 +19,9 @@ enum lm_slot_state {
     LM_SLOT_FREE = 0,
     LM_SLOT_READING,
     LM_SLOT_RESIDENT, /* checked and usable */
-    LM_SLOT_ABSENT,   /* the image has no such tile: remembered, so that it is not looked up each line */
-    LM_SLOT_BAD       /* could not be read or checked; tried again after LM_TILE_RETRY_US */
+    LM_SLOT_ABSENT, /* the image has no such tile: remembered, so that it is not looked up each line
+                     */
+    LM_SLOT_BAD     /* could not be read or checked; tried again after LM_TILE_RETRY_US */
 };
 
 enum { LM_TILE_RETRY_US = 1000000 };
@@ -27,7 +30,7 @@ struct lm_tile_slot {
     uint32_t row, column;
     uint32_t last_use; /* the cache's clock when it was last answered from or asked for */
     uint64_t failed_us;
-    uint16_t next;     /* in its hash chain, or LM_SLOT_NONE */
+    uint16_t next; /* in its hash chain, or LM_SLOT_NONE */
     uint8_t level, state;
     bool is_pinned;
 };
@@ -40,8 +43,8 @@ struct lm_tile_key {
 };
 
 struct lm_tile_cache {
-    const struct lm_db *db;   /* borrowed */
-    struct lm_tile *pool;     /* borrowed: one record a slot */
+    const struct lm_db *db; /* borrowed */
+    struct lm_tile *pool;   /* borrowed: one record a slot */
     uint32_t slot_count;
     uint32_t clock;
     uint64_t now_us; /* of the last service */
@@ -58,30 +61,33 @@ struct lm_tile_cache {
     uint32_t entry_bytes[2];
 
     struct {
-        uint32_t hits, misses;      /* lookups answered by the tile asked for; by another although it exists */
-        uint32_t substituted;       /* misses answered by an ancestor */
-        uint32_t off_map;           /* lookups that nothing answers: no data here */
+        uint32_t hits,
+            misses; /* lookups answered by the tile asked for; by another although it exists */
+        uint32_t substituted; /* misses answered by an ancestor */
+        uint32_t off_map;     /* lookups that nothing answers: no data here */
         uint32_t tiles_read;
         uint32_t io_errors, corrupt; /* reads that failed, records or entries that did not check */
-        uint32_t requests_dropped;  /* ring full */
+        uint32_t requests_dropped;   /* ring full */
         uint32_t evicted;
         uint64_t bytes_read;
     } count; /* only ever grow */
 };
 
 /* Lend `pool_bytes` at `pool` (8-byte aligned) and read the coarsest level into it, which stays.
- * LM_OK; LM_ERR_NO_MEMORY when the pool cannot hold the coarsest level and 16 more tiles; tiles of the coarsest
- * level that fail are counted, not fatal. Polls each read at most `poll_limit` times. */
+ * LM_OK; LM_ERR_NO_MEMORY when the pool cannot hold the coarsest level and 16 more tiles; tiles of
+ * the coarsest level that fail are counted, not fatal. Polls each read at most `poll_limit` times.
+ */
 int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
                        size_t pool_bytes, uint32_t poll_limit);
 
-/* The tile itself when it is resident; otherwise asks for it and answers its nearest resident ancestor, or NULL
- * where the map has nothing. The pointer is good until the next lm_tile_cache_service.
- * Cost: one hash lookup a level tried. */
+/* The tile itself when it is resident; otherwise asks for it and answers its nearest resident
+ * ancestor, or NULL where the map has nothing. The pointer is good until the next
+ * lm_tile_cache_service. Cost: one hash lookup a level tried. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
                                         uint32_t column);
 
-/* Ask for a tile that will be needed soon. Does nothing when it is resident or already asked for. */
+/* Ask for a tile that will be needed soon. Does nothing when it is resident or already asked for.
+ */
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column);
 
 /* Go on with the reading: at most `reads` polls or starts. Never waits. */

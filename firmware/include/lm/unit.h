@@ -19,7 +19,7 @@ struct lm_board {
     const struct lm_display *display;
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
-    uint8_t *plane; /* display width * height bytes */
+    uint8_t *plane;            /* display width * height bytes */
     uint32_t noise_seed;       /* another one gives other speckle, everything else the same */
     uint32_t flash_poll_limit; /* polls after which a read at start-up is given up */
 };
@@ -59,21 +59,22 @@ struct lm_unit {
 
     struct {
         uint32_t frames, lines, bus_frames;
-        uint32_t lines_dropped;   /* due, but the step had its fill */
-        uint32_t bus_errors;      /* the driver reported the bus down */
+        uint32_t lines_dropped; /* due, but the step had its fill */
+        uint32_t bus_errors;    /* the driver reported the bus down */
         uint32_t display_errors, display_busy;
         uint32_t commands_refused;
     } count; /* only ever grow */
 };
 
-/* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest level.
- * LM_OK also when the database cannot be used: the unit then runs and says so on the glass.
- * LM_ERR_NO_MEMORY when the pool is too small for the database, LM_ERR_RANGE when the display is. */
+/* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest
+ * level. LM_OK also when the database cannot be used: the unit then runs and says so on the glass.
+ * LM_ERR_NO_MEMORY when the pool is too small for the database, LM_ERR_RANGE when the display is.
+ */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
-/* Do what is due at `now_us` (which never goes back): take at most LM_STEP_FRAMES frames from the bus and 8 controls, move the
- * reading of tiles on, draw at most LM_STEP_LINES lines, and show a picture when one is due. Call at least every
- * 4 ms for a smooth sweep. */
+/* Do what is due at `now_us` (which never goes back): take at most LM_STEP_FRAMES frames from the
+ * bus and 8 controls, move the reading of tiles on, draw at most LM_STEP_LINES lines, and show a
+ * picture when one is due. Call at least every 4 ms for a smooth sweep. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
 
 #endif
