@@ -30,7 +30,8 @@ struct header {
     uint8_t reserved1[28];
     uint32_t crc;
 };
-_Static_assert(sizeof(struct header) == LM_DB_HEADER_BYTES, "the header must be what FORMATS.md says");
+_Static_assert(sizeof(struct header) == LM_DB_HEADER_BYTES,
+               "the header must be what FORMATS.md says");
 
 static int read_blocking(const struct lm_flash *flash, uint64_t offset, void *destination,
                          uint32_t length, uint32_t poll_limit)
@@ -58,7 +59,8 @@ static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
            h->section_count <= SECTIONS_MAX;
 }
 
-/* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL. */
+/* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL.
+ */
 static const struct section *find_section(const struct header *h, uint32_t type, uint64_t bytes)
 {
     for (uint32_t i = 0; i < h->section_count; i++) {
@@ -159,8 +161,7 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (status != LM_OK) {
         return status;
     }
-    if (memcmp(h.magic, "LANDMASS", 8) != 0 ||
-        fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
+    if (memcmp(h.magic, "LANDMASS", 8) != 0 || fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
         return LM_ERR_CORRUPT;
     }
     if (h.version != LM_DB_VERSION) {
@@ -228,8 +229,8 @@ int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint3
     const uint8_t *bytes = (const uint8_t *)tile;
     const int32_t base_limit_q6 = 1 << 20;
     const bool is_sound = tile->level == level && tile->row == row && tile->column == column &&
-                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX && tile->base_q6 >= -base_limit_q6 &&
-                          tile->base_q6 <= base_limit_q6 &&
+                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX &&
+                          tile->base_q6 >= -base_limit_q6 && tile->base_q6 <= base_limit_q6 &&
                           fx_crc32c(0, bytes + 4, LM_TILE_BYTES - 4) == tile->crc;
     return is_sound ? LM_OK : LM_ERR_CORRUPT;
 }

@@ -4,9 +4,11 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* WGS-84 (NIMA TR8350.2, table 3.1): semi-major axis 6,378,137 m, first eccentricity squared 0.00669437999014. */
+/* WGS-84 (NIMA TR8350.2, table 3.1): semi-major axis 6,378,137 m, first eccentricity squared
+ * 0.00669437999014. */
 static const int64_t semi_major_q8 = 6378137LL * 256;
-static const int64_t eccentricity2_q30 = 7188035; /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
+static const int64_t eccentricity2_q30 =
+    7188035; /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
 
 static int64_t mul_q30(int64_t a, int64_t b_q30)
 {
@@ -43,9 +45,11 @@ struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, u
     const int64_t sin_az = fx_sin_q30(azimuth), cos_az = fx_cos_q30(azimuth);
     /* Euler: the curvature at an azimuth, from the two principal radii. */
     const int64_t n_q8 = o->prime_vertical_radius_q8, m_q8 = o->meridian_radius_q8;
-    const int64_t mix_q8 = mul_q30(n_q8, mul_q30(cos_az, cos_az)) + mul_q30(m_q8, mul_q30(sin_az, sin_az));
+    const int64_t mix_q8 =
+        mul_q30(n_q8, mul_q30(cos_az, cos_az)) + mul_q30(m_q8, mul_q30(sin_az, sin_az));
     const int64_t radius_q8 = m_q8 * n_q8 / mix_q8; /* 2^31 * 2^31 */
-    /* 2^32 / (2 pi) = 683,565,275.6; the arc is below 300 km, 0.05 rad, so 2^27 * 2^30 at the most. */
+    /* 2^32 / (2 pi) = 683,565,275.6; the arc is below 300 km, 0.05 rad, so 2^27 * 2^30 at the most.
+     */
     const fx_bam_t arc = (fx_bam_t)(((int64_t)distance_q8 * 683565276) / radius_q8);
     const int64_t sin_arc = fx_sin_q30(arc);
     const int64_t half = fx_sin_q30(arc / 2);
@@ -64,7 +68,8 @@ struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, u
     };
 }
 
-/* difference / cells in units of 2^-32, modulo 2^64: whole part first, so that nothing overflows on the way. */
+/* difference / cells in units of 2^-32, modulo 2^64: whole part first, so that nothing overflows on
+ * the way. */
 static int64_t per_cell(int64_t difference, int64_t cells)
 {
     const int64_t whole = difference / cells, rest = difference % cells;
@@ -79,7 +84,8 @@ static void fit_coordinate(uint32_t a, uint32_t b, uint32_t c, uint32_t cells, u
     const int64_t u = (int32_t)(b - a), v = (int32_t)(c - b) - u;
     const int64_t slope = per_cell(2 * u - v, (int64_t)cells);
     const int64_t curve = per_cell(2 * v, (int64_t)cells) / (int64_t)cells;
-    /* f((i + 1/2) / n) starts at a + slope / 2 + curve / 4 and grows by slope + 2 curve, then by 2 curve more each. */
+    /* f((i + 1/2) / n) starts at a + slope / 2 + curve / 4 and grows by slope + 2 curve, then by 2
+     * curve more each. */
     *value = ((uint64_t)a << 32) + (uint64_t)(slope / 2 + curve / 4);
     *step = (uint64_t)slope + 2 * (uint64_t)curve;
     *bend = 2 * (uint64_t)curve;
@@ -109,7 +115,8 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place centre, fx_b
 {
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, centre);
-    const uint32_t diagonal_q8 = (uint32_t)(((uint64_t)half_side_q8 * 1518500250u) >> 30); /* sqrt 2 */
+    const uint32_t diagonal_q8 =
+        (uint32_t)(((uint64_t)half_side_q8 * 1518500250u) >> 30); /* sqrt 2 */
     for (int row = -1; row <= 1; row++) {
         for (int column = -1; column <= 1; column++) {
             struct lm_place *point = &p->points[row + 1][column + 1];
@@ -126,7 +133,7 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place centre, fx_b
 /* The parabola through three values at -1, 0, 1, at x in Q16. */
 static uint32_t parabola(uint32_t left, uint32_t middle, uint32_t right, int32_t x_q16)
 {
-    const int64_t odd = (int32_t)(right - left);             /* twice the slope */
+    const int64_t odd = (int32_t)(right - left); /* twice the slope */
     const int64_t even = (int32_t)(right - middle) + (int64_t)(int32_t)(left - middle);
     /* |odd|, |even| < 2^31 and |x| <= 2^16: products below 2^63 after the first shift. */
     const int64_t bent = even * x_q16 >> 16;

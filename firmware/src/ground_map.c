@@ -31,8 +31,8 @@ int32_t lm_ground_map_edge_bam(const struct lm_ground_map *g, uint32_t line)
     return from_middle * (int32_t)g->radar->gm_line;
 }
 
-/* The grid depends on the height: it is made again when that has changed by a hundredth and a metre. Until then the whole
- * geometry stays that of the old height, gain and horizon alike. */
+/* The grid depends on the height: it is made again when that has changed by a hundredth and a
+ * metre. Until then the whole geometry stays that of the old height, gain and horizon alike. */
 static void refresh_grid(struct lm_ground_map *g, const struct lm_db *db, int32_t height_q10)
 {
     const int32_t change = height_q10 - g->grid.height_q10;

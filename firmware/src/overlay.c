@@ -27,7 +27,8 @@ static void line(const struct lm_surface *s, int32_t x0, int32_t y0, int32_t x1,
     }
 }
 
-/* Dots are drawn 1, 2 or 3 pixels wide, so that text keeps its share of the screen from 256 to 1024 pixels. */
+/* Dots are drawn 1, 2 or 3 pixels wide, so that text keeps its share of the screen from 256 to 1024
+ * pixels. */
 static int32_t text_scale(const struct lm_surface *s)
 {
     return s->width_px < 400 ? 1 : s->width_px < 900 ? 2 : 3;
@@ -113,8 +114,8 @@ struct apex {
 
 static struct apex apex_of(const struct lm_frame *frame)
 {
-    return (struct apex){frame->left_px + frame->width_px / 2,
-                         frame->top_px + frame->height_px - 1, lm_ppi_radius_px(frame)};
+    return (struct apex){frame->left_px + frame->width_px / 2, frame->top_px + frame->height_px - 1,
+                         lm_ppi_radius_px(frame)};
 }
 
 /* End of a ray of `length` pixels at `azimuth` from straight up. */
@@ -146,7 +147,8 @@ static void arc(const struct lm_surface *s, const struct apex *a, fx_bam_t half,
     }
 }
 
-/* Range arcs at a quarter, half and three quarters (at 10 nm the half alone), the sector's edges, the antenna. */
+/* Range arcs at a quarter, half and three quarters (at 10 nm the half alone), the sector's edges,
+ * the antenna. */
 static void draw_ppi(const struct lm_surface *s, const struct lm_frame *frame,
                      const struct lm_page *page)
 {

@@ -18,8 +18,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     const uint32_t before_centre_q8 = (radar->sar_cells / 2u + LM_SAR_GUARD) * cell_q8;
     const uint32_t range_q8 = command->range_m * 256u;
     if (command->cell_mm < radar->sar_cell_min_mm || command->cell_mm > radar->sar_cell_max_mm ||
-        command->range_m < 1000 || command->range_m > 250000 ||
-        command->height_q6 < -highest_q6 || command->height_q6 > highest_q6 ||
+        command->range_m < 1000 || command->range_m > 250000 || command->height_q6 < -highest_q6 ||
+        command->height_q6 > highest_q6 ||
         range_q8 < before_centre_q8 + ((uint32_t)LM_RANGE_MIN_M << 12)) {
         return LM_ERR_RANGE;
     }
@@ -53,7 +53,8 @@ static struct lm_ground_path patch_path(const struct lm_sar *s, uint32_t line)
     return path;
 }
 
-/* The path of the run-up: back from the near end of the line towards the antenna, then forward along it. */
+/* The path of the run-up: back from the near end of the line towards the antenna, then forward
+ * along it. */
 static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t line)
 {
     struct lm_place points[3];

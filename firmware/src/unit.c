@@ -105,8 +105,8 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
         return false;
     }
     const struct lm_sampling sampling = lm_sampling_for(&u->db, command.cell_mm, 0);
-    const int32_t ground_q10 = lm_scan_elevation(&u->tiles, sampling.level, command.centre,
-                                                 u->db.mean_elevation_q6 * 16);
+    const int32_t ground_q10 =
+        lm_scan_elevation(&u->tiles, sampling.level, command.centre, u->db.mean_elevation_q6 * 16);
     if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, ground_q10,
                      u->board->noise_seed) != LM_OK) {
         return false;
@@ -172,7 +172,8 @@ static void take_controls(struct lm_unit *u, uint64_t now_us)
     }
 }
 
-/* The aircraft is somewhere else at once: lines drawn from there and from here must not stand side by side. */
+/* The aircraft is somewhere else at once: lines drawn from there and from here must not stand side
+ * by side. */
 static void heed_jump(struct lm_unit *u, uint64_t now_us)
 {
     if (u->nav.position_jumps != u->jumps_seen) {
@@ -290,8 +291,8 @@ static struct lm_page describe(const struct lm_unit *u)
     struct lm_page page = {
         .flags = u->flags,
         .is_sar = u->mode == LM_MODE_SAR,
-        .is_sweeping = !(u->flags & (LM_FLAG_DB | LM_FLAG_NAV_DEAD | LM_FLAG_NAV_STALE |
-                                     LM_FLAG_FROZEN)),
+        .is_sweeping =
+            !(u->flags & (LM_FLAG_DB | LM_FLAG_NAV_DEAD | LM_FLAG_NAV_STALE | LM_FLAG_FROZEN)),
         .sweep_bam = lm_ground_map_edge_bam(g, g->line),
         .azimuth_half = g->radar->azimuth_half[g->azimuth],
         .range_nm = g->radar->range_nm[g->range],
