@@ -24,7 +24,8 @@ def compilations(lines):
 
 
 def is_known(stamp, target):
-    return stamp.exists() and all(stamp.stat().st_mtime >= Path(path).stat().st_mtime for path in (target, ".clang-tidy"))
+    newest = max(Path(path).stat().st_mtime for path in (target, ".clang-tidy"))
+    return stamp.exists() and stamp.stat().st_mtime >= newest
 
 
 def ask(build, source, target, flags):
