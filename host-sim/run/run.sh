@@ -14,6 +14,8 @@ say() {
 mkdir -p $out
 say "The built-in scene: image, terrain, exemplars (build/run/scene)"
 "$bin"/landmass-scene --out $out/scene --preview
+# The same country for 50 km around, coarse: only its terrain is used.
+"$bin"/landmass-scene --out $out/surroundings --size 1000 --cell 50
 
 say "Train the network on the photo-analyst's exemplars, a third of the polygons held out"
 "$bin"/landmass-db train --image $out/scene/image.tif --exemplars $out/scene/exemplars.geojson \
@@ -30,7 +32,7 @@ say "Assign reflectivity"
 
 say "Build the flash image and check every byte of it"
 "$bin"/landmass-db build --classes $classes --class-raster $out/classes.tif \
-    --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif \
+    --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif --terrain $out/surroundings/terrain.tif \
     --heights $out/scene/heights.tif --title "built-in scene" --out $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
 
