@@ -105,7 +105,7 @@ static enum lm_canas_outcome find_row(const struct lm_can_frame *frame, enum lm_
 static enum lm_canas_outcome check_header(const struct lm_canas_row *row,
                                           const struct lm_can_frame *frame)
 {
-    if (frame->length < 4 || frame->length > 8) {
+    if (frame->length < 4) {
         return LM_CANAS_BAD_LENGTH;
     }
     if (frame->data[0] == 0) {

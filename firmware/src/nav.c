@@ -224,9 +224,9 @@ static bool is_jump(const struct lm_nav *n, const struct lm_canas_event *fix)
                                    : fx_cos_q30((fx_bam_t)n->item[LM_CANAS_LATITUDE].value);
     const int64_t way_mm = times_q30(way, cosine_q30) * 933 / 100;
 
-    const uint64_t period_us = lm_canas_table[fix->field].period_us, hour_us = 3600000000ull;
+    const uint64_t period_us = lm_canas_table[fix->field].period_us, day_us = 86400000000ull;
     uint64_t time_us = fix->time_us > last->time_us ? fix->time_us - last->time_us : 0;
-    time_us = time_us < period_us ? period_us : time_us > hour_us ? hour_us : time_us;
+    time_us = time_us < period_us ? period_us : time_us > day_us ? day_us : time_us;
     return way_mm > (int64_t)(time_us * LM_NAV_JUMP_M_S / 1000);
 }
 

@@ -142,8 +142,7 @@ void lm_canas_init(struct lm_canas *c);
  * whose very first half was lost, may give one value whose halves are neighbours, wrong by 14 m at
  * most. A lone half never makes a value.
  *
- * Cost: 270 instructions for a value (x86-64, gcc -O2, counted), a third of it the search for the
- * row. */
+ * Cost: 270 instructions for a value (x86-64, gcc -O2, counted). */
 enum lm_canas_outcome lm_canas_take(struct lm_canas *c, const struct lm_can_frame *frame,
                                     struct lm_canas_event *event);
 

@@ -164,7 +164,7 @@ static void frames_come_in_order_and_bad_ones_are_counted_and_skipped(void **sta
     const uint64_t before_us = monotonic_us();
     s.time_zero_us = before_us - 1000;
     struct can_frame raw = {.can_id = 0x40c, .can_dlc = 8, .data = {9, 2, 0, 1, 0x42}};
-    struct canfd_frame fd = {.can_id = 0x40c, .len = 12};
+    struct canfd_frame fd = {.can_id = 0x40c, .len = 8};
     assert_true(send(other, &raw, sizeof raw, 0) > 0);
     assert_true(send(other, &fd, sizeof fd, 0) > 0); /* too large for a classic frame */
     assert_true(send(other, &raw, 7, 0) > 0);        /* cut off */

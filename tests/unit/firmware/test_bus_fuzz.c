@@ -99,6 +99,11 @@ static size_t damage(struct hs_rng *rng, const char *line, char *out)
             out[length++] = *c;
         }
     }
+    if (hs_rng_below(rng, 100) == 0) { /* about as long as the reader's buffer */
+        const size_t longer = 250 + hs_rng_below(rng, 10);
+        memset(out + length, ' ', longer - length);
+        length = longer;
+    }
     out[length] = '\n';
     return length + 1;
 }
@@ -116,7 +121,7 @@ static void a_damaged_log_is_read_to_its_end_and_every_line_is_counted(void **st
     enum { LINES = 50000 };
     struct hs_rng rng;
     hs_rng_seed(&rng, 22);
-    char *text = malloc((size_t)LINES * 128);
+    char *text = malloc((size_t)LINES * 264);
     size_t size = 0, line_feeds = 0;
     for (int i = 0; i < LINES; i++) {
         size += damage(&rng, lines[i % 5], text + size);

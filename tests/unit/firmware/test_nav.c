@@ -464,10 +464,16 @@ static void a_jump_is_believed_and_counted(void **state)
     hear_double(&nav, LM_CANAS_LONGITUDE, -100, 300000);
     assert_int_equal(nav.position_jumps, 4);
     assert_true(fabs(degrees_of(at(&nav, 300000).latitude) + 45) < 1e-7);
+    /* Two fixes in one millisecond: what jitters is the bus. */
+    hear_double(&nav, LM_CANAS_LATITUDE, -45.001, 301000);
+    assert_int_equal(nav.position_jumps, 4);
     /* 20 km in 14 s is an aircraft; a twin of an earlier time stamp is not. */
     hear_double(&nav, LM_CANAS_LATITUDE, -45.18, 14300000);
     assert_int_equal(nav.position_jumps, 4);
     hear_double(&nav, LM_CANAS_LATITUDE, -45, 0);
+    assert_int_equal(nav.position_jumps, 5);
+    /* A quarter round the world, but after the time that times 1500 just passes 2^64. */
+    hear_double(&nav, LM_CANAS_LATITUDE, 45, 12297829382473035u);
     assert_int_equal(nav.position_jumps, 5);
 }
 
