@@ -35,7 +35,9 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
     *link = s->next;
 }
 
-/* A free slot, or the one that was used longest ago. Pinned slots and the one being read stay. */
+/* A free slot, or the one that was used longest ago. Pinned slots and the one being read stay;
+ * lm_tile_cache_init leaves at least 16 that are neither, so LM_SLOT_NONE does not happen, but
+ * nothing is written if it does. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
     uint16_t best = LM_SLOT_NONE;
@@ -52,24 +54,28 @@ static uint16_t take_slot(struct lm_tile_cache *c)
             best_age = age;
         }
     }
-    unlink_slot(c, best);
-    c->count.evicted++;
+    if (best != LM_SLOT_NONE) {
+        unlink_slot(c, best);
+        c->count.evicted++;
+    }
     return best;
 }
 
-static void claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *key)
+/* Make a slot for a tile and note that it is being read; LM_SLOT_NONE when there is none. */
+static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
     const uint16_t i = take_slot(c);
-    struct lm_tile_slot *s = &c->slots[i];
+    if (i == LM_SLOT_NONE) {
+        return i;
+    }
     uint16_t *head = &c->heads[bucket_of(key->level, key->row, key->column)];
-    *s = (struct lm_tile_slot){.row = key->row,
-                               .column = key->column,
-                               .level = key->level,
-                               .last_use = c->clock,
-                               .state = LM_SLOT_READING,
-                               .next = *head};
+    c->slots[i] = (struct lm_tile_slot){.row = key->row,
+                                        .column = key->column,
+                                        .level = key->level,
+                                        .last_use = c->clock,
+                                        .next = *head};
     *head = i;
-    c->reading_slot = i;
+    return i;
 }
 
 static void finish(struct lm_tile_cache *c, enum lm_slot_state state)
@@ -107,16 +113,18 @@ static void start_next(struct lm_tile_cache *c)
 {
     const struct lm_tile_key key = c->wanted[c->wanted_tail % LM_TILE_REQUESTS];
     c->wanted_tail++;
-    const uint16_t known = find(c, key.level, key.row, key.column);
-    if (known != LM_SLOT_NONE) {
-        if (is_settled(c, known)) {
-            return;
-        }
-        c->slots[known].state = LM_SLOT_READING;
-        c->reading_slot = known;
-    } else {
-        claim_slot(c, &key);
+    uint16_t slot = find(c, key.level, key.row, key.column);
+    if (slot == LM_SLOT_NONE) {
+        slot = claim_slot(c, &key);
+    } else if (is_settled(c, slot)) {
+        return;
     }
+    if (slot == LM_SLOT_NONE) {
+        c->count.requests_dropped++;
+        return;
+    }
+    c->slots[slot].state = LM_SLOT_READING;
+    c->reading_slot = slot;
     c->reading_entry = key.entry;
     c->is_reading_entry = true;
     start_read(c, c->db->directory_offset + 8u * (uint64_t)key.entry, c->entry_bytes, 8);
