@@ -49,10 +49,8 @@ int drv_flash_file_open(struct drv_flash_file *f, const char *path)
         return cause;
     }
     f->last_status = LM_OK;
-    f->port = (struct lm_flash){.ctx = f,
-                                .size_bytes = (uint64_t)size,
-                                .read_start = read_start,
-                                .read_poll = read_poll};
+    f->port = (struct lm_flash){
+        .ctx = f, .size_bytes = (uint64_t)size, .read_start = read_start, .read_poll = read_poll};
     return 0;
 }
 

@@ -5,11 +5,12 @@
 #include <stddef.h>
 
 /* Write the path of `relative` below the real data into `path` and return 1 when it is there.
- * The data lies in $LANDMASS_DATA, or else beside the checkout in ../shared/data; when it is absent the
- * function says so in the test's log and returns 0, and the caller calls skip(). */
+ * The data lies in $LANDMASS_DATA, or else beside the checkout in ../shared/data; when it is absent
+ * the function says so in the test's log and returns 0, and the caller calls skip(). */
 int support_data_path(const char *relative, char *path, size_t size);
 
-/* The build folder ("build/bench-linux"), where a test finds the programs (bin/) and may write (tmp/). */
+/* The build folder ("build/bench-linux"), where a test finds the programs (bin/) and may write
+ * (tmp/). */
 const char *support_build_dir(void);
 
 /* Run a shell command with its output going to the test's log; returns the exit status. */

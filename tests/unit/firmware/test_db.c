@@ -99,12 +99,14 @@ static void hostile_headers_never_lead_outside_the_flash(void **state)
     for (int round = 0; round < 20000; round++) {
         memcpy(copy, image.bytes, image.size);
         for (int n = 0; n < 3; n++) {
-            const uint32_t at = hs_rng_below(&rng, 3) ? hs_rng_below(&rng, 508)
-                                                      : (uint32_t)image.bands_offset + hs_rng_below(&rng, 24);
+            const uint32_t at = hs_rng_below(&rng, 3)
+                                    ? hs_rng_below(&rng, 508)
+                                    : (uint32_t)image.bands_offset + hs_rng_below(&rng, 24);
             const uint64_t value = hs_rng_u64(&rng) >> hs_rng_below(&rng, 64);
             memcpy(copy + at, &value, 1u << hs_rng_below(&rng, 3));
         }
-        /* Put the checksums of what the firmware checks right again, so that only its judgement stands in the way. */
+        /* Put the checksums of what the firmware checks right again, so that only its judgement
+         * stands in the way. */
         for (uint32_t s = 0; s < 5; s++) {
             uint64_t offset, bytes;
             memcpy(&offset, copy + 64 + 24 * s + 8, 8);

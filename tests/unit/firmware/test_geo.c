@@ -70,7 +70,8 @@ static void the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_mi
     (void)state;
     for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
         const double worst = worst_direct(latitudes[i], 179.9, 148160);
-        print_message("# latitude %g: direct problem off by %.2f m at 80 nm\n", latitudes[i], worst);
+        print_message("# latitude %g: direct problem off by %.2f m at 80 nm\n", latitudes[i],
+                      worst);
         assert_true(worst < 0.1);
     }
 }
@@ -136,7 +137,8 @@ static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
         lm_ground_path_fit(&path, points, 256);
         lm_ground_path_skip(&path, -4);
         for (int i = -4; i < 256; i++, lm_ground_path_step(&path)) {
-            const double across = (line + 0.5 - 128) * side / 256, along = (i + 0.5 - 128) * side / 256;
+            const double across = (line + 0.5 - 128) * side / 256,
+                         along = (i + 0.5 - 128) * side / 256;
             double to_lat, to_lon;
             geodesic_direct(latitude_of(centre), longitude_of(centre),
                             azimuth + atan2(across, along) * 180 / 3.14159265358979,

@@ -1,4 +1,5 @@
-/* The cache between flash and sweep: right tile, its ancestor, or nothing, and every fault counted. */
+/* The cache between flash and sweep: right tile, its ancestor, or nothing, and every fault counted.
+ */
 #include "lm/tile_cache.h"
 
 #include "memory_flash.h"
