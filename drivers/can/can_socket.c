@@ -164,7 +164,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct drv_can_socket *s = ctx;
     for (int i = 0; i < SKIP_MAX; i++) {
-        struct can_frame raw;
+        struct can_frame raw = {0};
         _Alignas(struct cmsghdr) char ancillary[128];
         struct iovec part = {.iov_base = &raw, .iov_len = sizeof raw};
         struct msghdr message = {.msg_iov = &part,
