@@ -45,7 +45,7 @@ struct nav_findings {
     size_t gaps;                                 /* pauses, each beginning a new leg */
     size_t jumps;                                /* steps above max_speed_ms */
     size_t holds;    /* fixes at exactly the position of the one before */
-    size_t isolated; /* fixes with a gap on both sides: nothing can be sent for them */
+    size_t isolated; /* fixes with a gap on both sides: at most one instant of each is sent */
 };
 
 /* Mark gaps and jumps and fill in every NAN: speed, track and climb from the neighbouring fixes of

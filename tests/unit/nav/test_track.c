@@ -254,6 +254,26 @@ static void a_straight_line_covers_its_distance(void **state)
     nav_track_free(&t);
 }
 
+/* Half a degree from the pole the direction of a straight line changes by 0.2 degrees a second;
+ * what is derived for a fix must be that of the fix and not of a neighbour. */
+static void the_derived_track_is_right_near_the_pole(void **state)
+{
+    (void)state;
+    const struct nav_straight line = {89.5, 10, 80, 1000, 200};
+    struct nav_track straight = {0}, t = {0};
+    struct nav_findings found;
+    assert_int_equal(nav_make_straight(&line, 0, 60, &straight), 0);
+    for (size_t i = 0; i < straight.count; i += 10) {
+        add(&t, (double)i / 10, straight.fix[i].latitude_deg, straight.fix[i].longitude_deg);
+    }
+    nav_track_complete(&t, &usual, &found);
+    for (size_t i = 0; i < t.count; i++) {
+        assert_near(nav_wrap_180(t.fix[i].track_deg - straight.fix[10 * i].track_deg), 0, 1e-3);
+    }
+    nav_track_free(&straight);
+    nav_track_free(&t);
+}
+
 static void headings_turn_the_short_way_through_north(void **state)
 {
     (void)state;
@@ -316,6 +336,7 @@ int main(void)
         cmocka_unit_test(bank_and_pitch_are_derived_from_positions_alone),
         cmocka_unit_test(a_circle_is_a_circle_and_is_flown_banked),
         cmocka_unit_test(a_straight_line_covers_its_distance),
+        cmocka_unit_test(the_derived_track_is_right_near_the_pole),
         cmocka_unit_test(headings_turn_the_short_way_through_north),
         cmocka_unit_test(the_real_flights_blemishes_are_found),
     };
