@@ -92,9 +92,6 @@ static void check_class(struct verify *v, int number)
     for (size_t i = strnlen(c->name, sizeof c->name); i < sizeof c->name; i++) {
         has_remains |= c->name[i] != 0;
     }
-    if (number == LM_DB_CLASS_NONE) {
-        image_find(v->findings, at, "class 15 means \"no data\" but is described");
-    }
     if (c->kind > LM_KIND_TREES || c->name[0] == '\0' || c->looks == 0 || has_remains) {
         image_find(v->findings, at, "class %d: its kind, name, looks or unused bytes are wrong",
                    number);
