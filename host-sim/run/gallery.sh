@@ -1,0 +1,14 @@
+#!/bin/sh
+# Fly the real data and leave pictures in build/gallery (docs/gallery.md says what each shows).
+# Usage: gallery.sh BUILD-DIR [SCENE...]; a scene whose data are absent is skipped.
+set -eu
+bin=$1/bin
+shift
+data=${LANDMASS_DATA:-../shared/data}
+out=build/gallery
+here=host-sim/run
+for scene in ${*:-village reservoir campus island riviera}; do
+    sh $here/gallery_scene.sh "$bin" "$data" $out/"$scene" "$scene"
+done
+printf '\n== Pictures:\n'
+find $out -name '*.png' | sort

@@ -1,0 +1,114 @@
+#!/bin/sh
+# One real scene, from its data to pictures of it.
+# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera
+# The tests of tests/system run the same scenes through the same script.
+set -eu
+bin=$1
+data=$2
+out=$3
+scene=$4
+in=host-sim/gallery
+
+say() {
+    printf '\n== %s: %s\n' "$scene" "$*"
+}
+
+need() { # FOLDER: end here, with a word, when the data are not on this machine
+    if [ ! -r "$data/$1" ]; then
+        say "skipped, there is no $data/$1 here"
+        exit 0
+    fi
+}
+
+classify() { # IMAGE EXEMPLARS BANDS: network, class raster and reflectivity from image and polygons
+    say "judge the network by polygons that it has not seen"
+    "$bin"/landmass-db train --image "$1" --exemplars "$2" --map "$in/$scene.map" \
+        --classes "$in/$scene.classes" --hold-out polygons:0.3 --net "$out/judged.net" --report "$out/judged"
+    say "train on all polygons; segment; assign reflectivity"
+    "$bin"/landmass-db train --image "$1" --exemplars "$2" --map "$in/$scene.map" \
+        --classes "$in/$scene.classes" --goal 0.995 --net "$out/scene.net"
+    "$bin"/landmass-db segment --image "$1" --exemplars "$2" --map "$in/$scene.map" \
+        --classes "$in/$scene.classes" --net "$out/scene.net" --report "$out/segmentation" \
+        --out "$out/classes.tif" --picture "$out/classes.png" --picture-bands "$3"
+    "$bin"/landmass-db reflect --class-raster "$out/classes.tif" --classes "$in/$scene.classes" \
+        --method assign --out "$out/reflectivity.tif"
+}
+
+build() { # TITLE, then options of landmass-db build
+    title=$1
+    shift
+    say "build the flash image and check every byte of it"
+    "$bin"/landmass-db build --title "$title" --out "$out/scene.lmdb" "$@"
+    "$bin"/landmass-db verify "$out/scene.lmdb"
+}
+
+fly() { # SCRIPT, then what landmass-nav shall fly
+    script=$1
+    shift
+    say "fly $script"
+    "$bin"/landmass-nav --quiet --out "$out/$script.log" "$@"
+    "$bin"/landmass-sim --db "$out/scene.lmdb" --bus "$out/$script.log" --script "$in/$script.script" \
+        --png "$out" --every 0 --size 1024x1024
+}
+
+village() {
+    need sentinel2_amazon_village_srtm_labels
+    source=$data/sentinel2_amazon_village_srtm_labels/derived
+    classify "$source/sen2_12band_refl_x10000.bsq" "$source/trainingPolygons_sen2.tsv" 4,3,2
+    # The terrain repeats each 3-second post of SRTM over nine or ten pixels. Those stairs would cast shadows: take posts back.
+    gdalwarp -q -overwrite -r bilinear -ts 26 25 "$source/srtm.bsq" "$out/posts.tif"
+    build "Amazon village" --classes $in/village.classes --class-raster "$out/classes.tif" \
+        --reflectivity "$out/reflectivity.tif" --terrain "$out/posts.tif" --land-class forest
+    fly village --circle -1.46935,-56.3626,8000,1500,200,180 --seconds 200
+}
+
+reservoir() {
+    need landsat5_amazon_tucurui_srtm_labels
+    source=$data/landsat5_amazon_tucurui_srtm_labels
+    bands=
+    for band in 1 2 3 4 5 6 7; do
+        bands=$bands,$source/LT52240631988227CUB02_B$band.TIF
+    done
+    classify "${bands#,}" "$source/derived/trainingPolygons_lsat.tsv" 5,4,3
+    build "Amazon reservoir" --classes $in/reservoir.classes --class-raster "$out/classes.tif" \
+        --reflectivity "$out/reflectivity.tif" --terrain "$source/derived/srtm.bsq" --land-class forest
+    fly reservoir --straight -3.7525,-49.98,90,2500,150 --seconds 60
+}
+
+campus() {
+    need houston2018_rgb_hs_labels
+    source=$data/houston2018_rgb_hs_labels/derived
+    classes=host-sim/db/classes/heaton6.classes
+    for image in rgb_512.ppm hs48_128.bsq; do
+        name=${image%%_*}
+        say "train and segment $image"
+        "$bin"/landmass-db train --image "$source/$image" --labels "$source/labels_512.pgm" --map $in/campus.map \
+            --classes $classes --black-is-nodata --hold-out polygons:0.33 --net "$out/$name.net"
+        "$bin"/landmass-db segment --image "$source/$image" --black-is-nodata --classes $classes \
+            --net "$out/$name.net" --out "$out/$name-classes.tif" --picture "$out/$name-classes.png" \
+            --picture-bands "$([ "$name" = rgb ] && echo 1,2,3 || echo 40,22,10)"
+    done
+}
+
+island() {
+    need dted1_hawaii
+    source=$data/dted1_hawaii
+    build Hawaii --classes $in/terrain.classes --terrain "$source/n19_w155_3arc_v2.dt1" \
+        --terrain "$source/n19_w156_3arc_v2.dt1" --terrain "$source/n20_w156_3arc_v2.dt1" \
+        --land-class land --water-class sea --steep-class rock --steep-degrees 20
+    fly island-high --straight 19.75,-154.75,270,3000,200 --seconds 10
+    fly island-low --straight 19.75,-154.75,270,1500,200 --seconds 10
+}
+
+riviera() {
+    need srtm_hgt/N43E007.hgt.zip
+    need nav_tracks/nice.csv.gz
+    build Riviera --classes $in/terrain.classes --terrain "$data/srtm_hgt/N43E007.hgt.zip" \
+        --land-class land --water-class sea --steep-class rock --steep-degrees 25 --geoid 49
+    # An aircraft that calibrates the airport's instruments: up the coast and down to the runway, 1,230 m to 200 m. Its heights are
+    # above the sea; the bus carries heights above the ellipsoid.
+    fly riviera --start 9500 --seconds 345 --height-offset 49 "$data/nav_tracks/nice.csv.gz"
+}
+
+mkdir -p "$out"
+"$scene"
