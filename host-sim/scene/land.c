@@ -19,7 +19,8 @@ enum {
     NOISE_START = 160,
     NOISE_DETAIL = 170,
     NOISE_WOOD = 190,
-    NOISE_WOOD_FINE = 200
+    NOISE_WOOD_FINE = 200,
+    NOISE_ROCK = 210
 };
 
 enum { EROSION_SPACING_M = 50, EROSION_NODES_MAX = 700 };
@@ -122,10 +123,12 @@ static double steepness_at(const struct land *l, struct point p)
     const double north = noise_step(1.7, 4.6, 0.9 * y + 0.42 * x + 1.1 * wander);
     const double south_east = noise_step(5.0, 8.0, 0.8 * x - 0.75 * y + 1.2 * wander);
     const double rolling = 3.6 + 6.5 * noise_step(0.5, 4.5, x) * (0.5 + 0.5 * wander);
+    /* Harder and softer rock keeps the ridges from standing like a comb. */
+    const double rock = 1 + 0.75 * noise_fractal(stream(l, NOISE_ROCK), x / 1.1, y / 1.1, 4);
     const struct frame airfield = land_airfield();
     const double level = noise_step(900, 2100, point_distance(p, land_town())) *
                          noise_step(1000, 2200, point_distance(p, airfield.origin));
-    return rolling * (0.3 + 0.7 * level) + level * (78 * north + 45 * south_east);
+    return rolling * (0.3 + 0.7 * level) + level * rock * (64 * north + 45 * south_east);
 }
 
 static void make_river(struct land *l)
@@ -216,14 +219,15 @@ static void raise_hills(struct land *l, struct erosion *e)
         const double shore = shore_at(l, p);
         e->is_base[i] = shore <= 0;
         e->steepness[i] = steepness_at(l, p);
+        const double rough = noise_fractal(stream(l, NOISE_START), p.u / 800, p.v / 800, 5);
         e->z_m[i] = shore <= 0 ? 0
-                               : 1 + 0.002 * shore + 0.3 * e->steepness[i] +
+                               : 1 + 0.002 * shore + e->steepness[i] * (2.5 + 2.2 * rough) +
                                      2 * noise_at(stream(l, NOISE_START), i, 0);
     }
     lay_river(l, e);
-    erosion_run(e, 90, 0.25, 0.72);
+    erosion_run(e, 90, 0.25, 0.95);
     fill_lake(l, e);
-    erosion_run(e, 30, 0.25, 0.72);
+    erosion_run(e, 30, 0.25, 0.95);
 }
 
 /* Follow the water from `node` down to a base or to a stream already known. */

@@ -33,7 +33,7 @@ static const char help_text[] =
     "  heights.tif        metres that structures and trees stand above the terrain, float\n"
     "  scene.txt          what it is, and where its places are\n"
     "The country is designed for 12.8 km (size times cell): coast with a bay and a harbour,\n"
-    "town, airfield, river with bridges, lake, farmland, woods, hills to 600 m. Less shows its\n"
+    "town, airfield, river with bridges, lake, farmland, woods, hills of 500 m. Less shows its\n"
     "middle, more shows what lies around. The CRS is UTM 26N, in the open Atlantic.\n"
     "Exit status: 0 done, 1 the work failed, 2 the command line makes no sense.\n";
 

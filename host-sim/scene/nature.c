@@ -79,7 +79,7 @@ static struct cell land_cell(const struct site *s)
     if (s->shore_m < (s->slope > 0.22 ? 22 : beach)) {
         return shore_cell(s);
     }
-    if (s->slope > 0.86 + 0.2 * s->edge || s->height_m > 520 + 120 * s->edge + 90 * s->broad) {
+    if (s->slope > 0.98 + 0.2 * s->edge || s->height_m > 520 + 120 * s->edge + 90 * s->broad) {
         return (struct cell){ROCK, 0};
     }
     if (s->wood + 0.05 * s->edge > 0) {
