@@ -8,6 +8,7 @@
 #endif
 
 enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES, SECTIONS_MAX = 16 };
+enum { HEIGHT_MAX_Q6 = 1 << 20 };
 
 struct section {
     uint32_t type, crc;
@@ -49,6 +50,13 @@ static int read_blocking(const struct lm_flash *flash, uint64_t offset, void *de
     return LM_ERR_IO;
 }
 
+/* Heights in the header go into sums as large as an int: believed up to 16 km either way, as a
+ * record's are. */
+static bool is_height(int32_t height_q6)
+{
+    return height_q6 >= -HEIGHT_MAX_Q6 && height_q6 <= HEIGHT_MAX_Q6;
+}
+
 static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
 {
     return h->header_bytes == LM_DB_HEADER_BYTES && h->image_bytes <= flash_bytes &&
@@ -56,7 +64,8 @@ static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
            h->level_count <= LM_DB_LEVELS_MAX &&
            h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
            h->band_count <= LM_DB_BANDS_MAX && h->record_bytes == LM_TILE_BYTES &&
-           h->section_count <= SECTIONS_MAX;
+           h->section_count <= SECTIONS_MAX && is_height(h->mean_elevation_q6) &&
+           is_height(h->geoid_q6);
 }
 
 /* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL.
@@ -227,10 +236,8 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t byte
 int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column)
 {
     const uint8_t *bytes = (const uint8_t *)tile;
-    const int32_t base_limit_q6 = 1 << 20;
     const bool is_sound = tile->level == level && tile->row == row && tile->column == column &&
-                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX &&
-                          tile->base_q6 >= -base_limit_q6 && tile->base_q6 <= base_limit_q6 &&
+                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX && is_height(tile->base_q6) &&
                           fx_crc32c(0, bytes + 4, LM_TILE_BYTES - 4) == tile->crc;
     return is_sound ? LM_OK : LM_ERR_CORRUPT;
 }

@@ -137,6 +137,24 @@ static void hostile_headers_never_lead_outside_the_flash(void **state)
     tiny_image_free(&image);
 }
 
+/* Found by tests/fuzz: either one overflowed the heights computed from it. */
+static void heights_beyond_16_km_in_the_header_are_refused(void **state)
+{
+    (void)state;
+    static const int32_t heights_q6[] = {INT32_MIN, INT32_MAX, -(1 << 20) - 1, (1 << 20) + 1};
+    for (size_t field = 40; field <= 44; field += 4) { /* mean elevation, geoid */
+        for (size_t i = 0; i < sizeof heights_q6 / sizeof *heights_q6; i++) {
+            struct tiny_image image;
+            struct lm_db db;
+            build(&image);
+            memcpy(image.bytes + field, &heights_q6[i], 4);
+            tiny_image_seal(&image);
+            assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_ERR_CORRUPT);
+            tiny_image_free(&image);
+        }
+    }
+}
+
 static void a_newer_version_is_told_from_damage(void **state)
 {
     (void)state;
@@ -207,6 +225,7 @@ int main(void)
         cmocka_unit_test(every_flipped_bit_of_header_and_tables_is_refused),
         cmocka_unit_test(a_truncated_image_is_refused_at_every_length),
         cmocka_unit_test(hostile_headers_never_lead_outside_the_flash),
+        cmocka_unit_test(heights_beyond_16_km_in_the_header_are_refused),
         cmocka_unit_test(a_newer_version_is_told_from_damage),
         cmocka_unit_test(failing_and_hanging_flash_is_an_io_error),
         cmocka_unit_test(zones_change_where_the_format_says),
