@@ -394,6 +394,33 @@ static void a_patch_completes_and_stays(void **state)
     free_rig(r);
 }
 
+/* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
+static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
+{
+    (void)state;
+    struct rig *r = make_rig();
+    const size_t end = 256 * 256;
+    memset(r->plane, 0xAA, sizeof r->plane);
+    r->display.width_px = r->display.height_px = 256;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    run(r, 1);
+    command(r, patch_here);
+    run(r, 4);
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
+    const struct lm_frame *f = &r->unit.frame;
+    for (size_t i = 0; i < end; i++) {
+        const size_t x = i % 256, y = i / 256;
+        const int is_inside = x >= f->left_px && x - f->left_px < f->width_px && y >= f->top_px &&
+                              y - f->top_px < f->height_px;
+        assert_true(is_inside || r->plane[i] == 0);
+    }
+    for (size_t i = end; i < sizeof r->plane; i++) {
+        assert_int_equal(r->plane[i], 0xAA);
+    }
+    assert_true(r->plane[128 * 256 + 128] > 0);
+    free_rig(r);
+}
+
 static void a_mode_change_leaves_nothing_of_the_last_picture(void **state)
 {
     (void)state;
@@ -506,6 +533,7 @@ int main(void)
         cmocka_unit_test(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser),
         cmocka_unit_test(late_flash_never_holds_the_sweep),
         cmocka_unit_test(a_patch_completes_and_stays),
+        cmocka_unit_test(a_patch_on_the_smallest_glass_stays_within_its_frame),
         cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
         cmocka_unit_test(a_jump_of_the_aircraft_starts_the_picture_anew),
         cmocka_unit_test(hostile_commands_are_refused_and_counted),
