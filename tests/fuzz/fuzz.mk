@@ -1,0 +1,47 @@
+# Everything that is parsed from wire, file or flash, under the sanitizers: as tests of `make check` (the committed corpus and
+# mutations of it), and, built by fuzz.sh with clang and FUZZER=1, as libFuzzer programs.
+FUZZ_TARGETS  := image unit bus can_log script csv gpx igc class_table net label_map
+FUZZ_PARTS    := address,undefined,float-cast-overflow
+FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
+FUZZ_TRACK    := $(filter-out %/main.c,$(wildcard host-sim/nav/*.c)) tests/fuzz/track.c
+FUZZ_TEXT     := host-sim/db/text_file.c host-sim/common/src/atomic_file.c tests/fuzz/file.c
+
+FUZZ_SRC_image       := $(FUZZ_CORE)
+FUZZ_SRC_unit        := $(FUZZ_CORE)
+FUZZ_SRC_bus         := $(addprefix firmware/src/,canas.c nav.c geo.c) $(wildcard fixed/src/*.c)
+FUZZ_SRC_can_log     := drivers/can/can_log.c
+FUZZ_SRC_script      := host-sim/sim/script.c tests/fuzz/file.c
+FUZZ_SRC_csv         := $(FUZZ_TRACK)
+FUZZ_SRC_gpx         := $(FUZZ_TRACK)
+FUZZ_SRC_igc         := $(FUZZ_TRACK)
+FUZZ_SRC_class_table := host-sim/db/class_table.c $(FUZZ_TEXT)
+FUZZ_SRC_net         := $(addprefix host-sim/db/,net_file.c mlp.c samples.c raster.c gdal_start.c) host-sim/common/src/progress.c $(FUZZ_TEXT)
+FUZZ_SRC_label_map   := host-sim/db/label_map.c host-sim/db/class_table.c $(FUZZ_TEXT)
+
+FUZZ_TESTS    := $(FUZZ_TARGETS:%=$(O)/bin/tests/fuzz/test_fuzz_%)
+FUZZ_PROGRAMS := $(FUZZ_TARGETS:%=$(O)/bin/fuzz/%)
+TESTS += $(FUZZ_TESTS)
+FUZZ_LIBS_csv := $(call pkgs,libs,proj expat zlib)
+FUZZ_LIBS_gpx := $(FUZZ_LIBS_csv)
+FUZZ_LIBS_igc := $(FUZZ_LIBS_csv)
+FUZZ_LIBS_net := $(call pkgs,libs,gdal openblas)
+
+define fuzz_target
+FUZZ_OBJS_$(1) := $(patsubst %.c,$(O)/sanitized/%.o,tests/fuzz/fuzz_$(1).c tests/fuzz/quiet_errors.c host-sim/common/src/rng.c $(FUZZ_SRC_$(1)))
+$(O)/bin/tests/fuzz/test_fuzz_$(1): $(O)/sanitized/tests/fuzz/standalone.o $$(FUZZ_OBJS_$(1)) | $(wildcard tests/fuzz/corpus/$(1)/*)
+$(O)/bin/fuzz/$(1): $$(FUZZ_OBJS_$(1))
+$(O)/bin/tests/fuzz/test_fuzz_$(1) $(O)/bin/fuzz/$(1): LDLIBS := -fsanitize=$(FUZZ_PARTS)$(if $(FUZZER),$(comma)fuzzer) $(FUZZ_LIBS_$(1))
+endef
+comma := ,
+$(foreach target,$(FUZZ_TARGETS),$(eval $(call fuzz_target,$(target))))
+
+.PHONY: fuzz-programs
+fuzz-programs: $(FUZZ_PROGRAMS)
+
+# -O1 behind OPT: findings name the lines as they are written.
+$(O)/sanitized/%.o: EXTRA_CFLAGS := -Itests/support -Ihost-sim/sim -Ihost-sim/nav -Ihost-sim/db $(call pkgs,cflags,gdal openblas)
+$(O)/sanitized/%.o: %.c
+	@mkdir -p $(@D)
+	$(if $(V),,@echo '  CC   $< (sanitizers)')
+	$(Q)$(CC) $(CFLAGS_host) -O1 -fsanitize=$(FUZZ_PARTS)$(if $(FUZZER),$(comma)fuzzer-no-link) -fno-sanitize-recover=all \
+	    -fno-omit-frame-pointer $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@

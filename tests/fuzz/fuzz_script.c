@@ -1,0 +1,43 @@
+/* The script of landmass-sim: what it accepts is in order and within what controls.h allows. */
+#include "fuzz.h"
+#include "script.h"
+
+const uint32_t fuzz_mutations = 40000;
+
+static void check_event(const struct script_event *e)
+{
+    const struct lm_control *c = &e->control;
+    if (e->is_picture) {
+        FUZZ_ASSERT(memchr(e->picture, 0, sizeof e->picture) && !strchr(e->picture, '/'));
+    } else if (c->kind == LM_CONTROL_SAR) {
+        FUZZ_ASSERT(c->sar.cell_mm >= 100 && c->sar.cell_mm <= 1000000);
+        FUZZ_ASSERT(c->sar.range_m <= 1000000);
+        const int32_t latitude = (int32_t)c->sar.centre.latitude;
+        FUZZ_ASSERT(latitude <= (int32_t)FX_BAM_90 && latitude >= -(int32_t)FX_BAM_90);
+    } else {
+        FUZZ_ASSERT(c->value >= -30 && c->value <= 30);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct fuzz_file file;
+    struct script script;
+    fuzz_file_open(&file, data, size);
+    if (script_read(&script, file.path) == 0) {
+        int handed_out = 0;
+        struct lm_control control;
+        for (int i = 0; i < script.count; i++) {
+            check_event(&script.events[i]);
+            FUZZ_ASSERT(i == 0 || script.events[i].time_us >= script.events[i - 1].time_us);
+        }
+        while (script_advance(&script, UINT64_MAX) ||
+               script.port.next(script.port.ctx, &control) == 1) {
+            handed_out++;
+        }
+        FUZZ_ASSERT(handed_out == script.count);
+    }
+    script_free(&script);
+    fuzz_file_close(&file);
+    return 0;
+}

@@ -1,0 +1,317 @@
+/* The whole unit in flight over a hostile image with a hostile bus, hostile controls and failing
+ * devices. The input is a programme: a choice of place, patches of the image, then what happens
+ * step by step (see act). */
+#include "fuzz.h"
+#include "lm/unit.h"
+#include "memory_flash.h"
+#include "seal.h"
+#include "tiny_image.h"
+
+#include <math.h>
+
+const uint32_t fuzz_mutations = 400;
+
+enum { SIDE = 256, POOL_TILES = 64, QUEUE = 32, STEPS_MAX = 300, PLACES = 4 };
+
+struct world {
+    struct tiny_image image; /* a copy, to be damaged */
+    struct lm_place centre;
+    struct memory_flash flash;
+    struct lm_can can;
+    struct lm_controls controls;
+    struct lm_display display;
+    struct lm_board board;
+    struct lm_unit unit;
+    uint64_t now_us;
+    uint32_t steps;
+
+    struct lm_can_frame frames[QUEUE];
+    uint32_t frame_head, frame_tail;
+    struct lm_control control;
+    bool has_control;
+    uint8_t message_code, display_mode;
+    uint32_t *glass; /* blocks of their own, so that writing past their ends is seen */
+};
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct world *w = ctx;
+    if (w->frame_tail == w->frame_head) {
+        return 0;
+    }
+    *frame = w->frames[w->frame_tail++ % QUEUE];
+    return 1;
+}
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct world *w = ctx;
+    *control = w->control;
+    const bool had = w->has_control;
+    w->has_control = false;
+    return had;
+}
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    struct world *w = ctx;
+    *surface = (struct lm_surface){w->glass, SIDE, SIDE, SIDE};
+    return w->display_mode == 1 ? LM_BUSY : w->display_mode == 2 ? LM_ERR_IO : LM_OK;
+}
+
+static int present(void *ctx)
+{
+    const struct world *w = ctx;
+    return w->display_mode == 3 ? LM_ERR_IO : LM_OK;
+}
+
+static struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const double east = fabs(remainder(p->east_m, 900)), north = fabs(remainder(p->north_m, 700));
+    const uint8_t kind = east < 80 && north < 80 ? TINY_STRUCTURE
+                         : east < 200            ? TINY_WATER
+                         : north < 100           ? TINY_TREES
+                                                 : TINY_SOIL;
+    return (struct tiny_cell){-18 + 4 * kind, kind, kind == TINY_STRUCTURE ? 6 : 0};
+}
+
+static double scene_elevation(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + 200 * sin(p->east_m / 1100) * cos(p->north_m / 1700);
+}
+
+/* In mid-latitude, on a zone border, on the antimeridian, and round a pole. */
+static const double places[PLACES][2] = {{46, 11}, {61.875, -20}, {-3, 180}, {89.95, 77}};
+
+/* Built at the first use of each place and kept. */
+static const struct tiny_image *base_image(unsigned place)
+{
+    static struct tiny_image images[PLACES];
+    if (!images[place].bytes) {
+        struct tiny_spec spec = tiny_spec_at(places[place][0], places[place][1]);
+        spec.shift0 = 11;
+        spec.rows = spec.columns = 3;
+        spec.cell = scene_cell;
+        spec.elevation_m = scene_elevation;
+        FUZZ_ASSERT(tiny_image_build(&images[place], &spec) == 0);
+    }
+    return &images[place];
+}
+
+static void patch(struct tiny_image *image, struct fuzz_supply *s)
+{
+    const uint8_t region = fuzz_u8(s);
+    const uint16_t at = fuzz_u16(s);
+    const uint32_t value = fuzz_u32(s);
+    const size_t starts[] = {0, image->classes_offset, image->bands_offset, image->directory_offset,
+                             image->tiles_offset +
+                                 (size_t)LM_TILE_BYTES * ((region >> 5) % image->record_count)};
+    const size_t lengths[] = {512, sizeof(struct lm_classes), image->band_count * 24u,
+                              image->entry_count * 8u, LM_TILE_BYTES};
+    const unsigned which = region % 5;
+    const size_t width = (size_t)1 << (region >> 3 & 3) & 7;
+    if (width) {
+        memcpy(image->bytes + starts[which] + at % (lengths[which] - 3), &value,
+               width > 4 ? 4 : width);
+    }
+}
+
+static void queue_frame(struct world *w, const struct lm_can_frame *frame)
+{
+    if (w->frame_head - w->frame_tail < QUEUE) {
+        w->frames[w->frame_head++ % QUEUE] = *frame;
+    }
+}
+
+static void queue_value(struct world *w, uint32_t id, uint8_t type, uint32_t bits)
+{
+    struct lm_can_frame f = {.id = id, .length = 8, .time_us = w->now_us};
+    f.data[0] = 9;
+    f.data[1] = type;
+    f.data[3] = w->message_code;
+    for (unsigned i = 0; i < 4; i++) {
+        f.data[4 + i] = (uint8_t)(bits >> (24 - 8 * i));
+    }
+    queue_frame(w, &f);
+}
+
+static void queue_float(struct world *w, uint32_t id, double value)
+{
+    const float single = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &single, 4);
+    queue_value(w, id, LM_CANAS_FLOAT, bits);
+}
+
+/* A whole, believable position: what it takes before anything is drawn. */
+static void queue_fix(struct world *w, struct fuzz_supply *s)
+{
+    const double north = (int8_t)fuzz_u8(s) / 1000.0, east = (int8_t)fuzz_u8(s) / 1000.0;
+    const double height = fuzz_u8(s) * 120.0 - 900, heading = fuzz_u8(s) * 1.4;
+    const double degrees = 360 / 4294967296.0;
+    w->message_code++;
+    queue_float(w, 1036, fmin((int32_t)w->centre.latitude * degrees + north, 90));
+    queue_float(w, 1037, remainder((int32_t)w->centre.longitude * degrees + east, 360));
+    queue_float(w, 1038, height);
+    queue_float(w, 1133, heading);
+    queue_float(w, 1039, 150);
+    queue_float(w, 1040, heading);
+}
+
+static void queue_any(struct world *w, struct fuzz_supply *s)
+{
+    struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = w->now_us + fuzz_u16(s)};
+    const uint8_t flags = fuzz_u8(s);
+    f.is_extended = flags & 1;
+    f.is_remote = flags & 2;
+    f.is_error = flags & 4;
+    f.length = flags >> 4;
+    const uint64_t data = fuzz_take(s, 8);
+    memcpy(f.data, &data, 8);
+    queue_frame(w, &f);
+}
+
+static void command_patch(struct world *w, struct fuzz_supply *s)
+{
+    const uint8_t flags = fuzz_u8(s);
+    w->has_control = true;
+    w->control = (struct lm_control){.kind = LM_CONTROL_SAR};
+    struct lm_sar_command *c = &w->control.sar;
+    c->centre = w->centre;
+    c->centre.latitude += (fx_bam_t)(int16_t)fuzz_u16(s) << (flags & 15);
+    c->centre.longitude += (fx_bam_t)(int16_t)fuzz_u16(s) << (flags & 15);
+    c->cell_mm = fuzz_u16(s);
+    c->is_from_ownship = flags & 16;
+    c->look_azimuth = (fx_bam_t)fuzz_u16(s) << 16;
+    c->range_m = flags & 32 ? fuzz_u32(s) : 1000u + 4u * fuzz_u16(s);
+    c->height_q6 = flags & 64 ? (int32_t)fuzz_u32(s) : (int16_t)fuzz_u16(s) * 59;
+}
+
+static void step(struct world *w, uint64_t by_us)
+{
+    if (w->steps++ < STEPS_MAX) {
+        w->now_us += by_us;
+        lm_unit_step(&w->unit, w->now_us);
+    }
+}
+
+static void act(struct world *w, struct fuzz_supply *s)
+{
+    const uint8_t op = fuzz_u8(s);
+    switch (op & 15) {
+    case 0:
+    case 1:
+        queue_fix(w, s);
+        step(w, 2000);
+        break;
+    case 2:
+        for (uint8_t n = fuzz_u8(s); n > 0; n--) {
+            step(w, 4000);
+        }
+        break;
+    case 3:
+        step(w, (uint64_t)fuzz_u16(s) << (op >> 4));
+        break;
+    case 4:
+        queue_value(w, lm_canas_table[fuzz_u8(s) % LM_CANAS_FIELDS].id, op >> 4 & 3, fuzz_u32(s));
+        break;
+    case 5:
+        queue_any(w, s);
+        break;
+    case 6:
+    case 7:
+        w->has_control = true;
+        w->control = (struct lm_control){.kind = (enum lm_control_kind)(op >> 4),
+                                         .value = op & 1 ? (int32_t)fuzz_u32(s) : fuzz_u8(s) & 3};
+        break;
+    case 8:
+    case 9:
+        command_patch(w, s);
+        break;
+    case 10:
+        w->flash.busy_polls = fuzz_u8(s);
+        w->flash.fail_every = fuzz_u8(s);
+        break;
+    case 11:
+        w->display_mode = op >> 4 & 3;
+        break;
+    case 12:
+        patch(&w->image, s);
+        seal_image(w->image.bytes, w->image.size, op >> 4);
+        break;
+    default:
+        step(w, 2000);
+    }
+}
+
+static void check(const struct world *w)
+{
+    const struct lm_unit *u = &w->unit;
+    FUZZ_ASSERT(u->ground_map.range < LM_RANGES && u->ground_map.azimuth < LM_AZIMUTHS);
+    FUZZ_ASSERT(u->ground_map.line < lm_ground_map_lines(&u->ground_map));
+    FUZZ_ASSERT(u->sar.line <= lm_radar_default.sar_cells);
+    FUZZ_ASSERT(u->gain_db >= -30 && u->gain_db <= 30);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        FUZZ_ASSERT(w->glass[i] <= 0x00FFFFFF);
+    }
+}
+
+static void fly(struct world *w, struct fuzz_supply *s)
+{
+    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
+    w->can = (struct lm_can){w, receive};
+    w->controls = (struct lm_controls){w, next_control};
+    w->display = (struct lm_display){w, SIDE, SIDE, acquire, present};
+    w->glass = calloc(SIDE * SIDE, sizeof *w->glass);
+    w->board = (struct lm_board){.radar = &lm_radar_default,
+                                 .flash = &w->flash.port,
+                                 .can = &w->can,
+                                 .controls = &w->controls,
+                                 .display = &w->display,
+                                 .tile_pool = malloc(POOL_TILES * sizeof(struct lm_tile)),
+                                 .tile_pool_bytes = POOL_TILES * sizeof(struct lm_tile),
+                                 .plane = malloc(SIDE * SIDE),
+                                 .flash_poll_limit = 20};
+    FUZZ_ASSERT(w->glass && w->board.tile_pool && w->board.plane);
+    if (lm_unit_init(&w->unit, &w->board) == LM_OK) {
+        while (s->left > 0 && w->steps < STEPS_MAX) {
+            act(w, s);
+        }
+        step(w, LM_FRAME_US);
+        check(w);
+    }
+    free(w->board.tile_pool);
+    free(w->board.plane);
+    free(w->glass);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct fuzz_supply supply = {data, size};
+    struct world *w = calloc(1, sizeof *w);
+    FUZZ_ASSERT(w);
+    const uint8_t first = fuzz_u8(&supply);
+    const double *place = places[first & 3];
+    const struct tiny_image *base = base_image(first & 3);
+    w->centre = (struct lm_place){(fx_bam_t)(int64_t)(place[0] / 360 * 4294967296.0),
+                                  (fx_bam_t)(int64_t)(place[1] / 360 * 4294967296.0)};
+    w->image = *base;
+    w->image.bytes = malloc(base->size);
+    FUZZ_ASSERT(w->image.bytes);
+    memcpy(w->image.bytes, base->bytes, base->size);
+    if (first >> 5) {
+        for (unsigned patches = first >> 5; patches > 0; patches--) {
+            patch(&w->image, &supply);
+        }
+        /* Mostly everything is put right; now and then only the tables, so that records are bad. */
+        seal_image(w->image.bytes, w->image.size,
+                   first & 16 ? SEAL_HEADER | SEAL_TABLES
+                              : SEAL_HEADER | SEAL_TABLES | SEAL_DIRECTORY | SEAL_RECORDS);
+    }
+    fly(w, &supply);
+    free(w->image.bytes);
+    free(w);
+    return 0;
+}
