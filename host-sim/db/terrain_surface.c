@@ -219,8 +219,8 @@ void terrain_set_cell(struct terrain *t, uint8_t shift0)
     const double cell = (double)((int64_t)1 << shift0);
     for (int i = 0; i < t->layer_count; i++) {
         struct terrain_layer *layer = &t->layers[i];
-        layer->reach_x = fmax(1.0, cell / layer->pixel_longitude_bam);
-        layer->reach_y = fmax(1.0, cell / layer->pixel_latitude_bam);
+        layer->blur_x = fmax(0.0, cell / layer->pixel_longitude_bam - 1.0);
+        layer->blur_y = fmax(0.0, cell / layer->pixel_latitude_bam - 1.0);
     }
 }
 
@@ -242,27 +242,47 @@ static enum terrain_state state_at(const struct patch *p, double x, double y)
     return p->state[row * (size_t)w->width + column];
 }
 
-/* Triangle-weighted mean of the pixels with an elevation around a position; there is at least the
- * one it lies in. */
+/* Integral of the triangle of half width 1 from its left end to t. */
+static double triangle_below(double t)
+{
+    if (t <= -1.0 || t >= 1.0) {
+        return t < 0.0 ? 0.0 : 1.0;
+    }
+    return t < 0.0 ? 0.5 * (1.0 + t) * (1.0 + t) : 1.0 - 0.5 * (1.0 - t) * (1.0 - t);
+}
+
+/* Weight of a pixel `distance` away in the mean of the bilinear surface over `blur` pixels. The
+ * weights of all pixels sum to 1 and have the right centre for any `blur`: a plane stays the plane
+ * it is. */
+static double weight_of(double distance, double blur)
+{
+    if (blur <= 0.0) {
+        return fmax(0.0, 1.0 - fabs(distance));
+    }
+    return (triangle_below(distance + blur / 2) - triangle_below(distance - blur / 2)) / blur;
+}
+
+/* Weighted mean of the pixels with an elevation around a position; there is at least the one it
+ * lies in. */
 static double interpolate(const struct terrain_layer *layer, const struct patch *p, double x,
                           double y)
 {
     const struct resample_window *w = &p->window;
     const double cx = x - 0.5, cy = y - 0.5;
-    const double rx = layer->reach_x, ry = layer->reach_y;
+    const double rx = 1.0 + layer->blur_x / 2, ry = 1.0 + layer->blur_y / 2;
     const int x0 = (int)fmax(ceil(cx - rx), w->x);
     const int x1 = (int)fmin(floor(cx + rx), w->x + w->width - 1);
     const int y0 = (int)fmax(ceil(cy - ry), w->y);
     const int y1 = (int)fmin(floor(cy + ry), w->y + w->height - 1);
     double sum = 0.0, weights = 0.0;
     for (int v = y0; v <= y1; v++) {
-        const double wy = 1.0 - fabs(v - cy) / ry;
+        const double wy = weight_of(v - cy, layer->blur_y);
         const size_t row = (size_t)(v - w->y) * (size_t)w->width;
         for (int u = x0; u <= x1; u++) {
             const float metres = p->metres[row + (size_t)(u - w->x)];
-            const double weight = wy * (1.0 - fabs(u - cx) / rx);
+            const double weight = wy * weight_of(u - cx, layer->blur_x);
             if (!isnan(metres) && weight > 0.0) {
-                sum += weight * metres;
+                sum += weight * (double)metres;
                 weights += weight;
             }
         }
@@ -309,7 +329,7 @@ static struct resample_window block_window(const struct terrain_layer *layer, co
             y[count++] = w->y[r * LM_TILE_POSTS + c];
         }
     }
-    const int margin = (int)ceil(fmax(layer->reach_x, layer->reach_y)) + 1;
+    const int margin = (int)ceil(fmax(layer->blur_x, layer->blur_y) / 2) + 2;
     return resample_window_of(&layer->mosaic.georef, count, x, y, margin);
 }
 

@@ -16,7 +16,7 @@ struct terrain_layer {
     struct terrain_mosaic mosaic;
     struct image_area area;
     double pixel_latitude_bam, pixel_longitude_bam;
-    double reach_x, reach_y; /* half the width of the interpolation kernel, pixels */
+    double blur_x, blur_y; /* pixels over which the bilinear surface is averaged; 0: not at all */
 };
 
 struct terrain {
@@ -31,9 +31,9 @@ struct terrain {
 int terrain_open(struct terrain *t, const struct db_list *paths, double sea_level_m);
 void terrain_close(struct terrain *t);
 
-/* Say how large the image's finest cells are. The kernel is bilinear where a model is coarser than
- * that, and a triangle (a weighted mean) as wide as two cells where it is finer. Call once before
- * terrain_posts. */
+/* Say how large the image's finest cells are. Posts are bilinear where a model is coarser than
+ * that, and means of the bilinear surface over a cell less a pixel where it is finer. Call once
+ * before terrain_posts. */
 void terrain_set_cell(struct terrain *t, uint8_t shift0);
 
 struct terrain_posts {

@@ -1,0 +1,455 @@
+/* Elevation models as one surface: every post against GDAL's own resampling, voids, seas, edges and
+ * seams. */
+#include "terrain_surface.h"
+
+#include "scene.h"
+#include "support.h"
+
+#include <cpl_string.h>
+#include <gdal_utils.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { N = LM_TILE_POSTS };
+
+static void open_terrain(struct terrain *t, uint8_t shift0, int count, ...)
+{
+    struct db_list list = {.count = count};
+    va_list names;
+    va_start(names, count);
+    for (int i = 0; i < count; i++) {
+        list.items[i] = (char *)va_arg(names, const char *);
+    }
+    va_end(names);
+    assert_int_equal(terrain_open(t, &list, 0.0), 0);
+    terrain_set_cell(t, shift0);
+}
+
+static struct image_frame frame_at(uint8_t shift, double latitude, double longitude)
+{
+    const uint32_t row = image_row_of(shift, image_bam(latitude));
+    const uint8_t zone = image_row_zone(shift, row);
+    const uint32_t column = (uint32_t)image_bam(longitude) >> (shift + zone + LM_TILE_CELLS_LOG2);
+    return image_frame_of(shift, zone, row, column);
+}
+
+/* GDAL's bilinear warp with an exact transformation to a grid whose pixel centres are the tile's
+ * posts. */
+static void gdal_posts(GDALDatasetH source, const struct image_frame *f, float posts[N][N])
+{
+    char number[6][40], *arguments[32];
+    const double north_step = image_degrees(f->latitude_step);
+    const double east_step = image_degrees(f->longitude_step);
+    const double west = image_longitude_degrees(f->west) - east_step / 2;
+    const double south = image_degrees(f->south) - north_step / 2;
+    snprintf(number[0], sizeof number[0], "%.17g", west);
+    snprintf(number[1], sizeof number[1], "%.17g", south);
+    snprintf(number[2], sizeof number[2], "%.17g", west + N * east_step);
+    snprintf(number[3], sizeof number[3], "%.17g", south + N * north_step);
+    const char *const list[] = {"-of",        "MEM",     "-r",        "bilinear", "-et",
+                                "0",          "-t_srs",  "EPSG:4326", "-ot",      "Float32",
+                                "-dstnodata", "-9999",   "-ts",       "65",       "65",
+                                "-te",        number[0], number[1],   number[2],  number[3]};
+    int count = 0;
+    for (size_t i = 0; i < sizeof list / sizeof list[0]; i++) {
+        arguments[count++] = (char *)list[i];
+    }
+    arguments[count] = NULL;
+    GDALWarpAppOptions *options = GDALWarpAppOptionsNew(arguments, NULL);
+    int failed = 0;
+    GDALDatasetH warped = GDALWarp("", NULL, 1, &source, options, &failed);
+    GDALWarpAppOptionsFree(options);
+    assert_non_null(warped);
+    float top_down[N][N];
+    assert_int_equal(GDALRasterIO(GDALGetRasterBand(warped, 1), GF_Read, 0, 0, N, N, top_down, N, N,
+                                  GDT_Float32, 0, 0),
+                     CE_None);
+    for (int r = 0; r < N; r++) {
+        memcpy(posts[r], top_down[N - 1 - r], sizeof posts[r]);
+    }
+    GDALClose(warped);
+}
+
+/* Largest difference in metres between our posts and GDAL's over a square of tiles. */
+static double worst_against_gdal(struct terrain *t, GDALDatasetH source, uint8_t shift,
+                                 double latitude, double longitude, int tiles)
+{
+    static struct terrain_posts ours;
+    static float theirs[N][N];
+    const struct image_frame first = frame_at(shift, latitude, longitude);
+    double worst = 0.0;
+    long compared = 0;
+    for (int i = 0; i < tiles * tiles; i++) {
+        const struct image_frame f =
+            image_frame_of(shift, first.zone, first.row + (uint32_t)(i / tiles),
+                           first.column + (uint32_t)(i % tiles));
+        assert_true(terrain_posts(t, &f, &ours) >= 0);
+        gdal_posts(source, &f, theirs);
+        for (int k = 0; k < N * N; k++) {
+            const float z = theirs[k / N][k % N];
+            if (z > -9000.0f) {
+                worst = fmax(worst, fabs(ours.q6[k / N][k % N] / 64.0 - (double)z));
+                compared++;
+            }
+        }
+    }
+    assert_true(compared > 1000);
+    print_message("# worst of %ld posts: %.4f m\n", compared, worst);
+    return worst;
+}
+
+/* Half a step of 1/64 m, and float against double. */
+static const double rounding_m = 0.5 / 64 + 0.002;
+
+static void posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges(void **state)
+{
+    (void)state;
+    char a[512], b[512], c[512];
+    if (!support_data_path("dted1_hawaii/n19_w155_3arc_v2.dt1", a, sizeof a) ||
+        !support_data_path("dted1_hawaii/n19_w156_3arc_v2.dt1", b, sizeof b) ||
+        !support_data_path("dted1_hawaii/n20_w156_3arc_v2.dt1", c, sizeof c)) {
+        skip();
+    }
+    scene_folder();
+    const char *names[] = {a, b, c, NULL};
+    int failed = 0;
+    GDALDatasetH vrt = GDALBuildVRT("", 3, NULL, names, NULL, &failed);
+    assert_non_null(vrt);
+    struct terrain t;
+    open_terrain(&t, 13, 3, a, b, c);
+    assert_int_equal(t.layer_count, 1);
+    assert_true(worst_against_gdal(&t, vrt, 13, 19.8, -155.3, 10) < rounding_m); /* across 20 N */
+    assert_true(worst_against_gdal(&t, vrt, 13, 19.3, -155.2, 10) < rounding_m); /* across 155 W */
+    terrain_close(&t);
+    GDALClose(vrt);
+}
+
+static void posts_over_utm_with_negative_northings_are_gdals_bilinear_samples(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!support_data_path("landsat5_amazon_tucurui_srtm_labels/derived/srtm.bsq", path,
+                           sizeof path)) {
+        skip();
+    }
+    scene_folder();
+    GDALDatasetH source = GDALOpen(path, GA_ReadOnly);
+    assert_non_null(source);
+    struct terrain t;
+    open_terrain(&t, 11, 1, path);
+    assert_true(worst_against_gdal(&t, source, 11, -3.78, -49.92, 5) < rounding_m);
+    terrain_close(&t);
+    GDALClose(source);
+}
+
+/* A tilted plane over degrees. */
+static double plane(double x, double y)
+{
+    return 100.0 + 300.0 * (x - 10.0) - 200.0 * (y - 50.0);
+}
+
+static void a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 1200,
+                                   .height = 1200,
+                                   .geotransform = {10.0, 0.001, 0, 51.2, 0, -0.001},
+                                   .epsg = 4326,
+                                   .type = GDT_Float32,
+                                   .value = plane};
+    scene_write("plane.tif", &r);
+    /* 0.001 degree is 11,930 BAM: cells of 2^10 to 2^18. */
+    for (uint8_t shift = 10; shift <= 18; shift++) {
+        struct terrain t;
+        open_terrain(&t, shift, 1, scene_path("plane.tif"));
+        const struct image_frame f = frame_at(shift, 50.6, 10.6);
+        static struct terrain_posts posts;
+        assert_true(terrain_posts(&t, &f, &posts) > 0);
+        const double margin = 0.002 + image_degrees((int64_t)1 << shift);
+        for (int k = 0; k < N * N; k++) {
+            const double y = image_degrees(f.south + k / N * f.latitude_step);
+            const double x = image_degrees((int64_t)f.west + k % N * f.longitude_step);
+            /* Nearer than the kernel to the raster's edge there is less than a plane to see. */
+            if (x > 10 + margin && x < 11.2 - margin && y > 50 + margin && y < 51.2 - margin) {
+                assert_true(fabs(posts.q6[k / N][k % N] / 64.0 - plane(x, y)) < rounding_m);
+            }
+        }
+        terrain_close(&t);
+    }
+}
+
+/* Columns of 0 and 100 m in turn, each a pixel wide. */
+static double comb(double x, double y)
+{
+    (void)y;
+    return (long)floor(x / 0.001) & 1 ? 100.0 : 0.0;
+}
+
+static void a_model_much_finer_than_the_cells_is_averaged(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 1000,
+                                   .height = 1000,
+                                   .geotransform = {10.0, 0.001, 0, 51.0, 0, -0.001},
+                                   .epsg = 4326,
+                                   .type = GDT_Int16,
+                                   .value = comb};
+    scene_write("comb.tif", &r);
+    struct terrain t;
+    open_terrain(&t, 17, 1, scene_path("comb.tif"));
+    const struct image_frame f = frame_at(17, 50.5, 10.5);
+    static struct terrain_posts posts;
+    assert_true(terrain_posts(&t, &f, &posts) > 0);
+    for (int k = 0; k < N * N; k++) {
+        const double y = image_degrees(f.south + k / N * f.latitude_step);
+        const double x = image_degrees((int64_t)f.west + k % N * f.longitude_step);
+        if (x > 10.03 && x < 10.97 && y > 50.03 && y < 50.97) {
+            assert_true(fabs(posts.q6[k / N][k % N] / 64.0 - 50.0) < 2.0);
+        }
+    }
+    terrain_close(&t);
+}
+
+/* Ground on a slope with a square hole; hills around a hole in the sea; a hole with nothing known
+ * around it. */
+static double holed(double x, double y)
+{
+    const bool is_land_hole = x > 10.3 && x < 10.33 && y > 50.3 && y < 50.33;
+    const bool is_sea_hole = x > 10.6 && x < 10.7 && y > 50.6 && y < 50.7;
+    const bool is_sea = x > 10.55 && x < 10.75 && y > 50.55;
+    return is_land_hole || is_sea_hole ? -32768 : is_sea ? 0 : 500 + 1000 * (x - 10);
+}
+
+static void voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 800,
+                                   .height = 800,
+                                   .geotransform = {10.0, 0.001, 0, 50.8, 0, -0.001},
+                                   .epsg = 4326,
+                                   .type = GDT_Int16,
+                                   .has_nodata = true,
+                                   .nodata = -32768,
+                                   .value = holed};
+    scene_write("holed.tif", &r);
+    struct terrain t;
+    open_terrain(&t, 12, 1, scene_path("holed.tif"));
+    const struct terrain_voids *v = &t.layers[0].mosaic.voids;
+    assert_int_equal(v->region_count, 2);
+    assert_int_equal(v->regions[0].filling, TERRAIN_SEA);
+    assert_int_equal(v->regions[0].pixels, 100 * 100);
+    assert_int_equal(v->regions[1].filling, TERRAIN_INTERPOLATED);
+    assert_int_equal(v->regions[1].pixels, 30 * 30);
+    static struct terrain_posts posts;
+    for (int hole = 0; hole < 2; hole++) {
+        const struct image_frame f = frame_at(12, hole ? 50.315 : 50.65, hole ? 10.315 : 10.65);
+        assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
+        for (int k = 0; k < N * N; k++) {
+            const double x = image_degrees((int64_t)f.west + k % N * f.longitude_step);
+            const double z = posts.q6[k / N][k % N] / 64.0;
+            /* Slope 1 m a pixel: the fill stays within the heights of its rim, some metres of the
+             * slope. */
+            assert_true(hole ? fabs(z - (500 + 1000 * (x - 10))) < 12 : z == 0.0);
+        }
+    }
+    terrain_close(&t);
+}
+
+static double all_void(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return (double)NAN;
+}
+
+static void a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through(void **state)
+{
+    (void)state;
+    struct scene_raster r = {.width = 100,
+                             .height = 100,
+                             .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
+                             .epsg = 4326,
+                             .type = GDT_Float32,
+                             .value = all_void};
+    scene_write("void.tif", &r);
+    r.value = plane;
+    scene_write("under.tif", &r);
+    static struct terrain_posts posts;
+    const struct image_frame f = frame_at(13, 50.5, 10.5);
+    struct terrain t;
+    open_terrain(&t, 13, 1, scene_path("void.tif"));
+    assert_int_equal(terrain_posts(&t, &f, &posts), 0);
+    terrain_close(&t);
+    open_terrain(&t, 13, 2, scene_path("void.tif"), scene_path("under.tif"));
+    assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
+    const double x = image_degrees((int64_t)f.west), y = image_degrees(f.south);
+    assert_true(fabs(posts.q6[0][0] / 64.0 - plane(x, y)) < 0.05);
+    terrain_close(&t);
+}
+
+static void beyond_the_model_posts_keep_the_height_of_its_edge(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 100,
+                                   .height = 100,
+                                   .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
+                                   .epsg = 4326,
+                                   .type = GDT_Float32,
+                                   .value = plane};
+    scene_write("edge.tif", &r);
+    struct terrain t;
+    open_terrain(&t, 13, 1, scene_path("edge.tif"));
+    const struct image_frame f = frame_at(13, 50.5, 11.0);
+    static struct terrain_posts posts;
+    const int reached = terrain_posts(&t, &f, &posts);
+    assert_in_range(reached, 1, N * N - 1);
+    for (int r0 = 0; r0 < N; r0++) {
+        for (int c = 0; c < N; c++) {
+            const double y = image_degrees(f.south + r0 * f.latitude_step);
+            const double x = image_degrees((int64_t)f.west + c * f.longitude_step);
+            assert_int_equal(posts.has[r0][c], x < 11.0);
+            /* One pixel is 3 m eastward and 2 m northward. */
+            assert_true(fabs(posts.q6[r0][c] / 64.0 - plane(fmin(x, 10.995), y)) < 3.1);
+        }
+    }
+    terrain_close(&t);
+}
+
+/* Neighbours by every side, at levels and places where the mapping is bent, cut or wrapped. */
+static void tiles_share_their_edges_bit_for_bit(void **state)
+{
+    (void)state;
+    const struct {
+        int epsg;
+        double geotransform[6];
+        uint8_t shift;
+        double latitude, longitude;
+    } cases[] = {
+        {4326, {10.0, 0.001, 0, 51.0, 0, -0.001}, 12, 50.5, 10.5},
+        {32632, {400000, 100, 0, 5700000, 0, -100}, 13, 51.0, 8.2},
+        {32632, {400000, 100, 0, 5700000, 0, -100}, 17, 51.0, 8.2},   /* bent over 300 km tiles */
+        {32660, {750000, 1000, 0, 400000, 0, -1000}, 15, 2.0, 179.9}, /* over the antimeridian */
+        {3857,
+         {19000000, 1000, 0, 500000, 0, -1000},
+         16,
+         3.0,
+         179.5}, /* the seam of the projection */
+        {3413, {-600000, 1000, 0, 600000, 0, -1000}, 17, 88.0, 90.0}, /* near the pole */
+    };
+    static struct terrain_posts home, east, north;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct scene_raster r = {.width = 1200,
+                                 .height = 1200,
+                                 .epsg = cases[i].epsg,
+                                 .type = GDT_Float32,
+                                 .value = comb};
+        memcpy(r.geotransform, cases[i].geotransform, sizeof r.geotransform);
+        scene_write("shared.tif", &r);
+        struct terrain t;
+        open_terrain(&t, cases[i].shift, 1, scene_path("shared.tif"));
+        const struct image_frame f =
+            frame_at(cases[i].shift, cases[i].latitude, cases[i].longitude);
+        const uint32_t mask = image_columns_round(f.shift, f.zone) - 1;
+        const struct image_frame e = image_frame_of(f.shift, f.zone, f.row, (f.column + 1) & mask);
+        const struct image_frame n = image_frame_of(f.shift, f.zone, f.row + 1, f.column);
+        const int reached = terrain_posts(&t, &f, &home);
+        assert_true(reached > 0);
+        assert_true(terrain_posts(&t, &e, &east) >= 0 && terrain_posts(&t, &n, &north) >= 0);
+        for (int k = 0; k < N; k++) {
+            assert_int_equal(home.q6[k][N - 1], east.q6[k][0]);
+            assert_int_equal(home.q6[N - 1][k], north.q6[0][k]);
+            assert_int_equal(home.has[k][N - 1], east.has[k][0]);
+            assert_int_equal(home.has[N - 1][k], north.has[0][k]);
+        }
+        terrain_close(&t);
+    }
+}
+
+static double feet(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return 1000;
+}
+
+static void elevations_in_feet_become_metres(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 100,
+                                   .height = 100,
+                                   .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
+                                   .epsg = 4326,
+                                   .type = GDT_Int16,
+                                   .value = feet};
+    scene_write("feet.tif", &r);
+    GDALDatasetH d = GDALOpen(scene_path("feet.tif"), GA_Update);
+    GDALSetRasterUnitType(GDALGetRasterBand(d, 1), "ft");
+    GDALClose(d);
+    struct terrain t;
+    open_terrain(&t, 13, 1, scene_path("feet.tif"));
+    const struct image_frame f = frame_at(13, 50.5, 10.5);
+    static struct terrain_posts posts;
+    assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
+    assert_int_equal(posts.q6[0][0], lround(304.8 * 64));
+    terrain_close(&t);
+}
+
+static void srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_filled(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!support_data_path("srtm_hgt/N48W125.hgt.zip", path, sizeof path)) {
+        skip();
+    }
+    scene_folder();
+    struct terrain t;
+    open_terrain(&t, 11, 1, path);
+    uint64_t pixels[3] = {0};
+    const struct terrain_voids *v = &t.layers[0].mosaic.voids;
+    for (size_t i = 0; i < v->region_count; i++) {
+        pixels[v->regions[i].filling] += v->regions[i].pixels;
+    }
+    /* Counted apart from this program: 34 regions, 6,483,876 posts, the northern half of which is
+     * one; 69 % of its rim is at sea level. */
+    assert_int_equal(v->region_count, 34);
+    assert_int_equal(pixels[TERRAIN_SEA], 6482170);
+    assert_int_equal(pixels[TERRAIN_INTERPOLATED], 6483876 - 6482170);
+    static struct terrain_posts posts;
+    const struct image_frame f = frame_at(11, 48.7, -124.6);
+    assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
+    for (int k = 0; k < N * N; k++) {
+        assert_int_equal(posts.q6[k / N][k % N], 0);
+    }
+    terrain_close(&t);
+}
+
+static int tidy(void **state)
+{
+    (void)state;
+    return support_run("rm -rf %s", scene_folder());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges),
+        cmocka_unit_test(posts_over_utm_with_negative_northings_are_gdals_bilinear_samples),
+        cmocka_unit_test(a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model),
+        cmocka_unit_test(a_model_much_finer_than_the_cells_is_averaged),
+        cmocka_unit_test(voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea),
+        cmocka_unit_test(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through),
+        cmocka_unit_test(beyond_the_model_posts_keep_the_height_of_its_edge),
+        cmocka_unit_test(tiles_share_their_edges_bit_for_bit),
+        cmocka_unit_test(elevations_in_feet_become_metres),
+        cmocka_unit_test(srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_filled),
+    };
+    return cmocka_run_group_tests_name("terrain", tests, NULL, tidy);
+}
