@@ -132,8 +132,12 @@ static void repeated_and_backward_times_are_counted_and_left_out(void **state)
 static void what_is_no_track_is_an_error(void **state)
 {
     (void)state;
-    static const char *const texts[] = {
-        "", "\n", "a,b,c\n1,2,3\n", "time,lat\n1,2\n", HEAD, HEAD "x\ny\nz\n1,43,7,1\n"};
+    static const char *const texts[] = {"",
+                                        "\n",
+                                        "a,b,c\n1,2,3\n",
+                                        "time,lat\n1,2\n",
+                                        HEAD,
+                                        "time,lat,lon,altitude\nx\ny\nz\n1,43,7,1\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct result r = read_csv(texts[i]);
         assert_int_equal(r.status, -1);
