@@ -344,8 +344,8 @@ static void the_real_flight_is_sent_with_its_blemishes(void **state)
     struct flight f;
     if (load(&f, "nav_tracks/zero_gravity.csv.gz") != 0) {
         skip();
+        return; /* skip() does not come back, but its declaration does not say so */
     }
-    assert_non_null(f.track.fix);
     const size_t first = 4000, count = 600, hole = 60;
     memmove(f.track.fix, f.track.fix + first, count * sizeof *f.track.fix);
     memmove(f.track.fix + 300, f.track.fix + 300 + hole,
@@ -400,8 +400,8 @@ static void the_real_calibration_flight_is_banked_where_it_turns(void **state)
     struct flight f;
     if (load(&f, "nav_tracks/nice.csv.gz") != 0) {
         skip();
+        return;
     }
-    assert_non_null(f.track.fix);
     struct nav_send_options cut = usual;
     cut.until_us = f.track.fix[0].time_us + 600 * INT64_C(1000000);
     send_track(&f, &cut);
