@@ -21,6 +21,7 @@ struct settings {
     double cell_m;
     long shift0, seed;
     const char *centre, *title, *out;
+    uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
 };
@@ -94,7 +95,20 @@ static int usage_error(const char *option, const char *cause)
     return hs_error(option, "see landmass-db build --help", "%s", cause);
 }
 
-static int check_settings(const struct settings *s)
+static int parse_centre(const char *text, uint32_t centre[2])
+{
+    double degrees[2];
+    char end;
+    if (sscanf(text, "%lf,%lf%c", &degrees[0], &degrees[1], &end) != 2 ||
+        !(fabs(degrees[0]) <= 90) || !(fabs(degrees[1]) <= 360)) {
+        return usage_error("--centre", "must be LATITUDE,LONGITUDE in degrees");
+    }
+    centre[0] = (uint32_t)image_bam(degrees[0]);
+    centre[1] = (uint32_t)image_bam(degrees[1]);
+    return 0;
+}
+
+static int check_settings(struct settings *s)
 {
     if (s->cell_m > 0 && s->shift0 > 0) {
         return usage_error("--shift0", "cannot be given together with --cell");
@@ -109,20 +123,7 @@ static int check_settings(const struct settings *s)
         return usage_error(s->reflectivity ? "--reflectivity" : "--heights",
                            "needs --class-raster");
     }
-    return 0;
-}
-
-static int parse_centre(const char *text, uint32_t *latitude, uint32_t *longitude)
-{
-    double degrees[2];
-    char end;
-    if (sscanf(text, "%lf,%lf%c", &degrees[0], &degrees[1], &end) != 2 ||
-        !(fabs(degrees[0]) <= 90) || !(fabs(degrees[1]) <= 360)) {
-        return usage_error("--centre", "must be LATITUDE,LONGITUDE in degrees");
-    }
-    *latitude = (uint32_t)image_bam(degrees[0]);
-    *longitude = (uint32_t)image_bam(degrees[1]);
-    return 0;
+    return s->centre ? parse_centre(s->centre, s->centre_bam) : 0;
 }
 
 static int named_class(const struct db_class_table *table, const char *option, const char *name)
@@ -364,11 +365,12 @@ static void fill_header(struct image_header *h, const struct build_context *b,
     }
 }
 
-static int choose_centre(const struct build_context *b, const struct settings *s,
-                         uint32_t centre[2])
+static void choose_centre(const struct build_context *b, const struct settings *s,
+                          uint32_t centre[2])
 {
     if (s->centre) {
-        return parse_centre(s->centre, &centre[0], &centre[1]);
+        memcpy(centre, s->centre_bam, sizeof s->centre_bam);
+        return;
     }
     struct image_area area = b->cover.area;
     for (int i = 0; area.width == 0 && i < b->terrain.layer_count; i++) {
@@ -377,7 +379,6 @@ static int choose_centre(const struct build_context *b, const struct settings *s
     int64_t latitude;
     image_area_centre(&area, &latitude, &centre[1]);
     centre[0] = (uint32_t)latitude;
-    return 0;
 }
 
 struct report {
@@ -390,9 +391,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
                        struct report *report)
 {
     uint32_t centre[2];
-    if (choose_centre(b, s, centre) != 0) {
-        return -1;
-    }
+    choose_centre(b, s, centre);
     struct image_writer w;
     const struct image_header header = {.shift0 = b->plan.shift0,
                                         .level_count = b->plan.level_count,
