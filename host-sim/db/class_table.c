@@ -183,8 +183,8 @@ static int read_key(const struct db_text_file *f, struct section *s)
         return db_text_error(f, NULL, "`%s` needs %s, not `%s`", name, expected, value);
     }
     s->has_key[key] = true;
-    _Static_assert(sizeof f->remark == DB_SOURCE_SIZE, "a remark becomes a source whole");
-    memcpy(s->c->source[key], f->remark, sizeof f->remark);
+    _Static_assert(sizeof f->remark == DB_SOURCE_SIZE, "a remark fits as a source");
+    strcpy(s->c->source[key], f->remark);
     return 0;
 }
 

@@ -55,7 +55,7 @@ static const struct options defaults = {
     .seed = 1,
     .rate = 0.1,
     .momentum = 0.9,
-    .noise = 0.05,
+    .noise = 0.02,
     .goal = 0.95,
     .thin = 0.002,
 };
