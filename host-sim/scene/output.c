@@ -210,18 +210,18 @@ int output_description(const struct scene *s, const char *path)
 {
     const struct frame field = land_airfield();
     const struct land *l = &s->land;
-    const int bridge = l->river_count / 3;
+    const int valley = l->river_count / 2;
     const struct named_place places[] = {
         {"centre", {0, 0}},
         {"town", land_town()},
         {"harbour", {land_port().u - 350, land_port().v}},
         {"quay", land_port()},
         {"airfield", field.origin},
-        {"runway-04", frame_point(&field, -1100, 0)},
-        {"runway-22", frame_point(&field, 1100, 0)},
+        {"runway-05", frame_point(&field, -1100, 0)},
+        {"runway-23", frame_point(&field, 1100, 0)},
         {"lake", land_lake()},
         {"river-mouth", l->river[0]},
-        {"river-valley", l->river[bridge]},
+        {"river-valley", l->river[valley]},
         {"island", {-5150, 2350}},
     };
     enum { PLACES = sizeof places / sizeof *places };
