@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 char *hs_atomic_temporary_name(const char *path)
@@ -20,8 +21,24 @@ char *hs_atomic_temporary_name(const char *path)
     return name;
 }
 
+/* A device, a pipe or a folder: renaming over it would destroy it. */
+static int is_special(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+static int refuse_special(const char *path)
+{
+    return hs_error(path, "name an ordinary file", "exists and is no ordinary file");
+}
+
 int hs_atomic_rename(const char *temporary, const char *path)
 {
+    if (is_special(path)) {
+        unlink(temporary);
+        return refuse_special(path);
+    }
     if (rename(temporary, path) == 0) {
         return 0;
     }
@@ -33,7 +50,10 @@ int hs_atomic_rename(const char *temporary, const char *path)
 
 int hs_atomic_open(struct hs_atomic_file *f, const char *path)
 {
-    f->stream = NULL;
+    *f = (struct hs_atomic_file){NULL, NULL, NULL};
+    if (is_special(path)) {
+        return refuse_special(path);
+    }
     f->path = strdup(path);
     f->temporary = hs_atomic_temporary_name(path);
     if (!f->path || !f->temporary) {

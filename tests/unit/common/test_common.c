@@ -58,6 +58,18 @@ static void a_full_disk_is_an_error_and_leaves_no_file(void **state)
     assert_int_equal(access("/tmp/landmass-never", F_OK), -1);
 }
 
+static void a_device_is_refused_not_replaced(void **state)
+{
+    (void)state;
+    struct hs_atomic_file f;
+    assert_int_equal(hs_atomic_open(&f, "/dev/null"), -1);
+    char temporary[] = "/tmp/landmass-test-XXXXXX";
+    close(mkstemp(temporary));
+    assert_int_equal(hs_atomic_rename(temporary, "/tmp"), -1);
+    assert_int_equal(access(temporary, F_OK), -1);
+    hs_atomic_abort(&f);
+}
+
 static void normal_numbers_have_mean_zero_and_variance_one(void **state)
 {
     (void)state;
@@ -93,6 +105,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_aborted_file_leaves_nothing_and_keeps_the_old_one),
         cmocka_unit_test(a_full_disk_is_an_error_and_leaves_no_file),
+        cmocka_unit_test(a_device_is_refused_not_replaced),
         cmocka_unit_test(normal_numbers_have_mean_zero_and_variance_one),
         cmocka_unit_test(numbers_below_a_bound_are_even),
     };
