@@ -1,0 +1,46 @@
+#!/bin/sh
+# What all programs promise on the command line: --help everywhere, mistakes told with status 2, on standard error alone.
+set -u
+build=${BUILD:-build/bench-linux}
+work=$build/tmp/test_cli
+mkdir -p "$work"
+# shellcheck source=tests/system/test_sim_tap.sh
+. tests/system/test_sim_tap.sh
+
+helps() {
+    exits 0 "$@" --help && printed '^([Uu]sage:|landmass-[a-z]+ )' && test ! -s "$last_error"
+}
+
+refuses() {
+    exits 2 "$@" && test -s "$last_error" && test ! -s "$out"
+}
+
+names_itself() { # the first line is "program: place: cause"
+    head -n 1 "$last_error" | grep -qE "(^|/)$1: [^:]+"
+}
+
+for program in "$build"/bin/landmass-*; do
+    name=${program##*/}
+    check "$name --help prints how it is used" helps "$program"
+    check "$name refuses an option it does not have" refuses "$program" --nosuch
+    check "and says so under its name" names_itself "$name"
+    check "$name alone is a wrong command line" refuses "$program"
+done
+
+db=$build/bin/landmass-db
+commands=$("$db" --help | sed -n 's/^  \([a-z]*\)  *[a-z].*/\1/p')
+check 'landmass-db has its commands' test "$(echo "$commands" | wc -w)" -ge 8
+for command in $commands; do
+    check "landmass-db $command --help prints how it is used" helps "$db" "$command"
+    check "landmass-db $command refuses an option it does not have" refuses "$db" "$command" --nosuch
+    check "and says so under its name" names_itself landmass-db
+    check "landmass-db $command alone is a wrong command line" refuses "$db" "$command"
+done
+check 'landmass-db refuses a command it does not have' refuses "$db" nosuch
+for command in inspect verify; do
+    check "landmass-db $command of a missing file fails" exits 1 "$db" "$command" "$work/nosuch.lmdb"
+    check 'and names it with its cause' said 'nosuch.lmdb: .*No such file'
+done
+check 'landmass-nav of a missing track fails' exits 1 "$build/bin/landmass-nav" "$work/nosuch.csv"
+check 'and names it with its cause' said 'nosuch.csv: cannot be opened: No such file'
+finish

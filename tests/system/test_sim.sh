@@ -1,0 +1,184 @@
+#!/bin/sh
+# landmass-sim as its user runs it: a database and a log from files, pictures into a folder, every mistake told apart.
+set -u
+build=${BUILD:-build/bench-linux}
+here=tests/system
+sim=$build/bin/landmass-sim
+tool=$build/bin/tests/system/test_sim_tool
+work=$build/tmp/test_sim
+rm -rf "$work"
+mkdir -p "$work"
+# shellcheck source=tests/system/test_sim_tap.sh
+. $here/test_sim_tap.sh
+
+db=$work/small.lmdb
+log=$work/flight.log
+script=$work/flight.script
+"$tool" image "$db" || exit 1
+"$tool" break-fine "$work/broken.lmdb" || exit 1
+"$build/bin/landmass-nav" --straight 45.97,11,0,2000,150 --seconds 4 --quiet --out "$log" || exit 1
+cat >"$script" <<END
+# 10 nm, then a patch
+0    range 10
+1.5  sar 46.02 11 5
+3.9  picture patch
+END
+
+fly() { # NAME OPTIONS...: the standard flight with pictures in $work/NAME
+    folder=$work/$1
+    shift
+    exits 0 "$sim" --db "$db" --bus "$log" --script "$script" --png "$folder" --size 400x384 "$@"
+}
+
+same_pictures() {
+    [ "$(ls "$work/$1")" = "$(ls "$work/$2")" ] || return 1
+    for picture in "$work/$1"/*.png; do
+        cmp "$picture" "$work/$2/${picture##*/}" || return 1
+    done
+}
+
+number() { # of the summary, behind a word
+    sed -n "s/.*$1 \([0-9]*\).*/\1/p" "$out" | head -n 1
+}
+
+number_before() { # a word
+    sed -n "s/.*[^0-9]\([0-9][0-9]*\) $1.*/\1/p" "$out" | head -n 1
+}
+
+between() { # LOW HIGH NUMBER
+    [ -n "$3" ] && [ "$3" -ge "$1" ] && [ "$3" -le "$2" ] || { echo "# '$3' is not in $1..$2"; false; }
+}
+
+pictures() {
+    find "$work/$1" -name '*.png' | wc -l
+}
+
+size_is() {
+    [ "$("$tool" size "$1")" = "$2" ]
+}
+
+warnings() { # pixels of the warnings' colour
+    "$tool" pixels "$1" FFB020
+}
+
+check 'a flight ends with status 0' fly first
+check 'with nothing on standard error' test ! -s "$last_error"
+check 'frames: thirty a second' between 117 124 "$(number frames)"
+check 'lines: 256 a second of ground map, then a patch of 256' between 560 700 "$(number lines)"
+check 'none dropped' printed '\(0 dropped\)'
+check 'a picture in thirty frames and the one of the script' test "$(pictures first)" -eq 5
+check 'that the summary counts' test "$(number 'pictures written')" -eq 5
+check 'every frame of the bus was read' test "$(number 'bus:')" -eq "$(wc -l <"$log")"
+check 'no command was refused' test "$(number 'commands refused')" -eq 0
+check 'tiles were read, and none failed' between 50 400 "$(number tiles:)"
+check 'the faults are none' printed 'faults: 0 flash reads failed, 0 records corrupt, 0 requests dropped, 0 display'
+check 'no warning is on the last picture' test "$(warnings "$work/first/patch.png")" -eq 0
+check 'the pictures have the size asked for' size_is "$work/first/patch.png" 400x384
+
+check 'a second flight ends well' fly second
+check 'and gives the same pictures, byte for byte' same_pictures first second
+check 'a flight with --seed 7 ends well' fly seeded --seed 7
+check 'and gives other speckle' test "$(cmp -s "$work/first/patch.png" "$work/seeded/patch.png" && echo same)" = ''
+check 'a flight with --every 10 ends well' fly tenth --every 10
+check 'and leaves a picture in ten frames' between 13 14 "$(pictures tenth)"
+check 'a flight with --every 0 ends well' fly none --every 0
+check 'and leaves only what the script asks for' test "$(ls "$work/none")" = patch.png
+check 'a flight with --seconds 1 ends well' fly short --seconds 1
+check 'and stops there' between 29 32 "$(number frames)"
+check '--quiet says nothing' fly quiet --quiet --seconds 0.1
+check 'indeed' test ! -s "$out"
+check 'the smallest glass' exits 0 "$sim" --db "$db" --bus "$log" --script "$script" --png "$work/least" --size 256x256
+check 'has that size' size_is "$work/least/patch.png" 256x256
+check 'the largest glass' exits 0 "$sim" --db "$db" --bus "$log" --seconds 0.5 --png "$work/most" --size 1024x1024
+check 'has that size' size_is "$work/most/frame-00000.png" 1024x1024
+check 'a flight without pictures' exits 0 "$sim" --db "$db" --bus "$log" --seconds 0.5
+check 'a flight without a bus' exits 0 "$sim" --db "$db" --seconds 2 --png "$work/no-bus"
+check 'shows that it has none' between 100 100000 "$(warnings "$work/no-bus/frame-00030.png")"
+
+# The database
+check 'a missing database fails' exits 1 "$sim" --db "$work/nosuch.lmdb" --bus "$log"
+check 'and is named with its cause and remedy' said 'nosuch.lmdb: cannot be opened: No such file.*; landmass-db build'
+head -c 3000000 "$db" >"$work/cut.lmdb"
+check 'a truncated database is flown' exits 0 "$sim" --db "$work/cut.lmdb" --bus "$log" --seconds 1 --png "$work/cut"
+check 'with a warning that names it' said 'cut.lmdb: warning: is no usable flash image; landmass-db verify'
+check 'a summary that says so' printed 'database: not usable'
+check 'and on the glass' between 100 100000 "$(warnings "$work/cut/frame-00030.png")"
+: >"$work/empty.lmdb"
+check 'an empty database is flown likewise' exits 0 "$sim" --db "$work/empty.lmdb" --bus "$log" --seconds 0.2
+check 'with that warning' said 'empty.lmdb: warning: is no usable flash image'
+"$sim" --db "$work" --bus "$log" --seconds 0.2 >"$out" 2>"$last_error"
+check 'a folder in place of the database is told by name' said "$work: "
+check 'a database whose fine levels are damaged is flown to the end' \
+    exits 0 "$sim" --db "$work/broken.lmdb" --bus "$log" --script "$script" --png "$work/broken" --size 400x384
+check 'with the sweep as before' between 560 700 "$(number lines)"
+check 'each bad record counted' between 20 2000 "$(number_before 'records corrupt')"
+check 'answered by a coarser one' between 1000 100000000 "$(number_before 'answered by a coarser')"
+check 'and the glass says TILE' between 50 100000 "$(warnings "$work/broken/frame-00060.png")"
+
+# The bus
+check 'a missing log fails' exits 1 "$sim" --db "$db" --bus "$work/nosuch.log"
+check 'and is named' said 'nosuch.log: cannot be opened'
+{
+    head -n 100 "$log"
+    echo 'what is this'
+    echo '(12.5) can0 40C#00'
+    tail -n +101 "$log"
+} >"$work/dirty.log"
+check 'a log with bad lines is flown' exits 0 "$sim" --db "$db" --bus "$work/dirty.log" --seconds 1
+check 'they are named by number' said 'dirty.log line 101: warning: .*; the line is skipped'
+check 'and counted' printed ', 2 malformed'
+check 'an interface that is not there fails' exits 1 "$sim" --db "$db" --can nosuch0 --seconds 1
+check 'and is named' said 'landmass-sim: nosuch0: '
+
+# The script
+bad_script() { # NUMBER LINE...: the last line is the wrong one
+    line=$1
+    shift
+    printf '%s\n' "$@" >"$work/bad.script"
+    exits 1 "$sim" --db "$db" --bus "$log" --seconds 1 --script "$work/bad.script" && said "bad.script line $line: "
+}
+check 'a command that is none is named by file and line' bad_script 3 '# remark' '0 gm' '1 fly home'
+check 'so is a scale that is none' bad_script 1 '0 range 30'
+check 'so is a place beyond the pole' bad_script 2 '' '0 sar 91 11 5'
+check 'so is time that goes back' bad_script 2 '5 gm' '4 gm'
+check 'so is a picture outside the folder' bad_script 1 '0 picture ../up'
+check 'a missing script is named' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/nosuch.script"
+check 'with its cause' said 'nosuch.script: cannot be opened: No such file'
+printf '0 picture here\n' >"$work/picture.script"
+check 'a picture asked for without a folder' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/picture.script"
+check 'is told how to give one' said 'add --png DIR'
+
+# The pictures
+check 'a folder that cannot be made fails' exits 1 "$sim" --db "$db" --bus "$log" --png "$db/below"
+check 'and is named with its cause' said 'small.lmdb/below: cannot be made: Not a directory'
+check 'a file in place of the folder fails' exits 1 "$sim" --db "$db" --bus "$log" --png "$log"
+check 'and is named' said 'flight.log'
+
+# The command line
+wrong() {
+    exits 2 "$sim" "$@" && test -s "$last_error" && test ! -s "$out"
+}
+check 'an unknown option is a wrong command line' wrong --db "$db" --bus "$log" --nosuch
+check 'so is a stray word' wrong --db "$db" --bus "$log" stray
+check 'so is no database' wrong --bus "$log"
+check 'so are two buses' wrong --db "$db" --bus "$log" --can can0
+check 'so is a run without an end' wrong --db "$db"
+for bad in '--size 255x400' '--size 400x1025' '--size 400' '--size axb' '--every -1' '--every x' '--seconds 0' \
+    '--seconds -1' '--seconds nan' '--seconds inf' '--seconds 1e9' '--seed -1' '--seed x' '--seed 1.5'; do
+    # shellcheck disable=SC2086 # an option and its value
+    check "so is $bad" wrong --db "$db" --bus "$log" $bad
+done
+
+# The window
+check 'without a screen the flight goes on' \
+    env SDL_VIDEODRIVER=nosuch "$sim" --db "$db" --bus "$log" --seconds 0.3 --window --quiet 2>"$last_error"
+check 'with a warning' said 'window: warning: no screen'
+if command -v xvfb-run >/dev/null; then
+    check 'a flight in a window on a virtual screen ends with status 0' \
+        exits 0 env SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software xvfb-run -a "$sim" --db "$db" --bus "$log" \
+        --seconds 0.5 --window
+    check 'and complains of nothing' test ! -s "$last_error"
+else
+    skip 'a flight in a window' 'no xvfb-run here'
+fi
+finish

@@ -1,0 +1,99 @@
+/* What test_sim.sh cannot do by itself: make a flash image and look at a picture.
+ *
+ *   test_sim_tool image FILE            a small image round 46 N 11 E, 5 MB
+ *   test_sim_tool break-fine FILE       the same, each record below the coarsest level damaged
+ *   test_sim_tool pixels FILE.png RRGGBB    print how many pixels have that colour
+ *   test_sim_tool size FILE.png             print WIDTHxHEIGHT */
+#include "tiny_image.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TOP_LEVEL = 5 };
+
+static struct tiny_cell cell_at(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    if (hypot(p->east_m + 2000, p->north_m) < 1500) {
+        return (struct tiny_cell){-40, TINY_WATER, 0};
+    }
+    const bool is_house =
+        fabs(remainder(p->east_m, 400)) < 50 && fabs(remainder(p->north_m, 400)) < 50;
+    return is_house ? (struct tiny_cell){0, TINY_STRUCTURE, 5}
+                    : (struct tiny_cell){-18, TINY_SOIL, 0};
+}
+
+static double elevation_at(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + 80 * sin(p->east_m / 900) * cos(p->north_m / 1300);
+}
+
+static int write_image(const char *path, bool is_broken)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 11;
+    spec.rows = spec.columns = 8;
+    spec.level_count = TOP_LEVEL + 1;
+    spec.margin = 2;
+    spec.cell = cell_at;
+    spec.elevation_m = elevation_at;
+    struct tiny_image image;
+    if (tiny_image_build(&image, &spec) != 0) {
+        return 1;
+    }
+    for (size_t i = 0; is_broken && i < image.record_count; i++) {
+        uint8_t *record = image.bytes + image.tiles_offset + i * LM_TILE_BYTES;
+        record[1000] ^= (uint8_t)(record[4] < TOP_LEVEL); /* byte 4: level */
+    }
+    const int status = tiny_image_write(&image, path);
+    tiny_image_free(&image);
+    return status != 0;
+}
+
+static int look(const char *path, const char *colour)
+{
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    if (!png_image_begin_read_from_file(&png, path)) {
+        fprintf(stderr, "%s: %s\n", path, png.message);
+        return 1;
+    }
+    png.format = PNG_FORMAT_RGB;
+    uint8_t *pixels = malloc(PNG_IMAGE_SIZE(png));
+    if (!pixels || !png_image_finish_read(&png, NULL, pixels, 0, NULL)) {
+        return 1;
+    }
+    const size_t count = (size_t)png.width * png.height;
+    if (!colour) {
+        printf("%ux%u\n", png.width, png.height);
+    } else {
+        const unsigned long wanted = strtoul(colour, NULL, 16);
+        size_t found = 0;
+        for (const uint8_t *p = pixels; p < pixels + 3 * count; p += 3) {
+            found += ((unsigned long)p[0] << 16 | (unsigned long)p[1] << 8 | p[2]) == wanted;
+        }
+        printf("%zu\n", found);
+    }
+    free(pixels);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc == 3 && strcmp(argv[1], "image") == 0) {
+        return write_image(argv[2], false);
+    }
+    if (argc == 3 && strcmp(argv[1], "break-fine") == 0) {
+        return write_image(argv[2], true);
+    }
+    if (argc == 4 && strcmp(argv[1], "pixels") == 0) {
+        return look(argv[2], argv[3]);
+    }
+    if (argc == 3 && strcmp(argv[1], "size") == 0) {
+        return look(argv[2], NULL);
+    }
+    return 2;
+}
