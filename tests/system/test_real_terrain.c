@@ -2,7 +2,6 @@
  * coast and radar shadow should be is worked out here in double precision from the same files:
  * elevations by GDAL, geodesics by PROJ, lines of sight over an Earth of 4/3 its radius. */
 #include "real_scene.h"
-#include "support.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,6 @@
  * patches from four sides. What a patch should show where is asked of the class raster, by GDAL and
  * PROJ's geodesics. */
 #include "real_scene.h"
-#include "support.h"
 
 #include <math.h>
 #include <setjmp.h>
