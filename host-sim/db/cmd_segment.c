@@ -2,10 +2,10 @@
 #include "class_raster.h"
 #include "commands.h"
 #include "evaluate.h"
-#include "source_options.h"
 #include "learn.h"
 #include "mlp_apply.h"
 #include "preview.h"
+#include "source_options.h"
 
 #include "hs/error.h"
 #include "hs/png.h"
@@ -174,6 +174,9 @@ static int find_exemplars(struct work *w)
     };
     if (db_exemplars_find(&w->exemplars, &source, &w->image.grid) != 0) {
         return -1;
+    }
+    for (size_t i = 0; i < w->exemplars.count; i++) {
+        w->exemplars.items[i].part = DB_PART_UNKNOWN;
     }
     w->given = malloc(w->exemplars.count + 1);
     return w->given ? 0 : hs_error(o->report, NULL, "out of memory");

@@ -12,7 +12,7 @@
 #include "label_map.h"
 #include "raster.h"
 
-enum db_part { DB_PART_TRAIN, DB_PART_VALIDATE, DB_PART_HELD_OUT };
+enum db_part { DB_PART_TRAIN, DB_PART_VALIDATE, DB_PART_HELD_OUT, DB_PART_UNKNOWN };
 
 struct db_exemplar {
     int32_t x, y;

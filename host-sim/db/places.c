@@ -8,10 +8,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What the worst list shows: regions of which less than this part is recognised, so many at most.
- */
+/* What the worst list shows: regions of at least so many exemplars of which less than this part is
+ * recognised, so many at most. */
 static const double worst_below = 0.9;
-enum { WORST_LISTED = 40 };
+enum { WORST_LISTED = 40, WORST_PIXELS = 10 };
 
 int db_report_path(char *path, size_t size, const char *folder, const char *name)
 {
@@ -137,8 +137,8 @@ struct db_place *db_places_by_square(const struct db_exemplar *items, const uint
 
 static const char *part_name(uint8_t part)
 {
-    static const char *const names[] = {"train", "validate", "held-out"};
-    return part < 3 ? names[part] : "?";
+    static const char *const names[] = {"train", "validate", "held-out", "unknown"};
+    return part <= DB_PART_UNKNOWN ? names[part] : "?";
 }
 
 static const char *class_name(const struct db_class_table *table, uint8_t index)
@@ -197,10 +197,12 @@ static int write_worst(const char *path, const struct db_place *places, size_t c
             "more exemplars like them, or correct them by hand where the bands cannot tell the "
             "classes apart.\n\n",
             100 * worst_below);
-    for (size_t i = 0; i < count && i < WORST_LISTED; i++) {
+    int listed = 0;
+    for (size_t i = 0; i < count && listed < WORST_LISTED; i++) {
         const struct db_region *r = &regions[places[i].index];
         const double right = (double)places[i].right / (double)places[i].count;
-        if (right < worst_below) {
+        if (right < worst_below && places[i].count >= WORST_PIXELS) {
+            listed++;
             fprintf(
                 file.stream,
                 "region %ld (%s, %s) near pixel %d,%d: %.1f %% of %llu recognised, mostly taken "

@@ -116,7 +116,7 @@ static void draw_axes(struct canvas *c, int epochs)
         snprintf(text, sizeof text, "%d", epoch);
         write_text(c, x - (int)strlen(text) * GLYPH_STEP / 2, BOTTOM + 10, text, BLACK);
     }
-    write_text(c, (LEFT + RIGHT) / 2 - 20, BOTTOM + 28, "EPOCH", BLACK);
+    write_text(c, (LEFT + RIGHT) / 2 - 20, BOTTOM + 24, "EPOCH", BLACK);
 }
 
 static double value_of(const struct db_epoch *e, int curve)
@@ -144,8 +144,8 @@ static void draw_key(struct canvas *c, bool has_validation)
     static const uint32_t colours[] = {RED, BLUE, GREEN};
     int x = LEFT;
     for (int i = 0; i < 2 + has_validation; i++) {
-        draw_line(c, x, HEIGHT - 15, x + 20, HEIGHT - 15, colours[i], 2);
-        write_text(c, x + 26, HEIGHT - 20, names[i], BLACK);
+        draw_line(c, x, HEIGHT - 11, x + 20, HEIGHT - 11, colours[i], 2);
+        write_text(c, x + 26, HEIGHT - 16, names[i], BLACK);
         x += 50 + (int)strlen(names[i]) * GLYPH_STEP;
     }
 }

@@ -344,6 +344,9 @@ static void a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused(void **
         {"input 0.125 2", "input nan 2"},
         {"input 0.125 2", "input 0.125 inf"},
         {"input 0.125 2", "input 0.125"},
+        {"input -3 ", "input nan "},
+        {"input -3 ", "input 1e10 "},
+
         {"unit-weights ", "unit-weights 1e30 "},
         {"unit-weights ", "unit-weights x "},
         {"end", "end\nend"},
