@@ -304,7 +304,8 @@ static struct lm_page describe(const struct lm_unit *u)
     if (page.is_sar) {
         page.sar_cell_dm = (uint16_t)(s->command.cell_mm / 100);
         page.sar_percent = (uint16_t)(s->line * 100 / s->radar->sar_cells);
-        page.sar_look_deg = (uint16_t)((uint64_t)s->command.look_azimuth * 360 >> 32);
+        page.sar_look_deg =
+            (uint16_t)((((uint64_t)s->command.look_azimuth * 360 + (1u << 31)) >> 32) % 360);
     }
     return page;
 }

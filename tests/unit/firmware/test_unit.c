@@ -421,6 +421,26 @@ static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
     free_rig(r);
 }
 
+/* Found by tests/golden: ten degrees are 9.99999998 as a binary angle, and were shown as 009. */
+static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
+{
+    (void)state;
+    struct rig *r[2];
+    for (int i = 0; i < 2; i++) {
+        r[i] = start_rig();
+        command(r[i], (struct lm_control){.kind = LM_CONTROL_SAR,
+                                          .sar = {.centre = patch_here.sar.centre,
+                                                  .cell_mm = 5000,
+                                                  .look_azimuth = FX_BAM_DEG(10) + (i ? 1000 : 0),
+                                                  .range_m = 20000}});
+        lm_unit_step(&r[i]->unit, 0); /* the page, before the first line */
+        assert_int_equal(r[i]->unit.mode, LM_MODE_SAR);
+    }
+    assert_memory_equal(r[0]->glass, r[1]->glass, sizeof r[0]->glass);
+    free_rig(r[0]);
+    free_rig(r[1]);
+}
+
 static void a_mode_change_leaves_nothing_of_the_last_picture(void **state)
 {
     (void)state;
@@ -534,6 +554,7 @@ int main(void)
         cmocka_unit_test(late_flash_never_holds_the_sweep),
         cmocka_unit_test(a_patch_completes_and_stays),
         cmocka_unit_test(a_patch_on_the_smallest_glass_stays_within_its_frame),
+        cmocka_unit_test(the_line_of_sight_is_shown_to_the_nearest_degree),
         cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
         cmocka_unit_test(a_jump_of_the_aircraft_starts_the_picture_anew),
         cmocka_unit_test(hostile_commands_are_refused_and_counted),
