@@ -117,8 +117,7 @@ static int presenter_init(struct presenter *p, const struct db_train_data *data)
     p->order = malloc(data->count * sizeof *p->order);
     p->epoch = malloc(data->count * sizeof *p->epoch);
     if (!p->order || !p->epoch) {
-        presenter_free(p);
-        return -1;
+        return -1; /* trainer_free frees either. */
     }
     size_t used = 0;
     for (int c = 0; c < CLASSES; c++) {

@@ -78,7 +78,7 @@ static int next_value(struct db_text_file *f, const char *key, const char **valu
 
 static int read_count(struct db_text_file *f, const char *key, int low, int high, int *count)
 {
-    const char *value;
+    const char *value = "";
     if (next_value(f, key, &value) != 0) {
         return -1;
     }
@@ -95,7 +95,7 @@ static int read_count(struct db_text_file *f, const char *key, int low, int high
 static int read_choice(struct db_text_file *f, const char *key, const char *const names[2],
                        int *choice)
 {
-    const char *value;
+    const char *value = "";
     if (next_value(f, key, &value) != 0) {
         return -1;
     }
@@ -110,7 +110,7 @@ static int read_choice(struct db_text_file *f, const char *key, const char *cons
 
 static int read_floats(struct db_text_file *f, const char *key, float *numbers, int count)
 {
-    const char *value;
+    const char *value = "";
     if (next_value(f, key, &value) != 0) {
         return -1;
     }
