@@ -1,0 +1,31 @@
+# Golden pictures: one program, built four ways, that must give the same checksums: as the product is built, by clang, without
+# optimisation under the sanitizers, and with clang at its highest level.
+GOLDEN_SRC := $(addprefix tests/golden/,golden.c golden_flight.c golden_scene.c) \
+    $(addprefix tests/support/,tiny_image.c memory_flash.c) host-sim/common/src/png.c host-sim/common/src/error.c \
+    host-sim/common/src/atomic_file.c $(wildcard firmware/src/*.c fixed/src/*.c)
+GOLDEN := $(O)/bin/tests/golden
+TESTS += $(GOLDEN)/test_golden
+
+$(GOLDEN)/golden: $(call objs,$(GOLDEN_SRC))
+$(GOLDEN)/golden-clang: $(GOLDEN_SRC:%.c=$(O)/golden-clang/%.o)
+$(GOLDEN)/golden-sanitized: $(GOLDEN_SRC:%.c=$(O)/golden-sanitized/%.o)
+$(GOLDEN)/golden-clang: CC := clang
+$(GOLDEN)/golden-clang: OPT := -O3 -g
+$(GOLDEN)/golden-sanitized: OPT := -O0 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+$(GOLDEN)/golden $(GOLDEN)/golden-clang $(GOLDEN)/golden-sanitized: LDLIBS := $(call pkgs,libs,libpng)
+$(GOLDEN)/test_golden: tests/golden/test_golden.sh tests/golden/pictures.golden $(addprefix $(GOLDEN)/,golden golden-clang golden-sanitized)
+	@cp $< $@
+	@chmod +x $@
+
+define golden_variant
+$(O)/$(1)/%.o: %.c
+	@mkdir -p $$(@D)
+	$$(if $$(V),,@echo '  CC   $$< ($(1))')
+	$$(Q)$$(CC) $$(CFLAGS_host) -Itests/support $$(DEPGEN) -c $$< -o $$@
+endef
+$(foreach variant,golden-clang golden-sanitized,$(eval $(call golden_variant,$(variant))))
+
+.PHONY: golden-update
+golden-update: $(GOLDEN)/golden ## Take the pictures of this build as the golden ones; look at them first
+	@$(GOLDEN)/golden >$(O)/pictures.golden && mv $(O)/pictures.golden tests/golden/pictures.golden
+	@echo 'tests/golden/pictures.golden is that of this build; git diff shows what changed'

@@ -1,0 +1,262 @@
+#include "golden_flight.h"
+
+#include "fx/crc32c.h"
+#include "golden_scene.h"
+
+#include <string.h>
+
+enum { STEP_US = 2000, FIX_US = 100000, START_US = 200000, POLLS = 1000 };
+
+#define GLASS .width_px = 384, .height_px = 384
+/* From the south, over the plain towards town and mountain. */
+#define FROM_SOUTH .north_m = -3600, .east_m = 300, .height_m = 2500
+#define GM(nm, r, deg, a)                                                                          \
+    {                                                                                              \
+        .name = "gm-" nm "nm-" deg, FROM_SOUTH, .heading_deg = 5, GLASS, .range = (r),             \
+        .azimuth = (a)                                                                             \
+    }
+
+const struct golden_picture golden_pictures[] = {
+    GM("10", 0, "60deg", 0),
+    GM("10", 0, "30deg", 1),
+    GM("10", 0, "10deg", 2),
+    GM("20", 1, "60deg", 0),
+    GM("20", 1, "30deg", 1),
+    GM("20", 1, "10deg", 2),
+    GM("40", 2, "60deg", 0),
+    GM("40", 2, "30deg", 1),
+    GM("40", 2, "10deg", 2),
+    GM("80", 3, "60deg", 0),
+    GM("80", 3, "30deg", 1),
+    GM("80", 3, "10deg", 2),
+    {.name = "gm-low-and-looking-out-to-sea",
+     GLASS,
+     .north_m = 1000,
+     .east_m = 2500,
+     .height_m = 700,
+     .heading_deg = -80},
+    {.name = "gm-brighter-by-10-db", FROM_SOUTH, GLASS, .gain_db = 10},
+    {.name = "gm-largest-glass", FROM_SOUTH, .width_px = 1024, .height_px = 768},
+    {.name = "gm-smallest-glass", FROM_SOUTH, .width_px = 256, .height_px = 256},
+    {.name = "gm-zone-border", .place = GOLDEN_BORDER, GLASS, .north_m = -5000, .height_m = 2500},
+    {.name = "gm-antimeridian",
+     .place = GOLDEN_ANTIMERIDIAN,
+     GLASS,
+     .east_m = -5000,
+     .height_m = 2500,
+     .heading_deg = 80},
+    {.name = "gm-north", .place = GOLDEN_NORTH, GLASS, .north_m = -5000, .height_m = 2500},
+    {.name = "sar-5m-from-the-ownship",
+     GLASS,
+     .north_m = -8000,
+     .east_m = 3000,
+     .height_m = 3000,
+     .heading_deg = -20,
+     .cell_mm = 5000},
+    {.name = "sar-2m-looking-north", GLASS, .height_m = 3000, .cell_mm = 2000, .range_m = 12000},
+    {.name = "sar-5m-looking-south-west",
+     GLASS,
+     .height_m = 3000,
+     .heading_deg = 225,
+     .cell_mm = 5000,
+     .range_m = 12000},
+    {.name = "sar-10m-looking-east-from-afar",
+     GLASS,
+     .height_m = 9000,
+     .heading_deg = 90,
+     .cell_mm = 10000,
+     .range_m = 70000},
+    {.name = "sar-20m-looking-south",
+     GLASS,
+     .height_m = 5000,
+     .heading_deg = 180,
+     .cell_mm = 20000,
+     .range_m = 30000},
+    {.name = "sar-40m-largest-glass",
+     .width_px = 1024,
+     .height_px = 768,
+     .height_m = 9000,
+     .heading_deg = 20,
+     .cell_mm = 40000,
+     .range_m = 60000},
+    {.name = "sar-zone-border",
+     .place = GOLDEN_BORDER,
+     GLASS,
+     .height_m = 3000,
+     .heading_deg = 30,
+     .cell_mm = 10000,
+     .range_m = 20000},
+    {.name = "sar-antimeridian",
+     .place = GOLDEN_ANTIMERIDIAN,
+     GLASS,
+     .height_m = 3000,
+     .heading_deg = 100,
+     .cell_mm = 10000,
+     .range_m = 20000},
+    {.name = "sar-north",
+     .place = GOLDEN_NORTH,
+     GLASS,
+     .height_m = 3000,
+     .heading_deg = 300,
+     .cell_mm = 10000,
+     .range_m = 20000},
+    {.name = "sar-smallest-glass",
+     .width_px = 256,
+     .height_px = 256,
+     .height_m = 3000,
+     .heading_deg = 10,
+     .cell_mm = 5000,
+     .range_m = 12000},
+    {.name = "page-nav-stale", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_ENDS},
+    {.name = "page-bus-dead", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_DEAD},
+    {.name = "page-db-fail", FROM_SOUTH, GLASS, .fault = GOLDEN_BAD_HEADER},
+    {.name = "page-tile", FROM_SOUTH, GLASS, .fault = GOLDEN_BAD_READS},
+    {.name = "page-frozen", FROM_SOUTH, GLASS, .fault = GOLDEN_FROZEN},
+    {.name = "page-off-map", .place = GOLDEN_BORDER, .north_m = -280000, .height_m = 2500, GLASS},
+};
+const uint32_t golden_picture_count = sizeof golden_pictures / sizeof golden_pictures[0];
+
+static uint64_t duration_us(const struct golden_picture *p)
+{
+    /* A sweep of 120 degrees takes a second, a patch two and the reading of its tiles. */
+    return START_US + (p->cell_mm ? 2600000u : 1300000u);
+}
+
+/* The bits of a whole number as IEEE 754 single; |value| below 2^24. */
+static uint32_t float_bits(int32_t value)
+{
+    const float single = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    return bits;
+}
+
+/* A binary angle as the bus's LONG, 1e-7 degree, rounded down. */
+static uint32_t long_of(fx_bam_t angle)
+{
+    return (uint32_t)(int32_t)(((int64_t)(int32_t)angle * 3600000000) >> 32);
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct golden_rig *r = ctx;
+    const struct golden_picture *p = r->picture;
+    const bool has_ended = p->fault == GOLDEN_BUS_ENDS && r->bus_us + 600000 > duration_us(p);
+    if (p->fault == GOLDEN_BUS_DEAD || has_ended || r->bus_us > r->now_us) {
+        return 0;
+    }
+    const struct {
+        uint16_t id;
+        uint8_t type;
+        uint32_t bits;
+    } items[] = {{1036, LM_CANAS_LONG, long_of(r->aircraft.latitude)},
+                 {1037, LM_CANAS_LONG, long_of(r->aircraft.longitude)},
+                 {1038, LM_CANAS_FLOAT, float_bits(p->height_m)},
+                 {1039, LM_CANAS_FLOAT, float_bits(0)},
+                 {1040, LM_CANAS_FLOAT, float_bits(0)},
+                 {1133, LM_CANAS_FLOAT, float_bits(p->heading_deg)}};
+    const uint32_t bits = items[r->bus_item].bits;
+    *frame = (struct lm_can_frame){.id = items[r->bus_item].id,
+                                   .length = 8,
+                                   .data = {9, items[r->bus_item].type, 0, r->message_code,
+                                            (uint8_t)(bits >> 24), (uint8_t)(bits >> 16),
+                                            (uint8_t)(bits >> 8), (uint8_t)bits},
+                                   .time_us = r->now_us};
+    if (++r->bus_item == sizeof items / sizeof items[0]) {
+        r->bus_item = 0;
+        r->message_code++;
+        r->bus_us += FIX_US;
+    }
+    return 1;
+}
+
+static struct lm_sar_command patch_command(const struct golden_picture *p, struct lm_place centre)
+{
+    return (struct lm_sar_command){.centre = centre,
+                                   .cell_mm = p->cell_mm,
+                                   .is_from_ownship = p->range_m == 0,
+                                   .look_azimuth = FX_BAM_DEG(p->heading_deg),
+                                   .range_m = p->range_m,
+                                   .height_q6 = p->height_m * 64};
+}
+
+/* The operator: scale, sector and gain when the bus is heard, then the patch; freezes late. */
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct golden_rig *r = ctx;
+    const struct golden_picture *p = r->picture;
+    const struct lm_control script[] = {
+        {.kind = LM_CONTROL_RANGE, .value = p->range},
+        {.kind = LM_CONTROL_AZIMUTH, .value = p->azimuth},
+        {.kind = LM_CONTROL_GAIN, .value = p->gain_db},
+        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_GM, .sar = patch_command(p, r->centre)},
+        {.kind = LM_CONTROL_FREEZE, .value = p->fault == GOLDEN_FROZEN}};
+    const uint64_t due_us = r->control_item < 4 ? START_US : START_US + 700000;
+    if (r->control_item == sizeof script / sizeof script[0] || r->now_us < due_us) {
+        return 0;
+    }
+    *control = script[r->control_item++];
+    return 1;
+}
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    struct golden_rig *r = ctx;
+    *surface = (struct lm_surface){r->glass, r->display.width_px, r->display.width_px,
+                                   r->display.height_px};
+    return LM_OK;
+}
+
+static int present(void *ctx)
+{
+    (void)ctx;
+    return LM_OK;
+}
+
+static struct lm_place moved(struct lm_place from, fx_bam_t azimuth, int32_t metres)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, from);
+    return metres < 0 ? lm_geo_direct(&origin, azimuth + FX_BAM_180, (uint32_t)-metres * 256)
+                      : lm_geo_direct(&origin, azimuth, (uint32_t)metres * 256);
+}
+
+static void prepare(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
+                    const uint8_t *image, size_t image_bytes)
+{
+    memset(r, 0, sizeof *r);
+    r->picture = p;
+    r->centre = centre;
+    r->aircraft = moved(moved(centre, 0, p->north_m), FX_BAM_90, p->east_m);
+    memory_flash_open(&r->flash, image, p->fault == GOLDEN_BAD_HEADER ? 511 : image_bytes);
+    r->can = (struct lm_can){r, receive};
+    r->controls = (struct lm_controls){r, next_control};
+    r->display = (struct lm_display){r, p->width_px, p->height_px, acquire, present};
+    r->board = (struct lm_board){.radar = &lm_radar_default,
+                                 .flash = &r->flash.port,
+                                 .can = &r->can,
+                                 .controls = &r->controls,
+                                 .display = &r->display,
+                                 .tile_pool = r->pool,
+                                 .tile_pool_bytes = sizeof r->pool,
+                                 .plane = r->plane,
+                                 .flash_poll_limit = POLLS};
+}
+
+int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
+               const uint8_t *image, size_t image_bytes)
+{
+    prepare(r, p, centre, image, image_bytes);
+    const int status = lm_unit_init(&r->unit, &r->board);
+    r->flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */
+    for (; status == LM_OK && r->now_us <= duration_us(p); r->now_us += STEP_US) {
+        lm_unit_step(&r->unit, r->now_us);
+    }
+    return status;
+}
+
+uint32_t golden_checksum(const struct golden_rig *r)
+{
+    const size_t pixels = (size_t)r->display.width_px * r->display.height_px;
+    return fx_crc32c(0, r->glass, pixels * sizeof r->glass[0]);
+}

@@ -1,0 +1,44 @@
+#!/bin/sh
+# The pictures of this build against tests/golden/pictures.golden, each one a test; then the other builds against it.
+set -u
+build=${BUILD:-build/bench-linux}
+golden=tests/golden/pictures.golden
+bin=$build/bin/tests/golden
+work=$build/tmp/golden
+rm -rf "$work"
+mkdir -p "$work"
+number=0
+failed=0
+different=
+
+result() { # STATUS STATEMENT
+    number=$((number + 1))
+    if [ "$1" -eq 0 ]; then
+        echo "ok $number - $2"
+    else
+        failed=1
+        echo "not ok $number - $2"
+    fi
+}
+
+"$bin"/golden >"$work/pictures"
+result $? 'the golden pictures can be drawn'
+while read -r name checksum; do
+    grep -qx "$name $checksum" "$work/pictures"
+    status=$?
+    [ $status -eq 0 ] || different="$different $name"
+    result $status "$name is as it was"
+done <"$golden"
+[ "$(wc -l <"$golden")" -eq "$(wc -l <"$work/pictures")" ]
+result $? 'there are as many as before'
+if [ -n "$different" ]; then
+    # shellcheck disable=SC2086 # a list of names
+    "$bin"/golden --png "$work" $different >/dev/null
+    echo "# what is drawn now is in $work; when it is right, make golden-update and commit before and after"
+fi
+for variant in golden-clang golden-sanitized; do
+    "$bin/$variant" >"$work/$variant" && cmp "$work/pictures" "$work/$variant"
+    result $? "$variant draws the same"
+done
+echo "1..$number"
+exit $failed
