@@ -1,9 +1,9 @@
 /* landmass-db reflect: a class raster in, a reflectivity raster out. */
 #include "class_raster.h"
 #include "commands.h"
-#include "source_options.h"
 #include "preview.h"
 #include "reflect.h"
+#include "source_options.h"
 
 #include "hs/error.h"
 #include "hs/png.h"

@@ -1,8 +1,8 @@
 /* landmass-db train: exemplars and an image in, a network and a report on it out. */
 #include "commands.h"
-#include "source_options.h"
 #include "learn.h"
 #include "plot.h"
+#include "source_options.h"
 #include "split.h"
 
 #include "hs/atomic_file.h"
