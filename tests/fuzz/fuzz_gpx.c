@@ -2,7 +2,7 @@
  */
 #include "track.h"
 
-const uint32_t fuzz_mutations = 6000;
+const uint32_t fuzz_mutations = 15000;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

@@ -6,7 +6,7 @@
 #include "memory_flash.h"
 #include "seal.h"
 
-const uint32_t fuzz_mutations = 6000;
+const uint32_t fuzz_mutations = 60000;
 
 enum { SLOTS = 24, POLLS = 64 };
 
@@ -21,9 +21,8 @@ static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struc
     const struct lm_sampling sampling = lm_sampling_for(cache->db, cell_mm, 0);
     for (int i = 0; i < 2; i++) {
         lm_ground_path_fit(&path, points, 64);
-        lm_scan_line_prefetch(cache, &sampling, path, 64);
+        lm_scan_line_run(line, cache, &sampling, &path, 64); /* asks for what is missing */
         lm_tile_cache_service(cache, (uint64_t)i * 2000000, 64);
-        lm_scan_line_run(line, cache, &sampling, &path, 64);
     }
     (void)lm_scan_elevation(cache, sampling.level, from, 0);
 }

@@ -69,7 +69,11 @@ int main(int argc, char **argv)
         mkdir(folder, 0777);
     }
     struct golden_rig *rig = malloc(sizeof *rig);
-    int status = rig ? 0 : hs_error("start", NULL, "out of memory");
+    if (!rig) {
+        hs_error("start", NULL, "out of memory");
+        return HS_EXIT_FAILED;
+    }
+    int status = 0;
     for (int place = 0; status == 0 && place < GOLDEN_PLACES; place++) {
         status = fly_over((enum golden_place)place, rig, folder, argc > 3 ? argc - 3 : 0, argv + 3);
     }
