@@ -16,6 +16,7 @@ log=$work/flight.log
 script=$work/flight.script
 "$tool" image "$db" || exit 1
 "$tool" break-fine "$work/broken.lmdb" || exit 1
+"$tool" leave-fine-out "$work/coarse.lmdb" || exit 1
 "$build/bin/landmass-nav" --straight 45.97,11,0,2000,150 --seconds 4 --quiet --out "$log" || exit 1
 cat >"$script" <<END
 # 10 nm, then a patch
@@ -114,6 +115,12 @@ check 'with the sweep as before' between 560 700 "$(number lines)"
 check 'each bad record counted' between 20 2000 "$(number_before 'records corrupt')"
 check 'answered by a coarser one' between 1000 100000000 "$(number_before 'answered by a coarser')"
 check 'and the glass says TILE' between 50 100000 "$(warnings "$work/broken/frame-00060.png")"
+check 'a database without its fine levels is flown to the end' \
+    exits 0 "$sim" --db "$work/coarse.lmdb" --bus "$log" --script "$script" --png "$work/coarse" --size 400x384
+check 'with the sweep as before' between 560 700 "$(number lines)"
+check 'which is no fault' printed 'faults: 0 flash reads failed, 0 records corrupt'
+check 'and no warning' test "$(warnings "$work/coarse/patch.png")" -eq 0
+check 'but a coarser picture' test "$(cmp -s "$work/first/patch.png" "$work/coarse/patch.png" && echo same)" = ''
 
 # The bus
 check 'a missing log fails' exits 1 "$sim" --db "$db" --bus "$work/nosuch.log"

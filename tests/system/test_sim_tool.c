@@ -2,6 +2,7 @@
  *
  *   test_sim_tool image FILE            a small image round 46 N 11 E, 5 MB
  *   test_sim_tool break-fine FILE       the same, each record below the coarsest level damaged
+ *   test_sim_tool leave-fine-out FILE   the same without the two finest levels
  *   test_sim_tool pixels FILE.png RRGGBB    print how many pixels have that colour
  *   test_sim_tool size FILE.png             print WIDTHxHEIGHT */
 #include "tiny_image.h"
@@ -32,7 +33,15 @@ static double elevation_at(void *ctx, const struct tiny_place *p)
     return 300 + 80 * sin(p->east_m / 900) * cos(p->north_m / 1300);
 }
 
-static int write_image(const char *path, bool is_broken)
+static bool is_fine(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    (void)ctx;
+    (void)row;
+    (void)column;
+    return level < 2;
+}
+
+static int write_image(const char *path, bool is_broken, bool is_coarse)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 11;
@@ -41,6 +50,7 @@ static int write_image(const char *path, bool is_broken)
     spec.margin = 2;
     spec.cell = cell_at;
     spec.elevation_m = elevation_at;
+    spec.leave_out = is_coarse ? is_fine : NULL;
     struct tiny_image image;
     if (tiny_image_build(&image, &spec) != 0) {
         return 1;
@@ -84,10 +94,13 @@ static int look(const char *path, const char *colour)
 int main(int argc, char **argv)
 {
     if (argc == 3 && strcmp(argv[1], "image") == 0) {
-        return write_image(argv[2], false);
+        return write_image(argv[2], false, false);
     }
     if (argc == 3 && strcmp(argv[1], "break-fine") == 0) {
-        return write_image(argv[2], true);
+        return write_image(argv[2], true, false);
+    }
+    if (argc == 3 && strcmp(argv[1], "leave-fine-out") == 0) {
+        return write_image(argv[2], false, true);
     }
     if (argc == 4 && strcmp(argv[1], "pixels") == 0) {
         return look(argv[2], argv[3]);
