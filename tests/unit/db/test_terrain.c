@@ -323,11 +323,70 @@ static void beyond_the_model_posts_keep_the_height_of_its_edge(void **state)
     terrain_close(&t);
 }
 
-/* Neighbours by every side, at levels and places where the mapping is bent, cut or wrapped. */
+static double feet(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return 1000;
+}
+
+static void of_two_models_the_nearer_one_lends_its_edge(void **state)
+{
+    (void)state;
+    scene_folder();
+    struct scene_raster r = {.width = 100,
+                             .height = 100,
+                             .geotransform = {12.0, 0.01, 0, 51.0, 0, -0.01},
+                             .epsg = 4326,
+                             .type = GDT_Float32,
+                             .value = feet};
+    scene_write("far.tif", &r);
+    r.geotransform[0] = 10.0;
+    r.value = plane;
+    scene_write("near.tif", &r);
+    for (int order = 0; order < 2; order++) {
+        struct terrain t;
+        open_terrain(&t, 13, 2, scene_path(order ? "far.tif" : "near.tif"),
+                     scene_path(order ? "near.tif" : "far.tif"));
+        static struct terrain_posts posts;
+        struct image_frame f = frame_at(13, 50.5, 11.2);
+        assert_int_equal(terrain_posts(&t, &f, &posts), 0);
+        assert_true(fabs(posts.q6[0][0] / 64.0 - plane(10.995, image_degrees(f.south))) < 3.1);
+        f = frame_at(13, 50.5, 11.8);
+        assert_int_equal(terrain_posts(&t, &f, &posts), 0);
+        assert_int_equal(posts.q6[0][0], 1000 * 64);
+        terrain_close(&t);
+    }
+}
+
+/* A tile against its neighbours to the east and north. */
+static void assert_edges_shared(struct terrain *t, const struct image_frame *f)
+{
+    static struct terrain_posts home, east, north;
+    const uint32_t mask = image_columns_round(f->shift, f->zone) - 1;
+    const struct image_frame e = image_frame_of(f->shift, f->zone, f->row, (f->column + 1) & mask);
+    const struct image_frame n = image_frame_of(f->shift, f->zone, f->row + 1, f->column);
+    assert_true(terrain_posts(t, f, &home) >= 0);
+    assert_true(terrain_posts(t, &e, &east) >= 0 && terrain_posts(t, &n, &north) >= 0);
+    for (int k = 0; k < N; k++) {
+        assert_int_equal(home.q6[k][N - 1], east.q6[k][0]);
+        assert_int_equal(home.q6[N - 1][k], north.q6[0][k]);
+        assert_int_equal(home.has[k][N - 1], east.has[k][0]);
+        assert_int_equal(home.has[N - 1][k], north.has[0][k]);
+    }
+}
+
+static double jumps(double x, double y)
+{
+    return fmod(fabs(floor(x / 0.001) * 7 + floor(y / 0.001) * 3), 11) * 10;
+}
+
+/* At levels and places where the mapping is bent, cut or wrapped, on ground that jumps by 100 m a
+ * pixel. */
 static void tiles_share_their_edges_bit_for_bit(void **state)
 {
     (void)state;
-    const struct {
+    static const struct {
         int epsg;
         double geotransform[6];
         uint8_t shift;
@@ -335,49 +394,41 @@ static void tiles_share_their_edges_bit_for_bit(void **state)
     } cases[] = {
         {4326, {10.0, 0.001, 0, 51.0, 0, -0.001}, 12, 50.5, 10.5},
         {32632, {400000, 100, 0, 5700000, 0, -100}, 13, 51.0, 8.2},
-        {32632, {400000, 100, 0, 5700000, 0, -100}, 17, 51.0, 8.2},   /* bent over 300 km tiles */
-        {32660, {750000, 1000, 0, 400000, 0, -1000}, 15, 2.0, 179.9}, /* over the antimeridian */
+        {32632, {450000, 100, 0, 6820000, 0, -100}, 15, 60.6, 8.4}, /* bent here, straight there */
+        {32632, {400000, 100, 0, 5700000, 0, -100}, 17, 51.0, 8.2}, /* bent over 300 km tiles */
+        {32660, {750000, 1000, 0, 400000, 0, -1000}, 15, 2.0, 179.7}, /* over the antimeridian */
         {3857,
          {19000000, 1000, 0, 500000, 0, -1000},
          16,
          3.0,
          179.5}, /* the seam of the projection */
-        {3413, {-600000, 1000, 0, 600000, 0, -1000}, 17, 88.0, 90.0}, /* near the pole */
+        {3413, {-600000, 1000, 0, 600000, 0, -1000}, 17, 87.0, 90.0}, /* near the pole */
     };
-    static struct terrain_posts home, east, north;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct scene_raster r = {.width = 1200,
                                  .height = 1200,
                                  .epsg = cases[i].epsg,
                                  .type = GDT_Float32,
-                                 .value = comb};
+                                 .value = jumps};
         memcpy(r.geotransform, cases[i].geotransform, sizeof r.geotransform);
         scene_write("shared.tif", &r);
         struct terrain t;
         open_terrain(&t, cases[i].shift, 1, scene_path("shared.tif"));
-        const struct image_frame f =
+        const struct image_frame first =
             frame_at(cases[i].shift, cases[i].latitude, cases[i].longitude);
-        const uint32_t mask = image_columns_round(f.shift, f.zone) - 1;
-        const struct image_frame e = image_frame_of(f.shift, f.zone, f.row, (f.column + 1) & mask);
-        const struct image_frame n = image_frame_of(f.shift, f.zone, f.row + 1, f.column);
-        const int reached = terrain_posts(&t, &f, &home);
-        assert_true(reached > 0);
-        assert_true(terrain_posts(&t, &e, &east) >= 0 && terrain_posts(&t, &n, &north) >= 0);
-        for (int k = 0; k < N; k++) {
-            assert_int_equal(home.q6[k][N - 1], east.q6[k][0]);
-            assert_int_equal(home.q6[N - 1][k], north.q6[0][k]);
-            assert_int_equal(home.has[k][N - 1], east.has[k][0]);
-            assert_int_equal(home.has[N - 1][k], north.has[0][k]);
+        static struct terrain_posts posts;
+        assert_true(terrain_posts(&t, &first, &posts) > 0);
+        for (uint32_t k = 0; k < 25; k++) {
+            const uint32_t mask = image_columns_round(first.shift, first.zone) - 1;
+            const struct image_frame f = image_frame_of(first.shift, first.zone, first.row + k / 5,
+                                                        (first.column + k % 5) & mask);
+            if (f.south + 2 * LM_TILE_CELLS * f.latitude_step <= IMAGE_BAM_QUARTER &&
+                image_row_zone(f.shift, f.row + 1) == f.zone) {
+                assert_edges_shared(&t, &f);
+            }
         }
         terrain_close(&t);
     }
-}
-
-static double feet(double x, double y)
-{
-    (void)x;
-    (void)y;
-    return 1000;
 }
 
 static void elevations_in_feet_become_metres(void **state)
@@ -447,6 +498,7 @@ int main(void)
         cmocka_unit_test(voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea),
         cmocka_unit_test(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through),
         cmocka_unit_test(beyond_the_model_posts_keep_the_height_of_its_edge),
+        cmocka_unit_test(of_two_models_the_nearer_one_lends_its_edge),
         cmocka_unit_test(tiles_share_their_edges_bit_for_bit),
         cmocka_unit_test(elevations_in_feet_become_metres),
         cmocka_unit_test(srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_filled),
