@@ -7,7 +7,14 @@
 #error "records are used in place: landmass needs a little-endian machine"
 #endif
 
-enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES, SECTIONS_MAX = 16 };
+enum {
+    SECTION_CLASSES = 1,
+    SECTION_BANDS,
+    SECTION_DIRECTORY,
+    SECTION_TILES,
+    SECTION_TARGETS = 6,
+    SECTIONS_MAX = 16
+};
 enum { HEIGHT_MAX_Q6 = 1 << 20 };
 
 struct section {
@@ -34,8 +41,8 @@ struct header {
 _Static_assert(sizeof(struct header) == LM_DB_HEADER_BYTES,
                "the header must be what FORMATS.md says");
 
-static int read_blocking(const struct lm_flash *flash, uint64_t offset, void *destination,
-                         uint32_t length, uint32_t poll_limit)
+int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination, uint32_t length,
+               uint32_t poll_limit)
 {
     int status = flash->read_start(flash->ctx, offset, destination, length);
     if (status != LM_OK) {
@@ -68,26 +75,35 @@ static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
            is_height(h->geoid_q6);
 }
 
+static const struct section *section_of_type(const struct header *h, uint32_t type)
+{
+    for (uint32_t i = 0; i < h->section_count; i++) {
+        if (h->sections[i].type == type) {
+            return &h->sections[i];
+        }
+    }
+    return NULL;
+}
+
+static bool is_inside(const struct header *h, const struct section *s)
+{
+    return s->offset % 64 == 0 && s->bytes <= h->image_bytes &&
+           s->offset <= h->image_bytes - s->bytes;
+}
+
 /* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL.
  */
 static const struct section *find_section(const struct header *h, uint32_t type, uint64_t bytes)
 {
-    for (uint32_t i = 0; i < h->section_count; i++) {
-        const struct section *s = &h->sections[i];
-        if (s->type == type) {
-            const bool fits = s->bytes == bytes && s->offset % 64 == 0 &&
-                              s->bytes <= h->image_bytes && s->offset <= h->image_bytes - s->bytes;
-            return fits ? s : NULL;
-        }
-    }
-    return NULL;
+    const struct section *s = section_of_type(h, type);
+    return s && s->bytes == bytes && is_inside(h, s) ? s : NULL;
 }
 
 static int read_section(struct lm_db *db, const struct section *s, void *destination,
                         uint32_t poll_limit)
 {
     const uint32_t length = (uint32_t)s->bytes; /* bounded by find_section */
-    const int status = read_blocking(db->flash, s->offset, destination, length, poll_limit);
+    const int status = lm_db_read(db->flash, s->offset, destination, length, poll_limit);
     if (status != LM_OK) {
         return status;
     }
@@ -131,6 +147,33 @@ static bool classes_are_sound(const struct lm_classes *c)
     return c->height_dm[0] == 0;
 }
 
+/* The targets' head; an image need not have any. Their records are checked when they are read. */
+static int read_targets_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+{
+    struct lm_targets_head head;
+    const struct section *s = section_of_type(h, SECTION_TARGETS);
+    db->target_count = 0;
+    db->targets_offset = 0;
+    if (s == NULL) {
+        return LM_OK;
+    }
+    if (s->bytes < sizeof head || !is_inside(h, s)) {
+        return LM_ERR_CORRUPT;
+    }
+    const int status = lm_db_read(db->flash, s->offset, &head, sizeof head, poll_limit);
+    if (status != LM_OK) {
+        return status;
+    }
+    if (fx_crc32c(0, &head, sizeof head - sizeof head.crc) != head.crc ||
+        head.record_bytes != LM_TARGET_BYTES || head.count > LM_DB_TARGETS_MAX ||
+        s->bytes != sizeof head + (uint64_t)head.count * LM_TARGET_BYTES) {
+        return LM_ERR_CORRUPT;
+    }
+    db->target_count = head.count;
+    db->targets_offset = s->offset + sizeof head;
+    return LM_OK;
+}
+
 static int read_tables(struct lm_db *db, const struct header *h, uint32_t poll_limit)
 {
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
@@ -166,7 +209,7 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (flash->size_bytes < sizeof h) {
         return LM_ERR_CORRUPT;
     }
-    const int status = read_blocking(flash, 0, &h, sizeof h, poll_limit);
+    const int status = lm_db_read(flash, 0, &h, sizeof h, poll_limit);
     if (status != LM_OK) {
         return status;
     }
@@ -189,7 +232,8 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     db->geoid_q6 = h.geoid_q6;
     db->centre_latitude = h.centre_latitude;
     db->centre_longitude = h.centre_longitude;
-    return read_tables(db, &h, poll_limit);
+    const int tables = read_tables(db, &h, poll_limit);
+    return tables == LM_OK ? read_targets_head(db, &h, poll_limit) : tables;
 }
 
 uint8_t lm_db_zone(fx_bam_t latitude)

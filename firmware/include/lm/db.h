@@ -34,7 +34,9 @@ enum {
     LM_TILE_CELLS_LOG2 = 6,
     LM_TILE_POSTS = 65, /* elevation posts at the cells' corners, shared with the neighbours */
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
-    LM_TILE_BYTES = 16704
+    LM_TILE_BYTES = 16704,
+    LM_TARGET_BYTES = 640, /* a record of TARGETS: lm/target.h */
+    LM_DB_TARGETS_MAX = 1024
 };
 
 /* What a class is to the radar, apart from how bright. */
@@ -97,7 +99,8 @@ struct lm_db {
     uint8_t level_count, shift0;
     uint16_t band_count;
     uint32_t entry_count, record_count;
-    uint64_t directory_offset, records_offset;
+    uint32_t target_count; /* 0 when the image has no section TARGETS */
+    uint64_t directory_offset, records_offset, targets_offset; /* of the first record each */
     int32_t mean_elevation_q6; /* of the land in the image, metres * 64 */
     int32_t geoid_q6;          /* height of mean sea level above the ellipsoid here, metres * 64 */
     fx_bam_t centre_latitude, centre_longitude;
@@ -105,8 +108,21 @@ struct lm_db {
     struct lm_band bands[LM_DB_BANDS_MAX];
 };
 
-/* Read and check header, class table and band table. Polls each read at most `poll_limit` times.
- * LM_OK, or LM_ERR_IO, LM_ERR_CORRUPT, LM_ERR_VERSION with *db unspecified.
+/* Head of the section TARGETS; target_count records (lm/target.h) follow it. */
+struct lm_targets_head {
+    uint32_t count, record_bytes;
+    uint8_t reserved[52];
+    uint32_t crc; /* CRC-32C of the bytes before it */
+};
+_Static_assert(sizeof(struct lm_targets_head) == 64, "the record must be what FORMATS.md says");
+
+/* Read from the flash and wait for it, polling at most `poll_limit` times: for start-up, when no
+ * other read is under way. LM_OK, or LM_ERR_IO with *destination unspecified. */
+int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination, uint32_t length,
+               uint32_t poll_limit);
+
+/* Read and check header, class table, band table and head of the targets. Polls each read at most
+ * `poll_limit` times. LM_OK, or LM_ERR_IO, LM_ERR_CORRUPT, LM_ERR_VERSION with *db unspecified.
  * After LM_OK every offset and count in *db has been checked against the size of the flash. */
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
 

@@ -1,0 +1,148 @@
+#include "lm/rcs.h"
+
+#include "fx/log.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+
+/* Powers are added up as binary logarithms in Q16, so a product is a sum and nothing overflows: the
+ * largest, a plate of 100 m by 100 m at 1 mm, is 2^50 m2, the smallest factor 2^-62. */
+enum {
+    LOG2_PI = 108232,  /* log2(pi) * 65536 */
+    LOG2_2PI = 173768, /* and so on */
+    LOG2_4PI = 239304,
+    LOG2_MM2 = -1306235, /* a square millimetre in square metres */
+    LOG2_ONE_Q30 = 30 * 65536,
+    LOG2_NONE = -64 * 65536
+};
+
+/* log2 of (length / wavelength) * length, when lengths are in mm and the wavelength in um, is that
+ * of metres: the thousands cancel. */
+static int32_t log2_area(uint32_t a_mm, uint32_t b_mm, uint32_t wavelength_um)
+{
+    return fx_log2_q16(a_mm) + fx_log2_q16(b_mm) - fx_log2_q16(wavelength_um);
+}
+
+static int32_t log2_of_q30(uint32_t x_q30)
+{
+    return fx_log2_q16(x_q30) - LOG2_ONE_Q30;
+}
+
+/* log2 of sinc^2 of the phase that runs over a side on the way out and back: 2 pi (side / lambda)
+ * sine, to either side of its middle. */
+static int32_t log2_sinc2(uint32_t side_mm, uint32_t wavelength_um, int32_t sine_q30)
+{
+    /* At most 10^8 um / 10^3 um = 10^5, 2^33 in Q16; times a sine of 2^30: below 2^63. */
+    const uint64_t side_q16 = ((uint64_t)side_mm * 1000u << 16) / wavelength_um;
+    const uint64_t turns_q46 = side_q16 * fx_abs_u32(sine_q30);
+    if (turns_q46 < (uint64_t)1 << 34) {
+        return 0; /* 1/4096 of a turn: sinc^2 is one but for 8e-7 */
+    }
+    const uint32_t sine = fx_abs_u32(fx_sin_q30((fx_bam_t)(turns_q46 >> 14)));
+    const int32_t log2_phase = LOG2_2PI + fx_log2_q16_u64(turns_q46) - 46 * 65536;
+    return 2 * (log2_of_q30(sine) - log2_phase);
+}
+
+static int32_t log2_plate(const struct lm_shape *s, uint32_t wavelength_um, struct lm_direction d)
+{
+    if (d.ahead_q30 <= 0 && !s->is_two_sided) {
+        return LOG2_NONE;
+    }
+    return LOG2_4PI + 2 * log2_area(s->size_mm[0], s->size_mm[1], wavelength_um) +
+           2 * log2_of_q30(fx_abs_u32(d.ahead_q30)) +
+           log2_sinc2(s->size_mm[0], wavelength_um, d.right_q30) +
+           log2_sinc2(s->size_mm[1], wavelength_um, d.up_q30);
+}
+
+/* A vector component along an axis that has `a` of x and `b` of y. Components of a unit vector and
+ * of unit axes: the sum is at most 2^60. */
+static int32_t along(int32_t x_q30, int64_t a_q30, int32_t y_q30, int64_t b_q30)
+{
+    return (int32_t)((x_q30 * a_q30 + y_q30 * b_q30 + (1 << 29)) >> 30);
+}
+
+enum {
+    ROOT_1_2_Q30 = 759250125,
+    ROOT_1_3_Q30 = 619925131,
+    ROOT_2_3_Q30 = 876706528,
+    ROOT_1_6_Q30 = 438353264
+};
+
+/* Of the two faces' projections, only what the other one's mirror image covers comes back: twice
+ * the smaller one. */
+static int32_t log2_dihedral(const struct lm_shape *s, uint32_t wavelength_um,
+                             struct lm_direction d)
+{
+    const int32_t left = along(d.ahead_q30, ROOT_1_2_Q30, d.right_q30, ROOT_1_2_Q30);
+    const int32_t right = along(d.ahead_q30, ROOT_1_2_Q30, d.right_q30, -ROOT_1_2_Q30);
+    const int32_t smaller = fx_min_i32(left, right);
+    if (smaller <= 0) {
+        return LOG2_NONE;
+    }
+    return LOG2_4PI +
+           2 * (log2_area(s->size_mm[0], s->size_mm[1], wavelength_um) + 65536 +
+                log2_of_q30((uint32_t)smaller)) +
+           log2_sinc2(s->size_mm[1], wavelength_um, d.up_q30);
+}
+
+static void sort(int32_t c[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int32_t low = fx_min_i32(c[i % 2], c[i % 2 + 1]);
+        c[i % 2 + 1] = fx_max_i32(c[i % 2], c[i % 2 + 1]);
+        c[i % 2] = low;
+    }
+}
+
+/* The triple reflection leaves mirrored at the apex, so the area that answers is what the corner's
+ * outline shares with its mirror image (Spencer 1944; Keen 1983). With the direction cosines p <= q
+ * <= r towards the legs and s = p + q + r, it is 4 p q / s of the leg's square when p + q <= r: the
+ * shared area is then a parallelogram; and s - 2 / s when not: a hexagon. */
+static int32_t log2_trihedral(const struct lm_shape *shape, uint32_t wavelength_um,
+                              struct lm_direction d)
+{
+    const int32_t low = along(d.ahead_q30, ROOT_1_3_Q30, d.up_q30, -ROOT_1_6_Q30);
+    int32_t c[3] = {along(low, 1 << 30, d.right_q30, ROOT_1_2_Q30),
+                    along(low, 1 << 30, d.right_q30, -ROOT_1_2_Q30),
+                    along(d.ahead_q30, ROOT_1_3_Q30, d.up_q30, ROOT_2_3_Q30)};
+    sort(c);
+    if (c[0] <= 0) {
+        return LOG2_NONE;
+    }
+    /* s is at most the root of 3: 2^30.8, and its square 2^61.6. */
+    const uint32_t s = (uint32_t)c[0] + (uint32_t)c[1] + (uint32_t)c[2];
+    int32_t log2_share = 0;
+    if (c[0] + c[1] <= c[2]) {
+        log2_share = 2 * 65536 + log2_of_q30((uint32_t)c[0]) + log2_of_q30((uint32_t)c[1]);
+    } else {
+        const int64_t hexagon_q60 = (int64_t)((uint64_t)s * s) - ((int64_t)2 << 60);
+        if (hexagon_q60 <= 0) {
+            return LOG2_NONE;
+        }
+        log2_share = fx_log2_q16_u64((uint64_t)hexagon_q60) - 60 * 65536;
+    }
+    return LOG2_4PI + 2 * (log2_area(shape->size_mm[0], shape->size_mm[0], wavelength_um) +
+                           log2_share - log2_of_q30(s));
+}
+
+static int32_t log2_rcs(const struct lm_shape *shape, uint32_t wavelength_um,
+                        struct lm_direction radar)
+{
+    switch (shape->kind) {
+    case LM_SHAPE_SPHERE:
+        return LOG2_PI + 2 * fx_log2_q16(shape->size_mm[0]) + LOG2_MM2;
+    case LM_SHAPE_PLATE:
+        return log2_plate(shape, wavelength_um, radar);
+    case LM_SHAPE_DIHEDRAL:
+        return log2_dihedral(shape, wavelength_um, radar);
+    case LM_SHAPE_TRIHEDRAL:
+        return log2_trihedral(shape, wavelength_um, radar);
+    default:
+        return LOG2_NONE;
+    }
+}
+
+int32_t lm_rcs_q8(const struct lm_shape *shape, uint32_t wavelength_um, struct lm_direction radar)
+{
+    const int32_t rcs_q8 = lm_db_q8_of_log2_q16(log2_rcs(shape, wavelength_um, radar));
+    return fx_max_i32(rcs_q8, LM_RCS_NONE_Q8);
+}

@@ -1,0 +1,69 @@
+/* Targets for tests: made from metres and degrees. */
+#ifndef TARGET_SUPPORT_H
+#define TARGET_SUPPORT_H
+
+#include "fx/crc32c.h"
+#include "hs/rng.h"
+#include "lm/target.h"
+
+#include <math.h>
+#include <string.h>
+
+#define X_BAND_UM 31228u /* 9.6 GHz */
+
+static inline fx_bam_t bam(double degrees)
+{
+    return (fx_bam_t)(int64_t)llround(degrees / 360 * 4294967296.0);
+}
+
+static inline void seal_target(struct lm_target *t)
+{
+    t->crc = fx_crc32c(0, (const uint8_t *)t + 4, LM_TARGET_BYTES - 4);
+}
+
+/* A steady point of so many dBsm. */
+static inline struct lm_target point_at(double latitude, double longitude, double elevation_m,
+                                        double rcs_db)
+{
+    struct lm_target t = {.id = 7,
+                          .latitude = bam(latitude),
+                          .longitude = bam(longitude),
+                          .elevation_q6 = (int32_t)lround(elevation_m * 64),
+                          .mean_rcs_q8 = (int32_t)lround(rcs_db * 256)};
+    seal_target(&t);
+    return t;
+}
+
+static inline void add_scatterer(struct lm_target *t, uint8_t kind, uint32_t size_mm,
+                                 int32_t forward_mm, int32_t right_mm, int32_t up_mm,
+                                 double azimuth_deg, double elevation_deg)
+{
+    t->scatterers[t->scatterer_count++] =
+        (struct lm_scatterer){.kind = kind,
+                              .size_mm = {size_mm, size_mm},
+                              .offset_mm = {forward_mm, right_mm, up_mm},
+                              .azimuth = bam(azimuth_deg),
+                              .elevation = bam(elevation_deg)};
+    seal_target(t);
+}
+
+/* Any sound target: up to 16 bodies of any kind, anywhere that the record allows. */
+static inline struct lm_target random_target(struct hs_rng *r, int32_t extent_mm)
+{
+    struct lm_target t = {.id = hs_rng_below(r, 1000), .heading = (fx_bam_t)hs_rng_u64(r)};
+    const uint32_t count = 1 + hs_rng_below(r, LM_SCATTERERS_MAX);
+    const uint32_t span = (uint32_t)(2 * extent_mm + 1);
+    for (uint32_t i = 0; i < count; i++) {
+        add_scatterer(&t, (uint8_t)(1 + hs_rng_below(r, LM_SHAPE_KINDS - 1)),
+                      50 + hs_rng_below(r, 800), (int32_t)hs_rng_below(r, span) - extent_mm,
+                      (int32_t)hs_rng_below(r, span) - extent_mm,
+                      (int32_t)hs_rng_below(r, span) - extent_mm, 360 * hs_rng_uniform(r),
+                      180 * hs_rng_uniform(r) - 90);
+        t.scatterers[i].roll = (fx_bam_t)hs_rng_u64(r);
+        t.scatterers[i].is_two_sided = hs_rng_below(r, 2) != 0;
+    }
+    seal_target(&t);
+    return t;
+}
+
+#endif
