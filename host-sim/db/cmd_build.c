@@ -24,6 +24,7 @@ struct settings {
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
+    bool voids_are_sea;
 };
 
 static const struct db_usage usage = {
@@ -38,7 +39,8 @@ static const struct db_usage usage = {
     "reference\n"
     "system; elevations are above mean sea level. Where files overlap the first one given counts. "
     "Voids most of\n"
-    "whose rim is at sea level become sea, others are filled from their rim.\n"
+    "whose rim is at sea level become sea, others are filled from their rim, and large ones on a "
+    "coast are left without data.\n"
     "\n"
     "The same inputs and options always give the same bytes."};
 
@@ -79,6 +81,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
                "class at or below sea level outside the class raster (water)"),
         OPTION("sea-level", DB_REAL, sea_level_m, -1000, 1000, "METRES",
                "below 0 where dry land lies below the sea"),
+        OPTION("voids-are-sea", DB_FLAG, voids_are_sea, 0, 0, NULL,
+               "every void of the terrain is sea: for models that have no data at sea"),
         OPTION("steep-class", DB_TEXT, steep_class, 0, 0, "NAME",
                "class of steep ground outside the class raster; left out: none"),
         OPTION("steep-degrees", DB_REAL, steep_degrees, 1, 89, "DEGREES", "what counts as steep"),
@@ -293,7 +297,8 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (read_table(b, s) != 0 ||
         resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
             0 ||
-        terrain_open(&b->terrain, &s->terrain, s->sea_level_m) != 0) {
+        terrain_open(&b->terrain, &s->terrain,
+                     &(struct terrain_options){s->sea_level_m, s->voids_are_sea}) != 0) {
         return -1;
     }
     return check_overlap(b, s) != 0 ? -1 : make_plan(b, s);
@@ -336,9 +341,10 @@ static char *make_manifest(const struct build_context *b, const struct settings 
         return NULL;
     }
     snprintf(options, sizeof options,
-             "shift0: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nsteep-class: %s\n"
+             "shift0: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
+             "%d\nsteep-class: %s\n"
              "steep-degrees: %g\n",
-             b->plan.shift0, s->land_class, s->water_class, s->sea_level_m,
+             b->plan.shift0, s->land_class, s->water_class, s->sea_level_m, s->voids_are_sea,
              s->steep_class ? s->steep_class : "none", s->steep_degrees);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
@@ -447,23 +453,21 @@ static void print_classes(const struct build_context *b)
 
 static void print_voids(const struct terrain *t)
 {
-    uint64_t pixels[3] = {0, 0, 0}, largest_sea = 0;
+    uint64_t pixels[3] = {0, 0, 0};
     for (int i = 0; i < t->layer_count; i++) {
         const struct terrain_voids *v = &t->layers[i].mosaic.voids;
         for (size_t k = 0; k < v->region_count; k++) {
-            const struct terrain_region *r = &v->regions[k];
-            pixels[r->filling] += r->pixels;
-            if (r->filling == TERRAIN_SEA && r->pixels > largest_sea) {
-                largest_sea = r->pixels;
-            }
+            pixels[v->regions[k].filling] += v->regions[k].pixels;
         }
     }
     printf("voids %" PRIu64 " posts interpolated, %" PRIu64 " taken as sea, %" PRIu64
            " left without data\n",
            pixels[TERRAIN_INTERPOLATED], pixels[TERRAIN_SEA], pixels[TERRAIN_LEFT_VOID]);
-    if (largest_sea > 100000) {
-        hs_warn("--terrain", "if there is land in it, give another model of it after this one",
-                "a void of %" PRIu64 " posts was taken as sea", largest_sea);
+    if (pixels[TERRAIN_LEFT_VOID] > 0) {
+        hs_warn("--terrain",
+                "give another model of them after this one, or --voids-are-sea if they are",
+                "%" PRIu64 " posts in large voids were left without data",
+                pixels[TERRAIN_LEFT_VOID]);
     }
 }
 

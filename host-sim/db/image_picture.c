@@ -200,6 +200,16 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+static bool has_data(const struct image_view *v, const float *values)
+{
+    for (size_t i = 0; i < (size_t)v->width * (size_t)v->height; i++) {
+        if (!isnan(values[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Black and white at the first and last hundredth of what is seen. */
 static int choose_scale(struct image_view *v, const float *values)
 {
@@ -259,6 +269,12 @@ int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pi
     if (result == 0) {
         read_values(&l, v, values);
         v->damaged_tiles = l.damaged;
+        if (!has_data(v, values)) {
+            result = hs_error("picture", "see `landmass-db inspect` for where there is",
+                              "there is no data in this area at level %d or coarser", v->level);
+        }
+    }
+    if (result == 0) {
         if (!(v->white > v->black)) {
             result = choose_scale(v, values);
         }

@@ -2,10 +2,12 @@
  * raster; its voids are found and filled first.
  *
  * A void is a pixel inside a file that has no elevation: the file's nodata value, NaN, or a height
- * that no place on Earth has. Voids that touch form a region. A region most of whose rim is at or
- * below sea level is sea, and lies at sea level; any other is filled from its rim (GDALFillNodata)
- * when the rectangle around it holds at most TERRAIN_FILL_MAX pixels; the rest stay without
- * terrain. */
+ * that no place on Earth has. Voids that touch form a region, and its rim decides what becomes of
+ * it: at least nine tenths of the rim at or below sea level, or more than half round a small
+ * region: it is sea, and lies at sea level; more than a tenth but not nine tenths of the rim of a
+ * region that is not small: a coast that nobody knows. It is left without data, its heights
+ * continued from the rim so that no cliff stands there; otherwise it is land, filled from its rim
+ * (GDALFillNodata); a region without a rim, or too large to fill, is left without data. */
 #ifndef TERRAIN_MOSAIC_H
 #define TERRAIN_MOSAIC_H
 
@@ -16,7 +18,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { TERRAIN_FILL_MAX = 16 << 20 };
+enum {
+    TERRAIN_FILL_MAX = 16 << 20,    /* pixels in the rectangle around a region that can be filled */
+    TERRAIN_SMALL_REGION = 64 << 10 /* pixels: 60 km2 at one arc second, 500 km2 at three */
+};
 
 struct terrain_member {
     GDALDatasetH dataset; /* owned */
@@ -31,16 +36,17 @@ struct terrain_member {
 struct terrain_run {
     int32_t y, x0, x1;
     uint32_t region;
-    uint64_t
-        value; /* index of the first pixel's elevation in `values`; interpolated regions only */
+    uint64_t value; /* index of the first pixel's elevation in `values`, when the region has any */
 };
 
 enum terrain_filling { TERRAIN_LEFT_VOID, TERRAIN_SEA, TERRAIN_INTERPOLATED };
 
 struct terrain_region {
     int32_t x0, y0, x1, y1; /* inclusive */
+    size_t first_run;       /* the others follow among the runs of rows up to y1 */
     uint64_t pixels, rim, rim_sea;
     enum terrain_filling filling;
+    bool has_values;
 };
 
 struct terrain_voids {
@@ -48,7 +54,8 @@ struct terrain_voids {
     size_t run_count;
     struct terrain_region *regions; /* owned */
     size_t region_count;
-    float *values; /* owned */
+    float *values;  /* owned */
+    bool is_filled; /* until then a void reads as a void */
 };
 
 struct terrain_mosaic {
@@ -56,6 +63,7 @@ struct terrain_mosaic {
     struct terrain_member *members; /* owned; the first one that has an elevation gives it */
     int member_count;
     double sea_level_m;
+    bool voids_are_sea; /* all of them, whatever their rim */
     struct terrain_voids voids;
 };
 

@@ -144,10 +144,11 @@ static int make_mosaic(struct terrain_mosaic *m, struct source *sources, int cou
     return 0;
 }
 
-static int finish_layer(struct terrain_layer *layer, double sea_level_m)
+static int finish_layer(struct terrain_layer *layer, const struct terrain_options *options)
 {
     const char *path = layer->mosaic.members[0].path;
-    layer->mosaic.sea_level_m = sea_level_m;
+    layer->mosaic.sea_level_m = options->sea_level_m;
+    layer->mosaic.voids_are_sea = options->voids_are_sea;
     if (resample_area(&layer->mosaic.georef, &layer->area) != 0 ||
         resample_pixel_bam(&layer->mosaic.georef, &layer->pixel_latitude_bam,
                            &layer->pixel_longitude_bam) != 0) {
@@ -176,7 +177,7 @@ static int make_layers(struct terrain *t, struct source *sources, int count)
         if (sources[i].group == i) {
             struct terrain_layer *layer = &t->layers[t->layer_count++];
             if (make_mosaic(&layer->mosaic, sources, count, i) != 0 ||
-                finish_layer(layer, t->sea_level_m) != 0) {
+                finish_layer(layer, &t->options) != 0) {
                 return -1;
             }
         }
@@ -184,9 +185,10 @@ static int make_layers(struct terrain *t, struct source *sources, int count)
     return 0;
 }
 
-int terrain_open(struct terrain *t, const struct db_list *paths, double sea_level_m)
+int terrain_open(struct terrain *t, const struct db_list *paths,
+                 const struct terrain_options *options)
 {
-    *t = (struct terrain){.sea_level_m = sea_level_m};
+    *t = (struct terrain){.options = *options};
     struct source *sources = calloc((size_t)paths->count, sizeof *sources);
     int result = sources ? 0 : hs_error("terrain", NULL, "out of memory");
     for (int i = 0; result == 0 && i < paths->count; i++) {
@@ -405,8 +407,8 @@ static int extend_edge(const struct terrain_layer *layer, struct work *w)
         if (terrain_mosaic_read(&layer->mosaic, &pixel, &metres, &state) != 0) {
             return -1;
         }
-        if (state >= TERRAIN_FILLED) {
-            w->metres[i] = metres;
+        if (!isnan(metres)) {
+            w->metres[i] = (double)metres;
             w->distance[i] = distance;
         }
     }
@@ -458,7 +460,7 @@ int terrain_posts(struct terrain *t, const struct image_frame *frame, struct ter
         return hs_error("terrain", NULL, "out of memory");
     }
     for (int i = 0; i < POSTS; i++) {
-        w->metres[i] = t->sea_level_m;
+        w->metres[i] = t->options.sea_level_m;
         w->distance[i] = HUGE_VAL;
     }
     const int result = sample_layers(t, frame, w) == 0 ? store_posts(w, posts) : -1;

@@ -19,16 +19,22 @@ struct terrain_layer {
     double blur_x, blur_y; /* pixels over which the bilinear surface is averaged; 0: not at all */
 };
 
+struct terrain_options {
+    double sea_level_m;
+    bool voids_are_sea; /* whatever their rim says */
+};
+
 struct terrain {
     struct terrain_layer *layers; /* owned; in the order of their first file on the command line */
     int layer_count;
-    double sea_level_m;
+    struct terrain_options options;
     uint64_t posts_beyond; /* posts asked for where no model reaches */
 };
 
 /* Open the models and fill their voids. `path.zip` is opened through /vsizip/. Returns 0, or -1
  * with the error reported and nothing to close. Reads every model once or twice. */
-int terrain_open(struct terrain *t, const struct db_list *paths, double sea_level_m);
+int terrain_open(struct terrain *t, const struct db_list *paths,
+                 const struct terrain_options *options);
 void terrain_close(struct terrain *t);
 
 /* Say how large the image's finest cells are. Posts are bilinear where a model is coarser than

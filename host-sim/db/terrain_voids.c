@@ -180,7 +180,8 @@ static int make_regions(struct search *s)
         const struct terrain_run *run = &v->runs[i];
         struct terrain_region *r = &v->regions[run->region];
         if (r->pixels == 0) {
-            *r = (struct terrain_region){run->x0, run->y, run->x1, run->y, 0, 0, 0, 0};
+            *r = (struct terrain_region){
+                .x0 = run->x0, .y0 = run->y, .x1 = run->x1, .y1 = run->y, .first_run = i};
         }
         r->x0 = run->x0 < r->x0 ? run->x0 : r->x0;
         r->x1 = run->x1 > r->x1 ? run->x1 : r->x1;
@@ -263,15 +264,20 @@ static struct resample_window window_around(const struct terrain_mosaic *m,
 static enum terrain_filling choose_filling(const struct terrain_mosaic *m,
                                            const struct terrain_region *r)
 {
-    if (r->rim == 0) {
-        return TERRAIN_LEFT_VOID;
-    }
-    if (2 * r->rim_sea > r->rim) {
+    const bool is_small = r->pixels <= TERRAIN_SMALL_REGION;
+    const bool is_at_sea = is_small ? 2 * r->rim_sea > r->rim : 10 * r->rim_sea >= 9 * r->rim;
+    const bool is_unknown = !is_small && 10 * r->rim_sea > r->rim;
+    if (m->voids_are_sea || (r->rim > 0 && is_at_sea)) {
         return TERRAIN_SEA;
     }
+    return r->rim == 0 || is_unknown || !r->has_values ? TERRAIN_LEFT_VOID : TERRAIN_INTERPOLATED;
+}
+
+/* Regions whose rim can be continued into them, be it only to let no cliff stand. */
+static bool can_interpolate(const struct terrain_mosaic *m, const struct terrain_region *r)
+{
     const struct resample_window w = window_around(m, r);
-    return (int64_t)w.width * w.height <= TERRAIN_FILL_MAX ? TERRAIN_INTERPOLATED
-                                                           : TERRAIN_LEFT_VOID;
+    return r->rim > 0 && (int64_t)w.width * w.height <= TERRAIN_FILL_MAX;
 }
 
 /* A dataset in memory over pixels that stay ours. */
@@ -318,7 +324,8 @@ static int interpolate(const struct resample_window *w, float *metres, uint8_t *
 static uint64_t keep_values(struct terrain_voids *v, uint32_t region,
                             const struct resample_window *w, const float *metres, uint64_t at)
 {
-    for (size_t i = 0; i < v->run_count; i++) {
+    const struct terrain_region *r = &v->regions[region];
+    for (size_t i = r->first_run; i < v->run_count && v->runs[i].y <= r->y1; i++) {
         struct terrain_run *run = &v->runs[i];
         if (run->region != region) {
             continue;
@@ -362,33 +369,25 @@ static int fill_region(struct terrain_mosaic *m, uint32_t region, uint64_t *valu
 static int fill_regions(struct terrain_mosaic *m)
 {
     struct terrain_voids *v = &m->voids;
-    uint64_t total = 0, count = 0;
+    uint64_t total = 1, count = 0;
     for (size_t i = 0; i < v->region_count; i++) {
-        v->regions[i].filling = choose_filling(m, &v->regions[i]);
-        total += v->regions[i].filling == TERRAIN_INTERPOLATED ? v->regions[i].pixels : 0;
+        struct terrain_region *r = &v->regions[i];
+        r->has_values = can_interpolate(m, r);
+        r->filling = choose_filling(m, r);
+        r->has_values = r->has_values && r->filling != TERRAIN_SEA;
+        total += r->has_values ? r->pixels : 0;
     }
-    float *values = malloc((total ? total : 1) * sizeof *values);
-    if (!values) {
+    v->values = malloc(total * sizeof *v->values);
+    if (!v->values) {
         return hs_error(m->members[0].path, NULL, "out of memory for its voids");
     }
-    /* The voids of the neighbours must look like voids while one is filled. */
-    enum terrain_filling *filling = calloc(v->region_count, sizeof *filling);
-    v->values = values;
-    int result = filling ? 0 : hs_error(m->members[0].path, NULL, "out of memory for its voids");
-    for (size_t i = 0; result == 0 && i < v->region_count; i++) {
-        filling[i] = v->regions[i].filling;
-        v->regions[i].filling = TERRAIN_LEFT_VOID;
-    }
-    for (uint32_t i = 0; result == 0 && i < v->region_count; i++) {
-        if (filling[i] == TERRAIN_INTERPOLATED) {
-            result = fill_region(m, i, &count);
+    for (uint32_t i = 0; i < v->region_count; i++) {
+        if (v->regions[i].has_values && fill_region(m, i, &count) != 0) {
+            return -1;
         }
     }
-    for (size_t i = 0; result == 0 && i < v->region_count; i++) {
-        v->regions[i].filling = filling[i];
-    }
-    free(filling);
-    return result;
+    v->is_filled = true;
+    return 0;
 }
 
 static int search_and_fill(struct search *s)
@@ -430,22 +429,23 @@ void terrain_voids_apply(const struct terrain_mosaic *m, const struct resample_w
                          float *metres, uint8_t *state)
 {
     const struct terrain_voids *v = &m->voids;
-    if (v->region_count == 0) {
+    if (!v->is_filled) {
         return;
     }
     const int end_x = window->x + window->width;
     for (size_t i = first_run(v, window->y);
          i < v->run_count && v->runs[i].y < window->y + window->height; i++) {
         const struct terrain_run *run = &v->runs[i];
-        const enum terrain_filling filling = v->regions[run->region].filling;
+        const struct terrain_region *r = &v->regions[run->region];
+        const bool is_sea = r->filling == TERRAIN_SEA;
         const int x0 = run->x0 > window->x ? run->x0 : window->x;
         const int x1 = run->x1 < end_x - 1 ? run->x1 : end_x - 1;
-        for (int x = x0; filling != TERRAIN_LEFT_VOID && x <= x1; x++) {
+        for (int x = x0; (is_sea || r->has_values) && x <= x1; x++) {
             const size_t at =
                 (size_t)(run->y - window->y) * (size_t)window->width + (size_t)(x - window->x);
-            metres[at] = filling == TERRAIN_SEA ? (float)m->sea_level_m
-                                                : v->values[run->value + (uint64_t)(x - run->x0)];
-            state[at] = TERRAIN_FILLED;
+            metres[at] =
+                is_sea ? (float)m->sea_level_m : v->values[run->value + (uint64_t)(x - run->x0)];
+            state[at] = r->filling == TERRAIN_LEFT_VOID ? TERRAIN_VOID : TERRAIN_FILLED;
         }
     }
 }

@@ -29,7 +29,8 @@ static void open_terrain(struct terrain *t, uint8_t shift0, int count, ...)
         list.items[i] = (char *)va_arg(names, const char *);
     }
     va_end(names);
-    assert_int_equal(terrain_open(t, &list, 0.0), 0);
+    const struct terrain_options options = {.sea_level_m = 0.0};
+    assert_int_equal(terrain_open(t, &list, &options), 0);
     terrain_set_cell(t, shift0);
 }
 
@@ -263,6 +264,43 @@ static void voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea(voi
     terrain_close(&t);
 }
 
+/* A sea void larger than "small", in open sea, and one that is half on land. */
+static double large_holes(double x, double y)
+{
+    const bool is_at_sea = x > 10.1 && x < 10.4 && y > 50.1 && y < 50.4;
+    const bool is_on_coast = x > 10.5 && x < 10.9 && y > 50.1 && y < 50.4;
+    return is_at_sea || is_on_coast ? -9999 : x > 10.7 ? 300 : 0;
+}
+
+static void a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea(void **state)
+{
+    (void)state;
+    const struct scene_raster r = {.width = 1000,
+                                   .height = 500,
+                                   .geotransform = {10.0, 0.001, 0, 50.5, 0, -0.001},
+                                   .epsg = 4326,
+                                   .type = GDT_Float32,
+                                   .has_nodata = true,
+                                   .nodata = -9999,
+                                   .value = large_holes};
+    scene_write("large.tif", &r);
+    for (int sea = 0; sea < 2; sea++) {
+        const struct db_list list = {.items = {(char *)scene_path("large.tif")}, .count = 1};
+        const struct terrain_options options = {.voids_are_sea = sea};
+        struct terrain t;
+        assert_int_equal(terrain_open(&t, &list, &options), 0);
+        terrain_set_cell(&t, 12);
+        static struct terrain_posts posts;
+        struct image_frame f = frame_at(12, 50.25, 10.25);
+        assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
+        assert_int_equal(posts.q6[9][9], 0);
+        f = frame_at(12, 50.25, 10.8);
+        assert_int_equal(terrain_posts(&t, &f, &posts), sea ? N * N : 0);
+        assert_true(sea ? posts.q6[9][9] == 0 : posts.q6[9][9] > 100 * 64);
+        terrain_close(&t);
+    }
+}
+
 static double all_void(double x, double y)
 {
     (void)x;
@@ -453,7 +491,7 @@ static void elevations_in_feet_become_metres(void **state)
     terrain_close(&t);
 }
 
-static void srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_filled(void **state)
+static void the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled(void **state)
 {
     (void)state;
     char path[512];
@@ -469,16 +507,23 @@ static void srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_fil
         pixels[v->regions[i].filling] += v->regions[i].pixels;
     }
     /* Counted apart from this program: 34 regions, 6,483,876 posts, the northern half of which is
-     * one; 69 % of its rim is at sea level. */
+     * one; 69 % of its rim is at sea level, and the rest the mountains of Vancouver Island. */
     assert_int_equal(v->region_count, 34);
-    assert_int_equal(pixels[TERRAIN_SEA], 6482170);
+    assert_int_equal(pixels[TERRAIN_LEFT_VOID], 6482170);
     assert_int_equal(pixels[TERRAIN_INTERPOLATED], 6483876 - 6482170);
     static struct terrain_posts posts;
-    const struct image_frame f = frame_at(11, 48.7, -124.6);
-    assert_int_equal(terrain_posts(&t, &f, &posts), N * N);
-    for (int k = 0; k < N * N; k++) {
-        assert_int_equal(posts.q6[k / N][k % N], 0);
+    struct image_frame f = frame_at(11, 48.7, -124.6);
+    assert_int_equal(terrain_posts(&t, &f, &posts), 0);
+    /* Over the border of the void, in the mountains: no cliff. */
+    f = frame_at(11, 48.502, -124.05);
+    assert_in_range(terrain_posts(&t, &f, &posts), 1, N * N - 1);
+    int steepest = 0;
+    for (int k = N; k < N * N; k++) {
+        const int rise = abs(posts.q6[k / N][k % N] - posts.q6[k / N - 1][k % N]);
+        steepest = rise > steepest ? rise : steepest;
     }
+    print_message("# steepest rise %.1f m in 19 m\n", steepest / 64.0);
+    assert_true(steepest < 64 * 40);
     terrain_close(&t);
 }
 
@@ -496,12 +541,13 @@ int main(void)
         cmocka_unit_test(a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model),
         cmocka_unit_test(a_model_much_finer_than_the_cells_is_averaged),
         cmocka_unit_test(voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea),
+        cmocka_unit_test(a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea),
         cmocka_unit_test(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through),
         cmocka_unit_test(beyond_the_model_posts_keep_the_height_of_its_edge),
         cmocka_unit_test(of_two_models_the_nearer_one_lends_its_edge),
         cmocka_unit_test(tiles_share_their_edges_bit_for_bit),
         cmocka_unit_test(elevations_in_feet_become_metres),
-        cmocka_unit_test(srtm_voids_next_to_the_sea_become_sea_and_those_in_the_hills_are_filled),
+        cmocka_unit_test(the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled),
     };
     return cmocka_run_group_tests_name("terrain", tests, NULL, tidy);
 }
