@@ -1,7 +1,18 @@
 # Specific targets, against their double-precision reference.
-TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target)
+TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line)
 TESTS += $(TARGET_TESTS)
-$(addprefix $(O)/tests/unit/firmware/,test_rcs.o test_target.o): EXTRA_CFLAGS := -Ihost-sim/reference
+$(TARGET_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \
     $(O)/tests/support/memory_flash.o $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
+
+# The lines' tests once more under the address and undefined-behaviour sanitizers: they use records made by chance.
+TARGET_SANE     := $(O)/bin/tests/unit/firmware/test_target_line_sanitized
+TARGET_SANE_SRC := tests/unit/firmware/test_target_line.c $(addprefix firmware/src/,rcs.c target.c target_line.c db.c geo.c) \
+    $(wildcard fixed/src/*.c) host-sim/common/src/rng.c $(addprefix host-sim/reference/,aspect.c)
+TESTS += $(TARGET_SANE)
+$(TARGET_SANE): $(TARGET_SANE_SRC) $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)
+	@mkdir -p $(@D)
+	@echo "  CC   $@ (sanitizers)"
+	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Ihost-sim/reference $(TARGET_SANE_SRC) \
+	    -lcmocka $(call pkgs,libs,proj) -lm -o $@

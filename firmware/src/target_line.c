@@ -1,0 +1,298 @@
+#include "lm/target_line.h"
+
+#include "fx/log.h"
+#include "fx/root.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/aspect.h"
+
+enum {
+    EXTENT_M = 512, /* more than any scatterer is away from its target's origin */
+    TWO_PI_Q28 = 1686629713,
+    GRAZING_MIN_Q24 = 1 << 16, /* 1/256, as in the range grid */
+    NO_CELL = -1
+};
+
+/* 1 / (2 * 4/3 * 6,371,000 m) in Q48, as in aspect.c. */
+static const int64_t curvature_q48 = 16567747;
+
+int32_t lm_level_add_q8(int32_t a_q8, int32_t b_q8)
+{
+    const int32_t high_q8 = fx_max_i32(a_q8, b_q8), low_q8 = fx_min_i32(a_q8, b_q8);
+    const uint32_t share_q16 = fx_power_q16_from_db_q8(low_q8 - high_q8);
+    return high_q8 + fx_db_q8(65536u + share_q16) - fx_db_q8(65536u);
+}
+
+static struct lm_place place_of(const struct lm_target *t)
+{
+    return (struct lm_place){t->latitude, t->longitude};
+}
+
+void lm_targets_select(struct lm_targets_near *near, const struct lm_target *targets,
+                       uint32_t count, struct lm_place place, uint32_t reach_m)
+{
+    near->count = near->left_out = 0;
+    const uint32_t reach_q8 = (reach_m + LM_TARGET_DRIFT_M + EXTENT_M) * 256;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t distance_q8;
+        fx_bam_t azimuth;
+        lm_geo_inverse(place, place_of(&targets[i]), &distance_q8, &azimuth);
+        if (distance_q8 > reach_q8) {
+            continue;
+        }
+        if (near->count == LM_TARGETS_NEAR) {
+            near->left_out++;
+            continue;
+        }
+        near->item[near->count].index = (uint16_t)i;
+        near->item[near->count].azimuth = azimuth;
+        near->item[near->count].distance_q8 = distance_q8;
+        near->count++;
+    }
+}
+
+/* ---- where a target is from the line ---- */
+
+/* Along the line and to its right, metres * 256; for a sector, range and angle as well. */
+struct spot {
+    uint32_t range_q8; /* ground range from the antenna */
+    int32_t across_q8; /* patch: from the line's middle */
+    fx_bam_t azimuth;  /* sector: from the antenna */
+};
+
+/* Can the line meet the target at all, as far as was known when it was chosen? */
+static bool may_meet(const struct lm_target_line *line, fx_bam_t azimuth, uint32_t distance_q8)
+{
+    const int32_t off = (int32_t)(azimuth - line->azimuth);
+    if (line->is_patch) {
+        /* The offset from the centre; a distance below 2^26.6. */
+        const int32_t x_q8 =
+            (int32_t)((int64_t)distance_q8 * fx_sin_q15((fx_bam_t)off) >> 15) - line->across_q8;
+        return fx_abs_u32(x_q8) < EXTENT_M * 256u + line->cell_q8;
+    }
+    /* What target and antenna may have moved, as an angle: 2^32 / (2 pi) a radian, twice for the
+     * arc against its sine and for the antenna's way towards it. */
+    const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + EXTENT_M) * 256u;
+    const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(distance_q8, 1);
+    return fx_abs_u32(off) <= slack + line->width;
+}
+
+/* The place of a target from an origin, the inverse problem put right by the direct one: the first
+ * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
+ * they do not agree, near a pole or half a world away. */
+static bool locate(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
+                   fx_bam_t *azimuth)
+{
+    struct lm_geo_origin origin;
+    uint32_t miss_q8;
+    fx_bam_t miss_azimuth;
+    lm_geo_inverse(from, to, distance_q8, azimuth);
+    if (*distance_q8 > 300000u * 256u) {
+        return false;
+    }
+    lm_geo_set_origin(&origin, from);
+    const struct lm_place reached = lm_geo_direct(&origin, *azimuth, *distance_q8);
+    lm_geo_inverse(reached, to, &miss_q8, &miss_azimuth);
+    if (miss_q8 > *distance_q8 / 16 + 256) {
+        return false;
+    }
+    const fx_bam_t turn = miss_azimuth - *azimuth;
+    const int32_t on_q8 = (int32_t)((int64_t)miss_q8 * fx_cos_q30(turn) >> 30);
+    const int32_t aside_q8 = (int32_t)((int64_t)miss_q8 * fx_sin_q30(turn) >> 30);
+    const int32_t along_q8 = (int32_t)*distance_q8 + on_q8;
+    *distance_q8 = fx_hypot_u32(along_q8, aside_q8);
+    *azimuth += fx_atan2(aside_q8, along_q8);
+    return true;
+}
+
+static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
+                      struct spot *spot)
+{
+    uint32_t distance_q8;
+    if (!locate(line->place, place_of(t), &distance_q8, &spot->azimuth)) {
+        return false;
+    }
+    if (!line->is_patch) {
+        spot->range_q8 = distance_q8;
+        spot->across_q8 = 0;
+        return true;
+    }
+    const fx_bam_t off = spot->azimuth - line->azimuth;
+    const int64_t along_q8 = (int64_t)distance_q8 * fx_cos_q30(off) >> 30;
+    spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30) - line->across_q8;
+    spot->range_q8 = (uint32_t)fx_max_i32((int32_t)(line->centre_q8 + along_q8), 0);
+    return true;
+}
+
+/* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
+static struct spot beside(const struct lm_target_line *line, const struct spot *target,
+                          const struct lm_return *r)
+{
+    const int32_t along_q8 = (int32_t)target->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
+    const int32_t across_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
+    struct spot s = {.range_q8 = (uint32_t)fx_max_i32(along_q8, 0),
+                     .across_q8 = target->across_q8 + across_q8,
+                     .azimuth = target->azimuth};
+    if (!line->is_patch) {
+        s.range_q8 = fx_hypot_u32(along_q8, across_q8);
+        s.azimuth += fx_atan2(across_q8, along_q8);
+    }
+    return s;
+}
+
+/* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two lines and no two
+ * cells share one. */
+static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
+{
+    const int32_t half_q8 = (int32_t)(line->cell_q8 / 2);
+    const bool is_in_line =
+        line->is_patch ? s->across_q8 >= -half_q8 && s->across_q8 < (int32_t)line->cell_q8 - half_q8
+                       : (fx_bam_t)(s->azimuth - line->azimuth + line->width / 2) < line->width;
+    const int64_t past_q8 = (int64_t)s->range_q8 - line->first_q8 + half_q8;
+    if (!is_in_line || past_q8 < 0) {
+        return NO_CELL;
+    }
+    const uint32_t cell = (uint32_t)past_q8 / line->cell_q8;
+    return cell >= line->first && cell < line->cells ? (int32_t)cell : NO_CELL;
+}
+
+/* ---- how it is seen ---- */
+
+/* The Earth's drop at a ground range, metres * 1024; a range of 400 km, 2^26.6, squared in units of
+ * 16 m2 times the curvature: 2^57.2. */
+static int32_t drop_q10(uint32_t range_q8)
+{
+    return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * curvature_q48) >> 34);
+}
+
+static void view_target(const struct lm_target_line *line, const struct lm_target *t,
+                        const struct spot *spot, struct lm_target_view *v)
+{
+    fx_bam_t back = line->azimuth + FX_BAM_180;
+    if (!line->is_patch) {
+        uint32_t distance_q8;
+        lm_geo_inverse(place_of(t), line->place, &distance_q8, &back);
+    }
+    /* Heights within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all below 2^29 in Q10. */
+    const int32_t range_q10 = (int32_t)(fx_min_u32(spot->range_q8, 400000u * 256u) * 4);
+    const int32_t above_q10 =
+        line->height_q10 - t->elevation_q6 * 16 - drop_q10((uint32_t)range_q10 / 4);
+    const uint64_t slant_q10 = fx_hypot_u32(range_q10, above_q10);
+    lm_target_view_set(v, back - t->heading, fx_atan2(above_q10, range_q10),
+                       (uint32_t)(slant_q10 * 1000 >> 10));
+}
+
+/* Tangent of the elevation angle at which a height appears, Q38; |height| below 2^26 in Q10. */
+static int64_t tangent_q38(const struct lm_target_line *line, int32_t top_q10, uint32_t range_q8)
+{
+    const int64_t apparent_q10 = (int64_t)top_q10 - line->height_q10 - drop_q10(range_q8);
+    return apparent_q10 * ((int64_t)1 << 36) / (int64_t)fx_max_u32(range_q8, LM_RANGE_MIN_M * 256u);
+}
+
+/* Highest of the cells before `cell`, and the horizon that the line starts with. */
+static int64_t horizon_before(const struct lm_target_line *line,
+                              const struct lm_target_sight *sight, int32_t cell)
+{
+    int64_t highest = sight->horizon;
+    for (int32_t i = (int32_t)line->first; i < cell; i++) {
+        highest = sight->tangent[i] > highest ? sight->tangent[i] : highest;
+    }
+    return highest;
+}
+
+/* 10 log10 of a cell's area as flat ground shows it, w ds g, in 1/256 dB of a square metre. */
+static int32_t clutter_area_q8(const struct lm_target_line *line, int32_t cell)
+{
+    const uint32_t range_q8 = line->first_q8 + (uint32_t)cell * line->cell_q8;
+    /* A sector's line is as wide as its arc: 2^26.6 * 2^32 turns, to Q16, times 2 pi in Q26. */
+    const uint64_t turns_q16 = (uint64_t)range_q8 * line->width >> 24;
+    const uint64_t arc_q8 = turns_q16 * (TWO_PI_Q28 / 4) >> 34;
+    const uint64_t width_q8 = line->is_patch ? line->cell_q8 : arc_q8;
+    /* g: a height of 2^26 in Q10, times 2^22, over metres in Q8, less s / 2a. */
+    const int64_t above_q10 = (int64_t)line->height_q10 - line->reference_q10;
+    const int64_t grazing_q24 = above_q10 * (1 << 22) / (int64_t)fx_max_u32(range_q8, 1) -
+                                ((int64_t)range_q8 * curvature_q48 >> 32);
+    const uint64_t g_q24 =
+        (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
+    return lm_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(line->cell_q8) +
+                                fx_log2_q16_u64(g_q24) - (8 + 8 + 24) * 65536);
+}
+
+/* What becomes of the scatterers of one target in one line. */
+struct echo {
+    struct lm_return returns[LM_SCATTERERS_MAX];
+    int32_t cell[LM_SCATTERERS_MAX]; /* or NO_CELL */
+    uint32_t count;
+};
+
+/* The line's cell of a return, unless something nearer hides it. */
+static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_sight *sight,
+                        const struct lm_target *t, const struct spot *target,
+                        const struct lm_return *r)
+{
+    const struct spot s = beside(line, target, r);
+    const int32_t cell = cell_of(line, &s);
+    if (cell == NO_CELL || sight == NULL) {
+        return cell;
+    }
+    const int32_t top_q10 = t->elevation_q6 * 16 + r->up_mm * 128 / 125;
+    const int64_t horizon_q38 = horizon_before(line, sight, cell) >> (sight->tangent_bits - 38);
+    return tangent_q38(line, top_q10, s.range_q8) > horizon_q38 ? cell : NO_CELL;
+}
+
+static void make_echo(struct echo *e, const struct lm_target_line *line,
+                      const struct lm_target_sight *sight, const struct lm_target *t,
+                      const struct spot *spot)
+{
+    if (t->scatterer_count == 0) {
+        e->count = 1;
+        e->returns[0] = (struct lm_return){
+            .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, line->scan, line->pulse)};
+    } else {
+        struct lm_target_view v;
+        view_target(line, t, spot, &v);
+        e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
+    }
+    for (uint32_t i = 0; i < e->count; i++) {
+        e->cell[i] = lit_cell(line, sight, t, spot, &e->returns[i]);
+    }
+}
+
+/* One phasor sum for each cell that has some of the returns. */
+static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line, int32_t *level_q8)
+{
+    uint32_t cells = 0, done = 0;
+    for (uint32_t i = 0; i < e->count; i++) {
+        const int32_t cell = e->cell[i];
+        if (cell == NO_CELL || done >> i & 1) {
+            continue;
+        }
+        uint32_t mask = 0;
+        for (uint32_t k = i; k < e->count; k++) {
+            mask |= (uint32_t)(e->cell[k] == cell) << k;
+        }
+        done |= mask;
+        const int32_t gamma_q8 = lm_returns_sum_q8(e->returns, mask) - clutter_area_q8(line, cell);
+        level_q8[cell] = lm_level_add_q8(level_q8[cell], gamma_q8);
+        cells++;
+    }
+    return cells;
+}
+
+uint32_t lm_target_add(const struct lm_target *targets, const struct lm_targets_near *near,
+                       const struct lm_target_line *line, const struct lm_target_sight *sight,
+                       int32_t *level_q8)
+{
+    uint32_t cells = 0;
+    for (uint32_t i = 0; i < near->count; i++) {
+        const struct lm_target *t = &targets[near->item[i].index];
+        struct spot spot;
+        struct echo echo;
+        if (may_meet(line, near->item[i].azimuth, near->item[i].distance_q8) &&
+            find_spot(line, t, &spot)) {
+            make_echo(&echo, line, sight, t, &spot);
+            cells += add_echo(&echo, line, level_q8);
+        }
+    }
+    return cells;
+}

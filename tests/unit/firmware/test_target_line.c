@@ -1,0 +1,442 @@
+/* Targets in lines of the picture: the right cell, the right level, hidden by what stands before
+ * them. Places come from PROJ's geodesics, levels from the equations in double precision. */
+#include "lm/target_line.h"
+
+#include "lm/aspect.h"
+#include "rcs.h"
+#include "reference.h"
+#include "target_support.h"
+
+#include <geodesic.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+enum { CELLS = 256, LINES = 256 };
+static const double height_m = 6000, range_m = 37040, cell_m = 37040.0 / CELLS;
+
+static void destination(double lat, double lon, double azimuth, double metres, double to[2])
+{
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_direct(&earth, lat, lon, azimuth, metres, &to[0], &to[1], NULL);
+}
+
+/* Line `line` of a sector of 120 degrees around `heading`. */
+static struct lm_target_line sector_line(double lat, double lon, double heading, uint32_t line)
+{
+    const fx_bam_t width = FX_BAM_DEG(120) / LINES;
+    const int32_t from_middle = (int32_t)line - LINES / 2;
+    const uint32_t cell_q8 = (uint32_t)(range_m * 256 / CELLS);
+    return (struct lm_target_line){.place = {bam(lat), bam(lon)},
+                                   .azimuth = bam(heading) +
+                                              (fx_bam_t)(from_middle * (int32_t)width) + width / 2,
+                                   .width = width,
+                                   .first_q8 = cell_q8 / 2,
+                                   .cell_q8 = cell_q8,
+                                   .cells = CELLS,
+                                   .height_q10 = (int32_t)(height_m * 1024),
+                                   .wavelength_um = X_BAND_UM};
+}
+
+/* A line of a patch of 128 cells of 2 m, 20 km away, with four guard cells. */
+enum { PATCH = 128, GUARD = 4 };
+static const double patch_cell_m = 2, patch_range_m = 20000;
+
+static struct lm_target_line patch_line(double lat, double lon, double look, uint32_t line)
+{
+    const double near_m = patch_range_m - (PATCH / 2 + GUARD) * patch_cell_m;
+    return (struct lm_target_line){.is_patch = true,
+                                   .place = {bam(lat), bam(lon)},
+                                   .azimuth = bam(look),
+                                   .across_q8 =
+                                       (int32_t)((line + 0.5 - PATCH / 2) * patch_cell_m * 256),
+                                   .centre_q8 = (uint32_t)(patch_range_m * 256),
+                                   .first_q8 = (uint32_t)((near_m + patch_cell_m / 2) * 256),
+                                   .cell_q8 = (uint32_t)(patch_cell_m * 256),
+                                   .cells = PATCH + GUARD,
+                                   .height_q10 = (int32_t)(height_m * 1024),
+                                   .wavelength_um = X_BAND_UM};
+}
+
+static void clear(int32_t *level_q8)
+{
+    for (int i = 0; i < LM_CELLS_MAX; i++) {
+        level_q8[i] = LM_LEVEL_SHADOW;
+    }
+}
+
+/* The level of a cross section by DESIGN.md, "Targets". */
+static double level_db(double rcs_db, double at_m, double width_m, double length_m)
+{
+    const struct ref_view view = {height_m, 0, length_m};
+    return rcs_db - 10 * log10(width_m * length_m * ref_grazing(&view, at_m));
+}
+
+/* ---- power ---- */
+
+static void powers_are_added_within_two_hundredths_of_a_decibel(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int a = -60 * 256; a < 60 * 256; a += 37) {
+        for (int b = -60 * 256; b < 60 * 256; b += 211) {
+            const double sum = 10 * log10(pow(10, a / 2560.0) + pow(10, b / 2560.0));
+            worst = fmax(worst, fabs(lm_level_add_q8(a, b) / 256.0 - sum));
+        }
+    }
+    print_message("# worst sum of powers %.4f dB\n", worst);
+    assert_true(worst < 0.02);
+    assert_int_equal(lm_level_add_q8(LM_LEVEL_SHADOW, 100), 100);
+    assert_in_range(lm_level_add_q8(0, 0), 770, 771);
+}
+
+/* ---- sector ---- */
+
+struct found {
+    uint32_t times, line, cell;
+    double level;
+};
+
+static struct found sweep(const struct lm_target *targets, uint32_t count, double lat, double lon,
+                          double heading)
+{
+    struct lm_targets_near near;
+    struct found f = {0};
+    int32_t level_q8[LM_CELLS_MAX];
+    lm_targets_select(&near, targets, count, (struct lm_place){bam(lat), bam(lon)},
+                      (uint32_t)range_m);
+    for (uint32_t i = 0; i < LINES; i++) {
+        const struct lm_target_line line = sector_line(lat, lon, heading, i);
+        clear(level_q8);
+        const uint32_t given = lm_target_add(targets, &near, &line, NULL, level_q8);
+        uint32_t changed = 0;
+        for (uint32_t k = 0; k < CELLS; k++) {
+            if (level_q8[k] != LM_LEVEL_SHADOW) {
+                f.line = i, f.cell = k, f.level = level_q8[k] / 256.0;
+                changed++;
+            }
+        }
+        assert_true(given >= changed);
+        f.times += changed;
+    }
+    return f;
+}
+
+static void a_target_is_in_one_cell_of_a_sweep_and_in_the_right_one(void **state)
+{
+    (void)state;
+    static const double places[][2] = {{46, 11}, {0, 179.99}, {-71, -40}};
+    struct hs_rng rng;
+    double worst = 0;
+    hs_rng_seed(&rng, 3);
+    for (int i = 0; i < 60; i++) {
+        const double *p = places[i % 3], heading = 360 * hs_rng_uniform(&rng);
+        /* Not on the edge of a line or a cell, where a metre decides. */
+        const uint32_t line = hs_rng_below(&rng, LINES), cell = 6 + hs_rng_below(&rng, CELLS - 6);
+        const double off = 0.1 + 0.8 * hs_rng_uniform(&rng);
+        const double azimuth = heading + (line + off - LINES / 2) * 120 / LINES;
+        const double at_m = (cell + off) * cell_m, rcs = 60 * hs_rng_uniform(&rng) - 10;
+        double to[2];
+        destination(p[0], p[1], azimuth, at_m, to);
+        const struct lm_target t = point_at(to[0], to[1], 0, rcs);
+        const struct found f = sweep(&t, 1, p[0], p[1], heading);
+        assert_int_equal(f.times, 1);
+        assert_int_equal(f.line, line);
+        assert_int_equal(f.cell, cell);
+        const double middle_m = (cell + 0.5) * cell_m;
+        const double width_m = middle_m * (120.0 / LINES) * pi / 180;
+        worst = fmax(worst, fabs(f.level - level_db(rcs, middle_m, width_m, cell_m)));
+    }
+    print_message("# worst level in a sweep %.4f dB\n", worst);
+    assert_true(worst < 0.02);
+}
+
+/* A line two metres wide and cells of two metres, seventy kilometres away. */
+static void a_target_is_where_the_geodesic_puts_it_within_a_metre(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 8);
+    for (int i = 0; i < 1000; i++) {
+        const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1),
+                     azimuth = 360 * hs_rng_uniform(&rng);
+        double to[2];
+        destination(lat, 11, azimuth, 70000, to);
+        const struct lm_target t = point_at(to[0], to[1], 0, 10);
+        struct lm_target_line l = sector_line(lat, 11, azimuth, 0);
+        struct lm_targets_near near;
+        int32_t level_q8[LM_CELLS_MAX];
+        l.azimuth = bam(azimuth);
+        l.width = bam(2.0 / 70000 * 180 / pi);
+        l.cell_q8 = 2 * 256;
+        l.first_q8 = (70000 - 200) * 256;
+        clear(level_q8);
+        lm_targets_select(&near, &t, 1, l.place, 70000);
+        assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), 1);
+        assert_true(level_q8[100] != LM_LEVEL_SHADOW);
+    }
+}
+
+static void no_target_is_lost_or_doubled_between_two_lines(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 200; i++) {
+        double to[2];
+        destination(46, 11, 30 + i * 1e-6, 20000 + i * 0.7, to);
+        const struct lm_target t = point_at(to[0], to[1], 0, 10);
+        assert_int_equal(sweep(&t, 1, 46, 11, 30).times, 1);
+    }
+}
+
+/* ---- patch ---- */
+
+static void a_target_is_in_the_right_cell_of_a_patch_of_two_metres(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 4);
+    for (int i = 0; i < 300; i++) {
+        const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1), look = 360 * hs_rng_uniform(&rng);
+        const uint32_t line = hs_rng_below(&rng, PATCH), cell = hs_rng_below(&rng, PATCH);
+        const double across =
+            (line + 0.5 - PATCH / 2) * patch_cell_m + 0.8 * hs_rng_uniform(&rng) - 0.4;
+        const double along =
+            (cell + 0.5 - PATCH / 2) * patch_cell_m + 0.8 * hs_rng_uniform(&rng) - 0.4;
+        double to[2];
+        destination(lat, 20, look + atan2(across, along) * 180 / pi, hypot(across, along), to);
+        const struct lm_target t = point_at(to[0], to[1], 0, 25);
+        struct lm_targets_near near;
+        int32_t level_q8[LM_CELLS_MAX];
+        lm_targets_select(&near, &t, 1, (struct lm_place){bam(lat), bam(20)}, 200);
+        for (uint32_t k = 0; k < PATCH; k++) {
+            const struct lm_target_line l = patch_line(lat, 20, look, k);
+            clear(level_q8);
+            assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), k == line);
+        }
+        const struct lm_target_line l = patch_line(lat, 20, look, line);
+        clear(level_q8);
+        lm_target_add(&t, &near, &l, NULL, level_q8);
+        const double at_m = patch_range_m + (cell + 0.5 - PATCH / 2) * patch_cell_m;
+        const double expected = level_db(25, at_m, patch_cell_m, patch_cell_m);
+        assert_true(fabs(level_q8[GUARD + cell] / 256.0 - expected) < 0.02);
+    }
+}
+
+/* Two reflectors of 20 and 26 dBsm ten metres apart: each in its cell of a patch, their phasor sum
+ * in a cell of a sweep, which comes and goes with the bearing. */
+static void scatterers_have_their_own_cells_in_a_patch_and_share_one_in_a_sweep(void **state)
+{
+    (void)state;
+    struct lm_target t = point_at(46, 11, 0, 0);
+    add_scatterer(&t, LM_SHAPE_SPHERE, 5642, -5000, 500, 0, 0, 0);
+    add_scatterer(&t, LM_SHAPE_SPHERE, 11284, 5000, 500, 0, 0, 0);
+    struct lm_targets_near near;
+    int32_t level_q8[LM_CELLS_MAX];
+    lm_targets_select(&near, &t, 1, (struct lm_place){bam(46), bam(11)}, 200);
+    double lowest = 1e9, highest = -1e9;
+    for (int i = 0; i < 200; i++) {
+        /* Looking along the target's axis in the patch; 10 m are five cells. */
+        const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
+        clear(level_q8);
+        assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), 2);
+        const double near_db = level_db(20, patch_range_m - 5, 2, 2);
+        const double far_db = level_db(26.02, patch_range_m + 5, 2, 2);
+        assert_true(fabs(level_q8[GUARD + PATCH / 2 - 3] / 256.0 - near_db) < 0.03);
+        assert_true(fabs(level_q8[GUARD + PATCH / 2 + 2] / 256.0 - far_db) < 0.03);
+        double from[2];
+        /* In the middle of a cell and, a fifth of a degree off the heading, of a line. */
+        destination(46, 11, 200 + i * 0.01, 138.5 * cell_m, from);
+        const struct found f = sweep(&t, 1, from[0], from[1], 20 + i * 0.01 + 0.2);
+        assert_int_equal(f.times, 1);
+        lowest = fmin(lowest, f.level), highest = fmax(highest, f.level);
+    }
+    /* (2 + 1)^2 against (2 - 1)^2. */
+    print_message("# two in one cell: %.2f dB between in and out of phase\n", highest - lowest);
+    assert_true(fabs(highest - lowest - 20 * log10(3)) < 0.1);
+}
+
+static void different_targets_in_one_cell_add_their_powers(void **state)
+{
+    (void)state;
+    double to[2];
+    destination(46, 11, 1.3, 20000, to);
+    const struct lm_target t[2] = {point_at(to[0], to[1], 0, 20), point_at(to[0], to[1], 0, 20)};
+    const struct found one = sweep(t, 1, 46, 11, 0), both = sweep(t, 2, 46, 11, 0);
+    assert_true(fabs(both.level - one.level - 10 * log10(2)) < 0.02);
+}
+
+/* ---- hidden ---- */
+
+enum { BITS = 52, WALL = 20 };
+
+/* Tangents of flat ground at height 0, and a wall of `wall_m` in cell WALL. */
+static void flat_ground(const struct lm_target_line *l, double wall_m, int64_t *tangent)
+{
+    for (uint32_t i = 0; i < l->cells; i++) {
+        const double at_m = (l->first_q8 + i * l->cell_q8) / 256.0;
+        tangent[i] = (int64_t)ldexp(ref_tangent(height_m, at_m, i == WALL ? wall_m : 0), BITS);
+    }
+}
+
+static void a_wall_hides_what_is_lower_than_the_ray_over_it(void **state)
+{
+    (void)state;
+    /* Seen from 6000 m at 20 km, a wall of 30 m throws a shadow of 100 m: 66 m behind it, a
+     * target shows from 10 m up. */
+    for (int up_m = 0; up_m < 20; up_m++) {
+        for (int is_before = 0; is_before < 2; is_before++) {
+            double to[2];
+            const double along =
+                (WALL + 0.5 - GUARD - PATCH / 2) * patch_cell_m + (is_before ? -8 : 66);
+            destination(46, 11, along < 0 ? 180 : 0, fabs(along), to);
+            const struct lm_target t = point_at(to[0], to[1], up_m, 30);
+            const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
+            struct lm_targets_near near;
+            int32_t level_q8[LM_CELLS_MAX];
+            int64_t tangent[LM_CELLS_MAX];
+            const struct lm_target_sight sight = {tangent, BITS, INT64_MIN};
+            flat_ground(&l, 30, tangent);
+            lm_targets_select(&near, &t, 1, l.place, 200);
+            const double ray = ref_tangent(height_m, patch_range_m + along - 66, 30);
+            const bool is_seen =
+                is_before || ref_tangent(height_m, patch_range_m + along, up_m) > ray;
+            assert_true(is_before || is_seen == (up_m >= 11));
+            /* The middle of line PATCH / 2 is a metre to the right: the target on its edge. */
+            clear(level_q8);
+            assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), is_seen);
+        }
+    }
+}
+
+static void the_horizon_that_a_line_starts_with_hides_as_well(void **state)
+{
+    (void)state;
+    const struct lm_target t = point_at(46, 11, 0, 30);
+    const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
+    struct lm_targets_near near;
+    int32_t level_q8[LM_CELLS_MAX];
+    int64_t tangent[LM_CELLS_MAX];
+    flat_ground(&l, 0, tangent);
+    lm_targets_select(&near, &t, 1, l.place, 200);
+    const double at = ref_tangent(height_m, patch_range_m, 0);
+    for (int i = -1; i <= 1; i += 2) {
+        const struct lm_target_sight sight = {tangent, BITS, (int64_t)ldexp(at + i * 1e-7, BITS)};
+        clear(level_q8);
+        assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), i < 0);
+    }
+}
+
+/* ---- choice ---- */
+
+static void no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted(void **state)
+{
+    (void)state;
+    enum { MANY = LM_TARGETS_NEAR + 9 };
+    struct lm_target t[MANY + 1];
+    struct lm_targets_near near;
+    t[0] = point_at(46.6, 11, 0, 0); /* 67 km: out of reach */
+    for (int i = 1; i <= MANY; i++) {
+        t[i] = point_at(46 + i * 0.001, 11, 0, 0);
+    }
+    lm_targets_select(&near, t, MANY + 1, (struct lm_place){bam(46), bam(11)}, 37040);
+    assert_int_equal(near.count, LM_TARGETS_NEAR);
+    assert_int_equal(near.left_out, 9);
+    assert_int_equal(near.item[0].index, 1);
+}
+
+/* An antenna that has flown on since the choice finds the same targets as one that has just chosen.
+ */
+static void a_choice_holds_for_a_kilometre_of_flight(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    for (int i = 0; i < 3000; i++) {
+        double to[2], from[2];
+        destination(46, 11, 360 * hs_rng_uniform(&rng), 300 + 36000 * hs_rng_uniform(&rng), to);
+        destination(46, 11, 360 * hs_rng_uniform(&rng), 1020, from);
+        const struct lm_target t = point_at(to[0], to[1], 0, 10);
+        struct lm_targets_near before, now;
+        int32_t level_q8[LM_CELLS_MAX];
+        const struct lm_place here = {bam(from[0]), bam(from[1])};
+        lm_targets_select(&before, &t, 1, (struct lm_place){bam(46), bam(11)}, 37040);
+        lm_targets_select(&now, &t, 1, here, 37040);
+        struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
+        l.azimuth = now.item[0].azimuth;
+        clear(level_q8);
+        assert_int_equal(lm_target_add(&t, &before, &l, NULL, level_q8),
+                         lm_target_add(&t, &now, &l, NULL, level_q8));
+    }
+}
+
+/* ---- hostile records ---- */
+
+/* Records that were changed at random and sealed again, as a hostile image might have them: those
+ * that pass the check can be used from anywhere (built with the sanitizers, too: targets.mk). */
+static void a_record_that_passes_the_check_can_be_used(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    struct lm_target t = {0};
+    uint32_t passed = 0, given = 0;
+    hs_rng_seed(&rng, 6);
+    for (int i = 0; i < 20000; i++) {
+        if (i % 10 == 0) {
+            t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
+        }
+        uint8_t *bytes = (uint8_t *)&t;
+        for (uint32_t k = 1 + hs_rng_below(&rng, 6); k > 0; k--) {
+            bytes[4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4)] = (uint8_t)hs_rng_u64(&rng);
+        }
+        seal_target(&t);
+        if (lm_target_check(&t) != LM_OK) {
+            t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
+            continue;
+        }
+        passed++;
+        const bool is_here = hs_rng_below(&rng, 2) != 0;
+        struct lm_target_line l =
+            i % 2 ? patch_line(46, 11, 0, PATCH / 2) : sector_line(46, 11, 0, 1);
+        l.place = is_here ? (struct lm_place){t.latitude + hs_rng_below(&rng, 9000), t.longitude}
+                          : (struct lm_place){(fx_bam_t)((int64_t)hs_rng_u64(&rng) >> 34),
+                                              (fx_bam_t)hs_rng_u64(&rng)};
+        l.azimuth = (fx_bam_t)hs_rng_u64(&rng);
+        l.width = FX_BAM_180;
+        l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
+        struct lm_targets_near near;
+        int32_t level_q8[LM_CELLS_MAX];
+        int64_t tangent[LM_CELLS_MAX] = {0};
+        const struct lm_target_sight sight = {tangent, 40, INT64_MIN};
+        clear(level_q8);
+        lm_targets_select(&near, &t, 1, l.place, 250000);
+        given += lm_target_add(&t, &near, &l, i % 5 ? NULL : &sight, level_q8);
+    }
+    print_message("# %u records passed, %u cells were given something\n", passed, given);
+    assert_true(passed > 2000 && given > 500);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(powers_are_added_within_two_hundredths_of_a_decibel),
+        cmocka_unit_test(a_target_is_in_one_cell_of_a_sweep_and_in_the_right_one),
+        cmocka_unit_test(a_target_is_where_the_geodesic_puts_it_within_a_metre),
+        cmocka_unit_test(no_target_is_lost_or_doubled_between_two_lines),
+        cmocka_unit_test(a_target_is_in_the_right_cell_of_a_patch_of_two_metres),
+        cmocka_unit_test(scatterers_have_their_own_cells_in_a_patch_and_share_one_in_a_sweep),
+        cmocka_unit_test(different_targets_in_one_cell_add_their_powers),
+        cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it),
+        cmocka_unit_test(the_horizon_that_a_line_starts_with_hides_as_well),
+        cmocka_unit_test(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted),
+        cmocka_unit_test(a_choice_holds_for_a_kilometre_of_flight),
+        cmocka_unit_test(a_record_that_passes_the_check_can_be_used),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
