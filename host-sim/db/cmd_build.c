@@ -2,6 +2,7 @@
 
 #include "build_manifest.h"
 #include "build_pyramid.h"
+#include "build_targets.h"
 #include "gdal_start.h"
 #include "image_codes.h"
 #include "options.h"
@@ -16,7 +17,7 @@
 #include <time.h>
 
 struct settings {
-    const char *classes, *class_raster, *reflectivity, *heights;
+    const char *classes, *class_raster, *reflectivity, *heights, *targets;
     struct db_list terrain;
     double cell_m;
     long shift0, seed;
@@ -64,6 +65,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION(
             "heights", DB_TEXT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
+        OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
+               "specific targets (docs/targets.md); left out: none"),
         OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",
                "about this cell size: the nearest of 0.149 m x 2^n\n"
                "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
@@ -327,7 +330,7 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
             result = build_manifest_dataset(out, "terrain", m->members[k].dataset);
         }
     }
-    return result;
+    return result == 0 && s->targets ? build_manifest_file(out, "targets", s->targets) : result;
 }
 
 /* The whole text; the caller frees it. NULL with the error reported. */
@@ -393,8 +396,30 @@ struct report {
     int32_t mean_elevation_q6;
 };
 
+/* The section TARGETS; bytes NULL without one. */
+struct targets_section {
+    void *bytes; /* owned */
+    size_t size;
+    uint32_t count;
+};
+
+static int read_targets(struct targets_section *section, const char *path)
+{
+    struct build_targets targets;
+    if (!path) {
+        return 0;
+    }
+    if (build_targets_read(&targets, path) != 0) {
+        return -1;
+    }
+    section->bytes = build_targets_section(&targets, &section->size);
+    section->count = targets.count;
+    build_targets_free(&targets);
+    return section->bytes ? 0 : hs_error(path, NULL, "out of memory");
+}
+
 static int write_image(struct build_context *b, const struct settings *s, const char *manifest,
-                       struct report *report)
+                       const struct targets_section *targets, struct report *report)
 {
     uint32_t centre[2];
     choose_centre(b, s, centre);
@@ -416,6 +441,8 @@ static int write_image(struct build_context *b, const struct settings *s, const 
                         "no cell of the image would hold data");
     }
     fill_header(&w.header, b, s, centre);
+    w.targets = targets->bytes;
+    w.targets_bytes = targets->size;
     if (image_writer_end(&w, manifest) != 0) {
         return -1;
     }
@@ -496,15 +523,20 @@ static int build(const struct settings *s)
     }
     b->seed = (uint32_t)s->seed;
     struct report report = {0};
+    struct targets_section targets = {0};
     char *manifest = NULL;
-    int result = open_inputs(b, s);
+    int result = read_targets(&targets, s->targets) == 0 ? open_inputs(b, s) : -1;
     if (result == 0) {
         manifest = make_manifest(b, s);
-        result = manifest ? write_image(b, s, manifest, &report) : -1;
+        result = manifest ? write_image(b, s, manifest, &targets, &report) : -1;
+    }
+    if (result == 0 && targets.bytes) {
+        printf("targets %" PRIu32 "\n", targets.count);
     }
     if (result == 0) {
         print_report(b, &report, now_seconds() - start);
     }
+    free(targets.bytes);
     free(manifest);
     close_inputs(b);
     free(b);

@@ -12,7 +12,8 @@ enum image_section_type {
     IMAGE_BANDS,
     IMAGE_DIRECTORY,
     IMAGE_TILES,
-    IMAGE_MANIFEST,
+    IMAGE_MANIFEST, /* the last one that every image has */
+    IMAGE_TARGETS,
     IMAGE_SECTION_TYPES
 };
 

@@ -104,7 +104,7 @@ static int check_header(const struct image *image, struct image_findings *f)
         h->header_bytes == LM_DB_HEADER_BYTES && h->record_bytes == LM_TILE_BYTES &&
         h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 && h->level_count <= LM_DB_LEVELS_MAX &&
         h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
-        h->band_count <= LM_DB_BANDS_MAX && h->section_count >= IMAGE_SECTION_TYPES - 1 &&
+        h->band_count <= LM_DB_BANDS_MAX && h->section_count >= IMAGE_MANIFEST &&
         h->section_count <= IMAGE_SECTIONS_MAX && h->image_bytes >= LM_DB_HEADER_BYTES;
     if (!is_sound) {
         image_find(f, 12, "a field of the header is out of its range");
@@ -161,7 +161,7 @@ static int check_sections(struct image *image, struct image_findings *f)
     for (uint32_t i = 0; i < h->section_count; i++) {
         result |= check_section(image, i, f);
     }
-    for (uint32_t type = IMAGE_CLASSES; type < IMAGE_SECTION_TYPES; type++) {
+    for (uint32_t type = IMAGE_CLASSES; type <= IMAGE_MANIFEST; type++) {
         if (!image->sections[type]) {
             image_find(f, offsetof(struct image_header, sections), "section %s is missing",
                        image_section_name(type));
@@ -241,6 +241,34 @@ static void fill_db(struct image *image)
     image->tiles = (const void *)(image->bytes + image->db.records_offset);
 }
 
+/* The head of the targets says how many there are. */
+static int read_targets_head(struct image *image, struct image_findings *f)
+{
+    const struct image_section *s = image->sections[IMAGE_TARGETS];
+    struct lm_targets_head head;
+    if (!s) {
+        return 0;
+    }
+    if (s->bytes < sizeof head) {
+        image_find(f, s->offset, "section TARGETS is too short for its head");
+        return -1;
+    }
+    memcpy(&head, image->bytes + s->offset, sizeof head);
+    if (fx_crc32c(0, &head, offsetof(struct lm_targets_head, crc)) != head.crc ||
+        head.record_bytes != LM_TARGET_BYTES || head.count > LM_DB_TARGETS_MAX ||
+        s->bytes != sizeof head + (uint64_t)head.count * LM_TARGET_BYTES) {
+        image_find(f, s->offset, "the head of section TARGETS does not fit it or its checksum");
+        return -1;
+    }
+    if (!is_zero(head.reserved, sizeof head.reserved)) {
+        image_find(f, s->offset, "unused bytes of the head of section TARGETS are not zero");
+    }
+    image->db.target_count = head.count;
+    image->db.targets_offset = s->offset + sizeof head;
+    image->targets = (const void *)(image->bytes + image->db.targets_offset);
+    return 0;
+}
+
 int image_read_tables(struct image *image, struct image_findings *findings)
 {
     if (image->size_bytes < sizeof image->header) {
@@ -252,7 +280,7 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     fill_db(image);
-    return check_bands(image, findings);
+    return read_targets_head(image, findings) == 0 ? check_bands(image, findings) : -1;
 }
 
 int image_open(struct image *image, const char *path)

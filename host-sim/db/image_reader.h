@@ -5,6 +5,7 @@
 #include "image_format.h"
 
 #include "lm/db.h"
+#include "lm/target.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,9 +28,10 @@ struct image {
     struct image_header header;
     struct lm_db db; /* as the firmware holds it, without a flash */
     const struct image_section
-        *sections[IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused */
+        *sections[IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: no TARGETS */
     const struct image_entry *entries;
     const struct lm_tile *tiles;
+    const struct lm_target *targets; /* db.target_count of them, their contents not yet checked */
 };
 
 /* Map a file. Returns 0, or -1 with the error reported. */

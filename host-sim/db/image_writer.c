@@ -50,7 +50,7 @@ static void place_sections(struct image_writer *w)
         [IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct image_entry),
     };
     uint64_t offset = sizeof w->header;
-    for (uint32_t type = IMAGE_CLASSES; type < IMAGE_SECTION_TYPES; type++) {
+    for (uint32_t type = IMAGE_CLASSES; type <= IMAGE_MANIFEST; type++) {
         struct image_section *s = section(w, type);
         *s = (struct image_section){.type = type, .offset = aligned(offset), .bytes = bytes[type]};
         offset = s->offset + s->bytes;
@@ -74,7 +74,7 @@ int image_writer_begin(struct image_writer *w, const char *path, const struct im
     w->header.version = LM_DB_VERSION;
     w->header.header_bytes = LM_DB_HEADER_BYTES;
     w->header.record_bytes = LM_TILE_BYTES;
-    w->header.section_count = IMAGE_SECTION_TYPES - 1;
+    w->header.section_count = IMAGE_MANIFEST;
     w->classes = *classes;
     memcpy(w->bands, bands, header->band_count * sizeof *bands);
     place_sections(w);
@@ -151,17 +151,26 @@ static int put_tables(struct image_writer *w, FILE *manifest)
     return 0;
 }
 
-static int put_manifest(struct image_writer *w, const char *text, size_t bytes)
+/* Append a section whose length was not known before to the image, which ends at `*end`. */
+static int append_section(struct image_writer *w, enum image_section_type type, const void *data,
+                          size_t bytes, FILE *manifest, uint64_t *end)
 {
-    struct image_section *tiles = section(w, IMAGE_TILES);
-    struct image_section *s = section(w, IMAGE_MANIFEST);
-    s->offset = aligned(tiles->offset + tiles->bytes);
-    s->bytes = bytes;
-    w->header.image_bytes = s->offset + s->bytes;
-    if (fseeko(w->file.stream, (off_t)(tiles->offset + tiles->bytes), SEEK_SET) != 0) {
+    struct image_section *s = section(w, type);
+    *s = (struct image_section){.type = type, .offset = aligned(*end), .bytes = bytes};
+    if (fseeko(w->file.stream, (off_t)*end, SEEK_SET) != 0) {
         return write_failed(w);
     }
-    return pad_to(w, s->offset) == 0 ? put_section(w, IMAGE_MANIFEST, text, NULL) : -1;
+    *end = s->offset + s->bytes;
+    return pad_to(w, s->offset) == 0 ? put_section(w, type, data, manifest) : -1;
+}
+
+static int put_targets(struct image_writer *w, FILE *manifest, uint64_t *end)
+{
+    if (!w->targets) {
+        return 0;
+    }
+    w->header.section_count = IMAGE_TARGETS;
+    return append_section(w, IMAGE_TARGETS, w->targets, w->targets_bytes, manifest, end);
 }
 
 static int put_header(struct image_writer *w)
@@ -183,11 +192,17 @@ static int finish(struct image_writer *w, const char *manifest)
     }
     fputs(manifest, stream);
     int result = put_tables(w, stream);
+    const struct image_section *tiles = section(w, IMAGE_TILES);
+    uint64_t end = tiles->offset + tiles->bytes;
+    if (result == 0) {
+        result = put_targets(w, stream, &end);
+    }
     if (fclose(stream) != 0) {
         result = hs_error(w->file.path, NULL, "out of memory");
     }
     if (result == 0) {
-        result = put_manifest(w, text, bytes);
+        result = append_section(w, IMAGE_MANIFEST, text, bytes, NULL, &end);
+        w->header.image_bytes = end;
     }
     free(text);
     return result == 0 ? put_header(w) : -1;

@@ -16,6 +16,9 @@ struct image_writer {
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
     uint32_t *records; /* record number of each directory entry; owned */
+    const void
+        *targets; /* borrowed until the end: the section TARGETS; NULL for an image without */
+    size_t targets_bytes;
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };
@@ -30,9 +33,9 @@ int image_writer_begin(struct image_writer *w, const char *path, const struct im
 int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile);
 
 /* Finish: directory, manifest and header. `manifest` is text to which the SHA-256 of the other
- * sections is added. Title, centre, mean elevation and geoid are taken from w->header, where the
- * caller has put them. Returns 0, or -1 with the error reported; either way the writer is done
- * with. */
+ * sections is added. Title, centre, mean elevation and geoid are taken from w->header, the targets
+ * from w->targets, where the caller has put them. Returns 0, or -1 with the error reported; either
+ * way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 
 /* Give up: nothing is left of the file. Harmless after image_writer_end. */

@@ -1,0 +1,395 @@
+#include "build_targets.h"
+
+#include "image_grid.h"
+#include "text_file.h"
+
+#include "fx/crc32c.h"
+
+#include "hs/error.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORDS_MAX = 16 };
+
+/* What a body's line holds behind its name: sizes, a place, and a direction where it has one. */
+static const struct body {
+    const char *name, *form;
+    int sizes;
+    bool has_direction;
+} bodies[LM_SHAPE_KINDS] = {
+    [LM_SHAPE_SPHERE] = {"sphere", "sphere RADIUS  FORWARD RIGHT UP", 1, false},
+    [LM_SHAPE_PLATE] = {"plate",
+                        "plate WIDTH HEIGHT  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL] [both]", 2,
+                        true},
+    [LM_SHAPE_DIHEDRAL] = {"dihedral",
+                           "dihedral WIDTH LENGTH  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]", 2,
+                           true},
+    [LM_SHAPE_TRIHEDRAL] = {"trihedral",
+                            "trihedral LEG  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]", 1, true},
+};
+
+static const char target_form[] =
+    "target NAME LATITUDE LONGITUDE ELEVATION HEADING, then `scatterers` or `swerling CASE DBSM`";
+
+static int split_words(char *line, char *words[WORDS_MAX])
+{
+    int count = 0;
+    char *rest = NULL;
+    for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
+        if (count == WORDS_MAX) {
+            return WORDS_MAX + 1;
+        }
+        words[count++] = w;
+    }
+    return count;
+}
+
+/* Numbers in `count` words, each within low..high; false when one is not. */
+static bool read_numbers(char *const *words, int count, double *numbers, double low, double high)
+{
+    for (int i = 0; i < count; i++) {
+        char *end;
+        numbers[i] = strtod(words[i], &end);
+        if (end == words[i] || *end != '\0' || !(numbers[i] >= low && numbers[i] <= high)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static fx_bam_t bam(double degrees)
+{
+    return (fx_bam_t)image_bam(degrees);
+}
+
+/* ---- reading ---- */
+
+/* Behind HEADING: what gives the target its return. */
+static bool set_kind(struct lm_target *t, char *const *words, int count)
+{
+    double number[2];
+    if (count == 1 && strcmp(words[0], "scatterers") == 0) {
+        return true;
+    }
+    if (count != 3 || strcmp(words[0], "swerling") != 0 ||
+        !read_numbers(words + 1, 1, &number[0], 0, LM_TARGET_SWERLING_MAX) ||
+        !read_numbers(words + 2, 1, &number[1], -LM_TARGET_RCS_MAX_Q8 / 256.0,
+                      LM_TARGET_RCS_MAX_Q8 / 256.0) ||
+        number[0] != floor(number[0])) {
+        return false;
+    }
+    t->swerling = (uint8_t)number[0];
+    t->mean_rcs_q8 = (int32_t)lround(number[1] * 256);
+    return true;
+}
+
+static int read_target(const struct db_text_file *f, struct lm_target *t, char *const *words,
+                       int count)
+{
+    double latitude, longitude, elevation_m, heading;
+    if (count < 7 || strlen(words[1]) > sizeof t->name) {
+        return db_text_error(f, target_form,
+                             "a target needs a name of up to 16 letters, a place "
+                             "and a kind");
+    }
+    if (!read_numbers(words + 2, 1, &latitude, -90, 90) ||
+        !read_numbers(words + 3, 1, &longitude, -180, 360) ||
+        !read_numbers(words + 4, 1, &elevation_m, -1000, 16000) ||
+        !read_numbers(words + 5, 1, &heading, -360, 360)) {
+        return db_text_error(f, target_form,
+                             "place, elevation or heading is no number of its range");
+    }
+    memcpy(t->name, words[1], strlen(words[1]));
+    t->latitude = bam(latitude);
+    t->longitude = bam(longitude);
+    t->elevation_q6 = (int32_t)lround(elevation_m * 64);
+    t->heading = bam(heading);
+    return set_kind(t, words + 6, count - 6)
+               ? 0
+               : db_text_error(f, target_form, "\"%s\" and what follows is no kind", words[6]);
+}
+
+static int find_body(const char *word)
+{
+    for (int kind = LM_SHAPE_SPHERE; kind < LM_SHAPE_KINDS; kind++) {
+        if (strcmp(bodies[kind].name, word) == 0) {
+            return kind;
+        }
+    }
+    return 0;
+}
+
+/* Azimuth and elevation, perhaps a roll, perhaps `both`. */
+static bool set_direction(struct lm_scatterer *s, char *const *words, int count)
+{
+    double degrees[3] = {0};
+    if (count > 2 && s->kind == LM_SHAPE_PLATE && strcmp(words[count - 1], "both") == 0) {
+        s->is_two_sided = 1;
+        count--;
+    }
+    if (count < 2 || count > 3 || !read_numbers(words, count, degrees, -360, 360)) {
+        return false;
+    }
+    s->azimuth = bam(degrees[0]);
+    s->elevation = bam(degrees[1]);
+    s->roll = bam(degrees[2]);
+    return true;
+}
+
+static bool set_body(struct lm_scatterer *s, char *const *words, int count)
+{
+    const struct body *b = &bodies[s->kind];
+    double size_m[2] = {0}, offset_m[3];
+    const int behind = 1 + b->sizes + 3;
+    if (count < behind ||
+        !read_numbers(words + 1, b->sizes, size_m, 0.001, LM_SHAPE_SIZE_MAX_MM / 1000.0) ||
+        !read_numbers(words + 1 + b->sizes, 3, offset_m, -LM_TARGET_OFFSET_MAX_MM / 1000.0,
+                      LM_TARGET_OFFSET_MAX_MM / 1000.0)) {
+        return false;
+    }
+    for (int i = 0; i < b->sizes; i++) {
+        s->size_mm[i] = (uint32_t)lround(size_m[i] * 1000);
+    }
+    for (int i = 0; i < 3; i++) {
+        s->offset_mm[i] = (int32_t)lround(offset_m[i] * 1000);
+    }
+    return b->has_direction ? set_direction(s, words + behind, count - behind) : count == behind;
+}
+
+static int read_body(const struct db_text_file *f, struct lm_target *t, int kind,
+                     char *const *words, int count)
+{
+    if (!t) {
+        return db_text_error(f, target_form, "a body without a target before it");
+    }
+    if (t->scatterer_count == LM_SCATTERERS_MAX) {
+        return db_text_error(f, "make it two targets", "the target has more than %d bodies",
+                             LM_SCATTERERS_MAX);
+    }
+    struct lm_scatterer *s = &t->scatterers[t->scatterer_count++];
+    s->kind = (uint8_t)kind;
+    return set_body(s, words, count)
+               ? 0
+               : db_text_error(f, bodies[kind].form, "a number is missing or out of its range");
+}
+
+/* What is being read: the last target, and whether it said `scatterers`. */
+struct reading {
+    struct db_text_file file;
+    struct build_targets *targets;
+    bool wants_bodies;
+};
+
+/* A target that said `scatterers` must have had some when the next one begins. */
+static int end_target(const struct reading *r)
+{
+    const uint32_t count = r->targets->count;
+    if (r->wants_bodies && r->targets->items[count - 1].scatterer_count == 0) {
+        return db_text_error(&r->file, "add a sphere, plate, dihedral or trihedral",
+                             "target %.16s has no bodies", r->targets->items[count - 1].name);
+    }
+    return 0;
+}
+
+static int begin_target(struct reading *r, char *const *words, int count)
+{
+    struct build_targets *t = r->targets;
+    if (end_target(r) != 0) {
+        return -1;
+    }
+    if (t->count == LM_DB_TARGETS_MAX) {
+        return db_text_error(&r->file, "leave some out", "more than %d targets", LM_DB_TARGETS_MAX);
+    }
+    t->items[t->count] = (struct lm_target){.id = t->count};
+    if (read_target(&r->file, &t->items[t->count], words, count) != 0) {
+        return -1;
+    }
+    r->wants_bodies = strcmp(words[6], "scatterers") == 0;
+    t->count++;
+    return 0;
+}
+
+static int read_line(struct reading *r)
+{
+    char *words[WORDS_MAX];
+    const int count = split_words(r->file.line, words);
+    if (count > WORDS_MAX) {
+        return db_text_error(&r->file, NULL, "more than %d words", WORDS_MAX);
+    }
+    if (strcmp(words[0], "target") == 0) {
+        return begin_target(r, words, count);
+    }
+    const int kind = find_body(words[0]);
+    if (!kind) {
+        return db_text_error(&r->file, "begin with target, sphere, plate, dihedral or trihedral",
+                             "\"%s\" is none of these", words[0]);
+    }
+    struct build_targets *t = r->targets;
+    return read_body(&r->file, r->wants_bodies ? &t->items[t->count - 1] : NULL, kind, words,
+                     count);
+}
+
+static void seal(struct build_targets *t)
+{
+    for (uint32_t i = 0; i < t->count; i++) {
+        struct lm_target *item = &t->items[i];
+        item->crc =
+            fx_crc32c(0, (const uint8_t *)item + sizeof item->crc, sizeof *item - sizeof item->crc);
+    }
+}
+
+int build_targets_read(struct build_targets *t, const char *path)
+{
+    struct reading r = {.targets = t};
+    *t = (struct build_targets){.items = calloc(LM_DB_TARGETS_MAX, sizeof *t->items)};
+    if (!t->items) {
+        return hs_error(path, NULL, "out of memory");
+    }
+    int step = db_text_open(&r.file, path) == 0 ? 1 : -1;
+    while (step > 0) {
+        step = db_text_next(&r.file);
+        if (step > 0 && read_line(&r) != 0) {
+            step = -1;
+        }
+    }
+    if (step == 0) {
+        step = end_target(&r);
+    }
+    db_text_close(&r.file);
+    if (step < 0) {
+        build_targets_free(t);
+        return -1;
+    }
+    seal(t);
+    return 0;
+}
+
+void build_targets_free(struct build_targets *t)
+{
+    free(t->items);
+    *t = (struct build_targets){0};
+}
+
+void *build_targets_section(const struct build_targets *t, size_t *bytes)
+{
+    struct lm_targets_head head = {.count = t->count, .record_bytes = LM_TARGET_BYTES};
+    head.crc = fx_crc32c(0, &head, sizeof head - sizeof head.crc);
+    *bytes = sizeof head + (size_t)t->count * LM_TARGET_BYTES;
+    uint8_t *section = malloc(*bytes);
+    if (section) {
+        memcpy(section, &head, sizeof head);
+        memcpy(section + sizeof head, t->items, (size_t)t->count * LM_TARGET_BYTES);
+    }
+    return section;
+}
+
+/* ---- looking at an image's ---- */
+
+static void print_body(const struct lm_scatterer *s)
+{
+    const bool is_known = s->kind >= LM_SHAPE_SPHERE && s->kind < LM_SHAPE_KINDS;
+    printf("        %-9s", is_known ? bodies[s->kind].name : "unknown");
+    for (int i = 0; is_known && i < bodies[s->kind].sizes; i++) {
+        printf(" %g", s->size_mm[i] / 1000.0);
+    }
+    printf(" m at %g %g %g", s->offset_mm[0] / 1000.0, s->offset_mm[1] / 1000.0,
+           s->offset_mm[2] / 1000.0);
+    if (is_known && bodies[s->kind].has_direction) {
+        printf(", facing %.3f %.3f, roll %.3f", image_longitude_degrees(s->azimuth),
+               image_degrees((int32_t)s->elevation), image_degrees((int32_t)s->roll));
+    }
+    puts(s->is_two_sided ? ", both sides" : "");
+}
+
+/* A name of a damaged or hostile file: only what a terminal can show. */
+static void print_name(const char name[16])
+{
+    for (int i = 0; i < 16; i++) {
+        putchar(name[i] == '\0' ? ' ' : name[i] > ' ' && name[i] < 127 ? name[i] : '?');
+    }
+}
+
+void build_targets_print(const struct image *image)
+{
+    if (image->db.target_count == 0) {
+        return;
+    }
+    printf("\ntarget  name              latitude   longitude  elevation m  heading\n");
+    for (uint32_t i = 0; i < image->db.target_count; i++) {
+        const struct lm_target *t = &image->targets[i];
+        printf("%6" PRIu32 "  ", t->id);
+        print_name(t->name);
+        printf("%10.6f %11.6f %12.1f %8.2f", image_degrees((int32_t)t->latitude),
+               image_longitude_degrees(t->longitude), t->elevation_q6 / 64.0,
+               image_degrees((int64_t)t->heading));
+        if (t->scatterer_count == 0) {
+            printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
+        }
+        putchar('\n');
+        for (int k = 0; k < t->scatterer_count && k < LM_SCATTERERS_MAX; k++) {
+            print_body(&t->scatterers[k]);
+        }
+    }
+}
+
+static bool is_zero(const void *bytes, size_t count)
+{
+    const uint8_t *b = bytes;
+    for (size_t i = 0; i < count; i++) {
+        if (b[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* What the firmware does not look at: unused numbers of the record. */
+static bool rest_is_zero(const struct lm_target *t)
+{
+    const size_t used = strnlen(t->name, sizeof t->name);
+    bool rest = t->reserved0 == 0 && is_zero(t->reserved1, sizeof t->reserved1) &&
+                is_zero(t->name + used, sizeof t->name - used);
+    for (int i = 0; i < t->scatterer_count; i++) {
+        const struct lm_scatterer *s = &t->scatterers[i];
+        rest = rest && s->reserved == 0 && (bodies[s->kind].sizes == 2 || s->size_mm[1] == 0) &&
+               (s->kind == LM_SHAPE_PLATE || !s->is_two_sided);
+    }
+    const int unused = LM_SCATTERERS_MAX - t->scatterer_count;
+    const bool is_point = t->scatterer_count == 0;
+    return rest && (is_point || (t->swerling == 0 && t->mean_rcs_q8 == 0)) &&
+           is_zero(&t->scatterers[t->scatterer_count], (size_t)unused * sizeof t->scatterers[0]);
+}
+
+static bool id_is_new(const struct image *image, uint32_t index)
+{
+    for (uint32_t i = 0; i < index; i++) {
+        if (image->targets[i].id == image->targets[index].id) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void build_targets_check(const struct image *image, struct image_findings *findings)
+{
+    for (uint32_t i = 0; i < image->db.target_count; i++) {
+        const struct lm_target *t = &image->targets[i];
+        const uint64_t at = image->db.targets_offset + (uint64_t)i * LM_TARGET_BYTES;
+        if (lm_target_check(t) != LM_OK) {
+            image_find(findings, at,
+                       "target %" PRIu32
+                       ": its checksum does not fit it, or a number is out of "
+                       "its range",
+                       i);
+        } else if (!rest_is_zero(t)) {
+            image_find(findings, at, "target %" PRIu32 ": unused numbers are not zero", i);
+        }
+        if (!id_is_new(image, i)) {
+            image_find(findings, at, "target %" PRIu32 ": its id is another one's", i);
+        }
+    }
+}

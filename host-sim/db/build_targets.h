@@ -1,0 +1,31 @@
+/* Specific targets for an image: a text file (docs/targets.md) in, the section TARGETS out, and the
+ * section's faults. */
+#ifndef BUILD_TARGETS_H
+#define BUILD_TARGETS_H
+
+#include "image_reader.h"
+
+#include "lm/target.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct build_targets {
+    struct lm_target *items; /* owned; sealed, id = place in the file */
+    uint32_t count;
+};
+
+/* Read a file of targets. Returns 0, or -1 with the error reported and nothing to free. */
+int build_targets_read(struct build_targets *t, const char *path);
+void build_targets_free(struct build_targets *t);
+
+/* The bytes of the section, head and records; the caller frees them. NULL when memory ran out. */
+void *build_targets_section(const struct build_targets *t, size_t *bytes);
+
+/* Print what an image's targets are, a line each and one for every body. */
+void build_targets_print(const struct image *image);
+
+/* Note what is wrong with an image's targets; `image` has passed image_read_tables. */
+void build_targets_check(const struct image *image, struct image_findings *findings);
+
+#endif

@@ -1,0 +1,355 @@
+/* Specific targets from their text file into an image and back: by the builder, the checker and the
+ * firmware. */
+#include "build_targets.h"
+#include "image_reader.h"
+#include "image_verify.h"
+
+#include "lm/target.h"
+
+#include "fx/crc32c.h"
+#include "memory_flash.h"
+#include "scene.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const char text[] =
+    "# everything that a file may say\n"
+    "target corners 47.01 8.02 451.5 30 scatterers   # a remark\n"
+    "  sphere 0.5  1 2 3\n"
+    "  plate 0.3 0.7  -10.25 0 1  350 20 45 both\n"
+    "  dihedral 0.4 2  0 0 0  -90 0\n"
+    "\ttrihedral 1.25  262.144 -262.144 0.001  0 35.264\n"
+    "target truck -33.5 -70.25 -3 359.5 swerling 3 12.5\n"
+    "target sixteen_letters_ 0 360 0 -45 swerling 0 -20\n";
+
+static double degrees(fx_bam_t angle)
+{
+    return (int32_t)angle * (360.0 / 4294967296.0);
+}
+
+static void a_file_says_all_that_a_record_holds(void **state)
+{
+    (void)state;
+    struct build_targets t;
+    scene_text("all.targets", text);
+    assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
+    assert_int_equal(t.count, 3);
+    const struct lm_target *c = &t.items[0];
+    assert_string_equal(c->name, "corners");
+    assert_true(fabs(degrees(c->latitude) - 47.01) < 1e-7);
+    assert_true(fabs(degrees(c->longitude) - 8.02) < 1e-7);
+    assert_int_equal(c->elevation_q6, 451.5 * 64);
+    assert_true(fabs(degrees(c->heading) - 30) < 1e-7);
+    assert_int_equal(c->scatterer_count, 4);
+    const struct lm_scatterer *plate = &c->scatterers[1];
+    assert_int_equal(plate->kind, LM_SHAPE_PLATE);
+    assert_int_equal(plate->is_two_sided, 1);
+    assert_int_equal(plate->size_mm[0], 300);
+    assert_int_equal(plate->size_mm[1], 700);
+    assert_int_equal(plate->offset_mm[0], -10250);
+    assert_true(fabs(degrees(plate->azimuth) + 10) < 1e-7);
+    assert_true(fabs(degrees(plate->elevation) - 20) < 1e-7);
+    assert_true(fabs(degrees(plate->roll) - 45) < 1e-7);
+    assert_int_equal(c->scatterers[3].offset_mm[1], -LM_TARGET_OFFSET_MAX_MM);
+    assert_int_equal(t.items[1].scatterer_count, 0);
+    assert_int_equal(t.items[1].swerling, 3);
+    assert_int_equal(t.items[1].mean_rcs_q8, 12.5 * 256);
+    assert_memory_equal(t.items[2].name, "sixteen_letters_", 16);
+    for (uint32_t i = 0; i < t.count; i++) {
+        assert_int_equal(t.items[i].id, i);
+        assert_int_equal(lm_target_check(&t.items[i]), LM_OK);
+    }
+    build_targets_free(&t);
+}
+
+static void a_line_that_makes_no_sense_is_refused(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "sphere 1 0 0 0\n",
+        "target t 0 0 0 0\n",
+        "target t 0 0 0 0 nothing\n",
+        "target t 91 0 0 0 scatterers\nsphere 1 0 0 0\n",
+        "target t nan 0 0 0 scatterers\nsphere 1 0 0 0\n",
+        "target t 0 0 0 0 swerling 5 0\n",
+        "target t 0 0 0 0 swerling 1.5 0\n",
+        "target t 0 0 0 0 swerling 1 101\n",
+        "target t 0 0 0 0 swerling 1 0\nsphere 1 0 0 0\n",
+        "target seventeen_letters 0 0 0 0 swerling 1 0\n",
+        "target t 0 0 0 0 scatterers\n",
+        "target t 0 0 0 0 scatterers\ntarget u 0 0 0 0 swerling 1 1\n",
+        "target t 0 0 0 0 scatterers\ncube 1 0 0 0\n",
+        "target t 0 0 0 0 scatterers\nsphere 0 0 0 0\n",
+        "target t 0 0 0 0 scatterers\nsphere 101 0 0 0\n",
+        "target t 0 0 0 0 scatterers\nsphere 1 0 0\n",
+        "target t 0 0 0 0 scatterers\nsphere 1 0 0 0 0\n",
+        "target t 0 0 0 0 scatterers\nsphere 1 0 0 263\n",
+        "target t 0 0 0 0 scatterers\ntrihedral 1 0 0 0 1\n",
+        "target t 0 0 0 0 scatterers\ntrihedral 1 0 0 0 1 2 both\n",
+        "target t 0 0 0 0 scatterers\nplate 1 1 0 0 0 1 both\n",
+        "target t 0 0 0 0 scatterers\nplate 1 1 0 0 0 1 2 3 4\n",
+        "target a b c d e f g h i j k l m n o p q r s\n",
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        struct build_targets t;
+        scene_text("bad.targets", bad[i]);
+        assert_int_equal(build_targets_read(&t, scene_path("bad.targets")), -1);
+        assert_null(t.items);
+    }
+    struct build_targets t;
+    assert_int_equal(build_targets_read(&t, scene_path("there is none")), -1);
+}
+
+/* ---- in an image ---- */
+
+static double hills_m(double x, double y)
+{
+    return 400 + 30 * sin(x * 300) * cos(y * 200);
+}
+
+static void build(const char *out, const char *more)
+{
+    const struct scene_raster terrain = {.width = 100,
+                                         .height = 100,
+                                         .geotransform = {7.95, 0.001, 0, 47.05, 0, -0.001},
+                                         .epsg = 4326,
+                                         .type = GDT_Float32,
+                                         .value = hills_m};
+    scene_classes();
+    scene_write("terrain.tif", &terrain);
+    assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --out %s %s",
+                               scene_path(SCENE_CLASSES), scene_path("terrain.tif"),
+                               scene_path(out), more),
+                     0);
+}
+
+static void build_with_targets(const char *out)
+{
+    char more[600];
+    scene_text("all.targets", text);
+    snprintf(more, sizeof more, "--targets %s", scene_path("all.targets"));
+    build(out, more);
+}
+
+static uint64_t faults(const void *bytes, size_t size)
+{
+    struct image image;
+    struct image_findings findings = {NULL, 0, 0};
+    struct image_verify_counts counts;
+    image_lend(&image, bytes, size);
+    const int is_complete = image_verify(&image, &findings, &counts);
+    return findings.count + (is_complete != 0);
+}
+
+static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state)
+{
+    (void)state;
+    struct build_targets t;
+    struct image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    build_with_targets("with.lmdb");
+    assert_true(scene_log_holds("targets 3"));
+    assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
+    assert_int_equal(image_open(&image, scene_path("with.lmdb")), 0);
+    memory_flash_open(&flash, image.bytes, image.size_bytes);
+    assert_int_equal(lm_db_open(&db, &flash.port, 4), LM_OK);
+    assert_int_equal(db.target_count, t.count);
+    for (uint32_t i = 0; i < t.count; i++) {
+        struct lm_target read_back;
+        assert_int_equal(lm_target_read(&db, i, &read_back, 4), LM_OK);
+        assert_memory_equal(&read_back, &t.items[i], sizeof read_back);
+    }
+    assert_int_equal(faults(image.bytes, image.size_bytes), 0);
+    image_close(&image);
+    build_targets_free(&t);
+}
+
+static void verify_and_inspect_know_targets(void **state)
+{
+    (void)state;
+    build_with_targets("with.lmdb");
+    assert_int_equal(scene_run("verify %s", scene_path("with.lmdb")), 0);
+    assert_int_equal(scene_run("inspect %s", scene_path("with.lmdb")), 0);
+    assert_true(scene_log_holds("TARGETS"));
+    assert_true(scene_log_holds("corners"));
+    assert_true(
+        scene_log_holds("plate     0.3 0.7 m at -10.25 0 1, facing -10.000 20.000, roll "
+                        "45.000, both sides"));
+    assert_true(scene_log_holds("swerling 3, mean 12.5 dBsm"));
+    assert_true(scene_log_holds("input: targets all.targets"));
+    assert_true(scene_log_holds("section-sha256: TARGETS"));
+}
+
+static void a_fault_in_the_file_leaves_no_image(void **state)
+{
+    (void)state;
+    scene_text("bad.targets", "target t 0 0 0 0 scatterers\nsphere 1 0 0\n");
+    assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --out %s "
+                               "--targets %s",
+                               scene_path(SCENE_CLASSES), scene_path("terrain.tif"),
+                               scene_path("none.lmdb"), scene_path("bad.targets")),
+                     1);
+    assert_true(scene_log_holds("bad.targets:2"));
+    assert_null(fopen(scene_path("none.lmdb"), "rb"));
+}
+
+/* Sections and bytes of an image without targets are those of its twin with them, but for the
+ * header, the manifest and what lies behind the tiles. */
+static void an_image_without_targets_is_what_it_was(void **state)
+{
+    (void)state;
+    struct image with, without;
+    build("without.lmdb", "");
+    build_with_targets("with.lmdb");
+    assert_int_equal(image_open(&with, scene_path("with.lmdb")), 0);
+    assert_int_equal(image_open(&without, scene_path("without.lmdb")), 0);
+    assert_int_equal(without.header.section_count, 5);
+    assert_int_equal(without.db.target_count, 0);
+    assert_int_equal(faults(without.bytes, without.size_bytes), 0);
+    for (int type = IMAGE_CLASSES; type <= IMAGE_TILES; type++) {
+        const struct image_section *a = with.sections[type], *b = without.sections[type];
+        assert_int_equal(a->offset, b->offset);
+        assert_int_equal(a->bytes, b->bytes);
+        assert_memory_equal(with.bytes + a->offset, without.bytes + b->offset, b->bytes);
+    }
+    image_close(&with);
+    image_close(&without);
+}
+
+/* ---- damage ---- */
+
+struct copy {
+    uint8_t *bytes;
+    size_t size;
+    uint64_t head_at;
+};
+
+static void copy_image(struct copy *c)
+{
+    struct image image;
+    build_with_targets("with.lmdb");
+    assert_int_equal(image_open(&image, scene_path("with.lmdb")), 0);
+    c->size = image.size_bytes;
+    c->bytes = malloc(c->size);
+    memcpy(c->bytes, image.bytes, c->size);
+    c->head_at = image.sections[IMAGE_TARGETS]->offset;
+    image_close(&image);
+}
+
+/* Put every checksum right again: records, head, section and header. */
+static void seal(struct copy *c)
+{
+    struct image_header h;
+    memcpy(&h, c->bytes, sizeof h);
+    uint8_t *head = c->bytes + c->head_at;
+    for (int i = 0; i < 3; i++) {
+        uint8_t *record = head + 64 + i * LM_TARGET_BYTES;
+        const uint32_t crc = fx_crc32c(0, record + 4, LM_TARGET_BYTES - 4);
+        memcpy(record, &crc, 4);
+    }
+    const uint32_t head_crc = fx_crc32c(0, head, 60);
+    memcpy(head + 60, &head_crc, 4);
+    struct image_section *s = &h.sections[IMAGE_TARGETS - 1];
+    s->crc = fx_crc32c(0, head, s->bytes);
+    h.crc = fx_crc32c(0, &h, offsetof(struct image_header, crc));
+    memcpy(c->bytes, &h, sizeof h);
+}
+
+static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
+{
+    (void)state;
+    struct copy c;
+    copy_image(&c);
+    struct lm_target *t = (void *)(c.bytes + c.head_at + 64);
+    struct lm_target kept[3];
+    memcpy(kept, t, sizeof kept);
+    seal(&c);
+    assert_int_equal(faults(c.bytes, c.size), 0);
+    for (int lie = 0; lie < 12; lie++) {
+        memcpy(t, kept, sizeof kept);
+        switch (lie) {
+        case 0:
+            t[0].scatterers[0].kind = 9;
+            break;
+        case 1:
+            t[0].scatterer_count = 17;
+            break;
+        case 2:
+            t[0].scatterers[4].kind = 1;
+            break; /* behind the last one */
+        case 3:
+            t[0].scatterers[0].size_mm[1] = 1;
+            break; /* a sphere has one size */
+        case 4:
+            t[0].scatterers[3].is_two_sided = 1;
+            break;
+        case 5:
+            t[0].scatterers[0].reserved = 1;
+            break;
+        case 6:
+            t[1].id = 0;
+            break;
+        case 7:
+            t[1].name[12] = 'x';
+            break;
+        case 8:
+            t[1].swerling = 7;
+            break;
+        case 9:
+            t[0].swerling = 1;
+            break; /* it has bodies */
+        case 10:
+            t[2].reserved1[15] = 1;
+            break;
+        default:
+            c.bytes[c.head_at + 40] = 1;
+            break;
+        }
+        seal(&c);
+        assert_true(faults(c.bytes, c.size) > 0);
+        c.bytes[c.head_at + 40] = 0;
+    }
+    free(c.bytes);
+}
+
+static void every_flipped_bit_of_the_section_is_found(void **state)
+{
+    (void)state;
+    struct copy c;
+    copy_image(&c);
+    /* The head whole and a bit of each further byte. */
+    const size_t bytes = 64 + 3 * LM_TARGET_BYTES;
+    for (size_t i = 0; i < bytes; i += i < 64 ? 1 : 7) {
+        uint8_t *byte = c.bytes + c.head_at + i;
+        *byte = (uint8_t)(*byte ^ 1u << i % 8);
+        assert_true(faults(c.bytes, c.size) > 0);
+        *byte = (uint8_t)(*byte ^ 1u << i % 8);
+    }
+    assert_int_equal(faults(c.bytes, c.size), 0);
+    free(c.bytes);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_says_all_that_a_record_holds),
+        cmocka_unit_test(a_line_that_makes_no_sense_is_refused),
+        cmocka_unit_test(the_targets_of_a_file_are_those_that_the_firmware_reads),
+        cmocka_unit_test(verify_and_inspect_know_targets),
+        cmocka_unit_test(a_fault_in_the_file_leaves_no_image),
+        cmocka_unit_test(an_image_without_targets_is_what_it_was),
+        cmocka_unit_test(a_lie_about_a_target_under_right_checksums_is_found),
+        cmocka_unit_test(every_flipped_bit_of_the_section_is_found),
+    };
+    return cmocka_run_group_tests_name("targets", tests, NULL, NULL);
+}
