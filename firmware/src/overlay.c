@@ -1,8 +1,8 @@
 #include "lm/overlay.h"
 
-#include "font.h"
 #include "fx/mem.h"
 #include "fx/trig.h"
+#include "lm/font.h"
 
 enum { SYMBOL = 0x0040E060, WARNING = 0x00FFB020, ARC_STEPS = 48 };
 

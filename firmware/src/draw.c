@@ -1,0 +1,98 @@
+#include "lm/draw.h"
+
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/font.h"
+
+enum { ARC_CHORDS = 48 };
+
+struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour)
+{
+    const int32_t shorter =
+        surface->width_px < surface->height_px ? surface->width_px : surface->height_px;
+    const int32_t dot_px = fx_clamp_i32((shorter + 60) / 240, 1, 4);
+    return (struct lm_pen){*surface, colour, dot_px, dot_px > 2 ? 2 : 1};
+}
+
+void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, int32_t height)
+{
+    const int32_t right = fx_min_i32(x + width, pen->surface.width_px);
+    const int32_t bottom = fx_min_i32(y + height, pen->surface.height_px);
+    const int32_t left = fx_max_i32(x, 0);
+    for (int32_t row = fx_max_i32(y, 0); row < bottom; row++) {
+        uint32_t *out = pen->surface.pixels + (uint32_t)row * pen->surface.stride_px;
+        for (int32_t column = left; column < right; column++) {
+            out[column] = pen->colour;
+        }
+    }
+}
+
+void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_point to)
+{
+    const int32_t dx = to.x - from.x, dy = to.y - from.y;
+    const int32_t wide = dx < 0 ? -dx : dx, high = dy < 0 ? -dy : dy;
+    const int32_t steps = fx_max_i32(wide, high);
+    if (dx == 0 || dy == 0) {
+        lm_draw_box(pen, fx_min_i32(from.x, to.x), fx_min_i32(from.y, to.y),
+                    dx == 0 ? pen->line_px : wide + 1, dy == 0 ? pen->line_px : high + 1);
+        return;
+    }
+    /* Q16: |dx|, |dy| < 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
+    const int32_t step_x = dx * 65536 / steps, step_y = dy * 65536 / steps;
+    int32_t x = from.x * 65536 + 32768, y = from.y * 65536 + 32768;
+    for (int32_t i = 0; i <= steps; i++, x += step_x, y += step_y) {
+        lm_draw_box(pen, x >> 16, y >> 16, pen->line_px, pen->line_px);
+    }
+}
+
+struct lm_point lm_ray_end(struct lm_point from, fx_bam_t azimuth, int32_t length)
+{
+    return (struct lm_point){from.x + ((length * fx_sin_q15(azimuth) + (1 << 14)) >> 15),
+                             from.y - ((length * fx_cos_q15(azimuth) + (1 << 14)) >> 15)};
+}
+
+void lm_draw_arc(const struct lm_pen *pen, struct lm_point centre, int32_t radius, fx_bam_t left,
+                 fx_bam_t span)
+{
+    struct lm_point from = lm_ray_end(centre, left, radius);
+    for (uint32_t i = 1; i <= ARC_CHORDS; i++) {
+        const fx_bam_t turned = (fx_bam_t)((uint64_t)span * i / ARC_CHORDS);
+        const struct lm_point to = lm_ray_end(centre, left + turned, radius);
+        lm_draw_line(pen, from, to);
+        from = to;
+    }
+}
+
+/* The dots of a row that stand side by side are one box. */
+static void draw_dots(const struct lm_pen *pen, int32_t x, int32_t y, uint8_t row)
+{
+    for (int32_t column = 0; column < LM_FONT_WIDTH; column++) {
+        const int32_t first = column;
+        while (column < LM_FONT_WIDTH && (row >> (LM_FONT_WIDTH - 1 - column) & 1)) {
+            column++;
+        }
+        if (column > first) {
+            lm_draw_box(pen, x + first * pen->dot_px, y, (column - first) * pen->dot_px,
+                        pen->dot_px);
+        }
+    }
+}
+
+void lm_draw_text(const struct lm_pen *pen, int32_t x, int32_t y, const char *words)
+{
+    for (; *words; words++, x += lm_column_px(pen)) {
+        const uint8_t *rows = lm_font_glyph(*words);
+        for (int32_t row = 0; row < LM_FONT_HEIGHT; row++) {
+            draw_dots(pen, x, y + row * pen->dot_px, rows[row]);
+        }
+    }
+}
+
+int32_t lm_text_width(const struct lm_pen *pen, const char *words)
+{
+    int32_t width = 0;
+    for (; *words; words++) {
+        width += lm_column_px(pen);
+    }
+    return width ? width - pen->dot_px : 0;
+}
