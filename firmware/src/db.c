@@ -232,6 +232,8 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     db->geoid_q6 = h.geoid_q6;
     db->centre_latitude = h.centre_latitude;
     db->centre_longitude = h.centre_longitude;
+    memcpy(db->title, h.title, sizeof h.title);
+    db->title[sizeof h.title] = 0;
     const int tables = read_tables(db, &h, poll_limit);
     return tables == LM_OK ? read_targets_head(db, &h, poll_limit) : tables;
 }

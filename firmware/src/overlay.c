@@ -1,243 +1,156 @@
 #include "lm/overlay.h"
 
-#include "fx/mem.h"
-#include "fx/trig.h"
 #include "lm/font.h"
+#include "marks.h"
 
-enum { SYMBOL = 0x0040E060, WARNING = 0x00FFB020, ARC_STEPS = 48 };
-
-static void dot(const struct lm_surface *s, int32_t x, int32_t y, uint32_t colour)
+/* A table look-up a pixel; the compiler is told that table and picture do not overlap. */
+static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
+                        const uint32_t *restrict colours, uint32_t pixels)
 {
-    if (x >= 0 && y >= 0 && x < s->width_px && y < s->height_px) {
-        s->pixels[(uint32_t)y * s->stride_px + (uint32_t)x] = colour;
+    for (uint32_t x = 0; x < pixels; x++) {
+        out[x] = colours[grey[x]];
     }
 }
 
-static void line(const struct lm_surface *s, int32_t x0, int32_t y0, int32_t x1, int32_t y1,
-                 uint32_t colour)
+void lm_overlay_picture(const struct lm_glass *g, const struct lm_plane *plane)
 {
-    const int32_t dx = x1 - x0, dy = y1 - y0;
-    const int32_t wide = dx < 0 ? -dx : dx, high = dy < 0 ? -dy : dy;
-    const int32_t steps = wide > high ? wide : high;
-    /* Steps in Q16; coordinates are below 2^12. */
-    const int32_t step_x = steps ? dx * 65536 / steps : 0, step_y = steps ? dy * 65536 / steps : 0;
-    int32_t x = x0 * 65536 + 32768, y = y0 * 65536 + 32768;
-    for (int32_t i = 0; i <= steps; i++, x += step_x, y += step_y) {
-        dot(s, x >> 16, y >> 16, colour);
+    for (uint32_t y = 0; y < g->surface.height_px; y++) {
+        compose_row(g->surface.pixels + y * g->surface.stride_px,
+                    plane->pixels + y * plane->width_px, g->palette->picture, g->surface.width_px);
     }
 }
 
-/* Dots are drawn 1, 2 or 3 pixels wide, so that text keeps its share of the screen from 256 to 1024
- * pixels. */
-static int32_t text_scale(const struct lm_surface *s)
+void lm_overlay_blank(const struct lm_glass *g)
 {
-    return s->width_px < 400 ? 1 : s->width_px < 900 ? 2 : 3;
+    const struct lm_pen pen = lm_pen_for(&g->surface, g->palette->ink);
+    lm_draw_box(&pen, 0, 0, g->surface.width_px, g->surface.height_px);
 }
 
-static void block(const struct lm_surface *s, int32_t x, int32_t y, int32_t size, uint32_t colour)
+void lm_write(const struct lm_pen *pen, int32_t x, int32_t y, const char *words, uint32_t ground)
 {
-    for (int32_t v = 0; v < size; v++) {
-        for (int32_t h = 0; h < size; h++) {
-            dot(s, x + h, y + v, colour);
+    struct lm_pen under = *pen;
+    under.colour = ground;
+    const int32_t dot = pen->dot_px;
+    lm_draw_box(&under, x - dot, y - dot, lm_text_width(pen, words) + 2 * dot,
+                (LM_FONT_HEIGHT + 2) * dot);
+    lm_draw_text(pen, x, y, words);
+}
+
+/* ---- labels ---- */
+
+/* Where a label's text is aligned. */
+enum side { SIDE_TOP, SIDE_RIGHT, SIDE_BOTTOM, SIDE_LEFT };
+
+/* The middle of key `place` (0..4 along its side): three tenths of half the glass apart. */
+static int32_t key_middle(int32_t place, int32_t extent_px)
+{
+    return extent_px * (50 + (place - 2) * 15) / 100;
+}
+
+static int32_t aligned_x(const struct lm_glass *g, const struct lm_pen *pen, enum side side,
+                         int32_t middle, const char *words)
+{
+    const int32_t width = lm_text_width(pen, words), edge = 2 * pen->dot_px;
+    switch (side) {
+    case SIDE_RIGHT:
+        return g->surface.width_px - edge - width;
+    case SIDE_LEFT:
+        return edge;
+    case SIDE_TOP:
+    case SIDE_BOTTOM:
+        break;
+    }
+    return middle - width / 2;
+}
+
+static void draw_label(const struct lm_glass *g, const struct lm_label *label, enum side side,
+                       int32_t middle)
+{
+    struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t rows = label->line[1][0] ? 2 : 1;
+    const int32_t high = rows * lm_row_px(&pen) - 2 * pen.dot_px, edge = 2 * pen.dot_px;
+    int32_t y = middle - high / 2;
+    if (side == SIDE_TOP) {
+        y = edge;
+    } else if (side == SIDE_BOTTOM) {
+        y = g->surface.height_px - edge - high;
+    }
+    const uint32_t ground = label->is_inverse ? pen.colour : g->palette->ink;
+    pen.colour = label->is_inverse ? g->palette->ink : pen.colour;
+    for (int32_t i = 0; i < rows; i++, y += lm_row_px(&pen)) {
+        lm_write(&pen, aligned_x(g, &pen, side, middle, label->line[i]), y, label->line[i], ground);
+    }
+}
+
+/* Labels and the values between two keys, clockwise from the top left. */
+void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
+{
+    struct lm_label label;
+    const int32_t width = g->surface.width_px, height = g->surface.height_px;
+    for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
+        const enum side side = (enum side)((osb - 1) / 5);
+        const int32_t along = (osb - 1) % 5;
+        const int32_t place = side == SIDE_TOP || side == SIDE_RIGHT ? along : 4 - along;
+        const bool is_upright = side == SIDE_RIGHT || side == SIDE_LEFT;
+        const int32_t extent = is_upright ? height : width;
+        if (lm_page_label(page, osb, &label)) {
+            draw_label(g, &label, side, key_middle(place, extent));
+        }
+        if (is_upright && lm_page_value(page, osb, &label)) {
+            const int32_t between = key_middle(place, extent) + key_middle(place + 1, extent);
+            draw_label(g, &label, side, between / 2);
         }
     }
 }
 
-static void glyph(const struct lm_surface *s, int32_t x, int32_t y, char c, uint32_t colour)
+/* ---- words ---- */
+
+static const char flag_words[LM_FLAGS][9] = {"NAV", "NAV FAIL", "DB FAIL", "TILE",  "BUS",
+                                             "FZ",  "OFF MAP",  "NO RAD",  "UNABLE"};
+
+const char *lm_flag_word(uint32_t number)
 {
-    const uint8_t *rows = lm_font_glyph(c);
-    const int32_t scale = text_scale(s);
-    for (int32_t row = 0; row < LM_FONT_HEIGHT; row++) {
-        for (int32_t column = 0; column < LM_FONT_WIDTH; column++) {
-            if (rows[row] >> (LM_FONT_WIDTH - 1 - column) & 1) {
-                block(s, x + column * scale, y + row * scale, scale, colour);
-            }
+    return flag_words[number < LM_FLAGS ? number : 0];
+}
+
+static void draw_warning(const struct lm_glass *g, int32_t row, const char *words)
+{
+    const struct lm_pen pen = lm_pen_for(&g->surface, g->palette->warning);
+    const int32_t dot = pen.dot_px, width = lm_text_width(&pen, words);
+    const int32_t x = g->frame->left_px + (g->frame->width_px - width) / 2;
+    const int32_t y = g->frame->top_px + 3 * dot + row * (lm_row_px(&pen) + 4 * dot);
+    const int32_t left = x - 3 * dot, right = x + width + 2 * dot;
+    const int32_t top = y - 3 * dot, bottom = y + (LM_FONT_HEIGHT + 2) * dot;
+    struct lm_pen ground = pen;
+    ground.colour = g->palette->ink;
+    lm_draw_box(&ground, left, top, right - left, bottom - top);
+    lm_draw_line(&pen, (struct lm_point){left, top}, (struct lm_point){right, top});
+    lm_draw_line(&pen, (struct lm_point){left, bottom}, (struct lm_point){right, bottom});
+    lm_draw_text(&pen, x, y, words);
+}
+
+void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags)
+{
+    int32_t row = 0;
+    for (uint32_t i = 0; i < LM_FLAGS; i++) {
+        if (flags & 1u << i) {
+            draw_warning(g, row++, flag_words[i]);
         }
     }
 }
 
-static int32_t text(const struct lm_surface *s, int32_t x, int32_t y, const char *words,
-                    uint32_t colour)
+void lm_overlay_alive(const struct lm_glass *g, uint32_t picture)
 {
-    for (; *words; words++) {
-        glyph(s, x, y, *words, colour);
-        x += (LM_FONT_WIDTH + 1) * text_scale(s);
-    }
-    return x;
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t size = 4 * pen.dot_px;
+    const struct lm_point hub = {g->surface.width_px - 2 * size, g->surface.height_px - 2 * size};
+    lm_draw_line(&pen, hub, lm_ray_end(hub, (fx_bam_t)(picture % 8) << 29, size));
 }
 
-static int32_t number(const struct lm_surface *s, int32_t x, int32_t y, uint32_t value,
-                      uint32_t digits, uint32_t colour)
+void lm_overlay_row(const struct lm_glass *g, uint32_t row, const char *words)
 {
-    char words[11];
-    if (digits > 10) {
-        digits = 10;
-    }
-    words[digits] = 0;
-    for (uint32_t i = digits; i > 0; i--) {
-        words[i - 1] = (char)('0' + value % 10);
-        value /= 10;
-    }
-    return text(s, x, y, words, colour);
-}
-
-static uint32_t digits_of(uint32_t value)
-{
-    uint32_t digits = 1;
-    for (; value >= 10; value /= 10) {
-        digits++;
-    }
-    return digits;
-}
-
-static void warning(const struct lm_surface *s, int32_t row, const char *words)
-{
-    int32_t length = 0;
-    while (words[length]) {
-        length++;
-    }
-    const int32_t scale = text_scale(s), advance = (LM_FONT_WIDTH + 1) * scale;
-    const int32_t high = LM_FONT_HEIGHT * scale, wide = length * advance - scale;
-    const int32_t x = (s->width_px - wide) / 2, y = s->height_px / 2 + row * (high + 6 * scale);
-    const int32_t margin = 2 * scale;
-    for (int32_t v = y - margin; v < y + high + margin; v++) {
-        line(s, x - margin, v, x + wide + margin, v, 0);
-    }
-    line(s, x - margin, y - margin, x + wide + margin, y - margin, WARNING);
-    line(s, x - margin, y + high + margin, x + wide + margin, y + high + margin, WARNING);
-    text(s, x, y, words, WARNING);
-}
-
-struct apex {
-    int32_t x, y, radius;
-};
-
-static struct apex apex_of(const struct lm_frame *frame)
-{
-    return (struct apex){frame->left_px + frame->width_px / 2, frame->top_px + frame->height_px - 1,
-                         lm_ppi_radius_px(frame)};
-}
-
-/* End of a ray of `length` pixels at `azimuth` from straight up. */
-static void ray_end(const struct apex *a, fx_bam_t azimuth, int32_t length, int32_t *x, int32_t *y)
-{
-    *x = a->x + (int32_t)((int64_t)length * fx_sin_q30(azimuth) >> 30);
-    *y = a->y - (int32_t)((int64_t)length * fx_cos_q30(azimuth) >> 30);
-}
-
-static void ray(const struct lm_surface *s, const struct apex *a, fx_bam_t azimuth, int32_t from,
-                int32_t to, uint32_t colour)
-{
-    int32_t x0, y0, x1, y1;
-    ray_end(a, azimuth, from, &x0, &y0);
-    ray_end(a, azimuth, to, &x1, &y1);
-    line(s, x0, y0, x1, y1, colour);
-}
-
-static void arc(const struct lm_surface *s, const struct apex *a, fx_bam_t half, int32_t radius)
-{
-    int32_t x0, y0;
-    ray_end(a, 0u - half, radius, &x0, &y0);
-    for (uint32_t i = 1; i <= ARC_STEPS; i++) {
-        int32_t x1, y1;
-        ray_end(a, 0u - half + (fx_bam_t)((uint64_t)half * 2 * i / ARC_STEPS), radius, &x1, &y1);
-        line(s, x0, y0, x1, y1, SYMBOL);
-        x0 = x1;
-        y0 = y1;
-    }
-}
-
-/* Range arcs at a quarter, half and three quarters (at 10 nm the half alone), the sector's edges,
- * the antenna. */
-static void draw_ppi(const struct lm_surface *s, const struct lm_frame *frame,
-                     const struct lm_page *page)
-{
-    const struct apex a = apex_of(frame);
-    const int32_t quarters_from = page->range_nm > 10 ? 1 : 2;
-    for (int32_t q = quarters_from; q <= 4 - quarters_from; q++) {
-        arc(s, &a, page->azimuth_half, a.radius * q / 4);
-    }
-    ray(s, &a, page->azimuth_half, 0, a.radius, SYMBOL);
-    ray(s, &a, 0u - page->azimuth_half, 0, a.radius, SYMBOL);
-    for (int32_t tens = -3; tens <= 3; tens++) {
-        ray(s, &a, (fx_bam_t)tens * FX_BAM_DEG(10), a.radius - a.radius / 40, a.radius, SYMBOL);
-    }
-    if (page->is_sweeping) {
-        ray(s, &a, (fx_bam_t)page->sweep_bam, a.radius / 40, a.radius, 0x00307040);
-    }
-}
-
-/* 2 pi radians to 360 degrees: whole degrees of a binary angle, 0..359. */
-static uint32_t degrees_of(fx_bam_t angle)
-{
-    return (uint32_t)(((uint64_t)angle * 360 + (1u << 31)) >> 32) % 360;
-}
-
-static void draw_labels(const struct lm_surface *s, const struct lm_page *page)
-{
-    const int32_t scale = text_scale(s), edge = 6 * scale, row = (LM_FONT_HEIGHT + 3) * scale;
-    const int32_t right = s->width_px - edge - 9 * (LM_FONT_WIDTH + 1) * scale;
-    text(s, edge, edge, page->is_sar ? "SAR" : "GM", SYMBOL);
-    if (page->has_heading) {
-        number(s, s->width_px / 2 - 9 * scale, edge, degrees_of(page->heading), 3, SYMBOL);
-    }
-    if (page->is_sar) {
-        const uint32_t metres = page->sar_cell_dm / 10u;
-        int32_t x = text(s, right, edge, "CELL ", SYMBOL);
-        x = number(s, x, edge, metres, digits_of(metres), SYMBOL);
-        x = text(s, x, edge, ".", SYMBOL);
-        number(s, x, edge, page->sar_cell_dm % 10u, 1, SYMBOL);
-        x = text(s, right, edge + row, "LOOK ", SYMBOL);
-        number(s, x, edge + row, page->sar_look_deg, 3, SYMBOL);
-        x = number(s, edge, edge + row, page->sar_percent, digits_of(page->sar_percent), SYMBOL);
-        text(s, x, edge + row, "%", SYMBOL);
-        return;
-    }
-    number(s, edge, s->height_px / 4, page->range_nm, 2, SYMBOL);
-    text(s, edge, s->height_px / 2, "A", SYMBOL);
-    number(s, edge, s->height_px / 2 + row, page->azimuth_tens, 1, SYMBOL);
-}
-
-static void draw_warnings(const struct lm_surface *s, uint32_t flags)
-{
-    static const struct {
-        uint32_t flag;
-        char words[12];
-    } table[] = {
-        {LM_FLAG_DB, "DB FAIL"},    {LM_FLAG_BUS, "BUS"},         {LM_FLAG_NAV_DEAD, "NAV FAIL"},
-        {LM_FLAG_NAV_STALE, "NAV"}, {LM_FLAG_OFF_MAP, "OFF MAP"}, {LM_FLAG_TILE, "TILE"},
-        {LM_FLAG_FROZEN, "FZ"},
-    };
-    int32_t row = -1;
-    for (uint32_t i = 0; i < sizeof table / sizeof table[0]; i++) {
-        if (flags & table[i].flag) {
-            warning(s, row++, table[i].words);
-        }
-    }
-}
-
-/* A hand that turns one eighth with every picture: when it stands, the display has stopped. */
-static void draw_alive(const struct lm_surface *s, uint32_t frame)
-{
-    const int32_t size = 4 * text_scale(s);
-    const struct apex a = {s->width_px - 2 * size, s->height_px - 2 * size, size};
-    ray(s, &a, (fx_bam_t)(frame % 8) << 29, 0, size, SYMBOL);
-}
-
-void lm_overlay_draw(const struct lm_surface *surface, const struct lm_plane *plane,
-                     const struct lm_frame *frame, const struct lm_page *page)
-{
-    for (uint32_t y = 0; y < surface->height_px; y++) {
-        const uint8_t *grey = plane->pixels + y * plane->width_px;
-        uint32_t *out = surface->pixels + y * surface->stride_px;
-        for (uint32_t x = 0; x < surface->width_px; x++) {
-            out[x] = grey[x] * 0x00010101u;
-        }
-    }
-    if (!page->is_sar) {
-        draw_ppi(surface, frame, page);
-    }
-    draw_labels(surface, page);
-    draw_warnings(surface, page->flags);
-    draw_alive(surface, page->frame);
+    const struct lm_pen pen = lm_symbol_pen(g);
+    /* The row of the top labels comes first. */
+    lm_draw_text(&pen, lm_column_px(&pen), (int32_t)(row + 1) * lm_row_px(&pen) + 4 * pen.dot_px,
+                 words);
 }

@@ -9,7 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = 8 };
+enum { WORDS_MAX = 8, PRESS_US = 100000 };
+
+/* A line may mean two events: a button goes down and up again. */
+struct line_events {
+    struct script_event event[2];
+    int count;
+};
 
 static fx_bam_t bam_of_degrees(double degrees)
 {
@@ -89,22 +95,97 @@ static bool parse_choice(char **words, int count, struct lm_control *c)
     return true;
 }
 
-static bool parse_event(char **words, int count, struct script_event *e)
+/* The second event of a line, `after_s` behind the first. */
+static void add_end(struct line_events *line, enum lm_control_kind kind, int32_t value,
+                    double after_s)
+{
+    line->event[1] = (struct script_event){
+        .time_us = line->event[0].time_us + (uint64_t)llround(after_s * 1e6),
+        .control = {.kind = kind, .value = value},
+    };
+    line->count = 2;
+}
+
+static bool parse_button(char **words, int count, struct line_events *line)
+{
+    static const char *const rockers[] = {"gain", "sym", "brt", "con"};
+    static const char *const steps[] = {"-1", "+1"};
+    struct lm_control *c = &line->event[0].control;
+    double held_s = PRESS_US / 1e6, osb;
+    c->kind = LM_CONTROL_DOWN;
+    if (strcmp(words[1], "osb") == 0) {
+        if (count < 3 || count > 4 || !number(words[2], 1, LM_OSBS, &osb) || osb != floor(osb) ||
+            (count == 4 && !number(words[3], 0, 3600, &held_s))) {
+            return false;
+        }
+        c->value = (int32_t)osb;
+    } else {
+        int32_t rocker, step;
+        if (count != 4 || !choice(words[2], rockers, LM_ROCKERS, &rocker) ||
+            !choice(words[3], steps, 2, &step)) {
+            return false;
+        }
+        c->value = lm_rocker_button((enum lm_rocker)rocker, step == 1);
+    }
+    add_end(line, LM_CONTROL_UP, c->value, held_s);
+    return true;
+}
+
+static bool parse_deflection(char **words, int count, struct line_events *line)
+{
+    struct lm_control *c = &line->event[0].control;
+    const bool is_slew = strcmp(words[1], "slew") == 0;
+    double x, y = 0, for_s = 0;
+    if (count != (is_slew ? 5 : 3) || !number(words[2], -1, 1, &x) ||
+        (is_slew && (!number(words[3], -1, 1, &y) || !number(words[4], 0, 3600, &for_s)))) {
+        return false;
+    }
+    c->kind = is_slew ? LM_CONTROL_SLEW : LM_CONTROL_KNOB;
+    c->value = (int32_t)lround(x * LM_FULL_DEFLECTION);
+    c->value_y = (int32_t)lround(y * LM_FULL_DEFLECTION);
+    if (is_slew) {
+        add_end(line, LM_CONTROL_SLEW, 0, for_s);
+    }
+    return true;
+}
+
+/* Commands of one word. */
+static bool parse_plain(const char *word, struct lm_control *c)
+{
+    static const char *const names[] = {"gm", "designate", "drop"};
+    static const enum lm_control_kind kinds[] = {LM_CONTROL_GM, LM_CONTROL_DESIGNATE,
+                                                 LM_CONTROL_DROP};
+    int32_t index;
+    if (!choice(word, names, 3, &index)) {
+        return false;
+    }
+    c->kind = kinds[index];
+    return true;
+}
+
+static bool parse_line(char **words, int count, struct line_events *line)
 {
     double seconds;
-    memset(e, 0, sizeof *e);
+    struct script_event *e = &line->event[0];
+    memset(line, 0, sizeof *line);
+    line->count = 1;
     if (count < 2 || !number(words[0], 0, 1e6, &seconds)) {
         return false;
     }
     e->time_us = (uint64_t)llround(seconds * 1e6);
-    if (strcmp(words[1], "gm") == 0) {
-        e->control.kind = LM_CONTROL_GM;
-        return count == 2;
+    if (count == 2) {
+        return parse_plain(words[1], &e->control);
     }
     if (strcmp(words[1], "picture") == 0) {
         e->is_picture = true;
         return count == 3 && !strchr(words[2], '/') &&
                (size_t)snprintf(e->picture, sizeof e->picture, "%s", words[2]) < sizeof e->picture;
+    }
+    if (strcmp(words[1], "osb") == 0 || strcmp(words[1], "rocker") == 0) {
+        return parse_button(words, count, line);
+    }
+    if (strcmp(words[1], "slew") == 0 || strcmp(words[1], "knob") == 0) {
+        return parse_deflection(words, count, line);
     }
     if (strncmp(words[1], "sar", 3) == 0) {
         return parse_sar(words, count, &e->control);
@@ -126,6 +207,22 @@ static int split(char *line, char **words)
     return count;
 }
 
+static int append(struct script *s, const char *place, const struct line_events *line)
+{
+    const size_t count = (size_t)(s->count + line->count);
+    struct script_event *grown = realloc(s->events, sizeof *grown * count);
+    if (!grown) {
+        return hs_error(place, NULL, "out of memory");
+    }
+    s->events = grown;
+    for (int i = 0; i < line->count; i++) {
+        s->events[s->count] = line->event[i];
+        s->events[s->count].order = s->count;
+        s->count++;
+    }
+    return 0;
+}
+
 static int take_line(struct script *s, const char *path, int line_number, char *line)
 {
     char *words[WORDS_MAX], place[512];
@@ -134,21 +231,25 @@ static int take_line(struct script *s, const char *path, int line_number, char *
     if (count == 0) {
         return 0;
     }
-    struct script_event e;
-    if (count > WORDS_MAX || !parse_event(words, count, &e)) {
+    struct line_events parsed;
+    if (count > WORDS_MAX || !parse_line(words, count, &parsed)) {
         return hs_error(place, "landmass-sim --help lists the commands",
                         "is not a command of a script");
     }
-    if (s->count > 0 && e.time_us < s->events[s->count - 1].time_us) {
+    if (parsed.event[0].time_us < s->last_us) {
         return hs_error(place, "sort the script by time", "goes back in time");
     }
-    struct script_event *grown = realloc(s->events, sizeof *grown * (size_t)(s->count + 1));
-    if (!grown) {
-        return hs_error(place, NULL, "out of memory");
+    s->last_us = parsed.event[0].time_us;
+    return append(s, place, &parsed);
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const struct script_event *x = a, *y = b;
+    if (x->time_us != y->time_us) {
+        return x->time_us < y->time_us ? -1 : 1;
     }
-    s->events = grown;
-    s->events[s->count++] = e;
-    return 0;
+    return x->order < y->order ? -1 : 1;
 }
 
 static int next_control(void *ctx, struct lm_control *control)
@@ -183,6 +284,8 @@ int script_read(struct script *s, const char *path)
     fclose(file);
     if (status != 0) {
         script_free(s);
+    } else if (s->count > 0) {
+        qsort(s->events, (size_t)s->count, sizeof *s->events, by_time);
     }
     return status;
 }

@@ -7,9 +7,16 @@
  *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M
  *   SECONDS gain DB                           -30..30
  *   SECONDS freeze on|off
+ *   SECONDS osb N [HELD_S]                    press option select button 1..20, for 0.1 s or HELD_S
+ *   SECONDS rocker gain|sym|brt|con +1|-1     one step
+ *   SECONDS knob X                            range knob, -1..1
+ *   SECONDS slew X Y FOR_S                    cursor to the right and up, -1..1, then centred
+ *   SECONDS designate                         target management switch up
+ *   SECONDS drop                              target management switch down
  *   SECONDS picture NAME                      write NAME.png into the folder of --png
  *
- * Times do not fall from line to line; '#' begins a remark. */
+ * Times do not fall from line to line; '#' begins a remark. A press or a slew that lasts ends by
+ * itself, whatever the lines behind it do. */
 #ifndef SIM_SCRIPT_H
 #define SIM_SCRIPT_H
 
@@ -18,6 +25,7 @@
 
 struct script_event {
     uint64_t time_us;
+    int order; /* of the line in the script */
     bool is_picture;
     char picture[64];
     struct lm_control control;
@@ -26,6 +34,7 @@ struct script_event {
 struct script {
     struct script_event *events; /* owned */
     int count, next;
+    uint64_t last_us; /* of the line read last */
     uint64_t now_us;
     struct lm_controls port; /* its ctx is this struct, which must not move */
 };

@@ -104,6 +104,7 @@ struct lm_db {
     int32_t mean_elevation_q6; /* of the land in the image, metres * 64 */
     int32_t geoid_q6;          /* height of mean sea level above the ellipsoid here, metres * 64 */
     fx_bam_t centre_latitude, centre_longitude;
+    char title[33]; /* as the builder named it; ends in a zero */
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
 };

@@ -5,9 +5,12 @@
 #include <stddef.h>
 
 #include "lm/controls.h"
+#include "lm/cursor.h"
 #include "lm/ground_map.h"
+#include "lm/keys.h"
 #include "lm/nav.h"
 #include "lm/overlay.h"
+#include "lm/page.h"
 #include "lm/sar.h"
 
 /* What a board lends, for as long as the unit lives. */
@@ -24,9 +27,16 @@ struct lm_board {
     uint32_t flash_poll_limit; /* polls after which a read at start-up is given up */
 };
 
-enum lm_mode { LM_MODE_GM, LM_MODE_SAR };
-
 enum { LM_FRAME_US = 33333, LM_SAR_ACQUIRE_US = 500000, LM_BUS_SILENT_US = 1000000 };
+
+/* When a flag rose. The last few are kept for the BIT page. */
+enum { LM_FAULTS_KEPT = 4 };
+struct lm_fault {
+    uint32_t flag; /* its number */
+    uint64_t time_us;
+};
+
+#define LM_NO_ELEVATION INT32_MIN
 
 struct lm_unit {
     const struct lm_board *board; /* borrowed */
@@ -36,23 +46,29 @@ struct lm_unit {
     struct lm_nav nav;
     struct lm_ownship ownship; /* extrapolated to the last step */
 
-    enum lm_mode mode;
+    struct lm_keys keys;
+    struct lm_page page;
+    struct lm_cursor cursor;
+    struct lm_palette palette;
+    struct lm_view view;          /* of the picture on the glass */
+    bool is_view_held;            /* the picture stands, and the aircraft moves over it */
+    int32_t cursor_elevation_q10; /* metres * 1024, or LM_NO_ELEVATION */
+    uint64_t unable_until_us;     /* the glass says LM_FLAG_UNABLE until then */
+
     struct lm_ground_map ground_map;
     struct lm_sar sar;
     bool is_acquiring; /* the patch's tiles are being read */
     uint64_t acquire_until_us;
     uint64_t next_line_us, next_frame_us;
-    bool is_frozen; /* by the operator */
-    int16_t gain_db;
-
     struct lm_tone gm_tone, sar_tone;
     struct lm_line line;
     struct lm_plane plane;
     struct lm_frame frame;
-    uint32_t flags;            /* enum lm_flag, of the last step */
-    uint64_t last_bus_us;      /* when a frame last came */
-    uint32_t jumps_seen;       /* of the nav */
-    uint32_t tile_faults_seen; /* of the cache, and when they last grew */
+    uint32_t flags;                         /* enum lm_flag, of the last step */
+    struct lm_fault faults[LM_FAULTS_KEPT]; /* fault n of `count` is at n % LM_FAULTS_KEPT */
+    uint64_t last_bus_us;                   /* when a frame last came */
+    uint32_t jumps_seen;                    /* of the nav */
+    uint32_t tile_faults_seen;              /* of the cache, and when they last grew */
     uint64_t tile_fault_us;
     uint32_t cells_none, cells_seen; /* sampled, of the running sweep or patch */
     bool is_off_map;
@@ -63,7 +79,9 @@ struct lm_unit {
         uint32_t bus_errors;    /* the driver reported the bus down */
         uint32_t display_errors, display_busy;
         uint32_t commands_refused;
-    } count; /* only ever grow */
+        uint32_t faults; /* flags that rose; what the operator switches is none */
+        uint32_t swaps;  /* SWAP presses: a board with two displays exchanges their pages */
+    } count;             /* only ever grow */
 };
 
 /* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest

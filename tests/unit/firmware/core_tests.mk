@@ -1,4 +1,4 @@
-CORE_TESTS := geo tile_cache db unit
+CORE_TESTS := geo tile_cache db
 CORE_TEST_BINS := $(CORE_TESTS:%=$(O)/bin/tests/unit/firmware/test_%)
 TESTS += $(CORE_TEST_BINS)
 $(CORE_TEST_BINS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) \

@@ -1,213 +1,13 @@
 /* The display unit as a whole, on a bus, a flash and a glass that misbehave on demand. */
-#include "lm/unit.h"
+#include "unit_rig.h"
 
-#include "memory_flash.h"
-#include "tiny_image.h"
-
-#include "fx/crc32c.h"
-
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
-
-enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120 };
-
-/* A bus that flies north at 150 m/s from 46 N 11 E, 2,000 m up, until told to stop. */
-struct fake_bus {
-    uint64_t now_us, sent_us, stop_us;
-    int queue_next;
-    int is_down;
-    double jump_degrees;
-    uint8_t code;
-};
-
-struct rig {
-    struct tiny_image image;
-    struct memory_flash flash;
-    struct fake_bus bus;
-    struct lm_control control;
-    int has_control;
-    uint32_t glass[WIDTH * HEIGHT];
-    int is_display_busy, is_display_broken;
-    uint8_t plane[WIDTH * HEIGHT];
-    uint64_t pool[POOL_TILES * sizeof(struct lm_tile) / 8];
-    struct lm_can can;
-    struct lm_controls controls;
-    struct lm_display display;
-    struct lm_board board;
-    struct lm_unit unit;
-    uint64_t now_us;
-};
-
-static void put_float(struct lm_can_frame *f, uint32_t id, double value, uint8_t code)
-{
-    const float v = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &v, 4);
-    const uint8_t data[8] = {9,
-                             2,
-                             0,
-                             code,
-                             (uint8_t)(bits >> 24),
-                             (uint8_t)(bits >> 16),
-                             (uint8_t)(bits >> 8),
-                             (uint8_t)bits};
-    *f = (struct lm_can_frame){.id = id, .length = 8};
-    memcpy(f->data, data, 8);
-}
-
-static int receive(void *ctx, struct lm_can_frame *frame)
-{
-    struct fake_bus *b = ctx;
-    if (b->is_down) {
-        return LM_ERR_IO;
-    }
-    if (b->queue_next == 0) {
-        if (b->now_us < b->sent_us || b->now_us >= b->stop_us) {
-            return 0;
-        }
-        b->sent_us += 50000;
-        b->code++;
-    }
-    const double north = 150.0 * (double)b->now_us / 1e6;
-    const struct {
-        uint32_t id;
-        double value;
-    } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
-                 {1037, 11.0},
-                 {1038, 2000},
-                 {1133, 0},
-                 {321, 0},
-                 {1039, 150},
-                 {1040, 0},
-                 {311, 2},
-                 {312, 0}};
-    put_float(frame, items[b->queue_next].id, items[b->queue_next].value, b->code);
-    frame->time_us = b->now_us;
-    b->queue_next = (b->queue_next + 1) % 9;
-    return 1;
-}
-
-static int next_control(void *ctx, struct lm_control *control)
-{
-    struct rig *r = ctx;
-    if (!r->has_control) {
-        return 0;
-    }
-    r->has_control = 0;
-    *control = r->control;
-    return 1;
-}
-
-static int acquire(void *ctx, struct lm_surface *s)
-{
-    struct rig *r = ctx;
-    *s = (struct lm_surface){r->glass, WIDTH, WIDTH, HEIGHT};
-    return r->is_display_broken ? LM_ERR_IO : r->is_display_busy ? LM_BUSY : LM_OK;
-}
-
-static int present(void *ctx)
-{
-    (void)ctx;
-    return LM_OK;
-}
-
-static struct tiny_cell scene(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    if (hypot(p->east_m, p->north_m) < 700) {
-        return (struct tiny_cell){-40, TINY_WATER, 0};
-    }
-    const int is_house =
-        fabs(remainder(p->east_m, 300)) < 40 && fabs(remainder(p->north_m, 300)) < 40;
-    return is_house ? (struct tiny_cell){0, TINY_STRUCTURE, 5}
-                    : (struct tiny_cell){-18, TINY_SOIL, 0};
-}
-
-static double hills(void *ctx, const struct tiny_place *p)
-{
-    (void)ctx;
-    return 100 + 50 * sin(p->east_m / 900);
-}
-
-static struct rig *make_rig(void)
-{
-    struct rig *r = calloc(1, sizeof *r);
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    spec.cell = scene;
-    spec.elevation_m = hills;
-    spec.shift0 = 11;
-    spec.rows = spec.columns = 10;
-    assert_int_equal(tiny_image_build(&r->image, &spec), 0);
-    memory_flash_open(&r->flash, r->image.bytes, r->image.size);
-    r->bus.stop_us = UINT64_MAX;
-    r->can = (struct lm_can){&r->bus, receive};
-    r->controls = (struct lm_controls){r, next_control};
-    r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};
-    r->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = &r->flash.port,
-                                 .can = &r->can,
-                                 .controls = &r->controls,
-                                 .display = &r->display,
-                                 .tile_pool = r->pool,
-                                 .tile_pool_bytes = sizeof r->pool,
-                                 .plane = r->plane,
-                                 .flash_poll_limit = 100};
-    return r;
-}
-
-static struct rig *start_rig(void)
-{
-    struct rig *r = make_rig();
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
-    return r;
-}
-
-static void run(struct rig *r, double seconds)
-{
-    const uint64_t until = r->now_us + (uint64_t)(seconds * 1e6);
-    for (; r->now_us < until; r->now_us += STEP_US) {
-        r->bus.now_us = r->now_us;
-        lm_unit_step(&r->unit, r->now_us);
-    }
-}
-
-static void command(struct rig *r, struct lm_control control)
-{
-    r->control = control;
-    r->has_control = 1;
-}
-
-static void free_rig(struct rig *r)
-{
-    tiny_image_free(&r->image);
-    free(r);
-}
-
-static uint32_t plane_sum(const struct rig *r)
-{
-    return fx_crc32c(0, r->plane, sizeof r->plane);
-}
-
-static uint32_t lit_pixels(const struct rig *r)
-{
-    uint32_t lit = 0;
-    for (size_t i = 0; i < sizeof r->plane; i++) {
-        lit += r->plane[i] > 20;
-    }
-    return lit;
-}
-
-static const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .value = 0};
-static const struct lm_control patch_here = {
-    .kind = LM_CONTROL_SAR,
-    .sar = {.centre = {0x20B90000, 0x07D27D28}, .cell_mm = 5000, .is_from_ownship = true}};
 
 static void a_good_flight_paints_a_sector_without_a_flag(void **state)
 {
@@ -385,7 +185,7 @@ static void a_patch_completes_and_stays(void **state)
     command(r, patch_here);
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
-    assert_int_equal(r->unit.mode, LM_MODE_SAR);
+    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
     assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
@@ -434,7 +234,7 @@ static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
                                                   .look_azimuth = FX_BAM_DEG(10) + (i ? 1000 : 0),
                                                   .range_m = 20000}});
         lm_unit_step(&r[i]->unit, 0); /* the page, before the first line */
-        assert_int_equal(r[i]->unit.mode, LM_MODE_SAR);
+        assert_int_equal(r[i]->unit.page.mode, LM_MODE_SAR);
     }
     assert_memory_equal(r[0]->glass, r[1]->glass, sizeof r[0]->glass);
     free_rig(r[0]);
@@ -490,7 +290,7 @@ static void hostile_commands_are_refused_and_counted(void **state)
         command(r, bad[i]);
         run(r, 0.01);
         assert_int_equal(r->unit.count.commands_refused, i + 1);
-        assert_int_equal(r->unit.mode, LM_MODE_GM);
+        assert_int_equal(r->unit.page.mode, LM_MODE_GM);
     }
     free_rig(r);
 }

@@ -1,0 +1,89 @@
+/* The page's state and its keys: what each button means, what its label says. Knows nothing of
+ * drawing; docs/guide.md, "The page", is the map of the keys. */
+#ifndef LM_PAGE_H
+#define LM_PAGE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "lm/keys.h"
+#include "lm/palette.h"
+#include "lm/radar.h"
+#include "lm/tone.h"
+
+enum lm_mode { LM_MODE_GM, LM_MODE_SAR };
+
+enum lm_format {
+    LM_FORMAT_RADAR,
+    LM_FORMAT_CNTL, /* settings, over the radar picture */
+    LM_FORMAT_DCLT, /* which labels declutter takes away, over the radar picture */
+    LM_FORMAT_BIT,  /* the unit about itself: text instead of the picture */
+    LM_FORMAT_TEST  /* test pattern */
+};
+
+/* What a press asks of the unit, bits. */
+enum lm_effect {
+    LM_EFFECT_GROUND_MAP = 1 << 0, /* begin a ground map with the page's range and azimuth */
+    LM_EFFECT_PATCH = 1 << 1,      /* the patch's cell is another */
+    LM_EFFECT_TONE = 1 << 2,
+    LM_EFFECT_PALETTE = 1 << 3,
+    LM_EFFECT_CURSOR_HOME = 1 << 4,
+    LM_EFFECT_SNOWPLOW = 1 << 5, /* switched on or off */
+    LM_EFFECT_SWAP = 1 << 6      /* exchange this display's page with the other's */
+};
+
+enum {
+    LM_GAIN_MAX_DB = 30,   /* each way */
+    LM_KNOB_FULL_Q8 = 405, /* 1.58 dB, which is +-20 % of amplitude, at full deflection */
+    LM_WINDOW_MAX_DB = 20, /* how far the tone window's ends may be moved, each way */
+    LM_GAMMA_MAX = 10,     /* how far gamma may be moved, tenths, each way */
+    LM_SAR_CELLS_OFFERED = 6
+};
+
+struct lm_page {
+    const struct lm_radar *radar; /* borrowed */
+    uint8_t format;               /* enum lm_format */
+    uint8_t mode;                 /* enum lm_mode: what is shown; the unit sets it */
+    uint8_t range, azimuth;       /* indices into the radar table */
+    uint8_t field_of_view, cell;  /* indices into this page's own tables */
+    bool is_auto_range, is_override, is_frozen, is_snowplow, is_decluttered;
+    uint32_t hidden; /* bit n - 1: declutter takes OSB n's label away */
+
+    int16_t gain_db, knob;
+    int8_t black_db, white_db, gamma_tenths; /* changes of the radar table's tone */
+    struct lm_palette_config palette;
+};
+
+/* As after power-up: ground map, 40 nm, A6, manual range. */
+void lm_page_init(struct lm_page *p, const struct lm_radar *radar);
+
+/* How button 1..LM_BUTTONS behaves while it is held. */
+enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button);
+
+/* Obey a button. Returns the effects, 0 for a button that means nothing here. A button whose value
+ * stands at its end does nothing. */
+uint32_t lm_page_press(struct lm_page *p, struct lm_press press);
+
+/* One scale up (1) or down (-1), as an automatic range does. Returns the effects. */
+uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
+
+/* Text beside a key: one or two lines of at most five characters. */
+struct lm_label {
+    char line[2][6];
+    bool is_inverse;
+};
+
+/* The label of OSB 1..20 as it is to be shown now; false when there is none. */
+bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label);
+
+/* What stands between OSB `osb` and `osb` - 1 (left) or + 1 (right): the value that these two keys
+ * change. False when nothing does. */
+bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value);
+
+/* Cell of the patch that the page offers. */
+uint32_t lm_page_cell_mm(const struct lm_page *p);
+
+/* The radar table's tone after gain, knob and settings. */
+struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table);
+
+#endif

@@ -1,0 +1,115 @@
+#include "lm/bit.h"
+
+#include "lm/version.h"
+
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 10, ROW_NOW = 13, ROW_FAULTS = 14 };
+enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
+
+static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
+{
+    lm_text_add(t, name);
+    lm_text_tab(t, column);
+    lm_text_number(t, value, 1);
+}
+
+static void add_pair(struct lm_text *t, const char *first, uint32_t value, const char *second,
+                     uint32_t second_value)
+{
+    add_counter(t, first, value, COLUMN_NUMBER);
+    lm_text_add(t, " ");
+    lm_text_tab(t, COLUMN_SECOND);
+    add_counter(t, second, second_value, COLUMN_SECOND_NUMBER);
+}
+
+static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *t)
+{
+    switch (row) {
+    case 0:
+        add_pair(t, "FRAMES", u->count.frames, "BUSY", u->count.display_busy);
+        break;
+    case 1:
+        add_pair(t, "LINES", u->count.lines, "LATE", u->count.lines_dropped);
+        break;
+    case 2:
+        add_pair(t, "BUS", u->count.bus_frames, "BUS ERR", u->count.bus_errors);
+        break;
+    case 3:
+        add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);
+        break;
+    case 4:
+        add_pair(t, "TILES", u->tiles.count.tiles_read, "EVICTED", u->tiles.count.evicted);
+        break;
+    case 5:
+        add_pair(t, "HITS", u->tiles.count.hits, "MISSES", u->tiles.count.misses);
+        break;
+    case 6:
+        add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
+        break;
+    case 7:
+        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", u->tiles.count.corrupt);
+        break;
+    case 8:
+        add_pair(t, "DROPPED", u->tiles.count.requests_dropped, "DISP ERR",
+                 u->count.display_errors);
+        break;
+    default:
+        add_pair(t, "STUCK", u->keys.count.stuck, "SWAPS", u->count.swaps);
+    }
+}
+
+static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *t)
+{
+    if (row == 0) {
+        lm_text_add(t, "LANDMASS " LM_VERSION "  IMAGE V");
+        lm_text_number(t, LM_DB_VERSION, 1);
+    } else if (row == 1) {
+        lm_text_add(t, "DB ");
+        lm_text_add(t, u->has_db ? u->db.title : "FAIL");
+    } else {
+        add_pair(t, "LEVELS", u->has_db ? u->db.level_count : 0, "RECORDS",
+                 u->has_db ? u->db.record_count : 0);
+    }
+}
+
+static void add_flags(uint32_t flags, struct lm_text *t)
+{
+    lm_text_add(t, flags ? "NOW" : "NOW  NO FAULT");
+    for (uint32_t i = 0; i < LM_FLAGS; i++) {
+        if (flags & 1u << i) {
+            lm_text_add(t, "  ");
+            lm_text_add(t, lm_flag_word(i));
+        }
+    }
+}
+
+/* The last fault first: hours, minutes and seconds since the start, and its word. */
+static void add_fault(const struct lm_unit *u, uint32_t age, struct lm_text *t)
+{
+    if (age >= u->count.faults) {
+        return;
+    }
+    const struct lm_fault *fault = &u->faults[(u->count.faults - 1 - age) % LM_FAULTS_KEPT];
+    const uint32_t seconds = (uint32_t)(fault->time_us / 1000000);
+    lm_text_number(t, seconds / 3600, 2);
+    lm_text_add(t, ":");
+    lm_text_number(t, seconds / 60 % 60, 2);
+    lm_text_add(t, ":");
+    lm_text_number(t, seconds % 60, 2);
+    lm_text_add(t, "  ");
+    lm_text_add(t, lm_flag_word(fault->flag));
+}
+
+struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
+{
+    struct lm_text t = {0};
+    if (row < ROW_COUNTERS) {
+        add_database(u, row, &t);
+    } else if (row < ROW_COUNTERS + COUNTER_ROWS) {
+        add_counters(u, row - ROW_COUNTERS, &t);
+    } else if (row == ROW_NOW) {
+        add_flags(u->flags, &t);
+    } else if (row < LM_BIT_ROWS) {
+        add_fault(u, row - ROW_FAULTS, &t);
+    }
+    return t;
+}

@@ -1,0 +1,99 @@
+#include "lm/cursor.h"
+
+#include "fx/root.h"
+#include "fx/sat.h"
+
+void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, scene->ownship);
+    c->place = lm_geo_direct(&origin, scene->heading, scene->scale_m / 2 * 256);
+    c->is_placed = true;
+}
+
+void lm_cursor_stabilise(struct lm_cursor *c)
+{
+    c->is_snowplow = false;
+}
+
+/* The nearest offset within the circle, ahead of the aircraft. */
+static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
+{
+    const int64_t radius_q8 = (int64_t)radius_px * 256;
+    o.y_q8 = fx_max_i32(o.y_q8, 0);
+    const int64_t length_q8 = fx_hypot_u32(o.x_q8, o.y_q8);
+    if (length_q8 > radius_q8) {
+        o.x_q8 = (int32_t)(o.x_q8 * radius_q8 / length_q8);
+        o.y_q8 = (int32_t)(o.y_q8 * radius_q8 / length_q8);
+    }
+    return o;
+}
+
+static struct lm_offset within_patch(struct lm_offset o, int32_t radius_px)
+{
+    const int32_t edge_q8 = (radius_px - 1) * 256;
+    return (struct lm_offset){fx_clamp_i32(o.x_q8, -edge_q8, edge_q8),
+                              fx_clamp_i32(o.y_q8, -edge_q8, edge_q8)};
+}
+
+static struct lm_offset within(struct lm_offset o, const struct lm_cursor_scene *scene)
+{
+    return scene->is_sector ? within_sector(o, scene->view->radius_px)
+                            : within_patch(o, scene->view->radius_px);
+}
+
+/* The deflection's way in one step, pixels * 256: at most 512 * 256 / 50. */
+static int32_t way_q8(int32_t deflection, int32_t half_px)
+{
+    const int32_t full_q8 = half_px * 256 * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
+    return full_q8 * deflection / 1000;
+}
+
+static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
+{
+    struct lm_offset o;
+    if (!lm_view_find(scene->view, c->place, &o)) {
+        lm_cursor_zero(c, scene);
+        return;
+    }
+    o.x_q8 += way_q8(c->slew_x, scene->half_px);
+    o.y_q8 += way_q8(c->slew_y, scene->half_px);
+    c->place = lm_view_place(scene->view, within(o, scene));
+}
+
+bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us)
+{
+    if (now_us - c->stepped_us < LM_CURSOR_STEP_US) {
+        return false;
+    }
+    c->stepped_us =
+        now_us - c->stepped_us < 2 * LM_CURSOR_STEP_US ? c->stepped_us + LM_CURSOR_STEP_US : now_us;
+    if (!c->is_placed || c->is_snowplow) {
+        lm_cursor_zero(c, scene);
+    } else if (c->slew_x != 0 || c->slew_y != 0) {
+        slew(c, scene);
+    }
+    uint32_t distance_q8;
+    lm_geo_inverse(scene->ownship, c->place, &distance_q8, &c->bearing);
+    c->range_m = distance_q8 / 256;
+    c->offset = (struct lm_offset){0, 0};
+    c->is_on_glass = lm_view_find(scene->view, c->place, &c->offset);
+    if (c->is_on_glass) {
+        /* A pixel's grace: a place comes back from the ground a little moved. */
+        const struct lm_offset o = within(c->offset, scene);
+        c->is_on_glass = fx_hypot_u32(o.x_q8 - c->offset.x_q8, o.y_q8 - c->offset.y_q8) <= 256;
+    }
+    return true;
+}
+
+int32_t lm_cursor_wants_range(const struct lm_cursor *c, uint32_t scale_m)
+{
+    if (c->offset.y_q8 <= 0) {
+        return 0;
+    }
+    /* Ranges are below 1,300 km: products below 2^31. */
+    if (c->range_m * 100 >= scale_m * 95) {
+        return 1;
+    }
+    return c->range_m * 1000 < scale_m * 425 ? -1 : 0;
+}

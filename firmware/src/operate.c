@@ -1,0 +1,291 @@
+#include "fx/sat.h"
+#include "parts.h"
+
+enum {
+    CONTROLS_A_STEP = 8,
+    PATCH_LINES_BETWEEN_PREFETCHES = 8,
+    UNABLE_SHOWN_US = 2000000,
+    ELEVATION_CELL_MM = 30000 /* the map's detail that the cursor's elevation comes from */
+};
+
+void lm_begin_picture(struct lm_unit *u, uint64_t now_us)
+{
+    u->next_line_us = now_us;
+    u->cells_none = u->cells_seen = 0;
+    u->is_off_map = false;
+    u->is_view_held = false;
+    lm_plane_clear(&u->plane, &u->frame);
+}
+
+static void start_ground_map(struct lm_unit *u, uint64_t now_us)
+{
+    lm_ground_map_start(&u->ground_map, u->board->radar, u->page.range, u->page.azimuth,
+                        u->board->noise_seed);
+    u->page.mode = LM_MODE_GM;
+    u->page.is_frozen = false;
+    lm_begin_picture(u, now_us);
+}
+
+/* The command with the geometry of this moment, when it is to be seen from the ownship. */
+static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *command)
+{
+    if (!command->is_from_ownship) {
+        return true;
+    }
+    if (u->ownship.position_quality != LM_NAV_GOOD || u->ownship.height_quality != LM_NAV_GOOD) {
+        return false;
+    }
+    uint32_t distance_q8;
+    const struct lm_place here = lm_ownship_place(u);
+    lm_geo_inverse(here, command->centre, &distance_q8, &command->look_azimuth);
+    /* The line of sight turns on its way: at the patch it is the way back, turned round. */
+    fx_bam_t back;
+    lm_geo_inverse(command->centre, here, &distance_q8, &back);
+    command->look_azimuth = back + FX_BAM_180;
+    command->range_m = distance_q8 / 256;
+    command->height_q6 = lm_antenna_height_q6(u);
+    return true;
+}
+
+static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64_t now_us)
+{
+    if (!u->has_db || !resolve_command(u, &command)) {
+        return false;
+    }
+    const struct lm_sampling sampling = lm_sampling_for(&u->db, command.cell_mm, 0);
+    const int32_t ground_q10 =
+        lm_scan_elevation(&u->tiles, sampling.level, command.centre, u->db.mean_elevation_q6 * 16);
+    if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, ground_q10,
+                     u->board->noise_seed) != LM_OK) {
+        return false;
+    }
+    u->page.mode = LM_MODE_SAR;
+    u->page.is_frozen = false;
+    lm_begin_picture(u, now_us);
+    for (uint32_t line = 0; line < u->board->radar->sar_cells;
+         line += PATCH_LINES_BETWEEN_PREFETCHES) {
+        lm_sar_prefetch(&u->sar, &u->tiles, line);
+    }
+    u->is_acquiring = true;
+    u->acquire_until_us = now_us + LM_SAR_ACQUIRE_US;
+    return true;
+}
+
+/* Start a patch, or say on the glass that it cannot be. */
+static bool try_patch(struct lm_unit *u, const struct lm_sar_command *command, uint64_t now_us)
+{
+    const bool is_started = start_patch(u, *command, now_us);
+    u->unable_until_us = is_started ? 0 : now_us + UNABLE_SHOWN_US;
+    return is_started;
+}
+
+static void restart_patch(struct lm_unit *u, uint64_t now_us)
+{
+    struct lm_sar_command command = u->sar.command;
+    command.cell_mm = lm_page_cell_mm(&u->page);
+    u->count.commands_refused += !try_patch(u, &command, now_us);
+}
+
+static void set_tones(struct lm_unit *u)
+{
+    const struct lm_radar *radar = u->board->radar;
+    struct lm_tone_config config = lm_page_tone(&u->page, &radar->gm_tone);
+    lm_tone_set(&u->gm_tone, &config);
+    config = lm_page_tone(&u->page, &radar->sar_tone);
+    lm_tone_set(&u->sar_tone, &config);
+}
+
+void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us)
+{
+    if (effects & LM_EFFECT_GROUND_MAP) {
+        start_ground_map(u, now_us);
+    }
+    if (effects & LM_EFFECT_PATCH) {
+        restart_patch(u, now_us);
+    }
+    if (effects & LM_EFFECT_TONE) {
+        set_tones(u);
+    }
+    if (effects & LM_EFFECT_PALETTE) {
+        lm_palette_set(&u->palette, &u->page.palette);
+    }
+    if (effects & (LM_EFFECT_CURSOR_HOME | LM_EFFECT_SNOWPLOW)) {
+        u->cursor.is_snowplow = u->page.is_snowplow;
+    }
+    if (effects & LM_EFFECT_CURSOR_HOME) {
+        u->cursor.is_placed = false; /* the next step puts it where it belongs */
+    }
+    u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
+}
+
+/* Target management switch up: stabilise a snowplow cursor, else look closely at its place. */
+static bool designate(struct lm_unit *u, uint64_t now_us)
+{
+    if (u->page.format == LM_FORMAT_BIT || u->page.format == LM_FORMAT_TEST) {
+        return false; /* there is no cursor to be seen */
+    }
+    if (u->cursor.is_snowplow) {
+        lm_cursor_stabilise(&u->cursor);
+        return true;
+    }
+    const struct lm_sar_command command = {
+        .centre = u->cursor.place, .cell_mm = lm_page_cell_mm(&u->page), .is_from_ownship = true};
+    if (!u->cursor.is_placed || u->page.is_override) {
+        u->unable_until_us = now_us + UNABLE_SHOWN_US;
+        return false;
+    }
+    return try_patch(u, &command, now_us);
+}
+
+static bool is_within(int32_t value, int32_t low, int32_t high)
+{
+    return value >= low && value <= high;
+}
+
+static bool obey_scales(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    const bool is_range = control->kind == LM_CONTROL_RANGE;
+    if (!is_within(control->value, 0, is_range ? LM_RANGES - 1 : LM_AZIMUTHS - 1)) {
+        return false;
+    }
+    if (is_range) {
+        u->page.range = (uint8_t)control->value;
+        u->page.is_auto_range = false;
+    } else {
+        u->page.azimuth = (uint8_t)control->value;
+    }
+    start_ground_map(u, now_us);
+    return true;
+}
+
+static bool obey_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    if (!is_within(control->value, 1, LM_BUTTONS)) {
+        return false;
+    }
+    const uint8_t button = (uint8_t)control->value;
+    const bool acts =
+        control->kind == LM_CONTROL_DOWN
+            ? lm_keys_down(&u->keys, button, lm_page_key_style(&u->page, button), now_us)
+            : lm_keys_up(&u->keys, button, now_us);
+    if (acts) {
+        lm_apply(u, lm_page_press(&u->page, (struct lm_press){button, false}), now_us);
+    }
+    return true;
+}
+
+static bool obey_deflection(struct lm_unit *u, const struct lm_control *control)
+{
+    if (!is_within(control->value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION) ||
+        !is_within(control->value_y, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
+        return false;
+    }
+    if (control->kind == LM_CONTROL_SLEW) {
+        u->cursor.slew_x = control->value;
+        u->cursor.slew_y = control->value_y;
+    } else {
+        u->page.knob = (int16_t)control->value;
+        set_tones(u);
+    }
+    return true;
+}
+
+static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    switch (control->kind) {
+    case LM_CONTROL_GM:
+    case LM_CONTROL_DROP:
+        start_ground_map(u, now_us);
+        return true;
+    case LM_CONTROL_SAR:
+        return try_patch(u, &control->sar, now_us);
+    case LM_CONTROL_RANGE:
+    case LM_CONTROL_AZIMUTH:
+        return obey_scales(u, control, now_us);
+    case LM_CONTROL_GAIN:
+        if (!is_within(control->value, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
+            return false;
+        }
+        u->page.gain_db = (int16_t)control->value;
+        set_tones(u);
+        return true;
+    case LM_CONTROL_FREEZE:
+        u->page.is_frozen = control->value != 0;
+        return true;
+    case LM_CONTROL_DOWN:
+    case LM_CONTROL_UP:
+        return obey_button(u, control, now_us);
+    case LM_CONTROL_KNOB:
+    case LM_CONTROL_SLEW:
+        return obey_deflection(u, control);
+    case LM_CONTROL_DESIGNATE:
+        return designate(u, now_us);
+    }
+    return false;
+}
+
+void lm_take_controls(struct lm_unit *u, uint64_t now_us)
+{
+    struct lm_press press;
+    for (uint32_t i = 0; i < LM_BUTTONS && lm_keys_held(&u->keys, now_us, &press); i++) {
+        lm_apply(u, lm_page_press(&u->page, press), now_us);
+    }
+    const struct lm_controls *controls = u->board->controls;
+    struct lm_control control;
+    for (uint32_t i = 0; i < CONTROLS_A_STEP && controls->next(controls->ctx, &control) == 1; i++) {
+        u->count.commands_refused += !obey(u, &control, now_us);
+    }
+}
+
+/* How the picture lies. A picture that stands keeps the view it was drawn with. */
+static void follow_view(struct lm_unit *u)
+{
+    if (u->page.mode == LM_MODE_SAR) {
+        const struct lm_sar_command *c = &u->sar.command;
+        u->view = lm_view_of_patch(&u->frame, c->centre, c->look_azimuth, u->sar.radar->sar_cells,
+                                   c->cell_mm);
+        return;
+    }
+    const bool is_standing = (u->flags & LM_FLAGS_STANDING) != 0;
+    if (!is_standing || !u->is_view_held) {
+        u->view = lm_view_of_sector(&u->frame, lm_ownship_place(u), u->ownship.heading,
+                                    u->board->radar->range_m[u->page.range]);
+    }
+    u->is_view_held = is_standing;
+}
+
+static void read_elevation(struct lm_unit *u)
+{
+    if (u->has_db) {
+        const struct lm_sampling sampling = lm_sampling_for(&u->db, ELEVATION_CELL_MM, 0);
+        u->cursor_elevation_q10 =
+            lm_scan_elevation(&u->tiles, sampling.level, u->cursor.place, LM_NO_ELEVATION);
+    }
+}
+
+void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
+{
+    const uint32_t scale_m = u->board->radar->range_m[u->page.range];
+    follow_view(u);
+    if (!lm_has_ownship(u)) {
+        return;
+    }
+    const struct lm_cursor_scene scene = {
+        .view = &u->view,
+        .ownship = lm_ownship_place(u),
+        .heading = u->ownship.heading,
+        .scale_m = scale_m,
+        .is_sector = u->page.mode == LM_MODE_GM,
+        .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
+    };
+    if (!lm_cursor_step(&u->cursor, &scene, now_us)) {
+        return;
+    }
+    read_elevation(u);
+    if (scene.is_sector && u->page.is_auto_range && !u->is_view_held) {
+        const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
+        if (step != 0) {
+            lm_apply(u, lm_page_step_range(&u->page, step), now_us);
+        }
+    }
+}

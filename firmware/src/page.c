@@ -1,0 +1,287 @@
+#include "page_keys.h"
+
+#include "fx/mem.h"
+#include "fx/sat.h"
+
+const char lm_page_modes[LM_PAGE_MODES][6] = {"GM"};
+const char lm_page_fields[LM_PAGE_FIELDS][6] = {"NORM"};
+
+const struct lm_page_cell lm_page_cells[LM_SAR_CELLS_OFFERED] = {
+    {1000, "1M"}, {2000, "2M"}, {3000, "3M"}, {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
+
+void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
+{
+    memset(p, 0, sizeof *p);
+    p->radar = radar;
+    p->mode = LM_MODE_GM;
+    p->range = 2;
+    p->cell = 3;
+    p->hidden = LM_OSB_BIT(OSB_FREEZE) | LM_OSB_BIT(OSB_SNOWPLOW) | LM_OSB_BIT(OSB_CURSOR_ZERO) |
+                LM_OSB_BIT(OSB_STEERPOINT) | LM_OSB_BIT(OSB_BIT) | LM_OSB_BIT(OSB_RADAR) |
+                LM_OSB_BIT(OSB_TEST) | LM_OSB_BIT(OSB_SWAP) | LM_OSB_BIT(OSB_CELL);
+}
+
+uint32_t lm_page_cell_mm(const struct lm_page *p)
+{
+    return lm_page_cells[p->cell].mm;
+}
+
+struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table)
+{
+    /* |gain| 30, |window| 20, |table| below 64 dB and the knob's 2: below 2^15 / 256 dB. */
+    const int32_t gain_q8 = p->gain_db * 256 + p->knob * LM_KNOB_FULL_Q8 / LM_FULL_DEFLECTION;
+    const int32_t black_q8 = table->black_q8 + p->black_db * 256;
+    const int32_t white_q8 = table->white_q8 + p->white_db * 256;
+    const int32_t gamma_q8 = table->gamma_q8 + p->gamma_tenths * 256 / 10;
+    return (struct lm_tone_config){
+        .black_q8 = (int16_t)(black_q8 - gain_q8),
+        .white_q8 = (int16_t)(fx_max_i32(white_q8, black_q8 + 256) - gain_q8),
+        .gamma_q8 = (uint16_t)fx_clamp_i32(gamma_q8, 64, 1024),
+    };
+}
+
+/* Move a value by a step within its limits. Returns `effect` when it moved. */
+static uint32_t step_int8(int8_t *value, int32_t step, int32_t limit, uint32_t effect)
+{
+    const int32_t moved = fx_clamp_i32(*value + step, -limit, limit);
+    const bool has_moved = moved != *value;
+    *value = (int8_t)moved;
+    return has_moved ? effect : 0;
+}
+
+static uint32_t press_rocker(struct lm_page *p, uint8_t button)
+{
+    const uint8_t half = button - LM_OSBS - 1;
+    const int32_t step = half & 1 ? -1 : 1;
+    struct lm_palette_config *c = &p->palette;
+    switch ((enum lm_rocker)(half / 2)) {
+    case LM_ROCKER_GAIN: {
+        const int32_t gain_db = fx_clamp_i32(p->gain_db + step, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB);
+        const bool has_moved = gain_db != p->gain_db;
+        p->gain_db = (int16_t)gain_db;
+        return has_moved ? LM_EFFECT_TONE : 0;
+    }
+    case LM_ROCKER_SYM:
+        return step_int8(&c->symbology, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+    case LM_ROCKER_BRT:
+        return step_int8(&c->brightness, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+    case LM_ROCKER_CON:
+        return step_int8(&c->contrast, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+    case LM_ROCKERS:
+        break;
+    }
+    return 0;
+}
+
+uint32_t lm_page_step_range(struct lm_page *p, int32_t step)
+{
+    const int32_t range = fx_clamp_i32(p->range + step, 0, LM_RANGES - 1);
+    if (range == p->range) {
+        return 0;
+    }
+    p->range = (uint8_t)range;
+    return LM_EFFECT_GROUND_MAP;
+}
+
+static uint32_t press_range(struct lm_page *p, int32_t step)
+{
+    if (lm_page_is_patch(p)) {
+        return 0;
+    }
+    p->is_auto_range = false;
+    return lm_page_step_range(p, step);
+}
+
+static uint32_t press_azimuth(struct lm_page *p)
+{
+    if (lm_page_is_patch(p)) {
+        return 0;
+    }
+    p->azimuth = (uint8_t)((p->azimuth + 1) % LM_AZIMUTHS);
+    return LM_EFFECT_GROUND_MAP;
+}
+
+static uint32_t press_field(struct lm_page *p)
+{
+    if (lm_page_is_patch(p)) {
+        p->field_of_view = 0;
+        return LM_EFFECT_GROUND_MAP;
+    }
+    const uint8_t next = (uint8_t)((p->field_of_view + 1u) % (LM_PAGE_FIELDS));
+    const bool has_moved = next != p->field_of_view;
+    p->field_of_view = next;
+    return has_moved ? LM_EFFECT_GROUND_MAP : 0;
+}
+
+static uint32_t press_cell(struct lm_page *p)
+{
+    p->cell = (uint8_t)((p->cell + 1u) % LM_SAR_CELLS_OFFERED);
+    return lm_page_is_patch(p) ? LM_EFFECT_PATCH : 0;
+}
+
+static uint32_t set_snowplow(struct lm_page *p, bool is_on)
+{
+    const bool has_changed = p->is_snowplow != is_on;
+    p->is_snowplow = is_on;
+    return has_changed ? LM_EFFECT_SNOWPLOW : 0;
+}
+
+static uint32_t press_declutter(struct lm_page *p, bool is_long)
+{
+    if (is_long) {
+        p->format = LM_FORMAT_DCLT;
+    } else {
+        p->is_decluttered = !p->is_decluttered;
+    }
+    return 0;
+}
+
+static uint32_t press_on_radar(struct lm_page *p, uint8_t osb, bool is_long)
+{
+    switch (osb) {
+    case OSB_MODE: /* with one mode the rotary has no other place, but it leaves the patch */
+        return lm_page_is_patch(p) ? LM_EFFECT_GROUND_MAP : 0;
+    case OSB_AUTO:
+        p->is_auto_range = !p->is_auto_range;
+        return 0;
+    case OSB_FIELD:
+        return press_field(p);
+    case OSB_OVERRIDE:
+        p->is_override = !p->is_override;
+        return 0;
+    case OSB_FREEZE:
+        p->is_frozen = !p->is_frozen;
+        return 0;
+    case OSB_SNOWPLOW:
+        return set_snowplow(p, !p->is_snowplow);
+    case OSB_CURSOR_ZERO:
+        return LM_EFFECT_CURSOR_HOME;
+    case OSB_STEERPOINT:
+        return set_snowplow(p, false);
+    case OSB_DECLUTTER:
+        return press_declutter(p, is_long);
+    case OSB_CELL:
+        return press_cell(p);
+    case OSB_AZIMUTH:
+        return press_azimuth(p);
+    case OSB_RANGE_DOWN:
+        return press_range(p, -1);
+    case OSB_RANGE_UP:
+        return press_range(p, 1);
+    default:
+        return 0;
+    }
+}
+
+static uint32_t reset_settings(struct lm_page *p)
+{
+    p->black_db = p->white_db = p->gamma_tenths = 0;
+    p->gain_db = 0;
+    memset(&p->palette, 0, sizeof p->palette);
+    return LM_EFFECT_TONE | LM_EFFECT_PALETTE;
+}
+
+static uint32_t press_on_cntl(struct lm_page *p, uint8_t osb)
+{
+    switch (osb) {
+    case OSB_BLACK_UP:
+        return step_int8(&p->black_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
+    case OSB_BLACK_DOWN:
+        return step_int8(&p->black_db, -1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
+    case OSB_WHITE_UP:
+        return step_int8(&p->white_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
+    case OSB_WHITE_DOWN:
+        return step_int8(&p->white_db, -1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
+    case OSB_GAMMA_UP:
+        return step_int8(&p->gamma_tenths, 1, LM_GAMMA_MAX, LM_EFFECT_TONE);
+    case OSB_GAMMA_DOWN:
+        return step_int8(&p->gamma_tenths, -1, LM_GAMMA_MAX, LM_EFFECT_TONE);
+    case OSB_TINT:
+        p->palette.tint = (uint8_t)((p->palette.tint + 1u) % LM_TINTS);
+        return LM_EFFECT_PALETTE;
+    case OSB_NIGHT:
+        p->palette.is_night = !p->palette.is_night;
+        return LM_EFFECT_PALETTE;
+    case OSB_RESET:
+        return reset_settings(p);
+    case OSB_DECLUTTER:
+        p->format = LM_FORMAT_DCLT;
+        return 0;
+    default:
+        return 0;
+    }
+}
+
+static uint32_t press_on_dclt(struct lm_page *p, uint8_t osb)
+{
+    struct lm_label label;
+    struct lm_page radar = *p;
+    radar.format = LM_FORMAT_RADAR;
+    radar.is_decluttered = false;
+    if (osb == OSB_DECLUTTER) {
+        p->format = LM_FORMAT_RADAR;
+    } else if (lm_page_label(&radar, osb, &label)) {
+        p->hidden ^= LM_OSB_BIT(osb);
+    }
+    return 0;
+}
+
+/* Keys that mean the same on every format: the control page and the direct access. */
+static bool press_format(struct lm_page *p, uint8_t osb)
+{
+    switch (osb) {
+    case OSB_CNTL:
+        p->format = p->format == LM_FORMAT_CNTL ? LM_FORMAT_RADAR : LM_FORMAT_CNTL;
+        return true;
+    case OSB_BIT:
+        p->format = LM_FORMAT_BIT;
+        return true;
+    case OSB_RADAR:
+        p->format = LM_FORMAT_RADAR;
+        return true;
+    case OSB_TEST:
+        p->format = LM_FORMAT_TEST;
+        return true;
+    default:
+        return false;
+    }
+}
+
+uint32_t lm_page_press(struct lm_page *p, struct lm_press press)
+{
+    const uint8_t osb = press.button;
+    if (osb > LM_OSBS) {
+        return press_rocker(p, osb);
+    }
+    if (p->format == LM_FORMAT_DCLT && osb != OSB_CNTL) {
+        return press_on_dclt(p, osb);
+    }
+    if (press_format(p, osb)) {
+        return 0;
+    }
+    if (osb == OSB_SWAP) {
+        return LM_EFFECT_SWAP;
+    }
+    switch ((enum lm_format)p->format) {
+    case LM_FORMAT_RADAR:
+        return press_on_radar(p, osb, press.is_long);
+    case LM_FORMAT_CNTL:
+        return press_on_cntl(p, osb);
+    case LM_FORMAT_DCLT:
+    case LM_FORMAT_BIT:
+    case LM_FORMAT_TEST:
+        break;
+    }
+    return 0;
+}
+
+enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button)
+{
+    const uint32_t pairs = LM_OSB_BIT(OSB_BLACK_UP) | LM_OSB_BIT(OSB_BLACK_DOWN) |
+                           LM_OSB_BIT(OSB_WHITE_UP) | LM_OSB_BIT(OSB_WHITE_DOWN) |
+                           LM_OSB_BIT(OSB_GAMMA_UP) | LM_OSB_BIT(OSB_GAMMA_DOWN);
+    if (button > LM_OSBS || (p->format == LM_FORMAT_CNTL && (pairs & LM_OSB_BIT(button)))) {
+        return LM_KEY_REPEATS;
+    }
+    return p->format == LM_FORMAT_RADAR && button == OSB_DECLUTTER ? LM_KEY_HAS_LONG : LM_KEY_ONCE;
+}

@@ -1,0 +1,241 @@
+#include "fx/sat.h"
+#include "lm/font.h"
+#include "marks.h"
+
+enum { FEET_PER_M_Q12 = 13438, NM_M = 1852, ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
+
+/* The symbols' own lengths are parts of half the shorter side of the glass. */
+static int32_t part_of_half(const struct lm_glass *g, int32_t thousandths)
+{
+    const int32_t shorter = fx_min_i32(g->surface.width_px, g->surface.height_px);
+    return shorter * thousandths / 2000;
+}
+
+static uint32_t degrees_of(fx_bam_t angle)
+{
+    return (uint32_t)(((uint64_t)angle * 360 + (1u << 31)) >> 32) % 360;
+}
+
+static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
+{
+    lm_draw_line(pen, (struct lm_point){x0, y0}, (struct lm_point){x1, y1});
+}
+
+/* Range arcs at a quarter, half and three quarters (at 10 nm the half alone), the sector's edges,
+ * the beam. */
+static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_point apex = s->view.at;
+    const int32_t radius = s->view.radius_px;
+    const fx_bam_t half = s->azimuth_half;
+    const int32_t first = s->range_nm > 10 ? 1 : 2;
+    for (int32_t quarter = first; quarter <= 4 - first; quarter++) {
+        lm_draw_arc(&pen, apex, radius * quarter / 4, 0u - half, 2 * half);
+    }
+    lm_draw_line(&pen, apex, lm_ray_end(apex, half, radius));
+    lm_draw_line(&pen, apex, lm_ray_end(apex, 0u - half, radius));
+    if (s->is_sweeping) {
+        pen.colour = g->palette->faint;
+        const fx_bam_t beam = (fx_bam_t)s->antenna_azimuth;
+        lm_draw_line(&pen, lm_ray_end(apex, beam, radius / 40), lm_ray_end(apex, beam, radius));
+    }
+}
+
+/* Way of an angle along the antenna's scales: 60 degrees are 0.72 of half the glass. */
+static int32_t scale_px(const struct lm_glass *g, int32_t angle)
+{
+    const int64_t sixty = (int64_t)FX_BAM_DEG(60);
+    const int64_t clamped = angle > sixty ? sixty : angle < -sixty ? -sixty : angle;
+    return (int32_t)(clamped * part_of_half(g, 720) / sixty);
+}
+
+/* Ticks at every ten degrees up to thirty and a T that points at them: azimuth along the bottom of
+ * the frame, elevation along its left side. */
+static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t dot = pen.dot_px, tick = 2 * dot, stem = 3 * dot;
+    const int32_t middle_x = s->view.at.x, bottom = g->frame->top_px + g->frame->height_px + dot;
+    const int32_t middle_y = g->surface.height_px / 2, left = g->frame->left_px;
+    for (int32_t tens = -3; tens <= 3; tens++) {
+        const int32_t at = scale_px(g, tens * (int32_t)FX_BAM_DEG(10));
+        line(&pen, middle_x + at, bottom, middle_x + at, bottom + tick);
+        line(&pen, left, middle_y + at, left + tick, middle_y + at);
+    }
+    if (!s->is_sweeping) {
+        return;
+    }
+    const int32_t x = middle_x + scale_px(g, s->antenna_azimuth);
+    const int32_t bar_y = bottom + tick + stem;
+    line(&pen, x, bottom + tick, x, bar_y);
+    line(&pen, x - stem, bar_y, x + stem, bar_y);
+    const int32_t y = middle_y - scale_px(g, s->antenna_elevation);
+    const int32_t bar_x = left + tick + stem;
+    line(&pen, left + tick, y, bar_x, y);
+    line(&pen, bar_x, y - stem, bar_x, y + stem);
+}
+
+/* A bracket beside OSB 20 with a caret at the gain. */
+static void draw_gain(const struct lm_glass *g, int32_t gain_db)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t dot = pen.dot_px, x = g->frame->left_px + 4 * dot;
+    const int32_t top = g->frame->top_px, high = part_of_half(g, 250);
+    line(&pen, x, top, x, top + high);
+    line(&pen, x, top, x + 3 * dot, top);
+    line(&pen, x, top + high, x + 3 * dot, top + high);
+    const int32_t y = top + high / 2 - gain_db * high / (2 * LM_GAIN_MAX_DB);
+    line(&pen, x, y, x - 3 * dot, y - 2 * dot);
+    line(&pen, x, y, x - 3 * dot, y + 2 * dot);
+}
+
+/* Lines across the whole frame; in a sector also the expansion cue, four ticks an eighth of the
+ * range away. */
+static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_frame *f = g->frame;
+    const struct lm_point at = lm_view_point(&s->view, s->cursor);
+    const int32_t right = f->left_px + f->width_px - 1, bottom = f->top_px + f->height_px - 1;
+    const int32_t x = fx_clamp_i32(at.x, f->left_px, right);
+    const int32_t y = fx_clamp_i32(at.y, f->top_px, bottom);
+    line(&pen, x, f->top_px, x, bottom);
+    line(&pen, f->left_px, y, right, y);
+    if (s->is_patch) {
+        return;
+    }
+    const int32_t away = s->view.radius_px / 8, half = part_of_half(g, 65) / 2;
+    for (int32_t side = -1; side <= 1; side += 2) {
+        line(&pen, x + side * away, y - half, x + side * away, y + half);
+        line(&pen, x - half, y + side * away, x + half, y + side * away);
+    }
+}
+
+static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_point at = lm_view_point(&s->view, s->ownship);
+    const int32_t radius = part_of_half(g, 50);
+    lm_draw_arc(&pen, at, radius, 0, FX_BAM_180);
+    lm_draw_arc(&pen, at, radius, FX_BAM_180, FX_BAM_180);
+    lm_draw_line(&pen, at, lm_ray_end(at, s->ownship_heading, 2 * radius));
+}
+
+/* ---- numbers ---- */
+
+/* Row 0 is above the frame, below the keys' labels; rows 1 and 2 are below it, above the labels. */
+static int32_t row_y(const struct lm_glass *g, const struct lm_pen *pen, int32_t row)
+{
+    const int32_t bottom = g->surface.height_px - (4 + 3 * 9) * pen->dot_px;
+    return row == 0 ? 3 * pen->dot_px + lm_row_px(pen) : bottom + (row - 1) * lm_row_px(pen);
+}
+
+enum align { ALIGN_LEFT, ALIGN_MIDDLE, ALIGN_RIGHT };
+
+static void write_row(const struct lm_glass *g, int32_t row, enum align align, const char *words)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t edge = 3 * lm_column_px(&pen), width = lm_text_width(&pen, words);
+    int32_t x = edge;
+    if (align == ALIGN_MIDDLE) {
+        x = (g->surface.width_px - width) / 2;
+    } else if (align == ALIGN_RIGHT) {
+        x = g->surface.width_px - edge - width;
+    }
+    lm_write(&pen, x, row_y(g, &pen, row), words, g->palette->ink);
+}
+
+/* Degrees and hundredths of minutes behind the letter of the half: "N46" LM_GLYPH_DEGREE "02.50".
+ */
+static void write_angle(const struct lm_glass *g, int32_t row, const char *letter, uint32_t angle,
+                        uint32_t digits)
+{
+    const uint32_t hundredths =
+        (uint32_t)(((uint64_t)angle * ARCMIN_HUNDREDTHS + (1u << 31)) >> 32);
+    struct lm_text t = {0};
+    lm_text_add(&t, letter);
+    lm_text_number(&t, hundredths / 6000, digits);
+    lm_text_add(&t, LM_GLYPH_DEGREE);
+    lm_text_number(&t, hundredths / 100 % 60, 2);
+    lm_text_add(&t, ".");
+    lm_text_number(&t, hundredths % 100, 2);
+    write_row(g, row, ALIGN_RIGHT, t.words);
+}
+
+static void write_place(const struct lm_glass *g, struct lm_place place)
+{
+    const int32_t latitude = (int32_t)place.latitude, longitude = (int32_t)place.longitude;
+    write_angle(g, 1, latitude < 0 ? "S" : "N", fx_abs_u32(latitude), 2);
+    write_angle(g, 2, longitude < 0 ? "W" : "E", fx_abs_u32(longitude), 3);
+}
+
+/* Bearing and range, elevation, place. */
+static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const uint32_t tenths = (s->cursor_range_m * 10 + NM_M / 2) / NM_M;
+    struct lm_text t = {0};
+    lm_text_number(&t, degrees_of(s->cursor_bearing), 3);
+    lm_text_add(&t, LM_GLYPH_DEGREE "/");
+    lm_text_number(&t, tenths / 10, 2);
+    lm_text_add(&t, ".");
+    lm_text_number(&t, tenths % 10, 1);
+    write_row(g, 1, ALIGN_LEFT, t.words);
+    if (s->has_cursor_elevation) {
+        t = (struct lm_text){0};
+        lm_text_add(&t, "ELV ");
+        lm_text_signed(&t, (s->cursor_elevation_m * FEET_PER_M_Q12 + 2048) >> 12);
+        lm_text_add(&t, "FT");
+        write_row(g, 2, ALIGN_LEFT, t.words);
+    }
+    write_place(g, s->cursor_place);
+}
+
+static void write_patch(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    struct lm_text t = {0};
+    lm_text_add(&t, "CELL ");
+    lm_text_number(&t, s->patch_cell_mm / 1000, 1);
+    lm_text_add(&t, ".");
+    lm_text_number(&t, s->patch_cell_mm / 100 % 10, 1);
+    lm_text_add(&t, "M");
+    write_row(g, 0, ALIGN_LEFT, t.words);
+    t = (struct lm_text){0};
+    lm_text_add(&t, "LOOK ");
+    lm_text_number(&t, degrees_of(s->patch_look), 3);
+    write_row(g, 0, ALIGN_RIGHT, t.words);
+    t = (struct lm_text){0};
+    lm_text_number(&t, s->patch_percent, 1);
+    lm_text_add(&t, "%");
+    write_row(g, 0, ALIGN_MIDDLE, t.words);
+}
+
+static void write_heading(const struct lm_glass *g, fx_bam_t heading)
+{
+    struct lm_text t = {0};
+    lm_text_number(&t, degrees_of(heading), 3);
+    write_row(g, 0, ALIGN_MIDDLE, t.words);
+}
+
+void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    if (s->has_cursor) {
+        write_cursor(g, s);
+    }
+    if (s->is_patch) {
+        write_patch(g, s);
+    } else {
+        draw_sector(g, s);
+        draw_antenna(g, s);
+        if (s->has_heading) {
+            write_heading(g, s->heading);
+        }
+    }
+    draw_gain(g, s->gain_db);
+    if (s->is_cursor_on_glass) {
+        draw_cursor(g, s);
+    }
+    if (s->is_ownship_shown) {
+        draw_ownship(g, s);
+    }
+}

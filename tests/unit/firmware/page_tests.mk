@@ -1,0 +1,11 @@
+# The page and the unit as a whole, on one rig; test_hostile_controls is built with the sanitizers.
+RIG_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/test_,unit page)
+TESTS += $(RIG_TESTS)
+$(RIG_TESTS): $(O)/bin/%: $(O)/%.o $(addprefix $(O)/tests/unit/firmware/,unit_rig.o glass_text.o) $(TEST_SUPPORT) \
+    $(O)/tests/support/tiny_image.o $(O)/tests/support/memory_flash.o $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(RIG_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,libpng)
+
+GLASS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/test_,keys cursor overlay)
+TESTS += $(GLASS_TESTS)
+$(GLASS_TESTS): $(O)/bin/%: $(O)/%.o $(O)/tests/unit/firmware/glass_text.o $(LIB_firmware) $(LIB_fixed)
+$(GLASS_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj)

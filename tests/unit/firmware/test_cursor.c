@@ -1,0 +1,263 @@
+/* View and cursor against PROJ's geodesics. */
+#include "lm/cursor.h"
+
+#include <geodesic.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 480, RANGE_M = 37040 };
+
+static const double pi = 3.14159265358979323846;
+
+static fx_bam_t bam(double degrees)
+{
+    return (fx_bam_t)(int64_t)llround(remainder(degrees, 360) / 360 * 4294967296.0);
+}
+
+static double degrees(fx_bam_t angle)
+{
+    return (int32_t)angle * 360.0 / 4294967296.0;
+}
+
+static struct lm_place place_at(double lat, double lon)
+{
+    return (struct lm_place){bam(lat), bam(lon)};
+}
+
+static struct lm_place moved(struct lm_place from, double azimuth, double metres)
+{
+    struct geod_geodesic earth;
+    double lat, lon, back;
+    geod_init(&earth, 6378137, 1 / 298.257223563);
+    geod_direct(&earth, degrees(from.latitude), degrees(from.longitude), azimuth, metres, &lat,
+                &lon, &back);
+    return place_at(lat, lon);
+}
+
+static double distance(struct lm_place a, struct lm_place b)
+{
+    struct geod_geodesic earth;
+    double metres, there, back;
+    geod_init(&earth, 6378137, 1 / 298.257223563);
+    geod_inverse(&earth, degrees(a.latitude), degrees(a.longitude), degrees(b.latitude),
+                 degrees(b.longitude), &metres, &there, &back);
+    return metres;
+}
+
+/* A cursor, the aircraft it is moved against, and the sector on the glass. */
+struct scene {
+    struct lm_frame frame;
+    struct lm_view view;
+    struct lm_cursor cursor;
+    struct lm_cursor_scene against;
+    uint64_t now_us;
+};
+
+static void look_from(struct scene *s, struct lm_place ownship, double heading)
+{
+    s->frame = lm_frame_of_display(SIDE, SIDE);
+    s->view = lm_view_of_sector(&s->frame, ownship, bam(heading), RANGE_M);
+    s->against = (struct lm_cursor_scene){.view = &s->view,
+                                          .ownship = ownship,
+                                          .heading = bam(heading),
+                                          .scale_m = RANGE_M,
+                                          .is_sector = true,
+                                          .half_px = SIDE / 2};
+}
+
+static void steps(struct scene *s, double seconds)
+{
+    for (int i = 0; i < (int)lround(seconds / 0.02); i++) {
+        s->now_us += LM_CURSOR_STEP_US;
+        assert_true(lm_cursor_step(&s->cursor, &s->against, s->now_us));
+    }
+}
+
+static const struct lm_place origins[] = {{0x20B60B61, 0x07D27D28},  /* 46 N 11 E */
+                                          {0xD0000000, 0x7FFFFF00},  /* 67.5 S, the antimeridian */
+                                          {0x00000000, 0xF0000000}}; /* the equator */
+
+static void a_place_is_where_geodesics_put_it_within_a_pixel(void **state)
+{
+    (void)state;
+    for (size_t o = 0; o < 3; o++) {
+        struct scene s = {0};
+        look_from(&s, origins[o], 30);
+        for (double turn = -60; turn <= 60; turn += 15) {
+            for (double part = 0.05; part <= 1; part += 0.19) {
+                const struct lm_place there = moved(origins[o], 30 + turn, part * RANGE_M);
+                struct lm_offset found;
+                assert_true(lm_view_find(&s.view, there, &found));
+                const double r = part * s.view.radius_px * 256;
+                /* lm_geo_inverse: 0.2 % of the distance; 210 pixels of it are half a pixel. */
+                assert_true(fabs(found.x_q8 - r * sin(turn * pi / 180)) < 128);
+                assert_true(fabs(found.y_q8 - r * cos(turn * pi / 180)) < 128);
+                const struct lm_place back = lm_view_place(&s.view, found);
+                assert_true(distance(back, there) < 0.003 * part * RANGE_M + 2);
+            }
+        }
+    }
+}
+
+static void a_place_too_far_to_be_drawn_is_refused(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    look_from(&s, origins[0], 0);
+    struct lm_offset found = {1, 2};
+    assert_false(lm_view_find(&s.view, moved(origins[0], 10, 260000), &found));
+    assert_false(lm_view_find(&s.view, place_at(-46, -169), &found));
+    struct lm_view patch = lm_view_of_patch(&s.frame, origins[0], 0, 256, 500);
+    assert_false(lm_view_find(&patch, moved(origins[0], 10, 20000), &found));
+    assert_int_equal(found.x_q8, 1);
+    assert_int_equal(found.y_q8, 2);
+}
+
+static void zero_is_half_the_range_straight_ahead(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    look_from(&s, origins[0], 77);
+    steps(&s, 0.02);
+    assert_true(distance(s.cursor.place, moved(origins[0], 77, RANGE_M / 2)) < 1);
+    assert_true(s.cursor.is_on_glass);
+    assert_in_range(s.cursor.range_m, RANGE_M / 2 - 40, RANGE_M / 2 + 40);
+    assert_true(fabs(degrees(s.cursor.bearing) - 77) < 0.2);
+}
+
+static void full_deflection_crosses_half_the_glass_in_a_second_in_every_direction(void **state)
+{
+    (void)state;
+    const int directions[][2] = {{1000, 0}, {-1000, 0}, {0, 1000}, {0, -1000}, {500, -500}};
+    for (size_t i = 0; i < sizeof directions / sizeof *directions; i++) {
+        struct scene s = {0};
+        look_from(&s, origins[0], 200);
+        steps(&s, 0.02);
+        const struct lm_offset before = s.cursor.offset;
+        s.cursor.slew_x = directions[i][0];
+        s.cursor.slew_y = directions[i][1];
+        steps(&s, 0.3);
+        const double px_x = (s.cursor.offset.x_q8 - before.x_q8) / 256.0;
+        const double px_y = (s.cursor.offset.y_q8 - before.y_q8) / 256.0;
+        assert_true(fabs(px_x - 0.3 * SIDE / 2 * directions[i][0] / 1000) < 1);
+        assert_true(fabs(px_y - 0.3 * SIDE / 2 * directions[i][1] / 1000) < 1);
+    }
+}
+
+static void slewing_stops_at_the_edge_of_what_is_shown(void **state)
+{
+    (void)state;
+    for (int turn = 0; turn < 360; turn += 20) {
+        struct scene s = {0};
+        look_from(&s, origins[1], 10);
+        steps(&s, 0.02);
+        s.cursor.slew_x = (int32_t)lround(1000 * sin(turn * pi / 180));
+        s.cursor.slew_y = (int32_t)lround(1000 * cos(turn * pi / 180));
+        steps(&s, 5);
+        assert_true(s.cursor.is_on_glass);
+        assert_true(hypot(s.cursor.offset.x_q8, s.cursor.offset.y_q8) <
+                    (s.view.radius_px + 1.5) * 256);
+        assert_true(s.cursor.offset.y_q8 > -256);
+        s.view = lm_view_of_patch(&s.frame, moved(origins[1], 10, 15000), bam(40), 256, 5000);
+        s.against.is_sector = false;
+        steps(&s, 5);
+        assert_true(s.cursor.is_on_glass);
+        assert_in_range(s.cursor.offset.x_q8 + 129 * 256, 0, 258 * 256);
+        assert_in_range(s.cursor.offset.y_q8 + 129 * 256, 0, 258 * 256);
+    }
+}
+
+static void the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    look_from(&s, origins[0], 0);
+    steps(&s, 0.02);
+    const struct lm_place held = s.cursor.place;
+    for (int second = 1; second <= 60; second++) {
+        look_from(&s, moved(origins[0], 20, 150.0 * second), second * 0.5);
+        steps(&s, 0.02);
+        assert_int_equal(s.cursor.place.latitude, held.latitude);
+        assert_int_equal(s.cursor.place.longitude, held.longitude);
+        struct lm_offset found;
+        assert_true(lm_view_find(&s.view, held, &found));
+        assert_int_equal(found.x_q8, s.cursor.offset.x_q8);
+    }
+    assert_true(s.cursor.range_m < RANGE_M / 2 - 7000);
+}
+
+static void in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised(void **state)
+{
+    (void)state;
+    struct scene s = {.cursor.is_snowplow = true};
+    s.cursor.slew_x = 1000; /* which snowplow does not heed */
+    for (int second = 0; second <= 30; second++) {
+        const struct lm_place ownship = moved(origins[0], 20, 150.0 * second);
+        look_from(&s, ownship, second);
+        steps(&s, 0.02);
+        assert_true(distance(s.cursor.place, moved(ownship, second, RANGE_M / 2)) < 1);
+    }
+    s.cursor.slew_x = 0;
+    lm_cursor_stabilise(&s.cursor);
+    const struct lm_place held = s.cursor.place;
+    look_from(&s, moved(origins[0], 20, 9000), 50);
+    steps(&s, 0.1);
+    assert_memory_equal(&s.cursor.place, &held, sizeof held);
+}
+
+static void automatic_range_goes_up_from_095_and_down_below_0425(void **state)
+{
+    (void)state;
+    const struct {
+        double part;
+        int wants;
+    } cases[] = {{0.951, 1}, {1.5, 1}, {0.949, 0}, {0.6, 0}, {0.4255, 0}, {0.4245, -1}, {0.1, -1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_cursor c = {.range_m = (uint32_t)(cases[i].part * RANGE_M), .offset = {0, 25600}};
+        assert_int_equal(lm_cursor_wants_range(&c, RANGE_M), cases[i].wants);
+        c.offset.y_q8 = -25600; /* flown past: stays */
+        assert_int_equal(lm_cursor_wants_range(&c, RANGE_M), 0);
+    }
+    /* Between two scales no cursor makes it swing. */
+    for (uint32_t m = 1; m < 200000; m += 7) {
+        const struct lm_cursor c = {.range_m = m, .offset = {0, 25600}};
+        assert_false(lm_cursor_wants_range(&c, 37040) == 1 &&
+                     lm_cursor_wants_range(&c, 74080) == -1);
+    }
+}
+
+static void a_cursor_beyond_reach_comes_home_when_it_is_slewed(void **state)
+{
+    (void)state;
+    struct scene s = {0};
+    look_from(&s, origins[0], 0);
+    steps(&s, 0.02);
+    look_from(&s, moved(origins[0], 90, 900000), 0);
+    steps(&s, 0.1);
+    assert_false(s.cursor.is_on_glass);
+    s.cursor.slew_x = 10;
+    steps(&s, 0.1);
+    assert_true(s.cursor.is_on_glass);
+    assert_true(s.cursor.range_m < RANGE_M);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_place_is_where_geodesics_put_it_within_a_pixel),
+        cmocka_unit_test(a_place_too_far_to_be_drawn_is_refused),
+        cmocka_unit_test(zero_is_half_the_range_straight_ahead),
+        cmocka_unit_test(full_deflection_crosses_half_the_glass_in_a_second_in_every_direction),
+        cmocka_unit_test(slewing_stops_at_the_edge_of_what_is_shown),
+        cmocka_unit_test(the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns),
+        cmocka_unit_test(in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised),
+        cmocka_unit_test(automatic_range_goes_up_from_095_and_down_below_0425),
+        cmocka_unit_test(a_cursor_beyond_reach_comes_home_when_it_is_slewed),
+    };
+    return cmocka_run_group_tests_name("cursor", tests, NULL, NULL);
+}

@@ -1,0 +1,132 @@
+/* When a button acts: lm/keys.h, sentence by sentence. */
+#include "lm/keys.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { BUTTON = 7, STEP_US = 2000 };
+
+/* Acts of a button that is held from 0 to `held_us`, counting short and long ones. */
+static void hold_button(enum lm_key_style style, uint64_t held_us, int *shorts, int *longs)
+{
+    struct lm_keys keys = {0};
+    struct lm_press press;
+    *longs = 0;
+    *shorts = lm_keys_down(&keys, BUTTON, style, 0);
+    for (uint64_t now = STEP_US; now < held_us; now += STEP_US) {
+        while (lm_keys_held(&keys, now, &press)) {
+            assert_int_equal(press.button, BUTTON);
+            *(press.is_long ? longs : shorts) += 1;
+        }
+    }
+    *shorts += lm_keys_up(&keys, BUTTON, held_us);
+    assert_int_equal(keys.down, 0);
+}
+
+static void a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held(void **state)
+{
+    (void)state;
+    const uint64_t held[] = {STEP_US, 400000, 900000, 30000000};
+    for (size_t i = 0; i < sizeof held / sizeof *held; i++) {
+        int shorts, longs;
+        hold_button(LM_KEY_ONCE, held[i], &shorts, &longs);
+        assert_int_equal(shorts, 1);
+        assert_int_equal(longs, 0);
+    }
+}
+
+static void a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second(void **state)
+{
+    (void)state;
+    const struct {
+        uint64_t held_us;
+        int acts;
+    } cases[] = {{490000, 1}, {510000, 2}, {590000, 2}, {610000, 3}, {1510000, 12}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int shorts, longs;
+        hold_button(LM_KEY_REPEATS, cases[i].held_us, &shorts, &longs);
+        assert_int_equal(shorts, cases[i].acts);
+        assert_int_equal(longs, 0);
+    }
+}
+
+static void a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held(void **state)
+{
+    (void)state;
+    int shorts, longs;
+    hold_button(LM_KEY_HAS_LONG, 790000, &shorts, &longs);
+    assert_int_equal(shorts, 1);
+    assert_int_equal(longs, 0);
+    hold_button(LM_KEY_HAS_LONG, 810000, &shorts, &longs);
+    assert_int_equal(shorts, 0);
+    assert_int_equal(longs, 1);
+    hold_button(LM_KEY_HAS_LONG, 9000000, &shorts, &longs);
+    assert_int_equal(shorts, 0);
+    assert_int_equal(longs, 1);
+}
+
+static void a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go(void **state)
+{
+    (void)state;
+    struct lm_keys keys = {0};
+    struct lm_press press;
+    lm_keys_down(&keys, BUTTON, LM_KEY_REPEATS, 0);
+    int late = 0;
+    for (uint64_t now = 0; now < 40000000; now += 50000) {
+        while (lm_keys_held(&keys, now, &press)) {
+            late += now >= LM_KEY_STUCK_US;
+        }
+    }
+    assert_int_equal(late, 0);
+    assert_int_equal(keys.count.stuck, 1);
+    lm_keys_up(&keys, BUTTON, 40000000);
+    assert_true(lm_keys_down(&keys, BUTTON, LM_KEY_REPEATS, 41000000));
+    assert_true(lm_keys_held(&keys, 41600000, &press));
+}
+
+static void a_lost_release_and_a_release_out_of_nowhere_do_no_harm(void **state)
+{
+    (void)state;
+    struct lm_keys keys = {0};
+    assert_false(lm_keys_up(&keys, BUTTON, 5));
+    assert_true(lm_keys_down(&keys, BUTTON, LM_KEY_ONCE, 10));
+    assert_true(lm_keys_down(&keys, BUTTON, LM_KEY_ONCE, 20));
+    assert_false(lm_keys_up(&keys, BUTTON, 30));
+    assert_false(lm_keys_up(&keys, BUTTON, 40));
+}
+
+static void two_keys_at_once_do_not_disturb_each_other(void **state)
+{
+    (void)state;
+    struct lm_keys keys = {0};
+    struct lm_press press;
+    int acts[LM_BUTTONS + 1] = {0};
+    acts[LM_BUTTONS] += lm_keys_down(&keys, LM_BUTTONS, LM_KEY_REPEATS, 0);
+    for (uint64_t now = 0; now < 1000000; now += STEP_US) {
+        if (now == 100000) {
+            acts[1] += lm_keys_down(&keys, 1, LM_KEY_REPEATS, now);
+        }
+        while (lm_keys_held(&keys, now, &press)) {
+            acts[press.button]++;
+        }
+    }
+    assert_int_equal(acts[LM_BUTTONS], 6); /* 0, 0.5, 0.6, 0.7, 0.8, 0.9 */
+    assert_int_equal(acts[1], 5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held),
+        cmocka_unit_test(a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second),
+        cmocka_unit_test(a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held),
+        cmocka_unit_test(a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go),
+        cmocka_unit_test(a_lost_release_and_a_release_out_of_nowhere_do_no_harm),
+        cmocka_unit_test(two_keys_at_once_do_not_disturb_each_other),
+    };
+    return cmocka_run_group_tests_name("keys", tests, NULL, NULL);
+}

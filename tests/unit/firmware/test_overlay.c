@@ -1,0 +1,317 @@
+/* Palettes, primitives, text and the picture's colours. */
+#include "glass_text.h"
+#include "lm/font.h"
+#include "lm/overlay.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SIDE_MAX = 1024, GUARD = 64, CANARY = 0x7EADBEEF };
+
+/* A surface with a margin around it that nothing may touch. */
+static struct lm_surface make_surface(uint16_t width, uint16_t height)
+{
+    const size_t stride = width + 2u * GUARD;
+    uint32_t *block = malloc(stride * (height + 2u * GUARD) * sizeof *block);
+    assert_non_null(block);
+    for (size_t i = 0; i < stride * (height + 2u * GUARD); i++) {
+        block[i] = CANARY;
+    }
+    return (struct lm_surface){block + GUARD * stride + GUARD, (uint32_t)stride, width, height};
+}
+
+static void free_surface(struct lm_surface *s)
+{
+    const int32_t height = s->height_px, width = s->width_px;
+    for (int32_t y = -GUARD; y < height + GUARD; y++) {
+        for (int32_t x = -GUARD; x < width + GUARD; x++) {
+            if (y < 0 || y >= height || x < 0 || x >= width) {
+                assert_int_equal(s->pixels[y * (int32_t)s->stride_px + x], CANARY);
+            }
+        }
+    }
+    free(s->pixels - GUARD * s->stride_px - GUARD);
+}
+
+static unsigned part(uint32_t colour, int which)
+{
+    return colour >> (16 - 8 * which) & 255;
+}
+
+static void the_palette_as_delivered_shows_every_grey_as_it_is(void **state)
+{
+    (void)state;
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){0});
+    for (uint32_t i = 0; i < 256; i++) {
+        assert_int_equal(p.picture[i], i * 0x010101u);
+    }
+}
+
+static void every_palette_rises_from_black_and_keeps_symbols_apart_from_the_picture(void **state)
+{
+    (void)state;
+    for (uint8_t tint = 0; tint < LM_TINTS; tint++) {
+        for (int night = 0; night < 2; night++) {
+            struct lm_palette p;
+            lm_palette_set(&p, &(struct lm_palette_config){.tint = tint, .is_night = night});
+            assert_int_equal(p.picture[0], 0);
+            for (uint32_t i = 1; i < 256; i++) {
+                for (int c = 0; c < 3; c++) {
+                    assert_true(part(p.picture[i], c) >= part(p.picture[i - 1], c));
+                }
+                assert_int_not_equal(p.picture[i], p.symbol);
+                assert_int_not_equal(p.picture[i], p.warning);
+            }
+            assert_int_not_equal(p.symbol, p.warning);
+            assert_true(part(p.warning, 0) >= 120); /* seen by night as well */
+        }
+    }
+}
+
+static void night_takes_light_away_from_everything(void **state)
+{
+    (void)state;
+    for (uint8_t tint = 0; tint < LM_TINTS; tint++) {
+        struct lm_palette day, night;
+        lm_palette_set(&day, &(struct lm_palette_config){.tint = tint});
+        lm_palette_set(&night, &(struct lm_palette_config){.tint = tint, .is_night = true});
+        for (int c = 0; c < 3; c++) {
+            assert_true(part(night.picture[255], c) * 2 < part(day.picture[255], c) + 1);
+            assert_true(part(night.symbol, c) * 2 < part(day.symbol, c) + 1);
+        }
+    }
+}
+
+static void rockers_move_brightness_slope_and_symbols_one_way_each(void **state)
+{
+    (void)state;
+    struct lm_palette_config c = {0};
+    struct lm_palette p, before;
+    for (int8_t step = -LM_ROCKER_STEPS; step < LM_ROCKER_STEPS; step++) {
+        c = (struct lm_palette_config){.brightness = step};
+        lm_palette_set(&before, &c);
+        c.brightness++;
+        lm_palette_set(&p, &c);
+        assert_int_equal(part(p.picture[128], 0) - part(before.picture[128], 0), 12);
+        c = (struct lm_palette_config){.contrast = step};
+        lm_palette_set(&before, &c);
+        c.contrast++;
+        lm_palette_set(&p, &c);
+        /* 32 greys above the middle, 4^(step / 8) times as far */
+        const double above = fmin(32 * pow(4, (step + 1) / 8.0), 127);
+        assert_true(fabs(part(p.picture[160], 0) - 128.0 - above) <= 1);
+        c = (struct lm_palette_config){.symbology = step};
+        lm_palette_set(&before, &c);
+        c.symbology++;
+        lm_palette_set(&p, &c);
+        assert_true(part(p.symbol, 1) > part(before.symbol, 1) || part(before.symbol, 1) == 255);
+        assert_true(part(before.symbol, 1) > 40); /* never out */
+        assert_int_equal(p.warning, before.warning);
+    }
+}
+
+static void settings_out_of_range_count_as_the_nearest(void **state)
+{
+    (void)state;
+    struct lm_palette p, q;
+    lm_palette_set(&p, &(struct lm_palette_config){200, false, 127, 127, 127});
+    lm_palette_set(&q, &(struct lm_palette_config){0, false, 8, 8, 8});
+    assert_memory_equal(&p, &q, sizeof p);
+    lm_palette_set(&p, &(struct lm_palette_config){0, true, -128, -128, -128});
+    lm_palette_set(&q, &(struct lm_palette_config){0, true, -8, -8, -8});
+    assert_memory_equal(&p, &q, sizeof p);
+}
+
+static void the_picture_goes_through_the_palette_pixel_by_pixel(void **state)
+{
+    (void)state;
+    struct lm_surface s = make_surface(300, 256);
+    static uint8_t grey[300 * 256];
+    for (size_t i = 0; i < sizeof grey; i++) {
+        grey[i] = (uint8_t)(i * 7 + i / 300);
+    }
+    struct lm_palette p;
+    const struct lm_palette_config amber = {.tint = LM_TINT_AMBER, .contrast = 2};
+    lm_palette_set(&p, &amber);
+    const struct lm_frame frame = lm_frame_of_display(300, 256);
+    const struct lm_glass g = {s, &frame, &p};
+    const struct lm_plane plane = {grey, 300, 256};
+    lm_overlay_picture(&g, &plane);
+    for (uint32_t y = 0; y < 256; y++) {
+        for (uint32_t x = 0; x < 300; x++) {
+            assert_int_equal(s.pixels[y * s.stride_px + x], p.picture[grey[y * 300 + x]]);
+        }
+    }
+    free_surface(&s);
+}
+
+static void nothing_is_drawn_beyond_the_surface(void **state)
+{
+    (void)state;
+    const uint16_t sizes[][2] = {{256, 256}, {256, 1024}, {1024, 256}, {480, 480}, {1023, 1024}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        struct lm_surface s = make_surface(sizes[i][0], sizes[i][1]);
+        const struct lm_pen pen = lm_pen_for(&s, 0x00FFFFFF);
+        const int32_t far = LM_DRAW_FAR;
+        lm_draw_line(&pen, (struct lm_point){-far, -far + 3}, (struct lm_point){far, far});
+        lm_draw_line(&pen, (struct lm_point){-far, 100}, (struct lm_point){far, 100});
+        lm_draw_line(&pen, (struct lm_point){100, far}, (struct lm_point){100, -far});
+        lm_draw_box(&pen, -5, -5, 10, 10);
+        lm_draw_box(&pen, s.width_px - 2, s.height_px - 2, 10, 10);
+        lm_draw_box(&pen, 50, 50, -10, -10);
+        lm_draw_text(&pen, -8, -9, "WMW");
+        lm_draw_text(&pen, s.width_px - 9, s.height_px - 9, "WMW");
+        lm_draw_arc(&pen, (struct lm_point){3, 3}, 100, 0, FX_BAM_180);
+        struct lm_palette palette;
+        lm_palette_set(&palette, &(struct lm_palette_config){0});
+        const struct lm_frame frame = lm_frame_of_display(s.width_px, s.height_px);
+        const struct lm_glass g = {s, &frame, &palette};
+        lm_overlay_test_pattern(&g);
+        lm_overlay_warnings(&g, UINT32_MAX);
+        for (uint32_t row = 0; row < 60; row++) {
+            lm_overlay_row(&g, row, "01234567890123456789012345678901234567890123456");
+        }
+        free_surface(&s);
+    }
+}
+
+static void a_line_is_whole_and_as_wide_as_the_pen(void **state)
+{
+    (void)state;
+    struct lm_surface s = make_surface(256, 256);
+    struct lm_pen pen = lm_pen_for(&s, 0x00112233);
+    const struct lm_point ends[][2] = {
+        {{10, 10}, {200, 60}}, {{200, 10}, {10, 240}}, {{5, 5}, {5, 90}}, {{90, 7}, {5, 7}}};
+    for (size_t i = 0; i < 4; i++) {
+        const uint32_t before = glass_count(&s, pen.colour);
+        lm_draw_line(&pen, ends[i][0], ends[i][1]);
+        const int32_t dx = abs(ends[i][1].x - ends[i][0].x), dy = abs(ends[i][1].y - ends[i][0].y);
+        const int32_t longest = dx > dy ? dx : dy;
+        const int32_t drawn = (int32_t)(glass_count(&s, pen.colour) - before);
+        assert_in_range(drawn, longest - 3, longest + 1); /* less where lines cross */
+        for (int e = 0; e < 2; e++) {
+            const struct lm_point p = ends[i][e];
+            assert_int_equal(s.pixels[(uint32_t)p.y * s.stride_px + (uint32_t)p.x], pen.colour);
+        }
+    }
+    free_surface(&s);
+}
+
+static void text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit(void **state)
+{
+    (void)state;
+    for (uint16_t side = 256; side <= 1024; side++) {
+        const struct lm_surface s = {NULL, side, side, side};
+        const struct lm_pen pen = lm_pen_for(&s, 0);
+        const double share = 7.0 * pen.dot_px / side;
+        assert_true(share > 0.0165 && share < 0.034);
+        assert_true(side / lm_column_px(&pen) >= 35);
+        assert_true((side - 10 * pen.dot_px) / lm_row_px(&pen) >= 21);
+    }
+}
+
+static void every_character_of_the_font_differs_from_every_other(void **state)
+{
+    (void)state;
+    for (int a = 1; a < 0x60; a++) {
+        const int is_there = a <= 3 || a > 0x20;
+        const int is_blank = memcmp(lm_font_glyph((char)a), lm_font_glyph(' '), 7) == 0;
+        assert_int_equal(is_blank, !is_there);
+        for (int b = 0x21; is_there && b < a; b++) {
+            assert_memory_not_equal(lm_font_glyph((char)a), lm_font_glyph((char)b), 7);
+        }
+    }
+    assert_ptr_equal(lm_font_glyph('q'), lm_font_glyph('Q'));
+    assert_memory_equal(lm_font_glyph((char)200), lm_font_glyph(' '), 7);
+}
+
+static void text_is_cut_where_it_does_not_fit_and_numbers_are_exact(void **state)
+{
+    (void)state;
+    struct lm_text t = {0};
+    lm_text_number(&t, 4294967295u, 1);
+    lm_text_add(&t, " ");
+    lm_text_number(&t, 7, 3);
+    lm_text_add(&t, " ");
+    lm_text_signed(&t, INT32_MIN);
+    lm_text_signed(&t, 5);
+    lm_text_signed(&t, 0);
+    assert_string_equal(t.words, "4294967295 007 -2147483648+50");
+    lm_text_tab(&t, 200);
+    lm_text_add(&t, "X");
+    lm_text_number(&t, 1, 10);
+    assert_int_equal(strlen(t.words), LM_TEXT_MAX);
+    assert_int_equal(t.length, LM_TEXT_MAX);
+}
+
+static void each_flag_has_a_word_of_its_own_on_the_glass(void **state)
+{
+    (void)state;
+    struct lm_palette palette;
+    lm_palette_set(&palette, &(struct lm_palette_config){0});
+    for (uint16_t side = 256; side <= 1024; side += 256) {
+        struct lm_surface s = make_surface(side, side);
+        const struct lm_frame frame = lm_frame_of_display(side, side);
+        const struct lm_glass g = {s, &frame, &palette};
+        lm_overlay_blank(&g);
+        lm_overlay_warnings(&g, (1u << LM_FLAGS) - 1);
+        for (uint32_t i = 0; i < LM_FLAGS; i++) {
+            assert_true(glass_find(&s, lm_flag_word(i), palette.warning, palette.ink, NULL));
+            for (uint32_t j = 0; j < i; j++) {
+                assert_string_not_equal(lm_flag_word(i), lm_flag_word(j));
+            }
+        }
+        free_surface(&s);
+    }
+}
+
+static void the_test_pattern_shows_sixteen_greys_every_colour_and_every_character(void **state)
+{
+    (void)state;
+    struct lm_palette palette;
+    lm_palette_set(&palette, &(struct lm_palette_config){0});
+    struct lm_surface s = make_surface(480, 480);
+    const struct lm_frame frame = lm_frame_of_display(480, 480);
+    const struct lm_glass g = {s, &frame, &palette};
+    lm_overlay_test_pattern(&g);
+    for (uint32_t i = 0; i < 16; i++) {
+        assert_true(glass_count(&s, i * 17 * 0x010101u) > 1000);
+    }
+    const uint32_t colours[] = {palette.symbol, palette.faint, palette.warning,
+                                0x00FF0000,     0x0000FF00,    0x000000FF};
+    for (size_t i = 0; i < 6; i++) {
+        assert_true(glass_count(&s, colours[i]) > 2000);
+    }
+    assert_true(glass_find(&s, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", palette.symbol, 0, NULL));
+    assert_true(glass_find(&s, "0123456789 !\"#$%&'()*+,-./", palette.symbol, 0, NULL));
+    assert_true(glass_find(&s, ":;<=>?@[\\]^_\x01\x02\x03", palette.symbol, 0, NULL));
+    free_surface(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_palette_as_delivered_shows_every_grey_as_it_is),
+        cmocka_unit_test(every_palette_rises_from_black_and_keeps_symbols_apart_from_the_picture),
+        cmocka_unit_test(night_takes_light_away_from_everything),
+        cmocka_unit_test(rockers_move_brightness_slope_and_symbols_one_way_each),
+        cmocka_unit_test(settings_out_of_range_count_as_the_nearest),
+        cmocka_unit_test(the_picture_goes_through_the_palette_pixel_by_pixel),
+        cmocka_unit_test(nothing_is_drawn_beyond_the_surface),
+        cmocka_unit_test(a_line_is_whole_and_as_wide_as_the_pen),
+        cmocka_unit_test(text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit),
+        cmocka_unit_test(every_character_of_the_font_differs_from_every_other),
+        cmocka_unit_test(text_is_cut_where_it_does_not_fit_and_numbers_are_exact),
+        cmocka_unit_test(each_flag_has_a_word_of_its_own_on_the_glass),
+        cmocka_unit_test(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character),
+    };
+    return cmocka_run_group_tests_name("overlay", tests, NULL, NULL);
+}

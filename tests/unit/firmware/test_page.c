@@ -1,0 +1,775 @@
+/* Every key of the page pressed: what it does to the unit, and what the glass then says. Keys stand
+ * where RADAR facts put them: 1 = top left, clockwise, five to a side, three tenths of half a
+ * screen apart. */
+#include "glass_text.h"
+#include "lm/bit.h"
+#include "lm/font.h"
+#include "unit_rig.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct lm_surface glass_of(const struct rig *r)
+{
+    return (struct lm_surface){(uint32_t *)r->glass, WIDTH, WIDTH, HEIGHT};
+}
+
+static int says(const struct rig *r, const char *words)
+{
+    const struct lm_surface s = glass_of(r);
+    return glass_find(&s, words, r->unit.palette.symbol, r->unit.palette.ink, NULL);
+}
+
+static int says_inverse(const struct rig *r, const char *words)
+{
+    const struct lm_surface s = glass_of(r);
+    return glass_find(&s, words, r->unit.palette.ink, r->unit.palette.symbol, NULL);
+}
+
+static int warns(const struct rig *r, const char *words)
+{
+    const struct lm_surface s = glass_of(r);
+    return glass_find(&s, words, r->unit.palette.warning, r->unit.palette.ink, NULL);
+}
+
+/* Whether these words are the label of that key: beside it, and in inverse video or not. */
+static int labelled(const struct rig *r, int osb, const char *words, int is_inverse)
+{
+    const struct lm_surface s = glass_of(r);
+    const uint32_t symbol = r->unit.palette.symbol, ink = r->unit.palette.ink;
+    struct lm_point at;
+    if (!glass_find(&s, words, is_inverse ? ink : symbol, is_inverse ? symbol : ink, &at)) {
+        return 0;
+    }
+    const struct lm_pen pen = lm_pen_for(&s, symbol);
+    const int side = (osb - 1) / 5, along = (osb - 1) % 5;
+    const double middle = 240 * (1 + 0.3 * (side < 2 ? along - 2 : 2 - along));
+    const int32_t width = lm_text_width(&pen, words);
+    switch (side) {
+    case 0:
+        return at.y < 20 && fabs(at.x + width / 2.0 - middle) < 3;
+    case 1:
+        return at.x + width > WIDTH - 10 && fabs(at.y + 7 - middle) < 12;
+    case 2:
+        return at.y > HEIGHT - 24 && fabs(at.x + width / 2.0 - middle) < 3;
+    default:
+        return at.x < 10 && fabs(at.y + 7 - middle) < 12;
+    }
+}
+
+/* A rig in good flight at 10 nm with a picture. */
+static struct rig *fly(void)
+{
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 1.5);
+    return r;
+}
+
+static void the_page_after_power_up_has_the_labels_of_the_key_map(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 1);
+    static const struct {
+        int osb;
+        const char *words;
+        int is_inverse;
+    } map[] = {{1, "GM", 0},        {2, "MAN", 0},   {3, "NORM", 0},  {4, "OVRD", 0},
+               {5, "CNTL", 0},      {7, "FZ", 0},    {8, "SP", 0},    {9, "CZ", 0},
+               {10, "STP", 1},      {11, "DCLT", 0}, {12, "BIT", 0},  {13, "FCR", 1},
+               {14, "TEST", 0},     {15, "SWAP", 0}, {16, "CELL", 0}, {19, LM_GLYPH_DOWN, 0},
+               {20, LM_GLYPH_UP, 0}};
+    for (size_t i = 0; i < sizeof map / sizeof *map; i++) {
+        if (!labelled(r, map[i].osb, map[i].words, map[i].is_inverse)) {
+            fail_msg("OSB %d does not say %s", map[i].osb, map[i].words);
+        }
+    }
+    const struct lm_surface s = glass_of(r);
+    struct lm_point at;
+    assert_true(glass_find(&s, "40", r->unit.palette.symbol, 0, &at)); /* between 19 and 20 */
+    assert_in_range(at.y, 96 + 7, 168 - 21);
+    assert_true(at.x < 10);
+    free_rig(r);
+}
+
+static void osb_1_leaves_the_patch_for_the_ground_map(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM); /* the only mode of the rotary */
+    command(r, patch_here);
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(labelled(r, 3, "SAR", 0));
+    press(r, 1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_true(labelled(r, 3, "NORM", 0));
+    free_rig(r);
+}
+
+static void osb_2_lets_the_range_follow_the_cursor(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 2);
+    assert_true(r->unit.page.is_auto_range);
+    assert_true(labelled(r, 2, "AUTO", 0));
+    assert_int_equal(r->unit.page.range, 0);
+    /* From half of 10 nm up to where 20 nm is due. */
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = 1000});
+    run(r, 0.55);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.range, 1);
+    assert_true(says(r, "20"));
+    /* And back: below 0.425 of 20 nm. */
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = -1000});
+    run(r, 0.2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.range, 0);
+    press(r, 2);
+    assert_true(labelled(r, 2, "MAN", 0));
+    free_rig(r);
+}
+
+static void osb_3_leaves_the_patch_and_offers_no_field_of_view_that_is_not_there(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const uint32_t lines = r->unit.count.lines;
+    press(r, 3);
+    assert_true(labelled(r, 3, "NORM", 0));
+    assert_true(r->unit.count.lines > lines && lit_pixels(r) > 10000); /* the picture went on */
+    command(r, patch_here);
+    run(r, 0.2);
+    press(r, 3);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    free_rig(r);
+}
+
+static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 4);
+    const uint32_t lines = r->unit.count.lines, sum = plane_sum(r);
+    run(r, 0.5);
+    assert_int_equal(r->unit.count.lines, lines);
+    assert_int_equal(plane_sum(r), sum);
+    assert_true(labelled(r, 4, "OVRD", 1));
+    assert_true(warns(r, "NO RAD"));
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* a patch would need it */
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_true(warns(r, "UNABLE"));
+    press(r, 4);
+    run(r, 0.5);
+    assert_true(r->unit.count.lines > lines + 50);
+    assert_true(labelled(r, 4, "OVRD", 0));
+    assert_false(warns(r, "NO RAD"));
+    free_rig(r);
+}
+
+static void osb_5_opens_the_control_page_over_the_picture_and_closes_it(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 5);
+    assert_true(labelled(r, 5, "CNTL", 1));
+    assert_true(labelled(r, 10, "RESET", 0));
+    assert_true(says(r, "GAMMA") && says(r, "WHITE") && says(r, "BLACK"));
+    assert_true(lit_pixels(r) > 10000);
+    press(r, 5);
+    assert_true(labelled(r, 5, "CNTL", 0));
+    assert_false(says(r, "GAMMA"));
+    free_rig(r);
+}
+
+static void osb_6_and_17_mean_nothing_on_the_radar_page(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const struct lm_page before = r->unit.page;
+    press(r, 6);
+    press(r, 17);
+    assert_memory_equal(&r->unit.page, &before, sizeof before);
+    struct lm_label label;
+    assert_false(lm_page_label(&before, 6, &label));
+    assert_false(lm_page_label(&before, 17, &label));
+    free_rig(r);
+}
+
+/* On the control page: what a key changes, and what stands between it and its pair. */
+static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
+{
+    (void)state;
+    static const struct {
+        int up, down;
+        const char *words_up, *words_down;
+    } pairs[] = {{20, 19, "1.6", "1.4"}, {18, 17, "+1", "-1"}, {6, 7, "+1", "-1"}};
+    for (size_t i = 0; i < 3; i++) {
+        struct rig *r = fly();
+        const struct lm_tone before = r->unit.gm_tone;
+        press(r, 5);
+        press(r, pairs[i].up);
+        assert_true(says(r, pairs[i].words_up));
+        assert_memory_not_equal(&r->unit.gm_tone, &before, sizeof before);
+        press(r, pairs[i].down);
+        assert_memory_equal(&r->unit.gm_tone, &before, sizeof before);
+        press(r, pairs[i].down);
+        assert_true(says(r, pairs[i].words_down));
+        hold(r, pairs[i].up, 5); /* repeats until it stands at its end */
+        const struct lm_page *p = &r->unit.page;
+        assert_int_equal(p->gamma_tenths + p->white_db + p->black_db, i == 0 ? 10 : 20);
+        press(r, 10); /* RESET */
+        assert_memory_equal(&r->unit.gm_tone, &before, sizeof before);
+        free_rig(r);
+    }
+}
+
+static void osb_8_and_9_of_the_control_page_choose_tint_and_night(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const struct lm_palette day = r->unit.palette;
+    press(r, 5);
+    assert_true(labelled(r, 8, "GREY", 0));
+    press(r, 8);
+    assert_true(labelled(r, 8, "GREEN", 0));
+    assert_true((r->unit.palette.picture[255] >> 8 & 255) > (r->unit.palette.picture[255] >> 16));
+    press(r, 8);
+    assert_true(labelled(r, 8, "AMBER", 0));
+    press(r, 8);
+    assert_memory_equal(&r->unit.palette, &day, sizeof day);
+    press(r, 9);
+    assert_true(labelled(r, 9, "NIGHT", 1));
+    uint32_t brightest = 0;
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        brightest = (r->glass[i] & 255) > brightest ? r->glass[i] & 255 : brightest;
+    }
+    assert_true(brightest < 128);
+    press(r, 9);
+    assert_true(labelled(r, 9, "DAY", 0));
+    free_rig(r);
+}
+
+/* Middle of the ownship's circle, found by its pixels on the frozen glass: the lowest row of the
+ * symbol's colour within the frame's columns near the apex. */
+static int32_t ownship_top(const struct rig *r)
+{
+    const struct lm_frame *f = &r->unit.frame;
+    const int32_t x = f->left_px + f->width_px / 2 + 12; /* right of the line: radius 0.05 of 240 */
+    for (int32_t y = f->top_px; y < f->top_px + f->height_px; y++) {
+        if (r->glass[y * WIDTH + x] == r->unit.palette.symbol &&
+            r->glass[(y + 2) * WIDTH + x] == r->unit.palette.symbol && y > 300) {
+            return y;
+        }
+    }
+    return -1;
+}
+
+static void osb_7_freezes_the_map_and_the_ownship_moves_over_it(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    /* Out of the way with the cursor's lines. */
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = -1000});
+    run(r, 0.5);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    press(r, 7);
+    assert_true(labelled(r, 7, "FZ", 1));
+    assert_true(warns(r, "FZ"));
+    const uint32_t sum = plane_sum(r), lines = r->unit.count.lines;
+    const int32_t before = ownship_top(r);
+    run(r, 20); /* 3,000 m: 34 of the 210 pixels of 18,520 m */
+    assert_int_equal(plane_sum(r), sum);
+    assert_int_equal(r->unit.count.lines, lines);
+    const int32_t after = ownship_top(r);
+    assert_true(before > 0 && after > 0);
+    assert_in_range(before - after, 31, 37);
+    press(r, 7);
+    run(r, 0.5);
+    assert_true(labelled(r, 7, "FZ", 0));
+    assert_true(r->unit.count.lines > lines + 50);
+    free_rig(r);
+}
+
+static void a_new_scale_ends_the_freeze(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 7);
+    press(r, 20);
+    assert_false(r->unit.page.is_frozen);
+    run(r, 1);
+    assert_true(lit_pixels(r) > 1000);
+    free_rig(r);
+}
+
+static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 8);
+    assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
+    const struct lm_place start = r->unit.cursor.place;
+    const uint32_t half = lm_radar_default.range_m[0] / 2;
+    run(r, 10);
+    assert_true(r->unit.cursor.place.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
+    assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* stabilises, and no more */
+    run(r, 0.05);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    const struct lm_place held = r->unit.cursor.place;
+    run(r, 10);
+    assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+    press(r, 10);
+    assert_true(labelled(r, 8, "SP", 0) && labelled(r, 10, "STP", 1));
+    run(r, 1);
+    assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+    free_rig(r);
+}
+
+static void osb_9_brings_the_cursor_home(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 1000, .value_y = -500});
+    run(r, 0.4);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.1);
+    assert_true(r->unit.cursor.offset.x_q8 > 80 * 256);
+    press(r, 9);
+    const uint32_t half = lm_radar_default.range_m[0] / 2;
+    assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512);
+    assert_in_range(r->unit.cursor.range_m, half - 60, half + 20);
+    free_rig(r);
+}
+
+static void osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 11);
+    assert_true(labelled(r, 11, "DCLT", 1));
+    const char *const gone[] = {"SP", "CZ", "STP", "BIT", "TEST", "SWAP", "CELL"};
+    for (size_t i = 0; i < sizeof gone / sizeof *gone; i++) {
+        assert_false(says(r, gone[i]) || says_inverse(r, gone[i]));
+    }
+    assert_true(labelled(r, 1, "GM", 0) && labelled(r, 3, "NORM", 0));
+    press(r, 7); /* the key works, and what it says is unusual now */
+    assert_true(labelled(r, 7, "FZ", 1));
+    press(r, 11);
+    assert_true(labelled(r, 9, "CZ", 0) && labelled(r, 15, "SWAP", 0));
+    free_rig(r);
+}
+
+static void osb_11_held_opens_the_choice_of_labels(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    hold(r, 11, 1);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_DCLT);
+    assert_true(labelled(r, 9, "CZ", 1) && labelled(r, 1, "GM", 0));
+    press(r, 9);
+    press(r, 1);
+    press(r, 19);
+    assert_true(labelled(r, 9, "CZ", 0) && labelled(r, 1, "GM", 1));
+    assert_int_equal(r->unit.page.range, 0); /* the keys only choose */
+    press(r, 11);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_RADAR);
+    press(r, 11);
+    assert_true(labelled(r, 9, "CZ", 0));
+    assert_false(says(r, "GM"));
+    free_rig(r);
+}
+
+static void osb_12_to_14_are_the_direct_access_to_the_formats(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 12);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_BIT);
+    assert_true(labelled(r, 12, "BIT", 1) && labelled(r, 13, "FCR", 0));
+    const uint32_t lines = r->unit.count.lines;
+    press(r, 14);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_TEST);
+    assert_true(labelled(r, 14, "TEST", 1));
+    assert_true(says(r, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"));
+    run(r, 1);
+    assert_true(r->unit.count.lines > lines + 200); /* the radar works on behind it */
+    press(r, 13);
+    assert_int_equal(r->unit.page.format, LM_FORMAT_RADAR);
+    assert_true(labelled(r, 13, "FCR", 1));
+    free_rig(r);
+}
+
+static void osb_15_asks_the_board_to_swap(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 15);
+    assert_int_equal(r->unit.count.swaps, 1);
+    press(r, 12);
+    press(r, 15);
+    assert_int_equal(r->unit.count.swaps, 2);
+    assert_true(says(r, "SWAPS    2"));
+    free_rig(r);
+}
+
+static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    assert_true(says(r, "5M"));
+    press(r, 16);
+    assert_true(says(r, "10M"));
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    run(r, 1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_int_equal(r->unit.sar.command.cell_mm, 10000);
+    const struct lm_place centre = r->unit.sar.command.centre;
+    press(r, 16);
+    assert_int_equal(r->unit.sar.command.cell_mm, 20000);
+    assert_memory_equal(&r->unit.sar.command.centre, &centre, sizeof centre);
+    assert_true(says(r, "CELL 20.0M"));
+    free_rig(r);
+}
+
+/* How far from straight up the outer half of the picture reaches, degrees. */
+static double widest_degrees(const struct rig *r)
+{
+    const struct lm_point apex = r->unit.view.at;
+    double widest = 0;
+    for (int32_t y = 0; y < HEIGHT; y++) {
+        for (int32_t x = 0; x < WIDTH; x++) {
+            const double right = x - apex.x, up = apex.y - y;
+            if (r->plane[y * WIDTH + x] > 0 && hypot(right, up) > r->unit.view.radius_px / 2.0) {
+                widest = fmax(widest, fabs(atan2(right, up)) * 57.29578);
+            }
+        }
+    }
+    return widest;
+}
+
+static void osb_18_goes_through_the_azimuths(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const char *const digits[] = {"3", "1", "6"};
+    const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
+    for (int i = 0; i < 3; i++) {
+        press(r, 18);
+        assert_int_equal(lm_radar_default.azimuth_half[r->unit.ground_map.azimuth], halves[i]);
+        struct lm_label label;
+        assert_true(lm_page_label(&r->unit.page, 18, &label));
+        assert_string_equal(label.line[0], "A");
+        assert_string_equal(label.line[1], digits[i]);
+        run(r, 1);
+        const double half = i == 0 ? 30 : i == 1 ? 10 : 60;
+        const double widest = widest_degrees(r);
+        assert_true(widest > half - 3 && widest < half + 1.5);
+    }
+    free_rig(r);
+}
+
+static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const char *const words[] = {"10", "20", "40", "80"};
+    press(r, 2);
+    for (int range = 1; range < LM_RANGES; range++) {
+        press(r, 20);
+        assert_int_equal(r->unit.ground_map.range, range);
+        assert_true(says(r, words[range]));
+        assert_false(r->unit.page.is_auto_range);
+    }
+    assert_false(says(r, LM_GLYPH_UP)); /* no further */
+    press(r, 20);
+    assert_int_equal(r->unit.ground_map.range, 3);
+    for (int range = LM_RANGES - 2; range >= 0; range--) {
+        press(r, 19);
+        assert_int_equal(r->unit.ground_map.range, range);
+        assert_true(says(r, words[range]));
+    }
+    assert_false(says(r, LM_GLYPH_DOWN));
+    free_rig(r);
+}
+
+static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const struct lm_tone tone = r->unit.gm_tone;
+    press(r, lm_rocker_button(LM_ROCKER_GAIN, true));
+    assert_int_equal(r->unit.page.gain_db, 1);
+    assert_memory_not_equal(&r->unit.gm_tone, &tone, sizeof tone);
+    press(r, lm_rocker_button(LM_ROCKER_GAIN, false));
+    command(r, (struct lm_control){.kind = LM_CONTROL_KNOB, .value = 1000});
+    run(r, 0.01);
+    const struct lm_tone_config table = lm_radar_default.gm_tone;
+    const struct lm_tone_config config = lm_page_tone(&r->unit.page, &table);
+    /* 20 % of amplitude: 20 log10 1.2 = 1.584 dB */
+    assert_true(fabs((table.black_q8 - config.black_q8) / 256.0 - 1.584) < 0.01);
+    command(r, (struct lm_control){.kind = LM_CONTROL_KNOB});
+    run(r, 0.01);
+    assert_memory_equal(&r->unit.gm_tone, &tone, sizeof tone);
+    const struct lm_palette palette = r->unit.palette;
+    const enum lm_rocker rockers[] = {LM_ROCKER_SYM, LM_ROCKER_BRT, LM_ROCKER_CON};
+    for (int i = 0; i < 3; i++) {
+        press(r, lm_rocker_button(rockers[i], false));
+        assert_memory_not_equal(&r->unit.palette, &palette, sizeof palette);
+        assert_true(says(r, "NORM"));
+        press(r, lm_rocker_button(rockers[i], true));
+        assert_memory_equal(&r->unit.palette, &palette, sizeof palette);
+    }
+    hold(r, lm_rocker_button(LM_ROCKER_GAIN, true), 5);
+    assert_int_equal(r->unit.page.gain_db, LM_GAIN_MAX_DB);
+    free_rig(r);
+}
+
+/* The columns of the cursor's vertical and the rows of its horizontal line. */
+static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 700, .value_y = 300});
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.1);
+    const struct lm_frame *f = &r->unit.frame;
+    const struct lm_point at = lm_view_point(&r->unit.view, r->unit.cursor.offset);
+    for (int32_t x = f->left_px; x < f->left_px + f->width_px; x++) {
+        assert_int_equal(r->glass[at.y * WIDTH + x], r->unit.palette.symbol);
+    }
+    for (int32_t y = f->top_px; y < f->top_px + f->height_px; y++) {
+        assert_int_equal(r->glass[y * WIDTH + at.x], r->unit.palette.symbol);
+    }
+    /* The cue: ticks across the lines at an eighth of the range. */
+    const int32_t away = r->unit.view.radius_px / 8;
+    for (int side = -1; side <= 1; side += 2) {
+        assert_int_equal(r->glass[(at.y + 5) * WIDTH + at.x + side * away], r->unit.palette.symbol);
+        assert_int_equal(r->glass[(at.y + side * away) * WIDTH + at.x - 5], r->unit.palette.symbol);
+    }
+    free_rig(r);
+}
+
+static void the_cursors_numbers_are_right(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    /* Zero: 5 nm due north of the aircraft at the moment of the press, 46 N 11 E minus 0.05 degree
+     * plus what it has flown at 150 m/s. */
+    press(r, 9);
+    run(r, 0.1);
+    const double flown = 150 * (double)r->now_us / 1e6;
+    const double lat = (int32_t)r->unit.cursor.place.latitude * 360.0 / 4294967296.0;
+    const double own = 46 - 0.05 + flown / 111132.0;
+    assert_true(fabs((lat - own) * 111149 - 9260) < 60); /* a degree at 46 N: 111,149 m */
+    char words[32];
+    const double minutes = (lat - 45) * 60;
+    snprintf(words, sizeof words, "N45" LM_GLYPH_DEGREE "%05.2f", minutes);
+    assert_true(says(r, minutes < 60 ? words : "N46"));
+    assert_true(says(r, "E011" LM_GLYPH_DEGREE "00.00"));
+    assert_true(says(r, "000" LM_GLYPH_DEGREE "/05.0"));
+    /* hills(): 100 m + 50 sin(0) = 100 m = 328 ft at the meridian of the image's centre. */
+    snprintf(words, sizeof words, "ELV +%d", 328);
+    const double feet = r->unit.cursor_elevation_q10 / 1024.0 * 3.28084;
+    assert_true(feet > 150 && feet < 500);
+    snprintf(words, sizeof words, "ELV +%.0fFT",
+             floor(r->unit.cursor_elevation_q10 / 1024.0) * 3.28084);
+    assert_true(says(r, words));
+    free_rig(r);
+}
+
+static void the_cursor_stays_over_its_place_through_turns_of_the_page(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    run(r, 1);
+    const struct lm_place held = r->unit.cursor.place;
+    const int keys[] = {20, 18, 7, 7, 5, 5, 12, 13, 19, 4, 4};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        press(r, keys[i]);
+        run(r, 0.5);
+        assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+    }
+    free_rig(r);
+}
+
+static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    run(r, 4);
+    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
+                        sizeof(struct lm_place));
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
+    assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, "LOOK 000"));
+    assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
+    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    free_rig(r);
+}
+
+static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    /* Too near: under the aircraft. */
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = -1000});
+    run(r, 2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_int_equal(r->unit.count.commands_refused, 1);
+    assert_true(warns(r, "UNABLE"));
+    run(r, 2);
+    assert_false(warns(r, "UNABLE"));
+    free_rig(r);
+}
+
+static void the_bit_page_says_what_the_counters_say(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    r->bus.is_down = 1;
+    run(r, 2.5);
+    r->bus.is_down = 0;
+    r->bus.sent_us = r->now_us;
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .value = 9});
+    run(r, 1);
+    press(r, 12);
+    /* Stop the clock: the numbers of the picture on the glass. */
+    const struct lm_unit *u = &r->unit;
+    const struct {
+        const char *name;
+        uint32_t value;
+    } counters[] = {{"FRAMES   %u", u->count.frames - 1}, /* this picture is counted behind it */
+                    {"BUSY     %u", u->count.display_busy},
+                    {"LATE     %u", u->count.lines_dropped},
+                    {"BUS ERR  %u", u->count.bus_errors},
+                    {"JUMPS    %u", u->nav.position_jumps},
+                    {"REFUSED  %u", u->count.commands_refused},
+                    {"TILES    %u", u->tiles.count.tiles_read},
+                    {"EVICTED  %u", u->tiles.count.evicted},
+                    {"COARSER  %u", u->tiles.count.substituted},
+                    {"READ ERR %u", u->tiles.count.io_errors},
+                    {"CRC ERR  %u", u->tiles.count.corrupt},
+                    {"DROPPED  %u", u->tiles.count.requests_dropped},
+                    {"DISP ERR %u", u->count.display_errors},
+                    {"STUCK    %u", u->keys.count.stuck},
+                    {"SWAPS    %u", u->count.swaps},
+                    {"LEVELS   %u", u->db.level_count},
+                    {"RECORDS  %u", u->db.record_count}};
+    assert_true(u->count.bus_errors > 1000 && u->count.commands_refused == 1);
+    for (size_t i = 0; i < sizeof counters / sizeof *counters; i++) {
+        char words[48];
+        snprintf(words, sizeof words, counters[i].name, counters[i].value);
+        if (!says(r, words)) {
+            fail_msg("the glass does not say %s", words);
+        }
+    }
+    /* LINES, BUS, HITS and MISSES move between two pictures: their rows as text. */
+    char line[48];
+    snprintf(line, sizeof line, "LINES    %u", u->count.lines);
+    assert_non_null(strstr(lm_bit_row(u, 4).words, line));
+    snprintf(line, sizeof line, "BUS      %u", u->count.bus_frames);
+    assert_non_null(strstr(lm_bit_row(u, 5).words, line));
+    snprintf(line, sizeof line, "HITS     %u", u->tiles.count.hits);
+    assert_non_null(strstr(lm_bit_row(u, 8).words, line));
+    snprintf(line, sizeof line, "MISSES   %u", u->tiles.count.misses);
+    assert_non_null(strstr(lm_bit_row(u, 8).words, line));
+    assert_true(says(r, "LANDMASS"));
+    /* The bus fell silent at 1.5 s; heading is stale at once and dead a second later. */
+    assert_true(says(r, "00:00:01  NAV"));
+    assert_true(says(r, "00:00:02  BUS"));
+    assert_true(says(r, "00:00:02  NAV FAIL"));
+    free_rig(r);
+}
+
+static void a_broken_database_leaves_a_bit_page_that_says_so(void **state)
+{
+    (void)state;
+    struct rig *r = make_rig();
+    r->image.bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    run(r, 0.5);
+    press(r, 12);
+    assert_true(says(r, "DB FAIL"));
+    assert_true(says(r, "RECORDS  0"));
+    free_rig(r);
+}
+
+static void buttons_and_deflections_that_do_not_exist_are_refused(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    const struct lm_control bad[] = {
+        {.kind = LM_CONTROL_DOWN, .value = 0},
+        {.kind = LM_CONTROL_DOWN, .value = LM_BUTTONS + 1},
+        {.kind = LM_CONTROL_UP, .value = INT32_MIN},
+        {.kind = LM_CONTROL_SLEW, .value = 1001},
+        {.kind = LM_CONTROL_SLEW, .value_y = INT32_MIN},
+        {.kind = LM_CONTROL_KNOB, .value = -1001},
+    };
+    const struct lm_page before = r->unit.page;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        command(r, bad[i]);
+    }
+    run(r, 0.1);
+    assert_int_equal(r->unit.count.commands_refused, 6);
+    assert_memory_equal(&r->unit.page, &before, sizeof before);
+    free_rig(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_page_after_power_up_has_the_labels_of_the_key_map),
+        cmocka_unit_test(osb_1_leaves_the_patch_for_the_ground_map),
+        cmocka_unit_test(osb_2_lets_the_range_follow_the_cursor),
+        cmocka_unit_test(osb_3_leaves_the_patch_and_offers_no_field_of_view_that_is_not_there),
+        cmocka_unit_test(osb_4_stops_the_transmitter_and_the_picture_says_so),
+        cmocka_unit_test(osb_5_opens_the_control_page_over_the_picture_and_closes_it),
+        cmocka_unit_test(osb_6_and_17_mean_nothing_on_the_radar_page),
+        cmocka_unit_test(the_control_pages_keys_change_the_tone_of_the_picture),
+        cmocka_unit_test(osb_8_and_9_of_the_control_page_choose_tint_and_night),
+        cmocka_unit_test(osb_7_freezes_the_map_and_the_ownship_moves_over_it),
+        cmocka_unit_test(a_new_scale_ends_the_freeze),
+        cmocka_unit_test(osb_8_and_10_choose_snowplow_or_a_held_cursor),
+        cmocka_unit_test(osb_9_brings_the_cursor_home),
+        cmocka_unit_test(osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one),
+        cmocka_unit_test(osb_11_held_opens_the_choice_of_labels),
+        cmocka_unit_test(osb_12_to_14_are_the_direct_access_to_the_formats),
+        cmocka_unit_test(osb_15_asks_the_board_to_swap),
+        cmocka_unit_test(osb_16_chooses_the_cell_and_draws_the_patch_again),
+        cmocka_unit_test(osb_18_goes_through_the_azimuths),
+        cmocka_unit_test(osb_19_and_20_step_the_range_and_end_automatic_range),
+        cmocka_unit_test(rockers_and_the_range_knob_change_gain_and_glass),
+        cmocka_unit_test(the_cursors_lines_cross_the_whole_frame_at_its_place),
+        cmocka_unit_test(the_cursors_numbers_are_right),
+        cmocka_unit_test(the_cursor_stays_over_its_place_through_turns_of_the_page),
+        cmocka_unit_test(designate_looks_closely_at_the_cursor_and_drop_comes_back),
+        cmocka_unit_test(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds),
+        cmocka_unit_test(the_bit_page_says_what_the_counters_say),
+        cmocka_unit_test(a_broken_database_leaves_a_bit_page_that_says_so),
+        cmocka_unit_test(buttons_and_deflections_that_do_not_exist_are_refused),
+    };
+    return cmocka_run_group_tests_name("page", tests, NULL, NULL);
+}

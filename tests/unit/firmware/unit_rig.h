@@ -1,0 +1,60 @@
+/* A unit in flight for tests: a small country, a bus, a flash and a glass that misbehave on demand.
+ */
+#ifndef UNIT_RIG_H
+#define UNIT_RIG_H
+
+#include "lm/unit.h"
+
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120, CONTROLS_MAX = 64 };
+
+/* A bus that flies north at 150 m/s from 46 N 11 E, 2,000 m up, until told to stop. */
+struct fake_bus {
+    uint64_t now_us, sent_us, stop_us;
+    int queue_next;
+    int is_down;
+    double jump_degrees;
+    uint8_t code;
+};
+
+struct rig {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct fake_bus bus;
+    struct lm_control controls_waiting[CONTROLS_MAX];
+    int control_count, control_next;
+    uint32_t glass[WIDTH * HEIGHT];
+    int is_display_busy, is_display_broken;
+    uint8_t plane[WIDTH * HEIGHT];
+    uint64_t pool[POOL_TILES * sizeof(struct lm_tile) / 8];
+    struct lm_can can;
+    struct lm_controls controls;
+    struct lm_display display;
+    struct lm_board board;
+    struct lm_unit unit;
+    uint64_t now_us;
+};
+
+/* A rig whose unit is not started yet, and one whose unit is. */
+struct rig *make_rig(void);
+struct rig *start_rig(void);
+void free_rig(struct rig *r);
+
+/* Fly on. */
+void run(struct rig *r, double seconds);
+
+/* What the operator does at the next step, in the order of the calls. */
+void command(struct rig *r, struct lm_control control);
+
+/* Press a button (1..LM_BUTTONS) for a tenth of a second, or for as long as said. */
+void press(struct rig *r, int button);
+void hold(struct rig *r, int button, double seconds);
+
+uint32_t plane_sum(const struct rig *r);
+uint32_t lit_pixels(const struct rig *r);
+
+extern const struct lm_control range_10, patch_here;
+
+#endif
