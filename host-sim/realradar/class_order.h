@@ -20,8 +20,8 @@ struct rr_class_row {
     struct rr_spread simulated;    /* the same with the firmware's speckle of RR_SIMULATED_LOOKS */
 };
 
-/* Sentinel-1's ground range product of the IW mode has 4.4 looks (RADAR facts, S1 GRDH); the
- * nearest of the firmware's tables is 4. */
+/* Sentinel-1's high resolution ground range product of the IW mode has 4.4 looks (ESA's product
+ * definition); the nearest of the firmware's tables is 4. */
 enum { RR_SIMULATED_LOOKS_LOG2 = 2, RR_SIMULATED_LOOKS = 1 << RR_SIMULATED_LOOKS_LOG2 };
 
 struct rr_class_order {
