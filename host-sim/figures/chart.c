@@ -1,6 +1,6 @@
 #include "chart.h"
 
-#include "font.h"
+#include "lm/font.h"
 
 #include "hs/error.h"
 #include "hs/png.h"

@@ -1,5 +1,4 @@
 # landmass-figures: figures of the documentation, drawn by the firmware's own functions.
-$(O)/host-sim/figures/%.o: EXTRA_CFLAGS := -Ifirmware/src
 T := $(O)/bin/landmass-figures
 PROGRAMS += $(T)
 $(T): $(patsubst %.c,$(O)/%.o,$(wildcard host-sim/figures/*.c)) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)

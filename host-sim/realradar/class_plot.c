@@ -1,8 +1,8 @@
 #include "class_order.h"
 
-#include "font.h" /* the display's own letters */
 #include "hs/error.h"
 #include "hs/png.h"
+#include "lm/font.h" /* the display's own letters */
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@ REALRADAR_PKGS := gdal fftw3 zlib
 T := $(O)/bin/landmass-realradar
 PROGRAMS += $(T)
 # The plot's letters are the display's own.
-$(O)/host-sim/realradar/%.o: EXTRA_CFLAGS := -Ihost-sim/db -Ifirmware/src $(call pkgs,cflags,$(REALRADAR_PKGS))
+$(O)/host-sim/realradar/%.o: EXTRA_CFLAGS := -Ihost-sim/db $(call pkgs,cflags,$(REALRADAR_PKGS))
 $(LIB_realradar): $(call objs,$(filter-out %/main.c,$(wildcard host-sim/realradar/*.c)))
 $(T): $(O)/host-sim/realradar/main.o $(LIB_realradar) $(LIB_db) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(T): LDLIBS := $(call pkgs,libs,$(REALRADAR_PKGS) openblas libpng)
