@@ -63,6 +63,15 @@ static int64_t decibel(int row, int i)
     return rounded(10 * log10l(middle) + 1 / 512.0L, 14);
 }
 
+/* The same over i * 2^21 .. (i + 1) * 2^21. No power at all is far below one: the three shifts that
+ * it goes through, by 28 bits, make -150 dB of it. */
+static int64_t decibel_steps(int row, int i)
+{
+    (void)row;
+    const long double middle = sqrtl((long double)i * (i + 1)) * 2097152;
+    return i == 0 ? -66 * 16384 : rounded(10 * log10l(middle) + 1 / 512.0L, 14);
+}
+
 /* The byte, then `zeros` zero bytes, shifted through the reflected polynomial. */
 static int64_t crc32c(int zeros, int byte)
 {
@@ -83,6 +92,8 @@ static const struct table fixed_tables[] = {
     {"fx_table_exp2_q31", "uint32_t", "2^(i / 256)", 0, 256, exp_2},
     {"fx_table_db_q14", "uint16_t", "decibels of 1 + (i + 0.5) / 256, and 1/512 dB more", 0, 256,
      decibel},
+    {"fx_table_db_steps_q14", "int32_t", "decibels of (i + 0.5) * 2^21, and 1/512 dB more", 0, 2048,
+     decibel_steps},
     {"fx_table_crc32c", "uint32_t", "CRC-32C of byte i and the row's number of zero bytes", 4, 256,
      crc32c},
 };
@@ -124,7 +135,7 @@ static int64_t speckle(int looks_log2, int n)
 }
 
 static const struct table speckle_tables[] = {
-    {"lm_speckle_q8", "int16_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5,
+    {"lm_speckle_q8", "int32_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5,
      1024, speckle},
 };
 

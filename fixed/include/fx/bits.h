@@ -17,4 +17,10 @@ static inline int fx_clz64(uint64_t x)
     return high != 0 ? fx_clz32(high) : 32 + fx_clz32((uint32_t)x);
 }
 
+/* Zeros below the lowest set bit, 0..64; 64 for x = 0. */
+static inline int fx_ctz64(uint64_t x)
+{
+    return x == 0 ? 64 : 63 - fx_clz64(x & (0 - x));
+}
+
 #endif

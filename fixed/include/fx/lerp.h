@@ -14,14 +14,18 @@ static inline int32_t fx_lerp_i32(int32_t a, int32_t b, uint32_t t_q16)
 /* Blend four samples; tx and ty run 0..256, where 0 is the c00 corner and 256 exactly the far one.
  * The result is the value times 65536, without any rounding.
  *
- * The weights sum to 65536, so that a flat field comes back unchanged and the result lies between
- * the smallest and the largest corner. The worst sum is 65535 * 65536, which fits 32 bits. */
+ * As a sum of weights it is c00 (256 - tx) (256 - ty) + c10 tx (256 - ty) + ..., and the weights
+ * add up to 65536: a flat field comes back unchanged, the result lies between the smallest and the
+ * largest corner, and the worst sum, 65535 * 65536, fits 32 bits. Written as start and difference
+ * it takes three products instead of six. The differences may be negative, modulo 2^32, and so may
+ * their products; as the end result fits, it is right. */
 static inline uint32_t fx_bilerp_u16_q16(uint16_t c00, uint16_t c10, uint16_t c01, uint16_t c11,
                                          uint32_t tx_q8, uint32_t ty_q8)
 {
-    const uint32_t top = c00 * (256u - tx_q8) + c10 * tx_q8;
-    const uint32_t bottom = c01 * (256u - tx_q8) + c11 * tx_q8;
-    return top * (256u - ty_q8) + bottom * ty_q8;
+    const uint32_t w00 = c00, w10 = c10, w01 = c01, w11 = c11;
+    const uint32_t top = (w00 << 8) + (w10 - w00) * tx_q8;
+    const uint32_t bottom = (w01 << 8) + (w11 - w01) * tx_q8;
+    return (top << 8) + (bottom - top) * ty_q8;
 }
 
 /* The same to the nearest whole number, halves up; 65535 * 65536 + 32768 still fits. */

@@ -4,9 +4,19 @@
 #define FX_MEM_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 void *memcpy(void *restrict to, const void *restrict from, size_t len);
 void *memset(void *to, int byte, size_t len);
 int memcmp(const void *a, const void *b, size_t len);
+
+/* Four bytes from any address, as a number of this machine's order of bytes. One load where words
+ * need not be aligned, and one gather of many where a loop is made of vectors. */
+static inline uint32_t fx_load_u32(const void *from)
+{
+    uint32_t word;
+    __builtin_memcpy(&word, from, sizeof word);
+    return word;
+}
 
 #endif

@@ -27,6 +27,9 @@ extern const uint32_t fx_table_exp2_q31[256];
 #define FX_DB_OCTAVE_Q14 49321 /* 10 * log10(2) */
 extern const uint16_t fx_table_db_q14[256];
 
+/* 10 * log10((i + 0.5) * 2^21) + 1/512 dB, and little for i = 0: see fx_db_q8_of_many. */
+extern const int32_t fx_table_db_steps_q14[2048];
+
 /* CRC-32C of one byte followed by k zero bytes, for k = 0..3. */
 extern const uint32_t fx_table_crc32c[4][256];
 

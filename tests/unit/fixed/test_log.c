@@ -10,15 +10,18 @@
 
 #include <cmocka.h>
 
-static void leading_zeros_are_counted_for_every_width(void **state)
+static void zeros_at_either_end_are_counted_for_every_width(void **state)
 {
     (void)state;
     assert_int_equal(fx_clz32(0), 32);
     assert_int_equal(fx_clz64(0), 64);
+    assert_int_equal(fx_ctz64(0), 64);
     for (int bit = 0; bit < 64; bit++) {
         const uint64_t smallest = 1ull << bit, largest = smallest | (smallest - 1);
         assert_int_equal(fx_clz64(smallest), 63 - bit);
         assert_int_equal(fx_clz64(largest), 63 - bit);
+        assert_int_equal(fx_ctz64(smallest), bit);
+        assert_int_equal(fx_ctz64(~(smallest - 1)), bit);
         if (bit < 32) {
             assert_int_equal(fx_clz32((uint32_t)smallest), 31 - bit);
             assert_int_equal(fx_clz32((uint32_t)largest), 31 - bit);
@@ -136,6 +139,39 @@ static void decibels_never_fall_and_keep_to_their_range(void **state)
     assert_int_equal(fx_db_q8(UINT32_MAX), 24659);
 }
 
+static void decibels_of_64_bits_are_within_0_012_dB(void **state)
+{
+    (void)state;
+    double worst = 0;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 3);
+    for (int i = 0; i < 2000000; i++) {
+        const uint64_t power = hs_rng_u64(&rng) >> hs_rng_below(&rng, 63) | 1;
+        worst = fmax(worst, fabs(fx_db_q8_u64(power) / 256.0 - 10 * log10((double)power)));
+    }
+    print_message("# decibels of 64 bits, Q8: worst %.5f dB\n", worst);
+    assert_true(worst <= 0.012);
+    assert_int_equal(fx_db_q8_u64(0), -768);
+}
+
+static void decibels_of_many_are_within_0_020_dB_and_never_fall(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (uint32_t power = 1; power < 1u << 20; power++) {
+        worst = fmax(worst, fabs(fx_db_q8_of_many(power) / 256.0 - 10 * log10(power)));
+        assert_true(fx_db_q8_of_many(power) >= fx_db_q8_of_many(power - 1));
+    }
+    for (uint64_t power = 1u << 20; power <= UINT32_MAX; power += 1021) {
+        const uint32_t p = (uint32_t)power;
+        worst = fmax(worst, fabs(fx_db_q8_of_many(p) / 256.0 - 10 * log10(p)));
+        assert_true(fx_db_q8_of_many(p) >= fx_db_q8_of_many(p - 1021));
+    }
+    print_message("# decibels of many, Q8: worst %.5f dB\n", worst);
+    assert_true(worst <= 0.020);
+    assert_int_equal(fx_db_q8_of_many(0), -38474);
+}
+
 static void power_from_decibels_is_within_half_an_lsb_and_4e_9(void **state)
 {
     (void)state;
@@ -164,7 +200,7 @@ static void power_from_decibels_saturates_above_and_vanishes_below(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(leading_zeros_are_counted_for_every_width),
+        cmocka_unit_test(zeros_at_either_end_are_counted_for_every_width),
         cmocka_unit_test(log2_is_within_0_60_lsb),
         cmocka_unit_test(log2_is_exact_for_powers_of_two_and_minus_one_for_zero),
         cmocka_unit_test(log2_never_falls),
@@ -173,6 +209,8 @@ int main(void)
         cmocka_unit_test(exp2_of_log2_comes_back),
         cmocka_unit_test(decibels_are_within_0_0108_dB_for_powers_of_every_size),
         cmocka_unit_test(decibels_never_fall_and_keep_to_their_range),
+        cmocka_unit_test(decibels_of_64_bits_are_within_0_012_dB),
+        cmocka_unit_test(decibels_of_many_are_within_0_020_dB_and_never_fall),
         cmocka_unit_test(power_from_decibels_is_within_half_an_lsb_and_4e_9),
         cmocka_unit_test(power_from_decibels_saturates_above_and_vanishes_below),
     };
