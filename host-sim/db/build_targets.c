@@ -217,8 +217,8 @@ static int read_line(struct reading *r)
 {
     char *words[WORDS_MAX];
     const int count = split_words(r->file.line, words);
-    if (count > WORDS_MAX) {
-        return db_text_error(&r->file, NULL, "more than %d words", WORDS_MAX);
+    if (count < 1 || count > WORDS_MAX) {
+        return db_text_error(&r->file, NULL, "not 1 to %d words", WORDS_MAX);
     }
     if (strcmp(words[0], "target") == 0) {
         return begin_target(r, words, count);

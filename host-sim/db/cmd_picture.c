@@ -87,6 +87,10 @@ static int draw(const struct image *image, const struct settings *s, struct imag
         return hs_error(s->out, "choose a smaller --max-size", "out of memory");
     }
     int result = image_view_draw(image, view, pixels);
+    if (result == 0 && !view->has_data) {
+        result = hs_error(s->out, "see `landmass-db inspect` for where there is",
+                          "there is no data in this area at level %d or coarser", view->level);
+    }
     if (result == 0) {
         result =
             hs_png_write_rgb(s->out, pixels, view->width, view->height, 3 * (size_t)view->width);

@@ -269,12 +269,7 @@ int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pi
     if (result == 0) {
         read_values(&l, v, values);
         v->damaged_tiles = l.damaged;
-        if (!has_data(v, values)) {
-            result = hs_error("picture", "see `landmass-db inspect` for where there is",
-                              "there is no data in this area at level %d or coarser", v->level);
-        }
-    }
-    if (result == 0) {
+        v->has_data = has_data(v, values);
         if (!(v->white > v->black)) {
             result = choose_scale(v, values);
         }

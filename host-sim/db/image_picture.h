@@ -5,6 +5,8 @@
 #include "image_grid.h"
 #include "image_reader.h"
 
+#include <stdbool.h>
+
 enum image_plane {
     IMAGE_PLANE_REFLECTIVITY,
     IMAGE_PLANE_CLASS,
@@ -25,6 +27,7 @@ struct image_view {
     double pixel_m;
     double black, white; /* dB or metres; equal: to be chosen from what is seen */
     unsigned damaged_tiles;
+    bool has_data; /* not all of it is black */
 };
 
 /* Settle area, level (`level` -1: the finest of which `max_size` pixels show every cell) and size;

@@ -7,7 +7,7 @@
  * region: it is sea, and lies at sea level; more than a tenth but not nine tenths of the rim of a
  * region that is not small: a coast that nobody knows. It is left without data, its heights
  * continued from the rim so that no cliff stands there; otherwise it is land, filled from its rim
- * (GDALFillNodata); a region without a rim, or too large to fill, is left without data. */
+ * (terrain_fill); a region without a rim, or too large to fill, is left without data. */
 #ifndef TERRAIN_MOSAIC_H
 #define TERRAIN_MOSAIC_H
 

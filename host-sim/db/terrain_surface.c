@@ -233,6 +233,30 @@ struct patch {
     uint8_t *state;
 };
 
+static void free_patch(struct patch *p)
+{
+    free(p->metres);
+    free(p->state);
+}
+
+/* Read the window of a patch. Returns 0, or -1 with the error reported and nothing to free. */
+static int read_patch(const struct terrain_layer *layer, struct patch *p)
+{
+    const size_t pixels = (size_t)p->window.width * (size_t)p->window.height;
+    p->metres = malloc(pixels * sizeof *p->metres);
+    p->state = malloc(pixels);
+    int result = -1;
+    if (!p->metres || !p->state) {
+        hs_error(layer->mosaic.members[0].path, "choose smaller cells", "out of memory");
+    } else {
+        result = terrain_mosaic_read(&layer->mosaic, &p->window, p->metres, p->state);
+    }
+    if (result != 0) {
+        free_patch(p);
+    }
+    return result;
+}
+
 /* State of the pixel that holds a position; TERRAIN_NONE outside the window or for NaN. */
 static enum terrain_state state_at(const struct patch *p, double x, double y)
 {
@@ -356,20 +380,12 @@ static int sample_block(const struct terrain_layer *layer, struct work *w, const
         }
         return 0;
     }
-    p.metres = malloc(pixels * sizeof *p.metres);
-    p.state = malloc(pixels);
-    int result = -1;
-    if (!p.metres || !p.state) {
-        hs_error(layer->mosaic.members[0].path, "choose smaller cells", "out of memory");
-    } else {
-        result = terrain_mosaic_read(&layer->mosaic, &p.window, p.metres, p.state);
+    if (read_patch(layer, &p) != 0) {
+        return -1;
     }
-    if (result == 0) {
-        sample_patch(layer, &p, w, b);
-    }
-    free(p.metres);
-    free(p.state);
-    return result;
+    sample_patch(layer, &p, w, b);
+    free_patch(&p);
+    return 0;
 }
 
 static void map_posts(const struct terrain_layer *layer, const struct image_frame *frame,
@@ -385,34 +401,80 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* Posts that nothing reaches take the height of the layer's edge when that is the nearest so far.
- */
-static int extend_edge(const struct terrain_layer *layer, struct work *w)
+/* A post that nothing reaches, and the place on a layer's edge (or in a void of it) that is nearest
+ * to it. */
+struct stray {
+    int post;
+    double x, y, distance;
+};
+
+/* The strays that this layer is the nearest to so far; returns how many. */
+static size_t find_strays(const struct terrain_layer *layer, const struct work *w,
+                          struct stray *strays)
 {
     const struct resample_georef *g = &layer->mosaic.georef;
+    size_t count = 0;
     for (int i = 0; i < POSTS; i++) {
         if (w->state[i] >= TERRAIN_FILLED || isnan(w->x[i])) {
             continue;
         }
-        const double x = clamp(w->x[i], 0.5, g->width - 0.5),
-                     y = clamp(w->y[i], 0.5, g->height - 0.5);
-        const double distance = hypot((x - w->x[i]) * layer->pixel_longitude_bam,
-                                      (y - w->y[i]) * layer->pixel_latitude_bam);
-        if (distance >= w->distance[i]) {
-            continue;
-        }
-        const struct resample_window pixel = {(int)x, (int)y, 1, 1};
-        float metres;
-        uint8_t state;
-        if (terrain_mosaic_read(&layer->mosaic, &pixel, &metres, &state) != 0) {
-            return -1;
-        }
-        if (!isnan(metres)) {
-            w->metres[i] = (double)metres;
-            w->distance[i] = distance;
+        struct stray s = {.post = i,
+                          .x = clamp(w->x[i], 0.5, g->width - 0.5),
+                          .y = clamp(w->y[i], 0.5, g->height - 0.5)};
+        s.distance = hypot((s.x - w->x[i]) * layer->pixel_longitude_bam,
+                           (s.y - w->y[i]) * layer->pixel_latitude_bam);
+        if (s.distance < w->distance[i]) {
+            strays[count++] = s;
         }
     }
+    return count;
+}
+
+/* Give `count` strays the height of their nearest pixel. Cuts their number in two as long as their
+ * pixels are too many to be read at once. */
+static int lend_heights(const struct terrain_layer *layer, const struct stray *strays, size_t count,
+                        struct work *w)
+{
+    double x[POSTS] = {0}, y[POSTS] = {0};
+    for (size_t i = 0; i < count; i++) {
+        x[i] = strays[i].x;
+        y[i] = strays[i].y;
+    }
+    struct patch p = {.window = resample_window_of(&layer->mosaic.georef, count, x, y, 0)};
+    const size_t pixels = (size_t)p.window.width * (size_t)p.window.height;
+    if (pixels > WINDOW_PIXELS_MAX && count > 1) {
+        const size_t half = count / 2;
+        return lend_heights(layer, strays, half, w) == 0 &&
+                       lend_heights(layer, strays + half, count - half, w) == 0
+                   ? 0
+                   : -1;
+    }
+    if (read_patch(layer, &p) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const size_t row = (size_t)((int)y[i] - p.window.y);
+        const float metres =
+            p.metres[row * (size_t)p.window.width + (size_t)((int)x[i] - p.window.x)];
+        if (!isnan(metres)) {
+            w->metres[strays[i].post] = (double)metres;
+            w->distance[strays[i].post] = strays[i].distance;
+        }
+    }
+    free_patch(&p);
     return 0;
+}
+
+static int extend_edge(const struct terrain_layer *layer, struct work *w)
+{
+    struct stray *strays = malloc(POSTS * sizeof *strays);
+    if (!strays) {
+        return hs_error(layer->mosaic.members[0].path, NULL, "out of memory");
+    }
+    const size_t count = find_strays(layer, w, strays);
+    const int result = count > 0 ? lend_heights(layer, strays, count, w) : 0;
+    free(strays);
+    return result;
 }
 
 static int store_posts(const struct work *w, struct terrain_posts *posts)

@@ -1,16 +1,13 @@
 #include "terrain_mosaic.h"
 
-#include "gdal_start.h"
+#include "terrain_fill.h"
 
 #include "hs/error.h"
 
-#include <cpl_string.h>
-#include <gdal_alg.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILL_MARGIN = 2, FILL_SMOOTHINGS = 2, STRIP_PIXELS = 8 << 20 };
+enum { FILL_MARGIN = 2, STRIP_PIXELS = 8 << 20 };
 
 /* The mosaic a strip of rows at a time: some formats hold whole columns in a block, and row by row
  * they would be decoded over and over. */
@@ -280,46 +277,6 @@ static bool can_interpolate(const struct terrain_mosaic *m, const struct terrain
     return r->rim > 0 && (int64_t)w.width * w.height <= TERRAIN_FILL_MAX;
 }
 
-/* A dataset in memory over pixels that stay ours. */
-static GDALDatasetH wrap_pixels(const struct resample_window *w, GDALDataType type, void *pixels)
-{
-    GDALDatasetH dataset =
-        GDALCreate(GDALGetDriverByName("MEM"), "", w->width, w->height, 0, type, NULL);
-    char pointer[64], text[96];
-    const int length = CPLPrintPointer(pointer, pixels, sizeof pointer - 1);
-    pointer[length] = '\0';
-    snprintf(text, sizeof text, "DATAPOINTER=%s", pointer);
-    char *options[] = {text, NULL};
-    if (dataset && GDALAddBand(dataset, type, options) != CE_None) {
-        GDALClose(dataset);
-        return NULL;
-    }
-    return dataset;
-}
-
-static int interpolate(const struct resample_window *w, float *metres, uint8_t *mask)
-{
-    GDALDatasetH picture = wrap_pixels(w, GDT_Float32, metres);
-    GDALDatasetH holes = wrap_pixels(w, GDT_Byte, mask);
-    char *options[] = {"TEMP_FILE_DRIVER=MEM", NULL};
-    const double reach = hypot(w->width, w->height);
-    int result = -1;
-    if (picture && holes) {
-        result = GDALFillNodata(GDALGetRasterBand(picture, 1), GDALGetRasterBand(holes, 1), reach,
-                                0, FILL_SMOOTHINGS, options, NULL, NULL) == CE_None
-                     ? 0
-                     : -1;
-        GDALFlushCache(picture);
-    }
-    if (picture) {
-        GDALClose(picture);
-    }
-    if (holes) {
-        GDALClose(holes);
-    }
-    return result;
-}
-
 /* Keep the elevations of the region's own pixels, run after run from values[at]. */
 static uint64_t keep_values(struct terrain_voids *v, uint32_t region,
                             const struct resample_window *w, const float *metres, uint64_t at)
@@ -347,15 +304,18 @@ static int fill_region(struct terrain_mosaic *m, uint32_t region, uint64_t *valu
     float *metres = malloc(count * sizeof *metres);
     uint8_t *mask = malloc(count);
     int result = -1;
-    if (metres && mask && terrain_mosaic_read(m, &w, metres, mask) == 0) {
+    if (!metres || !mask) {
+        hs_error(m->members[0].path, NULL, "out of memory for its voids");
+    } else {
+        result = terrain_mosaic_read(m, &w, metres, mask);
+    }
+    if (result == 0) {
         for (size_t i = 0; i < count; i++) {
             mask[i] = mask[i] == TERRAIN_MEASURED;
-            metres[i] = mask[i] ? metres[i] : 0.0f;
         }
-        result = interpolate(&w, metres, mask);
+        result = terrain_fill(w.width, w.height, metres, mask);
         if (result != 0) {
-            hs_error(m->members[0].path, "fill them with gdal_fillnodata.py first",
-                     "its voids cannot be filled: %s", db_gdal_complaint());
+            hs_error(m->members[0].path, NULL, "out of memory for its voids");
         }
     }
     if (result == 0) {

@@ -344,7 +344,7 @@ static void look_at(const uint8_t *bytes, size_t size)
         struct image_view view = {.plane = (enum image_plane)plane};
         if (image_view_fit(&image, &view, -1, 24) == 0) {
             uint8_t pixels[3 * 24 * 24];
-            image_view_draw(&image, &view, pixels);
+            assert_int_equal(image_view_draw(&image, &view, pixels), 0);
         }
     }
 }
