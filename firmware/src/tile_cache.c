@@ -137,7 +137,9 @@ static void take_entry(struct lm_tile_cache *c)
     if (lm_db_entry_check(c->db, c->reading_entry, bytes, &record) != LM_OK) {
         fail(c, &c->count.corrupt);
     } else if (record == UINT32_MAX) {
+        const struct lm_tile_slot absent = c->slots[c->reading_slot];
         finish(c, LM_SLOT_ABSENT);
+        lm_tile_cache_want(c, absent.level, absent.row, absent.column); /* its parent will do */
     } else {
         c->is_reading_entry = false;
         start_read(c, c->db->records_offset + (uint64_t)record * LM_TILE_BYTES,
@@ -208,25 +210,29 @@ static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
 {
-    const int64_t entry = lm_db_entry(c->db, level, row, column);
-    if (entry >= 0) {
-        request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+    /* What the image leaves out is answered by the first ancestor that it has. */
+    for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
+        const uint16_t i = find(c, level, row, column);
+        const int64_t entry = lm_db_entry(c->db, level, row, column);
+        if (entry >= 0 && (i == LM_SLOT_NONE || c->slots[i].state != LM_SLOT_ABSENT)) {
+            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+            return;
+        }
     }
 }
 
-/* The answer is not the tile that was asked for: ask for it, and count that unless the image never
- * had it. */
+/* The answer is not the tile that was asked for: ask for it or its best stand-in, and count a miss
+ * if the image has it. */
 static void note_miss(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column,
                       bool is_answered)
 {
-    const int64_t entry = lm_db_entry(c->db, level, row, column);
     const uint16_t i = find(c, level, row, column);
-    if (entry < 0 || (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT)) {
-        return;
+    const bool is_absent = i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT;
+    if (!is_absent && lm_db_entry(c->db, level, row, column) >= 0) {
+        c->count.misses++;
+        c->count.substituted += is_answered;
     }
-    c->count.misses++;
-    c->count.substituted += is_answered;
-    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+    lm_tile_cache_want(c, level, row, column);
 }
 
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
