@@ -37,7 +37,10 @@ class Tree:
 
     def compile(self, layer, source, output, *more, compiler=None):
         """Compile one file as the Makefile would, with `more` flags. Returns the compiler's complaints, or ""."""
-        command = (compiler or self.flags["CC"]) + self.flags[layer] + list(more)
+        flags = self.flags[layer]
+        if compiler:  # for another machine: the build machine's own instruction set is not its
+            flags = [flag for flag in flags if not flag.startswith(("-march=", "-mtune="))]
+        command = (compiler or self.flags["CC"]) + flags + list(more)
         command += ["-c", str(source), "-o", str(output)]
         result = subprocess.run(command, cwd=self.root, capture_output=True, text=True)
         return "" if result.returncode == 0 else result.stderr or f"exit status {result.returncode}"
