@@ -35,9 +35,13 @@ static const struct body {
 static const char target_form[] =
     "target NAME LATITUDE LONGITUDE ELEVATION HEADING, then `scatterers` or `swerling CASE DBSM`";
 
+/* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
 static int split_words(char *line, char *words[WORDS_MAX])
 {
     int count = 0;
+    for (int i = 0; i < WORDS_MAX; i++) {
+        words[i] = line + strlen(line);
+    }
     char *rest = NULL;
     for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
         if (count == WORDS_MAX) {
@@ -217,8 +221,8 @@ static int read_line(struct reading *r)
 {
     char *words[WORDS_MAX];
     const int count = split_words(r->file.line, words);
-    if (count < 1 || count > WORDS_MAX) {
-        return db_text_error(&r->file, NULL, "not 1 to %d words", WORDS_MAX);
+    if (count > WORDS_MAX) {
+        return db_text_error(&r->file, NULL, "more than %d words", WORDS_MAX);
     }
     if (strcmp(words[0], "target") == 0) {
         return begin_target(r, words, count);

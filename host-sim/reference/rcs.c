@@ -11,8 +11,8 @@ double ref_plate_lobe_deg(double wavelengths, int ways)
     return sine >= 1 ? 180 : 2 * asin(sine) * 180 / pi;
 }
 
-/* Mean over a side of exp(j 2 k sine x): the middles of short pieces, a twenty-fifth of a turn or less.
- */
+/* Mean over a side of exp(j 2 k sine x), from the middles of pieces of a twenty-fifth of a turn or
+ * less. */
 static double side_mean(double side_m, double wavelength_m, double sine)
 {
     const int pieces = 100 + (int)(50 * side_m / wavelength_m);
