@@ -5,35 +5,55 @@
 /* 1 / (2 * 4/3 * 6,371,000 m) in Q48. */
 static const int64_t curvature_q48 = 16567747;
 
-enum { GRAZING_MIN_Q24 = 1 << 16 }; /* 1/256 */
+enum {
+    GRAZING_MIN_Q24 = 1 << 16, /* 1/256 */
+    RISE_SHIFT = 30            /* from the tangents' format to the rise's */
+};
 
-/* Decibels (Q8) of a number whose binary logarithm is given in Q16: 10 log10(2) = 3.0103, here 770.637 / 256. */
+/* Decibels (Q8) of a number whose binary logarithm is given in Q16: 10 log10(2) = 3.0103, here
+ * 770.637 / 256. */
 static int32_t db_q8_of_log2_q16(int32_t log2_q16)
 {
     return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
 }
 
+/* tan of the grazing angle of flat ground at the reference elevation, Q24. */
+static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
+{
+    /* Height difference below 2^26, inverse range below 2^30 in Q(26 + shift). */
+    const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
+    const int64_t grazing = (above_q10 * g->inverse_range[i] >> (12 + g->tangent_shift)) -
+                            ((int64_t)range_q8 * curvature_q48 >> 32);
+    return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
+}
+
 static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
 {
-    /* range < 400 km = 2^26.6 in Q8; squared 2^53.2; the drop stays below 10 km. */
-    const int64_t drop_q10 = ((((int64_t)range_q8 * range_q8) >> 14) * curvature_q48) >> 40;
-    g->fall_q10[i] = (int32_t)drop_q10 + g->height_q10;
-    g->inverse_range_q40[i] = (uint32_t)((((uint64_t)1 << 48) - 1) / range_q8);
+    /* range < 400 km = 2^26.6 in Q8: squared, in units of 16 m^2, 2^33.2; times the curvature
+     * 2^57.2. */
+    const int64_t drop_q14 = ((((int64_t)range_q8 * range_q8) >> 20) * curvature_q48) >> 30;
+    g->fall_q14[i] = (int32_t)drop_q14 + g->height_q10 * 16;
+    g->inverse_range[i] =
+        (int32_t)((((uint64_t)1 << (34 + g->tangent_shift)) + range_q8 / 2) / range_q8);
 
-    const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
-    int64_t grazing_q24 = (above_q10 * g->inverse_range_q40[i] >> 26) -
-                          ((int64_t)range_q8 * curvature_q48 >> 32);
-    if (grazing_q24 < GRAZING_MIN_Q24) {
-        grazing_q24 = GRAZING_MIN_Q24;
-    }
-    /* K = s / (ds g), and the tangent's rise d comes in Q30. */
+    /* K = s / (ds g), and the rise comes in Q(40 + shift - RISE_SHIFT). */
     const int32_t log2_q16 = fx_log2_q16(range_q8) - fx_log2_q16(g->cell_q8) -
-                             fx_log2_q16_u64((uint64_t)grazing_q24) + (24 - 30) * 65536;
-    g->gain_q8[i] = db_q8_of_log2_q16(log2_q16);
-    if (i == g->first) {
-        g->flat_rise_q30 =
-            (int32_t)(((grazing_q24 * g->cell_q8 >> 8) * g->inverse_range_q40[i]) >> 34);
+                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, range_q8)) +
+                             (24 + RISE_SHIFT - 40 - (int32_t)g->tangent_shift) * 65536;
+    g->gain_q8[i] = db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
+}
+
+static uint32_t first_shown(const struct lm_range_grid *g, uint32_t first_q8)
+{
+    const uint32_t nearest_m = LM_RANGE_MIN_M;
+    const int32_t half_height_q8 = g->height_q10 / 8;
+    const uint32_t nearest_q8 =
+        half_height_q8 > (int32_t)(nearest_m << 8) ? (uint32_t)half_height_q8 : nearest_m << 8;
+    if (first_q8 >= nearest_q8) {
+        return 0;
     }
+    const uint32_t before = (nearest_q8 - first_q8 + g->cell_q8 - 1) / g->cell_q8;
+    return before < g->cells ? before : g->cells;
 }
 
 void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *config,
@@ -44,86 +64,158 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     g->cell_q8 = cell_q8;
     g->height_q10 = height_q10;
     g->reference_q10 = reference_q10;
-    g->first = 0;
+    g->first = first_shown(g, first_q8);
     const uint32_t width_q8 = (uint32_t)config->shore_width_m << 8;
     const uint32_t shore_cells = (width_q8 + cell_q8 / 2) / cell_q8;
     g->shore_fall_q8 = config->shore_q8 / (int32_t)(shore_cells ? shore_cells : 1);
-    for (uint32_t i = 0; i < cells; i++) {
-        const uint32_t range_q8 = first_q8 + i * cell_q8;
-        if (range_q8 < (uint32_t)LM_RANGE_MIN_M << 8) {
-            g->first = i + 1;
-        } else {
-            set_cell(g, i, range_q8);
+    /* The largest inverse, that of the first cell shown, takes 30 bits. */
+    const uint32_t nearest_q8 = first_q8 + g->first * cell_q8;
+    g->tangent_shift = (uint32_t)(31 - fx_clz32(nearest_q8)) - 4;
+    for (uint32_t i = 0; i < g->first; i++) {
+        g->fall_q14[i] = g->inverse_range[i] = g->gain_q8[i] = 0; /* read, but not shown */
+    }
+    for (uint32_t i = g->first; i < cells; i++) {
+        set_cell(g, i, first_q8 + i * cell_q8);
+    }
+    if (g->first < cells) {
+        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(26 + shift) - 18. */
+        const int64_t rise_q32 = grazing_q24(g, g->first, nearest_q8) * cell_q8;
+        g->flat_rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 8);
+    }
+}
+
+/* Tangent of each cell's top, in the horizon's place, and its level but for the horizon's rise and
+ * the edges. */
+static void look(const struct lm_range_grid *grid, const struct lm_scan_line *line,
+                 const int32_t height_q14_of[16], struct lm_sight *restrict sight)
+{
+    for (uint32_t i = 0; i < grid->cells; i++) {
+        const int32_t cell = (int32_t)line->cell[i];
+        /* Elevation below 2^29, height below 2^27, fall below 2^30: below 2^31, times 2^30. */
+        const int32_t apparent_q14 =
+            line->elevation_q14[i] + height_q14_of[cell & 15] - grid->fall_q14[i];
+        sight->horizon[i + 1] = (int64_t)apparent_q14 * grid->inverse_range[i];
+        sight->level_q8[i] = (cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
+    }
+}
+
+enum { CLASS_BITS = 0xF0 };
+
+/* Whether each cell is of another class than the one before it. */
+static void find_borders(const uint32_t *cell, uint32_t cells, uint8_t *restrict is_border)
+{
+    is_border[0] = 0;
+    for (uint32_t i = 1; i < cells; i++) {
+        is_border[i] = ((cell[i] ^ cell[i - 1]) & CLASS_BITS) != 0;
+    }
+    for (uint32_t i = cells; i < cells + LM_LANES; i++) {
+        is_border[i] = 0;
+    }
+}
+
+/* The first border from cell `i` on; `cells` when there is none. Borders are rare: eight cells are
+ * looked at in one go. (The compiler makes one load of the eight bytes where this is their order in
+ * memory.) */
+static inline uint32_t next_border(const uint8_t *is_border, uint32_t i, uint32_t cells)
+{
+    for (; i < cells; i += 8) {
+        const uint8_t *b = is_border + i;
+        const uint64_t eight = b[0] | (uint64_t)b[1] << 8 | (uint64_t)b[2] << 16 |
+                               (uint64_t)b[3] << 24 | (uint64_t)b[4] << 32 | (uint64_t)b[5] << 40 |
+                               (uint64_t)b[6] << 48 | (uint64_t)b[7] << 56;
+        if (eight != 0) {
+            return i + (uint32_t)fx_ctz64(eight) / 8;
         }
     }
+    return cells;
 }
 
-/* What the line has passed, as far as the next cell cares. */
-struct passage {
-    uint8_t kind;
-    int32_t shore_q8; /* what is left of the far shore's brightness */
-};
-
-/* Leading edge and far shore: E_i of the equations. */
-static inline int32_t edge_q8(struct passage *p, uint8_t kind, const struct lm_aspect_config *config,
-                              int32_t shore_fall_q8)
+/* The far shore's brightness, from its first cell on. */
+static void add_shore(const struct lm_range_grid *grid, int32_t shore_q8,
+                      const uint8_t kind_of[LM_DB_CLASSES], const uint32_t *cell, uint32_t i,
+                      int32_t *level_q8)
 {
-    int32_t leading_q8 = 0;
-    if (kind == p->kind) {
-        p->shore_q8 = p->shore_q8 > shore_fall_q8 ? p->shore_q8 - shore_fall_q8 : 0;
-        return p->shore_q8;
+    for (; i < grid->cells && shore_q8 > 0; i++, shore_q8 -= grid->shore_fall_q8) {
+        if (kind_of[cell[i] >> 4 & 15] == LM_KIND_WATER) {
+            return;
+        }
+        level_q8[i] += shore_q8;
     }
-    if (kind == LM_KIND_WATER) {
-        p->shore_q8 = 0;
-    } else if (p->kind == LM_KIND_WATER) {
-        p->shore_q8 = config->shore_q8;
-    } else {
-        p->shore_q8 = p->shore_q8 > shore_fall_q8 ? p->shore_q8 - shore_fall_q8 : 0;
-    }
-    if (kind == LM_KIND_STRUCTURE) {
-        leading_q8 = config->edge_structure_q8;
-    } else if (kind == LM_KIND_TREES) {
-        leading_q8 = config->edge_trees_q8;
-    }
-    p->kind = kind;
-    return leading_q8 + p->shore_q8;
 }
 
-lm_horizon_q30_t lm_aspect_run(const struct lm_range_grid *grid,
-                               const struct lm_aspect_config *config,
-                               const struct lm_classes *classes, const struct lm_scan_line *line,
-                               lm_horizon_q30_t horizon, int32_t *level_q8)
+/* Leading edges and far shores: E_i of the equations. The first cell shown enters nothing. */
+static void add_edges(const struct lm_range_grid *grid, const struct lm_aspect_config *config,
+                      const struct lm_classes *classes, const uint32_t *cell, int32_t *level_q8)
 {
-    uint8_t kind_of[LM_DB_CLASSES];
-    int32_t height_q10_of[16];
+    uint8_t kind_of[LM_DB_CLASSES], is_border[LM_CELLS_ROOM];
     for (int i = 0; i < LM_DB_CLASSES; i++) {
         kind_of[i] = classes->entry[i].kind;
-        height_q10_of[i] = classes->height_dm[i] * 512 / 5; /* decimetres to Q10 metres */
     }
-    struct passage passage = {.kind = LM_KIND_GROUND, .shore_q8 = 0};
-    for (uint32_t i = 0; i < grid->first; i++) {
-        level_q8[i] = LM_LEVEL_SHADOW;
-    }
-    for (uint32_t i = grid->first; i < grid->cells; i++) {
-        const uint32_t cell = line->cell[i];
-        const uint32_t class_index = cell >> 4 & 15;
-        const int32_t edge = edge_q8(&passage, kind_of[class_index], config, grid->shore_fall_q8);
-        /* Apparent height: |z + h - fall| < 2^25, times 2^32: 2^57. */
-        const int32_t apparent_q10 =
-            line->elevation_q10[i] + height_q10_of[cell & 15] - grid->fall_q10[i];
-        const int64_t tangent = (int64_t)apparent_q10 * grid->inverse_range_q40[i] >> 20;
-        if (horizon == LM_HORIZON_OPEN) {
-            horizon = tangent - grid->flat_rise_q30;
-        }
-        const int64_t rise = tangent - horizon;
-        if (rise <= 0 || class_index == LM_DB_CLASS_NONE) {
-            level_q8[i] = LM_LEVEL_SHADOW;
+    find_borders(cell, grid->cells, is_border);
+    uint32_t i = next_border(is_border, grid->first + 1, grid->cells);
+    for (; i < grid->cells; i = next_border(is_border, i + 1, grid->cells)) {
+        const uint8_t kind = kind_of[cell[i] >> 4 & 15], before = kind_of[cell[i - 1] >> 4 & 15];
+        if (kind == before) {
             continue;
         }
-        horizon = tangent;
-        const uint32_t rise_q30 = rise > UINT32_MAX ? UINT32_MAX : (uint32_t)rise;
-        level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + LM_GAMMA_CODE_ZERO_Q8 +
-                      fx_db_q8(rise_q30) + grid->gain_q8[i] + edge;
+        if (kind == LM_KIND_STRUCTURE) {
+            level_q8[i] += config->edge_structure_q8;
+        } else if (kind == LM_KIND_TREES) {
+            level_q8[i] += config->edge_trees_q8;
+        }
+        if (before == LM_KIND_WATER) {
+            add_shore(grid, config->shore_q8, kind_of, cell, i, level_q8);
+        }
     }
-    return horizon;
+}
+
+/* The running horizon: the only step in which a cell waits for the one before it. */
+static void raise_horizon(const struct lm_range_grid *grid, int64_t start, int64_t *horizon)
+{
+    for (uint32_t i = 0; i <= grid->first; i++) {
+        horizon[i] = start;
+    }
+    int64_t *const end = horizon + grid->cells + 1;
+    for (int64_t *tangent = horizon + grid->first + 1; tangent < end; tangent++) {
+        start = *tangent > start ? *tangent : start;
+        *tangent = start;
+    }
+}
+
+/* Light each cell by what it shows above the horizon. Tangents are below 2^61 and the horizon
+ * starts above -2^61, so that 32 bits hold the rise in units of 2^RISE_SHIFT. */
+static void light(const int64_t *horizon, uint32_t cells, int32_t *restrict level_q8)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint32_t rise = (uint32_t)((uint64_t)(horizon[i + 1] - horizon[i]) >> RISE_SHIFT);
+        const int32_t lit_q8 = level_q8[i] + fx_db_q8_of_many(rise);
+        level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
+    }
+}
+
+lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
+                               const struct lm_aspect_config *config,
+                               const struct lm_classes *classes, const struct lm_scan_line *line,
+                               lm_horizon_q40_t horizon, struct lm_sight *sight)
+{
+    int32_t height_q14_of[16];
+    for (int i = 0; i < 16; i++) {
+        height_q14_of[i] = classes->height_dm[i] * 8192 / 5;
+    }
+    look(grid, line, height_q14_of, sight);
+    if (grid->first < grid->cells) {
+        add_edges(grid, config, classes, line->cell, sight->level_q8);
+    }
+    /* Beyond every tangent is as good as far beyond. */
+    const int64_t limit = (int64_t)1 << (61 - grid->tangent_shift);
+    int64_t start = sight->horizon[grid->first + 1] - grid->flat_rise;
+    if (horizon != LM_HORIZON_OPEN) {
+        start = (horizon > limit    ? limit
+                 : horizon < -limit ? -limit
+                                    : horizon) *
+                ((int64_t)1 << grid->tangent_shift);
+    }
+    raise_horizon(grid, start, sight->horizon);
+    light(sight->horizon, grid->cells, sight->level_q8);
+    return grid->first < grid->cells ? sight->horizon[grid->cells] >> grid->tangent_shift : horizon;
 }

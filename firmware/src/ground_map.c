@@ -1,7 +1,8 @@
 #include "lm/ground_map.h"
 
-/* Tiles are asked for this many lines ahead of the beam: a tenth of a second. */
-enum { LINES_AHEAD = 24 };
+/* Tiles are asked for this many lines ahead of the beam, a tenth of a second, and for every fourth
+ * line only: between two of those lie nine cells at the most, where a tile has 64. */
+enum { LINES_AHEAD = 24, LINES_APART = 4 };
 
 void lm_ground_map_start(struct lm_ground_map *g, const struct lm_radar *radar, uint8_t range,
                          uint8_t azimuth, uint32_t epoch)
@@ -100,11 +101,13 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
         .sampling = lm_sampling_for(tiles->db, cell_mm, g->sweep),
     };
     const uint32_t drawn = g->line;
-    lm_line_render(line, tiles, &setup, path_of(g, &origin, antenna->heading, drawn),
-                   LM_HORIZON_OPEN);
-    lm_scan_line_prefetch(tiles, &setup.sampling,
-                          path_of(g, &origin, antenna->heading, line_ahead(g, LINES_AHEAD)),
-                          g->radar->gm_cells);
+    const struct lm_ground_path path = path_of(g, &origin, antenna->heading, drawn);
+    lm_line_render(line, tiles, &setup, &path, LM_HORIZON_OPEN);
+    if (drawn % LINES_APART == 0) {
+        const struct lm_ground_path ahead =
+            path_of(g, &origin, antenna->heading, line_ahead(g, LINES_AHEAD));
+        lm_scan_line_prefetch(tiles, &setup.sampling, &ahead, g->radar->gm_cells);
+    }
     move_on(g);
     return drawn;
 }

@@ -74,8 +74,9 @@ static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t line)
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
 {
-    lm_scan_line_prefetch(tiles, &s->sampling, patch_path(s, line), s->grid.cells);
-    lm_scan_line_prefetch(tiles, &s->runup_sampling, runup_path(s, line), LM_SAR_RUNUP);
+    const struct lm_ground_path path = patch_path(s, line), runup = runup_path(s, line);
+    lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
+    lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
 }
 
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
@@ -87,13 +88,14 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
                                   .tone = tone,
                                   .sampling = s->runup_sampling};
     if (s->line % LM_SAR_RUNUP_LINES == 0) {
-        struct lm_ground_path path = runup_path(s, s->line);
+        const struct lm_ground_path path = runup_path(s, s->line);
         lm_scan_line_run(&line->ground, tiles, &setup.sampling, &path, LM_SAR_RUNUP);
         s->horizon = lm_aspect_run(setup.grid, setup.aspect, &tiles->db->classes, &line->ground,
-                                   LM_HORIZON_OPEN, line->level_q8);
+                                   LM_HORIZON_OPEN, &line->sight);
     }
     setup.grid = &s->grid;
     setup.sampling = s->sampling;
-    lm_line_render(line, tiles, &setup, patch_path(s, s->line), s->horizon);
+    const struct lm_ground_path path = patch_path(s, s->line);
+    lm_line_render(line, tiles, &setup, &path, s->horizon);
     s->line++;
 }

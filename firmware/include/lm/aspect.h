@@ -1,5 +1,5 @@
-/* What the radar sees of a line: horizon, shadow, slope, walls, edges, in one pass from near to far.
- * Equations: docs/DESIGN.md, "What the radar sees of it". */
+/* What the radar sees of a line: horizon, shadow, slope, walls, edges, in one pass from near to
+ * far. Equations: docs/DESIGN.md, "What the radar sees of it". */
 #ifndef LM_ASPECT_H
 #define LM_ASPECT_H
 
@@ -11,7 +11,8 @@
 /* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
 enum { LM_LEVEL_SHADOW = -0x8000 };
 
-/* Nothing nearer than this is shown: a ground-map beam does not look straight down. */
+/* Nothing nearer than this or than half the antenna's height is shown: the beam does not look down
+ * more steeply than 63 degrees. */
 enum { LM_RANGE_MIN_M = 256 };
 
 struct lm_aspect_config {
@@ -25,31 +26,40 @@ struct lm_range_grid {
     uint32_t cells;
     uint32_t cell_q8;                  /* length, metres * 256 */
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain; metres * 1024 */
-    uint32_t first;                    /* cells before this are nearer than LM_RANGE_MIN_M */
+    uint32_t first;                    /* cells before this are too near to be shown */
     int32_t shore_fall_q8;             /* a cell, see aspect.c */
-    int32_t flat_rise_q30;             /* rise of the tangent in the first cell over flat ground */
-    uint32_t inverse_range_q40[LM_CELLS_MAX]; /* 1 / s, s in metres */
-    int32_t fall_q10[LM_CELLS_MAX];           /* the Earth's drop and the antenna's height, metres * 1024 */
-    int32_t gain_q8[LM_CELLS_MAX];            /* K_i, and the scale of the tangent's Q30 */
+    uint32_t tangent_shift;            /* the tangents of this grid are in Q(40 + tangent_shift) */
+    int64_t flat_rise;                 /* of the tangent in the first cell over flat ground, so */
+    int32_t
+        inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(26 + tangent_shift), s in metres; 0 < 2^30 */
+    int32_t fall_q14[LM_CELLS_ROOM]; /* the Earth's drop and the antenna's height, metres * 16384 */
+    int32_t gain_q8[LM_CELLS_ROOM];  /* K_i, reflectivity code 0, and the scale of the tangents */
 };
 
-/* Cell i is centred at first_q8 + i * cell_q8 (metres * 256); cell_q8 > 0, last centre below 400 km.
- * Cost: about 150 instructions a cell. */
+/* Cell i is centred at first_q8 + i * cell_q8 (metres * 256); cell_q8 > 0, last centre below 400
+ * km; height_q10 within 30 km. Cost: about 150 instructions a cell. */
 void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *config,
                        uint32_t first_q8, uint32_t cell_q8, uint32_t cells, int32_t height_q10,
                        int32_t reference_q10);
 
-/* The running horizon: tangent of the highest look so far, Q30. */
-typedef int64_t lm_horizon_q30_t;
+/* The running horizon: tangent of the highest look so far, Q40. */
+typedef int64_t lm_horizon_q40_t;
 
 /* No terrain seen yet: the first cell that is looked at will be lit as flat ground is. */
 #define LM_HORIZON_OPEN INT64_MIN
 
-/* Levels of the line's cells into level_q8[0..cells-1]; LM_LEVEL_SHADOW where nothing is lit or known.
- * Returns the horizon behind the last cell. */
-lm_horizon_q30_t lm_aspect_run(const struct lm_range_grid *grid,
+/* What becomes of a line's cells. */
+struct lm_sight {
+    /* horizon[0] is where the line starts, horizon[i + 1] what cell i leaves: the largest tangent
+     * so far, in the grid's format. Cells that are not shown leave it alone. */
+    int64_t horizon[LM_CELLS_ROOM];
+    int32_t level_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW where nothing is lit */
+};
+
+/* Fill `sight` for the cells of the grid. Returns the horizon behind the last cell. */
+lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
                                const struct lm_aspect_config *config,
                                const struct lm_classes *classes, const struct lm_scan_line *line,
-                               lm_horizon_q30_t horizon, int32_t *level_q8);
+                               lm_horizon_q40_t horizon, struct lm_sight *sight);
 
 #endif

@@ -19,13 +19,13 @@ struct lm_line_setup {
 /* What the stages hand on. Kept by the caller, so that a bench or a test can look at each. */
 struct lm_line {
     struct lm_scan_line ground;
-    int32_t level_q8[LM_CELLS_MAX];
-    uint8_t grey[LM_CELLS_MAX];
+    struct lm_sight sight;
+    uint8_t grey[LM_CELLS_ROOM];
 };
 
 /* Draw the grid's cells along the path. Returns the horizon behind the last cell. */
-lm_horizon_q30_t lm_line_render(struct lm_line *line, struct lm_tile_cache *tiles,
-                                const struct lm_line_setup *setup, struct lm_ground_path path,
-                                lm_horizon_q30_t horizon);
+lm_horizon_q40_t lm_line_render(struct lm_line *line, struct lm_tile_cache *tiles,
+                                const struct lm_line_setup *setup,
+                                const struct lm_ground_path *path, lm_horizon_q40_t horizon);
 
 #endif

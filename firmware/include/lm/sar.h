@@ -22,7 +22,7 @@ struct lm_sar {
     struct lm_ground_patch ground;
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
-    lm_horizon_q30_t horizon; /* where the lines of this run-up start */
+    lm_horizon_q40_t horizon; /* where the lines of this run-up start */
     uint32_t line;            /* next to be drawn; command done when it is radar->sar_cells */
 };
 

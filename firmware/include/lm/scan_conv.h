@@ -1,5 +1,5 @@
-/* From lines to the picture's plane: one byte of grey a pixel, painted line by line and kept between frames.
- * docs/DESIGN.md, "On the glass". */
+/* From lines to the picture's plane: one byte of grey a pixel, painted line by line and kept
+ * between frames. docs/DESIGN.md, "On the glass". */
 #ifndef LM_SCAN_CONV_H
 #define LM_SCAN_CONV_H
 
@@ -13,14 +13,14 @@ struct lm_plane {
     uint16_t width_px, height_px;
 };
 
-/* Where a sector or a patch lies in the plane. Sector: the apex at the bottom centre of this rectangle; patch: in its
- * middle. */
+/* Where a sector or a patch lies in the plane. Sector: the apex at the bottom centre of this
+ * rectangle; patch: in its middle. */
 struct lm_frame {
     uint16_t left_px, top_px, width_px, height_px;
 };
 
-/* The rectangle of the plane that shows radar: in units of half a screen from its centre, top +0.75, bottom -0.68, left
- * -0.80, right +0.72. */
+/* The rectangle of the plane that shows radar: in units of half a screen from its centre, top
+ * +0.75, bottom -0.68, left -0.80, right +0.72. */
 struct lm_frame lm_frame_of_display(uint16_t width_px, uint16_t height_px);
 
 void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame);
@@ -28,12 +28,14 @@ void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame);
 /* Radius of the largest sector of +-60 degrees that fits the frame, pixels. */
 uint16_t lm_ppi_radius_px(const struct lm_frame *frame);
 
-/* Paint the wedge from azimuth `left` up to, not including, `right` (from straight up, clockwise, both within +-62
- * degrees, right after left). Lines that share an edge share no pixel and leave none out. Draws only inside the frame. */
+/* Paint the wedge from azimuth `left` up to, not including, `right` (from straight up, clockwise,
+ * both within +-62 degrees, right after left). Lines that share an edge share no pixel and leave
+ * none out. Draws only inside the frame. */
 void lm_ppi_paint(const struct lm_plane *plane, const struct lm_frame *frame, fx_bam_t left,
                   fx_bam_t right, const uint8_t *grey, uint32_t cells);
 
-/* Pixels along one side of a patch's cell: the largest whole number with which `cells` fit, at least 1. */
+/* Pixels along one side of a patch's cell: the largest whole number with which `cells` fit, at
+ * least 1. */
 uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells);
 
 /* Paint column `line` of a patch of cells x cells; grey[0] is the nearest cell, at the bottom. */

@@ -1,0 +1,150 @@
+/* The work that `make bench` counts: whole pictures from an image made in memory, all tiles
+ * resident. Prints nothing; callgrind counts the instructions of the functions called here
+ * (tests/bench/bench.sh).
+ *
+ *   stage_bench sar|gm N */
+#include "lm/ground_map.h"
+#include "lm/sar.h"
+#include "lm/scan_conv.h"
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A mixed scene: water, fields, forest, a block of buildings every 80 m, hills. */
+static struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const double u = sin(p->east_m / 170) + sin(p->north_m / 230);
+    if (u < -1.2) {
+        return (struct tiny_cell){-40, TINY_WATER, 0};
+    }
+    if (fabs(remainder(p->east_m, 80)) < 12 && fabs(remainder(p->north_m, 80)) < 15) {
+        return (struct tiny_cell){0, TINY_STRUCTURE, 5};
+    }
+    if (u > 0.9) {
+        return (struct tiny_cell){-15, TINY_TREES, 7};
+    }
+    return (struct tiny_cell){-20 + 2 * sin(p->east_m / 31), TINY_SOIL, 0};
+}
+
+static double scene_elevation(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 60 + 40 * sin(p->east_m / 400) * cos(p->north_m / 300);
+}
+
+struct world {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache tiles;
+    void *pool;
+    struct lm_tone tone;
+    struct lm_line line;
+    struct lm_plane plane;
+    struct lm_frame frame;
+};
+
+/* The glass: a display of 512 x 512, where a patch of 256 cells shows a cell as one pixel. */
+enum { DISPLAY_PX = 512 };
+
+static int open_world(struct world *w, uint8_t shift0)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = scene_cell;
+    spec.elevation_m = scene_elevation;
+    spec.shift0 = shift0;
+    spec.rows = spec.columns = 10;
+    if (tiny_image_build(&w->image, &spec) != 0) {
+        return -1;
+    }
+    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
+    const size_t bytes = 300 * sizeof(struct lm_tile);
+    w->pool = malloc(bytes);
+    w->plane = (struct lm_plane){calloc(DISPLAY_PX, DISPLAY_PX), DISPLAY_PX, DISPLAY_PX};
+    w->frame = lm_frame_of_display(DISPLAY_PX, DISPLAY_PX);
+    return w->pool && w->plane.pixels && lm_db_open(&w->db, &w->flash.port, 10) == LM_OK &&
+                   lm_tile_cache_init(&w->tiles, &w->db, w->pool, bytes, 10) == LM_OK &&
+                   lm_tone_set(&w->tone, &lm_radar_default.sar_tone) == LM_OK
+               ? 0
+               : -1;
+}
+
+static void make_resident(struct world *w)
+{
+    for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&w->tiles); i++) {
+        lm_tile_cache_service(&w->tiles, 0, 1);
+    }
+}
+
+static int draw_patches(struct world *w, int count)
+{
+    struct lm_sar sar;
+    const struct lm_sar_command command = {
+        .centre = {w->db.centre_latitude, w->db.centre_longitude},
+        .cell_mm = 5000,
+        .look_azimuth = FX_BAM_DEG(37),
+        .range_m = 20000,
+        .height_q6 = 3000 * 64,
+    };
+    for (int n = 0; n < count; n++) {
+        if (lm_sar_start(&sar, &lm_radar_default, &w->db, &command, 60 * 1024, 0) != LM_OK) {
+            return -1;
+        }
+        for (uint32_t line = 0; line < lm_radar_default.sar_cells; line += 8) {
+            lm_sar_prefetch(&sar, &w->tiles, line);
+            make_resident(w);
+        }
+        while (sar.line < lm_radar_default.sar_cells) {
+            lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
+            lm_patch_paint(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
+                           lm_radar_default.sar_cells);
+        }
+    }
+    return 0;
+}
+
+static void draw_sweeps(struct world *w, int count)
+{
+    struct lm_ground_map map;
+    const struct lm_antenna antenna = {
+        .place = {w->db.centre_latitude - (fx_bam_t)(8000 / 9.3e-3), w->db.centre_longitude},
+        .height_q10 = 3000 * 1024,
+        .heading = 0,
+    };
+    lm_ground_map_start(&map, &lm_radar_default, 0, 0, 0);
+    for (int n = 0; n < count; n++) {
+        for (uint32_t i = 0; i < lm_ground_map_lines(&map); i++) {
+            const uint32_t line =
+                lm_ground_map_draw_line(&map, &w->tiles, &antenna, &w->tone, &w->line);
+            lm_ppi_paint(&w->plane, &w->frame, (fx_bam_t)lm_ground_map_edge_bam(&map, line),
+                         (fx_bam_t)lm_ground_map_edge_bam(&map, line + 1), w->line.grey,
+                         lm_radar_default.gm_cells);
+            make_resident(w);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    static struct world world; /* large, and this is a program, not the firmware */
+    const int count = argc == 3 ? atoi(argv[2]) : 0;
+    const int is_sar = argc == 3 && strcmp(argv[1], "sar") == 0;
+    if (count < 1 || (!is_sar && strcmp(argv[1], "gm") != 0)) {
+        fputs("usage: stage_bench sar|gm N\n", stderr);
+        return 2;
+    }
+    if (open_world(&world, is_sar ? 9 : 12) != 0) {
+        fputs("stage_bench: the scene could not be made\n", stderr);
+        return 1;
+    }
+    if (is_sar) {
+        return draw_patches(&world, count) != 0;
+    }
+    draw_sweeps(&world, count);
+    return 0;
+}
