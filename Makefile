@@ -88,11 +88,11 @@ $(O)/%.a:
 $(O)/fixed/%.o: fixed/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
-	$(Q)$(CC) $(CFLAGS_fixed) $(DEPGEN) -c $< -o $@
+	$(Q)$(CC) $(CFLAGS_fixed) $(OPT_core) $(DEPGEN) -c $< -o $@
 $(O)/firmware/%.o: firmware/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
-	$(Q)$(CC) $(CFLAGS_firmware) $(DEPGEN) -c $< -o $@
+	$(Q)$(CC) $(CFLAGS_firmware) $(OPT_core) $(DEPGEN) -c $< -o $@
 $(O)/drivers/%.o: drivers/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')

@@ -2,3 +2,12 @@
 CC  := gcc
 AR  := gcc-ar
 RUN :=
+
+# How the two lowest layers are compiled. They are all integers, so the picture is the same whatever is chosen here. A PC of
+# the last ten years has 256-bit vectors: its compiler is told so when the machine that builds, which is the one that
+# runs, says it has them. Tuned for haswell, because the tuning for no machine in particular avoids vector gathers.
+OPT_core := -O3 -funroll-loops
+HAS_AVX2 := $(shell grep -qsw avx2 /proc/cpuinfo && grep -qsw bmi2 /proc/cpuinfo && echo yes)
+ifeq ($(HAS_AVX2),yes)
+OPT_core += -march=x86-64-v3 -mtune=haswell
+endif
