@@ -4,6 +4,7 @@
 #include "image_reader.h"
 #include "image_verify.h"
 
+#include "hs/rng.h"
 #include "lm/target.h"
 
 #include "fx/crc32c.h"
@@ -107,6 +108,50 @@ static void a_line_that_makes_no_sense_is_refused(void **state)
     }
     struct build_targets t;
     assert_int_equal(build_targets_read(&t, scene_path("there is none")), -1);
+}
+
+/* The file above with bytes changed, lost and doubled: refused with an error, or read into records
+ * that the firmware takes. */
+static void whatever_is_read_the_firmware_takes(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    uint32_t taken = 0, refused = 0;
+    FILE *keep = stderr;
+    stderr = fopen("/dev/null", "w");
+    assert_non_null(stderr);
+    hs_rng_seed(&rng, 9);
+    for (int i = 0; i < 3000; i++) {
+        static const char spare[] = " \n\t#-+.0123456789eEnatrgplsbohx";
+        char mutant[sizeof text + 8];
+        struct build_targets t;
+        memcpy(mutant, text, sizeof text);
+        for (uint32_t k = 1 + hs_rng_below(&rng, 3); k > 0; k--) {
+            char *at = mutant + hs_rng_below(&rng, sizeof text - 1);
+            const uint32_t what = hs_rng_below(&rng, 3);
+            if (what == 0) {
+                *at = spare[hs_rng_below(&rng, sizeof spare - 1)];
+            } else if (what == 1 && at[1]) {
+                memmove(at, at + 1, strlen(at));
+            } else if (strlen(mutant) < sizeof mutant - 1) {
+                memmove(at + 1, at, strlen(at) + 1);
+            }
+        }
+        scene_text("mutant.targets", mutant);
+        if (build_targets_read(&t, scene_path("mutant.targets")) != 0) {
+            refused++;
+            continue;
+        }
+        for (uint32_t k = 0; k < t.count; k++) {
+            assert_int_equal(lm_target_check(&t.items[k]), LM_OK);
+            taken++;
+        }
+        build_targets_free(&t);
+    }
+    fclose(stderr);
+    stderr = keep;
+    print_message("# %u records taken, %u files refused\n", taken, refused);
+    assert_true(taken > 500 && refused > 500);
 }
 
 /* ---- in an image ---- */
@@ -344,6 +389,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_says_all_that_a_record_holds),
         cmocka_unit_test(a_line_that_makes_no_sense_is_refused),
+        cmocka_unit_test(whatever_is_read_the_firmware_takes),
         cmocka_unit_test(the_targets_of_a_file_are_those_that_the_firmware_reads),
         cmocka_unit_test(verify_and_inspect_know_targets),
         cmocka_unit_test(a_fault_in_the_file_leaves_no_image),
