@@ -17,13 +17,14 @@ static int32_t db_q8_of_log2_q16(int32_t log2_q16)
     return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
 }
 
-/* tan of the grazing angle of flat ground at the reference elevation, Q24. */
-static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
+/* g of the equations, Q24: the rise of flat ground from the cell before, at before_q8, to cell i,
+ * as tan of a grazing angle. */
+static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t before_q8)
 {
     /* Height difference below 2^26, inverse range below 2^30 in Q(26 + shift). */
     const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
     const int64_t grazing = (above_q10 * g->inverse_range[i] >> (12 + g->tangent_shift)) -
-                            ((int64_t)range_q8 * curvature_q48 >> 32);
+                            ((int64_t)before_q8 * curvature_q48 >> 32);
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
 
@@ -36,9 +37,11 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
     g->inverse_range[i] =
         (int32_t)((((uint64_t)1 << (34 + g->tangent_shift)) + range_q8 / 2) / range_q8);
 
-    /* K = s / (ds g), and the rise comes in Q(40 + shift - RISE_SHIFT). */
-    const int32_t log2_q16 = fx_log2_q16(range_q8) - fx_log2_q16(g->cell_q8) -
-                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, range_q8)) +
+    /* K = s / (ds g) with the range of the cell before, and the rise comes in Q(40 + shift -
+     * RISE_SHIFT). */
+    const uint32_t before_q8 = i == g->first ? range_q8 : range_q8 - g->cell_q8;
+    const int32_t log2_q16 = fx_log2_q16(before_q8) - fx_log2_q16(g->cell_q8) -
+                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_q8)) +
                              (24 + RISE_SHIFT - 40 - (int32_t)g->tangent_shift) * 65536;
     g->gain_q8[i] = db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
 }

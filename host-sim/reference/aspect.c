@@ -8,16 +8,25 @@ double ref_tangent(double antenna_m, double range_m, double top_m)
     return (top_m - antenna_m - range_m * range_m / (2 * REF_EFFECTIVE_EARTH_M)) / range_m;
 }
 
-double ref_grazing(const struct ref_view *view, double range_m)
+double ref_grazing(const struct ref_view *view, double range_m, double before_m)
 {
     const double flat =
-        (view->antenna_m - view->reference_m) / range_m - range_m / (2 * REF_EFFECTIVE_EARTH_M);
+        (view->antenna_m - view->reference_m) / range_m - before_m / (2 * REF_EFFECTIVE_EARTH_M);
     return fmax(flat, 1.0 / 256);
 }
 
-double ref_gain_db(const struct ref_view *view, double range_m)
+double ref_gain_db(const struct ref_view *view, double range_m, double before_m)
 {
-    return 10 * log10(range_m / (view->cell_m * ref_grazing(view, range_m)));
+    return 10 * log10(before_m / (view->cell_m * ref_grazing(view, range_m, before_m)));
+}
+
+size_t ref_first_shown(const struct ref_bin *bins, size_t count, const struct ref_view *view)
+{
+    size_t first = 0;
+    while (first < count && bins[first].range_m < fmax(256, view->antenna_m / 2)) {
+        first++;
+    }
+    return first;
 }
 
 static double bin_tangent(const struct ref_bin *bin, double antenna_m)
@@ -28,7 +37,7 @@ static double bin_tangent(const struct ref_bin *bin, double antenna_m)
 double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view)
 {
     return bin_tangent(first, view->antenna_m) -
-           ref_grazing(view, first->range_m) * view->cell_m / first->range_m;
+           ref_grazing(view, first->range_m, first->range_m) * view->cell_m / first->range_m;
 }
 
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m)
@@ -83,16 +92,23 @@ void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
                 const struct ref_params *params, double horizon)
 {
     struct shore shore = {-1, false};
-    for (size_t i = 0; i < count; i++) {
+    const size_t first = ref_first_shown(bins, count, view);
+    for (size_t i = 0; i < first; i++) {
+        bins[i].is_lit = false;
+        bins[i].horizon = horizon;
+        bins[i].level_db = params->noise_floor_db;
+    }
+    for (size_t i = first; i < count; i++) {
         struct ref_bin *bin = &bins[i];
+        const double before_m = i > first ? bin->range_m - view->cell_m : bin->range_m;
         bin->tangent = bin_tangent(bin, view->antenna_m);
         bin->horizon = horizon;
         bin->rise = bin->tangent - horizon;
         bin->is_lit = bin->rise > 0;
-        bin->gain_db = ref_gain_db(view, bin->range_m);
-        bin->edge_db = leading_edge_db(i > 0 ? bin - 1 : NULL, bin, params) +
+        bin->gain_db = ref_gain_db(view, bin->range_m, before_m);
+        bin->edge_db = leading_edge_db(i > first ? bin - 1 : NULL, bin, params) +
                        shore_db(&shore, bin, params, view->cell_m);
-        bin->level_db = bin->is_lit && bin->has_data
+        bin->level_db = bin->is_lit
                             ? bin->gamma_db + 10 * log10(bin->rise) + bin->gain_db + bin->edge_db
                             : params->noise_floor_db;
         horizon = fmax(horizon, bin->tangent);

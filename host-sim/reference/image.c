@@ -315,7 +315,7 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
     struct grid_place g;
     const struct lm_tile *tile = find_nearest(db, level, place, &g);
     if (tile == NULL) {
-        *elevation_m = db->mean_elevation_m;
+        *elevation_m = 0;
         return false;
     }
     const double north = is_exact ? g.north : floor(g.north * 256) / 256;

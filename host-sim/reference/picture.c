@@ -40,7 +40,8 @@ static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struc
         bins[i].place = ref_path_at(&path, bins[i].range_m / length_m);
         sample(db, level, params, &bins[i]);
     }
-    const double horizon = ref_gm_horizon(&bins[0], &view);
+    const size_t first = ref_first_shown(bins, gm->cell_count, &view);
+    const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
     ref_aspect(bins, gm->cell_count, &view, params, horizon);
     finish(bins, gm->cell_count, ref_speckle_shift(gm->cell_m), gm->epoch, params, table_db);
     return horizon;

@@ -106,8 +106,7 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
                  struct ref_bin *bin);
 
 /* Terrain elevation, bilinear between the four posts around the place, with the weights cut to 8
- * bits unless `is_exact`. False, with *elevation_m the mean of the image (assumed), where no level
- * has a tile. */
+ * bits unless `is_exact`. False, with *elevation_m 0, where no level has a tile. */
 bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
                       bool is_exact, double *elevation_m);
 
@@ -147,9 +146,13 @@ struct ref_view {
 /* t: tangent of the elevation angle at which a point at height `top_m` appears. */
 double ref_tangent(double antenna_m, double range_m, double top_m);
 
-/* g and K. */
-double ref_grazing(const struct ref_view *view, double range_m);
-double ref_gain_db(const struct ref_view *view, double range_m);
+/* g and K of a cell and the range of the cell before it (the first cell: its own). */
+double ref_grazing(const struct ref_view *view, double range_m, double before_m);
+double ref_gain_db(const struct ref_view *view, double range_m, double before_m);
+
+/* Index of the first bin that is shown: those nearer than 256 m or half the antenna's height are
+ * dark and take no part. `count` when none is. */
+size_t ref_first_shown(const struct ref_bin *bins, size_t count, const struct ref_view *view);
 
 /* T_0 of a GM line, whose first cell shows flat ground's share. */
 double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
@@ -158,8 +161,8 @@ double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
 
 /* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
- * Assumed: the first bin has no bin before it, so enters nothing and follows no water; a bin
- * without data has no echo but hides what lies behind it, and its kind is that of class 15. */
+ * The first bin shown enters nothing and follows no water; a bin without data is ground of -80 dB.
+ */
 void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
                 const struct ref_params *params, double horizon);
 
@@ -185,8 +188,8 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 
 /* ---- tone (tone.c) ---- */
 
-/* v, clamped to 0..1, and the grey level through the 1024-entry table: round(255 (i / 1023)^gamma)
- * with i = floor(1023 v + 1/2). */
+/* v of the middle of the level's step of 1/16 dB, clamped to 0..1, and the grey level round(255
+ * v^gamma). */
 double ref_brightness(double level_db, const struct ref_params *params);
 uint8_t ref_grey(double brightness, const struct ref_params *params);
 void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params);

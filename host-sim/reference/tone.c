@@ -18,14 +18,16 @@ struct ref_params ref_params_default(void)
 
 double ref_brightness(double level_db, const struct ref_params *params)
 {
-    const double v = (level_db - params->black_db) / (params->white_db - params->black_db);
+    /* The middle of the level's step of 1/16 dB. */
+    const double n = fmin(fmax(floor(16 * (level_db + 80)), 0), 2047);
+    const double middle_db = (n + 0.5) / 16 - 80;
+    const double v = (middle_db - params->black_db) / (params->white_db - params->black_db);
     return fmin(fmax(v, 0), 1);
 }
 
 uint8_t ref_grey(double brightness, const struct ref_params *params)
 {
-    const double index = floor(1023 * brightness + 0.5);
-    return (uint8_t)lround(255 * pow(index / 1023, params->gamma_exponent));
+    return (uint8_t)lround(255 * pow(brightness, params->gamma_exponent));
 }
 
 void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params)
