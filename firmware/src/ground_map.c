@@ -1,5 +1,7 @@
 #include "lm/ground_map.h"
 
+#include "fx/sat.h"
+
 /* Tiles are asked for this many lines ahead of the beam, a tenth of a second, and for every fourth
  * line only: between two of those lie nine cells at the most, where a tile has 64. */
 enum { LINES_AHEAD = 24, LINES_APART = 4 };
@@ -32,18 +34,33 @@ int32_t lm_ground_map_edge_bam(const struct lm_ground_map *g, uint32_t line)
     return from_middle * (int32_t)g->radar->gm_line;
 }
 
-/* The grid depends on the height: it is made again when that has changed by a hundredth and a
- * metre. Until then the whole geometry stays that of the old height, gain and horizon alike. */
-static void refresh_grid(struct lm_ground_map *g, const struct lm_db *db, int32_t height_q10)
+/* Elevation of the flat ground that the time gain assumes: what lies below the aircraft, but not
+ * above the mean of the map's land, so that a mountain below does not turn up the plains around it.
+ */
+static int32_t reference_q10_of(struct lm_tile_cache *tiles, uint8_t level, struct lm_place place)
 {
-    const int32_t change = height_q10 - g->grid.height_q10;
-    const int32_t limit = (height_q10 < 0 ? -height_q10 : height_q10) / 128 + 1024;
-    if (g->grid.cells != 0 && change <= limit && change >= -limit) {
+    return fx_min_i32(lm_scan_elevation(tiles, level, place, 0), tiles->db->mean_elevation_q6 * 16);
+}
+
+/* The grid depends on the height: it is made again when that has changed by a hundredth and a
+ * metre, and when a sweep begins over other ground. Until then the whole geometry stays that of the
+ * old height, gain and horizon alike. */
+static void refresh_grid(struct lm_ground_map *g, struct lm_tile_cache *tiles, uint8_t level,
+                         const struct lm_antenna *antenna)
+{
+    const uint32_t begin = g->is_leftward ? lm_ground_map_lines(g) - 1 : 0;
+    const bool is_new = g->grid.cells == 0 || g->line == begin;
+    const int32_t reference_q10 =
+        is_new ? reference_q10_of(tiles, level, antenna->place) : g->grid.reference_q10;
+    const int32_t height_q10 = antenna->height_q10;
+    const uint32_t limit = fx_abs_u32(height_q10) / 128 + 1024;
+    if (g->grid.cells != 0 && fx_abs_u32(height_q10 - g->grid.height_q10) <= limit &&
+        fx_abs_u32(reference_q10 - g->grid.reference_q10) <= limit) {
         return;
     }
     const uint32_t cell_q8 = g->radar->range_m[g->range] * 256u / g->radar->gm_cells;
     lm_range_grid_set(&g->grid, &g->radar->aspect, cell_q8 / 2, cell_q8, g->radar->gm_cells,
-                      height_q10, db->mean_elevation_q6 * 16);
+                      height_q10, reference_q10);
 }
 
 static struct lm_ground_path path_of(const struct lm_ground_map *g,
@@ -91,7 +108,6 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, antenna->place);
-    refresh_grid(g, tiles->db, antenna->height_q10);
     const uint32_t cell_mm = g->radar->range_m[g->range] * 1000u / g->radar->gm_cells;
     const struct lm_line_setup setup = {
         .grid = &g->grid,
@@ -100,6 +116,7 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
         .tone = tone,
         .sampling = lm_sampling_for(tiles->db, cell_mm, g->sweep),
     };
+    refresh_grid(g, tiles, setup.sampling.level, antenna);
     const uint32_t drawn = g->line;
     const struct lm_ground_path path = path_of(g, &origin, antenna->heading, drawn);
     lm_line_render(line, tiles, &setup, &path, LM_HORIZON_OPEN);

@@ -22,16 +22,20 @@ static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, u
     ref_tone(bins, count, params);
 }
 
-static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm)
+static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm,
+                               const struct ref_params *params)
 {
-    return (struct ref_view){gm->antenna_m, db->mean_elevation_m, gm->cell_m};
+    double below_m;
+    ref_db_elevation(db, ref_db_level_for(db, gm->cell_m), gm->antenna, params->has_exact_weights,
+                     &below_m);
+    return (struct ref_view){gm->antenna_m, fmin(below_m, db->mean_elevation_m), gm->cell_m};
 }
 
 static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
                       const struct ref_params *params, double azimuth_deg,
                       const double table_db[REF_SPECKLE_SLICES])
 {
-    const struct ref_view view = gm_view(db, gm);
+    const struct ref_view view = gm_view(db, gm, params);
     const unsigned level = ref_db_level_for(db, gm->cell_m);
     const double length_m = gm->cell_count * gm->cell_m;
     const struct ref_path path = ref_gm_path(gm->antenna, azimuth_deg, length_m);
@@ -94,7 +98,7 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
 {
     *picture = (struct ref_picture){.line_count = gm->line_count,
                                     .cell_count = gm->cell_count,
-                                    .view = gm_view(db, gm),
+                                    .view = gm_view(db, gm, params),
                                     .level = ref_db_level_for(db, gm->cell_m),
                                     .speckle_shift = ref_speckle_shift(gm->cell_m)};
     if (allocate(picture) != 0) {
