@@ -6,8 +6,9 @@
 
 struct drv_flash_file {
     int descriptor;
-    int last_status;      /* of the read that read_poll will report */
-    struct lm_flash port; /* hand this to the firmware; its ctx is this struct, which must not move */
+    int last_status; /* of the read that read_poll will report */
+    struct lm_flash
+        port; /* hand this to the firmware; its ctx is this struct, which must not move */
 };
 
 /* Open `path` for reading. Returns 0, or the errno of what failed with nothing open. */
