@@ -189,17 +189,6 @@ static int64_t tangent_q38(const struct lm_target_line *line, int32_t top_q10, u
     return apparent_q10 * ((int64_t)1 << 36) / (int64_t)fx_max_u32(range_q8, LM_RANGE_MIN_M * 256u);
 }
 
-/* Highest of the cells before `cell`, and the horizon that the line starts with. */
-static int64_t horizon_before(const struct lm_target_line *line,
-                              const struct lm_target_sight *sight, int32_t cell)
-{
-    int64_t highest = sight->horizon;
-    for (int32_t i = (int32_t)line->first; i < cell; i++) {
-        highest = sight->tangent[i] > highest ? sight->tangent[i] : highest;
-    }
-    return highest;
-}
-
 /* 10 log10 of a cell's area as flat ground shows it, w ds g, in 1/256 dB of a square metre. */
 static int32_t clutter_area_q8(const struct lm_target_line *line, int32_t cell)
 {
@@ -208,10 +197,12 @@ static int32_t clutter_area_q8(const struct lm_target_line *line, int32_t cell)
     const uint64_t turns_q16 = (uint64_t)range_q8 * line->width >> 24;
     const uint64_t arc_q8 = turns_q16 * (TWO_PI_Q28 / 4) >> 34;
     const uint64_t width_q8 = line->is_patch ? line->cell_q8 : arc_q8;
-    /* g: a height of 2^26 in Q10, times 2^22, over metres in Q8, less s / 2a. */
+    /* g, as the time gain has it: a height of 2^26 in Q10, times 2^22, over metres in Q8, less the
+     * range of the cell before over 2a. */
+    const uint32_t before_q8 = (uint32_t)cell == line->first ? range_q8 : range_q8 - line->cell_q8;
     const int64_t above_q10 = (int64_t)line->height_q10 - line->reference_q10;
     const int64_t grazing_q24 = above_q10 * (1 << 22) / (int64_t)fx_max_u32(range_q8, 1) -
-                                ((int64_t)range_q8 * curvature_q48 >> 32);
+                                ((int64_t)before_q8 * curvature_q48 >> 32);
     const uint64_t g_q24 =
         (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
     return lm_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(line->cell_q8) +
@@ -236,7 +227,7 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
         return cell;
     }
     const int32_t top_q10 = t->elevation_q6 * 16 + r->up_mm * 128 / 125;
-    const int64_t horizon_q38 = horizon_before(line, sight, cell) >> (sight->tangent_bits - 38);
+    const int64_t horizon_q38 = sight->horizon[cell] >> (sight->bits - 38);
     return tangent_q38(line, top_q10, s.range_q8) > horizon_q38 ? cell : NO_CELL;
 }
 

@@ -46,12 +46,11 @@ struct lm_target_line {
     uint32_t scan, pulse; /* for what fluctuates: number of the sweep or patch, and of the line */
 };
 
-/* What hides a target: the tangents at which the tops of the line's cells appear, times
- * 2^tangent_bits (38..62), and the horizon that the line starts with, alike. */
+/* What hides a target: the horizon before each cell of the line, the largest tangent at which a
+ * nearer cell appears, times 2^bits (38..62). */
 struct lm_target_sight {
-    const int64_t *tangent;
-    uint32_t tangent_bits;
-    int64_t horizon;
+    const int64_t *horizon;
+    uint32_t bits;
 };
 
 /* Add what the targets return to the levels of a line's cells: a cross section sigma in a cell of
@@ -59,7 +58,7 @@ struct lm_target_sight {
  * below the horizon of the cells before its own is hidden; `sight` NULL hides nothing. `targets`
  * are checked records, `near` was chosen for this sweep or patch. Returns how many times a cell was
  * given something. Cost: 40 instructions for each target near; some 2500 and 1200 a scatterer for
- * those that the line may touch, and 2 a cell when there is one. */
+ * those that the line may touch. */
 uint32_t lm_target_add(const struct lm_target *targets, const struct lm_targets_near *near,
                        const struct lm_target_line *line, const struct lm_target_sight *sight,
                        int32_t *level_q8);

@@ -76,7 +76,7 @@ static void clear(int32_t *level_q8)
 static double level_db(double rcs_db, double at_m, double width_m, double length_m)
 {
     const struct ref_view view = {height_m, 0, length_m};
-    return rcs_db - 10 * log10(width_m * length_m * ref_grazing(&view, at_m));
+    return rcs_db - 10 * log10(width_m * length_m * ref_grazing(&view, at_m, at_m - length_m));
 }
 
 /* ---- power ---- */
@@ -276,12 +276,15 @@ static void different_targets_in_one_cell_add_their_powers(void **state)
 
 enum { BITS = 52, WALL = 20 };
 
-/* Tangents of flat ground at height 0, and a wall of `wall_m` in cell WALL. */
-static void flat_ground(const struct lm_target_line *l, double wall_m, int64_t *tangent)
+/* The horizon before each cell, of flat ground at height 0 and a wall of `wall_m` in cell WALL. */
+static void flat_ground(const struct lm_target_line *l, double wall_m, double start,
+                        int64_t *horizon)
 {
+    double highest = start;
     for (uint32_t i = 0; i < l->cells; i++) {
         const double at_m = (l->first_q8 + i * l->cell_q8) / 256.0;
-        tangent[i] = (int64_t)ldexp(ref_tangent(height_m, at_m, i == WALL ? wall_m : 0), BITS);
+        horizon[i] = (int64_t)ldexp(highest, BITS);
+        highest = fmax(highest, ref_tangent(height_m, at_m, i == WALL ? wall_m : 0));
     }
 }
 
@@ -300,9 +303,9 @@ static void a_wall_hides_what_is_lower_than_the_ray_over_it(void **state)
             const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
             struct lm_targets_near near;
             int32_t level_q8[LM_CELLS_MAX];
-            int64_t tangent[LM_CELLS_MAX];
-            const struct lm_target_sight sight = {tangent, BITS, INT64_MIN};
-            flat_ground(&l, 30, tangent);
+            int64_t horizon[LM_CELLS_MAX];
+            const struct lm_target_sight sight = {horizon, BITS};
+            flat_ground(&l, 30, -10, horizon);
             lm_targets_select(&near, &t, 1, l.place, 200);
             const double ray = ref_tangent(height_m, patch_range_m + along - 66, 30);
             const bool is_seen =
@@ -322,12 +325,12 @@ static void the_horizon_that_a_line_starts_with_hides_as_well(void **state)
     const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
     struct lm_targets_near near;
     int32_t level_q8[LM_CELLS_MAX];
-    int64_t tangent[LM_CELLS_MAX];
-    flat_ground(&l, 0, tangent);
+    int64_t horizon[LM_CELLS_MAX];
     lm_targets_select(&near, &t, 1, l.place, 200);
     const double at = ref_tangent(height_m, patch_range_m, 0);
     for (int i = -1; i <= 1; i += 2) {
-        const struct lm_target_sight sight = {tangent, BITS, (int64_t)ldexp(at + i * 1e-7, BITS)};
+        const struct lm_target_sight sight = {horizon, BITS};
+        flat_ground(&l, 0, at + i * 1e-7, horizon);
         clear(level_q8);
         assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), i < 0);
     }
@@ -412,8 +415,8 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
         l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         struct lm_targets_near near;
         int32_t level_q8[LM_CELLS_MAX];
-        int64_t tangent[LM_CELLS_MAX] = {0};
-        const struct lm_target_sight sight = {tangent, 40, INT64_MIN};
+        int64_t horizon[LM_CELLS_MAX] = {0};
+        const struct lm_target_sight sight = {horizon, 40};
         clear(level_q8);
         lm_targets_select(&near, &t, 1, l.place, 250000);
         given += lm_target_add(&t, &near, &l, i % 5 ? NULL : &sight, level_q8);
