@@ -66,13 +66,19 @@ bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, ui
     if (now_us - c->stepped_us < LM_CURSOR_STEP_US) {
         return false;
     }
-    c->stepped_us =
-        now_us - c->stepped_us < 2 * LM_CURSOR_STEP_US ? c->stepped_us + LM_CURSOR_STEP_US : now_us;
+    c->stepped_us = now_us - c->stepped_us < 2 * LM_CURSOR_STEP_US
+                        ? c->stepped_us + LM_CURSOR_STEP_US
+                        : now_us;
     if (!c->is_placed || c->is_snowplow) {
         lm_cursor_zero(c, scene);
     } else if (c->slew_x != 0 || c->slew_y != 0) {
         slew(c, scene);
     }
+    return true;
+}
+
+void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
+{
     uint32_t distance_q8;
     lm_geo_inverse(scene->ownship, c->place, &distance_q8, &c->bearing);
     c->range_m = distance_q8 / 256;
@@ -83,7 +89,6 @@ bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, ui
         const struct lm_offset o = within(c->offset, scene);
         c->is_on_glass = fx_hypot_u32(o.x_q8 - c->offset.x_q8, o.y_q8 - c->offset.y_q8) <= 256;
     }
-    return true;
 }
 
 int32_t lm_cursor_wants_range(const struct lm_cursor *c, uint32_t scale_m)

@@ -278,14 +278,19 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
         .is_sector = u->page.mode == LM_MODE_GM,
         .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
     };
-    if (!lm_cursor_step(&u->cursor, &scene, now_us)) {
+    const bool has_stepped = lm_cursor_step(&u->cursor, &scene, now_us);
+    lm_cursor_locate(&u->cursor, &scene);
+    if (!has_stepped) {
         return;
     }
     read_elevation(u);
     if (scene.is_sector && u->page.is_auto_range && !u->is_view_held) {
         const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
-        if (step != 0) {
-            lm_apply(u, lm_page_step_range(&u->page, step), now_us);
+        const uint32_t effects = step != 0 ? lm_page_step_range(&u->page, step) : 0;
+        if (effects) {
+            lm_apply(u, effects, now_us);
+            follow_view(u);
+            lm_cursor_locate(&u->cursor, &scene);
         }
     }
 }

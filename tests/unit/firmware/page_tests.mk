@@ -9,3 +9,11 @@ GLASS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/test_,keys cursor overla
 TESTS += $(GLASS_TESTS)
 $(GLASS_TESTS): $(O)/bin/%: $(O)/%.o $(O)/tests/unit/firmware/glass_text.o $(LIB_firmware) $(LIB_fixed)
 $(GLASS_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj)
+
+# The objects of tests/fuzz/fuzz.mk.
+T := $(O)/bin/tests/unit/firmware/test_hostile_controls
+TESTS += $(T)
+$(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_hostile_controls.o unit_rig.o) \
+    $(patsubst %.c,$(O)/sanitized/%.o,host-sim/common/src/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
+    $(wildcard firmware/src/*.c fixed/src/*.c))
+$(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka

@@ -75,6 +75,7 @@ static void steps(struct scene *s, double seconds)
     for (int i = 0; i < (int)lround(seconds / 0.02); i++) {
         s->now_us += LM_CURSOR_STEP_US;
         assert_true(lm_cursor_step(&s->cursor, &s->against, s->now_us));
+        lm_cursor_locate(&s->cursor, &s->against);
     }
 }
 

@@ -1,0 +1,115 @@
+/* A million controls from a bad hand, under the address and undefined-behaviour sanitizers: no
+ * bound of the page is ever broken, and the glass goes on. The seed is fixed; another one may be
+ * given. */
+#include "unit_rig.h"
+
+#include "hs/rng.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { EVENTS = 1000000, A_STEP = 8, HOSTILE_STEP_US = 400 };
+
+static int32_t any_value(struct hs_rng *rng)
+{
+    static const int32_t edges[] = {0, 1, -1, 20, 21, 28, 29, 1000, 1001, INT32_MAX, INT32_MIN};
+    const uint32_t count = sizeof edges / sizeof *edges;
+    const uint32_t pick = hs_rng_below(rng, 4);
+    return pick == 0   ? edges[hs_rng_below(rng, count)]
+           : pick == 1 ? (int32_t)hs_rng_below(rng, 4)
+                       : (int32_t)hs_rng_below(rng, LM_BUTTONS) + 1;
+}
+
+static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u)
+{
+    /* Mostly buttons; now and then everything else, kinds that do not exist included. */
+    const bool is_button = hs_rng_below(rng, 8) != 0;
+    struct lm_control c = {
+        .kind = is_button ? LM_CONTROL_DOWN + hs_rng_below(rng, 2) : hs_rng_below(rng, 14),
+        .value = any_value(rng),
+        .value_y = any_value(rng),
+    };
+    if (c.kind == LM_CONTROL_SLEW && hs_rng_below(rng, 2)) {
+        c.value = (int32_t)hs_rng_below(rng, 2001) - 1000;
+        c.value_y = (int32_t)hs_rng_below(rng, 2001) - 1000;
+    }
+    if (c.kind == LM_CONTROL_SAR) {
+        c.sar = (struct lm_sar_command){.centre = u->cursor.place,
+                                        .cell_mm = hs_rng_below(rng, 50000),
+                                        .is_from_ownship = hs_rng_below(rng, 2),
+                                        .range_m = hs_rng_below(rng, 300000),
+                                        .height_q6 = any_value(rng)};
+        c.sar.centre.latitude += hs_rng_below(rng, 2) ? (uint32_t)any_value(rng) : 0;
+    }
+    return c;
+}
+
+static void check_bounds(const struct rig *r)
+{
+    const struct lm_page *p = &r->unit.page;
+    assert_true(p->range < LM_RANGES && p->azimuth < LM_AZIMUTHS);
+    assert_true(p->format <= LM_FORMAT_TEST && p->mode <= LM_MODE_SAR);
+    assert_true(p->field_of_view == 0 && p->cell < LM_SAR_CELLS_OFFERED);
+    assert_true(abs(p->gain_db) <= LM_GAIN_MAX_DB && abs(p->knob) <= LM_FULL_DEFLECTION);
+    assert_true(abs(p->black_db) <= LM_WINDOW_MAX_DB && abs(p->white_db) <= LM_WINDOW_MAX_DB);
+    assert_true(abs(p->gamma_tenths) <= LM_GAMMA_MAX);
+    assert_true(p->palette.tint < LM_TINTS && abs(p->palette.brightness) <= LM_ROCKER_STEPS);
+    assert_true(abs(p->palette.contrast) <= LM_ROCKER_STEPS);
+    assert_true(abs(p->palette.symbology) <= LM_ROCKER_STEPS);
+    assert_true(p->hidden < 1u << LM_OSBS && r->unit.keys.down < 1u << LM_BUTTONS);
+    assert_true(r->unit.sar.line <= lm_radar_default.sar_cells);
+    assert_int_equal(r->unit.ground_map.range < LM_RANGES, 1);
+    const struct lm_cursor *c = &r->unit.cursor;
+    assert_true(abs(c->slew_x) <= LM_FULL_DEFLECTION && abs(c->slew_y) <= LM_FULL_DEFLECTION);
+    const int32_t reach_q8 = (r->unit.view.radius_px + 2) * 256;
+    assert_true(!c->is_on_glass ||
+                (abs(c->offset.x_q8) <= reach_q8 && abs(c->offset.y_q8) <= reach_q8));
+    for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
+        struct lm_label label;
+        assert_true(!lm_page_label(p, osb, &label) || (!label.line[0][5] && !label.line[1][5]));
+    }
+}
+
+static void a_million_hostile_controls_break_no_bound(void **state)
+{
+    (void)state;
+    const char *seed = getenv("SEED");
+    struct hs_rng rng;
+    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
+    struct rig *r = make_rig();
+    r->display.width_px = r->display.height_px = 256;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    uint32_t formats_seen = 0, modes_seen = 0;
+    for (uint32_t i = 0; i < EVENTS; i += A_STEP) {
+        for (uint32_t n = 0; n < A_STEP; n++) {
+            command(r, any_control(&rng, &r->unit));
+        }
+        /* Time mostly crawls and sometimes leaps over long presses and stuck keys. */
+        r->now_us += hs_rng_below(&rng, 500) == 0 ? 400000 : HOSTILE_STEP_US;
+        r->bus.now_us = r->now_us;
+        lm_unit_step(&r->unit, r->now_us);
+        assert_int_equal(r->control_next, r->control_count);
+        check_bounds(r);
+        formats_seen |= 1u << r->unit.page.format;
+        modes_seen |= 1u << r->unit.page.mode;
+    }
+    assert_int_equal(formats_seen, 31); /* the stream has been everywhere */
+    assert_int_equal(modes_seen, 3);
+    assert_true(r->unit.count.frames > 1000);
+    print_message("# %u pictures, %u lines, %u refused, %u swaps\n", r->unit.count.frames,
+                  r->unit.count.lines, r->unit.count.commands_refused, r->unit.count.swaps);
+    free_rig(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_million_hostile_controls_break_no_bound),
+    };
+    return cmocka_run_group_tests_name("hostile_controls", tests, NULL, NULL);
+}
