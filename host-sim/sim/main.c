@@ -1,7 +1,9 @@
 /* landmass-sim: the display unit's firmware on a PC. */
 #include "bench.h"
+#include "bezel.h"
 #include "drv/can_log.h"
 #include "drv/can_socket.h"
+#include "hands.h"
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
@@ -27,6 +29,9 @@ struct sim {
     struct drv_can_log log;
     struct drv_can_socket socket;
     struct lm_can can;
+    struct hands hands;
+    struct bezel bezel;
+    uint32_t *bezel_pixels; /* owned; NULL when no bezel is asked for */
     struct window *window;
     uint32_t pictures_written;
     uint32_t malformed_shown;
@@ -75,6 +80,12 @@ static int open_bus(struct sim *s)
     return 0;
 }
 
+/* Buttons are lit whoever holds them down: a hand in the window or the script. */
+static void draw_bezel(struct sim *s)
+{
+    bezel_draw(&s->bezel, s->bezel_pixels, s->bench.glass, s->bench.unit->keys.down);
+}
+
 static int write_picture(struct sim *s, const char *name)
 {
     char path[4096];
@@ -87,6 +98,11 @@ static int write_picture(struct sim *s, const char *name)
         return hs_error(s->options.png_folder, "use a shorter name", "the path is too long");
     }
     s->pictures_written++;
+    if (s->options.has_bezel) {
+        draw_bezel(s);
+        return hs_png_write_xrgb(path, s->bezel_pixels, s->bezel.width_px, s->bezel.height_px,
+                                 s->bezel.width_px);
+    }
     return hs_png_write_xrgb(path, s->bench.glass, d->width_px, d->height_px, d->width_px);
 }
 
@@ -95,8 +111,12 @@ static int write_picture(struct sim *s, const char *name)
 static int serve_picture(struct sim *s)
 {
     const struct options *o = &s->options;
-    if (s->window && !window_show(s->window, s->bench.glass)) {
-        return 1;
+    if (s->window) {
+        draw_bezel(s);
+        window_show(s->window, s->bezel_pixels);
+        if (!window_poll(s->window)) {
+            return 1;
+        }
     }
     const uint32_t number = s->bench.pictures - 1;
     if (o->png_folder && o->every && number % o->every == 0) {
@@ -185,6 +205,23 @@ static void print_summary(const struct sim *s)
         t->count.io_errors, t->count.corrupt, t->count.requests_dropped, u->count.display_errors);
 }
 
+static int open_bezel(struct sim *s)
+{
+    const struct options *o = &s->options;
+    s->bezel = bezel_around(o->width_px, o->height_px);
+    if (!o->has_window && !o->has_bezel) {
+        return 0;
+    }
+    s->bezel_pixels = malloc(sizeof *s->bezel_pixels * s->bezel.width_px * s->bezel.height_px);
+    if (!s->bezel_pixels) {
+        return hs_error("bezel", NULL, "out of memory");
+    }
+    if (o->has_window) {
+        s->window = window_open(&s->bezel, &s->hands);
+    }
+    return 0;
+}
+
 static int run(struct sim *s)
 {
     const struct options *o = &s->options;
@@ -195,15 +232,17 @@ static int run(struct sim *s)
     if (script_read(&s->script, o->script) != 0 || open_bus(s) != 0) {
         return -1;
     }
+    hands_init(&s->hands, &s->script.port);
     if (bench_open(&s->bench, o->database, o->width_px, o->height_px, o->seed, &s->can,
-                   &s->script.port) != 0) {
+                   &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
     if (!s->bench.unit->has_db) {
         hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
     }
-    if (o->has_window) {
-        s->window = window_open(o->width_px, o->height_px);
+    if (open_bezel(s) != 0) {
+        bench_close(&s->bench);
+        return -1;
     }
     const int status = fly(s);
     if (status == 0 && !o->is_quiet) {
@@ -234,6 +273,7 @@ int main(int argc, char **argv)
         break;
     }
     script_free(&s->script);
+    free(s->bezel_pixels);
     drv_can_socket_close(&s->socket);
     if (s->log_file) {
         fclose(s->log_file);

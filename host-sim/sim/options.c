@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "window.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -18,7 +19,9 @@ static const char help[] =
     "  --script FILE      operate the controls by a script (below)\n"
     "  --png DIR          write pictures into DIR (made if need be) as frame-NNNNN.png\n"
     "  --every N          write every Nth picture; 0: only those the script names (default 30)\n"
-    "  --window           show the glass in a window, in real time; Escape ends\n"
+    "  --window           show bezel and glass in a window, in real time, and operate them "
+    "(below)\n"
+    "  --bezel            draw the bezel into the pictures of --png too\n"
     "  --size WxH         pixels of the glass, 256..1024 each (default 768x768)\n"
     "  --seconds S        flight time to run (default: to the end of the log)\n"
     "  --seed N           another speckle (default 0); the same inputs and seed give the same "
@@ -33,7 +36,16 @@ static const char help[] =
     "  SECONDS sar LAT LON CELL_M                 patch of 256 x 256 cells seen from the ownship\n"
     "  SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M\n"
     "                                             the same from a commanded place in the air\n"
+    "  SECONDS osb N [HELD_S]                     press option select button 1..20\n"
+    "  SECONDS rocker gain|sym|brt|con +1|-1      one step\n"
+    "  SECONDS knob X                             range knob, -1..1\n"
+    "  SECONDS slew X Y FOR_S                     cursor to the right and up, -1..1\n"
+    "  SECONDS designate | drop                   target management switch up, down\n"
     "  SECONDS picture NAME                       write DIR/NAME.png then\n"
+    "\n"
+    "Keys of the window:\n";
+
+static const char help_end[] =
     "\n"
     "Exit codes: 0 done, 1 failed, 2 wrong command line.\n";
 
@@ -45,6 +57,7 @@ enum {
     OPT_PNG,
     OPT_EVERY,
     OPT_WINDOW,
+    OPT_BEZEL,
     OPT_SIZE,
     OPT_SECONDS,
     OPT_SEED,
@@ -53,19 +66,13 @@ enum {
 };
 
 static const struct option table[] = {
-    {"db", required_argument, NULL, OPT_DB},
-    {"bus", required_argument, NULL, OPT_BUS},
-    {"can", required_argument, NULL, OPT_CAN},
-    {"script", required_argument, NULL, OPT_SCRIPT},
-    {"png", required_argument, NULL, OPT_PNG},
-    {"every", required_argument, NULL, OPT_EVERY},
-    {"window", no_argument, NULL, OPT_WINDOW},
-    {"size", required_argument, NULL, OPT_SIZE},
-    {"seconds", required_argument, NULL, OPT_SECONDS},
-    {"seed", required_argument, NULL, OPT_SEED},
-    {"quiet", no_argument, NULL, OPT_QUIET},
-    {"help", no_argument, NULL, OPT_HELP},
-    {0},
+    {"db", required_argument, NULL, OPT_DB},     {"bus", required_argument, NULL, OPT_BUS},
+    {"can", required_argument, NULL, OPT_CAN},   {"script", required_argument, NULL, OPT_SCRIPT},
+    {"png", required_argument, NULL, OPT_PNG},   {"every", required_argument, NULL, OPT_EVERY},
+    {"window", no_argument, NULL, OPT_WINDOW},   {"bezel", no_argument, NULL, OPT_BEZEL},
+    {"size", required_argument, NULL, OPT_SIZE}, {"seconds", required_argument, NULL, OPT_SECONDS},
+    {"seed", required_argument, NULL, OPT_SEED}, {"quiet", no_argument, NULL, OPT_QUIET},
+    {"help", no_argument, NULL, OPT_HELP},       {0},
 };
 
 static bool whole(const char *text, long low, long high, long *value)
@@ -149,11 +156,13 @@ enum options_result options_read(struct options *o, int argc, char **argv)
     int option;
     while ((option = getopt_long(argc, argv, "", table, NULL)) != -1) {
         if (option == OPT_HELP) {
-            fputs(help, stdout);
+            printf("%s%s%s", help, window_keys_help, help_end);
             return OPTIONS_DONE;
         }
         if (option == OPT_WINDOW) {
             o->has_window = true;
+        } else if (option == OPT_BEZEL) {
+            o->has_bezel = true;
         } else if (option == OPT_QUIET) {
             o->is_quiet = true;
         } else if (option == '?') {

@@ -11,7 +11,7 @@ struct options {
     uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
     uint32_t seed;  /* of the noise */
     uint16_t width_px, height_px;
-    bool has_window, is_quiet;
+    bool has_window, has_bezel, is_quiet;
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };

@@ -1,0 +1,84 @@
+#include "hands.h"
+
+#include <string.h>
+
+static void put(struct hands *h, enum lm_control_kind kind, int32_t value, int32_t value_y)
+{
+    if (h->head - h->tail == HANDS_QUEUE) {
+        h->lost++;
+        return;
+    }
+    h->queue[h->head++ % HANDS_QUEUE] =
+        (struct lm_control){.kind = kind, .value = value, .value_y = value_y};
+}
+
+static int next(void *ctx, struct lm_control *control)
+{
+    struct hands *h = ctx;
+    if (h->script && h->script->next(h->script->ctx, control) == 1) {
+        return 1;
+    }
+    if (h->tail == h->head) {
+        return 0;
+    }
+    *control = h->queue[h->tail++ % HANDS_QUEUE];
+    return 1;
+}
+
+void hands_init(struct hands *h, const struct lm_controls *script)
+{
+    memset(h, 0, sizeof *h);
+    h->script = script;
+    h->port = (struct lm_controls){.ctx = h, .next = next};
+}
+
+void hands_button(struct hands *h, int32_t button, bool is_down)
+{
+    const uint32_t bit = 1u << (button - 1);
+    if (((h->down & bit) != 0) == is_down) {
+        return; /* held by mouse and keyboard at once */
+    }
+    h->down ^= bit;
+    put(h, is_down ? LM_CONTROL_DOWN : LM_CONTROL_UP, button, 0);
+}
+
+void hands_arrow(struct hands *h, enum hands_arrow arrow, bool is_down)
+{
+    if (h->arrows[arrow] == is_down) {
+        return;
+    }
+    h->arrows[arrow] = is_down;
+    put(h, LM_CONTROL_SLEW, LM_FULL_DEFLECTION * (h->arrows[HANDS_RIGHT] - h->arrows[HANDS_LEFT]),
+        LM_FULL_DEFLECTION * (h->arrows[HANDS_UP] - h->arrows[HANDS_DOWN]));
+}
+
+void hands_turn_knob(struct hands *h, int32_t thousandths)
+{
+    const int32_t turned = h->knob + thousandths;
+    h->knob = turned > LM_FULL_DEFLECTION    ? LM_FULL_DEFLECTION
+              : turned < -LM_FULL_DEFLECTION ? -LM_FULL_DEFLECTION
+                                             : turned;
+    put(h, LM_CONTROL_KNOB, h->knob, 0);
+}
+
+void hands_designate(struct hands *h)
+{
+    put(h, LM_CONTROL_DESIGNATE, 0, 0);
+}
+
+void hands_drop(struct hands *h)
+{
+    put(h, LM_CONTROL_DROP, 0, 0);
+}
+
+void hands_off(struct hands *h)
+{
+    for (int32_t button = 1; button <= LM_BUTTONS; button++) {
+        if (h->down >> (button - 1) & 1) {
+            hands_button(h, button, false);
+        }
+    }
+    for (int arrow = 0; arrow < 4; arrow++) {
+        hands_arrow(h, (enum hands_arrow)arrow, false);
+    }
+}

@@ -1,0 +1,149 @@
+/* What a line of a script makes the operator do, and when. */
+#include "script.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { NOTHING = 99 };
+
+/* Read `text` as a script. */
+static int read_text(struct script *s, const char *text)
+{
+    char path[] = "/tmp/test-script-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    FILE *file = fdopen(fd, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    const int status = script_read(s, path);
+    unlink(path);
+    return status;
+}
+
+/* The next control that is due at `seconds`, or one of kind NOTHING. */
+static struct lm_control at(struct script *s, double seconds)
+{
+    struct lm_control c;
+    script_advance(s, (uint64_t)(seconds * 1e6));
+    if (s->port.next(s->port.ctx, &c) != 1) {
+        c = (struct lm_control){.kind = (enum lm_control_kind)NOTHING};
+    }
+    return c;
+}
+
+static void a_press_goes_down_and_comes_up_a_tenth_of_a_second_later(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 osb 19\n"), 0);
+    assert_int_equal(at(&s, 0.999).kind, NOTHING);
+    struct lm_control c = at(&s, 1);
+    assert_int_equal(c.kind, LM_CONTROL_DOWN);
+    assert_int_equal(c.value, 19);
+    assert_int_equal(at(&s, 1.099).kind, NOTHING);
+    c = at(&s, 1.1);
+    assert_int_equal(c.kind, LM_CONTROL_UP);
+    assert_int_equal(c.value, 19);
+    assert_int_equal(at(&s, 99).kind, NOTHING);
+    script_free(&s);
+}
+
+static void a_long_press_overlaps_what_the_next_lines_do(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 osb 11 1.5\n2 gm\n2.2 picture now\n3 drop\n"), 0);
+    assert_int_equal(at(&s, 1).kind, LM_CONTROL_DOWN);
+    assert_int_equal(at(&s, 2.1).kind, LM_CONTROL_GM);
+    assert_int_equal(at(&s, 2.1).kind, NOTHING);
+    assert_string_equal(script_advance(&s, 2200000), "now");
+    assert_int_equal(at(&s, 2.49).kind, NOTHING);
+    assert_int_equal(at(&s, 2.5).kind, LM_CONTROL_UP);
+    assert_int_equal(at(&s, 3).kind, LM_CONTROL_DROP);
+    script_free(&s);
+}
+
+static void a_slew_lasts_as_long_as_it_says(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 slew 0.5 -1 2\n"), 0);
+    struct lm_control c = at(&s, 0);
+    assert_int_equal(c.kind, LM_CONTROL_SLEW);
+    assert_int_equal(c.value, 500);
+    assert_int_equal(c.value_y, -1000);
+    assert_int_equal(at(&s, 1.99).kind, NOTHING);
+    c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_SLEW);
+    assert_int_equal(c.value, 0);
+    assert_int_equal(c.value_y, 0);
+    script_free(&s);
+}
+
+static void rockers_and_knob_are_their_buttons_and_deflection(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 rocker gain +1\n1 rocker con -1\n2 knob -0.25\n"), 0);
+    assert_int_equal(at(&s, 0.5).value, lm_rocker_button(LM_ROCKER_GAIN, true));
+    assert_int_equal(at(&s, 0.5).kind, LM_CONTROL_UP);
+    assert_int_equal(at(&s, 1.5).value, lm_rocker_button(LM_ROCKER_CON, false));
+    assert_int_equal(at(&s, 1.5).kind, LM_CONTROL_UP);
+    const struct lm_control c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_KNOB);
+    assert_int_equal(c.value, -250);
+    script_free(&s);
+}
+
+static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(void **state)
+{
+    (void)state;
+    uint32_t seen = 0;
+    for (int rocker = 0; rocker < LM_ROCKERS; rocker++) {
+        for (int more = 0; more < 2; more++) {
+            const int32_t button = lm_rocker_button((enum lm_rocker)rocker, more);
+            assert_in_range(button, LM_OSBS + 1, LM_BUTTONS);
+            seen |= 1u << (button - LM_OSBS - 1);
+        }
+    }
+    assert_int_equal(seen, 0xFF);
+}
+
+static void commands_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    const char *const bad[] = {
+        "0 osb\n",           "0 osb 0\n",          "0 osb 21\n",       "0 osb 1.5\n",
+        "0 osb 1 -1\n",      "0 osb 1 1 1\n",      "0 rocker gain\n",  "0 rocker gain 1\n",
+        "0 rocker hue +1\n", "0 knob\n",           "0 knob 1.1\n",     "0 slew 1 1\n",
+        "0 slew 2 0 1\n",    "0 slew 0 0 -1\n",    "0 slew nan 0 1\n", "0 designate 1\n",
+        "0 drop it\n",       "1 osb 1\n0 osb 1\n", "0 slew 0 0 1 1\n", "0 osb 1x\n"};
+    freopen("/dev/null", "w", stderr);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct script s;
+        if (read_text(&s, bad[i]) == 0) {
+            fail_msg("accepted: %s", bad[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_press_goes_down_and_comes_up_a_tenth_of_a_second_later),
+        cmocka_unit_test(a_long_press_overlaps_what_the_next_lines_do),
+        cmocka_unit_test(a_slew_lasts_as_long_as_it_says),
+        cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
+        cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
+        cmocka_unit_test(commands_that_are_none_are_refused),
+    };
+    return cmocka_run_group_tests_name("script", tests, NULL, NULL);
+}
