@@ -1,0 +1,283 @@
+/* From lines to the plane: every pixel of a sector belongs to exactly one line, at the right range.
+ */
+#include "fx/types.h"
+#include "lm/radar.h"
+#include "lm/scan_conv.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const double degree = 3.14159265358979323846 / 180;
+enum { CELLS = 256, GUARD = 0xEE };
+
+/* A plane with guard bytes on all sides of its memory. */
+struct glass {
+    uint8_t *memory;
+    struct lm_plane plane;
+    struct lm_frame frame;
+};
+
+static void make_glass(struct glass *g, uint16_t width_px, uint16_t height_px)
+{
+    const size_t bytes = (size_t)width_px * height_px;
+    g->memory = malloc(3 * bytes);
+    assert_non_null(g->memory);
+    memset(g->memory, GUARD, 3 * bytes);
+    g->plane = (struct lm_plane){g->memory + bytes, width_px, height_px};
+    g->frame = lm_frame_of_display(width_px, height_px);
+    lm_plane_clear(&g->plane, &g->frame);
+}
+
+static int is_inside(const struct glass *g, int32_t x, int32_t y)
+{
+    const struct lm_frame *f = &g->frame;
+    return x >= f->left_px && x < f->left_px + f->width_px && y >= f->top_px &&
+           y < f->top_px + f->height_px;
+}
+
+/* Nothing outside the frame was written; then the memory goes. */
+static void close_glass(struct glass *g)
+{
+    const int32_t width = g->plane.width_px, height = g->plane.height_px;
+    for (int32_t y = -height; y < 2 * height; y++) {
+        for (int32_t x = 0; x < width; x++) {
+            if (!is_inside(g, x, y)) {
+                assert_int_equal(g->memory[(y + height) * width + x], GUARD);
+            }
+        }
+    }
+    free(g->memory);
+}
+
+/* A pixel as the apex at the bottom centre of the frame sees its centre. */
+struct polar {
+    double right_px, up_px, azimuth, radius_px;
+};
+
+static struct polar polar_of(const struct glass *g, int32_t x, int32_t y)
+{
+    const struct lm_frame *f = &g->frame;
+    struct polar p;
+    p.right_px = x + 0.5 - (f->left_px + f->width_px / 2);
+    p.up_px = f->top_px + f->height_px - y - 0.5;
+    p.azimuth = atan2(p.right_px, p.up_px);
+    p.radius_px = hypot(p.right_px, p.up_px);
+    return p;
+}
+
+static void paint(const struct glass *g, int32_t left_bam, int32_t right_bam, uint8_t grey)
+{
+    uint8_t line[CELLS];
+    memset(line, grey, sizeof line);
+    lm_ppi_paint(&g->plane, &g->frame, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
+}
+
+static const uint16_t sizes[][2] = {{256, 256}, {512, 512}, {384, 512}, {1024, 1024}, {1000, 600}};
+enum { SIZES = sizeof sizes / sizeof sizes[0] };
+
+/* Paint all lines with their numbers, from 1, or backwards. A pixel that two lines claim shows one
+ * of them in one plane and another in the other. */
+static void paint_sector(const struct glass *g, int32_t half_bam, int32_t line_bam,
+                         int is_backwards)
+{
+    const int32_t lines = 2 * half_bam / line_bam;
+    assert_in_range(lines, 1, 256);
+    lm_plane_clear(&g->plane, &g->frame);
+    for (int32_t n = 0; n < lines; n++) {
+        const int32_t line = is_backwards ? lines - 1 - n : n;
+        const int32_t left = -half_bam + line * line_bam;
+        /* Numbers repeat after 255 lines, which lie 119 degrees apart. */
+        paint(g, left, left + line_bam, (uint8_t)(1 + line % 255));
+    }
+}
+
+static void every_pixel_of_a_sector_is_painted_by_exactly_one_line(void **state)
+{
+    (void)state;
+    for (int n = 0; n < SIZES; n++) {
+        for (int a = 0; a < LM_AZIMUTHS; a++) {
+            struct glass g;
+            make_glass(&g, sizes[n][0], sizes[n][1]);
+            struct glass back;
+            make_glass(&back, sizes[n][0], sizes[n][1]);
+            /* A line is a whole share of 120 degrees; sectors are cut to whole lines. */
+            const int32_t line = (int32_t)lm_radar_default.gm_line;
+            const int32_t half =
+                (int32_t)(lm_radar_default.azimuth_half[a] / (uint32_t)line) * line;
+            paint_sector(&g, half, line, 0);
+            paint_sector(&back, half, line, 1);
+            const double half_rad = half / 2147483648.0 * 180 * degree;
+            const double radius_px = lm_ppi_radius_px(&g.frame);
+            for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+                for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                    const struct polar p = polar_of(&g, x, y);
+                    const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
+                    assert_int_equal(shown, back.plane.pixels[y * g.plane.width_px + x]);
+                    /* Half a pixel of doubt at the rim and at the outer edges. */
+                    const double off_edge_px = (half_rad - fabs(p.azimuth)) * p.radius_px;
+                    if (p.radius_px < radius_px - 1 && off_edge_px > 0.01) {
+                        assert_true(shown != 0);
+                    } else if (p.radius_px > radius_px + 1 || off_edge_px < -0.01) {
+                        assert_int_equal(shown, 0);
+                    }
+                }
+            }
+            close_glass(&back);
+            close_glass(&g);
+        }
+    }
+}
+
+static void a_pixel_shows_the_cell_at_its_range(void **state)
+{
+    (void)state;
+    uint8_t line[CELLS];
+    for (int i = 0; i < CELLS; i++) {
+        line[i] = (uint8_t)i;
+    }
+    for (int n = 0; n < SIZES; n++) {
+        struct glass g;
+        make_glass(&g, sizes[n][0], sizes[n][1]);
+        const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame);
+        const int32_t width = (int32_t)lm_radar_default.gm_line;
+        for (int32_t i = -128; i < 128; i += 9) {
+            memset(g.plane.pixels, GUARD, (size_t)g.plane.width_px * g.plane.height_px);
+            lm_plane_clear(&g.plane, &g.frame);
+            lm_ppi_paint(&g.plane, &g.frame, (fx_bam_t)(i * width), (fx_bam_t)((i + 1) * width),
+                         line, CELLS);
+            for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+                for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                    const double radius_px = polar_of(&g, x, y).radius_px;
+                    const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
+                    if (shown != 0) {
+                        assert_true(fabs(shown + 0.5 - radius_px * cells_per_px) <= 1);
+                    }
+                }
+            }
+        }
+        close_glass(&g);
+    }
+}
+
+static void hostile_wedges_stay_inside_the_frame(void **state)
+{
+    (void)state;
+    struct glass g;
+    make_glass(&g, 300, 200);
+    const int32_t deg = (int32_t)FX_BAM_DEG(1);
+    paint(&g, -62 * deg, 62 * deg, 9);
+    paint(&g, -62 * deg, -61 * deg, 9);
+    paint(&g, 61 * deg, 62 * deg, 9);
+    paint(&g, 5, 5, 9);
+    paint(&g, 20 * deg, 10 * deg, 9);
+    close_glass(&g);
+}
+
+/* The frame that the glass of paper A's display leaves to the picture. */
+static void the_frame_is_the_share_of_the_display_that_is_promised(void **state)
+{
+    (void)state;
+    const struct lm_frame f = lm_frame_of_display(1000, 1000);
+    assert_int_equal(f.left_px, 100);              /* -0.80 of half a screen */
+    assert_int_equal(f.left_px + f.width_px, 860); /* +0.72 */
+    assert_int_equal(f.top_px, 125);               /* +0.75 */
+    assert_int_equal(f.top_px + f.height_px, 840); /* -0.68 */
+}
+
+static void a_sector_fits_its_frame(void **state)
+{
+    (void)state;
+    for (uint16_t w = 100; w < 2000; w = (uint16_t)(w + 37)) {
+        for (uint16_t h = 100; h < 2000; h = (uint16_t)(h + 41)) {
+            const struct lm_frame f = {0, 0, w, h};
+            const double radius = lm_ppi_radius_px(&f), sin_60 = sqrt(0.75);
+            assert_true(radius <= h && 2 * radius * sin_60 <= w + 1e-9);
+            assert_true(radius + 1 > h || 2 * (radius + 1.01) * sin_60 > w);
+        }
+    }
+}
+
+/* A patch whose cell (line, range) is 1 + (line * 7 + range * 13) % 255. */
+static uint8_t patch_grey(uint32_t line, uint32_t range)
+{
+    return (uint8_t)(1 + (line * 7 + range * 13) % 255);
+}
+
+static void a_patch_cell_is_a_square_of_pixels_at_its_place(void **state)
+{
+    (void)state;
+    static const uint16_t px[] = {512, 700, 1024, 1100, 2048};
+    static const uint32_t counts[] = {256, 64, 100};
+    for (int n = 0; n < 5 * 3; n++) {
+        const uint32_t cells = counts[n % 3];
+        struct glass g;
+        make_glass(&g, px[n / 3], px[n / 3]);
+        const uint32_t side = lm_patch_cell_px(&g.frame, cells);
+        assert_int_equal(side, fmin(g.frame.width_px, g.frame.height_px) / cells);
+        for (uint32_t line = 0; line < cells; line++) {
+            uint8_t grey[CELLS];
+            for (uint32_t i = 0; i < cells; i++) {
+                grey[i] = patch_grey(line, i);
+            }
+            lm_patch_paint(&g.plane, &g.frame, line, grey, cells);
+        }
+        const uint32_t left = g.frame.left_px + (g.frame.width_px - side * cells) / 2;
+        const uint32_t bottom = g.frame.top_px + (g.frame.height_px + side * cells) / 2 - 1;
+        for (uint32_t y = g.frame.top_px; y < (uint32_t)g.frame.top_px + g.frame.height_px; y++) {
+            for (uint32_t x = g.frame.left_px; x < (uint32_t)g.frame.left_px + g.frame.width_px;
+                 x++) {
+                const uint32_t line = (x - left) / side, range = (bottom - y) / side;
+                const int is_patch = x >= left && line < cells && y <= bottom && range < cells;
+                assert_int_equal(g.plane.pixels[y * g.plane.width_px + x],
+                                 is_patch ? patch_grey(line, range) : 0);
+            }
+        }
+        close_glass(&g);
+    }
+}
+
+static void a_frame_smaller_than_the_patch_shows_its_middle(void **state)
+{
+    (void)state;
+    for (uint16_t size = 100; size <= 330; size = (uint16_t)(size + 10)) {
+        struct glass g;
+        make_glass(&g, size, (uint16_t)(size + size % 30));
+        for (uint32_t line = 0; line < CELLS; line++) {
+            uint8_t grey[CELLS];
+            for (uint32_t i = 0; i < CELLS; i++) {
+                grey[i] = patch_grey(line, i);
+            }
+            lm_patch_paint(&g.plane, &g.frame, line, grey, CELLS);
+        }
+        const struct lm_frame *f = &g.frame;
+        const int32_t x = f->width_px / 2, y = f->height_px / 2;
+        const int32_t line = x - (f->width_px - CELLS) / 2,
+                      range = (f->height_px + CELLS) / 2 - 1 - y;
+        assert_in_range(line, CELLS / 2 - 1, CELLS / 2 + 1);
+        assert_in_range(range, CELLS / 2 - 1, CELLS / 2 + 1);
+        assert_int_equal(g.plane.pixels[(f->top_px + y) * g.plane.width_px + f->left_px + x],
+                         patch_grey((uint32_t)line, (uint32_t)range));
+        close_glass(&g);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_pixel_of_a_sector_is_painted_by_exactly_one_line),
+        cmocka_unit_test(a_pixel_shows_the_cell_at_its_range),
+        cmocka_unit_test(hostile_wedges_stay_inside_the_frame),
+        cmocka_unit_test(the_frame_is_the_share_of_the_display_that_is_promised),
+        cmocka_unit_test(a_sector_fits_its_frame),
+        cmocka_unit_test(a_patch_cell_is_a_square_of_pixels_at_its_place),
+        cmocka_unit_test(a_frame_smaller_than_the_patch_shows_its_middle),
+    };
+    return cmocka_run_group_tests_name("scan_conv", tests, NULL, NULL);
+}
