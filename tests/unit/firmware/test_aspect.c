@@ -393,6 +393,17 @@ static void the_first_cell_enters_nothing(void **state)
     assert_edges("bbss", 10, (int32_t[4]){0});
     assert_edges("ttss", 10, (int32_t[4]){0});
     assert_edges("b", 10, (int32_t[1]){0});
+    /* Nor does the first one that is not too near. */
+    static struct scene s;
+    make_flat(&s, 0);
+    s.config = edges;
+    for (uint32_t i = 5; i < 20; i++) {
+        s.line.cell[i] = cell_of(-20, TINY_TREES, 0);
+    }
+    set_grid(&s, 1450, 10, 20, 3000, 0);
+    assert_int_equal(s.grid.first, 5);
+    run(&s, LM_HORIZON_OPEN);
+    assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
 }
 
 static void the_far_shore_fades_over_its_width(void **state)

@@ -1,0 +1,471 @@
+/* What a line finds on the ground, against a direct evaluation of the image in double precision.
+ * The evaluation reads the image's bytes by docs/FORMATS.md, not through the cache. */
+#include "fx/trig.h"
+#include "hs/rng.h"
+#include "lm/scan_line.h"
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const double bam_per_degree = 4294967296.0 / 360;
+
+struct world {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache tiles;
+    struct lm_tile *pool;
+    struct lm_scan_line line;
+};
+
+enum { SLOTS = 400 };
+
+/* Hills, and cells that differ from their neighbours. */
+static struct tiny_cell speckled(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const double u = sin(p->latitude_deg * 9e4) + sin(p->longitude_deg * 7e4);
+    return (struct tiny_cell){round(u * 20), (uint8_t)(lround(fabs(u) * 7) % 15),
+                              (uint8_t)(lround(fabs(u) * 31) % 16)};
+}
+
+static double hills(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + 200 * sin(p->north_m / 300) + 90 * cos(p->latitude_deg * 2e3);
+}
+
+static void open_world_with(struct world *w, struct tiny_spec spec)
+{
+    memset(w, 0, sizeof *w);
+    spec.cell = speckled;
+    spec.elevation_m = hills;
+    assert_int_equal(tiny_image_build(&w->image, &spec), 0);
+    w->pool = malloc(SLOTS * sizeof *w->pool);
+    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
+    assert_int_equal(lm_db_open(&w->db, &w->flash.port, 10), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&w->tiles, &w->db, w->pool, SLOTS * sizeof *w->pool, 10),
+                     LM_OK);
+}
+
+/* Square of 6 x 6 tiles of 64 cells of 4.8 m. */
+static void open_world(struct world *w, double latitude_deg, double longitude_deg)
+{
+    struct tiny_spec spec = tiny_spec_at(latitude_deg, longitude_deg);
+    spec.rows = spec.columns = 6;
+    open_world_with(w, spec);
+}
+
+static void close_world(struct world *w)
+{
+    tiny_image_free(&w->image);
+    free(w->pool);
+}
+
+static void read_what_is_wanted(struct world *w)
+{
+    for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&w->tiles); i++) {
+        lm_tile_cache_service(&w->tiles, 0, 1);
+    }
+    assert_true(lm_tile_cache_is_idle(&w->tiles));
+}
+
+/* The record of a tile, or NULL where the image has none. */
+static const struct lm_tile *find_tile(const struct world *w, uint32_t level, uint32_t row,
+                                       uint32_t column)
+{
+    const int64_t entry = lm_db_entry(&w->db, (uint8_t)level, row, column);
+    uint32_t record = UINT32_MAX;
+    if (entry >= 0) {
+        memcpy(&record, w->image.bytes + w->image.directory_offset + (size_t)entry * 8, 4);
+    }
+    return record == UINT32_MAX
+               ? NULL
+               : (const struct lm_tile *)(const void *)(w->image.bytes + w->image.tiles_offset +
+                                                        (size_t)record * LM_TILE_BYTES);
+}
+
+/* What the image says at a place, in BAM with a fraction, from the finest level not below `level`
+ * that has it. `doubt` is how close the place is to a border between cells, in cells. */
+struct ground {
+    int is_known;
+    uint32_t cell;
+    double elevation_m, roughness_m, doubt;
+};
+
+static struct ground ground_at(const struct world *w, uint32_t level, double latitude,
+                               double longitude)
+{
+    const double from_pole = latitude + 1073741824.0;
+    const double share = fabs(latitude) / 1073741824.0 * 16;
+    const int zone = share < 11 ? 0 : share < 13 ? 1 : share < 15 ? 2 : 3;
+    longitude -= floor(longitude / 4294967296.0) * 4294967296.0;
+    for (; level < w->db.level_count; level++) {
+        const double high = ldexp(1, w->db.shift0 + (int)level), wide = ldexp(high, zone);
+        const double y = from_pole / high, x = longitude / wide;
+        const uint32_t row = (uint32_t)floor(y), column = (uint32_t)floor(x);
+        const struct lm_tile *t = find_tile(w, level, row / 64, column / 64);
+        if (t == NULL) {
+            continue;
+        }
+        const uint32_t r = row % 64, c = column % 64;
+        const double v = y - floor(y), u = x - floor(x);
+        const double step_m = ldexp(1, t->post_shift) / 64;
+        const double sw = t->posts[r][c], se = t->posts[r][c + 1], nw = t->posts[r + 1][c],
+                     ne = t->posts[r + 1][c + 1];
+        return (struct ground){.is_known = 1,
+                               .cell = t->cells[r][c],
+                               .elevation_m =
+                                   t->base_q6 / 64.0 + step_m * ((sw * (1 - u) + se * u) * (1 - v) +
+                                                                 (nw * (1 - u) + ne * u) * v),
+                               .roughness_m = step_m * fmax(fmax(fabs(se - sw), fabs(ne - nw)),
+                                                            fmax(fabs(nw - sw), fabs(ne - se))),
+                               .doubt = fmin(fmin(u, 1 - u), fmin(v, 1 - v))};
+    }
+    return (struct ground){0};
+}
+
+static double path_at(uint64_t value, uint64_t step, uint64_t bend, uint32_t i, int is_signed)
+{
+    const double start = is_signed ? (double)(int64_t)value : (double)value;
+    return (start + i * (double)(int64_t)step + i * (i - 1.0) / 2 * (double)(int64_t)bend) /
+           4294967296.0;
+}
+
+/* Compare the line with the image; returns the number of cells that were known. */
+static uint32_t compare(const struct world *w, uint32_t level, const struct lm_ground_path *p,
+                        uint32_t cells)
+{
+    uint32_t known = 0, doubtful = 0;
+    for (uint32_t i = 0; i < cells; i++) {
+        const double latitude = path_at(p->latitude, p->latitude_step, p->latitude_bend, i, 1);
+        const double longitude = path_at(p->longitude, p->longitude_step, p->longitude_bend, i, 0);
+        const struct ground g = ground_at(w, level, latitude, longitude);
+        known += (uint32_t)g.is_known;
+        /* Within a thousandth of a cell of a border either side is right; elevation has no border.
+         */
+        if (g.is_known && g.doubt < 1.0 / 1024) {
+            doubtful++;
+        } else {
+            assert_int_equal(w->line.cell[i], g.is_known ? g.cell : LM_CELL_NONE);
+            /* Weights are cut to 1/256, each way. */
+            const double allowed_m = g.roughness_m * (2.0 / 256 + 2.0 / 1024) + 1.0 / 8192;
+            assert_true(fabs(w->line.elevation_q14[i] / 16384.0 - g.elevation_m) <= allowed_m);
+        }
+    }
+    assert_true(doubtful <= 2 + cells / 50);
+    return known;
+}
+
+/* A path of `cells` steps of step_m from a place, bending by so many 2^-32 BAM a step. */
+static struct lm_ground_path path_from(double latitude_deg, double longitude_deg,
+                                       double azimuth_deg, double step_m, double bend_m)
+{
+    const double azimuth = azimuth_deg * 3.14159265358979323846 / 180;
+    const double to_bam = 4294967296.0 / 0.00931506;
+    const double squeeze = cos(latitude_deg * 3.14159265358979323846 / 180);
+    return (struct lm_ground_path){
+        .latitude = (uint64_t)(int64_t)(latitude_deg * bam_per_degree * 4294967296.0),
+        .longitude = (uint64_t)(int64_t)(longitude_deg * bam_per_degree) << 32,
+        .latitude_step = (uint64_t)(int64_t)(cos(azimuth) * step_m * to_bam),
+        .longitude_step = (uint64_t)(int64_t)(sin(azimuth) * step_m / squeeze * to_bam),
+        .latitude_bend = (uint64_t)(int64_t)(bend_m * to_bam),
+        .longitude_bend = (uint64_t)(int64_t)(-bend_m * to_bam)};
+}
+
+static struct lm_sampling sampling(uint8_t level)
+{
+    return (struct lm_sampling){.level = level, .noise_shift = 8, .epoch = 3};
+}
+
+/* Ask for a line, read its tiles, ask again, compare. */
+static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm_ground_path *p,
+                                 uint32_t cells)
+{
+    const struct lm_sampling s = sampling(level);
+    lm_scan_line_prefetch(&w->tiles, &s, p, cells);
+    read_what_is_wanted(w);
+    const uint32_t misses = w->tiles.count.misses;
+    lm_scan_line_run(&w->line, &w->tiles, &s, p, cells);
+    assert_int_equal(w->tiles.count.misses, misses);
+    return compare(w, level, p, cells);
+}
+
+static void lines_of_every_direction_level_and_step_agree_with_the_image(void **state)
+{
+    (void)state;
+    static struct world w;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 12);
+    static const double places[][2] = {
+        {46, 11}, {-33.5, 151.2}, {0, 0}, {5, -179.9999}, {-12, 180}};
+    uint32_t known = 0;
+    for (int n = 0; n < 5; n++) {
+        open_world(&w, places[n][0], places[n][1]);
+        for (int i = 0; i < 120; i++) {
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.level_count);
+            const double step_m = 4.8 * (1 << level) * 2.5 * hs_rng_uniform(&rng);
+            const double off_deg = 0.012 * (hs_rng_uniform(&rng) - 0.5);
+            const struct lm_ground_path p = path_from(
+                places[n][0] + off_deg, places[n][1] + 0.012 * (hs_rng_uniform(&rng) - 0.5),
+                360 * hs_rng_uniform(&rng), step_m, 0.001 * (hs_rng_uniform(&rng) - 0.5));
+            known += scan_and_compare(&w, level, &p, 1 + hs_rng_below(&rng, LM_CELLS_MAX));
+        }
+        close_world(&w);
+    }
+    assert_true(known > 20000);
+}
+
+static void every_step_of_elevation_that_a_tile_may_have_is_read(void **state)
+{
+    (void)state;
+    static struct world w;
+    for (uint8_t post_shift = 0; post_shift <= LM_TILE_POST_SHIFT_MAX; post_shift++) {
+        struct tiny_spec spec = tiny_spec_at(46, 11);
+        spec.rows = spec.columns = 2;
+        spec.post_shift = post_shift;
+        open_world_with(&w, spec);
+        const struct lm_ground_path p = path_from(45.998, 10.998, 45, 5, 0);
+        assert_true(scan_and_compare(&w, 0, &p, 80) > 40);
+        close_world(&w);
+    }
+}
+
+static void a_line_that_turns_round_at_a_border_stays_right(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    /* The vertex of the parabola within a few centimetres of a tile's edge, either side. */
+    const double edge_bam =
+        floor((46 * bam_per_degree + 1073741824.0) / 32768) * 32768 - 1073741824.0;
+    for (int n = -40; n <= 40; n++) {
+        struct lm_ground_path p = path_from(46, 10.99, 90, 4, 0);
+        const double start_bam = edge_bam + n * 4.0;
+        p.latitude = (uint64_t)(int64_t)(start_bam * 4294967296.0);
+        p.latitude_step = (uint64_t)(int64_t)(-2000.0 * 4294967296.0 / 20);
+        p.latitude_bend = (uint64_t)(int64_t)(2000.0 * 4294967296.0 / 20 / 100 * (1 + n % 7));
+        scan_and_compare(&w, 0, &p, 400);
+    }
+    close_world(&w);
+}
+
+static void lines_agree_across_the_border_of_a_zone(void **state)
+{
+    (void)state;
+    static struct world w;
+    static const double borders_deg[] = {61.875, -61.875, 73.125, 84.375};
+    for (int n = 0; n < 4; n++) {
+        open_world(&w, borders_deg[n], 25);
+        uint32_t known = 0;
+        for (int azimuth = 0; azimuth < 360; azimuth += 20) {
+            const struct lm_ground_path p =
+                path_from(borders_deg[n] - 0.003 * cos(azimuth * 0.0174533), 25, azimuth, 5, 0);
+            known += scan_and_compare(&w, 0, &p, 300);
+        }
+        assert_true(known > 1500);
+        close_world(&w);
+    }
+}
+
+static void lines_agree_across_the_antimeridian_and_greenwich(void **state)
+{
+    (void)state;
+    static struct world w;
+    for (int n = 0; n < 2; n++) {
+        const double longitude_deg = n ? 0 : 180;
+        open_world(&w, 20, longitude_deg);
+        for (int i = 0; i < 20; i++) {
+            const double side = i % 2 ? 1 : -1;
+            struct lm_ground_path p = path_from(20 + 0.0003 * i, 0, 90 * side + i, 5, 0);
+            const double start = longitude_deg * bam_per_degree - side * 500 / 0.00931506;
+            p.longitude = (uint64_t)(uint32_t)(int64_t)start << 32;
+            assert_true(scan_and_compare(&w, 0, &p, 200) > 150);
+        }
+        close_world(&w);
+    }
+}
+
+static void lines_near_the_poles_do_no_harm(void **state)
+{
+    (void)state;
+    static struct world w;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 3);
+    static const double latitudes_deg[] = {89.95, -89.95, 88};
+    for (int n = 0; n < 3; n++) {
+        struct tiny_spec spec = tiny_spec_at(latitudes_deg[n], 100);
+        spec.rows = spec.columns = 4;
+        open_world_with(&w, spec);
+        for (int i = 0; i < 200; i++) {
+            const struct lm_sampling s = sampling((uint8_t)hs_rng_below(&rng, w.db.level_count));
+            const struct lm_ground_path p = {
+                .latitude = (uint64_t)(w.db.centre_latitude + hs_rng_below(&rng, 1 << 21)) << 32,
+                .longitude = hs_rng_u64(&rng),
+                .latitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
+                .longitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
+                .latitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40)),
+                .longitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40))};
+            lm_scan_line_run(&w.line, &w.tiles, &s, &p, LM_CELLS_MAX);
+            for (uint32_t k = 0; k < LM_CELLS_MAX; k++) {
+                assert_in_range(w.line.noise[k], 0, 1023);
+                assert_in_range(w.line.cell[k], 0, 0xFFFF);
+            }
+        }
+        for (int azimuth = 0; azimuth < 360; azimuth += 30) {
+            const struct lm_ground_path p = path_from(latitudes_deg[n], 100, azimuth, 5, 0);
+            scan_and_compare(&w, 0, &p, 150);
+        }
+        close_world(&w);
+    }
+}
+
+/* Cells far longer than a tile: every cell is a run of its own. */
+static void steps_over_whole_tiles_find_the_right_ones(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    for (int azimuth = 0; azimuth < 360; azimuth += 15) {
+        for (double step_m = 150; step_m < 1000; step_m *= 1.7) {
+            const struct lm_ground_path p = path_from(46.0021, 11.0037, azimuth, step_m, 0);
+            assert_true(scan_and_compare(&w, 0, &p, 20) >= 1);
+        }
+    }
+    close_world(&w);
+}
+
+static void what_is_not_resident_is_answered_by_the_nearest_ancestor(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    const struct lm_sampling s = sampling(0);
+    const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
+    const uint8_t coarsest = (uint8_t)(w.db.level_count - 1);
+    /* Nothing but the coarsest level has been read. */
+    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+    assert_true(compare(&w, coarsest, &p, 150) == 150);
+    assert_true(w.tiles.count.substituted > 0);
+    /* It has asked for what it missed; with the parents there too, they are not used. */
+    read_what_is_wanted(&w);
+    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+    assert_true(compare(&w, 0, &p, 150) == 150);
+    close_world(&w);
+    /* Each level in turn is the finest that is there. */
+    for (uint8_t level = 1; level < coarsest; level++) {
+        open_world(&w, 46, 11);
+        const struct lm_sampling coarse = sampling(level);
+        lm_scan_line_prefetch(&w.tiles, &coarse, &p, 150);
+        read_what_is_wanted(&w);
+        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+        assert_true(compare(&w, level, &p, 150) == 150);
+        close_world(&w);
+    }
+}
+
+static bool leave_out_odd(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    (void)ctx;
+    return level == 0 && (row + column) % 2 == 1;
+}
+
+static void tiles_that_the_image_leaves_out_are_answered_by_their_parents(void **state)
+{
+    (void)state;
+    static struct world w;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.rows = spec.columns = 6;
+    spec.leave_out = leave_out_odd;
+    open_world_with(&w, spec);
+    const struct lm_sampling parents = sampling(1), s = sampling(0);
+    for (int azimuth = 0; azimuth < 360; azimuth += 24) {
+        const struct lm_ground_path p = path_from(46, 11, azimuth, 5, 0);
+        lm_scan_line_prefetch(&w.tiles, &parents, &p, 150);
+        lm_scan_line_prefetch(&w.tiles, &s, &p, 150);
+        read_what_is_wanted(&w);
+        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+        assert_true(compare(&w, 0, &p, 150) > 100);
+    }
+    close_world(&w);
+}
+
+static void beyond_the_map_there_is_no_data_at_sea_level(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    const struct lm_sampling s = sampling(0);
+    const struct lm_ground_path p = path_from(10, 50, 45, 5, 0);
+    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 100);
+    for (int i = 0; i < 100; i++) {
+        assert_int_equal(w.line.cell[i], LM_CELL_NONE);
+        assert_int_equal(w.line.elevation_q14[i], 0);
+    }
+    close_world(&w);
+}
+
+static void one_elevation_is_that_of_a_line(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    const struct lm_sampling s = sampling(0);
+    for (int i = 0; i < 100; i++) {
+        const struct lm_ground_path p = path_from(46 + i * 1e-5, 11 - i * 2e-5, 0, 1, 0);
+        const struct lm_place place = {(fx_bam_t)(p.latitude >> 32), (fx_bam_t)(p.longitude >> 32)};
+        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 1);
+        const int32_t q10 = lm_scan_elevation(&w.tiles, 0, place, -99);
+        /* A place is whole BAM: a fraction of a weight's step. */
+        assert_true(abs(q10 - (w.line.elevation_q14[0] >> 4)) < 64);
+        read_what_is_wanted(&w);
+    }
+    const struct lm_place nowhere = {FX_BAM_DEG(10), FX_BAM_DEG(10)};
+    assert_int_equal(lm_scan_elevation(&w.tiles, 0, nowhere, -99), -99);
+    close_world(&w);
+}
+
+static void the_level_is_the_largest_cell_that_is_not_longer(void **state)
+{
+    (void)state;
+    static struct world w;
+    open_world(&w, 46, 11);
+    for (uint32_t cell_mm = 100; cell_mm < 3000000; cell_mm = cell_mm * 9 / 8) {
+        const struct lm_sampling s = lm_sampling_for(&w.db, cell_mm, 0);
+        assert_true(s.level == 0 || lm_db_cell_mm(&w.db, s.level) <= cell_mm);
+        assert_true(s.level + 1 == w.db.level_count ||
+                    lm_db_cell_mm(&w.db, (uint8_t)(s.level + 1)) > cell_mm);
+        const double noise_mm = ldexp(9.31506, s.noise_shift);
+        assert_true(noise_mm <= cell_mm / sqrt(2) * 1.0001);
+        assert_true(2 * noise_mm > cell_mm / sqrt(2) * 0.9999);
+    }
+    close_world(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lines_of_every_direction_level_and_step_agree_with_the_image),
+        cmocka_unit_test(every_step_of_elevation_that_a_tile_may_have_is_read),
+        cmocka_unit_test(a_line_that_turns_round_at_a_border_stays_right),
+        cmocka_unit_test(lines_agree_across_the_border_of_a_zone),
+        cmocka_unit_test(lines_agree_across_the_antimeridian_and_greenwich),
+        cmocka_unit_test(lines_near_the_poles_do_no_harm),
+        cmocka_unit_test(steps_over_whole_tiles_find_the_right_ones),
+        cmocka_unit_test(what_is_not_resident_is_answered_by_the_nearest_ancestor),
+        cmocka_unit_test(tiles_that_the_image_leaves_out_are_answered_by_their_parents),
+        cmocka_unit_test(beyond_the_map_there_is_no_data_at_sea_level),
+        cmocka_unit_test(one_elevation_is_that_of_a_line),
+        cmocka_unit_test(the_level_is_the_largest_cell_that_is_not_longer),
+    };
+    return cmocka_run_group_tests_name("scan_line", tests, NULL, NULL);
+}
