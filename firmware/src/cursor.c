@@ -66,9 +66,8 @@ bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, ui
     if (now_us - c->stepped_us < LM_CURSOR_STEP_US) {
         return false;
     }
-    c->stepped_us = now_us - c->stepped_us < 2 * LM_CURSOR_STEP_US
-                        ? c->stepped_us + LM_CURSOR_STEP_US
-                        : now_us;
+    c->stepped_us =
+        now_us - c->stepped_us < 2 * LM_CURSOR_STEP_US ? c->stepped_us + LM_CURSOR_STEP_US : now_us;
     if (!c->is_placed || c->is_snowplow) {
         lm_cursor_zero(c, scene);
     } else if (c->slew_x != 0 || c->slew_y != 0) {

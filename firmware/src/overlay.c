@@ -87,9 +87,10 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
 {
     struct lm_label label;
     const int32_t width = g->surface.width_px, height = g->surface.height_px;
-    for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
-        const enum side side = (enum side)((osb - 1) / 5);
-        const int32_t along = (osb - 1) % 5;
+    for (int32_t key = 0; key < LM_OSBS; key++) {
+        const uint8_t osb = (uint8_t)(key + 1);
+        const enum side side = (enum side)(key / 5);
+        const int32_t along = key % 5;
         const int32_t place = side == SIDE_TOP || side == SIDE_RIGHT ? along : 4 - along;
         const bool is_upright = side == SIDE_RIGHT || side == SIDE_LEFT;
         const int32_t extent = is_upright ? height : width;

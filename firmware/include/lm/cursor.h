@@ -43,9 +43,9 @@ void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene);
 /* Hold the place that the cursor has now. */
 void lm_cursor_stabilise(struct lm_cursor *c);
 
-/* Follow deflection and aircraft. Does something, and says so, every LM_CURSOR_STEP_US; a gap counts
- * as one such step. Slewing stops at the edge of the sector's circle or of the patch; a cursor that
- * was left behind is brought back to that edge when it is slewed. */
+/* Follow deflection and aircraft. Does something, and says so, every LM_CURSOR_STEP_US; a gap
+ * counts as one such step. Slewing stops at the edge of the sector's circle or of the patch; a
+ * cursor that was left behind is brought back to that edge when it is slewed. */
 bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us);
 
 /* Where the cursor lies now, on the glass and from the ownship. Whenever the view may have changed.
