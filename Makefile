@@ -36,7 +36,7 @@ PROGRAMS :=
 TESTS    :=
 include $(sort $(wildcard drivers/*.mk bsp/$(BOARD)/*/*.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk))
 
-.PHONY: help deps all run check bench gallery lint format clean
+.PHONY: help deps all run check bench gallery fuzz lint format clean
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -61,6 +61,9 @@ bench: deps ## Measure: instructions a pixel, ratios against peers, memory
 gallery: deps ## Fly the real data of ../shared/data and leave the pictures in build/gallery
 	@$(MAKE) --no-print-directory all
 	@sh host-sim/run/gallery.sh $(O)
+
+fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` replays seeds and random damage
+	@sh tests/fuzz/fuzz.sh $(or $(FOR),60)
 
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
 	@sh tests/discipline/lint.sh
