@@ -16,6 +16,8 @@ void lm_ground_map_start(struct lm_ground_map *g, const struct lm_radar *radar, 
     g->is_leftward = false;
     g->sweep = epoch;
     g->grid.cells = 0; /* none yet: the first line makes it */
+    g->targets = NULL;
+    g->near.is_chosen = false;
 }
 
 uint32_t lm_ground_map_lines(const struct lm_ground_map *g)
@@ -102,6 +104,30 @@ static void move_on(struct lm_ground_map *g)
     }
 }
 
+/* The targets that the line at hand may meet. */
+static void find_targets(struct lm_ground_map *g, const struct lm_antenna *antenna,
+                         struct lm_line_targets *t)
+{
+    lm_targets_refresh(&g->near, g->targets, antenna->place, g->radar->range_m[g->range]);
+    const fx_bam_t edge = (fx_bam_t)lm_ground_map_edge_bam(g, g->line);
+    t->items = g->targets->items;
+    t->near = &g->near;
+    t->where = (struct lm_target_line){
+        .place = antenna->place,
+        .azimuth = antenna->heading + edge + g->radar->gm_line / 2,
+        .width = g->radar->gm_line,
+        .first_q8 = g->grid.cell_q8 / 2,
+        .cell_q8 = g->grid.cell_q8,
+        .cells = g->grid.cells,
+        .first = g->grid.first,
+        .height_q10 = g->grid.height_q10,
+        .reference_q10 = g->grid.reference_q10,
+        .wavelength_um = g->radar->wavelength_um,
+        .scan = g->sweep,
+        .pulse = g->line,
+    };
+}
+
 uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *tiles,
                                  const struct lm_antenna *antenna, const struct lm_tone *tone,
                                  struct lm_line *line)
@@ -109,7 +135,7 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, antenna->place);
     const uint32_t cell_mm = g->radar->range_m[g->range] * 1000u / g->radar->gm_cells;
-    const struct lm_line_setup setup = {
+    struct lm_line_setup setup = {
         .grid = &g->grid,
         .aspect = &g->radar->aspect,
         .speckle = &g->radar->gm_speckle,
@@ -119,6 +145,11 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
     refresh_grid(g, tiles, setup.sampling.level, antenna);
     const uint32_t drawn = g->line;
     const struct lm_ground_path path = path_of(g, &origin, antenna->heading, drawn);
+    struct lm_line_targets targets;
+    if (g->targets && g->targets->count != 0) {
+        find_targets(g, antenna, &targets);
+        setup.targets = &targets;
+    }
     lm_line_render(line, tiles, &setup, &path, LM_HORIZON_OPEN);
     if (drawn % LINES_APART == 0) {
         const struct lm_ground_path ahead =

@@ -21,6 +21,7 @@ static void start_ground_map(struct lm_unit *u, uint64_t now_us)
 {
     lm_ground_map_start(&u->ground_map, u->board->radar, u->page.range, u->page.azimuth,
                         u->board->noise_seed);
+    u->ground_map.targets = &u->target_set;
     u->page.mode = LM_MODE_GM;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);
@@ -59,6 +60,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
                      u->board->noise_seed) != LM_OK) {
         return false;
     }
+    u->sar.targets = &u->target_set;
     u->page.mode = LM_MODE_SAR;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);

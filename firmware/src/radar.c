@@ -11,6 +11,8 @@ const struct lm_radar lm_radar_default = {
     .range_m = {18520, 37040, 74080, 148160},
     .range_nm = {10, 20, 40, 80},
     .azimuth_half = {FX_BAM_DEG(60), FX_BAM_DEG(30), FX_BAM_DEG(10)},
+    /* X band, as papers A and B; neither gives the frequency. 9.6 GHz: UNSOURCED. */
+    .wavelength_um = 31228,
     .sweep_bam_per_ms = FX_BAM_DEG(120) / 1000,
     /* 256 cells and 256 lines in 120 degrees: paper A's effective resolution, "Computational
        resources". */

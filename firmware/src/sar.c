@@ -26,6 +26,9 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->radar = radar;
     s->command = *command;
     s->line = 0;
+    s->epoch = epoch;
+    s->targets = NULL;
+    s->near.is_chosen = false;
     s->horizon = LM_HORIZON_OPEN;
     lm_ground_patch_set(&s->ground, command->centre, command->look_azimuth,
                         radar->sar_cells * cell_q8 / 2);
@@ -79,6 +82,34 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
 }
 
+/* The targets that the line at hand may meet. */
+static void find_targets(struct lm_sar *s, struct lm_line_targets *t)
+{
+    const uint32_t cell_q8 = s->grid.cell_q8, range_q8 = s->command.range_m * 256u;
+    const uint32_t half_q8 = s->radar->sar_cells * cell_q8 / 2;
+    /* Half the diagonal: 1.5 is more than the root of 2. */
+    lm_targets_refresh(&s->near, s->targets, s->command.centre, half_q8 * 3 / 2 / 256 + 1);
+    const uint32_t before_centre_q8 = (s->radar->sar_cells / 2u + LM_SAR_GUARD) * cell_q8;
+    t->items = s->targets->items;
+    t->near = &s->near;
+    t->where = (struct lm_target_line){
+        .is_patch = true,
+        .place = s->command.centre,
+        .azimuth = s->command.look_azimuth,
+        .across_q8 = (int32_t)(s->line * cell_q8 + cell_q8 / 2) - (int32_t)half_q8,
+        .centre_q8 = range_q8,
+        .first_q8 = range_q8 - before_centre_q8 + cell_q8 / 2,
+        .cell_q8 = cell_q8,
+        .cells = s->grid.cells,
+        .first = s->grid.first,
+        .height_q10 = s->grid.height_q10,
+        .reference_q10 = s->grid.reference_q10,
+        .wavelength_um = s->radar->wavelength_um,
+        .scan = s->epoch,
+        .pulse = s->line,
+    };
+}
+
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
                       struct lm_line *line)
 {
@@ -96,6 +127,11 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
     setup.grid = &s->grid;
     setup.sampling = s->sampling;
     const struct lm_ground_path path = patch_path(s, s->line);
+    struct lm_line_targets targets;
+    if (s->targets && s->targets->count != 0) {
+        find_targets(s, &targets);
+        setup.targets = &targets;
+    }
     lm_line_render(line, tiles, &setup, &path, s->horizon);
     s->line++;
 }

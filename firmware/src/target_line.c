@@ -31,6 +31,8 @@ static struct lm_place place_of(const struct lm_target *t)
 void lm_targets_select(struct lm_targets_near *near, const struct lm_target *targets,
                        uint32_t count, struct lm_place place, uint32_t reach_m)
 {
+    near->is_chosen = true;
+    near->place = place;
     near->count = near->left_out = 0;
     const uint32_t reach_q8 = (reach_m + LM_TARGET_DRIFT_M + EXTENT_M) * 256;
     for (uint32_t i = 0; i < count; i++) {
@@ -48,6 +50,19 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target *tar
         near->item[near->count].azimuth = azimuth;
         near->item[near->count].distance_q8 = distance_q8;
         near->count++;
+    }
+}
+
+void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *targets,
+                        struct lm_place place, uint32_t reach_m)
+{
+    /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
+    const uint32_t limit = 77000;
+    const bool holds = near->is_chosen &&
+                       fx_abs_u32((int32_t)(place.latitude - near->place.latitude)) < limit &&
+                       fx_abs_u32((int32_t)(place.longitude - near->place.longitude)) < limit;
+    if (!holds) {
+        lm_targets_select(near, targets->items, targets->count, place, reach_m);
     }
 }
 

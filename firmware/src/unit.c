@@ -9,6 +9,19 @@ enum {
              LM_FLAG_OFF_MAP
 };
 
+/* The image's targets, while no tile is being read yet. */
+static void read_targets(struct lm_unit *u)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < u->db.target_count && count < LM_TARGETS_MAX; i++) {
+        if (lm_target_read(&u->db, i, &u->targets[count], u->board->flash_poll_limit) == LM_OK) {
+            count++;
+        }
+    }
+    u->target_set = (struct lm_target_set){u->targets, count};
+    u->count.targets_lost = u->db.target_count - count;
+}
+
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
 {
     const struct lm_display *display = board->display;
@@ -29,6 +42,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     if (!u->has_db) {
         return LM_OK;
     }
+    read_targets(u);
     return lm_tile_cache_init(&u->tiles, &u->db, board->tile_pool, board->tile_pool_bytes,
                               board->flash_poll_limit);
 }

@@ -24,6 +24,12 @@ _Static_assert(LM_TILE_REQUESTS >= 16 && LM_TILE_REQUESTS <= 1024 &&
 _Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
                "LM_TILE_SLOTS_MAX out of range");
 
+/* Specific targets of the image that are held in memory, 640 bytes each. 1..1024. */
+#ifndef LM_TARGETS_MAX
+#define LM_TARGETS_MAX 64
+#endif
+_Static_assert(LM_TARGETS_MAX >= 1 && LM_TARGETS_MAX <= 1024, "LM_TARGETS_MAX out of range");
+
 /* Frames taken from the bus in one step, and scan lines drawn in one step. */
 #ifndef LM_STEP_FRAMES
 #define LM_STEP_FRAMES 64

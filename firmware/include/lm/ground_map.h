@@ -15,6 +15,8 @@ struct lm_ground_map {
     bool is_leftward;
     uint32_t sweep; /* sweeps begun, from the epoch given: the epoch of the noise */
     struct lm_range_grid grid;
+    const struct lm_target_set *targets; /* borrowed; NULL: none, as after lm_ground_map_start */
+    struct lm_targets_near near;
 };
 
 /* From where a line is drawn. */

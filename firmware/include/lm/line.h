@@ -5,7 +5,15 @@
 #include "lm/aspect.h"
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
+#include "lm/target_line.h"
 #include "lm/tone.h"
+
+/* Specific targets that a line may meet. */
+struct lm_line_targets {
+    const struct lm_target *items;      /* borrowed */
+    const struct lm_targets_near *near; /* borrowed: chosen for this sweep or patch */
+    struct lm_target_line where;
+};
 
 /* What the stages of a line read and do not change. All borrowed. */
 struct lm_line_setup {
@@ -13,6 +21,7 @@ struct lm_line_setup {
     const struct lm_aspect_config *aspect;
     const struct lm_speckle_config *speckle;
     const struct lm_tone *tone;
+    const struct lm_line_targets *targets; /* NULL: none */
     struct lm_sampling sampling;
 };
 

@@ -16,6 +16,7 @@ struct lm_radar {
     uint32_t range_m[LM_RANGES];        /* display scales */
     uint16_t range_nm[LM_RANGES];       /* the same, as the pilot reads them */
     fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1 */
+    uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM (lm/rcs.h) */
     uint32_t sweep_bam_per_ms;          /* GM antenna rate */
     uint16_t gm_cells;                  /* range cells of a GM line */
     fx_bam_t gm_line;                   /* azimuth width of a GM line */

@@ -22,6 +22,9 @@ struct lm_sar {
     struct lm_ground_patch ground;
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
+    const struct lm_target_set *targets; /* borrowed; NULL: none, as after lm_sar_start */
+    struct lm_targets_near near;
+    uint32_t epoch;           /* of noise and of what fluctuates */
     lm_horizon_q40_t horizon; /* where the lines of this run-up start */
     uint32_t line;            /* next to be drawn; command done when it is radar->sar_cells */
 };

@@ -86,20 +86,20 @@ struct lm_return {
 
 /* All scatterers' returns; returns their number. The way to each is its true length, not the far
  * field's: worst error 10 um, so 0.12 degree of phase at 31 mm (tests/unit/firmware/test_target.c).
- * Cost: about 1000 instructions a scatterer, two of them divisions of 64 bits. */
+ * Cost: 500 to 900 instructions a scatterer, six of them divisions of 64 bits. */
 uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_view *v,
                            uint32_t wavelength_um, struct lm_return returns[LM_SCATTERERS_MAX]);
 
 /* |sum of sqrt(rcs) exp(j phase)|^2 of the returns whose bit is set in `mask`, dBsm * 256;
  * LM_RCS_NONE_Q8 for none. Worst error 0.14 dB down to 20 dB below the strongest return, most
  * of it from the phases.
- * Cost: about 80 instructions a return. */
+ * Cost: about 180 instructions a return. */
 int32_t lm_returns_sum_q8(const struct lm_return *returns, uint32_t mask);
 
 /* One draw of a fluctuating point (Swerling 1960): case 0 is steady; 1 and 2 have an exponential
  * cross section (chi-square of 2 degrees of freedom), 3 and 4 one of 4 degrees; 1 and 3 keep theirs
  * during a scan, 2 and 4 draw anew for every pulse. Without a state: the same numbers give the same
- * draw. LM_RCS_NONE_Q8 at the least. Cost: about 100 instructions. */
+ * draw. LM_RCS_NONE_Q8 at the least. Cost: about 170 instructions. */
 int32_t lm_swerling_q8(uint8_t swerling, int32_t mean_q8, uint32_t id, uint32_t scan,
                        uint32_t pulse);
 

@@ -43,6 +43,8 @@ struct lm_unit {
     struct lm_db db;
     bool has_db;
     struct lm_tile_cache tiles;
+    struct lm_target targets[LM_TARGETS_MAX];
+    struct lm_target_set target_set; /* the part of them that was read */
     struct lm_nav nav;
     struct lm_ownship ownship; /* extrapolated to the last step */
 
@@ -74,6 +76,7 @@ struct lm_unit {
     bool is_off_map;
 
     struct {
+        uint32_t targets_lost; /* of the image: damaged, or no room for them */
         uint32_t frames, lines, bus_frames;
         uint32_t lines_dropped; /* due, but the step had its fill */
         uint32_t bus_errors;    /* the driver reported the bus down */

@@ -3,8 +3,8 @@
 
 #include "memory_flash.h"
 #include "rcs.h"
+#include "target_image.h"
 #include "target_support.h"
-#include "tiny_image.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -66,59 +66,13 @@ static void a_number_out_of_range_is_refused_under_a_right_checksum(void **state
     assert_int_equal(lm_target_check(&t), LM_OK);
 }
 
-enum { POLLS = 4, TARGETS = 3, SECTION_TABLE = 64, SECTION_ENTRY = 24, SECTION_COUNT_AT = 56 };
-
-/* A tiny image with a section TARGETS behind everything else. */
-struct with_targets {
-    uint8_t *bytes;
-    size_t size, head_at;
-};
-
-static void put(uint8_t *at, uint64_t value, size_t bytes)
-{
-    memcpy(at, &value, bytes);
-}
-
-static void seal_header(struct with_targets *w)
-{
-    put(w->bytes + 508, fx_crc32c(0, w->bytes, 508), 4);
-}
-
-static void seal_head(struct with_targets *w)
-{
-    put(w->bytes + w->head_at + 60, fx_crc32c(0, w->bytes + w->head_at, 60), 4);
-}
-
-static void add_targets(struct with_targets *w, const struct tiny_image *image)
-{
-    const size_t section_bytes = 64 + TARGETS * LM_TARGET_BYTES;
-    w->head_at = (image->size + 63) / 64 * 64;
-    w->size = w->head_at + section_bytes;
-    w->bytes = calloc(1, w->size);
-    memcpy(w->bytes, image->bytes, image->size);
-    put(w->bytes + w->head_at, TARGETS, 4);
-    put(w->bytes + w->head_at + 4, LM_TARGET_BYTES, 4);
-    seal_head(w);
-    for (uint32_t i = 0; i < TARGETS; i++) {
-        struct lm_target t = sound_target();
-        t.id = i;
-        seal_target(&t);
-        memcpy(w->bytes + w->head_at + 64 + i * sizeof t, &t, sizeof t);
-    }
-    uint8_t *entry = w->bytes + SECTION_TABLE + 5 * SECTION_ENTRY;
-    put(entry, 6, 4);
-    put(entry + 8, w->head_at, 8);
-    put(entry + 16, section_bytes, 8);
-    put(w->bytes + 16, w->size, 8);
-    put(w->bytes + SECTION_COUNT_AT, 6, 4);
-    seal_header(w);
-}
+enum { POLLS = 4 };
 
 static void build(struct tiny_image *image, struct with_targets *w)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     assert_int_equal(tiny_image_build(image, &spec), 0);
-    add_targets(w, image);
+    add_targets(w, image, sound_target());
 }
 
 static void the_targets_of_an_image_are_read_and_faults_told_apart(void **state)

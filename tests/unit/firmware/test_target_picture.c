@@ -1,0 +1,157 @@
+/* Targets in the pictures themselves: patch, sweep, and the unit that reads them. */
+#include "lm/unit.h"
+
+#include "memory_flash.h"
+#include "target_image.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { POLLS = 16, SLOTS = 32, SIDE = 256 };
+
+static uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+static struct lm_tile_cache tiles;
+static struct lm_db db;
+static struct lm_line line;
+static struct lm_tone tone;
+
+/* Flat soil for 5 km around 46 N 11 E, all of it read. */
+static void open_soil(struct tiny_image *image, struct memory_flash *flash)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    assert_int_equal(tiny_image_build(image, &spec), 0);
+    memory_flash_open(flash, image->bytes, image->size);
+    assert_int_equal(lm_db_open(&db, &flash->port, POLLS), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, POLLS), LM_OK);
+    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar_tone), LM_OK);
+}
+
+static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+{
+    static struct lm_sar sar;
+    const struct lm_sar_command command = {.centre = {bam(46), bam(11)},
+                                           .range_m = 20000,
+                                           .height_q6 = 6000 * 64,
+                                           .look_azimuth = bam(90),
+                                           .cell_mm = 4000};
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, 0, 5), LM_OK);
+    sar.targets = set;
+    for (int k = 0; k < SIDE; k++) {
+        lm_sar_draw_line(&sar, &tiles, &tone, &line);
+        memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
+    }
+}
+
+static void a_corner_is_one_bright_pixel_of_a_patch_and_the_rest_is_untouched(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
+    open_soil(&image, &flash);
+    /* 200 m north and 122 m east of the centre, looking east: line 128 - 50 to the left, cell 158.
+     */
+    struct lm_target t = point_at(46, 11, 0, 0);
+    t.heading = FX_BAM_DEG(270); /* towards the radar */
+    add_scatterer(&t, LM_SHAPE_TRIHEDRAL, 1500, -122000, 202000, 1000, 0, 35.264);
+    const struct lm_target_set set = {&t, 1}, none = {NULL, 0};
+    draw_patch(&none, without);
+    draw_patch(&set, with);
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int l = k / SIDE, c = k % SIDE;
+        if (l == 77 && c == 158) {
+            assert_int_equal(with[l][c], 255);
+            assert_true(without[l][c] < 200);
+        } else {
+            assert_int_equal(with[l][c], without[l][c]);
+        }
+    }
+    tiny_image_free(&image);
+}
+
+/* A sweep over the target, from the right height and place; returns the number of changed pixels.
+ */
+static int sweep(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+{
+    static struct lm_ground_map map;
+    const struct lm_antenna antenna = {{bam(45.95), bam(11)}, 3000 * 1024, 0};
+    lm_ground_map_start(&map, &lm_radar_default, 0, 0, 5);
+    map.targets = set;
+    int changed = 0;
+    for (uint32_t k = 0; k < lm_ground_map_lines(&map); k++) {
+        uint8_t grey[SIDE];
+        const uint32_t drawn = lm_ground_map_draw_line(&map, &tiles, &antenna, &tone, &line);
+        memcpy(grey, line.grey, SIDE);
+        for (int c = 0; set->count && c < SIDE; c++) {
+            changed += grey[c] != picture[drawn][c];
+        }
+        memcpy(picture[drawn], grey, SIDE);
+    }
+    return changed;
+}
+
+static void a_target_shows_in_one_cell_of_a_sweep_and_a_hidden_one_nowhere(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    static uint8_t picture[SIDE][SIDE];
+    open_soil(&image, &flash);
+    const struct lm_target_set none = {NULL, 0};
+    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
+        const struct lm_target t = point_at(46, 11.001, is_hidden ? -100 : 1, 60);
+        const struct lm_target_set set = {&t, 1};
+        sweep(&none, picture);
+        assert_int_equal(sweep(&set, picture), !is_hidden);
+    }
+    tiny_image_free(&image);
+}
+
+/* A unit is large: one is enough. */
+static struct lm_unit unit;
+
+static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
+{
+    (void)state;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    struct tiny_image image;
+    struct with_targets w;
+    struct memory_flash flash;
+    static uint8_t plane[256 * 256];
+    const struct lm_display display = {.width_px = 256, .height_px = 256};
+    assert_int_equal(tiny_image_build(&image, &spec), 0);
+    add_targets(&w, &image, point_at(46, 11, 0, 20));
+    w.bytes[w.head_at + 64 + LM_TARGET_BYTES + 9] ^= 1; /* the middle one */
+    memory_flash_open(&flash, w.bytes, w.size);
+    const struct lm_board board = {.radar = &lm_radar_default,
+                                   .flash = &flash.port,
+                                   .display = &display,
+                                   .tile_pool = pool,
+                                   .tile_pool_bytes = sizeof pool,
+                                   .plane = plane,
+                                   .flash_poll_limit = POLLS};
+    assert_int_equal(lm_unit_init(&unit, &board), LM_OK);
+    assert_true(unit.has_db);
+    assert_int_equal(unit.target_set.count, 2);
+    assert_int_equal(unit.target_set.items[1].id, 2);
+    assert_int_equal(unit.count.targets_lost, 1);
+    assert_ptr_equal(unit.ground_map.targets, &unit.target_set);
+    free(w.bytes);
+    tiny_image_free(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_corner_is_one_bright_pixel_of_a_patch_and_the_rest_is_untouched),
+        cmocka_unit_test(a_target_shows_in_one_cell_of_a_sweep_and_a_hidden_one_nowhere),
+        cmocka_unit_test(the_unit_reads_the_targets_and_counts_those_it_has_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
