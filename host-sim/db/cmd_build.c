@@ -274,6 +274,7 @@ static int make_plan(struct build_context *b, const struct settings *s)
     }
     b->parts = choose_parts(b, (uint8_t)shift0);
     terrain_set_cell(&b->terrain, (uint8_t)shift0);
+    resample_cover_set_cell(&b->cover, (uint8_t)shift0);
     return 0;
 }
 
@@ -514,9 +515,14 @@ static double now_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* DTED keeps whole columns in a block: a row of tiles over fourteen degrees of level 2 stays in
+ * memory. */
+static const int64_t cache_bytes = (int64_t)384 << 20;
+
 static int build(const struct settings *s)
 {
     const double start = now_seconds();
+    GDALSetCacheMax64(cache_bytes);
     struct build_context *b = calloc(1, sizeof *b);
     if (!b) {
         return hs_error(s->out, NULL, "out of memory");

@@ -31,7 +31,7 @@ int db_cmd_verify(int argc, char **argv)
         return HS_EXIT_FAILED;
     }
     struct image_findings findings = {stdout, 0, SHOWN_MAX};
-    struct image_verify_counts n;
+    struct image_verify_counts n = {0};
     const int is_complete = image_verify(&image, &findings, &n) == 0;
     if (findings.count > SHOWN_MAX) {
         printf("and %" PRIu64 " more\n", findings.count - SHOWN_MAX);

@@ -1,7 +1,6 @@
 #include "resample_cover.h"
 
 #include "gdal_start.h"
-#include "resample_mesh.h"
 
 #include "hs/error.h"
 
@@ -90,6 +89,16 @@ void resample_cover_close(struct resample_cover *c)
     plane_close(&c->reflectivity);
     plane_close(&c->heights);
     c->area = (struct image_area){0};
+}
+
+void resample_cover_set_cell(struct resample_cover *c, uint8_t shift0)
+{
+    struct resample_plane *planes[] = {&c->classes, &c->heights};
+    for (int i = 0; i < 2; i++) {
+        if (planes[i]->dataset) {
+            planes[i]->lattice = resample_lattice_of(&planes[i]->georef, shift0);
+        }
+    }
 }
 
 /* A window of one plane in memory, as the type asked for. */
@@ -212,7 +221,7 @@ static void locate(struct lookup *l, const struct resample_plane *p,
                    const struct image_frame *frame, int parts, size_t count)
 {
     struct resample_mesh mesh;
-    resample_mesh_make(&mesh, &p->georef, frame);
+    resample_mesh_make(&mesh, &p->georef, &p->lattice, frame);
     resample_mesh_cells(&mesh, parts, l->x, l->y);
     l->window = resample_window_of(&p->georef, count, l->x, l->y, 0);
 }

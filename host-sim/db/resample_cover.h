@@ -6,6 +6,7 @@
 #include "class_table.h"
 #include "image_grid.h"
 #include "resample_georef.h"
+#include "resample_mesh.h"
 
 #include "lm/db.h"
 
@@ -21,6 +22,7 @@ struct resample_plane {
     bool has_nodata;
     double nodata;
     struct resample_georef georef;
+    struct resample_lattice lattice; /* once the cell is set */
 };
 
 struct resample_cover {
@@ -36,6 +38,9 @@ struct resample_cover {
 int resample_cover_open(struct resample_cover *c, const struct db_class_table *table,
                         const char *classes, const char *reflectivity, const char *heights);
 void resample_cover_close(struct resample_cover *c);
+
+/* Say how large the image's finest cells are. Call once before resample_cover_tile. */
+void resample_cover_set_cell(struct resample_cover *c, uint8_t shift0);
 
 /* One sample of a tile. */
 struct resample_sample {

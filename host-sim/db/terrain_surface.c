@@ -221,6 +221,7 @@ void terrain_set_cell(struct terrain *t, uint8_t shift0)
     const double cell = (double)((int64_t)1 << shift0);
     for (int i = 0; i < t->layer_count; i++) {
         struct terrain_layer *layer = &t->layers[i];
+        layer->lattice = resample_lattice_of(&layer->mosaic.georef, shift0);
         layer->blur_x = fmax(0.0, cell / layer->pixel_longitude_bam - 1.0);
         layer->blur_y = fmax(0.0, cell / layer->pixel_latitude_bam - 1.0);
     }
@@ -392,7 +393,7 @@ static void map_posts(const struct terrain_layer *layer, const struct image_fram
                       struct work *w)
 {
     struct resample_mesh mesh;
-    resample_mesh_make(&mesh, &layer->mosaic.georef, frame);
+    resample_mesh_make(&mesh, &layer->mosaic.georef, &layer->lattice, frame);
     resample_mesh_posts(&mesh, w->x, w->y);
 }
 

@@ -14,6 +14,7 @@
 /* Models on one grid. */
 struct terrain_layer {
     struct terrain_mosaic mosaic;
+    struct resample_lattice lattice; /* once the cell is set */
     struct image_area area;
     double pixel_latitude_bam, pixel_longitude_bam;
     double blur_x, blur_y; /* pixels over which the bilinear surface is averaged; 0: not at all */

@@ -378,6 +378,30 @@ static void outside_the_class_raster_the_terrain_gives_the_class_at_its_own_leve
     image_close(&image);
 }
 
+static double rugged_m(double x, double y)
+{
+    return 500 + fmod(fabs(floor(x / 0.01) * 7 + floor(y / 0.01) * 3), 31) * 20;
+}
+
+/* Levels meet along the class raster's border, where tiles from below lie beside tiles made at
+ * their level. */
+static void detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_ground(void **state)
+{
+    (void)state;
+    write_cover(32632, (const double[6]){430000, 20, 0, 6870000, 0, -20}, 500, 500);
+    struct scene_raster r = {.width = 600,
+                             .height = 600,
+                             .geotransform = {410000, 90, 0, 6890000, 0, -90},
+                             .epsg = 32632,
+                             .type = GDT_Float32,
+                             .value = rugged_m};
+    scene_write("terrain.tif", &r);
+    build_cover("terrain.tif", "a.lmdb");
+    struct image image;
+    open_sound_image(&image, "a.lmdb"); /* which compares all edges and levels */
+    image_close(&image);
+}
+
 static void the_mean_elevation_is_that_of_the_land(void **state)
 {
     (void)state;
@@ -801,6 +825,7 @@ int main(void)
         cmocka_unit_test(an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole),
         cmocka_unit_test(dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface),
         cmocka_unit_test(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level),
+        cmocka_unit_test(detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_ground),
         cmocka_unit_test(the_mean_elevation_is_that_of_the_land),
         cmocka_unit_test(cells_larger_than_the_pixels_hold_their_commonest_class_and_mean_power),
         cmocka_unit_test(heights_come_from_their_raster_and_else_from_the_class),

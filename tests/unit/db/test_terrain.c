@@ -562,6 +562,69 @@ static void the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled(vo
     terrain_close(&t);
 }
 
+/* The same places asked for at all levels, and from both sides of a zone border, on ground that
+ * jumps by up to 100 m a pixel: not a bit of difference. */
+static void a_place_has_one_height_whichever_level_or_zone_asks(void **state)
+{
+    (void)state;
+    static const struct {
+        int epsg;
+        double geotransform[6];
+        uint8_t shift0;
+        double latitude, longitude;
+    } cases[] = {
+        {32632, {350000, 90, 0, 5700000, 0, -90}, 9, 51.0, 8.2},
+        {32632, {400000, 90, 0, 6910000, 0, -90}, 10, 61.87, 9.1}, /* zone border at 61.875 */
+        {32732, {400000, 90, 0, 3150000, 0, -90}, 10, -61.88, 9.1},
+        {3857, {19990000, 100, 0, 60000, 0, -100}, 10, 0.2, 179.99},
+    };
+    static struct terrain_posts fine, coarse;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct scene_raster r = {.width = 1200,
+                                 .height = 1200,
+                                 .epsg = cases[i].epsg,
+                                 .type = GDT_Float32,
+                                 .value = jumps};
+        memcpy(r.geotransform, cases[i].geotransform, sizeof r.geotransform);
+        scene_write("levels.tif", &r);
+        struct terrain t;
+        open_terrain(&t, cases[i].shift0, 1, scene_path("levels.tif"));
+        for (uint8_t level = 1; level <= 5; level++) {
+            const uint8_t shift = (uint8_t)(cases[i].shift0 + level);
+            const struct image_frame f = frame_at(shift, cases[i].latitude, cases[i].longitude);
+            assert_true(terrain_posts(&t, &f, &coarse) > 0);
+            for (uint32_t k = 0; k < 4; k++) {
+                const struct image_frame child = image_frame_of(
+                    (uint8_t)(shift - 1), f.zone, 2 * f.row + k / 2, 2 * f.column + k % 2);
+                assert_true(terrain_posts(&t, &child, &fine) >= 0);
+                for (uint32_t p = 0; p < 33 * 33; p++) {
+                    assert_int_equal(fine.q6[2 * (p / 33)][2 * (p % 33)],
+                                     coarse.q6[k / 2 * 32 + p / 33][k % 2 * 32 + p % 33]);
+                }
+            }
+        }
+        /* The tile north of the one that ends at the border begins with the same posts, every
+         * second one. */
+        const struct image_frame f =
+            frame_at(cases[i].shift0, cases[i].latitude, cases[i].longitude);
+        uint32_t row = f.row;
+        while (image_row_zone(f.shift, row + 1) == f.zone && row < f.row + 40) {
+            row++;
+        }
+        const uint8_t zone = image_row_zone(f.shift, row + 1);
+        if (zone == f.zone + 1) {
+            const struct image_frame south = image_frame_of(f.shift, f.zone, row, f.column & ~1u);
+            const struct image_frame north = image_frame_of(f.shift, zone, row + 1, f.column >> 1);
+            assert_true(terrain_posts(&t, &south, &fine) > 0 &&
+                        terrain_posts(&t, &north, &coarse) > 0);
+            for (int c = 0; c <= 32; c++) {
+                assert_int_equal(fine.q6[N - 1][2 * c], coarse.q6[0][c]);
+            }
+        }
+        terrain_close(&t);
+    }
+}
+
 static int tidy(void **state)
 {
     (void)state;
@@ -582,6 +645,7 @@ int main(void)
         cmocka_unit_test(beyond_the_model_posts_keep_the_height_of_its_edge),
         cmocka_unit_test(of_two_models_the_nearer_one_lends_its_edge),
         cmocka_unit_test(tiles_share_their_edges_bit_for_bit),
+        cmocka_unit_test(a_place_has_one_height_whichever_level_or_zone_asks),
         cmocka_unit_test(elevations_in_feet_become_metres),
         cmocka_unit_test(the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled),
     };
