@@ -2,20 +2,10 @@
 
 #include "fx/log.h"
 
-/* 1 / (2 * 4/3 * 6,371,000 m) in Q48. */
-static const int64_t curvature_q48 = 16567747;
-
 enum {
     GRAZING_MIN_Q24 = 1 << 16, /* 1/256 */
     RISE_SHIFT = 30            /* from the tangents' format to the rise's */
 };
-
-/* Decibels (Q8) of a number whose binary logarithm is given in Q16: 10 log10(2) = 3.0103, here
- * 770.637 / 256. */
-static int32_t db_q8_of_log2_q16(int32_t log2_q16)
-{
-    return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
-}
 
 /* g of the equations, Q24: the rise of flat ground from the cell before, at before_q8, to cell i,
  * as tan of a grazing angle. */
@@ -24,7 +14,7 @@ static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t b
     /* Height difference below 2^26, inverse range below 2^30 in Q(26 + shift). */
     const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
     const int64_t grazing = (above_q10 * g->inverse_range[i] >> (12 + g->tangent_shift)) -
-                            ((int64_t)before_q8 * curvature_q48 >> 32);
+                            ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
 
@@ -32,7 +22,7 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
 {
     /* range < 400 km = 2^26.6 in Q8: squared, in units of 16 m^2, 2^33.2; times the curvature
      * 2^57.2. */
-    const int64_t drop_q14 = ((((int64_t)range_q8 * range_q8) >> 20) * curvature_q48) >> 30;
+    const int64_t drop_q14 = ((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
     g->fall_q14[i] = (int32_t)drop_q14 + g->height_q10 * 16;
     g->inverse_range[i] =
         (int32_t)((((uint64_t)1 << (34 + g->tangent_shift)) + range_q8 / 2) / range_q8);
@@ -43,7 +33,7 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
     const int32_t log2_q16 = fx_log2_q16(before_q8) - fx_log2_q16(g->cell_q8) -
                              fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_q8)) +
                              (24 + RISE_SHIFT - 40 - (int32_t)g->tangent_shift) * 65536;
-    g->gain_q8[i] = db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
+    g->gain_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
 }
 
 static uint32_t first_shown(const struct lm_range_grid *g, uint32_t first_q8)

@@ -183,7 +183,7 @@ int32_t lm_returns_sum_q8(const struct lm_return *returns, uint32_t mask)
     const int64_t re_q20 = re_q46 >> 26, im_q20 = im_q46 >> 26;
     const uint64_t power_q40 = (uint64_t)(re_q20 * re_q20 + im_q20 * im_q20);
     const int32_t sum_q8 =
-        strongest_q8 + lm_db_q8_of_log2_q16(fx_log2_q16_u64(power_q40) - 40 * 65536);
+        strongest_q8 + fx_db_q8_of_log2_q16(fx_log2_q16_u64(power_q40) - 40 * 65536);
     return mask == 0 ? LM_RCS_NONE_Q8 : fx_max_i32(sum_q8, LM_RCS_NONE_Q8);
 }
 

@@ -13,9 +13,6 @@ enum {
     NO_CELL = -1
 };
 
-/* 1 / (2 * 4/3 * 6,371,000 m) in Q48, as in aspect.c. */
-static const int64_t curvature_q48 = 16567747;
-
 int32_t lm_level_add_q8(int32_t a_q8, int32_t b_q8)
 {
     const int32_t high_q8 = fx_max_i32(a_q8, b_q8), low_q8 = fx_min_i32(a_q8, b_q8);
@@ -177,7 +174,7 @@ static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
  * 16 m2 times the curvature: 2^57.2. */
 static int32_t drop_q10(uint32_t range_q8)
 {
-    return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * curvature_q48) >> 34);
+    return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
 }
 
 static void view_target(const struct lm_target_line *line, const struct lm_target *t,
@@ -217,10 +214,10 @@ static int32_t clutter_area_q8(const struct lm_target_line *line, int32_t cell)
     const uint32_t before_q8 = (uint32_t)cell == line->first ? range_q8 : range_q8 - line->cell_q8;
     const int64_t above_q10 = (int64_t)line->height_q10 - line->reference_q10;
     const int64_t grazing_q24 = above_q10 * (1 << 22) / (int64_t)fx_max_u32(range_q8, 1) -
-                                ((int64_t)before_q8 * curvature_q48 >> 32);
+                                ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
     const uint64_t g_q24 =
         (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
-    return lm_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(line->cell_q8) +
+    return fx_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(line->cell_q8) +
                                 fx_log2_q16_u64(g_q24) - (8 + 8 + 24) * 65536);
 }
 

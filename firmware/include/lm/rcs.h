@@ -51,11 +51,4 @@ struct lm_direction {
  * (tests/unit/firmware/test_rcs.c). Cost: 60 instructions for a sphere, 500 for a plate. */
 int32_t lm_rcs_q8(const struct lm_shape *shape, uint32_t wavelength_um, struct lm_direction radar);
 
-/* Decibels times 256 of a power whose binary logarithm is given, times 65536. |log2_q16| < 2^25. */
-static inline int32_t lm_db_q8_of_log2_q16(int32_t log2_q16)
-{
-    /* 10 log10(2) * 256 / 65536 in Q32; the product stays below 2^51. */
-    return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
-}
-
 #endif

@@ -54,4 +54,11 @@ static inline int32_t fx_db_q8_of_many(uint32_t power)
  * (-51.17 dB). Worst error 0.5 lsb or 4e-9 of the result, added up. Cost 35 instructions. */
 uint32_t fx_power_q16_from_db_q8(int32_t db_q8);
 
+/* Decibels times 256 of a power whose binary logarithm is given, times 65536. |log2_q16| < 2^25. */
+static inline int32_t fx_db_q8_of_log2_q16(int32_t log2_q16)
+{
+    /* 10 log10(2) * 256 / 65536 in Q32; the product stays below 2^51. */
+    return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
+}
+
 #endif
