@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* A file answers at once, so the read is done here and its result kept for read_poll. */
@@ -40,6 +41,11 @@ int drv_flash_file_open(struct drv_flash_file *f, const char *path)
     f->descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (f->descriptor < 0) {
         return errno;
+    }
+    struct stat status;
+    if (fstat(f->descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+        drv_flash_file_close(f);
+        return EISDIR;
     }
     /* A device tells its size by its end, a file too. */
     const off_t size = lseek(f->descriptor, 0, SEEK_END);

@@ -27,7 +27,7 @@ static const char help[] =
     "  --seed N           another speckle (default 0); the same inputs and seed give the same "
     "pictures\n"
     "  --quiet            no summary\n"
-    "  --help             this text\n"
+    "  -h, --help         this text\n"
     "\n"
     "Without a bus the unit shows what it shows in the cockpit when the bus is dead.\n"
     "\n"
@@ -154,8 +154,9 @@ enum options_result options_read(struct options *o, int argc, char **argv)
     o->every = 30;
     o->width_px = o->height_px = 768;
     int option;
-    while ((option = getopt_long(argc, argv, "", table, NULL)) != -1) {
-        if (option == OPT_HELP) {
+    opterr = 0; /* the words are ours */
+    while ((option = getopt_long(argc, argv, ":h", table, NULL)) != -1) {
+        if (option == OPT_HELP || option == 'h') {
             printf("%s%s%s", help, window_keys_help, help_end);
             return OPTIONS_DONE;
         }
@@ -165,8 +166,11 @@ enum options_result options_read(struct options *o, int argc, char **argv)
             o->has_bezel = true;
         } else if (option == OPT_QUIET) {
             o->is_quiet = true;
-        } else if (option == '?') {
-            return OPTIONS_WRONG; /* getopt has said why */
+        } else if (option == '?' || option == ':') {
+            hs_error("command line", "landmass-sim --help",
+                     option == '?' ? "there is no option \"%s\"" : "\"%s\" lacks its value",
+                     argv[optind - 1]);
+            return OPTIONS_WRONG;
         } else if (!take_value(o, option)) {
             hs_error("command line", "landmass-sim --help", "\"%s\" is no value for that option",
                      optarg);
