@@ -260,6 +260,19 @@ static void every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres
     image_close(&image);
 }
 
+static void the_seam_of_a_projection_spoils_no_cell(void **state)
+{
+    (void)state;
+    /* Web Mercator ends at 180 degrees, 20,037,508 m. */
+    write_cover(3857, (const double[6]){20037508.34 - 7600, 38, 0, 2280, 0, -38}, 200, 120);
+    write_terrain("terrain.tif", 179.9, -0.1, 0.2, 0.2, 0.001, waves_m);
+    build_cover("terrain.tif", "a.lmdb");
+    struct image image;
+    open_sound_image(&image, "a.lmdb");
+    assert_true(compare_cover(&image) > 200 * 120);
+    image_close(&image);
+}
+
 static void an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole(void **state)
 {
     (void)state;
@@ -822,6 +835,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_cell_holds_the_pixel_under_it_on_a_geographic_grid),
         cmocka_unit_test(every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres),
+        cmocka_unit_test(the_seam_of_a_projection_spoils_no_cell),
         cmocka_unit_test(an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole),
         cmocka_unit_test(dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface),
         cmocka_unit_test(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level),
