@@ -9,7 +9,7 @@
 
 /* How the Earth falls away under 4/3 refraction: the drop at ground range s is s^2 times 1 / (2 *
  * 4/3 * 6,371,000 m), here in Q48. */
-#define LM_CURVATURE_Q48 INT64_C(16567747)
+#define LM_CURVATURE_Q48 16567747LL
 
 struct lm_place {
     fx_bam_t latitude; /* signed: +-FX_BAM_90 */
