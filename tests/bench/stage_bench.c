@@ -1,18 +1,22 @@
-/* The work that `make bench` counts: whole pictures from an image made in memory, all tiles
- * resident. Prints nothing; callgrind counts the instructions of the functions called here
- * (tests/bench/bench.sh).
+/* The work that `make bench` measures: whole pictures from an image made in memory, all tiles
+ * resident.
  *
- *   stage_bench sar|gm N */
+ *   stage_bench sar|gm N      draw N patches or sweeps and print nothing: callgrind counts the
+ *                             instructions of the functions called here (tests/bench/bench.sh)
+ *   stage_bench compare N     N times: processor time a pixel of a patch, by the firmware and by
+ * the reference in double precision, both without the image's checks */
 #include "lm/ground_map.h"
 #include "lm/sar.h"
 #include "lm/scan_conv.h"
 #include "memory_flash.h"
+#include "reference/reference.h"
 #include "tiny_image.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* A mixed scene: water, fields, forest, a block of buildings every 80 m, hills. */
 static struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
@@ -58,12 +62,13 @@ static int open_world(struct world *w, uint8_t shift0)
     spec.cell = scene_cell;
     spec.elevation_m = scene_elevation;
     spec.shift0 = shift0;
-    spec.rows = spec.columns = 10;
+    spec.rows = 10;
+    spec.columns = 20; /* wide enough for a sector of the shortest range */
     if (tiny_image_build(&w->image, &spec) != 0) {
         return -1;
     }
     memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    const size_t bytes = 300 * sizeof(struct lm_tile);
+    const size_t bytes = 400 * sizeof(struct lm_tile);
     w->pool = malloc(bytes);
     w->plane = (struct lm_plane){calloc(DISPLAY_PX, DISPLAY_PX), DISPLAY_PX, DISPLAY_PX};
     w->frame = lm_frame_of_display(DISPLAY_PX, DISPLAY_PX);
@@ -129,22 +134,80 @@ static void draw_sweeps(struct world *w, int count)
     }
 }
 
+static double processor_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+/* The patch of draw_patches by the reference. */
+static int draw_reference(const struct world *w, const struct ref_db *db)
+{
+    const double degrees = 360 / 4294967296.0;
+    const struct ref_sar sar = {.centre = {(int32_t)w->db.centre_latitude * degrees,
+                                           (int32_t)w->db.centre_longitude * degrees},
+                                .azimuth_deg = 37,
+                                .range_m = 20000,
+                                .antenna_m = 3000,
+                                .cell_m = 5,
+                                .cell_count = lm_radar_default.sar_cells};
+    const struct ref_params params = ref_params_default();
+    struct ref_picture picture;
+    if (ref_sar_patch(&picture, db, &sar, &params) != 0) {
+        return -1;
+    }
+    ref_picture_free(&picture);
+    return 0;
+}
+
+static int compare(struct world *w, int runs)
+{
+    enum { PATCHES = 20 }; /* of the firmware in a run */
+    const double pixels = (double)lm_radar_default.sar_cells * lm_radar_default.sar_cells;
+    struct ref_db db;
+    /* The first patches read and check the tiles. */
+    if (ref_db_open_memory(&db, w->image.bytes, w->image.size, "scene") != 0 ||
+        draw_patches(w, 1) != 0 || draw_reference(w, &db) != 0) {
+        return -1;
+    }
+    for (int n = 0; n < runs; n++) {
+        const double start = processor_ns();
+        int status = draw_patches(w, PATCHES);
+        const double middle = processor_ns();
+        status |= draw_reference(w, &db);
+        const double end = processor_ns();
+        if (status != 0) {
+            return -1;
+        }
+        const double firmware_ns = (middle - start) / PATCHES / pixels;
+        const double reference_ns = (end - middle) / pixels;
+        printf("%.2f %.2f %.1f\n", firmware_ns, reference_ns, reference_ns / firmware_ns);
+    }
+    ref_db_close(&db);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     static struct world world; /* large, and this is a program, not the firmware */
+    const char *what = argc == 3 ? argv[1] : "";
     const int count = argc == 3 ? atoi(argv[2]) : 0;
-    const int is_sar = argc == 3 && strcmp(argv[1], "sar") == 0;
-    if (count < 1 || (!is_sar && strcmp(argv[1], "gm") != 0)) {
-        fputs("usage: stage_bench sar|gm N\n", stderr);
+    const int is_gm = strcmp(what, "gm") == 0, is_comparison = strcmp(what, "compare") == 0;
+    if (count < 1 || (!is_gm && !is_comparison && strcmp(what, "sar") != 0)) {
+        fputs("usage: stage_bench sar|gm|compare N\n", stderr);
         return 2;
     }
-    if (open_world(&world, is_sar ? 9 : 12) != 0) {
+    if (open_world(&world, is_gm ? 12 : 9) != 0) {
         fputs("stage_bench: the scene could not be made\n", stderr);
         return 1;
     }
-    if (is_sar) {
-        return draw_patches(&world, count) != 0;
+    if (is_comparison) {
+        return compare(&world, count) != 0;
     }
-    draw_sweeps(&world, count);
-    return 0;
+    if (is_gm) {
+        draw_sweeps(&world, count);
+        return 0;
+    }
+    return draw_patches(&world, count) != 0;
 }

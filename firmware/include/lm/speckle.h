@@ -16,7 +16,7 @@ struct lm_speckle_config {
     int32_t noise_floor_q8; /* level of the receiver's noise, 1/256 dB */
 };
 
-/* level = max(level, floor) + speckle, in place. Cost: about 6 instructions a cell. */
+/* level = max(level, floor) + speckle, in place. Cost: see docs/benchmarks.md. */
 void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise, int32_t *level_q8,
                     uint32_t cells);
 

@@ -22,7 +22,7 @@ struct lm_tone {
  * not each line. */
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config);
 
-/* Grey of a line's levels. Cost: about 9 instructions a cell, fewer where they work on many. */
+/* Grey of a line's levels. Cost: see docs/benchmarks.md. */
 void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *grey, uint32_t cells);
 
 #endif

@@ -1,0 +1,82 @@
+#!/bin/sh
+# bench.sh BUILD-DIR: what a pixel and a line cost in instructions (callgrind counts them, so that the figures are the
+# same on a busy machine), tiles read for a picture, time against the reference in double precision, and the
+# classifier beside its peers. Nothing here passes or fails.
+set -eu
+build=${1:?usage: bench.sh BUILD-DIR}
+here=$(dirname "$0")
+bench=$build/bin/tests/bench/stage_bench
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT INT TERM
+
+# "function instructions" of a run, calls included. A function with inlined headers has a line for each file: the
+# largest is the whole.
+count() { # sar|gm
+    valgrind --tool=callgrind --callgrind-out-file="$work/out" "$bench" "$1" 1 2> "$work/log" || {
+        cat "$work/log" >&2
+        exit 1
+    }
+    callgrind_annotate --inclusive=yes --threshold=100 --auto=no "$work/out" |
+        sed -nE 's/^ *([0-9,]+) \([ 0-9.]+%\) +[^ ]*:([a-z0-9_]+)( .*)?$/\2 \1/p' | tr -d , |
+        awk '$2 > n[$1] { n[$1] = $2 } END { for (f in n) print f, n[f] }'
+}
+
+# Rows of a table from such a list; "rest" is what the whole has and its parts have not.
+table() { # divisor format
+    awk -v per="$1" -v format="$2" '
+        function row(name, n) { printf "  %-44s " format "\n", name, n / per }
+        { n[$1] = $2 }
+        END {
+            whole = n["lm_sar_draw_line"] + n["lm_ground_map_draw_line"]
+            paint = n["lm_patch_paint"] + n["lm_ppi_paint"]
+            parts = n["lm_scan_line_run"] + n["lm_aspect_run"] + n["lm_speckle_run"] + n["lm_tone_run"]
+            row("scan_line: cells, terrain, noise", n["lm_scan_line_run"])
+            row("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"])
+            row("speckle and noise", n["lm_speckle_run"])
+            row("tone", n["lm_tone_run"])
+            row("rest: geometry, tiles asked for, set-up", whole - parts + n["lm_sar_start"])
+            row("paint into the plane", paint)
+            row("all", whole + n["lm_sar_start"] + paint)
+        }'
+}
+
+if command -v valgrind > /dev/null; then
+    echo "SAR patch of 256 x 256 cells of 5 m, on a glass of 512 x 512: instructions a pixel"
+    count sar > "$work/sar"
+    table 65536 '%7.1f' < "$work/sar"
+    awk '$1 == "lm_sar_prefetch" { printf "  %-44s %7.1f\n", "and, before it: asking for its tiles", $2 / 65536 }' "$work/sar"
+    echo
+    echo "Ground map of 10 nautical miles, 256 cells, on a glass of 512 x 512: instructions a line"
+    count gm | table 256 '%7.0f'
+else
+    echo "bench: valgrind is missing (make deps), no instructions counted"
+fi
+
+echo
+echo "Processor time of the patch: ns a pixel, firmware and double-precision reference, five runs"
+"$bench" compare 5 | sort -n | awk '
+    { firmware[NR] = $1; reference[NR] = $2; ratio[NR] = $3 }
+    function sorted(a, n,   i, j, t) {
+        for (i = 2; i <= n; i++) for (j = i; j > 1 && a[j] < a[j - 1]; j--) { t = a[j]; a[j] = a[j - 1]; a[j - 1] = t }
+    }
+    END {
+        sorted(reference, NR); sorted(ratio, NR); m = int((NR + 1) / 2)
+        printf "  %-16s least %7.2f   median %7.2f\n", "firmware", firmware[1], firmware[m]
+        printf "  %-16s least %7.2f   median %7.2f\n", "reference", reference[1], reference[m]
+        printf "  %-16s least %7.1f   median %7.1f\n", "times as fast", ratio[1], ratio[m]
+    }'
+
+echo
+if [ -r build/run/scene.lmdb ] && [ -r build/run/flight.log ]; then
+    echo "A flight of a minute over the built-in scene (make run), ground map and patches:"
+    "$build"/bin/landmass-sim --db build/run/scene.lmdb --bus build/run/flight.log --script build/run/flight.script \
+        --png "$work/png" --every 0 > "$work/sim" 2>&1 || { cat "$work/sim"; exit 1; }
+    sed -n 's/^/  /; /frames\|pictures\|tiles:/p' "$work/sim"
+else
+    echo "No build/run/scene.lmdb (make run): no tiles counted"
+fi
+
+if [ -r "$here/classifier.sh" ]; then
+    echo
+    sh "$here/classifier.sh" "$build"
+fi
