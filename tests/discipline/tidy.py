@@ -16,7 +16,7 @@ from pathlib import Path
 
 def compilations(lines):
     """(source, object, flags) of each compiling command."""
-    for line in lines:
+    for line in lines.replace("\\\n", " ").splitlines():
         words = shlex.split(line) if " -c " in line else []
         if "-c" in words and "-o" in words:
             source, target = words[words.index("-c") + 1], words[words.index("-o") + 1]
@@ -45,7 +45,10 @@ def ask(build, source, target, flags):
 
 def main():
     build = sys.argv[1]
-    jobs = {job[0]: job for job in compilations(sys.stdin) if not job[0].startswith("tests/")}
+    jobs = {}
+    for job in compilations(sys.stdin.read()):
+        if not job[0].startswith("tests/"):
+            jobs.setdefault(job[0], job)  # the first: a source may be compiled for tests again, in other ways
     if not jobs:
         print("make names no source to compile")
         return 1

@@ -10,9 +10,10 @@ struct hs_atomic_file {
     char *temporary; /* owned: the name used while writing, in the same folder */
 };
 
-/* A path that exists and is no ordinary file (a device, a pipe, a folder) is refused: it would be replaced.
- * Both return 0, or -1 with the error already reported through hs_error. After a failure, and after
- * commit, nothing is left of the temporary file. Commit flushes to the disk before it renames. */
+/* A path that exists and is no ordinary file (a device, a pipe, a folder) is refused: it would be
+ * replaced. Both return 0, or -1 with the error already reported through hs_error. After a failure,
+ * and after commit, nothing is left of the temporary file. Commit flushes to the disk before it
+ * renames. */
 int hs_atomic_open(struct hs_atomic_file *f, const char *path);
 int hs_atomic_commit(struct hs_atomic_file *f);
 
