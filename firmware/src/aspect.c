@@ -1,6 +1,7 @@
 #include "lm/aspect.h"
 
 #include "fx/log.h"
+#include "fx/sat.h"
 
 enum {
     GRAZING_MIN_Q24 = 1 << 16, /* 1/256 */
@@ -24,6 +25,8 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
      * 2^57.2. */
     const int64_t drop_q14 = ((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
     g->fall_q14[i] = (int32_t)drop_q14 + g->height_q10 * 16;
+    /* No cell that is set lies nearer than LM_RANGE_MIN_M.
+     * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     g->inverse_range[i] =
         (int32_t)((((uint64_t)1 << (34 + g->tangent_shift)) + range_q8 / 2) / range_q8);
 
@@ -61,8 +64,9 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     const uint32_t width_q8 = (uint32_t)config->shore_width_m << 8;
     const uint32_t shore_cells = (width_q8 + cell_q8 / 2) / cell_q8;
     g->shore_fall_q8 = config->shore_q8 / (int32_t)(shore_cells ? shore_cells : 1);
-    /* The largest inverse, that of the first cell shown, takes 30 bits. */
-    const uint32_t nearest_q8 = first_q8 + g->first * cell_q8;
+    /* The largest inverse, that of the first cell shown, takes 30 bits. Where none is shown, any
+     * format does. */
+    const uint32_t nearest_q8 = fx_max_u32(first_q8 + g->first * cell_q8, LM_RANGE_MIN_M << 8);
     g->tangent_shift = (uint32_t)(31 - fx_clz32(nearest_q8)) - 4;
     for (uint32_t i = 0; i < g->first; i++) {
         g->fall_q14[i] = g->inverse_range[i] = g->gain_q8[i] = 0; /* read, but not shown */

@@ -55,13 +55,14 @@ struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uin
     return s;
 }
 
-/* From the path's 2^-32 BAM. The angle itself is unsigned, its differences are not. */
+/* From the path's 2^-32 BAM. The angle itself is unsigned, its differences are not. Everything is
+ * modulo 2^64, so that no path can do more harm than lead astray. */
 static struct track track_of(uint64_t value, uint64_t step, uint64_t bend, uint32_t side_log2)
 {
-    const int64_t half = (int64_t)1 << side_log2 >> 1;
+    const uint64_t half = (uint64_t)1 << side_log2 >> 1;
     return (struct track){.at = (int64_t)(value >> side_log2),
-                          .step = ((int64_t)step + half) >> side_log2,
-                          .bend = ((int64_t)bend + half) >> side_log2};
+                          .step = (int64_t)(step + half) >> side_log2,
+                          .bend = (int64_t)(bend + half) >> side_log2};
 }
 
 static struct walk walk_of(const struct lm_ground_path *p, uint32_t shift)
@@ -83,14 +84,16 @@ static struct local_track local_track_of(const struct track *t, uint32_t zone)
 
 static void advance(struct track *t, uint32_t cells)
 {
-    const int64_t n = cells;
-    t->at += n * t->step + n * (n - 1) / 2 * t->bend;
-    t->step += n * t->bend;
+    const uint64_t n = cells, step = (uint64_t)t->step, bend = (uint64_t)t->bend;
+    t->at = (int64_t)((uint64_t)t->at + n * step + n * (n - 1) / 2 * bend);
+    t->step = (int64_t)(step + n * bend);
 }
 
-static int64_t magnitude(int64_t x)
+/* |x|. Bends are below 2^53, as track_of cuts ten bits off or more, and steps below 2^63 after
+ * LM_CELLS_MAX of them: a step and RUN_CELLS bends add up without overflow. */
+static uint64_t magnitude(int64_t x)
 {
-    return x < 0 ? -x : x;
+    return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
 }
 
 /* Cells from this one on that surely lie in its tile, itself included: the way to the border that
@@ -99,13 +102,13 @@ static int64_t magnitude(int64_t x)
 static uint32_t cells_inside(const struct track *t, uint32_t zone)
 {
     const uint32_t back = (uint32_t)(t->at >> zone), ahead = ~back;
-    const int64_t pace = magnitude(t->step), change = magnitude(t->bend) * RUN_CELLS;
+    const uint64_t pace = magnitude(t->step), change = magnitude(t->bend) * RUN_CELLS;
     uint32_t room = t->step < 0 ? back : ahead;
     if (pace < change) {
         room = back < ahead ? back : ahead;
     }
     /* RUN_CELLS more for what cutting off the bits below the zone may add to each step. */
-    const uint64_t fastest = ((uint64_t)(pace + change) >> zone) + RUN_CELLS;
+    const uint64_t fastest = ((pace + change) >> zone) + RUN_CELLS;
     return fastest > room ? 1 : room / (uint32_t)fastest + 1;
 }
 
