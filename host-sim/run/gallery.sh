@@ -7,7 +7,9 @@ shift
 data=${LANDMASS_DATA:-../shared/data}
 out=build/gallery
 here=host-sim/run
-for scene in ${*:-village reservoir campus island riviera}; do
+mkdir -p $out
+[ $# -gt 0 ] || set -- village reservoir campus island riviera
+for scene in "$@"; do
     sh $here/gallery_scene.sh "$bin" "$data" $out/"$scene" "$scene"
 done
 printf '\n== Pictures:\n'
