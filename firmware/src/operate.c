@@ -36,12 +36,10 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
     if (u->ownship.position_quality != LM_NAV_GOOD || u->ownship.height_quality != LM_NAV_GOOD) {
         return false;
     }
-    uint32_t distance_q8;
-    const struct lm_place here = lm_ownship_place(u);
-    lm_geo_inverse(here, command->centre, &distance_q8, &command->look_azimuth);
     /* The line of sight turns on its way: at the patch it is the way back, turned round. */
+    uint32_t distance_q8;
     fx_bam_t back;
-    lm_geo_inverse(command->centre, here, &distance_q8, &back);
+    lm_geo_inverse(command->centre, lm_ownship_place(u), &distance_q8, &back);
     command->look_azimuth = back + FX_BAM_180;
     command->range_m = distance_q8 / 256;
     command->height_q6 = lm_antenna_height_q6(u);

@@ -184,11 +184,10 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
     }
 }
 
-/* Queue a tile of the image unless it is resident, settled as absent or bad, or among the newest
- * requests: neighbouring lines ask for the same tiles. */
-static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
+/* Queue a tile of the image unless its slot `known` (or LM_SLOT_NONE) is resident or settled as
+ * bad, or it is among the newest requests: neighbouring lines ask for the same tiles. */
+static void request(struct lm_tile_cache *c, const struct lm_tile_key *key, uint16_t known)
 {
-    const uint16_t known = find(c, key->level, key->row, key->column);
     if (known != LM_SLOT_NONE) {
         c->slots[known].last_use = c->clock;
         if (is_settled(c, known)) {
@@ -215,7 +214,7 @@ void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, ui
         const uint16_t i = find(c, level, row, column);
         const int64_t entry = lm_db_entry(c->db, level, row, column);
         if (entry >= 0 && (i == LM_SLOT_NONE || c->slots[i].state != LM_SLOT_ABSENT)) {
-            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level}, i);
             return;
         }
     }
