@@ -261,7 +261,7 @@ static void check(const struct world *w)
 static void fly(struct world *w, struct fuzz_supply *s)
 {
     memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    w->can = (struct lm_can){w, receive};
+    w->can = (struct lm_can){.ctx = w, .receive = receive};
     w->controls = (struct lm_controls){w, next_control};
     w->display = (struct lm_display){w, SIDE, SIDE, acquire, present};
     w->glass = calloc(SIDE * SIDE, sizeof *w->glass);

@@ -229,7 +229,7 @@ static void prepare(struct golden_rig *r, const struct golden_picture *p, struct
     r->centre = centre;
     r->aircraft = moved(moved(centre, 0, p->north_m), FX_BAM_90, p->east_m);
     memory_flash_open(&r->flash, image, p->fault == GOLDEN_BAD_HEADER ? 511 : image_bytes);
-    r->can = (struct lm_can){r, receive};
+    r->can = (struct lm_can){.ctx = r, .receive = receive};
     r->controls = (struct lm_controls){r, next_control};
     r->display = (struct lm_display){r, p->width_px, p->height_px, acquire, present};
     r->board = (struct lm_board){.radar = &lm_radar_default,

@@ -41,6 +41,12 @@ struct lm_can {
     /* The next frame that waits: 1 and *frame is filled; 0 when none waits; LM_ERR_IO when the bus
      * is down. */
     int (*receive)(void *ctx, struct lm_can_frame *frame);
+
+    /* Offer a data frame; its time_us is not looked at, and it is the caller's again on return.
+     * LM_OK: taken, and goes out when the bus lets it, or is dropped and counted by the driver.
+     * LM_BUSY: no room now; nothing was taken, offer it again a step later. LM_ERR_IO: the bus is
+     * down, and the frame lost. Never waits. NULL when the board can only listen. */
+    int (*send)(void *ctx, const struct lm_can_frame *frame);
 };
 
 /* A picture in memory: 0x00RRGGBB, row 0 on top. */

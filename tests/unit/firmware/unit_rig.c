@@ -113,7 +113,7 @@ struct rig *make_rig(void)
     assert_int_equal(tiny_image_build(&r->image, &spec), 0);
     memory_flash_open(&r->flash, r->image.bytes, r->image.size);
     r->bus.stop_us = UINT64_MAX;
-    r->can = (struct lm_can){&r->bus, receive};
+    r->can = (struct lm_can){.ctx = &r->bus, .receive = receive};
     r->controls = (struct lm_controls){r, next_control};
     r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};
     r->board = (struct lm_board){.radar = &lm_radar_default,
