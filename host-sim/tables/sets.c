@@ -72,6 +72,12 @@ static int64_t decibel_steps(int row, int i)
     return i == 0 ? -66 * 16384 : rounded(10 * log10l(middle) + 1 / 512.0L, 14);
 }
 
+static int64_t decibel_sum(int row, int i)
+{
+    (void)row;
+    return rounded(10 * log10l(1 + powl(10, -(i + 0.5L) / 160)), 8);
+}
+
 /* The byte, then `zeros` zero bytes, shifted through the reflected polynomial. */
 static int64_t crc32c(int zeros, int byte)
 {
@@ -94,6 +100,8 @@ static const struct table fixed_tables[] = {
      decibel},
     {"fx_table_db_steps_q14", "int32_t", "decibels of (i + 0.5) * 2^21, and 1/512 dB more", 0, 2048,
      decibel_steps},
+    {"fx_table_db_sum_q8", "int32_t",
+     "decibels that a power (i + 0.5) / 16 dB below another adds to it", 0, 512, decibel_sum},
     {"fx_table_crc32c", "uint32_t", "CRC-32C of byte i and the row's number of zero bytes", 4, 256,
      crc32c},
 };

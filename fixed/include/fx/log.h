@@ -50,6 +50,28 @@ static inline int32_t fx_db_q8_of_many(uint32_t power)
     return (fx_table_db_steps_q14[mantissa] - octaves * FX_DB_OCTAVE_Q14) >> 6;
 }
 
+/* 10^(dB / 10) in Q24 without counting or branching, for loops over many: 1 up to -72.25 dB and
+ * UINT32_MAX's octave from 24.08 dB up; |dB_q8| < 2^16. Worst error 0.014 dB where the result has
+ * more than 9 bits. */
+static inline uint32_t fx_power_q24_of_many(int32_t db_q8)
+{
+    /* Octaves above 2^-24 in Q16: log2(10) / 10 is 21771 / 65536. The half of the table's step is
+     * added for rounding. */
+    const int32_t octaves_q16 = (db_q8 * 21771 >> 8) + (24 << 16) + 128;
+    const int32_t low_q16 = octaves_q16 < 0 ? 0 : octaves_q16;
+    const uint32_t t_q16 = (uint32_t)(low_q16 > (32 << 16) - 1 ? (32 << 16) - 1 : low_q16);
+    return fx_table_exp2_q31[t_q16 >> 8 & 255u] >> (31 - (t_q16 >> 16));
+}
+
+/* Decibels of the sum of two powers given in decibels, all in Q8; |a - b| < 2^31. Worst error
+ * 0.018 dB. */
+static inline int32_t fx_db_q8_sum_of_many(int32_t a_q8, int32_t b_q8)
+{
+    const int32_t high_q8 = a_q8 > b_q8 ? a_q8 : b_q8, low_q8 = a_q8 > b_q8 ? b_q8 : a_q8;
+    const int32_t step = (high_q8 - low_q8) >> 4;
+    return high_q8 + fx_table_db_sum_q8[step < 511 ? step : 511];
+}
+
 /* 10^(dB / 10) in Q16, for dB in Q8. UINT32_MAX from 12331 (48.168 dB) up; 0 below -13100
  * (-51.17 dB). Worst error 0.5 lsb or 4e-9 of the result, added up. Cost 35 instructions. */
 uint32_t fx_power_q16_from_db_q8(int32_t db_q8);

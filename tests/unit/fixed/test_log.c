@@ -197,6 +197,35 @@ static void power_from_decibels_saturates_above_and_vanishes_below(void **state)
     assert_int_equal(fx_power_q16_from_db_q8(INT32_MIN), 0);
 }
 
+static void powers_of_many_are_within_0_014_dB_from_minus_45_to_24_dB_and_never_fall(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int32_t db_q8 = -45 * 256; db_q8 <= 24 * 256; db_q8++) {
+        const double power = fx_power_q24_of_many(db_q8) / 16777216.0;
+        worst = fmax(worst, fabs(10 * log10(power) - db_q8 / 256.0));
+        assert_true(fx_power_q24_of_many(db_q8) >= fx_power_q24_of_many(db_q8 - 1));
+    }
+    print_message("worst error %.4f dB\n", worst);
+    assert_true(worst < 0.014);
+    assert_int_equal(fx_power_q24_of_many(-0xC000), 1);
+    assert_true(fx_power_q24_of_many(50 * 256) > UINT32_MAX - (UINT32_MAX >> 8));
+}
+
+static void sums_of_many_are_within_0_018_dB_either_way_round(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int32_t a_q8 = -60 * 256; a_q8 <= 20 * 256; a_q8 += 7) {
+        const int32_t b_q8 = -20 * 256;
+        const double sum = 10 * log10(pow(10, a_q8 / 2560.0) + pow(10, b_q8 / 2560.0));
+        worst = fmax(worst, fabs(fx_db_q8_sum_of_many(a_q8, b_q8) / 256.0 - sum));
+        assert_int_equal(fx_db_q8_sum_of_many(a_q8, b_q8), fx_db_q8_sum_of_many(b_q8, a_q8));
+    }
+    print_message("worst error %.4f dB\n", worst);
+    assert_true(worst < 0.018);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -211,6 +240,8 @@ int main(void)
         cmocka_unit_test(decibels_never_fall_and_keep_to_their_range),
         cmocka_unit_test(decibels_of_64_bits_are_within_0_012_dB),
         cmocka_unit_test(decibels_of_many_are_within_0_020_dB_and_never_fall),
+        cmocka_unit_test(powers_of_many_are_within_0_014_dB_from_minus_45_to_24_dB_and_never_fall),
+        cmocka_unit_test(sums_of_many_are_within_0_018_dB_either_way_round),
         cmocka_unit_test(power_from_decibels_is_within_half_an_lsb_and_4e_9),
         cmocka_unit_test(power_from_decibels_saturates_above_and_vanishes_below),
     };
