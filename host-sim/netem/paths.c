@@ -1,0 +1,244 @@
+#include "paths.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Different reflections found so far: open addressing on their rounded geometry. */
+struct table {
+    struct nm_reflection *rows; /* becomes the owner's */
+    int count, capacity;
+    int32_t *slots; /* -1 is free */
+    uint32_t slot_count;
+};
+
+static uint64_t key_of(const struct nm_reflection *r)
+{
+    const uint64_t i = (uint64_t)lround(r->incidence_rad / NM_ANGLE_STEP_RAD);
+    const uint64_t l = (uint64_t)lround(r->leaving_rad / NM_ANGLE_STEP_RAD);
+    const uint64_t t = (uint64_t)lround(r->turn_rad / NM_ANGLE_STEP_RAD);
+    return i | l << 16 | t << 32 | (uint64_t)r->material << 48;
+}
+
+static uint32_t slot_of(uint64_t key, uint32_t slot_count)
+{
+    return (uint32_t)((key * 0x9e3779b97f4a7c15u) >> 32) & (slot_count - 1);
+}
+
+static int table_open(struct table *t, uint32_t most)
+{
+    uint32_t slots = 64;
+    while (slots / 2 < most) {
+        slots *= 2;
+    }
+    *t = (struct table){malloc((size_t)most * sizeof *t->rows), 0, (int)most,
+                        malloc(slots * sizeof *t->slots), slots};
+    if (!t->rows || !t->slots) {
+        free(t->rows);
+        free(t->slots);
+        *t = (struct table){0};
+        return hs_error("paths", "trace with fewer rays", "out of memory");
+    }
+    memset(t->slots, 0xff, slots * sizeof *t->slots);
+    return 0;
+}
+
+static int32_t table_find(struct table *t, const struct nm_reflection *r)
+{
+    const uint64_t key = key_of(r);
+    uint32_t slot = slot_of(key, t->slot_count);
+    while (t->slots[slot] >= 0) {
+        if (key_of(&t->rows[t->slots[slot]]) == key) {
+            return t->slots[slot];
+        }
+        slot = (slot + 1) & (t->slot_count - 1);
+    }
+    t->slots[slot] = t->count;
+    t->rows[t->count] = *r;
+    return t->count++;
+}
+
+void nm_features_of(const struct nm_reflection *r, double features[NM_INPUTS])
+{
+    features[0] = r->material - 1.0;
+    features[1] = 4 * r->incidence_rad / pi - 1;
+    features[2] = 2 * r->leaving_rad / pi - 1;
+    features[3] = 2 * r->turn_rad / pi - 1;
+}
+
+static int features_make(struct nm_paths *p, enum nm_direction d)
+{
+    p->features[d] = malloc(((size_t)p->rows[d] * NM_INPUTS + 1) * sizeof(double));
+    if (!p->features[d]) {
+        return hs_error("paths", "trace with fewer rays", "out of memory");
+    }
+    for (int r = 0; r < p->rows[d]; r++) {
+        nm_features_of(&p->table[d][r], p->features[d] + (size_t)r * NM_INPUTS);
+    }
+    return 0;
+}
+
+/* Where the records of the bounces stand while one ray after the other is followed. */
+struct cursor {
+    const struct trace_records *records;
+    uint32_t at[TRACE_BOUNCES_MAX];
+};
+
+/* The records of the next ray, in order of bounces; returns how many, 0 at the end. */
+static int next_ray(struct cursor *c, const struct trace_record *way[TRACE_BOUNCES_MAX])
+{
+    const struct trace_bounce *bounces = c->records->bounces;
+    if (c->at[0] == bounces[0].count) {
+        return 0;
+    }
+    way[0] = &bounces[0].records[c->at[0]++];
+    int count = 1;
+    for (; count < (int)c->records->bounce_count; count++) {
+        const uint32_t at = c->at[count];
+        if (at == bounces[count].count || bounces[count].records[at].ray != way[0]->ray) {
+            break;
+        }
+        way[count] = &bounces[count].records[c->at[count]++];
+    }
+    return count;
+}
+
+static int32_t cell_of(const struct trace_grid *grid, const struct trace_record *r)
+{
+    return r->flags & TRACE_BLOCKED ? -1 : trace_cell(grid, r->across_m, r->range_m);
+}
+
+/* The ray's steps up to its last echo in the picture; returns their number. */
+static int take_ray(const struct trace_grid *grid, const struct trace_record *const *way, int count,
+                    struct table tables[NM_DIRECTIONS], struct nm_step *steps)
+{
+    while (count > 0 && cell_of(grid, way[count - 1]) < 0) {
+        count--;
+    }
+    for (int b = 0; b < count; b++) {
+        const double incidence = (double)way[b]->incidence_rad;
+        const struct nm_reflection bk = {incidence, (double)way[b]->echo_rad,
+                                         (double)way[b]->turn_rad, way[b]->material};
+        const struct nm_reflection sp = {incidence, incidence, 2 * incidence, way[b]->material};
+        steps[b] = (struct nm_step){.cell = cell_of(grid, way[b])};
+        steps[b].row[NM_BK] = table_find(&tables[NM_BK], &bk);
+        steps[b].row[NM_SP] = b + 1 < count ? table_find(&tables[NM_SP], &sp) : -1;
+    }
+    return count;
+}
+
+static void take_rays(struct nm_paths *p, const struct trace_records *records,
+                      struct table tables[NM_DIRECTIONS])
+{
+    struct cursor cursor = {records, {0}};
+    const struct trace_record *way[TRACE_BOUNCES_MAX];
+    int32_t used = 0;
+    for (int count; (count = next_ray(&cursor, way)) > 0;) {
+        count = take_ray(&records->grid, way, count, tables, p->steps + used);
+        if (count > 0) {
+            p->first[p->ray_count++] = used;
+            used += count;
+        }
+    }
+    p->first[p->ray_count] = used;
+}
+
+int nm_paths_build(struct nm_paths *p, const struct trace_records *records)
+{
+    uint32_t total = 0;
+    for (uint32_t b = 0; b < records->bounce_count; b++) {
+        total += records->bounces[b].count;
+    }
+    const struct trace_sensor *sensor = &records->sensor;
+    const struct trace_grid *grid = &records->grid;
+    *p = (struct nm_paths){
+        .cells_across = (int)grid->cells_across,
+        .cells_range = (int)grid->cells_range,
+        .ray_weight = sensor->step_across_m * sensor->step_up_m / (grid->cell_m * grid->cell_m),
+        .first = malloc(((size_t)records->bounces[0].count + 1) * sizeof *p->first),
+        .steps = malloc(((size_t)total + 1) * sizeof *p->steps),
+    };
+    struct table tables[NM_DIRECTIONS] = {{0}};
+    int result = p->first && p->steps ? 0 : hs_error("paths", NULL, "out of memory");
+    for (int d = 0; d < NM_DIRECTIONS && result == 0; d++) {
+        result = table_open(&tables[d], total + 1);
+    }
+    if (result == 0) {
+        take_rays(p, records, tables);
+    }
+    for (int d = 0; d < NM_DIRECTIONS; d++) {
+        p->table[d] = tables[d].rows;
+        p->rows[d] = tables[d].count;
+        free(tables[d].slots);
+        result = result == 0 ? features_make(p, (enum nm_direction)d) : result;
+    }
+    if (result != 0) {
+        nm_paths_free(p);
+    }
+    return result;
+}
+
+void nm_paths_free(struct nm_paths *p)
+{
+    for (int d = 0; d < NM_DIRECTIONS; d++) {
+        free(p->table[d]);
+        free(p->features[d]);
+    }
+    free(p->first);
+    free(p->steps);
+    *p = (struct nm_paths){0};
+}
+
+void nm_paths_render(const struct nm_paths *p, const struct nm_coefficients *c, double *image)
+{
+    memset(image, 0, (size_t)p->cells_across * (size_t)p->cells_range * sizeof *image);
+    for (int i = 0; i < p->ray_count; i++) {
+        double power = p->ray_weight;
+        for (int32_t s = p->first[i]; s < p->first[i + 1]; s++) {
+            const struct nm_step *step = &p->steps[s];
+            if (step->cell >= 0) {
+                image[step->cell] += power * c->bk[step->row[NM_BK]];
+            }
+            if (step->row[NM_SP] >= 0) {
+                power *= c->sp[step->row[c->sp_by]];
+            }
+        }
+    }
+}
+
+/* For one ray: `powers` before each step, and from the last step back, `worth`, the derivative of
+ * the loss by the power that arrives. */
+static void ray_backward(const struct nm_step *steps, int count, double weight,
+                         const struct nm_coefficients *c, const double *d_image, double *bk,
+                         double *sp)
+{
+    double powers[TRACE_BOUNCES_MAX] = {weight}, worth = 0;
+    for (int s = 1; s < count; s++) {
+        powers[s] = powers[s - 1] * c->sp[steps[s - 1].row[c->sp_by]];
+    }
+    for (int s = count - 1; s >= 0; s--) {
+        const struct nm_step *step = &steps[s];
+        if (step->row[NM_SP] >= 0) {
+            const int32_t row = step->row[c->sp_by];
+            sp[row] += powers[s] * worth;
+            worth *= c->sp[row];
+        }
+        if (step->cell >= 0) {
+            bk[step->row[NM_BK]] += powers[s] * d_image[step->cell];
+            worth += c->bk[step->row[NM_BK]] * d_image[step->cell];
+        }
+    }
+}
+
+void nm_paths_backward(const struct nm_paths *p, const struct nm_coefficients *c,
+                       const double *d_image, double *bk, double *sp)
+{
+    for (int i = 0; i < p->ray_count; i++) {
+        ray_backward(p->steps + p->first[i], p->first[i + 1] - p->first[i], p->ray_weight, c,
+                     d_image, bk, sp);
+    }
+}

@@ -1,0 +1,28 @@
+/* Finding the shift between a simulated and a real picture by phase correlation (Niu (15)-(17);
+ * Kuglin and Hines, 1975), to the whole pixel. */
+#ifndef NM_REGISTRATION_H
+#define NM_REGISTRATION_H
+
+#include "picture.h"
+
+#include <fftw3.h>
+
+struct nm_registrar {
+    int side;
+    double *real, *simulated, *peak; /* owned */
+    fftw_complex *real_spectrum, *simulated_spectrum;
+    fftw_plan forward, backward;
+};
+
+/* For squares of `side` pixels. Returns 0, or -1 with the error reported. */
+int nm_registrar_open(struct nm_registrar *r, int side);
+void nm_registrar_close(struct nm_registrar *r);
+
+/* The origin, at most `reach` pixels from `near` either way, at which the real picture looks most
+ * like the simulated one. `sharpness`, if not NULL, receives the height of the peak: 1 for an exact
+ * cyclic shift, about 1 / side for unrelated pictures. */
+struct nm_origin nm_register(struct nm_registrar *r, const double *simulated,
+                             const struct nm_picture *real, struct nm_origin near, int reach,
+                             double *sharpness);
+
+#endif
