@@ -13,16 +13,92 @@ const struct lm_radar lm_radar_default = {
     .azimuth_half = {FX_BAM_DEG(60), FX_BAM_DEG(30), FX_BAM_DEG(10)},
     /* X band, as papers A and B; neither gives the frequency. 9.6 GHz: UNSOURCED. */
     .wavelength_um = 31228,
-    .sweep_bam_per_ms = FX_BAM_DEG(120) / 1000,
     /* 256 cells and 256 lines in 120 degrees: paper A's effective resolution, "Computational
        resources". */
-    .gm_cells = 256,
-    .gm_line = FX_BAM_DEG(120) / 256,
-    .sar_cells = 256,
-    /* UNSOURCED until dwell by formula comes in: a patch in two seconds. */
-    .sar_lines_per_s = 128,
-    .sar_cell_min_mm = 500,
-    .sar_cell_max_mm = 40000,
+    .cells = 256,
+    .line = FX_BAM_DEG(120) / 256,
+    /* 3.3 degrees: RADAR.md 1.5 and 2.3. Everything else of the antenna is UNSOURCED: a beam a
+     * little taller than wide, a fan that reaches from the horizon to well below the aircraft's
+     * nose, gimbals of 60 degrees. */
+    .antenna = {.azimuth_beam = FX_BAM_DEG(33) / 10,
+                .elevation_beam = FX_BAM_DEG(46) / 10,
+                .fan = FX_BAM_DEG(30),
+                .bar_spacing = FX_BAM_DEG(22) / 10,
+                .azimuth_limit = FX_BAM_DEG(60),
+                .tilt_max = FX_BAM_DEG(30)},
+    /* UNSOURCED: noise a little below the grass at the far end of each scale; a time gain that ends
+     * at three quarters of it. */
+    .receiver = {.noise_end_q8 = {DB(-40), DB(-38), DB(-36), DB(-34)},
+                 .stc_m = {13890, 27780, 55560, 111120},
+                 .noise_looks_log2 = 4},
+    /* Rates: FreeFalcon, as above: base 60 degrees a second, twice that in GM; bars of GMT: four,
+     * of GM: one. Gates: FreeFalcon's 3 to 100, here knots. No 80 nm scale in GMT and SEA.
+     * UNSOURCED: looks (many pulses within a beam width average in real beam), 35 dB of clutter
+     * cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
+    .mode = {[LM_SECTOR_GM] = {.bam_per_s = FX_BAM_DEG(120),
+                               .range_last = 3,
+                               .field_last = LM_FIELD_DBS2,
+                               .bars = 1,
+                               .speckle = {.looks_log2 = 2},
+                               .tone = {DB(-42), DB(6), 384}},
+             [LM_SECTOR_GMT] = {.bam_per_s = FX_BAM_DEG(60),
+                                .range_last = 2,
+                                .field_last = LM_FIELD_EXP,
+                                .bars = 4,
+                                .is_doppler = true,
+                                .clutter_q8 = DB(35),
+                                .gate_mm_s = {1543, 51444},
+                                .speckle = {.looks_log2 = 2},
+                                .tone = {DB(-36), DB(0), 256}},
+             [LM_SECTOR_SEA] = {.bam_per_s = FX_BAM_DEG(60),
+                                .range_last = 2,
+                                .field_last = LM_FIELD_EXP,
+                                .bars = 1,
+                                .is_doppler = true,
+                                .gate_mm_s = {0, UINT32_MAX},
+                                .speckle = {.looks_log2 = 0},
+                                .tone = {DB(-48), DB(-6), 320}}},
+    /* Windows, azimuth limits and DBS rates (a quarter and a twentieth of the base): FreeFalcon, as
+     * RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below half of that:
+     * UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED. */
+    .field = {[LM_FIELD_NORM] = {.range_last = 3,
+                                 .sharpening = 1,
+                                 .sharpening_least = 1,
+                                 .pulse_ns = {400, 1000, 3200, 6400}},
+              [LM_FIELD_EXP] = {.range_last = 3,
+                                .window_permille = 125,
+                                .azimuth_half_max = FX_BAM_DEG(60),
+                                .sharpening = 1,
+                                .sharpening_least = 1,
+                                .pulse_ns = {100, 400, 1000, 3200}},
+              [LM_FIELD_DBS1] = {.bam_per_s = FX_BAM_DEG(15),
+                                 .range_last = 2,
+                                 .window_permille = 125,
+                                 .azimuth_half_max = FX_BAM_DEG(15),
+                                 .sharpening = 8,
+                                 .sharpening_least = 4,
+                                 .is_doppler = true,
+                                 .pulse_ns = {100, 100, 400, 400}},
+              [LM_FIELD_DBS2] = {.bam_per_s = FX_BAM_DEG(3),
+                                 .range_last = 2,
+                                 .window_permille = 30,
+                                 .azimuth_half_max = FX_BAM_DEG(5),
+                                 .sharpening = 64,
+                                 .sharpening_least = 32,
+                                 .is_doppler = true,
+                                 .pulse_ns = {100, 100, 100, 100}}},
+    /* UNSOURCED but for the formulas they go into: squints from 15 degrees (RADAR.md 1.4 on DBS), a
+     * minute of dwell at the most, a patch shown with four looks. */
+    .sar = {.cells = 256,
+            .cell_min_mm = 500,
+            .cell_max_mm = 40000,
+            .squint_min = FX_BAM_DEG(15),
+            .dwell_max_ms = 60000,
+            .reference_speed_mm_s = 250000,
+            .mocomp_residual_permille = 10,
+            .noise_floor_q8 = DB(-46),
+            .speckle = {.looks_log2 = 2},
+            .tone = {DB(-42), DB(12), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall
      * alone, a tree line 2 dB; far shores 5 dB over 60 m (paper A names the effects and gives no
      * figures). */
@@ -30,12 +106,21 @@ const struct lm_radar lm_radar_default = {
                .edge_trees_q8 = DB(2),
                .shore_q8 = DB(5),
                .shore_width_m = 60},
-    /* Looks: UNSOURCED. Many pulses within a beam width average in real beam; SAR shown with four
-       looks. */
+    /* RADAR.md 2.1: nu of 1 to 3 for towns and forest as tunables, none for farmland. */
+    .texture = {.shape_log2 = {[LM_KIND_GROUND] = LM_TEXTURE_NONE,
+                               [LM_KIND_WATER] = LM_TEXTURE_NONE,
+                               [LM_KIND_STRUCTURE] = 1,
+                               [LM_KIND_TREES] = 2}},
+
+    .sweep_bam_per_ms = FX_BAM_DEG(120) / 1000,
+    .gm_cells = 256,
+    .gm_line = FX_BAM_DEG(120) / 256,
+    .sar_cells = 256,
+    .sar_lines_per_s = 128,
+    .sar_cell_min_mm = 500,
+    .sar_cell_max_mm = 40000,
     .gm_speckle = {.looks_log2 = 4, .noise_floor_q8 = DB(-46)},
     .sar_speckle = {.looks_log2 = 2, .noise_floor_q8 = DB(-46)},
-    /* Window: from the sea's -40 dB, nearly black, to the brightest buildings.
-     * UNSOURCED exponents. */
     .gm_tone = {.black_q8 = DB(-42), .white_q8 = DB(6), .gamma_q8 = 384},
     .sar_tone = {.black_q8 = DB(-42), .white_q8 = DB(12), .gamma_q8 = 384},
 };

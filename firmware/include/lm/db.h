@@ -40,7 +40,13 @@ enum {
 };
 
 /* What a class is to the radar, apart from how bright. */
-enum lm_kind { LM_KIND_GROUND = 0, LM_KIND_WATER = 1, LM_KIND_STRUCTURE = 2, LM_KIND_TREES = 3 };
+enum lm_kind {
+    LM_KIND_GROUND = 0,
+    LM_KIND_WATER = 1,
+    LM_KIND_STRUCTURE = 2,
+    LM_KIND_TREES = 3,
+    LM_KINDS
+};
 
 /* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */
 enum { LM_GAMMA_CODE_STEP_Q8 = 128, LM_GAMMA_CODE_ZERO_Q8 = -80 * 256 };

@@ -1,8 +1,10 @@
 /* The radar parameter table: every number that belongs to the radar and not to the display. An
- * integrator replaces the table (firmware/src/radar.c), not the code. */
+ * integrator replaces the table (firmware/src/radar.c), not the code. Equations of all of it:
+ * docs/DESIGN.md, "The picture, as equations". */
 #ifndef LM_RADAR_H
 #define LM_RADAR_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "fx/types.h"
@@ -12,18 +14,83 @@
 
 enum { LM_RANGES = 4, LM_AZIMUTHS = 3 };
 
+/* What a sector shows. */
+enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };
+
+/* How much of it, and how sharp: the whole sector, or a window around the cursor. */
+enum lm_field { LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_DBS1, LM_FIELD_DBS2, LM_FIELDS };
+
+struct lm_sector_mode_row {
+    uint32_t bam_per_ms;   /* antenna rate */
+    uint8_t range_last;    /* index of the largest scale */
+    uint8_t field_last;    /* enum lm_field */
+    uint8_t bars;          /* swept in turn, 1..8 */
+    bool is_doppler;       /* movers are displaced */
+    uint16_t clutter_q8;   /* how much of what stands still is cancelled, dB */
+    uint32_t gate_mm_s[2]; /* closing speeds, either way, of the targets that are shown */
+    struct lm_speckle_config speckle;
+    struct lm_tone_config tone;
+};
+
+struct lm_field_row {
+    uint32_t bam_per_ms;       /* antenna rate; 0: the mode's */
+    uint8_t range_last;        /* index of the largest scale */
+    uint16_t window_permille;  /* half the window's side, of the range scale; 0: the sector */
+    fx_bam_t azimuth_half_max; /* of a window, as swept */
+    uint16_t sharpening;       /* azimuth cells in a beam width; 1: real beam */
+    uint16_t sharpening_least; /* real beam where there is less than this */
+    bool is_doppler;           /* movers are displaced */
+    uint32_t pulse_ns[LM_RANGES];
+};
+
+struct lm_antenna_table {
+    fx_bam_t azimuth_beam, elevation_beam; /* one-way half-power widths */
+    fx_bam_t fan;                          /* the beam is spoiled so far below its axis */
+    fx_bam_t bar_spacing;
+    fx_bam_t azimuth_limit; /* off the nose, either way */
+    fx_bam_t tilt_max;      /* manual, up or down */
+};
+
+struct lm_receiver_table {
+    int16_t noise_end_q8[LM_RANGES]; /* noise-equivalent gamma at the end of each scale, dB */
+    uint32_t stc_m[LM_RANGES];       /* slant range where the time gain ends */
+    uint8_t noise_looks_log2;
+};
+
+struct lm_sar_table {
+    uint16_t cells; /* of a patch, both ways */
+    uint32_t cell_min_mm, cell_max_mm;
+    fx_bam_t squint_min; /* between velocity and line of sight */
+    uint32_t dwell_max_ms;
+    uint32_t reference_speed_mm_s;     /* paces a patch that was commanded with its geometry */
+    uint16_t mocomp_residual_permille; /* of a lateral acceleration; 0: compensation is perfect */
+    int16_t noise_floor_q8;            /* dB of gamma */
+    struct lm_speckle_config speckle;
+    struct lm_tone_config tone;
+};
+
 struct lm_radar {
     uint32_t range_m[LM_RANGES];        /* display scales */
     uint16_t range_nm[LM_RANGES];       /* the same, as the pilot reads them */
     fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1 */
     uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM (lm/rcs.h) */
-    uint32_t sweep_bam_per_ms;          /* GM antenna rate */
-    uint16_t gm_cells;                  /* range cells of a GM line */
-    fx_bam_t gm_line;                   /* azimuth width of a GM line */
-    uint16_t sar_cells;                 /* of a patch, both ways */
-    uint16_t sar_lines_per_s;           /* how fast a patch builds up */
-    uint32_t sar_cell_min_mm, sar_cell_max_mm;
+    uint16_t cells;                     /* range cells of a sector line */
+    fx_bam_t line;                      /* azimuth between lines sampled in real beam */
+    struct lm_antenna_table antenna;
+    struct lm_receiver_table receiver;
+    struct lm_sector_mode_row mode[LM_SECTOR_MODES];
+    struct lm_field_row field[LM_FIELDS];
+    struct lm_sar_table sar;
     struct lm_aspect_config aspect;
+    struct lm_texture_config texture;
+
+    /* The table of the picture as it was until every mode stands. */
+    uint32_t sweep_bam_per_ms;
+    uint16_t gm_cells;
+    fx_bam_t gm_line;
+    uint16_t sar_cells;
+    uint16_t sar_lines_per_s;
+    uint32_t sar_cell_min_mm, sar_cell_max_mm;
     struct lm_speckle_config gm_speckle, sar_speckle;
     struct lm_tone_config gm_tone, sar_tone;
 };

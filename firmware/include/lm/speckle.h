@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "lm/db.h"
+
 enum { LM_SPECKLE_SLICES = 1024, LM_SPECKLE_LOOKS_LOG2_MAX = 4 };
 
 /* 10 log10 of a Gamma(L) variable of mean 1, dB * 256, for L = 1, 2, 4, 8, 16 looks: entry [log2
@@ -15,6 +17,14 @@ struct lm_speckle_config {
     uint8_t looks_log2;     /* 0..4 */
     int32_t noise_floor_q8; /* level of the receiver's noise, 1/256 dB */
 };
+
+/* Shape of the texture by kind of class (enum lm_kind), as log2 nu of 0..4, or LM_TEXTURE_NONE. */
+enum { LM_TEXTURE_NONE = 5 };
+struct lm_texture_config {
+    uint8_t shape_log2[LM_KINDS];
+};
+
+enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
 
 /* level = max(level, floor) + speckle, in place. Cost: see docs/benchmarks.md. */
 void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise, int32_t *level_q8,

@@ -1,0 +1,30 @@
+/* What stands between the radar and the ground: rain, jammers, the state of the sea. Set by a
+ * script or an instructor; nothing of it comes from the map. */
+#ifndef LM_ENVIRONMENT_H
+#define LM_ENVIRONMENT_H
+
+#include <stdint.h>
+
+#include "lm/geo.h"
+
+enum { LM_RAINS_MAX = 4, LM_JAMMERS_MAX = 4 };
+
+struct lm_rain {
+    struct lm_place centre;
+    uint32_t radius_m; /* 100..100,000 */
+    uint16_t mm_per_h; /* 1..150 */
+};
+
+struct lm_jammer {
+    struct lm_place place;
+    int16_t ratio_q8; /* to the noise, on the axis at ten nautical miles: -20..80 dB */
+};
+
+struct lm_environment {
+    struct lm_rain rain[LM_RAINS_MAX];
+    struct lm_jammer jammer[LM_JAMMERS_MAX];
+    uint8_t rain_count, jammer_count;
+    uint8_t sea_state; /* 0..LM_SEA_STATE_MAX (lm/speckle.h) */
+};
+
+#endif
