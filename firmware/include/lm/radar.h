@@ -21,7 +21,7 @@ enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODE
 enum lm_field { LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_DBS1, LM_FIELD_DBS2, LM_FIELDS };
 
 struct lm_sector_mode_row {
-    uint32_t bam_per_ms;   /* antenna rate */
+    uint32_t bam_per_s;    /* antenna rate */
     uint8_t range_last;    /* index of the largest scale */
     uint8_t field_last;    /* enum lm_field */
     uint8_t bars;          /* swept in turn, 1..8 */
@@ -33,7 +33,7 @@ struct lm_sector_mode_row {
 };
 
 struct lm_field_row {
-    uint32_t bam_per_ms;       /* antenna rate; 0: the mode's */
+    uint32_t bam_per_s;        /* antenna rate; 0: the mode's */
     uint8_t range_last;        /* index of the largest scale */
     uint16_t window_permille;  /* half the window's side, of the range scale; 0: the sector */
     fx_bam_t azimuth_half_max; /* of a window, as swept */
