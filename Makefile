@@ -29,18 +29,21 @@ CFLAGS_host     = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_host)
 objs = $(patsubst %.c,$(O)/%.o,$(1))
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a
+LIB_drivers  := $(O)/libdrivers.a
 LIB_hs       := $(O)/libhs.a
 TEST_SUPPORT := $(O)/tests/support/support.o
 
 PROGRAMS :=
 TESTS    :=
-include $(sort $(wildcard drivers/*.mk bsp/$(BOARD)/*/*.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk))
+# What is built beside the firmware: a PC's programs and tests, unless the board says otherwise.
+PARTS ?= drivers/*.mk bsp/$(BOARD)/*/*.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
+include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check bench gallery fuzz lint format clean
+.PHONY: help deps all run check bench gallery fuzz lint format clean zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
-	@sed -n 's/^\([a-z-]*\):.*## /  \1\t/p' $(MAKEFILE_LIST) | expand -t 14
+	@sed -n 's/^\([a-z0-9-]*\):.*## /  \1\t/p' $(MAKEFILE_LIST) | expand -t 14
 
 deps: ## Install the Debian packages of bsp/bench-linux/packages.txt (as root or through sudo)
 	@sh bsp/bench-linux/deps.sh
@@ -65,6 +68,9 @@ gallery: deps ## Fly the real data of ../shared/data and leave the pictures in b
 fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` replays seeds and random damage
 	@sh tests/fuzz/fuzz.sh $(or $(FOR),60)
 
+zcu102: deps ## Build the bare-metal image for the board ZCU102: build/zcu102/landmass.elf
+	@$(MAKE) --no-print-directory BOARD=zcu102 all
+
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
 	@sh tests/discipline/lint.sh
 
@@ -80,6 +86,7 @@ check-built: $(PROGRAMS) $(TESTS)
 
 $(LIB_fixed): $(call objs,$(wildcard fixed/src/*.c))
 $(LIB_firmware): $(call objs,$(wildcard firmware/src/*.c))
+$(LIB_drivers): $(DRIVERS:%=$(O)/drivers/%.o)
 $(LIB_hs): $(call objs,$(wildcard host-sim/common/src/*.c))
 $(O)/%.a:
 	@mkdir -p $(@D)

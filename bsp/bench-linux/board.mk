@@ -3,6 +3,9 @@ CC  := gcc
 AR  := gcc-ar
 RUN :=
 
+# Of drivers/, each without its ending.
+DRIVERS := can/can_log can/can_socket flash/flash_file
+
 # How the two lowest layers are compiled. They are all integers, so the picture is the same whatever is chosen here. A PC of
 # the last ten years has 256-bit vectors: its compiler is told so when the machine that builds, which is the one that
 # runs, says it has them. Tuned for haswell, because the tuning for no machine in particular avoids vector gathers.

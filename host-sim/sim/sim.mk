@@ -1,6 +1,4 @@
 # landmass-sim: the firmware on the bench board, with drivers for the bus and a window for the glass.
-LIB_drivers := $(O)/libdrivers.a
-$(LIB_drivers): $(call objs,$(wildcard drivers/*/*.c))
 LIB_bench := $(O)/libbench.a
 $(LIB_bench): $(call objs,$(wildcard bsp/bench-linux/*.c))
 T := $(O)/bin/landmass-sim

@@ -1,0 +1,17 @@
+# zcu102: the Zynq UltraScale+ board ZCU102, Cortex-A53, no operating system (docs/zcu102.md).
+CC      := aarch64-linux-gnu-gcc
+AR      := aarch64-linux-gnu-ar
+SIZE    := aarch64-linux-gnu-size
+NM      := aarch64-linux-gnu-nm
+DRIVERS := can/can_zynqmp display/display_dp flash/flash_gqspi irq/irq_gic400 timer/timer_generic uart/uart_cadence \
+    watchdog/watchdog_cadence
+
+# No operating system, no C library, nothing loaded at an address that is not known when it is linked.
+OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections
+# The two lowest layers are integers and make vectors of loops; drivers and board run in interrupts, which keep their
+# hands off the vector registers, and before the MMU allows unaligned access.
+OPT_core := -O3
+OPT_board := -mgeneral-regs-only -mstrict-align
+
+# Instead of the programs and tests of a PC.
+PARTS := linker/zcu102.mk tests/zcu102/images/*.mk

@@ -1,0 +1,51 @@
+/* The DisplayPort controller of Zynq UltraScale+ as struct lm_display: the graphics plane, fed from
+ * memory by channel 3 of its DMA. Registers and sequences: UG1085, chapter 33, and UG1087, modules
+ * DP and DPDMA; blanking: VESA Coordinated Video Timings 1.2, reduced blanking.
+ *
+ * The firmware draws in cached memory. present() writes the picture into the scan-out buffer that
+ * is not on the glass, in the format the plane reads (red in the highest byte), and tells the DMA
+ * to take it from the next frame on; a picture is never seen half drawn. Cost: about one
+ * instruction a pixel.
+ *
+ * Tested in QEMU: what is shown, bit for bit, at several resolutions. QEMU takes the picture when
+ * somebody looks, so that tearing cannot be tested. NOT done here: clocks, serial lanes and the
+ * training of the link, which the boot firmware or the board must have done. */
+#ifndef DRV_DISPLAY_DP_H
+#define DRV_DISPLAY_DP_H
+
+#include "drv/registers.h"
+#include "lm/port.h"
+
+/* What the DMA reads: UG1085, table 33-12. */
+struct drv_display_descriptor {
+    uint32_t words[16];
+};
+
+enum { DRV_DISPLAY_BUFFERS = 2 };
+
+/* Memory that the display scans out, not cached: 256-byte aligned. */
+struct drv_display_scan {
+    _Alignas(256) struct drv_display_descriptor descriptor;
+    uint32_t *pixels; /* width_px * height_px, 256-byte aligned, below 4 GiB */
+};
+
+struct drv_display {
+    drv_registers dp, dma;
+    uint32_t *drawn;                /* borrowed */
+    struct drv_display_scan *scans; /* borrowed: DRV_DISPLAY_BUFFERS */
+    uint32_t next;                  /* the one that is not shown */
+    struct lm_display
+        port; /* hand this to the firmware; its ctx is this struct, which must not move */
+};
+
+struct drv_display_config {
+    drv_registers dp, dma;
+    uint16_t width_px, height_px; /* multiples of 4 */
+    uint32_t *drawn;              /* width_px * height_px pixels that the firmware draws in */
+    struct drv_display_scan *scans;
+};
+
+/* Set the resolution and show a dark picture. */
+void drv_display_open(struct drv_display *d, const struct drv_display_config *config);
+
+#endif

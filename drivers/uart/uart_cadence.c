@@ -1,0 +1,102 @@
+#include "drv/uart_cadence.h"
+
+enum {
+    CR = 0x00,
+    MR = 0x04,
+    IER = 0x08,
+    IDR = 0x0C,
+    ISR = 0x14,
+    BAUDGEN = 0x18,
+    RXTOUT = 0x1C,
+    RXWM = 0x20,
+    SR = 0x2C,
+    FIFO = 0x30,
+    BAUD_RATE_DIVIDER = 0x34,
+
+    CR_RXRES = 1 << 0,
+    CR_TXRES = 1 << 1,
+    CR_RXEN = 1 << 2,
+    CR_RXDIS = 1 << 3,
+    CR_TXEN = 1 << 4,
+    CR_TXDIS = 1 << 5,
+
+    MR_PARITY_NONE = 4 << 3,
+
+    IXR_RTRIG = 1 << 0,
+    IXR_ROVR = 1 << 5,
+    IXR_FRAME = 1 << 6,
+    IXR_PARE = 1 << 7,
+    IXR_TOUT = 1 << 8,
+    IXR_RBRK = 1 << 13,
+    IXR_ALL = 0x3FFF,
+
+    SR_RXEMPTY = 1 << 1,
+    SR_TXEMPTY = 1 << 3,
+    SR_TXFULL = 1 << 4,
+    SR_TACTIVE = 1 << 11,
+
+    SAMPLES = 7 /* of a bit: BAUD_RATE_DIVIDER + 1 */
+};
+
+void drv_uart_init(struct drv_uart *u, drv_registers base, uint32_t clock_hz, uint32_t baud)
+{
+    *u = (struct drv_uart){.base = base};
+    drv_write(base, CR, CR_RXDIS | CR_TXDIS);
+    drv_write(base, IDR, IXR_ALL);
+    drv_write(base, MR, MR_PARITY_NONE);
+    drv_write(base, BAUDGEN, (clock_hz + SAMPLES * baud / 2) / (SAMPLES * baud));
+    drv_write(base, BAUD_RATE_DIVIDER, SAMPLES - 1);
+    drv_write(base, CR, CR_RXRES | CR_TXRES);
+    drv_write(base, RXWM, 1);
+    drv_write(base, RXTOUT, 0);
+    drv_write(base, ISR, IXR_ALL);
+    drv_write(base, CR, CR_RXEN | CR_TXEN);
+    drv_write(base, IER, IXR_RTRIG | IXR_ROVR | IXR_FRAME | IXR_PARE | IXR_RBRK);
+}
+
+void drv_uart_put(struct drv_uart *u, char c)
+{
+    while (drv_read(u->base, SR) & SR_TXFULL) {
+    }
+    drv_write(u->base, FIFO, (uint8_t)c);
+}
+
+void drv_uart_drain(struct drv_uart *u)
+{
+    while ((drv_read(u->base, SR) & (SR_TXEMPTY | SR_TACTIVE)) != SR_TXEMPTY) {
+    }
+}
+
+int drv_uart_get(struct drv_uart *u)
+{
+    const uint32_t tail = u->tail;
+    if (tail == u->head) {
+        return -1;
+    }
+    const uint8_t byte = u->ring[tail % DRV_UART_RING];
+    u->tail = tail + 1;
+    return byte;
+}
+
+static void take_byte(struct drv_uart *u, uint8_t byte)
+{
+    if (u->head - u->tail == DRV_UART_RING) {
+        u->count.overflowed++;
+        return;
+    }
+    u->ring[u->head % DRV_UART_RING] = byte;
+    u->head++;
+}
+
+void drv_uart_interrupt(void *uart)
+{
+    struct drv_uart *u = uart;
+    const uint32_t cause = drv_read(u->base, ISR);
+    u->count.overflowed += (cause & IXR_ROVR) != 0;
+    u->count.damaged += (cause & (IXR_FRAME | IXR_PARE | IXR_RBRK)) != 0;
+    /* At most a full FIFO, so that a flood cannot keep the core here. */
+    for (uint32_t i = 0; i < 64 && !(drv_read(u->base, SR) & SR_RXEMPTY); i++) {
+        take_byte(u, (uint8_t)drv_read(u->base, FIFO));
+    }
+    drv_write(u->base, ISR, cause);
+}
