@@ -1,0 +1,37 @@
+/* The antenna up and down: tilt, and what its elevation pattern leaves of a line. Across the line
+ * it is lm/beam.h that smears. docs/DESIGN.md, "Real beam". */
+#ifndef LM_ANTENNA_H
+#define LM_ANTENNA_H
+
+#include <stdint.h>
+
+#include "lm/aspect.h"
+#include "lm/radar.h"
+
+/* Two-way gain behind the fan's edge, 1/256 dB: entry n for tangents (n + 1/2) / 2048 beyond it. */
+enum { LM_ELEVATION_STEPS = 256 };
+struct lm_elevation {
+    int32_t gain_q8[LM_ELEVATION_STEPS];
+};
+
+/* The fan between two tangents of elevation, Q20: looks between them are not weakened. */
+struct lm_fan {
+    int32_t high_q20, low_q20;
+};
+
+/* Cost: about 20 k instructions; once for a radar. */
+void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *antenna);
+
+/* The fan below an axis at `tilt` (signed BAM, up positive; within +-60 degrees). */
+struct lm_fan lm_fan_at(const struct lm_antenna_table *antenna, int32_t tilt);
+
+/* AUTO: the tilt, signed BAM, that points the axis at flat ground `height_m` below the antenna at
+ * ground range `range_m`. */
+int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m);
+
+/* Weigh the levels of the grid's cells by the pattern, each at the tangent at which it appears. A
+ * cell in shadow has none of its own and stays dark. Cost: see docs/benchmarks.md. */
+void lm_elevation_run(const struct lm_elevation *e, const struct lm_fan *fan,
+                      const struct lm_range_grid *grid, struct lm_sight *sight);
+
+#endif

@@ -1,0 +1,52 @@
+/* The beam across the line: a ring of lines sampled side by side, and the lines of the display as
+ * their mean under the antenna's two-way pattern. docs/DESIGN.md, "Real beam". */
+#ifndef LM_BEAM_H
+#define LM_BEAM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "lm/config.h"
+#include "lm/radar.h"
+#include "lm/scan_line.h"
+
+enum { LM_BEAM_TAPS = 16, LM_BEAM_FINEST = 8 /* largest k of D = D0 / 2^k */ };
+
+/* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 16. */
+struct lm_beam {
+    uint8_t fineness; /* k */
+    uint16_t held;    /* bit s: slot s holds sample number[s] */
+    int32_t number[LM_BEAM_TAPS];
+    uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
+};
+
+/* What one line of the display is made of: samples first .. first + 15, each with its weight. */
+struct lm_beam_look {
+    int32_t first;
+    uint32_t weight_q16[LM_BEAM_TAPS]; /* of sample first + j; they add up to 65536 */
+};
+
+/* Nothing is held any more: the scene has changed. */
+void lm_beam_clear(struct lm_beam *b);
+
+/* Look at `azimuth` (signed BAM from the sector's middle, within +-90 degrees) with the radar's
+ * beam sharpened `ratio_q8` / 256 times (1..256 times). Samples of another fineness are dropped.
+ * Cost: about 1,200 instructions. */
+void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
+                 uint32_t ratio_q8, struct lm_beam_look *look);
+
+/* Azimuth of a sample, signed BAM, and the distance between two. */
+fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar);
+int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, int32_t sample);
+
+/* Whether the look's sample first + j is held. */
+bool lm_beam_has(const struct lm_beam *b, int32_t sample);
+
+/* The room of a sample, which counts as held from now on. */
+uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample);
+
+/* The line: all of the look's samples are held. Cost: see docs/benchmarks.md. */
+void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
+                 uint32_t cells);
+
+#endif

@@ -1,0 +1,32 @@
+/* Slant range: what a radar measures, against the ground range at which a line is sampled.
+ * docs/DESIGN.md, "Slant range". */
+#ifndef LM_SLANT_H
+#define LM_SLANT_H
+
+#include <stdint.h>
+
+#include "lm/aspect.h"
+
+/* The bins of a display line, equally spaced in slant range, and where each finds its ground. */
+struct lm_slant {
+    uint32_t first_q8, cell_q8; /* of bin 0's centre, and between centres; metres * 256 */
+    uint32_t cells;
+    uint32_t cell_of[LM_CELLS_ROOM]; /* index into the ground grid; its `cells`: no ground there */
+};
+
+/* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,
+ * either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
+uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10);
+uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10);
+
+/* Bins over the cells of `grid`, whose cell 0 is centred at `ground_first_q8`. cells up to
+ * LM_CELLS_MAX; the last bin below 400 km. Cost: about 200 instructions a bin. */
+void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
+                  const struct lm_range_grid *grid, uint32_t ground_first_q8);
+
+/* Power (1.0 in Q24 is 0 dB of gamma) of each bin from the ground cells' levels. A bin without
+ * ground has none. `level_q8` has room for one more than the grid's cells, which is written. */
+void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_q8,
+                  uint32_t *power_q24);
+
+#endif

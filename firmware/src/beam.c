@@ -1,0 +1,116 @@
+#include "lm/beam.h"
+
+#include "fx/bits.h"
+#include "fx/log.h"
+#include "fx/sat.h"
+
+static uint32_t slot_of(int32_t sample)
+{
+    return (uint32_t)sample % LM_BEAM_TAPS;
+}
+
+void lm_beam_clear(struct lm_beam *b)
+{
+    b->fineness = 0;
+    b->held = 0;
+}
+
+fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar)
+{
+    return radar->line >> b->fineness;
+}
+
+int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, int32_t sample)
+{
+    const int32_t spacing = (int32_t)lm_beam_spacing(b, radar);
+    return sample * spacing + spacing / 2;
+}
+
+static uint8_t fineness_of(uint32_t ratio_q8)
+{
+    const uint32_t ratio = ratio_q8 / 256;
+    return ratio ? (uint8_t)fx_min_u32((uint32_t)(31 - fx_clz32(ratio)), LM_BEAM_FINEST) : 0;
+}
+
+/* 2^(-8 x^2) in Q16, x = off * ratio / beam. */
+static uint32_t pattern_q16(int32_t off, uint32_t ratio_q8, fx_bam_t beam)
+{
+    /* |off| is below nine spacings, so below 2^26 for any beam; x in Q12, cut at 4, where nothing
+     * is left. */
+    const uint64_t x_q12 = ((uint64_t)fx_abs_u32(off) * ratio_q8 << 4) / (beam ? beam : 1);
+    const int32_t x = x_q12 < 4 << 12 ? (int32_t)x_q12 : 4 << 12;
+    return fx_exp2_q16(-(x * x >> 5));
+}
+
+void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
+                 uint32_t ratio_q8, struct lm_beam_look *look)
+{
+    const uint8_t fineness = fineness_of(ratio_q8);
+    if (fineness != b->fineness) {
+        b->fineness = fineness;
+        b->held = 0;
+    }
+    /* Floor of azimuth / spacing + 1/2, for either sign. */
+    const int64_t spacing = lm_beam_spacing(b, radar), shifted = (int64_t)azimuth + spacing / 2;
+    const int64_t nearest = (shifted - (shifted < 0 ? spacing - 1 : 0)) / spacing;
+    look->first = (int32_t)nearest - LM_BEAM_TAPS / 2;
+    uint32_t sum = 0;
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        const int32_t off = azimuth - lm_beam_azimuth(b, radar, look->first + j);
+        look->weight_q16[j] = pattern_q16(off, ratio_q8, radar->antenna.azimuth_beam);
+        sum += look->weight_q16[j]; /* at most 2^20 */
+    }
+    uint32_t left = 65536;
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        look->weight_q16[j] =
+            (uint32_t)(((uint64_t)look->weight_q16[j] << 16) / fx_max_u32(sum, 1));
+        left -= look->weight_q16[j];
+    }
+    look->weight_q16[LM_BEAM_TAPS / 2] += left; /* what rounding left goes to the middle */
+}
+
+bool lm_beam_has(const struct lm_beam *b, int32_t sample)
+{
+    const uint32_t slot = slot_of(sample);
+    return (b->held >> slot & 1u) && b->number[slot] == sample;
+}
+
+uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
+{
+    const uint32_t slot = slot_of(sample);
+    b->held |= (uint16_t)(1u << slot);
+    b->number[slot] = sample;
+    return b->power_q24[slot];
+}
+
+/* Four samples at a time: their products are below 2^48, all sixteen below 2^48 together as the
+ * weights add up to 2^16. */
+static void add_four(const uint32_t *restrict const power[4], const uint32_t weight[4],
+                     uint64_t *restrict sum_q40, uint32_t cells)
+{
+    const uint32_t *restrict p0 = power[0], *restrict p1 = power[1], *restrict p2 = power[2],
+                             *restrict p3 = power[3];
+    const uint64_t w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
+    for (uint32_t i = 0; i < cells; i++) {
+        sum_q40[i] += p0[i] * w0 + p1[i] * w1 + p2[i] * w2 + p3[i] * w3;
+    }
+}
+
+void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
+                 uint32_t cells)
+{
+    uint64_t sum_q40[LM_CELLS_ROOM];
+    for (uint32_t i = 0; i < cells; i++) {
+        sum_q40[i] = 0;
+    }
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j += 4) {
+        const uint32_t *restrict power[4];
+        for (int32_t k = 0; k < 4; k++) {
+            power[k] = b->power_q24[slot_of(look->first + j + k)];
+        }
+        add_four(power, look->weight_q16 + j, sum_q40, cells);
+    }
+    for (uint32_t i = 0; i < cells; i++) {
+        power_q24[i] = (uint32_t)(sum_q40[i] >> 16);
+    }
+}

@@ -1,0 +1,27 @@
+#include "lm/dbs.h"
+
+#include "fx/sat.h"
+#include "fx/trig.h"
+
+uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, uint32_t bam_per_s, uint32_t speed_mm_s,
+                         fx_bam_t off)
+{
+    /* N = 2 V B^2 sin o / (l w), with B and w in BAM, so that a radian, 2^32 / 2 pi, divides once.
+     * B^2 is below 2^56 for a beam of 20 degrees; over w, above 2^23 (0.7 degree a second), below
+     * 2^33; times 2 V, 2^22, and the sine, 2^15: cut by 15 in between. */
+    const uint64_t beam = radar->antenna.azimuth_beam;
+    const uint64_t dwell_bam = beam * beam / fx_max_u32(bam_per_s, 1u << 23);
+    const uint32_t sine_q15 = fx_abs_u32(fx_sin_q15(off));
+    const uint64_t swept_mm = (dwell_bam * 2 * speed_mm_s >> 15) * sine_q15; /* < 2^55 */
+    /* Times 2 pi / 2^32 for the radian, 1000 / l, and 256: 2 pi * 256 * 1000 is 1608495. */
+    const uint64_t ratio_q8 = (swept_mm >> 16) * 1608495 / radar->wavelength_um >> 16;
+    return ratio_q8 < UINT16_MAX ? (uint32_t)ratio_q8 : UINT16_MAX;
+}
+
+uint32_t lm_dbs_sharpening_q8(const struct lm_field_row *field, uint32_t had_q8)
+{
+    if (had_q8 < field->sharpening_least * 256u) {
+        return 256;
+    }
+    return fx_min_u32(had_q8, field->sharpening * 256u);
+}

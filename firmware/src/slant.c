@@ -1,0 +1,54 @@
+#include "lm/slant.h"
+
+#include <stdbool.h>
+
+#include "fx/log.h"
+#include "fx/root.h"
+
+/* Metres * 256 below 2^26.7 and a height below 2^22.9 of them: squares below 2^54. */
+static uint64_t square_q16(int64_t q8)
+{
+    return (uint64_t)(q8 * q8);
+}
+
+uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10)
+{
+    const uint64_t slant = square_q16(slant_q8), height = square_q16(height_q10 / 4);
+    return slant > height ? fx_sqrt_u64(slant - height) : 0;
+}
+
+uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10)
+{
+    return fx_sqrt_u64(square_q16(ground_q8) + square_q16(height_q10 / 4));
+}
+
+void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
+                  const struct lm_range_grid *grid, uint32_t ground_first_q8)
+{
+    const int32_t height_q10 = grid->height_q10 - grid->reference_q10;
+    const int64_t edge_q8 = (int64_t)ground_first_q8 - grid->cell_q8 / 2;
+    s->first_q8 = first_q8;
+    s->cell_q8 = cell_q8;
+    s->cells = cells;
+    for (uint32_t i = 0; i < cells; i++) {
+        const int64_t ground_q8 = lm_ground_of_slant(first_q8 + i * cell_q8, height_q10);
+        const int64_t past_q8 = ground_q8 - edge_q8;
+        const uint64_t cell = past_q8 < 0 ? grid->cells : (uint64_t)past_q8 / grid->cell_q8;
+        const bool has_ground = ground_q8 != 0 && cell < grid->cells;
+        s->cell_of[i] = has_ground ? (uint32_t)cell : grid->cells;
+    }
+    for (uint32_t i = cells; i < cells + LM_LANES; i++) {
+        s->cell_of[i] = grid->cells;
+    }
+}
+
+void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_q8,
+                  uint32_t *restrict power_q24)
+{
+    level_q8[grid->cells] = LM_LEVEL_SHADOW;
+    const uint32_t *restrict cell_of = s->cell_of;
+    const int32_t *restrict level = level_q8;
+    for (uint32_t i = 0; i < s->cells; i++) {
+        power_q24[i] = fx_power_q24_of_many(level[cell_of[i]]);
+    }
+}
