@@ -1,5 +1,10 @@
 #include "lm/speckle.h"
 
+#include "fx/log.h"
+#include "fx/sat.h"
+
+enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
+
 void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise,
                     int32_t *restrict level_q8, uint32_t cells)
 {
@@ -8,5 +13,37 @@ void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise
         const int32_t level =
             level_q8[i] > config->noise_floor_q8 ? level_q8[i] : config->noise_floor_q8;
         level_q8[i] = level + speckle_q8[noise[i]];
+    }
+}
+
+void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
+                    const struct lm_classes *classes, uint8_t sea_state)
+{
+    const int32_t above = fx_min_i32(sea_state, LM_SEA_STATE_MAX) - LM_SEA_STATE_OF_IMAGE;
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        const uint8_t kind = classes->entry[i].kind & (LM_KINDS - 1);
+        const uint32_t row = config->shape_log2[kind];
+        const bool has_texture = row <= LM_SPECKLE_LOOKS_LOG2_MAX;
+        t->row[i] = has_texture ? row : 0;
+        t->among[i] = has_texture ? LM_SPECKLE_SLICES - 1 : 0;
+        t->gain_q8[i] = (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_Q8 : 0) -
+                        (has_texture ? 0 : lm_speckle_q8[0][0]);
+    }
+}
+
+void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
+                    int32_t *restrict level_q8, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint32_t class_index = cell[i] >> 4 & 15;
+        const uint32_t slice = noise[i] >> 12 & t->among[class_index];
+        level_q8[i] += t->gain_q8[class_index] + lm_speckle_q8[t->row[class_index]][slice];
+    }
+}
+
+void lm_floor_run(int32_t floor_q8, int32_t *restrict level_q8, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        level_q8[i] = fx_db_q8_sum_of_many(level_q8[i], floor_q8);
     }
 }

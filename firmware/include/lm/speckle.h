@@ -1,4 +1,5 @@
-/* Speckle and the noise floor, in decibels. docs/DESIGN.md, "Speckle, noise, tone". */
+/* Speckle, texture, the state of the sea and the noise floor, in decibels. docs/DESIGN.md, "Speckle
+ * and texture". */
 #ifndef LM_SPECKLE_H
 #define LM_SPECKLE_H
 
@@ -25,6 +26,31 @@ struct lm_texture_config {
 };
 
 enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
+
+/* What the texture does to each class. A class without any picks always the same entry of the
+ * table, and its gain takes that off again, so that the loop need not tell it apart. */
+struct lm_texture {
+    uint32_t row[LM_DB_CLASSES];   /* of lm_speckle_q8 */
+    uint32_t among[LM_DB_CLASSES]; /* mask of the ten bits that choose in that row; 0: none */
+    int32_t gain_q8[LM_DB_CLASSES];
+};
+
+/* Shapes by the kind of each class, and the level of water by the state of the sea; `sea_state` is
+ * taken as LM_SEA_STATE_MAX when it is more, a shape beyond LM_TEXTURE_NONE as none. Cost: 100
+ * instructions. */
+void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
+                    const struct lm_classes *classes, uint8_t sea_state);
+
+/* Multiply each cell's power by the texture of its class, in place. `cell` as in lm_scan_line,
+ * `noise` the place's 32-bit hash, of which bits 21..12 choose here and 31..22 in the speckle. A
+ * level gains -49..34 dB, so that LM_LEVEL_SHADOW stays below the tone's lowest, -80 dB, also after
+ * speckle. Cost: see docs/benchmarks.md. */
+void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
+                    int32_t *level_q8, uint32_t cells);
+
+/* Add noise of floor_q8 to the power of each cell, in place: level = 10 log10(10^(level/10) +
+ * 10^(floor/10)). Levels and floor within 2^30 of 0. Worst error 0.018 dB. */
+void lm_floor_run(int32_t floor_q8, int32_t *level_q8, uint32_t cells);
 
 /* level = max(level, floor) + speckle, in place. Cost: see docs/benchmarks.md. */
 void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise, int32_t *level_q8,
