@@ -1,0 +1,50 @@
+/* A model standing on its ground, ready to be met by rays. Intersections are Embree's. */
+#ifndef TARGET_SCENE_H
+#define TARGET_SCENE_H
+
+#include "mesh.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What a ray meets: its plane, and of what it is made. */
+struct scene_facet {
+    struct vec normal; /* unit, on the outer side */
+    double offset_m;   /* normal . p of the points p of the plane */
+};
+
+struct scene {
+    void *device, *tree;        /* Embree's; owned */
+    struct scene_facet *facets; /* owned; by triangle */
+    uint8_t *facet_materials;   /* owned; likewise */
+    uint32_t facet_count, material_count;
+    char materials[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
+    struct vec low, high; /* bounds of the model, without the ground */
+};
+
+enum { SCENE_PACKET = 8 };
+#define SCENE_MISS UINT32_MAX
+
+/* Up to SCENE_PACKET rays. */
+struct scene_rays {
+    struct vec from[SCENE_PACKET], along[SCENE_PACKET]; /* `along` of unit length */
+    uint32_t count;
+    bool is_parallel; /* they go nearly the same way: Embree may then take them together */
+};
+
+/* Build the tree over the model and, when ground_half_m > 0, a square of ground of that half side
+ * at z = 0, of the material "ground". The mesh is not needed afterwards. Returns 0, or -1 with the
+ * error reported with `place` and *s empty. */
+int scene_open(struct scene *s, const struct mesh *m, double ground_half_m, const char *place);
+
+/* The facet that each ray meets first, or SCENE_MISS. Any number of threads may ask at once. */
+void scene_meet(const struct scene *s, const struct scene_rays *rays,
+                uint32_t facets[SCENE_PACKET]);
+
+/* Bit i is set when ray i meets anything. */
+uint32_t scene_is_blocked(const struct scene *s, const struct scene_rays *rays);
+
+/* Harmless on a zeroed struct. */
+void scene_close(struct scene *s);
+
+#endif

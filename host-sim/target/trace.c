@@ -1,0 +1,184 @@
+#include "trace.h"
+
+#include "trace_tile.h"
+
+#include "hs/error.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Highest place on the plane where something may stand that is focused before far_m. A point at
+ * (away, up) is focused at range = away cos - up sin and seen at height = away sin + up cos. */
+static double top_of(const struct scene *s, double psi, double far_m)
+{
+    const double reach =
+        hypot(fmax(fabs(s->low.x), fabs(s->high.x)), fmax(fabs(s->low.y), fabs(s->high.y)));
+    const double up_m = fmax(s->high.z, 0);
+    return fmin(far_m * tan(psi) + up_m / cos(psi), reach * sin(psi) + up_m * cos(psi));
+}
+
+struct trace_sensor trace_sensor_for(const struct scene *s, const struct trace_order *o)
+{
+    const double psi = o->look.depression_deg * pi / 180;
+    const double width_m = o->grid.cells_across * o->grid.cell_m;
+    const double far_m = o->grid.cells_range * o->grid.cell_m / 2;
+    const double step_m = o->grid.cell_m / o->rays_per_cell, step_up_m = step_m * fmin(1, tan(psi));
+    const double low_m = -far_m * tan(psi);
+    const double high_m = fmax(far_m * tan(psi), top_of(s, psi, far_m));
+    return (struct trace_sensor){
+        .columns = o->grid.cells_across * o->rays_per_cell,
+        .rows = (uint32_t)fmin(ceil((high_m - low_m) / step_up_m - 1e-9), TRACE_RAYS_MAX),
+        .step_across_m = step_m,
+        .step_up_m = step_up_m,
+        .low_across_m = -width_m / 2,
+        .low_up_m = low_m,
+    };
+}
+
+double trace_ground_half_m(const struct trace_grid *grid, double depression_deg)
+{
+    const double across_m = grid->cells_across * grid->cell_m / 2;
+    const double away_m = grid->cells_range * grid->cell_m / 2 / cos(depression_deg * pi / 180);
+    return hypot(across_m, away_m) + grid->cell_m;
+}
+
+static struct trace_axes axes_of(const struct trace_look *look)
+{
+    const double azimuth = look->azimuth_deg * pi / 180, psi = look->depression_deg * pi / 180;
+    struct trace_axes a;
+    a.away = (struct vec){-cos(azimuth), sin(azimuth), 0};
+    a.across = (struct vec){sin(azimuth), cos(azimuth), 0};
+    a.sight = vec_mad(vec_scale(a.away, cos(psi)), (struct vec){0, 0, 1}, -sin(psi));
+    a.rise = vec_mad(vec_scale(a.away, sin(psi)), (struct vec){0, 0, 1}, cos(psi));
+    return a;
+}
+
+struct team {
+    const struct trace_tiles *tiles;
+    struct tile_result *results;
+    uint32_t tile_count;
+    atomic_uint next;
+};
+
+static void *work(void *argument)
+{
+    struct team *team = argument;
+    uint32_t i;
+    while ((i = atomic_fetch_add(&team->next, 1)) < team->tile_count) {
+        trace_tile(team->tiles, i, &team->results[i]);
+    }
+    return NULL;
+}
+
+/* One thread may be refused: the others, this one among them, do its work. */
+static void work_together(struct team *team, uint32_t threads)
+{
+    pthread_t others[64];
+    uint32_t started = 0;
+    while (started + 1 < threads && pthread_create(&others[started], NULL, work, team) == 0) {
+        started++;
+    }
+    work(team);
+    for (uint32_t i = 0; i < started; i++) {
+        pthread_join(others[i], NULL);
+    }
+}
+
+/* Put the tiles' lists of one bounce one behind the other. `before` are the places of the tiles in
+ * the bounce before, and become those in this one. */
+static bool join_bounce(const struct tile_result *results, uint32_t tile_count, uint32_t b,
+                        uint32_t *before, struct trace_bounce *joined)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tile_count; i++) {
+        count += results[i].bounces[b].count;
+    }
+    joined->records = malloc((size_t)count * sizeof *joined->records);
+    if (!joined->records && count > 0) {
+        return false;
+    }
+    for (uint32_t i = 0; i < tile_count; i++) {
+        const struct trace_bounce *part = &results[i].bounces[b];
+        struct trace_record *to = joined->records + joined->count;
+        if (part->count > 0) {
+            memcpy(to, part->records, part->count * sizeof *to);
+        }
+        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
+            to[k].parent += before[i];
+        }
+        before[i] = joined->count;
+        joined->count += part->count;
+    }
+    return true;
+}
+
+static bool join_tiles(const struct tile_result *results, uint32_t tile_count,
+                       struct trace_records *r)
+{
+    uint32_t *before = calloc(tile_count, sizeof *before);
+    bool is_whole = before != NULL;
+    for (uint32_t i = 0; i < tile_count; i++) {
+        is_whole = is_whole && !results[i].is_out_of_memory;
+    }
+    for (uint32_t b = 0; is_whole && b < r->bounce_count; b++) {
+        is_whole = join_bounce(results, tile_count, b, before, &r->bounces[b]);
+    }
+    free(before);
+    return is_whole;
+}
+
+static int run_tiles(const struct scene *s, const struct trace_order *o, const char *place,
+                     struct trace_records *r, uint64_t *rays_cast)
+{
+    const struct trace_tiles tiles = {s, axes_of(&o->look), r->sensor, o->look.wavelength_m,
+                                      o->bounces};
+    struct team team = {.tiles = &tiles};
+    const uint32_t rays = r->sensor.columns * r->sensor.rows;
+    team.tile_count = (rays + TILE_RAYS - 1) / TILE_RAYS;
+    team.results = calloc(team.tile_count, sizeof *team.results);
+    if (!team.results) {
+        return hs_error(place, NULL, "out of memory for %u rays", rays);
+    }
+    work_together(&team, o->threads);
+    const bool is_whole = join_tiles(team.results, team.tile_count, r);
+    for (uint32_t i = 0; i < team.tile_count; i++) {
+        if (rays_cast) {
+            *rays_cast += team.results[i].rays_cast;
+        }
+        tile_result_free(&team.results[i]);
+    }
+    free(team.results);
+    return is_whole ? 0
+                    : hs_error(place, "trace fewer rays a cell", "out of memory for %u rays", rays);
+}
+
+int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
+              struct trace_records *r, uint64_t *rays_cast)
+{
+    *r = (struct trace_records){
+        .look = o->look,
+        .grid = o->grid,
+        .sensor = trace_sensor_for(s, o),
+        .material_count = s->material_count,
+        .bounce_count = o->bounces,
+    };
+    memcpy(r->materials, s->materials, sizeof r->materials);
+    if (rays_cast) {
+        *rays_cast = 0;
+    }
+    int result;
+    if (r->sensor.rows > TRACE_RAYS_MAX / r->sensor.columns) {
+        result = hs_error(place, "trace fewer rays a cell, or fewer cells",
+                          "%u x %u rays are too many", r->sensor.columns, r->sensor.rows);
+    } else {
+        result = run_tiles(s, o, place, r, rays_cast);
+    }
+    if (result != 0) {
+        trace_records_free(r);
+    }
+    return result;
+}
