@@ -1,0 +1,33 @@
+/* From the firmware's picture to the pixels of a panel: format, rotation and centring. Pure. */
+#ifndef DRV_BLIT_H
+#define DRV_BLIT_H
+
+#include <stdint.h>
+
+#include "lm/port.h"
+
+enum drv_format {
+    DRV_XRGB8888, /* 32 bits, blue in the lowest byte */
+    DRV_RGB565    /* 16 bits, blue in the lowest five; each colour is cut, not rounded */
+};
+
+/* How far the picture is turned clockwise, as the operator sees it. */
+enum drv_turn { DRV_TURN_0, DRV_TURN_90, DRV_TURN_180, DRV_TURN_270 };
+
+/* Memory that a panel shows, row 0 on top. */
+struct drv_target {
+    void *bytes;           /* borrowed; aligned to its pixels */
+    uint32_t stride_bytes; /* distance between rows, a multiple of the pixel's size */
+    uint16_t width_px, height_px;
+    enum drv_format format;
+};
+
+/* Put the picture in the middle of the target. What is larger than the target loses the same on
+ * both sides (one pixel more at the right and at the bottom where the difference is odd); what is
+ * smaller leaves a border, which is not touched. */
+void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn);
+
+/* Make the whole target black. */
+void drv_blit_clear(const struct drv_target *to);
+
+#endif
