@@ -9,7 +9,8 @@ Q      := $(if $(V),,@)
 WARN   := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 CSTD   := -std=c11
 DEPGEN  = -MMD -MP
-pkgs    = $(shell pkg-config --$(1) $(2) 2>/dev/null)
+PKG_CONFIG ?= pkg-config
+pkgs    = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
 
 # Each layer sees its own headers and those below it, and no more (docs/DESIGN.md, "Who may include whom").
 # The two lowest layers do not even see the C library: -nostdinc leaves the compiler's own headers only.
@@ -36,10 +37,10 @@ TEST_SUPPORT := $(O)/tests/support/support.o
 PROGRAMS :=
 TESTS    :=
 # What is built beside the firmware: a PC's programs and tests, unless the board says otherwise.
-PARTS ?= drivers/*.mk bsp/$(BOARD)/*/*.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
+PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check bench gallery fuzz lint format clean zcu102
+.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -56,6 +57,9 @@ run: deps ## Build, make the database of the built-in scene, fly over it, leave 
 
 check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
 	@$(MAKE) --no-print-directory -j2 check-built
+
+panel: deps ## Build the cockpit panel's program for this machine, or for ARCH=arm64 or amd64
+	@$(MAKE) --no-print-directory BOARD=panel-linux panel-program
 
 bench: deps ## Measure: instructions a pixel, ratios against peers, memory
 	@$(MAKE) --no-print-directory all

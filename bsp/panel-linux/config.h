@@ -1,0 +1,83 @@
+/* The panel's configuration: one text file of "option = value" lines. The table of options in
+ * config.c is the only place where an option is described; the help, the delivered file and the
+ * checks all come from it or are compared with it. */
+#ifndef PANEL_CONFIG_H
+#define PANEL_CONFIG_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "drv/blit.h"
+#include "drv/stick.h"
+#include "lm/controls.h"
+
+enum {
+    CONFIG_FILE_BYTES = 64 << 10, /* a longer file is refused */
+    CONFIG_PATH = 128,
+    CONFIG_NAME = 64
+};
+
+/* What the bezel's inputs are: the buttons 1..LM_BUTTONS, then these. */
+enum { CONFIG_KEY_DESIGNATE = LM_BUTTONS, CONFIG_KEY_DROP, CONFIG_KEYS };
+enum { CONFIG_LED_ALIVE, CONFIG_LED_FAULT, CONFIG_LED_NIGHT, CONFIG_LEDS };
+enum config_glass { CONFIG_GLASS_AUTO, CONFIG_GLASS_DRM, CONFIG_GLASS_FBDEV, CONFIG_GLASS_NONE };
+
+struct config_size {
+    uint16_t width_px, height_px; /* 0, 0: not chosen */
+};
+
+/* Names that are empty mean: none, or the driver's choice. */
+struct config {
+    char database[CONFIG_PATH];
+    char can[CONFIG_NAME];
+    uint32_t seed;
+    uint32_t tiles;
+
+    uint32_t glass; /* enum config_glass */
+    char glass_card[CONFIG_PATH], glass_framebuffer[CONFIG_PATH], glass_connector[CONFIG_NAME];
+    struct config_size glass_mode, glass_picture;
+    uint32_t glass_turn;   /* enum drv_turn */
+    uint32_t glass_format; /* enum drv_format */
+
+    char key[CONFIG_KEYS][CONFIG_NAME]; /* lines; [0] is button 1 */
+    uint32_t key_active_low;
+    uint32_t debounce_ms;
+    char led[CONFIG_LEDS][CONFIG_NAME];
+    uint32_t led_active_low;
+    char backlight[CONFIG_NAME];
+    uint32_t backlight_day, backlight_night; /* per cent */
+
+    char stick[CONFIG_NAME];
+    struct drv_stick_config stick_map;
+
+    uint32_t priority;
+    uint32_t locks_memory;
+    char watchdog[CONFIG_PATH];
+    uint32_t watchdog_s;
+};
+
+/* Every option as it is when the file does not name it. */
+void config_defaults(struct config *c);
+
+/* Told of each line that is wrong; lines count from 1. The option keeps the value it had. */
+typedef void config_report(void *ctx, uint32_t line, const char *cause);
+
+/* Read a whole file on top of what *c holds; an option may be given once. Returns the number of
+ * wrong lines. Pure: looks at nothing but the text, which need not end in a zero or be text at
+ * all. */
+uint32_t config_read(struct config *c, const char *text, size_t size, config_report *report,
+                     void *ctx);
+
+/* One option of the table, for those who print or check it. */
+struct config_option {
+    const char *name;
+    const char *values;  /* what it takes: "0..90", "auto | drm | fbdev | none" */
+    const char *initial; /* its default, as it would stand in a file */
+    const char *help;    /* one line or more */
+};
+
+uint32_t config_option_count(void);
+struct config_option config_option_at(uint32_t index);
+
+#endif

@@ -1,0 +1,179 @@
+#include "panel.h"
+
+#include "report.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/signalfd.h>
+#include <time.h>
+#include <unistd.h>
+
+/* A read at the start may take this long before it is given up: 100 polls of 50 ms. */
+enum { START_PATIENCE_US = 50000, START_POLLS = 100 };
+
+static uint64_t monotonic_us(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
+}
+
+uint64_t panel_now_us(const struct panel *p)
+{
+    return monotonic_us() - p->zero_us;
+}
+
+/* What reads in the place of a flash that cannot be opened; the glass then says DB FAIL. */
+static int no_flash_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+{
+    (void)ctx;
+    (void)offset;
+    (void)destination;
+    (void)length;
+    return LM_ERR_RANGE;
+}
+
+static int no_flash_poll(void *ctx)
+{
+    (void)ctx;
+    return LM_ERR_IO;
+}
+
+static const struct lm_flash no_flash = {.read_start = no_flash_start, .read_poll = no_flash_poll};
+
+/* An MTD device, or anything else that can be read like a file. NULL when neither can be opened. */
+static const struct lm_flash *open_slow_flash(struct panel *p)
+{
+    const char *path = p->config->database;
+    int cause = drv_flash_mtd_open(&p->mtd, path);
+    if (cause == 0) {
+        report(REPORT_INFO, "%s: %u good erase blocks of %u bytes, %u bad ones", path,
+               p->mtd.block_count, p->mtd.block_bytes, p->mtd.count.bad_blocks);
+        return &p->mtd.port;
+    }
+    if (cause == ENOTTY) {
+        cause = drv_flash_file_open(&p->file, path);
+        if (cause == 0) {
+            return &p->file.port;
+        }
+    }
+    report(REPORT_ERROR, "%s: %s; the database is made by landmass-db build", path,
+           strerror(cause));
+    return NULL;
+}
+
+static const struct lm_flash *open_flash(struct panel *p)
+{
+    const struct lm_flash *slow = open_slow_flash(p);
+    if (slow == NULL) {
+        return &no_flash;
+    }
+    const int cause = drv_flash_reader_start(&p->flash, slow);
+    if (cause != 0) {
+        report(REPORT_ERROR, "flash: no thread to read it: %s", strerror(cause));
+        return &no_flash;
+    }
+    p->flash.patience_us = START_PATIENCE_US;
+    return &p->flash.port;
+}
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct panel *p = ctx;
+    return drv_control_ring_take(&p->stick_ring, control) ? 1 : 0;
+}
+
+static int start_unit(struct panel *p, const struct lm_flash *flash)
+{
+    const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
+    p->board = (struct lm_board){.radar = &lm_radar_default,
+                                 .flash = flash,
+                                 .can = &p->bus.port,
+                                 .controls = &p->controls,
+                                 .display = &p->glass.port,
+                                 .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),
+                                 .noise_seed = p->config->seed,
+                                 .flash_poll_limit = START_POLLS};
+    p->board.tile_pool = calloc(1, p->board.tile_pool_bytes);
+    p->board.plane = calloc(1, pixels);
+    p->unit = calloc(1, sizeof *p->unit);
+    if (p->board.tile_pool == NULL || p->board.plane == NULL || p->unit == NULL) {
+        report(REPORT_ERROR, "start: out of memory");
+        return -1;
+    }
+    if (lm_unit_init(p->unit, &p->board) != LM_OK) {
+        report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
+               p->config->database);
+        return -1;
+    }
+    if (!p->unit->has_db && flash != &no_flash) {
+        report(REPORT_ERROR,
+               "%s: not a database that this firmware can use; "
+               "landmass-db verify tells why",
+               p->config->database);
+    }
+    p->flash.patience_us = 0;
+    return 0;
+}
+
+/* Blocked before any thread is started, so that none of them is interrupted. */
+static int open_signals(void)
+{
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGHUP);
+    sigaddset(&set, SIGUSR1);
+    sigaddset(&set, SIGPIPE);
+    sigprocmask(SIG_BLOCK, &set, NULL);
+    sigdelset(&set, SIGPIPE); /* a closed socket or pipe is an errno */
+    return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+int panel_open(struct panel *p, const struct config *config)
+{
+    memset(p, 0, sizeof *p);
+    p->config = config;
+    p->file.descriptor = p->mtd.fd = -1;
+    p->zero_us = monotonic_us();
+    p->signals = open_signals();
+    p->controls = (struct lm_controls){.ctx = p, .next = next_control};
+    const struct lm_flash *flash = open_flash(p);
+    bus_open(&p->bus, config->can, p->zero_us);
+    int status = glass_open(&p->glass, config, panel_now_us(p));
+    if (status == 0) {
+        status = start_unit(p, flash);
+    } else {
+        report(REPORT_ERROR, "start: out of memory");
+    }
+    const char *device = config->watchdog[0] != '\0' ? config->watchdog : NULL;
+    if (drv_watchdog_open(&p->watchdog, device, config->watchdog_s, panel_now_us(p)) != LM_OK) {
+        report(REPORT_ERROR, "watchdog: %s", p->watchdog.error);
+    }
+    if (status != 0) {
+        panel_close(p);
+    }
+    return status;
+}
+
+void panel_close(struct panel *p)
+{
+    drv_watchdog_notify(&p->watchdog, "STOPPING=1");
+    glass_close(&p->glass);
+    bus_close(&p->bus);
+    drv_flash_reader_stop(&p->flash);
+    drv_flash_mtd_close(&p->mtd);
+    if (p->file.descriptor >= 0) {
+        drv_flash_file_close(&p->file);
+    }
+    if (p->signals >= 0) {
+        close(p->signals);
+    }
+    free(p->board.tile_pool);
+    free(p->board.plane);
+    free(p->unit);
+    drv_watchdog_close(&p->watchdog);
+}

@@ -1,0 +1,60 @@
+/* The cockpit panel as a board: every device behind the firmware's ports, and the loop around
+ * lm_unit_step. */
+#ifndef PANEL_H
+#define PANEL_H
+
+#include "bus.h"
+#include "config.h"
+#include "drv/control_ring.h"
+#include "drv/flash_file.h"
+#include "drv/flash_mtd.h"
+#include "drv/flash_reader.h"
+#include "drv/watchdog.h"
+#include "glass.h"
+#include "lm/unit.h"
+
+enum {
+    PANEL_TICK_US = 2000, /* between steps: a line is due every 2 ms at the fastest scale */
+    PANEL_STEP_US = 500   /* at least this between steps, however often a device wakes the loop */
+};
+
+struct panel {
+    const struct config *config; /* borrowed */
+    uint64_t zero_us;            /* of CLOCK_MONOTONIC, where the panel's clock has its 0 */
+    struct drv_flash_file file;
+    struct drv_flash_mtd mtd;
+    struct drv_flash_reader flash;
+    struct bus bus;
+    struct glass glass;
+    struct drv_control_ring stick_ring;
+    struct lm_controls controls;
+    struct drv_watchdog watchdog;
+    int signals; /* of signalfd */
+    struct lm_board board;
+    struct lm_unit *unit; /* owned */
+    uint32_t flags_told;  /* enum lm_flag, as they were reported last */
+    uint64_t tell_us;
+
+    struct {
+        uint32_t steps;
+        uint32_t step_max_us; /* longest step */
+        uint32_t late_max_us; /* longest time that a step began after it was due */
+    } count;
+};
+
+/* Open every device that the config names and start the firmware. Only a lack of memory is fatal: a
+ * device that is missing is reported, shown on the glass where there is one, and looked for again.
+ * 0, or -1 with the cause reported and nothing left open. */
+int panel_open(struct panel *p, const struct config *config);
+
+/* Make the process real-time as the config says, then step until SIGTERM, SIGINT or SIGHUP comes.
+ * SIGUSR1 reports the counters. From here on nothing is allocated by this thread. */
+void panel_run(struct panel *p);
+
+/* One step at the time of the panel's clock; panel_run is this and waiting. */
+void panel_step(struct panel *p, uint64_t now_us);
+uint64_t panel_now_us(const struct panel *p);
+
+void panel_close(struct panel *p);
+
+#endif

@@ -1,0 +1,69 @@
+/* A hand controller as the operator's hands: which axis slews the cursor, which turns the range
+ * knob, what each button means. Bytes in, controls out; knows nothing of USB. */
+#ifndef DRV_STICK_H
+#define DRV_STICK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "drv/control_ring.h"
+#include "drv/hid.h"
+#include "lm/controls.h"
+
+enum { DRV_STICK_BUTTONS = 32, DRV_STICK_NONE = 0 };
+
+/* An axis by its usage on HID's generic desktop page (0x30 X .. 0x38 wheel); the two directions of
+ * a hat switch (0x39) have numbers of their own. */
+enum { DRV_STICK_HAT_X = 0x100, DRV_STICK_HAT_Y = 0x101 };
+struct drv_stick_axis {
+    uint16_t usage; /* DRV_STICK_NONE: not used */
+    bool is_inverted;
+};
+
+/* What a button does. */
+struct drv_stick_button {
+    enum { DRV_STICK_NOTHING, DRV_STICK_PRESS, DRV_STICK_DESIGNATE, DRV_STICK_DROP } act;
+    uint8_t button; /* of the bezel, for DRV_STICK_PRESS */
+};
+
+struct drv_stick_config {
+    struct drv_stick_axis right, up, knob;
+    uint32_t dead_percent; /* around the middle, of full deflection: 0..50 */
+    struct drv_stick_button button[DRV_STICK_BUTTONS];
+};
+
+/* How the controls stand. */
+struct drv_stick_state {
+    int16_t right, up, knob; /* -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
+    uint32_t buttons;        /* bit n - 1: the device's button n is held */
+};
+
+struct drv_stick {
+    struct drv_stick_config config;
+    struct drv_hid_map map; /* of the device that is attached */
+    bool is_attached;
+    struct drv_stick_state now, told; /* as the device says, as the firmware has been told */
+
+    struct {
+        uint32_t reports;
+        uint32_t odd; /* reports that are too short for what they should hold */
+    } count;
+};
+
+void drv_stick_init(struct drv_stick *s, const struct drv_stick_config *config);
+
+/* A device came: read what its descriptor says about its reports. NULL, or the cause why it is no
+ * hand controller that the config can use. */
+const char *drv_stick_attach(struct drv_stick *s, const uint8_t *descriptor, size_t size);
+
+/* A report came. */
+void drv_stick_report(struct drv_stick *s, const uint8_t *report, size_t size);
+
+/* The device has gone: everything is let go. */
+void drv_stick_detach(struct drv_stick *s);
+
+/* Put what has changed into the ring; what finds no room is told next time. */
+void drv_stick_tell(struct drv_stick *s, struct drv_control_ring *ring);
+
+#endif
