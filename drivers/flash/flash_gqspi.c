@@ -146,30 +146,36 @@ static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t le
     return LM_OK;
 }
 
-/* The piece has come: hand it over, and go on with the next. */
-static int take_piece(struct drv_flash *f)
+/* The piece has come: hand it over, and go on with the next if there is more. */
+static void take_piece(struct drv_flash *f)
 {
     const uint32_t length = least(f->now.piece - f->now.skip, f->now.left);
     memcpy(f->now.to, (const uint8_t *)f->piece + f->now.skip, length);
     f->now.to += length;
     f->now.offset += length;
     f->now.left -= length;
-    if (f->now.left == 0) {
-        return LM_OK;
+    if (f->now.left > 0) {
+        start_piece(f);
     }
-    start_piece(f);
-    return LM_BUSY;
+}
+
+static bool is_piece_done(const struct drv_flash *f)
+{
+    if (!(drv_read(f->base, QSPIDMA_DST_I_STS) & DMA_DONE)) {
+        return false;
+    }
+    drv_write(f->base, QSPIDMA_DST_I_STS, DMA_DONE);
+    return true;
 }
 
 static int read_poll(void *ctx)
 {
     struct drv_flash *f = ctx;
+    while (f->now.left > 0 && is_piece_done(f)) {
+        take_piece(f);
+    }
     if (f->now.left == 0) {
         return LM_OK;
-    }
-    if (drv_read(f->base, QSPIDMA_DST_I_STS) & DMA_DONE) {
-        drv_write(f->base, QSPIDMA_DST_I_STS, DMA_DONE);
-        return take_piece(f);
     }
     if (f->now_us(f->clock) > f->now.deadline_us) {
         f->count.timeouts++;

@@ -1,0 +1,85 @@
+/* The golden pictures on the board: each country's image read from the flash by DMA, each flight
+ * flown, each picture shown on the display for the host to look at. */
+#include "addresses.h"
+#include "board.h"
+#include "console.h"
+#include "fx/crc32c.h"
+#include "golden_flash.h"
+#include "golden_flight.h"
+#include "look.h"
+#include "psci.h"
+#include "sections.h"
+
+int main(void);
+
+static ZCU102_BULK struct golden_rig rig;
+static ZCU102_BULK uint8_t image[GOLDEN_IMAGE_BYTES_MAX];
+static ZCU102_SHARED uint32_t scanned[DRV_DISPLAY_BUFFERS][GOLDEN_PIXELS_MAX];
+static ZCU102_SHARED struct drv_display_scan scans[DRV_DISPLAY_BUFFERS];
+
+static _Noreturn void fail(struct zcu102 *z, const char *words)
+{
+    zcu102_say(&z->console, words);
+    zcu102_say(&z->console, "\n");
+    zcu102_power_off();
+}
+
+static void read_flash(struct zcu102 *z, uint64_t offset, void *to, uint64_t length)
+{
+    const struct lm_flash *flash = &z->flash.port;
+    int status = flash->read_start(flash->ctx, offset, to, (uint32_t)length);
+    while (status == LM_OK && (status = flash->read_poll(flash->ctx)) == LM_BUSY) {
+        status = LM_OK;
+    }
+    if (status != LM_OK) {
+        fail(z, "the flash cannot be read");
+    }
+}
+
+static void show(struct zcu102 *z, const char *name)
+{
+    const struct drv_display_config config = {.dp = (drv_registers)DP_BASE,
+                                              .dma = (drv_registers)DPDMA_BASE,
+                                              .width_px = rig.display.width_px,
+                                              .height_px = rig.display.height_px,
+                                              .drawn = rig.glass,
+                                              .scans = scans};
+    drv_display_open(&z->display, &config);
+    z->display.port.present(z->display.port.ctx);
+    look(&z->console, &z->display, name);
+}
+
+int main(void)
+{
+    static struct zcu102 z;
+    static struct golden_flash flash;
+    zcu102_open(&z);
+    for (uint32_t i = 0; i < DRV_DISPLAY_BUFFERS; i++) {
+        scans[i].pixels = scanned[i];
+    }
+    read_flash(&z, 0, &flash, sizeof flash);
+    if (flash.magic != GOLDEN_FLASH_MAGIC) {
+        fail(&z, "the flash does not hold the golden images");
+    }
+    for (uint8_t place = 0; place < GOLDEN_PLACES; place++) {
+        const uint64_t size = flash.places[place].size;
+        if (size > sizeof image) {
+            fail(&z, "an image is too large");
+        }
+        read_flash(&z, flash.places[place].offset, image, size);
+        zcu102_say(&z.console, "image-");
+        zcu102_say(&z.console, flash.places[place].name);
+        zcu102_say(&z.console, " ");
+        zcu102_say_hex(&z.console, fx_crc32c(0, image, size), 8);
+        zcu102_say(&z.console, "\n");
+        for (uint32_t i = 0; i < golden_picture_count; i++) {
+            const struct golden_picture *p = &golden_pictures[i];
+            if (p->place == place &&
+                golden_fly(&rig, p, flash.places[place].centre, image, size) == LM_OK) {
+                show(&z, p->name);
+            }
+        }
+    }
+    zcu102_say_value(&z.console, "stack-used", zcu102_stack_used());
+    zcu102_power_off();
+}

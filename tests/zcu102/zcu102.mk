@@ -1,0 +1,20 @@
+# The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
+ZCU102 := $(O)/bin/tests/zcu102
+ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash ppm_checksum scenario)
+ZCU102_TESTS := $(addprefix $(ZCU102)/,test_golden)
+TESTS += $(ZCU102_TESTS)
+$(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden -Ihost-sim
+$(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c support/tiny_image.c)) \
+    $(LIB_hs) $(LIB_fixed)
+$(ZCU102)/ppm_checksum: $(O)/tests/zcu102/ppm_checksum.o $(LIB_hs) $(LIB_fixed)
+$(ZCU102)/scenario: $(call objs,tests/zcu102/scenario.c host-sim/sim/script.c) $(LIB_drivers) $(LIB_hs)
+
+# Whatever this make was told about compilers and folders is not for the board's.
+.PHONY: zcu102-images
+zcu102-images:
+	@! command -v aarch64-linux-gnu-gcc >/dev/null || env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=zcu102 all
+
+$(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) | zcu102-images
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec python3 -B $<\n' >$@
+	@chmod +x $@
