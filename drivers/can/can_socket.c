@@ -10,7 +10,9 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { RECEIVE_BUFFER_BYTES = 4 << 20, SKIP_MAX = 16 };
+#include "lm/canas_service.h"
+
+enum { RECEIVE_BUFFER_BYTES = 4 << 20, ANCILLARY_BYTES = 64 };
 
 static int fail(struct drv_can_socket *s, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -24,21 +26,57 @@ static int fail(struct drv_can_socket *s, const char *format, ...)
     return LM_ERR_IO;
 }
 
-void drv_can_socket_filters(struct can_filter filters[DRV_CAN_SOCKET_FILTERS])
+/* ---- filters ---- */
+
+struct filter_list {
+    struct can_filter *filters;
+    size_t count;
+};
+
+static void add_filter(struct filter_list *list, canid_t id, canid_t mask)
 {
-    for (size_t i = 0; i < LM_CANAS_FIELDS; i++) {
-        const canid_t id = lm_canas_table[i].id;
-        filters[2 * i] = (struct can_filter){
-            .can_id = id,
-            .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG,
-        };
-        /* Bits 16..28 are the channel; bits 11..15 must be clear. */
-        filters[2 * i + 1] = (struct can_filter){
-            .can_id = id | CAN_EFF_FLAG,
-            .can_mask = 0xffffu | CAN_EFF_FLAG | CAN_RTR_FLAG,
-        };
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->filters[i].can_id == id && list->filters[i].can_mask == mask) {
+            return;
+        }
     }
+    list->filters[list->count++] = (struct can_filter){.can_id = id, .can_mask = mask};
 }
+
+/* The bits of a redundancy channel's number that are clear in every channel that is used. */
+static canid_t unused_channel_bits(void)
+{
+    canid_t used = 1;
+    while (used < LM_BUS_CHANNELS) {
+        used *= 2;
+    }
+    return (CAN_EFF_MASK >> 16) & ~(used - 1);
+}
+
+size_t drv_can_socket_filters(const struct lm_bus_profile *profile,
+                              struct can_filter filters[DRV_CAN_SOCKET_FILTERS])
+{
+    struct filter_list list = {filters, 0};
+    const canid_t flags = CAN_EFF_FLAG | CAN_RTR_FLAG;
+    const bool is_canas = profile->framing == LM_BUS_CANAEROSPACE;
+    for (size_t i = 0; i < profile->row_count; i++) {
+        const struct lm_bus_row *row = &profile->rows[i];
+        if (is_canas) {
+            /* Bits 11..15 must be clear on every channel. */
+            add_filter(&list, row->id, CAN_SFF_MASK | flags);
+            add_filter(&list, row->id | CAN_EFF_FLAG,
+                       0xffffu | unused_channel_bits() << 16 | flags);
+        } else {
+            add_filter(&list, row->id | CAN_EFF_FLAG, row->packing.mask | flags);
+        }
+    }
+    if (is_canas) {
+        add_filter(&list, LM_CANAS_REQUEST_ID, CAN_SFF_MASK | flags);
+    }
+    return list.count;
+}
+
+/* ---- frames and times ---- */
 
 bool drv_can_socket_convert(const struct can_frame *from, struct lm_can_frame *to)
 {
@@ -70,12 +108,15 @@ static uint64_t clock_us(clockid_t clock)
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
 }
 
+/* ---- opening ---- */
+
 /* Only the filter is needed; without the others the bus works, only with less to tell. */
 static int set_options(struct drv_can_socket *s)
 {
     struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
-    drv_can_socket_filters(filters);
-    if (setsockopt(s->fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters, sizeof filters) != 0) {
+    const size_t count = drv_can_socket_filters(s->profile, filters);
+    if (setsockopt(s->fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
+                   (socklen_t)(count * sizeof *filters)) != 0) {
         return -1;
     }
     const can_err_mask_t errors =
@@ -92,36 +133,44 @@ static int set_options(struct drv_can_socket *s)
     return 0;
 }
 
-static int open_on(struct drv_can_socket *s, const char *interface)
+static int open_on(struct drv_can_socket *s)
 {
-    const unsigned index = if_nametoindex(interface);
+    const unsigned index = if_nametoindex(s->interface);
     if (index == 0) {
-        return fail(s, "%s: no such interface; `ip link` lists those that exist", interface);
+        return fail(s, "%s: no such interface; `ip link` lists those that exist", s->interface);
     }
     s->fd = socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
     if (s->fd < 0) {
-        return fail(s, "%s: %s; does the kernel have CONFIG_CAN and CONFIG_CAN_RAW?", interface,
+        return fail(s, "%s: %s; does the kernel have CONFIG_CAN and CONFIG_CAN_RAW?", s->interface,
                     strerror(errno));
     }
     if (set_options(s) != 0) {
-        return fail(s, "%s: the kernel refused the filter: %s", interface, strerror(errno));
+        return fail(s, "%s: the kernel refused the filter: %s", s->interface, strerror(errno));
     }
     const struct sockaddr_can address = {.can_family = AF_CAN, .can_ifindex = (int)index};
     if (bind(s->fd, (const struct sockaddr *)&address, sizeof address) != 0) {
-        return fail(s, "%s: %s; is it a CAN interface, and up (ip link set %s up)?", interface,
-                    strerror(errno), interface);
+        return fail(s, "%s: %s; is it a CAN interface?", s->interface, strerror(errno));
     }
     return LM_OK;
 }
 
-int drv_can_socket_open(struct drv_can_socket *s, const char *interface, uint64_t time_zero_us)
+/* Open, or leave closed and look again later. */
+static int try_to_open(struct drv_can_socket *s)
 {
-    *s = (struct drv_can_socket){.fd = -1, .time_zero_us = time_zero_us};
-    const int status = open_on(s, interface);
+    const int status = open_on(s);
     if (status != LM_OK) {
         drv_can_socket_close(s);
+        s->retry_us = clock_us(CLOCK_MONOTONIC) + DRV_CAN_SOCKET_RETRY_US;
     }
     return status;
+}
+
+int drv_can_socket_open(struct drv_can_socket *s, const char *interface,
+                        const struct lm_bus_profile *profile, uint64_t time_zero_us)
+{
+    *s = (struct drv_can_socket){.fd = -1, .time_zero_us = time_zero_us, .profile = profile};
+    snprintf(s->interface, sizeof s->interface, "%s", interface);
+    return try_to_open(s);
 }
 
 void drv_can_socket_close(struct drv_can_socket *s)
@@ -131,6 +180,58 @@ void drv_can_socket_close(struct drv_can_socket *s)
         s->fd = -1;
     }
 }
+
+/* ---- when something happens to the bus ---- */
+
+static void empty_queue(struct drv_can_socket *s)
+{
+    s->count.unsent += s->queue_count;
+    s->queue_count = 0;
+}
+
+/* Heed errno. LM_OK when the call is only to be made again later. */
+static int heed_failure(struct drv_can_socket *s, int cause)
+{
+    if (cause == EAGAIN || cause == EWOULDBLOCK || cause == EINTR || cause == ENOBUFS) {
+        return LM_OK;
+    }
+    empty_queue(s);
+    if (cause == ENETDOWN) {
+        s->count.down++;
+        return fail(s, "%s: the interface is down; set it up again (ip link set %s up)",
+                    s->interface, s->interface);
+    }
+    s->count.gone++;
+    drv_can_socket_close(s);
+    s->retry_us = clock_us(CLOCK_MONOTONIC) + DRV_CAN_SOCKET_RETRY_US;
+    return fail(s, "%s: the bus is lost: %s; it is looked for until it is back", s->interface,
+                strerror(cause));
+}
+
+/* The controller's report: <linux/can/error.h>. */
+static void heed_report(struct drv_can_socket *s, const struct lm_can_frame *report)
+{
+    const uint8_t controller = (report->id & CAN_ERR_CRTL) != 0 ? report->data[1] : 0;
+    s->count.no_ack += (report->id & CAN_ERR_ACK) != 0;
+    s->count.tx_timeout += (report->id & CAN_ERR_TX_TIMEOUT) != 0;
+    s->count.overruns += (controller & CAN_ERR_CRTL_RX_OVERFLOW) != 0;
+    s->count.passive += (controller & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0;
+    if (report->id & CAN_ERR_RESTARTED) {
+        s->count.restarts++;
+        s->is_bus_off = false;
+    }
+    if (report->id & CAN_ERR_BUSOFF) {
+        s->count.bus_off++;
+        s->is_bus_off = true;
+        s->has_report = true;
+        fail(s,
+             "%s: the controller is bus-off; wiring? bit rate? It comes back by itself with "
+             "`ip link set %s type can restart-ms 100`",
+             s->interface, s->interface);
+    }
+}
+
+/* ---- receiving ---- */
 
 /* The kernel's stamp and its count of lost frames travel beside the frame. */
 static void read_ancillary(struct drv_can_socket *s, struct msghdr *message, uint64_t *stamp_us)
@@ -149,50 +250,132 @@ static void read_ancillary(struct drv_can_socket *s, struct msghdr *message, uin
     }
 }
 
-static int explain(struct drv_can_socket *s, int cause)
+static void add_to_batch(struct drv_can_socket *s, const struct can_frame *raw, uint64_t arrival_us)
 {
-    if (cause == EAGAIN || cause == EWOULDBLOCK || cause == EINTR) {
-        return 0;
+    struct lm_can_frame *frame = &s->batch[s->batch_count];
+    if (!drv_can_socket_convert(raw, frame)) {
+        s->count.malformed++;
+        return;
     }
-    s->count.down++;
-    return fail(s, "the bus is lost: %s; %s", strerror(cause),
-                cause == ENETDOWN ? "set the interface up again (ip link)"
-                                  : "close it and open it again");
+    frame->time_us = arrival_us > s->time_zero_us ? arrival_us - s->time_zero_us : 0;
+    if (frame->is_error) {
+        heed_report(s, frame);
+    } else {
+        s->is_bus_off = false; /* what is on the bus is heard */
+    }
+    s->batch_count++;
+}
+
+/* Fill the empty batch with what waits in the kernel. */
+static int fetch(struct drv_can_socket *s)
+{
+    struct can_frame raw[DRV_CAN_SOCKET_BATCH];
+    _Alignas(struct cmsghdr) char ancillary[DRV_CAN_SOCKET_BATCH][ANCILLARY_BYTES];
+    struct iovec parts[DRV_CAN_SOCKET_BATCH];
+    struct mmsghdr messages[DRV_CAN_SOCKET_BATCH];
+    memset(messages, 0, sizeof messages);
+    for (size_t i = 0; i < DRV_CAN_SOCKET_BATCH; i++) {
+        parts[i] = (struct iovec){.iov_base = &raw[i], .iov_len = sizeof raw[i]};
+        messages[i].msg_hdr = (struct msghdr){.msg_iov = &parts[i],
+                                              .msg_iovlen = 1,
+                                              .msg_control = ancillary[i],
+                                              .msg_controllen = sizeof ancillary[i]};
+    }
+    s->batch_next = s->batch_count = 0;
+    const int count = recvmmsg(s->fd, messages, DRV_CAN_SOCKET_BATCH, MSG_DONTWAIT, NULL);
+    if (count < 0) {
+        return heed_failure(s, errno);
+    }
+    const uint64_t realtime_us = clock_us(CLOCK_REALTIME), monotonic_us = clock_us(CLOCK_MONOTONIC);
+    for (int i = 0; i < count; i++) {
+        uint64_t stamp_us = realtime_us;
+        read_ancillary(s, &messages[i].msg_hdr, &stamp_us);
+        if (messages[i].msg_len != CAN_MTU || (messages[i].msg_hdr.msg_flags & MSG_TRUNC) != 0) {
+            s->count.malformed++;
+            continue;
+        }
+        add_to_batch(s, &raw[i], drv_can_socket_arrival_us(monotonic_us, realtime_us, stamp_us));
+    }
+    return LM_OK;
+}
+
+/* Give the kernel what it has room for. */
+static int flush(struct drv_can_socket *s)
+{
+    while (s->queue_count > 0) {
+        const struct can_frame *next = &s->queue[s->queue_first];
+        if (send(s->fd, next, sizeof *next, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
+            return heed_failure(s, errno);
+        }
+        s->queue_first = (s->queue_first + 1) % DRV_CAN_SOCKET_QUEUE;
+        s->queue_count--;
+        s->count.sent++;
+    }
+    return LM_OK;
+}
+
+/* LM_OK when the socket is open, or could be opened again. LM_BUSY: it is not yet time to try. */
+static int reopen(struct drv_can_socket *s)
+{
+    if (s->fd >= 0) {
+        return LM_OK;
+    }
+    if (clock_us(CLOCK_MONOTONIC) < s->retry_us) {
+        return LM_BUSY;
+    }
+    const int status = try_to_open(s);
+    s->count.reopened += status == LM_OK;
+    return status;
 }
 
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct drv_can_socket *s = ctx;
-    for (int i = 0; i < SKIP_MAX; i++) {
-        struct can_frame raw = {0};
-        _Alignas(struct cmsghdr) char ancillary[128];
-        struct iovec part = {.iov_base = &raw, .iov_len = sizeof raw};
-        struct msghdr message = {.msg_iov = &part,
-                                 .msg_iovlen = 1,
-                                 .msg_control = ancillary,
-                                 .msg_controllen = sizeof ancillary};
-        const ssize_t size = recvmsg(s->fd, &message, MSG_DONTWAIT);
-        if (size < 0) {
-            return explain(s, errno);
+    if (s->batch_next == s->batch_count) {
+        int status = reopen(s);
+        if (status == LM_OK) {
+            status = flush(s);
         }
-        const uint64_t realtime_us = clock_us(CLOCK_REALTIME);
-        uint64_t stamp_us = realtime_us;
-        read_ancillary(s, &message, &stamp_us);
-        if (size != (ssize_t)CAN_MTU || (message.msg_flags & MSG_TRUNC) != 0 ||
-            !drv_can_socket_convert(&raw, frame)) {
-            s->count.malformed++;
-            continue;
+        if (status == LM_OK) {
+            status = fetch(s);
         }
-        const uint64_t arrival_us =
-            drv_can_socket_arrival_us(clock_us(CLOCK_MONOTONIC), realtime_us, stamp_us);
-        frame->time_us = arrival_us > s->time_zero_us ? arrival_us - s->time_zero_us : 0;
+        if (status != LM_OK) {
+            return status == LM_BUSY ? 0 : status;
+        }
+    }
+    if (s->batch_next < s->batch_count) {
+        *frame = s->batch[s->batch_next++];
         s->count.frames++;
         return 1;
     }
-    return 0;
+    const bool has_report = s->has_report;
+    s->has_report = false;
+    return has_report ? LM_ERR_IO : 0;
+}
+
+static int send_frame(void *ctx, const struct lm_can_frame *frame)
+{
+    struct drv_can_socket *s = ctx;
+    if (s->fd < 0) {
+        s->count.unsent++;
+        return LM_ERR_IO;
+    }
+    if (s->queue_count == DRV_CAN_SOCKET_QUEUE) {
+        s->queue_first = (s->queue_first + 1) % DRV_CAN_SOCKET_QUEUE;
+        s->queue_count--;
+        s->count.unsent++;
+    }
+    struct can_frame *raw = &s->queue[(s->queue_first + s->queue_count) % DRV_CAN_SOCKET_QUEUE];
+    *raw = (struct can_frame){
+        .can_id = frame->id | (frame->is_extended ? CAN_EFF_FLAG : 0),
+        .can_dlc = frame->length > CAN_MAX_DLEN ? CAN_MAX_DLEN : frame->length,
+    };
+    memcpy(raw->data, frame->data, raw->can_dlc);
+    s->queue_count++;
+    return flush(s);
 }
 
 struct lm_can drv_can_socket_port(struct drv_can_socket *s)
 {
-    return (struct lm_can){.ctx = s, .receive = receive};
+    return (struct lm_can){.ctx = s, .receive = receive, .send = send_frame};
 }

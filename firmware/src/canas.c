@@ -1,68 +1,50 @@
 #include "lm/canas.h"
 
+#include <stddef.h>
+
 #include "fx/float_bits.h"
 
-#define TYPE(name) (1u << (LM_CANAS_##name))
+#define HALVES (1u << LM_CANAS_DOUBLEH | 1u << LM_CANAS_DOUBLEL)
 
-#define ANALOGUE (TYPE(FLOAT) | TYPE(SHORT2))
-#define CLOCK    TYPE(CHAR4)
-#define HALVES   (TYPE(DOUBLEH) | TYPE(DOUBLEL))
-#define POSITION (HALVES | ANALOGUE | TYPE(LONG))
+_Static_assert(LM_BUS_LATITUDE == 0 && LM_BUS_LONGITUDE == 1, "they index `pair`");
 
-#define ROW(field, name, id, types, unit, low, high, period_us, stale_ms, dead_ms)                 \
-    [LM_CANAS_##field] = {name, types, low, high, period_us, id, LM_CANAS_##unit, stale_ms, dead_ms}
+#define KIND(name) LM_CANAS_KIND_##name
 
-/* Ages. What comes every 100 ms is stale when three in a row were lost; one lost frame is a common
- * thing on a bus. Attitude and heading come eight times as often and turn fast: at 100 ms a roll of
- * 90 deg/s is wrong by 9 degrees, at 1 s it says nothing any more. Position and velocity die after
- * 2 s: until then dead reckoning in a turn of 3 deg/s stays within 32 m at 300 m/s, a pixel at the
- * longer ranges. Height moves slowly and dies after 5 s.
- *
- * Ranges. Wide enough for any aircraft, narrow enough that a wrong unit or a damaged exponent
- * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same. */
-/* clang-format off */
-const struct lm_canas_row lm_canas_table[LM_CANAS_FIELDS] = {
-    ROW(LATITUDE,        "GPS latitude",                 1036, POSITION,  BAM,         -90,     90,   100000,   300,   2000),
-    ROW(LONGITUDE,       "GPS longitude",                1037, POSITION,  BAM,        -180,    180,   100000,   300,   2000),
-    ROW(GPS_HEIGHT,      "GPS height above ellipsoid",   1038, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
-    ROW(GROUND_SPEED,    "GPS ground speed",             1039, ANALOGUE,  MM_S,          0,   1500,   100000,   300,   2000),
-    ROW(TRUE_TRACK,      "GPS true track",               1040, ANALOGUE,  BAM,        -180,    360,   100000,   300,   2000),
-    ROW(PITCH,           "body pitch angle",              311, ANALOGUE,  BAM,         -90,     90,    12500,   100,   1000),
-    ROW(ROLL,            "body roll angle",               312, ANALOGUE,  BAM,        -180,    180,    12500,   100,   1000),
-    ROW(HEADING,         "heading angle",                 321, ANALOGUE,  BAM,        -180,    360,    12500,   100,   1000),
-    ROW(TRUE_HEADING,    "true heading",                 1133, ANALOGUE,  BAM,        -180,    360,   100000,   300,   1000),
-    ROW(BARO_ALTITUDE,   "baro corrected altitude",       320, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
-    ROW(TRUE_ALTITUDE,   "true altitude",                 332, ANALOGUE,  Q6,        -1000,  30000,   100000,   500,   5000),
-    ROW(ALTITUDE_RATE,   "altitude rate",                 314, ANALOGUE,  MM_S,       -500,    500,   100000,   300,   2000),
-    ROW(EAST_VELOCITY,   "true east velocity",           1130, ANALOGUE,  MM_S,      -1500,   1500,   100000,   300,   2000),
-    ROW(NORTH_VELOCITY,  "true north velocity",          1131, ANALOGUE,  MM_S,      -1500,   1500,   100000,   300,   2000),
-    ROW(UP_VELOCITY,     "true up velocity",             1132, ANALOGUE,  MM_S,       -500,    500,   100000,   300,   2000),
-    ROW(PITCH_RATE,      "body pitch rate",               303, ANALOGUE,  BAM,        -170,    170,    12500,   100,   1000),
-    ROW(YAW_RATE,        "body yaw rate",                 305, ANALOGUE,  BAM,        -170,    170,    12500,   100,   1000),
-    ROW(UTC,             "UTC",                          1200, CLOCK,     SECONDS,       0,  86400,  1000000,  3000,  10000),
-};
-/* clang-format on */
-_Static_assert(LM_CANAS_LATITUDE == 0 && LM_CANAS_LONGITUDE == 1, "they index `pair`");
-
-/* Inside, a number is in the unit of the bus with `frac_bits`; the value is that times `multiplier`
- * / `divisor`. A BAM is 360 / 2^32 deg, hence 2^31 / 180. No product below passes 2^62: 360 deg *
- * 2^31 * 1 is 2^40, 1500 m/s * 2^20 * 1000 is 2^41. */
-struct scale {
-    int frac_bits;
-    int32_t multiplier, divisor;
+const struct lm_canas_type lm_canas_types[LM_CANAS_TYPES] = {
+    {"NODATA", KIND(NONE), 0, 0},     {"ERROR", KIND(BITS), 4, 1},
+    {"FLOAT", KIND(FLOAT), 4, 1},     {"LONG", KIND(SIGNED), 4, 1},
+    {"ULONG", KIND(UNSIGNED), 4, 1},  {"BLONG", KIND(BITS), 4, 1},
+    {"SHORT", KIND(SIGNED), 2, 1},    {"USHORT", KIND(UNSIGNED), 2, 1},
+    {"BSHORT", KIND(BITS), 2, 1},     {"CHAR", KIND(SIGNED), 1, 1},
+    {"UCHAR", KIND(UNSIGNED), 1, 1},  {"BCHAR", KIND(BITS), 1, 1},
+    {"SHORT2", KIND(SIGNED), 2, 2},   {"USHORT2", KIND(UNSIGNED), 2, 2},
+    {"BSHORT2", KIND(BITS), 2, 2},    {"CHAR4", KIND(SIGNED), 1, 4},
+    {"UCHAR4", KIND(UNSIGNED), 1, 4}, {"BCHAR4", KIND(BITS), 1, 4},
+    {"CHAR2", KIND(SIGNED), 1, 2},    {"UCHAR2", KIND(UNSIGNED), 1, 2},
+    {"BCHAR2", KIND(BITS), 1, 2},     {"MEMID", KIND(BITS), 4, 1},
+    {"CHKSUM", KIND(BITS), 4, 1},     {"ACHAR", KIND(TEXT), 1, 1},
+    {"ACHAR2", KIND(TEXT), 1, 2},     {"ACHAR4", KIND(TEXT), 1, 4},
+    {"CHAR3", KIND(SIGNED), 1, 3},    {"UCHAR3", KIND(UNSIGNED), 1, 3},
+    {"BCHAR3", KIND(BITS), 1, 3},     {"ACHAR3", KIND(TEXT), 1, 3},
+    {"DOUBLEH", KIND(HALF), 4, 1},    {"DOUBLEL", KIND(HALF), 4, 1},
 };
 
-static const struct scale scales[] = {
-    [LM_CANAS_BAM] = {31, 1, 180},
-    [LM_CANAS_Q6] = {6, 1, 1},
-    [LM_CANAS_MM_S] = {20, 1000, 1 << 20},
-    [LM_CANAS_SECONDS] = {0, 1, 1},
-};
-
-/* To the nearest, halves away from zero; divisor > 0 and |n| + divisor below 2^63. */
-static int64_t divide_rounded(int64_t n, int64_t divisor)
+static bool is_integer(const struct lm_canas_type *type)
 {
-    return (n < 0 ? n - divisor / 2 : n + divisor / 2) / divisor;
+    return type->kind == LM_CANAS_KIND_SIGNED || type->kind == LM_CANAS_KIND_UNSIGNED;
+}
+
+bool lm_canas_fits(enum lm_bus_field field, uint8_t type)
+{
+    if (type >= LM_CANAS_TYPES) {
+        return false;
+    }
+    const struct lm_canas_type *t = &lm_canas_types[type];
+    if (lm_bus_fields[field].unit == LM_BUS_SECONDS) {
+        return is_integer(t) && t->element_bytes == 1 && t->elements >= 3;
+    }
+    return t->kind == LM_CANAS_KIND_FLOAT || (is_integer(t) && t->elements == 1) ||
+           type == LM_CANAS_SHORT2 || (t->kind == LM_CANAS_KIND_HALF && field <= LM_BUS_LONGITUDE);
 }
 
 static uint16_t big_endian_16(const uint8_t *bytes)
@@ -75,63 +57,85 @@ static uint32_t big_endian_32(const uint8_t *bytes)
     return (uint32_t)big_endian_16(bytes) << 16 | big_endian_16(bytes + 2);
 }
 
-void lm_canas_init(struct lm_canas *c)
+/* The row that takes an identifier of normal operation data, or row_count. */
+static uint32_t row_of(const struct lm_bus_profile *profile, uint32_t id)
 {
-    *c = (struct lm_canas){0};
+    uint32_t i = 0;
+    while (i < profile->row_count && profile->rows[i].id != id) {
+        i++;
+    }
+    return i;
 }
 
-/* LM_CANAS_VALUE and *field when a row takes the frame's identifier on channel 0. */
-static enum lm_canas_outcome find_row(const struct lm_can_frame *frame, enum lm_canas_field *field)
+/* LM_BUS_VALUE, *row and *channel when a row takes the frame's identifier. Channel 0 has 11 bits,
+ * channel n has 29 and adds 65536 * n; bits 11..15 are never set. */
+static enum lm_bus_outcome find_row(const struct lm_bus_profile *profile,
+                                    const struct lm_can_frame *frame, uint32_t *row,
+                                    uint32_t *channel)
 {
-    if (frame->is_error || frame->is_remote) {
-        return LM_CANAS_NOT_DATA;
-    }
-    const uint32_t id = frame->id & 0xffffu, channel = frame->id >> 16;
-    const bool is_possible = frame->is_extended ? channel >= 1 && channel <= 0x1fff : channel == 0;
+    const uint32_t id = frame->id & 0xffffu;
+    *channel = frame->id >> 16;
+    const bool is_possible =
+        frame->is_extended ? *channel >= 1 && *channel <= 0x1fff : *channel == 0;
     if (!is_possible || id > 0x7ff) {
-        return LM_CANAS_FOREIGN;
+        return LM_BUS_FOREIGN;
     }
-    for (uint32_t i = 0; i < LM_CANAS_FIELDS; i++) {
-        if (lm_canas_table[i].id == id) {
-            *field = (enum lm_canas_field)i;
-            return channel == 0 ? LM_CANAS_VALUE : LM_CANAS_OTHER_CHANNEL;
-        }
+    if ((id >= LM_CANAS_SERVICE_FIRST && id <= LM_CANAS_SERVICE_LAST) ||
+        (id >= LM_CANAS_LOW_SERVICE_FIRST && id <= LM_CANAS_LOW_SERVICE_LAST)) {
+        return LM_BUS_SERVICE;
     }
-    return LM_CANAS_UNUSED;
+    *row = row_of(profile, id);
+    return *row == profile->row_count    ? LM_BUS_UNUSED
+           : *channel >= LM_BUS_CHANNELS ? LM_BUS_OTHER_CHANNEL
+                                         : LM_BUS_VALUE;
 }
 
-/* LM_CANAS_VALUE when node, type and length are what the row allows. Every type that a row takes
- * has four data bytes. */
-static enum lm_canas_outcome check_header(const struct lm_canas_row *row,
-                                          const struct lm_can_frame *frame)
+static uint8_t bytes_of(uint8_t type)
 {
+    return (uint8_t)(lm_canas_types[type].element_bytes * lm_canas_types[type].elements);
+}
+
+/* LM_BUS_VALUE when node, type and length are what the row allows. */
+static enum lm_bus_outcome check_header(const struct lm_bus_row *row,
+                                        const struct lm_can_frame *frame)
+{
+    const uint8_t type = frame->data[1];
     if (frame->length < 4) {
-        return LM_CANAS_BAD_LENGTH;
+        return LM_BUS_BAD_LENGTH;
     }
     if (frame->data[0] == 0) {
-        return LM_CANAS_BAD_NODE;
+        return LM_BUS_BAD_NODE;
     }
-    const uint8_t type = frame->data[1];
-    if (type == LM_CANAS_NODATA || type == LM_CANAS_ERROR) {
-        return frame->length == (type == LM_CANAS_NODATA ? 4 : 8) ? LM_CANAS_NO_DATA
-                                                                  : LM_CANAS_BAD_LENGTH;
+    const bool says_no_data = type == LM_CANAS_NODATA || type == LM_CANAS_ERROR;
+    if (!says_no_data && (type >= LM_CANAS_TYPES || (row->types >> type & 1u) == 0)) {
+        return LM_BUS_BAD_TYPE;
     }
-    if (type >= 32 || (row->types >> type & 1u) == 0) {
-        return LM_CANAS_BAD_TYPE;
+    if (frame->length != 4 + bytes_of(type)) {
+        return LM_BUS_BAD_LENGTH;
     }
-    return frame->length == 8 ? LM_CANAS_VALUE : LM_CANAS_BAD_LENGTH;
+    return says_no_data ? LM_BUS_NO_DATA : LM_BUS_VALUE;
+}
+
+/* The same where byte 1 says nothing: as many bytes as the row's one type has, or more. */
+static enum lm_bus_outcome check_assumed(uint8_t type, const struct lm_can_frame *frame)
+{
+    return frame->length > 8 || frame->length < 4 + bytes_of(type) ? LM_BUS_BAD_LENGTH
+           : frame->data[0] == 0                                   ? LM_BUS_BAD_NODE
+                                                                   : LM_BUS_VALUE;
 }
 
 /* Count a message code that does not follow the sender's last one. The first frame of a node cannot
  * break anything. */
-static void follow_sequence(struct lm_canas *c, enum lm_canas_field field, uint8_t node,
-                            uint8_t code)
+static void follow_sequence(struct lm_canas *c, uint32_t row, uint32_t channel,
+                            const struct lm_can_frame *frame)
 {
-    if (c->last[field].node == node && code != (uint8_t)(c->last[field].code + 1)) {
+    const uint8_t node = frame->data[0], code = frame->data[3];
+    const uint8_t expected = (uint8_t)(c->last[row][channel].code + 1);
+    if (c->last[row][channel].node == node && code != expected) {
         c->count.sequence_breaks++;
     }
-    c->last[field].node = node;
-    c->last[field].code = code;
+    c->last[row][channel].node = node;
+    c->last[row][channel].code = code;
 }
 
 static void drop_half(struct lm_canas *c, struct lm_canas_pair *p)
@@ -182,17 +186,16 @@ static bool completes(struct lm_canas_pair *p, const struct lm_can_frame *half, 
 
 /* Take a half. True when it completes a value: *bits is the double, *time_us when its first half
  * came. */
-static bool take_half(struct lm_canas *c, enum lm_canas_field field,
+static bool take_half(struct lm_canas *c, struct lm_canas_pair *p, uint32_t period_us,
                       const struct lm_can_frame *frame, uint64_t *bits, uint64_t *time_us)
 {
-    struct lm_canas_pair *p = &c->pair[field];
     const uint8_t node = frame->data[0], type = frame->data[1], code = frame->data[3];
     const uint32_t word = big_endian_32(frame->data + 4);
     if (p->state != LM_CANAS_EMPTY && node != p->node) {
         drop_half(c, p);
         p->habit = 0;
     }
-    const bool is_joined = completes(p, frame, lm_canas_table[field].period_us);
+    const bool is_joined = completes(p, frame, period_us);
     if (is_joined) {
         const uint64_t high = type == LM_CANAS_DOUBLEH ? word : p->word;
         const uint64_t low = type == LM_CANAS_DOUBLEL ? word : p->word;
@@ -211,111 +214,174 @@ static bool take_half(struct lm_canas *c, enum lm_canas_field field,
 }
 
 /* Hours, minutes, seconds. The only second 60 is the last one of a day. */
-static enum lm_canas_outcome read_clock(const uint8_t *data, int64_t *seconds)
+static enum lm_bus_outcome read_clock(const uint8_t *data, int64_t *seconds)
 {
     const int32_t hour = data[0], minute = data[1], second = data[2];
     const bool is_leap = hour == 23 && minute == 59 && second == 60;
     if (hour > 23 || minute > 59 || (second > 59 && !is_leap)) {
-        return LM_CANAS_OUT_OF_RANGE;
+        return LM_BUS_OUT_OF_RANGE;
     }
     *seconds = hour * 3600 + minute * 60 + second;
-    return LM_CANAS_VALUE;
+    return LM_BUS_VALUE;
+}
+
+/* A number being read: in the unit of the bus with the scale's frac_bits, and the step between
+ * neighbours as counts of the field. */
+struct number {
+    int64_t q;
+    uint32_t step;
+};
+
+/* Counts of the field in one unit of the bus: below 2^24. */
+static int64_t one_unit(const struct lm_bus_scale *scale)
+{
+    return ((int64_t)scale->multiplier << scale->frac_bits) / scale->divisor;
 }
 
 /* Value and full scale. |value * scale| is at most 2^30 and frac_bits at most 31. */
-static enum lm_canas_outcome read_short2(const uint8_t *data, int frac_bits, int64_t *q)
+static enum lm_bus_outcome read_short2(const uint8_t *data, const struct lm_bus_scale *scale,
+                                       struct number *number)
 {
-    const int16_t value = (int16_t)big_endian_16(data), scale = (int16_t)big_endian_16(data + 2);
-    if (scale <= 0) {
-        return LM_CANAS_NOT_A_NUMBER;
+    const int16_t value = (int16_t)big_endian_16(data), full = (int16_t)big_endian_16(data + 2);
+    if (full <= 0) {
+        return LM_BUS_NOT_A_NUMBER;
     }
-    *q = divide_rounded((int64_t)value * scale * (1LL << frac_bits), 32767);
-    return LM_CANAS_VALUE;
+    number->q = lm_bus_divide((int64_t)value * full * (1LL << scale->frac_bits), 32767);
+    number->step = (uint32_t)(one_unit(scale) * full / 32767);
+    return LM_BUS_VALUE;
 }
 
-static enum lm_canas_outcome read_float(uint32_t bits, int frac_bits, int64_t *q)
+/* Bits 23..30 of a float are the power of two of its last place, plus 150. */
+static enum lm_bus_outcome read_float(uint32_t bits, const struct lm_bus_scale *scale,
+                                      struct number *number)
 {
-    if ((bits & 0x7f800000u) == 0x7f800000u) {
-        return LM_CANAS_NOT_A_NUMBER;
+    const int32_t exponent = (int32_t)(bits >> 23 & 0xff), down = 150 - exponent;
+    if (exponent == 0xff) {
+        return LM_BUS_NOT_A_NUMBER;
     }
-    return fx_f32_bits_to_q(bits, frac_bits, q) ? LM_CANAS_VALUE : LM_CANAS_OUT_OF_RANGE;
+    number->step = down >= 0 && down < 32 ? (uint32_t)(one_unit(scale) >> down) : 0;
+    return fx_f32_bits_to_q(bits, scale->frac_bits, &number->q) ? LM_BUS_VALUE
+                                                                : LM_BUS_OUT_OF_RANGE;
 }
 
-static enum lm_canas_outcome read_double(uint64_t bits, int frac_bits, int64_t *q)
+static enum lm_bus_outcome read_double(uint64_t bits, const struct lm_bus_scale *scale,
+                                       struct number *number)
 {
     if ((bits >> 52 & 0x7ff) == 0x7ff) {
-        return LM_CANAS_NOT_A_NUMBER;
+        return LM_BUS_NOT_A_NUMBER;
     }
-    return fx_f64_bits_to_q(bits, frac_bits, q) ? LM_CANAS_VALUE : LM_CANAS_OUT_OF_RANGE;
+    return fx_f64_bits_to_q(bits, scale->frac_bits, &number->q) ? LM_BUS_VALUE
+                                                                : LM_BUS_OUT_OF_RANGE;
 }
 
-/* The frame's number in the unit of the bus with `frac_bits`, by its type. */
-static enum lm_canas_outcome read_number(struct lm_canas *c, const struct lm_can_frame *frame,
-                                         int frac_bits, struct lm_canas_event *event, int64_t *q)
+/* A whole number of 1, 2 or 4 bytes. An unsigned one of 2^31 or more is out of any range, so that
+ * |integer * 2^frac_bits| stays at most 2^62. */
+static enum lm_bus_outcome read_integer(const uint8_t *data, const struct lm_canas_type *type,
+                                        int32_t per_unit, const struct lm_bus_scale *scale,
+                                        struct number *number)
 {
-    const uint8_t *data = frame->data + 4;
+    const uint32_t unused_bits = 32 - 8u * type->element_bytes;
+    const uint32_t word = big_endian_32(data) >> unused_bits << unused_bits;
+    int64_t integer = (int64_t)(word >> unused_bits);
+    if (type->kind == LM_CANAS_KIND_SIGNED) {
+        integer = (int64_t)(int32_t)word / (1LL << unused_bits);
+    } else if (integer > INT32_MAX) {
+        return LM_BUS_OUT_OF_RANGE;
+    }
+    number->q = lm_bus_divide(integer * (1LL << scale->frac_bits), per_unit);
+    number->step = (uint32_t)(one_unit(scale) / per_unit);
+    return LM_BUS_VALUE;
+}
+
+/* A frame whose row, channel and type are known to be right. */
+struct accepted {
+    const struct lm_can_frame *frame;
+    const struct lm_bus_row *row;
+    struct lm_canas_pair *pair; /* NULL: the row takes no halves */
+    uint8_t type;
+};
+
+static enum lm_bus_outcome read_number(struct lm_canas *c, const struct accepted *a,
+                                       struct number *number, uint64_t *time_us)
+{
+    const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)a->row->field);
+    const struct lm_canas_type *type = &lm_canas_types[a->type];
+    const uint8_t *data = a->frame->data + 4;
     uint64_t bits;
-    switch (frame->data[1]) {
-    case LM_CANAS_FLOAT:
-        return read_float(big_endian_32(data), frac_bits, q);
-    case LM_CANAS_LONG:
-        /* 2^31 * 2^31, with room for rounding. */
-        *q = divide_rounded((int64_t)(int32_t)big_endian_32(data) * (1LL << frac_bits), 10000000);
-        return LM_CANAS_VALUE;
-    case LM_CANAS_SHORT2:
-        event->is_coarse = true;
-        return read_short2(data, frac_bits, q);
-    case LM_CANAS_CHAR4:
-        return read_clock(data, q);
-    default: /* DOUBLEH or DOUBLEL: check_header lets nothing else pass */
-        return take_half(c, event->field, frame, &bits, &event->time_us)
-                   ? read_double(bits, frac_bits, q)
-                   : LM_CANAS_HALF;
+    if (type->kind == LM_CANAS_KIND_HALF) {
+        return take_half(c, a->pair, a->row->period_us, a->frame, &bits, time_us)
+                   ? read_double(bits, scale, number)
+                   : LM_BUS_HALF;
     }
+    if (type->kind == LM_CANAS_KIND_FLOAT) {
+        return read_float(big_endian_32(data), scale, number);
+    }
+    if (a->type == LM_CANAS_SHORT2) {
+        return read_short2(data, scale, number);
+    }
+    return type->elements >= 3 ? read_clock(data, &number->q)
+                               : read_integer(data, type, a->row->per_unit, scale, number);
 }
 
-static enum lm_canas_outcome decode(struct lm_canas *c, const struct lm_can_frame *frame,
-                                    struct lm_canas_event *event)
+/* In the row's range, as a value of the field. An angle of 180 degrees or more wraps, as angles do.
+ * |q| is below 2^62 / multiplier once it is in range. */
+static enum lm_bus_outcome scale_number(const struct lm_bus_row *row, int64_t q, int32_t *value)
 {
-    enum lm_canas_field field;
-    enum lm_canas_outcome outcome = find_row(frame, &field);
-    if (outcome != LM_CANAS_VALUE) {
-        return outcome;
-    }
-    const struct lm_canas_row *row = &lm_canas_table[field];
-    outcome = check_header(row, frame);
-    const bool is_half = outcome == LM_CANAS_VALUE && frame->data[1] >= LM_CANAS_DOUBLEH;
-    if ((row->types & HALVES) != 0 && !is_half) {
-        drop_half(c, &c->pair[field]);
-    }
-    if (outcome == LM_CANAS_VALUE || outcome == LM_CANAS_NO_DATA) {
-        follow_sequence(c, field, frame->data[0], frame->data[3]);
-    }
-    if (outcome != LM_CANAS_VALUE) {
-        return outcome;
-    }
-    const struct scale *scale = &scales[row->unit];
-    struct lm_canas_event e = {.field = field, .node = frame->data[0], .time_us = frame->time_us};
-    int64_t q;
-    outcome = read_number(c, frame, scale->frac_bits, &e, &q);
-    if (outcome != LM_CANAS_VALUE) {
-        return outcome;
-    }
+    const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);
     const int64_t one = (int64_t)1 << scale->frac_bits;
     if (q < row->low * one || q > row->high * one) {
-        return LM_CANAS_OUT_OF_RANGE;
+        return LM_BUS_OUT_OF_RANGE;
     }
-    /* An angle of 180 degrees or more wraps, as angles do. */
-    e.value = (int32_t)(uint32_t)divide_rounded(q * scale->multiplier, scale->divisor);
-    *event = e;
-    return LM_CANAS_VALUE;
+    *value = (int32_t)(uint32_t)lm_bus_divide(q * scale->multiplier, scale->divisor);
+    return LM_BUS_VALUE;
 }
 
-enum lm_canas_outcome lm_canas_take(struct lm_canas *c, const struct lm_can_frame *frame,
-                                    struct lm_canas_event *event)
+static enum lm_bus_outcome accept(struct lm_canas *c, const struct lm_bus_profile *profile,
+                                  const struct lm_can_frame *frame, uint32_t row, uint32_t channel,
+                                  struct accepted *a)
 {
-    const enum lm_canas_outcome outcome = decode(c, frame, event);
-    c->count.frames++;
-    c->count.outcome[outcome]++;
+    a->frame = frame;
+    a->row = &profile->rows[row];
+    const bool is_assumed = profile->are_types_assumed;
+    a->type = is_assumed ? (uint8_t)__builtin_ctz(a->row->types) : frame->data[1];
+    a->pair = (a->row->types & HALVES) != 0 ? &c->pair[a->row->field][channel] : NULL;
+    const enum lm_bus_outcome outcome =
+        is_assumed ? check_assumed(a->type, frame) : check_header(a->row, frame);
+    const bool is_half =
+        outcome == LM_BUS_VALUE && lm_canas_types[a->type].kind == LM_CANAS_KIND_HALF;
+    if (a->pair != NULL && !is_half) {
+        drop_half(c, a->pair);
+    }
+    if (outcome == LM_BUS_VALUE || outcome == LM_BUS_NO_DATA) {
+        follow_sequence(c, row, channel, frame);
+    }
+    return outcome;
+}
+
+enum lm_bus_outcome lm_canas_take(struct lm_canas *c, const struct lm_bus_profile *profile,
+                                  const struct lm_can_frame *frame, struct lm_bus_event *event)
+{
+    uint32_t row, channel;
+    struct accepted a;
+    enum lm_bus_outcome outcome = find_row(profile, frame, &row, &channel);
+    if (outcome == LM_BUS_VALUE) {
+        outcome = accept(c, profile, frame, row, channel, &a);
+    }
+    if (outcome != LM_BUS_VALUE) {
+        return outcome;
+    }
+    struct number number = {0};
+    struct lm_bus_event e = {.row = (uint8_t)row,
+                             .channel = (uint8_t)channel,
+                             .node = frame->data[0],
+                             .time_us = frame->time_us};
+    outcome = read_number(c, &a, &number, &e.time_us);
+    if (outcome == LM_BUS_VALUE) {
+        outcome = scale_number(a.row, number.q, &e.value);
+    }
+    if (outcome == LM_BUS_VALUE) {
+        e.step = number.step;
+        *event = e;
+    }
     return outcome;
 }

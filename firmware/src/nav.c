@@ -1,21 +1,27 @@
 #include "lm/nav.h"
 
+#include <stddef.h>
+
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/geo.h"
 
-/* A field as it stands at some moment. */
+/* A field of one sender as it stands at some moment. */
 struct reading {
-    enum lm_canas_field field;
+    enum lm_bus_field field;
     enum lm_nav_quality quality;
     int32_t value;  /* 0 when dead */
     int64_t age_us; /* 0 when dead, at most the row's dead_ms otherwise */
+    uint32_t step;
+    bool is_settled;
+    struct lm_nav_origin origin;
 };
 
 struct velocity {
     enum lm_nav_quality quality;
     int32_t north_mm_s, east_mm_s;
+    struct lm_nav_origin origin;
 };
 
 static enum lm_nav_quality worse_of(enum lm_nav_quality a, enum lm_nav_quality b)
@@ -23,21 +29,84 @@ static enum lm_nav_quality worse_of(enum lm_nav_quality a, enum lm_nav_quality b
     return a < b ? a : b;
 }
 
-static struct reading read_field(const struct lm_nav *n, enum lm_canas_field field, uint64_t now_us)
+static uint64_t stale_us_of(const struct lm_nav *n, const struct lm_nav_item *item)
 {
-    const struct lm_nav_item *item = &n->item[field];
-    const uint64_t stale_us = lm_canas_table[field].stale_ms * 1000ull;
-    const uint64_t dead_us = lm_canas_table[field].dead_ms * 1000ull;
+    return n->bus.profile->rows[item->row].stale_ms * 1000ull;
+}
+
+static struct reading read_item(const struct lm_nav *n, enum lm_bus_field field,
+                                const struct lm_nav_item *item, uint64_t now_us)
+{
+    struct reading r = {.field = field, .quality = LM_NAV_DEAD};
+    if (!item->has_value) {
+        return r;
+    }
+    const uint64_t stale_us = stale_us_of(n, item);
+    const uint64_t dead_us = n->bus.profile->rows[item->row].dead_ms * 1000ull;
     const bool is_ahead = item->time_us > now_us;
     const uint64_t age_us = is_ahead ? 0 : now_us - item->time_us;
-    struct reading r = {.field = field, .quality = LM_NAV_DEAD};
-    if (!item->has_value || age_us > dead_us || (is_ahead && item->time_us - now_us > stale_us)) {
+    if (age_us > dead_us || (is_ahead && item->time_us - now_us > stale_us)) {
         return r;
     }
     r.quality = age_us > stale_us ? LM_NAV_STALE : LM_NAV_GOOD;
     r.value = item->value;
     r.age_us = (int64_t)age_us;
+    r.step = item->step;
+    r.is_settled = now_us >= item->steady_us && now_us - item->steady_us >= LM_NAV_SETTLE_US;
+    r.origin = (struct lm_nav_origin){(uint32_t)age_us, item->rank, item->row, item->node};
     return r;
+}
+
+/* What makes one sender better than another: good and settled, good, stale, dead. */
+static uint32_t merit_of(const struct reading *r)
+{
+    return r->quality == LM_NAV_GOOD ? (r->is_settled ? 3 : 2) : r->quality;
+}
+
+/* The best sender that has both fields. They may be the same field. */
+struct pair {
+    struct reading first, second;
+};
+
+static struct pair read_pair(const struct lm_nav *n, enum lm_bus_field first,
+                             enum lm_bus_field second, uint64_t now_us)
+{
+    struct pair best = {.first = {.field = first}, .second = {.field = second}};
+    uint32_t best_merit = 0;
+    for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
+        const struct reading a = read_item(n, first, &n->item[first][i], now_us);
+        const uint32_t merit_a = merit_of(&a);
+        for (uint32_t j = 0; merit_a != 0 && j < LM_NAV_SOURCES; j++) {
+            const struct reading b = read_item(n, second, &n->item[second][j], now_us);
+            const uint32_t merit_b = merit_of(&b), merit = merit_a < merit_b ? merit_a : merit_b;
+            if (a.origin.rank != b.origin.rank || merit < best_merit || merit == 0 ||
+                (merit == best_merit && a.origin.rank > best.first.origin.rank)) {
+                continue;
+            }
+            best = (struct pair){a, b};
+            best_merit = merit;
+        }
+    }
+    return best;
+}
+
+static struct reading read_field(const struct lm_nav *n, enum lm_bus_field field, uint64_t now_us)
+{
+    return read_pair(n, field, field, now_us).first;
+}
+
+static enum lm_nav_quality quality_of(const struct pair *p)
+{
+    return worse_of(p->first.quality, p->second.quality);
+}
+
+static struct lm_nav_origin origin_of(const struct pair *p)
+{
+    struct lm_nav_origin origin = p->first.origin;
+    if (p->second.origin.age_us > origin.age_us) {
+        origin.age_us = p->second.origin.age_us;
+    }
+    return origin;
 }
 
 /* The first of two that is not dead. */
@@ -54,27 +123,32 @@ static int64_t times_q30(int64_t value, int32_t factor_q30)
 
 static struct velocity read_velocity(const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading north = read_field(n, LM_CANAS_NORTH_VELOCITY, now_us);
-    const struct reading east = read_field(n, LM_CANAS_EAST_VELOCITY, now_us);
-    const enum lm_nav_quality quality = worse_of(north.quality, east.quality);
-    if (quality != LM_NAV_DEAD) {
-        return (struct velocity){quality, north.value, east.value};
+    const struct pair v = read_pair(n, LM_BUS_NORTH_VELOCITY, LM_BUS_EAST_VELOCITY, now_us);
+    if (quality_of(&v) != LM_NAV_DEAD) {
+        return (struct velocity){quality_of(&v), v.first.value, v.second.value, origin_of(&v)};
     }
-    const struct reading speed = read_field(n, LM_CANAS_GROUND_SPEED, now_us);
-    const struct reading track = read_field(n, LM_CANAS_TRUE_TRACK, now_us);
-    if (worse_of(speed.quality, track.quality) == LM_NAV_DEAD) {
-        return (struct velocity){LM_NAV_DEAD, 0, 0};
-    }
+    const struct pair polar = read_pair(n, LM_BUS_GROUND_SPEED, LM_BUS_TRUE_TRACK, now_us);
+    const int32_t speed = polar.first.value;
+    const fx_bam_t track = (fx_bam_t)polar.second.value;
     return (struct velocity){
-        .quality = worse_of(speed.quality, track.quality),
-        .north_mm_s = (int32_t)times_q30(speed.value, fx_cos_q30((fx_bam_t)track.value)),
-        .east_mm_s = (int32_t)times_q30(speed.value, fx_sin_q30((fx_bam_t)track.value)),
+        .quality = quality_of(&polar),
+        .north_mm_s = (int32_t)times_q30(speed, fx_cos_q30(track)),
+        .east_mm_s = (int32_t)times_q30(speed, fx_sin_q30(track)),
+        .origin = origin_of(&polar),
     };
+}
+
+static struct reading read_height(const struct lm_nav *n, uint64_t now_us)
+{
+    return first_alive(first_alive(read_field(n, LM_BUS_ELLIPSOID_HEIGHT, now_us),
+                                   read_field(n, LM_BUS_TRUE_ALTITUDE, now_us)),
+                       read_field(n, LM_BUS_BARO_ALTITUDE, now_us));
 }
 
 static void set_velocity(struct lm_ownship *out, const struct velocity *v)
 {
     out->velocity_quality = v->quality;
+    out->velocity_origin = v->origin;
     out->velocity_north_mm_s = v->north_mm_s;
     out->velocity_east_mm_s = v->east_mm_s;
     out->ground_speed_mm_s = (int32_t)fx_hypot_u32(v->north_mm_s, v->east_mm_s);
@@ -83,15 +157,13 @@ static void set_velocity(struct lm_ownship *out, const struct velocity *v)
 
 static void set_height(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading height =
-        first_alive(first_alive(read_field(n, LM_CANAS_GPS_HEIGHT, now_us),
-                                read_field(n, LM_CANAS_TRUE_ALTITUDE, now_us)),
-                    read_field(n, LM_CANAS_BARO_ALTITUDE, now_us));
-    const struct reading rate = first_alive(read_field(n, LM_CANAS_UP_VELOCITY, now_us),
-                                            read_field(n, LM_CANAS_ALTITUDE_RATE, now_us));
+    const struct reading height = read_height(n, now_us);
+    const struct reading rate = first_alive(read_field(n, LM_BUS_UP_VELOCITY, now_us),
+                                            read_field(n, LM_BUS_ALTITUDE_RATE, now_us));
     out->height_quality = height.quality;
     out->height_source = height.field;
-    /* mm/s * us is 1e-9 m, of which 15,625,000 make a 64th. At most 500,000 * 5,000,000. */
+    out->height_origin = height.origin;
+    /* mm/s * us is 1e-9 m, of which 15,625,000 make a 64th. At most 500,000 * 65,535,000. */
     out->height_q6 = height.value + (int32_t)(rate.value * height.age_us / 15625000);
 }
 
@@ -104,55 +176,62 @@ static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_q8)
     return way_um * 683565276 / (radius_q8 * 15625 / 4);
 }
 
-/* Both coordinates from their own times. The longitude's circle is that of the latitude half way
- * along, which makes a course of constant velocity right to second order. */
-static void move_position(struct lm_ownship *out, const struct reading *latitude,
-                          const struct reading *longitude, const struct velocity *v)
+/* A latitude, `age_us` later. */
+static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_geo_origin *origin,
+                              int64_t height_q8, const struct velocity *v)
 {
-    const fx_bam_t least_radius_q8 = 64000 << 8; /* 0.6 degree from the pole */
-    const int64_t height_q8 = (int64_t)out->height_q6 * 4;
-    struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, (struct lm_place){(fx_bam_t)latitude->value, 0});
-
-    const int64_t m_q8 = origin.meridian_radius_q8 + height_q8;
-    const int64_t north = latitude->value + arc_bam(v->north_mm_s, latitude->age_us, m_q8);
+    const int64_t moved =
+        latitude + arc_bam(v->north_mm_s, age_us, origin->meridian_radius_q8 + height_q8);
     const int32_t pole = (int32_t)FX_BAM_90;
-    out->latitude = (fx_bam_t)(north > pole ? pole : north < -pole ? -pole : (int32_t)north);
-
-    const fx_bam_t half_way =
-        out->latitude - (fx_bam_t)(arc_bam(v->north_mm_s, longitude->age_us, m_q8) / 2);
-    const int64_t n_q8 = origin.prime_vertical_radius_q8 + height_q8;
-    const int64_t circle_q8 = times_q30(n_q8, fx_cos_q30(half_way));
-    out->longitude = (fx_bam_t)longitude->value +
-                     (fx_bam_t)arc_bam(v->east_mm_s, longitude->age_us,
-                                       circle_q8 > least_radius_q8 ? circle_q8 : least_radius_q8);
+    return moved > pole ? pole : moved < -pole ? -pole : (int32_t)moved;
 }
 
+/* A longitude, `age_us` later, by when the latitude is `latitude`. The circle is that of the
+ * latitude half way along, which makes a course of constant velocity right to second order. */
+static int32_t carry_longitude(int32_t longitude, int64_t age_us, fx_bam_t latitude,
+                               const struct lm_geo_origin *origin, int64_t height_q8,
+                               const struct velocity *v)
+{
+    const int64_t least_radius_q8 = 64000 << 8; /* 0.6 degree from the pole */
+    const int64_t meridian_q8 = origin->meridian_radius_q8 + height_q8;
+    const fx_bam_t half_way =
+        latitude - (fx_bam_t)(arc_bam(v->north_mm_s, age_us, meridian_q8) / 2);
+    const int64_t circle_q8 =
+        times_q30(origin->prime_vertical_radius_q8 + height_q8, fx_cos_q30(half_way));
+    const int64_t moved =
+        arc_bam(v->east_mm_s, age_us, circle_q8 > least_radius_q8 ? circle_q8 : least_radius_q8);
+    return (int32_t)((uint32_t)longitude + (uint32_t)moved);
+}
+
+/* Both coordinates from their own times. */
 static void set_position(struct lm_ownship *out, const struct lm_nav *n, const struct velocity *v,
                          uint64_t now_us)
 {
-    const struct reading latitude = read_field(n, LM_CANAS_LATITUDE, now_us);
-    const struct reading longitude = read_field(n, LM_CANAS_LONGITUDE, now_us);
-    out->position_quality = worse_of(latitude.quality, longitude.quality);
+    const struct pair p = read_pair(n, LM_BUS_LATITUDE, LM_BUS_LONGITUDE, now_us);
+    out->position_quality = quality_of(&p);
     if (out->position_quality == LM_NAV_DEAD) {
         return;
     }
-    if (v->quality == LM_NAV_DEAD || n->item[LM_CANAS_LATITUDE].is_coarse ||
-        n->item[LM_CANAS_LONGITUDE].is_coarse) {
+    if (v->quality == LM_NAV_DEAD || p.first.step > LM_NAV_COARSE_BAM ||
+        p.second.step > LM_NAV_COARSE_BAM) {
         out->position_quality = LM_NAV_STALE;
     }
-    move_position(out, &latitude, &longitude, v);
+    out->position_origin = origin_of(&p);
+    const int64_t height_q8 = (int64_t)out->height_q6 * 4;
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, (struct lm_place){(fx_bam_t)p.first.value, 0});
+    out->latitude = (fx_bam_t)carry_latitude(p.first.value, p.first.age_us, &origin, height_q8, v);
+    out->longitude = (fx_bam_t)carry_longitude(p.second.value, p.second.age_us, out->latitude,
+                                               &origin, height_q8, v);
 }
 
 static void set_attitude(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading pitch = read_field(n, LM_CANAS_PITCH, now_us);
-    const struct reading roll = read_field(n, LM_CANAS_ROLL, now_us);
-    out->attitude_quality = worse_of(pitch.quality, roll.quality);
-    if (out->attitude_quality != LM_NAV_DEAD) {
-        out->pitch = pitch.value;
-        out->roll = roll.value;
-    }
+    const struct pair p = read_pair(n, LM_BUS_PITCH, LM_BUS_ROLL, now_us);
+    out->attitude_quality = quality_of(&p);
+    out->attitude_origin = origin_of(&p);
+    out->pitch = p.first.value;
+    out->roll = p.second.value;
 }
 
 /* How fast the nose turns about the vertical, BAM a second: (q sin(roll) + r cos(roll)) /
@@ -162,33 +241,34 @@ static void set_attitude(struct lm_ownship *out, const struct lm_nav *n, uint64_
 static int64_t heading_rate(const struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
     const int32_t cos_80_q30 = 186453111; /* cos(80 degrees) * 2^30 */
-    const struct reading q = read_field(n, LM_CANAS_PITCH_RATE, now_us);
-    const struct reading r = read_field(n, LM_CANAS_YAW_RATE, now_us);
+    const struct pair rates = read_pair(n, LM_BUS_PITCH_RATE, LM_BUS_YAW_RATE, now_us);
     const int32_t cos_pitch_q30 = fx_cos_q30((fx_bam_t)out->pitch);
-    if (worse_of(worse_of(q.quality, r.quality), out->attitude_quality) != LM_NAV_GOOD ||
+    if (worse_of(quality_of(&rates), out->attitude_quality) != LM_NAV_GOOD ||
         cos_pitch_q30 < cos_80_q30) {
         return 0;
     }
-    const int64_t mix = times_q30(q.value, fx_sin_q30((fx_bam_t)out->roll)) +
-                        times_q30(r.value, fx_cos_q30((fx_bam_t)out->roll));
+    const int64_t mix = times_q30(rates.first.value, fx_sin_q30((fx_bam_t)out->roll)) +
+                        times_q30(rates.second.value, fx_cos_q30((fx_bam_t)out->roll));
     return mix * (1 << 30) / cos_pitch_q30;
 }
 
 static void set_heading(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading heading = first_alive(read_field(n, LM_CANAS_TRUE_HEADING, now_us),
-                                               read_field(n, LM_CANAS_HEADING, now_us));
+    const struct reading heading = first_alive(read_field(n, LM_BUS_TRUE_HEADING, now_us),
+                                               read_field(n, LM_BUS_HEADING, now_us));
     out->heading_quality = heading.quality;
     out->heading_source = heading.field;
-    /* The age is at most 1 s, 2^20 us. */
+    out->heading_origin = heading.origin;
+    /* A good attitude and rates keep the rate below 2^35, and no age passes 65.5 s, 2^26 us. */
     const int64_t turn = heading_rate(out, n, now_us) * heading.age_us / 1000000;
     out->heading = (fx_bam_t)heading.value + (fx_bam_t)turn;
 }
 
 static void set_utc(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct reading utc = read_field(n, LM_CANAS_UTC, now_us);
+    const struct reading utc = read_field(n, LM_BUS_UTC, now_us);
     out->utc_quality = utc.quality;
+    out->utc_origin = utc.origin;
     out->utc_s = (int32_t)((utc.value + utc.age_us / 1000000) % 86400);
 }
 
@@ -204,45 +284,128 @@ void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out)
     set_utc(out, n, now_us);
 }
 
-void lm_nav_init(struct lm_nav *n)
+void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile)
 {
     *n = (struct lm_nav){0};
-    lm_canas_init(&n->canas);
+    lm_bus_init(&n->bus, profile);
 }
 
-/* Is a new fix of this coordinate further from the last one than an aircraft could have come? A
- * count of latitude is 9.31 to 9.36 mm, one of longitude 9.33 mm times the cosine of latitude. */
-static bool is_jump(const struct lm_nav *n, const struct lm_canas_event *fix)
+/* What a sender said of a field; NULL when nothing. */
+static const struct lm_nav_item *find_item(const struct lm_nav *n, enum lm_bus_field field,
+                                           uint16_t rank)
 {
-    const struct lm_nav_item *last = &n->item[fix->field];
-    if (!last->has_value) {
-        return false;
+    for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
+        if (n->item[field][i].has_value && n->item[field][i].rank == rank) {
+            return &n->item[field][i];
+        }
     }
-    const uint32_t way = fx_abs_u32((int32_t)((uint32_t)fix->value - (uint32_t)last->value));
-    const int32_t cosine_q30 = fix->field == LM_CANAS_LATITUDE
-                                   ? 1 << 30
-                                   : fx_cos_q30((fx_bam_t)n->item[LM_CANAS_LATITUDE].value);
+    return NULL;
+}
+
+/* Is a new fix of this coordinate further from the sender's last one than an aircraft could have
+ * come? A count of latitude is 9.31 to 9.36 mm, one of longitude 9.33 mm times the cosine of
+ * latitude. */
+static bool is_jump(const struct lm_nav *n, const struct lm_nav_item *last,
+                    const struct lm_bus_event *fix, const struct lm_bus_row *row)
+{
+    const struct lm_nav_item *latitude = find_item(n, LM_BUS_LATITUDE, last->rank);
+    const bool is_longitude = row->field == LM_BUS_LONGITUDE && latitude != NULL;
+    const int32_t cosine_q30 = is_longitude ? fx_cos_q30((fx_bam_t)latitude->value) : 1 << 30;
+    const uint32_t apart = fx_abs_u32((int32_t)((uint32_t)fix->value - (uint32_t)last->value));
+    const uint32_t way = apart > fix->step ? apart - fix->step : 0;
     const int64_t way_mm = times_q30(way, cosine_q30) * 933 / 100;
 
-    const uint64_t period_us = lm_canas_table[fix->field].period_us, day_us = 86400000000ull;
+    const uint64_t period_us = row->period_us, day_us = 86400000000ull;
     uint64_t time_us = fix->time_us > last->time_us ? fix->time_us - last->time_us : 0;
     time_us = time_us < period_us ? period_us : time_us > day_us ? day_us : time_us;
     return way_mm > (int64_t)(time_us * LM_NAV_JUMP_M_S / 1000);
 }
 
-void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame)
+/* A coordinate that is known to within half a step: the last one carried on, moved into that half
+ * step. Differences of angles below half a circle survive the wrap. */
+static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
+                      const struct lm_bus_event *fix, enum lm_bus_field field)
 {
-    struct lm_canas_event event;
-    if (lm_canas_take(&n->canas, frame, &event) != LM_CANAS_VALUE) {
+    const struct reading before = read_item(n, field, last, fix->time_us);
+    const struct velocity v = read_velocity(n, fix->time_us);
+    const struct lm_nav_item *latitude = find_item(n, LM_BUS_LATITUDE, last->rank);
+    if (before.quality == LM_NAV_DEAD || v.quality == LM_NAV_DEAD || latitude == NULL) {
+        return fix->value;
+    }
+    const int64_t height_q8 = (int64_t)read_height(n, fix->time_us).value * 4;
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, (struct lm_place){(fx_bam_t)latitude->value, 0});
+    const int32_t carried =
+        field == LM_BUS_LATITUDE
+            ? carry_latitude(last->value, before.age_us, &origin, height_q8, &v)
+            : carry_longitude(last->value, before.age_us, (fx_bam_t)latitude->value, &origin,
+                              height_q8, &v);
+    const int32_t off = (int32_t)((uint32_t)carried - (uint32_t)fix->value);
+    const int32_t half = fix->step > INT32_MAX ? INT32_MAX / 2 : (int32_t)(fix->step / 2);
+    const int32_t held = off > half ? half : off < -half ? -half : off;
+    return (int32_t)((uint32_t)fix->value + (uint32_t)held);
+}
+
+/* Where a sender's value is kept: its own place, or an empty one, or that of the worst other sender
+ * when that one is dead or of a higher rank. NULL when there is none. */
+static struct lm_nav_item *place_for(struct lm_nav *n, const struct lm_bus_event *event,
+                                     enum lm_bus_field field, uint16_t rank)
+{
+    struct lm_nav_item *worst = &n->item[field][0];
+    uint32_t worst_rank = 0;
+    for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
+        struct lm_nav_item *item = &n->item[field][i];
+        if (item->has_value && item->rank == rank) {
+            return item;
+        }
+        const struct reading r = read_item(n, field, item, event->time_us);
+        const uint32_t its_rank = r.quality == LM_NAV_DEAD ? UINT32_MAX - i : item->rank;
+        if (its_rank > worst_rank) {
+            worst = item;
+            worst_rank = its_rank;
+        }
+    }
+    return worst_rank > rank ? worst : NULL;
+}
+
+static void keep(struct lm_nav *n, const struct lm_bus_event *event)
+{
+    const struct lm_bus_row *row = &n->bus.profile->rows[event->row];
+    const enum lm_bus_field field = (enum lm_bus_field)row->field;
+    const uint16_t rank = (uint16_t)(row->priority << 8 | event->channel);
+    struct lm_nav_item *item = place_for(n, event, field, rank);
+    if (item == NULL) {
+        n->crowded++;
         return;
     }
-    if (event.field <= LM_CANAS_LONGITUDE && is_jump(n, &event)) {
-        n->position_jumps++;
+    const bool is_known = item->has_value && item->rank == rank;
+    int32_t value = event->value;
+    if (is_known && field <= LM_BUS_LONGITUDE) {
+        if (is_jump(n, item, event, row)) {
+            n->position_jumps++;
+        } else if (event->step > 0) {
+            value = smooth(n, item, event, field);
+        }
     }
-    n->item[event.field] = (struct lm_nav_item){
-        .value = event.value,
+    const bool goes_on = is_known && event->time_us >= item->time_us &&
+                         event->time_us - item->time_us <= stale_us_of(n, item);
+    *item = (struct lm_nav_item){
+        .time_us = event->time_us,
+        .steady_us = goes_on ? item->steady_us : event->time_us,
+        .value = value,
+        .step = event->step,
+        .rank = rank,
+        .row = event->row,
+        .node = event->node,
         .has_value = true,
-        .is_coarse = event.is_coarse,
-        .time_us = event.time_us,
     };
+}
+
+void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame)
+{
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const uint32_t count = lm_bus_take(&n->bus, frame, events);
+    for (uint32_t i = 0; i < count; i++) {
+        keep(n, &events[i]);
+    }
 }

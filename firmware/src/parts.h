@@ -31,7 +31,7 @@ void lm_show_frame(struct lm_unit *u, uint64_t now_us);
  * the ellipsoid. */
 static inline int32_t lm_antenna_height_q6(const struct lm_unit *u)
 {
-    const bool is_ellipsoidal = u->ownship.height_source == LM_CANAS_GPS_HEIGHT;
+    const bool is_ellipsoidal = u->ownship.height_source == LM_BUS_ELLIPSOID_HEIGHT;
     return u->ownship.height_q6 - (is_ellipsoidal ? u->db.geoid_q6 : 0);
 }
 

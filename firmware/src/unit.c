@@ -1,4 +1,5 @@
 #include "fx/mem.h"
+#include "lm/version.h"
 #include "parts.h"
 
 enum {
@@ -34,7 +35,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     u->plane = (struct lm_plane){board->plane, display->width_px, display->height_px};
     u->frame = lm_frame_of_display(display->width_px, display->height_px);
     memset(board->plane, 0, (size_t)display->width_px * display->height_px);
-    lm_nav_init(&u->nav);
+    lm_nav_init(&u->nav, board->bus_profile ? board->bus_profile : &lm_bus_canas17);
+    lm_canas_service_init(&u->service, board->bus_node, board->hardware_revision,
+                          LM_VERSION_NUMBER);
     lm_page_init(&u->page, board->radar);
     lm_apply(u, LM_EFFECT_GROUND_MAP | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 
@@ -58,9 +61,13 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
             break;
         }
         u->count.bus_frames++;
-        u->last_bus_us = now_us;
+        if (!frame.is_error) {
+            u->last_bus_us = now_us;
+        }
         lm_nav_take(&u->nav, &frame);
+        lm_canas_service_take(&u->service, &frame);
     }
+    lm_canas_service_answer(&u->service, can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
 }
 
@@ -68,7 +75,12 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
  * by side. */
 static void heed_jump(struct lm_unit *u, uint64_t now_us)
 {
-    if (u->nav.position_jumps != u->jumps_seen) {
+    const bool is_other_source = u->ownship.position_quality != LM_NAV_DEAD &&
+                                 u->ownship.position_origin.rank != u->position_rank_seen;
+    if (is_other_source) {
+        u->position_rank_seen = u->ownship.position_origin.rank;
+    }
+    if (is_other_source || u->nav.position_jumps != u->jumps_seen) {
         u->jumps_seen = u->nav.position_jumps;
         u->cursor.is_placed = false;
         if (u->page.mode == LM_MODE_GM) {

@@ -70,7 +70,7 @@ static int open_bus(struct sim *s)
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);
         const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-        if (drv_can_socket_open(&s->socket, o->can_interface, zero_us) != LM_OK) {
+        if (drv_can_socket_open(&s->socket, o->can_interface, &lm_bus_canas17, zero_us) != LM_OK) {
             return hs_error(o->can_interface, NULL, "%s", s->socket.error);
         }
         s->can = drv_can_socket_port(&s->socket);

@@ -8,7 +8,7 @@ FUZZ_TEXT     := host-sim/db/text_file.c host-sim/common/src/atomic_file.c tests
 
 FUZZ_SRC_image       := $(FUZZ_CORE)
 FUZZ_SRC_unit        := $(FUZZ_CORE)
-FUZZ_SRC_bus         := $(addprefix firmware/src/,canas.c nav.c geo.c) $(wildcard fixed/src/*.c)
+FUZZ_SRC_bus         := $(addprefix firmware/src/,canas.c bus.c bus_profiles.c packed.c canas_service.c nav.c geo.c) $(wildcard fixed/src/*.c)
 FUZZ_SRC_can_log     := drivers/can/can_log.c
 FUZZ_SRC_script      := host-sim/sim/script.c tests/fuzz/file.c
 FUZZ_SRC_csv         := $(FUZZ_TRACK)

@@ -23,7 +23,7 @@ static struct lm_can_frame take_frame(struct fuzz_supply *s, uint64_t *now_us)
     *now_us += step < 250 ? (uint64_t)step * 512 : (uint64_t)step << (8 * (step - 249));
     struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = *now_us};
     if (selector < 0xE0) {
-        f.id = lm_canas_table[selector % LM_CANAS_FIELDS].id;
+        f.id = lm_bus_canas17.rows[selector % LM_BUS_FIELDS].id;
     }
     f.is_extended = flags & 1;
     f.is_remote = (flags & 0x30) == 0x30;
@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz_supply supply = {data, size};
     struct lm_nav *nav = malloc(sizeof *nav);
     FUZZ_ASSERT(nav);
-    lm_nav_init(nav);
+    lm_nav_init(nav, &lm_bus_canas17);
     uint64_t now_us = 0;
     uint32_t frames = 0, sum = 0;
     while (supply.left > 0) {
@@ -50,10 +50,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_ownship(&ownship);
         frames++;
     }
-    for (int i = 0; i < LM_CANAS_OUTCOMES; i++) {
-        sum += nav->canas.count.outcome[i];
+    for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
+        sum += nav->bus.count.outcome[i];
     }
-    FUZZ_ASSERT(sum == frames && nav->canas.count.frames == frames);
+    FUZZ_ASSERT(sum == frames && nav->bus.count.frames == frames);
     free(nav);
     return 0;
 }

@@ -1,10 +1,11 @@
 /* A CAN controller through Linux's SocketCAN, as struct lm_can.
  *
- * What is tested where (tests/unit/drivers/test_can_socket.c): the failures to open, the conversion
- * of frames and times, the filters against the kernel's matching rule, and receiving and its errors
- * over a socket of another family that stands in for the bus. NOT tested here, because the kernel
- * of the build machine has no AF_CAN: that a real interface is opened, that the kernel accepts each
- * option, the counts of lost frames, and what a bus going down looks like. */
+ * What is tested where: tests/unit/drivers/test_can_socket.c has the failures to open, the
+ * conversion of frames and times, the filters against the kernel's matching rule, and receiving,
+ * sending and their errors over a socket of another family that stands in for the bus. The real
+ * thing, on a kernel that has AF_CAN, is tests/panel-vm/can_probe.c: filters, overflow, batches and
+ * stamps, reports of errors, an interface that goes down, goes away and comes back, a full
+ * transmit queue. */
 #ifndef DRV_CAN_SOCKET_H
 #define DRV_CAN_SOCKET_H
 
@@ -14,43 +15,81 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lm/canas.h"
+#include "lm/bus_profile.h"
 #include "lm/port.h"
 
+enum {
+    DRV_CAN_SOCKET_BATCH = 64,                       /* frames taken from the kernel at a time */
+    DRV_CAN_SOCKET_QUEUE = 16,                       /* frames that may wait to be sent */
+    DRV_CAN_SOCKET_FILTERS = 2 * LM_BUS_ROWS_MAX + 1 /* below the kernel's limit of 512 */
+};
+
+/* How long an interface that is gone is left alone before it is looked for again. */
+#define DRV_CAN_SOCKET_RETRY_US 500000
+
 struct drv_can_socket {
-    int fd;                /* -1: closed */
+    int fd;                /* -1: closed; otherwise may be waited on with poll() */
     uint64_t time_zero_us; /* of CLOCK_MONOTONIC, where the firmware's clock has its 0 */
     char error[160];       /* why the last call failed: place, cause, remedy */
+    bool is_bus_off;       /* the controller has left the bus */
+
+    char interface[IFNAMSIZ];
+    const struct lm_bus_profile *profile; /* borrowed */
+    uint64_t retry_us;                    /* CLOCK_MONOTONIC; when to look for it again */
+    bool has_report;                      /* receive is to answer LM_ERR_IO once */
+    struct lm_can_frame batch[DRV_CAN_SOCKET_BATCH];
+    uint32_t batch_next, batch_count;
+    struct can_frame queue[DRV_CAN_SOCKET_QUEUE]; /* a ring */
+    uint32_t queue_first, queue_count;
 
     struct {
         uint32_t frames;
         uint32_t malformed;  /* not the size of a classic frame, or longer than 8 bytes */
-        uint32_t down;       /* times that the interface went down or away */
         uint32_t overflowed; /* lost between interrupt and program, as the kernel counts them */
-    } count;
+        uint32_t sent;       /* given to the kernel */
+        uint32_t unsent; /* dropped: the queue was full, the older ones first, or the bus down */
+        uint32_t down;   /* times that the interface went down */
+        uint32_t gone;   /* times that it was removed, or the socket failed */
+        uint32_t reopened;
+        uint32_t bus_off, restarts;  /* reports of the controller, by kind */
+        uint32_t overruns;           /* frames lost in the controller */
+        uint32_t passive;            /* it sees so many errors that it no longer objects */
+        uint32_t no_ack, tx_timeout; /* nobody hears what is sent */
+    } count;                         /* only ever grow, but for an open */
 };
 
-/* Open `interface` ("can0") without ever waiting on it: only identifiers of lm_canas_table pass
- * (channel 0 and the redundancy channels), and the controller's reports of time-outs, overruns,
- * bus-off, restart and missing acknowledgements. The receive buffer is asked to hold 4 MiB, because
- * the default of 208 KiB is full after 35 ms of a busy bus. LM_OK, or LM_ERR_IO with s->error
- * saying why and s->fd = -1. */
-int drv_can_socket_open(struct drv_can_socket *s, const char *interface, uint64_t time_zero_us);
+/* Open `interface` ("can0") without ever waiting on it: only the profile's identifiers pass, node
+ * service requests for CANaerospace, and the controller's reports of time-outs, overruns, bus-off,
+ * restart and missing acknowledgements. The receive buffer is asked to hold 4 MiB, because the
+ * default of 208 KiB is full after 35 ms of a busy bus. `profile` must outlive *s.
+ *
+ * LM_OK, or LM_ERR_IO with s->error saying why and s->fd = -1. After a failure *s may be used all
+ * the same: its port looks for the interface again every DRV_CAN_SOCKET_RETRY_US. */
+int drv_can_socket_open(struct drv_can_socket *s, const char *interface,
+                        const struct lm_bus_profile *profile, uint64_t time_zero_us);
 
 /* Safe on one that is closed, or was never opened successfully. */
 void drv_can_socket_close(struct drv_can_socket *s);
 
-/* The socket as the firmware's bus; `s` must outlive it. receive answers 1, 0 when none waits, or
- * LM_ERR_IO with s->error filled: the interface went down (it may come up again by itself: ask
- * again later) or is gone (close, and open again from time to time). Frames that are not what a
- * classic controller sends are counted and skipped, at most 16 in one call. */
+/* The socket as the firmware's bus; `s` must outlive it.
+ *
+ * receive answers 1, or 0 when none waits, or LM_ERR_IO with s->error filled, once for each thing
+ * that happens: the interface went down (it is heard again as soon as it is up), is gone (it is
+ * looked for, see above), or the controller went bus-off. What is received keeps its order; frames
+ * that are not what a classic controller sends are counted and skipped. One call makes at most one
+ * system call to receive and one for each frame that it can send.
+ *
+ * send takes every frame into the queue; the oldest one that waits is dropped when it is full.
+ * What the kernel has no room for is offered again in the next call of either function. LM_OK, or
+ * LM_ERR_IO when the interface is down or gone, and then the queue is emptied: an answer of before
+ * is of no use afterwards. */
 struct lm_can drv_can_socket_port(struct drv_can_socket *s);
 
-enum { DRV_CAN_SOCKET_FILTERS = 2 * LM_CANAS_FIELDS };
-
-/* One filter for each row's identifier, 11 bits and no remote frames, and one for its redundancy
- * channels. */
-void drv_can_socket_filters(struct can_filter filters[DRV_CAN_SOCKET_FILTERS]);
+/* The kernel's filters for a profile: for CANaerospace one for each row's identifier, 11 bits and
+ * no remote frames, one for its redundancy channels, and one for node services; for packed frames
+ * one for each identifier and mask. Returns how many were written. */
+size_t drv_can_socket_filters(const struct lm_bus_profile *profile,
+                              struct can_filter filters[DRV_CAN_SOCKET_FILTERS]);
 
 /* False for what is no classic data, remote or error frame. time_us stays 0. */
 bool drv_can_socket_convert(const struct can_frame *from, struct lm_can_frame *to);

@@ -30,6 +30,24 @@ _Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
 #endif
 _Static_assert(LM_TARGETS_MAX >= 1 && LM_TARGETS_MAX <= 1024, "LM_TARGETS_MAX out of range");
 
+/* Redundancy channels of the bus that are used: 0 and those above it. 1..8. */
+#ifndef LM_BUS_CHANNELS
+#define LM_BUS_CHANNELS 4
+#endif
+_Static_assert(LM_BUS_CHANNELS >= 1 && LM_BUS_CHANNELS <= 8, "LM_BUS_CHANNELS out of range");
+
+/* Rows that a profile of the bus may have. 32..255. */
+#ifndef LM_BUS_ROWS_MAX
+#define LM_BUS_ROWS_MAX 64
+#endif
+_Static_assert(LM_BUS_ROWS_MAX >= 32 && LM_BUS_ROWS_MAX <= 255, "LM_BUS_ROWS_MAX out of range");
+
+/* Senders of one field that are followed at a time; the best of them is used. 2..8. */
+#ifndef LM_NAV_SOURCES
+#define LM_NAV_SOURCES 4
+#endif
+_Static_assert(LM_NAV_SOURCES >= 2 && LM_NAV_SOURCES <= 8, "LM_NAV_SOURCES out of range");
+
 /* Frames taken from the bus in one step, and scan lines drawn in one step. */
 #ifndef LM_STEP_FRAMES
 #define LM_STEP_FRAMES 64

@@ -6,9 +6,9 @@
 #include <stdint.h>
 
 #include "fx/types.h"
-#include "lm/canas.h"
+#include "lm/bus.h"
 
-/* How far a number may be trusted. The ages that part the three are columns of lm_canas_table: a
+/* How far a number may be trusted. The ages that part the three are columns of the profile: a
  * number is stale when it is older than `stale_ms`, dead when it is older than `dead_ms` or was
  * never heard. The better the larger. */
 enum lm_nav_quality {
@@ -20,19 +20,43 @@ enum lm_nav_quality {
 /* Two fixes that this speed cannot connect are a jump. */
 #define LM_NAV_JUMP_M_S 1500
 
-/* The last value of each field; the caller owns it. Counters only ever grow. */
-struct lm_nav {
-    struct lm_canas canas;
-    struct lm_nav_item {
-        int32_t value; /* unit: the field's row in lm_canas_table */
-        bool has_value, is_coarse;
-        uint64_t time_us;
-    } item[LM_CANAS_FIELDS];
+/* A sender that fell silent for longer than its stale age must be heard this long without another
+ * such pause before it is preferred to one that did not. */
+#define LM_NAV_SETTLE_US 1000000
 
-    /* Fixes that lie further from the one before than LM_NAV_JUMP_M_S allows (at least 150 m), each
-     * coordinate counted for itself. A jump is believed at once: an instructor moves the aircraft.
-     * Whoever draws watches this number and starts the picture anew when it changes. */
+/* A position whose type cannot tell places nearer than this apart, in BAM (20 m), is stale at best:
+ * SHORT2 of full scale 180 degrees has steps of 612 m, FLOAT of at most 1.7 m. */
+#define LM_NAV_COARSE_BAM 2144
+
+/* The last value of each field from each of its senders; the caller owns it. Counters only ever
+ * grow. */
+struct lm_nav {
+    struct lm_bus bus;
+    struct lm_nav_item {
+        uint64_t time_us;
+        uint64_t steady_us; /* when the run without a pause began that this value continues */
+        int32_t value;      /* in the field's unit */
+        uint32_t step;      /* see lm_bus_event */
+        uint16_t rank;      /* priority of the row * 256 + channel: the least is preferred */
+        uint8_t row, node;
+        bool has_value;
+    } item[LM_BUS_FIELDS][LM_NAV_SOURCES];
+
+    /* Fixes that lie further from the sender's one before than LM_NAV_JUMP_M_S allows (at least
+     * 150 m), each coordinate counted for itself. A jump is believed at once: an instructor moves
+     * the aircraft. Whoever draws watches this number and starts the picture anew when it changes.
+     */
     uint32_t position_jumps;
+    uint32_t crowded; /* values not kept: LM_NAV_SOURCES better senders of the field were alive */
+};
+
+/* Who said a number, and how long ago. For a group of fields, of the one that is older. All zero
+ * when the group's quality is LM_NAV_DEAD. */
+struct lm_nav_origin {
+    uint32_t age_us;
+    uint16_t rank; /* as above */
+    uint8_t row;   /* of the profile; of the group's first field */
+    uint8_t node;
 };
 
 /* Each group of numbers has a quality of its own; when that is LM_NAV_DEAD the numbers are zero and
@@ -40,59 +64,77 @@ struct lm_nav {
 struct lm_ownship {
     fx_bam_t latitude, longitude; /* latitude signed */
     enum lm_nav_quality position_quality;
+    struct lm_nav_origin position_origin;
 
-    int32_t height_q6;                 /* metres * 64 */
-    enum lm_canas_field height_source; /* GPS_HEIGHT: above the ellipsoid; TRUE_ and BARO_ALTITUDE:
-                                          mean sea level */
+    int32_t height_q6;               /* metres * 64 */
+    enum lm_bus_field height_source; /* ELLIPSOID_HEIGHT; TRUE_ and BARO_ALTITUDE: mean sea level */
     enum lm_nav_quality height_quality;
+    struct lm_nav_origin height_origin;
 
-    fx_bam_t heading;                   /* of the nose, from north by east */
-    enum lm_canas_field heading_source; /* TRUE_HEADING, or HEADING, which may be magnetic */
+    fx_bam_t heading;                 /* of the nose, from north by east */
+    enum lm_bus_field heading_source; /* TRUE_HEADING, or HEADING, which may be magnetic */
     enum lm_nav_quality heading_quality;
+    struct lm_nav_origin heading_origin;
 
     int32_t pitch, roll; /* signed BAM: nose up, right wing down */
     enum lm_nav_quality attitude_quality;
+    struct lm_nav_origin attitude_origin;
 
     int32_t velocity_north_mm_s, velocity_east_mm_s; /* over the ground */
     int32_t ground_speed_mm_s;
     fx_bam_t track; /* of the ground velocity; 0 at rest */
     enum lm_nav_quality velocity_quality;
+    struct lm_nav_origin velocity_origin;
 
     int32_t utc_s; /* since midnight */
     enum lm_nav_quality utc_quality;
+    struct lm_nav_origin utc_origin;
 };
 
-void lm_nav_init(struct lm_nav *n);
+/* `profile` says what the frames mean; it must outlive *n. */
+void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
 
 /* Take a frame of the bus, whatever it is. A later call wins over an earlier one, whatever their
- * time stamps say, so that a recording that starts over is followed at once. */
+ * time stamps say, so that a recording that starts over is followed at once.
+ *
+ * A coordinate that came in a type of coarse steps, such as FLOAT, is smoothed: it says only that
+ * the aircraft is within half a step. What is kept is the sender's last position carried on with
+ * the velocity, moved by no more than it takes to lie within that half step. So the position is
+ * never worse than the type allows and does not jump by a step of up to 1.7 m ten times a second.
+ * Without a velocity the value is kept as it came. */
 void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame);
 
 /* The aircraft at `now_us`, on the clock of the frames' time stamps. A value up to its stale age in
  * the future counts as just heard; one further ahead comes from a clock that was set back, and is
  * dead until it is heard again.
  *
+ * Of several senders of a field (rows of the profile, redundancy channels) that one is used which
+ * is good and settled; or else good; or else stale; among equals the one of the lowest rank.
+ * Settled is a sender without a pause in the last LM_NAV_SETTLE_US. Both fields of a pair (latitude
+ * and longitude, and so on) are always of one rank.
+ *
  * Position: latitude and longitude each from its own time, along the velocity on WGS-84's two radii
  * at the present height, for at most the 2 s until they are dead. Worst errors after 2 s at 300 m/s
  * up to 80 degrees of latitude (test_nav.c): 0.016 m against a course of constant velocity, 0.16 m
  * against the geodesic, whose course turns (0.06 m up to 60 degrees). Within 0.6 degree of a pole
  * longitude moves too slowly. Stale at best when the velocity is dead, because then it stands
- * still, or when a coordinate came as SHORT2.
+ * still, or when a coordinate came in steps above LM_NAV_COARSE_BAM.
  *
- * Velocity: 1131 and 1130, or else 1039 along 1040.
+ * Velocity: north and east, or else ground speed along the track.
  *
- * Height: 1038, or else 332, or else 320; moved on by 1132, or else 314.
+ * Height: above the ellipsoid, or else true altitude, or else corrected barometric; moved on by
+ * up-velocity, or else altitude rate.
  *
- * Heading: 1133, or else 321; turned on by the body's pitch and yaw rates while these and the
- * attitude are good, within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60 degrees of
- * pitch.
+ * Heading: true heading, or else heading; turned on by the body's pitch and yaw rates while these
+ * and the attitude are good, within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60 degrees
+ * of pitch.
  *
- * Attitude: 311 and 312 as they came.
+ * Attitude: pitch and roll as they came.
  *
- * "Or else" means when the former is dead, not already when it is stale: sources differ, and a
- * picture that changes its mind at every lost frame is worse than one 300 ms old.
+ * "Or else" means when the former is dead, not already when it is stale: these are different
+ * quantities, and a picture that changes its mind at every lost frame is worse than one 300 ms old.
  *
- * Cost: 1,420 instructions (x86-64, gcc -O2, counted). */
+ * Cost: 1,900 instructions (x86-64, gcc -O2, counted). */
 void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out);
 
 #endif

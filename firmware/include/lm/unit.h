@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 
+#include "lm/canas_service.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
 #include "lm/ground_map.h"
@@ -18,6 +19,9 @@ struct lm_board {
     const struct lm_radar *radar;
     const struct lm_flash *flash;
     const struct lm_can *can;
+    const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
+    uint8_t bus_node;          /* the display's own; 0: it takes no part in node services */
+    uint8_t hardware_revision; /* told to whoever asks on the bus */
     const struct lm_controls *controls;
     const struct lm_display *display;
     void *tile_pool; /* 8-byte aligned */
@@ -46,6 +50,7 @@ struct lm_unit {
     struct lm_target targets[LM_TARGETS_MAX];
     struct lm_target_set target_set; /* the part of them that was read */
     struct lm_nav nav;
+    struct lm_canas_service service;
     struct lm_ownship ownship; /* extrapolated to the last step */
 
     struct lm_keys keys;
@@ -70,6 +75,7 @@ struct lm_unit {
     struct lm_fault faults[LM_FAULTS_KEPT]; /* fault n of `count` is at n % LM_FAULTS_KEPT */
     uint64_t last_bus_us;                   /* when a frame last came */
     uint32_t jumps_seen;                    /* of the nav */
+    uint16_t position_rank_seen;            /* of the sender of the position */
     uint32_t tile_faults_seen;              /* of the cache, and when they last grew */
     uint64_t tile_fault_us;
     uint32_t cells_none, cells_seen; /* sampled, of the running sweep or patch */

@@ -2,6 +2,7 @@
 #ifndef LM_VERSION_H
 #define LM_VERSION_H
 
-#define LM_VERSION "0.1"
+#define LM_VERSION        "0.1"
+#define LM_VERSION_NUMBER 0x01 /* the same as major * 16 + minor, as the bus is told it */
 
 #endif

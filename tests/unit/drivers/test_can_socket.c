@@ -2,8 +2,11 @@
  * bus. */
 #include "drv/can_socket.h"
 #include "hs/rng.h"
+#include "lm/bus.h"
+#include "lm/canas_service.h"
 
 #include <errno.h>
+#include <linux/can/error.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -18,7 +21,7 @@ static void an_interface_that_does_not_exist_is_named_in_the_error(void **state)
 {
     (void)state;
     struct drv_can_socket s;
-    assert_int_equal(drv_can_socket_open(&s, "nocan7", 0), LM_ERR_IO);
+    assert_int_equal(drv_can_socket_open(&s, "nocan7", &lm_bus_canas17, 0), LM_ERR_IO);
     assert_int_equal(s.fd, -1);
     assert_non_null(strstr(s.error, "nocan7: no such interface"));
     assert_non_null(strstr(s.error, "ip link"));
@@ -34,7 +37,7 @@ static void what_is_no_can_interface_cannot_be_opened(void **state)
         print_message("# skipped: no interface lo here\n");
         skip();
     }
-    assert_int_equal(drv_can_socket_open(&s, "lo", 0), LM_ERR_IO);
+    assert_int_equal(drv_can_socket_open(&s, "lo", &lm_bus_canas17, 0), LM_ERR_IO);
     assert_int_equal(s.fd, -1);
     print_message("# %s\n", s.error);
     assert_non_null(strstr(s.error, "lo: "));
@@ -73,56 +76,89 @@ static void flags_and_bytes_are_carried_over(void **state)
 }
 
 /* The kernel's rule (Documentation/networking/can.rst, 4.1.1): received & mask == filter & mask. */
-static bool passes(const struct can_filter *filters, canid_t id)
+struct filters {
+    struct can_filter list[DRV_CAN_SOCKET_FILTERS];
+    size_t count;
+    const struct lm_bus_profile *profile;
+};
+
+static bool passes(const struct filters *f, canid_t id)
 {
-    for (size_t i = 0; i < DRV_CAN_SOCKET_FILTERS; i++) {
-        if ((id & filters[i].can_mask) == (filters[i].can_id & filters[i].can_mask)) {
+    for (size_t i = 0; i < f->count; i++) {
+        if ((id & f->list[i].can_mask) == (f->list[i].can_id & f->list[i].can_mask)) {
             return true;
         }
     }
     return false;
 }
 
-static void assert_filtered_as_decoded(const struct can_filter *filters, canid_t id)
+static void assert_filtered_as_decoded(const struct filters *f, canid_t id)
 {
     const struct can_frame raw = {.can_id = id, .can_dlc = 8, .data = {9, 2}};
     struct lm_can_frame frame;
-    struct lm_canas canas;
-    struct lm_canas_event event;
-    lm_canas_init(&canas);
+    struct lm_bus bus;
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    lm_bus_init(&bus, f->profile);
     assert_true(drv_can_socket_convert(&raw, &frame));
-    const enum lm_canas_outcome outcome = lm_canas_take(&canas, &frame, &event);
+    lm_bus_take(&bus, &frame, events);
+    const uint32_t *outcome = bus.count.outcome;
+    const bool is_unwanted = outcome[LM_BUS_NOT_DATA] || outcome[LM_BUS_FOREIGN] ||
+                             outcome[LM_BUS_UNUSED] || outcome[LM_BUS_OTHER_CHANNEL] ||
+                             outcome[LM_BUS_SERVICE];
+    /* Of the services only requests on channel 0 are heard. */
     const bool is_wanted =
-        outcome != LM_CANAS_NOT_DATA && outcome != LM_CANAS_FOREIGN && outcome != LM_CANAS_UNUSED;
+        !is_unwanted || (f->profile->framing == LM_BUS_CANAEROSPACE && id == LM_CANAS_REQUEST_ID);
     /* The one difference: 29 bits on channel 0 are left to the decoder, which counts them as
      * foreign. */
     const bool is_long_channel_0 = (id & CAN_EFF_FLAG) != 0 && (id & CAN_EFF_MASK) <= 0x7ff;
-    if (passes(filters, id) != is_wanted && !is_long_channel_0) {
-        fail_msg("identifier %08X: outcome %d", (unsigned)id, (int)outcome);
+    if (passes(f, id) != is_wanted && !(is_long_channel_0 && !is_wanted)) {
+        fail_msg("identifier %08X is %s", (unsigned)id, is_wanted ? "filtered out" : "let in");
+    }
+}
+
+static void assert_filters_of(const struct lm_bus_profile *profile)
+{
+    struct filters f = {.profile = profile};
+    f.count = drv_can_socket_filters(profile, f.list);
+    assert_in_range(f.count, 1, 512); /* CAN_RAW_FILTER_MAX */
+    for (canid_t id = 0; id <= CAN_SFF_MASK; id++) {
+        assert_filtered_as_decoded(&f, id);
+        assert_filtered_as_decoded(&f, id | CAN_RTR_FLAG);
+        for (canid_t channel = 0; channel <= 9; channel++) {
+            assert_filtered_as_decoded(&f, channel << 16 | id | CAN_EFF_FLAG);
+            assert_filtered_as_decoded(&f, channel << 16 | id | 0xf000 | CAN_EFF_FLAG);
+            assert_filtered_as_decoded(&f, channel << 16 | id | CAN_EFF_FLAG | CAN_RTR_FLAG);
+        }
+    }
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 41);
+    for (int i = 0; i < 100000; i++) {
+        const uint64_t dice = hs_rng_u64(&rng);
+        const struct lm_bus_row *row = &profile->rows[(dice >> 32) % profile->row_count];
+        const canid_t any = (canid_t)dice & CAN_EFF_MASK;
+        /* Half of them are near a row of 29 bits. */
+        const canid_t near = (row->id & row->packing.mask) | (any & ~row->packing.mask);
+        assert_filtered_as_decoded(&f, (dice >> 63 ? any : near) | CAN_EFF_FLAG);
     }
 }
 
 static void the_filters_pass_what_the_decoder_takes_and_nothing_else(void **state)
 {
     (void)state;
-    struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
-    drv_can_socket_filters(filters);
-    assert_true(DRV_CAN_SOCKET_FILTERS <= 512); /* CAN_RAW_FILTER_MAX */
-    for (canid_t id = 0; id <= CAN_SFF_MASK; id++) {
-        assert_filtered_as_decoded(filters, id);
-        assert_filtered_as_decoded(filters, id | CAN_RTR_FLAG);
-        for (canid_t channel = 0; channel <= 3; channel++) {
-            assert_filtered_as_decoded(filters, channel << 16 | id | CAN_EFF_FLAG);
-            assert_filtered_as_decoded(filters, channel << 16 | id | 0xf000 | CAN_EFF_FLAG);
-            assert_filtered_as_decoded(filters, channel << 16 | id | CAN_EFF_FLAG | CAN_RTR_FLAG);
-        }
-    }
-    struct hs_rng rng;
-    hs_rng_seed(&rng, 41);
-    for (int i = 0; i < 100000; i++) {
-        assert_filtered_as_decoded(filters,
-                                   ((canid_t)hs_rng_u64(&rng) & CAN_EFF_MASK) | CAN_EFF_FLAG);
-    }
+    assert_filters_of(&lm_bus_canas17);
+    assert_filters_of(&lm_bus_xcsoar);
+    /* 127257 of NMEA 2000 from anybody, and one item of ARINC 825's shape with a condition. */
+    static const struct lm_bus_row packed[] = {
+        {.id = 0x01f11900, .packing = {.mask = 0x03ffff00, .bits = {8, 16}, .multiplier = 1}},
+        {.id = 0x01f11900, .packing = {.mask = 0x03ffff00, .bits = {24, 16}, .multiplier = 1}},
+        {.id = 0x08680160,
+         .packing = {.mask = 0x1ff8fffc, .bits = {0, 32}, .type = LM_BUS_FLOAT, .multiplier = 1}},
+    };
+    const struct lm_bus_profile profile = {
+        .rows = packed, .row_count = 3, .framing = LM_BUS_PACKED};
+    assert_filters_of(&profile);
+    struct can_filter list[DRV_CAN_SOCKET_FILTERS];
+    assert_int_equal(drv_can_socket_filters(&profile, list), 2);
 }
 
 static void a_stamp_is_an_age_whatever_the_clock_on_the_wall_does(void **state)
@@ -142,7 +178,7 @@ static struct drv_can_socket stand_in(int *other)
     int ends[2];
     assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends), 0);
     *other = ends[1];
-    return (struct drv_can_socket){.fd = ends[0]};
+    return (struct drv_can_socket){.fd = ends[0], .interface = "can0", .profile = &lm_bus_canas17};
 }
 
 static uint64_t monotonic_us(void)
@@ -194,26 +230,151 @@ static void a_flood_of_bad_frames_cannot_hold_the_caller(void **state)
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
     struct can_frame raw = {.can_id = 1, .can_dlc = 15};
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 100; i++) {
         assert_true(send(other, &raw, sizeof raw, 0) > 0);
     }
     struct lm_can_frame f;
     assert_int_equal(port.receive(port.ctx, &f), 0);
-    assert_int_equal(s.count.malformed, 16);
+    assert_int_equal(s.count.malformed, DRV_CAN_SOCKET_BATCH);
     close(other);
     drv_can_socket_close(&s);
+}
+
+static void frames_of_several_batches_come_in_order_and_none_is_lost(void **state)
+{
+    (void)state;
+    int other;
+    struct drv_can_socket s = stand_in(&other);
+    const struct lm_can port = drv_can_socket_port(&s);
+    struct lm_can_frame f;
+    for (canid_t i = 0; i < 200; i++) {
+        const struct can_frame raw = {.can_id = i, .can_dlc = 8};
+        assert_true(send(other, &raw, sizeof raw, 0) > 0);
+    }
+    for (canid_t i = 0; i < 200; i++) {
+        assert_int_equal(port.receive(port.ctx, &f), 1);
+        assert_int_equal(f.id, i);
+    }
+    assert_int_equal(port.receive(port.ctx, &f), 0);
+    close(other);
+    drv_can_socket_close(&s);
+}
+
+static void send_report(int other, canid_t class, uint8_t controller)
+{
+    const struct can_frame raw = {
+        .can_id = CAN_ERR_FLAG | class, .can_dlc = 8, .data = {0, controller}};
+    assert_true(send(other, &raw, sizeof raw, 0) > 0);
+}
+
+static void the_controllers_reports_are_counted_and_bus_off_is_said_once(void **state)
+{
+    (void)state;
+    int other;
+    struct drv_can_socket s = stand_in(&other);
+    const struct lm_can port = drv_can_socket_port(&s);
+    struct lm_can_frame f;
+    send_report(other, CAN_ERR_ACK, 0);
+    send_report(other, CAN_ERR_CRTL, CAN_ERR_CRTL_RX_OVERFLOW);
+    send_report(other, CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+    send_report(other, CAN_ERR_TX_TIMEOUT, CAN_ERR_CRTL_RX_OVERFLOW); /* not of that class */
+    send_report(other, CAN_ERR_BUSOFF, 0);
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(port.receive(port.ctx, &f), 1);
+        assert_true(f.is_error);
+    }
+    assert_int_equal(port.receive(port.ctx, &f), LM_ERR_IO);
+    assert_non_null(strstr(s.error, "bus-off"));
+    assert_non_null(strstr(s.error, "restart-ms"));
+    assert_int_equal(port.receive(port.ctx, &f), 0);
+    assert_true(s.is_bus_off);
+    assert_true(s.count.no_ack == 1 && s.count.overruns == 1 && s.count.passive == 1 &&
+                s.count.tx_timeout == 1 && s.count.bus_off == 1 && s.count.restarts == 0);
+    send_report(other, CAN_ERR_RESTARTED, 0);
+    assert_int_equal(port.receive(port.ctx, &f), 1);
+    assert_false(s.is_bus_off);
+    assert_int_equal(s.count.restarts, 1);
+
+    /* A controller that comes back without saying so is heard all the same. */
+    const struct can_frame data = {.can_id = 0x40c, .can_dlc = 8};
+    send_report(other, CAN_ERR_BUSOFF, 0);
+    assert_true(send(other, &data, sizeof data, 0) > 0);
+    assert_int_equal(port.receive(port.ctx, &f), 1);
+    assert_int_equal(port.receive(port.ctx, &f), 1);
+    assert_false(s.is_bus_off);
+    close(other);
+    drv_can_socket_close(&s);
+}
+
+static void a_full_queue_drops_the_oldest_frames_and_counts_them(void **state)
+{
+    (void)state;
+    int other;
+    struct drv_can_socket s = stand_in(&other);
+    const struct lm_can port = drv_can_socket_port(&s);
+    struct lm_can_frame f = {.id = 0x81, .length = 8, .data = {20, 16}};
+    /* The stand-in holds a good many frames before it says EAGAIN. */
+    uint32_t offered = 0;
+    while (s.count.unsent == 0 && offered < 100000) {
+        f.id = offered & 0x7ff;
+        assert_int_equal(port.send(port.ctx, &f), LM_OK);
+        offered++;
+    }
+    assert_int_equal(s.count.unsent, 1);
+    assert_int_equal(s.queue_count, DRV_CAN_SOCKET_QUEUE);
+    assert_int_equal(s.count.sent + s.count.unsent + s.queue_count, offered);
+    /* What had been sent comes in order, then one is missing, then the others: sent by the next
+     * calls, here of receive. */
+    struct can_frame raw;
+    struct lm_can_frame none;
+    const uint32_t sent = s.count.sent;
+    for (uint32_t i = 0; i < offered - 1; i++) {
+        while (recv(other, &raw, sizeof raw, MSG_DONTWAIT) < 0) {
+            assert_int_equal(port.receive(port.ctx, &none), 0);
+        }
+        assert_int_equal(raw.can_id, (i < sent ? i : i + 1) & 0x7ff);
+        assert_true(raw.can_dlc == 8 && raw.data[0] == 20 && raw.data[1] == 16);
+    }
+    assert_int_equal(s.queue_count, 0);
+    close(other);
+    drv_can_socket_close(&s);
+}
+
+static void an_interface_that_is_missing_at_start_is_looked_for_now_and_then(void **state)
+{
+    (void)state;
+    struct drv_can_socket s;
+    assert_int_equal(drv_can_socket_open(&s, "nocan7", &lm_bus_canas17, 0), LM_ERR_IO);
+    const struct lm_can port = drv_can_socket_port(&s);
+    struct lm_can_frame f = {.id = 0x81, .length = 8};
+    assert_true(s.retry_us <= monotonic_us() + DRV_CAN_SOCKET_RETRY_US);
+    s.retry_us = UINT64_MAX;
+    assert_int_equal(port.receive(port.ctx, &f), 0);
+    assert_int_equal(port.send(port.ctx, &f), LM_ERR_IO);
+    s.retry_us = 0;
+    assert_int_equal(port.receive(port.ctx, &f), LM_ERR_IO);
+    assert_non_null(strstr(s.error, "nocan7: no such interface"));
+    assert_int_equal(s.count.unsent, 1);
+    assert_int_equal(s.count.reopened, 0);
 }
 
 static void a_bus_that_goes_away_is_an_error_with_a_remedy(void **state)
 {
     (void)state;
-    struct drv_can_socket s = {.fd = -1}; /* EBADF stands for whatever the kernel may say */
+    int other;
+    struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
-    struct lm_can_frame f;
-    assert_int_equal(port.receive(port.ctx, &f), LM_ERR_IO);
+    struct lm_can_frame f = {.id = 0x81, .length = 8};
+    close(s.fd);
+    s.fd = other; /* ENOTCONN or ECONNRESET stands for whatever the kernel may say */
+    assert_int_equal(port.send(port.ctx, &f), LM_ERR_IO);
     assert_non_null(strstr(s.error, "the bus is lost"));
-    assert_non_null(strstr(s.error, "open it again"));
-    assert_int_equal(s.count.down, 1);
+    assert_non_null(strstr(s.error, "until it is back"));
+    assert_int_equal(s.fd, -1);
+    assert_int_equal(s.count.gone, 1);
+    assert_int_equal(s.count.unsent, 1);
+    s.retry_us = UINT64_MAX;
+    assert_int_equal(port.receive(port.ctx, &f), 0); /* said once */
 }
 
 int main(void)
@@ -226,6 +387,10 @@ int main(void)
         cmocka_unit_test(a_stamp_is_an_age_whatever_the_clock_on_the_wall_does),
         cmocka_unit_test(frames_come_in_order_and_bad_ones_are_counted_and_skipped),
         cmocka_unit_test(a_flood_of_bad_frames_cannot_hold_the_caller),
+        cmocka_unit_test(frames_of_several_batches_come_in_order_and_none_is_lost),
+        cmocka_unit_test(the_controllers_reports_are_counted_and_bus_off_is_said_once),
+        cmocka_unit_test(a_full_queue_drops_the_oldest_frames_and_counts_them),
+        cmocka_unit_test(an_interface_that_is_missing_at_start_is_looked_for_now_and_then),
         cmocka_unit_test(a_bus_that_goes_away_is_an_error_with_a_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,7 +2,7 @@
 #ifndef BUS_FRAMES_H
 #define BUS_FRAMES_H
 
-#include "lm/canas.h"
+#include "lm/bus.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -36,26 +36,48 @@ static inline uint64_t bus_double_bits(double value)
     return bits;
 }
 
-static inline struct lm_can_frame bus_float(enum lm_canas_field field, double value,
-                                            uint64_t time_us)
+static inline struct lm_can_frame bus_float(enum lm_bus_field field, double value, uint64_t time_us)
 {
-    return bus_frame(lm_canas_table[field].id, LM_CANAS_FLOAT, 0, bus_float_bits(value), time_us);
+    return bus_frame(lm_bus_canas17.rows[field].id, LM_CANAS_FLOAT, 0, bus_float_bits(value),
+                     time_us);
 }
 
-/* How many counts of a row's fixed point make one unit of the bus. */
-static inline double bus_counts_per_unit(enum lm_canas_field field)
+/* How many counts of a field's fixed point make one unit of the bus. */
+static inline double bus_counts_per_unit(enum lm_bus_field field)
 {
     static const double counts[] = {
-        [LM_CANAS_BAM] = 4294967296.0 / 360.0,
-        [LM_CANAS_Q6] = 64.0,
-        [LM_CANAS_MM_S] = 1000.0,
-        [LM_CANAS_SECONDS] = 1.0,
+        [LM_BUS_BAM] = 4294967296.0 / 360.0,
+        [LM_BUS_BAM_A_SECOND] = 4294967296.0 / 360.0,
+        [LM_BUS_Q6] = 64.0,
+        [LM_BUS_MM_S] = 1000.0,
+        [LM_BUS_SECONDS] = 1.0,
     };
-    return counts[lm_canas_table[field].unit];
+    return counts[lm_bus_fields[field].unit];
+}
+
+/* Give the decoder a frame. Says which one outcome it had; *event is its value, if it has one. */
+static inline enum lm_bus_outcome bus_take(struct lm_bus *b, const struct lm_can_frame *frame,
+                                           struct lm_bus_event *event)
+{
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const struct lm_bus before = *b;
+    if (lm_bus_take(b, frame, events) == 1) {
+        *event = events[0];
+    }
+    int outcome = 0;
+    while (b->count.outcome[outcome] == before.count.outcome[outcome]) {
+        outcome++;
+    }
+    return (enum lm_bus_outcome)outcome;
+}
+
+static inline enum lm_bus_field bus_field(const struct lm_bus_event *event)
+{
+    return (enum lm_bus_field)lm_bus_canas17.rows[event->row].field;
 }
 
 /* A value as the bus would say it. An angle of 180..360 degrees comes back as -180..0. */
-static inline double bus_unit_of(enum lm_canas_field field, int32_t value)
+static inline double bus_unit_of(enum lm_bus_field field, int32_t value)
 {
     return value / bus_counts_per_unit(field);
 }

@@ -26,7 +26,7 @@ static struct lm_can_frame random_frame(struct hs_rng *rng, uint64_t time_us)
     frame.length = (uint8_t)hs_rng_u64(rng);
     frame.is_extended = (dice & 0x100) != 0;
     if ((dice & 7) != 0) {
-        frame.id = lm_canas_table[hs_rng_below(rng, LM_CANAS_FIELDS)].id;
+        frame.id = lm_bus_canas17.rows[hs_rng_below(rng, LM_BUS_FIELDS)].id;
         frame.is_extended = (dice & 0xf00) == 0;
         frame.length = 8;
         frame.data[0] = (uint8_t)((dice >> 13 & 31) == 0 ? 0 : 9 + (dice >> 12 & 1));
@@ -60,7 +60,7 @@ static void every_random_frame_is_accounted_for_and_the_ownship_stays_possible(v
     hs_rng_seed(&rng, 21);
     struct lm_nav *nav =
         malloc(sizeof *nav); /* on the heap, where the sanitizer watches its ends */
-    lm_nav_init(nav);
+    lm_nav_init(nav, &lm_bus_canas17);
     uint64_t now_us = 0;
     for (int i = 0; i < 400000; i++) {
         const uint32_t kind = hs_rng_below(&rng, 1000);
@@ -72,12 +72,12 @@ static void every_random_frame_is_accounted_for_and_the_ownship_stays_possible(v
         assert_possible(&ownship);
     }
     uint32_t sum = 0;
-    for (int i = 0; i < LM_CANAS_OUTCOMES; i++) {
-        assert_true(nav->canas.count.outcome[i] > 0);
-        sum += nav->canas.count.outcome[i];
+    for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
+        assert_true(nav->bus.count.outcome[i] > 0);
+        sum += nav->bus.count.outcome[i];
     }
     assert_int_equal(sum, 400000);
-    assert_int_equal(nav->canas.count.frames, 400000);
+    assert_int_equal(nav->bus.count.frames, 400000);
     free(nav);
 }
 

@@ -17,17 +17,16 @@ static void hear(struct lm_nav *nav, struct lm_can_frame frame)
     lm_nav_take(nav, &frame);
 }
 
-static void hear_float(struct lm_nav *nav, enum lm_canas_field field, double value,
-                       uint64_t time_us)
+static void hear_float(struct lm_nav *nav, enum lm_bus_field field, double value, uint64_t time_us)
 {
     hear(nav, bus_float(field, value, time_us));
 }
 
 /* A coordinate as a DOUBLE, both halves at the same time. */
-static void hear_double(struct lm_nav *nav, enum lm_canas_field field, double degrees,
+static void hear_double(struct lm_nav *nav, enum lm_bus_field field, double degrees,
                         uint64_t time_us)
 {
-    const uint32_t id = lm_canas_table[field].id;
+    const uint32_t id = lm_bus_canas17.rows[field].id;
     const uint64_t bits = bus_double_bits(degrees);
     hear(nav, bus_frame(id, LM_CANAS_DOUBLEH, 0, (uint32_t)(bits >> 32), time_us));
     hear(nav, bus_frame(id, LM_CANAS_DOUBLEL, 1, (uint32_t)bits, time_us));
@@ -89,13 +88,13 @@ static double metres_between(double latitude_a, double longitude_a, double latit
 static struct lm_ownship fly_in_firmware(struct course *c, uint64_t age_us)
 {
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     const uint64_t start_us = 5000000;
-    hear_double(&nav, LM_CANAS_LATITUDE, c->latitude, start_us);
-    hear_double(&nav, LM_CANAS_LONGITUDE, c->longitude, start_us);
-    hear_float(&nav, LM_CANAS_NORTH_VELOCITY, c->north_m_s, start_us);
-    hear_float(&nav, LM_CANAS_EAST_VELOCITY, c->east_m_s, start_us);
-    hear_float(&nav, LM_CANAS_GPS_HEIGHT, c->height_m, start_us);
+    hear_double(&nav, LM_BUS_LATITUDE, c->latitude, start_us);
+    hear_double(&nav, LM_BUS_LONGITUDE, c->longitude, start_us);
+    hear_float(&nav, LM_BUS_NORTH_VELOCITY, c->north_m_s, start_us);
+    hear_float(&nav, LM_BUS_EAST_VELOCITY, c->east_m_s, start_us);
+    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, c->height_m, start_us);
     const struct lm_ownship ownship = at(&nav, start_us + age_us);
     c->north_m_s = ownship.velocity_north_mm_s / 1000.0;
     c->east_m_s = ownship.velocity_east_mm_s / 1000.0;
@@ -165,11 +164,11 @@ static void each_coordinate_moves_from_its_own_time(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_float(&nav, LM_CANAS_NORTH_VELOCITY, 200, 0);
-    hear_float(&nav, LM_CANAS_EAST_VELOCITY, 100, 0);
-    hear_double(&nav, LM_CANAS_LATITUDE, 0, 100000);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 0, 150000);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 200, 0);
+    hear_float(&nav, LM_BUS_EAST_VELOCITY, 100, 0);
+    hear_double(&nav, LM_BUS_LATITUDE, 0, 100000);
+    hear_double(&nav, LM_BUS_LONGITUDE, 0, 150000);
     const struct lm_ownship o = at(&nav, 200000);
     /* 20 m on the meridian's radius 6,335,439 m, 5 m on the equator's. */
     const double count = 6.283185307179586 / 0x1p32;
@@ -194,25 +193,25 @@ static void ground_speed_and_track_serve_when_there_is_no_velocity(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_float(&nav, LM_CANAS_GROUND_SPEED, 100, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_float(&nav, LM_BUS_GROUND_SPEED, 100, 0);
     assert_int_equal(at(&nav, 0).velocity_quality, LM_NAV_DEAD);
-    hear_float(&nav, LM_CANAS_TRUE_TRACK, 120, 0);
+    hear_float(&nav, LM_BUS_TRUE_TRACK, 120, 0);
     struct lm_ownship o = at(&nav, 0);
     assert_int_equal(o.velocity_quality, LM_NAV_GOOD);
     assert_in_range(o.velocity_north_mm_s + 50000, 0, 2);
     assert_in_range(o.velocity_east_mm_s - 86602, 0, 2);
     assert_in_range(o.ground_speed_mm_s - 99998, 0, 3);
     assert_true(fabs(degrees_of(o.track) - 120) < 0.001);
-    hear_float(&nav, LM_CANAS_NORTH_VELOCITY, -30, 1000000);
-    hear_float(&nav, LM_CANAS_EAST_VELOCITY, -40, 1000000);
+    hear_float(&nav, LM_BUS_NORTH_VELOCITY, -30, 1000000);
+    hear_float(&nav, LM_BUS_EAST_VELOCITY, -40, 1000000);
     o = at(&nav, 1000000);
     assert_int_equal(o.velocity_north_mm_s, -30000);
     assert_int_equal(o.ground_speed_mm_s, 50000);
     assert_true(fabs(degrees_of(o.track) - (atan2(-40, -30) * 57.29577951308232)) < 1e-5);
     /* Stale is not yet dead. */
-    hear_float(&nav, LM_CANAS_GROUND_SPEED, 100, 3000000);
-    hear_float(&nav, LM_CANAS_TRUE_TRACK, 0, 3000000);
+    hear_float(&nav, LM_BUS_GROUND_SPEED, 100, 3000000);
+    hear_float(&nav, LM_BUS_TRUE_TRACK, 0, 3000000);
     assert_int_equal(at(&nav, 3000000).velocity_north_mm_s, -30000);
     assert_int_equal(at(&nav, 3000000).velocity_quality, LM_NAV_STALE);
     assert_int_equal(at(&nav, 3000001).velocity_north_mm_s, 100000);
@@ -222,39 +221,39 @@ static void the_best_height_that_lives_is_used_and_moved_on(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_float(&nav, LM_CANAS_BARO_ALTITUDE, 1000, 0);
-    hear_float(&nav, LM_CANAS_ALTITUDE_RATE, 10, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_float(&nav, LM_BUS_BARO_ALTITUDE, 1000, 0);
+    hear_float(&nav, LM_BUS_ALTITUDE_RATE, 10, 0);
     struct lm_ownship o = at(&nav, 500000);
-    assert_int_equal(o.height_source, LM_CANAS_BARO_ALTITUDE);
+    assert_int_equal(o.height_source, LM_BUS_BARO_ALTITUDE);
     assert_int_equal(o.height_q6, 1005 * 64);
-    hear_float(&nav, LM_CANAS_TRUE_ALTITUDE, 1100, 500000);
-    assert_int_equal(at(&nav, 500000).height_source, LM_CANAS_TRUE_ALTITUDE);
-    hear_float(&nav, LM_CANAS_GPS_HEIGHT, 1150, 600000);
-    hear_float(&nav, LM_CANAS_UP_VELOCITY, -20, 600000);
+    hear_float(&nav, LM_BUS_TRUE_ALTITUDE, 1100, 500000);
+    assert_int_equal(at(&nav, 500000).height_source, LM_BUS_TRUE_ALTITUDE);
+    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 600000);
+    hear_float(&nav, LM_BUS_UP_VELOCITY, -20, 600000);
     o = at(&nav, 1100000);
-    assert_int_equal(o.height_source, LM_CANAS_GPS_HEIGHT);
+    assert_int_equal(o.height_source, LM_BUS_ELLIPSOID_HEIGHT);
     assert_int_equal(o.height_q6, 1140 * 64);
-    hear_float(&nav, LM_CANAS_TRUE_ALTITUDE, 1100, 5600000);
-    assert_int_equal(at(&nav, 5600000).height_source, LM_CANAS_GPS_HEIGHT);
+    hear_float(&nav, LM_BUS_TRUE_ALTITUDE, 1100, 5600000);
+    assert_int_equal(at(&nav, 5600000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
     assert_int_equal(at(&nav, 5600000).height_quality, LM_NAV_STALE);
-    assert_int_equal(at(&nav, 5600001).height_source, LM_CANAS_TRUE_ALTITUDE);
+    assert_int_equal(at(&nav, 5600001).height_source, LM_BUS_TRUE_ALTITUDE);
 }
 
 static void true_heading_is_preferred_while_it_lives(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_float(&nav, LM_CANAS_HEADING, -90, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_float(&nav, LM_BUS_HEADING, -90, 0);
     struct lm_ownship o = at(&nav, 0);
     assert_int_equal(o.heading, 0xc0000000u);
-    assert_int_equal(o.heading_source, LM_CANAS_HEADING);
-    hear_float(&nav, LM_CANAS_TRUE_HEADING, 272, 0);
+    assert_int_equal(o.heading_source, LM_BUS_HEADING);
+    hear_float(&nav, LM_BUS_TRUE_HEADING, 272, 0);
     assert_true(fabs(degrees_of(at(&nav, 0).heading) + 88) < 1e-6);
-    hear_float(&nav, LM_CANAS_HEADING, -90, 1000001);
-    assert_int_equal(at(&nav, 1000000).heading_source, LM_CANAS_TRUE_HEADING);
-    assert_int_equal(at(&nav, 1000001).heading_source, LM_CANAS_HEADING);
+    hear_float(&nav, LM_BUS_HEADING, -90, 1000001);
+    assert_int_equal(at(&nav, 1000000).heading_source, LM_BUS_TRUE_HEADING);
+    assert_int_equal(at(&nav, 1000001).heading_source, LM_BUS_HEADING);
 }
 
 /* Turn the rotation matrix from body to north-east-down axes by small rotations about the body's
@@ -290,12 +289,12 @@ static void heading_turns_as_the_body_does(void **state)
     for (int pitch = -60; pitch <= 60; pitch += 20) {
         for (int roll = -180; roll < 180; roll += 30) {
             struct lm_nav nav;
-            lm_nav_init(&nav);
-            hear_float(&nav, LM_CANAS_TRUE_HEADING, 350, 0);
-            hear_float(&nav, LM_CANAS_PITCH, pitch, 50000);
-            hear_float(&nav, LM_CANAS_ROLL, roll, 50000);
-            hear_float(&nav, LM_CANAS_PITCH_RATE, 12, 50000);
-            hear_float(&nav, LM_CANAS_YAW_RATE, -7, 50000);
+            lm_nav_init(&nav, &lm_bus_canas17);
+            hear_float(&nav, LM_BUS_TRUE_HEADING, 350, 0);
+            hear_float(&nav, LM_BUS_PITCH, pitch, 50000);
+            hear_float(&nav, LM_BUS_ROLL, roll, 50000);
+            hear_float(&nav, LM_BUS_PITCH_RATE, 12, 50000);
+            hear_float(&nav, LM_BUS_YAW_RATE, -7, 50000);
             const double got = degrees_of(at(&nav, 100000).heading) * radian;
             const double wanted = heading_by_rotation(350 * radian, pitch * radian, roll * radian,
                                                       12 * radian, -7 * radian, 0.1);
@@ -313,12 +312,12 @@ static void heading_stands_still_where_it_means_nothing(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_float(&nav, LM_CANAS_TRUE_HEADING, 10, 0);
-    hear_float(&nav, LM_CANAS_PITCH, 85, 0);
-    hear_float(&nav, LM_CANAS_ROLL, 0, 0);
-    hear_float(&nav, LM_CANAS_PITCH_RATE, 0, 0);
-    hear_float(&nav, LM_CANAS_YAW_RATE, 100, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_float(&nav, LM_BUS_TRUE_HEADING, 10, 0);
+    hear_float(&nav, LM_BUS_PITCH, 85, 0);
+    hear_float(&nav, LM_BUS_ROLL, 0, 0);
+    hear_float(&nav, LM_BUS_PITCH_RATE, 0, 0);
+    hear_float(&nav, LM_BUS_YAW_RATE, 100, 0);
     assert_true(fabs(degrees_of(at(&nav, 100000).heading) - 10) < 1e-6);
 }
 
@@ -330,8 +329,8 @@ struct ages {
 
 static void hear_everything(struct lm_nav *nav, uint64_t time_us)
 {
-    for (int i = 0; i < LM_CANAS_UTC; i++) {
-        hear_float(nav, (enum lm_canas_field)i, 1, time_us);
+    for (int i = 0; i < LM_BUS_UTC; i++) {
+        hear_float(nav, (enum lm_bus_field)i, 1, time_us);
     }
     hear(nav, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, time_us));
 }
@@ -355,7 +354,7 @@ static void every_quality_changes_at_the_microsecond_the_table_says(void **state
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     assert_ages(&nav, 0, (struct ages){D, D, D, D, D, D});
     const uint64_t t = 7000000;
     hear_everything(&nav, t);
@@ -383,11 +382,11 @@ static void one_dead_coordinate_or_angle_kills_its_group(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     hear_everything(&nav, 0);
-    hear_float(&nav, LM_CANAS_LATITUDE, 1, 2000000);
-    hear_float(&nav, LM_CANAS_PITCH, 1, 2000000);
-    hear_float(&nav, LM_CANAS_NORTH_VELOCITY, 1, 2000000);
+    hear_float(&nav, LM_BUS_LATITUDE, 1, 2000000);
+    hear_float(&nav, LM_BUS_PITCH, 1, 2000000);
+    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 1, 2000000);
     assert_ages(&nav, 2000001, (struct ages){D, S, D, D, D, G});
 }
 
@@ -395,17 +394,17 @@ static void a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best(voi
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_double(&nav, LM_CANAS_LATITUDE, 47, 0);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 11, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_double(&nav, LM_BUS_LATITUDE, 47, 0);
+    hear_double(&nav, LM_BUS_LONGITUDE, 11, 0);
     assert_int_equal(at(&nav, 100).position_quality, LM_NAV_STALE);
     assert_true(fabs(degrees_of(at(&nav, 100000).latitude) - 47) < 1e-7);
-    hear_float(&nav, LM_CANAS_NORTH_VELOCITY, 0, 0);
-    hear_float(&nav, LM_CANAS_EAST_VELOCITY, 0, 0);
+    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 0, 0);
+    hear_float(&nav, LM_BUS_EAST_VELOCITY, 0, 0);
     assert_int_equal(at(&nav, 100).position_quality, LM_NAV_GOOD);
     hear(&nav, bus_frame(1037, LM_CANAS_SHORT2, 0, 0x08000000u | 180, 100));
     assert_int_equal(at(&nav, 100).position_quality, LM_NAV_STALE);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 11, 200);
+    hear_double(&nav, LM_BUS_LONGITUDE, 11, 200);
     assert_int_equal(at(&nav, 200).position_quality, LM_NAV_GOOD);
 }
 
@@ -413,9 +412,9 @@ static void a_lone_half_never_moves_the_position(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     hear_everything(&nav, 0);
-    hear_double(&nav, LM_CANAS_LATITUDE, 47, 0);
+    hear_double(&nav, LM_BUS_LATITUDE, 47, 0);
     const struct lm_ownship before = at(&nav, 1000);
     for (uint8_t i = 0; i < 100; i++) {
         hear(&nav, bus_frame(1036, i & 1 ? LM_CANAS_DOUBLEH : LM_CANAS_DOUBLEL, (uint8_t)(3 * i),
@@ -429,7 +428,7 @@ static void time_going_backwards_is_survived(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     hear_everything(&nav, 9000000);
     /* A little ahead is the order of reading two clocks; far ahead is another clock. */
     assert_ages(&nav, 8900000, (struct ages){G, G, G, G, G, G});
@@ -447,33 +446,33 @@ static void a_jump_is_believed_and_counted(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
-    hear_double(&nav, LM_CANAS_LATITUDE, 60, 0);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 179.999, 0);
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_double(&nav, LM_BUS_LATITUDE, 60, 0);
+    hear_double(&nav, LM_BUS_LONGITUDE, 179.999, 0);
     assert_int_equal(nav.position_jumps, 0);
     /* 149 m of latitude and, across the antimeridian, 149 m of longitude in 100 ms. */
-    hear_double(&nav, LM_CANAS_LATITUDE, 60 + 149 / 111400.0, 100000);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 179.999 + 149 / 55800.0 - 360, 100000);
+    hear_double(&nav, LM_BUS_LATITUDE, 60 + 149 / 111400.0, 100000);
+    hear_double(&nav, LM_BUS_LONGITUDE, 179.999 + 149 / 55800.0 - 360, 100000);
     assert_int_equal(nav.position_jumps, 0);
-    hear_double(&nav, LM_CANAS_LATITUDE, 60 + (149 + 152) / 111400.0, 200000);
+    hear_double(&nav, LM_BUS_LATITUDE, 60 + (149 + 152) / 111400.0, 200000);
     assert_int_equal(nav.position_jumps, 1);
-    hear_double(&nav, LM_CANAS_LONGITUDE, 179.999 + (149 + 152) / 55800.0 - 360, 200000);
+    hear_double(&nav, LM_BUS_LONGITUDE, 179.999 + (149 + 152) / 55800.0 - 360, 200000);
     assert_int_equal(nav.position_jumps, 2);
-    hear_double(&nav, LM_CANAS_LATITUDE, -45, 300000);
+    hear_double(&nav, LM_BUS_LATITUDE, -45, 300000);
     assert_int_equal(nav.position_jumps, 3);
-    hear_double(&nav, LM_CANAS_LONGITUDE, -100, 300000);
+    hear_double(&nav, LM_BUS_LONGITUDE, -100, 300000);
     assert_int_equal(nav.position_jumps, 4);
     assert_true(fabs(degrees_of(at(&nav, 300000).latitude) + 45) < 1e-7);
     /* Two fixes in one millisecond: what jitters is the bus. */
-    hear_double(&nav, LM_CANAS_LATITUDE, -45.001, 301000);
+    hear_double(&nav, LM_BUS_LATITUDE, -45.001, 301000);
     assert_int_equal(nav.position_jumps, 4);
     /* 20 km in 14 s is an aircraft; a twin of an earlier time stamp is not. */
-    hear_double(&nav, LM_CANAS_LATITUDE, -45.18, 14300000);
+    hear_double(&nav, LM_BUS_LATITUDE, -45.18, 14300000);
     assert_int_equal(nav.position_jumps, 4);
-    hear_double(&nav, LM_CANAS_LATITUDE, -45, 0);
+    hear_double(&nav, LM_BUS_LATITUDE, -45, 0);
     assert_int_equal(nav.position_jumps, 5);
     /* A quarter round the world, but after the time that times 1500 just passes 2^64. */
-    hear_double(&nav, LM_CANAS_LATITUDE, 45, 12297829382473035u);
+    hear_double(&nav, LM_BUS_LATITUDE, 45, 12297829382473035u);
     assert_int_equal(nav.position_jumps, 5);
 }
 
@@ -481,7 +480,7 @@ static void the_clock_runs_on_between_its_messages(void **state)
 {
     (void)state;
     struct lm_nav nav;
-    lm_nav_init(&nav);
+    lm_nav_init(&nav, &lm_bus_canas17);
     hear(&nav, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, 0)); /* 23:59:59 */
     assert_int_equal(at(&nav, 999999).utc_s, 86399);
     assert_int_equal(at(&nav, 1000000).utc_s, 0);
@@ -494,12 +493,12 @@ static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
     struct lm_nav a, b;
     memset(&a, 0x55, sizeof a);
     memset(&b, 0xaa, sizeof b);
-    lm_nav_init(&a);
-    lm_nav_init(&b);
+    lm_nav_init(&a, &lm_bus_canas17);
+    lm_nav_init(&b, &lm_bus_canas17);
     struct hs_rng rng;
     hs_rng_seed(&rng, 31);
     for (uint64_t t = 0; t < 10000000; t += 12500) {
-        const enum lm_canas_field field = (enum lm_canas_field)hs_rng_below(&rng, LM_CANAS_UTC);
+        const enum lm_bus_field field = (enum lm_bus_field)hs_rng_below(&rng, LM_BUS_UTC);
         const struct lm_can_frame frame = bus_float(field, 50 * hs_rng_uniform(&rng), t);
         lm_nav_take(&a, &frame);
         lm_nav_take(&b, &frame);

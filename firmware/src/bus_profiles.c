@@ -1,0 +1,98 @@
+#include "lm/canas.h"
+
+#define TYPE(name) (1u << (LM_CANAS_##name))
+
+#define ANALOGUE (TYPE(FLOAT) | TYPE(SHORT2))
+#define POSITION (ANALOGUE | TYPE(LONG) | TYPE(DOUBLEH) | TYPE(DOUBLEL))
+#define CLOCK    TYPE(CHAR4)
+
+enum { TEN_MILLIONTHS = 10000000 };
+
+#define ROW(name_, id_, field_, priority_, types_, low_, high_, period_, stale_, dead_)            \
+    {                                                                                              \
+        .name = (name_), .id = (id_), .field = LM_BUS_##field_, .priority = (priority_),           \
+        .types = (types_), .low = (low_), .high = (high_), .period_us = (period_),                 \
+        .stale_ms = (stale_), .dead_ms = (dead_),                                                  \
+        .per_unit = (types_)&TYPE(LONG) ? TEN_MILLIONTHS : 1                                       \
+    }
+
+/* Ages. What comes every 100 ms is stale when three in a row were lost; one lost frame is a common
+ * thing on a bus. Attitude and heading come eight times as often and turn fast: at 100 ms a roll of
+ * 90 deg/s is wrong by 9 degrees, at 1 s it says nothing any more. Position and velocity die after
+ * 2 s: until then dead reckoning in a turn of 3 deg/s stays within 32 m at 300 m/s, a pixel at the
+ * longer ranges. Height moves slowly and dies after 5 s.
+ *
+ * Ranges. Wide enough for any aircraft, narrow enough that a wrong unit or a damaged exponent
+ * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same.
+ *
+ * The specification gives longitudes of INS and auxiliary the type SHORT; that is a misprint for
+ * the SHORT2 of the latitudes. */
+/* clang-format off */
+static const struct lm_bus_row canas17_rows[] = {
+    ROW("GPS latitude",                         1036, LATITUDE,         0, POSITION,   -90,    90,  100000,  300,  2000),
+    ROW("GPS longitude",                        1037, LONGITUDE,        0, POSITION,  -180,   180,  100000,  300,  2000),
+    ROW("GPS height above ellipsoid",           1038, ELLIPSOID_HEIGHT, 0, ANALOGUE, -1000, 30000,  100000,  500,  5000),
+    ROW("GPS ground speed",                     1039, GROUND_SPEED,     0, ANALOGUE,     0,  1500,  100000,  300,  2000),
+    ROW("GPS true track",                       1040, TRUE_TRACK,       0, ANALOGUE,  -180,   360,  100000,  300,  2000),
+    ROW("body pitch angle",                      311, PITCH,            0, ANALOGUE,   -90,    90,   12500,  100,  1000),
+    ROW("body roll angle",                       312, ROLL,             0, ANALOGUE,  -180,   180,   12500,  100,  1000),
+    ROW("heading angle",                         321, HEADING,          0, ANALOGUE,  -180,   360,   12500,  100,  1000),
+    ROW("true heading",                         1133, TRUE_HEADING,     0, ANALOGUE,  -180,   360,  100000,  300,  1000),
+    ROW("baro corrected altitude",               320, BARO_ALTITUDE,    0, ANALOGUE, -1000, 30000,  100000,  500,  5000),
+    ROW("true altitude",                         332, TRUE_ALTITUDE,    0, ANALOGUE, -1000, 30000,  100000,  500,  5000),
+    ROW("altitude rate",                         314, ALTITUDE_RATE,    0, ANALOGUE,  -500,   500,  100000,  300,  2000),
+    ROW("true east velocity",                   1130, EAST_VELOCITY,    0, ANALOGUE, -1500,  1500,  100000,  300,  2000),
+    ROW("true north velocity",                  1131, NORTH_VELOCITY,   0, ANALOGUE, -1500,  1500,  100000,  300,  2000),
+    ROW("true up velocity",                     1132, UP_VELOCITY,      0, ANALOGUE,  -500,   500,  100000,  300,  2000),
+    ROW("body pitch rate",                       303, PITCH_RATE,       0, ANALOGUE,  -170,   170,   12500,  100,  1000),
+    ROW("body yaw rate",                         305, YAW_RATE,         0, ANALOGUE,  -170,   170,   12500,  100,  1000),
+    ROW("UTC",                                  1200, UTC,              0, CLOCK,        0, 86400, 1000000, 3000, 10000),
+    ROW("INS latitude",                         1049, LATITUDE,         1, ANALOGUE,   -90,    90,  100000,  300,  2000),
+    ROW("INS longitude",                        1050, LONGITUDE,        1, ANALOGUE,  -180,   180,  100000,  300,  2000),
+    ROW("INS height above ellipsoid",           1051, ELLIPSOID_HEIGHT, 1, ANALOGUE, -1000, 30000,  100000,  500,  5000),
+    ROW("INS ground speed",                     1052, GROUND_SPEED,     1, ANALOGUE,     0,  1500,  100000,  300,  2000),
+    ROW("INS true track",                       1053, TRUE_TRACK,       1, ANALOGUE,  -180,   360,  100000,  300,  2000),
+    ROW("aux nav latitude",                     1059, LATITUDE,         2, ANALOGUE,   -90,    90,  100000,  300,  2000),
+    ROW("aux nav longitude",                    1060, LONGITUDE,        2, ANALOGUE,  -180,   180,  100000,  300,  2000),
+    ROW("aux nav height above ellipsoid",       1061, ELLIPSOID_HEIGHT, 2, ANALOGUE, -1000, 30000,  100000,  500,  5000),
+    ROW("aux nav ground speed",                 1062, GROUND_SPEED,     2, ANALOGUE,     0,  1500,  100000,  300,  2000),
+    ROW("aux nav true track",                   1063, TRUE_TRACK,       2, ANALOGUE,  -180,   360,  100000,  300,  2000),
+};
+
+/* What XCSoar's driver takes, and what is made for it therefore sends: byte 1 says nothing, each
+ * identifier has one type, and positions are LONG. The glider has no inertial rates of its own, so
+ * that the rest is the specification's, as FLOAT. */
+static const struct lm_bus_row xcsoar_rows[] = {
+    ROW("GPS latitude",                         1036, LATITUDE,         0, TYPE(LONG),   -90,    90,  100000,  300,  2000),
+    ROW("GPS longitude",                        1037, LONGITUDE,        0, TYPE(LONG),  -180,   180,  100000,  300,  2000),
+    ROW("GPS height above ellipsoid",           1038, ELLIPSOID_HEIGHT, 0, TYPE(FLOAT), -1000, 30000, 100000,  500,  5000),
+    ROW("GPS ground speed",                     1039, GROUND_SPEED,     0, TYPE(FLOAT),    0,  1500,  100000,  300,  2000),
+    ROW("GPS true track",                       1040, TRUE_TRACK,       0, TYPE(FLOAT), -180,   360,  100000,  300,  2000),
+    ROW("body pitch angle",                      311, PITCH,            0, TYPE(FLOAT),  -90,    90,   12500,  100,  1000),
+    ROW("body roll angle",                       312, ROLL,             0, TYPE(FLOAT), -180,   180,   12500,  100,  1000),
+    ROW("heading angle",                         321, HEADING,          0, TYPE(FLOAT), -180,   360,   12500,  100,  1000),
+    ROW("true heading",                         1133, TRUE_HEADING,     0, TYPE(FLOAT), -180,   360,  100000,  300,  1000),
+    ROW("baro corrected altitude",               320, BARO_ALTITUDE,    0, TYPE(FLOAT), -1000, 30000, 100000,  500,  5000),
+    ROW("altitude rate",                         314, ALTITUDE_RATE,    0, TYPE(FLOAT), -500,   500,  100000,  300,  2000),
+    ROW("UTC",                                  1200, UTC,              0, CLOCK,          0, 86400, 1000000, 3000, 10000),
+};
+/* clang-format on */
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+_Static_assert(COUNT(canas17_rows) <= LM_BUS_ROWS_MAX, "LM_BUS_ROWS_MAX is too small");
+
+const struct lm_bus_profile lm_bus_canas17 = {
+    .name = "canas17",
+    .rows = canas17_rows,
+    .row_count = COUNT(canas17_rows),
+    .framing = LM_BUS_CANAEROSPACE,
+};
+
+const struct lm_bus_profile lm_bus_xcsoar = {
+    .name = "xcsoar",
+    .rows = xcsoar_rows,
+    .row_count = COUNT(xcsoar_rows),
+    .framing = LM_BUS_CANAEROSPACE,
+    .are_types_assumed = true,
+};
