@@ -1,6 +1,6 @@
 # Everything that is parsed from wire, file or flash, under the sanitizers: as tests of `make check` (the committed corpus and
 # mutations of it), and, built by fuzz.sh with clang and FUZZER=1, as libFuzzer programs.
-FUZZ_TARGETS  := image unit bus can_log script csv gpx igc class_table net label_map
+FUZZ_TARGETS  := image unit bus can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model
 FUZZ_PARTS    := address,undefined,float-cast-overflow
 FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
 FUZZ_TRACK    := $(filter-out %/main.c,$(wildcard host-sim/nav/*.c)) tests/fuzz/track.c
@@ -16,6 +16,10 @@ FUZZ_SRC_gpx         := $(FUZZ_TRACK)
 FUZZ_SRC_igc         := $(FUZZ_TRACK)
 FUZZ_SRC_class_table := host-sim/db/class_table.c $(FUZZ_TEXT)
 FUZZ_SRC_net         := $(addprefix host-sim/db/,net_file.c mlp.c samples.c raster.c gdal_start.c) host-sim/common/src/progress.c $(FUZZ_TEXT)
+FUZZ_SRC_mstar       := host-sim/netem/chip_mstar.c host-sim/netem/picture.c
+FUZZ_SRC_chip_csv    := host-sim/netem/chip_csv.c host-sim/netem/picture.c
+FUZZ_SRC_netem_model := $(patsubst %,host-sim/netem/%.c,model_file train simulator netem paths network architecture netpix \
+                       convolve picture loss registration optimizer) host-sim/target/records.c $(FUZZ_TEXT)
 FUZZ_SRC_label_map   := host-sim/db/label_map.c host-sim/db/class_table.c $(FUZZ_TEXT)
 
 FUZZ_TESTS    := $(FUZZ_TARGETS:%=$(O)/bin/tests/fuzz/test_fuzz_%)
@@ -25,6 +29,7 @@ FUZZ_LIBS_csv := $(call pkgs,libs,proj expat zlib)
 FUZZ_LIBS_gpx := $(FUZZ_LIBS_csv)
 FUZZ_LIBS_igc := $(FUZZ_LIBS_csv)
 FUZZ_LIBS_net := $(call pkgs,libs,gdal openblas)
+FUZZ_LIBS_netem_model := $(call pkgs,libs,openblas fftw3)
 
 define fuzz_target
 FUZZ_OBJS_$(1) := $(patsubst %.c,$(O)/sanitized/%.o,tests/fuzz/fuzz_$(1).c tests/fuzz/quiet_errors.c host-sim/common/src/rng.c $(FUZZ_SRC_$(1)))
@@ -39,7 +44,7 @@ $(foreach target,$(FUZZ_TARGETS),$(eval $(call fuzz_target,$(target))))
 fuzz-programs: $(FUZZ_PROGRAMS)
 
 # -O1 behind OPT: findings name the lines as they are written.
-$(O)/sanitized/%.o: EXTRA_CFLAGS := -Itests/support -Ihost-sim/sim -Ihost-sim/nav -Ihost-sim/db $(call pkgs,cflags,gdal openblas)
+$(O)/sanitized/%.o: EXTRA_CFLAGS := -Itests/support -Ihost-sim/sim -Ihost-sim/nav -Ihost-sim/db -Ihost-sim/netem -Ihost-sim/target $(call pkgs,cflags,gdal openblas fftw3)
 $(O)/sanitized/%.o: %.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $< (sanitizers)')
