@@ -29,7 +29,7 @@ static void try_open(struct bus *b)
 {
     drv_can_socket_close(&b->socket);
     b->is_failed = false;
-    if (drv_can_socket_open(&b->socket, b->interface, b->zero_us) == LM_OK) {
+    if (drv_can_socket_open(&b->socket, b->interface, &lm_bus_canas17, b->zero_us) == LM_OK) {
         b->driver = drv_can_socket_port(&b->socket);
         b->count.opens++;
     }

@@ -198,8 +198,8 @@ static int heed_failure(struct drv_can_socket *s, int cause)
     empty_queue(s);
     if (cause == ENETDOWN) {
         s->count.down++;
-        return fail(s, "%s: the interface is down; set it up again (ip link set %s up)",
-                    s->interface, s->interface);
+        return fail(s, "%s: %s; set it up again (ip link set %s up)", s->interface, strerror(cause),
+                    s->interface);
     }
     s->count.gone++;
     drv_can_socket_close(s);

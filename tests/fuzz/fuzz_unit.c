@@ -215,7 +215,8 @@ static void act(struct world *w, struct fuzz_supply *s)
         step(w, (uint64_t)fuzz_u16(s) << (op >> 4));
         break;
     case 4:
-        queue_value(w, lm_bus_canas17.rows[fuzz_u8(s) % LM_BUS_FIELDS].id, op >> 4 & 3, fuzz_u32(s));
+        queue_value(w, lm_bus_canas17.rows[fuzz_u8(s) % LM_BUS_FIELDS].id, op >> 4 & 3,
+                    fuzz_u32(s));
         break;
     case 5:
         queue_any(w, s);

@@ -58,7 +58,7 @@ static void run(const char *interface, unsigned pause_s)
 {
     struct drv_can_socket s;
     char told[sizeof s.error] = "";
-    int ticks_lost = 0, status = drv_can_socket_open(&s, interface, 0);
+    int ticks_lost = 0, status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
     printf(status == LM_OK ? "! open\n" : "! %s\n", s.error);
     fflush(stdout);
     sleep(pause_s);
@@ -67,7 +67,7 @@ static void run(const char *interface, unsigned pause_s)
         ticks_lost = status < 0 ? ticks_lost + 1 : 0;
         if (ticks_lost >= REOPEN_TICKS) { /* the interface may have come back as another one */
             drv_can_socket_close(&s);
-            status = drv_can_socket_open(&s, interface, 0);
+            status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
             printf(status == LM_OK ? "! open\n" : "! %s\n", s.error);
             ticks_lost = 0;
         }
