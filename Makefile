@@ -40,7 +40,7 @@ TESTS    :=
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102
+.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102 run-zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -74,6 +74,10 @@ fuzz: deps ## Fuzz every parser for FOR seconds each (FOR=60); `make check` repl
 
 zcu102: deps ## Build the bare-metal image for the board ZCU102: build/zcu102/landmass.elf
 	@$(MAKE) --no-print-directory BOARD=zcu102 all
+
+run-zcu102: zcu102 ## Fly the built-in scene on that board in QEMU; leave its screen dumps in build/zcu102/run
+	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
+	@sh bsp/zcu102/run.sh $(O)
 
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
 	@sh tests/discipline/lint.sh

@@ -120,9 +120,8 @@ int zcu102_start(struct zcu102 *z)
 {
     const int status = lm_unit_init(&z->unit, &z->lent);
     if (status == LM_OK) {
-        const uint64_t now_us = drv_timer_us(&z->timer);
-        z->tick_us = z->step_us = now_us - now_us % ZCU102_STEP_US + ZCU102_STEP_US;
-        z->supervisor.next_us = now_us + ZCU102_SUPERVISION_US;
+        drv_timer_init(&z->timer);
+        z->supervisor.next_us = ZCU102_SUPERVISION_US;
         z->is_supervised = true;
         drv_timer_alarm(&z->timer, z->tick_us);
     }

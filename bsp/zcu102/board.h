@@ -51,7 +51,7 @@ struct zcu102 {
  * said on the console, and the unit shows what it shows without it. */
 void zcu102_open(struct zcu102 *z);
 
-/* Start the unit. lm_unit_init's answer. */
+/* Start the unit, whose time begins at 0. lm_unit_init's answer. */
 int zcu102_start(struct zcu102 *z);
 
 /* Wait until the unit's next step is due, and do it. The unit's clock goes in steps of
@@ -59,7 +59,7 @@ int zcu102_start(struct zcu102 *z);
  * long one before it comes later and not different. */
 void zcu102_step(struct zcu102 *z);
 
-/* Microseconds since zcu102_open, for drivers. */
+/* Microseconds since zcu102_open, and from zcu102_start on since then. */
 uint64_t zcu102_now_us(const void *timer);
 
 #endif

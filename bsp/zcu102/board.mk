@@ -14,4 +14,4 @@ OPT_core := -O3
 OPT_board := -mgeneral-regs-only -mstrict-align
 
 # Instead of the programs and tests of a PC.
-PARTS := linker/zcu102.mk tests/zcu102/images/*.mk
+PARTS := linker/zcu102.mk

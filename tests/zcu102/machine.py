@@ -49,7 +49,7 @@ def symbol(elf, name):
 
 def checksum(picture):
     """("WIDTHxHEIGHT", checksum) of a screen dump."""
-    words = subprocess.run([TOOLS / "ppm_checksum", picture], capture_output=True, text=True, check=True).stdout.split()
+    words = subprocess.run([TOOLS / "picture_checksum", picture], capture_output=True, text=True, check=True).stdout.split()
     return words[0], words[1]
 
 

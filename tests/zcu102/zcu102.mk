@@ -1,12 +1,13 @@
 # The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
 ZCU102 := $(O)/bin/tests/zcu102
-ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash ppm_checksum scenario)
+ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
 ZCU102_TESTS := $(addprefix $(ZCU102)/,test_golden)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden -Ihost-sim
 $(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c support/tiny_image.c)) \
     $(LIB_hs) $(LIB_fixed)
-$(ZCU102)/ppm_checksum: $(O)/tests/zcu102/ppm_checksum.o $(LIB_hs) $(LIB_fixed)
+$(ZCU102)/picture_checksum: $(O)/tests/zcu102/picture_checksum.o $(LIB_hs) $(LIB_fixed)
+$(ZCU102)/picture_checksum: LDLIBS := $(call pkgs,libs,libpng)
 $(ZCU102)/scenario: $(call objs,tests/zcu102/scenario.c host-sim/sim/script.c) $(LIB_drivers) $(LIB_hs)
 
 # Whatever this make was told about compilers and folders is not for the board's.

@@ -1,0 +1,218 @@
+/* A flight on the board, as the host handed it over (scenario.h): the second core replays the bus,
+ * the script works the controls, and the pictures it asks for are kept and shown at the end, so
+ * that the flight runs without a stop. What the bus brought, and when, stays in `received` for the
+ * host.
+ *
+ * After a restart the unit flies again without bus and shows its BIT page. */
+#include "board.h"
+#include "console.h"
+#include "fx/mem.h"
+#include "look.h"
+#include "peer.h"
+#include "psci.h"
+#include "scenario.h"
+#include "sections.h"
+
+int main(void);
+
+enum {
+    PIXELS = ZCU102_WIDTH_PX * ZCU102_HEIGHT_PX,
+    RECEIVED_MAX = 65536,
+    BIT_BUTTON = 12,
+    AFTER_RESTART_US = 1500000
+};
+
+/* Read and written by the host (machine.py finds them by name). */
+extern uint8_t scenario[SCENARIO_BYTES_MAX];
+extern struct lm_can_frame received[RECEIVED_MAX];
+ZCU102_BULK uint8_t scenario[SCENARIO_BYTES_MAX];
+ZCU102_BULK struct lm_can_frame received[RECEIVED_MAX];
+
+static ZCU102_BULK uint32_t album[SCENARIO_PICTURES_MAX][PIXELS];
+
+struct flight {
+    struct zcu102 z;
+    struct peer peer;
+    const struct scenario_header *header;
+    const struct scenario_control *controls;
+    const struct scenario_picture *pictures;
+    uint32_t next_control, next_picture, received_count;
+    uint64_t first_picture_us; /* since the board's reset */
+    struct lm_can can;
+    struct lm_controls control_port;
+    struct lm_display display;
+};
+
+static bool is_hung(const struct flight *f, enum scenario_hang what)
+{
+    return f->header->hang == (uint64_t)what && f->z.step_us >= f->header->hang_us &&
+           f->z.last_restart.cause == ZCU102_POWER_ON;
+}
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct flight *f = ctx;
+    if (is_hung(f, SCENARIO_HANG_BUS)) {
+        return 0;
+    }
+    const int status = f->z.can.port.receive(f->z.can.port.ctx, frame);
+    if (status == 1 && f->received_count < RECEIVED_MAX) {
+        received[f->received_count++] = *frame;
+    }
+    return status;
+}
+
+static int send(void *ctx, const struct lm_can_frame *frame)
+{
+    struct flight *f = ctx;
+    return f->z.can.port.send(f->z.can.port.ctx, frame);
+}
+
+static int next_control(void *ctx, struct lm_control *control)
+{
+    struct flight *f = ctx;
+    while (is_hung(f, SCENARIO_HANG_STEP)) {
+    }
+    if (f->next_control == f->header->controls ||
+        f->controls[f->next_control].time_us > f->z.step_us) {
+        return 0;
+    }
+    *control = f->controls[f->next_control++].control;
+    return 1;
+}
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    struct flight *f = ctx;
+    return is_hung(f, SCENARIO_HANG_DISPLAY)
+               ? LM_BUSY
+               : f->z.display.port.acquire(f->z.display.port.ctx, surface);
+}
+
+static int present(void *ctx)
+{
+    struct flight *f = ctx;
+    if (f->first_picture_us == 0) {
+        const struct drv_timer since_reset = {.hz = f->z.timer.hz};
+        f->first_picture_us = drv_timer_us(&since_reset);
+    }
+    return f->z.display.port.present(f->z.display.port.ctx);
+}
+
+static bool open_scenario(struct flight *f)
+{
+    f->header = (const struct scenario_header *)(const void *)scenario;
+    f->peer.frames = (const struct lm_can_frame *)(const void *)(f->header + 1);
+    f->controls =
+        (const struct scenario_control *)(const void *)(f->peer.frames + f->header->frames);
+    f->pictures =
+        (const struct scenario_picture *)(const void *)(f->controls + f->header->controls);
+    f->peer.board = &f->z;
+    f->peer.count = f->header->frames;
+    return f->header->magic == SCENARIO_MAGIC;
+}
+
+static void put_between(struct flight *f)
+{
+    f->can = (struct lm_can){.ctx = f, .receive = receive, .send = send};
+    f->control_port = (struct lm_controls){.ctx = f, .next = next_control};
+    f->display = f->z.display.port;
+    f->display.ctx = f;
+    f->display.acquire = acquire;
+    f->display.present = present;
+    f->z.lent.can = &f->can;
+    f->z.lent.controls = &f->control_port;
+    f->z.lent.display = &f->display;
+}
+
+/* The glass as it is just before the step, where the bench takes its pictures too. */
+static void keep_pictures(struct flight *f)
+{
+    while (f->next_picture < f->header->pictures &&
+           f->pictures[f->next_picture].time_us <= f->z.step_us) {
+        memcpy(album[f->next_picture], f->z.display.drawn, sizeof album[0]);
+        f->next_picture++;
+    }
+}
+
+static void show_pictures(struct flight *f)
+{
+    for (uint32_t i = 0; i < f->next_picture; i++) {
+        f->z.display.drawn = album[i];
+        f->z.display.port.present(f->z.display.port.ctx);
+        look(&f->z.console, &f->z.display, f->pictures[i].name);
+    }
+}
+
+static void report(struct flight *f)
+{
+    struct drv_uart *u = &f->z.console;
+    const struct lm_unit *unit = &f->z.unit;
+    zcu102_say_value(u, "first-picture-us", f->first_picture_us);
+    zcu102_say_value(u, "sent", f->peer.sent);
+    zcu102_say_value(u, "refused", f->peer.refused);
+    zcu102_say_value(u, "received", f->received_count);
+    zcu102_say_value(u, "ring-overflowed", f->z.can.count.overflowed);
+    zcu102_say_value(u, "fifo-overflowed", f->z.can.count.fifo_overflowed);
+    zcu102_say_value(u, "frames", unit->count.frames);
+    zcu102_say_value(u, "lines", unit->count.lines);
+    zcu102_say_value(u, "lines-dropped", unit->count.lines_dropped);
+    zcu102_say_value(u, "steps-left-out", f->z.steps_left_out);
+    zcu102_say_value(u, "tiles-read", unit->tiles.count.tiles_read);
+    zcu102_say_value(u, "read-errors", unit->tiles.count.io_errors);
+    zcu102_say_value(u, "tiles-corrupt", unit->tiles.count.corrupt);
+    zcu102_say_value(u, "flags", unit->flags);
+    zcu102_say_value(u, "interrupts", f->z.irq.count.taken);
+    zcu102_say_value(u, "stack-used", zcu102_stack_used());
+}
+
+static void fly(struct flight *f)
+{
+    while (f->z.step_us <= f->header->end_us) {
+        keep_pictures(f);
+        zcu102_step(&f->z);
+    }
+    f->z.is_supervised = false; /* looking takes as long as the host likes */
+    report(f);
+    show_pictures(f);
+}
+
+/* The BIT page says why. */
+static void show_restart(struct flight *f)
+{
+    static const struct scenario_control presses[] = {
+        {500000, {.kind = LM_CONTROL_DOWN, .value = BIT_BUTTON}},
+        {600000, {.kind = LM_CONTROL_UP, .value = BIT_BUTTON}}};
+    static struct scenario_header header;
+    header = (struct scenario_header){.controls = 2};
+    f->header = &header;
+    f->controls = presses;
+    while (f->z.step_us <= AFTER_RESTART_US) {
+        zcu102_step(&f->z);
+    }
+    f->z.is_supervised = false;
+    look(&f->z.console, &f->z.display, "bit");
+}
+
+int main(void)
+{
+    static struct flight f;
+    zcu102_open(&f.z);
+    if (!open_scenario(&f)) {
+        zcu102_say(&f.z.console, "there is no scenario in memory\n");
+        zcu102_power_off();
+    }
+    put_between(&f);
+    if (zcu102_start(&f.z) != LM_OK) {
+        zcu102_say(&f.z.console, "the unit does not start\n");
+        zcu102_power_off();
+    }
+    if (f.z.last_restart.cause != ZCU102_POWER_ON) {
+        show_restart(&f);
+    } else if (f.peer.count > 0 && !peer_start(&f.peer)) {
+        zcu102_say(&f.z.console, "the second core does not start\n");
+    } else {
+        fly(&f);
+    }
+    zcu102_power_off();
+}
