@@ -135,22 +135,26 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, antenna->place);
     const uint32_t cell_mm = g->radar->range_m[g->range] * 1000u / g->radar->gm_cells;
+    struct lm_texture texture;
+    lm_texture_set(&texture, &g->radar->texture, &tiles->db->classes, LM_SEA_STATE_OF_IMAGE);
     struct lm_line_setup setup = {
         .grid = &g->grid,
         .aspect = &g->radar->aspect,
-        .speckle = &g->radar->gm_speckle,
-        .tone = tone,
+        .texture = &texture,
         .sampling = lm_sampling_for(tiles->db, cell_mm, g->sweep),
     };
     refresh_grid(g, tiles, setup.sampling.level, antenna);
     const uint32_t drawn = g->line;
     const struct lm_ground_path path = path_of(g, &origin, antenna->heading, drawn);
-    struct lm_line_targets targets;
+    lm_line_trace(line, tiles, &setup, &path, LM_HORIZON_OPEN);
+    lm_floor_run(g->radar->sar.noise_floor_q8, line->sight.level_q8, g->grid.cells);
+    lm_speckle_run(&g->radar->gm_speckle, line->ground.noise, line->sight.level_q8, g->grid.cells);
     if (g->targets && g->targets->count != 0) {
+        struct lm_line_targets targets;
         find_targets(g, antenna, &targets);
-        setup.targets = &targets;
+        lm_line_add_targets(line, &setup, &targets);
     }
-    lm_line_render(line, tiles, &setup, &path, LM_HORIZON_OPEN);
+    lm_tone_run(tone, line->sight.level_q8, line->grey, g->grid.cells);
     if (drawn % LINES_APART == 0) {
         const struct lm_ground_path ahead =
             path_of(g, &origin, antenna->heading, line_ahead(g, LINES_AHEAD));

@@ -119,8 +119,8 @@ const struct lm_radar lm_radar_default = {
     .sar_lines_per_s = 128,
     .sar_cell_min_mm = 500,
     .sar_cell_max_mm = 40000,
-    .gm_speckle = {.looks_log2 = 4, .noise_floor_q8 = DB(-46)},
-    .sar_speckle = {.looks_log2 = 2, .noise_floor_q8 = DB(-46)},
+    .gm_speckle = {.looks_log2 = 4},
+    .sar_speckle = {.looks_log2 = 2},
     .gm_tone = {.black_q8 = DB(-42), .white_q8 = DB(6), .gamma_q8 = 384},
     .sar_tone = {.black_q8 = DB(-42), .white_q8 = DB(12), .gamma_q8 = 384},
 };

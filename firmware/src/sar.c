@@ -33,6 +33,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     lm_ground_patch_set(&s->ground, command->centre, command->look_azimuth,
                         radar->sar_cells * cell_q8 / 2);
     s->sampling = lm_sampling_for(db, command->cell_mm, epoch);
+    lm_texture_set(&s->texture, &radar->texture, &db->classes, LM_SEA_STATE_OF_IMAGE);
     const int32_t height_q10 = command->height_q6 * 16;
     const uint32_t near_q8 = range_q8 - before_centre_q8;
     lm_range_grid_set(&s->grid, &radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
@@ -115,8 +116,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
 {
     struct lm_line_setup setup = {.grid = &s->runup_grid,
                                   .aspect = &s->radar->aspect,
-                                  .speckle = &s->radar->sar_speckle,
-                                  .tone = tone,
+                                  .texture = &s->texture,
                                   .sampling = s->runup_sampling};
     if (s->line % LM_SAR_RUNUP_LINES == 0) {
         const struct lm_ground_path path = runup_path(s, s->line);
@@ -127,11 +127,14 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
     setup.grid = &s->grid;
     setup.sampling = s->sampling;
     const struct lm_ground_path path = patch_path(s, s->line);
-    struct lm_line_targets targets;
+    lm_line_trace(line, tiles, &setup, &path, s->horizon);
+    lm_floor_run(s->radar->sar.noise_floor_q8, line->sight.level_q8, s->grid.cells);
+    lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
+        struct lm_line_targets targets;
         find_targets(s, &targets);
-        setup.targets = &targets;
+        lm_line_add_targets(line, &setup, &targets);
     }
-    lm_line_render(line, tiles, &setup, &path, s->horizon);
+    lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);
     s->line++;
 }

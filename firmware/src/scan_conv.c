@@ -1,5 +1,8 @@
 #include "lm/scan_conv.h"
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -35,6 +38,16 @@ static int32_t tangent_q16_of(fx_bam_t azimuth)
     return (int32_t)((int64_t)fx_sin_q30(azimuth) * 65536 / fx_cos_q30(azimuth));
 }
 
+struct lm_ppi lm_ppi_of_sector(const struct lm_frame *frame, uint32_t cells)
+{
+    return (struct lm_ppi){
+        .clip = *frame,
+        .apex_x_px = frame->left_px + frame->width_px / 2,
+        .apex_y_px = frame->top_px + frame->height_px,
+        .cells_per_px_q16 = (cells << 16) / lm_ppi_radius_px(frame),
+    };
+}
+
 /* An edge of a wedge, row by row upwards from the apex; row 0 has its centres half a pixel above
  * it. The column is the first one, counted from the apex, whose centre is at or right of the edge:
  * the same edge gives the same column to the lines on both its sides. */
@@ -42,12 +55,13 @@ struct edge {
     int64_t x_q17, step_q17;
 };
 
-static struct edge edge_at(fx_bam_t azimuth)
+static struct edge edge_at(fx_bam_t azimuth, int32_t row)
 {
     /* Centre of column c is c + 1/2: c >= (row + 1/2) tan - 1/2, in Q17 (2 row + 1) tan - 2^16,
      * rounded up. */
     const int64_t tangent_q16 = tangent_q16_of(azimuth);
-    return (struct edge){.x_q17 = tangent_q16 - 65536 + 131071, .step_q17 = 2 * tangent_q16};
+    return (struct edge){.x_q17 = (2 * row + 1) * tangent_q16 - 65536 + 131071,
+                         .step_q17 = 2 * tangent_q16};
 }
 
 static inline int32_t next_column(struct edge *e)
@@ -57,51 +71,116 @@ static inline int32_t next_column(struct edge *e)
     return column;
 }
 
-/* The direction of the wedge's middle in cells a pixel, Q16: a pixel's projection on it is its
- * range. */
+/* The direction of the wedge's middle in cells a pixel: a pixel's projection on it is its range. */
 struct direction {
-    int32_t right_q16, up_q16;
+    int64_t right_q32, up_q32;
 };
 
-/* Rows that may hold a pixel in range: on neither edge does a row lie nearer than this many cells.
- */
-static int32_t rows_in_range(const struct direction *d, const struct edge *left,
-                             const struct edge *right, uint32_t cells, int32_t radius_px)
+static struct direction direction_of(fx_bam_t azimuth, uint32_t cells_per_px_q16)
 {
-    const int64_t at_left_q16 = d->up_q16 + (d->right_q16 * left->step_q17 >> 17);
-    const int64_t at_right_q16 = d->up_q16 + (d->right_q16 * right->step_q17 >> 17);
-    const int64_t nearest_q16 = at_left_q16 < at_right_q16 ? at_left_q16 : at_right_q16;
-    const int64_t rows = ((int64_t)cells << 16) / (nearest_q16 > 1 ? nearest_q16 : 1) + 2;
-    return rows < radius_px ? (int32_t)rows : radius_px;
+    return (struct direction){(int64_t)fx_sin_q30(azimuth) * cells_per_px_q16 >> 14,
+                              (int64_t)fx_cos_q30(azimuth) * cells_per_px_q16 >> 14};
 }
 
-void lm_ppi_paint(const struct lm_plane *plane, const struct lm_frame *frame, fx_bam_t left,
+/* Rows from the apex, first and end. */
+struct rows {
+    int32_t first, end;
+};
+
+/* Rows of the clip that may hold a pixel in range: on neither edge does a row lie nearer or farther
+ * than these. */
+static struct rows rows_in_range(const struct lm_ppi *ppi, const struct direction *d,
+                                 const struct edge *left, const struct edge *right, uint32_t cells)
+{
+    const struct lm_frame *clip = &ppi->clip;
+    const int32_t bottom = ppi->apex_y_px - clip->top_px - clip->height_px;
+    const struct rows all = {fx_max_i32(bottom, 0), ppi->apex_y_px - clip->top_px};
+    /* Cells a row along each edge, Q32: below 2^37. */
+    const int64_t at_left = d->up_q32 + (d->right_q32 * left->step_q17 >> 17);
+    const int64_t at_right = d->up_q32 + (d->right_q32 * right->step_q17 >> 17);
+    const int64_t least = at_left < at_right ? at_left : at_right;
+    const int64_t most = at_left < at_right ? at_right : at_left;
+    if (least <= 0) {
+        return all;
+    }
+    const int64_t near_q32 = (int64_t)ppi->near_cell_q8 * (1 << 24);
+    const int64_t far_q32 = near_q32 + ((int64_t)cells << 32);
+    const int64_t first = near_q32 / most - 2, end = far_q32 / least + 2;
+    return (struct rows){first > all.first ? (int32_t)first : all.first,
+                         end < all.end ? (int32_t)end : all.end};
+}
+
+void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                   fx_bam_t right, const uint8_t *grey, uint32_t cells)
 {
-    const fx_bam_t middle = left + (right - left) / 2;
-    const int32_t radius_px = lm_ppi_radius_px(frame);
-    const int32_t leftmost = -(int32_t)(frame->width_px / 2);
-    const int32_t beyond_right = frame->width_px + leftmost;
-    const struct direction d = {
-        .right_q16 = (int32_t)((int64_t)fx_sin_q30(middle) * (int32_t)cells / radius_px >> 14),
-        .up_q16 = (int32_t)((int64_t)fx_cos_q30(middle) * (int32_t)cells / radius_px >> 14)};
-    struct edge from_edge = edge_at(left), to_edge = edge_at(right);
-    const int32_t rows = rows_in_range(&d, &from_edge, &to_edge, cells, radius_px);
-    uint8_t *apex = plane->pixels + frame->left_px + frame->width_px / 2 +
-                    (uint32_t)(frame->top_px + frame->height_px - 1) * plane->width_px;
-    /* Ranges in cells of pixel centres, which lie at odd halves: Q17. |2 c + 1| < 2^12, slopes
-     * below 2^18. */
-    int32_t row_q17 = d.up_q16;
-    for (int32_t row = 0; row < rows; row++, apex -= plane->width_px, row_q17 += 2 * d.up_q16) {
+    const struct lm_frame *clip = &ppi->clip;
+    const struct direction d = direction_of(left + (right - left) / 2, ppi->cells_per_px_q16);
+    const struct edge left_edge = edge_at(left, 0), right_edge = edge_at(right, 0);
+    const struct rows rows = rows_in_range(ppi, &d, &left_edge, &right_edge, cells);
+    struct edge from_edge = edge_at(left, rows.first), to_edge = edge_at(right, rows.first);
+    const int32_t leftmost = clip->left_px - ppi->apex_x_px;
+    const int32_t beyond_right = leftmost + clip->width_px;
+    const int32_t right_q17 = (int32_t)(d.right_q32 >> 15); /* two half pixels */
+    /* Ranges in cells of pixel centres, which lie at odd halves of a pixel. |2 c + 1| < 2^15 and
+     * cells a pixel below 2^36 in Q32: below 2^52. */
+    for (int32_t row = rows.first; row < rows.end; row++) {
         const int32_t from = fx_max_i32(next_column(&from_edge), leftmost);
         const int32_t to = fx_min_i32(next_column(&to_edge), beyond_right);
-        int32_t cell_q17 = row_q17 + (2 * from + 1) * d.right_q16;
-        for (int32_t column = from; column < to; column++, cell_q17 += 2 * d.right_q16) {
+        const int64_t begin_q33 = (2 * row + 1) * d.up_q32 + (2 * from + 1) * d.right_q32;
+        int32_t cell_q17 = (int32_t)((begin_q33 >> 16) - (int64_t)ppi->near_cell_q8 * 512);
+        uint8_t *pixel = plane->pixels + ppi->apex_x_px + from +
+                         (int64_t)(ppi->apex_y_px - 1 - row) * plane->width_px;
+        for (int32_t column = from; column < to; column++, cell_q17 += right_q17) {
             const uint32_t cell = (uint32_t)(cell_q17 >> 17);
             if (cell < cells) {
-                apex[column] = grey[cell];
+                *pixel = grey[cell];
             }
+            pixel++;
         }
+    }
+}
+
+struct lm_frame lm_frame_square(const struct lm_frame *frame)
+{
+    const uint16_t side = frame->width_px < frame->height_px ? frame->width_px : frame->height_px;
+    return (struct lm_frame){.left_px = (uint16_t)(frame->left_px + (frame->width_px - side) / 2),
+                             .top_px = (uint16_t)(frame->top_px + (frame->height_px - side) / 2),
+                             .width_px = side,
+                             .height_px = side};
+}
+
+/* One row of the picture from another, shifted; `from` NULL is an empty one. */
+static void shift_row(uint8_t *to, const uint8_t *from, int32_t width_px, int32_t right_px)
+{
+    const int32_t kept = width_px - (int32_t)fx_abs_u32(right_px);
+    if (from == NULL || kept <= 0) {
+        memset(to, 0, (size_t)width_px);
+        return;
+    }
+    if (right_px >= 0) {
+        for (int32_t x = kept - 1; x >= 0; x--) {
+            to[x + right_px] = from[x];
+        }
+        memset(to, 0, (size_t)right_px);
+    } else {
+        for (int32_t x = 0; x < kept; x++) {
+            to[x] = from[x - right_px];
+        }
+        memset(to + kept, 0, (size_t)-right_px);
+    }
+}
+
+void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, int32_t right_px,
+                    int32_t down_px)
+{
+    const int32_t height = frame->height_px;
+    uint8_t *top = plane->pixels + frame->top_px * plane->width_px + frame->left_px;
+    /* Rows in the order in which none is overwritten before it is read. */
+    for (int32_t n = 0; n < height; n++) {
+        const int32_t to = down_px > 0 ? height - 1 - n : n, from = to - down_px;
+        const bool has_source = from >= 0 && from < height;
+        shift_row(top + to * plane->width_px, has_source ? top + from * plane->width_px : NULL,
+                  frame->width_px, right_px);
     }
 }
 

@@ -214,16 +214,14 @@ static void no_cells(uint32_t count, uint32_t *restrict cell, int32_t *restrict 
 
 /* Noise that belongs to the ground: a hash of the noise cell's latitude and longitude. */
 static void make_noise(const struct run *r, const struct lm_sampling *s, const struct places *at,
-                       uint32_t count, int32_t *restrict noise)
+                       uint32_t count, uint32_t *restrict noise)
 {
     const uint32_t south = (r->row << r->high) - FX_BAM_90;
     const uint32_t west = r->column << r->wide;
     for (uint32_t k = 0; k < count; k++) {
         const uint32_t latitude = south + (at->north[k] >> (32 - r->high));
         const uint32_t longitude = west + (at->east[k] >> (32 - r->wide));
-        const uint32_t hash =
-            fx_hash3(latitude >> s->noise_shift, longitude >> s->noise_shift, s->epoch);
-        noise[k] = (int32_t)(hash >> 22);
+        noise[k] = fx_hash3(latitude >> s->noise_shift, longitude >> s->noise_shift, s->epoch);
     }
 }
 

@@ -5,14 +5,12 @@
 
 enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
-void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise,
+void lm_speckle_run(const struct lm_speckle_config *config, const uint32_t *noise,
                     int32_t *restrict level_q8, uint32_t cells)
 {
     const int32_t *speckle_q8 = lm_speckle_q8[config->looks_log2];
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t level =
-            level_q8[i] > config->noise_floor_q8 ? level_q8[i] : config->noise_floor_q8;
-        level_q8[i] = level + speckle_q8[noise[i]];
+        level_q8[i] += speckle_q8[noise[i] >> 22];
     }
 }
 

@@ -152,7 +152,8 @@ static void draw_ground_map_line(struct lm_unit *u)
     };
     const uint32_t sweep = g->sweep, cells = g->radar->gm_cells;
     const uint32_t drawn = lm_ground_map_draw_line(g, &u->tiles, &antenna, &u->gm_tone, &u->line);
-    lm_ppi_paint(&u->plane, &u->frame, (fx_bam_t)lm_ground_map_edge_bam(g, drawn),
+    const struct lm_ppi ppi = lm_ppi_of_sector(&u->frame, cells);
+    lm_ppi_paint(&u->plane, &ppi, (fx_bam_t)lm_ground_map_edge_bam(g, drawn),
                  (fx_bam_t)lm_ground_map_edge_bam(g, drawn + 1), u->line.grey, cells);
     sample_coverage(u, cells);
     if (g->sweep != sweep) {

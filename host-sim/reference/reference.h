@@ -182,7 +182,8 @@ typedef uint32_t (*ref_hash_fn)(uint32_t latitude, uint32_t longitude, uint32_t 
 void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
                         ref_hash_fn hash);
 
-/* Fill `speckle_db` from `slice`, and echo_db = max(level_db, floor) + speckle_db. */
+/* Fill `speckle_db` from `slice`, and echo_db = the sum of both powers, level_db (of a lit bin) and
+ * floor, + speckle_db. */
 void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
                  double noise_floor_db);
 

@@ -92,6 +92,7 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 {
     for (size_t i = 0; i < count; i++) {
         bins[i].speckle_db = table_db[bins[i].slice];
-        bins[i].echo_db = fmax(bins[i].level_db, noise_floor_db) + bins[i].speckle_db;
+        const double ground = bins[i].is_lit ? pow(10, bins[i].level_db / 10) : 0;
+        bins[i].echo_db = 10 * log10(ground + pow(10, noise_floor_db / 10)) + bins[i].speckle_db;
     }
 }

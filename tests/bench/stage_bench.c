@@ -121,12 +121,13 @@ static void draw_sweeps(struct world *w, int count)
         .height_q10 = 3000 * 1024,
         .heading = 0,
     };
+    const struct lm_ppi ppi = lm_ppi_of_sector(&w->frame, lm_radar_default.gm_cells);
     lm_ground_map_start(&map, &lm_radar_default, 0, 0, 0);
     for (int n = 0; n < count; n++) {
         for (uint32_t i = 0; i < lm_ground_map_lines(&map); i++) {
             const uint32_t line =
                 lm_ground_map_draw_line(&map, &w->tiles, &antenna, &w->tone, &w->line);
-            lm_ppi_paint(&w->plane, &w->frame, (fx_bam_t)lm_ground_map_edge_bam(&map, line),
+            lm_ppi_paint(&w->plane, &ppi, (fx_bam_t)lm_ground_map_edge_bam(&map, line),
                          (fx_bam_t)lm_ground_map_edge_bam(&map, line + 1), w->line.grey,
                          lm_radar_default.gm_cells);
             make_resident(w);

@@ -7,6 +7,7 @@
 
 #include "lm/line.h"
 #include "lm/radar.h"
+#include "lm/tone.h"
 
 struct lm_ground_map {
     const struct lm_radar *radar; /* borrowed */

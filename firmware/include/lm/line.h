@@ -1,4 +1,4 @@
-/* One azimuth line from the map to grey: the stages in their order. */
+/* One line from the map to levels: the stages that sector and patch have in common. */
 #ifndef LM_LINE_H
 #define LM_LINE_H
 
@@ -6,7 +6,6 @@
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
 #include "lm/target_line.h"
-#include "lm/tone.h"
 
 /* Specific targets that a line may meet. */
 struct lm_line_targets {
@@ -19,9 +18,7 @@ struct lm_line_targets {
 struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_aspect_config *aspect;
-    const struct lm_speckle_config *speckle;
-    const struct lm_tone *tone;
-    const struct lm_line_targets *targets; /* NULL: none */
+    const struct lm_texture *texture;
     struct lm_sampling sampling;
 };
 
@@ -32,9 +29,15 @@ struct lm_line {
     uint8_t grey[LM_CELLS_ROOM];
 };
 
-/* Draw the grid's cells along the path. Returns the horizon behind the last cell. */
-lm_horizon_q40_t lm_line_render(struct lm_line *line, struct lm_tile_cache *tiles,
-                                const struct lm_line_setup *setup,
-                                const struct lm_ground_path *path, lm_horizon_q40_t horizon);
+/* Trace the grid's cells along the path: line->ground, and line->sight with texture and sea in its
+ * levels. Returns the horizon behind the last cell. */
+lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,
+                               const struct lm_line_setup *setup,
+                               const struct lm_ground_path *path, lm_horizon_q40_t horizon);
+
+/* Add what targets return. Behind speckle, which belongs to the clutter: what a target
+ * returns is its own. */
+void lm_line_add_targets(struct lm_line *line, const struct lm_line_setup *setup,
+                         const struct lm_line_targets *targets);
 
 #endif

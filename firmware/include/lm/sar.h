@@ -8,6 +8,7 @@
 #include "lm/controls.h"
 #include "lm/line.h"
 #include "lm/radar.h"
+#include "lm/tone.h"
 
 enum {
     LM_SAR_GUARD = 4,      /* cells before the patch that are traced and not shown */
@@ -22,6 +23,7 @@ struct lm_sar {
     struct lm_ground_patch ground;
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
+    struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none, as after lm_sar_start */
     struct lm_targets_near near;
     uint32_t epoch;           /* of noise and of what fluctuates */

@@ -28,11 +28,30 @@ void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame);
 /* Radius of the largest sector of +-60 degrees that fits the frame, pixels. */
 uint16_t lm_ppi_radius_px(const struct lm_frame *frame);
 
+/* How a fan of lines lies on the plane: where they meet and how large their cells are. The apex of
+ * a window's lines is far below it. */
+struct lm_ppi {
+    struct lm_frame clip;         /* nothing is painted outside */
+    int32_t apex_x_px, apex_y_px; /* a corner of pixels, from the plane's upper left; below 2^14 */
+    uint32_t cells_per_px_q16;    /* 1..2^20 */
+    int32_t near_cell_q8; /* where the lines' first cell begins, cells * 256 from the apex */
+};
+
+/* The whole sector: apex at the bottom centre of the frame, `cells` cells in its radius. */
+struct lm_ppi lm_ppi_of_sector(const struct lm_frame *frame, uint32_t cells);
+
 /* Paint the wedge from azimuth `left` up to, not including, `right` (from straight up, clockwise,
- * both within +-62 degrees, right after left). Lines that share an edge share no pixel and leave
- * none out. Draws only inside the frame. */
-void lm_ppi_paint(const struct lm_plane *plane, const struct lm_frame *frame, fx_bam_t left,
+ * both within +-80 degrees, right after left). Lines that share an edge share no pixel and leave
+ * none out. */
+void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                   fx_bam_t right, const uint8_t *grey, uint32_t cells);
+
+/* Move the frame's picture by whole pixels, right and down; what comes in from outside is empty. */
+void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, int32_t right_px,
+                    int32_t down_px);
+
+/* The largest square in the middle of the frame. */
+struct lm_frame lm_frame_square(const struct lm_frame *frame);
 
 /* Pixels along one side of a patch's cell: the largest whole number with which `cells` fit, at
  * least 1. */

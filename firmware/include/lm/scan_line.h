@@ -20,7 +20,7 @@ enum { LM_CELLS_ROOM = LM_CELLS_MAX + LM_LANES };
 
 struct lm_scan_line {
     uint32_t cell[LM_CELLS_ROOM];         /* as in the tile record, or LM_CELL_NONE */
-    int32_t noise[LM_CELLS_ROOM];         /* index into a speckle table, 0..1023 */
+    uint32_t noise[LM_CELLS_ROOM];        /* a hash of the noise cell and the epoch: lm/speckle.h */
     int32_t elevation_q14[LM_CELLS_ROOM]; /* terrain, metres * 16384; 0 where there is no data */
 };
 

@@ -15,8 +15,7 @@ enum { LM_SPECKLE_SLICES = 1024, LM_SPECKLE_LOOKS_LOG2_MAX = 4 };
 extern const int32_t lm_speckle_q8[LM_SPECKLE_LOOKS_LOG2_MAX + 1][LM_SPECKLE_SLICES];
 
 struct lm_speckle_config {
-    uint8_t looks_log2;     /* 0..4 */
-    int32_t noise_floor_q8; /* level of the receiver's noise, 1/256 dB */
+    uint8_t looks_log2; /* 0..4 */
 };
 
 /* Shape of the texture by kind of class (enum lm_kind), as log2 nu of 0..4, or LM_TEXTURE_NONE. */
@@ -52,8 +51,8 @@ void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint
  * 10^(floor/10)). Levels and floor within 2^30 of 0. Worst error 0.018 dB. */
 void lm_floor_run(int32_t floor_q8, int32_t *level_q8, uint32_t cells);
 
-/* level = max(level, floor) + speckle, in place. Cost: see docs/benchmarks.md. */
-void lm_speckle_run(const struct lm_speckle_config *config, const int32_t *noise, int32_t *level_q8,
-                    uint32_t cells);
+/* Multiply each cell's power by its speckle, in place. Cost: see docs/benchmarks.md. */
+void lm_speckle_run(const struct lm_speckle_config *config, const uint32_t *noise,
+                    int32_t *level_q8, uint32_t cells);
 
 #endif

@@ -14,6 +14,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -28,6 +29,7 @@ struct world {
     struct ref_db ref;
     struct lm_tone tone;
     struct lm_line line;
+    struct lm_radar radar; /* without texture, which the reference's pictures lack */
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
 };
@@ -70,12 +72,12 @@ static double decibels(int32_t q8)
 static void set_params(struct world *w, const struct lm_tone_config *tone,
                        const struct lm_speckle_config *speckle)
 {
-    const struct lm_aspect_config *a = &lm_radar_default.aspect;
+    const struct lm_aspect_config *a = &w->radar.aspect;
     w->params = (struct ref_params){.edge_structure_db = decibels(a->edge_structure_q8),
                                     .edge_trees_db = decibels(a->edge_trees_q8),
                                     .shore_db = decibels(a->shore_q8),
                                     .shore_width_m = a->shore_width_m,
-                                    .noise_floor_db = decibels(speckle->noise_floor_q8),
+                                    .noise_floor_db = decibels(w->radar.sar.noise_floor_q8),
                                     .looks = 1u << speckle->looks_log2,
                                     .black_db = decibels(tone->black_q8),
                                     .white_db = decibels(tone->white_q8),
@@ -87,6 +89,8 @@ static void set_params(struct world *w, const struct lm_tone_config *tone,
 static struct world *make_world(uint8_t shift0, double scale, double latitude, double longitude)
 {
     struct world *w = calloc(1, sizeof *w);
+    w->radar = lm_radar_default;
+    memset(w->radar.texture.shape_log2, LM_TEXTURE_NONE, sizeof w->radar.texture.shape_log2);
     struct tiny_spec spec = tiny_spec_at(latitude, longitude);
     spec.cell = scene_cell;
     spec.elevation_m = scene_elevation_m;
@@ -137,7 +141,7 @@ static void take_ground(const struct world *w, struct ref_bin *bins, uint32_t ce
 static void take_noise(const struct world *w, struct ref_bin *bins, uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        bins[i].slice = (uint32_t)w->line.ground.noise[i];
+        bins[i].slice = w->line.ground.noise[i] >> 22;
     }
 }
 
@@ -188,10 +192,10 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
         .height_q6 = height_m * 64};
-    set_params(w, &lm_radar_default.sar_tone, &lm_radar_default.sar_speckle);
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &w->db, &command,
-                                  (int32_t)lround(reference_m * 1024), 0),
-                     LM_OK);
+    set_params(w, &w->radar.sar_tone, &w->radar.sar_speckle);
+    assert_int_equal(
+        lm_sar_start(&sar, &w->radar, &w->db, &command, (int32_t)lround(reference_m * 1024), 0),
+        LM_OK);
     for (uint32_t line = 0; line < CELLS; line += 4) {
         lm_sar_prefetch(&sar, &w->tiles, line);
         make_resident(w);
@@ -209,7 +213,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
                                    .cell_m = cell_m,
                                    .cell_count = CELLS};
     struct ref_picture picture;
-    set_params(w, &lm_radar_default.sar_tone, &lm_radar_default.sar_speckle);
+    set_params(w, &w->radar.sar_tone, &w->radar.sar_speckle);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
@@ -258,7 +262,7 @@ static void patches_agree_with_the_reference(void **state)
 static void score_sweep(struct world *w, uint8_t range, double height_m, struct score *stage,
                         struct score *whole)
 {
-    const struct lm_radar *radar = &lm_radar_default;
+    const struct lm_radar *radar = &w->radar;
     const double cell_m = radar->range_m[range] / (double)radar->gm_cells;
     const struct ref_gm wanted = {
         .antenna = {w->ref.centre.latitude_deg - 0.6 * radar->range_m[range] / 111200,

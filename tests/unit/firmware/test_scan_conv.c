@@ -76,7 +76,8 @@ static void paint(const struct glass *g, int32_t left_bam, int32_t right_bam, ui
 {
     uint8_t line[CELLS];
     memset(line, grey, sizeof line);
-    lm_ppi_paint(&g->plane, &g->frame, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
+    const struct lm_ppi ppi = lm_ppi_of_sector(&g->frame, CELLS);
+    lm_ppi_paint(&g->plane, &ppi, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
 }
 
 static const uint16_t sizes[][2] = {{256, 256}, {512, 512}, {384, 512}, {1024, 1024}, {1000, 600}};
@@ -145,13 +146,14 @@ static void a_pixel_shows_the_cell_at_its_range(void **state)
     for (int n = 0; n < SIZES; n++) {
         struct glass g;
         make_glass(&g, sizes[n][0], sizes[n][1]);
+        const struct lm_ppi ppi = lm_ppi_of_sector(&g.frame, CELLS);
         const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame);
         const int32_t width = (int32_t)lm_radar_default.gm_line;
         for (int32_t i = -128; i < 128; i += 9) {
             memset(g.plane.pixels, GUARD, (size_t)g.plane.width_px * g.plane.height_px);
             lm_plane_clear(&g.plane, &g.frame);
-            lm_ppi_paint(&g.plane, &g.frame, (fx_bam_t)(i * width), (fx_bam_t)((i + 1) * width),
-                         line, CELLS);
+            lm_ppi_paint(&g.plane, &ppi, (fx_bam_t)(i * width), (fx_bam_t)((i + 1) * width), line,
+                         CELLS);
             for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
                 for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
                     const double radius_px = polar_of(&g, x, y).radius_px;

@@ -117,15 +117,16 @@ static void another_epoch_is_another_speckle(void **state)
     assert_in_range(same, 0, 3);
 }
 
-static void noise_has_a_floor_before_speckle(void **state)
+static void noise_adds_to_the_power_before_speckle(void **state)
 {
     (void)state;
     double table_db[REF_SPECKLE_SLICES];
     ref_speckle_table(4, table_db);
-    struct ref_bin bins[2] = {{.level_db = -90, .slice = 7}, {.level_db = -10, .slice = 1000}};
+    struct ref_bin bins[2] = {{.is_lit = false, .slice = 7},
+                              {.is_lit = true, .level_db = -45, .slice = 1000}};
     ref_speckle(bins, 2, table_db, -45);
     assert_true(fabs(bins[0].echo_db - (-45 + table_db[7])) < 1e-12);
-    assert_true(fabs(bins[1].echo_db - (-10 + table_db[1000])) < 1e-12);
+    assert_true(fabs(bins[1].echo_db - (-45 + 10 * log10(2) + table_db[1000])) < 1e-12);
 }
 
 static void tone_rises_from_black_to_white(void **state)
@@ -159,7 +160,7 @@ int main(void)
         cmocka_unit_test(speckle_rises_from_slice_to_slice),
         cmocka_unit_test(neighbours_never_share_a_sample_and_a_place_keeps_its_own),
         cmocka_unit_test(another_epoch_is_another_speckle),
-        cmocka_unit_test(noise_has_a_floor_before_speckle),
+        cmocka_unit_test(noise_adds_to_the_power_before_speckle),
         cmocka_unit_test(tone_rises_from_black_to_white),
     };
     return cmocka_run_group_tests_name("reference tone", tests, NULL, NULL);
