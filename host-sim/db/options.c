@@ -18,7 +18,7 @@ static void print_lines(const char *text, int indent)
 
 static void print_help(const struct db_usage *usage, const struct db_option *options, size_t count)
 {
-    printf("landmass-db %s: %s\n\nUsage: landmass-db %s", usage->command, usage->summary,
+    printf("%s %s: %s\n\nUsage: %s %s", hs_program(), usage->command, usage->summary, hs_program(),
            usage->command);
     for (size_t i = 0; i < count; i++) {
         if (options[i].is_required) {
@@ -46,7 +46,7 @@ static int usage_error(const struct db_usage *usage, const char *option, const c
 {
     char place[128], remedy[128];
     snprintf(place, sizeof place, "%s %s", usage->command, option);
-    snprintf(remedy, sizeof remedy, "see landmass-db %s --help", usage->command);
+    snprintf(remedy, sizeof remedy, "see %s %s --help", hs_program(), usage->command);
     return hs_error(place, remedy, "%s", cause);
 }
 

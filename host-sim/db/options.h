@@ -1,5 +1,5 @@
-/* The command lines of landmass-db: one table a sub-command, from which options are read, checked
- * and explained, so that --help can never disagree with what is accepted. */
+/* The command lines of landmass-db and landmass-target: one table a sub-command, from which options
+ * are read, checked and explained, so that --help can never disagree with what is accepted. */
 #ifndef DB_OPTIONS_H
 #define DB_OPTIONS_H
 

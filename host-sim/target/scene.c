@@ -1,8 +1,9 @@
 #include "scene.h"
 
+#include "embree_packet.h"
+
 #include "hs/error.h"
 
-#include <embree3/rtcore.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -150,20 +151,21 @@ int scene_open(struct scene *s, const struct mesh *m, double ground_half_m, cons
     return 0;
 }
 
-static struct RTCIntersectContext context_for(const struct scene_rays *rays)
+struct RTCIntersectContext embree_context(bool is_parallel)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    if (rays->is_parallel) {
+    if (is_parallel) {
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     }
     return context;
 }
 
-static void pack(const struct scene_rays *rays, struct RTCRay8 *r, int valid[SCENE_PACKET])
+void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int valid[SCENE_PACKET])
 {
+    struct RTCRay8 *r = &packet->ray;
     for (uint32_t i = 0; i < SCENE_PACKET; i++) {
-        const uint32_t k = i < rays->count ? i : 0; /* unused lanes repeat a ray, masked out */
+        const uint32_t k = i < rays->count ? i : 0;
         valid[i] = i < rays->count ? -1 : 0;
         r->org_x[i] = (float)rays->from[k].x;
         r->org_y[i] = (float)rays->from[k].y;
@@ -177,19 +179,17 @@ static void pack(const struct scene_rays *rays, struct RTCRay8 *r, int valid[SCE
         r->mask[i] = UINT32_MAX;
         r->id[i] = i;
         r->flags[i] = 0;
+        packet->hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet->hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
 }
 
 void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t facets[SCENE_PACKET])
 {
-    struct RTCIntersectContext context = context_for(rays);
+    struct RTCIntersectContext context = embree_context(rays->is_parallel);
     _Alignas(32) int valid[SCENE_PACKET];
     struct RTCRayHit8 packet;
-    pack(rays, &packet.ray, valid);
-    for (int i = 0; i < SCENE_PACKET; i++) {
-        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
+    embree_pack(rays, &packet, valid);
     rtcIntersect8(valid, s->tree, &context, &packet);
     for (uint32_t i = 0; i < rays->count; i++) {
         facets[i] =
@@ -199,14 +199,14 @@ void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t f
 
 uint32_t scene_is_blocked(const struct scene *s, const struct scene_rays *rays)
 {
-    struct RTCIntersectContext context = context_for(rays);
+    struct RTCIntersectContext context = embree_context(rays->is_parallel);
     _Alignas(32) int valid[SCENE_PACKET];
-    struct RTCRay8 packet;
-    pack(rays, &packet, valid);
-    rtcOccluded8(valid, s->tree, &context, &packet);
+    struct RTCRayHit8 packet;
+    embree_pack(rays, &packet, valid);
+    rtcOccluded8(valid, s->tree, &context, &packet.ray);
     uint32_t blocked = 0;
     for (uint32_t i = 0; i < rays->count; i++) {
-        blocked |= (uint32_t)(packet.tfar[i] < 0) << i; /* Embree sets it to -infinity */
+        blocked |= (uint32_t)(packet.ray.tfar[i] < 0) << i; /* Embree sets it to -infinity */
     }
     return blocked;
 }

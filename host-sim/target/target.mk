@@ -1,4 +1,12 @@
 # landmass-target: the radar picture of a model by ray tracing. LIB_target is all of it without main.c, for the tests.
 LIB_target := $(O)/host-sim/target/libtarget.a
-LIBS_target := -lembree3 -lpthread
-$(LIB_target): $(call objs,$(filter-out %/main.c,$(wildcard host-sim/target/*.c)))
+# Embree 3 has no pkg-config file in Debian.
+LIBS_target := -lembree3 -lpthread $(call pkgs,libs,libpng)
+# Command lines are read as landmass-db's are, and the curves are drawn on landmass-figures' sheets.
+SHARED_target := $(addprefix $(O)/host-sim/,db/options.o figures/chart.o)
+T := $(O)/bin/landmass-target
+PROGRAMS += $(T)
+$(O)/host-sim/target/%.o: EXTRA_CFLAGS := -Ihost-sim/db -Ihost-sim/figures
+$(LIB_target): $(call objs,$(filter-out %/main.c,$(wildcard host-sim/target/*.c))) $(SHARED_target)
+$(T): $(O)/host-sim/target/main.o $(LIB_target) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(T): LDLIBS := $(LIBS_target)

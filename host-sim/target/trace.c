@@ -46,7 +46,7 @@ double trace_ground_half_m(const struct trace_grid *grid, double depression_deg)
     return hypot(across_m, away_m) + grid->cell_m;
 }
 
-static struct trace_axes axes_of(const struct trace_look *look)
+struct trace_axes trace_axes_of(const struct trace_look *look)
 {
     const double azimuth = look->azimuth_deg * pi / 180, psi = look->depression_deg * pi / 180;
     struct trace_axes a;
@@ -134,7 +134,7 @@ static bool join_tiles(const struct tile_result *results, uint32_t tile_count,
 static int run_tiles(const struct scene *s, const struct trace_order *o, const char *place,
                      struct trace_records *r, uint64_t *rays_cast)
 {
-    const struct trace_tiles tiles = {s, axes_of(&o->look), r->sensor, o->look.wavelength_m,
+    const struct trace_tiles tiles = {s, trace_axes_of(&o->look), r->sensor, o->look.wavelength_m,
                                       o->bounces};
     struct team team = {.tiles = &tiles};
     const uint32_t rays = r->sensor.columns * r->sensor.rows;

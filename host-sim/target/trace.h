@@ -10,6 +10,13 @@
 #define TRACE_CHIP_CELL_M  0.1
 #define TRACE_WAVELENGTH_M 0.03123 /* 9.6 GHz */
 
+/* Of the radar, in the model's axes: unit vectors to the right, level away, along the line of
+ * sight, and up on the sensor's plane. */
+struct trace_axes {
+    struct vec across, away, sight, rise;
+};
+struct trace_axes trace_axes_of(const struct trace_look *look);
+
 struct trace_order {
     struct trace_look look;
     struct trace_grid grid;

@@ -53,7 +53,8 @@ static void start_wave(const struct trace_tiles *t, uint32_t first, struct wave 
     }
 }
 
-static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_parallel)
+static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_parallel,
+                      struct bare_rays *bare)
 {
     for (uint32_t i = 0; i < w->count; i += SCENE_PACKET) {
         struct scene_rays rays = {.count = w->count - i, .is_parallel = is_parallel};
@@ -63,6 +64,9 @@ static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_paral
             rays.along[k] = w->flights[i + k].along;
         }
         scene_meet(t->scene, &rays, &w->facets[i]);
+        if (bare) {
+            bare_keep(bare, &rays, false);
+        }
     }
 }
 
@@ -135,7 +139,7 @@ static bool reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b
 
 /* Look back at the radar from where each flight starts. Returns the number of rays. */
 static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
-                          struct trace_bounce *bounce)
+                          struct trace_bounce *bounce, struct bare_rays *bare)
 {
     struct scene_rays rays = {.is_parallel = true};
     uint32_t asker[SCENE_PACKET], cast = 0;
@@ -150,6 +154,9 @@ static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
             for (uint32_t k = 0; k < rays.count; k++) {
                 bounce->records[asker[k]].flags |= blocked >> k & 1 ? TRACE_BLOCKED : 0;
             }
+            if (bare) {
+                bare_keep(bare, &rays, true);
+            }
             cast += rays.count;
             rays.count = 0;
         }
@@ -163,12 +170,12 @@ void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_result 
     start_wave(t, index * TILE_RAYS, &w);
     for (uint32_t b = 0; b < t->bounces && w.count > 0; b++) {
         result->rays_cast += w.count;
-        meet_wave(t, &w, b == 0);
+        meet_wave(t, &w, b == 0, result->bare);
         if (!reflect_wave(t, &w, b, result)) {
             result->is_out_of_memory = true;
             return;
         }
-        result->rays_cast += look_back(t, &w, &result->bounces[b]);
+        result->rays_cast += look_back(t, &w, &result->bounces[b], result->bare);
     }
 }
 

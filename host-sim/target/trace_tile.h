@@ -2,16 +2,12 @@
 #ifndef TARGET_TRACE_TILE_H
 #define TARGET_TRACE_TILE_H
 
+#include "bare.h"
 #include "records.h"
 #include "scene.h"
+#include "trace.h"
 
 enum { TILE_RAYS = 1024 };
-
-/* Of the radar, in the model's axes: unit vectors to the right, level away, along the line of
- * sight, and up on the sensor's plane. */
-struct trace_axes {
-    struct vec across, away, sight, rise;
-};
 
 struct trace_tiles {
     const struct scene *scene;
@@ -24,6 +20,7 @@ struct trace_tiles {
 struct tile_result {
     struct trace_bounce bounces[TRACE_BOUNCES_MAX]; /* parents count from the tile's first record */
     uint64_t rays_cast;
+    struct bare_rays *bare; /* borrowed, NULL but for measurements: keeps every ray cast */
     bool is_out_of_memory;
 };
 

@@ -10,6 +10,11 @@ void hs_set_program(const char *name)
     program_name = name;
 }
 
+const char *hs_program(void)
+{
+    return program_name;
+}
+
 static void report(const char *place, const char *severity, const char *remedy, const char *cause,
                    va_list arguments)
 {

@@ -23,5 +23,6 @@ int hs_warn(const char *place, const char *remedy, const char *cause, ...)
 
 /* Name the program in the messages; call once at the start of main. Keeps the pointer. */
 void hs_set_program(const char *name);
+const char *hs_program(void);
 
 #endif

@@ -1,0 +1,172 @@
+#include "commands.h"
+#include "setup.h"
+#include "trace_tile.h"
+
+#include "hs/error.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <time.h>
+
+static const struct db_usage usage = {
+    "bench", "measure rays a second, beside bare Embree",
+    "Traces a picture again and again for some seconds and prints lines of name and value:\n"
+    "  primary_rays, rays     of one picture; rays are primary, specular and backward ones\n"
+    "  trace_ms               tracing the picture, least of all runs\n"
+    "  embree_ms              the same rays in the same packets, given to Embree with nothing\n"
+    "                         done before or after, by as many threads; least of all runs\n"
+    "  share_of_embree        embree_ms / trace_ms\n"
+    "  rays_per_s, primary_rays_per_s   of the tracer\n"
+    "  chip_ms                tracing, law, sum over cells, impulse response and pixels\n"
+    "  memory_mb              of the whole process, at most"};
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Packets of the same picture, cast by several threads in blocks as large as the tracer's tiles. */
+struct caster {
+    const struct scene *scene;
+    const struct bare_rays *rays;
+    atomic_size_t next, met;
+};
+
+static void *cast(void *argument)
+{
+    enum { BLOCK = TILE_RAYS / SCENE_PACKET };
+    struct caster *c = argument;
+    size_t first;
+    while ((first = atomic_fetch_add(&c->next, BLOCK)) < c->rays->count) {
+        const size_t end = first + BLOCK < c->rays->count ? first + BLOCK : c->rays->count;
+        atomic_fetch_add(&c->met, bare_cast(c->scene, c->rays, first, end));
+    }
+    return NULL;
+}
+
+static double cast_bare_s(const struct scene *scene, const struct bare_rays *rays, long threads)
+{
+    struct caster c = {.scene = scene, .rays = rays};
+    pthread_t others[64];
+    long started = 0;
+    const double start_s = now_s();
+    while (started + 1 < threads && pthread_create(&others[started], NULL, cast, &c) == 0) {
+        started++;
+    }
+    cast(&c);
+    for (long i = 0; i < started; i++) {
+        pthread_join(others[i], NULL);
+    }
+    return now_s() - start_s;
+}
+
+/* Trace once more, keeping the rays. Returns 0, or -1 reported. */
+static int keep_rays(const struct scene *scene, const struct trace_order *order,
+                     struct bare_rays *rays)
+{
+    const struct trace_sensor sensor = trace_sensor_for(scene, order);
+    const struct trace_tiles tiles = {scene, trace_axes_of(&order->look), sensor,
+                                      order->look.wavelength_m, order->bounces};
+    const uint32_t count = (sensor.columns * sensor.rows + TILE_RAYS - 1) / TILE_RAYS;
+    bool is_whole = true;
+    for (uint32_t i = 0; i < count; i++) {
+        struct tile_result result = {.bare = rays};
+        trace_tile(&tiles, i, &result);
+        is_whole = is_whole && !result.is_out_of_memory;
+        tile_result_free(&result);
+    }
+    return is_whole && !rays->is_out_of_memory ? 0 : hs_error("bench", NULL, "out of memory");
+}
+
+struct times {
+    double trace_s, embree_s, chip_s;
+    uint64_t rays;
+    uint32_t primary_rays;
+};
+
+static int measure_once(const struct setup *s, const struct scene *scene,
+                        const struct trace_order *order, const struct bare_rays *bare,
+                        struct times *t)
+{
+    struct trace_records r;
+    int width, height;
+    const double start_s = now_s();
+    if (trace_run(scene, order, s->model, &r, &t->rays) != 0) {
+        return -1;
+    }
+    const double traced_s = now_s();
+    float *chip = setup_chip(s, &r, &width, &height);
+    const double done_s = now_s();
+    t->primary_rays = r.sensor.columns * r.sensor.rows;
+    trace_records_free(&r);
+    if (!chip) {
+        return -1;
+    }
+    free(chip);
+    t->trace_s = fmin(t->trace_s, traced_s - start_s);
+    t->chip_s = fmin(t->chip_s, done_s - start_s);
+    t->embree_s = fmin(t->embree_s, cast_bare_s(scene, bare, s->threads));
+    return 0;
+}
+
+static void print(const struct times *t)
+{
+    struct rusage use;
+    getrusage(RUSAGE_SELF, &use);
+    printf("primary_rays %u\nrays %llu\n", t->primary_rays, (unsigned long long)t->rays);
+    printf("trace_ms %.2f\nembree_ms %.2f\nshare_of_embree %.3f\n", 1e3 * t->trace_s,
+           1e3 * t->embree_s, t->embree_s / t->trace_s);
+    printf("rays_per_s %.4g\nprimary_rays_per_s %.4g\n", (double)t->rays / t->trace_s,
+           t->primary_rays / t->trace_s);
+    printf("chip_ms %.2f\nmemory_mb %ld\n", 1e3 * t->chip_s, use.ru_maxrss / 1024);
+}
+
+static int run(const struct setup *s, double seconds)
+{
+    struct scene scene;
+    struct bare_rays bare = {0};
+    struct times t = {.trace_s = INFINITY, .embree_s = INFINITY, .chip_s = INFINITY};
+    if (setup_scene(s, &scene) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const struct trace_order order = setup_order(s, s->azimuth_deg);
+    int result = keep_rays(&scene, &order, &bare);
+    for (const double end_s = now_s() + seconds; result == 0 && now_s() < end_s;) {
+        result = measure_once(s, &scene, &order, &bare, &t);
+    }
+    if (result == 0) {
+        print(&t);
+    }
+    bare_free(&bare);
+    scene_close(&scene);
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+int target_cmd_bench(int argc, char **argv)
+{
+    struct setup s = setup_default();
+    double seconds = 3;
+    enum {
+        OWN = 2,
+        TRACE = OWN + SETUP_MODEL_OPTIONS,
+        CHIP = TRACE + SETUP_TRACE_OPTIONS,
+        COUNT = CHIP + SETUP_CHIP_OPTIONS
+    };
+    struct db_option options[COUNT] = {
+        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the radar", false},
+        {"seconds", DB_REAL, &seconds, 0.1, 600, "S", "to measure", false},
+    };
+    int exit_code;
+    setup_model_options(&s, options + OWN);
+    setup_trace_options(&s, options + TRACE);
+    setup_chip_options(&s, options + CHIP);
+    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    return run(&s, seconds);
+}

@@ -1,0 +1,55 @@
+#include "commands.h"
+#include "setup.h"
+
+#include "hs/error.h"
+
+#include <stdio.h>
+
+static const struct db_usage usage = {
+    "trace", "trace a model and keep every reflection",
+    "Rays leave a plane square to the line of sight; each reflection is kept with its angles,\n"
+    "material and the place where its echo is focused (docs/FORMATS.md, Traced records), for\n"
+    "`landmass-target render` with any law of reflection, or to train a network on."};
+
+static int run(const struct setup *s, const char *out)
+{
+    struct scene scene;
+    struct trace_records r;
+    if (setup_scene(s, &scene) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const struct trace_order order = setup_order(s, s->azimuth_deg);
+    uint64_t rays_cast = 0;
+    int result = trace_run(&scene, &order, s->model, &r, &rays_cast);
+    scene_close(&scene);
+    if (result == 0) {
+        result = trace_records_write(&r, out);
+        printf("%u x %u primary rays, %llu rays in all; reflections by bounce:", r.sensor.columns,
+               r.sensor.rows, (unsigned long long)rays_cast);
+        for (uint32_t b = 0; b < r.bounce_count; b++) {
+            printf(" %u", r.bounces[b].count);
+        }
+        putchar('\n');
+        trace_records_free(&r);
+    }
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+int target_cmd_trace(int argc, char **argv)
+{
+    struct setup s = setup_default();
+    const char *out = NULL;
+    enum { OWN = 2, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    struct db_option options[COUNT] = {
+        {"out", DB_TEXT, &out, 0, 0, "FILE.trace", "the records", true},
+        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+         "of the radar, from the model's nose towards its right", false},
+    };
+    int exit_code;
+    setup_model_options(&s, options + OWN);
+    setup_trace_options(&s, options + OWN + SETUP_MODEL_OPTIONS);
+    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    return run(&s, out);
+}

@@ -1,0 +1,134 @@
+#include "pix.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { NBAR = 4 };
+
+static const double pi = 3.14159265358979323846;
+static const double side_lobe_db = 35;
+static const double width_in_nulls = 1.184; /* -3 dB width of Taylor -35 dB, nbar 4 */
+
+/* Coefficients of the window's cosines: T. T. Taylor (1955); the form of Carrara, Goodman,
+ * Majewski, Spotlight Synthetic Aperture Radar, appendix D.2. */
+static void taylor_terms(double terms[NBAR])
+{
+    const double a = acosh(pow(10, side_lobe_db / 20)) / pi;
+    const double dilation = NBAR * NBAR / (a * a + (NBAR - 0.5) * (NBAR - 0.5));
+    terms[0] = 0;
+    for (int m = 1; m < NBAR; m++) {
+        double above = m % 2 == 1 ? 1 : -1, below = 2;
+        for (int n = 1; n < NBAR; n++) {
+            above *= 1 - m * m / (dilation * (a * a + (n - 0.5) * (n - 0.5)));
+            below *= n == m ? 1 : 1 - (double)(m * m) / (n * n);
+        }
+        terms[m] = above / below;
+    }
+}
+
+static double window_at(const double terms[NBAR], double turn)
+{
+    double weight = 1;
+    for (int m = 1; m < NBAR; m++) {
+        weight += 2 * terms[m] * cos(m * turn);
+    }
+    return weight;
+}
+
+void pix_taylor(int aperture, double response[PIX_KERNEL_SIDE])
+{
+    double terms[NBAR], sum = 0;
+    taylor_terms(terms);
+    for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+        response[i] = 0;
+    }
+    for (int n = 0; n < aperture; n++) {
+        const double off = n - (aperture - 1) / 2.0;
+        const double weight = window_at(terms, 2 * pi * off / aperture);
+        sum += weight;
+        for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+            response[i] += weight * cos(2 * pi * off * (i - PIX_KERNEL_SIDE / 2) / PIX_KERNEL_SIDE);
+        }
+    }
+    for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+        response[i] = fabs(response[i]) / sum;
+    }
+}
+
+int pix_aperture(double resolution_m, double spacing_m)
+{
+    const double aperture = PIX_KERNEL_SIDE * spacing_m * width_in_nulls / resolution_m;
+    return (int)lround(fmin(fmax(aperture, 1), PIX_KERNEL_SIDE));
+}
+
+/* One line of `count` numbers, `step` apart, spread by `weights` into `line`, and put back. */
+static void spread_line(float *first, int count, int step, const float weights[PIX_KERNEL_SIDE],
+                        float *line)
+{
+    const int half = PIX_KERNEL_SIDE / 2;
+    for (int i = 0; i < count; i++) {
+        line[i] = 0;
+    }
+    for (int i = 0; i < count; i++) {
+        const float power = first[(size_t)i * (size_t)step];
+        const int low = i - half > 0 ? i - half : 0;
+        const int high = i + half < count - 1 ? i + half : count - 1;
+        for (int k = low; power > 0 && k <= high; k++) {
+            line[k] += power * weights[k - i + half];
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        first[(size_t)i * (size_t)step] = line[i];
+    }
+}
+
+int pix_spread(float *power, int width, int height, int aperture)
+{
+    double response[PIX_KERNEL_SIDE], sum = 0;
+    float weights[PIX_KERNEL_SIDE];
+    pix_taylor(aperture, response);
+    for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+        sum += response[i] * response[i];
+    }
+    for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
+        weights[i] = (float)(response[i] * response[i] / sum);
+    }
+    float *line = malloc((size_t)(width > height ? width : height) * sizeof *line);
+    if (!line) {
+        return hs_error("picture", NULL, "out of memory");
+    }
+    for (int row = 0; row < height; row++) {
+        spread_line(power + (size_t)row * (size_t)width, width, 1, weights, line);
+    }
+    for (int column = 0; column < width; column++) {
+        spread_line(power + column, height, width, weights, line);
+    }
+    free(line);
+    return 0;
+}
+
+void pix_coarsen(const float *power, int width, int height, int ratio, float *coarse)
+{
+    for (int row = 0; row < height / ratio; row++) {
+        for (int column = 0; column < width / ratio; column++) {
+            float sum = 0;
+            for (int k = 0; k < ratio * ratio; k++) {
+                sum += power[(row * ratio + k / ratio) * width + column * ratio + k % ratio];
+            }
+            coarse[row * (width / ratio) + column] = sum / (float)(ratio * ratio);
+        }
+    }
+}
+
+void pix_speckle(float *power, int count, int looks, struct hs_rng *rng)
+{
+    for (int i = 0; i < count; i++) {
+        double sum = 0;
+        for (int k = 0; k < looks; k++) {
+            sum -= log1p(-hs_rng_uniform(rng));
+        }
+        power[i] *= (float)(sum / looks);
+    }
+}
