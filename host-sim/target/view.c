@@ -8,8 +8,9 @@ enum { SAMPLES = 3 }; /* aside, in a pixel */
 
 static const uint32_t sky = 0x182028;
 
+static const uint8_t ground_tint[3] = {120, 150, 110};
 static const uint8_t tints[][3] = {
-    {210, 214, 220}, {150, 120, 90}, {120, 150, 110}, {190, 160, 120}, {140, 150, 190}};
+    {210, 214, 220}, {150, 120, 90}, {160, 110, 110}, {190, 160, 120}, {140, 150, 190}};
 enum { TINTS = sizeof tints / sizeof tints[0] };
 
 /* Of one ray's facet: red, green, blue. */
