@@ -53,9 +53,11 @@ struct drv_stick {
 
 void drv_stick_init(struct drv_stick *s, const struct drv_stick_config *config);
 
-/* A device came: read what its descriptor says about its reports. NULL, or the cause why it is no
- * hand controller that the config can use. */
-const char *drv_stick_attach(struct drv_stick *s, const uint8_t *descriptor, size_t size);
+/* A device came: read what its descriptor says about its reports. `is_named`: it was asked for by
+ * name, so that anything with the right axes will do; otherwise it must call itself a hand
+ * controller. NULL, or the cause why it is none that the config can use. */
+const char *drv_stick_attach(struct drv_stick *s, const uint8_t *descriptor, size_t size,
+                             bool is_named);
 
 /* A report came. */
 void drv_stick_report(struct drv_stick *s, const uint8_t *report, size_t size);
