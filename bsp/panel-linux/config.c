@@ -83,6 +83,47 @@ static bool take_size(const struct config_row *row, const char *text, void *valu
     return true;
 }
 
+/* Four hexadecimal digits, or fewer. */
+static bool take_hex(const char *text, size_t length, uint16_t *value)
+{
+    static const char digits[] = "0123456789abcdef";
+    *value = 0;
+    for (size_t i = 0; i < length; i++) {
+        const char lower =
+            text[i] >= 'A' && text[i] <= 'F' ? (char)(text[i] + ('a' - 'A')) : text[i];
+        const char *digit = memchr(digits, lower, sizeof digits - 1);
+        if (digit == NULL) {
+            return false;
+        }
+        *value = (uint16_t)(*value << 4 | (digit - digits));
+    }
+    return length >= 1 && length <= 4;
+}
+
+static bool take_device(const char *text, void *value)
+{
+    struct config_stick stick = {.choice = CONFIG_STICK_NAMED};
+    const size_t vendor = strcspn(text, ":");
+    if (strcmp(text, "none") == 0) {
+        stick.choice = CONFIG_STICK_NONE;
+    } else if (strcmp(text, "auto") == 0) {
+        stick.choice = CONFIG_STICK_AUTO;
+    } else if (text[vendor] != ':' || !take_hex(text, vendor, &stick.vendor)) {
+        return false;
+    } else {
+        const char *rest = text + vendor + 1;
+        const size_t product = strcspn(rest, ":");
+        const char *serial = rest[product] == ':' ? rest + product + 1 : "";
+        if (!take_hex(rest, product, &stick.product) || strlen(serial) >= sizeof stick.serial ||
+            (rest[product] == ':' && serial[0] == '\0')) {
+            return false;
+        }
+        memcpy(stick.serial, serial, strlen(serial));
+    }
+    memcpy(value, &stick, sizeof stick);
+    return true;
+}
+
 static bool take_axis(const char *text, void *value)
 {
     struct drv_stick_axis axis = {.is_inverted = text[0] == '-'};
@@ -132,6 +173,8 @@ static bool take(struct config *c, const struct config_row *row, const char *tex
         return take_choice(row, text, value);
     case CONFIG_SIZE:
         return take_size(row, text, value);
+    case CONFIG_DEVICE:
+        return take_device(text, value);
     case CONFIG_AXIS:
         return take_axis(text, value);
     case CONFIG_BUTTON:

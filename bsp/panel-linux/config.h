@@ -27,6 +27,13 @@ struct config_size {
     uint16_t width_px, height_px; /* 0, 0: not chosen */
 };
 
+/* Which USB device is the hand controller. */
+struct config_stick {
+    enum { CONFIG_STICK_NONE, CONFIG_STICK_AUTO, CONFIG_STICK_NAMED } choice;
+    uint16_t vendor, product;
+    char serial[CONFIG_NAME]; /* empty: any */
+};
+
 /* Names that are empty mean: none, or the driver's choice. */
 struct config {
     char database[CONFIG_PATH];
@@ -48,7 +55,7 @@ struct config {
     char backlight[CONFIG_NAME];
     uint32_t backlight_day, backlight_night; /* per cent */
 
-    char stick[CONFIG_NAME];
+    struct config_stick stick;
     struct drv_stick_config stick_map;
 
     uint32_t priority;

@@ -98,8 +98,7 @@ const struct config_row config_table[] = {
     OPTION(CONFIG_NUMBER, backlight_night, 1, 100, NULL, "backlight.night", "1..100", "20",
            "Its brightness with the night palette, per cent."),
     OPTION(
-        CONFIG_TEXT, stick, 0, CONFIG_NAME, "none", "stick",
-        "VENDOR:PRODUCT[:SERIAL] | auto | none", "auto",
+        CONFIG_DEVICE, stick, 0, 0, NULL, "stick", "VENDOR:PRODUCT[:SERIAL] | auto | none", "auto",
         "USB hand controller, in hexadecimal as lsusb prints it. auto: the first joystick, game\n"
         "pad or multi-axis controller."),
     OPTION(CONFIG_AXIS, stick_map.right, 0, 0, NULL, "stick.right", AXIS_VALUES, "x",

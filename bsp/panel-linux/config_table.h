@@ -11,6 +11,7 @@ enum config_kind {
     CONFIG_NUMBER,
     CONFIG_CHOICE, /* stored as the number of the word */
     CONFIG_SIZE,
+    CONFIG_DEVICE,
     CONFIG_AXIS,
     CONFIG_BUTTON
 };

@@ -14,7 +14,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { STACK_USED_BYTES = 128 << 10, TELL_US = 1000000 };
+enum {
+    STACK_USED_BYTES = 128 << 10,
+    TELL_US = 1000000,
+    ALIVE_PICTURES = 15, /* half a second of them */
+    /* What the operator did himself is no fault. */
+    FAULTS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD | LM_FLAG_DB | LM_FLAG_TILE | LM_FLAG_BUS
+};
 
 /* Touch the stack that the loop may need, so that its pages are there and locked. */
 static void touch_stack(void)
@@ -58,6 +64,15 @@ static void tell_counters(const struct panel *p)
     report(REPORT_INFO, "glass: %u pictures, %u seen; DRM busy %u, lost %u, late %u, errors %u",
            p->glass.count.pictures, glass_renders(&p->glass), p->glass.drm.count.busy,
            p->glass.drm.count.lost, p->glass.drm.count.late, p->glass.drm.count.errors);
+    report(REPORT_INFO, "keys: %u edges, %u errors, %u stuck, %u missed", p->bezel.gpio.count.edges,
+           p->bezel.gpio.count.errors, p->unit->keys.count.stuck, p->bezel.missed);
+    if (p->hand.usb != NULL) {
+        const struct drv_usb_counts c = drv_usb_counts(p->hand.usb);
+        report(REPORT_INFO,
+               "hand controller: attached %u, gone %u, refused %u, %u reports, "
+               "%u empty, %u errors",
+               c.attached, c.detached, c.refused, c.reports, c.empty, c.errors);
+    }
     report(REPORT_INFO, "watchdog: fed %u times, hungry %u times", p->watchdog.count.fed,
            p->watchdog.count.refused);
 }
@@ -105,12 +120,27 @@ static void tell_flags(struct panel *p, uint64_t now_us)
     p->tell_us = now_us + TELL_US;
 }
 
+static void show_lamps(struct panel *p)
+{
+    const struct lm_unit *u = p->unit;
+    const struct bezel_lamps lamps = {
+        .is_lit = {[CONFIG_LED_ALIVE] = (glass_renders(&p->glass) / ALIVE_PICTURES & 1) != 0,
+                   [CONFIG_LED_FAULT] = (u->flags & FAULTS) != 0 || bezel_is_stuck(&p->bezel) ||
+                                        !glass_is_lit(&p->glass),
+                   [CONFIG_LED_NIGHT] = u->page.palette.is_night},
+        .is_night = u->page.palette.is_night,
+    };
+    bezel_show(&p->bezel, &lamps);
+}
+
 void panel_step(struct panel *p, uint64_t now_us)
 {
     bus_service(&p->bus, now_us);
+    bezel_service(&p->bezel, now_us);
     glass_service(&p->glass, now_us);
     lm_unit_step(p->unit, now_us);
     p->count.steps++;
+    show_lamps(p);
     tell_flags(p, now_us);
     const struct drv_liveness life = {.frames = p->unit->count.frames,
                                       .bus = p->bus.count.polls,
@@ -131,6 +161,7 @@ static void wait_for_work(const struct panel *p, uint64_t stepped_us)
     struct pollfd wake[] = {
         {.fd = p->signals, .events = POLLIN},
         {.fd = bus_fd(&p->bus), .events = POLLIN},
+        {.fd = bezel_fd(&p->bezel), .events = POLLIN},
         {.fd = glass_fd(&p->glass), .events = POLLIN},
     };
     const uint64_t asked_us = panel_now_us(p), due_us = stepped_us + PANEL_TICK_US;

@@ -82,7 +82,8 @@ static const struct lm_flash *open_flash(struct panel *p)
 static int next_control(void *ctx, struct lm_control *control)
 {
     struct panel *p = ctx;
-    return drv_control_ring_take(&p->stick_ring, control) ? 1 : 0;
+    return drv_control_ring_take(&p->bezel.ring, control) ||
+           drv_control_ring_take(&p->hand.ring, control);
 }
 
 static int start_unit(struct panel *p, const struct lm_flash *flash)
@@ -137,12 +138,14 @@ int panel_open(struct panel *p, const struct config *config)
 {
     memset(p, 0, sizeof *p);
     p->config = config;
-    p->file.descriptor = p->mtd.fd = -1;
+    p->file.descriptor = p->mtd.fd = p->bezel.gpio.fd = p->bezel.backlight_fd = -1;
     p->zero_us = monotonic_us();
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     const struct lm_flash *flash = open_flash(p);
     bus_open(&p->bus, config->can, p->zero_us);
+    bezel_open(&p->bezel, config, panel_now_us(p));
+    hand_open(&p->hand, config);
     int status = glass_open(&p->glass, config, panel_now_us(p));
     if (status == 0) {
         status = start_unit(p, flash);
@@ -162,6 +165,8 @@ int panel_open(struct panel *p, const struct config *config)
 void panel_close(struct panel *p)
 {
     drv_watchdog_notify(&p->watchdog, "STOPPING=1");
+    hand_close(&p->hand);
+    bezel_close(&p->bezel);
     glass_close(&p->glass);
     bus_close(&p->bus);
     drv_flash_reader_stop(&p->flash);

@@ -3,14 +3,15 @@
 #ifndef PANEL_H
 #define PANEL_H
 
+#include "bezel.h"
 #include "bus.h"
 #include "config.h"
-#include "drv/control_ring.h"
 #include "drv/flash_file.h"
 #include "drv/flash_mtd.h"
 #include "drv/flash_reader.h"
 #include "drv/watchdog.h"
 #include "glass.h"
+#include "hand.h"
 #include "lm/unit.h"
 
 enum {
@@ -26,7 +27,8 @@ struct panel {
     struct drv_flash_reader flash;
     struct bus bus;
     struct glass glass;
-    struct drv_control_ring stick_ring;
+    struct bezel bezel;
+    struct hand hand;
     struct lm_controls controls;
     struct drv_watchdog watchdog;
     int signals; /* of signalfd */
