@@ -114,6 +114,9 @@ void zcu102_open(struct zcu102 *z)
                                 .tile_pool_bytes = sizeof tile_pool,
                                 .plane = plane,
                                 .flash_poll_limit = 1000000};
+    if (z->last_restart.cause != ZCU102_POWER_ON) {
+        z->lent.restart = zcu102_cause_words(z->last_restart.cause);
+    }
 }
 
 int zcu102_start(struct zcu102 *z)

@@ -2,7 +2,7 @@
 
 #include "lm/version.h"
 
-enum { ROW_COUNTERS = 3, COUNTER_ROWS = 10, ROW_NOW = 13, ROW_FAULTS = 14 };
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 10, ROW_NOW = 13, ROW_FAULTS = 14, ROW_RESTART = 18 };
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -108,8 +108,11 @@ struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row)
         add_counters(u, row - ROW_COUNTERS, &t);
     } else if (row == ROW_NOW) {
         add_flags(u->flags, &t);
-    } else if (row < LM_BIT_ROWS) {
+    } else if (row < ROW_RESTART) {
         add_fault(u, row - ROW_FAULTS, &t);
+    } else if (row == ROW_RESTART && u->board->restart) {
+        lm_text_add(&t, "RESTART  ");
+        lm_text_add(&t, u->board->restart);
     }
     return t;
 }

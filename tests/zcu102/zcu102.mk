@@ -1,7 +1,7 @@
 # The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
 ZCU102 := $(O)/bin/tests/zcu102
 ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
-ZCU102_TESTS := $(addprefix $(ZCU102)/,test_golden)
+ZCU102_TESTS := $(addprefix $(ZCU102)/,test_golden test_flight)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden -Ihost-sim
 $(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c support/tiny_image.c)) \
@@ -15,7 +15,7 @@ $(ZCU102)/scenario: $(call objs,tests/zcu102/scenario.c host-sim/sim/script.c) $
 zcu102-images:
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=zcu102 all
 
-$(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) | zcu102-images
+$(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) $(addprefix $(O)/bin/landmass-,sim nav) | zcu102-images
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec python3 -B $<\n' >$@
 	@chmod +x $@

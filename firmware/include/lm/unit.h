@@ -29,6 +29,7 @@ struct lm_board {
     uint8_t *plane;            /* display width * height bytes */
     uint32_t noise_seed;       /* another one gives other speckle, everything else the same */
     uint32_t flash_poll_limit; /* polls after which a read at start-up is given up */
+    const char *restart; /* why the board restarted, in 20 capitals; NULL: it was switched on */
 };
 
 enum { LM_FRAME_US = 33333, LM_SAR_ACQUIRE_US = 500000, LM_BUS_SILENT_US = 1000000 };

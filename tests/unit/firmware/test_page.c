@@ -703,6 +703,17 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     free_rig(r);
 }
 
+static void the_bit_page_says_why_the_board_restarted(void **state)
+{
+    struct rig *r = start_rig();
+    (void)state;
+    assert_string_equal(lm_bit_row(&r->unit, LM_BIT_ROWS - 1).words, "");
+    r->board.restart = "HUNG STEP";
+    press(r, 12);
+    assert_true(says(r, "RESTART  HUNG STEP"));
+    free_rig(r);
+}
+
 static void a_broken_database_leaves_a_bit_page_that_says_so(void **state)
 {
     (void)state;
@@ -768,6 +779,7 @@ int main(void)
         cmocka_unit_test(designate_looks_closely_at_the_cursor_and_drop_comes_back),
         cmocka_unit_test(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds),
         cmocka_unit_test(the_bit_page_says_what_the_counters_say),
+        cmocka_unit_test(the_bit_page_says_why_the_board_restarted),
         cmocka_unit_test(a_broken_database_leaves_a_bit_page_that_says_so),
         cmocka_unit_test(buttons_and_deflections_that_do_not_exist_are_refused),
     };

@@ -1,0 +1,144 @@
+"""Flights on the board over a golden country: the bus from controller to controller, the flash by DMA, damage to both,
+and the supervisor. The bench flies with what the board received, and must draw the same.
+
+When a frame arrives is not the same in every run: QEMU's two cores share one thread, and how long the one that sends
+waits for the one that draws depends, by a millisecond or so, on the host. That is why the bench is given the arrivals
+of the very run."""
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import fly
+import machine
+from tap import Tap
+
+WORK = machine.BUILD / "tmp/flight"
+FLAG_DB, FLAG_TILE = 1 << 2, 1 << 3  # of lm/overlay.h
+SECONDS = 5
+SCRIPT = """\
+0   range 10
+1.9 picture ground-map
+2   sar 46.0 11.0 5
+4.9 picture sar
+"""
+SECTION_TILES = 4
+RECORD_BYTES = 16704
+
+
+def country():
+    """The image of the golden country in the middle, out of what golden_flash makes."""
+    whole = WORK / "golden.img"
+    subprocess.run([machine.TOOLS / "golden_flash", whole], check=True)
+    content = whole.read_bytes()
+    offset, size = struct.unpack_from("<QQ", content, 8 + 16 + 8)
+    whole.unlink()
+    return content[offset:offset + size]
+
+
+def damage_tiles(image):
+    """One bit of every third record (docs/FORMATS.md, 1.1 and 1.5)."""
+    damaged = bytearray(image)
+    for section in range(16):
+        kind, _, offset, size = struct.unpack_from("<IIQQ", image, 64 + 24 * section)
+        if kind == SECTION_TILES:
+            for record in range(0, size // RECORD_BYTES, 3):
+                damaged[offset + record * RECORD_BYTES + 1000] ^= 1 << record % 8
+    return bytes(damaged)
+
+
+class Flights:
+    def __init__(self, tap):
+        self.tap = tap
+        WORK.mkdir(parents=True, exist_ok=True)
+        self.image = country()
+        self.script = WORK / "flight.script"
+        self.script.write_text(SCRIPT)
+        self.bus = WORK / "flight.log"
+        subprocess.run([machine.TOOLS.parent.parent / "landmass-nav", "--straight", "45.93,11.0,5,2500,150",
+                        "--seconds", str(SECONDS + 1), "--quiet", "--out", self.bus], check=True)
+
+    def fly(self, name, image, chips=None):
+        """The flight with this image; its machine, and whether the pictures are the bench's."""
+        out = WORK / name
+        out.mkdir(parents=True, exist_ok=True)
+        database = out / "image.lmdb"
+        database.write_bytes(image)
+        chips = machine.split_flash(database, out) if chips is None else chips
+        m = fly.fly(out, chips, fly.make_scenario(out, self.bus, self.script, SECONDS))
+        for chip in chips:
+            chip.unlink()
+        self.tap.ok(f"{name}: the board comes to the end of its flight", m.status == 0 and len(m.looks) == 2,
+                    *m.lines[-8:])
+        bench = fly.bench_checksums(out, database, self.script, SECONDS)
+        for picture, checksum in bench.items():
+            self.tap.ok(f"{name}: {picture} is on the display as on the bench",
+                        m.looks.get(picture) == (checksum, checksum), m.looks.get(picture), checksum)
+        return m
+
+    def whole(self):
+        m = self.fly("whole", self.image)
+        sent = m.value("sent")
+        self.tap.ok("every frame of the bus arrives, in the order and at the time it was sent",
+                    sent > 3000 and m.value("received") == sent and m.value("refused") == 0 and self.is_in_order())
+        self.tap.ok("nothing is lost or late", all(m.value(name) == 0 for name in (
+            "ring-overflowed", "fifo-overflowed", "lines-dropped", "steps-left-out", "read-errors", "tiles-corrupt")))
+        self.tap.ok("the page has no warning", m.value("flags") == 0)
+        self.tap.ok("tiles came while the sweep ran", m.value("tiles-read") > 50)
+        self.tap.ok("the first picture comes within a second of the reset", 0 < m.value("first-picture-us") < 1000000)
+        self.tap.note(f"first picture {m.value('first-picture-us')} us after reset; {m.value('interrupts')} interrupts")
+
+    def is_in_order(self):
+        """What arrived is what the log holds: the same identifiers and bytes, each at its time, or late by
+        what the core that sends has to wait for the one that draws."""
+        def frames(path):
+            for line in Path(path).read_text().splitlines():
+                time, _, frame = line.split()
+                yield float(time.strip("()")), frame
+        sent = list(frames(self.bus))
+        received = list(frames(WORK / "whole/received.log"))[1:]
+        start = sent[0][0]
+        return all(one[1] == other[1] and -1e-5 < other[0] - (one[0] - start) < 0.02
+                   for one, other in zip(sent, received))
+
+    def damaged(self):
+        m = self.fly("damaged tiles", damage_tiles(self.image))
+        self.tap.ok("flipped bits are found, and the page says TILE",
+                    m.value("tiles-corrupt") > 0 and m.value("flags") == FLAG_TILE, m.lines)
+        header = bytearray(self.image)
+        header[30] ^= 4
+        m = self.fly("damaged header", bytes(header))
+        self.tap.ok("a damaged header is no database, and the page says DB FAIL", m.value("flags") == FLAG_DB)
+        m = self.fly("no flash", b"\xff" * 4096, chips=[])
+        self.tap.ok("without flash the page says DB FAIL", m.value("flags") == FLAG_DB)
+
+    def hung(self, what, words):
+        out = WORK / f"hung-{what}"
+        chips = machine.split_flash(WORK / "whole/image.lmdb", out)
+        scenario = fly.make_scenario(out, self.bus, self.script, SECONDS, (what, 1.0))
+        m = fly.fly(out, chips, scenario, options=())
+        for chip in chips:
+            chip.unlink()
+        starts = [line for line in m.lines if "started after" in line]
+        self.tap.ok(f"{what} hangs: the supervisor restarts the board, once", len(starts) == 2 and m.status == 0, *starts)
+        self.tap.ok(f"{what} hangs: the console says {words}", starts[-1].endswith(words), *starts)
+        return m.looks.get("bit")
+
+
+def main():
+    tap = Tap()
+    why = machine.missing()
+    if why:
+        tap.skip("the board flies as the bench does", why)
+        return tap.end()
+    flights = Flights(tap)
+    flights.whole()
+    flights.damaged()
+    pages = [flights.hung(what, words) for what, words in
+             (("step", "HUNG STEP"), ("display", "NO FRAME"), ("bus", "NO BUS"))]
+    tap.ok("and each time the BIT page says so", len(set(pages)) == 3 and None not in pages
+           and all(drawn == seen for drawn, seen in pages), pages)
+    return tap.end()
+
+
+sys.exit(main())
