@@ -3,7 +3,7 @@
 
 enum {
     CONTROLS_A_STEP = 8,
-    PATCH_LINES_BETWEEN_PREFETCHES = 8,
+    PATCH_LINES_BETWEEN_PREFETCHES = 4,
     UNABLE_SHOWN_US = 2000000,
     ELEVATION_CELL_MM = 30000 /* the map's detail that the cursor's elevation comes from */
 };
@@ -27,45 +27,57 @@ static void start_ground_map(struct lm_unit *u, uint64_t now_us)
     lm_begin_picture(u, now_us);
 }
 
-/* The command with the geometry of this moment, when it is to be seen from the ownship. */
-static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *command)
+/* The command with the geometry of this moment, and how the aircraft flies, when the patch is to be
+ * seen from the ownship. */
+static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *command,
+                            struct lm_sar_flight *flight)
 {
-    if (!command->is_from_ownship) {
-        return true;
-    }
-    if (u->ownship.position_quality != LM_NAV_GOOD || u->ownship.height_quality != LM_NAV_GOOD) {
+    const struct lm_ownship *own = &u->ownship;
+    if (own->position_quality != LM_NAV_GOOD || own->height_quality != LM_NAV_GOOD ||
+        own->heading_quality != LM_NAV_GOOD || own->velocity_quality != LM_NAV_GOOD) {
         return false;
     }
     /* The line of sight turns on its way: at the patch it is the way back, turned round. */
     uint32_t distance_q8;
-    fx_bam_t back;
+    fx_bam_t back, bearing;
     lm_geo_inverse(command->centre, lm_ownship_place(u), &distance_q8, &back);
+    lm_geo_inverse(lm_ownship_place(u), command->centre, &distance_q8, &bearing);
     command->look_azimuth = back + FX_BAM_180;
     command->range_m = distance_q8 / 256;
     command->height_q6 = lm_antenna_height_q6(u);
+    *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
+                                     .track = own->track,
+                                     .bearing = bearing,
+                                     .heading = own->heading};
     return true;
 }
 
 static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64_t now_us)
 {
-    if (!u->has_db || !resolve_command(u, &command)) {
+    struct lm_sar_flight flight;
+    const bool is_in_flight = command.is_from_ownship;
+    if (!u->has_db || (is_in_flight && !resolve_command(u, &command, &flight))) {
         return false;
     }
     const struct lm_sampling sampling = lm_sampling_for(&u->db, command.cell_mm, 0);
     const int32_t ground_q10 =
         lm_scan_elevation(&u->tiles, sampling.level, command.centre, u->db.mean_elevation_q6 * 16);
-    if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, ground_q10,
-                     u->board->noise_seed) != LM_OK) {
+    const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
+                                       .targets = &u->target_set,
+                                       .reference_q10 = ground_q10,
+                                       .epoch = u->board->noise_seed,
+                                       .sea_state = u->environment.sea_state};
+    if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
         return false;
     }
-    u->sar.targets = &u->target_set;
     u->page.mode = LM_MODE_SAR;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);
-    for (uint32_t line = 0; line < u->board->radar->sar_cells;
-         line += PATCH_LINES_BETWEEN_PREFETCHES) {
+    const uint32_t last = u->board->radar->sar.cells - 1u;
+    for (uint32_t line = 0; line < last; line += PATCH_LINES_BETWEEN_PREFETCHES) {
         lm_sar_prefetch(&u->sar, &u->tiles, line);
     }
+    lm_sar_prefetch(&u->sar, &u->tiles, last);
     u->is_acquiring = true;
     u->acquire_until_us = now_us + LM_SAR_ACQUIRE_US;
     return true;
@@ -91,7 +103,7 @@ static void set_tones(struct lm_unit *u)
     const struct lm_radar *radar = u->board->radar;
     struct lm_tone_config config = lm_page_tone(&u->page, &radar->gm_tone);
     lm_tone_set(&u->gm_tone, &config);
-    config = lm_page_tone(&u->page, &radar->sar_tone);
+    config = lm_page_tone(&u->page, &radar->sar.tone);
     lm_tone_set(&u->sar_tone, &config);
 }
 
@@ -242,7 +254,7 @@ static void follow_view(struct lm_unit *u)
 {
     if (u->page.mode == LM_MODE_SAR) {
         const struct lm_sar_command *c = &u->sar.command;
-        u->view = lm_view_of_patch(&u->frame, c->centre, c->look_azimuth, u->sar.radar->sar_cells,
+        u->view = lm_view_of_patch(&u->frame, c->centre, c->look_azimuth, u->sar.radar->sar.cells,
                                    c->cell_mm);
         return;
     }

@@ -115,12 +115,6 @@ const struct lm_radar lm_radar_default = {
     .sweep_bam_per_ms = FX_BAM_DEG(120) / 1000,
     .gm_cells = 256,
     .gm_line = FX_BAM_DEG(120) / 256,
-    .sar_cells = 256,
-    .sar_lines_per_s = 128,
-    .sar_cell_min_mm = 500,
-    .sar_cell_max_mm = 40000,
     .gm_speckle = {.looks_log2 = 4},
-    .sar_speckle = {.looks_log2 = 2},
     .gm_tone = {.black_q8 = DB(-42), .white_q8 = DB(6), .gamma_q8 = 384},
-    .sar_tone = {.black_q8 = DB(-42), .white_q8 = DB(12), .gamma_q8 = 384},
 };

@@ -55,7 +55,8 @@ static struct lm_symbols describe(const struct lm_unit *u)
     }
     if (s.is_patch) {
         s.patch_cell_mm = u->sar.command.cell_mm;
-        s.patch_percent = (uint16_t)(u->sar.line * 100 / u->sar.radar->sar_cells);
+        s.patch_percent = (uint16_t)(u->sar.line * 100 / u->sar.radar->sar.cells);
+        s.patch_to_go_s = (uint32_t)((lm_sar_time_to_go_us(&u->sar) + 999999) / 1000000);
         s.patch_look = u->sar.command.look_azimuth;
     }
     return s;

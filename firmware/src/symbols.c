@@ -207,6 +207,11 @@ static void write_patch(const struct lm_glass *g, const struct lm_symbols *s)
     t = (struct lm_text){0};
     lm_text_number(&t, s->patch_percent, 1);
     lm_text_add(&t, "%");
+    if (s->patch_to_go_s != 0) {
+        lm_text_add(&t, " ");
+        lm_text_number(&t, s->patch_to_go_s, 1);
+        lm_text_add(&t, "S");
+    }
     write_row(g, 0, ALIGN_MIDDLE, t.words);
 }
 

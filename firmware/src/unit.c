@@ -165,12 +165,12 @@ static void draw_ground_map_line(struct lm_unit *u)
 
 static void draw_patch_line(struct lm_unit *u)
 {
-    const uint32_t cells = u->sar.radar->sar_cells, drawn = u->sar.line;
+    const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
     lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
     lm_patch_paint(&u->plane, &u->frame, drawn, u->line.grey + LM_SAR_GUARD, cells);
     sample_coverage(u, cells);
     u->is_off_map = 2 * u->cells_none > u->cells_seen;
-    u->next_line_us += 1000000u / u->sar.radar->sar_lines_per_s;
+    u->next_line_us += u->sar.line_us;
 }
 
 /* Whether lines may be drawn now; while they may not, time does not owe any. */
@@ -184,8 +184,9 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
     }
     if (u->is_acquiring) {
         u->is_acquiring = !lm_tile_cache_is_idle(&u->tiles) && now_us < u->acquire_until_us;
+        u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
     }
-    return !u->is_acquiring && u->sar.line < u->sar.radar->sar_cells;
+    return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;
 }
 
 static void draw_due_lines(struct lm_unit *u, uint64_t now_us)

@@ -51,6 +51,14 @@ fly() { # SCRIPT, then what landmass-nav shall fly
         --png "$out" --every 0 --size 1024x1024
 }
 
+pass() { # NAME LAT,LON,HEADING,HEIGHT,SPEED "LAT LON CELL": fly by, and after 4 s make a patch
+    printf '4 sar %s\n8 picture flight-%s\n' "$3" "$1" > "$out/pass-$1.script"
+    say "pass $1"
+    "$bin"/landmass-nav --quiet --out "$out/pass-$1.log" --straight "$2" --seconds 10
+    "$bin"/landmass-sim --db "$out/scene.lmdb" --bus "$out/pass-$1.log" --script "$out/pass-$1.script" \
+        --png "$out" --every 0 --size 1024x1024
+}
+
 village() {
     need sentinel2_amazon_village_srtm_labels
     source=$data/sentinel2_amazon_village_srtm_labels/derived
@@ -59,7 +67,12 @@ village() {
     gdalwarp -q -overwrite -r bilinear -ts 26 25 "$source/srtm.bsq" "$out/posts.tif"
     build "Amazon village" --classes $in/village.classes --class-raster "$out/classes.tif" \
         --reflectivity "$out/reflectivity.tif" --terrain "$out/posts.tif" --land-class forest
-    fly village --circle -1.46935,-56.3626,8000,1500,200,180 --seconds 200
+    fly village --circle -1.46935,-56.3626,8000,1500,200,180 --seconds 20
+    # Four passes at 200 m/s, the village 8 km away and 45 degrees to the right when the patch is made.
+    pass from-south-4m -1.54269,-56.38789,337.92,1500,200 "-1.4715 -56.3690 4"
+    pass from-west -1.47414,-56.43959,45.24,1500,200 "-1.46935 -56.3626 8"
+    pass from-north -1.39184,-56.36704,135.48,1500,200 "-1.46935 -56.3626 8"
+    pass from-east -1.46327,-56.28570,224.29,1500,200 "-1.46935 -56.3626 8"
 }
 
 reservoir() {
@@ -72,7 +85,7 @@ reservoir() {
     classify "${bands#,}" "$source/derived/trainingPolygons_lsat.tsv" 5,4,3
     build "Amazon reservoir" --classes $in/reservoir.classes --class-raster "$out/classes.tif" \
         --reflectivity "$out/reflectivity.tif" --terrain "$source/derived/srtm.bsq" --land-class forest
-    fly reservoir --straight -3.7525,-49.98,90,2500,150 --seconds 60
+    fly reservoir --straight -3.7875,-49.98,90,2500,150 --seconds 60
 }
 
 campus() {

@@ -40,8 +40,8 @@ place() { # latitude and longitude of a place of the scene
     awk -v name="$1" '/^# place/ { is_list = 1 } is_list && $1 == name { print $2, $3 }' $out/scene/scene.txt
 }
 
-say "Fly in from the sea at 3,000 m: ground map, then patches of places on the way"
-"$bin"/landmass-nav --straight 41.985,-29.19,80,3000,180 --seconds 60 --out $out/flight.log
+say "Fly in from the sea at 3,000 m: ground map, then patches of places to the right of the way"
+"$bin"/landmass-nav --straight 42.045,-29.18,90,3000,180 --seconds 60 --out $out/flight.log
 cat >$out/flight.script <<EOF
 0   range 20
 5   picture ground-map-20nm

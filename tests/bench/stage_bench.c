@@ -74,7 +74,7 @@ static int open_world(struct world *w, uint8_t shift0)
     w->frame = lm_frame_of_display(DISPLAY_PX, DISPLAY_PX);
     return w->pool && w->plane.pixels && lm_db_open(&w->db, &w->flash.port, 10) == LM_OK &&
                    lm_tile_cache_init(&w->tiles, &w->db, w->pool, bytes, 10) == LM_OK &&
-                   lm_tone_set(&w->tone, &lm_radar_default.sar_tone) == LM_OK
+                   lm_tone_set(&w->tone, &lm_radar_default.sar.tone) == LM_OK
                ? 0
                : -1;
 }
@@ -89,6 +89,8 @@ static void make_resident(struct world *w)
 static int draw_patches(struct world *w, int count)
 {
     struct lm_sar sar;
+    const struct lm_sar_scene scene = {.reference_q10 = 60 * 1024,
+                                       .sea_state = LM_SEA_STATE_OF_IMAGE};
     const struct lm_sar_command command = {
         .centre = {w->db.centre_latitude, w->db.centre_longitude},
         .cell_mm = 5000,
@@ -97,17 +99,17 @@ static int draw_patches(struct world *w, int count)
         .height_q6 = 3000 * 64,
     };
     for (int n = 0; n < count; n++) {
-        if (lm_sar_start(&sar, &lm_radar_default, &w->db, &command, 60 * 1024, 0) != LM_OK) {
+        if (lm_sar_start(&sar, &lm_radar_default, &w->db, &command, &scene) != LM_OK) {
             return -1;
         }
-        for (uint32_t line = 0; line < lm_radar_default.sar_cells; line += 8) {
+        for (uint32_t line = 0; line < lm_radar_default.sar.cells; line += 8) {
             lm_sar_prefetch(&sar, &w->tiles, line);
             make_resident(w);
         }
-        while (sar.line < lm_radar_default.sar_cells) {
+        while (sar.line < lm_radar_default.sar.cells) {
             lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
             lm_patch_paint(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
-                           lm_radar_default.sar_cells);
+                           lm_radar_default.sar.cells);
         }
     }
     return 0;
@@ -152,7 +154,7 @@ static int draw_reference(const struct world *w, const struct ref_db *db)
                                 .range_m = 20000,
                                 .antenna_m = 3000,
                                 .cell_m = 5,
-                                .cell_count = lm_radar_default.sar_cells};
+                                .cell_count = lm_radar_default.sar.cells};
     const struct ref_params params = ref_params_default();
     struct ref_picture picture;
     if (ref_sar_patch(&picture, db, &sar, &params) != 0) {
@@ -165,7 +167,7 @@ static int draw_reference(const struct world *w, const struct ref_db *db)
 static int compare(struct world *w, int runs)
 {
     enum { PATCHES = 20 }; /* of the firmware in a run */
-    const double pixels = (double)lm_radar_default.sar_cells * lm_radar_default.sar_cells;
+    const double pixels = (double)lm_radar_default.sar.cells * lm_radar_default.sar.cells;
     struct ref_db db;
     /* The first patches read and check the tiles. */
     if (ref_db_open_memory(&db, w->image.bytes, w->image.size, "scene") != 0 ||

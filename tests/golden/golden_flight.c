@@ -51,7 +51,8 @@ const struct golden_picture golden_pictures[] = {
      .north_m = -8000,
      .east_m = 3000,
      .height_m = 3000,
-     .heading_deg = -20,
+     .heading_deg = 20,
+     .speed_m_s = 200,
      .cell_mm = 5000},
     {.name = "sar-2m-looking-north", GLASS, .height_m = 3000, .cell_mm = 2000, .range_m = 12000},
     {.name = "sar-5m-looking-south-west",
@@ -152,8 +153,8 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     } items[] = {{1036, LM_CANAS_LONG, long_of(r->aircraft.latitude)},
                  {1037, LM_CANAS_LONG, long_of(r->aircraft.longitude)},
                  {1038, LM_CANAS_FLOAT, float_bits(p->height_m)},
-                 {1039, LM_CANAS_FLOAT, float_bits(0)},
-                 {1040, LM_CANAS_FLOAT, float_bits(0)},
+                 {1039, LM_CANAS_FLOAT, float_bits(p->speed_m_s)},
+                 {1040, LM_CANAS_FLOAT, float_bits(p->heading_deg)},
                  {1133, LM_CANAS_FLOAT, float_bits(p->heading_deg)}};
     const uint32_t bits = items[r->bus_item].bits;
     *frame = (struct lm_can_frame){.id = items[r->bus_item].id,

@@ -23,6 +23,7 @@ struct golden_picture {
     uint16_t width_px, height_px;
     /* The aircraft: where from the middle, how high, where it looks, whole units. */
     int32_t north_m, east_m, height_m, heading_deg;
+    uint16_t speed_m_s; /* along the heading; it stands still all the same */
     /* Ground map: indices into the radar table. */
     uint8_t range, azimuth;
     int8_t gain_db;

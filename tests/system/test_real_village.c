@@ -53,18 +53,17 @@ static int class_at(const struct patch *p, int line, int cell)
     return is_inside ? p->class_of[line][cell] : NONE;
 }
 
-/* The four patches from the commanded place, and the three from the flight: on its circle of 8 km
- * at 200 m/s it turns 1.432 degrees a second from the south. */
+/* The four patches from the commanded place, and three from passes 8 km off. */
 static struct patch *patch_number(int n)
 {
     static const struct {
         const char *name;
         double look_deg, cell_m;
     } table[] = {
-        {"patch-look-000", 0, CELL_M},          {"patch-look-090", 90, CELL_M},
-        {"patch-look-180", 180, CELL_M},        {"patch-look-270", 270, CELL_M},
-        {"flight-from-west", 63 * 1.43239, 8},  {"flight-from-north", 126 * 1.43239, 8},
-        {"flight-from-east", 188 * 1.43239, 8},
+        {"patch-look-000", 0, CELL_M},   {"patch-look-090", 90, CELL_M},
+        {"patch-look-180", 180, CELL_M}, {"patch-look-270", 270, CELL_M},
+        {"flight-from-west", 90.24, 8},  {"flight-from-north", 180.48, 8},
+        {"flight-from-east", 269.29, 8},
     };
     static struct patch patch;
     patch_read(&patch, table[n].name, table[n].look_deg, table[n].cell_m);

@@ -21,7 +21,7 @@ script=$work/flight.script
 cat >"$script" <<END
 # 10 nm, then a patch
 0    range 10
-1.5  sar 46.02 11 5
+1.5  sar 46.02 11.03 5
 3.9  picture patch
 END
 

@@ -32,8 +32,8 @@ struct lm_line {
 /* Trace the grid's cells along the path: line->ground, and line->sight with texture and sea in its
  * levels. Returns the horizon behind the last cell. */
 lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,
-                               const struct lm_line_setup *setup,
-                               const struct lm_ground_path *path, lm_horizon_q40_t horizon);
+                               const struct lm_line_setup *setup, const struct lm_ground_path *path,
+                               lm_horizon_q40_t horizon);
 
 /* Add what targets return. Behind speckle, which belongs to the clutter: what a target
  * returns is its own. */

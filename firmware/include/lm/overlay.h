@@ -56,6 +56,7 @@ struct lm_symbols {
 
     uint32_t patch_cell_mm;
     uint16_t patch_percent; /* of the lines drawn */
+    uint32_t patch_to_go_s; /* dwell that is left; not written when 0 */
     fx_bam_t patch_look;    /* line of sight */
 };
 

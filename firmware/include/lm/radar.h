@@ -88,11 +88,8 @@ struct lm_radar {
     uint32_t sweep_bam_per_ms;
     uint16_t gm_cells;
     fx_bam_t gm_line;
-    uint16_t sar_cells;
-    uint16_t sar_lines_per_s;
-    uint32_t sar_cell_min_mm, sar_cell_max_mm;
-    struct lm_speckle_config gm_speckle, sar_speckle;
-    struct lm_tone_config gm_tone, sar_tone;
+    struct lm_speckle_config gm_speckle;
+    struct lm_tone_config gm_tone;
 };
 
 extern const struct lm_radar lm_radar_default;

@@ -16,32 +16,59 @@ enum {
     LM_SAR_RUNUP_LINES = 8 /* lines that share a run-up */
 };
 
+/* No line is drawn faster: a dwell shorter than that of all lines takes as long as they do. */
+enum { LM_SAR_LINE_MIN_US = 500 };
+
+/* How the aircraft flies while it makes a patch: what the dwell and the limits depend on. */
+struct lm_sar_flight {
+    uint32_t speed_mm_s; /* over the ground */
+    fx_bam_t track;      /* of that velocity */
+    fx_bam_t bearing;    /* of the patch, from the aircraft */
+    fx_bam_t heading;    /* of the nose */
+};
+
+/* What a patch finds when it begins. */
+struct lm_sar_scene {
+    const struct lm_sar_flight *flight;  /* NULL for a commanded place in the air; read at once */
+    const struct lm_target_set *targets; /* borrowed; NULL: none */
+    int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
+    uint32_t epoch;                      /* of noise and of what fluctuates */
+    uint8_t sea_state;
+};
+
 /* A patch that is being drawn. Set up by lm_sar_start. */
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
+    uint64_t line_us; /* from line to line: the dwell's share */
     struct lm_ground_patch ground;
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
     struct lm_texture texture;
-    const struct lm_target_set *targets; /* borrowed; NULL: none, as after lm_sar_start */
+    const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_targets_near near;
     uint32_t epoch;           /* of noise and of what fluctuates */
     lm_horizon_q40_t horizon; /* where the lines of this run-up start */
-    uint32_t line;            /* next to be drawn; command done when it is radar->sar_cells */
+    uint32_t line;            /* next to be drawn; command done when it is radar->sar.cells */
 };
 
-/* LM_OK, or LM_ERR_RANGE for a cell, range or height outside the limits, with *s unchanged.
- * `reference_q10` is the elevation of the patch, metres * 1024; `epoch` that of its noise. The
- * command's geometry must be complete (is_from_ownship already resolved by the caller). */
+/* LM_OK, or LM_ERR_RANGE with *s unchanged: a cell, range or height outside the limits; and seen
+ * from an aircraft in flight a squint below the table's, a bearing beyond the antenna's limit off
+ * the nose, or a dwell beyond the table's. A commanded place in the air knows none of these three
+ * limits; its dwell is that of an aircraft that flies by at the table's reference speed, the patch
+ * abeam to the right. The command's geometry must be complete (is_from_ownship already resolved by
+ * the caller). */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
-                 const struct lm_sar_command *command, int32_t reference_q10, uint32_t epoch);
+                 const struct lm_sar_command *command, const struct lm_sar_scene *scene);
+
+/* Dwell that is left, microseconds. */
+uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 
 /* Ask for the tiles of line `line` and of its run-up. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
-/* Draw the next line: its sar_cells greys are line->grey[LM_SAR_GUARD ..]. Call while s->line <
- * sar_cells. */
+/* Draw the next line: its cells' greys are line->grey[LM_SAR_GUARD ..]. Call while s->line <
+ * radar->sar.cells. */
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
                       struct lm_line *line);
 

@@ -7,6 +7,7 @@
 #include "lm/canas_service.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
+#include "lm/environment.h"
 #include "lm/ground_map.h"
 #include "lm/keys.h"
 #include "lm/nav.h"
@@ -50,6 +51,7 @@ struct lm_unit {
     struct lm_tile_cache tiles;
     struct lm_target targets[LM_TARGETS_MAX];
     struct lm_target_set target_set; /* the part of them that was read */
+    struct lm_environment environment;
     struct lm_nav nav;
     struct lm_canas_service service;
     struct lm_ownship ownship; /* extrapolated to the last step */

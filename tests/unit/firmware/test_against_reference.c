@@ -192,10 +192,10 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
         .height_q6 = height_m * 64};
-    set_params(w, &w->radar.sar_tone, &w->radar.sar_speckle);
-    assert_int_equal(
-        lm_sar_start(&sar, &w->radar, &w->db, &command, (int32_t)lround(reference_m * 1024), 0),
-        LM_OK);
+    set_params(w, &w->radar.sar.tone, &w->radar.sar.speckle);
+    const struct lm_sar_scene scene = {.reference_q10 = (int32_t)lround(reference_m * 1024),
+                                       .sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);
     for (uint32_t line = 0; line < CELLS; line += 4) {
         lm_sar_prefetch(&sar, &w->tiles, line);
         make_resident(w);
@@ -213,7 +213,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
                                    .cell_m = cell_m,
                                    .cell_count = CELLS};
     struct ref_picture picture;
-    set_params(w, &w->radar.sar_tone, &w->radar.sar_speckle);
+    set_params(w, &w->radar.sar.tone, &w->radar.sar.speckle);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);

@@ -427,6 +427,15 @@ static void osb_15_asks_the_board_to_swap(void **state)
     free_rig(r);
 }
 
+/* Move the cursor off the track, where a patch can be made. */
+static void slew_right(struct rig *r)
+{
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 1000});
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.1);
+}
+
 static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
 {
     (void)state;
@@ -434,6 +443,7 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
     assert_true(says(r, "5M"));
     press(r, 16);
     assert_true(says(r, "10M"));
+    slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 1);
     assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
@@ -612,13 +622,17 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
 {
     (void)state;
     struct rig *r = fly();
+    slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 4);
     assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
     assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
                         sizeof(struct lm_place));
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
-    assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, "LOOK 000"));
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
+    char look[16];
+    snprintf(look, sizeof look, "LOOK %03.0f",
+             r->unit.sar.command.look_azimuth * 360.0 / 4294967296.0);
+    assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, look));
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
     command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
     run(r, 0.1);
@@ -641,6 +655,32 @@ static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(
     assert_true(warns(r, "UNABLE"));
     run(r, 2);
     assert_false(warns(r, "UNABLE"));
+    free_rig(r);
+}
+
+static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_true(warns(r, "UNABLE"));
+    /* 10 km away at 150 m/s, 30 degrees off, with cells of 1 m: about 2 s. */
+    for (int i = 0; i < 3; i++) {
+        press(r, 16);
+    }
+    assert_true(says(r, "1M"));
+    slew_right(r);
+    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    run(r, 0.3);
+    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
+    run(r, 0.1);
+    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    char words[24];
+    snprintf(words, sizeof words, "%u%% %.0fS", r->unit.sar.line * 100 / 256,
+             ceil((double)lm_sar_time_to_go_us(&r->unit.sar) / 1e6));
+    assert_true(says(r, words));
     free_rig(r);
 }
 
@@ -778,6 +818,8 @@ int main(void)
         cmocka_unit_test(the_cursor_stays_over_its_place_through_turns_of_the_page),
         cmocka_unit_test(designate_looks_closely_at_the_cursor_and_drop_comes_back),
         cmocka_unit_test(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds),
+        cmocka_unit_test(
+            a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere),
         cmocka_unit_test(the_bit_page_says_what_the_counters_say),
         cmocka_unit_test(the_bit_page_says_why_the_board_restarted),
         cmocka_unit_test(a_broken_database_leaves_a_bit_page_that_says_so),

@@ -29,7 +29,7 @@ static void open_soil(struct tiny_image *image, struct memory_flash *flash)
     memory_flash_open(flash, image->bytes, image->size);
     assert_int_equal(lm_db_open(&db, &flash->port, POLLS), LM_OK);
     assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, POLLS), LM_OK);
-    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar_tone), LM_OK);
+    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
 }
 
 static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
@@ -40,8 +40,9 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
                                            .height_q6 = 6000 * 64,
                                            .look_azimuth = bam(90),
                                            .cell_mm = 4000};
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, 0, 5), LM_OK);
-    sar.targets = set;
+    const struct lm_sar_scene scene = {
+        .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
     for (int k = 0; k < SIDE; k++) {
         lm_sar_draw_line(&sar, &tiles, &tone, &line);
         memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);

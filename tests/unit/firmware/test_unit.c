@@ -186,7 +186,7 @@ static void a_patch_completes_and_stays(void **state)
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
     assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
     run(r, 2);
@@ -206,7 +206,7 @@ static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
     run(r, 1);
     command(r, patch_here);
     run(r, 4);
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar_cells);
+    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
     const struct lm_frame *f = &r->unit.frame;
     for (size_t i = 0; i < end; i++) {
         const size_t x = i % 256, y = i / 256;

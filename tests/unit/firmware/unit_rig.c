@@ -42,16 +42,16 @@ static int receive(void *ctx, struct lm_can_frame *frame)
         b->sent_us += 50000;
         b->code++;
     }
-    const double north = 150.0 * (double)b->now_us / 1e6;
+    const double north = b->speed_m_s * (double)b->now_us / 1e6;
     const struct {
         uint32_t id;
         double value;
     } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
                  {1037, 11.0},
                  {1038, 2000},
-                 {1133, 0},
-                 {321, 0},
-                 {1039, 150},
+                 {1133, b->nose_deg},
+                 {321, b->nose_deg},
+                 {1039, b->speed_m_s},
                  {1040, 0},
                  {311, 2},
                  {312, 0}};
@@ -113,6 +113,7 @@ struct rig *make_rig(void)
     assert_int_equal(tiny_image_build(&r->image, &spec), 0);
     memory_flash_open(&r->flash, r->image.bytes, r->image.size);
     r->bus.stop_us = UINT64_MAX;
+    r->bus.speed_m_s = 150;
     r->can = (struct lm_can){.ctx = &r->bus, .receive = receive};
     r->controls = (struct lm_controls){r, next_control};
     r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};
@@ -187,6 +188,7 @@ uint32_t lit_pixels(const struct rig *r)
 }
 
 const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .value = 0};
-const struct lm_control patch_here = {
-    .kind = LM_CONTROL_SAR,
-    .sar = {.centre = {0x20B90000, 0x07D27D28}, .cell_mm = 5000, .is_from_ownship = true}};
+const struct lm_control patch_here = {.kind = LM_CONTROL_SAR,
+                                      .sar = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20},
+                                              .cell_mm = 5000,
+                                              .is_from_ownship = true}};

@@ -10,12 +10,13 @@
 
 enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120, CONTROLS_MAX = 64 };
 
-/* A bus that flies north at 150 m/s from 46 N 11 E, 2,000 m up, until told to stop. */
+/* A bus that flies north at 150 m/s from 45.95 N 11 E, 2,000 m up, until told to stop. */
 struct fake_bus {
     uint64_t now_us, sent_us, stop_us;
     int queue_next;
     int is_down;
     double jump_degrees;
+    double speed_m_s, nose_deg; /* north, whatever the nose */
     uint8_t code;
 };
 
@@ -55,6 +56,7 @@ void hold(struct rig *r, int button, double seconds);
 uint32_t plane_sum(const struct rig *r);
 uint32_t lit_pixels(const struct rig *r);
 
+/* A scale, and a patch some 36 degrees to the right of the nose. */
 extern const struct lm_control range_10, patch_here;
 
 #endif
