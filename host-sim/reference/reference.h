@@ -195,6 +195,102 @@ double ref_brightness(double level_db, const struct ref_params *params);
 uint8_t ref_grey(double brightness, const struct ref_params *params);
 void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params);
 
+/* ---- real beam: the receiver (receiver.c) ---- */
+
+enum { REF_PULSE_REACH = 4, REF_CELLS_MAX = 1024 };
+
+/* Bins of a display line, equally spaced in slant range. */
+struct ref_bins {
+    double first_m, step_m; /* centre of bin 0; from centre to centre */
+    size_t count;           /* up to REF_CELLS_MAX */
+};
+
+struct ref_receiver {
+    struct ref_bins bins;
+    double height_m;     /* h = H - z0 */
+    double end_m;        /* R, the far end of the display's range */
+    double noise_end_db; /* there */
+    unsigned noise_looks;
+    double stc_m; /* r_s */
+    double pulse_s;
+};
+
+/* What the weather does to each bin of a line. */
+struct ref_weather_line {
+    double jam; /* what jammers add to the noise, in units of it */
+    double pass[REF_CELLS_MAX], rain[REF_CELLS_MAX];
+};
+
+/* s of a slant range r over flat ground `height_m` below; 0 in the altitude hole. */
+double ref_ground_of_slant(double slant_m, double height_m);
+
+/* The sampled cell of a bin, of `cells` that begin at `near_edge_m`; `cells` where there is none.
+ */
+size_t ref_slant_cell(double slant_m, double height_m, double near_edge_m, double cell_m,
+                      size_t cells);
+
+/* g of a slant range: flat ground's grazing, 1/256..2. */
+double ref_slant_grazing(double slant_m, double height_m);
+
+double ref_noise_db(const struct ref_receiver *r, double slant_m);
+double ref_stc_fall_db(const struct ref_receiver *r, double slant_m);
+
+/* q, and the share of bin i + m in bin i for a pulse `bins` bins long. */
+double ref_pulse_m(double pulse_s);
+double ref_pulse_share(double bins, int m);
+
+/* Mean of the powers over the pulse, in place. count up to REF_CELLS_MAX. */
+void ref_pulse(double *power, size_t count, double bins);
+
+/* Slice of the noise's table that a bin draws. */
+unsigned ref_noise_slice(uint32_t line, uint32_t bin, uint32_t sweep);
+
+/* Everything from the powers of a line's bins to their levels; the powers are changed. `weather`
+ * may be NULL. */
+void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *weather,
+                 uint32_t line, uint32_t sweep, double *power, double *level_db);
+
+/* ---- real beam: rain and jammers (weather.c) ---- */
+
+struct ref_rain {
+    double distance_m, off_deg; /* of its centre, from the antenna and off the line */
+    double radius_m, mm_per_h;
+};
+
+struct ref_jammer {
+    double distance_m, off_deg;
+    double ratio_db; /* to the noise, on the axis at ten nautical miles */
+};
+
+struct ref_environment {
+    struct ref_rain rain[4];
+    struct ref_jammer jammer[4];
+    size_t rain_count, jammer_count;
+    int sea_state;
+};
+
+/* One way, ITU-R P.838-3 at 10 GHz, horizontal. */
+double ref_rain_loss_db_km(double mm_per_h);
+
+/* Cross section of a cubic metre of rain, 1 / m. */
+double ref_rain_eta(double mm_per_h, double wavelength_m);
+
+/* The jammer's noise beside the receiver's. */
+double ref_jam(const struct ref_jammer *j, double beam_deg);
+
+/* Where a line is in the rain; false: nowhere, with 0 or nonsense in both. */
+bool ref_rain_chord(const struct ref_rain *rain, double *from_m, double *to_m);
+
+/* Weather of bin i: share of the power that passes, and the rain's own as gamma, weakened. */
+void ref_weather_at(const struct ref_environment *e, double wavelength_m, double elevation_beam_deg,
+                    double height_m, const struct ref_bins *bins, size_t i, double *pass,
+                    double *rain);
+
+/* The weather of a line. */
+void ref_weather(const struct ref_environment *e, double wavelength_m, double azimuth_beam_deg,
+                 double elevation_beam_deg, double height_m, const struct ref_bins *bins,
+                 struct ref_weather_line *weather);
+
 /* ---- whole pictures (picture.c) ---- */
 
 struct ref_picture {

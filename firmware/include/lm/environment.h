@@ -27,4 +27,8 @@ struct lm_environment {
     uint8_t sea_state; /* 0..LM_SEA_STATE_MAX (lm/speckle.h) */
 };
 
+/* Whether every number is within its range: LM_OK or LM_ERR_RANGE. For whoever takes an environment
+ * from outside; the stages that use one take it for granted. */
+int lm_environment_check(const struct lm_environment *e);
+
 #endif

@@ -29,8 +29,8 @@ enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
 /* What the texture does to each class. A class without any picks always the same entry of the
  * table, and its gain takes that off again, so that the loop need not tell it apart. */
 struct lm_texture {
-    uint32_t row[LM_DB_CLASSES];   /* of lm_speckle_q8 */
-    uint32_t among[LM_DB_CLASSES]; /* mask of the ten bits that choose in that row; 0: none */
+    int32_t entry[LM_DB_CLASSES]; /* the first of the class's row in lm_speckle_q8 */
+    int32_t among[LM_DB_CLASSES]; /* mask of the ten bits that choose in that row; 0: none */
     int32_t gain_q8[LM_DB_CLASSES];
 };
 

@@ -1,5 +1,6 @@
-# The radar's physics, each stage against theory in double precision.
-PHYSICS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_texture)
+# The radar's physics, each stage against theory and the reference in double precision.
+PHYSICS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_texture test_receiver)
 TESTS += $(PHYSICS_TESTS)
-$(PHYSICS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(O)/tests/support/tiny_image.o $(LIB_firmware) $(LIB_fixed) $(O)/host-sim/common/src/rng.o
+$(addprefix $(O)/tests/unit/firmware/,test_receiver.o test_weather.o): EXTRA_CFLAGS := -Ihost-sim/reference
+$(PHYSICS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(O)/tests/support/tiny_image.o $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(PHYSICS_TESTS): LDLIBS := -lcmocka

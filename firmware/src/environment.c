@@ -1,0 +1,40 @@
+#include "lm/environment.h"
+
+#include "fx/sat.h"
+#include "lm/speckle.h"
+#include "lm/status.h"
+
+static bool is_on_earth(struct lm_place place)
+{
+    return fx_abs_u32((int32_t)place.latitude) <= FX_BAM_90;
+}
+
+static bool is_rain(const struct lm_rain *r)
+{
+    return is_on_earth(r->centre) && r->radius_m >= 100 && r->radius_m <= 100000 &&
+           r->mm_per_h >= 1 && r->mm_per_h <= 150;
+}
+
+static bool is_jammer(const struct lm_jammer *j)
+{
+    return is_on_earth(j->place) && j->ratio_q8 >= -20 * 256 && j->ratio_q8 <= 80 * 256;
+}
+
+int lm_environment_check(const struct lm_environment *e)
+{
+    if (e->rain_count > LM_RAINS_MAX || e->jammer_count > LM_JAMMERS_MAX ||
+        e->sea_state > LM_SEA_STATE_MAX) {
+        return LM_ERR_RANGE;
+    }
+    for (uint32_t n = 0; n < e->rain_count; n++) {
+        if (!is_rain(&e->rain[n])) {
+            return LM_ERR_RANGE;
+        }
+    }
+    for (uint32_t n = 0; n < e->jammer_count; n++) {
+        if (!is_jammer(&e->jammer[n])) {
+            return LM_ERR_RANGE;
+        }
+    }
+    return LM_OK;
+}

@@ -1,0 +1,150 @@
+#include "lm/receiver.h"
+
+#include "fx/hash.h"
+#include "fx/log.h"
+#include "fx/mem.h"
+#include "fx/sat.h"
+#include "lm/geo.h"
+
+enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
+
+/* log2 of g of the equations for a slant range, Q16: flat ground's grazing there, between 1/256 and
+ * 2, steeper than which the beam does not look. */
+static int32_t log2_grazing_q16(uint32_t slant_q8, int32_t height_q10)
+{
+    const uint32_t ground_q8 = lm_ground_of_slant(slant_q8, height_q10);
+    int64_t grazing_q24 = height_q10 > 0 ? GRAZING_MAX_Q24 : GRAZING_MIN_Q24;
+    if (ground_q8 != 0) {
+        /* |height| < 2^26, so 2^48; range < 2^27 times 2^24. */
+        grazing_q24 = (int64_t)height_q10 * (1 << 22) / (int64_t)ground_q8 -
+                      ((int64_t)ground_q8 * LM_CURVATURE_Q48 >> 32);
+    }
+    const int64_t least = GRAZING_MIN_Q24, most = GRAZING_MAX_Q24;
+    grazing_q24 = grazing_q24 < least ? least : grazing_q24 > most ? most : grazing_q24;
+    return fx_log2_q16((uint32_t)grazing_q24) - (24 << 16);
+}
+
+/* What depends on slant range alone. Logarithms are below 32 in Q16, so 2^21, and three times that.
+ */
+static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_q10,
+                     uint8_t range)
+{
+    const uint32_t end_q8 = radar->range_m[range] * 256u;
+    const int32_t end_q16 = 3 * fx_log2_q16(end_q8) - log2_grazing_q16(end_q8, height_q10);
+    const int32_t break_q16 = fx_log2_q16(radar->receiver.stc_m[range]) + (8 << 16);
+    /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM; log2(2 pi) is 173768 / 2^16. */
+    const int32_t beam_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - ((32 + 8) << 16);
+    for (uint32_t i = 0; i < r->cells; i++) {
+        const uint32_t slant_q8 = r->first_q8 + i * r->cell_q8;
+        const int32_t range_q16 = fx_log2_q16(slant_q8);
+        const int32_t grazing_q16 = log2_grazing_q16(slant_q8, height_q10);
+        r->noise_q8[i] = radar->receiver.noise_end_q8[range] +
+                         fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_q16);
+        r->fall_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
+        r->volume_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);
+    }
+}
+
+/* Shares of a pulse of `length_q16` bins: those that it covers whole, and the two that it ends in.
+ */
+static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
+{
+    const uint32_t one = 1 << 16, longest = (2 * LM_PULSE_REACH_MAX + 1) * one;
+    const uint32_t length = length_q16 < longest ? (uint32_t)length_q16 : longest;
+    /* The end, length / 2, lies in bin `last`, which begins at last - 1/2. */
+    const uint32_t last = length > one ? (length - one + 2 * one - 1) / (2 * one) : 0;
+    const uint32_t whole_q16 = length > one ? (uint32_t)(((uint64_t)one << 16) / length) : one;
+    /* Length + 1 - 2 last is twice the share of the last bin that is covered, up to 2. */
+    const uint64_t covered_q17 = length + one - 2 * last * one;
+    const uint32_t end_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
+    uint32_t left_q16 = one;
+    for (uint32_t m = LM_PULSE_REACH_MAX; m > 0; m--) {
+        r->weight_q16[m] = m > last ? 0 : m == last ? end_q16 : whole_q16;
+        left_q16 -= 2 * r->weight_q16[m];
+    }
+    r->weight_q16[0] = left_q16; /* with what rounding left */
+}
+
+void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
+                     const struct lm_slant *slant, int32_t height_q10, uint8_t range,
+                     uint32_t pulse_ns)
+{
+    r->first_q8 = slant->first_q8;
+    r->cell_q8 = slant->cell_q8;
+    r->cells = slant->cells;
+    r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_SPECKLE_LOOKS_LOG2_MAX);
+    set_bins(r, radar, height_q10, range);
+    /* Half the speed of light is 149.896 metres a microsecond: 2514841 / 2^16 metres * 256 a
+     * nanosecond. 2^32 times 2^21.3. */
+    const uint64_t pulse_q24 = (uint64_t)pulse_ns * 2514841u;
+    set_pulse(r, pulse_q24 / fx_max_u32(slant->cell_q8, 1));
+}
+
+/* (a + b) w of powers on either side of a bin and a weight of at most 2^15, cut to whole parts of
+ * 2^24: upper and lower halves apart, so that 32 bits do. */
+static inline uint32_t share_q24(uint32_t a, uint32_t b, uint32_t weight_q16)
+{
+    const uint32_t high = ((a >> 16) + (b >> 16)) * weight_q16;
+    const uint32_t low = ((a & 0xffffu) + (b & 0xffffu)) * weight_q16;
+    return high + (low >> 16);
+}
+
+/* Each bin's power becomes the mean over the pulse, at most 9 / 2^24 less for the halves that are
+ * cut. Beyond the line's ends there is none. The weights add up to 2^16, so that the sum fits. */
+static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
+{
+    enum { REACH = LM_PULSE_REACH_MAX };
+    uint32_t padded[REACH + LM_CELLS_ROOM + REACH];
+    const uint32_t cells = r->cells;
+    memset(padded, 0, REACH * sizeof *padded);
+    memcpy(padded + REACH, power_q24, cells * sizeof *padded);
+    memset(padded + REACH + cells, 0, REACH * sizeof *padded);
+    const uint32_t *const w = r->weight_q16;
+    const uint32_t w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3], w4 = w[4];
+    const uint32_t *const p = padded + REACH;
+    const uint32_t *const after[] = {p, p + 1, p + 2, p + 3, p + 4};
+    const uint32_t *const before[] = {p, p - 1, p - 2, p - 3, p - 4};
+    for (uint32_t i = 0; i < cells; i++) {
+        power_q24[i] = share_q24(p[i], 0, w0) + share_q24(before[1][i], after[1][i], w1) +
+                       share_q24(before[2][i], after[2][i], w2) +
+                       share_q24(before[3][i], after[3][i], w3) +
+                       share_q24(before[4][i], after[4][i], w4);
+    }
+}
+
+/* Weakened by the rain, with the rain's own return. What passes is at most 1. */
+static void rain_on(const struct lm_weather *w, uint32_t *restrict power_q24, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint32_t passed = share_q24(power_q24[i], 0, w->pass_q16[i]);
+        const uint32_t room = UINT32_MAX - passed;
+        power_q24[i] = passed + (w->rain_q24[i] < room ? w->rain_q24[i] : room);
+    }
+}
+
+/* Noise, logarithm and the end of the time gain. The noise fluctuates in decibels, and is added to
+ * the signal in decibels. */
+static void detect(const struct lm_receiver *r, int32_t rise_q8, uint32_t line, uint32_t sweep,
+                   const uint32_t *restrict power_q24, int32_t *restrict level_q8)
+{
+    const uint32_t looks_log2 = r->looks_log2;
+    const uint32_t epoch = sweep ^ 0x9e3779b9u; /* not that of the ground's speckle */
+    for (uint32_t i = 0; i < r->cells; i++) {
+        const int32_t slice = (int32_t)(fx_hash3(line, i, epoch) >> 22);
+        const int32_t noise_q8 = r->noise_q8[i] + lm_speckle_q8[looks_log2][slice] + rise_q8;
+        const int32_t signal_q8 = fx_db_q8_of_many(power_q24[i]) - 24 * FX_DB_OCTAVE_Q14 / 64;
+        level_q8[i] = fx_db_q8_sum_of_many(signal_q8, noise_q8) - r->fall_q8[i];
+    }
+}
+
+void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
+                     uint32_t sweep, uint32_t *power_q24, int32_t *level_q8)
+{
+    if (r->weight_q16[1] != 0) {
+        smear(r, power_q24);
+    }
+    if (weather && weather->has_rain) {
+        rain_on(weather, power_q24, r->cells);
+    }
+    detect(r, weather ? weather->noise_rise_q8 : 0, line, sweep, power_q24, level_q8);
+}
