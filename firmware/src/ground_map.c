@@ -105,10 +105,14 @@ static void move_on(struct lm_ground_map *g)
 }
 
 /* The targets that the line at hand may meet. */
-static void find_targets(struct lm_ground_map *g, const struct lm_antenna *antenna,
-                         struct lm_line_targets *t)
+static void find_targets(struct lm_ground_map *g, struct lm_tile_cache *tiles, uint8_t level,
+                         const struct lm_antenna *antenna, struct lm_line_targets *t)
 {
-    lm_targets_refresh(&g->near, g->targets, antenna->place, g->radar->range_m[g->range]);
+    const struct lm_target_scene scene = {.place = antenna->place,
+                                          .reach_m = g->radar->range_m[g->range],
+                                          .tiles = tiles,
+                                          .level = level};
+    lm_targets_refresh(&g->near, g->targets, &scene);
     const fx_bam_t edge = (fx_bam_t)lm_ground_map_edge_bam(g, g->line);
     t->items = g->targets->items;
     t->near = &g->near;
@@ -151,7 +155,7 @@ uint32_t lm_ground_map_draw_line(struct lm_ground_map *g, struct lm_tile_cache *
     lm_speckle_run(&g->radar->gm_speckle, line->ground.noise, line->sight.level_q8, g->grid.cells);
     if (g->targets && g->targets->count != 0) {
         struct lm_line_targets targets;
-        find_targets(g, antenna, &targets);
+        find_targets(g, tiles, setup.sampling.level, antenna, &targets);
         lm_line_add_targets(line, &setup, &targets);
     }
     lm_tone_run(tone, line->sight.level_q8, line->grey, g->grid.cells);

@@ -66,7 +66,8 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
                                        .targets = &u->target_set,
                                        .reference_q10 = ground_q10,
                                        .epoch = u->board->noise_seed,
-                                       .sea_state = u->environment.sea_state};
+                                       .sea_state = u->environment.sea_state,
+                                       .time_us = now_us};
     if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
         return false;
     }

@@ -94,6 +94,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->command = *command;
     s->line_us = line_us < LM_SAR_LINE_MIN_US ? LM_SAR_LINE_MIN_US : line_us;
     s->targets = scene->targets;
+    s->time_us = scene->time_us;
     s->near.is_chosen = false;
     s->epoch = scene->epoch;
     s->horizon = LM_HORIZON_OPEN;
@@ -146,12 +147,17 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
 }
 
 /* The targets that the line at hand may meet. */
-static void find_targets(struct lm_sar *s, struct lm_line_targets *t)
+static void find_targets(struct lm_sar *s, struct lm_tile_cache *tiles, struct lm_line_targets *t)
 {
     const uint32_t cell_q8 = s->grid.cell_q8, range_q8 = s->command.range_m * 256u;
     const uint32_t half_q8 = s->radar->sar.cells * cell_q8 / 2;
     /* Half the diagonal: 1.5 is more than the root of 2. */
-    lm_targets_refresh(&s->near, s->targets, s->command.centre, half_q8 * 3 / 2 / 256 + 1);
+    const struct lm_target_scene scene = {.place = s->command.centre,
+                                          .reach_m = half_q8 * 3 / 2 / 256 + 1,
+                                          .time_us = s->time_us,
+                                          .tiles = tiles,
+                                          .level = s->sampling.level};
+    lm_targets_refresh(&s->near, s->targets, &scene);
     const uint32_t before_centre_q8 = (s->radar->sar.cells / 2u + LM_SAR_GUARD) * cell_q8;
     t->items = s->targets->items;
     t->near = &s->near;
@@ -194,7 +200,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
         struct lm_line_targets targets;
-        find_targets(s, &targets);
+        find_targets(s, tiles, &targets);
         lm_line_add_targets(line, &setup, &targets);
     }
     lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);

@@ -32,14 +32,22 @@ static bool scatterer_is_sound(const struct lm_scatterer *s)
     return is_sound;
 }
 
+static bool motion_is_sound(const struct lm_target *t)
+{
+    return t->speed_mm_s == 0 ? t->leg_m == 0
+                              : t->speed_mm_s <= LM_TARGET_SPEED_MAX_MM_S && t->leg_m >= 1 &&
+                                    t->leg_m <= LM_TARGET_LEG_MAX_M;
+}
+
 int lm_target_check(const struct lm_target *t)
 {
     const uint8_t *bytes = (const uint8_t *)t;
-    bool is_sound =
-        fx_crc32c(0, bytes + 4, LM_TARGET_BYTES - 4) == t->crc &&
-        fx_abs_u32((int32_t)t->latitude) <= FX_BAM_90 &&
-        is_within(t->elevation_q6, ELEVATION_MAX_Q6) && t->scatterer_count <= LM_SCATTERERS_MAX &&
-        t->swerling <= LM_TARGET_SWERLING_MAX && is_within(t->mean_rcs_q8, LM_TARGET_RCS_MAX_Q8);
+    bool is_sound = fx_crc32c(0, bytes + 4, LM_TARGET_BYTES - 4) == t->crc &&
+                    fx_abs_u32((int32_t)t->latitude) <= FX_BAM_90 &&
+                    is_within(t->elevation_q6, ELEVATION_MAX_Q6) &&
+                    t->scatterer_count <= LM_SCATTERERS_MAX && (t->flags & ~LM_TARGET_FLAGS) == 0 &&
+                    motion_is_sound(t) && t->swerling <= LM_TARGET_SWERLING_MAX &&
+                    is_within(t->mean_rcs_q8, LM_TARGET_RCS_MAX_Q8);
     for (uint32_t i = 0; is_sound && i < t->scatterer_count; i++) {
         is_sound = scatterer_is_sound(&t->scatterers[i]);
     }

@@ -7,61 +7,10 @@
 #include "lm/aspect.h"
 
 enum {
-    EXTENT_M = 512, /* more than any scatterer is away from its target's origin */
     TWO_PI_Q28 = 1686629713,
     GRAZING_MIN_Q24 = 1 << 16, /* 1/256, as in the range grid */
     NO_CELL = -1
 };
-
-int32_t lm_level_add_q8(int32_t a_q8, int32_t b_q8)
-{
-    const int32_t high_q8 = fx_max_i32(a_q8, b_q8), low_q8 = fx_min_i32(a_q8, b_q8);
-    const uint32_t share_q16 = fx_power_q16_from_db_q8(low_q8 - high_q8);
-    return high_q8 + fx_db_q8(65536u + share_q16) - fx_db_q8(65536u);
-}
-
-static struct lm_place place_of(const struct lm_target *t)
-{
-    return (struct lm_place){t->latitude, t->longitude};
-}
-
-void lm_targets_select(struct lm_targets_near *near, const struct lm_target *targets,
-                       uint32_t count, struct lm_place place, uint32_t reach_m)
-{
-    near->is_chosen = true;
-    near->place = place;
-    near->count = near->left_out = 0;
-    const uint32_t reach_q8 = (reach_m + LM_TARGET_DRIFT_M + EXTENT_M) * 256;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t distance_q8;
-        fx_bam_t azimuth;
-        lm_geo_inverse(place, place_of(&targets[i]), &distance_q8, &azimuth);
-        if (distance_q8 > reach_q8) {
-            continue;
-        }
-        if (near->count == LM_TARGETS_NEAR) {
-            near->left_out++;
-            continue;
-        }
-        near->item[near->count].index = (uint16_t)i;
-        near->item[near->count].azimuth = azimuth;
-        near->item[near->count].distance_q8 = distance_q8;
-        near->count++;
-    }
-}
-
-void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *targets,
-                        struct lm_place place, uint32_t reach_m)
-{
-    /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
-    const uint32_t limit = 77000;
-    const bool holds = near->is_chosen &&
-                       fx_abs_u32((int32_t)(place.latitude - near->place.latitude)) < limit &&
-                       fx_abs_u32((int32_t)(place.longitude - near->place.longitude)) < limit;
-    if (!holds) {
-        lm_targets_select(near, targets->items, targets->count, place, reach_m);
-    }
-}
 
 /* ---- where a target is from the line ---- */
 
@@ -69,24 +18,43 @@ void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set
 struct spot {
     uint32_t range_q8; /* ground range from the antenna */
     int32_t across_q8; /* patch: from the line's middle */
-    fx_bam_t azimuth;  /* sector: from the antenna */
+    fx_bam_t azimuth;  /* sector: from the antenna, where it appears */
+    fx_bam_t back;     /* from the target to the antenna */
 };
 
-/* Can the line meet the target at all, as far as was known when it was chosen? */
-static bool may_meet(const struct lm_target_line *line, fx_bam_t azimuth, uint32_t distance_q8)
+/* The farthest that a mover may be displaced, when the velocity is known to be `off` from it within
+ * `slack`: v / (V sin o) at most o. Where the slack is a quarter of o or less, the sine is at least
+ * two thirds of that of `off`. */
+static uint64_t shift_most(const struct lm_target_line *line, const struct lm_target *t,
+                           const struct lm_target_item *item, uint64_t slack)
 {
-    const int32_t off = (int32_t)(azimuth - line->azimuth);
+    if (!line->is_doppler || t->speed_mm_s == 0) {
+        return 0;
+    }
+    const fx_bam_t off = line->track - item->azimuth;
+    const uint64_t off_most = fx_abs_u32((int32_t)off) + slack;
+    const uint64_t shift =
+        fx_abs_u32(lm_mover_shift((int32_t)t->speed_mm_s, line->speed_mm_s, off)) * (uint64_t)3 / 2;
+    return slack * 4 > off_most || shift > off_most ? off_most : shift;
+}
+
+/* Can the line meet the target at all, as far as was known when it was chosen? */
+static bool may_meet(const struct lm_target_line *line, const struct lm_target *t,
+                     const struct lm_target_item *item)
+{
+    const int32_t off = (int32_t)(item->azimuth - line->azimuth);
     if (line->is_patch) {
         /* The offset from the centre; a distance below 2^26.6. */
         const int32_t x_q8 =
-            (int32_t)((int64_t)distance_q8 * fx_sin_q15((fx_bam_t)off) >> 15) - line->across_q8;
-        return fx_abs_u32(x_q8) < EXTENT_M * 256u + line->cell_q8;
+            (int32_t)((int64_t)item->distance_q8 * fx_sin_q15((fx_bam_t)off) >> 15) -
+            line->across_q8;
+        return fx_abs_u32(x_q8) < LM_TARGET_EXTENT_M * 256u + line->cell_q8;
     }
     /* What target and antenna may have moved, as an angle: 2^32 / (2 pi) a radian, twice for the
      * arc against its sine and for the antenna's way towards it. */
-    const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + EXTENT_M) * 256u;
-    const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(distance_q8, 1);
-    return fx_abs_u32(off) <= slack + line->width;
+    const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256u;
+    const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(item->distance_q8, 1);
+    return fx_abs_u32(off) <= slack + line->width + shift_most(line, t, item, slack);
 }
 
 /* The place of a target from an origin, the inverse problem put right by the direct one: the first
@@ -117,22 +85,42 @@ static bool locate(struct lm_place from, struct lm_place to, uint32_t *distance_
     return true;
 }
 
+/* Whether a closing speed is one of those that are shown. */
+static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
+{
+    const uint32_t either_way_mm_s = fx_abs_u32(closing_mm_s);
+    return line->gate_mm_s[1] == 0 ||
+           (either_way_mm_s >= line->gate_mm_s[0] && either_way_mm_s <= line->gate_mm_s[1]);
+}
+
+/* Where Doppler puts a target; false when it is not shown at all. */
+static bool displace(const struct lm_target_line *line, const struct lm_target *t,
+                     const struct lm_target_item *item, struct spot *spot)
+{
+    const int32_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, item->pose.heading, spot->back);
+    spot->azimuth +=
+        (fx_bam_t)lm_mover_shift(closing_mm_s, line->speed_mm_s, line->track - spot->azimuth);
+    return is_in_gate(line, closing_mm_s);
+}
+
 static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
-                      struct spot *spot)
+                      const struct lm_target_item *item, struct spot *spot)
 {
     uint32_t distance_q8;
-    if (!locate(line->place, place_of(t), &distance_q8, &spot->azimuth)) {
+    if (!locate(line->place, item->pose.place, &distance_q8, &spot->azimuth)) {
         return false;
     }
     if (!line->is_patch) {
         spot->range_q8 = distance_q8;
         spot->across_q8 = 0;
-        return true;
+        lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
+        return !line->is_doppler || displace(line, t, item, spot);
     }
     const fx_bam_t off = spot->azimuth - line->azimuth;
     const int64_t along_q8 = (int64_t)distance_q8 * fx_cos_q30(off) >> 30;
     spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30) - line->across_q8;
     spot->range_q8 = (uint32_t)fx_max_i32((int32_t)(line->centre_q8 + along_q8), 0);
+    spot->back = line->azimuth + FX_BAM_180;
     return true;
 }
 
@@ -177,20 +165,15 @@ static int32_t drop_q10(uint32_t range_q8)
     return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
 }
 
-static void view_target(const struct lm_target_line *line, const struct lm_target *t,
+static void view_target(const struct lm_target_line *line, const struct lm_target_item *item,
                         const struct spot *spot, struct lm_target_view *v)
 {
-    fx_bam_t back = line->azimuth + FX_BAM_180;
-    if (!line->is_patch) {
-        uint32_t distance_q8;
-        lm_geo_inverse(place_of(t), line->place, &distance_q8, &back);
-    }
     /* Heights within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all below 2^29 in Q10. */
     const int32_t range_q10 = (int32_t)(fx_min_u32(spot->range_q8, 400000u * 256u) * 4);
     const int32_t above_q10 =
-        line->height_q10 - t->elevation_q6 * 16 - drop_q10((uint32_t)range_q10 / 4);
+        line->height_q10 - item->elevation_q6 * 16 - drop_q10((uint32_t)range_q10 / 4);
     const uint64_t slant_q10 = fx_hypot_u32(range_q10, above_q10);
-    lm_target_view_set(v, back - t->heading, fx_atan2(above_q10, range_q10),
+    lm_target_view_set(v, spot->back - item->pose.heading, fx_atan2(above_q10, range_q10),
                        (uint32_t)(slant_q10 * 1000 >> 10));
 }
 
@@ -230,7 +213,7 @@ struct echo {
 
 /* The line's cell of a return, unless something nearer hides it. */
 static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_sight *sight,
-                        const struct lm_target *t, const struct spot *target,
+                        const struct lm_target_item *item, const struct spot *target,
                         const struct lm_return *r)
 {
     const struct spot s = beside(line, target, r);
@@ -238,14 +221,14 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
     if (cell == NO_CELL || sight == NULL) {
         return cell;
     }
-    const int32_t top_q10 = t->elevation_q6 * 16 + r->up_mm * 128 / 125;
+    const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
     const int64_t horizon_q38 = sight->horizon[cell] >> (sight->bits - 38);
     return tangent_q38(line, top_q10, s.range_q8) > horizon_q38 ? cell : NO_CELL;
 }
 
 static void make_echo(struct echo *e, const struct lm_target_line *line,
                       const struct lm_target_sight *sight, const struct lm_target *t,
-                      const struct spot *spot)
+                      const struct lm_target_item *item, const struct spot *spot)
 {
     if (t->scatterer_count == 0) {
         e->count = 1;
@@ -253,11 +236,11 @@ static void make_echo(struct echo *e, const struct lm_target_line *line,
             .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, line->scan, line->pulse)};
     } else {
         struct lm_target_view v;
-        view_target(line, t, spot, &v);
+        view_target(line, item, spot, &v);
         e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     }
     for (uint32_t i = 0; i < e->count; i++) {
-        e->cell[i] = lit_cell(line, sight, t, spot, &e->returns[i]);
+        e->cell[i] = lit_cell(line, sight, item, spot, &e->returns[i]);
     }
 }
 
@@ -276,7 +259,7 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
         }
         done |= mask;
         const int32_t gamma_q8 = lm_returns_sum_q8(e->returns, mask) - clutter_area_q8(line, cell);
-        level_q8[cell] = lm_level_add_q8(level_q8[cell], gamma_q8);
+        level_q8[cell] = fx_db_q8_sum_of_many(level_q8[cell], gamma_q8);
         cells++;
     }
     return cells;
@@ -288,12 +271,12 @@ uint32_t lm_target_add(const struct lm_target *targets, const struct lm_targets_
 {
     uint32_t cells = 0;
     for (uint32_t i = 0; i < near->count; i++) {
-        const struct lm_target *t = &targets[near->item[i].index];
+        const struct lm_target_item *item = &near->item[i];
+        const struct lm_target *t = &targets[item->index];
         struct spot spot;
         struct echo echo;
-        if (may_meet(line, near->item[i].azimuth, near->item[i].distance_q8) &&
-            find_spot(line, t, &spot)) {
-            make_echo(&echo, line, sight, t, &spot);
+        if (may_meet(line, t, item) && find_spot(line, t, item, &spot)) {
+            make_echo(&echo, line, sight, t, item, &spot);
             cells += add_echo(&echo, line, level_q8);
         }
     }

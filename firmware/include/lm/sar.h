@@ -34,6 +34,7 @@ struct lm_sar_scene {
     int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     uint8_t sea_state;
+    uint64_t time_us; /* movers are where they are then */
 };
 
 /* A patch that is being drawn. Set up by lm_sar_start. */
@@ -47,6 +48,7 @@ struct lm_sar {
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_targets_near near;
+    uint64_t time_us;         /* of the targets' places */
     uint32_t epoch;           /* of noise and of what fluctuates */
     lm_horizon_q40_t horizon; /* where the lines of this run-up start */
     uint32_t line;            /* next to be drawn; command done when it is radar->sar.cells */

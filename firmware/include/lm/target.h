@@ -19,7 +19,12 @@ enum {
     LM_TARGET_OFFSET_MAX_MM = 1 << 18, /* 262 m each way, so at most 454 m from the origin */
     LM_TARGET_SWERLING_MAX = 4,
     LM_TARGET_RCS_MAX_Q8 = 100 * 256, /* of a mean: either way */
+    LM_TARGET_SPEED_MAX_MM_S = 1 << 20,
+    LM_TARGET_LEG_MAX_M = 100000
 };
+
+/* Flags of a target, bits. */
+enum { LM_TARGET_ABOVE_GROUND = 1, LM_TARGET_FLAGS = 1 };
 
 /* One body of a target. Its boresight points to azimuth (from forward towards right) and elevation;
  * its right axis is then level, and roll turns it towards its up axis. */
@@ -38,15 +43,17 @@ struct lm_target {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint32_t id;  /* of its own in the image: what its fluctuation is drawn by */
     fx_bam_t latitude, longitude;
-    int32_t elevation_q6;    /* of the origin above mean sea level, metres * 64 */
+    int32_t elevation_q6;    /* of the origin, metres * 64: above mean sea level, or as flagged */
     fx_bam_t heading;        /* of the forward axis, from north by east */
     uint8_t scatterer_count; /* 0..16; 0: a point that fluctuates by itself */
     uint8_t swerling;        /* 0..4, of such a point */
-    uint16_t reserved0;
-    int32_t mean_rcs_q8; /* of such a point, dBsm * 256 */
-    char name[16];       /* zero-padded; may fill all 16 */
+    uint16_t flags;          /* LM_TARGET_...; others make it unsound */
+    int32_t mean_rcs_q8;     /* of such a point, dBsm * 256 */
+    char name[16];           /* zero-padded; may fill all 16 */
     struct lm_scatterer scatterers[LM_SCATTERERS_MAX];
-    uint8_t reserved1[16];
+    uint32_t speed_mm_s; /* along the heading and back again; 0: stands still */
+    uint32_t leg_m;      /* of that way, 1..LM_TARGET_LEG_MAX_M; 0 when it stands still */
+    uint8_t reserved[8];
 };
 _Static_assert(sizeof(struct lm_target) == LM_TARGET_BYTES,
                "the record must be what FORMATS.md says");

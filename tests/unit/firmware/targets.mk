@@ -1,5 +1,6 @@
 # Specific targets, against their double-precision reference.
-TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line test_target_picture)
+TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line test_target_picture \
+    test_mover)
 TESTS += $(TARGET_TESTS)
 $(TARGET_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \
@@ -8,7 +9,8 @@ $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 
 # The lines' tests once more under the address and undefined-behaviour sanitizers: they use records made by chance.
 TARGET_SANE     := $(O)/bin/tests/unit/firmware/test_target_line_sanitized
-TARGET_SANE_SRC := tests/unit/firmware/test_target_line.c $(addprefix firmware/src/,rcs.c target.c target_line.c db.c geo.c) \
+TARGET_SANE_SRC := tests/unit/firmware/test_target_line.c $(addprefix firmware/src/,rcs.c target.c target_near.c mover.c target_line.c \
+    db.c geo.c scan_line.c tile_cache.c) \
     $(wildcard fixed/src/*.c) host-sim/common/src/rng.c $(addprefix host-sim/reference/,aspect.c)
 TESTS += $(TARGET_SANE)
 $(TARGET_SANE): $(TARGET_SANE_SRC) $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)

@@ -1,0 +1,30 @@
+/* Targets that move, and where a radar that tells directions by Doppler puts them. docs/DESIGN.md,
+ * "Movers". */
+#ifndef LM_MOVER_H
+#define LM_MOVER_H
+
+#include "lm/target.h"
+
+/* Where a target is and which way it faces. */
+struct lm_pose {
+    struct lm_place place;
+    fx_bam_t heading;
+};
+
+/* The target at a time of the unit's clock: from its origin along its heading, back when the leg is
+ * flown, and so on; a target without speed stays. `t` is a checked record. Its heading is that of
+ * the leg's beginning all along. The same time gives the same pose on every machine.
+ * Cost: 800 instructions for a mover, two divisions of 64 bits among them. */
+struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us);
+
+/* How fast a mover comes nearer, mm/s, along the ground; `back` is the direction from it to the
+ * radar. */
+int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back);
+
+/* How far to the right (signed BAM) a target of this closing speed appears of its place, when the
+ * radar flies at `speed_mm_s` and its velocity points `off` to the right of the line of sight: v /
+ * (V sin o) towards the velocity, at most o. 0 for a radar at rest. |closing| < 2^21.
+ * Cost: 70 instructions and a division of 64 bits. */
+int32_t lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off);
+
+#endif

@@ -1,0 +1,55 @@
+/* Which targets a sweep or a patch may meet, and where each of them is at its time. Chosen once for
+ * it, so that a line looks at few. */
+#ifndef LM_TARGET_NEAR_H
+#define LM_TARGET_NEAR_H
+
+#include "lm/mover.h"
+#include "lm/tile_cache.h"
+
+enum {
+    LM_TARGETS_NEAR = 32,     /* that one sweep or patch takes up */
+    LM_TARGET_DRIFT_M = 1024, /* the antenna's way until they are chosen again */
+    LM_TARGET_EXTENT_M = 512  /* more than any scatterer is away from its target's origin */
+};
+
+/* The targets of an image, as they were read. */
+struct lm_target_set {
+    const struct lm_target *items; /* borrowed, checked */
+    uint32_t count;                /* up to 65535 */
+};
+
+/* From where and when they are looked at. */
+struct lm_target_scene {
+    struct lm_place place;       /* the antenna of a sweep, the centre of a patch */
+    uint32_t reach_m;            /* the range, half the diagonal; up to 250 km */
+    uint64_t time_us;            /* of the sweep or patch: movers are where they are then */
+    struct lm_tile_cache *tiles; /* the ground below targets that stand on it; NULL: it is at 0 */
+    uint8_t level;               /* of the database, that the ground is taken from */
+};
+
+struct lm_targets_near {
+    bool is_chosen;        /* false: not yet */
+    struct lm_place place; /* from where */
+    uint64_t time_us;
+    uint32_t count;
+    uint32_t left_out; /* in reach, but there was no room */
+    struct lm_target_item {
+        uint16_t index;       /* in the set */
+        fx_bam_t azimuth;     /* from the place that was given */
+        uint32_t distance_q8; /* metres * 256 */
+        struct lm_pose pose;
+        int32_t elevation_q6; /* of the origin above mean sea level, metres * 64 */
+    } item[LM_TARGETS_NEAR];
+};
+
+/* Choose the targets not farther than reach_m + LM_TARGET_DRIFT_M: the first LM_TARGETS_NEAR of
+ * them, in their order in the image. Cost: about 500 instructions a target, 800 more for a mover,
+ * 300 for one above the ground. */
+void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
+                       const struct lm_target_scene *scene);
+
+/* Choose anew unless that was done for the same time from within LM_TARGET_DRIFT_M of the place. */
+void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
+                        const struct lm_target_scene *scene);
+
+#endif

@@ -1,0 +1,57 @@
+#include "lm/target_near.h"
+
+#include "fx/sat.h"
+#include "lm/scan_line.h"
+
+static int32_t elevation_q6(const struct lm_target *t, struct lm_place place,
+                            const struct lm_target_scene *scene)
+{
+    if (!(t->flags & LM_TARGET_ABOVE_GROUND)) {
+        return t->elevation_q6;
+    }
+    /* Ground within 2^20, as the tiles are held to, and so is the height above it. */
+    const int32_t ground_q10 = scene->tiles
+                                   ? lm_scan_elevation(scene->tiles, scene->level, place,
+                                                       scene->tiles->db->mean_elevation_q6 * 16)
+                                   : 0;
+    return t->elevation_q6 + ground_q10 / 16;
+}
+
+void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
+                       const struct lm_target_scene *scene)
+{
+    near->is_chosen = true;
+    near->place = scene->place;
+    near->time_us = scene->time_us;
+    near->count = near->left_out = 0;
+    const uint32_t reach_q8 = (scene->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256;
+    for (uint32_t i = 0; i < set->count; i++) {
+        const struct lm_target *t = &set->items[i];
+        struct lm_target_item item = {.index = (uint16_t)i,
+                                      .pose = lm_target_pose(t, scene->time_us)};
+        lm_geo_inverse(scene->place, item.pose.place, &item.distance_q8, &item.azimuth);
+        if (item.distance_q8 > reach_q8) {
+            continue;
+        }
+        if (near->count == LM_TARGETS_NEAR) {
+            near->left_out++;
+            continue;
+        }
+        item.elevation_q6 = elevation_q6(t, item.pose.place, scene);
+        near->item[near->count++] = item;
+    }
+}
+
+void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
+                        const struct lm_target_scene *scene)
+{
+    /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
+    const uint32_t limit = 77000;
+    const struct lm_place *from = &near->place, *to = &scene->place;
+    const bool holds = near->is_chosen && near->time_us == scene->time_us &&
+                       fx_abs_u32((int32_t)(to->latitude - from->latitude)) < limit &&
+                       fx_abs_u32((int32_t)(to->longitude - from->longitude)) < limit;
+    if (!holds) {
+        lm_targets_select(near, set, scene);
+    }
+}

@@ -1,0 +1,322 @@
+/* Targets that move: where they are, and where a Doppler picture puts them. Places come from
+ * PROJ's geodesics, displacements from theory: v_r / V R. */
+#include "lm/target_line.h"
+
+#include "lm/aspect.h"
+#include "memory_flash.h"
+#include "target_support.h"
+#include "tiny_image.h"
+
+#include <geodesic.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+enum { CELLS = 256, LINES = 4096, RANGE_M = 37040 };
+static const double height_m = 6000, cell_m = (double)RANGE_M / CELLS;
+
+static void destination(double lat, double lon, double azimuth, double metres, double to[2])
+{
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_direct(&earth, lat, lon, azimuth, metres, &to[0], &to[1], NULL);
+}
+
+static double metres_apart(const double a[2], struct lm_place b)
+{
+    struct geod_geodesic earth;
+    double metres;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_inverse(&earth, a[0], a[1], (int32_t)b.latitude * (360 / 4294967296.0),
+                 (int32_t)b.longitude * (360 / 4294967296.0), &metres, NULL, NULL);
+    return metres;
+}
+
+static struct lm_target moving_point(double lat, double lon, double heading, double speed_m_s,
+                                     uint32_t leg_m)
+{
+    struct lm_target t = point_at(lat, lon, 0, 40);
+    t.heading = bam(heading);
+    t.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
+    t.leg_m = leg_m;
+    seal_target(&t);
+    return t;
+}
+
+/* ---- where it is ---- */
+
+static void a_mover_goes_to_the_end_of_its_leg_and_back(void **state)
+{
+    (void)state;
+    const struct lm_target t = moving_point(46, 11, 30, 20, 5000); /* 250 s each way */
+    const double times_s[] = {0, 1, 100, 249, 251, 400, 499, 500, 700, 1e6, 1e9};
+    for (size_t i = 0; i < sizeof times_s / sizeof *times_s; i++) {
+        const double gone = fmod(times_s[i] * 20, 10000);
+        const double way = gone > 5000 ? 10000 - gone : gone;
+        double to[2];
+        destination(46, 11, 30, way, to);
+        const struct lm_pose pose = lm_target_pose(&t, (uint64_t)(times_s[i] * 1e6));
+        assert_true(metres_apart(to, pose.place) < 0.05);
+        assert_int_equal(pose.heading, gone > 5000 ? bam(210) : bam(30));
+    }
+}
+
+static void the_slowest_the_fastest_and_the_longest_stay_on_their_leg(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t speed_mm_s, leg_m;
+    } cases[] = {{1, LM_TARGET_LEG_MAX_M},
+                 {LM_TARGET_SPEED_MAX_MM_S, 1},
+                 {LM_TARGET_SPEED_MAX_MM_S, LM_TARGET_LEG_MAX_M}};
+    const uint64_t times_us[] = {0, 1, 1ull << 32, 1ull << 53, UINT64_MAX};
+    for (size_t i = 0; i < 3; i++) {
+        struct lm_target t = moving_point(46, 11, 90, 1, cases[i].leg_m);
+        t.speed_mm_s = cases[i].speed_mm_s;
+        seal_target(&t);
+        assert_int_equal(lm_target_check(&t), LM_OK);
+        for (size_t k = 0; k < sizeof times_us / sizeof *times_us; k++) {
+            const double from[2] = {46, 11};
+            const struct lm_pose pose = lm_target_pose(&t, times_us[k]);
+            assert_true(metres_apart(from, pose.place) < cases[i].leg_m + 0.1);
+        }
+    }
+}
+
+static void a_target_without_speed_stays(void **state)
+{
+    (void)state;
+    const struct lm_target t = point_at(46, 11, 0, 10);
+    const struct lm_pose pose = lm_target_pose(&t, UINT64_MAX);
+    assert_int_equal(pose.place.latitude, t.latitude);
+    assert_int_equal(pose.place.longitude, t.longitude);
+    assert_int_equal(pose.heading, t.heading);
+}
+
+static void unsound_motion_is_refused(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t speed_mm_s, leg_m;
+        uint16_t flags;
+        int status;
+    } cases[] = {{0, 0, 0, LM_OK},
+                 {0, 0, LM_TARGET_ABOVE_GROUND, LM_OK},
+                 {0, 1, 0, LM_ERR_CORRUPT},
+                 {1, 0, 0, LM_ERR_CORRUPT},
+                 {1, LM_TARGET_LEG_MAX_M + 1, 0, LM_ERR_CORRUPT},
+                 {LM_TARGET_SPEED_MAX_MM_S + 1, 1, 0, LM_ERR_CORRUPT},
+                 {0, 0, 2, LM_ERR_CORRUPT},
+                 {0, 0, 0x8000, LM_ERR_CORRUPT}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_target t = point_at(46, 11, 0, 10);
+        t.speed_mm_s = cases[i].speed_mm_s;
+        t.leg_m = cases[i].leg_m;
+        t.flags = cases[i].flags;
+        seal_target(&t);
+        assert_int_equal(lm_target_check(&t), cases[i].status);
+    }
+}
+
+/* ---- where it appears ---- */
+
+static void the_shift_is_v_over_v_sin_o_towards_the_velocity_and_at_most_o(void **state)
+{
+    (void)state;
+    double worst = 0; /* against a microradian and three parts in ten thousand */
+    for (int off_deg = -179; off_deg < 180; off_deg++) {
+        for (int closing = -30000; closing <= 30000; closing += 777) {
+            const double off = off_deg * pi / 180;
+            double expected = closing / (250000 * sin(off));
+            if (off_deg == 0 || fabs(expected) > fabs(off)) {
+                expected = off_deg == 0 ? 0 : copysign(fabs(off), expected);
+            }
+            const int32_t shift = lm_mover_shift(closing, 250000, bam(off_deg));
+            const double error = fabs(shift * (2 * pi / 4294967296.0) - expected);
+            worst = fmax(worst, error / (1e-6 + 3e-4 * fabs(expected)));
+        }
+    }
+    assert_true(worst < 1);
+    assert_int_equal(lm_mover_shift(1000, 0, bam(45)), 0);
+}
+
+/* Lines of 120 degrees / 4096, half a milliradian: 19 m at 37 km. */
+static struct lm_target_line sector_line(uint32_t line)
+{
+    const fx_bam_t width = FX_BAM_DEG(120) / LINES;
+    const uint32_t cell_q8 = (uint32_t)(cell_m * 256);
+    return (struct lm_target_line){
+        .place = {bam(46), bam(11)},
+        .azimuth = (fx_bam_t)(((int32_t)line - LINES / 2) * (int32_t)width) + width / 2,
+        .width = width,
+        .first_q8 = cell_q8 / 2,
+        .cell_q8 = cell_q8,
+        .cells = CELLS,
+        .height_q10 = (int32_t)(height_m * 1024),
+        .wavelength_um = X_BAND_UM};
+}
+
+/* How many lines show the target, and the middle of the last one, degrees. */
+static int lines_with(const struct lm_target *t, const struct lm_target_line *how, double *at_deg)
+{
+    struct lm_targets_near near;
+    const struct lm_target_set set = {t, 1};
+    const struct lm_target_scene scene = {.place = {bam(46), bam(11)}, .reach_m = RANGE_M};
+    int32_t level_q8[LM_CELLS_MAX];
+    int lines = 0;
+    lm_targets_select(&near, &set, &scene);
+    for (uint32_t i = 0; i < LINES; i++) {
+        struct lm_target_line line = sector_line(i);
+        line.is_doppler = how->is_doppler;
+        line.speed_mm_s = how->speed_mm_s;
+        line.track = how->track;
+        line.gate_mm_s[0] = how->gate_mm_s[0];
+        line.gate_mm_s[1] = how->gate_mm_s[1];
+        for (int k = 0; k < LM_CELLS_MAX; k++) {
+            level_q8[k] = LM_LEVEL_SHADOW;
+        }
+        if (lm_target_add(t, &near, &line, NULL, level_q8) == 1) {
+            *at_deg = (int32_t)line.azimuth * (360 / 4294967296.0);
+            lines++;
+        }
+    }
+    return lines;
+}
+
+static void a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_a_cell(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 12);
+    for (int i = 0; i < 60; i++) {
+        /* Places and headings anywhere in the sector, where the image falls into it as well. */
+        const double azimuth = 80 * hs_rng_uniform(&rng) - 40, heading = 360 * hs_rng_uniform(&rng);
+        const double speed = 15 * hs_rng_uniform(&rng), track = i % 2 ? 75 : -75;
+        double to[2], at_deg = 0, moved_deg;
+        destination(46, 11, azimuth, 20000 + 10000 * hs_rng_uniform(&rng), to);
+        const struct lm_target t = moving_point(to[0], to[1], heading, speed, 1000);
+        const struct lm_target_line how = {.is_doppler = true,
+                                           .speed_mm_s = 250000,
+                                           .track = bam(track)},
+                                    plain = {0};
+        assert_int_equal(lines_with(&t, &plain, &at_deg), 1);
+        assert_int_equal(lines_with(&t, &how, &moved_deg), 1);
+        const double closing = -speed * cos((heading - azimuth) * pi / 180);
+        const double expected =
+            azimuth + closing / (250 * sin((track - azimuth) * pi / 180)) * 180 / pi;
+        assert_true(fabs(at_deg - azimuth) < 120.0 / LINES);
+        assert_true(fabs(moved_deg - expected) < 120.0 / LINES);
+    }
+}
+
+static void the_gates_show_only_closing_speeds_within_them_either_way(void **state)
+{
+    (void)state;
+    const struct lm_target_line how = {
+        .is_doppler = true, .speed_mm_s = 250000, .track = bam(90), .gate_mm_s = {2000, 20000}};
+    double at_deg;
+    for (int speed = 0; speed <= 24; speed++) {
+        for (int is_away = 0; is_away < 2; is_away++) {
+            struct lm_target t = moving_point(46.2, 11, is_away ? 0 : 180, speed, 1000);
+            if (speed == 0) {
+                t.leg_m = 0;
+                seal_target(&t);
+            }
+            const int is_shown = speed >= 2 && speed <= 20;
+            assert_int_equal(lines_with(&t, &how, &at_deg), is_shown);
+        }
+    }
+    /* Across the line of sight it has none. */
+    const struct lm_target t = moving_point(46.2, 11, 90, 15, 1000);
+    assert_int_equal(lines_with(&t, &how, &at_deg), 0);
+}
+
+/* ---- when ---- */
+
+static void movers_are_placed_anew_for_every_sweep_and_not_for_every_line(void **state)
+{
+    (void)state;
+    const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
+    const struct lm_target_set set = {&t, 1};
+    struct lm_target_scene scene = {.place = {bam(46), bam(11)}, .reach_m = RANGE_M};
+    struct lm_targets_near near = {0};
+    lm_targets_refresh(&near, &set, &scene);
+    const struct lm_place first = near.item[0].pose.place;
+    scene.place.latitude += 1000; /* the antenna moves on, in the same sweep */
+    lm_targets_refresh(&near, &set, &scene);
+    assert_memory_equal(&near.item[0].pose.place, &first, sizeof first);
+    scene.time_us = 8000000; /* the next sweep */
+    lm_targets_refresh(&near, &set, &scene);
+    double to[2];
+    destination(46.1, 11, 90, 400, to);
+    assert_true(metres_apart(to, near.item[0].pose.place) < 0.05);
+}
+
+/* ---- how high ---- */
+
+static double hill(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + p->east_m / 20;
+}
+
+static void a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone(void **state)
+{
+    (void)state;
+    static uint8_t pool[32 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+    static struct lm_tile_cache tiles;
+    static struct lm_db db;
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 11;
+    spec.rows = spec.columns = 4;
+    spec.elevation_m = hill;
+    assert_int_equal(tiny_image_build(&image, &spec), 0);
+    memory_flash_open(&flash, image.bytes, image.size);
+    assert_int_equal(lm_db_open(&db, &flash.port, 16), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
+    struct lm_target t = moving_point(46, 11, 90, 10, 2000);
+    t.elevation_q6 = 25 * 64;
+    t.flags = LM_TARGET_ABOVE_GROUND;
+    seal_target(&t);
+    const struct lm_target_set set = {&t, 1};
+    for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
+        const struct lm_target_scene scene = {.place = {bam(46), bam(11)},
+                                              .reach_m = 5000,
+                                              .time_us = seconds * 1000000,
+                                              .tiles = &tiles};
+        struct lm_targets_near near = {0};
+        lm_targets_refresh(&near, &set, &scene); /* asks for the tile */
+        for (int i = 0; i < 100; i++) {
+            lm_tile_cache_service(&tiles, 0, 16);
+        }
+        near.is_chosen = false;
+        lm_targets_refresh(&near, &set, &scene);
+        const double expected_m = 325 + (double)seconds * 10 / 20;
+        assert_true(fabs(near.item[0].elevation_q6 / 64.0 - expected_m) < 1);
+    }
+    tiny_image_free(&image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mover_goes_to_the_end_of_its_leg_and_back),
+        cmocka_unit_test(the_slowest_the_fastest_and_the_longest_stay_on_their_leg),
+        cmocka_unit_test(a_target_without_speed_stays),
+        cmocka_unit_test(unsound_motion_is_refused),
+        cmocka_unit_test(the_shift_is_v_over_v_sin_o_towards_the_velocity_and_at_most_o),
+        cmocka_unit_test(
+            a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_a_cell),
+        cmocka_unit_test(the_gates_show_only_closing_speeds_within_them_either_way),
+        cmocka_unit_test(movers_are_placed_anew_for_every_sweep_and_not_for_every_line),
+        cmocka_unit_test(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone),
+    };
+    return cmocka_run_group_tests_name("mover", tests, NULL, NULL);
+}
