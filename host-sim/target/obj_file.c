@@ -117,6 +117,20 @@ static int read_face(struct reader *r, const char *text)
     return 0;
 }
 
+static int read_material(struct reader *r, const char *name)
+{
+    for (const char *c = name; *c; c++) {
+        if (*c < '!' || *c > '~') {
+            return line_error(r, "rename it", "the name of a material is not plain ASCII");
+        }
+    }
+    r->material = mesh_material(r->m, name);
+    return r->material < TRACE_MATERIALS_MAX
+               ? 0
+               : line_error(r, "use at most 32 materials with names of up to 31 letters",
+                            "no room for this material");
+}
+
 static int read_line(struct reader *r, char *line)
 {
     line[strcspn(line, "#\r\n")] = '\0';
@@ -135,11 +149,7 @@ static int read_line(struct reader *r, char *line)
     }
     if (length == 6 && strncmp(text, "usemtl", 6) == 0) {
         rest[strcspn(rest, " \t")] = '\0';
-        r->material = mesh_material(r->m, *rest ? rest : "metal");
-        return r->material < TRACE_MATERIALS_MAX
-                   ? 0
-                   : line_error(r, "use at most 32 materials with names of up to 31 letters",
-                                "no room for this material");
+        return read_material(r, *rest ? rest : "metal");
     }
     if (strncmp(text, "curv", 4) == 0 || strncmp(text, "surf", 4) == 0) {
         return line_error(r, "convert the model to triangles", "curved surfaces are not read");

@@ -57,78 +57,84 @@ struct trace_axes trace_axes_of(const struct trace_look *look)
     return a;
 }
 
+/* Threads that share the tiles among them. */
 struct team {
     const struct trace_tiles *tiles;
     struct tile_result *results;
+    struct trace_records *records;
+    void (*work)(struct team *team, uint32_t tile);
     uint32_t tile_count;
     atomic_uint next;
 };
 
-static void *work(void *argument)
+static void trace_one(struct team *team, uint32_t tile)
+{
+    trace_tile(team->tiles, tile, &team->results[tile]);
+}
+
+/* Put a tile's lists where they belong in the whole. */
+static void place_one(struct team *team, uint32_t tile)
+{
+    const struct tile_result *result = &team->results[tile];
+    for (uint32_t b = 0; b < team->records->bounce_count; b++) {
+        const struct trace_bounce *part = &result->bounces[b];
+        struct trace_record *to = team->records->bounces[b].records + result->first[b];
+        if (part->count > 0) {
+            memcpy(to, part->records, part->count * sizeof *to);
+        }
+        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
+            to[k].parent += result->first[b - 1];
+        }
+    }
+}
+
+static void *take_tiles(void *argument)
 {
     struct team *team = argument;
     uint32_t i;
     while ((i = atomic_fetch_add(&team->next, 1)) < team->tile_count) {
-        trace_tile(team->tiles, i, &team->results[i]);
+        team->work(team, i);
     }
     return NULL;
 }
 
-/* One thread may be refused: the others, this one among them, do its work. */
-static void work_together(struct team *team, uint32_t threads)
+/* Do `work` on each tile. A thread may be refused: the others, this one among them, do its share.
+ */
+static void work_together(struct team *team, uint32_t threads,
+                          void (*work)(struct team *team, uint32_t tile))
 {
     pthread_t others[64];
     uint32_t started = 0;
-    while (started + 1 < threads && pthread_create(&others[started], NULL, work, team) == 0) {
+    team->work = work;
+    atomic_store(&team->next, 0);
+    while (started + 1 < threads && pthread_create(&others[started], NULL, take_tiles, team) == 0) {
         started++;
     }
-    work(team);
+    take_tiles(team);
     for (uint32_t i = 0; i < started; i++) {
         pthread_join(others[i], NULL);
     }
 }
 
-/* Put the tiles' lists of one bounce one behind the other. `before` are the places of the tiles in
- * the bounce before, and become those in this one. */
-static bool join_bounce(const struct tile_result *results, uint32_t tile_count, uint32_t b,
-                        uint32_t *before, struct trace_bounce *joined)
+/* Say where each tile's lists begin in the whole, and take memory for that. False when there was
+ * too little, in a tile or here. */
+static bool make_room(struct tile_result *results, uint32_t tile_count, struct trace_records *r)
 {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < tile_count; i++) {
-        count += results[i].bounces[b].count;
-    }
-    joined->records = malloc((size_t)count * sizeof *joined->records);
-    if (!joined->records && count > 0) {
-        return false;
-    }
-    for (uint32_t i = 0; i < tile_count; i++) {
-        const struct trace_bounce *part = &results[i].bounces[b];
-        struct trace_record *to = joined->records + joined->count;
-        if (part->count > 0) {
-            memcpy(to, part->records, part->count * sizeof *to);
+    for (uint32_t b = 0; b < r->bounce_count; b++) {
+        struct trace_bounce *whole = &r->bounces[b];
+        for (uint32_t i = 0; i < tile_count; i++) {
+            if (results[i].is_out_of_memory) {
+                return false;
+            }
+            results[i].first[b] = whole->count;
+            whole->count += results[i].bounces[b].count;
         }
-        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
-            to[k].parent += before[i];
+        whole->records = malloc((size_t)whole->count * sizeof *whole->records);
+        if (!whole->records && whole->count > 0) {
+            return false;
         }
-        before[i] = joined->count;
-        joined->count += part->count;
     }
     return true;
-}
-
-static bool join_tiles(const struct tile_result *results, uint32_t tile_count,
-                       struct trace_records *r)
-{
-    uint32_t *before = calloc(tile_count, sizeof *before);
-    bool is_whole = before != NULL;
-    for (uint32_t i = 0; i < tile_count; i++) {
-        is_whole = is_whole && !results[i].is_out_of_memory;
-    }
-    for (uint32_t b = 0; is_whole && b < r->bounce_count; b++) {
-        is_whole = join_bounce(results, tile_count, b, before, &r->bounces[b]);
-    }
-    free(before);
-    return is_whole;
 }
 
 static int run_tiles(const struct scene *s, const struct trace_order *o, const char *place,
@@ -136,15 +142,18 @@ static int run_tiles(const struct scene *s, const struct trace_order *o, const c
 {
     const struct trace_tiles tiles = {s, trace_axes_of(&o->look), r->sensor, o->look.wavelength_m,
                                       o->bounces};
-    struct team team = {.tiles = &tiles};
+    struct team team = {.tiles = &tiles, .records = r};
     const uint32_t rays = r->sensor.columns * r->sensor.rows;
     team.tile_count = (rays + TILE_RAYS - 1) / TILE_RAYS;
     team.results = calloc(team.tile_count, sizeof *team.results);
     if (!team.results) {
         return hs_error(place, NULL, "out of memory for %u rays", rays);
     }
-    work_together(&team, o->threads);
-    const bool is_whole = join_tiles(team.results, team.tile_count, r);
+    work_together(&team, o->threads, trace_one);
+    const bool is_whole = make_room(team.results, team.tile_count, r);
+    if (is_whole) {
+        work_together(&team, o->threads, place_one);
+    }
     for (uint32_t i = 0; i < team.tile_count; i++) {
         if (rays_cast) {
             *rays_cast += team.results[i].rays_cast;

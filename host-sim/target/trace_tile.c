@@ -28,7 +28,7 @@ struct wave {
     uint32_t count;
 };
 
-static double ray_start_m(const struct scene *s)
+static double clear_of_model_m(const struct scene *s)
 {
     return fmax(vec_length(s->low), vec_length(s->high)) + 1;
 }
@@ -37,15 +37,15 @@ static void start_wave(const struct trace_tiles *t, uint32_t first, struct wave 
 {
     const struct trace_sensor *sensor = &t->sensor;
     const uint32_t rays = sensor->columns * sensor->rows;
+    const double clear_m = clear_of_model_m(t->scene), sink = t->axes.rise.z / t->axes.sight.z;
     w->count = rays - first < TILE_RAYS ? rays - first : TILE_RAYS;
     for (uint32_t i = 0; i < w->count; i++) {
         const uint32_t ray = first + i;
         const double across_m =
             sensor->low_across_m + (ray % sensor->columns + 0.5) * sensor->step_across_m;
         const double up_m = sensor->low_up_m + (ray / sensor->columns + 0.5) * sensor->step_up_m;
-        /* Outside the model, and above the ground. */
-        const double back_m =
-            ray_start_m(t->scene) + fmax(0, -up_m * t->axes.rise.z / -t->axes.sight.z);
+        /* Outside the model, and above the ground where the plane dips below it. */
+        const double back_m = clear_m + (up_m < 0 ? up_m * sink : 0);
         const struct vec on_plane =
             vec_mad(vec_scale(t->axes.across, across_m), t->axes.rise, up_m);
         w->flights[i] = (struct flight){
@@ -57,8 +57,9 @@ static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_paral
                       struct bare_rays *bare)
 {
     for (uint32_t i = 0; i < w->count; i += SCENE_PACKET) {
-        struct scene_rays rays = {.count = w->count - i, .is_parallel = is_parallel};
-        rays.count = rays.count < SCENE_PACKET ? rays.count : SCENE_PACKET;
+        struct scene_rays rays;
+        rays.is_parallel = is_parallel;
+        rays.count = w->count - i < SCENE_PACKET ? w->count - i : SCENE_PACKET;
         for (uint32_t k = 0; k < rays.count; k++) {
             rays.from[k] = w->flights[i + k].from;
             rays.along[k] = w->flights[i + k].along;
@@ -72,7 +73,14 @@ static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_paral
 
 static float angle_of(double cosine)
 {
-    return (float)acos(fmin(fmax(cosine, -1), 1));
+    return (float)acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine);
+}
+
+/* Phase of a range, between -pi and pi. */
+static float phase_of(double range_m, double wavelength_m)
+{
+    const double turns = -2 / wavelength_m * range_m;
+    return (float)(2 * pi * (turns - rint(turns)));
 }
 
 /* Record the reflection of flight `f`, number `bounce` of its ray, at a plane, and turn the flight
@@ -86,6 +94,7 @@ static struct trace_record reflect(const struct trace_tiles *t, struct flight *f
     const double hop_m = (plane->offset_m - vec_dot(plane->normal, f->from)) / slope;
     const struct vec at = vec_mad(f->from, f->along, hop_m);
     const double echo_cos = -vec_dot(normal, axes->sight);
+    const float incidence_rad = angle_of(fabs(slope));
     f->way_m += hop_m;
     const double range_m = (f->way_m + vec_dot(at, axes->sight)) / 2;
     const struct trace_record record = {
@@ -93,14 +102,14 @@ static struct trace_record reflect(const struct trace_tiles *t, struct flight *f
         .parent = f->parent,
         .across_m = (float)((f->across_m + vec_dot(at, axes->across)) / 2),
         .range_m = (float)range_m,
-        .phase_rad = (float)remainder(-4 * pi / t->wavelength_m * range_m, 2 * pi),
+        .phase_rad = phase_of(range_m, t->wavelength_m),
         .hop_m = (float)(bounce == 0 ? f->way_m : hop_m),
-        .incidence_rad = angle_of(fabs(slope)),
-        .echo_rad = angle_of(echo_cos),
+        .incidence_rad = incidence_rad,
+        .echo_rad = bounce == 0 ? incidence_rad : angle_of(echo_cos),
         .turn_rad = bounce == 0 ? 0 : angle_of(vec_dot(f->along, axes->sight)),
         .normal = {(float)vec_dot(normal, axes->across), (float)vec_dot(normal, axes->away),
                    (float)normal.z},
-        .flags = echo_cos > 0 ? 0 : TRACE_BLOCKED,
+        .flags = (uint8_t)(echo_cos > 0 ? 0 : TRACE_BLOCKED),
     };
     f->from = vec_mad(at, normal, lift_m);
     f->along = vec_mad(f->along, normal, 2 * fabs(slope));
@@ -141,8 +150,10 @@ static bool reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b
 static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
                           struct trace_bounce *bounce, struct bare_rays *bare)
 {
-    struct scene_rays rays = {.is_parallel = true};
+    struct scene_rays rays;
     uint32_t asker[SCENE_PACKET], cast = 0;
+    rays.count = 0;
+    rays.is_parallel = true;
     for (uint32_t i = 0; i < w->count; i++) {
         if (!(bounce->records[i].flags & TRACE_BLOCKED)) {
             asker[rays.count] = i;

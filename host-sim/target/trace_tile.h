@@ -19,6 +19,7 @@ struct trace_tiles {
 
 struct tile_result {
     struct trace_bounce bounces[TRACE_BOUNCES_MAX]; /* parents count from the tile's first record */
+    uint32_t first[TRACE_BOUNCES_MAX];              /* where they begin among those of all tiles */
     uint64_t rays_cast;
     struct bare_rays *bare; /* borrowed, NULL but for measurements: keeps every ray cast */
     bool is_out_of_memory;
