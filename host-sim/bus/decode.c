@@ -1,0 +1,198 @@
+#include "decode.h"
+
+#include "drv/can_log.h"
+#include "hs/error.h"
+#include "lm/bus.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+static const char *const outcome_words[LM_BUS_OUTCOMES] = {
+    [LM_BUS_VALUE] = "values",
+    [LM_BUS_HALF] = "half of a double",
+    [LM_BUS_NOT_DATA] = "no data frame",
+    [LM_BUS_FOREIGN] = "foreign identifier",
+    [LM_BUS_OTHER_CHANNEL] = "redundancy channel not used",
+    [LM_BUS_SERVICE] = "node service",
+    [LM_BUS_UNUSED] = "not used",
+    [LM_BUS_BAD_LENGTH] = "refused: length",
+    [LM_BUS_BAD_NODE] = "refused: node 0",
+    [LM_BUS_BAD_TYPE] = "refused: data type",
+    [LM_BUS_NO_DATA] = "sender has no value",
+    [LM_BUS_NOT_A_NUMBER] = "refused: not a number",
+    [LM_BUS_OUT_OF_RANGE] = "refused: out of range",
+};
+
+static const char *const service_names[] = {"IDS", "NSS", "DDS", "DUS", "SCS", "TIS", "FPS", "STS",
+                                            "FSS", "TCS", "BSS", "NIS", "MIS", "MCS", "CSS", "DSS"};
+
+struct decoder {
+    FILE *out;
+    const char *path;
+    struct lm_bus bus;
+};
+
+static void report_line(void *ctx, uint32_t line, const char *cause)
+{
+    const struct decoder *d = ctx;
+    char place[512];
+    snprintf(place, sizeof place, "%s line %u", d->path, line);
+    hs_warn(place, "the line is skipped", "%s", cause);
+}
+
+static uint32_t element_at(const uint8_t *data, unsigned index, unsigned bytes)
+{
+    uint32_t word = 0;
+    for (unsigned i = 0; i < bytes; i++) {
+        word = word << 8 | data[index * bytes + i];
+    }
+    return word;
+}
+
+static void print_element(FILE *out, const struct lm_canas_type *t, uint32_t word)
+{
+    const unsigned bits = 8u * t->element_bytes;
+    float number;
+    switch ((enum lm_canas_kind)t->kind) {
+    case LM_CANAS_KIND_FLOAT:
+        memcpy(&number, &word, sizeof number);
+        fprintf(out, " %.9g", (double)number);
+        break;
+    case LM_CANAS_KIND_SIGNED:
+        fprintf(out, " %d", bits == 32 ? (int32_t)word : bits == 16 ? (int16_t)word : (int8_t)word);
+        break;
+    case LM_CANAS_KIND_UNSIGNED:
+        fprintf(out, " %u", word);
+        break;
+    case LM_CANAS_KIND_TEXT:
+        fprintf(out, word >= ' ' && word < 0x7f ? " '%c'" : " %02X", (int)word);
+        break;
+    case LM_CANAS_KIND_BITS:
+    case LM_CANAS_KIND_HALF:
+    case LM_CANAS_KIND_NONE:
+        fprintf(out, " %0*X", (int)bits / 4, word);
+        break;
+    }
+}
+
+/* Header and data of any frame of CANaerospace, by its own data type. */
+static void print_canas(FILE *out, const struct lm_can_frame *f)
+{
+    if (f->length < 4 || f->length > 8) {
+        return;
+    }
+    fprintf(out, " node %u service %u code %u", f->data[0], f->data[2], f->data[3]);
+    const uint8_t type = f->data[1];
+    if (type >= LM_CANAS_TYPES) {
+        fprintf(out, " type %u", type);
+        return;
+    }
+    const struct lm_canas_type *t = &lm_canas_types[type];
+    fprintf(out, " %s", t->name);
+    if (f->length == 4 + t->element_bytes * t->elements) {
+        for (unsigned i = 0; i < t->elements; i++) {
+            print_element(out, t, element_at(f->data + 4, i, t->element_bytes));
+        }
+    }
+}
+
+static void print_event(FILE *out, const struct lm_bus_profile *profile,
+                        const struct lm_bus_event *e)
+{
+    const struct lm_bus_row *row = &profile->rows[e->row];
+    const struct lm_bus_scale *s = lm_bus_scale_of((enum lm_bus_field)row->field);
+    const double counts = ldexp(s->multiplier, s->frac_bits) / s->divisor;
+    fprintf(out, " = %s %.*f %s", lm_bus_fields[row->field].name, counts > 1000 ? 7 : 3,
+            e->value / counts, s->bus_unit);
+    if (e->channel != 0) {
+        fprintf(out, " (channel %u)", e->channel);
+    }
+}
+
+static const char *name_of(const struct lm_bus_profile *profile, const struct lm_can_frame *f)
+{
+    for (int i = 0; i < profile->row_count; i++) {
+        const struct lm_bus_row *row = &profile->rows[i];
+        const uint32_t mask = profile->framing == LM_BUS_PACKED ? row->packing.mask : 0xffff;
+        if ((f->id & mask) == row->id && !f->is_error) {
+            return row->name;
+        }
+    }
+    return NULL;
+}
+
+/* The one outcome that is news since `before`; the first where there are more. */
+static const char *news(const struct lm_bus *before, const struct lm_bus *now)
+{
+    for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
+        if (now->count.outcome[i] != before->count.outcome[i]) {
+            return outcome_words[i];
+        }
+    }
+    return "not used";
+}
+
+static void print_frame(struct decoder *d, const struct lm_can_frame *f)
+{
+    const struct lm_bus_profile *profile = d->bus.profile;
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const struct lm_bus before = d->bus;
+    const uint32_t count = lm_bus_take(&d->bus, f, events);
+    fprintf(d->out, "%12.6f ", (double)f->time_us * 1e-6);
+    fprintf(d->out, f->is_extended || f->is_error ? "%08X" : "     %03X", f->id);
+    const char *name = name_of(profile, f);
+    const bool is_canas = profile->framing == LM_BUS_CANAEROSPACE && !f->is_error && !f->is_remote;
+    if (name != NULL) {
+        fprintf(d->out, " %s:", name);
+    }
+    if (is_canas) {
+        print_canas(d->out, f);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        print_event(d->out, profile, &events[i]);
+    }
+    if (count == 0) {
+        fprintf(d->out, " [%s]", f->is_error ? "report of the controller" : news(&before, &d->bus));
+    }
+    if (is_canas && f->length >= 4 &&
+        d->bus.count.outcome[LM_BUS_SERVICE] != before.count.outcome[LM_BUS_SERVICE] &&
+        f->data[2] < sizeof service_names / sizeof *service_names) {
+        fprintf(d->out, " %s %s", service_names[f->data[2]], f->id & 1 ? "response" : "request");
+    }
+    fprintf(d->out, "\n");
+}
+
+static void print_summary(const struct decoder *d, const struct drv_can_log *log)
+{
+    fprintf(d->out, "# %u frames, %u lines not read\n", d->bus.count.frames, log->count.malformed);
+    for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
+        if (d->bus.count.outcome[i] != 0) {
+            fprintf(d->out, "# %s: %u\n", outcome_words[i], d->bus.count.outcome[i]);
+        }
+    }
+    if (d->bus.profile->framing == LM_BUS_CANAEROSPACE) {
+        fprintf(d->out, "# halves without a mate: %u; message codes out of sequence: %u\n",
+                d->bus.canas.count.torn_pairs, d->bus.canas.count.sequence_breaks);
+    }
+}
+
+int bus_decode(FILE *out, FILE *in, const char *path, const struct lm_bus_profile *profile)
+{
+    struct decoder d = {.out = out, .path = path};
+    struct drv_can_log log;
+    lm_bus_init(&d.bus, profile);
+    drv_can_log_init(&log, in, report_line, &d);
+    drv_can_log_set_now(&log, UINT64_MAX);
+    const struct lm_can port = drv_can_log_port(&log);
+    struct lm_can_frame frame;
+    int status;
+    while ((status = port.receive(port.ctx, &frame)) == 1) {
+        print_frame(&d, &frame);
+    }
+    if (status < 0) {
+        return hs_error(path, NULL, "cannot be read: %s", strerror(errno));
+    }
+    print_summary(&d, &log);
+    return 0;
+}

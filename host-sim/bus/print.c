@@ -1,0 +1,447 @@
+#include "print.h"
+
+#include "drv/can_socket.h"
+#include "lm/canas.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct lm_bus_scale *unit_of(const struct lm_bus_row *row)
+{
+    return lm_bus_scale_of((enum lm_bus_field)row->field);
+}
+
+/* Counts of the row's field in one unit of the bus. */
+static double counts_per_unit(const struct lm_bus_row *row)
+{
+    return ldexp(unit_of(row)->multiplier, unit_of(row)->frac_bits) / unit_of(row)->divisor;
+}
+
+/* What a packed row makes of an integer or float of the frame: value = number * scale + offset, in
+ * the field's unit of the bus. Of the scale the shortest number that gives the row's multiplier. */
+static double scale_of(const struct lm_bus_row *row)
+{
+    const struct lm_bus_packing *p = &row->packing;
+    const int places = (p->type == LM_BUS_FLOAT ? p->frac_bits : 0) - p->shift;
+    const double one = counts_per_unit(row);
+    double scale = ldexp(p->multiplier, places) / one;
+    for (int digits = 1; digits <= 12; digits++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.*g", digits, scale);
+        if (lround(ldexp(strtod(text, NULL) * one, -places)) == p->multiplier) {
+            return strtod(text, NULL);
+        }
+    }
+    return scale;
+}
+
+static double offset_of(const struct lm_bus_row *row)
+{
+    const double offset =
+        (ldexp((double)row->packing.bias, -row->packing.shift) - 0.5) / counts_per_unit(row);
+    return fabs(offset) > 1e-9 ? offset : 0;
+}
+
+/* ---- filters ---- */
+
+void bus_print_filters(FILE *out, const struct lm_bus_profile *profile)
+{
+    struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
+    const size_t count = drv_can_socket_filters(profile, filters);
+    for (size_t i = 0; i < count; i++) {
+        const bool is_extended = (filters[i].can_id & CAN_EFF_FLAG) != 0;
+        fprintf(out, is_extended ? "%08X:%08X\n" : "%03X:%08X\n", filters[i].can_id & CAN_EFF_MASK,
+                filters[i].can_mask);
+    }
+}
+
+/* ---- Markdown ---- */
+
+static void print_types(FILE *out, const struct lm_bus_row *row)
+{
+    const char *comma = "";
+    for (int type = 0; type < LM_CANAS_TYPES; type++) {
+        if (row->types >> type & 1) {
+            fprintf(out, "%s%s", comma, lm_canas_types[type].name);
+            comma = ", ";
+        }
+    }
+}
+
+static const char *packed_type_name(const struct lm_bus_packing *p)
+{
+    static const char *const names[] = {"unsigned", "signed", "float"};
+    return names[p->type];
+}
+
+static void print_place(FILE *out, const struct lm_bus_row *row)
+{
+    const struct lm_bus_packing *p = &row->packing;
+    fprintf(out, "%s %u+%u %s, x %.12g", p->is_little_endian ? "little" : "big", p->bits.first,
+            p->bits.count, packed_type_name(p), scale_of(row));
+    if (offset_of(row) != 0) {
+        fprintf(out, " %+.8g", offset_of(row));
+    }
+    if (p->match.count != 0) {
+        fprintf(out, ", when %u+%u = %u", p->match.first, p->match.count, p->match_value);
+    }
+}
+
+void bus_print_table(FILE *out, const struct lm_bus_profile *profile)
+{
+    const bool is_packed = profile->framing == LM_BUS_PACKED;
+    fprintf(out,
+            "| id | hex | item | field | %s | unit | range | kept as | period ms | stale | dead | "
+            "priority |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+            is_packed ? "bits" : "types");
+    for (int i = 0; i < profile->row_count; i++) {
+        const struct lm_bus_row *row = &profile->rows[i];
+        fprintf(out, is_packed ? "| %u | %08X | %s | %s | " : "| %u | %03X | %s | %s | ", row->id,
+                row->id, row->name, lm_bus_fields[row->field].name);
+        if (is_packed) {
+            print_place(out, row);
+        } else {
+            print_types(out, row);
+        }
+        fprintf(out, " | %s | %d..%d | %s | %g | %u | %u | %u |\n", unit_of(row)->bus_unit,
+                row->low, row->high, unit_of(row)->kept_as, row->period_us / 1000.0, row->stale_ms,
+                row->dead_ms, row->priority);
+    }
+}
+
+void bus_print_fields(FILE *out)
+{
+    for (int i = 0; i < LM_BUS_FIELDS; i++) {
+        fprintf(out, "%-18s %s\n", lm_bus_fields[i].name,
+                lm_bus_scale_of((enum lm_bus_field)i)->bus_unit);
+    }
+}
+
+/* ---- .dbc ---- */
+
+enum { DBC_NAME_BYTES = 32 }; /* what other tools allow, and a NUL less */
+
+/* A name of letters, digits and underscores, made unlike others by its row where it was cut. */
+static void print_name(FILE *out, const char *text, int row)
+{
+    char name[DBC_NAME_BYTES];
+    size_t length = 0;
+    for (; *text != '\0' && length < sizeof name - 5; text++) {
+        const char c = *text;
+        const bool is_word =
+            (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+        if (is_word) {
+            name[length++] = c;
+        } else if (length > 0 && name[length - 1] != '_') {
+            name[length++] = '_';
+        }
+    }
+    length -= length > 0 && name[length - 1] == '_';
+    name[length] = '\0';
+    const bool begins_well = length > 0 && (name[0] < '0' || name[0] > '9');
+    if (*text != '\0' || !begins_well) {
+        fprintf(out, "%s%s_%d", begins_well ? "" : "item", name, row);
+    } else {
+        fprintf(out, "%s", name);
+    }
+}
+
+/* The number of a run's first bit as .dbc has it: bit 7 of byte 0 is 7, and a big-endian signal is
+ * named by its highest bit. */
+static unsigned dbc_start(struct lm_bus_bits bits, bool is_little_endian)
+{
+    return is_little_endian ? bits.first : bits.first / 8 * 8u + 7 - bits.first % 8;
+}
+
+struct signal {
+    const char *name, *multiplex; /* "m2 ", "M ", or "" */
+    unsigned byte, bytes;
+    bool is_signed;
+    double scale;
+    int low, high;
+    const char *unit;
+};
+
+/* Big-endian, as CANaerospace has it. */
+static void print_signal(FILE *out, const struct signal *s)
+{
+    fprintf(out, " SG_ %s %s: %u|%u@0%c (%.10g,0) [%d|%d] \"%s\" Vector__XXX\n", s->name,
+            s->multiplex, s->byte * 8 + 7, s->bytes * 8, s->is_signed ? '-' : '+', s->scale, s->low,
+            s->high, s->unit);
+}
+
+static void print_header_signals(FILE *out, bool is_multiplexed)
+{
+    static const struct signal header[] = {
+        {"node", "", 0, 1, false, 1, 0, 255, ""},
+        {"data_type", "", 1, 1, false, 1, 0, 255, ""},
+        {"service_code", "", 2, 1, false, 1, 0, 255, ""},
+        {"message_code", "", 3, 1, false, 1, 0, 255, ""},
+    };
+    for (size_t i = 0; i < sizeof header / sizeof *header; i++) {
+        struct signal s = header[i];
+        s.multiplex = is_multiplexed && i == 1 ? "M " : "";
+        print_signal(out, &s);
+    }
+}
+
+static void print_type_signals(FILE *out, const struct lm_bus_row *row, int type,
+                               const char *multiplex)
+{
+    const char *unit = unit_of(row)->bus_unit;
+    const struct lm_canas_type *t = &lm_canas_types[type];
+    char name[DBC_NAME_BYTES];
+    snprintf(name, sizeof name, "as_%s", t->name);
+    if (type == LM_CANAS_SHORT2) {
+        print_signal(out,
+                     &(struct signal){"value_SHORT2", multiplex, 4, 2, true, 1, -32768, 32767, ""});
+        print_signal(
+            out, &(struct signal){"full_scale_SHORT2", multiplex, 6, 2, true, 1, 1, 32767, unit});
+    } else if (t->elements >= 3) {
+        static const char *const parts[] = {"hours", "minutes", "seconds"};
+        for (unsigned i = 0; i < 3; i++) {
+            char part[DBC_NAME_BYTES];
+            snprintf(part, sizeof part, "%s_%s", parts[i], t->name);
+            print_signal(out, &(struct signal){part, multiplex, 4 + i, 1, false, 1, 0,
+                                               i == 0 ? 23 : 60, ""});
+        }
+    } else if (t->kind == LM_CANAS_KIND_HALF) {
+        print_signal(out, &(struct signal){name, multiplex, 4, 4, false, 1, 0, 0, ""});
+    } else {
+        const bool is_unsigned = t->kind == LM_CANAS_KIND_UNSIGNED;
+        const double scale = t->kind == LM_CANAS_KIND_FLOAT ? 1 : 1.0 / row->per_unit;
+        print_signal(out, &(struct signal){name, multiplex, 4, t->element_bytes, !is_unsigned,
+                                           scale, row->low, row->high, unit});
+    }
+}
+
+static void print_canas_message(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    const struct lm_bus_row *row = &profile->rows[index];
+    fprintf(out, "\nBO_ %u ", row->id);
+    print_name(out, row->name, index);
+    fprintf(out, ": 8 Vector__XXX\n");
+    print_header_signals(out, !profile->are_types_assumed);
+    for (int type = 0; type < LM_CANAS_TYPES; type++) {
+        char multiplex[8] = "";
+        if (!profile->are_types_assumed) {
+            snprintf(multiplex, sizeof multiplex, "m%d ", type);
+        }
+        if (row->types >> type & 1) {
+            print_type_signals(out, row, type, multiplex);
+        }
+    }
+}
+
+/* The display's own frames. */
+static void print_service_messages(FILE *out)
+{
+    fprintf(out, "\nBO_ 128 node_service_request: 8 Vector__XXX\n");
+    print_header_signals(out, false);
+    fprintf(out, "\nBO_ 129 node_service_response: 8 landmass\n");
+    print_header_signals(out, false);
+    fprintf(out, "\nBO_ 1500 display_state: 8 landmass\n");
+    print_header_signals(out, false);
+    fprintf(out, " SG_ flags : 39|32@0+ (1,0) [0|4294967295] \"\" Vector__XXX\n");
+}
+
+static bool are_one_frame(const struct lm_bus_row *a, const struct lm_bus_row *b)
+{
+    return a->id == b->id && a->packing.mask == b->packing.mask;
+}
+
+static bool is_first_of_frame(const struct lm_bus_profile *profile, int index)
+{
+    for (int i = 0; i < index; i++) {
+        if (are_one_frame(&profile->rows[i], &profile->rows[index])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The bits that decide between numbers of a frame: those of its first row that has a condition, or
+ * a run of none. Another condition in the same frame is only said in a remark. */
+static struct lm_bus_bits multiplexor_of(const struct lm_bus_profile *profile, int index)
+{
+    for (int i = 0; i < profile->row_count; i++) {
+        const struct lm_bus_row *row = &profile->rows[i];
+        if (are_one_frame(row, &profile->rows[index]) && row->packing.match.count != 0) {
+            return row->packing.match;
+        }
+    }
+    return (struct lm_bus_bits){0, 0};
+}
+
+static void print_packed_signal(FILE *out, const struct lm_bus_row *row, int index,
+                                struct lm_bus_bits multiplexor)
+{
+    const struct lm_bus_packing *p = &row->packing;
+    fprintf(out, " SG_ ");
+    print_name(out, row->name, index);
+    if (p->match.count != 0 && p->match.first == multiplexor.first &&
+        p->match.count == multiplexor.count) {
+        fprintf(out, " m%u", p->match_value);
+    }
+    fprintf(out, " : %u|%u@%d%c (%.12g,%.8g) [%d|%d] \"%s\" Vector__XXX\n",
+            dbc_start(p->bits, p->is_little_endian), p->bits.count, p->is_little_endian,
+            p->type == LM_BUS_UNSIGNED ? '+' : '-', scale_of(row), offset_of(row), row->low,
+            row->high, unit_of(row)->bus_unit);
+}
+
+static void print_packed_message(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    const struct lm_bus_row *first = &profile->rows[index];
+    const struct lm_bus_bits m = multiplexor_of(profile, index);
+    fprintf(out, "\nBO_ %u ", first->id | CAN_EFF_FLAG);
+    print_name(out, first->name, index);
+    fprintf(out, ": 8 Vector__XXX\n");
+    if (m.count != 0) {
+        fprintf(out, " SG_ when M : %u|%u@%d+ (1,0) [0|%u] \"\" Vector__XXX\n",
+                dbc_start(m, first->packing.is_little_endian), m.count,
+                first->packing.is_little_endian, (1u << m.count) - 1);
+    }
+    for (int i = index; i < profile->row_count; i++) {
+        if (are_one_frame(&profile->rows[i], first)) {
+            print_packed_signal(out, &profile->rows[i], i, m);
+        }
+    }
+}
+
+static unsigned dbc_id(const struct lm_bus_profile *profile, const struct lm_bus_row *row)
+{
+    return profile->framing == LM_BUS_PACKED ? row->id | CAN_EFF_FLAG : row->id;
+}
+
+/* Which signals are IEEE 754: 1 single, 2 double. */
+static void print_float(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    const struct lm_bus_row *row = &profile->rows[index];
+    if (profile->framing == LM_BUS_PACKED && row->packing.type == LM_BUS_FLOAT) {
+        fprintf(out, "SIG_VALTYPE_ %u ", dbc_id(profile, row));
+        print_name(out, row->name, index);
+        fprintf(out, " : %d;\n", row->packing.bits.count / 32);
+    } else if (row->types >> LM_CANAS_FLOAT & 1) {
+        fprintf(out, "SIG_VALTYPE_ %u as_FLOAT : 1;\n", row->id);
+    }
+}
+
+static void print_remarks(FILE *out, const struct lm_bus_profile *profile, int index)
+{
+    const struct lm_bus_row *row = &profile->rows[index];
+    const struct lm_bus_packing *p = &row->packing;
+    const unsigned id = dbc_id(profile, row);
+    if (profile->framing == LM_BUS_CANAEROSPACE) {
+        fprintf(out, "CM_ BO_ %u \"%s: field %s, priority %u, stale %u ms, dead %u ms\";\n", id,
+                row->name, lm_bus_fields[row->field].name, row->priority, row->stale_ms,
+                row->dead_ms);
+        return;
+    }
+    fprintf(out, "CM_ SG_ %u ", id);
+    print_name(out, row->name, index);
+    fprintf(out, " \"field %s, priority %u, stale %u ms, dead %u ms, identifier mask %08X",
+            lm_bus_fields[row->field].name, row->priority, row->stale_ms, row->dead_ms, p->mask);
+    if (p->match.count != 0) {
+        fprintf(out, "; only when bits %u+%u are %u", p->match.first, p->match.count,
+                p->match_value);
+    }
+    fprintf(out, "\";\n");
+}
+
+static void print_values(FILE *out, const struct lm_bus_row *row)
+{
+    fprintf(out, "VAL_ %u data_type 0 \"NODATA\" 1 \"ERROR\"", row->id);
+    for (int type = 2; type < LM_CANAS_TYPES; type++) {
+        if (row->types >> type & 1) {
+            fprintf(out, " %d \"%s\"", type, lm_canas_types[type].name);
+        }
+    }
+    fprintf(out, " ;\n");
+}
+
+void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile)
+{
+    const bool is_packed = profile->framing == LM_BUS_PACKED;
+    fprintf(out, "VERSION \"landmass %s\"\n\nNS_ :\n\nBS_:\n\nBU_: landmass\n", profile->name);
+    if (!is_packed) {
+        print_service_messages(out);
+    }
+    for (int i = 0; i < profile->row_count; i++) {
+        if (!is_packed) {
+            print_canas_message(out, profile, i);
+        } else if (is_first_of_frame(profile, i)) {
+            print_packed_message(out, profile, i);
+        }
+    }
+    fprintf(out, "\n");
+    for (int i = 0; i < profile->row_count; i++) {
+        print_remarks(out, profile, i);
+    }
+    fprintf(out,
+            "BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\n"
+            "BA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n");
+    for (int i = 0; i < profile->row_count; i++) {
+        if (!is_packed || is_first_of_frame(profile, i)) {
+            fprintf(out, "BA_ \"GenMsgCycleTime\" BO_ %u %u;\n", dbc_id(profile, &profile->rows[i]),
+                    profile->rows[i].period_us / 1000);
+        }
+    }
+    for (int i = 0; !is_packed && i < profile->row_count; i++) {
+        print_values(out, &profile->rows[i]);
+    }
+    for (int i = 0; i < profile->row_count; i++) {
+        print_float(out, profile, i);
+    }
+}
+
+/* ---- C ---- */
+
+static void print_c_packing(FILE *out, const struct lm_bus_packing *p)
+{
+    fprintf(out,
+            "        .packing = {.mask = 0x%08X, .bits = {%u, %u}, .match = {%u, %u}, "
+            ".match_value = %u,\n"
+            "                    .type = %u, .is_little_endian = %u, .has_none = %u, "
+            ".none = 0x%X,\n"
+            "                    .multiplier = %d, .shift = %u, .frac_bits = %u, .bias = %lld},\n",
+            p->mask, p->bits.first, p->bits.count, p->match.first, p->match.count, p->match_value,
+            p->type, p->is_little_endian, p->has_none, p->none, p->multiplier, p->shift,
+            p->frac_bits, (long long)p->bias);
+}
+
+static void print_c_row(FILE *out, const struct lm_bus_profile *profile,
+                        const struct lm_bus_row *row)
+{
+    fprintf(out,
+            "    {\n        .name = \"%s\",\n"
+            "        .id = 0x%X, .field = %u /* %s */, .priority = %u,\n"
+            "        .stale_ms = %u, .dead_ms = %u, .period_us = %u, .low = %d, .high = %d,\n",
+            row->name, row->id, row->field, lm_bus_fields[row->field].name, row->priority,
+            row->stale_ms, row->dead_ms, row->period_us, row->low, row->high);
+    if (profile->framing == LM_BUS_PACKED) {
+        print_c_packing(out, &row->packing);
+    } else {
+        fprintf(out, "        .types = 0x%08X, .per_unit = %d,\n", row->types, row->per_unit);
+    }
+    fprintf(out, "    },\n");
+}
+
+void bus_print_c(FILE *out, const struct lm_bus_profile *profile)
+{
+    fprintf(
+        out,
+        "/* Generated by `landmass-bus generate` from a text table; a test compares. Change the "
+        "table and\n * run `make bus-table`, not this. */\n/* clang-format off */\n"
+        "#include \"lm/bus_profile.h\"\n\nstatic const struct lm_bus_row rows[] = {\n");
+    for (int i = 0; i < profile->row_count; i++) {
+        print_c_row(out, profile, &profile->rows[i]);
+    }
+    fprintf(out,
+            "};\n\nconst struct lm_bus_profile lm_bus_generic = {\n    .name = \"%s\",\n"
+            "    .rows = rows,\n    .row_count = %u,\n    .framing = %u,\n"
+            "    .are_types_assumed = %u,\n"
+            "    .channel_mask = 0x%08X,\n    .invalid_mask = 0x%08X,\n};\n",
+            profile->name, profile->row_count, profile->framing, profile->are_types_assumed,
+            profile->channel_mask, profile->invalid_mask);
+}

@@ -1,0 +1,26 @@
+/* What else follows from a profile of the bus, as text. */
+#ifndef BUS_PRINT_H
+#define BUS_PRINT_H
+
+#include "lm/bus_profile.h"
+
+#include <stdio.h>
+
+/* The kernel's filters, in the form that candump takes behind an interface's name, one a line. */
+void bus_print_filters(FILE *out, const struct lm_bus_profile *profile);
+
+/* The profile as a table of Markdown, as docs/bus.md has it. */
+void bus_print_table(FILE *out, const struct lm_bus_profile *profile);
+
+/* The profile as a .dbc file. A type that an identifier of CANaerospace may have is a value of the
+ * multiplexor data_type. Of redundancy channels and wild-cards of an identifier only one is there.
+ */
+void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile);
+
+/* The profile as C: firmware/src/bus_generic.c. */
+void bus_print_c(FILE *out, const struct lm_bus_profile *profile);
+
+/* The names that a text table may say for a field, and their units. */
+void bus_print_fields(FILE *out);
+
+#endif
