@@ -40,7 +40,7 @@ TESTS    :=
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102 run-zcu102
+.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -78,6 +78,13 @@ zcu102: deps ## Build the bare-metal image for the board ZCU102: build/zcu102/la
 run-zcu102: zcu102 ## Fly the built-in scene on that board in QEMU; leave its screen dumps in build/zcu102/run
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O)
+
+size: zcu102 ## Print that board's memory map, its budgets, and the deepest stack
+	@python3 -B tests/zcu102/memory.py
+
+bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and mode: the same figures in each run
+	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
+	@sh bsp/zcu102/run.sh $(O) count
 
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
 	@sh tests/discipline/lint.sh

@@ -1,6 +1,8 @@
 # Images of the board ZCU102: each is a main function and the board itself. Beside the product, those that tests run.
 CFLAGS_drivers += $(OPT_board)
 CFLAGS_bsp     += $(OPT_board)
+# Nothing of the display's runs in interrupts, and a picture has many pixels.
+$(O)/drivers/display/%.o: OPT_board := -O3
 LDSCRIPT       := linker/zcu102.ld
 BOARD_OBJS     := $(call objs,$(filter-out %/main.c,$(wildcard bsp/zcu102/*.c))) \
     $(patsubst %.S,$(O)/%.o,$(wildcard bsp/zcu102/*.S))
@@ -23,12 +25,25 @@ $(O)/%.elf: $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) $(LDSCRIPT)
 	    $(filter %.o,$^) $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) -lgcc -o $@
 
 CFLAGS_host += -Itests/golden -Itests/zcu102 -Itests/zcu102/images
-TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf)
+TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf)
 PROGRAMS    += $(TEST_IMAGES)
 image_objs   = $(addprefix $(O)/tests/zcu102/images/,$(addsuffix .o,$(1)))
 $(TEST_IMAGES): $(call image_objs,look)
 $(O)/golden.elf: $(call image_objs,golden) $(call objs,tests/golden/golden_flight.c tests/support/memory_flash.c)
-$(O)/flight.elf: $(call image_objs,flight peer core1)
+$(O)/flight.elf: $(call image_objs,flight peer core1 handed)
+$(O)/bench.elf: $(call image_objs,bench handed instrument) $(O)/stages.o $(O)/stages.wrap
+$(O)/bench.elf: LDFLAGS := -Wl,@$(O)/stages.wrap
+
+# What `make bench-zcu102` counts, those of them that the firmware has. A line is what a *_draw_line and the *_paint
+# behind it take.
+STAGES := lm_ground_map_draw_line lm_sar_draw_line lm_ppi_paint lm_patch_paint lm_scan_line_run lm_aspect_run \
+    lm_texture_run lm_floor_run lm_speckle_run lm_tone_run lm_sar_prefetch lm_scan_line_prefetch lm_line_render \
+    lm_tile_cache_service lm_show_frame lm_overlay_picture lm_overlay_symbols lm_overlay_labels lm_nav_take lm_nav_at
+$(O)/stages.o: tests/zcu102/images/stages.sh tests/zcu102/images/stage.inc linker/zcu102.mk $(LIB_firmware)
+	@{ cat tests/zcu102/images/stage.inc; sh $< "stage " $(LIB_firmware) $(NM) $(STAGES); echo stages_end; } >$(@:.o=.s)
+	$(Q)$(CC) $(OPT) -c $(@:.o=.s) -o $@
+$(O)/stages.wrap: tests/zcu102/images/stages.sh linker/zcu102.mk $(LIB_firmware)
+	@sh $< --wrap= $(LIB_firmware) $(NM) $(STAGES) >$@
 
 $(O)/tests/%.o: tests/%.S
 	@mkdir -p $(@D)

@@ -7,10 +7,11 @@ DRIVERS := can/can_zynqmp display/display_dp flash/flash_gqspi irq/irq_gic400 ti
     watchdog/watchdog_cadence
 
 # No operating system, no C library, nothing loaded at an address that is not known when it is linked.
-OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections
+OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections \
+    -fcallgraph-info=su # for the deepest stack (tests/zcu102/memory.py)
 # The two lowest layers are integers and make vectors of loops; drivers and board run in interrupts, which keep their
 # hands off the vector registers, and before the MMU allows unaligned access.
-OPT_core := -O3
+OPT_core := -O3 -funroll-loops
 OPT_board := -mgeneral-regs-only -mstrict-align
 
 # Instead of the programs and tests of a PC.

@@ -44,6 +44,7 @@ def fly(out, chips, scenario, cores=2, options=("-no-reboot",), limit=300, elf=m
             received_log(m, elf, m.value("received"), Path(out) / "received.log")
         m.run()
         m.status = m.close()
+    (Path(out) / "console").write_text("\n".join(m.lines) + "\n")
     return m
 
 

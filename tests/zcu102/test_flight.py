@@ -55,8 +55,8 @@ class Flights:
         self.script = WORK / "flight.script"
         self.script.write_text(SCRIPT)
         self.bus = WORK / "flight.log"
-        subprocess.run([machine.TOOLS.parent.parent / "landmass-nav", "--straight", "45.93,11.0,5,2500,150",
-                        "--seconds", str(SECONDS + 1), "--quiet", "--out", self.bus], check=True)
+        subprocess.run([machine.TOOLS.parent.parent / "landmass-nav", "--straight", "45.95,10.95,10,2500,150",
+                        "--seconds", str(SECONDS - 0.1), "--quiet", "--out", self.bus], check=True)
 
     def fly(self, name, image, chips=None):
         """The flight with this image; its machine, and whether the pictures are the bench's."""

@@ -7,10 +7,10 @@
 #include "board.h"
 #include "console.h"
 #include "fx/mem.h"
+#include "handed.h"
 #include "look.h"
 #include "peer.h"
 #include "psci.h"
-#include "scenario.h"
 #include "sections.h"
 
 int main(void);
@@ -22,10 +22,8 @@ enum {
     AFTER_RESTART_US = 1500000
 };
 
-/* Read and written by the host (machine.py finds them by name). */
-extern uint8_t scenario[SCENARIO_BYTES_MAX];
+/* Read by the host (machine.py finds it by name). */
 extern struct lm_can_frame received[RECEIVED_MAX];
-ZCU102_BULK uint8_t scenario[SCENARIO_BYTES_MAX];
 ZCU102_BULK struct lm_can_frame received[RECEIVED_MAX];
 
 static ZCU102_BULK uint32_t album[SCENARIO_PICTURES_MAX][PIXELS];
@@ -33,10 +31,8 @@ static ZCU102_BULK uint32_t album[SCENARIO_PICTURES_MAX][PIXELS];
 struct flight {
     struct zcu102 z;
     struct peer peer;
-    const struct scenario_header *header;
-    const struct scenario_control *controls;
-    const struct scenario_picture *pictures;
-    uint32_t next_control, next_picture, received_count;
+    struct handed handed;
+    uint32_t next_picture, received_count;
     uint64_t first_picture_us; /* since the board's reset */
     struct lm_can can;
     struct lm_controls control_port;
@@ -45,7 +41,7 @@ struct flight {
 
 static bool is_hung(const struct flight *f, enum scenario_hang what)
 {
-    return f->header->hang == (uint64_t)what && f->z.step_us >= f->header->hang_us &&
+    return f->handed.header->hang == (uint64_t)what && f->z.step_us >= f->handed.header->hang_us &&
            f->z.last_restart.cause == ZCU102_POWER_ON;
 }
 
@@ -73,12 +69,7 @@ static int next_control(void *ctx, struct lm_control *control)
     struct flight *f = ctx;
     while (is_hung(f, SCENARIO_HANG_STEP)) {
     }
-    if (f->next_control == f->header->controls ||
-        f->controls[f->next_control].time_us > f->z.step_us) {
-        return 0;
-    }
-    *control = f->controls[f->next_control++].control;
-    return 1;
+    return handed_next_control(&f->handed, control);
 }
 
 static int acquire(void *ctx, struct lm_surface *surface)
@@ -99,19 +90,6 @@ static int present(void *ctx)
     return f->z.display.port.present(f->z.display.port.ctx);
 }
 
-static bool open_scenario(struct flight *f)
-{
-    f->header = (const struct scenario_header *)(const void *)scenario;
-    f->peer.frames = (const struct lm_can_frame *)(const void *)(f->header + 1);
-    f->controls =
-        (const struct scenario_control *)(const void *)(f->peer.frames + f->header->frames);
-    f->pictures =
-        (const struct scenario_picture *)(const void *)(f->controls + f->header->controls);
-    f->peer.board = &f->z;
-    f->peer.count = f->header->frames;
-    return f->header->magic == SCENARIO_MAGIC;
-}
-
 static void put_between(struct flight *f)
 {
     f->can = (struct lm_can){.ctx = f, .receive = receive, .send = send};
@@ -128,8 +106,8 @@ static void put_between(struct flight *f)
 /* The glass as it is just before the step, where the bench takes its pictures too. */
 static void keep_pictures(struct flight *f)
 {
-    while (f->next_picture < f->header->pictures &&
-           f->pictures[f->next_picture].time_us <= f->z.step_us) {
+    while (f->next_picture < f->handed.header->pictures &&
+           f->handed.pictures[f->next_picture].time_us <= f->z.step_us) {
         memcpy(album[f->next_picture], f->z.display.drawn, sizeof album[0]);
         f->next_picture++;
     }
@@ -140,7 +118,7 @@ static void show_pictures(struct flight *f)
     for (uint32_t i = 0; i < f->next_picture; i++) {
         f->z.display.drawn = album[i];
         f->z.display.port.present(f->z.display.port.ctx);
-        look(&f->z.console, &f->z.display, f->pictures[i].name);
+        look(&f->z.console, &f->z.display, f->handed.pictures[i].name);
     }
 }
 
@@ -168,7 +146,7 @@ static void report(struct flight *f)
 
 static void fly(struct flight *f)
 {
-    while (f->z.step_us <= f->header->end_us) {
+    while (f->z.step_us <= f->handed.header->end_us) {
         keep_pictures(f);
         zcu102_step(&f->z);
     }
@@ -180,13 +158,12 @@ static void fly(struct flight *f)
 /* The BIT page says why. */
 static void show_restart(struct flight *f)
 {
+    static const struct scenario_header nothing_but_presses = {.controls = 2};
     static const struct scenario_control presses[] = {
         {500000, {.kind = LM_CONTROL_DOWN, .value = BIT_BUTTON}},
         {600000, {.kind = LM_CONTROL_UP, .value = BIT_BUTTON}}};
-    static struct scenario_header header;
-    header = (struct scenario_header){.controls = 2};
-    f->header = &header;
-    f->controls = presses;
+    f->handed.header = &nothing_but_presses;
+    f->handed.controls = presses;
     while (f->z.step_us <= AFTER_RESTART_US) {
         zcu102_step(&f->z);
     }
@@ -198,10 +175,13 @@ int main(void)
 {
     static struct flight f;
     zcu102_open(&f.z);
-    if (!open_scenario(&f)) {
+    if (!handed_open(&f.handed, &f.z.step_us)) {
         zcu102_say(&f.z.console, "there is no scenario in memory\n");
         zcu102_power_off();
     }
+    f.peer.board = &f.z;
+    f.peer.frames = f.handed.frames;
+    f.peer.count = f.handed.header->frames;
     put_between(&f);
     if (zcu102_start(&f.z) != LM_OK) {
         zcu102_say(&f.z.console, "the unit does not start\n");

@@ -1,0 +1,75 @@
+"""Counts the instructions of a flight on the board and prints them by stage.
+
+    bench.py --db FILE --bus FILE.log --script FILE --seconds S --out DIR
+
+QEMU counts every instruction as one nanosecond; one core runs, without interrupts and without waiting, so that the
+figures are the same to the digit in each run. It counts instructions and not cycles: caches, memory and flash cost
+nothing. Nothing here passes or fails."""
+import argparse
+import sys
+from pathlib import Path
+
+import fly
+import machine
+
+LINE_BUDGET_US = 3900  # a line of one degree's 1.9th at 120 degrees a second (docs/DESIGN.md)
+MIPS = 100
+MODES = {0: "ground map", 1: "SAR patch"}  # enum lm_mode
+
+
+def run(out, chips, scenario):
+    """mode -> name -> (calls, instructions, most), and the lines of the console."""
+    m = machine.Machine(machine.BUILD / "bench.elf", out, chips, [("scenario", scenario)], options=("-no-reboot",),
+                        limit=600)
+    with m:
+        m.run()
+    modes = {}
+    for line in m.lines:
+        words = line.split()
+        if len(words) == 6 and words[0] == "stage":
+            modes.setdefault(int(words[1]), {})[words[2]] = tuple(map(int, words[3:]))
+    return modes, m.lines
+
+
+def print_mode(name, stages):
+    lines = stages.get("line", (0, 0, 0))[0]
+    print(f"\n{name}: {lines} lines")
+    print(f"  {'':34}{'a line':>10}{'a call':>10}{'worst call':>12}{'calls':>9}")
+    for stage, (calls, instructions, most) in sorted(stages.items(), key=lambda item: -item[1][1]):
+        per_line = f"{instructions / lines:10,.0f}" if lines else f"{'':10}"
+        print(f"  {stage.removeprefix('lm_'):34}{per_line}{instructions / calls:10,.0f}{most:12,}{calls:9,}")
+
+
+def print_line_budget(modes):
+    worst, name = max((stages["line"][2], MODES.get(mode, f"mode {mode}"))
+                      for mode, stages in modes.items() if "line" in stages)
+    budget = LINE_BUDGET_US * MIPS
+    print(f"\nworst line: {worst:,} instructions ({name}) = {worst / MIPS:,.0f} us at {MIPS} MIPS; "
+          f"the budget of {LINE_BUDGET_US} us holds {budget / worst:.1f} of them")
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("db", "bus", "script", "out"):
+        options.add_argument(f"--{name}", required=True)
+    options.add_argument("--seconds", type=float, required=True)
+    o = options.parse_args()
+    why = machine.missing()
+    if why:
+        print(f"bench: {why}", file=sys.stderr)
+        return 1
+    chips = machine.split_flash(o.db, Path(o.out))
+    modes, lines = run(o.out, chips, fly.make_scenario(o.out, o.bus, o.script, o.seconds))
+    for chip in chips:
+        chip.unlink()
+    if not modes:
+        print("bench: the board did not come to the end of its flight", *lines[-5:], sep="\n", file=sys.stderr)
+        return 1
+    for mode, stages in sorted(modes.items()):
+        print_mode(MODES.get(mode, f"mode {mode}"), stages)
+    print_line_budget(modes)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+/* A flight that is counted: the unit on the board's flash and display, with one core, no interrupts
+ * and no waiting, and the bus handed to it from memory. The sums go out on the console:
+ *
+ *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (linker/zcu102.mk)
+ *   stage MODE line|step|frame-step ...          a line, a step without and with a picture */
+#include "board.h"
+#include "console.h"
+#include "handed.h"
+#include "instrument.h"
+#include "psci.h"
+
+int main(void);
+void instrument_nothing(void);
+
+void instrument_nothing(void)
+{
+}
+
+struct bench {
+    struct zcu102 z;
+    struct handed handed;
+    struct lm_can can;
+    struct lm_controls controls;
+    struct instrument_sum steps[INSTRUMENT_MODES], frame_steps[INSTRUMENT_MODES];
+};
+
+static void add(struct instrument_sum *sum, uint64_t spent)
+{
+    sum->instructions += spent;
+    sum->calls++;
+    sum->most = spent > sum->most ? (uint32_t)spent : sum->most;
+}
+
+static void fly(struct bench *b)
+{
+    struct zcu102 *z = &b->z;
+    for (z->step_us = 0; z->step_us <= b->handed.header->end_us; z->step_us += ZCU102_STEP_US) {
+        const uint32_t mode = z->unit.page.mode, frames = z->unit.count.frames;
+        instrument_set_mode(mode);
+        const uint64_t start = instrument_now();
+        lm_unit_step(&z->unit, z->step_us);
+        add(z->unit.count.frames == frames ? &b->steps[mode] : &b->frame_steps[mode],
+            instrument_now() - start);
+    }
+}
+
+static void print(struct drv_uart *u, uint32_t mode, const char *name,
+                  const struct instrument_sum *sum)
+{
+    if (sum->calls == 0) {
+        return;
+    }
+    zcu102_say(u, "stage ");
+    zcu102_say_number(u, mode);
+    zcu102_say(u, " ");
+    zcu102_say(u, name);
+    zcu102_say(u, " ");
+    zcu102_say_number(u, sum->calls);
+    zcu102_say(u, " ");
+    zcu102_say_number(u, sum->instructions);
+    zcu102_say(u, " ");
+    zcu102_say_number(u, sum->most);
+    zcu102_say(u, "\n");
+}
+
+static void report(struct bench *b)
+{
+    struct drv_uart *u = &b->z.console;
+    const struct instrument *result = instrument_result();
+    for (uint32_t mode = 0; mode < INSTRUMENT_MODES; mode++) {
+        for (uint32_t i = 1; i < instrument_stages; i++) {
+            print(u, mode, instrument_names[i], &result->sums[mode][i]);
+        }
+        print(u, mode, "line", &result->lines[mode]);
+        print(u, mode, "step", &b->steps[mode]);
+        print(u, mode, "frame-step", &b->frame_steps[mode]);
+    }
+    zcu102_say_value(u, "stack-used", zcu102_stack_used());
+}
+
+int main(void)
+{
+    static struct bench b;
+    zcu102_open(&b.z);
+    if (!handed_open(&b.handed, &b.z.step_us)) {
+        zcu102_say(&b.z.console, "there is no scenario in memory\n");
+        zcu102_power_off();
+    }
+    b.can = (struct lm_can){.ctx = &b.handed, .receive = handed_receive};
+    b.controls = (struct lm_controls){.ctx = &b.handed, .next = handed_next_control};
+    b.z.lent.can = &b.can;
+    b.z.lent.controls = &b.controls;
+    zcu102_mask_interrupts();
+    if (lm_unit_init(&b.z.unit, &b.z.lent) == LM_OK) {
+        instrument_start();
+        fly(&b);
+        report(&b);
+    }
+    zcu102_power_off();
+}

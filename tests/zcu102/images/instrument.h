@@ -1,0 +1,36 @@
+/* Counts the instructions of chosen functions, calls included, with the core's performance counter
+ * (INST_RETIRED, DDI 0487 D7.11): under QEMU's -icount the same to the digit in each run. Which
+ * functions, linker/zcu102.mk says; the instrument's own instructions are taken off. */
+#ifndef INSTRUMENT_H
+#define INSTRUMENT_H
+
+#include <stdint.h>
+
+enum { INSTRUMENT_STAGES_MAX = 32, INSTRUMENT_MODES = 12 };
+
+struct instrument_sum {
+    uint64_t instructions;
+    uint32_t calls, most; /* most: of one call */
+};
+
+struct instrument {
+    struct instrument_sum sums[INSTRUMENT_MODES][INSTRUMENT_STAGES_MAX];
+    struct instrument_sum
+        lines[INSTRUMENT_MODES]; /* a stage *_draw_line and the *_paint behind it */
+};
+
+extern const uint32_t instrument_stages;
+extern const char *const instrument_names[];
+
+/* Start counting; interrupts should be masked while something is measured. */
+void instrument_start(void);
+
+/* What the mode is that is counted for from now on, 0..INSTRUMENT_MODES - 1. */
+void instrument_set_mode(uint32_t mode);
+
+/* Instructions so far, without the instrument's. */
+uint64_t instrument_now(void);
+
+const struct instrument *instrument_result(void);
+
+#endif

@@ -1,0 +1,51 @@
+"""The board's memory, stack and instructions: what the compiler promises, and what a flight shows."""
+import sys
+from pathlib import Path
+
+import bench
+import machine
+import memory
+from tap import Tap
+
+FLIGHT = machine.BUILD / "tmp/flight"  # test_flight.py made its image and scenario
+WORK = machine.BUILD / "tmp/memory"
+
+
+def count():
+    chips = machine.split_flash(FLIGHT / "whole/image.lmdb", WORK)
+    modes, lines = bench.run(WORK, chips, FLIGHT / "whole/scenario.bin")
+    for chip in chips:
+        chip.unlink()
+    return modes, lines
+
+
+def main():
+    tap = Tap()
+    why = machine.missing()
+    if why:
+        tap.skip("the board's memory and instructions are within their budgets", why)
+        return tap.end()
+    if not (FLIGHT / "whole/scenario.bin").exists():
+        tap.ok("test_flight has run before, whose flight this takes", False)
+        return tap.end()
+    chain, interrupt, cycles = memory.stacks()
+    tap.ok("no function of the image calls itself, drivers and ports included", not cycles, *cycles)
+    for what, size, most in memory.budgets(memory.sizes(), chain):
+        tap.ok(f"{what} fits its budget", 0 < size <= most, f"{size} of {most}")
+        tap.note(f"{what}: {size} of {most} bytes")
+    tap.ok("the deepest interrupt fits the exceptions' stack", interrupt[0] <= memory.sizes()["exception stack"][1])
+    painted = int(next(line for line in (FLIGHT / "whole/console").read_text().splitlines()
+                       if line.startswith("stack-used")).split()[1])
+    computed = memory.stacks("flight")[0]
+    tap.ok("the stack painted in flight is as deep as computed, or less", painted <= computed[0], painted, computed)
+    tap.ok("and not by much: the computed chain is the one that runs", painted * 2 > computed[0], painted, computed)
+    modes, lines = count()
+    tap.ok("the instructions of a flight can be counted", 0 in modes and 1 in modes, *lines[-5:])
+    tap.ok("they are the same to the digit in a second run", count()[1] == lines)
+    worst = max(stages["line"][2] for stages in modes.values())
+    tap.ok("the worst line fits its time at 100 MIPS", worst < bench.LINE_BUDGET_US * bench.MIPS, worst)
+    tap.note(f"worst line {worst} instructions")
+    return tap.end()
+
+
+sys.exit(main())
