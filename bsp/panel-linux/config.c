@@ -128,12 +128,14 @@ static bool take_axis(const char *text, void *value)
 {
     struct drv_stick_axis axis = {.is_inverted = text[0] == '-'};
     text += axis.is_inverted;
-    const int hat = word_number("hatx haty", text);
+    static const uint16_t others[] = {DRV_STICK_HAT_X, DRV_STICK_HAT_Y, DRV_STICK_RUDDER,
+                                      DRV_STICK_THROTTLE};
+    const int other = word_number("hatx haty rudder throttle", text);
     const int desktop = word_number("x y z rx ry rz slider dial wheel", text);
-    if (hat >= 0) {
-        axis.usage = (uint16_t)(DRV_STICK_HAT_X + hat);
+    if (other >= 0) {
+        axis.usage = others[other];
     } else if (desktop >= 0) {
-        axis.usage = (uint16_t)(DRV_HID_X + desktop);
+        axis.usage = (uint16_t)(DRV_STICK_X + desktop);
     } else if (axis.is_inverted || strcmp(text, "none") != 0) {
         return false;
     }

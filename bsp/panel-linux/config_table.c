@@ -15,7 +15,7 @@
 #define STICK(number, initial)                                                                     \
     OPTION(CONFIG_BUTTON, stick_map.button[(number)-1], 0, 0, NULL, "stick.button." #number,       \
            BUTTON_VALUES, initial, "What the hand controller's button " #number " does.")
-#define AXIS_VALUES "none | [-] x y z rx ry rz slider dial wheel hatx haty"
+#define AXIS_VALUES "none | [-] x y z rx ry rz slider dial wheel hatx haty rudder throttle"
 
 const struct config_row config_table[] = {
     OPTION(CONFIG_PATH_TO, database, 0, ROOM(database), NULL, "database", "PATH",

@@ -101,17 +101,22 @@ static int32_t maximum(const struct global *g)
     return g->low >= 0 && g->high < 0 ? g->unsigned_high : g->high;
 }
 
+static bool is_wanted(uint32_t page, uint32_t usage)
+{
+    return (page == DRV_HID_PAGE_DESKTOP && usage >= DRV_HID_X && usage <= DRV_HID_HAT) ||
+           (page == DRV_HID_PAGE_SIMULATION &&
+            (usage == DRV_HID_RUDDER || usage == DRV_HID_THROTTLE)) ||
+           page == DRV_HID_PAGE_BUTTON;
+}
+
 static void keep_field(struct parser *p, uint32_t usage, uint32_t bit, uint32_t flags)
 {
-    const uint16_t page = (uint16_t)(usage >> 16);
     struct drv_hid_map *m = p->map;
-    if (m->count == DRV_HID_FIELDS ||
-        (page != DRV_HID_PAGE_DESKTOP && page != DRV_HID_PAGE_SIMULATION &&
-         page != DRV_HID_PAGE_BUTTON)) {
+    if (m->count == DRV_HID_FIELDS || !is_wanted(usage >> 16, usage & 0xffff)) {
         return;
     }
     m->field[m->count++] = (struct drv_hid_field){
-        .page = page,
+        .page = (uint16_t)(usage >> 16),
         .usage = (uint16_t)usage,
         .bit = (uint16_t)bit,
         .bits = (uint8_t)p->global.size_bits,

@@ -10,16 +10,15 @@ void drv_stick_init(struct drv_stick *s, const struct drv_stick_config *config)
     s->config = *config;
 }
 
-/* The usage on the desktop page that an axis of the config is read from. */
-static uint16_t desktop_usage(uint16_t usage)
-{
-    return usage >= DRV_STICK_HAT_X ? DRV_HID_HAT : usage;
-}
-
 static bool is_field_of(const struct drv_hid_field *f, const struct drv_stick_axis *axis)
 {
-    return axis->usage != DRV_STICK_NONE && f->page == DRV_HID_PAGE_DESKTOP && !f->is_relative &&
-           f->usage == desktop_usage(axis->usage);
+    return f->page == (axis->usage >> 8 & 0xf) && f->usage == (axis->usage & 0xff) &&
+           !f->is_relative;
+}
+
+static bool is_hat(const struct drv_stick_axis *axis)
+{
+    return axis->usage == DRV_STICK_HAT_X || axis->usage == DRV_STICK_HAT_Y;
 }
 
 /* What calls itself a hand controller (HID Usage Tables 1.12, 4.1). */
@@ -72,7 +71,7 @@ static int32_t without_dead_zone(int32_t value, uint32_t dead_percent)
 }
 
 /* A hat's positions run clockwise from straight up (HID Usage Tables 1.12, 4.2). */
-static int32_t hat(const struct drv_hid_field *f, int32_t value, bool is_x)
+static int32_t hat_deflection(const struct drv_hid_field *f, int32_t value, bool is_x)
 {
     static const int8_t right[HAT_STEPS] = {0, 1, 1, 1, 0, -1, -1, -1};
     const int64_t steps = (int64_t)f->high - f->low + 1;
@@ -94,14 +93,12 @@ static int16_t read_axis(const struct drv_stick *s, const struct drv_stick_axis 
         if (!is_field_of(f, axis)) {
             continue;
         }
-        const bool is_hat = axis->usage >= DRV_STICK_HAT_X;
         if (!drv_hid_read(&s->map, f, report, size, &value)) {
-            /* A hat that is let go has a value outside its range. */
-            return is_hat && (!s->map.has_numbers || (size > 0 && report[0] == f->report)) ? 0
-                                                                                           : before;
+            const bool is_told = !s->map.has_numbers || report[0] == f->report;
+            return is_told && is_hat(axis) ? 0 : before; /* a hat that is let go says "nothing" */
         }
-        value = is_hat ? hat(f, value, axis->usage == DRV_STICK_HAT_X)
-                       : without_dead_zone(deflection(f, value), s->config.dead_percent);
+        value = is_hat(axis) ? hat_deflection(f, value, axis->usage == DRV_STICK_HAT_X)
+                             : without_dead_zone(deflection(f, value), s->config.dead_percent);
         return (int16_t)(axis->is_inverted ? -value : value);
     }
     return before;

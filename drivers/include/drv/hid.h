@@ -19,6 +19,7 @@ enum {
 /* Pages and usages that are looked for (HID Usage Tables 1.12). */
 enum { DRV_HID_PAGE_DESKTOP = 1, DRV_HID_PAGE_SIMULATION = 2, DRV_HID_PAGE_BUTTON = 9 };
 enum { DRV_HID_X = 0x30, DRV_HID_WHEEL = 0x38, DRV_HID_HAT = 0x39 };
+enum { DRV_HID_RUDDER = 0xba, DRV_HID_THROTTLE = 0xbb };
 
 /* A number in an input report. */
 struct drv_hid_field {
@@ -34,7 +35,7 @@ struct drv_hid_map {
     uint16_t application_page, application; /* usage of the first outermost collection */
     bool has_numbers;                       /* reports begin with theirs */
     uint32_t count;
-    struct drv_hid_field field[DRV_HID_FIELDS]; /* of the pages above, in the descriptor's order */
+    struct drv_hid_field field[DRV_HID_FIELDS]; /* axes, hats and buttons, as they are described */
 };
 
 /* NULL, or the cause why the descriptor is refused; the map is then unspecified. */

@@ -13,9 +13,15 @@
 
 enum { DRV_STICK_BUTTONS = 32, DRV_STICK_NONE = 0 };
 
-/* An axis by its usage on HID's generic desktop page (0x30 X .. 0x38 wheel); the two directions of
- * a hat switch (0x39) have numbers of their own. */
-enum { DRV_STICK_HAT_X = 0x100, DRV_STICK_HAT_Y = 0x101 };
+/* An axis by HID's page and usage, page << 8 | usage. The usages X to wheel follow each other; a
+ * hat switch is two axes, and the second direction's number is above all pages. */
+enum {
+    DRV_STICK_X = DRV_HID_PAGE_DESKTOP << 8 | DRV_HID_X,
+    DRV_STICK_HAT_X = DRV_HID_PAGE_DESKTOP << 8 | DRV_HID_HAT,
+    DRV_STICK_HAT_Y = 1 << 12 | DRV_STICK_HAT_X,
+    DRV_STICK_RUDDER = DRV_HID_PAGE_SIMULATION << 8 | DRV_HID_RUDDER,
+    DRV_STICK_THROTTLE = DRV_HID_PAGE_SIMULATION << 8 | DRV_HID_THROTTLE
+};
 struct drv_stick_axis {
     uint16_t usage; /* DRV_STICK_NONE: not used */
     bool is_inverted;

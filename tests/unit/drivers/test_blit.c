@@ -1,0 +1,137 @@
+/* Every pixel of every rotation, against the plain statement of what a rotation is. */
+#include "drv/blit.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { STRIDE = 20, BORDER = 0x5a5a5a5a, SIDE = 24 };
+
+static uint32_t colour(int x, int y)
+{
+    return (uint32_t)(x * 0x010307 + y * 0x0b1d00) & 0xffffffu;
+}
+
+/* Where the pixel of a width x height picture comes to lie when it is turned clockwise. */
+static void turn_point(enum drv_turn turn, int width, int height, int x, int y, int *to_x,
+                       int *to_y)
+{
+    *to_x = x;
+    *to_y = y;
+    for (int i = 0; i < (int)turn; i++) { /* a quarter: left becomes top */
+        const int old_x = *to_x;
+        *to_x = height - 1 - *to_y;
+        *to_y = old_x;
+        const int old_width = width;
+        width = height;
+        height = old_width;
+    }
+}
+
+static struct lm_surface picture(uint32_t *pixels, uint16_t width, uint16_t height)
+{
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            pixels[y * STRIDE + x] = colour(x, y);
+        }
+    }
+    return (struct lm_surface){pixels, STRIDE, width, height};
+}
+
+/* Blit and compare each pixel of the target, borders included. */
+static void check(uint16_t width, uint16_t height, uint16_t to_width, uint16_t to_height,
+                  enum drv_turn turn)
+{
+    static uint32_t pixels[STRIDE * STRIDE], target[SIDE * SIDE], expected[SIDE * SIDE];
+    const struct lm_surface from = picture(pixels, width, height);
+    const struct drv_target to = {target, SIDE * 4, to_width, to_height, DRV_XRGB8888};
+    const int is_upright = turn == DRV_TURN_0 || turn == DRV_TURN_180;
+    const int shift_x = (to_width - (is_upright ? width : height)) / 2;
+    const int shift_y = (to_height - (is_upright ? height : width)) / 2;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        target[i] = expected[i] = BORDER;
+    }
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < width; x++) {
+            int at_x, at_y;
+            turn_point(turn, width, height, x, y, &at_x, &at_y);
+            at_x += shift_x;
+            at_y += shift_y;
+            if (at_x >= 0 && at_x < to_width && at_y >= 0 && at_y < to_height) {
+                expected[at_y * SIDE + at_x] = colour(x, y);
+            }
+        }
+    }
+    drv_blit(&to, &from, turn);
+    assert_memory_equal(target, expected, sizeof target);
+}
+
+static void every_turn_puts_every_pixel_where_it_belongs(void **state)
+{
+    (void)state;
+    for (int turn = DRV_TURN_0; turn <= DRV_TURN_270; turn++) {
+        check(16, 12, 16, 12, (enum drv_turn)turn);
+        check(12, 16, 16, 12, (enum drv_turn)turn);
+    }
+}
+
+/* Every difference of sizes from -6 to 6, odd ones too. */
+static void the_picture_is_centred_and_what_is_too_large_is_cut(void **state)
+{
+    (void)state;
+    for (int turn = DRV_TURN_0; turn <= DRV_TURN_270; turn++) {
+        for (uint16_t width = 8; width <= 20; width++) {
+            for (uint16_t height = 8; height <= 20; height += 3) {
+                check(width, height, 14, 15, (enum drv_turn)turn);
+            }
+        }
+    }
+}
+
+static void rgb565_keeps_the_upper_bits_of_each_colour(void **state)
+{
+    (void)state;
+    uint32_t pixels[256];
+    uint16_t target[256];
+    for (uint32_t i = 0; i < 256; i++) {
+        pixels[i] = i << 16 | (255 - i) << 8 | (i ^ 0x55);
+    }
+    const struct lm_surface from = {pixels, 256, 256, 1};
+    const struct drv_target to = {target, sizeof target, 256, 1, DRV_RGB565};
+    drv_blit(&to, &from, DRV_TURN_0);
+    for (uint32_t i = 0; i < 256; i++) {
+        assert_int_equal(target[i] >> 11, i / 8);
+        assert_int_equal(target[i] >> 5 & 63, (255 - i) / 4);
+        assert_int_equal(target[i] & 31, (i ^ 0x55) / 8);
+    }
+    drv_blit(&to, &from, DRV_TURN_180);
+    assert_int_equal(target[255] >> 11, 0);
+    assert_int_equal(target[0] >> 11, 31);
+}
+
+static void clearing_leaves_what_lies_beyond_the_rows(void **state)
+{
+    (void)state;
+    uint16_t target[8 * 4];
+    memset(target, 0xff, sizeof target);
+    const struct drv_target to = {target, 16, 5, 4, DRV_RGB565};
+    drv_blit_clear(&to);
+    for (int i = 0; i < 8 * 4; i++) {
+        assert_int_equal(target[i], i % 8 < 5 ? 0 : 0xffff);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_turn_puts_every_pixel_where_it_belongs),
+        cmocka_unit_test(the_picture_is_centred_and_what_is_too_large_is_cut),
+        cmocka_unit_test(rgb565_keeps_the_upper_bits_of_each_colour),
+        cmocka_unit_test(clearing_leaves_what_lies_beyond_the_rows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

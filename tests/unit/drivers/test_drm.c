@@ -1,0 +1,339 @@
+/* The DRM driver against a card that is busy, silent, unplugged and taken away. */
+#include "drv/drm.h"
+#include "fake_drm.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 320, HEIGHT = 300, TICK_US = 2000, CONSOLE = 99 };
+
+struct rig {
+    struct drv_drm drm;
+    uint32_t pixels[WIDTH * HEIGHT];
+    struct lm_surface picture;
+    uint64_t now_us;
+};
+
+static const struct drv_drm_config standard = {.device = "/dev/dri/fake"};
+
+static void set_up(struct rig *r, const struct drv_drm_config *config)
+{
+    fake_drm_reset();
+    r->picture = (struct lm_surface){r->pixels, WIDTH, WIDTH, HEIGHT};
+    r->now_us = 5000000;
+    assert_int_equal(drv_drm_open(&r->drm, config, r->now_us), LM_OK);
+}
+
+/* Present a picture of one colour. */
+static int show(struct rig *r, uint32_t colour)
+{
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        r->pixels[i] = colour;
+    }
+    return drv_drm_present(&r->drm, &r->picture, r->now_us);
+}
+
+static void wait_us(struct rig *r, uint64_t us)
+{
+    for (const uint64_t end = r->now_us + us; r->now_us < end; r->now_us += TICK_US) {
+        drv_drm_service(&r->drm, r->now_us);
+    }
+}
+
+/* The pixel in the middle of what the screen shows; two of them where they have 16 bits. */
+static uint32_t middle(void)
+{
+    const struct fake_drm_buffer *b = &fake_drm.buffer[fake_drm.handle_of_shown - 1];
+    const size_t row_words = b->size / b->height / sizeof *b->pixels;
+    return b->pixels[b->height / 2 * row_words + b->width / 2 * b->bpp / 32];
+}
+
+static void each_picture_comes_on_the_screen_with_one_flip(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+    assert_int_equal(r.drm.width_px, 640);
+    assert_string_equal(r.drm.connector, "HDMI-A-1");
+    assert_int_equal(middle(), 0); /* black, not what was in the memory */
+    for (uint32_t n = 1; n <= 100; n++) {
+        assert_int_equal(show(&r, n), LM_OK);
+        assert_int_not_equal(middle(), n); /* nothing is seen before the blank */
+        fake_drm_blank();
+        assert_int_equal(middle(), n);
+        wait_us(&r, TICK_US);
+    }
+    assert_int_equal(r.drm.count.flips, 100);
+    assert_int_equal(fake_drm.modes_set, 1);
+    drv_drm_close(&r.drm);
+}
+
+static void no_second_picture_is_taken_while_one_is_on_its_way(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    assert_int_equal(show(&r, 1), LM_OK);
+    wait_us(&r, 10 * TICK_US);
+    assert_int_equal(show(&r, 2), LM_BUSY);
+    assert_int_equal(fake_drm.flips, 1);
+    fake_drm_blank();
+    wait_us(&r, TICK_US);
+    assert_int_equal(show(&r, 3), LM_OK);
+    assert_int_equal(fake_drm.flips, 2);
+    drv_drm_close(&r.drm);
+}
+
+static void a_busy_kernel_is_asked_again_and_the_picture_is_kept(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    fake_drm.flip_errno = EBUSY;
+    assert_int_equal(show(&r, 7), LM_OK);
+    wait_us(&r, 20 * TICK_US);
+    assert_int_equal(r.drm.state, DRV_DRM_DUE);
+    assert_int_equal(show(&r, 8), LM_BUSY);
+    fake_drm.flip_errno = 0;
+    wait_us(&r, TICK_US);
+    fake_drm_blank();
+    assert_int_equal(middle(), 7);
+    assert_true(r.drm.count.busy >= 20);
+    assert_int_equal(fake_drm.modes_set, 1);
+    drv_drm_close(&r.drm);
+}
+
+static void a_kernel_that_stays_busy_is_told_the_mode_anew(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    fake_drm.flip_errno = EBUSY;
+    assert_int_equal(show(&r, 9), LM_OK);
+    wait_us(&r, DRV_DRM_FLIP_US + 10 * TICK_US);
+    assert_int_equal(fake_drm.modes_set, 2);
+    assert_int_equal(middle(), 9);
+    assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+    drv_drm_close(&r.drm);
+}
+
+static void a_flip_that_is_never_reported_is_given_up_in_time(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    fake_drm.is_silent = true;
+    for (uint32_t n = 1; n <= 5; n++) {
+        assert_int_equal(show(&r, n), LM_OK);
+        fake_drm_blank();
+        assert_int_equal(middle(), n);
+        wait_us(&r, DRV_DRM_FLIP_US - TICK_US);
+        assert_int_equal(r.drm.state, DRV_DRM_FLIPPING);
+        wait_us(&r, 3 * TICK_US);
+        assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+        assert_int_equal(r.drm.count.lost, n);
+    }
+    assert_int_equal(r.drm.count.flips, 0);
+    drv_drm_close(&r.drm);
+}
+
+/* The report of a flip that was given up must not end the next one. */
+static void a_report_that_comes_too_late_is_only_counted(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    assert_int_equal(show(&r, 1), LM_OK);
+    wait_us(&r, DRV_DRM_FLIP_US + 2 * TICK_US);
+    assert_int_equal(r.drm.count.lost, 1);
+    fake_drm_blank(); /* the first is reported now, and not read yet */
+    assert_int_equal(show(&r, 2), LM_OK);
+    wait_us(&r, TICK_US);
+    assert_int_equal(r.drm.count.late, 1);
+    assert_int_equal(r.drm.state, DRV_DRM_FLIPPING);
+    fake_drm_blank();
+    wait_us(&r, TICK_US);
+    assert_int_equal(r.drm.count.flips, 1);
+    assert_int_equal(middle(), 2);
+    drv_drm_close(&r.drm);
+}
+
+static void a_screen_that_is_unplugged_comes_back_with_another_mode(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    fake_drm.has_screen = false;
+    wait_us(&r, 2 * DRV_DRM_LOOK_US);
+    assert_int_equal(r.drm.state, DRV_DRM_DARK);
+    assert_non_null(strstr(r.drm.error, "HDMI-A-1"));
+    assert_int_equal(show(&r, 5), LM_OK); /* seen by nobody */
+    fake_drm.has_screen = true;
+    fake_drm.width = 1024;
+    fake_drm.height = 768;
+    wait_us(&r, 2 * DRV_DRM_LOOK_US);
+    assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+    assert_int_equal(r.drm.width_px, 1024);
+    assert_int_equal(fake_drm.live_buffers, 2);
+    assert_int_equal(show(&r, 6), LM_OK);
+    fake_drm_blank();
+    assert_int_equal(middle(), 6);
+    drv_drm_close(&r.drm);
+}
+
+/* Looking must not make the kernel read the screen's description: that takes long. */
+static void looking_after_a_screen_that_is_there_probes_nothing(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    const uint32_t probes = fake_drm.probes;
+    wait_us(&r, 5 * DRV_DRM_LOOK_US);
+    assert_int_equal(fake_drm.probes, probes);
+    drv_drm_close(&r.drm);
+}
+
+static void a_screen_that_comes_later_than_the_program_is_lit(void **state)
+{
+    (void)state;
+    static struct rig r;
+    fake_drm_reset();
+    fake_drm.has_screen = false;
+    r.picture = (struct lm_surface){r.pixels, WIDTH, WIDTH, HEIGHT};
+    r.now_us = 0;
+    assert_int_equal(drv_drm_open(&r.drm, &standard, 0), LM_OK);
+    assert_int_equal(r.drm.state, DRV_DRM_DARK);
+    fake_drm.has_screen = true;
+    wait_us(&r, 2 * DRV_DRM_LOOK_US);
+    assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+    drv_drm_close(&r.drm);
+}
+
+static void a_program_that_takes_the_screen_is_outlived(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    fake_drm.is_foreign = true;
+    fake_drm.flip_errno = EACCES;
+    assert_int_equal(show(&r, 1), LM_ERR_IO);
+    assert_int_equal(r.drm.state, DRV_DRM_DARK);
+    wait_us(&r, 3 * DRV_DRM_LOOK_US);
+    assert_non_null(strstr(r.drm.error, "another program"));
+    fake_drm.is_foreign = false;
+    fake_drm.flip_errno = 0;
+    wait_us(&r, 2 * DRV_DRM_LOOK_US);
+    assert_int_equal(r.drm.state, DRV_DRM_IDLE);
+    assert_true(fake_drm.masters >= 2);
+    drv_drm_close(&r.drm);
+}
+
+static void the_end_gives_the_screen_and_the_memory_back(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    assert_int_equal(show(&r, 1), LM_OK);
+    drv_drm_close(&r.drm);
+    assert_int_equal(fake_drm.shown, CONSOLE);
+    assert_int_equal(fake_drm.live_buffers, 0);
+    assert_int_equal(fake_drm.live_framebuffers, 0);
+    drv_drm_close(&r.drm); /* once more does no harm */
+}
+
+static void signals_interrupt_no_call(void **state)
+{
+    (void)state;
+    static struct rig r;
+    set_up(&r, &standard);
+    for (uint32_t n = 1; n < 20; n++) {
+        fake_drm.interrupts = 3;
+        assert_int_equal(show(&r, n), LM_OK);
+        assert_int_equal(r.drm.state, DRV_DRM_FLIPPING);
+        fake_drm_blank();
+        wait_us(&r, TICK_US);
+    }
+    assert_int_equal(r.drm.count.errors, 0);
+    drv_drm_close(&r.drm);
+}
+
+static void the_mode_and_the_connector_of_the_configuration_are_kept_to(void **state)
+{
+    (void)state;
+    static struct rig r;
+    struct drv_drm_config config = standard;
+    fake_drm_reset();
+    fake_drm.extra_modes = 3;
+    config.width_px = 320;
+    config.height_px = 200;
+    assert_int_equal(drv_drm_open(&r.drm, &config, 0), LM_OK);
+    assert_int_equal(r.drm.height_px, 200);
+    drv_drm_close(&r.drm);
+    config.height_px = 201;
+    assert_int_equal(drv_drm_open(&r.drm, &config, 0), LM_OK);
+    assert_int_equal(r.drm.state, DRV_DRM_DARK);
+    assert_non_null(strstr(r.drm.error, "mode asked for"));
+    drv_drm_close(&r.drm);
+    config = standard;
+    config.connector = "DP-1";
+    assert_int_equal(drv_drm_open(&r.drm, &config, 0), LM_OK);
+    assert_non_null(strstr(r.drm.error, "connector asked for"));
+    drv_drm_close(&r.drm);
+}
+
+static void sixteen_bits_are_asked_for_when_they_are_wanted(void **state)
+{
+    (void)state;
+    static struct rig r;
+    struct drv_drm_config config = standard;
+    config.format = DRV_RGB565;
+    set_up(&r, &config);
+    assert_int_equal(show(&r, 0xffffff), LM_OK);
+    fake_drm_blank();
+    assert_int_equal(fake_drm.buffer[fake_drm.handle_of_shown - 1].bpp, 16);
+    assert_int_equal(middle(), 0xffffffff); /* two pixels */
+    drv_drm_close(&r.drm);
+}
+
+static void a_card_without_plain_memory_and_no_card_at_all_are_errors(void **state)
+{
+    (void)state;
+    struct drv_drm drm;
+    fake_drm_reset();
+    fake_drm.has_dumb = false;
+    assert_int_equal(drv_drm_open(&drm, &standard, 0), LM_ERR_IO);
+    assert_int_equal(drm.fd, -1);
+    const struct drv_drm_config nowhere = {.device = "/dev/dri/none"};
+    assert_int_equal(drv_drm_open(&drm, &nowhere, 0), LM_ERR_IO);
+    assert_non_null(strstr(drm.error, "/dev/dri/none"));
+    drv_drm_close(&drm);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_picture_comes_on_the_screen_with_one_flip),
+        cmocka_unit_test(no_second_picture_is_taken_while_one_is_on_its_way),
+        cmocka_unit_test(a_busy_kernel_is_asked_again_and_the_picture_is_kept),
+        cmocka_unit_test(a_kernel_that_stays_busy_is_told_the_mode_anew),
+        cmocka_unit_test(a_flip_that_is_never_reported_is_given_up_in_time),
+        cmocka_unit_test(a_report_that_comes_too_late_is_only_counted),
+        cmocka_unit_test(a_screen_that_is_unplugged_comes_back_with_another_mode),
+        cmocka_unit_test(looking_after_a_screen_that_is_there_probes_nothing),
+        cmocka_unit_test(a_screen_that_comes_later_than_the_program_is_lit),
+        cmocka_unit_test(a_program_that_takes_the_screen_is_outlived),
+        cmocka_unit_test(the_end_gives_the_screen_and_the_memory_back),
+        cmocka_unit_test(signals_interrupt_no_call),
+        cmocka_unit_test(the_mode_and_the_connector_of_the_configuration_are_kept_to),
+        cmocka_unit_test(sixteen_bits_are_asked_for_when_they_are_wanted),
+        cmocka_unit_test(a_card_without_plain_memory_and_no_card_at_all_are_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
