@@ -25,7 +25,7 @@ $(O)/%.elf: $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) $(LDSCRIPT)
 	    $(filter %.o,$^) $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) -lgcc -o $@
 
 CFLAGS_host += -Itests/golden -Itests/zcu102 -Itests/zcu102/images
-TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf)
+TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf devices.elf faults.elf)
 PROGRAMS    += $(TEST_IMAGES)
 image_objs   = $(addprefix $(O)/tests/zcu102/images/,$(addsuffix .o,$(1)))
 $(TEST_IMAGES): $(call image_objs,look)
@@ -33,6 +33,8 @@ $(O)/golden.elf: $(call image_objs,golden) $(call objs,tests/golden/golden_fligh
 $(O)/flight.elf: $(call image_objs,flight peer core1 handed)
 $(O)/bench.elf: $(call image_objs,bench handed instrument) $(O)/stages.o $(O)/stages.wrap
 $(O)/bench.elf: LDFLAGS := -Wl,@$(O)/stages.wrap
+$(O)/devices.elf: $(call image_objs,devices)
+$(O)/faults.elf: $(call image_objs,faults)
 
 # What `make bench-zcu102` counts, those of them that the firmware has. A line is what a *_draw_line and the *_paint
 # behind it take.

@@ -35,17 +35,41 @@ enum {
     SR_TXFULL = 1 << 4,
     SR_TACTIVE = 1 << 11,
 
-    SAMPLES = 7 /* of a bit: BAUD_RATE_DIVIDER + 1 */
+    /* Samples of a bit, BAUD_RATE_DIVIDER + 1. */
+    SAMPLES_LEAST = 5,
+    SAMPLES_MOST = 16
 };
+
+struct divisors {
+    uint32_t baudgen, samples;
+};
+
+/* The clock divided by both comes closest to the rate. */
+static struct divisors best_divisors(uint32_t clock_hz, uint32_t baud)
+{
+    struct divisors best = {1, SAMPLES_LEAST};
+    uint32_t best_error = UINT32_MAX;
+    for (uint32_t samples = SAMPLES_LEAST; samples <= SAMPLES_MOST; samples++) {
+        const uint32_t baudgen = (clock_hz + samples * baud / 2) / (samples * baud);
+        const uint32_t rate = clock_hz / (samples * (baudgen ? baudgen : 1));
+        const uint32_t error = rate > baud ? rate - baud : baud - rate;
+        if (baudgen > 0 && error < best_error) {
+            best = (struct divisors){baudgen, samples};
+            best_error = error;
+        }
+    }
+    return best;
+}
 
 void drv_uart_init(struct drv_uart *u, drv_registers base, uint32_t clock_hz, uint32_t baud)
 {
+    const struct divisors divisors = best_divisors(clock_hz, baud);
     *u = (struct drv_uart){.base = base};
     drv_write(base, CR, CR_RXDIS | CR_TXDIS);
     drv_write(base, IDR, IXR_ALL);
     drv_write(base, MR, MR_PARITY_NONE);
-    drv_write(base, BAUDGEN, (clock_hz + SAMPLES * baud / 2) / (SAMPLES * baud));
-    drv_write(base, BAUD_RATE_DIVIDER, SAMPLES - 1);
+    drv_write(base, BAUDGEN, divisors.baudgen);
+    drv_write(base, BAUD_RATE_DIVIDER, divisors.samples - 1);
     drv_write(base, CR, CR_RXRES | CR_TXRES);
     drv_write(base, RXWM, 1);
     drv_write(base, RXTOUT, 0);

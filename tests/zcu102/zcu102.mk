@@ -1,7 +1,7 @@
 # The board in QEMU. The images are built by a make of their own, for the board; these are the tools of the PC.
 ZCU102 := $(O)/bin/tests/zcu102
 ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
-ZCU102_TESTS := $(addprefix $(ZCU102)/,test_golden test_flight test_memory)
+ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_memory)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden -Ihost-sim
 $(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c support/tiny_image.c)) \

@@ -7,7 +7,7 @@
  *
  * Tested in QEMU: frames of both kinds between two controllers, the filters, a full ring. The model
  * has no bit timing and no errors; bus-off and its recovery are tested on registers in memory
- * (tests/unit/drivers/test_can_zynqmp.c). NOT tested: a real bus. */
+ * (tests/unit/drivers/test_zynqmp_devices.c). NOT tested: a real bus. */
 #ifndef DRV_CAN_ZYNQMP_H
 #define DRV_CAN_ZYNQMP_H
 

@@ -12,7 +12,7 @@
  *
  * Tested in QEMU: contents, lengths and offsets of all kinds, the end of the device, an absent
  * device. Its DMA takes no time, so that a read that stays busy is tested on registers in memory
- * (tests/unit/drivers/test_flash_gqspi.c). NOT tested: clock phases on a real board. */
+ * (tests/unit/drivers/test_zynqmp_devices.c). NOT tested: clock phases on a real board. */
 #ifndef DRV_FLASH_GQSPI_H
 #define DRV_FLASH_GQSPI_H
 

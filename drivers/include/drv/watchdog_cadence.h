@@ -1,7 +1,7 @@
 /* The system watchdog of Zynq UltraScale+ (Cadence). Registers, keys and sequences: UG1085, chapter
  * 14, and UG1087, module SWDT. It resets the board when it is not fed for `timeout_ms`.
  *
- * Its writes are tested on registers in memory (tests/unit/drivers/test_watchdog_cadence.c). NOT
+ * Its writes are tested on registers in memory (tests/unit/drivers/test_zynqmp_devices.c). NOT
  * tested: the bite, which QEMU's model of this board does not have. */
 #ifndef DRV_WATCHDOG_CADENCE_H
 #define DRV_WATCHDOG_CADENCE_H

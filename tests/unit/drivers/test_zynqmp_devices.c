@@ -1,0 +1,370 @@
+/* The drivers of the Zynq UltraScale+ on registers that are memory: what QEMU's model of the board
+ * does not do. tests/zcu102 runs them on the model. */
+#include "drv/can_zynqmp.h"
+#include "drv/flash_gqspi.h"
+#include "drv/irq_gic400.h"
+#include "drv/uart_cadence.h"
+#include "drv/watchdog_cadence.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WORDS = 1024 };
+
+/* A device: its registers, and what time it is. */
+struct device {
+    uint32_t registers[WORDS];
+    uint64_t now_us;
+};
+
+static uint64_t now_us(const void *device)
+{
+    return ((const struct device *)device)->now_us;
+}
+
+/* ---- CAN ---- */
+
+enum {
+    CAN_SRR = 0x00,
+    CAN_BRPR = 0x08,
+    CAN_BTR = 0x0C,
+    CAN_ESR = 0x14,
+    CAN_SR = 0x18,
+    CAN_ISR = 0x1C
+};
+
+static void open_can(struct drv_can *c, struct device *d)
+{
+    const struct drv_can_config config = {.base = d->registers,
+                                          .clock_hz = 100000000,
+                                          .bit_rate = 1000000,
+                                          .now_us = now_us,
+                                          .clock = d};
+    memset(d, 0, sizeof *d);
+    d->registers[CAN_SR / 4] = 1; /* configuration mode */
+    assert_int_equal(drv_can_open(c, &config), LM_OK);
+}
+
+static void a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d;
+    open_can(&c, &d);
+    const uint32_t btr = d.registers[CAN_BTR / 4];
+    const uint32_t ts1 = (btr & 15) + 1, ts2 = (btr >> 4 & 7) + 1;
+    assert_int_equal((d.registers[CAN_BRPR / 4] + 1) * (1 + ts1 + ts2), 100);
+    assert_int_equal((1 + ts1) * 10, 8 * (1 + ts1 + ts2));
+    assert_int_equal(d.registers[CAN_SRR / 4], 2); /* enabled */
+}
+
+static void a_controller_that_stays_in_reset_is_an_error(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d = {{0}, 0};
+    const struct drv_can_config config = {.base = d.registers,
+                                          .clock_hz = 100000000,
+                                          .bit_rate = 500000,
+                                          .now_us = now_us,
+                                          .clock = &d};
+    assert_int_equal(drv_can_open(&c, &config), LM_ERR_IO);
+}
+
+static void bus_off_is_counted_and_left_after_a_tenth_of_a_second(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d;
+    struct lm_can_frame frame = {0};
+    open_can(&c, &d);
+    d.now_us = 5000000;
+    d.registers[CAN_ISR / 4] = 1 << 9 | 1 << 8;
+    d.registers[CAN_ESR / 4] = 1 << 4; /* nobody acknowledges */
+    drv_can_interrupt(&c);
+    assert_int_equal(c.count.bus_off, 1);
+    assert_int_equal(c.count.errors, 1);
+    assert_int_equal(d.registers[CAN_SRR / 4], 1); /* in reset */
+    d.registers[CAN_ISR / 4] = 0;
+    assert_int_equal(c.port.receive(c.port.ctx, &frame), LM_ERR_IO);
+    assert_int_equal(c.port.send(c.port.ctx, &frame), LM_ERR_IO);
+    d.now_us += DRV_CAN_OFF_US - 1;
+    assert_int_equal(c.port.receive(c.port.ctx, &frame), LM_ERR_IO);
+    d.now_us += 1;
+    assert_int_equal(c.port.receive(c.port.ctx, &frame), 0);
+    assert_int_equal(d.registers[CAN_SRR / 4], 2);
+    assert_int_equal(c.count.recovered, 1);
+    assert_int_equal(c.port.send(c.port.ctx, &frame), LM_OK);
+}
+
+static void a_controller_that_does_not_come_back_is_asked_again(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d;
+    struct lm_can_frame frame = {0};
+    open_can(&c, &d);
+    d.registers[CAN_ISR / 4] = 1 << 9;
+    drv_can_interrupt(&c);
+    d.registers[CAN_SR / 4] = 0;
+    d.now_us += 2 * DRV_CAN_OFF_US;
+    assert_int_equal(c.port.receive(c.port.ctx, &frame), LM_ERR_IO);
+    d.registers[CAN_SR / 4] = 1;
+    assert_int_equal(c.port.receive(c.port.ctx, &frame), 0);
+    assert_int_equal(c.count.recovered, 1);
+}
+
+static void a_full_transmit_fifo_is_busy_and_takes_nothing(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d;
+    open_can(&c, &d);
+    d.registers[CAN_SR / 4] = 1 << 10;
+    const struct lm_can_frame frame = {.id = 0x123, .length = 8};
+    assert_int_equal(c.port.send(c.port.ctx, &frame), LM_BUSY);
+    assert_int_equal(d.registers[0x30 / 4], 0);
+    assert_int_equal(c.count.refused, 1);
+}
+
+static void an_interrupt_takes_one_fifo_at_most(void **state)
+{
+    (void)state;
+    struct drv_can c;
+    struct device d;
+    open_can(&c, &d);
+    d.registers[CAN_ISR / 4] = 1 << 7; /* never empty: memory does not clear it */
+    drv_can_interrupt(&c);
+    assert_int_equal(c.count.frames, 64);
+}
+
+static void a_length_code_above_eight_is_eight(void **state)
+{
+    (void)state;
+    const uint32_t words[4] = {0x123u << 21, 0xF0001234u, 0x01020304, 0x05060708};
+    const struct lm_can_frame frame = drv_can_frame_of(words);
+    assert_int_equal(frame.length, 8);
+    assert_int_equal(frame.id, 0x123);
+    assert_int_equal(frame.data[0], 1);
+    assert_int_equal(frame.data[7], 8);
+}
+
+static void identifier_words_are_those_of_the_manual(void **state)
+{
+    (void)state;
+    /* UG1087, TXFIFO_ID: IDH 31..21, SRRRTR 20, IDE 19, IDL 18..1, RTR 0. */
+    const struct {
+        struct lm_can_frame frame;
+        uint32_t word;
+    } table[] = {{{.id = 0x7FF}, 0xFFE00000u},
+                 {{.id = 0x001, .is_remote = true}, 0x00300000u},
+                 {{.id = 0x1FFFFFFF, .is_extended = true}, 0xFFFFFFFEu},
+                 {{.id = 0x00040001, .is_extended = true}, 0x00380002u},
+                 {{.id = 0, .is_extended = true, .is_remote = true}, 0x00180001u}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        assert_int_equal(drv_can_id_word(&table[i].frame), table[i].word);
+        const struct lm_can_frame back = drv_can_frame_of((const uint32_t[4]){table[i].word});
+        assert_int_equal(back.id, table[i].frame.id);
+        assert_int_equal(back.is_extended, table[i].frame.is_extended);
+        assert_int_equal(back.is_remote, table[i].frame.is_remote);
+    }
+}
+
+/* ---- flash ---- */
+
+enum { GQSPI_ISR = 0x104, GQSPI_EN = 0x114, GQSPI_RXD = 0x120, DMA_STATUS = 0x814 };
+
+static int open_flash(struct drv_flash *f, struct device *d, uint32_t id)
+{
+    static uint8_t piece[DRV_FLASH_PIECE];
+    const struct drv_flash_config config = {
+        .base = d->registers, .piece = piece, .now_us = now_us, .clock = d};
+    memset(d, 0, sizeof *d);
+    d->registers[GQSPI_RXD / 4] = id;
+    return drv_flash_open(f, &config);
+}
+
+static void a_read_that_never_ends_is_given_up(void **state)
+{
+    (void)state;
+    struct drv_flash f;
+    struct device d;
+    uint8_t byte = 0x77;
+    assert_int_equal(open_flash(&f, &d, 0x0020BB20), LM_OK);
+    assert_int_equal(f.port.size_bytes, 128 << 20);
+    assert_int_equal(f.port.read_start(f.port.ctx, 0, &byte, 1), LM_OK);
+    d.registers[DMA_STATUS / 4] = 0; /* cleared by writing ones, which memory keeps */
+    assert_int_equal(f.port.read_poll(f.port.ctx), LM_BUSY);
+    d.now_us = DRV_FLASH_TIMEOUT_US;
+    assert_int_equal(f.port.read_poll(f.port.ctx), LM_BUSY);
+    d.now_us++;
+    assert_int_equal(f.port.read_poll(f.port.ctx), LM_ERR_IO);
+    assert_int_equal(d.registers[GQSPI_EN / 4], 0); /* no DMA comes after all */
+    assert_int_equal(byte, 0x77);
+    assert_int_equal(f.count.timeouts, 1);
+    assert_int_equal(f.port.read_start(f.port.ctx, 0, &byte, 1), LM_OK);
+    assert_int_equal(d.registers[GQSPI_EN / 4], 1);
+}
+
+static void a_device_that_is_absent_or_another_has_no_size(void **state)
+{
+    (void)state;
+    struct drv_flash f;
+    struct device d;
+    uint8_t byte;
+    const uint32_t ids[] = {0, 0xFFFFFF, 0x0018C2C2, 0x0023BB20, 0x0005BB20, 0x001ABB20};
+    for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
+        assert_int_equal(open_flash(&f, &d, ids[i]), LM_ERR_IO);
+        assert_int_equal(f.port.size_bytes, 0);
+        assert_int_equal(f.port.read_start(f.port.ctx, 0, &byte, 1), LM_ERR_RANGE);
+    }
+}
+
+static void a_read_of_nothing_is_done_at_once(void **state)
+{
+    (void)state;
+    struct drv_flash f;
+    struct device d;
+    open_flash(&f, &d, 0x0020BB20);
+    assert_int_equal(f.port.read_start(f.port.ctx, 0, NULL, 0), LM_OK);
+    assert_int_equal(f.port.read_poll(f.port.ctx), LM_OK);
+}
+
+/* ---- watchdog ---- */
+
+static void the_watchdog_is_set_with_its_keys(void **state)
+{
+    (void)state;
+    struct drv_watchdog w;
+    struct device d = {{0}, 0};
+    assert_true(drv_watchdog_start(&w, d.registers, 100000000, 2000));
+    /* UG1087, SWDT: MODE.ZKEY 0xABC, CONTROL.CKEY 0x248, RESTART.RSTKEY 0x1999. */
+    assert_int_equal(d.registers[0] >> 12, 0xABC);
+    assert_int_equal(d.registers[0] & 3, 3); /* on, and it resets */
+    assert_int_equal(d.registers[1] >> 14, 0x248);
+    assert_int_equal(d.registers[2], 0x1999);
+    const double seconds = ((d.registers[1] >> 2 & 0xFFF) + 1) * 4096.0 * 4096.0 / 100e6;
+    assert_true(seconds >= 2 && seconds < 2.17);
+    d.registers[2] = 0;
+    drv_watchdog_feed(&w);
+    assert_int_equal(d.registers[2], 0x1999);
+}
+
+static void a_time_that_the_watchdog_cannot_count_is_refused(void **state)
+{
+    (void)state;
+    struct drv_watchdog w;
+    struct device d = {{0}, 0};
+    assert_false(drv_watchdog_start(&w, d.registers, 100000000, 0));
+    assert_false(drv_watchdog_start(&w, d.registers, 100000000, 688000));
+    assert_int_equal(d.registers[0], 0);
+    assert_true(drv_watchdog_start(&w, d.registers, 100000000, 1));
+    assert_true(drv_watchdog_start(&w, d.registers, 100000000, 687000));
+}
+
+/* ---- UART ---- */
+
+static void bit_rates_are_met_within_a_percent(void **state)
+{
+    (void)state;
+    const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        struct drv_uart u;
+        struct device d = {{0}, 0};
+        drv_uart_init(&u, d.registers, 100000000, rates[i]);
+        const double rate = 100e6 / d.registers[0x18 / 4] / (d.registers[0x34 / 4] + 1);
+        assert_true(fabs(rate / rates[i] - 1) < 0.01);
+    }
+}
+
+static void a_full_ring_of_the_uart_counts_what_it_loses(void **state)
+{
+    (void)state;
+    struct drv_uart u;
+    struct device d = {{0}, 0};
+    drv_uart_init(&u, d.registers, 100000000, 115200);
+    d.registers[0x14 / 4] = 0;
+    d.registers[0x30 / 4] = 'x'; /* the FIFO never empties: 64 bytes an interrupt */
+    for (int i = 0; i < 5; i++) {
+        drv_uart_interrupt(&u);
+    }
+    assert_int_equal(u.count.overflowed, 5 * 64 - DRV_UART_RING);
+    for (int i = 0; i < DRV_UART_RING; i++) {
+        assert_int_equal(drv_uart_get(&u), 'x');
+    }
+    assert_int_equal(drv_uart_get(&u), -1);
+}
+
+/* ---- interrupts ---- */
+
+static void count_call(void *ctx)
+{
+    (*(int *)ctx)++;
+}
+
+static void an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off(void **state)
+{
+    (void)state;
+    struct drv_irq q;
+    struct device distributor = {{0}, 0}, core = {{0}, 0};
+    int calls = 0;
+    drv_irq_init(&q, distributor.registers, core.registers);
+    assert_true(drv_irq_attach(&q, 55, count_call, &calls));
+    assert_int_equal(distributor.registers[0x104 / 4], 1 << 23);
+    core.registers[0x0C / 4] = 55;
+    drv_irq_dispatch(&q);
+    assert_int_equal(calls, 1);
+    assert_int_equal(core.registers[0x10 / 4], 55);
+    core.registers[0x0C / 4] = 56;
+    drv_irq_dispatch(&q);
+    assert_int_equal(q.count.strange, 1);
+    assert_int_equal(distributor.registers[0x184 / 4], 1 << 24);
+    core.registers[0x0C / 4] = 1023;
+    core.registers[0x10 / 4] = 0;
+    drv_irq_dispatch(&q);
+    assert_int_equal(q.count.spurious, 1);
+    assert_int_equal(core.registers[0x10 / 4], 0);
+    assert_int_equal(calls, 1);
+}
+
+static void more_handlers_than_there_is_room_for_are_refused(void **state)
+{
+    (void)state;
+    struct drv_irq q;
+    struct device distributor = {{0}, 0}, core = {{0}, 0};
+    drv_irq_init(&q, distributor.registers, core.registers);
+    assert_false(drv_irq_attach(&q, DRV_IRQ_LINES, count_call, NULL));
+    for (uint32_t i = 0; i < DRV_IRQ_HANDLERS; i++) {
+        assert_true(drv_irq_attach(&q, 40 + i, count_call, NULL));
+    }
+    assert_false(drv_irq_attach(&q, 60, count_call, NULL));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth),
+        cmocka_unit_test(a_controller_that_stays_in_reset_is_an_error),
+        cmocka_unit_test(bus_off_is_counted_and_left_after_a_tenth_of_a_second),
+        cmocka_unit_test(a_controller_that_does_not_come_back_is_asked_again),
+        cmocka_unit_test(a_full_transmit_fifo_is_busy_and_takes_nothing),
+        cmocka_unit_test(an_interrupt_takes_one_fifo_at_most),
+        cmocka_unit_test(a_length_code_above_eight_is_eight),
+        cmocka_unit_test(identifier_words_are_those_of_the_manual),
+        cmocka_unit_test(a_read_that_never_ends_is_given_up),
+        cmocka_unit_test(a_device_that_is_absent_or_another_has_no_size),
+        cmocka_unit_test(a_read_of_nothing_is_done_at_once),
+        cmocka_unit_test(the_watchdog_is_set_with_its_keys),
+        cmocka_unit_test(a_time_that_the_watchdog_cannot_count_is_refused),
+        cmocka_unit_test(bit_rates_are_met_within_a_percent),
+        cmocka_unit_test(a_full_ring_of_the_uart_counts_what_it_loses),
+        cmocka_unit_test(an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off),
+        cmocka_unit_test(more_handlers_than_there_is_room_for_are_refused),
+    };
+    return cmocka_run_group_tests_name("zynqmp_devices", tests, NULL, NULL);
+}
