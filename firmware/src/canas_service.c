@@ -130,7 +130,8 @@ void lm_canas_service_answer(struct lm_canas_service *s, const struct lm_can *ca
     if ((!s->is_ids_asked && !s->is_sts_asked) || is_soon || can->send == NULL) {
         return;
     }
-    const bool is_identity = s->is_ids_asked;
+    const bool is_identity =
+        s->is_ids_asked && (!s->is_sts_asked || s->ids_asked_us <= s->sts_asked_us);
     if ((is_identity ? send_identity(s, can) : send_state(s, can, state)) != LM_OK) {
         return;
     }

@@ -1,6 +1,8 @@
-/* The bus: any frames at any times, and the ownship they make. Frames of 16 bytes: selector, flags,
- * length, step of time, identifier, data. */
+/* The bus: any frames at any times, the ownship they make, and what the display answers. Frames of
+ * 16 bytes: selector, flags, length, step of time, identifier, data. What is left over of the size
+ * chooses the profile. */
 #include "fuzz.h"
+#include "lm/canas_service.h"
 #include "lm/nav.h"
 
 const uint32_t fuzz_mutations = 60000;
@@ -15,17 +17,22 @@ static void check_ownship(const struct lm_ownship *o)
     FUZZ_ASSERT(o->utc_s >= 0 && o->utc_s < 86400);
 }
 
-static struct lm_can_frame take_frame(struct fuzz_supply *s, uint64_t *now_us)
+static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus_profile *profile,
+                                      uint64_t *now_us)
 {
     const uint8_t selector = fuzz_u8(s), flags = fuzz_u8(s), length = fuzz_u8(s);
     /* 0..127 ms, or, rarely of use, far away in either direction */
     const uint8_t step = fuzz_u8(s);
     *now_us += step < 250 ? (uint64_t)step * 512 : (uint64_t)step << (8 * (step - 249));
     struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = *now_us};
-    if (selector < 0xE0) {
-        f.id = lm_bus_canas17.rows[selector % LM_BUS_FIELDS].id;
+    const bool is_packed = profile->framing == LM_BUS_PACKED;
+    if (selector < 0xD0) {
+        const struct lm_bus_row *row = &profile->rows[selector % profile->row_count];
+        f.id = row->id | (is_packed ? f.id & ~row->packing.mask & 0x1fffffff : 0);
+    } else if (selector < 0xE0) {
+        f.id = LM_CANAS_REQUEST_ID;
     }
-    f.is_extended = flags & 1;
+    f.is_extended = is_packed ? !(flags & 1) : flags & 1;
     f.is_remote = (flags & 0x30) == 0x30;
     f.is_error = (flags & 0xC0) == 0xC0;
     f.length = length & 0x80 ? length : 8;
@@ -34,26 +41,52 @@ static struct lm_can_frame take_frame(struct fuzz_supply *s, uint64_t *now_us)
     return f;
 }
 
+struct sent {
+    uint32_t count;
+    int answer;
+};
+
+static int send_frame(void *ctx, const struct lm_can_frame *frame)
+{
+    struct sent *sent = ctx;
+    FUZZ_ASSERT(frame->length == 8 && !frame->is_extended && frame->data[0] == 20);
+    FUZZ_ASSERT(frame->id == LM_CANAS_RESPONSE_ID || frame->id == LM_CANAS_STATE_ID);
+    sent->count += sent->answer == LM_OK;
+    return sent->answer;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    static const struct lm_bus_profile *const profiles[] = {&lm_bus_canas17, &lm_bus_xcsoar,
+                                                            &lm_bus_generic, &lm_bus_canas17};
+    const struct lm_bus_profile *profile = profiles[size % 4];
     struct fuzz_supply supply = {data, size};
     struct lm_nav *nav = malloc(sizeof *nav);
     FUZZ_ASSERT(nav);
-    lm_nav_init(nav, &lm_bus_canas17);
+    lm_nav_init(nav, profile);
+    struct lm_canas_service service;
+    lm_canas_service_init(&service, 20, 1, 0x12);
+    struct sent sent = {0};
+    const struct lm_can can = {.ctx = &sent, .send = send_frame};
     uint64_t now_us = 0;
     uint32_t frames = 0, sum = 0;
     while (supply.left > 0) {
-        const struct lm_can_frame frame = take_frame(&supply, &now_us);
+        const struct lm_can_frame frame = take_frame(&supply, profile, &now_us);
         struct lm_ownship ownship;
         lm_nav_take(nav, &frame);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
+        lm_canas_service_take(&service, &frame);
+        sent.answer = frames % 5 == 4 ? LM_ERR_IO : frames % 5 == 3 ? LM_BUSY : LM_OK;
+        lm_canas_service_answer(&service, &can, frames, now_us);
         frames++;
     }
     for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
         sum += nav->bus.count.outcome[i];
     }
-    FUZZ_ASSERT(sum == frames && nav->bus.count.frames == frames);
+    FUZZ_ASSERT(nav->bus.count.frames == frames && sum >= frames);
+    FUZZ_ASSERT(sum == frames || profile->framing == LM_BUS_PACKED);
+    FUZZ_ASSERT(sent.count == service.count.answered && sent.count <= frames);
     free(nav);
     return 0;
 }

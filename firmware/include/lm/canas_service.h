@@ -56,9 +56,9 @@ void lm_canas_service_init(struct lm_canas_service *s, uint8_t node, uint8_t har
  * while the same one waits is answered together with it. */
 void lm_canas_service_take(struct lm_canas_service *s, const struct lm_can_frame *frame);
 
-/* Send an answer that waits, at most one a call. `state` is the word that STS asks for. Call it in
- * every step: a step of 4 ms answers within 4 ms while the bus takes frames, within
- * LM_CANAS_ANSWER_US or not at all when it does not. */
+/* Send an answer that waits, at most one a call, the request that waits longest first. `state` is
+ * the word that STS asks for. Call it in every step: a step of 4 ms answers within 4 ms while the
+ * bus takes frames, within LM_CANAS_ANSWER_US or not at all when it does not. */
 void lm_canas_service_answer(struct lm_canas_service *s, const struct lm_can *can, uint32_t state,
                              uint64_t now_us);
 

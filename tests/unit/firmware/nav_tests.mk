@@ -1,5 +1,5 @@
 # The bus and the ownship. Linked from single objects, so that they build whatever else is being changed.
-BUS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_canas test_nav)
+BUS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_canas test_canas_service test_nav)
 TESTS += $(BUS_TESTS)
 $(BUS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(TEST_SUPPORT) $(addprefix $(O)/firmware/src/,canas.o bus.o bus_profiles.o packed.o canas_service.o nav.o geo.o) \
     $(O)/drivers/can/can_log.o $(LIB_fixed) $(LIB_hs)

@@ -333,6 +333,153 @@ static void both_ends_of_every_range_are_taken_and_the_next_float_is_not(void **
     }
 }
 
+/* ---- data types ---- */
+
+/* The specification's list, section 2.2: code, name, bytes. */
+static const struct {
+    const char *name;
+    uint8_t bytes;
+} specified[LM_CANAS_TYPES] = {
+    {"NODATA", 0},  {"ERROR", 4},   {"FLOAT", 4},   {"LONG", 4},   {"ULONG", 4},  {"BLONG", 4},
+    {"SHORT", 2},   {"USHORT", 2},  {"BSHORT", 2},  {"CHAR", 1},   {"UCHAR", 1},  {"BCHAR", 1},
+    {"SHORT2", 4},  {"USHORT2", 4}, {"BSHORT2", 4}, {"CHAR4", 4},  {"UCHAR4", 4}, {"BCHAR4", 4},
+    {"CHAR2", 2},   {"UCHAR2", 2},  {"BCHAR2", 2},  {"MEMID", 4},  {"CHKSUM", 4}, {"ACHAR", 1},
+    {"ACHAR2", 2},  {"ACHAR4", 4},  {"CHAR3", 3},   {"UCHAR3", 3}, {"BCHAR3", 3}, {"ACHAR3", 3},
+    {"DOUBLEH", 4}, {"DOUBLEL", 4},
+};
+
+static void every_data_type_has_the_specifications_code_name_and_length(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LM_CANAS_TYPES; i++) {
+        const struct lm_canas_type *t = &lm_canas_types[i];
+        assert_string_equal(t->name, specified[i].name);
+        assert_int_equal(t->element_bytes * t->elements, specified[i].bytes);
+    }
+}
+
+/* A bus of somebody's own: an altitude in tenths of a metre and a clock, in every type that can
+ * carry them. */
+static const struct lm_bus_row own_rows[] = {
+    {.name = "altitude",
+     .id = 700,
+     .field = LM_BUS_TRUE_ALTITUDE,
+     .types = 1u << 2 | 1u << 3 | 1u << 4 | 1u << 6 | 1u << 7 | 1u << 9 | 1u << 10 | 1u << 12,
+     .per_unit = 10,
+     .low = -1000,
+     .high = 30000},
+    {.name = "clock",
+     .id = 701,
+     .field = LM_BUS_UTC,
+     .types = 1u << 15 | 1u << 16 | 1u << 26 | 1u << 27,
+     .per_unit = 1,
+     .low = 0,
+     .high = 86400},
+};
+static const struct lm_bus_profile own_bus = {.name = "own", .rows = own_rows, .row_count = 2};
+
+static void a_number_of_every_type_that_can_carry_it_is_read(void **state)
+{
+    (void)state;
+    const struct {
+        uint8_t type, length;
+        uint32_t word; /* left-justified, as it lies in the frame */
+        double metres; /* NAN: out of range */
+    } tests[] = {
+        {2, 8, 0x449a5000, 1234.5},
+        {3, 8, 12345, 1234.5},
+        {3, 8, (uint32_t)-9999, -999.9},
+        {3, 8, 0x80000000, NAN},
+        {4, 8, 12345, 1234.5},
+        {4, 8, 0xffffffff, NAN},
+        {4, 8, 0x80000000, NAN},
+        {6, 6, 12345u << 16, 1234.5},
+        {6, 6, 0xd8f0u << 16, -1000},
+        {6, 6, 0x8000u << 16, NAN},
+        {7, 6, 0xd8f0u << 16, 5553.6},
+        {9, 5, 0x80u << 24, -12.8},
+        {9, 5, 0x7fu << 24, 12.7},
+        {10, 5, 0x80u << 24, 12.8},
+        {12, 8, 0x400005dcu, 16384.0 * 1500 / 32767},
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        struct lm_bus c;
+        struct lm_bus_event event = {0};
+        lm_bus_init(&c, &own_bus);
+        struct lm_can_frame frame = bus_frame(700, tests[i].type, 0, tests[i].word, 0);
+        for (uint8_t length = 0; length <= 8; length++) {
+            frame.length = length;
+            const enum lm_bus_outcome outcome = take(&c, frame, &event);
+            const enum lm_bus_outcome right =
+                isnan(tests[i].metres) ? LM_BUS_OUT_OF_RANGE : LM_BUS_VALUE;
+            assert_int_equal(outcome, length == tests[i].length ? right : LM_BUS_BAD_LENGTH);
+        }
+        if (!isnan(tests[i].metres)) {
+            assert_int_equal(event.value, lround(tests[i].metres * 64));
+        }
+    }
+}
+
+static void a_clock_of_every_type_that_can_carry_it_is_read(void **state)
+{
+    (void)state;
+    const uint8_t types[] = {15, 16, 26, 27};
+    for (size_t i = 0; i < sizeof types; i++) {
+        struct lm_bus c;
+        struct lm_bus_event event = {0};
+        lm_bus_init(&c, &own_bus);
+        struct lm_can_frame frame = bus_frame(701, types[i], 0, 0x0d2b1600, 0);
+        frame.length = types[i] >= 26 ? 7 : 8;
+        assert_int_equal(take(&c, frame, &event), LM_BUS_VALUE);
+        assert_int_equal(event.value, 13 * 3600 + 43 * 60 + 22);
+    }
+}
+
+/* How coarse a value is tells the ownship what to make of it: neighbouring values of the type. */
+static void the_step_of_a_value_is_that_of_its_type(void **state)
+{
+    (void)state;
+    struct lm_bus c;
+    struct lm_bus_event event = {0};
+    lm_bus_init(&c, &lm_bus_canas17);
+    const double counts = 0x1p32 / 360;
+    const double degrees[] = {0.3, 10, 47, 100, 179};
+    for (size_t i = 0; i < sizeof degrees / sizeof *degrees; i++) {
+        const float f = (float)degrees[i];
+        take(&c, bus_float(LM_BUS_LONGITUDE, f, 0), &event);
+        assert_true(fabs(event.step - (nextafterf(f, 360) - f) * counts) <= 1);
+    }
+    take(&c, bus_frame(1037, LM_CANAS_SHORT2, 0, 0x10000000u | 180, 0), &event);
+    assert_true(fabs(event.step - 180.0 / 32767 * counts) <= 2);
+    take(&c, bus_frame(1037, LM_CANAS_LONG, 0, 1, 0), &event);
+    assert_int_equal(event.step, 1);
+    take(&c, bus_frame(1037, LM_CANAS_DOUBLEH, 0, 0x40400000, 0), &event);
+    assert_int_equal(take(&c, bus_frame(1037, LM_CANAS_DOUBLEL, 1, 0, 1), &event), LM_BUS_VALUE);
+    assert_int_equal(event.step, 0);
+}
+
+static void xcsoars_frames_are_read_whatever_byte_1_says(void **state)
+{
+    (void)state;
+    for (int type = 0; type < 256; type++) {
+        struct lm_bus c;
+        struct lm_bus_event event = {0};
+        lm_bus_init(&c, &lm_bus_xcsoar);
+        const uint8_t t = (uint8_t)type;
+        assert_int_equal(take(&c, bus_frame(1036, t, 0, 472500445, 0), &event), LM_BUS_VALUE);
+        assert_int_equal(event.value, lround(47.2500445 * 0x1p32 / 360));
+        assert_int_equal(take(&c, bus_frame(1039, t, 0, bus_float_bits(50.5), 0), &event),
+                         LM_BUS_VALUE);
+        assert_int_equal(event.value, 50500);
+        struct lm_can_frame clock = bus_frame(1200, t, 0, 0x0d2b1600, 0);
+        assert_int_equal(take(&c, clock, &event), LM_BUS_VALUE);
+        assert_int_equal(event.value, 13 * 3600 + 43 * 60 + 22);
+        clock.length = 7;
+        assert_int_equal(take(&c, clock, &event), LM_BUS_BAD_LENGTH);
+        assert_int_equal(take(&c, bus_frame(1049, t, 0, 0, 0), &event), LM_BUS_UNUSED);
+    }
+}
+
 /* ---- frames that must not be believed ---- */
 
 static struct lm_can_frame with_length(struct lm_can_frame frame, uint8_t length)
@@ -632,6 +779,27 @@ static void other_identifiers_and_channels_between_the_halves_do_not_matter(void
     }
 }
 
+static void halves_of_two_channels_are_joined_each_on_its_own(void **state)
+{
+    (void)state;
+    struct lm_bus c;
+    struct lm_bus_event event = {0};
+    lm_bus_init(&c, &lm_bus_canas17);
+    const struct sender s = {.period_us = 100000, .gap_us = 250};
+    for (int i = 0; i < HALVES; i++) {
+        struct lm_can_frame first = half_of(&s, i);
+        struct lm_can_frame other = with_extended_id(half_of(&s, HALVES - 1 - (i ^ 1)), 0x3040c);
+        other.data[3] = first.data[3];
+        other.time_us = first.time_us + 10;
+        assert_int_equal(take(&c, first, &event), i % 2 ? LM_BUS_VALUE : LM_BUS_HALF);
+        assert_true(i % 2 == 0 || (event.channel == 0 && event.value == pair_value(i / 2)));
+        assert_int_equal(take(&c, other, &event), i % 2 ? LM_BUS_VALUE : LM_BUS_HALF);
+        assert_true(i % 2 == 0 ||
+                    (event.channel == 3 && event.value == pair_value(PAIRS - 1 - i / 2)));
+    }
+    assert_int_equal(c.canas.count.torn_pairs, 0);
+}
+
 static void a_code_gap_or_age_tears_the_halves(void **state)
 {
     (void)state;
@@ -717,6 +885,11 @@ int main(void)
         cmocka_unit_test(a_short2_is_value_times_scale_over_32767),
         cmocka_unit_test(a_long_position_counts_ten_millionths_of_a_degree),
         cmocka_unit_test(both_ends_of_every_range_are_taken_and_the_next_float_is_not),
+        cmocka_unit_test(every_data_type_has_the_specifications_code_name_and_length),
+        cmocka_unit_test(a_number_of_every_type_that_can_carry_it_is_read),
+        cmocka_unit_test(a_clock_of_every_type_that_can_carry_it_is_read),
+        cmocka_unit_test(the_step_of_a_value_is_that_of_its_type),
+        cmocka_unit_test(xcsoars_frames_are_read_whatever_byte_1_says),
         cmocka_unit_test(every_malformed_frame_is_refused_for_its_own_reason),
         cmocka_unit_test(a_leap_second_is_a_time),
         cmocka_unit_test(no_message_is_lost_when_a_sender_restarts_repeats_or_jumps),
@@ -725,6 +898,7 @@ int main(void)
             a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair),
         cmocka_unit_test(anything_else_of_that_identifier_between_the_halves_tears_them),
         cmocka_unit_test(other_identifiers_and_channels_between_the_halves_do_not_matter),
+        cmocka_unit_test(halves_of_two_channels_are_joined_each_on_its_own),
         cmocka_unit_test(a_code_gap_or_age_tears_the_halves),
         cmocka_unit_test(a_sender_that_changes_its_habit_is_understood_again),
         cmocka_unit_test(a_double_that_is_no_position_is_refused_whole),

@@ -321,6 +321,254 @@ static void heading_stands_still_where_it_means_nothing(void **state)
     assert_true(fabs(degrees_of(at(&nav, 100000).heading) - 10) < 1e-6);
 }
 
+/* ---- several senders ---- */
+
+/* A frame on redundancy channel n. */
+static struct lm_can_frame on_channel(struct lm_can_frame frame, uint32_t channel)
+{
+    frame.id += channel << 16;
+    frame.is_extended = channel > 0;
+    return frame;
+}
+
+/* A position of one place from row `row` (0 GPS latitude; 18 INS latitude; 23 auxiliary) and
+ * channel, as FLOAT, and a velocity of 0. */
+static void hear_place(struct lm_nav *nav, uint32_t row, uint32_t channel, double degrees,
+                       uint64_t time_us)
+{
+    const struct lm_bus_row *rows = lm_bus_canas17.rows;
+    const uint32_t bits = bus_float_bits(degrees);
+    hear(nav, on_channel(bus_frame(rows[row].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
+    hear(nav, on_channel(bus_frame(rows[row + 1].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
+    hear_float(nav, LM_BUS_NORTH_VELOCITY, 0, time_us);
+    hear_float(nav, LM_BUS_EAST_VELOCITY, 0, time_us);
+}
+
+enum { GPS = 0, INS = 18, AUXILIARY = 23 };
+
+static void assert_place(const struct lm_nav *nav, uint64_t now_us, int degrees,
+                         enum lm_nav_quality quality)
+{
+    const struct lm_ownship o = at(nav, now_us);
+    assert_int_equal(o.position_quality, quality);
+    assert_true(fabs(degrees_of(o.latitude) - degrees) < 1e-5);
+    assert_true(fabs(degrees_of(o.longitude) - degrees) < 1e-5);
+}
+
+static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    /* GPS on channels 0 and 1 and INS, each 10 Hz, at 10, 11 and 12 degrees. Channel 0 is silent
+     * from 3.0 to 3.5 s; both GPS are silent from 6 s on; INS from 8 s on. */
+    for (uint64_t t = 0; t <= 11000000; t += 100000) {
+        if (t < 6000000 && (t <= 3000000 || t >= 3500000)) {
+            hear_place(&nav, GPS, 0, 10, t);
+        }
+        if (t < 6000000) {
+            hear_place(&nav, GPS, 1, 11, t);
+        }
+        if (t <= 8000000) {
+            hear_place(&nav, INS, 0, 12, t);
+        }
+        hear_float(&nav, LM_BUS_NORTH_VELOCITY, 0, t);
+        hear_float(&nav, LM_BUS_EAST_VELOCITY, 0, t);
+        if (t < 3300000 || (t >= 4500000 && t < 6200000)) {
+            assert_place(&nav, t, 10, LM_NAV_GOOD);
+        } else if (t >= 3400000 && t < 4500000) {
+            assert_place(&nav, t, 11, LM_NAV_GOOD);
+        } else if (t >= 6400000 && t <= 8300000) {
+            assert_place(&nav, t, 12, LM_NAV_GOOD);
+        } else if (t >= 8400000 && t <= 10000000) {
+            assert_place(&nav, t, 12, LM_NAV_STALE);
+        } else if (t >= 10100000) {
+            assert_place(&nav, t, 0, LM_NAV_DEAD);
+        }
+    }
+    assert_int_equal(nav.position_jumps, 0); /* another sender's position is no jump of this one */
+}
+
+static void both_coordinates_come_from_one_sender(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    hear_place(&nav, INS, 0, 12, 0);
+    hear(&nav, bus_frame(1036, LM_CANAS_FLOAT, 0, bus_float_bits(10), 0));
+    assert_place(&nav, 1000, 12, LM_NAV_GOOD); /* GPS has no longitude */
+    hear(&nav, bus_frame(1037, LM_CANAS_FLOAT, 0, bus_float_bits(10), 2000));
+    assert_place(&nav, 2000, 10, LM_NAV_GOOD);
+}
+
+static void of_too_many_senders_the_best_are_followed(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    /* The least wanted first, so that each better one has to find a place. */
+    for (uint32_t channel = LM_BUS_CHANNELS; channel-- > 0;) {
+        hear_place(&nav, AUXILIARY, channel, 20 + (int)channel, 0);
+    }
+    for (uint32_t channel = LM_BUS_CHANNELS; channel-- > 0;) {
+        hear_place(&nav, GPS, channel, 10 + (int)channel, 1000);
+    }
+    hear_place(&nav, INS, 0, 30, 2000);
+    assert_int_equal(nav.crowded, 2);
+    assert_place(&nav, 2000, 10, LM_NAV_GOOD);
+    /* Without the better three the last is still there. */
+    for (uint64_t t = 100000; t <= 3000000; t += 100000) {
+        hear_place(&nav, GPS, LM_BUS_CHANNELS - 1, 13, t);
+    }
+    assert_place(&nav, 3000000, 13, LM_NAV_GOOD);
+    /* Dead ones make place for any other. */
+    hear_place(&nav, INS, 0, 30, 3000000);
+    hear_place(&nav, INS, 0, 30, 8000000);
+    assert_place(&nav, 8000000, 30, LM_NAV_GOOD);
+    assert_int_equal(nav.crowded, 2);
+}
+
+static void every_group_tells_who_said_it_and_how_long_ago(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    const struct lm_bus_row *rows = lm_bus_canas17.rows;
+    hear_place(&nav, INS, 2, 12, 1000000);
+    hear(&nav, bus_frame(rows[INS + 2].id, LM_CANAS_FLOAT, 0, bus_float_bits(900), 1010000));
+    struct lm_can_frame heading = bus_float(LM_BUS_TRUE_HEADING, 33, 1020000);
+    heading.data[0] = 77;
+    hear(&nav, heading);
+    hear_float(&nav, LM_BUS_PITCH, 3, 1000000);
+    hear_float(&nav, LM_BUS_ROLL, 3, 1030000);
+    const struct lm_ownship o = at(&nav, 1050000);
+    assert_true(o.position_origin.row == INS && o.position_origin.rank == 0x102 &&
+                o.position_origin.node == 9 && o.position_origin.age_us == 50000);
+    assert_true(o.height_origin.row == INS + 2 && o.height_origin.age_us == 40000);
+    assert_true(o.heading_origin.row == LM_BUS_TRUE_HEADING && o.heading_origin.node == 77);
+    assert_int_equal(o.attitude_origin.age_us, 50000); /* of the older member */
+    assert_int_equal(o.velocity_origin.age_us, 50000);
+    const struct lm_ownship dead = at(&nav, 9000000);
+    assert_true(dead.position_origin.age_us == 0 && dead.position_origin.node == 0);
+}
+
+/* ---- positions of coarse steps ---- */
+
+struct ride {
+    double worst_hop_m;       /* of the ownship, at the moment that a fix comes */
+    double worst_raw_hop_m;   /* the same, were each fix taken as it came */
+    double worst_error_steps; /* against the truth, in half steps of the FLOAT */
+};
+
+/* A minute at constant velocity from 179.9 degrees eastwards or westwards, position as FLOAT at
+ * 10 Hz; `bias_m_s` is added to the velocity that is told. */
+static struct ride fly_on_floats(double latitude, double north_m_s, double east_m_s,
+                                 double bias_m_s)
+{
+    struct ride ride = {0};
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    const struct course c = {
+        .latitude = latitude, .longitude = 179.9, .north_m_s = north_m_s, .east_m_s = east_m_s};
+    double told_latitude = 0, told_longitude = 0;
+    for (uint64_t t = 0; t <= 60000000; t += 100000) {
+        double true_latitude, true_longitude;
+        fly_in_doubles(&c, (double)t * 1e-6, &true_latitude, &true_longitude);
+        true_longitude = remainder(true_longitude, 360);
+        hear_float(&nav, LM_BUS_NORTH_VELOCITY, north_m_s + bias_m_s, t);
+        hear_float(&nav, LM_BUS_EAST_VELOCITY, east_m_s, t);
+        const struct lm_ownship before = at(&nav, t);
+        hear_float(&nav, LM_BUS_LATITUDE, true_latitude, t);
+        hear_float(&nav, LM_BUS_LONGITUDE, true_longitude, t);
+        const struct lm_ownship now = at(&nav, t);
+        if (t >= 1000000) {
+            ride.worst_hop_m =
+                fmax(ride.worst_hop_m,
+                     metres_between(degrees_of(before.latitude), degrees_of(before.longitude),
+                                    degrees_of(now.latitude), degrees_of(now.longitude)));
+            /* What the last fix, carried on for 100 ms, would have been. */
+            const struct course leg = {told_latitude, told_longitude, 0, north_m_s, east_m_s};
+            double carried_latitude, carried_longitude;
+            fly_in_doubles(&leg, 0.1, &carried_latitude, &carried_longitude);
+            ride.worst_raw_hop_m = fmax(
+                ride.worst_raw_hop_m, metres_between(carried_latitude, carried_longitude,
+                                                     (float)true_latitude, (float)true_longitude));
+        }
+        told_latitude = (float)true_latitude;
+        told_longitude = (float)true_longitude;
+        const float size = (float)fabs(true_latitude);
+        const double metres = 111300, cosine = cos(true_latitude * 0.017453292519943295);
+        const double latitude_half_m = (nextafterf(size, 90) - size) * metres / 2;
+        const double longitude_half_m = 0x1p-17 * metres * cosine; /* from 128 to 256 degrees */
+        /* 2 cm are left for the velocity, which the bus rounds too. */
+        ride.worst_error_steps = fmax(
+            ride.worst_error_steps,
+            fmax(fabs(degrees_of(now.latitude) - true_latitude) * metres / (latitude_half_m + 0.02),
+                 fabs(remainder(degrees_of(now.longitude) - true_longitude, 360)) * metres *
+                     cosine / (longitude_half_m + 0.02)));
+    }
+    assert_int_equal(nav.position_jumps, 0);
+    return ride;
+}
+
+static void a_float_position_moves_evenly_and_stays_within_its_step(void **state)
+{
+    (void)state;
+    struct ride worst = {0};
+    for (int heading = 0; heading < 360; heading += 40) {
+        const double radian = heading * 0.017453292519943295;
+        const struct ride r =
+            fly_on_floats(heading % 3 * 20 - 20.3, 180 * cos(radian), 180 * sin(radian), 0);
+        worst.worst_hop_m = fmax(worst.worst_hop_m, r.worst_hop_m);
+        worst.worst_raw_hop_m = fmax(worst.worst_raw_hop_m, r.worst_raw_hop_m);
+        worst.worst_error_steps = fmax(worst.worst_error_steps, r.worst_error_steps);
+    }
+    print_message("# worst hop %.3f m (%.3f m without smoothing), worst error %.2f half steps\n",
+                  worst.worst_hop_m, worst.worst_raw_hop_m, worst.worst_error_steps);
+    assert_true(worst.worst_raw_hop_m > 0.8);
+    assert_true(worst.worst_hop_m < 0.25);
+    /* Within half a step of the fix, which is within half a step of the truth. */
+    assert_true(worst.worst_error_steps < 2.01);
+}
+
+static void a_wrong_velocity_moves_a_float_position_no_further_than_its_step(void **state)
+{
+    (void)state;
+    const struct ride r = fly_on_floats(47.3, 120, -90, 3);
+    print_message("# 3 m/s too fast: worst hop %.3f m, worst error %.2f half steps\n",
+                  r.worst_hop_m, r.worst_error_steps);
+    assert_true(r.worst_error_steps < 2.01);
+    assert_true(r.worst_hop_m < 0.3 + 0.43); /* its way in 100 ms, and a step of latitude */
+}
+
+static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    for (int i = 0; i < 20; i++) {
+        const double degrees = 179.5 + i * 1e-5;
+        hear_float(&nav, LM_BUS_LATITUDE, 60, (uint64_t)i * 100000);
+        hear_float(&nav, LM_BUS_LONGITUDE, degrees, (uint64_t)i * 100000);
+        const struct lm_ownship o = at(&nav, (uint64_t)i * 100000);
+        assert_true(fabs(degrees_of(o.longitude) - (double)(float)degrees) < 1e-7);
+    }
+}
+
+static void steps_of_short2_are_no_jumps(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    for (uint32_t i = 0; i < 100; i++) {
+        const uint64_t t = i * 100000;
+        const uint32_t word = (8000 + i / 3) << 16 | 180; /* 612 m now and then */
+        hear(&nav, bus_frame(1036, LM_CANAS_SHORT2, 0, word, t));
+        hear(&nav, bus_frame(1037, LM_CANAS_SHORT2, 0, word, t));
+    }
+    assert_int_equal(nav.position_jumps, 0);
+}
+
 /* ---- ages ---- */
 
 struct ages {
@@ -523,6 +771,14 @@ int main(void)
         cmocka_unit_test(true_heading_is_preferred_while_it_lives),
         cmocka_unit_test(heading_turns_as_the_body_does),
         cmocka_unit_test(heading_stands_still_where_it_means_nothing),
+        cmocka_unit_test(a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady),
+        cmocka_unit_test(both_coordinates_come_from_one_sender),
+        cmocka_unit_test(of_too_many_senders_the_best_are_followed),
+        cmocka_unit_test(every_group_tells_who_said_it_and_how_long_ago),
+        cmocka_unit_test(a_float_position_moves_evenly_and_stays_within_its_step),
+        cmocka_unit_test(a_wrong_velocity_moves_a_float_position_no_further_than_its_step),
+        cmocka_unit_test(a_float_position_without_velocity_is_taken_as_it_comes),
+        cmocka_unit_test(steps_of_short2_are_no_jumps),
         cmocka_unit_test(every_quality_changes_at_the_microsecond_the_table_says),
         cmocka_unit_test(one_dead_coordinate_or_angle_kills_its_group),
         cmocka_unit_test(a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best),

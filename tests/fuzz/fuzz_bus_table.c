@@ -1,0 +1,50 @@
+/* A text table of a bus: whatever it holds, it is refused, or makes a profile whose arithmetic
+ * stays within its bounds for any frame, and prints. */
+#include "fuzz.h"
+#include "lm/nav.h"
+#include "print.h"
+#include "table_text.h"
+
+const uint32_t fuzz_mutations = 8000;
+
+static void try_frames(const struct lm_bus_profile *profile)
+{
+    struct lm_nav *nav = malloc(sizeof *nav);
+    FUZZ_ASSERT(nav);
+    lm_nav_init(nav, profile);
+    for (uint32_t i = 0; i < 4u * profile->row_count; i++) {
+        const uint8_t fill = (uint8_t)(i % 4 * 0x55);
+        const bool is_packed = profile->framing == LM_BUS_PACKED;
+        struct lm_can_frame f = {.id = profile->rows[i / 4].id,
+                                 .is_extended = is_packed,
+                                 .length = 8,
+                                 .time_us = i * 1000};
+        memset(f.data, fill, sizeof f.data);
+        struct lm_ownship ownship;
+        lm_nav_take(nav, &f);
+        lm_nav_at(nav, f.time_us + i % 7 * 1000000, &ownship);
+    }
+    free(nav);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static struct bus_table table;
+    FILE *in = size > 0 ? fmemopen((void *)(uintptr_t)data, size, "r") : NULL;
+    if (in == NULL) {
+        return 0;
+    }
+    const int status = bus_table_read(&table, in, "table");
+    fclose(in);
+    if (status == 0) {
+        try_frames(&table.profile);
+        FILE *out = fopen("/dev/null", "w");
+        FUZZ_ASSERT(out);
+        bus_print_table(out, &table.profile);
+        bus_print_dbc(out, &table.profile);
+        bus_print_filters(out, &table.profile);
+        bus_print_c(out, &table.profile);
+        fclose(out);
+    }
+    return 0;
+}
