@@ -40,7 +40,7 @@ TESTS    :=
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check panel bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
+.PHONY: help deps all run check panel package bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -60,6 +60,10 @@ check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
 
 panel: deps ## Build the cockpit panel's program for this machine, or for ARCH=arm64 or amd64
 	@$(MAKE) --no-print-directory BOARD=panel-linux panel-program
+
+package: deps ## Build the panel's Debian packages for arm64 and amd64 in build/packages
+	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package
+	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package
 
 bench: deps ## Measure: instructions a pixel, ratios against peers, memory
 	@$(MAKE) --no-print-directory all

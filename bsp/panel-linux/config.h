@@ -81,7 +81,7 @@ struct config_option {
     const char *name;
     const char *values;  /* what it takes: "0..90", "auto | drm | fbdev | none" */
     const char *initial; /* its default, as it would stand in a file */
-    const char *help;    /* one line or more */
+    const char *help;
 };
 
 uint32_t config_option_count(void);

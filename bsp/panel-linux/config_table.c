@@ -10,11 +10,11 @@
 
 #define KEY(index, name)                                                                           \
     OPTION(CONFIG_TEXT, key[index], 0, CONFIG_NAME, "none", "key." name, "LINE | none", "none",    \
-           "Line of the bezel key " name ".")
+           "Line of this bezel key, by name or as CHIP:OFFSET.")
 #define BUTTON_VALUES "none | designate | drop | 1..20 | gain+ | gain- | sym+ | ... | con-"
 #define STICK(number, initial)                                                                     \
     OPTION(CONFIG_BUTTON, stick_map.button[(number)-1], 0, 0, NULL, "stick.button." #number,       \
-           BUTTON_VALUES, initial, "What the hand controller's button " #number " does.")
+           BUTTON_VALUES, initial, "What this button of the hand controller does.")
 #define AXIS_VALUES "none | [-] x y z rx ry rz slider dial wheel hatx haty rudder throttle"
 
 const struct config_row config_table[] = {
@@ -41,7 +41,7 @@ const struct config_row config_table[] = {
            "Mode of the screen, 64..8192 pixels each way. auto: the one that the screen prefers."),
     OPTION(CONFIG_SIZE, glass_picture, 256, 1024, "auto", "glass.picture", "WIDTHxHEIGHT | auto",
            "auto",
-           "The firmware's picture, 256..1024 pixels each way, centred on the screen. auto: the\n"
+           "The firmware's picture, 256..1024 pixels each way, centred on the screen. auto: the "
            "largest square that fits, or 768x768 when no screen is there at the start."),
     OPTION(CONFIG_CHOICE, glass_turn, 0, 0, "0 90 180 270", "glass.turn", "0 | 90 | 180 | 270", "0",
            "Degrees that the picture is turned clockwise on the screen."),
@@ -97,10 +97,10 @@ const struct config_row config_table[] = {
            "Its brightness with the day palette, per cent."),
     OPTION(CONFIG_NUMBER, backlight_night, 1, 100, NULL, "backlight.night", "1..100", "20",
            "Its brightness with the night palette, per cent."),
-    OPTION(
-        CONFIG_DEVICE, stick, 0, 0, NULL, "stick", "VENDOR:PRODUCT[:SERIAL] | auto | none", "auto",
-        "USB hand controller, in hexadecimal as lsusb prints it. auto: the first joystick, game\n"
-        "pad or multi-axis controller."),
+    OPTION(CONFIG_DEVICE, stick, 0, 0, NULL, "stick", "VENDOR:PRODUCT[:SERIAL] | auto | none",
+           "auto",
+           "USB hand controller, in hexadecimal as lsusb prints it. auto: the first joystick, game "
+           "pad or multi-axis controller."),
     OPTION(CONFIG_AXIS, stick_map.right, 0, 0, NULL, "stick.right", AXIS_VALUES, "x",
            "Axis that moves the cursor to the right; - turns it round."),
     OPTION(CONFIG_AXIS, stick_map.up, 0, 0, NULL, "stick.up", AXIS_VALUES, "-y",

@@ -6,6 +6,8 @@ PROGRAMS += $(PANEL)
 $(PANEL): $(O)/bsp/panel-linux/main.o $(LIB_panel) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)
 $(PANEL): LDLIBS = $(LINUX_LIBS)
 
-.PHONY: panel-program
+.PHONY: panel-program panel-package
+panel-package: $(PANEL)
+	@STRIP=$(TRIPLET)-strip OBJDUMP=$(TRIPLET)-objdump sh bsp/panel-linux/debian/build.sh $(ARCH) $(PANEL) build/packages $(RUN)
 panel-program: $(PANEL)
 	@echo 'the panel for $(ARCH): $(PANEL)'
