@@ -7,7 +7,7 @@
 struct bare_packet {
     struct RTCRayHit8 rays;
     _Alignas(32) int valid[SCENE_PACKET];
-    bool is_shadow, is_parallel;
+    bool is_shadow;
 };
 
 void bare_keep(struct bare_rays *b, const struct scene_rays *rays, bool is_shadow)
@@ -29,7 +29,6 @@ void bare_keep(struct bare_rays *b, const struct scene_rays *rays, bool is_shado
     struct bare_packet *p = &b->packets[b->count++];
     embree_pack(rays, &p->rays, p->valid);
     p->is_shadow = is_shadow;
-    p->is_parallel = rays->is_parallel;
 }
 
 size_t bare_cast(const struct scene *s, const struct bare_rays *b, size_t first, size_t end)
@@ -37,7 +36,7 @@ size_t bare_cast(const struct scene *s, const struct bare_rays *b, size_t first,
     size_t met = 0;
     for (size_t i = first; i < end; i++) {
         const struct bare_packet *p = &b->packets[i];
-        struct RTCIntersectContext context = embree_context(p->is_parallel);
+        struct RTCIntersectContext context = embree_context();
         struct RTCRayHit8 rays = p->rays; /* Embree writes into it */
         if (p->is_shadow) {
             rtcOccluded8(p->valid, s->tree, &context, &rays.ray);

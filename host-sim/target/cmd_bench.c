@@ -14,6 +14,8 @@
 static const struct db_usage usage = {
     "bench", "measure rays a second, beside bare Embree",
     "Traces a picture again and again for some seconds and prints lines of name and value:\n"
+    "  columns, rows, plane_m of the plane that sends the rays: width, height and how far\n"
+    "                         its middle is above the scene's centre\n"
     "  primary_rays, rays     of one picture; rays are primary, specular and backward ones\n"
     "  trace_ms               tracing the picture, least of all runs\n"
     "  embree_ms              the same rays in the same packets, given to Embree with nothing\n"
@@ -86,7 +88,7 @@ static int keep_rays(const struct scene *scene, const struct trace_order *order,
 struct times {
     double trace_s, embree_s, chip_s;
     uint64_t rays;
-    uint32_t primary_rays;
+    struct trace_sensor sensor;
 };
 
 static int measure_once(const struct setup *s, const struct scene *scene,
@@ -102,7 +104,7 @@ static int measure_once(const struct setup *s, const struct scene *scene,
     const double traced_s = now_s();
     float *chip = setup_chip(s, &r, &width, &height);
     const double done_s = now_s();
-    t->primary_rays = r.sensor.columns * r.sensor.rows;
+    t->sensor = r.sensor;
     trace_records_free(&r);
     if (!chip) {
         return -1;
@@ -118,11 +120,16 @@ static void print(const struct times *t)
 {
     struct rusage use;
     getrusage(RUSAGE_SELF, &use);
-    printf("primary_rays %u\nrays %llu\n", t->primary_rays, (unsigned long long)t->rays);
+    const struct trace_sensor *p = &t->sensor;
+    const double height_m = p->rows * p->step_up_m;
+    printf("columns %u\nrows %u\n", p->columns, p->rows);
+    printf("plane_m %.9g %.9g %.9g\n", p->columns * p->step_across_m, height_m,
+           p->low_up_m + height_m / 2);
+    printf("primary_rays %u\nrays %llu\n", p->columns * p->rows, (unsigned long long)t->rays);
     printf("trace_ms %.2f\nembree_ms %.2f\nshare_of_embree %.3f\n", 1e3 * t->trace_s,
            1e3 * t->embree_s, t->embree_s / t->trace_s);
     printf("rays_per_s %.4g\nprimary_rays_per_s %.4g\n", (double)t->rays / t->trace_s,
-           t->primary_rays / t->trace_s);
+           p->columns * p->rows / t->trace_s);
     printf("chip_ms %.2f\nmemory_mb %ld\n", 1e3 * t->chip_s, use.ru_maxrss / 1024);
 }
 

@@ -151,13 +151,11 @@ int scene_open(struct scene *s, const struct mesh *m, double ground_half_m, cons
     return 0;
 }
 
-struct RTCIntersectContext embree_context(bool is_parallel)
+struct RTCIntersectContext embree_context(void)
 {
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    if (is_parallel) {
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    }
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     return context;
 }
 
@@ -186,7 +184,7 @@ void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int v
 
 void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t facets[SCENE_PACKET])
 {
-    struct RTCIntersectContext context = embree_context(rays->is_parallel);
+    struct RTCIntersectContext context = embree_context();
     _Alignas(32) int valid[SCENE_PACKET];
     struct RTCRayHit8 packet;
     embree_pack(rays, &packet, valid);
@@ -199,7 +197,7 @@ void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t f
 
 uint32_t scene_is_blocked(const struct scene *s, const struct scene_rays *rays)
 {
-    struct RTCIntersectContext context = embree_context(rays->is_parallel);
+    struct RTCIntersectContext context = embree_context();
     _Alignas(32) int valid[SCENE_PACKET];
     struct RTCRayHit8 packet;
     embree_pack(rays, &packet, valid);

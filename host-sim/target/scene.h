@@ -29,7 +29,6 @@ enum { SCENE_PACKET = 8 };
 struct scene_rays {
     struct vec from[SCENE_PACKET], along[SCENE_PACKET]; /* `along` of unit length */
     uint32_t count;
-    bool is_parallel; /* they go nearly the same way: Embree may then take them together */
 };
 
 /* Build the tree over the model and, when ground_half_m > 0, a square of ground of that half side

@@ -53,12 +53,10 @@ static void start_wave(const struct trace_tiles *t, uint32_t first, struct wave 
     }
 }
 
-static void meet_wave(const struct trace_tiles *t, struct wave *w, bool is_parallel,
-                      struct bare_rays *bare)
+static void meet_wave(const struct trace_tiles *t, struct wave *w, struct bare_rays *bare)
 {
     for (uint32_t i = 0; i < w->count; i += SCENE_PACKET) {
         struct scene_rays rays;
-        rays.is_parallel = is_parallel;
         rays.count = w->count - i < SCENE_PACKET ? w->count - i : SCENE_PACKET;
         for (uint32_t k = 0; k < rays.count; k++) {
             rays.from[k] = w->flights[i + k].from;
@@ -153,7 +151,6 @@ static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
     struct scene_rays rays;
     uint32_t asker[SCENE_PACKET], cast = 0;
     rays.count = 0;
-    rays.is_parallel = true;
     for (uint32_t i = 0; i < w->count; i++) {
         if (!(bounce->records[i].flags & TRACE_BLOCKED)) {
             asker[rays.count] = i;
@@ -181,10 +178,13 @@ void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_result 
     start_wave(t, index * TILE_RAYS, &w);
     for (uint32_t b = 0; b < t->bounces && w.count > 0; b++) {
         result->rays_cast += w.count;
-        meet_wave(t, &w, b == 0, result->bare);
+        meet_wave(t, &w, result->bare);
         if (!reflect_wave(t, &w, b, result)) {
             result->is_out_of_memory = true;
             return;
+        }
+        if (b == 0) {
+            continue; /* the way back is the way the primary ray came */
         }
         result->rays_cast += look_back(t, &w, &result->bounces[b], result->bare);
     }

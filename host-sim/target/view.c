@@ -40,7 +40,7 @@ static uint32_t pixel_at(const struct scene *s, const struct trace_axes *axes, s
     const double back_m = 2 * fmax(vec_length(s->low), vec_length(s->high)) + 50;
     double rgb[3] = {0, 0, 0};
     for (int first = 0; first < SAMPLES * SAMPLES; first += SCENE_PACKET) {
-        struct scene_rays rays = {.is_parallel = true};
+        struct scene_rays rays = {.count = 0};
         uint32_t facets[SCENE_PACKET];
         for (int k = first; k < SAMPLES * SAMPLES && k < first + SCENE_PACKET; k++) {
             const double right = across_m + (k % SAMPLES + 0.5) / SAMPLES * pixel_m;

@@ -1,0 +1,69 @@
+#!/bin/sh
+# target.sh BUILD-DIR: rays of landmass-target a second, beside bare Embree and beside POV-Ray (the engine of RaySAR), on the
+# same model and the same picture; and what one chip costs. Nothing here passes or fails.
+set -eu
+build=${1:?usage: target.sh BUILD-DIR}
+target=$build/bin/landmass-target
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT INT TERM
+azimuth=20 depression=15 rays=6
+
+value() { # name, of the file "ours"
+    awk -v name="$1" '$1 == name { print $2 }' "$work/ours"
+}
+
+# The model and its ground as a scene of POV-Ray: parallel rays from the same plane, a light at the radar, mirrors that are
+# followed for five reflections. POV-Ray's axes are left-handed: its picture is ours in a mirror, and as much work.
+pov_scene() {
+    awk -v azimuth=$azimuth -v depression=$depression -v plane="$(awk '$1 == "plane_m" { print $2, $3, $4 }' "$work/ours")" '
+        function vector(x, y, z) { return sprintf("<%.9g,%.9g,%.9g>", x, y, z) }
+        BEGIN {
+            split(plane, p)
+            rad = atan2(0, -1) / 180; a = azimuth * rad; d = depression * rad
+            ax = -cos(a); ay = sin(a)                                   # away
+            sx = ax * cos(d); sy = ay * cos(d); sz = -sin(d)            # line of sight
+            ux = ax * sin(d); uy = ay * sin(d); uz = cos(d)             # up on the plane
+            print "#version 3.7; global_settings { assumed_gamma 1 max_trace_level 5 adc_bailout 0 }"
+            print "camera { orthographic location", vector(-20 * sx + p[3] * ux, -20 * sy + p[3] * uy, -20 * sz + p[3] * uz)
+            print "direction", vector(sx, sy, sz), "right", vector(sin(a) * p[1], cos(a) * p[1], 0)
+            print "up", vector(ux * p[2], uy * p[2], uz * p[2]), "}"
+            print "light_source {", vector(-1000 * sx, -1000 * sy, -1000 * sz), "color rgb 1 parallel point_at 0 }"
+            print "mesh {"
+        }
+        $1 == "v" { v[++n] = vector($2, $3, $4) }
+        $1 == "f" { print "triangle {" v[$2] "," v[$3] "," v[$4] "}" }
+        END {
+            g = 20
+            print "triangle {" vector(-g, -g, 0) "," vector(g, -g, 0) "," vector(g, g, 0) "}"
+            print "triangle {" vector(-g, -g, 0) "," vector(g, g, 0) "," vector(-g, g, 0) "}"
+            print "texture { pigment { rgb 1 } finish { ambient 0 diffuse 0.1 reflection 0.9 } } }"
+        }' "$work/model.obj" > "$work/scene.pov"
+}
+
+compare() { # model
+    "$target" model --model "$1" --obj "$work/model.obj" > "$work/log"
+    "$target" bench --model "$1" --azimuth $azimuth --depression $depression --rays $rays --seconds 4 > "$work/ours"
+    pov_scene
+    povray +I"$work/scene.pov" +O"$work/scene.png" +W"$(value columns)" +H"$(value rows)" -D -A +WT"$(nproc)" \
+        +FN > "$work/pov" 2>&1 || { tail -n 20 "$work/pov"; exit 1; }
+    pov_s=$(sed -nE 's/.*Trace Time:.*\(([0-9.]+) seconds\).*/\1/p' "$work/pov" | tail -n 1)
+    awk -v model="$1" -v primary="$(value primary_rays)" -v rays="$(value rays)" -v ms="$(value trace_ms)" \
+        -v share="$(value share_of_embree)" -v pov="$pov_s" 'BEGIN {
+        printf "  %-6s %8d %9d %9.2f %11.3g %9.1f %11.3g %8.1f %9.2f\n", model, primary, rays, ms, primary / ms * 1e3,
+               pov * 1e3, primary / pov, pov * 1e3 / ms, share
+    }'
+}
+
+echo "Ray tracing of a picture with up to five reflections, $(nproc) threads: landmass-target, POV-Ray, bare Embree"
+echo "  model   primary  all rays  ours, ms   primary/s   POV, ms   primary/s    times  of Embree"
+if command -v povray > /dev/null; then
+    compare slicy
+    compare tank
+else
+    echo "  povray is missing (make deps): not compared"
+fi
+echo "One chip of 54 x 54 pixels, 5 reflections, 2 x 2 rays a cell, from model to pixels"
+for model in slicy tank; do
+    "$target" bench --model $model --azimuth $azimuth --depression $depression --seconds 2 > "$work/ours"
+    printf '  %-6s %6.1f ms, %s MB\n' $model "$(value chip_ms)" "$(value memory_mb)"
+done
