@@ -39,11 +39,9 @@ static void tick(void *board)
     }
 }
 
-static int no_controls(void *ctx, struct lm_control *control)
+static int get_byte(void *uart)
 {
-    (void)ctx;
-    (void)control;
-    return 0;
+    return drv_uart_get(uart);
 }
 
 static void open_console(struct zcu102 *z)
@@ -71,6 +69,10 @@ static void complain_if(struct zcu102 *z, int status, const char *device_name)
 
 static void open_devices(struct zcu102 *z)
 {
+    drv_uart_init(&z->bezel_line, device(UART1_BASE), UART_CLOCK_HZ, ZCU102_BAUD);
+    drv_irq_attach(&z->irq, UART1_LINE, drv_uart_interrupt, &z->bezel_line);
+    drv_bezel_serial_init(&z->bezel, get_byte, &z->bezel_line);
+
     const struct drv_can_config can = {.base = device(CAN0_BASE),
                                        .clock_hz = CAN_CLOCK_HZ,
                                        .bit_rate = ZCU102_BUS_BIT_RATE,
@@ -104,11 +106,10 @@ void zcu102_open(struct zcu102 *z)
     open_console(z);
     open_devices(z);
     z->supervisor.watchdog = &z->watchdog;
-    z->controls = (struct lm_controls){.next = no_controls};
     z->lent = (struct lm_board){.radar = &lm_radar_default,
                                 .flash = &z->flash.port,
                                 .can = &z->can.port,
-                                .controls = &z->controls,
+                                .controls = &z->bezel.port,
                                 .display = &z->display.port,
                                 .tile_pool = tile_pool,
                                 .tile_pool_bytes = sizeof tile_pool,

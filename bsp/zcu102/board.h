@@ -2,6 +2,7 @@
 #ifndef ZCU102_BOARD_H
 #define ZCU102_BOARD_H
 
+#include "drv/bezel_serial.h"
 #include "drv/can_zynqmp.h"
 #include "drv/display_dp.h"
 #include "drv/flash_gqspi.h"
@@ -27,7 +28,8 @@ enum {
 struct zcu102 {
     struct drv_timer timer;
     struct drv_irq irq;
-    struct drv_uart console;
+    struct drv_uart console, bezel_line;
+    struct drv_bezel_serial bezel;
     struct zcu102_core core;
     struct drv_can can;
     struct drv_flash flash;
@@ -36,7 +38,6 @@ struct zcu102 {
     struct zcu102_supervisor supervisor;
     struct zcu102_restart last_restart;
 
-    struct lm_controls controls;
     struct lm_board lent; /* a test may exchange a port before zcu102_start */
     struct lm_unit unit;
 

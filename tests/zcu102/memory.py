@@ -17,7 +17,7 @@ LAYERS = ("fixed", "firmware", "drivers", "bsp/zcu102")
 KIB = 1024
 STACK_BUDGET = 8 * KIB
 INTERRUPT_FRAME = 272  # bsp/zcu102/vectors.S
-PORTS = {"receive", "send", "read_start", "read_poll", "acquire", "present", "no_controls", "next_control"}
+PORTS = {"receive", "send", "read_start", "read_poll", "acquire", "present", "next", "next_control"}
 HANDLERS = {"tick", "drv_uart_interrupt", "drv_can_interrupt"}
 
 
@@ -30,6 +30,8 @@ def behind_pointer(graph, caller):
     """The functions that `caller` may reach by a call through a pointer."""
     if caller == "drv_irq_dispatch":
         return {name for name in graph.stack_bytes if plain(name) in HANDLERS}
+    if caller.startswith("drivers/bezel/"):
+        return {name for name in graph.stack_bytes if plain(name) == "get_byte"}
     if caller.startswith(("drivers/", "drv_")):
         return {"zcu102_now_us"}
     ports = {name for name in graph.stack_bytes if plain(name) in PORTS}

@@ -1,5 +1,9 @@
 """The drivers on their devices, and what the board does with a program that goes astray."""
+import socket
+import subprocess
 import sys
+import tempfile
+import time
 
 import machine
 from tap import Tap
@@ -58,6 +62,42 @@ def faults(tap):
     tap.ok("the program counts its restarts", runs[-1].startswith(f"{len(FAULTS)}\nall done"), *m.lines[-5:])
 
 
+def sentence(text):
+    """As drv/bezel_serial.h frames it."""
+    checksum = 0
+    for character in text.encode():
+        checksum ^= character
+    return f"${text}*{checksum:02X}\r\n".encode()
+
+
+def bench_test_pages():
+    """Checksums of the bench's test page, in as many pictures as its sign of life has positions."""
+    (WORK / "flash").write_bytes(b"\xff" * 4096)
+    (WORK / "script").write_text("0.5 osb 14\n" + "".join(f"{1 + 0.034 * n:.3f} picture page-{n}\n" for n in range(16)))
+    subprocess.run([machine.TOOLS.parent.parent / "landmass-sim", "--db", WORK / "flash", "--script", WORK / "script",
+                    "--png", WORK / "bench", "--every", "0", "--seconds", "2", "--quiet"], check=True,
+                   stderr=subprocess.DEVNULL)
+    return {machine.checksum(page)[1] for page in (WORK / "bench").glob("page-*.png")}
+
+
+def bezel(tap):
+    """The product itself, as it is flashed: a press on its bezel."""
+    pages = bench_test_pages()
+    with tempfile.TemporaryDirectory() as folder:
+        path = f"{folder}/uart1"
+        with machine.Machine(machine.BUILD / "landmass.elf", WORK, options=("-no-reboot",), uart1=path) as m:
+            m.run(until="no usable database")
+            before = m.dump("before")
+            with socket.socket(socket.AF_UNIX) as line:
+                line.connect(path)
+                line.sendall(sentence("D14") + sentence("U14"))
+                deadline = time.monotonic() + 20
+                while m.dump("after") not in pages and time.monotonic() < deadline:
+                    time.sleep(0.02)
+            tap.ok("a press on the serial bezel brings the test page, as on the bench",
+                   before not in pages and m.dump("after") in pages)
+
+
 def level_2(tap):
     with machine.Machine(machine.BUILD / "faults.elf", WORK, options=("-machine", "virtualization=on")) as m:
         m.run()
@@ -72,6 +112,7 @@ def main():
         tap.skip("the drivers work on the board's devices", why)
         return tap.end()
     devices(tap)
+    bezel(tap)
     faults(tap)
     level_2(tap)
     return tap.end()
