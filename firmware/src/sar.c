@@ -1,8 +1,11 @@
 #include "lm/sar.h"
 
+#include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+
+enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256 };
 
 static uint32_t metres_q8_of_mm(uint32_t mm)
 {
@@ -75,6 +78,42 @@ static void set_grids(struct lm_sar *s, const struct lm_db *db, int32_t referenc
                       runup_cell_q8, LM_SAR_RUNUP, height_q10, reference_q10);
 }
 
+/* The grazing angle of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
+static void set_layover(struct lm_sar *s)
+{
+    const uint32_t range_q8 = s->command.range_m * 256u;
+    const int64_t above_q10 = (int64_t)s->grid.height_q10 - s->grid.reference_q10;
+    /* 2^26 * 2^14 over a range in Q8; at 1 km, 2^22. */
+    const int64_t grazing_q16 =
+        above_q10 * (1 << 14) / range_q8 - ((int64_t)range_q8 * LM_CURVATURE_Q48 >> 40);
+    s->layover = (struct lm_layover){
+        .reference_q10 = s->grid.reference_q10,
+        .lean_q16 = s->command.has_layover && grazing_q16 > 0 ? (int32_t)grazing_q16 : 0,
+        .cell_q8 = s->grid.cell_q8,
+        .first = s->grid.first,
+        .cells = s->grid.cells,
+    };
+}
+
+static void set_geometry(struct lm_sar *s)
+{
+    s->geometry = (struct lm_patch_geometry){
+        .centre = s->command.centre,
+        .look = s->command.look_azimuth,
+        .centre_q8 = s->command.range_m * 256u,
+        .cell_q8 = s->grid.cell_q8,
+        .lines = s->radar->sar.cells,
+        .cells = s->grid.cells,
+        .guard = LM_SAR_GUARD,
+        .first = s->grid.first,
+        .heights = {s->grid.height_q10, s->grid.reference_q10},
+        .wavelength_um = s->radar->wavelength_um,
+        .across_mm_s = s->across_mm_s,
+        .lean_q16 = s->layover.lean_q16,
+        .epoch = s->epoch,
+    };
+}
+
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene)
 {
@@ -95,12 +134,18 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->line_us = line_us < LM_SAR_LINE_MIN_US ? LM_SAR_LINE_MIN_US : line_us;
     s->targets = scene->targets;
     s->time_us = scene->time_us;
-    s->near.is_chosen = false;
     s->epoch = scene->epoch;
     s->horizon = LM_HORIZON_OPEN;
-    s->line = 0;
+    s->across_mm_s = across_mm_s;
+    s->defocus_q8 = flight && !command->is_steady
+                        ? lm_defocus_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
+                                        radar->wavelength_um, patch_us)
+                        : 256;
     lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state);
     set_grids(s, db, scene->reference_q10);
+    set_layover(s);
+    set_geometry(s);
+    lm_sar_restart(s);
     return LM_OK;
 }
 
@@ -146,63 +191,127 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
 }
 
-/* The targets that the line at hand may meet. */
-static void find_targets(struct lm_sar *s, struct lm_tile_cache *tiles, struct lm_line_targets *t)
+/* How far Doppler may bring a target into the patch from outside: s v / (V sin o) for the fastest.
+ */
+static uint32_t displaced_most_m(const struct lm_sar *s)
 {
-    const uint32_t cell_q8 = s->grid.cell_q8, range_q8 = s->command.range_m * 256u;
-    const uint32_t half_q8 = s->radar->sar.cells * cell_q8 / 2;
+    uint32_t fastest_mm_s = 0;
+    for (uint32_t i = 0; i < s->targets->count; i++) {
+        fastest_mm_s = fx_max_u32(fastest_mm_s, s->targets->items[i].speed_mm_s);
+    }
+    const uint64_t across_mm_s = fx_max_u32(fx_abs_u32(s->across_mm_s), 1);
+    const uint64_t most_m = (uint64_t)s->command.range_m * fastest_mm_s / across_mm_s;
+    return most_m < 200000 ? (uint32_t)most_m : 200000;
+}
+
+/* The points of the targets that the patch may show. */
+static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
+{
+    s->points.count = 0;
+    if (!s->targets || s->targets->count == 0) {
+        return;
+    }
     /* Half the diagonal: 1.5 is more than the root of 2. */
+    const uint32_t half_m = s->radar->sar.cells * s->grid.cell_q8 / 512;
     const struct lm_target_scene scene = {.place = s->command.centre,
-                                          .reach_m = half_q8 * 3 / 2 / 256 + 1,
+                                          .reach_m = half_m * 3 / 2 + 1 + displaced_most_m(s),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
                                           .level = s->sampling.level};
-    lm_targets_refresh(&s->near, s->targets, &scene);
-    const uint32_t before_centre_q8 = (s->radar->sar.cells / 2u + LM_SAR_GUARD) * cell_q8;
-    t->items = s->targets->items;
-    t->near = &s->near;
-    t->where = (struct lm_target_line){
-        .is_patch = true,
-        .place = s->command.centre,
-        .azimuth = s->command.look_azimuth,
-        .across_q8 = (int32_t)(s->line * cell_q8 + cell_q8 / 2) - (int32_t)half_q8,
-        .centre_q8 = range_q8,
-        .first_q8 = range_q8 - before_centre_q8 + cell_q8 / 2,
-        .cell_q8 = cell_q8,
-        .cells = s->grid.cells,
-        .first = s->grid.first,
-        .height_q10 = s->grid.height_q10,
-        .reference_q10 = s->grid.reference_q10,
-        .wavelength_um = s->radar->wavelength_um,
-        .scan = s->epoch,
-        .pulse = s->line,
-    };
+    lm_targets_select(&s->near, s->targets, &scene);
+    lm_patch_points_set(&s->points, s->targets, &s->near, &s->geometry);
+}
+
+/* The horizon that the lines of a run-up start with. */
+static void trace_runup(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
+                        struct lm_line *line)
+{
+    const struct lm_ground_path path = runup_path(s, number);
+    lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
+    s->horizon = lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes,
+                               &line->ground, LM_HORIZON_OPEN, &line->sight);
+}
+
+void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
+                        struct lm_line *line)
+{
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .aspect = &s->radar->aspect,
+                                        .texture = &s->texture,
+                                        .sampling = s->sampling};
+    int32_t *level_q8 = line->sight.level_q8;
+    if (number % LM_SAR_RUNUP_LINES == 0) {
+        trace_runup(s, tiles, number, line);
+    }
+    const struct lm_ground_path path = patch_path(s, number);
+    lm_line_trace(line, tiles, &setup, &path, s->horizon);
+    if (s->command.has_layover) {
+        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
+    }
+    lm_floor_run(s->radar->sar.noise_floor_q8, level_q8, s->grid.cells);
+    lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
+}
+
+static int32_t *ring_line(struct lm_sar *s, uint32_t number)
+{
+    return s->ring_q8[number % LM_SAR_RING];
+}
+
+/* Sample lines up to `end`. */
+static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t end,
+                         struct lm_line *line)
+{
+    for (; s->sampled < end; s->sampled++) {
+        lm_sar_sample_line(s, tiles, s->sampled, line);
+        lm_patch_points_hide(&s->points, s->sampled, line->sight.horizon,
+                             40 + s->grid.tangent_shift, s->grid.cells);
+        memcpy(ring_line(s, s->sampled), line->sight.level_q8, s->grid.cells * sizeof(int32_t));
+    }
+}
+
+/* Add the points to lines up to `end`. Behind speckle and noise, which belong to the clutter: what
+ * a target returns is its own. */
+static void add_points(struct lm_sar *s, uint32_t end)
+{
+    const int32_t least_q8 = s->radar->sar.noise_floor_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
+    for (; s->summed < end; s->summed++) {
+        lm_patch_points_add(&s->points, s->summed, least_q8, &s->geometry, ring_line(s, s->summed));
+    }
+}
+
+/* The levels of the line at hand, out of focus or not. */
+static void focus_line(struct lm_sar *s, int32_t *level_q8)
+{
+    if (s->defocus_q8 <= 256) {
+        memcpy(level_q8, ring_line(s, s->line), s->grid.cells * sizeof(int32_t));
+        return;
+    }
+    const int32_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
+    uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1];
+    for (int32_t m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
+        const int32_t last = s->radar->sar.cells - 1;
+        const int32_t number = fx_clamp_i32((int32_t)s->line + m, 0, last);
+        near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number);
+    }
+    lm_defocus_shares(s->defocus_q8, share_q16);
+    lm_defocus_run(near_lines, share_q16, level_q8, s->power_q32, s->grid.cells);
 }
 
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
                       struct lm_line *line)
 {
-    struct lm_line_setup setup = {.grid = &s->runup_grid,
-                                  .aspect = &s->radar->aspect,
-                                  .texture = &s->texture,
-                                  .sampling = s->runup_sampling};
-    if (s->line % LM_SAR_RUNUP_LINES == 0) {
-        const struct lm_ground_path path = runup_path(s, s->line);
-        lm_scan_line_run(&line->ground, tiles, &setup.sampling, &path, LM_SAR_RUNUP);
-        s->horizon = lm_aspect_run(setup.grid, setup.aspect, &tiles->db->classes, &line->ground,
-                                   LM_HORIZON_OPEN, &line->sight);
+    const uint32_t lines = s->radar->sar.cells;
+    if (s->sampled == 0) {
+        find_points(s, tiles);
     }
-    setup.grid = &s->grid;
-    setup.sampling = s->sampling;
-    const struct lm_ground_path path = patch_path(s, s->line);
-    lm_line_trace(line, tiles, &setup, &path, s->horizon);
-    lm_floor_run(s->radar->sar.noise_floor_q8, line->sight.level_q8, s->grid.cells);
-    lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
-    if (s->targets && s->targets->count != 0) {
-        struct lm_line_targets targets;
-        find_targets(s, tiles, &targets);
-        lm_line_add_targets(line, &setup, &targets);
-    }
+    sample_lines(s, tiles, fx_min_u32(s->line + 1 + LM_SAR_AHEAD, lines), line);
+    add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
+    focus_line(s, line->sight.level_q8);
     lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);
     s->line++;
+}
+
+void lm_sar_restart(struct lm_sar *s)
+{
+    s->line = s->sampled = s->summed = 0;
 }

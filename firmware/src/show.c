@@ -111,7 +111,8 @@ void lm_show_frame(struct lm_unit *u, uint64_t now_us)
     }
     if (u->flags & (LM_FLAG_NAV_DEAD | LM_FLAG_DB)) {
         lm_plane_clear(&u->plane, &u->frame);
-        u->sar.line = 0; /* a patch that was removed is drawn anew, not shown as an empty one */
+        lm_sar_restart(
+            &u->sar); /* a patch that was removed is drawn anew, not shown as an empty one */
     }
     draw_glass(u, &surface);
     u->count.display_errors += display->present(display->ctx) != LM_OK;

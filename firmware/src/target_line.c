@@ -6,19 +6,13 @@
 #include "fx/trig.h"
 #include "lm/aspect.h"
 
-enum {
-    TWO_PI_Q28 = 1686629713,
-    GRAZING_MIN_Q24 = 1 << 16, /* 1/256, as in the range grid */
-    NO_CELL = -1
-};
+enum { TWO_PI_Q28 = 1686629713, NO_CELL = -1 };
 
 /* ---- where a target is from the line ---- */
 
-/* Along the line and to its right, metres * 256; for a sector, range and angle as well. */
 struct spot {
-    uint32_t range_q8; /* ground range from the antenna */
-    int32_t across_q8; /* patch: from the line's middle */
-    fx_bam_t azimuth;  /* sector: from the antenna, where it appears */
+    uint32_t range_q8; /* ground range from the antenna, metres * 256 */
+    fx_bam_t azimuth;  /* from the antenna, where it appears */
     fx_bam_t back;     /* from the target to the antenna */
 };
 
@@ -43,46 +37,11 @@ static bool may_meet(const struct lm_target_line *line, const struct lm_target *
                      const struct lm_target_item *item)
 {
     const int32_t off = (int32_t)(item->azimuth - line->azimuth);
-    if (line->is_patch) {
-        /* The offset from the centre; a distance below 2^26.6. */
-        const int32_t x_q8 =
-            (int32_t)((int64_t)item->distance_q8 * fx_sin_q15((fx_bam_t)off) >> 15) -
-            line->across_q8;
-        return fx_abs_u32(x_q8) < LM_TARGET_EXTENT_M * 256u + line->cell_q8;
-    }
     /* What target and antenna may have moved, as an angle: 2^32 / (2 pi) a radian, twice for the
      * arc against its sine and for the antenna's way towards it. */
     const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256u;
     const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(item->distance_q8, 1);
     return fx_abs_u32(off) <= slack + line->width + shift_most(line, t, item, slack);
-}
-
-/* The place of a target from an origin, the inverse problem put right by the direct one: the first
- * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
- * they do not agree, near a pole or half a world away. */
-static bool locate(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
-                   fx_bam_t *azimuth)
-{
-    struct lm_geo_origin origin;
-    uint32_t miss_q8;
-    fx_bam_t miss_azimuth;
-    lm_geo_inverse(from, to, distance_q8, azimuth);
-    if (*distance_q8 > 300000u * 256u) {
-        return false;
-    }
-    lm_geo_set_origin(&origin, from);
-    const struct lm_place reached = lm_geo_direct(&origin, *azimuth, *distance_q8);
-    lm_geo_inverse(reached, to, &miss_q8, &miss_azimuth);
-    if (miss_q8 > *distance_q8 / 16 + 256) {
-        return false;
-    }
-    const fx_bam_t turn = miss_azimuth - *azimuth;
-    const int32_t on_q8 = (int32_t)((int64_t)miss_q8 * fx_cos_q30(turn) >> 30);
-    const int32_t aside_q8 = (int32_t)((int64_t)miss_q8 * fx_sin_q30(turn) >> 30);
-    const int32_t along_q8 = (int32_t)*distance_q8 + on_q8;
-    *distance_q8 = fx_hypot_u32(along_q8, aside_q8);
-    *azimuth += fx_atan2(aside_q8, along_q8);
-    return true;
 }
 
 /* Whether a closing speed is one of those that are shown. */
@@ -107,37 +66,20 @@ static bool find_spot(const struct lm_target_line *line, const struct lm_target 
                       const struct lm_target_item *item, struct spot *spot)
 {
     uint32_t distance_q8;
-    if (!locate(line->place, item->pose.place, &distance_q8, &spot->azimuth)) {
+    if (!lm_target_locate(line->place, item->pose.place, &spot->range_q8, &spot->azimuth)) {
         return false;
     }
-    if (!line->is_patch) {
-        spot->range_q8 = distance_q8;
-        spot->across_q8 = 0;
-        lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
-        return !line->is_doppler || displace(line, t, item, spot);
-    }
-    const fx_bam_t off = spot->azimuth - line->azimuth;
-    const int64_t along_q8 = (int64_t)distance_q8 * fx_cos_q30(off) >> 30;
-    spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30) - line->across_q8;
-    spot->range_q8 = (uint32_t)fx_max_i32((int32_t)(line->centre_q8 + along_q8), 0);
-    spot->back = line->azimuth + FX_BAM_180;
-    return true;
+    lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
+    return !line->is_doppler || displace(line, t, item, spot);
 }
 
 /* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
-static struct spot beside(const struct lm_target_line *line, const struct spot *target,
-                          const struct lm_return *r)
+static struct spot beside(const struct spot *target, const struct lm_return *r)
 {
     const int32_t along_q8 = (int32_t)target->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
     const int32_t across_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
-    struct spot s = {.range_q8 = (uint32_t)fx_max_i32(along_q8, 0),
-                     .across_q8 = target->across_q8 + across_q8,
-                     .azimuth = target->azimuth};
-    if (!line->is_patch) {
-        s.range_q8 = fx_hypot_u32(along_q8, across_q8);
-        s.azimuth += fx_atan2(across_q8, along_q8);
-    }
-    return s;
+    return (struct spot){.range_q8 = fx_hypot_u32(along_q8, across_q8),
+                         .azimuth = target->azimuth + fx_atan2(across_q8, along_q8)};
 }
 
 /* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two lines and no two
@@ -145,9 +87,7 @@ static struct spot beside(const struct lm_target_line *line, const struct spot *
 static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 {
     const int32_t half_q8 = (int32_t)(line->cell_q8 / 2);
-    const bool is_in_line =
-        line->is_patch ? s->across_q8 >= -half_q8 && s->across_q8 < (int32_t)line->cell_q8 - half_q8
-                       : (fx_bam_t)(s->azimuth - line->azimuth + line->width / 2) < line->width;
+    const bool is_in_line = (fx_bam_t)(s->azimuth - line->azimuth + line->width / 2) < line->width;
     const int64_t past_q8 = (int64_t)s->range_q8 - line->first_q8 + half_q8;
     if (!is_in_line || past_q8 < 0) {
         return NO_CELL;
@@ -158,50 +98,21 @@ static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 
 /* ---- how it is seen ---- */
 
-/* The Earth's drop at a ground range, metres * 1024; a range of 400 km, 2^26.6, squared in units of
- * 16 m2 times the curvature: 2^57.2. */
-static int32_t drop_q10(uint32_t range_q8)
+static struct lm_target_heights heights_of(const struct lm_target_line *line)
 {
-    return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
+    return (struct lm_target_heights){line->height_q10, line->reference_q10};
 }
 
-static void view_target(const struct lm_target_line *line, const struct lm_target_item *item,
-                        const struct spot *spot, struct lm_target_view *v)
+/* 10 log10 of the cell's area; the line is as wide as its arc: 2^26.6 * 2^32 turns, to Q16, times
+ * 2 pi in Q26. */
+static int32_t area_q8(const struct lm_target_line *line, uint32_t cell)
 {
-    /* Heights within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all below 2^29 in Q10. */
-    const int32_t range_q10 = (int32_t)(fx_min_u32(spot->range_q8, 400000u * 256u) * 4);
-    const int32_t above_q10 =
-        line->height_q10 - item->elevation_q6 * 16 - drop_q10((uint32_t)range_q10 / 4);
-    const uint64_t slant_q10 = fx_hypot_u32(range_q10, above_q10);
-    lm_target_view_set(v, spot->back - item->pose.heading, fx_atan2(above_q10, range_q10),
-                       (uint32_t)(slant_q10 * 1000 >> 10));
-}
-
-/* Tangent of the elevation angle at which a height appears, Q38; |height| below 2^26 in Q10. */
-static int64_t tangent_q38(const struct lm_target_line *line, int32_t top_q10, uint32_t range_q8)
-{
-    const int64_t apparent_q10 = (int64_t)top_q10 - line->height_q10 - drop_q10(range_q8);
-    return apparent_q10 * ((int64_t)1 << 36) / (int64_t)fx_max_u32(range_q8, LM_RANGE_MIN_M * 256u);
-}
-
-/* 10 log10 of a cell's area as flat ground shows it, w ds g, in 1/256 dB of a square metre. */
-static int32_t clutter_area_q8(const struct lm_target_line *line, int32_t cell)
-{
-    const uint32_t range_q8 = line->first_q8 + (uint32_t)cell * line->cell_q8;
-    /* A sector's line is as wide as its arc: 2^26.6 * 2^32 turns, to Q16, times 2 pi in Q26. */
+    const struct lm_target_heights h = heights_of(line);
+    const uint32_t range_q8 = line->first_q8 + cell * line->cell_q8;
     const uint64_t turns_q16 = (uint64_t)range_q8 * line->width >> 24;
     const uint64_t arc_q8 = turns_q16 * (TWO_PI_Q28 / 4) >> 34;
-    const uint64_t width_q8 = line->is_patch ? line->cell_q8 : arc_q8;
-    /* g, as the time gain has it: a height of 2^26 in Q10, times 2^22, over metres in Q8, less the
-     * range of the cell before over 2a. */
-    const uint32_t before_q8 = (uint32_t)cell == line->first ? range_q8 : range_q8 - line->cell_q8;
-    const int64_t above_q10 = (int64_t)line->height_q10 - line->reference_q10;
-    const int64_t grazing_q24 = above_q10 * (1 << 22) / (int64_t)fx_max_u32(range_q8, 1) -
-                                ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
-    const uint64_t g_q24 =
-        (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
-    return fx_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(line->cell_q8) +
-                                fx_log2_q16_u64(g_q24) - (8 + 8 + 24) * 65536);
+    const uint32_t before_q8 = cell == line->first ? range_q8 : range_q8 - line->cell_q8;
+    return lm_clutter_area_q8(arc_q8, line->cell_q8, range_q8, before_q8, &h);
 }
 
 /* What becomes of the scatterers of one target in one line. */
@@ -216,14 +127,15 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
                         const struct lm_target_item *item, const struct spot *target,
                         const struct lm_return *r)
 {
-    const struct spot s = beside(line, target, r);
+    const struct spot s = beside(target, r);
+    const struct lm_target_heights h = heights_of(line);
     const int32_t cell = cell_of(line, &s);
     if (cell == NO_CELL || sight == NULL) {
         return cell;
     }
     const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
     const int64_t horizon_q38 = sight->horizon[cell] >> (sight->bits - 38);
-    return tangent_q38(line, top_q10, s.range_q8) > horizon_q38 ? cell : NO_CELL;
+    return lm_target_tangent_q38(top_q10, s.range_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 
 static void make_echo(struct echo *e, const struct lm_target_line *line,
@@ -235,8 +147,9 @@ static void make_echo(struct echo *e, const struct lm_target_line *line,
         e->returns[0] = (struct lm_return){
             .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, line->scan, line->pulse)};
     } else {
+        const struct lm_target_heights h = heights_of(line);
         struct lm_target_view v;
-        view_target(line, item, spot, &v);
+        lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
         e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     }
     for (uint32_t i = 0; i < e->count; i++) {
@@ -258,7 +171,8 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
             mask |= (uint32_t)(e->cell[k] == cell) << k;
         }
         done |= mask;
-        const int32_t gamma_q8 = lm_returns_sum_q8(e->returns, mask) - clutter_area_q8(line, cell);
+        const int32_t gamma_q8 =
+            lm_returns_sum_q8(e->returns, mask) - area_q8(line, (uint32_t)cell);
         level_q8[cell] = fx_db_q8_sum_of_many(level_q8[cell], gamma_q8);
         cells++;
     }

@@ -147,11 +147,74 @@ static const struct table speckle_tables[] = {
      1024, speckle},
 };
 
+/* The Taylor weighting of 35 dB and nbar = 4 over an aperture, w(p) = 1 + 2 sum of F_m cos(2 pi m
+ * p), whose response to a point is sinc(x) + sum of F_m (sinc(x - m) + sinc(x + m)) in cells x. (T.
+ * T. Taylor, "Design of line-source antennas for narrow beamwidth and low side lobes", IRE Trans.
+ * AP-3, 1955; F_m as in Carrara, Goodman, Majewski, "Spotlight Synthetic Aperture Radar", app. D.)
+ */
+enum { NBAR = 4, RESPONSE_STEPS = 16, RESPONSE_CELLS = 8 };
+
+static long double taylor_coefficient(int m)
+{
+    const long double a = acoshl(powl(10, 35 / 20.0L)) / PI;
+    const long double scale2 = NBAR * NBAR / (a * a + (NBAR - 0.5L) * (NBAR - 0.5L));
+    long double product = m % 2 == 0 ? -0.5L : 0.5L;
+    for (int n = 1; n < NBAR; n++) {
+        product *= 1 - m * m / (scale2 * (a * a + (n - 0.5L) * (n - 0.5L)));
+        product /= n == m ? 1 : 1 - (long double)(m * m) / (n * n);
+    }
+    return product;
+}
+
+static long double sinc(long double x)
+{
+    return x == 0 ? 1 : sinl(PI * x) / (PI * x);
+}
+
+/* The response, its power adding up to one over all cells. */
+static long double response_at(long double x)
+{
+    long double sum = sinc(x), energy = 1;
+    for (int m = 1; m < NBAR; m++) {
+        const long double f = taylor_coefficient(m);
+        sum += f * (sinc(x - m) + sinc(x + m));
+        energy += 2 * f * f;
+    }
+    return sum / sqrtl(energy);
+}
+
+static int64_t response(int row, int i)
+{
+    (void)row;
+    return rounded(response_at((long double)i / RESPONSE_STEPS), 15);
+}
+
+/* The largest response from `cell` on, in decibels, rounded up. */
+static int64_t response_envelope(int row, int cell)
+{
+    const int finer = 1000;
+    long double most = 0;
+    (void)row;
+    for (int i = cell * finer; i <= 20 * finer; i++) {
+        most = fmaxl(most, fabsl(response_at((long double)i / finer)));
+    }
+    return (int64_t)ceill(20 * log10l(most) * 256);
+}
+
+static const struct table response_tables[] = {
+    {"lm_response_q15", "int16_t", "amplitude of the response to a point, i / 16 cells away", 0,
+     RESPONSE_CELLS *RESPONSE_STEPS + 2, response},
+    {"lm_response_envelope_q8", "int16_t", "dB of its largest power from i cells away on", 0,
+     RESPONSE_CELLS + 1, response_envelope},
+};
+
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
 const struct table_set table_sets[] = {
     {"fixed", "fixed/src/tables.c", "fx/tables.h", fixed_tables, COUNT(fixed_tables)},
     {"speckle", "firmware/src/speckle_table.c", "lm/speckle.h", speckle_tables,
      COUNT(speckle_tables)},
+    {"response", "firmware/src/response_table.c", "lm/response.h", response_tables,
+     COUNT(response_tables)},
 };
 const int table_set_count = COUNT(table_sets);

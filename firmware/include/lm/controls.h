@@ -46,6 +46,8 @@ enum lm_control_kind {
 struct lm_sar_command {
     struct lm_place centre;
     uint32_t cell_mm;      /* within the radar table's limits */
+    bool has_layover;      /* what stands high is displayed nearer */
+    bool is_steady;        /* unsteady flight leaves no blur */
     bool is_from_ownship;  /* then the rest is ignored */
     fx_bam_t look_azimuth; /* from the radar to the patch */
     uint32_t range_m;      /* along the ground, 1,000..250,000 */

@@ -6,14 +6,22 @@
 #include <stdint.h>
 
 #include "lm/controls.h"
+#include "lm/defocus.h"
+#include "lm/layover.h"
 #include "lm/line.h"
 #include "lm/radar.h"
+#include "lm/target_patch.h"
 #include "lm/tone.h"
 
 enum {
-    LM_SAR_GUARD = 4,      /* cells before the patch that are traced and not shown */
-    LM_SAR_RUNUP = 128,    /* coarse cells between the antenna and the patch */
-    LM_SAR_RUNUP_LINES = 8 /* lines that share a run-up */
+    LM_SAR_GUARD = 4,       /* cells before the patch that are traced and not shown */
+    LM_SAR_RUNUP = 128,     /* coarse cells between the antenna and the patch */
+    LM_SAR_RUNUP_LINES = 8, /* lines that share a run-up */
+
+    /* A point is spread over lines before its own, and those are smeared: lines are sampled so many
+     * before they are drawn, and kept as long as a smear needs them. */
+    LM_SAR_AHEAD = LM_RESPONSE_REACH + LM_DEFOCUS_REACH,
+    LM_SAR_RING = LM_SAR_AHEAD + LM_DEFOCUS_REACH + 1
 };
 
 /* No line is drawn faster: a dwell shorter than that of all lines takes as long as they do. */
@@ -21,10 +29,11 @@ enum { LM_SAR_LINE_MIN_US = 500 };
 
 /* How the aircraft flies while it makes a patch: what the dwell and the limits depend on. */
 struct lm_sar_flight {
-    uint32_t speed_mm_s; /* over the ground */
-    fx_bam_t track;      /* of that velocity */
-    fx_bam_t bearing;    /* of the patch, from the aircraft */
-    fx_bam_t heading;    /* of the nose */
+    uint32_t speed_mm_s;    /* over the ground */
+    fx_bam_t track;         /* of that velocity */
+    fx_bam_t bearing;       /* of the patch, from the aircraft */
+    fx_bam_t heading;       /* of the nose */
+    uint32_t lateral_mm_s2; /* how hard it turns: what motion compensation leaves of it blurs */
 };
 
 /* What a patch finds when it begins. */
@@ -47,11 +56,20 @@ struct lm_sar {
     struct lm_sampling sampling, runup_sampling;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
+    uint64_t time_us;                    /* of the targets' places */
+    uint32_t epoch;                      /* of noise and of what fluctuates */
+    int32_t across_mm_s;                 /* velocity to the right of the line of sight */
+    struct lm_layover layover;
+    uint32_t defocus_q8; /* width of the smear, lines * 256; 256: none */
+    struct lm_patch_geometry geometry;
     struct lm_targets_near near;
-    uint64_t time_us;         /* of the targets' places */
-    uint32_t epoch;           /* of noise and of what fluctuates */
-    lm_horizon_q40_t horizon; /* where the lines of this run-up start */
-    uint32_t line;            /* next to be drawn; command done when it is radar->sar.cells */
+
+    lm_horizon_q40_t horizon;      /* where the lines of the last run-up start */
+    uint32_t line;                 /* next to be drawn; done when it is radar->sar.cells */
+    uint32_t sampled, summed;      /* lines that are in the ring, and that have the points */
+    struct lm_patch_points points; /* of the targets, from the first line on */
+    int32_t ring_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
+    uint64_t power_q32[LM_CELLS_ROOM];           /* scratch */
 };
 
 /* LM_OK, or LM_ERR_RANGE with *s unchanged: a cell, range or height outside the limits; and seen
@@ -69,9 +87,19 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 /* Ask for the tiles of line `line` and of its run-up. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
-/* Draw the next line: its cells' greys are line->grey[LM_SAR_GUARD ..]. Call while s->line <
- * radar->sar.cells. */
+/* Draw the next line: line->sight.level_q8 has its levels and line->grey its greys, its cells from
+ * [LM_SAR_GUARD] on; line->ground is that of the line sampled last, up to LM_SAR_AHEAD lines on,
+ * which the first line brings at once. Call while s->line < radar->sar.cells. */
 void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
                       struct lm_line *line);
+
+/* One stage of that: line `number` from the map to noise and speckle, without targets and smear, in
+ * line->ground and line->sight. s->horizon is where it started, as multiples of LM_SAR_RUNUP_LINES
+ * trace the run-up for the lines behind them. */
+void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
+                        struct lm_line *line);
+
+/* Begin the patch again from its first line. */
+void lm_sar_restart(struct lm_sar *s);
 
 #endif

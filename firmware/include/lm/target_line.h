@@ -1,18 +1,15 @@
-/* Targets in a line of the picture: which of them a line meets, in which cells, and how bright.
- * docs/DESIGN.md, "Targets". */
+/* Targets in a line of a sector: which of them a line meets, in which cells, and how bright. Those
+ * of a patch: lm/target_patch.h. docs/DESIGN.md, "Targets". */
 #ifndef LM_TARGET_LINE_H
 #define LM_TARGET_LINE_H
 
-#include "lm/target_near.h"
+#include "lm/target_view.h"
 
-/* A line of the picture as targets need to know it. Lengths in metres * 256, heights * 1024. */
+/* A line of the sector as targets need to know it. Lengths in metres * 256, heights * 1024. */
 struct lm_target_line {
-    bool is_patch; /* a line of a SAR patch; else of a sector that fans out from the antenna */
-    struct lm_place place; /* the antenna; the centre of the patch */
-    fx_bam_t azimuth;      /* of the line's middle; of the patch's line of sight */
-    fx_bam_t width;        /* sector: of the line */
-    int32_t across_q8;     /* patch: of the line's middle from the patch's, right positive */
-    uint32_t centre_q8;    /* patch: ground range from the antenna to the centre */
+    struct lm_place place; /* the antenna */
+    fx_bam_t azimuth;      /* of the line's middle */
+    fx_bam_t width;
     uint32_t first_q8, cell_q8, cells; /* as lm_range_grid_set has them */
     uint32_t first;                    /* cells before this are not shown */
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain */
@@ -21,7 +18,7 @@ struct lm_target_line {
     uint32_t speed_mm_s; /* of the antenna over the ground, and which way */
     fx_bam_t track;
     uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */
-    uint32_t scan, pulse;  /* for what fluctuates: number of the sweep or patch, and of the line */
+    uint32_t scan, pulse;  /* for what fluctuates: number of the sweep, and of the line */
 };
 
 /* What hides a target: the horizon before each cell of the line, the largest tangent at which a

@@ -1,20 +1,20 @@
 # Specific targets, against their double-precision reference.
 TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line test_target_picture \
-    test_mover)
+    test_mover test_target_patch)
 TESTS += $(TARGET_TESTS)
 $(TARGET_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \
     $(O)/tests/support/memory_flash.o $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 
-# The lines' tests once more under the address and undefined-behaviour sanitizers: they use records made by chance.
-TARGET_SANE     := $(O)/bin/tests/unit/firmware/test_target_line_sanitized
-TARGET_SANE_SRC := tests/unit/firmware/test_target_line.c $(addprefix firmware/src/,rcs.c target.c target_near.c mover.c target_line.c \
-    db.c geo.c scan_line.c tile_cache.c) \
-    $(wildcard fixed/src/*.c) host-sim/common/src/rng.c $(addprefix host-sim/reference/,aspect.c)
+# The tests of lines and patches once more under the address and undefined-behaviour sanitizers: they use records made by chance.
+TARGET_SANE     := $(addprefix $(O)/bin/tests/unit/firmware/test_target_,line_sanitized patch_sanitized)
+TARGET_SANE_SRC := $(addprefix firmware/src/,rcs.c target.c target_near.c target_view.c mover.c target_line.c target_patch.c \
+    response_table.c db.c geo.c scan_line.c tile_cache.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c host-sim/reference/aspect.c
 TESTS += $(TARGET_SANE)
-$(TARGET_SANE): $(TARGET_SANE_SRC) $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)
+$(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.c $(TARGET_SANE_SRC) \
+    $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)
 	@mkdir -p $(@D)
 	@echo "  CC   $@ (sanitizers)"
-	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Ihost-sim/reference $(TARGET_SANE_SRC) \
+	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Ihost-sim/reference $< $(TARGET_SANE_SRC) \
 	    -lcmocka $(call pkgs,libs,proj) -lm -o $@

@@ -220,7 +220,8 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     const uint32_t bins_count = CELLS + REF_GUARD_CELLS;
     struct ref_bin *copy = calloc(bins_count, sizeof *copy);
     for (uint32_t k = 0; k < CELLS; k++) {
-        lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
+        lm_sar_sample_line(&sar, &w->tiles, k, &w->line);
+        lm_tone_run(&w->tone, w->line.sight.level_q8, w->line.grey, bins_count);
         struct ref_bin *bins = ref_picture_bin(&picture, k, -REF_GUARD_CELLS);
         for (uint32_t i = 0; i < bins_count; i++) {
             copy[i] = bins[i];

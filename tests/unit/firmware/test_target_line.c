@@ -45,26 +45,6 @@ static struct lm_target_line sector_line(double lat, double lon, double heading,
                                    .wavelength_um = X_BAND_UM};
 }
 
-/* A line of a patch of 128 cells of 2 m, 20 km away, with four guard cells. */
-enum { PATCH = 128, GUARD = 4 };
-static const double patch_cell_m = 2, patch_range_m = 20000;
-
-static struct lm_target_line patch_line(double lat, double lon, double look, uint32_t line)
-{
-    const double near_m = patch_range_m - (PATCH / 2 + GUARD) * patch_cell_m;
-    return (struct lm_target_line){.is_patch = true,
-                                   .place = {bam(lat), bam(lon)},
-                                   .azimuth = bam(look),
-                                   .across_q8 =
-                                       (int32_t)((line + 0.5 - PATCH / 2) * patch_cell_m * 256),
-                                   .centre_q8 = (uint32_t)(patch_range_m * 256),
-                                   .first_q8 = (uint32_t)((near_m + patch_cell_m / 2) * 256),
-                                   .cell_q8 = (uint32_t)(patch_cell_m * 256),
-                                   .cells = PATCH + GUARD,
-                                   .height_q10 = (int32_t)(height_m * 1024),
-                                   .wavelength_um = X_BAND_UM};
-}
-
 static struct lm_targets_near near_of(const struct lm_target *targets, uint32_t count,
                                       struct lm_place place, uint32_t reach_m)
 {
@@ -186,61 +166,26 @@ static void no_target_is_lost_or_doubled_between_two_lines(void **state)
     }
 }
 
-/* ---- patch ---- */
-
-static void a_target_is_in_the_right_cell_of_a_patch_of_two_metres(void **state)
+static void different_targets_in_one_cell_add_their_powers(void **state)
 {
     (void)state;
-    struct hs_rng rng;
-    hs_rng_seed(&rng, 4);
-    for (int i = 0; i < 300; i++) {
-        const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1), look = 360 * hs_rng_uniform(&rng);
-        const uint32_t line = hs_rng_below(&rng, PATCH), cell = hs_rng_below(&rng, PATCH);
-        const double across =
-            (line + 0.5 - PATCH / 2) * patch_cell_m + 0.8 * hs_rng_uniform(&rng) - 0.4;
-        const double along =
-            (cell + 0.5 - PATCH / 2) * patch_cell_m + 0.8 * hs_rng_uniform(&rng) - 0.4;
-        double to[2];
-        destination(lat, 20, look + atan2(across, along) * 180 / pi, hypot(across, along), to);
-        const struct lm_target t = point_at(to[0], to[1], 0, 25);
-        struct lm_targets_near near;
-        int32_t level_q8[LM_CELLS_MAX];
-        near = near_of(&t, 1, (struct lm_place){bam(lat), bam(20)}, 200);
-        for (uint32_t k = 0; k < PATCH; k++) {
-            const struct lm_target_line l = patch_line(lat, 20, look, k);
-            clear(level_q8);
-            assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), k == line);
-        }
-        const struct lm_target_line l = patch_line(lat, 20, look, line);
-        clear(level_q8);
-        lm_target_add(&t, &near, &l, NULL, level_q8);
-        const double at_m = patch_range_m + (cell + 0.5 - PATCH / 2) * patch_cell_m;
-        const double expected = level_db(25, at_m, patch_cell_m, patch_cell_m);
-        assert_true(fabs(level_q8[GUARD + cell] / 256.0 - expected) < 0.02);
-    }
+    double to[2];
+    destination(46, 11, 1.3, 20000, to);
+    const struct lm_target t[2] = {point_at(to[0], to[1], 0, 20), point_at(to[0], to[1], 0, 20)};
+    const struct found one = sweep(t, 1, 46, 11, 0), both = sweep(t, 2, 46, 11, 0);
+    assert_true(fabs(both.level - one.level - 10 * log10(2)) < 0.02);
 }
 
-/* Two reflectors of 20 and 26 dBsm ten metres apart: each in its cell of a patch, their phasor sum
- * in a cell of a sweep, which comes and goes with the bearing. */
-static void scatterers_have_their_own_cells_in_a_patch_and_share_one_in_a_sweep(void **state)
+/* Two reflectors of 20 and 26 dBsm ten metres apart share a cell: their phasor sum comes and goes
+ * with the bearing. */
+static void scatterers_of_one_target_in_one_cell_add_as_phasors(void **state)
 {
     (void)state;
     struct lm_target t = point_at(46, 11, 0, 0);
     add_scatterer(&t, LM_SHAPE_SPHERE, 5642, -5000, 500, 0, 0, 0);
     add_scatterer(&t, LM_SHAPE_SPHERE, 11284, 5000, 500, 0, 0, 0);
-    struct lm_targets_near near;
-    int32_t level_q8[LM_CELLS_MAX];
-    near = near_of(&t, 1, (struct lm_place){bam(46), bam(11)}, 200);
     double lowest = 1e9, highest = -1e9;
     for (int i = 0; i < 200; i++) {
-        /* Looking along the target's axis in the patch; 10 m are five cells. */
-        const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
-        clear(level_q8);
-        assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), 2);
-        const double near_db = level_db(20, patch_range_m - 5, 2, 2);
-        const double far_db = level_db(26.02, patch_range_m + 5, 2, 2);
-        assert_true(fabs(level_q8[GUARD + PATCH / 2 - 3] / 256.0 - near_db) < 0.03);
-        assert_true(fabs(level_q8[GUARD + PATCH / 2 + 2] / 256.0 - far_db) < 0.03);
         double from[2];
         /* In the middle of a cell and, a fifth of a degree off the heading, of a line. */
         destination(46, 11, 200 + i * 0.01, 138.5 * cell_m, from);
@@ -253,77 +198,31 @@ static void scatterers_have_their_own_cells_in_a_patch_and_share_one_in_a_sweep(
     assert_true(fabs(highest - lowest - 20 * log10(3)) < 0.1);
 }
 
-static void different_targets_in_one_cell_add_their_powers(void **state)
+/* ---- hidden ---- */
+
+enum { BITS = 52 };
+
+static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **state)
 {
     (void)state;
     double to[2];
-    destination(46, 11, 1.3, 20000, to);
-    const struct lm_target t[2] = {point_at(to[0], to[1], 0, 20), point_at(to[0], to[1], 0, 20)};
-    const struct found one = sweep(t, 1, 46, 11, 0), both = sweep(t, 2, 46, 11, 0);
-    assert_true(fabs(both.level - one.level - 10 * log10(2)) < 0.02);
-}
-
-/* ---- hidden ---- */
-
-enum { BITS = 52, WALL = 20 };
-
-/* The horizon before each cell, of flat ground at height 0 and a wall of `wall_m` in cell WALL. */
-static void flat_ground(const struct lm_target_line *l, double wall_m, double start,
-                        int64_t *horizon)
-{
-    double highest = start;
-    for (uint32_t i = 0; i < l->cells; i++) {
-        const double at_m = (l->first_q8 + i * l->cell_q8) / 256.0;
-        horizon[i] = (int64_t)ldexp(highest, BITS);
-        highest = fmax(highest, ref_tangent(height_m, at_m, i == WALL ? wall_m : 0));
-    }
-}
-
-static void a_wall_hides_what_is_lower_than_the_ray_over_it(void **state)
-{
-    (void)state;
-    /* Seen from 6000 m at 20 km, a wall of 30 m throws a shadow of 100 m: 66 m behind it, a
-     * target shows from 10 m up. */
-    for (int up_m = 0; up_m < 20; up_m++) {
-        for (int is_before = 0; is_before < 2; is_before++) {
-            double to[2];
-            const double along =
-                (WALL + 0.5 - GUARD - PATCH / 2) * patch_cell_m + (is_before ? -8 : 66);
-            destination(46, 11, along < 0 ? 180 : 0, fabs(along), to);
-            const struct lm_target t = point_at(to[0], to[1], up_m, 30);
-            const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
-            struct lm_targets_near near;
+    const double azimuth = (100.5 - LINES / 2) * 120 / LINES;
+    destination(46, 11, azimuth, 140.5 * cell_m, to);
+    for (int up_m = -50; up_m <= 50; up_m += 10) {
+        const struct lm_target t = point_at(to[0], to[1], up_m, 30);
+        const struct lm_target_line l = sector_line(46, 11, 0, 100);
+        const double at = ref_tangent(height_m, 140.5 * cell_m, up_m);
+        const struct lm_targets_near near = near_of(&t, 1, l.place, (uint32_t)range_m);
+        for (int i = -1; i <= 1; i += 2) {
             int32_t level_q8[LM_CELLS_MAX];
             int64_t horizon[LM_CELLS_MAX];
+            for (int k = 0; k < LM_CELLS_MAX; k++) {
+                horizon[k] = (int64_t)ldexp(k > 140 ? 1 : at + i * 1e-6, BITS);
+            }
             const struct lm_target_sight sight = {horizon, BITS};
-            flat_ground(&l, 30, -10, horizon);
-            near = near_of(&t, 1, l.place, 200);
-            const double ray = ref_tangent(height_m, patch_range_m + along - 66, 30);
-            const bool is_seen =
-                is_before || ref_tangent(height_m, patch_range_m + along, up_m) > ray;
-            assert_true(is_before || is_seen == (up_m >= 11));
-            /* The middle of line PATCH / 2 is a metre to the right: the target on its edge. */
             clear(level_q8);
-            assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), is_seen);
+            assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), i < 0);
         }
-    }
-}
-
-static void the_horizon_that_a_line_starts_with_hides_as_well(void **state)
-{
-    (void)state;
-    const struct lm_target t = point_at(46, 11, 0, 30);
-    const struct lm_target_line l = patch_line(46, 11, 0, PATCH / 2);
-    struct lm_targets_near near;
-    int32_t level_q8[LM_CELLS_MAX];
-    int64_t horizon[LM_CELLS_MAX];
-    near = near_of(&t, 1, l.place, 200);
-    const double at = ref_tangent(height_m, patch_range_m, 0);
-    for (int i = -1; i <= 1; i += 2) {
-        const struct lm_target_sight sight = {horizon, BITS};
-        flat_ground(&l, 0, at + i * 1e-7, horizon);
-        clear(level_q8);
-        assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), i < 0);
     }
 }
 
@@ -396,13 +295,15 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
         }
         passed++;
         const bool is_here = hs_rng_below(&rng, 2) != 0;
-        struct lm_target_line l =
-            i % 2 ? patch_line(46, 11, 0, PATCH / 2) : sector_line(46, 11, 0, 1);
+        struct lm_target_line l = sector_line(46, 11, 0, 1);
         l.place = is_here ? (struct lm_place){t.latitude + hs_rng_below(&rng, 9000), t.longitude}
                           : (struct lm_place){(fx_bam_t)((int64_t)hs_rng_u64(&rng) >> 34),
                                               (fx_bam_t)hs_rng_u64(&rng)};
         l.azimuth = (fx_bam_t)hs_rng_u64(&rng);
         l.width = FX_BAM_180;
+        l.is_doppler = i % 2;
+        l.track = (fx_bam_t)hs_rng_u64(&rng);
+        l.speed_mm_s = hs_rng_below(&rng, 1 << 21);
         l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         struct lm_targets_near near;
         int32_t level_q8[LM_CELLS_MAX];
@@ -422,11 +323,9 @@ int main(void)
         cmocka_unit_test(a_target_is_in_one_cell_of_a_sweep_and_in_the_right_one),
         cmocka_unit_test(a_target_is_where_the_geodesic_puts_it_within_a_metre),
         cmocka_unit_test(no_target_is_lost_or_doubled_between_two_lines),
-        cmocka_unit_test(a_target_is_in_the_right_cell_of_a_patch_of_two_metres),
-        cmocka_unit_test(scatterers_have_their_own_cells_in_a_patch_and_share_one_in_a_sweep),
+        cmocka_unit_test(scatterers_of_one_target_in_one_cell_add_as_phasors),
         cmocka_unit_test(different_targets_in_one_cell_add_their_powers),
-        cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it),
-        cmocka_unit_test(the_horizon_that_a_line_starts_with_hides_as_well),
+        cmocka_unit_test(what_lies_below_the_horizon_of_the_cells_before_is_hidden),
         cmocka_unit_test(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted),
         cmocka_unit_test(a_choice_holds_for_a_kilometre_of_flight),
         cmocka_unit_test(a_record_that_passes_the_check_can_be_used),

@@ -1,0 +1,63 @@
+/* Targets in a SAR patch: every body is a point that is spread over cells and lines by the point
+ * response. Found once for the patch, added line by line. docs/DESIGN.md, "Point response" and
+ * "Targets". */
+#ifndef LM_TARGET_PATCH_H
+#define LM_TARGET_PATCH_H
+
+#include "lm/response.h"
+#include "lm/scan_line.h"
+#include "lm/target_view.h"
+
+enum { LM_PATCH_POINTS_MAX = LM_TARGETS_NEAR * LM_SCATTERERS_MAX };
+
+/* The patch as targets need to know it. Lengths in metres * 256. */
+struct lm_patch_geometry {
+    struct lm_place centre;
+    fx_bam_t look;
+    uint32_t centre_q8; /* ground range from the antenna to the centre */
+    uint32_t cell_q8, lines, cells;
+    uint32_t guard; /* of the cells: that lie before the patch */
+    uint32_t first; /* cells before this are not shown */
+    struct lm_target_heights heights;
+    uint32_t wavelength_um;
+    int32_t across_mm_s; /* the radar's velocity to the right of the line of sight; 0 displaces
+                            nothing */
+    int32_t lean_q16;    /* layover: cells nearer for each metre of height above the reference, by
+                            the metre; 0: none */
+    uint32_t epoch;      /* for what fluctuates */
+};
+
+/* A body in the patch. Places in cells * 256 from the middle of cell 0 of line 0. */
+struct lm_patch_point {
+    int32_t across_q8, along_q8;
+    int32_t level_q8; /* dB of gamma, were all its power in one cell */
+    fx_bam_t phase;
+    int64_t tangent_q38; /* at which it appears */
+    int32_t line, cell;  /* that hold its place on the ground */
+    uint8_t target;      /* bodies of one target add as phasors */
+    bool is_hidden;
+};
+
+struct lm_patch_points {
+    uint32_t count;
+    struct lm_patch_point item[LM_PATCH_POINTS_MAX];
+    int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* zero between calls */
+};
+
+/* Find the points of the targets near. Cost: some 3000 instructions for each target and 1200 for
+ * each of its bodies. */
+void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *set,
+                         const struct lm_targets_near *near, const struct lm_patch_geometry *g);
+
+/* Note which points something nearer hides: those that stand on line `line`, whose horizons before
+ * its cells are `horizon`, times 2^bits (38..62). Points beside the patch are not hidden. */
+void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int64_t *horizon,
+                          uint32_t bits, uint32_t cells);
+
+/* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`
+ * is left out. Cost: 20 instructions a point, 200 for one that reaches the line and 25 for each
+ * cell that it reaches, at most 17. */
+void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
+                         const struct lm_patch_geometry *g, int32_t *level_q8);
+
+#endif

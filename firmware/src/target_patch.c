@@ -1,0 +1,210 @@
+#include "lm/target_patch.h"
+
+#include "fx/log.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+
+/* ---- where the points are ---- */
+
+/* Of a target in the patch: ground range from the antenna and offset from the line of sight through
+ * the centre, metres * 256, and how far Doppler displaces it. */
+struct spot {
+    int32_t range_q8, across_q8, shift_q8;
+};
+
+static bool find_spot(const struct lm_patch_geometry *g, const struct lm_target *t,
+                      const struct lm_target_item *item, struct spot *spot)
+{
+    uint32_t distance_q8;
+    fx_bam_t azimuth;
+    if (!lm_target_locate(g->centre, item->pose.place, &distance_q8, &azimuth)) {
+        return false;
+    }
+    const fx_bam_t off = azimuth - g->look;
+    const int64_t along_q8 = (int64_t)distance_q8 * fx_cos_q30(off) >> 30;
+    spot->range_q8 = fx_max_i32((int32_t)(g->centre_q8 + along_q8), 0);
+    spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30);
+    spot->shift_q8 = 0;
+    if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
+        /* Below 2^27 * 2^20; displaced beyond 2^28 it is nowhere near. */
+        const int64_t closing_mm_s =
+            lm_closing_mm_s(t->speed_mm_s, item->pose.heading, g->look + FX_BAM_180);
+        const int64_t shift_q8 = spot->range_q8 * closing_mm_s / g->across_mm_s;
+        const int64_t limit = 1 << 28;
+        spot->shift_q8 = (int32_t)(shift_q8 > limit    ? limit
+                                   : shift_q8 < -limit ? -limit
+                                                       : shift_q8);
+    }
+    return true;
+}
+
+/* Metres * 256 in cells * 256. */
+static int32_t in_cells(const struct lm_patch_geometry *g, int64_t metres_q8)
+{
+    return (int32_t)(metres_q8 * 256 / (int64_t)g->cell_q8);
+}
+
+/* The whole cell that holds a place. */
+static int32_t cell_at(int32_t place_q8)
+{
+    return (place_q8 + 128) >> 8;
+}
+
+static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
+                                      const struct lm_target_item *item, const struct spot *spot,
+                                      const struct lm_return *r)
+{
+    const int32_t range_q8 = spot->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
+    const int32_t across_q8 = spot->across_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
+    const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
+    /* From the middle of the first line, and of the first guard cell. */
+    const int64_t left_q8 = (int64_t)(g->lines - 1) * g->cell_q8 / 2;
+    const int64_t near_q8 =
+        g->centre_q8 - ((int64_t)(g->lines - 1) * g->cell_q8 / 2 + g->guard * g->cell_q8);
+    const int64_t nearer_q8 = (int64_t)(top_q10 - g->heights.reference_q10) * g->lean_q16 >> 18;
+    const uint32_t at_q8 = (uint32_t)fx_max_i32(range_q8, 1);
+    struct lm_patch_point p = {
+        .across_q8 = in_cells(g, across_q8 + spot->shift_q8 + left_q8),
+        .along_q8 = in_cells(g, range_q8 - near_q8 - nearer_q8),
+        .level_q8 =
+            r->rcs_q8 - lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
+                                           at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights),
+        .phase = r->phase,
+        .tangent_q38 = lm_target_tangent_q38(top_q10, at_q8, &g->heights),
+        .line = cell_at(in_cells(g, across_q8 + left_q8)),
+        .cell = cell_at(in_cells(g, range_q8 - near_q8)),
+    };
+    return p;
+}
+
+/* The returns of a target; those of one without bodies are a single one. In a patch, all pulses of
+ * the dwell make one picture: every kind of fluctuation is drawn once for it. */
+static uint32_t returns_of(const struct lm_patch_geometry *g, const struct lm_target *t,
+                           const struct lm_target_item *item, const struct spot *spot,
+                           struct lm_return returns[LM_SCATTERERS_MAX])
+{
+    if (t->scatterer_count == 0) {
+        returns[0] = (struct lm_return){
+            .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, g->epoch, 0)};
+        return 1;
+    }
+    struct lm_target_view v;
+    lm_target_view_of(&v, item, g->look + FX_BAM_180, (uint32_t)spot->range_q8, &g->heights);
+    return lm_target_returns(t, &v, g->wavelength_um, returns);
+}
+
+void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *set,
+                         const struct lm_targets_near *near, const struct lm_patch_geometry *g)
+{
+    *p = (struct lm_patch_points){0};
+    for (uint32_t i = 0; i < near->count; i++) {
+        const struct lm_target_item *item = &near->item[i];
+        const struct lm_target *t = &set->items[item->index];
+        struct lm_return returns[LM_SCATTERERS_MAX];
+        struct spot spot;
+        const uint32_t count =
+            find_spot(g, t, item, &spot) ? returns_of(g, t, item, &spot, returns) : 0;
+        for (uint32_t k = 0; k < count; k++) {
+            p->item[p->count] = point_of(g, item, &spot, &returns[k]);
+            p->item[p->count++].target = (uint8_t)i;
+        }
+    }
+}
+
+void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int64_t *horizon,
+                          uint32_t bits, uint32_t cells)
+{
+    for (uint32_t i = 0; i < p->count; i++) {
+        struct lm_patch_point *point = &p->item[i];
+        if (point->line == (int32_t)line && point->cell >= 0) {
+            /* Behind the last cell, everything before it may hide. */
+            const uint32_t before = fx_min_u32((uint32_t)point->cell, cells);
+            point->is_hidden = point->tangent_q38 <= horizon[before] >> (bits - 38);
+        }
+    }
+}
+
+/* ---- one line of them ---- */
+
+/* Cells each way that a point reaches on a line `dx_q8` beside it; -1: not even the line. */
+static int32_t reach_of(const struct lm_patch_point *p, int32_t dx_q8, int32_t least_q8)
+{
+    const uint32_t away_q8 = fx_abs_u32(dx_q8);
+    if (p->is_hidden || away_q8 >= LM_RESPONSE_REACH * 256u) {
+        return -1;
+    }
+    const int32_t most_q8 = p->level_q8 + lm_response_envelope_q8[away_q8 / 256];
+    int32_t reach = LM_RESPONSE_REACH - 1;
+    /* The cell `reach` cells on is at least half a cell nearer than that. */
+    while (reach > 0 && most_q8 + lm_response_envelope_q8[reach - 1] < least_q8) {
+        reach--;
+    }
+    return most_q8 + lm_response_envelope_q8[0] < least_q8 ? -1 : reach;
+}
+
+/* Cells that hold something, first..end - 1. */
+struct span {
+    int32_t first, end;
+};
+
+/* Add a point's amplitude, against `reference_q8`, to the cells of a line. Amplitudes are at most
+ * 2^24, and a target has 16: sums below 2^28. */
+static void spread(struct lm_patch_points *work, const struct lm_patch_point *p, int32_t dx_q8,
+                   int32_t reach, int32_t reference_q8, struct span within, struct span *touched)
+{
+    const int64_t amplitude_q24 = (int64_t)fx_power_q16_from_db_q8((p->level_q8 - reference_q8) / 2)
+                                  << 8;
+    const int64_t line_q24 = amplitude_q24 * lm_response(dx_q8) >> 15;
+    const int64_t re_q24 = line_q24 * fx_cos_q30(p->phase) >> 30;
+    const int64_t im_q24 = line_q24 * fx_sin_q30(p->phase) >> 30;
+    const int32_t middle = cell_at(p->along_q8);
+    const int32_t first = fx_max_i32(middle - reach, within.first);
+    const int32_t end = fx_min_i32(middle + reach + 1, within.end);
+    for (int32_t i = first; i < end; i++) {
+        const int32_t response_q15 = lm_response(i * 256 - p->along_q8);
+        work->re_q24[i] += (int32_t)(re_q24 * response_q15 >> 15);
+        work->im_q24[i] += (int32_t)(im_q24 * response_q15 >> 15);
+    }
+    if (first < end) {
+        touched->first = fx_min_i32(touched->first, first);
+        touched->end = fx_max_i32(touched->end, end);
+    }
+}
+
+/* Turn the sums into levels and clear them. */
+static void collect(struct lm_patch_points *work, struct span touched, int32_t reference_q8,
+                    int32_t *level_q8)
+{
+    const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 48);
+    for (int32_t i = touched.first; i < touched.end; i++) {
+        const int64_t re_q24 = work->re_q24[i], im_q24 = work->im_q24[i];
+        const uint64_t power_q48 = (uint64_t)(re_q24 * re_q24 + im_q24 * im_q24);
+        work->re_q24[i] = work->im_q24[i] = 0;
+        if (power_q48 != 0) {
+            level_q8[i] =
+                fx_db_q8_sum_of_many(level_q8[i], reference_q8 + fx_db_q8_u64(power_q48) - unit_q8);
+        }
+    }
+}
+
+void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
+                         const struct lm_patch_geometry *g, int32_t *level_q8)
+{
+    const struct span within = {(int32_t)g->first, (int32_t)g->cells};
+    uint32_t end = 0;
+    for (uint32_t begin = 0; begin < p->count; begin = end) {
+        int32_t reference_q8 = p->item[begin].level_q8;
+        for (end = begin; end < p->count && p->item[end].target == p->item[begin].target; end++) {
+            reference_q8 = fx_max_i32(reference_q8, p->item[end].level_q8);
+        }
+        struct span touched = {within.end, within.first};
+        for (uint32_t i = begin; i < end; i++) {
+            const int32_t dx_q8 = (int32_t)line * 256 - p->item[i].across_q8;
+            const int32_t reach = reach_of(&p->item[i], dx_q8, least_q8);
+            if (reach >= 0) {
+                spread(p, &p->item[i], dx_q8, reach, reference_q8, within, &touched);
+            }
+        }
+        collect(p, touched, reference_q8, level_q8);
+    }
+}

@@ -1,0 +1,458 @@
+/* Targets in a patch: the shape of a point, its place and its power, sums of points, movers, and
+ * what hides them. The shape is judged by RADAR.md 2.4, places by PROJ's geodesics, sums by the
+ * equations of DESIGN.md in double precision. */
+#include "lm/target_patch.h"
+
+#include "lm/aspect.h"
+#include "reference.h"
+#include "target_support.h"
+
+#include <complex.h>
+#include <geodesic.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* A patch of 128 cells of 2 m, 20 km away, with four guard cells. */
+enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, NOTHING_Q8 = -120 * 256 };
+static const double height_m = 6000, cell_m = 2, range_m = 20000;
+
+/* Large, and only one is used at a time. */
+static struct lm_patch_points points;
+static int32_t picture[LINES][LM_CELLS_ROOM];
+
+static struct lm_patch_geometry geometry(double lat, double lon, double look)
+{
+    return (struct lm_patch_geometry){.centre = {bam(lat), bam(lon)},
+                                      .look = bam(look),
+                                      .centre_q8 = (uint32_t)(range_m * 256),
+                                      .cell_q8 = (uint32_t)(cell_m * 256),
+                                      .lines = LINES,
+                                      .cells = CELLS,
+                                      .guard = GUARD,
+                                      .heights = {(int32_t)(height_m * 1024), 0},
+                                      .wavelength_um = X_BAND_UM};
+}
+
+static void find_points(const struct lm_target *t, uint32_t count,
+                        const struct lm_patch_geometry *g, uint64_t time_us)
+{
+    struct lm_targets_near near;
+    const struct lm_target_set set = {t, count};
+    const struct lm_target_scene scene = {.place = g->centre, .reach_m = 20000, .time_us = time_us};
+    lm_targets_select(&near, &set, &scene);
+    lm_patch_points_set(&points, &set, &near, g);
+}
+
+static void draw(const struct lm_patch_geometry *g, int32_t least_q8)
+{
+    for (uint32_t k = 0; k < LINES; k++) {
+        for (uint32_t i = 0; i < CELLS; i++) {
+            picture[k][i] = NOTHING_Q8;
+        }
+        lm_patch_points_add(&points, k, least_q8, g, picture[k]);
+    }
+}
+
+/* The place `across`, `along` metres from the centre as the radar looks. */
+static void place_at(double lat, double lon, double look, double across, double along, double to[2])
+{
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    geod_direct(&earth, lat, lon, look + atan2(across, along) * 180 / pi, hypot(across, along),
+                &to[0], &to[1], NULL);
+}
+
+/* Middle of a line or of a cell that is shown, from the centre. */
+static double middle_of(double number)
+{
+    return (number + 0.5 - LINES / 2) * cell_m;
+}
+
+/* Line and cell of fractions, places from the middles of the first ones. */
+static struct lm_target point_in(double line, double cell, double rcs_db)
+{
+    double to[2];
+    place_at(46, 11, 0, middle_of(line), middle_of(cell), to);
+    return point_at(to[0], to[1], 0, rcs_db);
+}
+
+static double level_db(double rcs_db, double cell)
+{
+    const struct ref_view view = {height_m, 0, cell_m};
+    const double at_m = range_m + middle_of(cell);
+    return rcs_db - 10 * log10(cell_m * cell_m * ref_grazing(&view, at_m, at_m - cell_m));
+}
+
+/* ---- the shape ---- */
+
+static double sinc(double x)
+{
+    return x == 0 ? 1 : sin(pi * x) / (pi * x);
+}
+
+/* Taylor's response in its closed form: zeros moved from 1..3 to z_n. Power adds up to one. */
+static double taylor(double x)
+{
+    const double a = acosh(pow(10, 35 / 20.0)) / pi, s2 = 16 / (a * a + 12.25);
+    x = fabs(x - round(x)) < 1e-6 && x != 0 ? x + 1e-6 : x; /* beside the poles */
+    double h = sinc(x), energy_db = 0.9140;                 /* RADAR.md 2.4: a loss of 0.91 dB */
+    for (int n = 1; n < 4; n++) {
+        const double z2 = s2 * (a * a + (n - 0.5) * (n - 0.5));
+        h *= (1 - x * x / z2) / (1 - x * x / (n * n));
+    }
+    return h * pow(10, -energy_db / 20);
+}
+
+/* A cut through the point, 16 samples a cell, power; sample 128 is its middle. */
+enum { STEPS = 16, CUT = 2 * 8 * STEPS };
+
+static void measure(const double cut[CUT], double *width, double *side_db)
+{
+    double peak = 0, side = 0;
+    for (int i = 0; i < CUT; i++) {
+        peak = fmax(peak, cut[i]);
+    }
+    int right = CUT / 2;
+    while (cut[right] > peak / 2) {
+        right++;
+    }
+    *width = 2.0 / STEPS *
+             (right - 1 - CUT / 2 + (cut[right - 1] - peak / 2) / (cut[right - 1] - cut[right]));
+    int null = right;
+    while (cut[null + 1] < cut[null]) {
+        null++;
+    }
+    for (int i = null; i < CUT; i++) {
+        side = fmax(side, cut[i]);
+    }
+    *side_db = 10 * log10(side / peak);
+}
+
+/* On the levels of line 60 and cell 70 while a point is moved past them in sixteenths of a cell,
+ * 30 dB above what is left out at its side lobes. */
+static void a_points_width_and_side_lobes_are_those_of_the_taylor_table(void **state)
+{
+    (void)state;
+    for (int is_along = 0; is_along < 2; is_along++) {
+        double cut[CUT], width, side_db;
+        for (int i = 0; i < CUT; i++) {
+            const double away = (i - CUT / 2) / (double)STEPS;
+            const struct lm_target t = point_in(60 + !is_along * away, 70 + is_along * away, 60);
+            const struct lm_patch_geometry g = geometry(46, 11, 0);
+            find_points(&t, 1, &g, 0);
+            draw(&g, NOTHING_Q8);
+            cut[i] = pow(10, picture[60][GUARD + 70] / 2560.0);
+        }
+        measure(cut, &width, &side_db);
+        print_message("# %s: width %.3f cells, side lobe %.2f dB\n", is_along ? "along" : "across",
+                      width, side_db);
+        assert_true(fabs(width / 1.184 - 1) < 0.05);
+        assert_true(fabs(side_db + 35.2) < 1);
+    }
+}
+
+static void the_table_is_taylors_response(void **state)
+{
+    (void)state;
+    double worst = 0, energy = 0;
+    for (int x_q8 = -8 * 256; x_q8 <= 8 * 256; x_q8++) {
+        worst = fmax(worst, fabs(lm_response(x_q8) / 32768.0 - taylor(x_q8 / 256.0)));
+        energy += pow(lm_response(x_q8) / 32768.0, 2) / 256;
+        const int whole = abs(x_q8) / 256;
+        for (int n = 0; n <= whole; n++) {
+            assert_true(20 * log10(fabs(taylor(x_q8 / 256.0)) + 1e-9) <=
+                        lm_response_envelope_q8[n] / 256.0 + 0.01);
+        }
+    }
+    print_message("# worst response off by %.5f of one, energy %.5f\n", worst, energy);
+    assert_true(worst < 1.3e-3);
+    assert_true(fabs(energy - 1) < 0.002);
+}
+
+/* ---- place and power ---- */
+
+static void a_point_is_at_its_place_with_all_its_power(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    double worst_cells = 0, worst_db = 0;
+    hs_rng_seed(&rng, 4);
+    for (int i = 0; i < 100; i++) {
+        const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1), look = 360 * hs_rng_uniform(&rng);
+        const double line = 20 + 88 * hs_rng_uniform(&rng), cell = 20 + 88 * hs_rng_uniform(&rng);
+        double to[2], power = 0, across = 0, along = 0;
+        place_at(lat, 20, look, middle_of(line), middle_of(cell), to);
+        const struct lm_target t = point_at(to[0], to[1], 0, 35);
+        const struct lm_patch_geometry g = geometry(lat, 20, look);
+        find_points(&t, 1, &g, 0);
+        draw(&g, NOTHING_Q8);
+        for (int k = 0; k < LINES; k++) {
+            for (int c = 0; c < CELLS; c++) {
+                const double p = picture[k][c] == NOTHING_Q8 ? 0 : pow(10, picture[k][c] / 2560.0);
+                power += p, across += p * k, along += p * (c - GUARD);
+            }
+        }
+        worst_cells = fmax(worst_cells, hypot(across / power - line, along / power - cell));
+        worst_db = fmax(worst_db, fabs(10 * log10(power) - level_db(35, cell)));
+    }
+    print_message("# worst place %.3f cells, worst power %.3f dB\n", worst_cells, worst_db);
+    assert_true(worst_cells < 0.1);
+    assert_true(worst_db < 0.05);
+}
+
+static void what_is_left_out_lies_below_the_least_level(void **state)
+{
+    (void)state;
+    const struct lm_patch_geometry g = geometry(46, 11, 0);
+    static int32_t whole[LINES][LM_CELLS_ROOM];
+    for (int rcs_db = -60; rcs_db <= 60; rcs_db += 4) {
+        const struct lm_target t = point_in(60.3, 70.4, rcs_db);
+        find_points(&t, 1, &g, 0);
+        draw(&g, NOTHING_Q8);
+        memcpy(whole, picture, sizeof whole);
+        draw(&g, -56 * 256);
+        for (int k = 0; k < LINES; k++) {
+            for (int c = 0; c < CELLS; c++) {
+                assert_true(picture[k][c] == whole[k][c] ||
+                            (picture[k][c] == NOTHING_Q8 && whole[k][c] < -56 * 256));
+            }
+        }
+    }
+}
+
+/* ---- sums ---- */
+
+/* The picture of all points in double precision: phasors within a target, powers between them. */
+static double expected_power(uint32_t line, uint32_t cell)
+{
+    double power = 0;
+    for (uint32_t i = 0; i < points.count;) {
+        double complex sum = 0;
+        const uint8_t target = points.item[i].target;
+        for (; i < points.count && points.item[i].target == target; i++) {
+            const struct lm_patch_point *p = &points.item[i];
+            const double dx = line - p->across_q8 / 256.0, dy = cell - p->along_q8 / 256.0;
+            if (fabs(dx) < 8 && fabs(dy) <= 7.5) {
+                sum += pow(10, p->level_q8 / 5120.0) * taylor(dx) * taylor(dy) *
+                       cexp(I * (double)p->phase * (2 * pi / 4294967296.0));
+            }
+        }
+        power += pow(cabs(sum), 2);
+    }
+    return power;
+}
+
+static void bodies_add_as_phasors_and_targets_as_powers_everywhere(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    double worst_db = 0, squares = 0;
+    uint32_t cells = 0;
+    hs_rng_seed(&rng, 9);
+    for (int i = 0; i < 6; i++) {
+        struct lm_target t[4];
+        for (int k = 0; k < 4; k++) {
+            double to[2];
+            t[k] = random_target(&rng, 15000);
+            place_at(46, 11, 0, middle_of(40 + 12 * k), middle_of(80 - 9 * k), to);
+            t[k].latitude = bam(to[0]);
+            t[k].longitude = bam(to[1]);
+            seal_target(&t[k]);
+        }
+        const struct lm_patch_geometry g = geometry(46, 11, 0);
+        find_points(t, 4, &g, 0);
+        draw(&g, NOTHING_Q8);
+        double strongest = 0;
+        for (uint32_t k = 0; k < LINES; k++) {
+            for (uint32_t c = 0; c < CELLS; c++) {
+                strongest = fmax(strongest, expected_power(k, c));
+            }
+        }
+        for (uint32_t k = 0; k < LINES; k++) {
+            for (uint32_t c = 0; c < CELLS; c++) {
+                const double power = expected_power(k, c);
+                if (power > strongest * 1e-5) {
+                    const double error_db = fabs(picture[k][c] / 256.0 - 10 * log10(power));
+                    worst_db = fmax(worst_db, error_db);
+                    squares += error_db * error_db;
+                    cells++;
+                }
+            }
+        }
+    }
+    print_message("# %u cells within 50 dB of the strongest: rms %.3f dB, worst %.2f dB\n", cells,
+                  sqrt(squares / cells), worst_db);
+    assert_true(cells > 2000);
+    assert_true(sqrt(squares / cells) < 0.1);
+    assert_true(worst_db < 1.5);
+}
+
+/* Cases 2 and 4 change from pulse to pulse; a patch is made of all pulses of its dwell. */
+static void a_fluctuating_point_has_one_strength_in_a_patch(void **state)
+{
+    (void)state;
+    for (uint8_t swerling = 1; swerling <= 4; swerling++) {
+        struct lm_target t = point_in(60, 70, 30);
+        t.swerling = swerling;
+        seal_target(&t);
+        struct lm_patch_geometry g = geometry(46, 11, 0);
+        int32_t strength[2];
+        for (g.epoch = 0; g.epoch < 2; g.epoch++) {
+            find_points(&t, 1, &g, 0);
+            draw(&g, NOTHING_Q8);
+            const int32_t *left = picture[59], *right = picture[61];
+            assert_true(abs(left[GUARD + 70] - right[GUARD + 70]) < 64);
+            strength[g.epoch] = picture[60][GUARD + 70];
+        }
+        assert_true(strength[0] != strength[1]);
+    }
+}
+
+/* ---- movers ---- */
+
+static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    for (int i = 0; i < 50; i++) {
+        const double speed = 0.5 + hs_rng_uniform(&rng), heading = 360 * hs_rng_uniform(&rng);
+        const double across_m_s = i % 2 ? 176.8 : -240;
+        struct lm_target t = point_in(64, 70, 35);
+        t.heading = bam(heading);
+        t.speed_mm_s = (uint32_t)lround(speed * 1000);
+        t.leg_m = 10;
+        seal_target(&t);
+        struct lm_patch_geometry g = geometry(46, 11, 0);
+        g.across_mm_s = (int32_t)lround(across_m_s * 1000);
+        find_points(&t, 1, &g, 0);
+        const double closing = -speed * cos(heading * pi / 180);
+        const double expected = 64 + (range_m + middle_of(70)) * closing / across_m_s / cell_m;
+        assert_true(fabs(points.item[0].across_q8 / 256.0 - expected) < 1);
+        assert_true(fabs(points.item[0].along_q8 / 256.0 - (GUARD + 70)) < 0.1);
+    }
+}
+
+/* ---- hidden and leaning ---- */
+
+enum { BITS = 52, WALL = 20 };
+
+static void a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines(void **state)
+{
+    (void)state;
+    /* Seen from 6000 m at 20 km, a wall of 30 m throws a shadow of 100 m: 66 m behind it, a
+     * target shows from 10 m up. */
+    const struct lm_patch_geometry g = geometry(46, 11, 0);
+    int64_t horizon[CELLS];
+    double highest = -10;
+    for (int i = 0; i < CELLS; i++) {
+        const double at_m = range_m + middle_of(i - GUARD);
+        horizon[i] = (int64_t)ldexp(highest, BITS);
+        highest = fmax(highest, ref_tangent(height_m, at_m, i == WALL ? 30 : 0));
+    }
+    for (int up_m = 0; up_m < 20; up_m++) {
+        for (int is_before = 0; is_before < 2; is_before++) {
+            struct lm_target t = point_in(64, WALL - GUARD + (is_before ? -4 : 33), 30);
+            t.elevation_q6 = up_m * 64;
+            seal_target(&t);
+            const double at_m = range_m + middle_of(WALL - GUARD);
+            const bool is_seen = is_before || ref_tangent(height_m, at_m + 66, up_m) >
+                                                  ref_tangent(height_m, at_m, 30);
+            assert_true(is_before || is_seen == (up_m >= 11));
+            find_points(&t, 1, &g, 0);
+            for (uint32_t k = 0; k < LINES; k++) {
+                lm_patch_points_hide(&points, k, horizon, BITS, CELLS - 1);
+            }
+            draw(&g, NOTHING_Q8);
+            int lines = 0;
+            for (int k = 0; k < LINES; k++) {
+                for (int c = 0; c < CELLS; c++) {
+                    lines += picture[k][c] != NOTHING_Q8;
+                }
+            }
+            assert_int_equal(lines > 0, is_seen);
+        }
+    }
+}
+
+static void layover_brings_a_body_nearer_by_its_height_times_the_lean(void **state)
+{
+    (void)state;
+    struct lm_target t = point_in(64, 70, 0);
+    t.scatterer_count = 0;
+    add_scatterer(&t, LM_SHAPE_SPHERE, 5642, 0, 0, 40000, 0, 0);
+    struct lm_patch_geometry g = geometry(46, 11, 0);
+    g.lean_q16 = (int32_t)lround(0.3 * 65536);
+    find_points(&t, 1, &g, 0);
+    assert_true(fabs(points.item[0].along_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) < 0.1);
+}
+
+/* ---- hostile records ---- */
+
+static void a_record_that_passes_the_check_can_be_used_in_a_patch(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    uint32_t passed = 0, given = 0;
+    struct lm_target t = {0};
+    hs_rng_seed(&rng, 6);
+    for (int i = 0; i < 6000; i++) {
+        if (i % 10 == 0) {
+            t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
+            t.speed_mm_s = hs_rng_below(&rng, LM_TARGET_SPEED_MAX_MM_S) + 1;
+            t.leg_m = hs_rng_below(&rng, LM_TARGET_LEG_MAX_M) + 1;
+        }
+        uint8_t *bytes = (uint8_t *)&t;
+        for (uint32_t k = 1 + hs_rng_below(&rng, 6); k > 0; k--) {
+            bytes[4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4)] = (uint8_t)hs_rng_u64(&rng);
+        }
+        seal_target(&t);
+        if (lm_target_check(&t) != LM_OK) {
+            i += 9 - i % 10;
+            continue;
+        }
+        passed++;
+        struct lm_patch_geometry g = geometry(46, 11, 0);
+        const struct lm_pose pose = lm_target_pose(&t, (uint64_t)i << 30);
+        g.centre =
+            (struct lm_place){pose.place.latitude + hs_rng_below(&rng, 9000), pose.place.longitude};
+        g.look = (fx_bam_t)hs_rng_u64(&rng);
+        g.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
+        g.cell_q8 = i % 2 ? 128 : 10240;
+        g.across_mm_s = (int32_t)hs_rng_below(&rng, 9) - 4;
+        g.lean_q16 = (int32_t)hs_rng_below(&rng, 1 << 22);
+        find_points(&t, 1, &g, (uint64_t)i << 30);
+        draw(&g, -56 * 256);
+        for (uint32_t k = 0; k < LINES; k++) {
+            for (uint32_t c = 0; c < CELLS; c++) {
+                given += picture[k][c] != NOTHING_Q8;
+            }
+        }
+    }
+    print_message("# %u records passed, %u cells were given something\n", passed, given);
+    assert_true(passed > 500 && given > 500);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_points_width_and_side_lobes_are_those_of_the_taylor_table),
+        cmocka_unit_test(the_table_is_taylors_response),
+        cmocka_unit_test(a_point_is_at_its_place_with_all_its_power),
+        cmocka_unit_test(what_is_left_out_lies_below_the_least_level),
+        cmocka_unit_test(bodies_add_as_phasors_and_targets_as_powers_everywhere),
+        cmocka_unit_test(a_fluctuating_point_has_one_strength_in_a_patch),
+        cmocka_unit_test(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell),
+        cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines),
+        cmocka_unit_test(layover_brings_a_body_nearer_by_its_height_times_the_lean),
+        cmocka_unit_test(a_record_that_passes_the_check_can_be_used_in_a_patch),
+    };
+    return cmocka_run_group_tests_name("target_patch", tests, NULL, NULL);
+}
