@@ -25,6 +25,21 @@ $(O)/$(1)/%.o: %.c
 endef
 $(foreach variant,golden-clang golden-sanitized,$(eval $(call golden_variant,$(variant))))
 
+# The same once more for the panel's processor, by its own compiler where that is installed.
+ifeq ($(BOARD),bench-linux)
+ARM64 := build/panel-linux-arm64
+TESTS += $(GOLDEN)/test_golden_arm64
+$(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh golden-arm64
+	@mkdir -p $(@D)
+	@cp $< $@
+	@chmod +x $@
+
+.PHONY: golden-arm64
+golden-arm64:
+	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 \
+	    CC=aarch64-linux-gnu-gcc O=$(ARM64) $(ARM64)/bin/tests/golden/golden
+endif
+
 .PHONY: golden-update
 golden-update: $(GOLDEN)/golden ## Take the pictures of this build as the golden ones; look at them first
 	@$(GOLDEN)/golden >$(O)/pictures.golden && mv $(O)/pictures.golden tests/golden/pictures.golden
