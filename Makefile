@@ -145,4 +145,4 @@ $(O)/bin/%:
 	$(if $(V),,@echo '  LINK $@')
 	$(Q)$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
 
--include $(shell find $(O) -name '*.d' 2>/dev/null)
+-include $(shell find $(O) -type f -name '*.d' 2>/dev/null)

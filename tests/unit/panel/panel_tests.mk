@@ -1,0 +1,19 @@
+# The panel's configuration, its loop, and its package.
+T := $(O)/bin/tests/unit/panel/test_config
+TESTS += $(T)
+$(O)/tests/unit/panel/%.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Itests/unit/firmware
+$(T): $(addprefix $(O)/,tests/unit/panel/test_config.o bsp/panel-linux/config.o bsp/panel-linux/config_table.o)
+$(T): LDLIBS := -lcmocka
+
+T := $(O)/bin/tests/unit/panel/test_panel
+TESTS += $(T)
+$(T): $(O)/tests/unit/panel/test_panel.o $(O)/tests/unit/firmware/unit_rig.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \
+    $(O)/tests/support/memory_flash.o $(LIB_panel) $(LIB_drivers) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(T): LDLIBS = -lcmocka $(LINUX_LIBS) $(call pkgs,libs,libpng)
+
+T := $(O)/bin/tests/unit/panel/test_package
+TESTS += $(T)
+$(T): tests/unit/panel/test_package.sh $(PANEL) $(wildcard bsp/panel-linux/debian/*)
+	@mkdir -p $(@D)
+	@cp $< $@
+	@chmod +x $@

@@ -1,0 +1,224 @@
+/* The configuration file: what it takes, and what it does with lines that are wrong. */
+#include "config.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct told {
+    uint32_t count, line;
+    char cause[128];
+};
+
+static void tell(void *ctx, uint32_t line, const char *cause)
+{
+    struct told *t = ctx;
+    t->count++;
+    t->line = line;
+    snprintf(t->cause, sizeof t->cause, "%s", cause);
+}
+
+static struct told read_text(struct config *c, const char *text)
+{
+    struct told t = {0};
+    config_defaults(c);
+    const uint32_t wrong = config_read(c, text, strlen(text), tell, &t);
+    assert_int_equal(wrong, t.count);
+    return t;
+}
+
+static void every_default_is_a_value_of_its_option(void **state)
+{
+    (void)state;
+    struct config defaults, c;
+    char text[CONFIG_FILE_BYTES] = "";
+    for (uint32_t i = 0; i < config_option_count(); i++) {
+        const struct config_option o = config_option_at(i);
+        const size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "%s = %s\n", o.name, o.initial);
+        assert_true(strlen(o.values) > 0 && strlen(o.help) > 10);
+    }
+    config_defaults(&defaults);
+    const struct told t = read_text(&c, text);
+    assert_int_equal(t.count, 0);
+    assert_memory_equal(&c, &defaults, sizeof c);
+    assert_string_equal(c.can, "can0");
+    assert_int_equal(c.priority, 40);
+    assert_int_equal(c.locks_memory, 1);
+    assert_int_equal(c.key_active_low, 1);
+    assert_string_equal(c.key[3], "");
+    assert_int_equal(c.stick.choice, CONFIG_STICK_AUTO);
+    assert_int_equal(c.stick_map.up.usage, DRV_STICK_X + 1);
+    assert_true(c.stick_map.up.is_inverted);
+    assert_int_equal(c.stick_map.button[0].act, DRV_STICK_DESIGNATE);
+}
+
+/* Every option, given a value that none of them takes, is refused, named by its line, and as it
+ * was. Texts and paths take nearly anything, so theirs is too long. */
+static void every_option_refuses_what_is_no_value_of_it(void **state)
+{
+    (void)state;
+    char nonsense[200];
+    memset(nonsense, '~', sizeof nonsense - 1);
+    nonsense[sizeof nonsense - 1] = '\0';
+    for (uint32_t i = 0; i < config_option_count(); i++) {
+        struct config defaults, c;
+        char text[400];
+        config_defaults(&defaults);
+        snprintf(text, sizeof text, "# first\n\n%s = %s\n", config_option_at(i).name, nonsense);
+        const struct told t = read_text(&c, text);
+        assert_int_equal(t.count, 1);
+        assert_int_equal(t.line, 3);
+        assert_memory_equal(&c, &defaults, sizeof c);
+    }
+}
+
+static void numbers_are_held_to_their_range(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        bool is_good;
+    } cases[] = {
+        {"realtime.priority = 0", true},
+        {"realtime.priority = 90", true},
+        {"realtime.priority = 91", false},
+        {"realtime.priority = -1", false},
+        {"realtime.priority = 4 0", false},
+        {"realtime.priority = 0x10", false},
+        {"realtime.priority =", false},
+        {"keys.debounce = 0", false},
+        {"keys.debounce = 1", true},
+        {"keys.debounce = 50", true},
+        {"keys.debounce = 51", false},
+        {"seed = 2147483647", true},
+        {"seed = 2147483648", false},
+        {"seed = 99999999999999999999", false},
+        {"tiles = 119", false},
+        {"tiles = 512", true},
+        {"glass.picture = 256x1024", true},
+        {"glass.picture = 255x1024", false},
+        {"glass.picture = 256x1025", false},
+        {"glass.picture = 256", false},
+        {"glass.picture = 256x", false},
+        {"glass.picture = x256", false},
+        {"glass.picture = 256x256x256", false},
+        {"glass.turn = 90", true},
+        {"glass.turn = 45", false},
+        {"glass.turn = 9", false},
+        {"can = 123456789012345", true},
+        {"can = 1234567890123456", false},
+        {"database = relative/path", false},
+        {"watchdog = none", true},
+        {"stick = 046d:c215", true},
+        {"stick = 046D:C215:0042", true},
+        {"stick = 046d", false},
+        {"stick = 046d:", false},
+        {"stick = 046d:c215:", false},
+        {"stick = 0046d:c215", false},
+        {"stick = g46d:c215", false},
+        {"stick.up = -hatx", true},
+        {"stick.up = throttle", true},
+        {"stick.up = -none", false},
+        {"stick.up = w", false},
+        {"stick.button.32 = con-", true},
+        {"stick.button.1 = 20", true},
+        {"stick.button.1 = 21", false},
+        {"stick.button.33 = 1", false},
+        {"key.21 = A", false},
+        {"key.gain+ = A LINE", true},
+        {"unknown = 1", false},
+        {"can can0", false},
+        {"= 1", false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct config c;
+        const struct told t = read_text(&c, cases[i].text);
+        if ((t.count == 0) != cases[i].is_good) {
+            fail_msg("%s: %s", cases[i].text, t.count ? t.cause : "accepted");
+        }
+    }
+}
+
+static void values_arrive_where_they_belong(void **state)
+{
+    (void)state;
+    struct config c;
+    const struct told t = read_text(&c,
+                                    "\t can=vcan1\r\n"
+                                    "glass.mode = 800x480 # a remark\n"
+                                    "key.20=BEZEL#20\n"
+                                    "  # stick = none\n"
+                                    "stick = 1209:0c0d:AB:1\n"
+                                    "stick.button.9 = brt-\n"
+                                    "backlight = panel-0\n"
+                                    "glass.turn = 270");
+    assert_int_equal(t.count, 0);
+    assert_string_equal(c.can, "vcan1");
+    assert_int_equal(c.glass_mode.width_px, 800);
+    assert_int_equal(c.glass_mode.height_px, 480);
+    assert_string_equal(c.key[19], "BEZEL#20");
+    assert_int_equal(c.stick.choice, CONFIG_STICK_NAMED);
+    assert_int_equal(c.stick.vendor, 0x1209);
+    assert_int_equal(c.stick.product, 0x0c0d);
+    assert_string_equal(c.stick.serial, "AB:1");
+    assert_int_equal(c.stick_map.button[8].act, DRV_STICK_PRESS);
+    assert_int_equal(c.stick_map.button[8].button, lm_rocker_button(LM_ROCKER_BRT, false));
+    assert_string_equal(c.backlight, "panel-0");
+    assert_int_equal(c.glass_turn, DRV_TURN_270);
+}
+
+static void an_option_that_is_given_twice_keeps_its_first_value(void **state)
+{
+    (void)state;
+    struct config c;
+    const struct told t = read_text(&c, "can = a\nseed = 1\ncan = b\n");
+    assert_int_equal(t.count, 1);
+    assert_int_equal(t.line, 3);
+    assert_string_equal(c.can, "a");
+}
+
+static void a_wrong_line_does_not_hide_the_right_one_behind_it(void **state)
+{
+    (void)state;
+    struct config c;
+    const struct told t = read_text(&c, "seed = x\nseed = 7\n");
+    assert_int_equal(t.count, 1);
+    assert_int_equal(t.line, 1);
+    assert_int_equal(c.seed, 7);
+}
+
+static void what_is_no_text_and_what_is_too_long_loses_only_its_line(void **state)
+{
+    (void)state;
+    struct config c;
+    struct told t = {0};
+    char text[1024] = "can = x\001\n";
+    memset(text + strlen(text), 'a', 300);
+    strcat(text, "\nseed = 3\n");
+    const size_t size = strlen(text) + 5; /* zeros behind it: a last line that is no text */
+    config_defaults(&c);
+    assert_int_equal(config_read(&c, text, size, tell, &t), 3);
+    assert_int_equal(t.line, 4);
+    assert_string_equal(c.can, "can0");
+    assert_int_equal(c.seed, 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_default_is_a_value_of_its_option),
+        cmocka_unit_test(every_option_refuses_what_is_no_value_of_it),
+        cmocka_unit_test(numbers_are_held_to_their_range),
+        cmocka_unit_test(values_arrive_where_they_belong),
+        cmocka_unit_test(an_option_that_is_given_twice_keeps_its_first_value),
+        cmocka_unit_test(a_wrong_line_does_not_hide_the_right_one_behind_it),
+        cmocka_unit_test(what_is_no_text_and_what_is_too_long_loses_only_its_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,265 @@
+/* The whole panel, without devices and with a bus and a flash: what it does in its loop, and what
+ * it must not do there. The kernel's side of each device is tested in the virtual machine. */
+#include "panel.h"
+#include "support.h"
+#include "unit_rig.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* Every allocation of the program comes by here, those of the libraries too. */
+extern void *__libc_malloc(size_t size);
+extern void *__libc_calloc(size_t members, size_t size);
+extern void *__libc_realloc(void *old, size_t size);
+extern void *__libc_memalign(size_t alignment, size_t size);
+static _Thread_local uint32_t allocations; /* of this thread */
+
+void *malloc(size_t size)
+{
+    allocations++;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t members, size_t size)
+{
+    allocations++;
+    return __libc_calloc(members, size);
+}
+
+void *realloc(void *old, size_t size)
+{
+    allocations++;
+    return __libc_realloc(old, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size)
+{
+    allocations++;
+    return __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void **out, size_t alignment, size_t size)
+{
+    allocations++;
+    *out = __libc_memalign(alignment, size);
+    return *out == NULL;
+}
+
+static struct config nothing_fitted(void)
+{
+    struct config c;
+    config_defaults(&c);
+    c.can[0] = '\0';
+    c.glass = CONFIG_GLASS_NONE;
+    c.stick.choice = CONFIG_STICK_NONE;
+    c.priority = 0;
+    c.locks_memory = 0;
+    c.glass_picture = (struct config_size){WIDTH, HEIGHT};
+    snprintf(c.database, sizeof c.database, "/nowhere/database.lmdb");
+    return c;
+}
+
+/* A panel in flight: the rig's country in a file, its bus in the place of the panel's. */
+struct flight {
+    struct rig *rig;
+    struct config config;
+    struct panel panel;
+    struct lm_can counted;
+};
+
+static int receive(void *ctx, struct lm_can_frame *frame)
+{
+    struct flight *f = ctx;
+    f->panel.bus.count.polls++;
+    return f->rig->can.receive(f->rig->can.ctx, frame);
+}
+
+static struct flight *take_off(void)
+{
+    struct flight *f = calloc(1, sizeof *f);
+    f->rig = make_rig();
+    f->config = nothing_fitted();
+    support_run("mkdir -p %s/tmp", support_build_dir());
+    snprintf(f->config.database, sizeof f->config.database, "%s/tmp/panel-test.lmdb",
+             support_build_dir());
+    assert_int_equal(tiny_image_write(&f->rig->image, f->config.database), 0);
+    assert_int_equal(panel_open(&f->panel, &f->config), 0);
+    f->panel.bus.port.ctx = f;
+    f->panel.bus.port.receive = receive;
+    return f;
+}
+
+static void land(struct flight *f)
+{
+    panel_close(&f->panel);
+    unlink(f->config.database);
+    free_rig(f->rig);
+    free(f);
+}
+
+/* As fast as it goes; the flash's thread gets the processor now and then. */
+static void fly(struct flight *f, double seconds)
+{
+    struct rig *r = f->rig;
+    const struct timespec rest = {.tv_nsec = 20000};
+    for (const uint64_t end = r->now_us + (uint64_t)(seconds * 1e6); r->now_us < end;
+         r->now_us += PANEL_TICK_US) {
+        r->bus.now_us = r->now_us;
+        panel_step(&f->panel, r->now_us);
+        nanosleep(&rest, NULL);
+    }
+}
+
+/* A patch around the cursor: it needs tiles that the sector did not. */
+static void look_closely(struct flight *f)
+{
+    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_RANGE, 0, 0);
+    fly(f, 0.5);
+    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_DESIGNATE, 0, 0);
+}
+
+static void a_panel_without_any_device_draws_its_page_and_says_what_is_missing(void **state)
+{
+    (void)state;
+    const struct config c = nothing_fitted();
+    struct panel p;
+    assert_int_equal(panel_open(&p, &c), 0);
+    for (uint64_t now = 0; now < 3000000; now += PANEL_TICK_US) {
+        panel_step(&p, now);
+    }
+    assert_int_equal(p.unit->flags, LM_FLAG_DB | LM_FLAG_BUS | LM_FLAG_NAV_DEAD);
+    assert_in_range(p.glass.count.pictures, 88, 91);
+    uint32_t lit = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        lit += p.glass.picture.pixels[i] != 0;
+    }
+    assert_in_range(lit, 1000, WIDTH * HEIGHT / 4); /* labels and warnings, no land */
+    panel_close(&p);
+}
+
+static void from_the_first_step_on_the_loop_allocates_nothing(void **state)
+{
+    (void)state;
+    struct flight *f = take_off();
+    const uint32_t before = allocations;
+    fly(f, 10);
+    look_closely(f);
+    fly(f, 10);
+    assert_int_equal(allocations, before);
+    assert_int_equal(f->panel.unit->flags & (LM_FLAG_DB | LM_FLAG_BUS | LM_FLAG_NAV_DEAD), 0);
+    assert_in_range(f->panel.unit->count.frames, 610, 620);
+    assert_int_equal(f->panel.unit->page.mode, LM_MODE_SAR);
+    assert_true(f->panel.unit->tiles.count.tiles_read > 10);
+    assert_true(lit_pixels(f->rig) == 0); /* the rig's own unit has not run: this was the panel's */
+    void *volatile one = malloc(1); /* volatile: or the compiler would see through it */
+    assert_int_equal(allocations, before + 1);
+    free(one);
+    land(f);
+}
+
+static void a_database_that_is_lost_in_flight_is_said_and_outlived(void **state)
+{
+    (void)state;
+    struct flight *f = take_off();
+    fly(f, 1);
+    assert_int_equal(truncate(f->config.database, 0), 0);
+    look_closely(f);
+    fly(f, 1);
+    assert_true((f->panel.unit->flags & LM_FLAG_TILE) != 0);
+    assert_true(atomic_load(&f->panel.flash.count.failed) > 0);
+    const uint32_t frames = f->panel.unit->count.frames;
+    fly(f, 1);
+    assert_in_range(f->panel.unit->count.frames, frames + 28, frames + 32);
+    land(f);
+}
+
+static void the_hand_controllers_ring_reaches_the_page(void **state)
+{
+    (void)state;
+    struct flight *f = take_off();
+    fly(f, 0.5);
+    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_DOWN, 12, 0);
+    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_UP, 12, 0);
+    fly(f, 0.5);
+    assert_int_equal(f->panel.unit->page.format, LM_FORMAT_BIT);
+    land(f);
+}
+
+static void *stop_soon(void *unused)
+{
+    (void)unused;
+    const struct timespec rest = {.tv_nsec = 400000000};
+    nanosleep(&rest, NULL);
+    kill(getpid(), SIGUSR1);
+    nanosleep(&rest, NULL);
+    kill(getpid(), SIGTERM);
+    return NULL;
+}
+
+/* In real time, with systemd's socket at the other end. */
+static void it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told(void **state)
+{
+    (void)state;
+    struct sockaddr_un at = {.sun_family = AF_UNIX};
+    snprintf(at.sun_path, sizeof at.sun_path, "/tmp/landmass-panel-%d", (int)getpid());
+    const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+    assert_int_equal(bind(fd, (const struct sockaddr *)&at, sizeof at), 0);
+    setenv("NOTIFY_SOCKET", at.sun_path, 1);
+    setenv("WATCHDOG_USEC", "200000", 1);
+
+    const struct config c = nothing_fitted();
+    struct panel p;
+    pthread_t other;
+    assert_int_equal(panel_open(&p, &c), 0);
+    assert_int_equal(pthread_create(&other, NULL, stop_soon, NULL), 0);
+    const uint32_t before = allocations;
+    panel_run(&p);
+    assert_int_equal(allocations, before);
+    pthread_join(other, NULL);
+    panel_close(&p);
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+
+    char message[600];
+    uint32_t ready = 0, fed = 0, stopping = 0;
+    for (ssize_t size; (size = recv(fd, message, sizeof message - 1, 0)) > 0;) {
+        message[size] = '\0';
+        ready += strcmp(message, "READY=1") == 0;
+        stopping += strcmp(message, "STOPPING=1") == 0;
+        if (strcmp(message, "WATCHDOG=1") == 0) {
+            assert_int_equal(ready, 1);
+            assert_int_equal(stopping, 0);
+            fed++;
+        }
+    }
+    assert_int_equal(ready, 1);
+    assert_int_equal(stopping, 1);
+    assert_in_range(fed, 1, 9); /* 0.8 s, every 0.1 s at most; a busy machine may be late */
+    close(fd);
+    unlink(at.sun_path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_panel_without_any_device_draws_its_page_and_says_what_is_missing),
+        cmocka_unit_test(from_the_first_step_on_the_loop_allocates_nothing),
+        cmocka_unit_test(a_database_that_is_lost_in_flight_is_said_and_outlived),
+        cmocka_unit_test(the_hand_controllers_ring_reaches_the_page),
+        cmocka_unit_test(it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
