@@ -1,0 +1,64 @@
+/* The board that you copy: every port of the unit, with nothing behind it. Replace one after the
+ * other; docs/PORTING.md says in which order. */
+#include "drv/not_fitted.h"
+#include "lm/unit.h"
+
+#include <stddef.h>
+
+int main(void);
+
+enum {
+    WIDTH_PX = 768,
+    HEIGHT_PX = 768,
+    TILES = 256,   /* at least the coarsest level of the database and 16 more */
+    STEP_US = 2000 /* as often as a line is due at the fastest scale */
+};
+
+/* Memory that the board lends. Static, so that the linker's map says where it all went. */
+static struct lm_tile tile_pool[TILES];
+static uint8_t plane[WIDTH_PX * HEIGHT_PX];
+static uint32_t pixels[WIDTH_PX * HEIGHT_PX];
+static struct lm_unit unit;
+
+/* Microseconds since the start. Yours reads a timer; this one lets a step take what it should. */
+static uint64_t now_us(void)
+{
+    static uint64_t time_us;
+    return time_us += STEP_US;
+}
+
+static int acquire(void *ctx, struct lm_surface *surface)
+{
+    (void)ctx;
+    *surface = (struct lm_surface){pixels, WIDTH_PX, WIDTH_PX, HEIGHT_PX};
+    return LM_OK;
+}
+
+/* Yours puts the pixels on the glass. */
+static int present(void *ctx)
+{
+    (void)ctx;
+    return LM_OK;
+}
+
+int main(void)
+{
+    static const struct lm_display display = {NULL, WIDTH_PX, HEIGHT_PX, acquire, present};
+    const struct lm_board board = {.radar = &lm_radar_default,
+                                   .flash = &drv_no_flash,
+                                   .can = &drv_no_can,
+                                   .controls = &drv_no_controls,
+                                   .display = &display,
+                                   .tile_pool = tile_pool,
+                                   .tile_pool_bytes = sizeof tile_pool,
+                                   .plane = plane,
+                                   .flash_poll_limit = 1000000};
+    if (lm_unit_init(&unit, &board) != LM_OK) {
+        return 1;
+    }
+    /* Yours runs for ever; this one for a second, and is content when pictures came. */
+    while (unit.count.frames < 30) {
+        lm_unit_step(&unit, now_us());
+    }
+    return unit.flags & LM_FLAG_DB ? 0 : 1;
+}

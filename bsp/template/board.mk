@@ -1,0 +1,16 @@
+# template: the board that you copy (docs/PORTING.md). It compiles for the machine that builds, and flies with nothing.
+
+# Your compiler, and the archive tool that belongs to it.
+CC := gcc
+AR := gcc-ar
+
+# How everything is compiled: which core, whether there is a C library, ...
+OPT := -O2 -g
+# How the two lowest layers are compiled besides. They are integers: the picture is the same whatever you choose.
+OPT_core := -O3 -funroll-loops
+
+# The drivers that the board has, each without its ending.
+DRIVERS := not_fitted/not_fitted
+
+# Instead of a PC's programs and tests: how your program is linked.
+PARTS := bsp/template/program.mk

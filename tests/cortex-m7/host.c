@@ -1,0 +1,59 @@
+#include "host.h"
+
+enum {
+    SYS_OPEN = 0x01,
+    SYS_WRITE0 = 0x04,
+    SYS_READ = 0x06,
+    SYS_SEEK = 0x0A,
+    SYS_EXIT_EXTENDED = 0x20,
+    OPEN_READ_BINARY = 1
+};
+#define STOPPED_APPLICATION_EXIT 0x20026u
+
+static int call(uint32_t operation, const void *parameters)
+{
+    register uint32_t r0 __asm__("r0") = operation;
+    register const void *r1 __asm__("r1") = parameters;
+    __asm__ volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
+    return (int)r0;
+}
+
+void host_say(const char *words)
+{
+    call(SYS_WRITE0, words);
+}
+
+void host_say_checksum(const char *name, uint32_t checksum)
+{
+    char digits[] = " 00000000\n";
+    for (uint32_t i = 0; i < 8; i++) {
+        digits[8 - i] = "0123456789abcdef"[checksum >> 4 * i & 15];
+    }
+    host_say(name);
+    host_say(digits);
+}
+
+_Noreturn void host_exit(int status)
+{
+    const uint32_t parameters[2] = {STOPPED_APPLICATION_EXIT, (uint32_t)status};
+    for (;;) {
+        call(SYS_EXIT_EXTENDED, parameters);
+    }
+}
+
+int host_open(const char *path)
+{
+    uint32_t length = 0;
+    while (path[length]) {
+        length++;
+    }
+    const uint32_t parameters[3] = {(uint32_t)(uintptr_t)path, OPEN_READ_BINARY, length};
+    return call(SYS_OPEN, parameters);
+}
+
+bool host_read(int handle, uint32_t offset, void *to, uint32_t length)
+{
+    const uint32_t place[2] = {(uint32_t)handle, offset};
+    const uint32_t parameters[3] = {(uint32_t)handle, (uint32_t)(uintptr_t)to, length};
+    return call(SYS_SEEK, place) == 0 && call(SYS_READ, parameters) == 0;
+}
