@@ -24,6 +24,22 @@ struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, doubl
                               from.longitude_deg + atan2(y, x) / rad};
 }
 
+void ref_geo_inverse(struct ref_place from, struct ref_place to, double *azimuth_deg,
+                     double *distance_m)
+{
+    /* What is missing at the end of a try, as metres north and east, is added to it. */
+    double north_m = 0, east_m = 0;
+    for (int n = 0; n < 30; n++) {
+        *azimuth_deg = atan2(east_m, north_m) / rad;
+        *distance_m = hypot(north_m, east_m);
+        const struct ref_place end = ref_geo_direct(from, *azimuth_deg, *distance_m);
+        const double degree_m = REF_MERIDIAN_M / 360;
+        north_m += (to.latitude_deg - end.latitude_deg) * degree_m;
+        east_m += remainder(to.longitude_deg - end.longitude_deg, 360) * degree_m *
+                  cos(to.latitude_deg * rad);
+    }
+}
+
 /* The parabola through (0, f[0]), (1/2, f[1]), (1, f[2]). */
 static double parabola(const double f[3], double u)
 {

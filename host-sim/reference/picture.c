@@ -13,12 +13,25 @@ static void sample(const struct ref_db *db, unsigned level, const struct ref_par
     ref_db_elevation(db, level, bin->place, params->has_exact_weights, &bin->elevation_m);
 }
 
+/* The tables of a picture. */
+struct tables {
+    double speckle_db[REF_SPECKLE_SLICES];
+    struct ref_texture texture;
+};
+
+static void set_tables(struct tables *t, const struct ref_params *params)
+{
+    ref_speckle_table(params->looks, t->speckle_db);
+    ref_texture_tables(&t->texture, params);
+}
+
 /* The stages behind aspect, for a line whose levels are known. */
 static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, uint32_t epoch,
-                   const struct ref_params *params, const double table_db[REF_SPECKLE_SLICES])
+                   const struct ref_params *params, const struct tables *tables)
 {
     ref_speckle_slices(bins, count, speckle_shift, epoch, NULL);
-    ref_speckle(bins, count, table_db, params->noise_floor_db);
+    ref_texture(bins, count, &tables->texture, params);
+    ref_speckle(bins, count, tables->speckle_db, params->noise_floor_db);
     ref_tone(bins, count, params);
 }
 
@@ -33,7 +46,7 @@ static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm,
 
 static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
                       const struct ref_params *params, double azimuth_deg,
-                      const double table_db[REF_SPECKLE_SLICES])
+                      const struct tables *tables)
 {
     const struct ref_view view = gm_view(db, gm, params);
     const unsigned level = ref_db_level_for(db, gm->cell_m);
@@ -47,16 +60,16 @@ static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struc
     const size_t first = ref_first_shown(bins, gm->cell_count, &view);
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
     ref_aspect(bins, gm->cell_count, &view, params, horizon);
-    finish(bins, gm->cell_count, ref_speckle_shift(gm->cell_m), gm->epoch, params, table_db);
+    finish(bins, gm->cell_count, ref_speckle_shift(gm->cell_m), gm->epoch, params, tables);
     return horizon;
 }
 
 double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
                    const struct ref_params *params, double azimuth_deg)
 {
-    double table_db[REF_SPECKLE_SLICES];
-    ref_speckle_table(params->looks, table_db);
-    return gm_line(bins, db, gm, params, azimuth_deg, table_db);
+    struct tables tables;
+    set_tables(&tables, params);
+    return gm_line(bins, db, gm, params, azimuth_deg, &tables);
 }
 
 double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line)
@@ -104,11 +117,11 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
     if (allocate(picture) != 0) {
         return -1;
     }
-    double table_db[REF_SPECKLE_SLICES];
-    ref_speckle_table(params->looks, table_db);
+    struct tables tables;
+    set_tables(&tables, params);
     for (unsigned line = 0; line < gm->line_count; line++) {
         picture->start_horizons[line] = gm_line(ref_picture_bin(picture, line, 0), db, gm, params,
-                                                ref_gm_azimuth_deg(gm, line), table_db);
+                                                ref_gm_azimuth_deg(gm, line), &tables);
     }
     return 0;
 }
@@ -174,15 +187,15 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
                      &picture->view.reference_m);
     const struct ref_surface surface =
         ref_sar_surface(sar->centre, sar->azimuth_deg, sar->cell_count * sar->cell_m / 2);
-    double table_db[REF_SPECKLE_SLICES];
-    ref_speckle_table(params->looks, table_db);
+    struct tables tables;
+    set_tables(&tables, params);
     for (unsigned line = 0; line < sar->cell_count; line++) {
         picture->start_horizons[line] = line % REF_COARSE_EVERY == 0
                                             ? ref_sar_horizon(db, sar, params, line)
                                             : picture->start_horizons[line - 1];
         sar_line(picture, db, sar, params, &surface, line);
         finish(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
-               picture->speckle_shift, sar->epoch, params, table_db);
+               picture->speckle_shift, sar->epoch, params, &tables);
     }
     return 0;
 }

@@ -48,7 +48,8 @@ struct ref_bin {
     double gain_db, edge_db; /* K, E */
     double level_db;         /* the noise floor where there is no echo */
     /* speckle and noise */
-    uint32_t slice; /* 0..1023 */
+    uint32_t hash, slice; /* slice: 0..1023 */
+    double texture_db;    /* with the state of the sea */
     double speckle_db, echo_db;
     /* tone */
     double brightness; /* v, before the table */
@@ -60,10 +61,12 @@ struct ref_params {
     double edge_structure_db, edge_trees_db; /* leading edges */
     double shore_db, shore_width_m;          /* far shore */
     double noise_floor_db;
-    unsigned looks;            /* 1..64 */
-    double black_db, white_db; /* white_db > black_db */
-    double gamma_exponent;     /* > 0 */
-    bool has_exact_weights;    /* bilinear weights not cut to 8 bits */
+    unsigned looks;                 /* 1..64 */
+    double black_db, white_db;      /* white_db > black_db */
+    double gamma_exponent;          /* > 0 */
+    double texture_shape[LM_KINDS]; /* nu by kind of class, 1..64 in whole numbers; 0: none */
+    int sea_above_3;                /* state of the sea, less that of the image */
+    bool has_exact_weights;         /* bilinear weights not cut to 8 bits */
 };
 
 /* 6, 3 and 8 dB of edges, 90 m of shore, floor and black -45 dB, white 5 dB, 4 looks, exponent 1.
@@ -114,6 +117,11 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
 
 /* The place at a distance and azimuth (clockwise from north) on WGS-84, by DESIGN.md's formula. */
 struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, double distance_m);
+
+/* The other way round: azimuth and distance that lead from one place to another, up to 300 km away,
+ * found by trying. */
+void ref_geo_inverse(struct ref_place from, struct ref_place to, double *azimuth_deg,
+                     double *distance_m);
 
 /* The parabola through the points at u = 0, 1/2 and 1 of a line. Longitudes do not jump. */
 struct ref_path {
@@ -178,12 +186,24 @@ unsigned ref_speckle_shift(double cell_m);
 /* The hash of a place; slice = hash >> 22. NULL stands for fx_hash3. */
 typedef uint32_t (*ref_hash_fn)(uint32_t latitude, uint32_t longitude, uint32_t epoch);
 
-/* Fill `slice` from the places: latitude and longitude as unsigned BAM (rounded down), >> shift. */
+/* Fill `hash` and `slice` from the places: latitude and longitude as unsigned BAM (rounded down),
+ * >> shift. */
 void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
                         ref_hash_fn hash);
 
-/* Fill `speckle_db` from `slice`, and echo_db = the sum of both powers, level_db (of a lit bin) and
- * floor, + speckle_db. */
+/* Tables of the texture by kind of class: those of params->texture_shape, all 0 for none. */
+struct ref_texture {
+    double table_db[LM_KINDS][REF_SPECKLE_SLICES];
+};
+void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params);
+
+/* Fill `texture_db` from `kind` and `hash`: what the roughness of the class and, over water, the
+ * state of the sea add to the level. */
+void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
+                 const struct ref_params *params);
+
+/* Fill `speckle_db` from `slice`, and echo_db = the sum of both powers, level_db + texture_db (of a
+ * lit bin) and floor, + speckle_db. */
 void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
                  double noise_floor_db);
 
@@ -266,7 +286,6 @@ struct ref_environment {
     struct ref_rain rain[4];
     struct ref_jammer jammer[4];
     size_t rain_count, jammer_count;
-    int sea_state;
 };
 
 /* One way, ITU-R P.838-3 at 10 GHz, horizontal. */
@@ -290,6 +309,126 @@ void ref_weather_at(const struct ref_environment *e, double wavelength_m, double
 void ref_weather(const struct ref_environment *e, double wavelength_m, double azimuth_beam_deg,
                  double elevation_beam_deg, double height_m, const struct ref_bins *bins,
                  struct ref_weather_line *weather);
+
+/* ---- real beam: the antenna (beam.c) ---- */
+
+enum { REF_BEAM_SAMPLES = 16 };
+
+struct ref_beam {
+    double beam_deg; /* B, one-way half-power width */
+    double line_deg; /* D0 */
+    double ratio;    /* N >= 1; 1: real beam */
+};
+
+/* A line of the display: samples first .. first + 15, whose weights add up to 1. */
+struct ref_beam_look {
+    long first;
+    double weight[REF_BEAM_SAMPLES];
+};
+
+/* D, and the azimuth of a sample from the sector's middle. */
+double ref_beam_spacing_deg(const struct ref_beam *b);
+double ref_beam_azimuth_deg(const struct ref_beam *b, long sample);
+
+/* Two-way pattern, 1 on the axis. */
+double ref_beam_pattern(const struct ref_beam *b, double off_deg);
+
+struct ref_beam_look ref_beam_look(const struct ref_beam *b, double azimuth_deg);
+
+/* The line drawn from its samples, power[j] that of sample first + j. */
+void ref_beam_sum(const struct ref_beam_look *look, const double *const power[REF_BEAM_SAMPLES],
+                  double *sum, size_t count);
+
+struct ref_antenna {
+    double elevation_beam_deg; /* b, one-way half-power width */
+    double fan_deg;            /* f */
+    double bar_spacing_deg;
+};
+
+/* What the elevation pattern leaves of a look at a tangent; 0 within the fan. Tilts are positive
+ * upwards. */
+double ref_elevation_db(const struct ref_antenna *a, double tilt_deg, double tangent);
+
+/* Tilt towards flat ground `height_m` below at `range_m`, and that of bar 0..bars-1. */
+double ref_auto_tilt_deg(double height_m, double range_m);
+double ref_bar_tilt_deg(const struct ref_antenna *a, double tilt_deg, int bar, int bars);
+
+/* Power of each cell of a sampled line, from `echo_db`, `is_lit` and `tangent`. */
+void ref_sample_power(const struct ref_bin *cells, size_t count, const struct ref_antenna *a,
+                      double tilt_deg, double *power);
+
+/* Power of each bin from the ground's `cells`, the first of which begins at `near_edge_m`. */
+void ref_slant_power(const struct ref_bins *bins, double height_m, double near_edge_m,
+                     double cell_m, const double *ground, size_t cells, double *power);
+
+/* Everything that a line of a sector is made of, but for its samples. */
+struct ref_sector_line {
+    struct ref_beam_look look;
+    struct ref_antenna antenna;
+    double tilt_deg;            /* of the bar */
+    double near_edge_m, cell_m; /* of the ground's cells */
+    struct ref_receiver receiver;
+    uint32_t line, sweep;
+};
+
+/* Levels of a line's bins from 16 sampled lines of `cells` cells each (up to REF_CELLS_MAX), whose
+ * `echo_db` is known; NULL `weather`: fair. */
+void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
+                     size_t cells, const struct ref_weather_line *weather, double *level_db);
+
+/* ---- Doppler beam sharpening and movers (doppler.c) ---- */
+
+struct ref_dbs {
+    double speed_m_s; /* V, horizontal */
+    double beam_deg, wavelength_m;
+    double rate_deg_s; /* w, of the antenna */
+};
+
+/* N(o), what is to be had at `off_deg` from the velocity. */
+double ref_dbs_ratio(const struct ref_dbs *d, double off_deg);
+
+/* Angle off the velocity from which a ratio is to be had; NAN when it is nowhere. */
+double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio);
+
+/* The ratio that is used where `had` is to be had: 1 in the notch. */
+double ref_dbs_used(double had, double wanted, double least);
+
+/* How far a target that closes seems to lie nearer to the velocity vector: as an angle, and on the
+ * ground of a patch at ground range `range_m`. */
+double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg);
+double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m);
+
+/* ---- synthetic aperture (aperture.c) ---- */
+
+double ref_sar_dwell_s(double wavelength_m, double slant_m, double speed_m_s, double cell_m,
+                       double squint_deg);
+
+/* q: lines over which an uncompensated lateral acceleration spreads a point. */
+double ref_mocomp_cells(double wavelength_m, double residual_m_s2, double dwell_s);
+
+/* Line `line` of `lines` lines of `count` powers, spread over `width` lines. Beyond the edges the
+ * first and the last line are repeated. */
+void ref_mocomp(const double *const power[], size_t lines, size_t line, double width, double *mean,
+                size_t count);
+
+/* A line in slant-range presentation: each power moves nearer by shift * top_m cells and is shared
+ * between the two bins that it falls between; shift = tan(psi) / ds, top_m above the reference. */
+void ref_layover(const double *power, const double *top_m, size_t count, double shift,
+                 double *laid);
+
+struct ref_taylor {
+    double side_lobe_db; /* below the peak, > 0 */
+    int nbar;            /* 1: uniform weighting */
+};
+
+/* Weight at u = -1/2..1/2 of the aperture (mean 1), and the response to a point, x in units of the
+ * aperture's own resolution, in amplitude. */
+double ref_taylor_weight(const struct ref_taylor *t, double u);
+double ref_taylor_amplitude(const struct ref_taylor *t, double x);
+
+/* h: amplitude of a point's return in a patch, x cells from it one way, without the table's steps.
+ * Both ways multiply. */
+double ref_point_response(double x);
 
 /* ---- whole pictures (picture.c) ---- */
 

@@ -1,9 +1,10 @@
-/* Speckle and noise: DESIGN.md, "Speckle, noise, tone". */
+/* Speckle, texture and noise: DESIGN.md, "Speckle and texture". */
 #include "reference.h"
 
 #include "fx/hash.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Regularised incomplete gamma functions of whole shape: P by its series (DLMF 8.11.4), which has
  * no cancellation for x small, and Q = 1 - P by its finite sum (DLMF 8.4.10), which has none
@@ -83,7 +84,27 @@ void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint
         const uint32_t longitude = bam_from_deg(bins[i].place.longitude_deg) >> shift;
         const uint32_t h =
             hash ? hash(latitude, longitude, epoch) : fx_hash3(latitude, longitude, epoch);
+        bins[i].hash = h;
         bins[i].slice = h >> 22;
+    }
+}
+
+void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params)
+{
+    for (int kind = 0; kind < LM_KINDS; kind++) {
+        memset(texture->table_db[kind], 0, sizeof texture->table_db[kind]);
+        if (params->texture_shape[kind] > 0) {
+            ref_speckle_table((unsigned)params->texture_shape[kind], texture->table_db[kind]);
+        }
+    }
+}
+
+void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
+                 const struct ref_params *params)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double sea_db = bins[i].kind == LM_KIND_WATER ? 5.0 * params->sea_above_3 : 0;
+        bins[i].texture_db = texture->table_db[bins[i].kind][bins[i].hash >> 12 & 1023] + sea_db;
     }
 }
 
@@ -92,7 +113,8 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 {
     for (size_t i = 0; i < count; i++) {
         bins[i].speckle_db = table_db[bins[i].slice];
-        const double ground = bins[i].is_lit ? pow(10, bins[i].level_db / 10) : 0;
+        const double level_db = bins[i].level_db + bins[i].texture_db;
+        const double ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
         bins[i].echo_db = 10 * log10(ground + pow(10, noise_floor_db / 10)) + bins[i].speckle_db;
     }
 }

@@ -40,7 +40,7 @@ static void set_world(struct world *w, uint8_t range, double near_m, double cell
                                    .height_m = height_m,
                                    .end_m = w->radar.range_m[range],
                                    .noise_end_db = w->radar.receiver.noise_end_q8[range] / 256.0,
-                                   .noise_looks = 1u << w->radar.receiver.noise_looks_log2,
+                                   .noise_looks = 1u << (w->radar.receiver.noise_looks_log2 & 15),
                                    .stc_m = w->radar.receiver.stc_m[range],
                                    .pulse_s = pulse_ns * 1e-9};
 }

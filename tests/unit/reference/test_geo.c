@@ -148,6 +148,23 @@ static void right_of_a_line_of_sight_to_the_north_is_east(void **state)
     assert_true(far.latitude_deg > 46.004 && fabs(far.longitude_deg - 11) < 1e-9);
 }
 
+static void the_way_back_finds_what_the_way_out_went(void **state)
+{
+    (void)state;
+    for (double latitude_deg = -80; latitude_deg <= 80; latitude_deg += 20) {
+        for (double azimuth_deg = -170; azimuth_deg < 180; azimuth_deg += 37) {
+            for (double distance_m = 500; distance_m < 300000; distance_m *= 6) {
+                const struct ref_place from = {latitude_deg, 179.9};
+                const struct ref_place to = ref_geo_direct(from, azimuth_deg, distance_m);
+                double found_deg, found_m;
+                ref_geo_inverse(from, to, &found_deg, &found_m);
+                assert_true(fabs(found_m - distance_m) < 0.01);
+                assert_true(fabs(remainder(found_deg - azimuth_deg, 360)) * distance_m < 0.5);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -157,6 +174,7 @@ int main(void)
         cmocka_unit_test(the_parabola_meets_both_ends_and_the_middle),
         cmocka_unit_test(the_surface_of_a_patch_is_right_within_5_cm),
         cmocka_unit_test(right_of_a_line_of_sight_to_the_north_is_east),
+        cmocka_unit_test(the_way_back_finds_what_the_way_out_went),
     };
     return cmocka_run_group_tests_name("reference geo", tests, NULL, NULL);
 }

@@ -1,0 +1,33 @@
+/* Doppler beam sharpening and movers: DESIGN.md, "Doppler beam sharpening" and "Movers". */
+#include "reference.h"
+
+#include <math.h>
+
+static const double rad = 3.14159265358979323846 / 180;
+
+double ref_dbs_ratio(const struct ref_dbs *d, double off_deg)
+{
+    const double beam = d->beam_deg * rad, rate = d->rate_deg_s * rad;
+    return 2 * d->speed_m_s * beam * beam * fabs(sin(off_deg * rad)) / (d->wavelength_m * rate);
+}
+
+double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio)
+{
+    return asin(ratio / ref_dbs_ratio(d, 90)) / rad;
+}
+
+double ref_dbs_used(double had, double wanted, double least)
+{
+    return had < least ? 1 : fmin(had, wanted);
+}
+
+double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg)
+{
+    const double shift_deg = closing_m_s / (speed_m_s * fabs(sin(off_deg * rad))) / rad;
+    return fmin(shift_deg, fabs(off_deg));
+}
+
+double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m)
+{
+    return range_m * closing_m_s / (speed_m_s * fabs(sin(off_deg * rad)));
+}
