@@ -8,15 +8,16 @@ enum { LINES = 2 * LM_DEFOCUS_REACH + 1, WIDTH_MAX_Q8 = LINES * 256 };
 uint32_t lm_defocus_q8(uint32_t lateral_mm_s2, uint32_t residual_permille, uint32_t wavelength_um,
                        uint64_t dwell_us)
 {
-    /* 4 f / pi = 2 A' T^2 / l. A' in um/s2 is below 2^34; a dwell beyond 2^17 ms is as bad as
-     * one of it, and its square below 2^34 ms2: 2^68 would overflow, so A' is cut to 2^29, which
-     * leaves nothing focused that lasts a tenth of a second. */
+    /* 0.42 f = 0.42 pi A' T^2 / 2 l = 0.6597 A' T^2 / l. A' in um/s2 is below 2^34; a dwell beyond
+     * 2^17 ms is as bad as one of it, and its square below 2^34 ms2: 2^68 would overflow, so A' is
+     * cut to 2^29, which leaves nothing focused that lasts half a second. */
     const uint64_t dwell_ms = dwell_us / 1000 < 1 << 17 ? dwell_us / 1000 : 1 << 17;
     uint64_t residual_um_s2 = (uint64_t)lateral_mm_s2 * residual_permille;
     residual_um_s2 = residual_um_s2 < 1 << 29 ? residual_um_s2 : 1 << 29;
-    /* um/s2 * ms2 / um is 10^-6; twice that in Q8 is 512 / 10^6. */
+    /* um/s2 * ms2 / um is 10^-6, and below 2^53 for a wavelength of a millimetre; 0.6597 in Q8 is
+     * 169. */
     const uint64_t turns = residual_um_s2 * dwell_ms * dwell_ms / wavelength_um;
-    const uint64_t smear_q8 = turns / 15625 * 8 + turns % 15625 * 8 / 15625;
+    const uint64_t smear_q8 = turns * 169 / 1000000;
     if (smear_q8 >= WIDTH_MAX_Q8) {
         return WIDTH_MAX_Q8;
     }
@@ -48,7 +49,8 @@ void lm_defocus_run(const int32_t *const line_q8[LINES], const uint32_t share_q1
     for (uint32_t m = 0; m < LINES; m++) {
         const uint64_t share = share_q16[m];
         for (uint32_t i = 0; share != 0 && i < cells; i++) {
-            power_q32[i] += (fx_power_q32_of_many(line_q8[m][i]) >> 16) * share;
+            const uint64_t power = fx_power_q32_of_many(line_q8[m][i]);
+            power_q32[i] += (power >> 16) * share + ((power & 0xffffu) * share >> 16);
         }
     }
     for (uint32_t i = 0; i < cells; i++) {

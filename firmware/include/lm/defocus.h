@@ -7,7 +7,7 @@
 
 enum { LM_DEFOCUS_REACH = 4 /* lines each way */ };
 
-/* Width of the smear, lines * 256: q = sqrt(1 + (4 f / pi)^2), 256 for perfect focus and at most
+/* Width of the smear, lines * 256: q = sqrt(1 + (0.42 f)^2), 256 for perfect focus and at most
  * 2 * LM_DEFOCUS_REACH + 1 lines. A lateral acceleration (mm/s2, below 2^24), of which
  * residual_permille (up to 1000) stays uncompensated, over the dwell. */
 uint32_t lm_defocus_q8(uint32_t lateral_mm_s2, uint32_t residual_permille, uint32_t wavelength_um,
