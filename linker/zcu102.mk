@@ -21,7 +21,7 @@ $(O)/bsp/%.o: bsp/%.S
 $(O)/%.elf: $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) $(LDSCRIPT)
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  LINK $@')
-	$(Q)$(CC) $(OPT) -nostdlib -static -Wl,--gc-sections,--build-id=none,-T,$(LDSCRIPT),-u,_start,-Map,$@.map $(LDFLAGS) \
+	$(Q)$(CC) $(OPT) -nostdlib -static -Wl,--gc-sections,--build-id=none,-T,$(LDSCRIPT),-u,_start,-u,fx_crc32c,-Map,$@.map $(LDFLAGS) \
 	    $(filter %.o,$^) $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) -lgcc -o $@
 
 CFLAGS_host += -Itests/golden -Itests/zcu102 -Itests/zcu102/images

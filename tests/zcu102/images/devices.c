@@ -3,6 +3,7 @@
 #include "addresses.h"
 #include "board.h"
 #include "console.h"
+#include "fx/crc32c.h"
 #include "fx/mem.h"
 #include "look.h"
 #include "psci.h"
@@ -199,6 +200,35 @@ static void check_flash(struct devices *d)
     claim(d, "no read was given up", d->z.flash.count.timeouts == 0);
 }
 
+/* Bit by bit, from the polynomial. */
+static uint32_t crc_by_bits(uint32_t crc, const uint8_t *data, uint32_t length)
+{
+    crc = ~crc;
+    for (uint32_t i = 0; i < length; i++) {
+        crc ^= data[i];
+        for (uint32_t bit = 0; bit < 8; bit++) {
+            crc = crc >> 1 ^ (crc & 1 ? 0x82F63B78u : 0);
+        }
+    }
+    return ~crc;
+}
+
+static void check_crc(struct devices *d)
+{
+    static uint8_t bytes[64];
+    bool all = fx_crc32c(0, "123456789", 9) == 0xE3069283u;
+    for (uint32_t i = 0; i < sizeof bytes; i++) {
+        bytes[i] = pattern(i * 4099);
+    }
+    for (uint32_t start = 0; start < 16; start++) {
+        for (uint32_t length = 0; length <= sizeof bytes - start; length++) {
+            all = all && fx_crc32c(length, bytes + start, length) ==
+                             crc_by_bits(length, bytes + start, length);
+        }
+    }
+    claim(d, "the core's instruction makes the checksum that the polynomial does", all);
+}
+
 /* ---- timer, console ---- */
 
 static void check_timer(struct devices *d)
@@ -243,6 +273,7 @@ int main(void)
     zcu102_open(&d.z);
     check_bus(&d);
     check_flash(&d);
+    check_crc(&d);
     check_timer(&d);
     check_console(&d);
     claim(&d, "no interrupt came that nobody had asked for", d.z.irq.count.strange == 0);
