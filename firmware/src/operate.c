@@ -27,6 +27,13 @@ static void start_ground_map(struct lm_unit *u, uint64_t now_us)
     lm_begin_picture(u, now_us);
 }
 
+/* Rate of turn times speed: below 2^31 / 2^29.3 rad/s times 2^21 mm/s. */
+static uint32_t lateral_mm_s2(const struct lm_ownship *own)
+{
+    const uint64_t turn_bam_s = fx_abs_u32(own->turn_bam_s);
+    return (uint32_t)(turn_bam_s * (uint32_t)own->ground_speed_mm_s / 683565276u);
+}
+
 /* The command with the geometry of this moment, and how the aircraft flies, when the patch is to be
  * seen from the ownship. */
 static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *command,
@@ -48,7 +55,8 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
     *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
                                      .track = own->track,
                                      .bearing = bearing,
-                                     .heading = own->heading};
+                                     .heading = own->heading,
+                                     .lateral_mm_s2 = lateral_mm_s2(own)};
     return true;
 }
 

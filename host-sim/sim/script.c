@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = 8, PRESS_US = 100000 };
+enum { WORDS_MAX = 10, PRESS_US = 100000 };
 
 /* A line may mean two events: a button goes down and up again. */
 struct line_events {
@@ -41,12 +41,27 @@ static bool choice(const char *word, const char *const *names, int count, int32_
     return false;
 }
 
+/* Words behind a patch: its effects. */
+static bool parse_effects(char **words, int count, struct lm_sar_command *sar)
+{
+    static const char *const names[] = {"layover", "steady"};
+    for (int i = 0; i < count; i++) {
+        int32_t index;
+        if (!choice(words[i], names, 2, &index)) {
+            return false;
+        }
+        *(index == 0 ? &sar->has_layover : &sar->is_steady) = true;
+    }
+    return true;
+}
+
 static bool parse_sar(char **words, int count, struct lm_control *c)
 {
     double lat, lon, cell, look = 0, range = 0, height = 0;
     const bool is_from_ownship = strcmp(words[1], "sar") == 0;
-    if (count != (is_from_ownship ? 5 : 8) || !number(words[2], -90, 90, &lat) ||
-        !number(words[3], -180, 180, &lon) || !number(words[4], 0.1, 1000, &cell)) {
+    const int least = is_from_ownship ? 5 : 8;
+    if (count < least || !number(words[2], -90, 90, &lat) || !number(words[3], -180, 180, &lon) ||
+        !number(words[4], 0.1, 1000, &cell)) {
         return false;
     }
     if (!is_from_ownship &&
@@ -63,7 +78,7 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
         .range_m = (uint32_t)lround(range),
         .height_q6 = (int32_t)lround(height * 64),
     };
-    return true;
+    return parse_effects(words + least, count - least, &c->sar);
 }
 
 static bool parse_choice(char **words, int count, struct lm_control *c)

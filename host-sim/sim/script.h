@@ -3,8 +3,9 @@
  *   SECONDS gm
  *   SECONDS range 10|20|40|80                 nautical miles
  *   SECONDS azimuth 60|30|10                  degrees to each side
- *   SECONDS sar LAT LON CELL_M                a patch seen from the ownship
- *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M
+ *   SECONDS sar LAT LON CELL_M [EFFECT..]     a patch seen from the ownship
+ *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M [EFFECT..]
+ *                                             EFFECT: layover; steady, without the blur of turns
  *   SECONDS gain DB                           -30..30
  *   SECONDS freeze on|off
  *   SECONDS osb N [HELD_S]                    press option select button 1..20, for 0.1 s or HELD_S

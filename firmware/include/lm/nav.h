@@ -74,6 +74,7 @@ struct lm_ownship {
     fx_bam_t heading;                 /* of the nose, from north by east */
     enum lm_bus_field heading_source; /* TRUE_HEADING, or HEADING, which may be magnetic */
     enum lm_nav_quality heading_quality;
+    int32_t turn_bam_s; /* of the heading; 0 while the body's rates or the attitude are not good */
     struct lm_nav_origin heading_origin;
 
     int32_t pitch, roll; /* signed BAM: nose up, right wing down */

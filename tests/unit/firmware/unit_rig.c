@@ -54,10 +54,12 @@ static int receive(void *ctx, struct lm_can_frame *frame)
                  {1039, b->speed_m_s},
                  {1040, 0},
                  {311, 2},
-                 {312, 0}};
+                 {312, 0},
+                 {303, 0},
+                 {305, b->turn_deg_s}};
     put_float(frame, items[b->queue_next].id, items[b->queue_next].value, b->code);
     frame->time_us = b->now_us;
-    b->queue_next = (b->queue_next + 1) % 9;
+    b->queue_next = (b->queue_next + 1) % (int)(sizeof items / sizeof *items);
     return 1;
 }
 

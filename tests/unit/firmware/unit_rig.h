@@ -16,7 +16,7 @@ struct fake_bus {
     int queue_next;
     int is_down;
     double jump_degrees;
-    double speed_m_s, nose_deg; /* north, whatever the nose */
+    double speed_m_s, nose_deg, turn_deg_s; /* north, whatever nose and turn say */
     uint8_t code;
 };
 

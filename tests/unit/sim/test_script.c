@@ -71,6 +71,32 @@ static void a_long_press_overlaps_what_the_next_lines_do(void **state)
     script_free(&s);
 }
 
+static void a_patch_takes_the_effects_behind_it_and_no_other_word(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *words;
+        int has_layover, is_steady;
+    } cases[] = {{"", 0, 0}, {" layover", 1, 0}, {" steady", 0, 1}, {" steady layover", 1, 1}};
+    for (size_t i = 0; i < 4; i++) {
+        struct script s;
+        char text[200];
+        snprintf(text, sizeof text, "0 sar 46 11 5%s\n1 sarfrom 46 11 5 90 20000 3000%s\n",
+                 cases[i].words, cases[i].words);
+        assert_int_equal(read_text(&s, text), 0);
+        for (int seconds = 0; seconds < 2; seconds++) {
+            const struct lm_control c = at(&s, seconds);
+            assert_int_equal(c.kind, LM_CONTROL_SAR);
+            assert_int_equal(c.sar.has_layover, cases[i].has_layover);
+            assert_int_equal(c.sar.is_steady, cases[i].is_steady);
+            assert_int_equal(c.sar.is_from_ownship, seconds == 0);
+        }
+        script_free(&s);
+    }
+    struct script s;
+    assert_int_equal(read_text(&s, "0 sar 46 11 5 upright\n"), -1);
+}
+
 static void a_slew_lasts_as_long_as_it_says(void **state)
 {
     (void)state;
@@ -140,6 +166,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_press_goes_down_and_comes_up_a_tenth_of_a_second_later),
         cmocka_unit_test(a_long_press_overlaps_what_the_next_lines_do),
+        cmocka_unit_test(a_patch_takes_the_effects_behind_it_and_no_other_word),
         cmocka_unit_test(a_slew_lasts_as_long_as_it_says),
         cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
         cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),

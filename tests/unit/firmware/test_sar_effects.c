@@ -1,0 +1,362 @@
+/* The effects of a patch that can be switched: layover and the blur of unsteady flight, against
+ * theory in double precision. */
+#include "unit_rig.h"
+
+#include "fx/log.h"
+#include "hs/rng.h"
+#include "target_support.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+enum { CELLS = 256, LINES = 2 * LM_DEFOCUS_REACH + 1 };
+
+static double power_of(int32_t level_q8)
+{
+    return pow(10, level_q8 / 2560.0);
+}
+
+/* ---- layover in a line ---- */
+
+static struct lm_scan_line ground;
+static uint64_t scratch[LM_CELLS_ROOM];
+
+static const struct lm_layover lean = {.reference_q10 = 100 * 1024,
+                                       .lean_q16 = 19661, /* 0.3 */
+                                       .cell_q8 = 5 * 256,
+                                       .cells = CELLS};
+
+static void flat_ground(double elevation_m)
+{
+    for (int i = 0; i < LM_CELLS_ROOM; i++) {
+        ground.cell[i] = 0;
+        ground.elevation_q14[i] = (int32_t)lround(elevation_m * 16384);
+    }
+}
+
+static void a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power(void **state)
+{
+    (void)state;
+    const struct lm_classes *classes = tiny_classes();
+    for (uint32_t code = 0; code < 16; code++) {
+        int32_t level_q8[LM_CELLS_ROOM];
+        flat_ground(100);
+        for (int i = 0; i < CELLS; i++) {
+            level_q8[i] = LM_LEVEL_SHADOW;
+        }
+        ground.cell[150] = code;
+        level_q8[150] = 7 * 256;
+        lm_layover_run(&lean, classes, &ground, level_q8, scratch);
+        double power = 0, moment = 0;
+        for (int i = 0; i < CELLS; i++) {
+            const double p = level_q8[i] == LM_LEVEL_SHADOW ? 0 : power_of(level_q8[i]);
+            power += p;
+            moment += p * i;
+        }
+        const double expected = 150 - classes->height_dm[code] / 10.0 * 0.3 / 5;
+        assert_true(fabs(moment / power - expected) < 0.02);
+        assert_true(fabs(10 * log10(power) - 7) < 0.03);
+    }
+}
+
+static void layover_of_any_line_is_the_sum_of_shared_powers(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    double worst = 0; /* against all power that the cell may have a share of */
+    hs_rng_seed(&rng, 2);
+    for (int n = 0; n < 50; n++) {
+        int32_t level_q8[LM_CELLS_ROOM];
+        double expected[CELLS] = {0}, around[CELLS] = {0};
+        for (int i = 0; i < CELLS; i++) {
+            const double top_m = 60 + 90 * hs_rng_uniform(&rng);
+            ground.elevation_q14[i] = (int32_t)lround(top_m * 16384);
+            ground.cell[i] = 0;
+            level_q8[i] = (int32_t)hs_rng_below(&rng, 80 * 256) - 50 * 256;
+            const double at = i - (top_m - 100) * 0.3 / 5, part = at - floor(at);
+            for (int side = -1; side <= 2; side++) {
+                const int cell = (int)floor(at) + side;
+                if (cell >= 0 && cell < CELLS) {
+                    const double share = side == 0 ? 1 - part : side == 1 ? part : 0;
+                    expected[cell] += share * power_of(level_q8[i]);
+                    around[cell] += power_of(level_q8[i]);
+                }
+            }
+        }
+        lm_layover_run(&lean, tiny_classes(), &ground, level_q8, scratch);
+        for (int i = 0; i < CELLS; i++) {
+            const double got = level_q8[i] == LM_LEVEL_SHADOW ? 0 : power_of(level_q8[i]);
+            if (around[i] > 0) {
+                worst = fmax(worst, fabs(got - expected[i]) / around[i]);
+            } else {
+                assert_true(got == 0);
+            }
+        }
+    }
+    print_message("# worst cell off by %.4f\n", worst);
+    assert_true(worst < 0.01);
+}
+
+/* ---- layover in a patch ---- */
+
+static struct lm_tile_cache tiles;
+static struct lm_db db;
+static struct lm_sar sar;
+static struct lm_line line;
+static struct lm_tone tone;
+static uint8_t pool[200 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+static int32_t picture[CELLS][LM_CELLS_ROOM];
+
+/* Soil, and in its middle a tower of 80 m. */
+static struct tiny_cell tower(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    const int is_tower = fabs(p->east_m) < 12 && fabs(p->north_m) < 12;
+    return is_tower ? (struct tiny_cell){10, TINY_STRUCTURE, 14}
+                    : (struct tiny_cell){-20, TINY_SOIL, 0};
+}
+
+static void open_image(struct tiny_image *image, struct memory_flash *flash)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 9;
+    spec.rows = spec.columns = 6;
+    spec.cell = tower;
+    assert_int_equal(tiny_image_build(image, &spec), 0);
+    memory_flash_open(flash, image->bytes, image->size);
+    assert_int_equal(lm_db_open(&db, &flash->port, 16), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
+    assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
+}
+
+static void draw(const struct lm_sar_command *command, const struct lm_sar_scene *scene)
+{
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, command, scene), LM_OK);
+    for (uint32_t k = 0; k < CELLS; k++) {
+        lm_sar_prefetch(&sar, &tiles, k);
+        for (int i = 0; i < 100 && !lm_tile_cache_is_idle(&tiles); i++) {
+            lm_tile_cache_service(&tiles, 0, 16);
+        }
+    }
+    for (uint32_t k = 0; k < CELLS; k++) {
+        lm_sar_draw_line(&sar, &tiles, &tone, &line);
+        memcpy(picture[k], line.sight.level_q8, sizeof picture[k]);
+    }
+}
+
+static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(11)},
+                                                     .cell_mm = 5000,
+                                                     .range_m = 9000,
+                                                     .height_q6 = 3000 * 64};
+
+/* Middle of what is brighter than soil ever is on the lines of the tower, cells. */
+static double middle_of_the_bright(void)
+{
+    double power = 0, moment = 0;
+    for (int k = CELLS / 2 - 3; k < CELLS / 2 + 3; k++) {
+        for (int i = 0; i < CELLS; i++) {
+            const double p = power_of(picture[k][LM_SAR_GUARD + i]);
+            power += p > 3 ? p : 0;
+            moment += p > 3 ? p * i : 0;
+        }
+    }
+    return moment / power;
+}
+
+static void a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    const struct lm_sar_scene scene = {.epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    struct lm_sar_command command = from_the_south;
+    open_image(&image, &flash);
+    draw(&command, &scene);
+    const double upright = middle_of_the_bright();
+    command.has_layover = true;
+    draw(&command, &scene);
+    const double tan_psi = 3000.0 / 9000 - 9000 / (2 * 4.0 / 3 * 6371000);
+    print_message("# the tower leans by %.2f cells\n", upright - middle_of_the_bright());
+    assert_true(fabs(upright - middle_of_the_bright() - 80 * tan_psi / 5) < 1);
+    tiny_image_free(&image);
+}
+
+/* ---- unsteady flight ---- */
+
+static void the_blur_is_as_wide_as_the_quadratic_phase_makes_it(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 7);
+    for (int i = 0; i < 20000; i++) {
+        const double lateral = pow(10, 2 * hs_rng_uniform(&rng)),
+                     permille = 1 + hs_rng_below(&rng, 50);
+        const double dwell_s = pow(10, 2.7 * hs_rng_uniform(&rng) - 1), wavelength = 0.031228;
+        const double f = pi * lateral * permille / 1000 * dwell_s * dwell_s / (2 * wavelength);
+        const double q = fmin(sqrt(1 + pow(4 * f / pi, 2)), LINES);
+        const uint32_t got = lm_defocus_q8((uint32_t)lround(lateral * 1000), (uint32_t)permille,
+                                           31228, (uint64_t)(dwell_s * 1e6));
+        assert_true(fabs(got / 256.0 - q) < 0.02 * q + 0.01);
+    }
+    assert_int_equal(lm_defocus_q8(0, 10, 31228, 60000000), 256);
+    assert_int_equal(lm_defocus_q8(20000, 0, 31228, 60000000), 256);
+    assert_int_equal(lm_defocus_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), LINES * 256);
+}
+
+static void the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one(void **state)
+{
+    (void)state;
+    for (uint32_t width_q8 = 256; width_q8 <= LINES * 256; width_q8++) {
+        uint32_t share_q16[LINES], sum = 0;
+        lm_defocus_shares(width_q8, share_q16);
+        for (int m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
+            const double q = width_q8 / 256.0;
+            const double overlap = fmin(m + 0.5, q / 2) - fmax(m - 0.5, -q / 2);
+            assert_true(fabs(share_q16[m + LM_DEFOCUS_REACH] / 65536.0 - fmax(overlap, 0) / q) <
+                        2e-4);
+            sum += share_q16[m + LM_DEFOCUS_REACH];
+        }
+        assert_int_equal(sum, 65536);
+    }
+}
+
+static void smeared_lines_hold_the_mean_power(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    static int32_t lines[LINES][CELLS];
+    int32_t level_q8[CELLS];
+    const int32_t *near_lines[LINES];
+    uint32_t share_q16[LINES];
+    double worst_db = 0;
+    hs_rng_seed(&rng, 8);
+    for (int m = 0; m < LINES; m++) {
+        near_lines[m] = lines[m];
+        for (int i = 0; i < CELLS; i++) {
+            lines[m][i] = (int32_t)hs_rng_below(&rng, 110 * 256) - 50 * 256;
+        }
+    }
+    for (uint32_t width_q8 = 300; width_q8 <= LINES * 256; width_q8 += 199) {
+        lm_defocus_shares(width_q8, share_q16);
+        lm_defocus_run(near_lines, share_q16, level_q8, scratch, CELLS);
+        for (int i = 0; i < CELLS; i++) {
+            double power = 0;
+            for (int m = 0; m < LINES; m++) {
+                power += share_q16[m] / 65536.0 * power_of(lines[m][i]);
+            }
+            worst_db = fmax(worst_db, fabs(level_q8[i] / 256.0 - 10 * log10(power)));
+        }
+    }
+    print_message("# worst cell %.3f dB\n", worst_db);
+    assert_true(worst_db < 0.05);
+}
+
+/* A bright point in the middle of a line, 30 dB over everything: how many lines is it wide at
+ * half its power, and how much power has it? */
+static double width_of_point(const struct lm_sar_flight *flight, bool is_steady, double *power)
+{
+    struct lm_target t =
+        point_at(46, 11 + 202.5 / 77470, 0, 70); /* 40.5 lines right of the tower */
+    const struct lm_target_set set = {&t, 1};
+    const struct lm_sar_scene scene = {
+        .flight = flight, .targets = &set, .epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    struct lm_sar_command command = from_the_south;
+    command.is_steady = is_steady;
+    draw(&command, &scene);
+    double across[CELLS] = {0}, most = 0, wide = 0;
+    *power = 0;
+    for (int k = 0; k < CELLS; k++) {
+        for (int i = 0; i < CELLS; i++) {
+            across[k] += power_of(picture[k][LM_SAR_GUARD + i]);
+        }
+        most = fmax(most, across[k]);
+        *power += across[k];
+    }
+    for (int k = 1; k < CELLS; k++) { /* where the half is crossed, between lines */
+        const double before = across[k - 1] / most - 0.5, here = across[k] / most - 0.5;
+        if (before * here < 0) {
+            wide += (k - 1 - before / (here - before)) * (here < 0 ? 1 : -1);
+        }
+    }
+    return wide;
+}
+
+static void a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    open_image(&image, &flash);
+    const struct lm_sar_flight straight = {
+        .speed_mm_s = 100000, .track = FX_BAM_DEG(45), .heading = FX_BAM_DEG(45)};
+    double sharp_power, power;
+    const double sharp = width_of_point(&straight, false, &sharp_power);
+    const double dwell_s = 0.031228 * hypot(9000, 3000) / (2 * 100 * 5 * sin(pi / 4));
+    for (double q = 3; q <= 8; q += 1.25) {
+        struct lm_sar_flight turning = straight;
+        const double residual = sqrt(q * q - 1) * 0.031228 / (2 * dwell_s * dwell_s);
+        turning.lateral_mm_s2 = (uint32_t)lround(residual * 1000 * 1000 /
+                                                 lm_radar_default.sar.mocomp_residual_permille);
+        const double width = width_of_point(&turning, false, &power);
+        print_message("# q = %.2f: %.2f lines wide, power %+.2f dB\n", q, width,
+                      10 * log10(power / sharp_power));
+        assert_true(fabs(width - q) < 0.3);
+        assert_true(fabs(10 * log10(power / sharp_power)) < 0.1);
+        assert_true(width_of_point(&turning, true, &power) == sharp); /* switched off */
+    }
+    assert_true(sharp < 2);
+    tiny_image_free(&image);
+}
+
+/* ---- in flight ---- */
+
+static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(void **state)
+{
+    (void)state;
+    for (int is_turning = 0; is_turning < 2; is_turning++) {
+        struct rig *r = start_rig();
+        r->bus.turn_deg_s = is_turning ? 6 : 0;
+        run(r, 1);
+        struct lm_control control = patch_here;
+        control.sar.cell_mm = 1000;
+        command(r, control);
+        run(r, 0.1);
+        assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+        const double lateral = 6 * pi / 180 * 150;
+        const double dwell_s = (double)(r->unit.sar.line_us * CELLS) / 1e6;
+        const double f = pi * lateral * 0.01 * dwell_s * dwell_s / (2 * 0.031228);
+        const double q = fmin(sqrt(1 + pow(4 * f / pi, 2)), LINES);
+        const double width = r->unit.sar.defocus_q8 / 256.0;
+        assert_true(is_turning ? q > 2 && fabs(width - q) < 0.03 * q : width == 1);
+        control.sar.is_from_ownship = false;
+        control.sar.range_m = 20000;
+        control.sar.height_q6 = 2000 * 64;
+        command(r, control);
+        run(r, 0.1);
+        assert_int_equal(r->unit.sar.defocus_q8, 256);
+        free_rig(r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power),
+        cmocka_unit_test(layover_of_any_line_is_the_sum_of_shared_powers),
+        cmocka_unit_test(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on),
+        cmocka_unit_test(the_blur_is_as_wide_as_the_quadratic_phase_makes_it),
+        cmocka_unit_test(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one),
+        cmocka_unit_test(smeared_lines_hold_the_mean_power),
+        cmocka_unit_test(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power),
+        cmocka_unit_test(a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not),
+    };
+    return cmocka_run_group_tests_name("sar_effects", tests, NULL, NULL);
+}
