@@ -67,22 +67,25 @@ static double cast_bare_s(const struct scene *scene, const struct bare_rays *ray
     return now_s() - start_s;
 }
 
-/* Trace once more, keeping the rays. Returns 0, or -1 reported. */
+/* Trace once more, keeping the rays and nothing else. Returns 0, or -1 reported. */
 static int keep_rays(const struct scene *scene, const struct trace_order *order,
                      struct bare_rays *rays)
 {
     const struct trace_sensor sensor = trace_sensor_for(scene, order);
     const struct trace_tiles tiles = {scene, trace_axes_of(&order->look), sensor,
-                                      order->look.wavelength_m, order->bounces};
+                                      -2 / order->look.wavelength_m, order->bounces};
     const uint32_t count = (sensor.columns * sensor.rows + TILE_RAYS - 1) / TILE_RAYS;
-    bool is_whole = true;
-    for (uint32_t i = 0; i < count; i++) {
+    struct trace_record *scratch = malloc(TRACE_BOUNCES_MAX * TILE_RAYS * sizeof *scratch);
+    for (uint32_t i = 0; scratch && i < count; i++) {
         struct tile_result result = {.bare = rays};
+        for (uint32_t b = 0; b < TRACE_BOUNCES_MAX; b++) {
+            result.bounces[b].records = scratch + (size_t)b * TILE_RAYS;
+        }
         trace_tile(&tiles, i, &result);
-        is_whole = is_whole && !result.is_out_of_memory;
-        tile_result_free(&result);
     }
-    return is_whole && !rays->is_out_of_memory ? 0 : hs_error("bench", NULL, "out of memory");
+    const bool is_whole = scratch && !rays->is_out_of_memory;
+    free(scratch);
+    return is_whole ? 0 : hs_error("bench", NULL, "out of memory");
 }
 
 struct times {

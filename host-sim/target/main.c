@@ -3,6 +3,7 @@
 
 #include "hs/error.h"
 
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,6 +36,10 @@ static void print_menu(FILE *out)
 int main(int argc, char **argv)
 {
     hs_set_program("landmass-target");
+    /* Keep the memory of one picture for the next: having it cleared again costs as much as
+     * tracing. */
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     if (argc < 2) {
         print_menu(stderr);
         return HS_EXIT_USAGE;

@@ -61,52 +61,25 @@ struct trace_axes trace_axes_of(const struct trace_look *look)
 struct team {
     const struct trace_tiles *tiles;
     struct tile_result *results;
-    struct trace_records *records;
-    void (*work)(struct team *team, uint32_t tile);
     uint32_t tile_count;
     atomic_uint next;
 };
-
-static void trace_one(struct team *team, uint32_t tile)
-{
-    trace_tile(team->tiles, tile, &team->results[tile]);
-}
-
-/* Put a tile's lists where they belong in the whole. */
-static void place_one(struct team *team, uint32_t tile)
-{
-    const struct tile_result *result = &team->results[tile];
-    for (uint32_t b = 0; b < team->records->bounce_count; b++) {
-        const struct trace_bounce *part = &result->bounces[b];
-        struct trace_record *to = team->records->bounces[b].records + result->first[b];
-        if (part->count > 0) {
-            memcpy(to, part->records, part->count * sizeof *to);
-        }
-        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
-            to[k].parent += result->first[b - 1];
-        }
-    }
-}
 
 static void *take_tiles(void *argument)
 {
     struct team *team = argument;
     uint32_t i;
     while ((i = atomic_fetch_add(&team->next, 1)) < team->tile_count) {
-        team->work(team, i);
+        trace_tile(team->tiles, i, &team->results[i]);
     }
     return NULL;
 }
 
-/* Do `work` on each tile. A thread may be refused: the others, this one among them, do its share.
- */
-static void work_together(struct team *team, uint32_t threads,
-                          void (*work)(struct team *team, uint32_t tile))
+/* A thread may be refused: the others, this one among them, do its share. */
+static void work_together(struct team *team, uint32_t threads)
 {
     pthread_t others[64];
     uint32_t started = 0;
-    team->work = work;
-    atomic_store(&team->next, 0);
     while (started + 1 < threads && pthread_create(&others[started], NULL, take_tiles, team) == 0) {
         started++;
     }
@@ -116,53 +89,64 @@ static void work_together(struct team *team, uint32_t threads,
     }
 }
 
-/* Say where each tile's lists begin in the whole, and take memory for that. False when there was
- * too little, in a tile or here. */
-static bool make_room(struct tile_result *results, uint32_t tile_count, struct trace_records *r)
+/* Give each tile its own room in the lists. Most of it is never touched, and so costs nothing. */
+static bool lend_room(struct tile_result *results, uint32_t tile_count, struct trace_records *r)
 {
     for (uint32_t b = 0; b < r->bounce_count; b++) {
-        struct trace_bounce *whole = &r->bounces[b];
-        for (uint32_t i = 0; i < tile_count; i++) {
-            if (results[i].is_out_of_memory) {
-                return false;
-            }
-            results[i].first[b] = whole->count;
-            whole->count += results[i].bounces[b].count;
-        }
-        whole->records = malloc((size_t)whole->count * sizeof *whole->records);
-        if (!whole->records && whole->count > 0) {
+        struct trace_record *records = malloc((size_t)tile_count * TILE_RAYS * sizeof *records);
+        if (!records) {
             return false;
+        }
+        r->bounces[b].records = records;
+        for (uint32_t i = 0; i < tile_count; i++) {
+            results[i].bounces[b].records = records + (size_t)i * TILE_RAYS;
         }
     }
     return true;
 }
 
-static int run_tiles(const struct scene *s, const struct trace_order *o, const char *place,
-                     struct trace_records *r, uint64_t *rays_cast)
+/* Close the gaps behind the tiles of bounce `b`, and give back what is left. `before` are the
+ * places of the tiles' first records in the bounce before, and become those in this one. */
+static void close_gaps(const struct tile_result *results, uint32_t tile_count, uint32_t b,
+                       uint32_t *before, struct trace_bounce *whole)
 {
-    const struct trace_tiles tiles = {s, trace_axes_of(&o->look), r->sensor, o->look.wavelength_m,
-                                      o->bounces};
-    struct team team = {.tiles = &tiles, .records = r};
+    for (uint32_t i = 0; i < tile_count; i++) {
+        const struct trace_bounce *part = &results[i].bounces[b];
+        struct trace_record *to = whole->records + whole->count;
+        if (to != part->records) {
+            memmove(to, part->records, part->count * sizeof *to);
+        }
+        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
+            to[k].parent += before[i];
+        }
+        before[i] = whole->count;
+        whole->count += part->count;
+    }
+    struct trace_record *less =
+        realloc(whole->records, (size_t)(whole->count + 1) * sizeof *whole->records);
+    whole->records = less ? less : whole->records;
+}
+
+static int run_tiles(const struct trace_tiles *tiles, uint32_t threads, struct trace_records *r,
+                     uint64_t *rays_cast)
+{
     const uint32_t rays = r->sensor.columns * r->sensor.rows;
-    team.tile_count = (rays + TILE_RAYS - 1) / TILE_RAYS;
+    struct team team = {.tiles = tiles, .tile_count = (rays + TILE_RAYS - 1) / TILE_RAYS};
+    uint32_t *before = calloc(team.tile_count, sizeof *before);
     team.results = calloc(team.tile_count, sizeof *team.results);
-    if (!team.results) {
-        return hs_error(place, NULL, "out of memory for %u rays", rays);
-    }
-    work_together(&team, o->threads, trace_one);
-    const bool is_whole = make_room(team.results, team.tile_count, r);
-    if (is_whole) {
-        work_together(&team, o->threads, place_one);
-    }
-    for (uint32_t i = 0; i < team.tile_count; i++) {
-        if (rays_cast) {
+    const bool has_room = before && team.results && lend_room(team.results, team.tile_count, r);
+    if (has_room) {
+        work_together(&team, threads);
+        for (uint32_t b = 0; b < r->bounce_count; b++) {
+            close_gaps(team.results, team.tile_count, b, before, &r->bounces[b]);
+        }
+        for (uint32_t i = 0; rays_cast && i < team.tile_count; i++) {
             *rays_cast += team.results[i].rays_cast;
         }
-        tile_result_free(&team.results[i]);
     }
+    free(before);
     free(team.results);
-    return is_whole ? 0
-                    : hs_error(place, "trace fewer rays a cell", "out of memory for %u rays", rays);
+    return has_room ? 0 : -1;
 }
 
 int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
@@ -179,15 +163,15 @@ int trace_run(const struct scene *s, const struct trace_order *o, const char *pl
     if (rays_cast) {
         *rays_cast = 0;
     }
-    int result;
-    if (r->sensor.rows > TRACE_RAYS_MAX / r->sensor.columns) {
-        result = hs_error(place, "trace fewer rays a cell, or fewer cells",
-                          "%u x %u rays are too many", r->sensor.columns, r->sensor.rows);
-    } else {
-        result = run_tiles(s, o, place, r, rays_cast);
-    }
-    if (result != 0) {
+    const struct trace_sensor *sensor = &r->sensor;
+    const struct trace_tiles tiles = {s, trace_axes_of(&o->look), *sensor,
+                                      -2 / o->look.wavelength_m, o->bounces};
+    if (sensor->rows > TRACE_RAYS_MAX / sensor->columns ||
+        run_tiles(&tiles, o->threads, r, rays_cast) != 0) {
+        hs_error(place, "trace fewer rays a cell, or fewer cells",
+                 "%u x %u rays are too many for the memory here", sensor->columns, sensor->rows);
         trace_records_free(r);
+        return -1;
     }
-    return result;
+    return 0;
 }

@@ -1,8 +1,5 @@
 #include "trace_tile.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static const double pi = 3.14159265358979323846;
 
 /* New rays start this far off the surface, so that they do not meet it again. It is a hundred times
@@ -74,11 +71,10 @@ static float angle_of(double cosine)
     return (float)acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine);
 }
 
-/* Phase of a range, between -pi and pi. */
-static float phase_of(double range_m, double wavelength_m)
+/* An angle of so many turns, without the whole ones. */
+static float angle_of_turns(double turns)
 {
-    const double turns = -2 / wavelength_m * range_m;
-    return (float)(2 * pi * (turns - rint(turns)));
+    return (float)(2 * pi * (turns - (double)lrint(turns)));
 }
 
 /* Record the reflection of flight `f`, number `bounce` of its ray, at a plane, and turn the flight
@@ -100,7 +96,7 @@ static struct trace_record reflect(const struct trace_tiles *t, struct flight *f
         .parent = f->parent,
         .across_m = (float)((f->across_m + vec_dot(at, axes->across)) / 2),
         .range_m = (float)range_m,
-        .phase_rad = phase_of(range_m, t->wavelength_m),
+        .phase_rad = angle_of_turns(range_m * t->turns_per_m),
         .hop_m = (float)(bounce == 0 ? f->way_m : hop_m),
         .incidence_rad = incidence_rad,
         .echo_rad = bounce == 0 ? incidence_rad : angle_of(echo_cos),
@@ -115,15 +111,11 @@ static struct trace_record reflect(const struct trace_tiles *t, struct flight *f
 }
 
 /* Make records of the flights that met something, mark their parents, and keep those flights only.
- * Returns false without memory. */
-static bool reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b,
+ */
+static void reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b,
                          struct tile_result *result)
 {
     struct trace_bounce *bounce = &result->bounces[b];
-    bounce->records = malloc(w->count * sizeof *bounce->records);
-    if (!bounce->records && w->count > 0) {
-        return false;
-    }
     for (uint32_t i = 0; i < w->count; i++) {
         const uint32_t facet = w->facets[i];
         struct flight f = w->flights[i];
@@ -141,7 +133,6 @@ static bool reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b
         w->flights[bounce->count++] = f;
     }
     w->count = bounce->count;
-    return true;
 }
 
 /* Look back at the radar from where each flight starts. Returns the number of rays. */
@@ -179,21 +170,10 @@ void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_result 
     for (uint32_t b = 0; b < t->bounces && w.count > 0; b++) {
         result->rays_cast += w.count;
         meet_wave(t, &w, result->bare);
-        if (!reflect_wave(t, &w, b, result)) {
-            result->is_out_of_memory = true;
-            return;
-        }
+        reflect_wave(t, &w, b, result);
         if (b == 0) {
             continue; /* the way back is the way the primary ray came */
         }
         result->rays_cast += look_back(t, &w, &result->bounces[b], result->bare);
     }
-}
-
-void tile_result_free(struct tile_result *result)
-{
-    for (int b = 0; b < TRACE_BOUNCES_MAX; b++) {
-        free(result->bounces[b].records);
-    }
-    *result = (struct tile_result){0};
 }
