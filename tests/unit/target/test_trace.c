@@ -106,9 +106,9 @@ static void a_dihedral_gives_the_records_of_its_closed_form(void **state)
             const struct trace_record *k =
                 &known.bounces[b].records[(is_wall == (b == 0)) ? 40 * 39 : 0];
             assert_int_equal(k->material, t->material);
-            assert_true(fabsf(t->incidence_rad - k->incidence_rad) < 1e-5f);
-            assert_true(fabsf(t->echo_rad - k->echo_rad) < 1e-5f);
-            assert_true(fabsf(t->turn_rad - k->turn_rad) < 1e-5f);
+            assert_true(fabsf(t->incidence_rad - k->incidence_rad) < 1e-6f);
+            assert_true(fabsf(t->echo_rad - k->echo_rad) < 1e-6f);
+            assert_true(fabsf(t->turn_rad - k->turn_rad) < 1e-6f);
             for (int c = 0; c < 3; c++) {
                 assert_true(fabsf(t->normal[c] - k->normal[c]) < 1e-5f);
             }
