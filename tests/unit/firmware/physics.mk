@@ -1,6 +1,7 @@
 # The radar's physics, each stage against theory and the reference in double precision.
-PHYSICS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_texture test_receiver test_weather test_aperture)
+PHYSICS := test_texture test_receiver test_weather test_aperture test_beam
+PHYSICS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,$(PHYSICS))
 TESTS += $(PHYSICS_TESTS)
-$(addprefix $(O)/tests/unit/firmware/,test_receiver.o test_weather.o test_aperture.o): EXTRA_CFLAGS := -Ihost-sim/reference
+$(PHYSICS:%=$(O)/tests/unit/firmware/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(PHYSICS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(O)/tests/support/tiny_image.o $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(PHYSICS_TESTS): LDLIBS := -lcmocka

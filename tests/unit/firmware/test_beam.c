@@ -1,0 +1,272 @@
+/* The beam across and along the line, its tilt and its Doppler sharpening, against the reference in
+ * double precision and RADAR.md 1.5: docs/DESIGN.md, "Real beam" and "Doppler beam sharpening". */
+#include "hs/rng.h"
+#include "lm/antenna.h"
+#include "lm/beam.h"
+#include "lm/dbs.h"
+#include "reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { CELLS = 40 };
+
+static const double degrees_per_bam = 360 / 4294967296.0;
+static const struct lm_radar *const radar = &lm_radar_default;
+static struct lm_beam beam;
+
+static int32_t bam(double degrees)
+{
+    return (int32_t)lround(degrees / degrees_per_bam);
+}
+
+static struct ref_beam ref_of(uint32_t ratio_q8)
+{
+    return (struct ref_beam){radar->antenna.azimuth_beam * degrees_per_bam,
+                             radar->line * degrees_per_bam, ratio_q8 / 256.0};
+}
+
+static void weights_are_those_of_the_pattern(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 31);
+    double worst = 0;
+    for (int n = 0; n < 4000; n++) {
+        const uint32_t ratio_q8 = 256 + (n % 3 ? hs_rng_below(&rng, 63 * 256 + 1) : 0);
+        const int32_t azimuth = bam(120 * hs_rng_uniform(&rng) - 60);
+        struct ref_beam ref = ref_of(ratio_q8);
+        struct lm_beam_look look;
+        lm_beam_aim(&beam, radar, azimuth, ratio_q8, &look);
+        /* A spacing is a whole number of BAM. */
+        ref.line_deg = (double)(lm_beam_spacing(&beam, radar) << beam.fineness) * degrees_per_bam;
+        const struct ref_beam_look wanted = ref_beam_look(&ref, azimuth * degrees_per_bam);
+        const double place = azimuth * degrees_per_bam / ref_beam_spacing_deg(&ref) + 0.5;
+        if (fabs(place - round(place)) < 1e-4) {
+            continue; /* on the border between two */
+        }
+        uint32_t sum = 0;
+        assert_int_equal(look.first, wanted.first);
+        for (int j = 0; j < LM_BEAM_TAPS; j++) {
+            sum += look.weight_q16[j];
+            worst = fmax(worst, fabs(look.weight_q16[j] / 65536.0 - wanted.weight[j]));
+            const double off_deg = lm_beam_azimuth(&beam, radar, look.first + j) * degrees_per_bam -
+                                   ref_beam_azimuth_deg(&ref, look.first + j);
+            assert_true(fabs(off_deg) < 0.001);
+        }
+        assert_int_equal(sum, 65536);
+    }
+    print_message("# weights: within %.1e of a whole\n", worst);
+    assert_true(worst < 5e-4);
+}
+
+static void a_line_is_the_weighted_sum_of_its_samples(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 32);
+    static double power[LM_BEAM_TAPS][CELLS], wanted[CELLS];
+    static uint32_t sum[LM_CELLS_ROOM];
+    const double *lines[LM_BEAM_TAPS];
+    for (int n = 0; n < 50; n++) {
+        struct lm_beam_look look;
+        struct ref_beam_look ref;
+        lm_beam_clear(&beam);
+        lm_beam_aim(&beam, radar, bam(120 * hs_rng_uniform(&rng) - 60), 256 << n % 7, &look);
+        for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+            assert_false(lm_beam_has(&beam, look.first + j));
+            uint32_t *room = lm_beam_room(&beam, look.first + j);
+            assert_true(lm_beam_has(&beam, look.first + j));
+            for (int i = 0; i < CELLS; i++) {
+                room[i] = n % 5 ? (uint32_t)hs_rng_u64(&rng) >> hs_rng_below(&rng, 32) : UINT32_MAX;
+                power[j][i] = room[i];
+            }
+            lines[j] = power[j];
+            ref.weight[j] = look.weight_q16[j] / 65536.0;
+        }
+        lm_beam_sum(&beam, &look, sum, CELLS);
+        ref_beam_sum(&ref, lines, wanted, CELLS);
+        for (int i = 0; i < CELLS; i++) {
+            assert_true(wanted[i] - sum[i] >= -1e-6 * wanted[i] && wanted[i] - sum[i] < 1.001);
+        }
+    }
+}
+
+/* A point in one sample, drawn at every azimuth around it. */
+static double response(uint32_t ratio_q8, int32_t azimuth)
+{
+    struct lm_beam_look look;
+    lm_beam_aim(&beam, radar, azimuth, ratio_q8, &look);
+    return look.first <= 0 && look.first + LM_BEAM_TAPS > 0 ? look.weight_q16[-look.first] : 0;
+}
+
+static void a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio(void **state)
+{
+    (void)state;
+    for (uint32_t ratio_q8 = 256; ratio_q8 <= 64 * 256; ratio_q8 += 61) {
+        response(ratio_q8, 0);
+        const int32_t middle = lm_beam_azimuth(&beam, radar, 0);
+        const double half = response(ratio_q8, middle) / 2;
+        int32_t side[2];
+        for (int right = 0; right < 2; right++) {
+            int32_t near = 0, far = (int32_t)radar->antenna.azimuth_beam;
+            while (far - near > 1) {
+                const int32_t off = near + (far - near) / 2;
+                *(response(ratio_q8, right ? middle + off : middle - off) > half ? &near : &far) =
+                    off;
+            }
+            side[right] = near;
+        }
+        const double width = (double)side[0] + side[1];
+        const double wanted = radar->antenna.azimuth_beam / sqrt(2) / (ratio_q8 / 256.0);
+        assert_true(fabs(width / wanted - 1) < 0.02);
+    }
+}
+
+static void a_sample_of_another_fineness_is_dropped(void **state)
+{
+    (void)state;
+    struct lm_beam_look look;
+    lm_beam_clear(&beam);
+    lm_beam_aim(&beam, radar, 0, 256, &look);
+    lm_beam_room(&beam, look.first + 3);
+    lm_beam_aim(&beam, radar, 0, 511, &look);
+    assert_true(lm_beam_has(&beam, look.first + 3));
+    assert_false(lm_beam_has(&beam, look.first + 3 + LM_BEAM_TAPS)); /* the same slot */
+    lm_beam_aim(&beam, radar, 0, 512, &look);
+    for (int32_t n = -100; n < 100; n++) {
+        assert_false(lm_beam_has(&beam, n));
+    }
+}
+
+static struct ref_dbs dbs_of(uint32_t rate_deg_s, uint32_t speed_mm_s)
+{
+    return (struct ref_dbs){speed_mm_s / 1000.0, radar->antenna.azimuth_beam * degrees_per_bam,
+                            radar->wavelength_um * 1e-6, rate_deg_s};
+}
+
+static void the_ratio_to_be_had_is_that_of_the_formula(void **state)
+{
+    (void)state;
+    for (uint32_t rate_deg_s = 3; rate_deg_s <= 120; rate_deg_s += 13) {
+        for (uint32_t speed_mm_s = 50000; speed_mm_s < 800000; speed_mm_s += 71000) {
+            const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
+            for (int off_deg = -180; off_deg < 180; off_deg += 3) {
+                const uint32_t ratio_q8 = lm_dbs_ratio_q8(radar, FX_BAM_DEG(rate_deg_s), speed_mm_s,
+                                                          (fx_bam_t)bam(off_deg));
+                const double wanted = fmin(ref_dbs_ratio(&ref, off_deg) * 256, UINT16_MAX);
+                assert_true(fabs(ratio_q8 - wanted) < 1.5 + 0.001 * wanted);
+            }
+        }
+    }
+}
+
+/* Where the fields' sharpening runs out: within half a degree of the formula, at three speeds. */
+static void the_notch_opens_where_the_formula_says(void **state)
+{
+    (void)state;
+    static const uint32_t speeds_mm_s[] = {150000, 250000, 400000};
+    static const struct {
+        enum lm_field field;
+        uint32_t rate_deg_s;
+    } cases[] = {{LM_FIELD_DBS1, 15}, {LM_FIELD_DBS1, 60}, {LM_FIELD_DBS2, 3}, {LM_FIELD_DBS2, 15}};
+    for (int n = 0; n < 12; n++) {
+        const struct lm_field_row *field = &radar->field[cases[n / 3].field];
+        const uint32_t rate_deg_s = cases[n / 3].rate_deg_s, speed_mm_s = speeds_mm_s[n % 3];
+        const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
+        double full_deg = NAN, notch_deg = NAN;
+        for (double off_deg = 0; off_deg < 90; off_deg += 0.01) {
+            const uint32_t had_q8 =
+                lm_dbs_ratio_q8(radar, FX_BAM_DEG(rate_deg_s), speed_mm_s, (fx_bam_t)bam(off_deg));
+            const uint32_t used_q8 = lm_dbs_sharpening_q8(field, had_q8);
+            const double used = ref_dbs_used(ref_dbs_ratio(&ref, off_deg), field->sharpening,
+                                             field->sharpening_least);
+            if (isnan(notch_deg) && used_q8 > 256) {
+                notch_deg = off_deg;
+            }
+            if (isnan(full_deg) && used_q8 == field->sharpening * 256u) {
+                full_deg = off_deg;
+            }
+            /* Outside of the notch cells are within a tenth of what they should be. */
+            if (fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening_least)) > 0.1) {
+                assert_true(fabs(used_q8 / 256.0 / used - 1) < 0.1);
+            }
+        }
+        const double wanted_notch_deg = ref_dbs_notch_deg(&ref, field->sharpening_least);
+        const double wanted_full_deg = ref_dbs_notch_deg(&ref, field->sharpening);
+        print_message("# %2u:1 at %2u deg/s and %3u m/s: from %.2f degrees, notch below %.2f\n",
+                      field->sharpening, rate_deg_s, speed_mm_s / 1000, full_deg, notch_deg);
+        assert_int_equal(isnan(full_deg) != 0, isnan(wanted_full_deg) != 0);
+        assert_false(fabs(notch_deg - wanted_notch_deg) > 0.5);
+        assert_false(fabs(full_deg - wanted_full_deg) > 0.5);
+    }
+}
+
+static void each_look_is_weighed_at_its_own_tangent(void **state)
+{
+    (void)state;
+    static struct lm_range_grid grid;
+    static struct lm_sight sight;
+    struct lm_elevation elevation;
+    const struct ref_antenna ref = {radar->antenna.elevation_beam * degrees_per_bam,
+                                    radar->antenna.fan * degrees_per_bam,
+                                    radar->antenna.bar_spacing * degrees_per_bam};
+    lm_elevation_set(&elevation, &radar->antenna);
+    double worst_db = 0;
+    for (double height_m = 300; height_m < 12000; height_m *= 2) {
+        lm_range_grid_set(&grid, &radar->aspect, 256 * 36, 256 * 72, 256,
+                          (int32_t)lround(height_m * 1024), 0);
+        for (double tilt_deg = -35; tilt_deg <= 25; tilt_deg += 2.3) {
+            const struct lm_fan fan = lm_fan_at(&radar->antenna, bam(tilt_deg));
+            for (uint32_t i = 0; i < 256; i++) {
+                const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
+                sight.level_q8[i] = 0;
+                sight.horizon[i + 1] = llround(ldexp(tangent, 40 + (int)grid.tangent_shift));
+            }
+            lm_elevation_run(&elevation, &fan, &grid, &sight);
+            for (uint32_t i = grid.first; i < 256; i++) {
+                const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
+                /* On a step's edge either is right. */
+                const double a = ref_elevation_db(&ref, tilt_deg, tangent - 1.2e-5);
+                const double b = ref_elevation_db(&ref, tilt_deg, tangent + 1.2e-5);
+                const double least_db = fmax(fmin(a, b), -96), most_db = fmax(fmax(a, b), -96);
+                const double shown_db = sight.level_q8[i] / 256.0;
+                worst_db = fmax(worst_db, fmax(shown_db - most_db, least_db - shown_db));
+            }
+        }
+    }
+    print_message("# elevation pattern: worst error %.3f dB\n", worst_db);
+    assert_true(worst_db < 0.1);
+}
+
+static void auto_tilt_is_that_of_the_reference(void **state)
+{
+    (void)state;
+    for (int32_t height_m = -200; height_m < 15000; height_m += 379) {
+        for (uint32_t range_m = 2000; range_m < 200000; range_m = range_m * 4 / 3) {
+            const double tilt_deg = lm_auto_tilt(height_m, range_m) * degrees_per_bam;
+            assert_true(fabs(tilt_deg - ref_auto_tilt_deg(height_m, range_m)) < 0.03);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(weights_are_those_of_the_pattern),
+        cmocka_unit_test(a_line_is_the_weighted_sum_of_its_samples),
+        cmocka_unit_test(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio),
+        cmocka_unit_test(a_sample_of_another_fineness_is_dropped),
+        cmocka_unit_test(the_ratio_to_be_had_is_that_of_the_formula),
+        cmocka_unit_test(the_notch_opens_where_the_formula_says),
+        cmocka_unit_test(each_look_is_weighed_at_its_own_tangent),
+        cmocka_unit_test(auto_tilt_is_that_of_the_reference),
+    };
+    return cmocka_run_group_tests_name("beam", tests, NULL, NULL);
+}
