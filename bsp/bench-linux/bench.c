@@ -33,7 +33,7 @@ static int lend_memory(struct bench *b)
 }
 
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
-               uint32_t noise_seed, const struct lm_can *can, const struct lm_controls *controls)
+               uint32_t noise_seed, const struct bench_bus *bus, const struct lm_controls *controls)
 {
     memset(b, 0, sizeof *b);
     const int cause = drv_flash_file_open(&b->flash, database);
@@ -48,7 +48,10 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
                                      .present = present};
     b->board = (struct lm_board){.radar = &lm_radar_default,
                                  .flash = &b->flash.port,
-                                 .can = can,
+                                 .can = bus->can,
+                                 .bus_profile = bus->profile,
+                                 .bus_node = bus->node,
+                                 .hardware_revision = 1,
                                  .controls = controls,
                                  .display = &b->display,
                                  .noise_seed = noise_seed,

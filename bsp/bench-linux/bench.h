@@ -18,12 +18,20 @@ struct bench {
     char error[160]; /* why bench_open failed */
 };
 
+/* What the unit is connected to. */
+struct bench_bus {
+    const struct lm_can *can;             /* borrowed */
+    const struct lm_bus_profile *profile; /* NULL: canas17 */
+    uint8_t node;                         /* the unit's own; 0: it only listens */
+};
+
 /* Open the database and lend the unit its memory; the unit is ready for lm_unit_step afterwards.
- * `can` and `controls` stay the caller's. 0, or -1 with b->error saying why and nothing left open.
- * A database that the firmware cannot use is no error here: the unit runs, shows it on the glass,
- * and unit->has_db is false. */
+ * What `bus` points to and `controls` stay the caller's. 0, or -1 with b->error saying why and
+ * nothing left open. A database that the firmware cannot use is no error here: the unit runs, shows
+ * it on the glass, and unit->has_db is false. */
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
-               uint32_t noise_seed, const struct lm_can *can, const struct lm_controls *controls);
+               uint32_t noise_seed, const struct bench_bus *bus,
+               const struct lm_controls *controls);
 void bench_close(struct bench *b);
 
 #endif

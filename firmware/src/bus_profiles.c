@@ -1,3 +1,5 @@
+#include <stddef.h>
+
 #include "lm/canas.h"
 
 #define TYPE(name) (1u << (LM_CANAS_##name))
@@ -96,3 +98,27 @@ const struct lm_bus_profile lm_bus_xcsoar = {
     .framing = LM_BUS_CANAEROSPACE,
     .are_types_assumed = true,
 };
+
+static bool are_same(const char *a, const char *b)
+{
+    while (*a != '\0' && *a == *b) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
+const struct lm_bus_profile *lm_bus_profile_named(const char *name)
+{
+    static const struct {
+        const char *name;
+        const struct lm_bus_profile *profile;
+    } known[] = {
+        {"canas17", &lm_bus_canas17}, {"xcsoar", &lm_bus_xcsoar}, {"generic", &lm_bus_generic}};
+    for (uint32_t i = 0; i < COUNT(known); i++) {
+        if (are_same(known[i].name, name)) {
+            return known[i].profile;
+        }
+    }
+    return NULL;
+}

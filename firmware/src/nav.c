@@ -63,27 +63,43 @@ static uint32_t merit_of(const struct reading *r)
     return r->quality == LM_NAV_GOOD ? (r->is_settled ? 3 : 2) : r->quality;
 }
 
-/* The best sender that has both fields. They may be the same field. */
+/* What a sender said of a field; NULL when nothing. Items are filled from the first on. */
+static const struct lm_nav_item *find_item(const struct lm_nav *n, enum lm_bus_field field,
+                                           uint16_t rank)
+{
+    const struct lm_nav_item *item = n->item[field];
+    for (uint32_t i = 0; i < LM_NAV_SOURCES && item[i].has_value; i++) {
+        if (item[i].rank == rank) {
+            return &item[i];
+        }
+    }
+    return NULL;
+}
+
+/* Two fields of one sender. */
 struct pair {
     struct reading first, second;
 };
 
+/* Those of the best sender that has both. They may be the same field. */
 static struct pair read_pair(const struct lm_nav *n, enum lm_bus_field first,
                              enum lm_bus_field second, uint64_t now_us)
 {
+    const struct lm_nav_item *item = n->item[first];
     struct pair best = {.first = {.field = first}, .second = {.field = second}};
     uint32_t best_merit = 0;
-    for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
-        const struct reading a = read_item(n, first, &n->item[first][i], now_us);
-        const uint32_t merit_a = merit_of(&a);
-        for (uint32_t j = 0; merit_a != 0 && j < LM_NAV_SOURCES; j++) {
-            const struct reading b = read_item(n, second, &n->item[second][j], now_us);
-            const uint32_t merit_b = merit_of(&b), merit = merit_a < merit_b ? merit_a : merit_b;
-            if (a.origin.rank != b.origin.rank || merit < best_merit || merit == 0 ||
-                (merit == best_merit && a.origin.rank > best.first.origin.rank)) {
-                continue;
-            }
-            best = (struct pair){a, b};
+    for (uint32_t i = 0; i < LM_NAV_SOURCES && item[i].has_value; i++) {
+        const struct lm_nav_item *mate =
+            first == second ? &item[i] : find_item(n, second, item[i].rank);
+        if (mate == NULL) {
+            continue;
+        }
+        struct pair p = {.first = read_item(n, first, &item[i], now_us)};
+        p.second = mate == &item[i] ? p.first : read_item(n, second, mate, now_us);
+        const uint32_t a = merit_of(&p.first), b = merit_of(&p.second), merit = a < b ? a : b;
+        if (merit > best_merit ||
+            (merit == best_merit && merit > 0 && item[i].rank < best.first.origin.rank)) {
+            best = p;
             best_merit = merit;
         }
     }
@@ -289,18 +305,6 @@ void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile)
 {
     *n = (struct lm_nav){0};
     lm_bus_init(&n->bus, profile);
-}
-
-/* What a sender said of a field; NULL when nothing. */
-static const struct lm_nav_item *find_item(const struct lm_nav *n, enum lm_bus_field field,
-                                           uint16_t rank)
-{
-    for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
-        if (n->item[field][i].has_value && n->item[field][i].rank == rank) {
-            return &n->item[field][i];
-        }
-    }
-    return NULL;
 }
 
 /* Is a new fix of this coordinate further from the sender's last one than an aircraft could have

@@ -41,14 +41,6 @@ struct command {
     const struct lm_bus_profile *profile;
 };
 
-static const struct lm_bus_profile *find_profile(const char *name)
-{
-    return strcmp(name, "canas17") == 0   ? &lm_bus_canas17
-           : strcmp(name, "xcsoar") == 0  ? &lm_bus_xcsoar
-           : strcmp(name, "generic") == 0 ? &lm_bus_generic
-                                          : NULL;
-}
-
 static int print_for(FILE *out, const struct command *c)
 {
     if (strcmp(c->name, "table") == 0) {
@@ -133,7 +125,7 @@ static int read_options(struct command *c, int argc, char **argv)
     for (int code; (code = getopt_long(argc, argv, "h", options, NULL)) != -1;) {
         switch (code) {
         case OPT_PROFILE:
-            c->profile = find_profile(optarg);
+            c->profile = lm_bus_profile_named(optarg);
             if (c->profile == NULL) {
                 hs_error(optarg, "canas17, xcsoar or generic", "there is no such profile");
                 return HS_EXIT_USAGE;

@@ -70,7 +70,7 @@ static int open_bus(struct sim *s)
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);
         const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-        if (drv_can_socket_open(&s->socket, o->can_interface, &lm_bus_canas17, zero_us) != LM_OK) {
+        if (drv_can_socket_open(&s->socket, o->can_interface, o->profile, zero_us) != LM_OK) {
             return hs_error(o->can_interface, NULL, "%s", s->socket.error);
         }
         s->can = drv_can_socket_port(&s->socket);
@@ -188,6 +188,14 @@ static void print_summary(const struct sim *s)
     printf("bus: %u frames, %u malformed, %u errors; position jumps %u; commands refused %u\n",
            u->count.bus_frames, s->log_file ? s->log.count.malformed : s->socket.count.malformed,
            u->count.bus_errors, u->nav.position_jumps, u->count.commands_refused);
+    const struct lm_bus *bus = &u->nav.bus;
+    printf(
+        "     %u values, %u frames of other use; refused: %u length, %u node, %u type, %u no "
+        "number, %u range\n",
+        bus->count.outcome[LM_BUS_VALUE], bus->count.outcome[LM_BUS_UNUSED],
+        bus->count.outcome[LM_BUS_BAD_LENGTH], bus->count.outcome[LM_BUS_BAD_NODE],
+        bus->count.outcome[LM_BUS_BAD_TYPE], bus->count.outcome[LM_BUS_NOT_A_NUMBER],
+        bus->count.outcome[LM_BUS_OUT_OF_RANGE]);
     if (!u->has_db) {
         printf("database: not usable, nothing was drawn\n");
         return;
@@ -233,7 +241,8 @@ static int run(struct sim *s)
         return -1;
     }
     hands_init(&s->hands, &s->script.port);
-    if (bench_open(&s->bench, o->database, o->width_px, o->height_px, o->seed, &s->can,
+    const struct bench_bus bus = {&s->can, o->profile, o->node};
+    if (bench_open(&s->bench, o->database, o->width_px, o->height_px, o->seed, &bus,
                    &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }

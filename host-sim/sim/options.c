@@ -16,6 +16,9 @@ static const char help[] =
     "  --db FILE          flash image made by landmass-db build\n"
     "  --bus FILE.log     take the bus from a candump -L log, in flight time from its first frame\n"
     "  --can IFACE        take the bus from a SocketCAN interface, in real time\n"
+    "  --profile NAME     what the bus's frames mean: canas17 (default), xcsoar or generic\n"
+    "  --node N           be node N (1..255) of a CANaerospace bus and answer requests; 0: only "
+    "listen (default)\n"
     "  --script FILE      operate the controls by a script (below)\n"
     "  --png DIR          write pictures into DIR (made if need be) as frame-NNNNN.png\n"
     "  --every N          write every Nth picture; 0: only those the script names (default 30)\n"
@@ -54,6 +57,8 @@ enum {
     OPT_DB = 1,
     OPT_BUS,
     OPT_CAN,
+    OPT_PROFILE,
+    OPT_NODE,
     OPT_SCRIPT,
     OPT_PNG,
     OPT_EVERY,
@@ -68,7 +73,8 @@ enum {
 
 static const struct option table[] = {
     {"db", required_argument, NULL, OPT_DB},     {"bus", required_argument, NULL, OPT_BUS},
-    {"can", required_argument, NULL, OPT_CAN},   {"script", required_argument, NULL, OPT_SCRIPT},
+    {"can", required_argument, NULL, OPT_CAN},   {"profile", required_argument, NULL, OPT_PROFILE},
+    {"node", required_argument, NULL, OPT_NODE}, {"script", required_argument, NULL, OPT_SCRIPT},
     {"png", required_argument, NULL, OPT_PNG},   {"every", required_argument, NULL, OPT_EVERY},
     {"window", no_argument, NULL, OPT_WINDOW},   {"bezel", no_argument, NULL, OPT_BEZEL},
     {"size", required_argument, NULL, OPT_SIZE}, {"seconds", required_argument, NULL, OPT_SECONDS},
@@ -109,6 +115,15 @@ static bool take_value(struct options *o, int option)
         return true;
     case OPT_CAN:
         o->can_interface = optarg;
+        return true;
+    case OPT_PROFILE:
+        o->profile = lm_bus_profile_named(optarg);
+        return o->profile != NULL;
+    case OPT_NODE:
+        if (!whole(optarg, 0, 255, &n)) {
+            return false;
+        }
+        o->node = (uint8_t)n;
         return true;
     case OPT_SCRIPT:
         o->script = optarg;
@@ -153,6 +168,7 @@ enum options_result options_read(struct options *o, int argc, char **argv)
 {
     memset(o, 0, sizeof *o);
     o->every = 30;
+    o->profile = &lm_bus_canas17;
     o->width_px = o->height_px = 768;
     int option;
     opterr = 0; /* the words are ours */

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/bus_profile.h"
+
 struct options {
     const char *database, *bus_log, *can_interface, *script, *png_folder;
     double seconds; /* 0: to the end of the bus log, or for ever */
@@ -12,6 +14,8 @@ struct options {
     uint32_t seed;  /* of the noise */
     uint16_t width_px, height_px;
     bool has_window, has_bezel, is_quiet;
+    const struct lm_bus_profile *profile; /* of the bus */
+    uint8_t node;                         /* on the bus; 0: it only listens */
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };

@@ -126,6 +126,9 @@ extern const struct lm_bus_profile lm_bus_canas17; /* the specification, and LON
 extern const struct lm_bus_profile lm_bus_xcsoar;  /* as XCSoar reads it: types are assumed */
 extern const struct lm_bus_profile lm_bus_generic; /* made of a text table: see docs/bus.md */
 
+/* "canas17", "xcsoar" or "generic", as a configuration writes it; NULL for any other name. */
+const struct lm_bus_profile *lm_bus_profile_named(const char *name);
+
 /* What became of a frame, or of a number in it. Each has a counter. */
 enum lm_bus_outcome {
     LM_BUS_VALUE,         /* an event is filled */

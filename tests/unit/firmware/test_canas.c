@@ -220,6 +220,17 @@ static void assert_sound(const struct lm_bus_profile *p)
     }
 }
 
+static void a_profile_is_found_by_its_name_only(void **state)
+{
+    (void)state;
+    assert_ptr_equal(lm_bus_profile_named("canas17"), &lm_bus_canas17);
+    assert_ptr_equal(lm_bus_profile_named("xcsoar"), &lm_bus_xcsoar);
+    assert_ptr_equal(lm_bus_profile_named("generic"), &lm_bus_generic);
+    assert_null(lm_bus_profile_named("canas"));
+    assert_null(lm_bus_profile_named("canas178"));
+    assert_null(lm_bus_profile_named(""));
+}
+
 static void both_tables_of_canaerospace_are_sound(void **state)
 {
     (void)state;
@@ -879,6 +890,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_value_that_another_library_sent_is_decoded_within_its_tolerance),
         cmocka_unit_test(the_table_agrees_with_the_specifications_identifiers),
+        cmocka_unit_test(a_profile_is_found_by_its_name_only),
         cmocka_unit_test(both_tables_of_canaerospace_are_sound),
         cmocka_unit_test(any_float_in_range_is_within_half_a_count_of_double_arithmetic),
         cmocka_unit_test(a_double_keeps_the_last_count),
