@@ -58,6 +58,12 @@ static const struct option options[] = {
     {"shore", "dB at the far shore", AT(params.shore_db), FOR_BOTH, 0, 40, NAN, false},
     {"shore-width", "metres in which that falls to nothing", AT(params.shore_width_m), FOR_BOTH, 0,
      10000, NAN, false},
+    {"texture-structures", "shape of the texture of structures, 1 the roughest; 0: none",
+     AT(params.texture_shape[LM_KIND_STRUCTURE]), FOR_BOTH, 0, 64, NAN, true},
+    {"texture-trees", "of trees, likewise", AT(params.texture_shape[LM_KIND_TREES]), FOR_BOTH, 0,
+     64, NAN, true},
+    {"sea", "dB that the sea is above that of state 3, 5 a state", AT(params.sea_db), FOR_BOTH, -15,
+     25, NAN, false},
     {"floor", "dB of the noise floor", AT(params.noise_floor_db), FOR_BOTH, -120, 60, NAN, false},
     {"black", "dB shown black", AT(params.black_db), FOR_BOTH, -120, 60, NAN, false},
     {"white", "dB shown white", AT(params.white_db), FOR_BOTH, -120, 60, NAN, false},
@@ -80,15 +86,15 @@ static void print_options(int mode)
             continue;
         }
         const double value = isnan(o->usual) ? *option_value(&usual, o) : o->usual;
-        printf("  --%-15s %s", o->name, o->help);
+        printf("  --%-19s %s", o->name, o->help);
         if (strstr(o->help, "likewise") == NULL && strstr(o->help, "by default") == NULL) {
             printf(" [%g]", value);
         }
         putchar('\n');
     }
-    printf("  --%-15s %s\n", "exact-weights", "do not cut the weights between posts to 8 bits");
-    printf("  --%-15s %s\n", "out FILE", "the picture, a grey PNG [reference.png]");
-    printf("  --%-15s %s\n", "dump FILE",
+    printf("  --%-19s %s\n", "exact-weights", "do not cut the weights between posts to 8 bits");
+    printf("  --%-19s %s\n", "out FILE", "the picture, a grey PNG [reference.png]");
+    printf("  --%-19s %s\n", "dump FILE",
            "every stage of every cell: CSV, or raw doubles if FILE ends in .f64");
     printf("\nColumns of the dump: %s\n", ref_dump_columns);
 }

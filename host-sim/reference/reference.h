@@ -65,7 +65,7 @@ struct ref_params {
     double black_db, white_db;      /* white_db > black_db */
     double gamma_exponent;          /* > 0 */
     double texture_shape[LM_KINDS]; /* nu by kind of class, 1..64 in whole numbers; 0: none */
-    int sea_above_3;                /* state of the sea, less that of the image */
+    double sea_db;                  /* ref_sea_db of the state of the sea */
     bool has_exact_weights;         /* bilinear weights not cut to 8 bits */
 };
 
@@ -196,6 +196,9 @@ struct ref_texture {
     double table_db[LM_KINDS][REF_SPECKLE_SLICES];
 };
 void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params);
+
+/* What a state of the sea (0..8) adds to water. */
+double ref_sea_db(int state);
 
 /* Fill `texture_db` from `kind` and `hash`: what the roughness of the class and, over water, the
  * state of the sea add to the level. */

@@ -99,11 +99,16 @@ void ref_texture_tables(struct ref_texture *texture, const struct ref_params *pa
     }
 }
 
+double ref_sea_db(int state)
+{
+    return 5 * (state - 3);
+}
+
 void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
                  const struct ref_params *params)
 {
     for (size_t i = 0; i < count; i++) {
-        const double sea_db = bins[i].kind == LM_KIND_WATER ? 5.0 * params->sea_above_3 : 0;
+        const double sea_db = bins[i].kind == LM_KIND_WATER ? params->sea_db : 0;
         bins[i].texture_db = texture->table_db[bins[i].kind][bins[i].hash >> 12 & 1023] + sea_db;
     }
 }

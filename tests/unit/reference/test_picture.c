@@ -443,7 +443,7 @@ static void the_program_renders_dumps_and_explains_itself(void **state)
     assert_int_equal(support_run("%s gm %s --cells 16 --lines 8 --out %s --dump %s", program,
                                  image_path, png_path, raw_path),
                      0);
-    assert_int_equal(support_run("test $(wc -c <%s) = %d", raw_path, 22 * 8 * 16 * 8), 0);
+    assert_int_equal(support_run("test $(wc -c <%s) = %d", raw_path, 23 * 8 * 16 * 8), 0);
     assert_int_equal(
         support_run("%s --help >/dev/null && %s gm --help >/dev/null", program, program), 0);
     assert_int_equal(support_run("%s sar %s --lines 8 2>&1 | sed 's/^/# /'; "

@@ -49,7 +49,7 @@ static void each_kind_has_its_own_texture_and_only_water_the_sea(void **state)
 {
     (void)state;
     const struct ref_params params = {
-        .texture_shape = {[LM_KIND_STRUCTURE] = 2, [LM_KIND_TREES] = 4}, .sea_above_3 = 2};
+        .texture_shape = {[LM_KIND_STRUCTURE] = 2, [LM_KIND_TREES] = 4}, .sea_db = ref_sea_db(5)};
     static struct ref_texture texture;
     ref_texture_tables(&texture, &params);
     for (uint32_t slice = 0; slice < REF_SPECKLE_SLICES; slice += 31) {
