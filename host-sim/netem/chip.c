@@ -85,6 +85,25 @@ static int has_ending(const char *path, const char *ending)
     return length >= tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
+static const char mstar_start[] = "[PhoenixHeaderVer";
+
+int nm_chip_seems(const char *path)
+{
+    static const char *const endings[] = {".csv", ".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        if (has_ending(path, endings[i])) {
+            return 1;
+        }
+    }
+    char start[sizeof mstar_start] = "";
+    FILE *stream = fopen(path, "rb");
+    const size_t size = stream ? fread(start, 1, sizeof start - 1, stream) : 0;
+    if (stream) {
+        fclose(stream);
+    }
+    return size == sizeof start - 1 && strcmp(start, mstar_start) == 0;
+}
+
 int nm_chip_read(struct nm_chip *chip, const char *path)
 {
     *chip = (struct nm_chip){.azimuth_deg = NAN, .depression_deg = NAN};
@@ -96,7 +115,7 @@ int nm_chip_read(struct nm_chip *chip, const char *path)
         return -1;
     }
     int result;
-    if (strncmp((const char *)bytes, "[PhoenixHeaderVer", 17) == 0) {
+    if (strncmp((const char *)bytes, mstar_start, sizeof mstar_start - 1) == 0) {
         result = nm_chip_parse_mstar(chip, path, bytes, size);
     } else if (has_ending(path, ".csv")) {
         result = nm_chip_parse_csv(chip, path, (const char *)bytes, size);

@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+/* Of the largest term of the simulated spectrum: what is weaker is not compared. */
+static const double band_floor = 0.02;
+
 int nm_registrar_open(struct nm_registrar *r, int side)
 {
     const size_t pixels = (size_t)side * (size_t)side;
@@ -54,26 +57,29 @@ static void take_mean(double *pixels, int count)
     }
 }
 
-/* (17), with the real picture as H: its product with the conjugate of G keeps only the phase. Where
- * neither has power there is no phase, and the term is left out. */
+static double largest_of(const fftw_complex *spectrum, int count)
+{
+    double largest = 0;
+    for (int i = 0; i < count; i++) {
+        largest = fmax(largest, hypot(spectrum[i][0], spectrum[i][1]));
+    }
+    return largest;
+}
+
+/* (17), with the real picture as H: of its product with the conjugate of G only the phase counts.
+ * Outside the radar's band the simulated picture holds nothing, and the phase there is noise. */
 static void cross_phase(struct nm_registrar *r)
 {
     const int half = r->side * (r->side / 2 + 1);
-    double largest = 0;
+    const double floor = band_floor * largest_of(r->simulated_spectrum, half);
     for (int i = 0; i < half; i++) {
         const double *g = r->simulated_spectrum[i];
         double *h = r->real_spectrum[i];
         const double re = h[0] * g[0] + h[1] * g[1], im = h[1] * g[0] - h[0] * g[1];
-        h[0] = re;
-        h[1] = im;
-        largest = fmax(largest, hypot(re, im));
-    }
-    for (int i = 0; i < half; i++) {
-        double *p = r->real_spectrum[i];
-        const double size = hypot(p[0], p[1]);
-        const double scale = size > 1e-9 * largest ? 1 / size : 0;
-        p[0] *= scale;
-        p[1] *= scale;
+        const double size = hypot(re, im);
+        const double scale = hypot(g[0], g[1]) > floor && size > 0 ? 1 / size : 0;
+        h[0] = scale * re;
+        h[1] = scale * im;
     }
 }
 

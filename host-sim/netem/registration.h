@@ -1,5 +1,6 @@
 /* Finding the shift between a simulated and a real picture by phase correlation (Niu (15)-(17);
- * Kuglin and Hines, 1975), to the whole pixel. */
+ * Kuglin and Hines, 1975), to the whole pixel. Only the terms count in which the simulated picture
+ * has a fiftieth or more of its strongest one: on real chips, beyond that, the phase is noise. */
 #ifndef NM_REGISTRATION_H
 #define NM_REGISTRATION_H
 
@@ -19,8 +20,8 @@ int nm_registrar_open(struct nm_registrar *r, int side);
 void nm_registrar_close(struct nm_registrar *r);
 
 /* The origin, at most `reach` pixels from `near` either way, at which the real picture looks most
- * like the simulated one. `sharpness`, if not NULL, receives the height of the peak: 1 for an exact
- * cyclic shift, about 1 / side for unrelated pictures. */
+ * like the simulated one. `sharpness`, if not NULL, receives the height of the peak: 1 would be
+ * an exact cyclic shift of a picture with all terms. */
 struct nm_origin nm_register(struct nm_registrar *r, const double *simulated,
                              const struct nm_picture *real, struct nm_origin near, int reach,
                              double *sharpness);

@@ -1,0 +1,141 @@
+#include "experiment.h"
+
+#include "model_file.h"
+#include "report.h"
+
+#include "hs/error.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settings,
+                       double lowest_depression_deg)
+{
+    *e = (struct nm_experiment){.settings = *settings};
+    return nm_target_view_open(&e->view, &settings->setup, lowest_depression_deg);
+}
+
+void nm_experiment_close(struct nm_experiment *e)
+{
+    if (e->training) {
+        nm_training_close(e->training);
+    }
+    free(e->training);
+    nm_dataset_free(&e->dataset);
+    nm_target_view_close(&e->view);
+    *e = (struct nm_experiment){0};
+}
+
+int nm_experiment_load(struct nm_experiment *e, const struct nm_chip_list *list)
+{
+    const struct nm_calibration calibration = nm_settings_calibration(&e->settings);
+    return nm_dataset_load(&e->dataset, list, &e->view, &calibration, e->settings.share,
+                           (uint64_t)e->settings.seed);
+}
+
+static int make_training(struct nm_experiment *e)
+{
+    e->training = calloc(1, sizeof *e->training);
+    return e->training ? 0 : hs_error("training", NULL, "out of memory");
+}
+
+static int begin(struct nm_experiment *e, const char *path)
+{
+    double kernel[NM_LARGE * NM_LARGE];
+    const struct nm_architecture *architecture;
+    struct nm_plan plan;
+    if (access(path, F_OK) == 0) {
+        return hs_error(path, "go on with --resume, or name another folder",
+                        "is here from another training");
+    }
+    nm_settings_kernel(&e->settings, kernel);
+    return nm_settings_plan(&e->settings, &plan, &architecture) == 0 && make_training(e) == 0
+               ? nm_training_open(e->training, &plan, architecture, kernel,
+                                  (int)e->settings.setup.cells)
+               : -1;
+}
+
+int nm_experiment_take(struct nm_experiment *e, const char *path)
+{
+    return make_training(e) == 0 ? nm_model_read(e->training, path, (int)e->settings.setup.cells)
+                                 : -1;
+}
+
+static bool is_same_plan(const struct nm_plan *a, const struct nm_plan *b)
+{
+    return a->loss == b->loss && a->method == b->method && a->rate == b->rate &&
+           a->pix_rate == b->pix_rate && a->momentum == b->momentum && a->batch == b->batch &&
+           a->reach_px == b->reach_px && a->seed == b->seed &&
+           memcmp(a->epochs, b->epochs, sizeof a->epochs) == 0;
+}
+
+static int go_on(struct nm_experiment *e, const char *path)
+{
+    const struct nm_architecture *architecture;
+    struct nm_plan plan;
+    if (nm_settings_plan(&e->settings, &plan, &architecture) != 0 ||
+        nm_experiment_take(e, path) != 0) {
+        return -1;
+    }
+    return architecture == e->training->model.architecture &&
+                   is_same_plan(&plan, &e->training->plan)
+               ? 0
+               : hs_error(path, "give the options of its beginning",
+                          "was begun with other training options");
+}
+
+static void print_epoch(const struct nm_training *t, double seconds)
+{
+    const struct nm_epoch *e = &t->epochs[t->epoch_count - 1];
+    printf("epoch %d\t%s\ttraining %.6f\tvalidation %.6f\t%.1f s\n", t->epoch_count,
+           nm_phase_names[e->phase], e->training, e->validation, seconds);
+    fflush(stdout);
+}
+
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_resumed)
+{
+    char path[4096];
+    if (nm_report_path(path, sizeof path, folder, "training.netem") != 0 ||
+        (is_resumed ? go_on(e, path) : begin(e, path)) != 0) {
+        return -1;
+    }
+    const struct nm_samples training = nm_dataset_training(&e->dataset);
+    const struct nm_samples validation = nm_dataset_validation(&e->dataset);
+    while (nm_training_phase(e->training) != NM_PHASES) {
+        const double before = seconds_now();
+        if (nm_training_epoch(e->training, &training, &validation) != 0 ||
+            nm_model_write(e->training, path) != 0) {
+            return -1;
+        }
+        print_epoch(e->training, seconds_now() - before);
+    }
+    return 0;
+}
+
+int nm_experiment_plot(const struct nm_training *t, const char *folder, int material_count,
+                       const struct reflect_law *truth)
+{
+    char loss[4096], specular[4096], back[4096], kernels[4096];
+    const struct nm_loss_curve curve = {t->model.architecture->name, t->epochs, t->epoch_count};
+    if (nm_report_path(loss, sizeof loss, folder, "loss.png") != 0 ||
+        nm_report_path(specular, sizeof specular, folder, "specular.png") != 0 ||
+        nm_report_path(back, sizeof back, folder, "back.png") != 0 ||
+        nm_report_path(kernels, sizeof kernels, folder, "kernels.png") != 0) {
+        return -1;
+    }
+    const bool is_drawn = nm_report_losses(loss, "loss by epoch", &curve, 1) == 0 &&
+                          nm_report_specular(specular, &t->model, material_count, truth) == 0 &&
+                          nm_report_back(back, &t->model, material_count, truth) == 0 &&
+                          nm_report_kernels(kernels, &t->model) == 0;
+    return is_drawn ? 0 : -1;
+}

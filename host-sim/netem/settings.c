@@ -1,0 +1,164 @@
+#include "settings.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <string.h>
+
+struct nm_settings nm_settings_default(void)
+{
+    return (struct nm_settings){
+        .setup = setup_default(),
+        .calibration = {.gain = NAN, .clutter = 0.05},
+        .share = 0.8,
+        .architecture = "EP8",
+        .loss = "mse",
+        .method = "adam",
+        .rate = 1e-3,
+        .pix_rate = 3e-5,
+        .momentum = 0.9,
+        .batch = 4,
+        .pretrain = 5,
+        .epochs = 40,
+        .pix_epochs = 10,
+        .reach_px = 3,
+        .seed = 1,
+    };
+}
+
+void nm_target_options(struct nm_settings *s, struct db_option *o)
+{
+    struct setup *t = &s->setup;
+    const struct db_option options[] = {
+        {"depression", DB_REAL, &t->depression_deg, 1, 89, "DEG",
+         "of the line of sight below the horizon, where chips do not tell", false},
+        {"wavelength", DB_REAL, &t->wavelength_m, 0.001, 10, "M", "of the radar", false},
+        {"cells", DB_INTEGER, &t->cells, 64, 1024, "N",
+         "of 0.1 m, the side of the simulated picture; chips have half as many pixels", false},
+        {"rays", DB_INTEGER, &t->rays_per_cell, 1, 16, "N",
+         "N x N of them meet a cell of level ground", false},
+        {"bounces", DB_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
+         false},
+        {"resolution", DB_REAL, &t->resolution_m, 0.1, 10, "M",
+         "from the middle of the impulse response to its first null", false},
+        {"kernel-gain", DB_REAL, &s->kernel_gain, 0, 1e9, "K",
+         "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
+         "m^2, as calibrated MSTAR chips have it",
+         false},
+        {"law", DB_TEXT, &t->law, 0, 0, "NAME",
+         "of the simulator before training: raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
+         false},
+        {"materials", DB_TEXT, &t->materials, 0, 0, "FILE",
+         "surfaces by name, in the form that `landmass-target materials` prints", false},
+    };
+    setup_model_options(t, o);
+    memcpy(o + SETUP_MODEL_OPTIONS, options, sizeof options);
+}
+
+void nm_chip_options(struct nm_settings *s, struct db_option *o)
+{
+    const struct db_option options[NM_CHIP_OPTIONS] = {
+        {"chips", DB_TEXT, &s->chips, 0, 0, "FOLDER|LIST",
+         "raw MSTAR, CSV, PNG, JPEG or TIFF files: a folder of them, or a list of lines\n"
+         "FILE [AZIMUTH DEPRESSION [SHIFT_X SHIFT_Y [GAIN [training|validation]]]]",
+         true},
+        {"gain", DB_REAL, &s->gain, 0, 1e12, "K",
+         "calibrates amplitudes, where a list does not; 0: each chip by its clutter", false},
+        {"clutter", DB_REAL, &s->calibration.clutter, 1e-6, 1, "A",
+         "mean amplitude of the ground about the target in a calibrated chip", false},
+        {"normalised", DB_FLAG, &s->calibration.is_normalised, 0, 0, NULL,
+         "the chips have been through tanh already, (12)", false},
+        {"near-on-top", DB_FLAG, &s->calibration.is_near_on_top, 0, 0, NULL,
+         "the uppermost row is nearest to the radar; in MSTAR the lowest is", false},
+        {"azimuth-left", DB_FLAG, &s->calibration.is_counted_left, 0, 0, NULL,
+         "the collection counts azimuths to the left; here the radar goes round to the right",
+         false},
+        {"azimuth-turn", DB_REAL, &s->calibration.turn_deg, -360, 360, "DEG",
+         "is added to the collection's azimuths; here 0 is before the nose", false},
+        {"share", DB_REAL, &s->share, 0, 1, "P",
+         "of the chips for training, where a list does not say; the others validate", false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+void nm_train_options(struct nm_settings *s, struct db_option *o)
+{
+    const struct db_option options[NM_TRAIN_OPTIONS] = {
+        {"architecture", DB_TEXT, &s->architecture, 0, 0, "EP1..EP8",
+         "Tables III and IV; default EP8: a network for each direction, 16-32-64-32-32-1", false},
+        {"loss", DB_TEXT, &s->loss, 0, 0, "mse|mae", "(14), the default, or (13)", false},
+        {"method", DB_TEXT, &s->method, 0, 0, "adam|sgd", "of descent; default adam", false},
+        {"rate", DB_REAL, &s->rate, 1e-9, 1e3, "R", "of the reflection networks", false},
+        {"pix-rate", DB_REAL, &s->pix_rate, 1e-9, 1e3, "R", "of the pixels' kernels", false},
+        {"momentum", DB_REAL, &s->momentum, 0, 0.999, "M", "of sgd", false},
+        {"batch", DB_INTEGER, &s->batch, 1, 4096, "N", "chips between two changes", false},
+        {"pretrain", DB_INTEGER, &s->pretrain, 0, 1000, "N",
+         "epochs on the simulator's own picture", false},
+        {"epochs", DB_INTEGER, &s->epochs, 0, 3000, "N",
+         "on real chips, with the fixed impulse response", false},
+        {"pix-epochs", DB_INTEGER, &s->pix_epochs, 0, 3000, "N",
+         "of the trainable kernels at the end, the reflection networks frozen", false},
+        {"reach", DB_INTEGER, &s->reach_px, 0, 64, "PX",
+         "how far registration looks from the expected place; 0: no registration", false},
+        {"seed", DB_INTEGER, &s->seed, 0, 1e15, "N", "of everything drawn by lot", false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+static int choose(const char *option, const char *word, const char *first, const char *second,
+                  int *choice)
+{
+    *choice = strcmp(word, second) == 0;
+    return *choice || strcmp(word, first) == 0
+               ? 0
+               : hs_error(option, NULL, "must be %s or %s, not %s", first, second, word);
+}
+
+int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
+                     const struct nm_architecture **architecture)
+{
+    int loss, method;
+    *architecture = nm_architecture_find(s->architecture);
+    if (!*architecture) {
+        return hs_error("--architecture", "give EP1 to EP8", "there is no %s", s->architecture);
+    }
+    if (choose("--loss", s->loss, "mse", "mae", &loss) != 0 ||
+        choose("--method", s->method, "adam", "sgd", &method) != 0) {
+        return -1;
+    }
+    *plan = (struct nm_plan){
+        .loss = (enum nm_loss_kind)loss,
+        .method = (enum nm_method)method,
+        .rate = s->rate,
+        .pix_rate = s->pix_rate,
+        .momentum = s->momentum,
+        .batch = (int)s->batch,
+        .epochs = {(int)s->pretrain, (int)s->epochs, (int)s->pix_epochs},
+        .reach_px = (int)s->reach_px,
+        .seed = (uint64_t)s->seed,
+    };
+    return 0;
+}
+
+struct nm_calibration nm_settings_calibration(const struct nm_settings *s)
+{
+    struct nm_calibration c = s->calibration;
+    c.gain = s->gain > 0 ? s->gain : NAN;
+    return c;
+}
+
+void nm_settings_kernel(const struct nm_settings *s, double *kernel)
+{
+    const double gain = s->kernel_gain > 0 ? s->kernel_gain
+                                           : nm_kernel_gain(s->setup.cell_m, s->setup.wavelength_m);
+    nm_kernel_make(s->setup.resolution_m, s->setup.cell_m, gain, kernel);
+}
+
+double nm_settings_lowest(const struct nm_settings *s, const struct nm_chip_list *list)
+{
+    double lowest = s->setup.depression_deg;
+    for (int i = 0; i < list->count; i++) {
+        lowest = fmin(lowest, list->entries[i].depression_deg);
+    }
+    return lowest;
+}
