@@ -21,3 +21,22 @@ T := $(O)/bin/tests/unit/drivers/test_flash_mtd
 TESTS += $(T)
 $(T): $(addprefix $(O)/,tests/unit/drivers/test_flash_mtd.o drivers/flash/flash_mtd.o drivers/flash/flash_reader.o)
 $(T): LDLIBS := -lcmocka -pthread $(call WRAP,open close ioctl pread)
+
+# The bezel over both versions of libgpiod, each a fake: version 1 where its header is installed, version 2 with a header of
+# ours where it is not.
+GPIO_TESTS := $(addprefix $(O)/bin/tests/unit/drivers/test_gpio,$(filter 1,$(GPIOD_MAJOR)) 2)
+TESTS += $(GPIO_TESTS)
+GPIOD2_HEADER := $(if $(filter 2,$(GPIOD_MAJOR)),,-Itests/unit/drivers/gpiod2)
+$(O)/tests/unit/drivers/fake_gpiod2.o: EXTRA_CFLAGS := $(GPIOD2_HEADER)
+$(O)/drivers/gpio/lines_gpiod2.o: CFLAGS_drivers += $(GPIOD2_HEADER)
+$(GPIO_TESTS): $(O)/bin/tests/unit/drivers/test_gpio%: $(addprefix $(O)/tests/unit/drivers/,test_gpio.o fake_gpio.o fake_gpiod%.o) \
+    $(addprefix $(O)/drivers/gpio/,gpio.o lines_gpiod%.o)
+$(GPIO_TESTS): LDLIBS := -lcmocka
+$(O)/bin/tests/unit/drivers/test_gpio2: LDLIBS += $(call WRAP,opendir readdir closedir)
+
+# libusb is replaced whole, and so is the clock, which runs faster.
+T := $(O)/bin/tests/unit/drivers/test_usb
+TESTS += $(T)
+$(O)/tests/unit/drivers/fake_usb.o: EXTRA_CFLAGS := $(call pkgs,cflags,libusb-1.0)
+$(T): $(addprefix $(O)/,tests/unit/drivers/test_usb.o tests/unit/drivers/fake_usb.o drivers/usb/usb.o)
+$(T): LDLIBS := -lcmocka -pthread $(call WRAP,clock_gettime)
