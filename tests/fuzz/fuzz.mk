@@ -1,6 +1,7 @@
 # Everything that is parsed from wire, file or flash, under the sanitizers: as tests of `make check` (the committed corpus and
 # mutations of it), and, built by fuzz.sh with clang and FUZZER=1, as libFuzzer programs.
-FUZZ_TARGETS  := image unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model
+FUZZ_TARGETS  := image unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
+    panel_config
 FUZZ_PARTS    := address,undefined,float-cast-overflow
 FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
 FUZZ_TRACK    := $(filter-out %/main.c,$(wildcard host-sim/nav/*.c)) tests/fuzz/track.c
@@ -22,6 +23,8 @@ FUZZ_SRC_chip_csv    := host-sim/netem/chip_csv.c host-sim/netem/picture.c
 FUZZ_SRC_netem_model := $(patsubst %,host-sim/netem/%.c,model_file train simulator netem paths network architecture netpix \
                        convolve picture loss registration optimizer) host-sim/target/records.c $(FUZZ_TEXT)
 FUZZ_SRC_label_map   := host-sim/db/label_map.c host-sim/db/class_table.c $(FUZZ_TEXT)
+FUZZ_SRC_hid         := $(addprefix drivers/usb/,hid.c stick.c)
+FUZZ_SRC_panel_config := $(addprefix bsp/panel-linux/,config.c config_table.c)
 
 FUZZ_TESTS    := $(FUZZ_TARGETS:%=$(O)/bin/tests/fuzz/test_fuzz_%)
 FUZZ_PROGRAMS := $(FUZZ_TARGETS:%=$(O)/bin/fuzz/%)
@@ -45,7 +48,7 @@ $(foreach target,$(FUZZ_TARGETS),$(eval $(call fuzz_target,$(target))))
 fuzz-programs: $(FUZZ_PROGRAMS)
 
 # -O1 behind OPT: findings name the lines as they are written.
-$(O)/sanitized/%.o: EXTRA_CFLAGS := -Itests/support -Ihost-sim/sim -Ihost-sim/nav -Ihost-sim/bus -Ihost-sim/db -Ihost-sim/netem -Ihost-sim/target $(call pkgs,cflags,gdal openblas fftw3)
+$(O)/sanitized/%.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Itests/support -Ihost-sim/sim -Ihost-sim/nav -Ihost-sim/bus -Ihost-sim/db -Ihost-sim/netem -Ihost-sim/target $(call pkgs,cflags,gdal openblas fftw3)
 $(O)/sanitized/%.o: %.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $< (sanitizers)')
