@@ -33,7 +33,8 @@ static const struct body {
 };
 
 static const char target_form[] =
-    "target NAME LATITUDE LONGITUDE ELEVATION HEADING, then `scatterers` or `swerling CASE DBSM`";
+    "target NAME LATITUDE LONGITUDE ELEVATION|ground[+HEIGHT] HEADING, then `scatterers` or "
+    "`swerling CASE DBSM`, then perhaps `moving SPEED LEG`";
 
 /* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
 static int split_words(char *line, char *words[WORDS_MAX])
@@ -72,6 +73,40 @@ static fx_bam_t bam(double degrees)
 
 /* ---- reading ---- */
 
+/* ELEVATION above the sea, or `ground` and perhaps the height above it, with its sign. */
+static bool set_elevation(struct lm_target *t, char *word)
+{
+    const bool is_above_ground = strncmp(word, "ground", 6) == 0;
+    char *number = is_above_ground ? word + 6 : word;
+    double metres = 0;
+    if (is_above_ground && *number != '\0' && *number != '+' && *number != '-') {
+        return false;
+    }
+    if (*number != '\0' && !read_numbers(&number, 1, &metres, -1000, 16000)) {
+        return false;
+    }
+    t->flags = is_above_ground ? LM_TARGET_ABOVE_GROUND : 0;
+    t->elevation_q6 = (int32_t)lround(metres * 64);
+    return true;
+}
+
+/* Perhaps `moving SPEED LEG` at the end of `count` words; returns how many are before it, 0 when
+ * it is wrong. */
+static int set_motion(struct lm_target *t, char *const *words, int count)
+{
+    double number[2];
+    if (count < 4 || strcmp(words[count - 3], "moving") != 0) {
+        return count;
+    }
+    if (!read_numbers(&words[count - 2], 1, &number[0], 0.001, LM_TARGET_SPEED_MAX_MM_S / 1000.0) ||
+        !read_numbers(&words[count - 1], 1, &number[1], 1, LM_TARGET_LEG_MAX_M)) {
+        return 0;
+    }
+    t->speed_mm_s = (uint32_t)lround(number[0] * 1000);
+    t->leg_m = (uint32_t)lround(number[1]);
+    return count - 3;
+}
+
 /* Behind HEADING: what gives the target its return. */
 static bool set_kind(struct lm_target *t, char *const *words, int count)
 {
@@ -94,15 +129,14 @@ static bool set_kind(struct lm_target *t, char *const *words, int count)
 static int read_target(const struct db_text_file *f, struct lm_target *t, char *const *words,
                        int count)
 {
-    double latitude, longitude, elevation_m, heading;
+    double latitude, longitude, heading;
     if (count < 7 || strlen(words[1]) > sizeof t->name) {
         return db_text_error(f, target_form,
                              "a target needs a name of up to 16 letters, a place "
                              "and a kind");
     }
     if (!read_numbers(words + 2, 1, &latitude, -90, 90) ||
-        !read_numbers(words + 3, 1, &longitude, -180, 360) ||
-        !read_numbers(words + 4, 1, &elevation_m, -1000, 16000) ||
+        !read_numbers(words + 3, 1, &longitude, -180, 360) || !set_elevation(t, words[4]) ||
         !read_numbers(words + 5, 1, &heading, -360, 360)) {
         return db_text_error(f, target_form,
                              "place, elevation or heading is no number of its range");
@@ -110,9 +144,8 @@ static int read_target(const struct db_text_file *f, struct lm_target *t, char *
     memcpy(t->name, words[1], strlen(words[1]));
     t->latitude = bam(latitude);
     t->longitude = bam(longitude);
-    t->elevation_q6 = (int32_t)lround(elevation_m * 64);
     t->heading = bam(heading);
-    return set_kind(t, words + 6, count - 6)
+    return set_kind(t, words + 6, set_motion(t, words + 6, count - 6))
                ? 0
                : db_text_error(f, target_form, "\"%s\" and what follows is no kind", words[6]);
 }
@@ -327,11 +360,16 @@ void build_targets_print(const struct image *image)
         const struct lm_target *t = &image->targets[i];
         printf("%6" PRIu32 "  ", t->id);
         print_name(t->name);
-        printf("%10.6f %11.6f %12.1f %8.2f", image_degrees((int32_t)t->latitude),
-               image_longitude_degrees(t->longitude), t->elevation_q6 / 64.0,
+        const bool is_above_ground = (t->flags & LM_TARGET_ABOVE_GROUND) != 0;
+        printf("%10.6f %11.6f %s%*.1f %8.2f", image_degrees((int32_t)t->latitude),
+               image_longitude_degrees(t->longitude), is_above_ground ? "ground" : "",
+               is_above_ground ? 6 : 12, t->elevation_q6 / 64.0,
                image_degrees((int64_t)t->heading));
         if (t->scatterer_count == 0) {
             printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
+        }
+        if (t->speed_mm_s != 0) {
+            printf("  moving %.1f m/s, leg %" PRIu32 " m", t->speed_mm_s / 1000.0, t->leg_m);
         }
         putchar('\n');
         for (int k = 0; k < t->scatterer_count && k < LM_SCATTERERS_MAX; k++) {
@@ -355,8 +393,8 @@ static bool is_zero(const void *bytes, size_t count)
 static bool rest_is_zero(const struct lm_target *t)
 {
     const size_t used = strnlen(t->name, sizeof t->name);
-    bool rest = t->reserved0 == 0 && is_zero(t->reserved1, sizeof t->reserved1) &&
-                is_zero(t->name + used, sizeof t->name - used);
+    bool rest =
+        is_zero(t->reserved, sizeof t->reserved) && is_zero(t->name + used, sizeof t->name - used);
     for (int i = 0; i < t->scatterer_count; i++) {
         const struct lm_scatterer *s = &t->scatterers[i];
         rest = rest && s->reserved == 0 && (bodies[s->kind].sizes == 2 || s->size_mm[1] == 0) &&

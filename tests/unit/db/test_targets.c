@@ -30,7 +30,10 @@ static const char text[] =
     "  dihedral 0.4 2  0 0 0  -90 0\n"
     "\ttrihedral 1.25  262.144 -262.144 0.001  0 35.264\n"
     "target truck -33.5 -70.25 -3 359.5 swerling 3 12.5\n"
-    "target sixteen_letters_ 0 360 0 -45 swerling 0 -20\n";
+    "target sixteen_letters_ 0 360 0 -45 swerling 0 -20\n"
+    "target ferry 47 8 ground+2.5 90 swerling 1 30 moving 7.5 4000\n"
+    "target convoy 47 8 ground 45 scatterers moving 16 100000\n"
+    "  sphere 0.5  0 0 -1.5\n";
 
 static double degrees(fx_bam_t angle)
 {
@@ -43,7 +46,7 @@ static void a_file_says_all_that_a_record_holds(void **state)
     struct build_targets t;
     scene_text("all.targets", text);
     assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
-    assert_int_equal(t.count, 3);
+    assert_int_equal(t.count, 5);
     const struct lm_target *c = &t.items[0];
     assert_string_equal(c->name, "corners");
     assert_true(fabs(degrees(c->latitude) - 47.01) < 1e-7);
@@ -65,6 +68,17 @@ static void a_file_says_all_that_a_record_holds(void **state)
     assert_int_equal(t.items[1].swerling, 3);
     assert_int_equal(t.items[1].mean_rcs_q8, 12.5 * 256);
     assert_memory_equal(t.items[2].name, "sixteen_letters_", 16);
+    assert_int_equal(t.items[2].flags, 0);
+    assert_int_equal(t.items[2].speed_mm_s, 0);
+    assert_int_equal(t.items[3].flags, LM_TARGET_ABOVE_GROUND);
+    assert_int_equal(t.items[3].elevation_q6, 160);
+    assert_int_equal(t.items[3].speed_mm_s, 7500);
+    assert_int_equal(t.items[3].leg_m, 4000);
+    assert_int_equal(t.items[4].flags, LM_TARGET_ABOVE_GROUND);
+    assert_int_equal(t.items[4].elevation_q6, 0);
+    assert_int_equal(t.items[4].speed_mm_s, 16000);
+    assert_int_equal(t.items[4].leg_m, LM_TARGET_LEG_MAX_M);
+    assert_int_equal(t.items[4].scatterer_count, 1);
     for (uint32_t i = 0; i < t.count; i++) {
         assert_int_equal(t.items[i].id, i);
         assert_int_equal(lm_target_check(&t.items[i]), LM_OK);
@@ -98,6 +112,16 @@ static void a_line_that_makes_no_sense_is_refused(void **state)
         "target t 0 0 0 0 scatterers\ntrihedral 1 0 0 0 1 2 both\n",
         "target t 0 0 0 0 scatterers\nplate 1 1 0 0 0 1 both\n",
         "target t 0 0 0 0 scatterers\nplate 1 1 0 0 0 1 2 3 4\n",
+        "target t 0 0 ground2 0 swerling 1 1\n",
+        "target t 0 0 ground+ 0 swerling 1 1\n",
+        "target t 0 0 grounds 0 swerling 1 1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 0 100\n",
+        "target t 0 0 0 0 swerling 1 1 moving 2000 100\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20 0\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20 100001\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20\n",
+        "target t 0 0 0 0 swerling 1 1 20 100\n",
+        "target t 0 0 0 0 moving 20 100\n",
         "target a b c d e f g h i j k l m n o p q r s\n",
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -203,7 +227,7 @@ static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state
     struct memory_flash flash;
     struct lm_db db;
     build_with_targets("with.lmdb");
-    assert_true(scene_log_holds("targets 3"));
+    assert_true(scene_log_holds("targets 5"));
     assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
     assert_int_equal(image_open(&image, scene_path("with.lmdb")), 0);
     memory_flash_open(&flash, image.bytes, image.size_bytes);
@@ -231,6 +255,8 @@ static void verify_and_inspect_know_targets(void **state)
         scene_log_holds("plate     0.3 0.7 m at -10.25 0 1, facing -10.000 20.000, roll "
                         "45.000, both sides"));
     assert_true(scene_log_holds("swerling 3, mean 12.5 dBsm"));
+    assert_true(scene_log_holds("ground   2.5"));
+    assert_true(scene_log_holds("moving 7.5 m/s, leg 4000 m"));
     assert_true(scene_log_holds("input: targets all.targets"));
     assert_true(scene_log_holds("section-sha256: TARGETS"));
 }
@@ -354,7 +380,7 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
             t[0].swerling = 1;
             break; /* it has bodies */
         case 10:
-            t[2].reserved1[15] = 1;
+            t[2].reserved[7] = 1;
             break;
         default:
             c.bytes[c.head_at + 40] = 1;

@@ -1,0 +1,177 @@
+/* The section TARGETS of a flash image: any bytes as its head and its records, read as the unit
+ * reads them; what passes the check is drawn into lines of a sector and of a patch. The first byte
+ * of the input says which checksums are put right, the next 24 from where and how the targets are
+ * looked at; the rest is the section. */
+#include "fuzz.h"
+#include "lm/target_line.h"
+#include "lm/target_patch.h"
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+#include "fx/crc32c.h"
+
+const uint32_t fuzz_mutations = 5000;
+
+enum { POLLS = 64, TARGETS_MAX = 40, LINES = 128, CELLS = 132, SEAL_HEAD = 1, SEAL_RECORDS = 2 };
+
+/* Where FORMATS.md puts them. */
+enum {
+    IMAGE_BYTES_AT = 16,
+    SECTION_COUNT_AT = 56,
+    SECTIONS_AT = 64,
+    SECTION_BYTES = 24,
+    CRC_AT = 508
+};
+
+/* How they are looked at. */
+struct look {
+    struct lm_place place; /* against the first target's */
+    fx_bam_t azimuth, track;
+    uint32_t speed_mm_s;
+    uint32_t time_s;
+};
+
+static void put(uint8_t *at, uint64_t value, size_t bytes)
+{
+    memcpy(at, &value, bytes);
+}
+
+static void seal_section(uint8_t *section, size_t size, uint8_t parts)
+{
+    if ((parts & SEAL_HEAD) && size >= 64) {
+        put(section + 60, fx_crc32c(0, section, 60), 4);
+    }
+    for (size_t at = 64; (parts & SEAL_RECORDS) && at + LM_TARGET_BYTES <= size;
+         at += LM_TARGET_BYTES) {
+        put(section + at, fx_crc32c(0, section + at + 4, LM_TARGET_BYTES - 4), 4);
+    }
+}
+
+/* A sound image with the section behind it; the caller frees it. */
+static uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_size)
+{
+    struct tiny_image image;
+    const struct tiny_spec spec = tiny_spec_at(46, 11);
+    FUZZ_ASSERT(tiny_image_build(&image, &spec) == 0);
+    const size_t at = (image.size + 63) / 64 * 64;
+    uint8_t *bytes = calloc(1, at + size + 1);
+    FUZZ_ASSERT(bytes);
+    memcpy(bytes, image.bytes, image.size);
+    memcpy(bytes + at, section, size);
+    uint8_t *entry = bytes + SECTIONS_AT + 5 * SECTION_BYTES;
+    put(entry, 6, 4);
+    put(entry + 8, at, 8);
+    put(entry + 16, size, 8);
+    put(bytes + IMAGE_BYTES_AT, at + size, 8);
+    put(bytes + SECTION_COUNT_AT, 6, 4);
+    put(bytes + CRC_AT, fx_crc32c(0, bytes, CRC_AT), 4);
+    tiny_image_free(&image);
+    *image_size = at + size;
+    return bytes;
+}
+
+static void draw_sector(const struct lm_target *t, uint32_t count, const struct look *look)
+{
+    struct lm_targets_near near;
+    const struct lm_target_set set = {t, count};
+    const struct lm_target_scene scene = {
+        .place = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
+    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    lm_targets_select(&near, &set, &scene);
+    FUZZ_ASSERT(near.count <= LM_TARGETS_NEAR);
+    for (fx_bam_t i = 0; i < 8; i++) {
+        const struct lm_target_line line = {.place = look->place,
+                                            .azimuth = look->azimuth + i * (FX_BAM_180 / 4),
+                                            .width = FX_BAM_180 / 4,
+                                            .first_q8 = 37040,
+                                            .cell_q8 = 37040,
+                                            .cells = 256,
+                                            .height_q10 = 3000 * 1024,
+                                            .wavelength_um = 31228,
+                                            .is_doppler = i % 2,
+                                            .speed_mm_s = look->speed_mm_s & 0x1fffff,
+                                            .track = look->track,
+                                            .gate_mm_s = {1500, i % 3 ? 50000 : 0}};
+        (void)lm_target_add(t, &near, &line, NULL, level_q8);
+    }
+}
+
+static void draw_patch(const struct lm_target *t, uint32_t count, const struct look *look)
+{
+    struct lm_patch_points *points = malloc(sizeof *points);
+    struct lm_targets_near near;
+    const struct lm_target_set set = {t, count};
+    const struct lm_target_scene scene = {
+        .place = look->place, .reach_m = 2000, .time_us = (uint64_t)look->time_s * 1000000};
+    const struct lm_patch_geometry g = {.centre = look->place,
+                                        .look = look->azimuth,
+                                        .centre_q8 = 20000 * 256,
+                                        .cell_q8 = 128u << (look->track & 6),
+                                        .lines = LINES,
+                                        .cells = CELLS,
+                                        .guard = 4,
+                                        .heights = {3000 * 1024, 100 * 1024},
+                                        .wavelength_um = 31228,
+                                        .across_mm_s = (int32_t)look->speed_mm_s,
+                                        .lean_q16 = (int32_t)(look->track & 0x1ffff)};
+    int64_t horizon[LM_CELLS_ROOM] = {0};
+    int32_t level_q8[LM_CELLS_ROOM] = {0};
+    FUZZ_ASSERT(points);
+    lm_targets_select(&near, &set, &scene);
+    lm_patch_points_set(points, &set, &near, &g);
+    FUZZ_ASSERT(points->count <= LM_PATCH_POINTS_MAX);
+    for (uint32_t k = 0; k < LINES; k++) {
+        lm_patch_points_hide(points, k, horizon, 46, CELLS);
+        lm_patch_points_add(points, k, -56 * 256, &g, level_q8);
+    }
+    for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+        FUZZ_ASSERT(points->re_q24[i] == 0 && points->im_q24[i] == 0);
+        FUZZ_ASSERT(i < CELLS || level_q8[i] == 0);
+    }
+    free(points);
+}
+
+static void use(const struct lm_db *db, struct look *look)
+{
+    struct lm_target *t = malloc(TARGETS_MAX * sizeof *t);
+    uint32_t count = 0;
+    FUZZ_ASSERT(t);
+    for (uint32_t i = 0; i < db->target_count && count < TARGETS_MAX; i++) {
+        count += lm_target_read(db, i, &t[count], POLLS) == LM_OK;
+    }
+    if (count > 0) {
+        look->place.latitude = look->place.latitude % 30000 + t[0].latitude;
+        look->place.longitude = look->place.longitude % 30000 + t[0].longitude;
+        draw_sector(t, count, look);
+        draw_patch(t, count, look);
+    }
+    free(t);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct fuzz_supply supply = {data, size};
+    const uint8_t parts = fuzz_u8(&supply);
+    struct look look = {.place = {fuzz_u32(&supply), fuzz_u32(&supply)},
+                        .azimuth = fuzz_u32(&supply),
+                        .track = fuzz_u32(&supply),
+                        .speed_mm_s = fuzz_u32(&supply),
+                        .time_s = fuzz_u32(&supply)};
+    uint8_t *section = malloc(supply.left + 1);
+    struct lm_db *db = malloc(sizeof *db);
+    FUZZ_ASSERT(section && db);
+    memcpy(section, supply.at, supply.left);
+    seal_section(section, supply.left, parts);
+    size_t image_size;
+    uint8_t *image = image_with(section, supply.left, &image_size);
+    struct memory_flash flash;
+    memory_flash_open(&flash, image, image_size);
+    flash.fail_every = parts >> 4;
+    if (lm_db_open(db, &flash.port, POLLS) == LM_OK) {
+        use(db, &look);
+    }
+    free(image);
+    free(db);
+    free(section);
+    return 0;
+}
