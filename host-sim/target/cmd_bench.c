@@ -17,18 +17,19 @@ static const struct db_usage usage = {
     "  columns, rows, plane_m of the plane that sends the rays: width, height and how far\n"
     "                         its middle is above the scene's centre\n"
     "  primary_rays, rays     of one picture; rays are primary, specular and backward ones\n"
-    "  trace_ms               tracing the picture, least of all runs\n"
-    "  embree_ms              the same rays in the same packets, given to Embree with nothing\n"
-    "                         done before or after, by as many threads; least of all runs\n"
-    "  share_of_embree        embree_ms / trace_ms\n"
-    "  rays_per_s, primary_rays_per_s   of the tracer\n"
-    "  chip_ms                tracing, law, sum over cells, impulse response and pixels\n"
+    "  trace_cpu_ms           tracing the picture: processor time of all threads, least of all "
+    "runs\n"
+    "  embree_cpu_ms          likewise of the same rays in the same packets, given to Embree with\n"
+    "                         nothing done before or after\n"
+    "  share_of_embree        embree_cpu_ms / trace_cpu_ms\n"
+    "  rays_per_cpu_s         of the tracer\n"
+    "  chip_ms                by the clock: tracing, law, sum over cells, response and pixels\n"
     "  memory_mb              of the whole process, at most"};
 
-static double now_s(void)
+static double seconds_of(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -51,12 +52,12 @@ static void *cast(void *argument)
     return NULL;
 }
 
-static double cast_bare_s(const struct scene *scene, const struct bare_rays *rays, long threads)
+static double cast_bare_cpu_s(const struct scene *scene, const struct bare_rays *rays, long threads)
 {
     struct caster c = {.scene = scene, .rays = rays};
     pthread_t others[64];
     long started = 0;
-    const double start_s = now_s();
+    const double start_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     while (started + 1 < threads && pthread_create(&others[started], NULL, cast, &c) == 0) {
         started++;
     }
@@ -64,7 +65,7 @@ static double cast_bare_s(const struct scene *scene, const struct bare_rays *ray
     for (long i = 0; i < started; i++) {
         pthread_join(others[i], NULL);
     }
-    return now_s() - start_s;
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start_s;
 }
 
 /* Trace once more, keeping the rays and nothing else. Returns 0, or -1 reported. */
@@ -89,7 +90,7 @@ static int keep_rays(const struct scene *scene, const struct trace_order *order,
 }
 
 struct times {
-    double trace_s, embree_s, chip_s;
+    double trace_cpu_s, embree_cpu_s, chip_s;
     uint64_t rays;
     struct trace_sensor sensor;
 };
@@ -100,22 +101,23 @@ static int measure_once(const struct setup *s, const struct scene *scene,
 {
     struct trace_records r;
     int width, height;
-    const double start_s = now_s();
+    const double start_s = seconds_of(CLOCK_MONOTONIC);
+    const double start_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     if (trace_run(scene, order, s->model, &r, &t->rays) != 0) {
         return -1;
     }
-    const double traced_s = now_s();
+    const double trace_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start_cpu_s;
     float *chip = setup_chip(s, &r, &width, &height);
-    const double done_s = now_s();
+    const double chip_s = seconds_of(CLOCK_MONOTONIC) - start_s;
     t->sensor = r.sensor;
     trace_records_free(&r);
     if (!chip) {
         return -1;
     }
     free(chip);
-    t->trace_s = fmin(t->trace_s, traced_s - start_s);
-    t->chip_s = fmin(t->chip_s, done_s - start_s);
-    t->embree_s = fmin(t->embree_s, cast_bare_s(scene, bare, s->threads));
+    t->trace_cpu_s = fmin(t->trace_cpu_s, trace_cpu_s);
+    t->chip_s = fmin(t->chip_s, chip_s);
+    t->embree_cpu_s = fmin(t->embree_cpu_s, cast_bare_cpu_s(scene, bare, s->threads));
     return 0;
 }
 
@@ -129,10 +131,9 @@ static void print(const struct times *t)
     printf("plane_m %.9g %.9g %.9g\n", p->columns * p->step_across_m, height_m,
            p->low_up_m + height_m / 2);
     printf("primary_rays %u\nrays %llu\n", p->columns * p->rows, (unsigned long long)t->rays);
-    printf("trace_ms %.2f\nembree_ms %.2f\nshare_of_embree %.3f\n", 1e3 * t->trace_s,
-           1e3 * t->embree_s, t->embree_s / t->trace_s);
-    printf("rays_per_s %.4g\nprimary_rays_per_s %.4g\n", (double)t->rays / t->trace_s,
-           p->columns * p->rows / t->trace_s);
+    printf("trace_cpu_ms %.2f\nembree_cpu_ms %.2f\nshare_of_embree %.3f\n", 1e3 * t->trace_cpu_s,
+           1e3 * t->embree_cpu_s, t->embree_cpu_s / t->trace_cpu_s);
+    printf("rays_per_cpu_s %.4g\n", (double)t->rays / t->trace_cpu_s);
     printf("chip_ms %.2f\nmemory_mb %ld\n", 1e3 * t->chip_s, use.ru_maxrss / 1024);
 }
 
@@ -140,13 +141,14 @@ static int run(const struct setup *s, double seconds)
 {
     struct scene scene;
     struct bare_rays bare = {0};
-    struct times t = {.trace_s = INFINITY, .embree_s = INFINITY, .chip_s = INFINITY};
+    struct times t = {.trace_cpu_s = INFINITY, .embree_cpu_s = INFINITY, .chip_s = INFINITY};
     if (setup_scene(s, &scene) != 0) {
         return HS_EXIT_FAILED;
     }
     const struct trace_order order = setup_order(s, s->azimuth_deg);
     int result = keep_rays(&scene, &order, &bare);
-    for (const double end_s = now_s() + seconds; result == 0 && now_s() < end_s;) {
+    for (const double end_s = seconds_of(CLOCK_MONOTONIC) + seconds;
+         result == 0 && seconds_of(CLOCK_MONOTONIC) < end_s;) {
         result = measure_once(s, &scene, &order, &bare, &t);
     }
     if (result == 0) {

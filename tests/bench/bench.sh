@@ -80,3 +80,8 @@ if [ -r "$here/classifier.sh" ]; then
     echo
     sh "$here/classifier.sh" "$build"
 fi
+
+if [ -x "$build/bin/landmass-target" ]; then
+    echo
+    sh "$here/target.sh" "$build"
+fi

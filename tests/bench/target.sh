@@ -6,7 +6,7 @@ build=${1:?usage: target.sh BUILD-DIR}
 target=$build/bin/landmass-target
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT INT TERM
-azimuth=20 depression=15 rays=6
+azimuth=20 depression=15 rays=4
 
 value() { # name, of the file "ours"
     awk -v name="$1" '$1 == name { print $2 }' "$work/ours"
@@ -40,30 +40,51 @@ pov_scene() {
         }' "$work/model.obj" > "$work/scene.pov"
 }
 
+# Least time by the clock, in ms, of five runs of a program.
+clock_ms() { # program arguments...
+    python3 -c '
+import subprocess, sys, time
+def run():
+    start = time.monotonic()
+    subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return time.monotonic() - start
+print(round(1e3 * min(run() for _ in range(5))))' "$@"
+}
+
 compare() { # model
     "$target" model --model "$1" --obj "$work/model.obj" > "$work/log"
     "$target" bench --model "$1" --azimuth $azimuth --depression $depression --rays $rays --seconds 4 > "$work/ours"
     pov_scene
     povray +I"$work/scene.pov" +O"$work/scene.png" +W"$(value columns)" +H"$(value rows)" -D -A +WT"$(nproc)" \
         +FN > "$work/pov" 2>&1 || { tail -n 20 "$work/pov"; exit 1; }
-    pov_s=$(sed -nE 's/.*Trace Time:.*\(([0-9.]+) seconds\).*/\1/p' "$work/pov" | tail -n 1)
-    awk -v model="$1" -v primary="$(value primary_rays)" -v rays="$(value rays)" -v ms="$(value trace_ms)" \
+    # The last line is that of tracing; the ones before it are those of parsing.
+    pov_s=$(sed -nE 's/.* with ([0-9.]+) CPU-seconds total.*/\1/p' "$work/pov" | tail -n 1)
+    awk -v model="$1" -v primary="$(value primary_rays)" -v rays="$(value rays)" -v ms="$(value trace_cpu_ms)" \
         -v share="$(value share_of_embree)" -v pov="$pov_s" 'BEGIN {
-        printf "  %-6s %8d %9d %9.2f %11.3g %9.1f %11.3g %8.1f %9.2f\n", model, primary, rays, ms, primary / ms * 1e3,
-               pov * 1e3, primary / pov, pov * 1e3 / ms, share
+        printf "  %-6s %8d %9d %10.1f %10.1f %10.1f %8.1f %9.2f\n", model, primary, rays, ms, pov * 1e3, rays / ms / 1e3,
+               pov * 1e3 / ms, share
     }'
 }
 
-echo "Ray tracing of a picture with up to five reflections, $(nproc) threads: landmass-target, POV-Ray, bare Embree"
-echo "  model   primary  all rays  ours, ms   primary/s   POV, ms   primary/s    times  of Embree"
+echo "A picture of up to five reflections: processor time of landmass-target, of POV-Ray, and the share of bare Embree's rate"
+echo "  model   primary  all rays   ours, ms    POV, ms     Mray/s    times  of Embree"
 if command -v povray > /dev/null; then
     compare slicy
     compare tank
 else
     echo "  povray is missing (make deps): not compared"
 fi
-echo "One chip of 54 x 54 pixels, 5 reflections, 2 x 2 rays a cell, from model to pixels"
+echo "One chip of 54 x 54 pixels, 5 reflections, 2 x 2 rays a cell"
+echo "  model   model to pixels    memory   program, by the clock   POV-Ray likewise"
 for model in slicy tank; do
+    "$target" model --model $model --obj "$work/model.obj" > "$work/log"
     "$target" bench --model $model --azimuth $azimuth --depression $depression --seconds 2 > "$work/ours"
-    printf '  %-6s %6.1f ms, %s MB\n' $model "$(value chip_ms)" "$(value memory_mb)"
+    ours=$(clock_ms "$target" render --model $model --azimuth $azimuth --depression $depression --out "$work/chip.png")
+    pov=-
+    if command -v povray > /dev/null; then
+        pov_scene
+        pov=$(clock_ms povray +I"$work/scene.pov" +O"$work/scene.png" +W"$(value columns)" +H"$(value rows)" -D -A \
+            +WT"$(nproc)")
+    fi
+    printf '  %-6s %13.1f ms %6s MB %20s ms %15s ms\n' $model "$(value chip_ms)" "$(value memory_mb)" "$ours" "$pov"
 done
