@@ -1,5 +1,5 @@
-/* The panel's avionics bus: a SocketCAN interface that may be missing at the start, go down, be
- * removed and come back. */
+/* The panel's avionics bus: the SocketCAN driver, which mends itself, with its state in words for
+ * the log. */
 #ifndef PANEL_BUS_H
 #define PANEL_BUS_H
 
@@ -10,30 +10,20 @@
 #include "lm/port.h"
 
 struct bus {
-    const char *interface; /* borrowed; empty: no bus */
-    uint64_t zero_us;
     struct drv_can_socket socket;
-    struct lm_can driver; /* the open socket's */
+    struct lm_can driver; /* the socket's, or one that is not fitted */
     struct lm_can port;   /* the firmware's */
-    bool is_failed;       /* the driver reported an error since it was opened */
-    bool was_up;          /* as it was reported last */
-    uint64_t retry_us;
-
-    struct {
-        uint32_t polls; /* times that the firmware asked for frames */
-        uint32_t opens;
-    } count;
+    bool is_lost;         /* reported, and no frame came since */
+    uint32_t polls;       /* times that the firmware asked for frames */
 };
 
-/* Never fails: a bus that is not there is reported and tried again twice a second. `zero_us` is
- * where the firmware's clock has its 0. */
-void bus_open(struct bus *b, const char *interface, uint64_t zero_us);
+/* Never fails: an interface that is not there is reported, and looked for from then on. An empty
+ * name: no bus. `zero_us` is where the firmware's clock has its 0; *b must not move. */
+void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile *profile,
+              uint64_t zero_us);
 void bus_close(struct bus *b);
 
-/* At every step, before the firmware's. */
-void bus_service(struct bus *b, uint64_t now_us);
-
-/* For poll(): readable when a frame waits; -1: there is no bus. */
+/* For poll(): readable when a frame waits; -1: there is none now. */
 int bus_fd(const struct bus *b);
 
 #endif

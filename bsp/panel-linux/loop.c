@@ -54,9 +54,12 @@ static void tell_counters(const struct panel *p)
     report(REPORT_INFO, "frames %u, lines %u (%u dropped), steps %u, longest %u us, latest %u us",
            u->count.frames, u->count.lines, u->count.lines_dropped, p->count.steps,
            p->count.step_max_us, p->count.late_max_us);
-    report(REPORT_INFO, "bus: %u frames, %u errors, %u opens, %u overflowed, %u malformed",
-           u->count.bus_frames, u->count.bus_errors, p->bus.count.opens,
-           p->bus.socket.count.overflowed, p->bus.socket.count.malformed);
+    const struct drv_can_socket *bus = &p->bus.socket;
+    report(REPORT_INFO,
+           "bus: %u frames, %u overflowed, %u malformed; down %u, gone %u, bus-off %u; "
+           "%u sent, %u unsent",
+           u->count.bus_frames, bus->count.overflowed, bus->count.malformed, bus->count.down,
+           bus->count.gone, bus->count.bus_off, bus->count.sent, bus->count.unsent);
     report(REPORT_INFO, "flash: %u tiles, %u bytes, %u read again, %u failed, %u corrupt",
            u->tiles.count.tiles_read, (unsigned)u->tiles.count.bytes_read,
            atomic_load(&p->flash.count.again), atomic_load(&p->flash.count.failed),
@@ -135,16 +138,14 @@ static void show_lamps(struct panel *p)
 
 void panel_step(struct panel *p, uint64_t now_us)
 {
-    bus_service(&p->bus, now_us);
     bezel_service(&p->bezel, now_us);
     glass_service(&p->glass, now_us);
     lm_unit_step(p->unit, now_us);
     p->count.steps++;
     show_lamps(p);
     tell_flags(p, now_us);
-    const struct drv_liveness life = {.frames = p->unit->count.frames,
-                                      .bus = p->bus.count.polls,
-                                      .renders = glass_renders(&p->glass)};
+    const struct drv_liveness life = {
+        .frames = p->unit->count.frames, .bus = p->bus.polls, .renders = glass_renders(&p->glass)};
     (void)drv_watchdog_service(&p->watchdog, life, now_us);
 }
 

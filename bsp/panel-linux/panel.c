@@ -1,5 +1,6 @@
 #include "panel.h"
 
+#include "drv/not_fitted.h"
 #include "report.h"
 
 #include <errno.h>
@@ -24,24 +25,6 @@ uint64_t panel_now_us(const struct panel *p)
 {
     return monotonic_us() - p->zero_us;
 }
-
-/* What reads in the place of a flash that cannot be opened; the glass then says DB FAIL. */
-static int no_flash_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
-{
-    (void)ctx;
-    (void)offset;
-    (void)destination;
-    (void)length;
-    return LM_ERR_RANGE;
-}
-
-static int no_flash_poll(void *ctx)
-{
-    (void)ctx;
-    return LM_ERR_IO;
-}
-
-static const struct lm_flash no_flash = {.read_start = no_flash_start, .read_poll = no_flash_poll};
 
 /* An MTD device, or anything else that can be read like a file. NULL when neither can be opened. */
 static const struct lm_flash *open_slow_flash(struct panel *p)
@@ -68,12 +51,12 @@ static const struct lm_flash *open_flash(struct panel *p)
 {
     const struct lm_flash *slow = open_slow_flash(p);
     if (slow == NULL) {
-        return &no_flash;
+        return &drv_no_flash;
     }
     const int cause = drv_flash_reader_start(&p->flash, slow);
     if (cause != 0) {
         report(REPORT_ERROR, "flash: no thread to read it: %s", strerror(cause));
-        return &no_flash;
+        return &drv_no_flash;
     }
     p->flash.patience_us = START_PATIENCE_US;
     return &p->flash.port;
@@ -86,12 +69,24 @@ static int next_control(void *ctx, struct lm_control *control)
            drv_control_ring_take(&p->hand.ring, control);
 }
 
+static const struct lm_bus_profile *bus_profile(const struct config *c)
+{
+    static const struct lm_bus_profile *const profiles[] = {
+        [CONFIG_CANAS17] = &lm_bus_canas17,
+        [CONFIG_XCSOAR] = &lm_bus_xcsoar,
+        [CONFIG_GENERIC] = &lm_bus_generic,
+    };
+    return profiles[c->can_profile];
+}
+
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
     p->board = (struct lm_board){.radar = &lm_radar_default,
                                  .flash = flash,
                                  .can = &p->bus.port,
+                                 .bus_profile = bus_profile(p->config),
+                                 .bus_node = (uint8_t)p->config->can_node,
                                  .controls = &p->controls,
                                  .display = &p->glass.port,
                                  .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),
@@ -109,7 +104,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                p->config->database);
         return -1;
     }
-    if (!p->unit->has_db && flash != &no_flash) {
+    if (!p->unit->has_db && flash != &drv_no_flash) {
         report(REPORT_ERROR,
                "%s: not a database that this firmware can use; "
                "landmass-db verify tells why",
@@ -134,6 +129,15 @@ static int open_signals(void)
     return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
+static void open_watchdog(struct panel *p)
+{
+    const char *device = p->config->watchdog[0] != '\0' ? p->config->watchdog : NULL;
+    if (drv_watchdog_open(&p->watchdog, device, p->config->watchdog_s, panel_now_us(p)) != LM_OK) {
+        report(REPORT_ERROR, "watchdog: %s", p->watchdog.error);
+    }
+    p->board.restart = p->watchdog.has_bitten ? "WATCHDOG" : NULL;
+}
+
 int panel_open(struct panel *p, const struct config *config)
 {
     memset(p, 0, sizeof *p);
@@ -143,7 +147,7 @@ int panel_open(struct panel *p, const struct config *config)
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     const struct lm_flash *flash = open_flash(p);
-    bus_open(&p->bus, config->can, p->zero_us);
+    bus_open(&p->bus, config->can, bus_profile(config), p->zero_us);
     bezel_open(&p->bezel, config, panel_now_us(p));
     hand_open(&p->hand, config);
     int status = glass_open(&p->glass, config, panel_now_us(p));
@@ -152,10 +156,7 @@ int panel_open(struct panel *p, const struct config *config)
     } else {
         report(REPORT_ERROR, "start: out of memory");
     }
-    const char *device = config->watchdog[0] != '\0' ? config->watchdog : NULL;
-    if (drv_watchdog_open(&p->watchdog, device, config->watchdog_s, panel_now_us(p)) != LM_OK) {
-        report(REPORT_ERROR, "watchdog: %s", p->watchdog.error);
-    }
+    open_watchdog(p); /* last: until the loop runs, nobody feeds it */
     if (status != 0) {
         panel_close(p);
     }

@@ -40,6 +40,9 @@ static int open_device(struct drv_watchdog *w, const char *device, uint32_t time
         ioctl(w->fd, WDIOC_GETTIMEOUT, &seconds) != 0) {
         seconds = (int)timeout_s;
     }
+    int status = 0;
+    w->has_bitten =
+        ioctl(w->fd, WDIOC_GETBOOTSTATUS, &status) == 0 && (status & WDIOF_CARDRESET) != 0;
     w->timeout_s = seconds > 0 ? (uint32_t)seconds : 1;
     shorten_period(w, (uint64_t)w->timeout_s * 1000000u);
     return LM_OK;

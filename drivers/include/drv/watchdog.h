@@ -23,6 +23,7 @@ struct drv_watchdog {
     uint64_t period_us; /* how often feeding is due: half of the shorter time-out */
     uint64_t due_us;
     uint32_t timeout_s; /* as the board's watchdog took it */
+    bool has_bitten;    /* the board's watchdog says that it caused the last restart */
     bool is_hungry;     /* feeding was due, and life has not been proved since */
     struct drv_liveness last;
     char error[160]; /* why the last call failed */

@@ -84,7 +84,7 @@ struct flight {
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct flight *f = ctx;
-    f->panel.bus.count.polls++;
+    f->panel.bus.polls++;
     return f->rig->can.receive(f->rig->can.ctx, frame);
 }
 
