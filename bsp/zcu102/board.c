@@ -92,11 +92,14 @@ static void open_devices(struct zcu102 *z)
     }
     const struct drv_display_config display = {.dp = device(DP_BASE),
                                                .dma = device(DPDMA_BASE),
+                                               .lanes = ZCU102_DISPLAY_LANES,
+                                               .now_us = zcu102_now_us,
+                                               .clock = &z->timer,
                                                .width_px = ZCU102_WIDTH_PX,
                                                .height_px = ZCU102_HEIGHT_PX,
                                                .drawn = drawn,
                                                .scans = scans};
-    drv_display_open(&z->display, &display);
+    complain_if(z, drv_display_open(&z->display, &display), "display");
     drv_watchdog_start(&z->watchdog, device(SWDT_BASE), SWDT_CLOCK_HZ, ZCU102_WATCHDOG_MS);
 }
 

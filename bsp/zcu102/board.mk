@@ -3,7 +3,7 @@ CC      := aarch64-linux-gnu-gcc
 AR      := aarch64-linux-gnu-ar
 SIZE    := aarch64-linux-gnu-size
 NM      := aarch64-linux-gnu-nm
-DRIVERS := bezel/bezel_serial can/can_zynqmp display/display_dp flash/flash_gqspi irq/irq_gic400 timer/timer_generic uart/uart_cadence \
+DRIVERS := bezel/bezel_serial can/can_zynqmp display/display_dp display/dp_link flash/flash_gqspi irq/irq_gic400 timer/timer_generic uart/uart_cadence \
     watchdog/watchdog_cadence
 
 # No operating system, no C library, nothing loaded at an address that is not known when it is linked.

@@ -16,6 +16,12 @@ enum {
     MAIN_STREAM_HSTART = 0x19C,
     MAIN_STREAM_VSTART = 0x1A0,
     MAIN_STREAM_MISC0 = 0x1A4,
+    MSA_TRANSFER_UNIT_SIZE = 0x1B0,
+    USER_PIX_WIDTH = 0x1B8,
+    USER_DATA_COUNT_PER_LANE = 0x1BC,
+    MIN_BYTES_PER_TU = 0x1C4,
+    FRAC_BYTES_PER_TU = 0x1C8,
+    INIT_WAIT = 0x1CC,
     /* Blender and audio-video buffer, of the same block. */
     V_BLEND_SET_GLOBAL_ALPHA = 0xA00C,
     V_BLEND_OUTPUT_VID_FORMAT = 0xA014,
@@ -53,7 +59,11 @@ enum {
     V_FRONT = 3,
     V_SYNC = 6,
     V_BACK = 24,
-    POLARITY_H_POSITIVE_V_NEGATIVE = 0x2
+    POLARITY_H_POSITIVE_V_NEGATIVE = 1 << 0,
+    PICTURES_PER_S = 60,
+
+    TRANSFER_UNIT_BYTES = 64,
+    BYTES_A_PIXEL = 3
 };
 
 /* Once a picture: red is wanted in the highest byte and stands in the second. */
@@ -106,11 +116,44 @@ static void describe(const struct drv_display *d, struct drv_display_scan *scan,
          bus_address(&scan->descriptor), bus_address(scan->pixels)}};
 }
 
+static uint32_t line_clocks(const struct drv_display *d)
+{
+    return d->port.width_px + (uint32_t)(H_FRONT + H_SYNC + H_BACK);
+}
+
+static uint32_t lines_of(const struct drv_display *d)
+{
+    return d->port.height_px + (uint32_t)(V_FRONT + V_SYNC + V_BACK);
+}
+
+static uint32_t pixel_khz(const struct drv_display *d)
+{
+    return line_clocks(d) * lines_of(d) * PICTURES_PER_S / 1000;
+}
+
+/* How the stream is cut into transfer units: UG1085, "Transfer unit". At most 4 lanes of 20 *
+ * 27 MB/s against 1184 * 801 * 60 pixels of 3 bytes: every product fits 64 bits by far. */
+static void set_transfer(const struct drv_display *d)
+{
+    const struct drv_dp_link *link = &d->link;
+    const uint32_t link_kbytes = link->lanes * link->rate * 27000u;
+    const uint64_t stream_kbytes = (uint64_t)pixel_khz(d) * BYTES_A_PIXEL;
+    const uint32_t thousandths =
+        (uint32_t)(stream_kbytes * TRANSFER_UNIT_BYTES * 1000 / link_kbytes);
+    const uint32_t bytes = thousandths / 1000, words = (d->port.width_px * 3u + 1) / 2;
+    drv_write(d->dp, MSA_TRANSFER_UNIT_SIZE, TRANSFER_UNIT_BYTES);
+    drv_write(d->dp, MIN_BYTES_PER_TU, bytes);
+    drv_write(d->dp, FRAC_BYTES_PER_TU, thousandths % 1000);
+    drv_write(d->dp, INIT_WAIT, bytes <= 4 ? TRANSFER_UNIT_BYTES : TRANSFER_UNIT_BYTES - bytes);
+    drv_write(d->dp, USER_PIX_WIDTH, 1);
+    drv_write(d->dp, USER_DATA_COUNT_PER_LANE, words + words % link->lanes - link->lanes);
+}
+
 static void set_stream(const struct drv_display *d)
 {
     const uint32_t width = d->port.width_px, height = d->port.height_px;
-    drv_write(d->dp, MAIN_STREAM_HTOTAL, width + H_FRONT + H_SYNC + H_BACK);
-    drv_write(d->dp, MAIN_STREAM_VTOTAL, height + V_FRONT + V_SYNC + V_BACK);
+    drv_write(d->dp, MAIN_STREAM_HTOTAL, line_clocks(d));
+    drv_write(d->dp, MAIN_STREAM_VTOTAL, lines_of(d));
     drv_write(d->dp, MAIN_STREAM_POLARITY, POLARITY_H_POSITIVE_V_NEGATIVE);
     drv_write(d->dp, MAIN_STREAM_HSWIDTH, H_SYNC);
     drv_write(d->dp, MAIN_STREAM_VSWIDTH, V_SYNC);
@@ -135,10 +178,14 @@ static void set_plane(const struct drv_display *d)
     drv_write(d->dp, V_BLEND_LAYER1_CONTROL, LAYER_IS_RGB);
 }
 
-void drv_display_open(struct drv_display *d, const struct drv_display_config *config)
+int drv_display_open(struct drv_display *d, const struct drv_display_config *config)
 {
     *d = (struct drv_display){.dp = config->dp,
                               .dma = config->dma,
+                              .link = {.dp = config->dp,
+                                       .now_us = config->now_us,
+                                       .clock = config->clock,
+                                       .board_lanes = config->lanes},
                               .drawn = config->drawn,
                               .scans = config->scans,
                               .next = 1,
@@ -154,8 +201,12 @@ void drv_display_open(struct drv_display *d, const struct drv_display_config *co
     /* The transmitter and the channel are off while their resolution changes. */
     drv_write(d->dp, TRANSMITTER_ENABLE, 0);
     drv_write(d->dma, DPDMA_CH3_CNTL, 0);
+    const int status = drv_dp_link_train(&d->link, pixel_khz(d));
     set_plane(d);
     set_stream(d);
+    if (status == LM_OK) {
+        set_transfer(d);
+    }
     __atomic_thread_fence(__ATOMIC_SEQ_CST);
     drv_write(d->dma, DPDMA_CH3_DSCR_STRT_ADDRE, 0);
     drv_write(d->dma, DPDMA_CH3_DSCR_STRT_ADDR, bus_address(&d->scans[0].descriptor));
@@ -163,4 +214,5 @@ void drv_display_open(struct drv_display *d, const struct drv_display_config *co
     drv_write(d->dma, DPDMA_GBL, GBL_TRIGGER_CH3);
     drv_write(d->dp, MAIN_STREAM_ENABLE, 1);
     drv_write(d->dp, TRANSMITTER_ENABLE, 1);
+    return status;
 }

@@ -37,9 +37,9 @@ def country():
     return content[offset:offset + size]
 
 
-# What the model does not have, and says when it is used: the watchdog, eFuses (QEMU asks itself), and a display that
-# nobody looks at.
-NOT_MODELLED = re.compile(r"addr 0xFD4D000[048],|eFuse|DPDMA client not attached")
+# What the model does not have, and says when it is used: the watchdog, eFuses (QEMU asks itself), a display that
+# nobody looks at, and the panel's power switch.
+NOT_MODELLED = re.compile(r"addr 0xFD4D000[048],|eFuse|DPDMA client not attached|dpcd: Bad offset 0x600")
 
 
 def complaints(log):

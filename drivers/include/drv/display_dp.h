@@ -8,11 +8,12 @@
  * instruction a pixel.
  *
  * Tested in QEMU: what is shown, bit for bit, at several resolutions. QEMU takes the picture when
- * somebody looks, so that tearing cannot be tested. NOT done here: clocks, serial lanes and the
- * training of the link, which the boot firmware or the board must have done. */
+ * somebody looks, so that tearing cannot be tested. NOT done here: the clocks of pixels and serial
+ * lanes, which the first-stage loader sets up as the board's design says. */
 #ifndef DRV_DISPLAY_DP_H
 #define DRV_DISPLAY_DP_H
 
+#include "drv/dp_link.h"
 #include "drv/registers.h"
 #include "lm/port.h"
 
@@ -31,6 +32,7 @@ struct drv_display_scan {
 
 struct drv_display {
     drv_registers dp, dma;
+    struct drv_dp_link link;
     uint32_t *drawn;                /* borrowed */
     struct drv_display_scan *scans; /* borrowed: DRV_DISPLAY_BUFFERS */
     uint32_t next;                  /* the one that is not shown */
@@ -40,12 +42,16 @@ struct drv_display {
 
 struct drv_display_config {
     drv_registers dp, dma;
+    uint8_t lanes; /* of the link, connected on the board: 1, 2 or 4 */
+    uint64_t (*now_us)(const void *clock);
+    const void *clock;
     uint16_t width_px, height_px; /* multiples of 4 */
     uint32_t *drawn;              /* width_px * height_px pixels that the firmware draws in */
     struct drv_display_scan *scans;
 };
 
-/* Set the resolution and show a dark picture. */
-void drv_display_open(struct drv_display *d, const struct drv_display_config *config);
+/* Train the link, set the resolution at 60 pictures a second, and show a dark picture. LM_OK, or
+ * what drv_dp_link_train answered: the display then works on into the void. */
+int drv_display_open(struct drv_display *d, const struct drv_display_config *config);
 
 #endif

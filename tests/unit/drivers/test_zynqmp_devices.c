@@ -1,6 +1,7 @@
 /* The drivers of the Zynq UltraScale+ on registers that are memory: what QEMU's model of the board
  * does not do. tests/zcu102 runs them on the model. */
 #include "drv/can_zynqmp.h"
+#include "drv/dp_link.h"
 #include "drv/flash_gqspi.h"
 #include "drv/irq_gic400.h"
 #include "drv/uart_cadence.h"
@@ -235,6 +236,140 @@ static void a_read_of_nothing_is_done_at_once(void **state)
     assert_int_equal(f.port.read_poll(f.port.ctx), LM_OK);
 }
 
+/* ---- display link ---- */
+
+enum {
+    AUX_COMMAND = 0x100,
+    AUX_ADDRESS = 0x108,
+    AUX_STATE = 0x130,
+    AUX_REPLY = 0x134,
+    AUX_COUNT = 0x148,
+    PHY_SWING = 0x220,
+    PHY_STATUS = 0x280
+};
+
+/* A panel behind the registers: it acts whenever the driver asks what time it is. Memory answers
+ * each byte of a request alike, which is why its answers are single bytes. */
+struct panel {
+    struct device device;
+    uint32_t state;     /* of the AUX channel: 4 answered, 8 timed out, 0 silent */
+    uint8_t answers[8]; /* to each reading of the status, the last one from then on */
+    uint32_t readings, highest_swing;
+};
+
+static uint64_t panel_now_us(const void *ctx)
+{
+    struct panel *p = (struct panel *)(uintptr_t)ctx;
+    uint32_t *r = p->device.registers;
+    const uint32_t command = r[AUX_COMMAND / 4];
+    p->device.now_us += 10;
+    p->highest_swing = r[PHY_SWING / 4] > p->highest_swing ? r[PHY_SWING / 4] : p->highest_swing;
+    if (command != 0) {
+        const bool is_status = r[AUX_ADDRESS / 4] == 0x202;
+        const uint32_t last = sizeof p->answers - 1;
+        r[AUX_COMMAND / 4] = 0;
+        r[AUX_STATE / 4] = p->state;
+        r[AUX_COUNT / 4] = (command & 15) + 1;
+        r[AUX_REPLY / 4] = is_status ? p->answers[p->readings < last ? p->readings : last] : 10;
+        p->readings += is_status && (command & 0x100);
+    }
+    return p->device.now_us;
+}
+
+/* Two rates (6 and 10) and more lanes than the board's two; 80 MHz of pixels fit two lanes of the
+ * slow rate, or either number of the fast one. */
+static int train(struct drv_dp_link *l, struct panel *p, uint32_t state, const uint8_t answers[8])
+{
+    *p = (struct panel){.state = state};
+    memcpy(p->answers, answers, sizeof p->answers);
+    p->device.registers[PHY_STATUS / 4] = 3;
+    *l = (struct drv_dp_link){
+        .dp = p->device.registers, .now_us = panel_now_us, .clock = p, .board_lanes = 2};
+    return drv_dp_link_train(l, 80000);
+}
+
+static const uint8_t content[8] = {0x77, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77};
+
+static void a_link_comes_up_with_the_slowest_rate_that_is_enough(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p;
+    assert_int_equal(train(&l, &p, 4, content), LM_OK);
+    assert_int_equal(l.rate, 6);
+    assert_int_equal(l.lanes, 2);
+    assert_int_equal(l.count.attempts, 1);
+    assert_int_equal(p.device.registers[0x00C / 4], 0); /* no pattern any more */
+    assert_int_equal(p.device.registers[0x014 / 4], 0); /* scrambled again */
+    assert_in_range(p.device.now_us, 500, 2000); /* the waits of the standard, and not more */
+}
+
+static void a_panel_that_is_not_there_is_an_error_soon(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p;
+    assert_int_equal(train(&l, &p, 8, content), LM_ERR_IO);
+    assert_int_equal(l.count.unanswered, 7);
+    assert_int_equal(l.count.attempts, 0);
+    assert_int_equal(train(&l, &p, 0, content), LM_ERR_IO);
+    assert_int_equal(l.count.unanswered, 7);
+    assert_in_range(p.device.now_us, 3500, 5000);
+}
+
+static void a_panel_that_wants_more_swing_gets_it(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p;
+    const uint8_t late[8] = {0x00, 0x22, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77};
+    assert_int_equal(train(&l, &p, 4, late), LM_OK);
+    assert_int_equal(l.count.attempts, 1);
+    assert_int_equal(p.highest_swing, 2);
+}
+
+static void a_link_that_does_not_come_up_is_tried_faster_and_given_up(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p;
+    const uint8_t never[8] = {0};
+    assert_int_equal(train(&l, &p, 4, never), LM_ERR_IO);
+    assert_int_equal(l.count.attempts, 3);
+    assert_int_equal(p.readings, 3 * 5);
+    const uint8_t recovers_only[8] = {0x11, 0x11, 0x11, 0x11, 0x11, 0x11, 0x11, 0x11};
+    assert_int_equal(train(&l, &p, 4, recovers_only), LM_ERR_IO);
+    assert_in_range(p.readings, 3 * 6, 3 * 8);
+}
+
+static void a_panel_that_asks_to_and_fro_does_not_hold_the_board(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p;
+    uint8_t to_and_fro[8];
+    for (size_t i = 0; i < sizeof to_and_fro; i++) {
+        to_and_fro[i] = i % 2 ? 0x22 : 0x00;
+    }
+    for (uint32_t last = 0; last < 2; last++) {
+        to_and_fro[7] = last ? 0x22 : 0x00;
+        assert_int_equal(train(&l, &p, 4, to_and_fro), LM_ERR_IO);
+        assert_in_range(p.readings, 15, 3 * 20);
+    }
+}
+
+static void a_phy_that_is_not_ready_is_an_error(void **state)
+{
+    (void)state;
+    struct drv_dp_link l;
+    struct panel p = {.state = 4};
+    memcpy(p.answers, content, sizeof content);
+    l = (struct drv_dp_link){
+        .dp = p.device.registers, .now_us = panel_now_us, .clock = &p, .board_lanes = 2};
+    assert_int_equal(drv_dp_link_train(&l, 80000), LM_ERR_IO);
+    assert_int_equal(p.readings, 0);
+}
+
 /* ---- watchdog ---- */
 
 static void the_watchdog_is_set_with_its_keys(void **state)
@@ -359,6 +494,12 @@ int main(void)
         cmocka_unit_test(a_read_that_never_ends_is_given_up),
         cmocka_unit_test(a_device_that_is_absent_or_another_has_no_size),
         cmocka_unit_test(a_read_of_nothing_is_done_at_once),
+        cmocka_unit_test(a_link_comes_up_with_the_slowest_rate_that_is_enough),
+        cmocka_unit_test(a_panel_that_is_not_there_is_an_error_soon),
+        cmocka_unit_test(a_panel_that_wants_more_swing_gets_it),
+        cmocka_unit_test(a_link_that_does_not_come_up_is_tried_faster_and_given_up),
+        cmocka_unit_test(a_panel_that_asks_to_and_fro_does_not_hold_the_board),
+        cmocka_unit_test(a_phy_that_is_not_ready_is_an_error),
         cmocka_unit_test(the_watchdog_is_set_with_its_keys),
         cmocka_unit_test(a_time_that_the_watchdog_cannot_count_is_refused),
         cmocka_unit_test(bit_rates_are_met_within_a_percent),

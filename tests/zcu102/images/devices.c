@@ -229,6 +229,22 @@ static void check_crc(struct devices *d)
     claim(d, "the core's instruction makes the checksum that the polynomial does", all);
 }
 
+/* ---- display ---- */
+
+static void check_link(struct devices *d)
+{
+    struct drv_dp_link *link = &d->z.display.link;
+    claim(d, "the panel is asked, and the slowest link that carries the picture comes up at once",
+          link->rate == 6 && link->lanes == 1 && link->count.attempts == 1 &&
+              link->count.unanswered == 0);
+    claim(d, "more pixels take the second lane, and then a faster rate",
+          drv_dp_link_train(link, 60000) == LM_OK && link->rate == 6 && link->lanes == 2 &&
+              drv_dp_link_train(link, 150000) == LM_OK && link->rate == 10 && link->lanes == 2);
+    claim(d, "what two lanes cannot carry is refused",
+          drv_dp_link_train(link, 400000) == LM_ERR_RANGE);
+    claim(d, "the link of this picture comes up again", drv_dp_link_train(link, 44000) == LM_OK);
+}
+
 /* ---- timer, console ---- */
 
 static void check_timer(struct devices *d)
@@ -274,6 +290,7 @@ int main(void)
     check_bus(&d);
     check_flash(&d);
     check_crc(&d);
+    check_link(&d);
     check_timer(&d);
     check_console(&d);
     claim(&d, "no interrupt came that nobody had asked for", d.z.irq.count.strange == 0);

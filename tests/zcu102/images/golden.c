@@ -40,6 +40,9 @@ static void show(struct zcu102 *z, const char *name)
 {
     const struct drv_display_config config = {.dp = (drv_registers)DP_BASE,
                                               .dma = (drv_registers)DPDMA_BASE,
+                                              .lanes = ZCU102_DISPLAY_LANES,
+                                              .now_us = zcu102_now_us,
+                                              .clock = &z->timer,
                                               .width_px = rig.display.width_px,
                                               .height_px = rig.display.height_px,
                                               .drawn = rig.glass,
