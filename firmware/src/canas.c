@@ -1,7 +1,5 @@
 #include "lm/canas.h"
 
-#include <stddef.h>
-
 #include "fx/float_bits.h"
 
 #define HALVES (1u << LM_CANAS_DOUBLEH | 1u << LM_CANAS_DOUBLEL)
@@ -274,30 +272,25 @@ static enum lm_bus_outcome read_double(uint64_t bits, const struct lm_bus_scale 
                                                                 : LM_BUS_OUT_OF_RANGE;
 }
 
-/* A whole number of 1, 2 or 4 bytes. An unsigned one of 2^31 or more is out of any range, so that
- * |integer * 2^frac_bits| stays at most 2^62. */
-static enum lm_bus_outcome read_integer(const uint8_t *data, const struct lm_canas_type *type,
-                                        int32_t per_unit, const struct lm_bus_scale *scale,
-                                        struct number *number)
+/* A whole number of 1, 2 or 4 bytes. |integer * 2^frac_bits| is at most 2^63 - 2^31, and half of
+ * per_unit below 2^31. */
+static void read_integer(const uint8_t *data, const struct lm_canas_type *type, int32_t per_unit,
+                         const struct lm_bus_scale *scale, struct number *number)
 {
     const uint32_t unused_bits = 32 - 8u * type->element_bytes;
     const uint32_t word = big_endian_32(data) >> unused_bits << unused_bits;
-    int64_t integer = (int64_t)(word >> unused_bits);
-    if (type->kind == LM_CANAS_KIND_SIGNED) {
-        integer = (int64_t)(int32_t)word / (1LL << unused_bits);
-    } else if (integer > INT32_MAX) {
-        return LM_BUS_OUT_OF_RANGE;
-    }
+    const int64_t integer = type->kind == LM_CANAS_KIND_SIGNED
+                                ? (int64_t)(int32_t)word / (1LL << unused_bits)
+                                : (int64_t)(word >> unused_bits);
     number->q = lm_bus_divide(integer * (1LL << scale->frac_bits), per_unit);
     number->step = (uint32_t)(one_unit(scale) / per_unit);
-    return LM_BUS_VALUE;
 }
 
 /* A frame whose row, channel and type are known to be right. */
 struct accepted {
     const struct lm_can_frame *frame;
     const struct lm_bus_row *row;
-    struct lm_canas_pair *pair; /* NULL: the row takes no halves */
+    struct lm_canas_pair *pair; /* of rows that take halves, which are those of coordinates */
     uint8_t type;
 };
 
@@ -319,8 +312,11 @@ static enum lm_bus_outcome read_number(struct lm_canas *c, const struct accepted
     if (a->type == LM_CANAS_SHORT2) {
         return read_short2(data, scale, number);
     }
-    return type->elements >= 3 ? read_clock(data, &number->q)
-                               : read_integer(data, type, a->row->per_unit, scale, number);
+    if (type->elements >= 3) {
+        return read_clock(data, &number->q);
+    }
+    read_integer(data, type, a->row->per_unit, scale, number);
+    return LM_BUS_VALUE;
 }
 
 /* In the row's range, as a value of the field. An angle of 180 degrees or more wraps, as angles do.
@@ -344,12 +340,12 @@ static enum lm_bus_outcome accept(struct lm_canas *c, const struct lm_bus_profil
     a->row = &profile->rows[row];
     const bool is_assumed = profile->are_types_assumed;
     a->type = is_assumed ? (uint8_t)__builtin_ctz(a->row->types) : frame->data[1];
-    a->pair = (a->row->types & HALVES) != 0 ? &c->pair[a->row->field][channel] : NULL;
+    a->pair = &c->pair[a->row->field == LM_BUS_LONGITUDE][channel];
     const enum lm_bus_outcome outcome =
         is_assumed ? check_assumed(a->type, frame) : check_header(a->row, frame);
     const bool is_half =
         outcome == LM_BUS_VALUE && lm_canas_types[a->type].kind == LM_CANAS_KIND_HALF;
-    if (a->pair != NULL && !is_half) {
+    if ((a->row->types & HALVES) != 0 && !is_half) {
         drop_half(c, a->pair);
     }
     if (outcome == LM_BUS_VALUE || outcome == LM_BUS_NO_DATA) {

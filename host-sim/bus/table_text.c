@@ -98,9 +98,9 @@ static int take_mask(const struct reader *r, struct item *item, const char *text
 
 static int take_field(const struct reader *r, struct item *item, const char *text)
 {
-    for (uint8_t i = 0; i < LM_BUS_FIELDS; i++) {
+    for (int i = 0; i < LM_BUS_FIELDS; i++) {
         if (strcmp(lm_bus_fields[i].name, text) == 0) {
-            item->row.field = i;
+            item->row.field = (uint8_t)i;
             return 0;
         }
     }
@@ -383,9 +383,9 @@ static int check_canas(const struct reader *r, const struct item *item)
     if (item->has_bits || item->unit_name != NULL) {
         return wrong(r, NULL, "belong to framing packed", "bits and unit");
     }
-    for (uint8_t type = 0; type < LM_CANAS_TYPES; type++) {
+    for (int type = 0; type < LM_CANAS_TYPES; type++) {
         if ((item->row.types >> type & 1) != 0 &&
-            !lm_canas_fits((enum lm_bus_field)item->row.field, type)) {
+            !lm_canas_fits((enum lm_bus_field)item->row.field, (uint8_t)type)) {
             return wrong(r, "see docs/bus.md for what fits", "cannot carry this field",
                          lm_canas_types[type].name);
         }

@@ -12,14 +12,20 @@ static void try_frames(const struct lm_bus_profile *profile)
     struct lm_nav *nav = malloc(sizeof *nav);
     FUZZ_ASSERT(nav);
     lm_nav_init(nav, profile);
-    for (uint32_t i = 0; i < 4u * profile->row_count; i++) {
-        const uint8_t fill = (uint8_t)(i % 4 * 0x55);
-        const bool is_packed = profile->framing == LM_BUS_PACKED;
-        struct lm_can_frame f = {.id = profile->rows[i / 4].id,
+    const bool is_packed = profile->framing == LM_BUS_PACKED;
+    const uint32_t kinds = is_packed ? 4 : 4 * LM_CANAS_TYPES;
+    for (uint32_t i = 0; i < kinds * profile->row_count; i++) {
+        const uint8_t type = (uint8_t)(i % kinds / 4);
+        struct lm_can_frame f = {.id = profile->rows[i / kinds].id,
                                  .is_extended = is_packed,
                                  .length = 8,
                                  .time_us = i * 1000};
-        memset(f.data, fill, sizeof f.data);
+        memset(f.data, (int)(i % 4 * 0x55), sizeof f.data);
+        if (!is_packed) {
+            const struct lm_canas_type *t = &lm_canas_types[type];
+            f.data[1] = type;
+            f.length = (uint8_t)(4 + t->element_bytes * t->elements);
+        }
         struct lm_ownship ownship;
         lm_nav_take(nav, &f);
         lm_nav_at(nav, f.time_us + i % 7 * 1000000, &ownship);

@@ -179,6 +179,23 @@ static void a_table_means_what_it_says(void **state)
     assert_int_equal(e.step, (uint32_t)(0.5 * 0.3048 * 64));
 }
 
+static void a_signed_number_has_its_least_value_too(void **state)
+{
+    (void)state;
+    char errors[1024];
+    const struct {
+        uint8_t bytes[8];
+        int metres;
+    } tests[] = {
+        {{0xf8, 0x00}, -2048}, {{0x07, 0xff}, 2047}, {{0xff, 0xff}, -1}, {{0x08, 0x01}, -2047}};
+    assert_int_equal(read_text(PACKED ALT "range=-3000..9000 bits=4+12 type=signed unit=m\n",
+                               errors, sizeof errors),
+                     0);
+    for (size_t i = 0; i < sizeof tests / sizeof *tests; i++) {
+        assert_int_equal(only_event(tests[i].bytes).value, tests[i].metres * 64);
+    }
+}
+
 static void a_number_that_says_nothing_is_no_value(void **state)
 {
     (void)state;
@@ -265,6 +282,7 @@ int main(void)
         cmocka_unit_test(every_mistake_is_refused_with_its_line_and_its_word),
         cmocka_unit_test(too_many_items_and_too_long_a_line_are_refused),
         cmocka_unit_test(a_table_means_what_it_says),
+        cmocka_unit_test(a_signed_number_has_its_least_value_too),
         cmocka_unit_test(a_number_that_says_nothing_is_no_value),
         cmocka_unit_test(floats_that_are_no_numbers_are_refused),
         cmocka_unit_test(a_canaerospace_of_ones_own_is_read),
