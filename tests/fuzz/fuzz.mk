@@ -1,7 +1,7 @@
 # Everything that is parsed from wire, file or flash, under the sanitizers: as tests of `make check` (the committed corpus and
 # mutations of it), and, built by fuzz.sh with clang and FUZZER=1, as libFuzzer programs.
 FUZZ_TARGETS  := image targets unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
-    panel_config
+    panel_config obj traced
 FUZZ_PARTS    := address,undefined,float-cast-overflow
 FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
 FUZZ_TRACK    := $(filter-out %/main.c,$(wildcard host-sim/nav/*.c)) tests/fuzz/track.c
@@ -23,6 +23,8 @@ FUZZ_SRC_mstar       := host-sim/netem/chip_mstar.c host-sim/netem/picture.c
 FUZZ_SRC_chip_csv    := host-sim/netem/chip_csv.c host-sim/netem/picture.c
 FUZZ_SRC_netem_model := $(patsubst %,host-sim/netem/%.c,model_file train simulator netem paths network architecture netpix \
                        convolve picture loss registration optimizer) host-sim/target/records.c $(FUZZ_TEXT)
+FUZZ_SRC_obj         := $(addprefix host-sim/target/,obj_file.c mesh.c mesh_audit.c) host-sim/common/src/atomic_file.c tests/fuzz/file.c
+FUZZ_SRC_traced      := $(addprefix host-sim/target/,records.c records_file.c) $(wildcard fixed/src/*.c) host-sim/common/src/atomic_file.c tests/fuzz/file.c
 FUZZ_SRC_label_map   := host-sim/db/label_map.c host-sim/db/class_table.c $(FUZZ_TEXT)
 FUZZ_SRC_hid         := $(addprefix drivers/usb/,hid.c stick.c)
 FUZZ_SRC_panel_config := $(addprefix bsp/panel-linux/,config.c config_table.c)
