@@ -89,18 +89,3 @@ void ref_slant_power(const struct ref_bins *bins, double height_m, double near_e
         power[i] = cell < cells ? ground[cell] : 0;
     }
 }
-
-void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
-                     size_t cells, const struct ref_weather_line *weather, double *level_db)
-{
-    double power[REF_BEAM_SAMPLES][REF_CELLS_MAX], ground[REF_CELLS_MAX], sum[REF_CELLS_MAX];
-    const double *lines[REF_BEAM_SAMPLES];
-    for (int j = 0; j < REF_BEAM_SAMPLES; j++) {
-        ref_sample_power(samples[j], cells, &s->antenna, s->tilt_deg, ground);
-        ref_slant_power(&s->receiver.bins, s->receiver.height_m, s->near_edge_m, s->cell_m, ground,
-                        cells, power[j]);
-        lines[j] = power[j];
-    }
-    ref_beam_sum(&s->look, lines, sum, s->receiver.bins.count);
-    ref_receive(&s->receiver, weather, s->line, s->sweep, sum, level_db);
-}

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FOR_SAR = 1, FOR_GM = 2, FOR_BOTH = 3 };
+enum { FOR_SAR = 1, FOR_GM = 2, FOR_SECTOR = 4, FOR_FANS = FOR_GM | FOR_SECTOR, FOR_ALL = 7 };
 
 /* What the command line says; NAN stands for "from the image". */
 struct request {
@@ -17,6 +17,10 @@ struct request {
     bool has_exact_weights;
     double latitude_deg, longitude_deg, antenna_m, azimuth_deg, range_m, cell_m, cells;
     double half_angle_deg, lines, size_px, scale, epoch, looks;
+    double beam_deg, tilt_deg, pulse_us, noise_db, noise_looks, stc_m;
+    double sharpening, rate_deg_s, speed_m_s, track_deg;
+    double rain_mm_h, rain_radius_m, rain_distance_m, rain_bearing_deg;
+    double jam_db, jam_distance_m, jam_bearing_deg;
     struct ref_params params;
 };
 
@@ -32,42 +36,74 @@ struct option {
 
 static const struct option options[] = {
     {"latitude", "degrees, of the patch's centre or the antenna; the image's centre by default",
-     AT(latitude_deg), FOR_BOTH, -90, 90, NAN, false},
-    {"longitude", "degrees, likewise", AT(longitude_deg), FOR_BOTH, -360, 360, NAN, false},
+     AT(latitude_deg), FOR_ALL, -90, 90, NAN, false},
+    {"longitude", "degrees, likewise", AT(longitude_deg), FOR_ALL, -360, 360, NAN, false},
     {"azimuth", "degrees from north: line of sight at the patch, or middle of the sector",
-     AT(azimuth_deg), FOR_BOTH, -720, 720, 0, false},
-    {"height", "metres of the antenna above mean sea level", AT(antenna_m), FOR_BOTH, 1, 30000,
-     6000, false},
+     AT(azimuth_deg), FOR_ALL, -720, 720, 0, false},
+    {"height", "metres of the antenna above mean sea level", AT(antenna_m), FOR_ALL, 1, 30000, 6000,
+     false},
     {"range", "metres along the ground: antenna to patch, or to the last cell's end", AT(range_m),
-     FOR_BOTH, 100, 300000, 37040, false},
-    {"cells", "range cells of a line (and lines of a patch)", AT(cells), FOR_BOTH, 8, 4096, 256,
+     FOR_ALL, 100, 300000, 37040, false},
+    {"cells", "range cells of a line (and lines of a patch)", AT(cells), FOR_ALL, 8, 4096, 256,
      true},
     {"cell", "metres of a patch's cell", AT(cell_m), FOR_SAR, 0.1, 1000, 10, false},
-    {"half-angle", "degrees to either side of the sector's middle", AT(half_angle_deg), FOR_GM, 1,
+    {"half-angle", "degrees to either side of the sector's middle", AT(half_angle_deg), FOR_FANS, 1,
      90, 60, false},
-    {"lines", "azimuth lines of the sector", AT(lines), FOR_GM, 1, 8192, 256, true},
-    {"size", "pixels of the picture's height", AT(size_px), FOR_GM, 16, 4096, 512, true},
+    {"lines", "azimuth lines of the sector", AT(lines), FOR_FANS, 1, 8192, 256, true},
+    {"size", "pixels of the picture's height", AT(size_px), FOR_FANS, 16, 4096, 512, true},
     {"scale", "pixels along a cell's side", AT(scale), FOR_SAR, 1, 16, 2, true},
-    {"epoch", "number of the look: another one, another speckle", AT(epoch), FOR_BOTH, 0,
+    {"epoch", "number of the look: another one, another speckle", AT(epoch), FOR_ALL, 0,
      4294967295.0, 0, true},
-    {"looks", "independent looks averaged", AT(looks), FOR_BOTH, 1, 64, 4, true},
-    {"edge-structure", "dB at the leading edge of structures", AT(params.edge_structure_db),
-     FOR_BOTH, 0, 40, NAN, false},
-    {"edge-trees", "dB at the leading edge of trees", AT(params.edge_trees_db), FOR_BOTH, 0, 40,
+    {"looks", "independent looks averaged", AT(looks), FOR_ALL, 1, 64, 4, true},
+    {"beam", "degrees of the one-way half-power beam in azimuth", AT(beam_deg), FOR_SECTOR, 0.1, 20,
+     3.3, false},
+    {"tilt", "degrees of the antenna upwards; AUTO by default", AT(tilt_deg), FOR_SECTOR, -60, 60,
      NAN, false},
-    {"shore", "dB at the far shore", AT(params.shore_db), FOR_BOTH, 0, 40, NAN, false},
-    {"shore-width", "metres in which that falls to nothing", AT(params.shore_width_m), FOR_BOTH, 0,
+    {"pulse", "microseconds of the pulse", AT(pulse_us), FOR_SECTOR, 0, 100, 1, false},
+    {"noise", "dB of gamma that the noise is worth at the far end", AT(noise_db), FOR_SECTOR, -200,
+     60, -38, false},
+    {"noise-looks", "independent looks of the noise", AT(noise_looks), FOR_SECTOR, 1, 64, 16, true},
+    {"stc", "metres of slant range where the time gain ends", AT(stc_m), FOR_SECTOR, 1, 1e6, 27780,
+     false},
+    {"sharpening", "cells in a beam width; 1: real beam, half of it at the least", AT(sharpening),
+     FOR_SECTOR, 1, 256, 1, false},
+    {"rate", "degrees a second of the antenna, for sharpening", AT(rate_deg_s), FOR_SECTOR, 0.1,
+     360, 15, false},
+    {"speed", "metres a second, for sharpening", AT(speed_m_s), FOR_SECTOR, 1, 2000, 250, false},
+    {"track", "degrees from north of the velocity, for sharpening", AT(track_deg), FOR_SECTOR, -720,
+     720, 0, false},
+    {"rain", "millimetres an hour in a circle; 0: no rain", AT(rain_mm_h), FOR_SECTOR, 0, 150, 0,
+     false},
+    {"rain-radius", "metres of the circle", AT(rain_radius_m), FOR_SECTOR, 100, 100000, 5000,
+     false},
+    {"rain-distance", "metres to its centre", AT(rain_distance_m), FOR_SECTOR, 0, 300000, 15000,
+     false},
+    {"rain-bearing", "degrees from north, likewise", AT(rain_bearing_deg), FOR_SECTOR, -720, 720, 0,
+     false},
+    {"jam", "dB of a jammer above the noise at ten nautical miles; -200: none", AT(jam_db),
+     FOR_SECTOR, -200, 80, -200, false},
+    {"jam-distance", "metres to the jammer", AT(jam_distance_m), FOR_SECTOR, 100, 300000, 18520,
+     false},
+    {"jam-bearing", "degrees from north, likewise", AT(jam_bearing_deg), FOR_SECTOR, -720, 720, 0,
+     false},
+    {"edge-structure", "dB at the leading edge of structures", AT(params.edge_structure_db),
+     FOR_ALL, 0, 40, NAN, false},
+    {"edge-trees", "dB at the leading edge of trees", AT(params.edge_trees_db), FOR_ALL, 0, 40, NAN,
+     false},
+    {"shore", "dB at the far shore", AT(params.shore_db), FOR_ALL, 0, 40, NAN, false},
+    {"shore-width", "metres in which that falls to nothing", AT(params.shore_width_m), FOR_ALL, 0,
      10000, NAN, false},
     {"texture-structures", "shape of the texture of structures, 1 the roughest; 0: none",
-     AT(params.texture_shape[LM_KIND_STRUCTURE]), FOR_BOTH, 0, 64, NAN, true},
-    {"texture-trees", "of trees, likewise", AT(params.texture_shape[LM_KIND_TREES]), FOR_BOTH, 0,
-     64, NAN, true},
-    {"sea", "dB that the sea is above that of state 3, 5 a state", AT(params.sea_db), FOR_BOTH, -15,
+     AT(params.texture_shape[LM_KIND_STRUCTURE]), FOR_ALL, 0, 64, NAN, true},
+    {"texture-trees", "of trees, likewise", AT(params.texture_shape[LM_KIND_TREES]), FOR_ALL, 0, 64,
+     NAN, true},
+    {"sea", "dB that the sea is above that of state 3, 5 a state", AT(params.sea_db), FOR_ALL, -15,
      25, NAN, false},
-    {"floor", "dB of the noise floor", AT(params.noise_floor_db), FOR_BOTH, -120, 60, NAN, false},
-    {"black", "dB shown black", AT(params.black_db), FOR_BOTH, -120, 60, NAN, false},
-    {"white", "dB shown white", AT(params.white_db), FOR_BOTH, -120, 60, NAN, false},
-    {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_BOTH, 0.1, 10, NAN,
+    {"floor", "dB of the noise floor", AT(params.noise_floor_db), FOR_SAR | FOR_GM, -120, 60, NAN,
+     false},
+    {"black", "dB shown black", AT(params.black_db), FOR_ALL, -120, 60, NAN, false},
+    {"white", "dB shown white", AT(params.white_db), FOR_ALL, -120, 60, NAN, false},
+    {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_ALL, 0.1, 10, NAN,
      false},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
@@ -99,19 +135,40 @@ static void print_options(int mode)
     printf("\nColumns of the dump: %s\n", ref_dump_columns);
 }
 
+/* Name of a mode, and the mode of a name; 0 for none. */
+static const char *mode_name(int mode)
+{
+    return mode == FOR_SAR ? "sar" : mode == FOR_GM ? "gm" : "sector";
+}
+
+static int mode_of(const char *name)
+{
+    for (int mode = FOR_SAR; mode <= FOR_SECTOR; mode *= 2) {
+        if (strcmp(name, mode_name(mode)) == 0) {
+            return mode;
+        }
+    }
+    return 0;
+}
+
 static void print_help(int mode)
 {
-    if (mode == FOR_BOTH) {
+    if (mode == FOR_ALL) {
         printf(
-            "usage: landmass-reference sar|gm IMAGE [options]\n\n"
+            "usage: landmass-reference sar|gm|sector IMAGE [options]\n\n"
             "Render a picture from a flash image in double precision, by the equations of "
             "docs/DESIGN.md.\nIt is what the firmware's picture is judged by.\n\n"
-            "  sar   a patch, the line of sight upwards\n"
-            "  gm    a sector seen from above, the antenna in the middle of the lower edge\n\n"
-            "landmass-reference sar --help and landmass-reference gm --help list the options.\n");
+            "  sar     a patch, the line of sight upwards\n"
+            "  gm      a sector as it is sampled, seen from above, the antenna in the middle of "
+            "the "
+            "lower edge\n"
+            "  sector  the same behind antenna and receiver: beam, slant range, pulse, noise, "
+            "rain, "
+            "jamming\n\n"
+            "landmass-reference sar --help lists the options, and so do the others.\n");
         return;
     }
-    printf("usage: landmass-reference %s IMAGE [options]\n\n", mode == FOR_SAR ? "sar" : "gm");
+    printf("usage: landmass-reference %s IMAGE [options]\n\n", mode_name(mode));
     print_options(mode);
 }
 
@@ -152,7 +209,8 @@ static int parse_option(struct request *request, int mode, char **argv)
                         : strcmp(name, "dump") == 0 ? &request->dump
                                                     : NULL;
     if (option == NULL && file == NULL) {
-        return hs_error(argv[0], "landmass-reference sar --help and gm --help list them",
+        return hs_error(argv[0],
+                        "landmass-reference sar --help lists them, and so do gm and sector",
                         "there is no such option");
     }
     if (argv[1] == NULL) {
@@ -249,32 +307,94 @@ static unsigned sector_width(double half_angle_deg, double height_px)
     return (unsigned)(2 * ceil(height_px * sin(half_angle_deg * acos(-1.0) / 180)));
 }
 
-static int render_gm(const struct request *request, const struct ref_db *db)
+static struct ref_gm sector_of(const struct request *request, const struct ref_db *db)
 {
-    const struct ref_gm gm = {.antenna = place_of(request, db),
-                              .antenna_m = request->antenna_m,
-                              .cell_m = request->range_m / floor(request->cells),
-                              .centre_azimuth_deg = request->azimuth_deg,
-                              .half_angle_deg = request->half_angle_deg,
-                              .cell_count = (unsigned)request->cells,
-                              .line_count = (unsigned)request->lines,
-                              .epoch = (uint32_t)request->epoch};
-    struct ref_picture picture;
-    if (ref_gm_sweep(&picture, db, &gm, &request->params) != 0) {
-        return -1;
-    }
+    return (struct ref_gm){.antenna = place_of(request, db),
+                           .antenna_m = request->antenna_m,
+                           .cell_m = request->range_m / floor(request->cells),
+                           .centre_azimuth_deg = request->azimuth_deg,
+                           .half_angle_deg = request->half_angle_deg,
+                           .cell_count = (unsigned)request->cells,
+                           .line_count = (unsigned)request->lines,
+                           .epoch = (uint32_t)request->epoch};
+}
+
+/* Write a sector's picture, which is freed. */
+static int write_sector(const struct request *request, struct ref_picture *picture,
+                        const struct ref_gm *gm)
+{
     const unsigned height = (unsigned)request->size_px;
-    const unsigned width = sector_width(gm.half_angle_deg, height);
+    const unsigned width = sector_width(gm->half_angle_deg, height);
     uint8_t *pixels = malloc((size_t)width * height);
     int status = -1;
     if (pixels == NULL) {
         hs_error("picture", "lower --size", "not enough memory for %u x %u pixels", width, height);
     } else {
-        ref_glass_gm(&picture, &gm, width, height, pixels);
-        status = write_out(request, &picture, pixels, width, height);
+        ref_glass_gm(picture, gm, width, height, pixels);
+        status = write_out(request, picture, pixels, width, height);
     }
-    ref_picture_free(&picture);
+    ref_picture_free(picture);
     return status;
+}
+
+static int render_gm(const struct request *request, const struct ref_db *db)
+{
+    const struct ref_gm gm = sector_of(request, db);
+    struct ref_picture picture;
+    return ref_gm_sweep(&picture, db, &gm, &request->params) == 0
+               ? write_sector(request, &picture, &gm)
+               : -1;
+}
+
+static void set_weather(const struct request *request, struct ref_sector *s)
+{
+    if (request->rain_mm_h > 0) {
+        s->environment.rain_count = 1;
+        s->environment.rain[0] =
+            (struct ref_rain){.radius_m = request->rain_radius_m, .mm_per_h = request->rain_mm_h};
+        s->rain_centre[0] =
+            ref_geo_direct(s->ground.antenna, request->rain_bearing_deg, request->rain_distance_m);
+    }
+    if (request->jam_db > -200) {
+        s->environment.jammer_count = 1;
+        s->environment.jammer[0].ratio_db = request->jam_db;
+        s->jammer_place[0] =
+            ref_geo_direct(s->ground.antenna, request->jam_bearing_deg, request->jam_distance_m);
+    }
+}
+
+/* Everything else of the antenna is that of the firmware's table: a fan of 30 degrees, 4.6 degrees
+ * tall, samples 120/256 degrees apart; and the wavelength of 9.6 GHz. */
+static int render_sector(const struct request *request, const struct ref_db *db)
+{
+    double noise_table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table((unsigned)request->noise_looks, noise_table_db);
+    struct ref_sector s = {
+        .ground = sector_of(request, db),
+        .beam_deg = request->beam_deg,
+        .sample_deg = 120.0 / 256,
+        .sharpening = request->sharpening,
+        .sharpening_least = request->sharpening / 2,
+        .dbs = {request->speed_m_s, request->beam_deg, 0.031228, request->rate_deg_s},
+        .track_deg = request->track_deg,
+        .antenna = {4.6, 30, 2.2},
+        .receiver = {.end_m = request->range_m,
+                     .noise_end_db = request->noise_db,
+                     .noise_table_db = noise_table_db,
+                     .stc_m = request->stc_m,
+                     .pulse_s = request->pulse_us * 1e-6}};
+    if (s.ground.cell_count > REF_CELLS_MAX) {
+        return hs_error("--cells", NULL, "a sector has %d cells at the most", REF_CELLS_MAX);
+    }
+    const struct ref_view view = ref_gm_view(db, &s.ground, &request->params);
+    s.tilt_deg = isnan(request->tilt_deg)
+                     ? ref_auto_tilt_deg(view.antenna_m - view.reference_m, request->range_m)
+                     : request->tilt_deg;
+    set_weather(request, &s);
+    struct ref_picture picture;
+    return ref_sector_sweep(&picture, db, &s, &request->params) == 0
+               ? write_sector(request, &picture, &s.ground)
+               : -1;
 }
 
 static bool asks_for_help(const char *argument)
@@ -286,15 +406,12 @@ int main(int argc, char **argv)
 {
     hs_set_program("landmass-reference");
     if (argc >= 2 && asks_for_help(argv[1])) {
-        print_help(FOR_BOTH);
+        print_help(FOR_ALL);
         return HS_EXIT_OK;
     }
-    const int mode = argc < 2                      ? 0
-                     : strcmp(argv[1], "sar") == 0 ? FOR_SAR
-                     : strcmp(argv[1], "gm") == 0  ? FOR_GM
-                                                   : 0;
+    const int mode = argc < 2 ? 0 : mode_of(argv[1]);
     if (mode == 0) {
-        hs_error("command line", "try landmass-reference --help", "expected sar or gm");
+        hs_error("command line", "try landmass-reference --help", "expected sar, gm or sector");
         return HS_EXIT_USAGE;
     }
     if (argc >= 3 && asks_for_help(argv[2])) {
@@ -309,7 +426,9 @@ int main(int argc, char **argv)
     if (ref_db_open(&db, request.image) != 0) {
         return HS_EXIT_FAILED;
     }
-    const int status = mode == FOR_SAR ? render_sar(&request, &db) : render_gm(&request, &db);
+    const int status = mode == FOR_SAR  ? render_sar(&request, &db)
+                       : mode == FOR_GM ? render_gm(&request, &db)
+                                        : render_sector(&request, &db);
     ref_db_close(&db);
     return status == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }

@@ -13,21 +13,15 @@ static void sample(const struct ref_db *db, unsigned level, const struct ref_par
     ref_db_elevation(db, level, bin->place, params->has_exact_weights, &bin->elevation_m);
 }
 
-/* The tables of a picture. */
-struct tables {
-    double speckle_db[REF_SPECKLE_SLICES];
-    struct ref_texture texture;
-};
-
-static void set_tables(struct tables *t, const struct ref_params *params)
+void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
 {
-    ref_speckle_table(params->looks, t->speckle_db);
-    ref_texture_tables(&t->texture, params);
+    ref_speckle_table(params->looks, tables->speckle_db);
+    ref_texture_tables(&tables->texture, params);
 }
 
 /* The stages behind aspect, for a line whose levels are known. */
 static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, uint32_t epoch,
-                   const struct ref_params *params, const struct tables *tables)
+                   const struct ref_params *params, const struct ref_tables *tables)
 {
     ref_speckle_slices(bins, count, speckle_shift, epoch, NULL);
     ref_texture(bins, count, &tables->texture, params);
@@ -35,8 +29,8 @@ static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, u
     ref_tone(bins, count, params);
 }
 
-static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm,
-                               const struct ref_params *params)
+struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
+                            const struct ref_params *params)
 {
     double below_m;
     ref_db_elevation(db, ref_db_level_for(db, gm->cell_m), gm->antenna, params->has_exact_weights,
@@ -44,11 +38,11 @@ static struct ref_view gm_view(const struct ref_db *db, const struct ref_gm *gm,
     return (struct ref_view){gm->antenna_m, fmin(below_m, db->mean_elevation_m), gm->cell_m};
 }
 
-static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
-                      const struct ref_params *params, double azimuth_deg,
-                      const struct tables *tables)
+double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
+                   const struct ref_params *params, const struct ref_tables *tables,
+                   double azimuth_deg)
 {
-    const struct ref_view view = gm_view(db, gm, params);
+    const struct ref_view view = ref_gm_view(db, gm, params);
     const unsigned level = ref_db_level_for(db, gm->cell_m);
     const double length_m = gm->cell_count * gm->cell_m;
     const struct ref_path path = ref_gm_path(gm->antenna, azimuth_deg, length_m);
@@ -64,21 +58,12 @@ static double gm_line(struct ref_bin *bins, const struct ref_db *db, const struc
     return horizon;
 }
 
-double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
-                   const struct ref_params *params, double azimuth_deg)
-{
-    struct tables tables;
-    set_tables(&tables, params);
-    return gm_line(bins, db, gm, params, azimuth_deg, &tables);
-}
-
 double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line)
 {
     return gm->centre_azimuth_deg + gm->half_angle_deg * ((2.0 * line + 1) / gm->line_count - 1);
 }
 
-/* Room for a picture; also says so when there is none. */
-static int allocate(struct ref_picture *picture)
+int ref_picture_allocate(struct ref_picture *picture)
 {
     const size_t bins = (size_t)picture->cell_count + picture->guard_count;
     picture->bins = calloc(picture->line_count * bins, sizeof *picture->bins);
@@ -111,17 +96,17 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
 {
     *picture = (struct ref_picture){.line_count = gm->line_count,
                                     .cell_count = gm->cell_count,
-                                    .view = gm_view(db, gm, params),
+                                    .view = ref_gm_view(db, gm, params),
                                     .level = ref_db_level_for(db, gm->cell_m),
                                     .speckle_shift = ref_speckle_shift(gm->cell_m)};
-    if (allocate(picture) != 0) {
+    if (ref_picture_allocate(picture) != 0) {
         return -1;
     }
-    struct tables tables;
-    set_tables(&tables, params);
+    struct ref_tables tables;
+    ref_tables_set(&tables, params);
     for (unsigned line = 0; line < gm->line_count; line++) {
-        picture->start_horizons[line] = gm_line(ref_picture_bin(picture, line, 0), db, gm, params,
-                                                ref_gm_azimuth_deg(gm, line), &tables);
+        picture->start_horizons[line] = ref_gm_line(ref_picture_bin(picture, line, 0), db, gm,
+                                                    params, &tables, ref_gm_azimuth_deg(gm, line));
     }
     return 0;
 }
@@ -180,15 +165,15 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
                                     .view = {sar->antenna_m, 0, sar->cell_m},
                                     .level = ref_db_level_for(db, sar->cell_m),
                                     .speckle_shift = ref_speckle_shift(sar->cell_m)};
-    if (allocate(picture) != 0) {
+    if (ref_picture_allocate(picture) != 0) {
         return -1;
     }
     ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
                      &picture->view.reference_m);
     const struct ref_surface surface =
         ref_sar_surface(sar->centre, sar->azimuth_deg, sar->cell_count * sar->cell_m / 2);
-    struct tables tables;
-    set_tables(&tables, params);
+    struct ref_tables tables;
+    ref_tables_set(&tables, params);
     for (unsigned line = 0; line < sar->cell_count; line++) {
         picture->start_horizons[line] = line % REF_COARSE_EVERY == 0
                                             ? ref_sar_horizon(db, sar, params, line)

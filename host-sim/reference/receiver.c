@@ -80,15 +80,13 @@ unsigned ref_noise_slice(uint32_t line, uint32_t bin, uint32_t sweep)
 void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *weather,
                  uint32_t line, uint32_t sweep, double *power, double *level_db)
 {
-    double table_db[REF_SPECKLE_SLICES];
-    ref_speckle_table(r->noise_looks, table_db);
     ref_pulse(power, r->bins.count, ref_pulse_m(r->pulse_s) / r->bins.step_m);
     for (size_t i = 0; i < r->bins.count; i++) {
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
         const double signal =
             weather != NULL ? power[i] * weather->pass[i] + weather->rain[i] : power[i];
         const double fluctuation =
-            pow(10, table_db[ref_noise_slice(line, (uint32_t)i, sweep)] / 10);
+            pow(10, r->noise_table_db[ref_noise_slice(line, (uint32_t)i, sweep)] / 10);
         const double noise = pow(10, ref_noise_db(r, slant_m) / 10) * fluctuation *
                              (1 + (weather != NULL ? weather->jam : 0));
         level_db[i] = 10 * log10(signal + noise) - ref_stc_fall_db(r, slant_m);

@@ -230,11 +230,11 @@ struct ref_bins {
 
 struct ref_receiver {
     struct ref_bins bins;
-    double height_m;     /* h = H - z0 */
-    double end_m;        /* R, the far end of the display's range */
-    double noise_end_db; /* there */
-    unsigned noise_looks;
-    double stc_m; /* r_s */
+    double height_m;              /* h = H - z0 */
+    double end_m;                 /* R, the far end of the display's range */
+    double noise_end_db;          /* there */
+    const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
+    double stc_m;                 /* r_s */
     double pulse_s;
 };
 
@@ -313,7 +313,7 @@ void ref_weather(const struct ref_environment *e, double wavelength_m, double az
                  double elevation_beam_deg, double height_m, const struct ref_bins *bins,
                  struct ref_weather_line *weather);
 
-/* ---- real beam: the antenna (beam.c) ---- */
+/* ---- real beam: the antenna (beam.c), and a line (sector.c) ---- */
 
 enum { REF_BEAM_SAMPLES = 16 };
 
@@ -463,9 +463,21 @@ struct ref_sar {
     uint32_t epoch;
 };
 
+/* The tables of a picture. */
+struct ref_tables {
+    double speckle_db[REF_SPECKLE_SLICES];
+    struct ref_texture texture;
+};
+void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
+
 /* One GM line: all stages, into `bins` (gm->cell_count of them). Returns T_0. */
 double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
-                   const struct ref_params *params, double azimuth_deg);
+                   const struct ref_params *params, const struct ref_tables *tables,
+                   double azimuth_deg);
+
+/* Height of the antenna, that of the time gain's ground below it, and the cell. */
+struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
+                            const struct ref_params *params);
 
 /* Azimuth of the middle of line j. */
 double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
@@ -475,6 +487,9 @@ double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
  * the two ends and the middle; its cells end where the first guard cell begins. */
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
                        const struct ref_params *params, unsigned line);
+
+/* Room for the picture's lines and cells, all zero. Returns 0, or -1 with the error reported. */
+int ref_picture_allocate(struct ref_picture *picture);
 
 /* Whole pictures. Return 0, or -1 with the error reported (no memory); ref_picture_free afterwards.
  */
@@ -486,6 +501,28 @@ void ref_picture_free(struct ref_picture *picture);
 
 /* The bin of a line and cell; cells -guard_count..-1 are the guard cells. */
 struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell);
+
+/* ---- a sector as the receiver hands it on (sector.c) ---- */
+
+/* A whole scale: the ground's cells begin at the antenna, and bins are as many and as long. */
+struct ref_sector {
+    struct ref_gm ground; /* its lines are those that are drawn, its cells those that are sampled */
+    double beam_deg, sample_deg;         /* B, D0 */
+    double sharpening, sharpening_least; /* 1 and 1: real beam */
+    struct ref_dbs dbs;                  /* not used by real beam */
+    double track_deg;                    /* azimuth of the velocity, likewise */
+    struct ref_antenna antenna;
+    double tilt_deg;                    /* of the bar */
+    struct ref_receiver receiver;       /* bins and height_m are filled by the sweep */
+    struct ref_environment environment; /* distances and angles likewise, from these places */
+    struct ref_place rain_centre[4], jammer_place[4];
+};
+
+/* The sector's lines, as bins of which range_m (slant), echo_db, brightness and grey mean
+ * something. params->noise_floor_db is not used: the receiver has its own noise. Returns 0, or -1
+ * with the error reported; ref_picture_free afterwards. */
+int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
+                     const struct ref_sector *sector, const struct ref_params *params);
 
 /* ---- on the glass (glass.c) ---- */
 

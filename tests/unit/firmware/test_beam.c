@@ -78,7 +78,7 @@ static void a_line_is_the_weighted_sum_of_its_samples(void **state)
         struct lm_beam_look look;
         struct ref_beam_look ref;
         lm_beam_clear(&beam);
-        lm_beam_aim(&beam, radar, bam(120 * hs_rng_uniform(&rng) - 60), 256 << n % 7, &look);
+        lm_beam_aim(&beam, radar, bam(120 * hs_rng_uniform(&rng) - 60), 256u << n % 7, &look);
         for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
             assert_false(lm_beam_has(&beam, look.first + j));
             uint32_t *room = lm_beam_room(&beam, look.first + j);

@@ -24,6 +24,7 @@ struct world {
     uint32_t power[LM_CELLS_ROOM];
     int32_t level[LM_CELLS_ROOM];
     struct ref_receiver ref;
+    double noise_table_db[REF_SPECKLE_SLICES]; /* of the default table's looks */
 };
 
 /* Bins of cell_m from near_m on, over flat ground height_m below, on scale `range`. */
@@ -40,7 +41,7 @@ static void set_world(struct world *w, uint8_t range, double near_m, double cell
                                    .height_m = height_m,
                                    .end_m = w->radar.range_m[range],
                                    .noise_end_db = w->radar.receiver.noise_end_q8[range] / 256.0,
-                                   .noise_looks = 1u << (w->radar.receiver.noise_looks_log2 & 15),
+                                   .noise_table_db = w->noise_table_db,
                                    .stc_m = w->radar.receiver.stc_m[range],
                                    .pulse_s = pulse_ns * 1e-9};
 }
@@ -62,6 +63,7 @@ static struct world *make_world(void)
 {
     struct world *w = calloc(1, sizeof *w);
     assert_non_null(w);
+    ref_speckle_table(1u << lm_radar_default.receiver.noise_looks_log2, w->noise_table_db);
     return w;
 }
 

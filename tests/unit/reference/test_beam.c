@@ -152,6 +152,7 @@ static void a_line_over_flat_ground_has_its_hole_and_its_level(void **state)
     static struct ref_bin cells[CELLS];
     const struct ref_bin *samples[REF_BEAM_SAMPLES];
     static double level_db[CELLS];
+    static const double steady[REF_SPECKLE_SLICES];
     const double ds = 18520.0 / CELLS, height_m = 3000;
     for (int i = 0; i < CELLS; i++) {
         const double s = (i + 0.5) * ds;
@@ -171,7 +172,7 @@ static void a_line_over_flat_ground_has_its_hole_and_its_level(void **state)
                                                 .height_m = height_m,
                                                 .end_m = 18520,
                                                 .noise_end_db = -60,
-                                                .noise_looks = 16,
+                                                .noise_table_db = steady,
                                                 .stc_m = 13890,
                                                 .pulse_s = 400e-9}};
     ref_sector_line(&line, samples, CELLS, NULL, level_db);

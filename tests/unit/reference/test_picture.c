@@ -444,8 +444,11 @@ static void the_program_renders_dumps_and_explains_itself(void **state)
                                  image_path, png_path, raw_path),
                      0);
     assert_int_equal(support_run("test $(wc -c <%s) = %d", raw_path, 23 * 8 * 16 * 8), 0);
+    assert_int_equal(support_run("%s sector %s --cells 32 --lines 8 --rain 20 --jam 30 --out %s",
+                                 program, image_path, png_path),
+                     0);
     assert_int_equal(
-        support_run("%s --help >/dev/null && %s gm --help >/dev/null", program, program), 0);
+        support_run("%s --help >/dev/null && %s sector --help >/dev/null", program, program), 0);
     assert_int_equal(support_run("%s sar %s --lines 8 2>&1 | sed 's/^/# /'; "
                                  "%s sar %s --lines 8 2>/dev/null",
                                  program, image_path, program, image_path),

@@ -1,0 +1,140 @@
+/* A sector in real beam or sharpened: sampled lines, and what the display makes of them. DESIGN.md,
+ * "Real beam". */
+#include "reference.h"
+
+#include "hs/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
+                     size_t cells, const struct ref_weather_line *weather, double *level_db)
+{
+    double power[REF_BEAM_SAMPLES][REF_CELLS_MAX], ground[REF_CELLS_MAX], sum[REF_CELLS_MAX];
+    const double *lines[REF_BEAM_SAMPLES];
+    for (int j = 0; j < REF_BEAM_SAMPLES; j++) {
+        ref_sample_power(samples[j], cells, &s->antenna, s->tilt_deg, ground);
+        ref_slant_power(&s->receiver.bins, s->receiver.height_m, s->near_edge_m, s->cell_m, ground,
+                        cells, power[j]);
+        lines[j] = power[j];
+    }
+    ref_beam_sum(&s->look, lines, sum, s->receiver.bins.count);
+    ref_receive(&s->receiver, weather, s->line, s->sweep, sum, level_db);
+}
+
+/* The lines sampled last: sample n of a spacing is in slot n mod 16. */
+struct samples {
+    struct ref_bin *bins; /* owned: 16 lines */
+    double spacing_deg[REF_BEAM_SAMPLES];
+    long number[REF_BEAM_SAMPLES];
+};
+
+/* The bins of a sample, from the ground if they are not there any more. */
+static const struct ref_bin *sample(struct samples *s, const struct ref_db *db,
+                                    const struct ref_sector *sector,
+                                    const struct ref_params *params,
+                                    const struct ref_tables *tables, const struct ref_beam *beam,
+                                    long number)
+{
+    const long slot = (number % REF_BEAM_SAMPLES + REF_BEAM_SAMPLES) % REF_BEAM_SAMPLES;
+    struct ref_bin *bins = s->bins + (size_t)slot * sector->ground.cell_count;
+    const double spacing_deg = ref_beam_spacing_deg(beam);
+    if (s->spacing_deg[slot] != spacing_deg || s->number[slot] != number) {
+        s->spacing_deg[slot] = spacing_deg;
+        s->number[slot] = number;
+        ref_gm_line(bins, db, &sector->ground, params, tables,
+                    sector->ground.centre_azimuth_deg + ref_beam_azimuth_deg(beam, number));
+    }
+    return bins;
+}
+
+/* How sharp the picture is at an azimuth. */
+static double ratio_at(const struct ref_sector *s, double azimuth_deg)
+{
+    return s->sharpening > 1 ? ref_dbs_used(ref_dbs_ratio(&s->dbs, azimuth_deg - s->track_deg),
+                                            s->sharpening, s->sharpening_least)
+                             : 1;
+}
+
+/* The weather along an azimuth. */
+static void look_at_weather(const struct ref_sector *s, const struct ref_receiver *receiver,
+                            double azimuth_deg, struct ref_weather_line *weather)
+{
+    struct ref_environment e = s->environment;
+    double bearing_deg;
+    for (size_t n = 0; n < e.rain_count; n++) {
+        ref_geo_inverse(s->ground.antenna, s->rain_centre[n], &bearing_deg, &e.rain[n].distance_m);
+        e.rain[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
+    }
+    for (size_t n = 0; n < e.jammer_count; n++) {
+        ref_geo_inverse(s->ground.antenna, s->jammer_place[n], &bearing_deg,
+                        &e.jammer[n].distance_m);
+        e.jammer[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
+    }
+    ref_weather(&e, s->dbs.wavelength_m, s->beam_deg, s->antenna.elevation_beam_deg,
+                receiver->height_m, &receiver->bins, weather);
+}
+
+static void fill_line(struct ref_bin *bins, const struct ref_receiver *r, const double *level_db,
+                      const struct ref_params *params)
+{
+    for (size_t i = 0; i < r->bins.count; i++) {
+        bins[i].range_m = r->bins.first_m + (double)i * r->bins.step_m;
+        bins[i].echo_db = level_db[i];
+    }
+    ref_tone(bins, r->bins.count, params);
+}
+
+static void draw(struct ref_picture *picture, struct samples *samples, const struct ref_db *db,
+                 const struct ref_sector *sector, const struct ref_params *params)
+{
+    struct ref_tables tables;
+    struct ref_weather_line weather;
+    double level_db[REF_CELLS_MAX];
+    const struct ref_gm *ground = &sector->ground;
+    struct ref_sector_line line = {.antenna = sector->antenna,
+                                   .tilt_deg = sector->tilt_deg,
+                                   .cell_m = ground->cell_m,
+                                   .receiver = sector->receiver,
+                                   .sweep = ground->epoch};
+    line.receiver.bins = (struct ref_bins){ground->cell_m / 2, ground->cell_m, ground->cell_count};
+    line.receiver.height_m = picture->view.antenna_m - picture->view.reference_m;
+    ref_tables_set(&tables, params);
+    for (line.line = 0; line.line < ground->line_count; line.line++) {
+        const double azimuth_deg = ref_gm_azimuth_deg(ground, line.line);
+        const struct ref_beam beam = {sector->beam_deg, sector->sample_deg,
+                                      ratio_at(sector, azimuth_deg)};
+        const struct ref_bin *lines[REF_BEAM_SAMPLES];
+        line.look = ref_beam_look(&beam, azimuth_deg - ground->centre_azimuth_deg);
+        for (int j = 0; j < REF_BEAM_SAMPLES; j++) {
+            lines[j] = sample(samples, db, sector, params, &tables, &beam, line.look.first + j);
+        }
+        look_at_weather(sector, &line.receiver, azimuth_deg, &weather);
+        ref_sector_line(&line, lines, ground->cell_count, &weather, level_db);
+        fill_line(ref_picture_bin(picture, line.line, 0), &line.receiver, level_db, params);
+    }
+}
+
+int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
+                     const struct ref_sector *sector, const struct ref_params *params)
+{
+    struct ref_params quiet = *params;
+    quiet.noise_floor_db = -INFINITY;
+    *picture = (struct ref_picture){.line_count = sector->ground.line_count,
+                                    .cell_count = sector->ground.cell_count,
+                                    .view = ref_gm_view(db, &sector->ground, params),
+                                    .level = ref_db_level_for(db, sector->ground.cell_m),
+                                    .speckle_shift = ref_speckle_shift(sector->ground.cell_m)};
+    if (ref_picture_allocate(picture) != 0) {
+        return -1;
+    }
+    struct samples samples = {
+        .bins = calloc(REF_BEAM_SAMPLES * (size_t)picture->cell_count, sizeof *samples.bins)};
+    if (samples.bins == NULL) {
+        ref_picture_free(picture);
+        return hs_error("picture", "ask for fewer cells", "not enough memory for 16 lines");
+    }
+    draw(picture, &samples, db, sector, &quiet);
+    free(samples.bins);
+    return 0;
+}
