@@ -384,6 +384,12 @@ static void keep(struct lm_nav *n, const struct lm_bus_event *event)
         return;
     }
     const bool is_known = item->has_value && item->rank == rank;
+    const bool goes_on = is_known && event->time_us >= item->time_us &&
+                         event->time_us - item->time_us <= stale_us_of(n, item);
+    if (goes_on && item->node != event->node) {
+        n->rivals++;
+        return;
+    }
     int32_t value = event->value;
     if (is_known && field <= LM_BUS_LONGITUDE) {
         if (is_jump(n, item, event, row)) {
@@ -392,8 +398,6 @@ static void keep(struct lm_nav *n, const struct lm_bus_event *event)
             value = smooth(n, item, event, field);
         }
     }
-    const bool goes_on = is_known && event->time_us >= item->time_us &&
-                         event->time_us - item->time_us <= stale_us_of(n, item);
     *item = (struct lm_nav_item){
         .time_us = event->time_us,
         .steady_us = goes_on ? item->steady_us : event->time_us,

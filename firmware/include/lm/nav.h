@@ -48,6 +48,7 @@ struct lm_nav {
      */
     uint32_t position_jumps;
     uint32_t crowded; /* values not kept: LM_NAV_SOURCES better senders of the field were alive */
+    uint32_t rivals;  /* values of a second node where a first one is good: see lm_nav_take */
 };
 
 /* Who said a number, and how long ago. For a group of fields, of the one that is older. All zero
@@ -97,6 +98,9 @@ void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
 
 /* Take a frame of the bus, whatever it is. A later call wins over an earlier one, whatever their
  * time stamps say, so that a recording that starts over is followed at once.
+ *
+ * An identifier has one node that sends it. Where a second one sends it as well, the first is heard
+ * until it is stale: the picture does not jump between two aircraft.
  *
  * A coordinate that came in a type of coarse steps, such as FLOAT, is smoothed: it says only that
  * the aircraft is within half a step. What is kept is the sender's last position carried on with

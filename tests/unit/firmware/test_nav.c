@@ -389,6 +389,29 @@ static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_ste
     assert_int_equal(nav.position_jumps, 0); /* another sender's position is no jump of this one */
 }
 
+static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    for (uint64_t t = 0; t <= 3000000; t += 100000) {
+        for (uint8_t node = 8; node <= 9; node++) {
+            for (uint32_t row = 0; row < 2 && (node == 9 || t > 0) && (node == 8 || t < 1000000);
+                 row++) {
+                struct lm_can_frame f =
+                    bus_frame(1036 + row, LM_CANAS_FLOAT, 0, bus_float_bits(10 * node), t);
+                f.data[0] = node;
+                hear(&nav, f);
+            }
+        }
+        const struct lm_ownship o = at(&nav, t);
+        assert_true(fabs(degrees_of(o.longitude) - (t <= 1200000 ? 90 : 80)) < 1e-5);
+        assert_int_equal(o.position_origin.node, t <= 1200000 ? 9 : 8);
+    }
+    assert_int_equal(nav.rivals, 2 * 12);
+    assert_int_equal(nav.position_jumps, 2); /* at the change, and no other */
+}
+
 static void both_coordinates_come_from_one_sender(void **state)
 {
     (void)state;
@@ -772,6 +795,7 @@ int main(void)
         cmocka_unit_test(heading_turns_as_the_body_does),
         cmocka_unit_test(heading_stands_still_where_it_means_nothing),
         cmocka_unit_test(a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady),
+        cmocka_unit_test(a_second_node_on_an_identifier_waits_until_the_first_is_stale),
         cmocka_unit_test(both_coordinates_come_from_one_sender),
         cmocka_unit_test(of_too_many_senders_the_best_are_followed),
         cmocka_unit_test(every_group_tells_who_said_it_and_how_long_ago),
