@@ -2,7 +2,7 @@
 
 #include "lm/version.h"
 
-enum { ROW_COUNTERS = 3, COUNTER_ROWS = 10, ROW_NOW = 13, ROW_FAULTS = 14, ROW_RESTART = 18 };
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 11, ROW_NOW = 14, ROW_FAULTS = 15, ROW_RESTART = 19 };
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -21,6 +21,16 @@ static void add_pair(struct lm_text *t, const char *first, uint32_t value, const
     add_counter(t, second, second_value, COLUMN_SECOND_NUMBER);
 }
 
+/* Frames of the profile's identifiers that could not be believed. */
+static uint32_t bad_frames(const struct lm_bus *bus)
+{
+    uint32_t bad = 0;
+    for (uint32_t i = LM_BUS_BAD_LENGTH; i < LM_BUS_OUTCOMES; i++) {
+        bad += i != LM_BUS_NO_DATA ? bus->count.outcome[i] : 0;
+    }
+    return bad;
+}
+
 static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *t)
 {
     switch (row) {
@@ -34,21 +44,24 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "BUS", u->count.bus_frames, "BUS ERR", u->count.bus_errors);
         break;
     case 3:
-        add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);
+        add_pair(t, "BUS BAD", bad_frames(&u->nav.bus), "TORN", u->nav.bus.canas.count.torn_pairs);
         break;
     case 4:
-        add_pair(t, "TILES", u->tiles.count.tiles_read, "EVICTED", u->tiles.count.evicted);
+        add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);
         break;
     case 5:
-        add_pair(t, "HITS", u->tiles.count.hits, "MISSES", u->tiles.count.misses);
+        add_pair(t, "TILES", u->tiles.count.tiles_read, "EVICTED", u->tiles.count.evicted);
         break;
     case 6:
-        add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
+        add_pair(t, "HITS", u->tiles.count.hits, "MISSES", u->tiles.count.misses);
         break;
     case 7:
-        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", u->tiles.count.corrupt);
+        add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
         break;
     case 8:
+        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", u->tiles.count.corrupt);
+        break;
+    case 9:
         add_pair(t, "DROPPED", u->tiles.count.requests_dropped, "DISP ERR",
                  u->count.display_errors);
         break;

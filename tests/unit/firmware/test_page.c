@@ -693,6 +693,11 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     r->bus.is_down = 0;
     r->bus.sent_us = r->now_us;
     command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .value = 9});
+    /* A frame of a wrong type and a lone half of a double, which the next other frame tears. */
+    const struct lm_can_frame bad = {.id = 321, .length = 8, .data = {9, 77}};
+    const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
+    lm_nav_take(&r->unit.nav, &bad);
+    lm_nav_take(&r->unit.nav, &half);
     run(r, 1);
     press(r, 12);
     /* Stop the clock: the numbers of the picture on the glass. */
@@ -713,6 +718,8 @@ static void the_bit_page_says_what_the_counters_say(void **state)
                     {"CRC ERR  %u", u->tiles.count.corrupt},
                     {"DROPPED  %u", u->tiles.count.requests_dropped},
                     {"DISP ERR %u", u->count.display_errors},
+                    {"BUS BAD  %u", 1},
+                    {"TORN     %u", 1},
                     {"STUCK    %u", u->keys.count.stuck},
                     {"SWAPS    %u", u->count.swaps},
                     {"LEVELS   %u", u->db.level_count},
@@ -732,9 +739,9 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     snprintf(line, sizeof line, "BUS      %u", u->count.bus_frames);
     assert_non_null(strstr(lm_bit_row(u, 5).words, line));
     snprintf(line, sizeof line, "HITS     %u", u->tiles.count.hits);
-    assert_non_null(strstr(lm_bit_row(u, 8).words, line));
+    assert_non_null(strstr(lm_bit_row(u, 9).words, line));
     snprintf(line, sizeof line, "MISSES   %u", u->tiles.count.misses);
-    assert_non_null(strstr(lm_bit_row(u, 8).words, line));
+    assert_non_null(strstr(lm_bit_row(u, 9).words, line));
     assert_true(says(r, "LANDMASS"));
     /* The bus fell silent at 1.5 s; heading is stale at once and dead a second later. */
     assert_true(says(r, "00:00:01  NAV"));
