@@ -112,39 +112,51 @@ static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
     }
 }
 
-/* Weakened by the rain, with the rain's own return. What passes is at most 1. */
-static void rain_on(const struct lm_weather *w, uint32_t *restrict power_q24, uint32_t cells)
+/* Signal and noise of a bin, which are added in decibels; the noise fluctuates. */
+static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_q8,
+                             uint32_t looks_log2, uint32_t hash)
 {
-    for (uint32_t i = 0; i < cells; i++) {
-        const uint32_t passed = share_q24(power_q24[i], 0, w->pass_q16[i]);
-        const uint32_t room = UINT32_MAX - passed;
-        power_q24[i] = passed + (w->rain_q24[i] < room ? w->rain_q24[i] : room);
-    }
+    const int32_t slice = (int32_t)(hash >> 22);
+    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - 24 * FX_DB_OCTAVE_Q14 / 64;
+    return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + lm_speckle_q8[looks_log2][slice]);
 }
 
-/* Noise, logarithm and the end of the time gain. The noise fluctuates in decibels, and is added to
- * the signal in decibels. */
-static void detect(const struct lm_receiver *r, int32_t rise_q8, uint32_t line, uint32_t sweep,
+static void detect(const struct lm_receiver *r, int32_t rise_q8, uint32_t line, uint32_t epoch,
                    const uint32_t *restrict power_q24, int32_t *restrict level_q8)
 {
     const uint32_t looks_log2 = r->looks_log2;
-    const uint32_t epoch = sweep ^ 0x9e3779b9u; /* not that of the ground's speckle */
     for (uint32_t i = 0; i < r->cells; i++) {
-        const int32_t slice = (int32_t)(fx_hash3(line, i, epoch) >> 22);
-        const int32_t noise_q8 = r->noise_q8[i] + lm_speckle_q8[looks_log2][slice] + rise_q8;
-        const int32_t signal_q8 = fx_db_q8_of_many(power_q24[i]) - 24 * FX_DB_OCTAVE_Q14 / 64;
-        level_q8[i] = fx_db_q8_sum_of_many(signal_q8, noise_q8) - r->fall_q8[i];
+        const int32_t noise_q8 = r->noise_q8[i] + rise_q8;
+        const uint32_t hash = fx_hash3(line, i, epoch);
+        level_q8[i] = sum_q8(power_q24[i], 0, noise_q8, looks_log2, hash) - r->fall_q8[i];
+    }
+}
+
+/* The same in rain, whose drops move and so fluctuate as the noise does. */
+static void detect_in_rain(const struct lm_receiver *r, const struct lm_weather *w, uint32_t line,
+                           uint32_t epoch, const uint32_t *restrict power_q24,
+                           int32_t *restrict level_q8)
+{
+    const uint32_t looks_log2 = r->looks_log2;
+    const int32_t rise_q8 = w->noise_rise_q8;
+    for (uint32_t i = 0; i < r->cells; i++) {
+        const int32_t noise_q8 = fx_db_q8_sum_of_many(r->noise_q8[i] + rise_q8, w->rain_q8[i]);
+        const uint32_t hash = fx_hash3(line, i, epoch);
+        level_q8[i] =
+            sum_q8(power_q24[i], w->loss_q8[i], noise_q8, looks_log2, hash) - r->fall_q8[i];
     }
 }
 
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
                      uint32_t sweep, uint32_t *power_q24, int32_t *level_q8)
 {
+    const uint32_t epoch = sweep ^ 0x9e3779b9u; /* not that of the ground's speckle */
     if (r->weight_q16[1] != 0) {
         smear(r, power_q24);
     }
     if (weather && weather->has_rain) {
-        rain_on(weather, power_q24, r->cells);
+        detect_in_rain(r, weather, line, epoch, power_q24, level_q8);
+    } else {
+        detect(r, weather ? weather->noise_rise_q8 : 0, line, epoch, power_q24, level_q8);
     }
-    detect(r, weather ? weather->noise_rise_q8 : 0, line, sweep, power_q24, level_q8);
 }

@@ -6,6 +6,8 @@
 #include "fx/trig.h"
 #include "lm/receiver.h"
 
+enum { NO_RAIN_Q8 = -300 * 256 };
+
 /* Where a place lies from the antenna, and how far off the line. */
 struct bearing {
     uint32_t distance_q8; /* metres * 256 */
@@ -100,26 +102,21 @@ static inline int32_t depth_q8(const struct shower *s, int32_t range_q8)
 }
 
 /* Add the shower's loss to each bin's: half of its own rain's included. Depths are below 2^27, a
- * loss below 2^26; their product is dB * 256 in Q32. Of what loses LOSS_MOST_Q8 nothing is left. */
-enum { LOSS_MOST_Q8 = 120 * 256 };
-
-static void add_loss(const struct shower *s, const struct lm_receiver *r,
-                     uint32_t *restrict loss_q8)
+ * loss below 2^26; their product is dB * 256 in Q32. */
+static void add_loss(const struct shower *s, const struct lm_receiver *r, int32_t *restrict loss_q8)
 {
     const int32_t step_q8 = (int32_t)r->cell_q8;
     const int32_t edge_q8 = (int32_t)r->first_q8 - step_q8 / 2;
     for (uint32_t i = 0; i < r->cells; i++) {
         const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
         const int32_t twice_q8 = depth_q8(s, near_q8) + depth_q8(s, near_q8 + step_q8);
-        const uint32_t sum_q8 =
-            loss_q8[i] + (uint32_t)((uint64_t)(uint32_t)twice_q8 * s->loss_q32 >> 33);
-        loss_q8[i] = sum_q8 < LOSS_MOST_Q8 ? sum_q8 : LOSS_MOST_Q8;
+        loss_q8[i] += (int32_t)((uint64_t)(uint32_t)twice_q8 * s->loss_q32 >> 33);
     }
 }
 
-/* Add the shower's return, by the share of each bin that it fills. */
-static void add_echo(const struct shower *s, const struct lm_receiver *r, const uint32_t *loss_q8,
-                     uint32_t *restrict rain_q24)
+/* Add the shower's return, by the share of each bin that it fills. A share is at most 1 in Q32. */
+static void add_echo(const struct shower *s, const struct lm_receiver *r, const int32_t *loss_q8,
+                     int32_t *restrict rain_q8)
 {
     const int32_t step_q8 = (int32_t)r->cell_q8;
     const int32_t edge_q8 = (int32_t)r->first_q8 - step_q8 / 2;
@@ -128,11 +125,9 @@ static void add_echo(const struct shower *s, const struct lm_receiver *r, const 
         const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
         const int32_t filled_q8 = depth_q8(s, near_q8 + step_q8) - depth_q8(s, near_q8);
         const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
-        const int32_t level_q8 = s->echo_q8 + r->volume_q8[i] - (int32_t)loss_q8[i];
-        const uint64_t power = fx_power_q24_of_many(level_q8);
-        const uint32_t echo = (uint32_t)(power * share_q32 >> 32);
-        const uint32_t room = UINT32_MAX - rain_q24[i];
-        rain_q24[i] += echo < room ? echo : room;
+        const int32_t share_q8 = fx_db_q8_of_many(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
+        const int32_t echo_q8 = s->echo_q8 + r->volume_q8[i] + share_q8 - loss_q8[i];
+        rain_q8[i] = fx_db_q8_sum_of_many(rain_q8[i], echo_q8);
     }
 }
 
@@ -163,18 +158,14 @@ void lm_weather_line(struct lm_weather *w, const struct lm_environment *environm
     if (!w->has_rain) {
         return;
     }
-    /* The losses stand where the shares that pass will: those of all showers first. */
-    uint32_t *loss_q8 = w->pass_q16;
     for (uint32_t i = 0; i < receiver->cells; i++) {
-        loss_q8[i] = w->rain_q24[i] = 0;
+        w->loss_q8[i] = 0;
+        w->rain_q8[i] = NO_RAIN_Q8;
     }
     for (uint32_t n = 0; n < count; n++) {
-        add_loss(&showers[n], receiver, loss_q8);
+        add_loss(&showers[n], receiver, w->loss_q8);
     }
     for (uint32_t n = 0; n < count; n++) {
-        add_echo(&showers[n], receiver, loss_q8, w->rain_q24);
-    }
-    for (uint32_t i = 0; i < receiver->cells; i++) {
-        w->pass_q16[i] = fx_power_q24_of_many(-(int32_t)loss_q8[i]) >> 8;
+        add_echo(&showers[n], receiver, w->loss_q8, w->rain_q8);
     }
 }

@@ -83,12 +83,13 @@ void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *we
     ref_pulse(power, r->bins.count, ref_pulse_m(r->pulse_s) / r->bins.step_m);
     for (size_t i = 0; i < r->bins.count; i++) {
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
-        const double signal =
-            weather != NULL ? power[i] * weather->pass[i] + weather->rain[i] : power[i];
+        const double signal = weather != NULL ? power[i] * weather->pass[i] : power[i];
+        const double rain = weather != NULL ? weather->rain[i] : 0;
         const double fluctuation =
             pow(10, r->noise_table_db[ref_noise_slice(line, (uint32_t)i, sweep)] / 10);
-        const double noise = pow(10, ref_noise_db(r, slant_m) / 10) * fluctuation *
-                             (1 + (weather != NULL ? weather->jam : 0));
-        level_db[i] = 10 * log10(signal + noise) - ref_stc_fall_db(r, slant_m);
+        const double noise =
+            pow(10, ref_noise_db(r, slant_m) / 10) * (1 + (weather != NULL ? weather->jam : 0));
+        level_db[i] =
+            10 * log10(signal + (noise + rain) * fluctuation) - ref_stc_fall_db(r, slant_m);
     }
 }

@@ -12,16 +12,16 @@ struct lm_radar;
 struct lm_receiver;
 
 struct lm_weather {
-    int32_t noise_rise_q8;            /* by jammers, dB; 0: none */
-    bool has_rain;                    /* false: the arrays mean nothing */
-    uint32_t pass_q16[LM_CELLS_ROOM]; /* what the way there and back leaves of a bin's power */
-    uint32_t rain_q24[LM_CELLS_ROOM]; /* what the rain returns from it, weakened in the same way */
+    int32_t noise_rise_q8;          /* by jammers, dB; 0: none */
+    bool has_rain;                  /* false: the arrays mean nothing */
+    int32_t loss_q8[LM_CELLS_ROOM]; /* on the way to each bin and back, dB; >= 0 */
+    int32_t rain_q8[LM_CELLS_ROOM]; /* what its own rain returns, so weakened, dB of gamma */
 };
 
 /* The weather along `azimuth` (from north) as seen by `receiver` from `antenna`. The environment
  * has been checked (lm_environment_check). Rain and jammers more than 11.25 degrees of latitude or
  * longitude away are not there. Cost: 40 instructions in fair weather; 600 for each jammer and each
- * circle of rain; 25 a bin where the line meets one, 16 more for each further one. */
+ * circle of rain; 12 a bin for each circle that the line meets. */
 void lm_weather_line(struct lm_weather *w, const struct lm_environment *environment,
                      const struct lm_receiver *receiver, const struct lm_radar *radar,
                      struct lm_place antenna, fx_bam_t azimuth);

@@ -332,10 +332,10 @@ static void levels_are_those_of_the_reference(void **state)
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = (uint32_t)(hs_rng_u64(&rng) >> (32 + hs_rng_below(&rng, 30)));
             power[i] = ldexp(w->power[i], -24);
-            weather.pass_q16[i] = hs_rng_below(&rng, 65537);
-            weather.rain_q24[i] = hs_rng_below(&rng, 1 << 24);
-            ref_weather.pass[i] = weather.has_rain ? weather.pass_q16[i] / 65536.0 : 1;
-            ref_weather.rain[i] = weather.has_rain ? ldexp(weather.rain_q24[i], -24) : 0;
+            weather.loss_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256);
+            weather.rain_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 60 * 256;
+            ref_weather.pass[i] = weather.has_rain ? pow(10, -weather.loss_q8[i] / 2560.0) : 1;
+            ref_weather.rain[i] = weather.has_rain ? pow(10, weather.rain_q8[i] / 2560.0) : 0;
         }
         lm_receiver_run(&w->receiver, &weather, line, 5, w->power, w->level);
         ref_receive(&w->ref, &ref_weather, line, 5, power, level_db);
