@@ -127,7 +127,9 @@ static bool take_device(const char *text, void *value)
 static bool take_axis(const char *text, void *value)
 {
     struct drv_stick_axis axis = {.is_inverted = text[0] == '-'};
-    text += axis.is_inverted;
+    if (axis.is_inverted) {
+        text++;
+    }
     static const uint16_t others[] = {DRV_STICK_HAT_X, DRV_STICK_HAT_Y, DRV_STICK_RUDDER,
                                       DRV_STICK_THROTTLE};
     const int other = word_number("hatx haty rudder throttle", text);

@@ -341,7 +341,7 @@ bool drv_hid_read(const struct drv_hid_map *map, const struct drv_hid_field *fie
         const uint32_t bit = field->bit + n;
         bits |= (uint32_t)(report[bit / 8] >> bit % 8 & 1) << n;
     }
-    const uint32_t sign = field->low < 0 && field->bits < 32 ? 1u << (field->bits - 1) : 0;
+    const uint32_t sign = field->low < 0 ? 1u << ((field->bits - 1u) & 31u) : 0;
     *value = (int32_t)((bits ^ sign) - sign);
     return *value >= field->low && *value <= field->high;
 }

@@ -40,3 +40,8 @@ TESTS += $(T)
 $(O)/tests/unit/drivers/fake_usb.o: EXTRA_CFLAGS := $(call pkgs,cflags,libusb-1.0)
 $(T): $(addprefix $(O)/,tests/unit/drivers/test_usb.o tests/unit/drivers/fake_usb.o drivers/usb/usb.o)
 $(T): LDLIBS := -lcmocka -pthread $(call WRAP,clock_gettime)
+
+T := $(O)/bin/tests/unit/drivers/test_fbdev
+TESTS += $(T)
+$(T): $(addprefix $(O)/,tests/unit/drivers/test_fbdev.o drivers/display/fbdev.o drivers/display/blit.o)
+$(T): LDLIBS := -lcmocka $(call WRAP,open ioctl)

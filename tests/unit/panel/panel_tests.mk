@@ -17,3 +17,11 @@ $(T): tests/unit/panel/test_package.sh $(PANEL) $(wildcard bsp/panel-linux/debia
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
+
+T := $(O)/bin/tests/unit/panel/test_bezel
+TESTS += $(T)
+$(O)/tests/unit/panel/test_bezel.o: EXTRA_CFLAGS += -Itests/unit/drivers
+$(T): $(addprefix $(O)/,tests/unit/panel/test_bezel.o tests/unit/drivers/fake_gpio.o tests/unit/drivers/fake_gpiod$(GPIOD_MAJOR).o \
+    $(addprefix bsp/panel-linux/,bezel.o config.o config_table.o report.o) $(addprefix drivers/gpio/,gpio.o debounce.o lines_gpiod$(GPIOD_MAJOR).o)) \
+    $(TEST_SUPPORT) $(LIB_hs)
+$(T): LDLIBS = -lcmocka $(call pkgs,libs,libpng) $(call WRAP,open $(if $(filter 2,$(GPIOD_MAJOR)),opendir readdir closedir))
