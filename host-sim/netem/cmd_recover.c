@@ -13,8 +13,9 @@ static const struct db_usage usage = {
     "Make \"real\" chips of the model by a hidden law of reflection, seen from azimuths drawn by\n"
     "lot, with speckle and a hidden translation; train on a part of them without telling the\n"
     "law; report the loss on aspects never shown and the error of what was learned, over the\n"
-    "reflections that occur there. Leaves the same files as `train`; the true law is drawn as\n"
-    "dots beside the learned curves. The paper's loss on real chips of SLICY is 0.003253."};
+    "reflections that occur there, weighted by the power that meets them. Leaves the same\n"
+    "files as `train`; the true law is drawn as dots beside the learned curves. The paper's\n"
+    "loss on real chips of SLICY is 0.003253."};
 
 enum { OPTIONS = NM_TARGET_OPTIONS + NM_TRAIN_OPTIONS + 7 };
 
@@ -120,44 +121,62 @@ static int make_chips(struct nm_experiment *e, struct hidden *h)
     return result;
 }
 
-/* Mean error of one material's coefficients over all its reflections in `samples`, and their
- * number. */
-static double law_error(const struct nm_model *model, const struct reflect_law *truth,
-                        const struct nm_samples *samples, enum nm_direction d, int material,
-                        long *count)
+/* How far the learned coefficients of one material and direction are from the truth. */
+struct law_error {
+    double sum, weight; /* weighted by the power that arrives, by the true law */
+    long count;
+};
+
+static void add_step(struct law_error errors[NM_DIRECTIONS][TRACE_MATERIALS_MAX],
+                     const struct nm_model *model, const struct reflect_law *truth,
+                     const struct nm_paths *p, const struct nm_step *step, double power)
 {
-    double sum = 0;
-    *count = 0;
-    for (int i = 0; i < samples->count; i++) {
-        const struct nm_paths *p = &samples->items[i].paths;
-        for (int32_t s = 0; s < p->first[p->ray_count]; s++) {
-            const int32_t row = p->steps[s].row[d];
-            if (row < 0 || p->table[d][row].material != material ||
-                (d == NM_BK && p->steps[s].cell < 0)) {
-                continue;
+    for (int d = 0; d < NM_DIRECTIONS; d++) {
+        const int32_t row = step->row[d];
+        if (row < 0 || (d == NM_BK && step->cell < 0)) {
+            continue;
+        }
+        const struct nm_reflection *r = &p->table[d][row];
+        struct law_error *e = &errors[d][r->material];
+        const enum nm_direction direction = (enum nm_direction)d;
+        e->sum += power * fabs(nm_netem_ask(model->architecture, model->values, r, direction) -
+                               nm_law_ask(truth, r, direction));
+        e->weight += power;
+        e->count++;
+    }
+}
+
+static void add_sample(struct law_error errors[NM_DIRECTIONS][TRACE_MATERIALS_MAX],
+                       const struct nm_model *model, const struct reflect_law *truth,
+                       const struct nm_paths *p)
+{
+    for (int i = 0; i < p->ray_count; i++) {
+        double power = 1;
+        for (int32_t s = p->first[i]; s < p->first[i + 1]; s++) {
+            const struct nm_step *step = &p->steps[s];
+            add_step(errors, model, truth, p, step, power);
+            if (step->row[NM_SP] >= 0) {
+                power *= nm_law_ask(truth, &p->table[NM_SP][step->row[NM_SP]], NM_SP);
             }
-            const struct nm_reflection *r = &p->table[d][row];
-            sum += fabs(nm_netem_ask(model->architecture, model->values, r, d) -
-                        nm_law_ask(truth, r, d));
-            ++*count;
         }
     }
-    return *count > 0 ? sum / (double)*count : NAN;
 }
 
 static void print_errors(const struct nm_experiment *e, const struct hidden *h)
 {
+    struct law_error errors[NM_DIRECTIONS][TRACE_MATERIALS_MAX] = {{{0}}};
     const struct nm_samples others = nm_dataset_validation(&e->dataset);
     const struct nm_training *t = e->training;
+    for (int i = 0; i < others.count; i++) {
+        add_sample(errors, &t->model, &h->truth, &others.items[i].paths);
+    }
     printf("validation loss %.6f (paper, real SLICY: 0.003253); of that, speckle %.6f\n",
            t->epochs[t->epoch_count - 1].validation, h->noise);
     for (int d = 0; d < NM_DIRECTIONS; d++) {
-        for (int m = 0; m < (int)e->view.scene.material_count; m++) {
-            long count;
-            const double error =
-                law_error(&t->model, &h->truth, &others, (enum nm_direction)d, m, &count);
+        for (uint32_t m = 0; m < e->view.scene.material_count; m++) {
             printf("mean error of the law, %s, %s: %.4f over %ld reflections never shown\n",
-                   d == NM_BK ? "back" : "specular", h->truth.materials[m].name, error, count);
+                   d == NM_BK ? "back" : "specular", h->truth.materials[m].name,
+                   errors[d][m].sum / errors[d][m].weight, errors[d][m].count);
         }
     }
 }

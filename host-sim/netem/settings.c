@@ -40,7 +40,7 @@ void nm_target_options(struct nm_settings *s, struct db_option *o)
         {"bounces", DB_INTEGER, &t->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
         {"resolution", DB_REAL, &t->resolution_m, 0.1, 10, "M",
-         "from the middle of the impulse response to its first null", false},
+         "of the radar, between -3 dB points", false},
         {"kernel-gain", DB_REAL, &s->kernel_gain, 0, 1e9, "K",
          "amplitude of a cell that returns everything; 0: the root of its radar cross section in\n"
          "m^2, as calibrated MSTAR chips have it",

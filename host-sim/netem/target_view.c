@@ -77,7 +77,7 @@ void nm_kernel_make(double resolution_m, double cell_m, double gain, double *ker
 {
     double line[PIX_KERNEL_SIDE];
     _Static_assert((int)PIX_KERNEL_SIDE == (int)NM_LARGE, "one kernel in both");
-    pix_taylor((int)lround(fmin(fmax(NM_LARGE * cell_m / resolution_m, 1), NM_LARGE)), line);
+    pix_taylor(pix_aperture(resolution_m, cell_m), line);
     for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
         kernel[i] = gain * line[i / NM_LARGE] * line[i % NM_LARGE];
     }

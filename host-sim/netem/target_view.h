@@ -30,9 +30,8 @@ int nm_draw_by_law(const struct nm_paths *paths, const struct reflect_law *law, 
 double nm_law_ask(const struct reflect_law *law, const struct nm_reflection *reflection,
                   enum nm_direction direction);
 
-/* The fixed kernel of step 5 (Fig. 14), NM_LARGE wide, `gain` in the middle: the Taylor-weighted
- * response whose first nulls beyond the main lobe are `resolution_m` apart, as in the kernel that
- * the paper's authors used. */
+/* The fixed kernel of step 5 (Fig. 14), NM_LARGE wide, `gain` in the middle: the magnitude of the
+ * Taylor-weighted response of pix.h, `resolution_m` wide between its -3 dB points. */
 void nm_kernel_make(double resolution_m, double cell_m, double gain, double *kernel);
 
 /* The gain that makes a cell-wide mirror square to the line of sight an amplitude of the root of

@@ -1,0 +1,157 @@
+/* The program as a user meets it. */
+#include "support.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+static char folder[] = "/tmp/landmass-netem-XXXXXX";
+
+/* A training of seconds: a small picture, few rays. */
+#define RECOVER                                                                                    \
+    "%s/bin/landmass-netem recover --model slicy --cells 64 --rays 1 --number 6 --looks 2 "        \
+    "--epochs 3 --pix-epochs 2 --out %s/%s"
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return support_run("rm -rf %s", folder);
+}
+
+static void every_command_explains_itself(void **state)
+{
+    (void)state;
+    static const char *const commands[] = {"",     "register", "train", "score",
+                                           "plot", "recover",  "paper"};
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        assert_int_equal(support_run("%s/bin/landmass-netem %s --help | grep -q sage:",
+                                     support_build_dir(), commands[i]),
+                         0);
+    }
+}
+
+static void a_command_line_that_makes_no_sense_is_told_so(void **state)
+{
+    (void)state;
+    const char *b = support_build_dir();
+    assert_int_equal(support_run("%s/bin/landmass-netem guess", b), 2);
+    assert_int_equal(support_run("%s/bin/landmass-netem train --model tank", b), 2);
+    assert_int_equal(
+        support_run("%s/bin/landmass-netem recover --model slicy --out %s --rate x", b, folder), 2);
+    assert_int_equal(support_run("%s/bin/landmass-netem recover --model slicy --out %s/none "
+                                 "--architecture EP9",
+                                 b, folder),
+                     1);
+}
+
+static void a_training_killed_at_any_epoch_ends_in_the_same_file(void **state)
+{
+    (void)state;
+    const char *b = support_build_dir();
+    assert_int_equal(support_run(RECOVER, b, folder, "whole"), 0);
+    assert_int_equal(support_run("cd %s/whole && ls loss.png specular.png back.png kernels.png "
+                                 "table.png cw-ssim.png scores.tsv training.netem",
+                                 folder),
+                     0);
+    assert_int_equal(support_run(RECOVER " & p=$!; while [ ! -s %s/cut/training.netem ]; do sleep "
+                                         "0.05; done; kill -9 $p; wait $p; true",
+                                 b, folder, "cut", folder),
+                     0);
+    assert_int_equal(support_run(RECOVER, b, folder, "cut"), 1);
+    assert_int_equal(support_run(RECOVER " --resume", b, folder, "cut"), 0);
+    assert_int_equal(
+        support_run("cmp %s/whole/training.netem %s/cut/training.netem", folder, folder), 0);
+    assert_int_equal(support_run(RECOVER " --resume --batch 9", b, folder, "cut"), 1);
+}
+
+static void trainings_are_drawn_together(void **state)
+{
+    (void)state;
+    assert_int_equal(support_run("%s/bin/landmass-netem plot --training "
+                                 "%s/whole/training.netem,%s/cut/training.netem --out %s/both",
+                                 support_build_dir(), folder, folder, folder),
+                     0);
+    assert_int_equal(
+        support_run("cd %s/both && ls loss.png specular.png back.png kernels.png", folder), 0);
+}
+
+/* The chips of the real T-72: found, learned for a moment, and scored. */
+static void real_chips_go_all_the_way(void **state)
+{
+    (void)state;
+    char chips[512];
+    const char *b = support_build_dir();
+    if (!support_data_path("mstar_t72_15deg", chips, sizeof chips)) {
+        skip();
+    }
+    assert_int_equal(support_run("mkdir -p %s/chips && for n in 05 20 80 81 82 83; do ln -sf "
+                                 "$(realpath %s)/1700$n.jpeg %s/chips; done",
+                                 folder, chips, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem register --model tank --cells 120 --rays 1 "
+                                 "--views 24 --chips %s/chips --out %s/list.tsv",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(support_run("test $(grep -vc '^#' %s/list.tsv) = 6", folder), 0);
+    assert_int_equal(support_run("%s/bin/landmass-netem train --model tank --cells 120 --rays 1 "
+                                 "--chips %s/list.tsv --share 0.5 --epochs 2 --pix-epochs 1 "
+                                 "--out %s/t72",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model tank --cells 120 --rays 1 "
+                                 "--chips %s/list.tsv --share 0.5 --training "
+                                 "%s/t72/training.netem --set training --out %s/scored",
+                                 b, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("test $(wc -l < %s/scored/scores.tsv) = 4", folder), 0);
+}
+
+/* Raw chips by the published description, with the models' own pictures for magnitudes would teach
+ * nothing new; that they are taken, divided and trained on in one command is what is shown. */
+static void the_papers_experiment_is_one_command(void **state)
+{
+    (void)state;
+    const char *b = support_build_dir();
+    assert_int_equal(
+        support_run("cd %s && for d in 15 30; do mkdir -p s$d; for i in 1 2 3 4 5; do "
+                    "h=\"[PhoenixHeaderVer01.04]\\nPhoenixHeaderLength= 00200\\n"
+                    "native_header_length= 0\\nNumberOfColumns= 60\\nNumberOfRows= 60\\n"
+                    "TargetAz= $((i * 60)).5\\nDesiredDepression= $d\\n[EndofPhoenixHeader]\\n\"; "
+                    "printf \"$h\" > s$d/HB0$i.0$d; truncate -s 200 s$d/HB0$i.0$d; "
+                    "head -c 28800 /dev/zero | tr '\\0' '<' >> s$d/HB0$i.0$d; done; done",
+                    folder),
+        0);
+    assert_int_equal(support_run("%s/bin/landmass-netem paper --slicy-15 %s/s15 --slicy-30 %s/s30 "
+                                 "--rays 1 --pretrain 1 --epochs 1 --pix-epochs 1 --out %s/paper",
+                                 b, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("cd %s/paper/slicy-EP8 && ls loss.png table.png scores.tsv && "
+                                 "test $(wc -l < scores.tsv) = 6",
+                                 folder),
+                     0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_command_explains_itself),
+        cmocka_unit_test(a_command_line_that_makes_no_sense_is_told_so),
+        cmocka_unit_test(a_training_killed_at_any_epoch_ends_in_the_same_file),
+        cmocka_unit_test(trainings_are_drawn_together),
+        cmocka_unit_test(real_chips_go_all_the_way),
+        cmocka_unit_test(the_papers_experiment_is_one_command),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
