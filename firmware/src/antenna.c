@@ -37,17 +37,13 @@ int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m)
 void lm_elevation_run(const struct lm_elevation *e, const struct lm_fan *fan,
                       const struct lm_range_grid *grid, struct lm_sight *sight)
 {
-    /* Tangents are below 2^61; lifted by 2^62 they can be cut to 32 bits by a shift of any length,
-     * which subtracts again modulo 2^32. Within +-2 they are below 2^22 in Q20. */
-    const uint32_t shift = 20 + grid->tangent_shift;
-    const uint64_t lift = (uint64_t)1 << 62;
-    const int64_t *restrict tangent = sight->horizon + 1;
+    const uint32_t shift = grid->tangent_bits - 20;
+    const int32_t *restrict tangent = sight->horizon + 1;
     int32_t *restrict level_q8 = sight->level_q8;
     const int32_t *restrict gain_q8 = e->gain_q8;
     const int32_t high_q20 = fan->high_q20, low_q20 = fan->low_q20;
     for (uint32_t i = 0; i < grid->cells; i++) {
-        const uint64_t lifted = (uint64_t)tangent[i] + lift;
-        const int32_t t_q20 = (int32_t)((uint32_t)(lifted >> shift) - (uint32_t)(lift >> shift));
+        const int32_t t_q20 = tangent[i] >> shift;
         const int32_t above = t_q20 - high_q20, below = low_q20 - t_q20;
         const int32_t off_q20 = above > below ? above : below;
         const int32_t step = off_q20 >> 9;

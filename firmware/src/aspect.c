@@ -3,18 +3,15 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 
-enum {
-    GRAZING_MIN_Q24 = 1 << 16, /* 1/256 */
-    RISE_SHIFT = 30            /* from the tangents' format to the rise's */
-};
+enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
 
 /* g of the equations, Q24: the rise of flat ground from the cell before, at before_q8, to cell i,
  * as tan of a grazing angle. */
 static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t before_q8)
 {
-    /* Height difference below 2^26, inverse range below 2^30 in Q(26 + shift). */
+    /* Height difference below 2^26, inverse range below 2^30 in Q(16 + bits). */
     const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
-    const int64_t grazing = (above_q10 * g->inverse_range[i] >> (12 + g->tangent_shift)) -
+    const int64_t grazing = (above_q10 * g->inverse_range[i] >> (2 + g->tangent_bits)) -
                             ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
@@ -28,14 +25,13 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
     /* No cell that is set lies nearer than LM_RANGE_MIN_M.
      * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     g->inverse_range[i] =
-        (int32_t)((((uint64_t)1 << (34 + g->tangent_shift)) + range_q8 / 2) / range_q8);
+        (int32_t)((((uint64_t)1 << (24 + g->tangent_bits)) + range_q8 / 2) / range_q8);
 
-    /* K = s / (ds g) with the range of the cell before, and the rise comes in Q(40 + shift -
-     * RISE_SHIFT). */
+    /* K = s / (ds g) with the range of the cell before, and the rise comes times 2^bits. */
     const uint32_t before_q8 = i == g->first ? range_q8 : range_q8 - g->cell_q8;
     const int32_t log2_q16 = fx_log2_q16(before_q8) - fx_log2_q16(g->cell_q8) -
                              fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_q8)) +
-                             (24 + RISE_SHIFT - 40 - (int32_t)g->tangent_shift) * 65536;
+                             (24 - (int32_t)g->tangent_bits) * 65536;
     g->gain_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
 }
 
@@ -67,7 +63,7 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     /* The largest inverse, that of the first cell shown, takes 30 bits. Where none is shown, any
      * format does. */
     const uint32_t nearest_q8 = fx_max_u32(first_q8 + g->first * cell_q8, LM_RANGE_MIN_M << 8);
-    g->tangent_shift = (uint32_t)(31 - fx_clz32(nearest_q8)) - 4;
+    g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_q8)) + 6;
     for (uint32_t i = 0; i < g->first; i++) {
         g->fall_q14[i] = g->inverse_range[i] = g->gain_q8[i] = 0; /* read, but not shown */
     }
@@ -75,24 +71,46 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
         set_cell(g, i, first_q8 + i * cell_q8);
     }
     if (g->first < cells) {
-        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(26 + shift) - 18. */
+        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(16 + bits) - 48. It is g ds / s, and
+         * so no more than the tangent of 90 degrees less a little; beyond the format, all is lit.
+         */
         const int64_t rise_q32 = grazing_q24(g, g->first, nearest_q8) * cell_q8;
-        g->flat_rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 8);
+        const int64_t rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 8) >> 30;
+        g->flat_rise = rise < INT32_MAX ? (int32_t)rise : INT32_MAX;
+    }
+}
+
+/* Heights by the height code of a cell as a signed number of four bits, -8..7, behind the eighth:
+ * the lookup becomes a vector gather where its index has a sign. */
+enum { CODES = 16, CODE_MIDDLE = 8 };
+
+static inline int32_t signed_code(uint32_t cell)
+{
+    return (int32_t)(cell << 28) >> 28;
+}
+
+static void set_heights(int32_t height_q14_of[CODES], const struct lm_classes *classes)
+{
+    for (uint32_t code = 0; code < CODES; code++) {
+        height_q14_of[signed_code(code) + CODE_MIDDLE] = classes->height_dm[code] * 8192 / 5;
     }
 }
 
 /* Tangent of each cell's top, in the horizon's place, and its level but for the horizon's rise and
  * the edges. */
 static void look(const struct lm_range_grid *grid, const struct lm_scan_line *line,
-                 const int32_t height_q14_of[16], struct lm_sight *restrict sight)
+                 const int32_t height_q14_of[CODES], struct lm_sight *restrict sight)
 {
+    const int32_t *const middle = height_q14_of + CODE_MIDDLE;
     for (uint32_t i = 0; i < grid->cells; i++) {
-        const int32_t cell = (int32_t)line->cell[i];
+        const uint32_t cell = line->cell[i];
         /* Elevation below 2^29, height below 2^27, fall below 2^30: below 2^31, times 2^30. */
         const int32_t apparent_q14 =
-            line->elevation_q14[i] + height_q14_of[cell & 15] - grid->fall_q14[i];
-        sight->horizon[i + 1] = (int64_t)apparent_q14 * grid->inverse_range[i];
-        sight->level_q8[i] = (cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
+            line->elevation_q14[i] + middle[signed_code(cell)] - grid->fall_q14[i];
+        /* Without a sign, which the 32 bits kept do not see: vectors have no other shift. */
+        const int64_t tangent = (int64_t)apparent_q14 * grid->inverse_range[i];
+        sight->horizon[i + 1] = (int32_t)((uint64_t)tangent >> 30);
+        sight->level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
     }
 }
 
@@ -167,27 +185,38 @@ static void add_edges(const struct lm_range_grid *grid, const struct lm_aspect_c
 }
 
 /* The running horizon: the only step in which a cell waits for the one before it. */
-static void raise_horizon(const struct lm_range_grid *grid, int64_t start, int64_t *horizon)
+static void raise_horizon(const struct lm_range_grid *grid, int32_t start, int32_t *horizon)
 {
     for (uint32_t i = 0; i <= grid->first; i++) {
         horizon[i] = start;
     }
-    int64_t *const end = horizon + grid->cells + 1;
-    for (int64_t *tangent = horizon + grid->first + 1; tangent < end; tangent++) {
+    int32_t *const end = horizon + grid->cells + 1;
+    for (int32_t *tangent = horizon + grid->first + 1; tangent < end; tangent++) {
         start = *tangent > start ? *tangent : start;
         *tangent = start;
     }
 }
 
-/* Light each cell by what it shows above the horizon. Tangents are below 2^61 and the horizon
- * starts above -2^61, so that 32 bits hold the rise in units of 2^RISE_SHIFT. */
-static void light(const int64_t *horizon, uint32_t cells, int32_t *restrict level_q8)
+/* Light each cell by what it shows above the horizon; 32 bits without a sign hold the rise from any
+ * tangent to any other. */
+static void light(const int32_t *horizon, uint32_t cells, int32_t *restrict level_q8)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        const uint32_t rise = (uint32_t)((uint64_t)(horizon[i + 1] - horizon[i]) >> RISE_SHIFT);
+        const uint32_t rise = (uint32_t)horizon[i + 1] - (uint32_t)horizon[i];
         const int32_t lit_q8 = level_q8[i] + fx_db_q8_of_many(rise);
         level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
     }
+}
+
+/* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
+ * as far beyond. */
+static int32_t start_of(const struct lm_range_grid *grid, const struct lm_sight *sight,
+                        lm_horizon_q40_t horizon)
+{
+    const int64_t first = sight->horizon[grid->first + 1];
+    const int64_t start =
+        horizon == LM_HORIZON_OPEN ? first - grid->flat_rise : horizon >> (40 - grid->tangent_bits);
+    return fx_sat_i32(start, NULL);
 }
 
 lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
@@ -195,24 +224,15 @@ lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
                                const struct lm_classes *classes, const struct lm_scan_line *line,
                                lm_horizon_q40_t horizon, struct lm_sight *sight)
 {
-    int32_t height_q14_of[16];
-    for (int i = 0; i < 16; i++) {
-        height_q14_of[i] = classes->height_dm[i] * 8192 / 5;
-    }
+    int32_t height_q14_of[CODES];
+    set_heights(height_q14_of, classes);
     look(grid, line, height_q14_of, sight);
     if (grid->first < grid->cells) {
         add_edges(grid, config, classes, line->cell, sight->level_q8);
     }
-    /* Beyond every tangent is as good as far beyond. */
-    const int64_t limit = (int64_t)1 << (61 - grid->tangent_shift);
-    int64_t start = sight->horizon[grid->first + 1] - grid->flat_rise;
-    if (horizon != LM_HORIZON_OPEN) {
-        start = (horizon > limit    ? limit
-                 : horizon < -limit ? -limit
-                                    : horizon) *
-                ((int64_t)1 << grid->tangent_shift);
-    }
-    raise_horizon(grid, start, sight->horizon);
+    raise_horizon(grid, start_of(grid, sight, horizon), sight->horizon);
     light(sight->horizon, grid->cells, sight->level_q8);
-    return grid->first < grid->cells ? sight->horizon[grid->cells] >> grid->tangent_shift : horizon;
+    return grid->first < grid->cells
+               ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
+               : horizon;
 }

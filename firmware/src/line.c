@@ -16,6 +16,6 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
 void lm_line_add_targets(struct lm_line *line, const struct lm_line_setup *setup,
                          const struct lm_line_targets *targets)
 {
-    const struct lm_target_sight sight = {line->sight.horizon, 40 + setup->grid->tangent_shift};
+    const struct lm_target_sight sight = {line->sight.horizon, setup->grid->tangent_bits};
     lm_target_add(targets->items, targets->near, &targets->where, &sight, line->sight.level_q8);
 }

@@ -263,8 +263,8 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 {
     for (; s->sampled < end; s->sampled++) {
         lm_sar_sample_line(s, tiles, s->sampled, line);
-        lm_patch_points_hide(&s->points, s->sampled, line->sight.horizon,
-                             40 + s->grid.tangent_shift, s->grid.cells);
+        lm_patch_points_hide(&s->points, s->sampled, line->sight.horizon, s->grid.tangent_bits,
+                             s->grid.cells);
         memcpy(ring_line(s, s->sampled), line->sight.level_q8, s->grid.cells * sizeof(int32_t));
     }
 }

@@ -134,7 +134,7 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
         return cell;
     }
     const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
-    const int64_t horizon_q38 = sight->horizon[cell] >> (sight->bits - 38);
+    const int64_t horizon_q38 = sight->horizon[cell] * ((int64_t)1 << (38 - sight->bits));
     return lm_target_tangent_q38(top_q10, s.range_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 

@@ -111,7 +111,7 @@ void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *
     }
 }
 
-void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int64_t *horizon,
+void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_t *horizon,
                           uint32_t bits, uint32_t cells)
 {
     for (uint32_t i = 0; i < p->count; i++) {
@@ -119,7 +119,7 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int64_
         if (point->line == (int32_t)line && point->cell >= 0) {
             /* Behind the last cell, everything before it may hide. */
             const uint32_t before = fx_min_u32((uint32_t)point->cell, cells);
-            point->is_hidden = point->tangent_q38 <= horizon[before] >> (bits - 38);
+            point->is_hidden = point->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
         }
     }
 }

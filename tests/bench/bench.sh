@@ -29,10 +29,11 @@ table() { # divisor format
         END {
             whole = n["lm_sar_draw_line"] + n["lm_ground_map_draw_line"]
             paint = n["lm_patch_paint"] + n["lm_ppi_paint"]
-            parts = n["lm_scan_line_run"] + n["lm_aspect_run"] + n["lm_speckle_run"] + n["lm_tone_run"]
+            noise = n["lm_speckle_run"] + n["lm_texture_run"] + n["lm_floor_run"]
+            parts = n["lm_scan_line_run"] + n["lm_aspect_run"] + noise + n["lm_tone_run"]
             row("scan_line: cells, terrain, noise", n["lm_scan_line_run"])
             row("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"])
-            row("speckle and noise", n["lm_speckle_run"])
+            row("texture, noise, speckle", noise)
             row("tone", n["lm_tone_run"])
             row("rest: geometry, tiles asked for, set-up", whole - parts + n["lm_sar_start"])
             row("paint into the plane", paint)

@@ -114,14 +114,14 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
                                         .wavelength_um = 31228,
                                         .across_mm_s = (int32_t)look->speed_mm_s,
                                         .lean_q16 = (int32_t)(look->track & 0x1ffff)};
-    int64_t horizon[LM_CELLS_ROOM] = {0};
+    int32_t horizon[LM_CELLS_ROOM] = {0};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     FUZZ_ASSERT(points);
     lm_targets_select(&near, &set, &scene);
     lm_patch_points_set(points, &set, &near, &g);
     FUZZ_ASSERT(points->count <= LM_PATCH_POINTS_MAX);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_patch_points_hide(points, k, horizon, 46, CELLS);
+        lm_patch_points_hide(points, k, horizon, 26, CELLS);
         lm_patch_points_add(points, k, -56 * 256, &g, level_q8);
     }
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {

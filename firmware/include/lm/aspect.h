@@ -28,10 +28,9 @@ struct lm_range_grid {
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain; metres * 1024 */
     uint32_t first;                    /* cells before this are too near to be shown */
     int32_t shore_fall_q8;             /* a cell, see aspect.c */
-    uint32_t tangent_shift;            /* the tangents of this grid are in Q(40 + tangent_shift) */
-    int64_t flat_rise;                 /* of the tangent in the first cell over flat ground, so */
-    int32_t
-        inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(26 + tangent_shift), s in metres; 0 < 2^30 */
+    uint32_t tangent_bits; /* the tangents of this grid are times 2^tangent_bits: 22..32 */
+    int32_t flat_rise;     /* of the tangent in the first cell over flat ground, so */
+    int32_t inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(16 + tangent_bits), s in metres; 0 < 2^30 */
     int32_t fall_q14[LM_CELLS_ROOM]; /* the Earth's drop and the antenna's height, metres * 16384 */
     int32_t gain_q8[LM_CELLS_ROOM];  /* K_i, reflectivity code 0, and the scale of the tangents */
 };
@@ -52,7 +51,7 @@ typedef int64_t lm_horizon_q40_t;
 struct lm_sight {
     /* horizon[0] is where the line starts, horizon[i + 1] what cell i leaves: the largest tangent
      * so far, in the grid's format. Cells that are not shown leave it alone. */
-    int64_t horizon[LM_CELLS_ROOM];
+    int32_t horizon[LM_CELLS_ROOM];
     int32_t level_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW where nothing is lit */
 };
 

@@ -22,9 +22,9 @@ struct lm_target_line {
 };
 
 /* What hides a target: the horizon before each cell of the line, the largest tangent at which a
- * nearer cell appears, times 2^bits (38..62). */
+ * nearer cell appears, times 2^bits (0..38). */
 struct lm_target_sight {
-    const int64_t *horizon;
+    const int32_t *horizon;
     uint32_t bits;
 };
 

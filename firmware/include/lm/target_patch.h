@@ -50,8 +50,8 @@ void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *
                          const struct lm_targets_near *near, const struct lm_patch_geometry *g);
 
 /* Note which points something nearer hides: those that stand on line `line`, whose horizons before
- * its cells are `horizon`, times 2^bits (38..62). Points beside the patch are not hidden. */
-void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int64_t *horizon,
+ * its cells are `horizon`, times 2^bits (0..38). Points beside the patch are not hidden. */
+void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_t *horizon,
                           uint32_t bits, uint32_t cells);
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`

@@ -227,7 +227,8 @@ static void each_look_is_weighed_at_its_own_tangent(void **state)
             for (uint32_t i = 0; i < 256; i++) {
                 const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
                 sight.level_q8[i] = 0;
-                sight.horizon[i + 1] = llround(ldexp(tangent, 40 + (int)grid.tangent_shift));
+                sight.horizon[i + 1] =
+                    (int32_t)fmax(ldexp(tangent, (int)grid.tangent_bits), INT32_MIN);
             }
             lm_elevation_run(&elevation, &fan, &grid, &sight);
             for (uint32_t i = grid.first; i < 256; i++) {

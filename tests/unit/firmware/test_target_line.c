@@ -200,7 +200,7 @@ static void scatterers_of_one_target_in_one_cell_add_as_phasors(void **state)
 
 /* ---- hidden ---- */
 
-enum { BITS = 52 };
+enum { BITS = 30 };
 
 static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **state)
 {
@@ -215,9 +215,9 @@ static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **sta
         const struct lm_targets_near near = near_of(&t, 1, l.place, (uint32_t)range_m);
         for (int i = -1; i <= 1; i += 2) {
             int32_t level_q8[LM_CELLS_MAX];
-            int64_t horizon[LM_CELLS_MAX];
+            int32_t horizon[LM_CELLS_MAX];
             for (int k = 0; k < LM_CELLS_MAX; k++) {
-                horizon[k] = (int64_t)ldexp(k > 140 ? 1 : at + i * 1e-6, BITS);
+                horizon[k] = (int32_t)ldexp(k > 140 ? 1 : at + i * 1e-6, BITS);
             }
             const struct lm_target_sight sight = {horizon, BITS};
             clear(level_q8);
@@ -307,8 +307,8 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
         l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         struct lm_targets_near near;
         int32_t level_q8[LM_CELLS_MAX];
-        int64_t horizon[LM_CELLS_MAX] = {0};
-        const struct lm_target_sight sight = {horizon, 40};
+        int32_t horizon[LM_CELLS_MAX] = {0};
+        const struct lm_target_sight sight = {horizon, 20};
         clear(level_q8);
         near = near_of(&t, 1, l.place, 250000);
         given += lm_target_add(&t, &near, &l, i % 5 ? NULL : &sight, level_q8);
