@@ -8,13 +8,15 @@ for package in $list; do
 done
 [ -n "$missing" ] || exit 0
 
+fail() { # CAUSE REMEDY
+    echo "deps: $1" >&2
+    echo "deps: $2" >&2
+    exit 1
+}
+
 as_root=
 if [ "$(id -u)" != 0 ]; then
-    command -v sudo >/dev/null || {
-        echo "deps: root is needed to install:$missing" >&2
-        echo "deps: run 'make deps' as root once, or install sudo" >&2
-        exit 1
-    }
+    command -v sudo >/dev/null || fail "root is needed to install:$missing" "run 'make deps' as root once, or install sudo"
     as_root=sudo
 fi
 echo "deps: installing$missing"
@@ -22,6 +24,8 @@ echo "deps: installing$missing"
 case $missing in
 *:arm64*) $as_root dpkg --add-architecture arm64 ;;
 esac
-$as_root apt-get update -qq
-$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+$as_root apt-get update -qq || fail "apt could not fetch its lists of packages" "is there a network, and are apt's sources right?"
+# shellcheck disable=SC2086 # a list of names
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null ||
+    fail "apt could not install:$missing" "what apt said stands above; Debian 12 has all of them"
 echo "deps: done"

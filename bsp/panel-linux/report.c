@@ -1,8 +1,10 @@
 #include "report.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 /* The journal takes a line's importance from a number before it (sd-daemon(3)). */
@@ -11,6 +13,16 @@ static int begin(char *line, size_t size, enum report_level level)
     const char *const name = "landmass-panel: ";
     return getenv("JOURNAL_STREAM") != NULL ? snprintf(line, size, "<%d>%s", (int)level, name)
                                             : snprintf(line, size, "%s", name);
+}
+
+/* The journal is a socket: a journal that does not read must not stop the loop. When nothing can be
+ * printed, nobody is left to be told. */
+static void print_line(const char *line, size_t size)
+{
+    if (send(STDERR_FILENO, line, size, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == ENOTSOCK &&
+        write(STDERR_FILENO, line, size) < 0) {
+        return;
+    }
 }
 
 void report(enum report_level level, const char *format, ...)
@@ -26,7 +38,5 @@ void report(enum report_level level, const char *format, ...)
         length = (int)sizeof line - 1;
     }
     line[length] = '\n'; /* in the place of the terminating zero */
-    if (write(STDERR_FILENO, line, (size_t)length + 1) < 0) {
-        return; /* nobody is left to be told */
-    }
+    print_line(line, (size_t)length + 1);
 }

@@ -1,5 +1,5 @@
 /* What the panel says about itself, one line each, on standard error: the journal's, where systemd
- * started it. Allocates nothing, so that the loop may use it. */
+ * started it. Allocates nothing and does not wait for the journal, so that the loop may use it. */
 #ifndef PANEL_REPORT_H
 #define PANEL_REPORT_H
 
