@@ -219,7 +219,7 @@ int obj_write(const struct mesh *m, const char *path)
     fputs("# Metres; x ahead, y to the left, z up.\n", file.stream);
     for (uint32_t i = 0; i < m->vertex_count; i++) {
         const struct vec v = m->vertices[i];
-        fprintf(file.stream, "v %.9g %.9g %.9g\n", v.x, v.y, v.z);
+        fprintf(file.stream, "v %.17g %.17g %.17g\n", v.x, v.y, v.z);
     }
     uint32_t material = TRACE_MATERIALS_MAX;
     for (uint32_t i = 0; i < m->triangle_count; i++) {

@@ -154,7 +154,7 @@ static void a_model_that_is_written_is_read_back(void **state)
                             m.materials[m.triangles[i].material]);
     }
     for (uint32_t i = 0; i < m.vertex_count; i++) {
-        assert_true(vec_length(vec_sub(again.vertices[i], m.vertices[i])) < 1e-7);
+        assert_true(vec_length(vec_sub(again.vertices[i], m.vertices[i])) == 0);
     }
     mesh_free(&m);
     mesh_free(&again);

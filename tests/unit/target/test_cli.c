@@ -1,0 +1,116 @@
+/* landmass-target as its user meets it. */
+#include "support.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Run "landmass-target ARGUMENTS" in the scratch folder. */
+static int run(const char *arguments)
+{
+    return support_run(
+        "B=$(cd %s && pwd) && mkdir -p $B/tmp/target-cli && cd $B/tmp/target-cli && "
+        "$B/bin/landmass-target %s",
+        support_build_dir(), arguments);
+}
+
+static int shell(const char *command)
+{
+    return support_run("cd %s/tmp/target-cli && %s", support_build_dir(), command);
+}
+
+static void every_command_explains_itself(void **state)
+{
+    (void)state;
+    static const char *const commands[] = {"",       "model ",  "trace ",     "render ",
+                                           "sheet ", "curves ", "materials ", "bench "};
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "%s--help >help", commands[i]);
+        assert_int_equal(run(line), 0);
+        assert_int_equal(shell("grep -q landmass-target help"), 0);
+        assert_int_equal(shell("! grep -q landmass-db help"), 0);
+    }
+}
+
+static void a_command_line_without_sense_ends_with_2(void **state)
+{
+    (void)state;
+    assert_int_equal(run("2>/dev/null"), 2);
+    assert_int_equal(run("paint"), 2);
+    assert_int_equal(run("trace --model slicy"), 2);
+    assert_int_equal(run("trace --model slicy --out x --depression 0"), 2);
+    assert_int_equal(run("render --model slicy --records x --out y.png"), 2);
+    assert_int_equal(run("render --model slicy"), 2);
+}
+
+static void bad_input_ends_with_1_and_leaves_no_file(void **state)
+{
+    (void)state;
+    assert_int_equal(shell("rm -f out.png && printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' "
+                           ">open.obj"),
+                     0);
+    assert_int_equal(run("render --model open.obj --out out.png 2>errors"), 1);
+    assert_int_equal(shell("grep -q '3 open edges.*--as-is' errors"), 0);
+    assert_int_equal(run("render --model open.obj --as-is --up z --out out.png"), 0);
+    assert_int_equal(shell("rm out.png"), 0);
+    assert_int_equal(run("render --model nowhere.obj --out out.png"), 1);
+    assert_int_equal(run("render --records open.obj --out out.png"), 1);
+    assert_int_equal(run("render --model tank --law ohm --out out.png"), 1);
+    assert_int_equal(run("render --model tank --pixel 5 --out out.png"), 1);
+    assert_int_equal(shell("printf 'metal 1 2 3\\n' >bad.txt"), 0);
+    assert_int_equal(run("render --model tank --materials bad.txt --out out.png"), 1);
+    assert_int_equal(shell("! test -e out.png"), 0);
+}
+
+/* The same picture, whether the records took the way through a file or not, and from the model
+ * that was written as OBJ. */
+static void records_render_as_their_model_does(void **state)
+{
+    (void)state;
+    assert_int_equal(run("render --model tank --azimuth 40 --law spm-vv --looks 4 --csv a.csv"), 0);
+    assert_int_equal(run("trace --model tank --azimuth 40 --out tank.trace"), 0);
+    assert_int_equal(run("render --records tank.trace --law spm-vv --looks 4 --csv b.csv"), 0);
+    assert_int_equal(shell("cmp a.csv b.csv"), 0);
+    assert_int_equal(shell("test $(wc -l <a.csv) = 54"), 0);
+    assert_int_equal(run("model --model tank --obj tank.obj --view tank.png --size 64"), 0);
+    assert_int_equal(run("trace --model tank.obj --up z --azimuth 40 --out again.trace"), 0);
+    assert_int_equal(run("render --records again.trace --law spm-vv --looks 4 --csv c.csv"), 0);
+    assert_int_equal(shell("cmp a.csv c.csv"), 0);
+    assert_int_equal(run("materials >table.txt"), 0);
+    assert_int_equal(run("render --model tank --azimuth 40 --law spm-vv --looks 4 "
+                         "--materials table.txt --csv d.csv"),
+                     0);
+    assert_int_equal(shell("cmp a.csv d.csv"), 0);
+}
+
+static void sheets_and_curves_are_pictures(void **state)
+{
+    (void)state;
+    assert_int_equal(run("sheet --model slicy --count 2 --rays 1 --out sheet.png"), 0);
+    for (int figure = 3; figure <= 6; figure++) {
+        char line[64];
+        snprintf(line, sizeof line, "curves --figure %d --out curves%d.png", figure, figure);
+        assert_int_equal(run(line), 0);
+    }
+    assert_int_equal(shell("for f in sheet.png curves[3456].png; do "
+                           "head -c 4 $f | tail -c 3 | grep -q PNG || exit 1; done"),
+                     0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_command_explains_itself),
+        cmocka_unit_test(a_command_line_without_sense_ends_with_2),
+        cmocka_unit_test(bad_input_ends_with_1_and_leaves_no_file),
+        cmocka_unit_test(records_render_as_their_model_does),
+        cmocka_unit_test(sheets_and_curves_are_pictures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
