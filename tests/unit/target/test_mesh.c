@@ -2,8 +2,11 @@
 #include "mesh_audit.h"
 #include "models.h"
 #include "obj_file.h"
+#include "scene.h"
 #include "shapes.h"
 #include "support.h"
+
+#include "hs/rng.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -246,7 +249,21 @@ static void the_models_have_their_dimensions(void **state)
     mesh_free(&m);
 }
 
-static void slicy_fills_the_space_of_the_published_mesh(void **state)
+/* How far a ray goes before it meets the scene; 100 when it does not. */
+static double reach_m(const struct scene *s, const struct scene_rays *ray)
+{
+    uint32_t facet[SCENE_PACKET];
+    scene_meet(s, ray, facet);
+    if (facet[0] == SCENE_MISS) {
+        return 100;
+    }
+    const struct scene_facet *f = &s->facets[facet[0]];
+    return (f->offset_m - vec_dot(f->normal, ray->from[0])) / vec_dot(f->normal, ray->along[0]);
+}
+
+/* Rays from all sides meet ours where they meet the published one: all parts are in their places.
+ */
+static void slicy_is_met_where_the_published_mesh_is(void **state)
 {
     (void)state;
     char path[512];
@@ -254,13 +271,30 @@ static void slicy_fills_the_space_of_the_published_mesh(void **state)
         skip();
     }
     struct mesh ours = {0}, theirs;
-    struct vec low, high, their_low, their_high;
+    struct scene our_scene, their_scene;
     model_slicy(&ours);
     assert_int_equal(obj_read(&theirs, path, OBJ_UP_Y), 0);
-    mesh_bounds(&ours, &low, &high);
-    mesh_bounds(&theirs, &their_low, &their_high);
-    assert_true(vec_length(vec_sub(low, their_low)) < 1e-3);
-    assert_true(vec_length(vec_sub(high, their_high)) < 1e-3);
+    assert_int_equal(scene_open(&our_scene, &ours, 0, "ours"), 0);
+    assert_int_equal(scene_open(&their_scene, &theirs, 0, "theirs"), 0);
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 1);
+    int met = 0, apart = 0;
+    for (int i = 0; i < 20000; i++) {
+        struct scene_rays ray = {.count = 1};
+        const struct vec side = {hs_rng_normal(&rng), hs_rng_normal(&rng),
+                                 fabs(hs_rng_normal(&rng))};
+        const struct vec aim = {2.5 * hs_rng_uniform(&rng) - 1.1, 2.8 * hs_rng_uniform(&rng) - 1.4,
+                                1.7 * hs_rng_uniform(&rng)};
+        ray.along[0] = vec_scale(side, -1 / vec_length(side));
+        ray.from[0] = vec_mad(aim, ray.along[0], -6);
+        const double our_m = reach_m(&our_scene, &ray), their_m = reach_m(&their_scene, &ray);
+        met += their_m < 100;
+        apart += fabs(our_m - their_m) > 0.005;
+    }
+    assert_true(met > 15000);
+    assert_true(apart < met / 200); /* rays along edges and facets */
+    scene_close(&our_scene);
+    scene_close(&their_scene);
     mesh_free(&ours);
     mesh_free(&theirs);
 }
@@ -276,7 +310,7 @@ int main(void)
         cmocka_unit_test(a_file_that_makes_no_sense_is_refused),
         cmocka_unit_test(a_file_of_gigabytes_is_refused_at_once),
         cmocka_unit_test(the_models_have_their_dimensions),
-        cmocka_unit_test(slicy_fills_the_space_of_the_published_mesh),
+        cmocka_unit_test(slicy_is_met_where_the_published_mesh_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
