@@ -91,7 +91,7 @@ static int take_numbers(struct db_text_file *f, const char *text, double *number
 
 static int read_numbers(struct db_text_file *f, const char *key, double *numbers, size_t count)
 {
-    const char *text;
+    const char *text = "";
     return next_value(f, key, &text) == 0 ? take_numbers(f, text, numbers, count) : -1;
 }
 
@@ -118,7 +118,7 @@ static int read_count(struct db_text_file *f, const char *key, int low, int high
 static int read_choice(struct db_text_file *f, const char *key, const char *const names[2],
                        int *choice)
 {
-    const char *text;
+    const char *text = "";
     if (next_value(f, key, &text) != 0) {
         return -1;
     }
@@ -132,7 +132,7 @@ static int read_choice(struct db_text_file *f, const char *key, const char *cons
 
 static int read_seed(struct db_text_file *f, uint64_t *seed)
 {
-    const char *text;
+    const char *text = "";
     int used = 0;
     if (next_value(f, "seed", &text) != 0) {
         return -1;
@@ -169,7 +169,7 @@ static int read_plan(struct db_text_file *f, struct nm_plan *p)
 
 static int read_random(struct db_text_file *f, struct hs_rng *rng)
 {
-    const char *text;
+    const char *text = "";
     int used = 0;
     if (next_value(f, "random", &text) != 0) {
         return -1;
@@ -263,7 +263,7 @@ static int read_head(struct db_text_file *f, const struct nm_architecture **arch
                      struct nm_plan *plan)
 {
     int version;
-    const char *name;
+    const char *name = "";
     if (read_count(f, "landmass-netem", 1, 1, &version) != 0 ||
         next_value(f, "architecture", &name) != 0) {
         return -1;

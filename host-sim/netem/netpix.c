@@ -17,10 +17,12 @@ int nm_netpix_open(struct nm_netpix *pix, int side)
     pix->kernel = nm_spectrum_new(&pix->convolver);
     pix->sum = nm_spectrum_new(&pix->convolver);
     pix->d_out = nm_spectrum_new(&pix->convolver);
+    pix->fixed = nm_spectrum_new(&pix->convolver);
+    pix->fixed_kernel = malloc(NM_LARGE * NM_LARGE * sizeof(double));
     pix->cells = malloc(cells);
     pix->d_cells = malloc(cells);
-    bool is_whole =
-        pix->picture && pix->kernel && pix->sum && pix->d_out && pix->cells && pix->d_cells;
+    bool is_whole = pix->picture && pix->kernel && pix->sum && pix->d_out && pix->fixed &&
+                    pix->fixed_kernel && pix->cells && pix->d_cells;
     for (int k = 0; k < NM_FIRST_KERNELS; k++) {
         pix->channel[k] = nm_spectrum_new(&pix->convolver);
         pix->plane[k] = malloc(cells);
@@ -30,6 +32,7 @@ int nm_netpix_open(struct nm_netpix *pix, int side)
         nm_netpix_close(pix);
         return hs_error("pixels", "use a smaller picture", "out of memory");
     }
+    pix->fixed_kernel[0] = NAN;
     return 0;
 }
 
@@ -40,6 +43,8 @@ void nm_netpix_close(struct nm_netpix *pix)
     fftw_free(pix->kernel);
     fftw_free(pix->sum);
     fftw_free(pix->d_out);
+    fftw_free(pix->fixed);
+    free(pix->fixed_kernel);
     for (int k = 0; k < NM_FIRST_KERNELS; k++) {
         fftw_free(pix->channel[k]);
         free(pix->plane[k]);
@@ -86,14 +91,24 @@ static void unsample(const struct nm_netpix *pix, const double *pixels, const do
     }
 }
 
+/* The spectrum of the fixed kernel, which is mostly the one of the last call. */
+static fftw_complex *fixed_spectrum(struct nm_netpix *pix, const double *kernel)
+{
+    const size_t bytes = NM_LARGE * NM_LARGE * sizeof *kernel;
+    if (isnan(pix->fixed_kernel[0]) || memcmp(pix->fixed_kernel, kernel, bytes) != 0) {
+        memcpy(pix->fixed_kernel, kernel, bytes);
+        nm_spectrum_of_kernel(&pix->convolver, kernel, NM_LARGE, pix->fixed);
+    }
+    return pix->fixed;
+}
+
 void nm_netpix_fixed(struct nm_netpix *pix, const double *kernel, const double *picture,
                      double *pixels)
 {
     struct nm_convolver *c = &pix->convolver;
     nm_spectrum_of_picture(c, picture, pix->picture);
-    nm_spectrum_of_kernel(c, kernel, NM_LARGE, pix->kernel);
     nm_spectrum_clear(c, pix->sum);
-    nm_spectrum_add_product(c, pix->picture, pix->kernel, pix->sum);
+    nm_spectrum_add_product(c, pix->picture, fixed_spectrum(pix, kernel), pix->sum);
     nm_picture_of_spectrum(c, pix->sum, pix->cells);
     sample(pix, pix->cells, pixels);
 }
@@ -104,9 +119,8 @@ void nm_netpix_fixed_backward(struct nm_netpix *pix, const double *kernel, const
     struct nm_convolver *c = &pix->convolver;
     unsample(pix, pixels, d_pixels, pix->d_cells);
     nm_spectrum_of_picture(c, pix->d_cells, pix->picture);
-    nm_spectrum_of_kernel(c, kernel, NM_LARGE, pix->kernel);
     nm_spectrum_clear(c, pix->sum);
-    nm_spectrum_add_correlation(c, pix->picture, pix->kernel, pix->sum);
+    nm_spectrum_add_correlation(c, pix->picture, fixed_spectrum(pix, kernel), pix->sum);
     nm_picture_of_spectrum(c, pix->sum, d_picture);
 }
 

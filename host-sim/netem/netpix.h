@@ -43,6 +43,8 @@ struct nm_netpix {
     struct nm_convolver convolver;
     int side;                                     /* cells of the picture, either way; even */
     fftw_complex *picture, *kernel, *sum, *d_out; /* owned spectra */
+    fftw_complex *fixed;                          /* owned: the spectrum of fixed_kernel */
+    double *fixed_kernel; /* owned: the fixed kernel last used; NaN before */
     fftw_complex *channel[NM_FIRST_KERNELS];
     double *plane[NM_FIRST_KERNELS]; /* owned: the first layer's results, after ReLU */
     double *cells;                   /* owned scratch, side x side */

@@ -103,11 +103,12 @@ int nm_searcher_open(struct nm_searcher *s, const struct nm_library *library, in
     s->library = fftw_alloc_complex(spectrum_size(s) * (size_t)s->views);
     s->sums = calloc(integrals, sizeof *s->sums);
     s->squares = calloc(integrals, sizeof *s->squares);
-    if (s->plane && s->chip && s->product && s->library && s->sums && s->squares) {
+    const int is_whole = s->plane && s->chip && s->product && s->library && s->sums && s->squares;
+    if (is_whole) {
         s->forward = fftw_plan_dft_r2c_2d(height, width, s->plane, s->chip, FFTW_ESTIMATE);
         s->backward = fftw_plan_dft_c2r_2d(height, width, s->product, s->plane, FFTW_ESTIMATE);
     }
-    if (!s->forward || !s->backward) {
+    if (!is_whole || !s->forward || !s->backward) {
         nm_searcher_close(s);
         return hs_error("search", "take fewer views", "out of memory");
     }
@@ -238,7 +239,7 @@ static int chooser_open(struct chooser *c, int count, int views)
     c->costs = malloc(3 * n * sizeof *c->costs);
     c->total = c->costs ? c->costs + n : NULL;
     c->next = c->costs ? c->costs + 2 * n : NULL;
-    c->from = malloc((size_t)count * n * sizeof *c->from);
+    c->from = calloc((size_t)count * n, sizeof *c->from);
     return c->costs && c->from ? 0 : hs_error("search", "take fewer views", "out of memory");
 }
 
@@ -246,11 +247,13 @@ static int chooser_open(struct chooser *c, int count, int views)
 static double best_before(const struct chooser *c, int v, int *from)
 {
     double most = -INFINITY;
+    int best = 0;
     for (int u = 0; u < c->views; u++) {
         const double sum = c->total[u] - c->costs[v >= u ? v - u : v - u + c->views];
-        *from = sum > most ? u : *from;
+        best = sum > most ? u : best;
         most = fmax(sum, most);
     }
+    *from = best;
     return most;
 }
 
