@@ -10,7 +10,7 @@ _Noreturn void zcu102_exception(uint64_t kind, const struct zcu102_frame *frame)
 
 #define PAINT UINT64_C(0x5ac1a57a5ac1a57a) /* of start.S */
 
-extern uint64_t __stack_bottom[], __stack_top[];
+extern const uint64_t __stack_bottom[], __stack_top[];
 
 static struct zcu102_core *this_core(void)
 {
@@ -42,11 +42,12 @@ uint32_t zcu102_stack_size(void)
 
 uint32_t zcu102_stack_used(void)
 {
-    const uint64_t *untouched = __stack_bottom;
-    while (untouched < __stack_top && *untouched == PAINT) {
+    const uint32_t words = zcu102_stack_size() / (uint32_t)sizeof __stack_bottom[0];
+    uint32_t untouched = 0;
+    while (untouched < words && __stack_bottom[untouched] == PAINT) {
         untouched++;
     }
-    return (uint32_t)((uintptr_t)__stack_top - (uintptr_t)untouched);
+    return (words - untouched) * (uint32_t)sizeof __stack_bottom[0];
 }
 
 void zcu102_interrupt(const struct zcu102_frame *frame)
