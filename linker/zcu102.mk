@@ -33,7 +33,7 @@ $(O)/golden.elf: $(call image_objs,golden) $(call objs,tests/golden/golden_fligh
 $(O)/flight.elf: $(call image_objs,flight peer core1 handed)
 $(O)/bench.elf: $(call image_objs,bench handed instrument) $(O)/stages.o $(O)/stages.wrap
 $(O)/bench.elf: LDFLAGS := -Wl,@$(O)/stages.wrap
-$(O)/devices.elf: $(call image_objs,devices)
+$(O)/devices.elf: $(call image_objs,devices registers)
 $(O)/faults.elf: $(call image_objs,faults)
 
 # What `make bench-zcu102` counts, those of them that the firmware has. A line is what a *_draw_line and the *_paint

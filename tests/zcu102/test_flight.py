@@ -93,6 +93,7 @@ class Flights:
         sent = m.value("sent")
         self.tap.ok("every frame of the bus arrives, in the order and at the time it was sent",
                     sent > 3000 and m.value("received") == sent and m.value("refused") == 0 and self.is_in_order())
+        self.tap.ok("no step sees a frame that came after its time", m.value("early") == 0)
         self.tap.ok("nothing is lost or late", all(m.value(name) == 0 for name in (
             "ring-overflowed", "fifo-overflowed", "lines-dropped", "steps-left-out", "read-errors", "tiles-corrupt")))
         bad = complaints(WORK / "whole/complaints")

@@ -9,6 +9,7 @@
 #include "psci.h"
 
 int main(void);
+bool registers_survive(const volatile uint32_t *interrupts);
 
 enum { BORDER = 64 << 20, FLASH_BYTES = 128 << 20 };
 
@@ -265,6 +266,16 @@ static void check_timer(struct devices *d)
     claim(d, "the alarm comes when it is due, not before", all);
 }
 
+static void check_registers(struct devices *d)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < 20; i++) {
+        drv_timer_alarm(&d->z.timer, drv_timer_us(&d->z.timer) + 3);
+        all = all && registers_survive(&d->z.irq.count.taken);
+    }
+    claim(d, "an interrupt leaves every register as it was", all);
+}
+
 static void check_console(struct devices *d)
 {
     zcu102_say(&d->z.console, "TYPE\n"); /* the host types abc */
@@ -292,6 +303,7 @@ int main(void)
     check_crc(&d);
     check_link(&d);
     check_timer(&d);
+    check_registers(&d);
     check_console(&d);
     claim(&d, "no interrupt came that nobody had asked for", d.z.irq.count.strange == 0);
     zcu102_say(&d.z.console, "all done\n");

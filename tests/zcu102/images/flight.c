@@ -33,6 +33,7 @@ struct flight {
     struct peer peer;
     struct handed handed;
     uint32_t next_picture, received_count;
+    uint32_t early;            /* frames that a step was given although they came after its time */
     uint64_t first_picture_us; /* since the board's reset */
     struct lm_can can;
     struct lm_controls control_port;
@@ -54,6 +55,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     const int status = f->z.can.port.receive(f->z.can.port.ctx, frame);
     if (status == 1 && f->received_count < RECEIVED_MAX) {
         received[f->received_count++] = *frame;
+        f->early += frame->time_us > f->z.step_us;
     }
     return status;
 }
@@ -130,6 +132,7 @@ static void report(struct flight *f)
     zcu102_say_value(u, "sent", f->peer.sent);
     zcu102_say_value(u, "refused", f->peer.refused);
     zcu102_say_value(u, "received", f->received_count);
+    zcu102_say_value(u, "early", f->early);
     zcu102_say_value(u, "ring-overflowed", f->z.can.count.overflowed);
     zcu102_say_value(u, "fifo-overflowed", f->z.can.count.fifo_overflowed);
     zcu102_say_value(u, "frames", unit->count.frames);
