@@ -35,9 +35,10 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     u->plane = (struct lm_plane){board->plane, display->width_px, display->height_px};
     u->frame = lm_frame_of_display(display->width_px, display->height_px);
     memset(board->plane, 0, (size_t)display->width_px * display->height_px);
-    lm_nav_init(&u->nav, board->bus_profile ? board->bus_profile : &lm_bus_canas17);
-    lm_canas_service_init(&u->service, board->bus_node, board->hardware_revision,
-                          LM_VERSION_NUMBER);
+    const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
+    lm_nav_init(&u->nav, bus);
+    lm_canas_service_init(&u->service, bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0,
+                          board->hardware_revision, LM_VERSION_NUMBER);
     lm_page_init(&u->page, board->radar);
     lm_apply(u, LM_EFFECT_GROUND_MAP | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 

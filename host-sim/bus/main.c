@@ -19,7 +19,7 @@ static const char help_text[] =
     "  table             the profile as a table of Markdown\n"
     "  dbc               the profile as a .dbc file, for analysers and other tools\n"
     "  filters           the kernel's filters, as candump takes them: can0,40C:C00007FF\n"
-    "  decode [LOG]      each frame of a log of candump -L (standard input without LOG):\n"
+    "  decode [LOG]      each frame of a log of candump -L (of standard input without LOG):\n"
     "                    what it means, or why the display does not take it\n"
     "  generate          the profile as C, for firmware/src/bus_generic.c\n"
     "  fields            the fields that a table of your own may name, and their units\n"
@@ -53,7 +53,7 @@ static int print_for(FILE *out, const struct command *c)
         bus_print_c(out, c->profile);
     } else if (strcmp(c->name, "fields") == 0) {
         bus_print_fields(out);
-    } else if (c->log_path == NULL) {
+    } else if (c->log_path == NULL || strcmp(c->log_path, "-") == 0) {
         return bus_decode(out, stdin, "standard input", c->profile);
     } else {
         FILE *in = fopen(c->log_path, "r");

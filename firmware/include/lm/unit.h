@@ -21,7 +21,7 @@ struct lm_board {
     const struct lm_flash *flash;
     const struct lm_can *can;
     const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
-    uint8_t bus_node;          /* the display's own; 0: it takes no part in node services */
+    uint8_t bus_node;          /* of CANaerospace, its own; 0: it takes no part in node services */
     uint8_t hardware_revision; /* told to whoever asks on the bus */
     const struct lm_controls *controls;
     const struct lm_display *display;

@@ -296,6 +296,14 @@ static void the_unit_answers_in_the_step_that_hears_the_request(void **state)
     lm_unit_step(&rig->unit, 2000);
     assert_int_equal(talk.answers, 1);
     assert_true(talk.said.id == 129 && talk.said.data[0] == 33 && talk.said.data[4] == 2);
+    /* A bus of another framing has no such services. */
+    rig->board.bus_profile = &lm_bus_generic;
+    assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
+    talk.is_asked = true;
+    lm_unit_step(&rig->unit, 2000);
+    assert_int_equal(talk.answers, 1);
+    rig->board.bus_profile = &lm_bus_canas17;
+    assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
     talk.is_asked = true;
     talk.asked.data[2] = LM_CANAS_STS;
     talk.asked.time_us = 3000000;
