@@ -5,6 +5,7 @@
 
 #include "lm/aspect.h"
 #include "lm/target_line.h"
+#include "lm/target_patch.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -53,32 +54,66 @@ static double cell_area_db(double cell_m, double cell_range_m)
     return 10 * log10(cell_m * cell_m * (height_m / cell_range_m - drop));
 }
 
-static void look(struct patch *p, const struct lm_target *t, double look_deg)
+static struct lm_targets_near near_of(const struct lm_target_set *set, struct lm_place place)
 {
-    const double near_m = range_m - p->cells * p->cell_m / 2;
-    struct lm_target_line line = {.is_patch = true,
-                                  .place = {t->latitude, t->longitude},
-                                  .azimuth = bam(look_deg),
-                                  .centre_q8 = (uint32_t)(range_m * 256),
-                                  .first_q8 = (uint32_t)((near_m + p->cell_m / 2) * 256),
-                                  .cell_q8 = (uint32_t)(p->cell_m * 256),
-                                  .cells = (uint32_t)p->cells,
-                                  .height_q10 = (int32_t)(height_m * 1024),
-                                  .wavelength_um = (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
     struct lm_targets_near near;
-    lm_targets_select(&near, t, 1, line.place, 100);
+    const struct lm_target_scene scene = {.place = place, .reach_m = (uint32_t)range_m + 1000};
+    lm_targets_select(&near, set, &scene);
+    return near;
+}
+
+/* By synthetic aperture: every corner is a point of its own. */
+static void look_finely(struct patch *p, const struct lm_target *t, double look_deg)
+{
+    const struct lm_patch_geometry g = {.centre = {t->latitude, t->longitude},
+                                        .look = bam(look_deg),
+                                        .centre_q8 = (uint32_t)(range_m * 256),
+                                        .cell_q8 = (uint32_t)(p->cell_m * 256),
+                                        .lines = (uint32_t)p->cells,
+                                        .cells = (uint32_t)p->cells,
+                                        .heights = {(int32_t)(height_m * 1024), 0},
+                                        .wavelength_um =
+                                            (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
+    const struct lm_target_set set = {t, 1};
+    const struct lm_targets_near near = near_of(&set, g.centre);
+    struct lm_patch_points points;
+    lm_patch_points_set(&points, &set, &near, &g);
     for (int k = 0; k < p->cells; k++) {
         int32_t level_q8[CELLS_MAX];
         for (int i = 0; i < p->cells; i++) {
             level_q8[i] = LM_LEVEL_SHADOW;
         }
-        line.across_q8 = (int32_t)lround((k + 0.5 - p->cells / 2.0) * p->cell_m * 256);
-        lm_target_add(t, &near, &line, NULL, level_q8);
+        lm_patch_points_add(&points, (uint32_t)k, LM_LEVEL_SHADOW, &g, level_q8);
         for (int i = 0; i < p->cells; i++) {
-            p->dbsm[k][i] =
-                level_q8[i] / 256.0 + cell_area_db(p->cell_m, near_m + (i + 0.5) * p->cell_m);
+            const double at_m = range_m + (i + 0.5 - p->cells / 2.0) * p->cell_m;
+            p->dbsm[k][i] = level_q8[i] / 256.0 + cell_area_db(p->cell_m, at_m);
         }
     }
+}
+
+/* By a beam that is one cell wide where the target stands, from a place due south of it: the target
+ * is turned instead of the radar. */
+static void look_coarsely(struct patch *p, const struct lm_target *t, double look_deg)
+{
+    struct lm_target turned = *t;
+    struct lm_geo_origin origin;
+    struct lm_place place;
+    int32_t level_q8 = LM_LEVEL_SHADOW;
+    lm_geo_set_origin(&origin, (struct lm_place){t->latitude, t->longitude});
+    place = lm_geo_direct(&origin, FX_BAM_180, (uint32_t)(range_m * 256));
+    turned.heading -= bam(look_deg);
+    const struct lm_target_line line = {.place = place,
+                                        .width = bam(p->cell_m / range_m * 180 / pi),
+                                        .first_q8 = (uint32_t)(range_m * 256),
+                                        .cell_q8 = (uint32_t)(p->cell_m * 256),
+                                        .cells = 1,
+                                        .height_q10 = (int32_t)(height_m * 1024),
+                                        .wavelength_um =
+                                            (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
+    const struct lm_target_set set = {&turned, 1};
+    const struct lm_targets_near near = near_of(&set, place);
+    lm_target_add(&turned, &near, &line, NULL, &level_q8);
+    p->dbsm[0][0] = level_q8 / 256.0 + cell_area_db(p->cell_m, range_m);
 }
 
 static double strongest(const struct patch *p)
@@ -119,8 +154,8 @@ static void draw_maps(struct sheet *s, const struct lm_target *t)
         const double look_deg = first_deg + i * step_deg;
         const int left = MAP_LEFT + i * MAP_STEP_PX;
         char text[32];
-        look(&fine, t, look_deg);
-        look(&coarse, t, look_deg);
+        look_finely(&fine, t, look_deg);
+        look_coarsely(&coarse, t, look_deg);
         draw_map(s, left, 32, &fine, look_deg, 36);
         draw_map(s, left, 292, &coarse, look_deg, 54);
         snprintf(text, sizeof text, "%.0f DEG  %.1f", look_deg, strongest(&fine));
@@ -135,14 +170,14 @@ static void draw_maps(struct sheet *s, const struct lm_target *t)
 static double brightest_fine_db(void *ctx, double look_deg)
 {
     struct patch fine = {.cells = FINE_CELLS, .cell_m = fine_m};
-    look(&fine, ctx, look_deg);
+    look_finely(&fine, ctx, look_deg);
     return strongest(&fine);
 }
 
 static double coarse_db(void *ctx, double look_deg)
 {
     struct patch coarse = {.cells = 1, .cell_m = coarse_m};
-    look(&coarse, ctx, look_deg);
+    look_coarsely(&coarse, ctx, look_deg);
     return strongest(&coarse);
 }
 
