@@ -304,6 +304,7 @@ static void the_unit_answers_in_the_step_that_hears_the_request(void **state)
     assert_int_equal(talk.answers, 1);
     rig->board.bus_profile = &lm_bus_canas17;
     assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
+    lm_unit_step(&rig->unit, 2900000); /* the state is that of the step before */
     talk.is_asked = true;
     talk.asked.data[2] = LM_CANAS_STS;
     talk.asked.time_us = 3000000;
