@@ -14,7 +14,7 @@ struct lm_layover {
 
 /* Move the power of each cell to where its top appears, half-way between two cells to both; powers
  * in one cell add, and what leaves the line is lost. Levels above 90 dB saturate. `power_q32` is
- * scratch. Cost: about 60 instructions a cell. */
+ * scratch. Cost: about 100 instructions a cell. */
 void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes,
                     const struct lm_scan_line *ground, int32_t *level_q8,
                     uint64_t power_q32[LM_CELLS_ROOM]);
