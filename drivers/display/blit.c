@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+enum { TILE = 16 };
+
 /* Where the pixels of a row come from: `from` moves by `step` pixels for each one. */
 struct walk {
     const uint32_t *start;
@@ -58,20 +60,42 @@ static void row_of_565(uint16_t *to, const uint32_t *from, ptrdiff_t step, uint3
     }
 }
 
+/* A part of one row: `count` pixels from `column` on. */
+static void copy_part(const struct drv_target *to, uint32_t row, uint32_t column, uint32_t count,
+                      const uint32_t *from, ptrdiff_t step)
+{
+    char *target = (char *)to->bytes + (size_t)row * to->stride_bytes;
+    if (to->format == DRV_RGB565) {
+        row_of_565((uint16_t *)(void *)target + column, from, step, count);
+    } else {
+        row_of_xrgb((uint32_t *)(void *)target + column, from, step, count);
+    }
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+/* In tiles: a picture that lies on its side is read down its columns, and a cache line that was
+ * fetched for one row of the target holds the next rows' pixels too. Small ones, because the lines
+ * of a column fall into few of a cache's sets: 16 x 16 take 0.27 ms for 768 x 768 pixels where
+ * whole rows take 0.74 (Xeon, 3 KiB between rows). */
 void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn)
 {
     const bool is_upright = turn == DRV_TURN_0 || turn == DRV_TURN_180;
     const struct span x = centre(is_upright ? from->width_px : from->height_px, to->width_px);
     const struct span y = centre(is_upright ? from->height_px : from->width_px, to->height_px);
     const struct walk walk = walk_of(from, turn);
-    for (uint32_t row = 0; row < y.count; row++) {
-        const uint32_t *source =
-            walk.start + (y.source + row) * walk.along_y + x.source * walk.along_x;
-        char *target = (char *)to->bytes + (size_t)(y.target + row) * to->stride_bytes;
-        if (to->format == DRV_RGB565) {
-            row_of_565((uint16_t *)(void *)target + x.target, source, walk.along_x, x.count);
-        } else {
-            row_of_xrgb((uint32_t *)(void *)target + x.target, source, walk.along_x, x.count);
+    const uint32_t width = is_upright ? x.count : TILE;
+    for (uint32_t top = 0; top < y.count; top += TILE) {
+        for (uint32_t left = 0; left < x.count; left += width) {
+            for (uint32_t row = top; row < smaller(top + TILE, y.count); row++) {
+                const uint32_t *source =
+                    walk.start + (y.source + row) * walk.along_y + (x.source + left) * walk.along_x;
+                copy_part(to, y.target + row, x.target + left, smaller(width, x.count - left),
+                          source, walk.along_x);
+            }
         }
     }
 }
