@@ -79,6 +79,40 @@ static void shares_multiply_along_the_bounces(void **state)
     trace_records_free(&r);
 }
 
+/* Three times the share of a mirror, from the aperture of a square trihedral, a^2 sqrt 3. */
+static void a_trihedral_returns_the_share_of_three_mirrors(void **state)
+{
+    (void)state;
+    struct mesh m = {0};
+    struct scene s;
+    struct trace_records r;
+    model_find("trihedral")->build(&m);
+    const struct trace_order o = {
+        .look = {0, atan(sqrt(0.5)) * 180 / pi, TRACE_WAVELENGTH_M},
+        .grid = {CELLS, CELLS, 0.05},
+        .rays_per_cell = 8,
+        .bounces = TRACE_BOUNCES_MAX,
+        .threads = 2,
+    };
+    assert_int_equal(scene_open(&s, &m, 0, "trihedral"), 0);
+    assert_int_equal(trace_run(&s, &o, "trihedral", &r, NULL), 0);
+    struct reflect_law law = plain_law();
+    law.materials[0].diffuse = 0;
+    law.materials[0].specular = 0.6;
+    law.materials[0].roughness = 1e-4;
+    float *picture = malloc(CELLS * CELLS * sizeof *picture);
+    assert_int_equal(accumulate(&r, &law, picture), 0);
+    double sum = 0;
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        sum += (double)picture[i];
+    }
+    assert_true(fabs(sum - pow(0.6, 3) * sqrt(3)) < 0.005);
+    free(picture);
+    trace_records_free(&r);
+    scene_close(&s);
+    mesh_free(&m);
+}
+
 /* Trace a built-in model on its ground and add up its echoes by RaySAR's law. */
 static float *picture_of(const char *name, double azimuth_deg, double depression_deg,
                          struct trace_records *r)
@@ -203,6 +237,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plates_power_is_its_area_times_its_share),
         cmocka_unit_test(shares_multiply_along_the_bounces),
+        cmocka_unit_test(a_trihedral_returns_the_share_of_three_mirrors),
         cmocka_unit_test(a_trihedral_is_brightest_at_its_apex),
         cmocka_unit_test(a_dihedral_is_brightest_along_its_seam),
         cmocka_unit_test(a_top_hat_is_an_arc_around_its_crown),
