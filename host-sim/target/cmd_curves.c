@@ -100,7 +100,7 @@ static void draw_panel(struct sheet *sheet, int left, int figure, bool is_vv, co
         c.parameter = figure == 3 ? permittivities[i] : 15 * i;
         chart_curve(&chart, value_at, &c, SAMPLES, inks[i]);
         snprintf(text, sizeof text, figure == 3 ? "e %g" : "%g", c.parameter);
-        sheet_text(sheet, left + 60 * i, 412, text, inks[i]);
+        sheet_text(sheet, left + 60 * i, 430, text, inks[i]);
     }
 }
 
@@ -108,13 +108,14 @@ static int draw(int figure, const char *path)
 {
     const bool has_two = figure <= 4;
     struct sheet sheet;
-    if (sheet_open(&sheet, has_two ? 1040 : 520, 440) != 0) {
+    if (sheet_open(&sheet, has_two ? 1040 : 520, 460) != 0) {
         return -1;
     }
-    static const char *const titles[4][2] = {{"Fresnel HH, |R|", "Fresnel VV, |R|"},
-                                             {"SPM HH, relative", "SPM VV, relative"},
-                                             {"RaySAR specular, Fs 0.8, Fr 0.02", NULL},
-                                             {"RaySAR diffuse, Fd 0.6, Fb 1", NULL}};
+    static const char *const titles[4][2] = {
+        {"Fresnel HH, magnitude of R", "Fresnel VV, magnitude of R"},
+        {"SPM HH, relative", "SPM VV, relative"},
+        {"RaySAR specular, Fs 0.8, Fr 0.02", NULL},
+        {"RaySAR diffuse, Fd 0.6, Fb 1", NULL}};
     draw_panel(&sheet, 70, figure, false, titles[figure - 3][0]);
     if (has_two) {
         draw_panel(&sheet, 590, figure, true, titles[figure - 3][1]);

@@ -3,6 +3,7 @@
 #include "hs/error.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum { NBAR = 4 };
@@ -63,31 +64,66 @@ int pix_aperture(double resolution_m, double spacing_m)
     return (int)lround(fmin(fmax(aperture, 1), PIX_KERNEL_SIDE));
 }
 
-/* One line of `count` numbers, `step` apart, spread by `weights` into `line`, and put back. */
-static void spread_line(float *first, int count, int step, const float weights[PIX_KERNEL_SIDE],
-                        float *line)
+/* Spread `from` by `weights` into `to`. */
+static void spread_line(const float *from, int count, const float weights[PIX_KERNEL_SIDE],
+                        float *to)
 {
     const int half = PIX_KERNEL_SIDE / 2;
     for (int i = 0; i < count; i++) {
-        line[i] = 0;
+        to[i] = 0;
     }
     for (int i = 0; i < count; i++) {
-        const float power = first[(size_t)i * (size_t)step];
         const int low = i - half > 0 ? i - half : 0;
         const int high = i + half < count - 1 ? i + half : count - 1;
-        for (int k = low; power > 0 && k <= high; k++) {
-            line[k] += power * weights[k - i + half];
+        for (int k = low; from[i] > 0 && k <= high; k++) {
+            to[k] += from[i] * weights[k - i + half];
         }
-    }
-    for (int i = 0; i < count; i++) {
-        first[(size_t)i * (size_t)step] = line[i];
     }
 }
 
-int pix_spread(float *power, int width, int height, int aperture)
+/* What is needed for lines of one length. */
+struct spreader {
+    float *line, *spread, *within; /* owned: a line, what becomes of it, the weights inside it */
+    int count;
+};
+
+static bool spreader_open(struct spreader *s, int count, const float weights[PIX_KERNEL_SIDE])
+{
+    const size_t size = (size_t)count * sizeof(float);
+    *s = (struct spreader){malloc(size), malloc(size), malloc(size), count};
+    if (!s->line || !s->spread || !s->within) {
+        return false;
+    }
+    for (int i = 0; i < count; i++) {
+        s->line[i] = 1;
+    }
+    spread_line(s->line, count, weights, s->within);
+    return true;
+}
+
+static void spreader_close(struct spreader *s)
+{
+    free(s->line);
+    free(s->spread);
+    free(s->within);
+}
+
+/* Numbers `step` apart, in place. */
+static void spread_in_place(struct spreader *s, float *first, int step,
+                            const float weights[PIX_KERNEL_SIDE])
+{
+    for (int i = 0; i < s->count; i++) {
+        s->line[i] = first[(size_t)i * (size_t)step];
+    }
+    spread_line(s->line, s->count, weights, s->spread);
+    for (int i = 0; i < s->count; i++) {
+        first[(size_t)i * (size_t)step] = s->spread[i] / s->within[i];
+    }
+}
+
+static void power_weights(int aperture, float weights[PIX_KERNEL_SIDE])
 {
     double response[PIX_KERNEL_SIDE], sum = 0;
-    float weights[PIX_KERNEL_SIDE];
     pix_taylor(aperture, response);
     for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
         sum += response[i] * response[i];
@@ -95,18 +131,24 @@ int pix_spread(float *power, int width, int height, int aperture)
     for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
         weights[i] = (float)(response[i] * response[i] / sum);
     }
-    float *line = malloc((size_t)(width > height ? width : height) * sizeof *line);
-    if (!line) {
-        return hs_error("picture", NULL, "out of memory");
+}
+
+int pix_spread(float *power, int width, int height, int aperture)
+{
+    float weights[PIX_KERNEL_SIDE];
+    struct spreader rows, columns;
+    power_weights(aperture, weights);
+    const bool has_rows = spreader_open(&rows, width, weights);
+    const bool has_columns = spreader_open(&columns, height, weights);
+    for (int row = 0; has_rows && has_columns && row < height; row++) {
+        spread_in_place(&rows, power + (size_t)row * (size_t)width, 1, weights);
     }
-    for (int row = 0; row < height; row++) {
-        spread_line(power + (size_t)row * (size_t)width, width, 1, weights, line);
+    for (int column = 0; has_rows && has_columns && column < width; column++) {
+        spread_in_place(&columns, power + column, width, weights);
     }
-    for (int column = 0; column < width; column++) {
-        spread_line(power + column, height, width, weights, line);
-    }
-    free(line);
-    return 0;
+    spreader_close(&rows);
+    spreader_close(&columns);
+    return has_rows && has_columns ? 0 : hs_error("picture", NULL, "out of memory");
 }
 
 void pix_coarsen(const float *power, int width, int height, int ratio, float *coarse)

@@ -23,9 +23,10 @@ void pix_taylor(int aperture, double response[PIX_KERNEL_SIDE]);
  */
 int pix_aperture(double resolution_m, double spacing_m);
 
-/* Spread the power of each cell by the squared response of the system; the sum of all is kept but
- * for what leaves the picture. `power` has height * width numbers. Returns 0, or -1 without memory,
- * reported. Cost: 2 * 107 multiplications a cell. */
+/* Spread the power of each cell by the squared response of the system. Far from the edges the sum
+ * of all is kept; at the edges level ground stays level, as if the picture went on. `power` has
+ * height * width numbers. Returns 0, or -1 without memory, reported. Cost: 2 * 107 multiplications
+ * a cell. */
 int pix_spread(float *power, int width, int height, int aperture);
 
 /* Means of ratio * ratio cells; width and height are multiples of `ratio`. May work in place. */

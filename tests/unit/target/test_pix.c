@@ -107,6 +107,19 @@ static void spreading_keeps_the_power_and_the_place(void **state)
     free(power);
 }
 
+static void level_ground_stays_level_to_the_edge(void **state)
+{
+    (void)state;
+    float power[60 * 90];
+    for (int i = 0; i < 60 * 90; i++) {
+        power[i] = 3;
+    }
+    assert_int_equal(pix_spread(power, 60, 90, 42), 0);
+    for (int i = 0; i < 60 * 90; i++) {
+        assert_true(fabsf(power[i] - 3) < 1e-4f);
+    }
+}
+
 static void pixels_are_means_of_their_cells(void **state)
 {
     (void)state;
@@ -153,6 +166,7 @@ int main(void)
         cmocka_unit_test(the_response_has_its_nulls_side_lobe_and_width),
         cmocka_unit_test(the_response_is_as_wide_as_asked),
         cmocka_unit_test(spreading_keeps_the_power_and_the_place),
+        cmocka_unit_test(level_ground_stays_level_to_the_edge),
         cmocka_unit_test(pixels_are_means_of_their_cells),
         cmocka_unit_test(speckle_has_the_statistics_of_its_looks),
     };
