@@ -29,9 +29,10 @@ struct world {
     struct ref_db ref;
     struct lm_tone tone;
     struct lm_line line;
-    struct lm_radar radar; /* without texture, which the reference's pictures lack */
+    struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
+    struct ref_texture texture;
 };
 
 /* How far apart two pictures are. */
@@ -82,7 +83,12 @@ static void set_params(struct world *w, const struct lm_tone_config *tone,
                                     .black_db = decibels(tone->black_q8),
                                     .white_db = decibels(tone->white_q8),
                                     .gamma_exponent = decibels(tone->gamma_q8)};
+    for (int kind = 0; kind < LM_KINDS; kind++) {
+        const uint8_t log2 = w->radar.texture.shape_log2[kind];
+        w->params.texture_shape[kind] = log2 == LM_TEXTURE_NONE ? 0 : 1u << log2;
+    }
     ref_speckle_table(w->params.looks, w->table_db);
+    ref_texture_tables(&w->texture, &w->params);
     assert_int_equal(lm_tone_set(&w->tone, tone), LM_OK);
 }
 
@@ -90,7 +96,6 @@ static struct world *make_world(uint8_t shift0, double scale, double latitude, d
 {
     struct world *w = calloc(1, sizeof *w);
     w->radar = lm_radar_default;
-    memset(w->radar.texture.shape_log2, LM_TEXTURE_NONE, sizeof w->radar.texture.shape_log2);
     struct tiny_spec spec = tiny_spec_at(latitude, longitude);
     spec.cell = scene_cell;
     spec.elevation_m = scene_elevation_m;
@@ -141,7 +146,8 @@ static void take_ground(const struct world *w, struct ref_bin *bins, uint32_t ce
 static void take_noise(const struct world *w, struct ref_bin *bins, uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        bins[i].slice = w->line.ground.noise[i] >> 22;
+        bins[i].hash = w->line.ground.noise[i];
+        bins[i].slice = bins[i].hash >> 22;
     }
 }
 
@@ -150,6 +156,7 @@ static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t f
                          struct score *score)
 {
     take_noise(w, bins, cells);
+    ref_texture(bins, cells, &w->texture, &w->params);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
     for (uint32_t i = from; i < cells; i++) {
