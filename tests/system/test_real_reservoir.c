@@ -23,7 +23,7 @@ static const struct real_place centre = {-3.7525, -49.886};
 
 /* The aircraft while the ground map's last sweep was drawn: 3.5 s at 150 m/s from where it started.
  */
-static const struct real_place ground_map_start = {-3.7525, -49.98};
+static const struct real_place ground_map_start = {-3.7875, -49.98};
 
 struct polygon {
     char name[32];
