@@ -12,5 +12,6 @@ mkdir -p $out
 for scene in "$@"; do
     sh $here/gallery_scene.sh "$bin" "$data" $out/"$scene" "$scene"
 done
+"$bin"/landmass-target sheet --model slicy --out $out/slicy.png
 printf '\n== Pictures:\n'
 find $out -name '*.png' | sort
