@@ -1,6 +1,7 @@
 #include "lm/target_patch.h"
 
 #include "fx/log.h"
+#include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 
@@ -96,7 +97,7 @@ static uint32_t returns_of(const struct lm_patch_geometry *g, const struct lm_ta
 void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *set,
                          const struct lm_targets_near *near, const struct lm_patch_geometry *g)
 {
-    *p = (struct lm_patch_points){0};
+    memset(p, 0, sizeof *p);
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
         const struct lm_target *t = &set->items[item->index];
