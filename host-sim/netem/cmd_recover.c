@@ -17,7 +17,7 @@ static const struct db_usage usage = {
     "files as `train`; the true law is drawn as dots beside the learned curves. The paper's\n"
     "loss on real chips of SLICY is 0.003253."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_TRAIN_OPTIONS + 7 };
+enum { OPTIONS = NM_TARGET_OPTIONS + NM_TRAIN_OPTIONS + 8 };
 
 struct hidden {
     const char *law, *materials, *out;
@@ -217,6 +217,7 @@ int nm_cmd_recover(int argc, char **argv)
         {"hidden-materials", DB_TEXT, &h.materials, 0, 0, "FILE",
          "its surfaces, in the form that `landmass-target materials` prints", false},
         {"number", DB_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},
+        {"share", DB_REAL, &h.share, 0, 1, "P", "of them for training", false},
         {"looks", DB_INTEGER, &h.looks, 0, 64, "N", "of their speckle; 0: none", false},
         {"shift", DB_INTEGER, &h.shift_px, 0, 20, "PX", "of the hidden translation, at most",
          false},
@@ -224,8 +225,8 @@ int nm_cmd_recover(int argc, char **argv)
         {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };
-    nm_target_options(&s, options + 7);
-    nm_train_options(&s, options + 7 + NM_TARGET_OPTIONS);
+    nm_target_options(&s, options + 8);
+    nm_train_options(&s, options + 8 + NM_TARGET_OPTIONS);
     if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }

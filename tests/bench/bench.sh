@@ -86,3 +86,8 @@ if [ -x "$build/bin/landmass-target" ]; then
     echo
     sh "$here/target.sh" "$build"
 fi
+
+if [ -x "$build/bin/landmass-netem" ]; then
+    echo
+    sh "$here/netem.sh" "$build"
+fi
