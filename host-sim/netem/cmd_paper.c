@@ -83,7 +83,7 @@ static int train_one(struct nm_experiment *e, const char *folder, const char *ta
     const struct nm_samples others = nm_dataset_validation(&e->dataset);
     if (nm_experiment_train(e, path, has_training(path)) != 0 ||
         nm_experiment_plot(e->training, path, (int)e->view.scene.material_count, NULL) != 0 ||
-        nm_experiment_score(e, &others, path, 0, &summary) != 0) {
+        nm_experiment_score(e, &others, path, &summary) != 0) {
         return -1;
     }
     nm_summary_print(&summary, name);

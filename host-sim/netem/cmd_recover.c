@@ -194,7 +194,7 @@ static int run(const struct nm_settings *settings, struct hidden *h, bool is_res
         const struct nm_samples others = nm_dataset_validation(&e.dataset);
         const int materials = (int)e.view.scene.material_count;
         result = nm_experiment_plot(e.training, h->out, materials, &h->truth) == 0
-                     ? nm_experiment_score(&e, &others, h->out, 0, &summary)
+                     ? nm_experiment_score(&e, &others, h->out, &summary)
                      : -1;
     }
     if (result == 0) {

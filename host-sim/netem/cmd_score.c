@@ -9,14 +9,15 @@
 static const struct db_usage usage = {
     "score", "simulated chips beside real ones: MSE, SSIM, CW-SSIM and a picture",
     "Simulate each chip's aspect with what was learned and with the simulator's own law, whose\n"
-    "gain is fitted on the training chips, and compare both with the real chip. Leaves\n"
+    "gain is fitted on the training chips, and compare both with the real chip; CW-SSIM also\n"
+    "with both at the gains that suit it best on the training chips. Leaves\n"
     "scores.tsv, cw-ssim.png and table.png in the folder. Chips, calibration, --share and\n"
     "--seed must be those of the training, or the chips that validate are not the same."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 5 };
+enum { OPTIONS = NM_TARGET_OPTIONS + NM_CHIP_OPTIONS + 4 };
 
 static int run(const struct nm_settings *settings, const struct nm_chip_list *list,
-               const char *training, const char *set, double own_gain, const char *out)
+               const char *training, const char *set, const char *out)
 {
     struct nm_experiment e;
     struct nm_summary summary;
@@ -29,7 +30,7 @@ static int run(const struct nm_settings *settings, const struct nm_chip_list *li
         const struct nm_samples samples = strcmp(set, "training") == 0
                                               ? nm_dataset_training(&e.dataset)
                                               : nm_dataset_validation(&e.dataset);
-        result = nm_experiment_score(&e, &samples, out, own_gain, &summary);
+        result = nm_experiment_score(&e, &samples, out, &summary);
     }
     if (result == 0) {
         nm_summary_print(&summary, set);
@@ -43,7 +44,6 @@ int nm_cmd_score(int argc, char **argv)
     struct nm_settings s = nm_settings_default();
     struct nm_chip_list list;
     const char *out = NULL, *training = NULL, *set = "validation";
-    double own_gain = 0;
     int exit_code;
     struct db_option options[OPTIONS] = {
         {"training", DB_TEXT, &training, 0, 0, "FILE", "that `train` left", true},
@@ -51,12 +51,9 @@ int nm_cmd_score(int argc, char **argv)
         {"set", DB_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
          false},
         {"seed", DB_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},
-        {"own-gain", DB_REAL, &own_gain, 0, 1e6, "K",
-         "of the simulator's own law over the kernel's; 0: least squares on the training chips",
-         false},
     };
-    nm_target_options(&s, options + 5);
-    nm_chip_options(&s, options + 5 + NM_TARGET_OPTIONS);
+    nm_target_options(&s, options + 4);
+    nm_chip_options(&s, options + 4 + NM_TARGET_OPTIONS);
     if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }
@@ -67,7 +64,7 @@ int nm_cmd_score(int argc, char **argv)
     if (nm_chip_list_read(&list, s.chips) != 0) {
         return HS_EXIT_FAILED;
     }
-    const int result = run(&s, &list, training, set, own_gain, out);
+    const int result = run(&s, &list, training, set, out);
     nm_chip_list_free(&list);
     return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }

@@ -31,7 +31,7 @@ static int run(const struct nm_settings *settings, const struct nm_chip_list *li
     }
     const struct nm_samples others = nm_dataset_validation(&e.dataset);
     if (result == 0 && others.count > 0) {
-        result = nm_experiment_score(&e, &others, out, 0, &summary);
+        result = nm_experiment_score(&e, &others, out, &summary);
         if (result == 0) {
             nm_summary_print(&summary, "validation");
         }

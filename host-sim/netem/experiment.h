@@ -34,18 +34,23 @@ int nm_experiment_take(struct nm_experiment *e, const char *path);
 int nm_experiment_plot(const struct nm_training *t, const char *folder, int material_count,
                        const struct reflect_law *truth);
 
-/* Means over some chips. */
+/* Means over some chips. A network that is trained for the least square error shows the mean of
+ * what it cannot foretell, which is paler than any chip; CW-SSIM minds. So each simulator is also
+ * scored with all its amplitudes brought, by one gain, to where its CW-SSIM on the training chips
+ * is best. */
 struct nm_summary {
-    struct nm_score learned, own; /* networks; the simulator's own law */
-    double own_gain;              /* over the kernel's */
+    struct nm_score learned, own;  /* networks as trained; own law at the gain of least squares */
+    double own_gain;               /* that gain over the kernel's */
+    double learned_best, own_best; /* CW-SSIM at each one's best gain */
+    double learned_best_gain, own_best_gain; /* those gains, over the two above */
     int count;
 };
 
 /* Score the chips `samples` by the learned simulator and by its own law, both registered:
- * scores.tsv, cw-ssim.png and table.png in the folder. The own law's gain is the one of least
- * squares on the training chips. Returns 0, or -1 reported. */
+ * scores.tsv, cw-ssim.png (at the best gains) and table.png in the folder. All gains are fitted on
+ * the training chips. Returns 0, or -1 reported. */
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
-                        const char *folder, double own_gain, struct nm_summary *summary);
+                        const char *folder, struct nm_summary *summary);
 void nm_summary_print(const struct nm_summary *summary, const char *what);
 
 #endif

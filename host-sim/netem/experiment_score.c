@@ -11,47 +11,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHOWN = 8, KINDS = 3, REAL = 0, OWN = 1, LEARNED = 2, GAINS = 41, FITTED_MAX = 24 };
+/* REAL twice: below the own law's picture and below the learned one, which may lie elsewhere. */
+enum { OWN_REAL, OWN, LEARNED_REAL, LEARNED, KINDS };
+enum { SHOWN = 8, SQUARE_GAINS = 41, BEST_GAINS = 17, FITTED_MAX = 24 };
 
-/* Everything of the scored chips: for each, KINDS squares. */
-struct scored {
+/* What both simulators show of some chips, registered; amplitudes through tanh. */
+struct shown {
     int count, side;
-    double *pixels;
-    struct nm_score *learned, *own;
-    double *azimuth_deg;
+    double *pixels; /* owned: KINDS squares for each chip */
 };
 
-static int scored_open(struct scored *s, int count, int side)
-{
-    const size_t n = (size_t)count + 1;
-    *s = (struct scored){count,
-                         side,
-                         malloc(n * KINDS * (size_t)(side * side) * sizeof(double)),
-                         malloc(n * sizeof *s->learned),
-                         malloc(n * sizeof *s->own),
-                         malloc(n * sizeof(double))};
-    return s->pixels && s->learned && s->own && s->azimuth_deg
-               ? 0
-               : hs_error("scores", "take fewer chips", "out of memory");
-}
-
-static void scored_close(struct scored *s)
-{
-    free(s->pixels);
-    free(s->learned);
-    free(s->own);
-    free(s->azimuth_deg);
-}
-
-static double *square_of(const struct scored *s, int chip, int kind)
+static double *square_of(const struct shown *s, int chip, int kind)
 {
     return s->pixels + (size_t)(chip * KINDS + kind) * (size_t)(s->side * s->side);
 }
 
 /* The simulator's own picture, its kernel times `gain`, in t->simulator.pixels. */
-static void draw_own(struct nm_training *t, const struct nm_sample *sample, double gain,
-                     double *kernel)
+static void draw_own(struct nm_training *t, const struct nm_sample *sample, double gain)
 {
+    double kernel[NM_LARGE * NM_LARGE];
     for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
         kernel[i] = gain * t->model.kernel[i];
     }
@@ -65,17 +43,23 @@ static struct nm_origin place(struct nm_training *t, const struct nm_sample *sam
                                 : sample->origin;
 }
 
+/* Chip i of about FITTED_MAX, spread over all of them. */
+static const struct nm_sample *fitted(const struct nm_samples *samples, int i, int count)
+{
+    return &samples->items[(long)i * samples->count / count];
+}
+
 /* The gain, from a thousandth of the kernel's to a hundredfold, of the least mean square error. */
-static double fit_gain(struct nm_training *t, const struct nm_samples *samples, double *kernel)
+static double fit_square(struct nm_training *t, const struct nm_samples *samples)
 {
     double best_gain = 1, least = INFINITY;
     const int count = samples->count < FITTED_MAX ? samples->count : FITTED_MAX;
-    for (int g = 0; g < GAINS && count > 0; g++) {
-        const double gain = pow(10, -3 + 5.0 * g / (GAINS - 1));
+    for (int g = 0; g < SQUARE_GAINS && count > 0; g++) {
+        const double gain = pow(10, -3 + 5.0 * g / (SQUARE_GAINS - 1));
         double sum = 0;
         for (int i = 0; i < count; i++) {
-            const struct nm_sample *s = &samples->items[i * samples->count / count];
-            draw_own(t, s, gain, kernel);
+            const struct nm_sample *s = fitted(samples, i, count);
+            draw_own(t, s, gain);
             sum += nm_loss(NM_MSE, t->simulator.pixels, t->simulator.side_px, &s->real, place(t, s),
                            NULL);
         }
@@ -85,29 +69,82 @@ static double fit_gain(struct nm_training *t, const struct nm_samples *samples, 
     return best_gain;
 }
 
-/* Score what the simulator shows against the real chip below it, and keep both. */
-static int score_shown(struct nm_training *t, const struct nm_sample *sample, struct nm_origin at,
-                       double *kept, double *real, struct nm_score *score)
+static void keep(const struct nm_training *t, const struct nm_sample *sample, struct nm_origin at,
+                 double *simulated, double *real)
 {
     const int side = t->simulator.side_px;
-    memcpy(kept, t->simulator.pixels, (size_t)(side * side) * sizeof *kept);
+    memcpy(simulated, t->simulator.pixels, (size_t)(side * side) * sizeof *simulated);
     nm_picture_cut(&sample->real, at, side, real);
-    return nm_score(kept, real, side, score);
 }
 
-static int score_chip(struct nm_training *t, const struct nm_sample *sample, double own_gain,
-                      double *kernel, struct scored *s, int i)
+static int show(struct nm_training *t, const struct nm_sample *sample, double own_gain,
+                struct shown *s, int i)
 {
     struct nm_origin at;
-    double *real = square_of(s, i, REAL);
-    draw_own(t, sample, own_gain, kernel);
-    if (score_shown(t, sample, place(t, sample), square_of(s, i, OWN), real, &s->own[i]) != 0 ||
-        nm_training_show(t, sample, &at) != 0) {
+    draw_own(t, sample, own_gain);
+    keep(t, sample, place(t, sample), square_of(s, i, OWN), square_of(s, i, OWN_REAL));
+    if (nm_training_show(t, sample, &at) != 0) {
         return -1;
     }
-    s->azimuth_deg[i] = sample->azimuth_deg;
-    return score_shown(t, sample, at, square_of(s, i, LEARNED), real, &s->learned[i]);
+    keep(t, sample, at, square_of(s, i, LEARNED), square_of(s, i, LEARNED_REAL));
+    return 0;
 }
+
+/* Up to `most` of the samples. Returns 0, or -1 with the error reported and nothing to free. */
+static int show_all(struct nm_training *t, const struct nm_samples *samples, int most,
+                    double own_gain, struct shown *s)
+{
+    const int side = t->simulator.side_px, count = samples->count < most ? samples->count : most;
+    *s = (struct shown){
+        count, side,
+        malloc(((size_t)count * KINDS * (size_t)(side * side) + 1) * sizeof *s->pixels)};
+    int result = s->pixels ? 0 : hs_error("scores", "take fewer chips", "out of memory");
+    for (int i = 0; i < count && result == 0; i++) {
+        result = show(t, fitted(samples, i, count), own_gain, s, i);
+    }
+    if (result != 0) {
+        free(s->pixels);
+    }
+    return result;
+}
+
+/* All amplitudes of a square times `gain`. */
+static void brighten(const double *pixels, int count, double gain, double *brighter)
+{
+    for (int i = 0; i < count; i++) {
+        brighter[i] = tanh(gain * atanh(fmin(pixels[i], 1 - 1e-12)));
+    }
+}
+
+/* CW-SSIM of chip i at a gain; `scratch` is a square. NaN out of memory. */
+static double cw_ssim_at(const struct shown *s, int i, int kind, double gain, double *scratch)
+{
+    double score;
+    brighten(square_of(s, i, kind), s->side * s->side, gain, scratch);
+    return nm_score_cw_ssim(scratch, square_of(s, i, kind - 1), s->side, &score) == 0 ? score : NAN;
+}
+
+/* The gain, a fifth to five, of the best mean CW-SSIM. */
+static double fit_best(const struct shown *s, int kind, double *scratch)
+{
+    double best_gain = 1, most = 0;
+    for (int g = 0; g < BEST_GAINS; g++) {
+        const double gain = pow(5, -1 + 2.0 * g / (BEST_GAINS - 1));
+        double sum = 0;
+        for (int i = 0; i < s->count; i++) {
+            sum += cw_ssim_at(s, i, kind, gain, scratch);
+        }
+        best_gain = sum > most ? gain : best_gain;
+        most = fmax(sum, most);
+    }
+    return best_gain;
+}
+
+/* Scores of each chip. */
+struct scored {
+    struct nm_score learned, own;
+    double learned_best, own_best, azimuth_deg;
+};
 
 static void add(struct nm_score *sum, const struct nm_score *score, int count)
 {
@@ -116,58 +153,99 @@ static void add(struct nm_score *sum, const struct nm_score *score, int count)
     sum->cw_ssim += score->cw_ssim / count;
 }
 
-static int write_scores(const struct scored *s, const struct nm_samples *samples, const char *path)
+static int score_chip(const struct shown *s, int i, const struct nm_summary *m, double *scratch,
+                      struct scored *scored)
+{
+    if (nm_score(square_of(s, i, LEARNED), square_of(s, i, LEARNED_REAL), s->side,
+                 &scored->learned) != 0 ||
+        nm_score(square_of(s, i, OWN), square_of(s, i, OWN_REAL), s->side, &scored->own) != 0) {
+        return -1;
+    }
+    scored->learned_best = cw_ssim_at(s, i, LEARNED, m->learned_best_gain, scratch);
+    scored->own_best = cw_ssim_at(s, i, OWN, m->own_best_gain, scratch);
+    return 0;
+}
+
+static int score_all(const struct shown *s, const struct nm_samples *samples, struct nm_summary *m,
+                     double *scratch, struct scored *scored)
+{
+    struct hs_progress progress;
+    int result = 0;
+    hs_progress_begin(&progress, "scoring", (uint64_t)s->count);
+    for (int i = 0; i < s->count && result == 0; i++) {
+        scored[i] = (struct scored){.azimuth_deg = samples->items[i].azimuth_deg};
+        result = score_chip(s, i, m, scratch, &scored[i]);
+        add(&m->learned, &scored[i].learned, s->count);
+        add(&m->own, &scored[i].own, s->count);
+        m->learned_best += scored[i].learned_best / s->count;
+        m->own_best += scored[i].own_best / s->count;
+        hs_progress_update(&progress, (uint64_t)i + 1);
+    }
+    hs_progress_end(&progress);
+    return result;
+}
+
+static int write_scores(const struct scored *scored, const struct nm_samples *samples,
+                        const char *path)
 {
     struct hs_atomic_file file;
     if (hs_atomic_open(&file, path) != 0) {
         return -1;
     }
-    fputs("chip\tazimuth\tmse\tssim\tcw_ssim\town_mse\town_ssim\town_cw_ssim\n", file.stream);
-    for (int i = 0; i < s->count; i++) {
-        const struct nm_score *l = &s->learned[i], *o = &s->own[i];
-        fprintf(file.stream, "%s\t%.2f\t%.6f\t%.4f\t%.4f\t%.6f\t%.4f\t%.4f\n",
-                samples->items[i].name, s->azimuth_deg[i], l->mse, l->ssim, l->cw_ssim, o->mse,
-                o->ssim, o->cw_ssim);
+    fputs(
+        "chip\tazimuth\tmse\tssim\tcw_ssim\tbest_cw_ssim\town_mse\town_ssim\town_cw_ssim\t"
+        "own_best_cw_ssim\n",
+        file.stream);
+    for (int i = 0; i < samples->count; i++) {
+        const struct nm_score *l = &scored[i].learned, *o = &scored[i].own;
+        fprintf(file.stream, "%s\t%.2f\t%.6f\t%.4f\t%.4f\t%.4f\t%.6f\t%.4f\t%.4f\t%.4f\n",
+                samples->items[i].name, scored[i].azimuth_deg, l->mse, l->ssim, l->cw_ssim,
+                scored[i].learned_best, o->mse, o->ssim, o->cw_ssim, scored[i].own_best);
     }
     return hs_atomic_commit(&file);
 }
 
-static int draw_table(const struct scored *s, const char *path)
+static int draw_table(const struct shown *s, const struct scored *scored, const char *path)
 {
-    const double *pictures[SHOWN * KINDS];
-    static const char *const titles[KINDS] = {"real chip", "own law", "learned"};
+    enum { ROWS = 3 };
+    const double *pictures[SHOWN * ROWS];
+    static const char *const titles[ROWS] = {"real chip", "own law", "learned"};
     char text[SHOWN][16];
     const char *names[SHOWN];
-    const int shown = s->count < SHOWN ? s->count : SHOWN;
-    for (int k = 0; k < shown; k++) {
-        const int i = k * s->count / shown;
-        snprintf(text[k], sizeof text[k], "%.0f deg", s->azimuth_deg[i]);
+    const int count = s->count < SHOWN ? s->count : SHOWN;
+    for (int k = 0; k < count; k++) {
+        const int i = k * s->count / count;
+        snprintf(text[k], sizeof text[k], "%.0f deg", scored[i].azimuth_deg);
         names[k] = text[k];
-        for (int kind = 0; kind < KINDS; kind++) {
-            pictures[k * KINDS + kind] = square_of(s, i, kind);
-        }
+        pictures[k * ROWS] = square_of(s, i, LEARNED_REAL);
+        pictures[k * ROWS + 1] = square_of(s, i, OWN);
+        pictures[k * ROWS + 2] = square_of(s, i, LEARNED);
     }
-    return nm_report_table(path, pictures, shown, KINDS, s->side, titles, names);
+    return nm_report_table(path, pictures, count, ROWS, s->side, titles, names);
 }
 
-static int draw_curves(const struct scored *s, const char *path)
+static int draw_curves(const struct scored *scored, int count, const char *path)
 {
-    double *cw = malloc(2 * ((size_t)s->count + 1) * sizeof *cw);
-    if (!cw) {
+    double *values = malloc(3 * ((size_t)count + 1) * sizeof *values);
+    if (!values) {
         return hs_error("scores", NULL, "out of memory");
     }
-    for (int i = 0; i < s->count; i++) {
-        cw[i] = s->learned[i].cw_ssim;
-        cw[s->count + i] = s->own[i].cw_ssim;
+    double *azimuth = values, *learned = values + count, *own = values + 2 * (size_t)count;
+    for (int i = 0; i < count; i++) {
+        azimuth[i] = scored[i].azimuth_deg;
+        learned[i] = scored[i].learned_best;
+        own[i] = scored[i].own_best;
     }
-    const struct nm_score_curve curves[2] = {{"learned", s->azimuth_deg, cw, s->count},
-                                             {"own law", s->azimuth_deg, cw + s->count, s->count}};
-    const int result = nm_report_scores(path, "cw-ssim with the real chip", curves, 2);
-    free(cw);
+    const struct nm_score_curve curves[2] = {{"learned", azimuth, learned, count},
+                                             {"own law", azimuth, own, count}};
+    const int result =
+        nm_report_scores(path, "cw-ssim with the real chip, each at its best gain", curves, 2);
+    free(values);
     return result;
 }
 
-static int report(const struct scored *s, const struct nm_samples *samples, const char *folder)
+static int report(const struct shown *s, const struct scored *scored,
+                  const struct nm_samples *samples, const char *folder)
 {
     char table[4096], curves[4096], scores[4096];
     if (nm_report_path(table, sizeof table, folder, "table.png") != 0 ||
@@ -175,61 +253,61 @@ static int report(const struct scored *s, const struct nm_samples *samples, cons
         nm_report_path(scores, sizeof scores, folder, "scores.tsv") != 0) {
         return -1;
     }
-    return draw_table(s, table) == 0 && draw_curves(s, curves) == 0 &&
-                   write_scores(s, samples, scores) == 0
+    return draw_table(s, scored, table) == 0 && draw_curves(scored, s->count, curves) == 0 &&
+                   write_scores(scored, samples, scores) == 0
                ? 0
                : -1;
 }
 
-static int score_all(struct nm_experiment *e, const struct nm_samples *samples, double *kernel,
-                     struct scored *s, struct nm_summary *summary)
+static int fit_gains(struct nm_experiment *e, double *scratch, struct nm_summary *m)
 {
+    struct shown s;
     const struct nm_samples training = nm_dataset_training(&e->dataset);
-    struct hs_progress progress;
-    int result = 0;
-    if (summary->own_gain == 0) {
-        summary->own_gain = fit_gain(e->training, &training, kernel);
+    m->own_gain = fit_square(e->training, &training);
+    if (show_all(e->training, &training, FITTED_MAX, m->own_gain, &s) != 0) {
+        return -1;
     }
-    hs_progress_begin(&progress, "scoring", (uint64_t)s->count);
-    for (int i = 0; i < s->count && result == 0; i++) {
-        result = score_chip(e->training, &samples->items[i], summary->own_gain, kernel, s, i);
-        if (result == 0) {
-            add(&summary->learned, &s->learned[i], s->count);
-            add(&summary->own, &s->own[i], s->count);
-        }
-        hs_progress_update(&progress, (uint64_t)i + 1);
-    }
-    hs_progress_end(&progress);
-    return result;
+    m->learned_best_gain = fit_best(&s, LEARNED, scratch);
+    m->own_best_gain = fit_best(&s, OWN, scratch);
+    free(s.pixels);
+    return 0;
 }
 
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
-                        const char *folder, double own_gain, struct nm_summary *summary)
+                        const char *folder, struct nm_summary *summary)
 {
-    struct scored s = {0};
-    double *kernel = malloc(NM_LARGE * NM_LARGE * sizeof *kernel);
-    *summary = (struct nm_summary){.count = samples->count, .own_gain = own_gain};
-    int result = kernel ? 0 : hs_error("scores", NULL, "out of memory");
-    result = samples->count > 0
-                 ? result
-                 : hs_error("scores", "give another --share", "has no chips to score");
-    result = result == 0 ? scored_open(&s, samples->count, e->training->simulator.side_px) : -1;
-    if (result == 0) {
-        result = score_all(e, samples, kernel, &s, summary);
+    struct shown s;
+    const int side = e->training->simulator.side_px;
+    double *scratch = malloc((size_t)(side * side) * sizeof *scratch);
+    struct scored *scored = malloc(((size_t)samples->count + 1) * sizeof *scored);
+    *summary = (struct nm_summary){.count = samples->count};
+    int result = scratch && scored ? 0 : hs_error("scores", NULL, "out of memory");
+    if (result == 0 && samples->count == 0) {
+        result = hs_error("scores", "give another --share", "has no chips to score");
     }
-    result = result == 0 ? report(&s, samples, folder) : -1;
-    scored_close(&s);
-    free(kernel);
+    result = result == 0 ? fit_gains(e, scratch, summary) : -1;
+    if (result == 0) {
+        result = show_all(e->training, samples, samples->count, summary->own_gain, &s);
+    }
+    if (result == 0) {
+        result = score_all(&s, samples, summary, scratch, scored) == 0
+                     ? report(&s, scored, samples, folder)
+                     : -1;
+        free(s.pixels);
+    }
+    free(scratch);
+    free(scored);
     return result;
 }
 
 void nm_summary_print(const struct nm_summary *s, const char *what)
 {
     printf("%s, %d chips:\n", what, s->count);
-    printf("  learned   mse %.6f   ssim %.4f   cw-ssim %.4f\n", s->learned.mse, s->learned.ssim,
-           s->learned.cw_ssim);
-    printf(
-        "  own law   mse %.6f   ssim %.4f   cw-ssim %.4f   (gain fitted on the training chips: "
-        "%.3g)\n",
-        s->own.mse, s->own.ssim, s->own.cw_ssim, s->own_gain);
+    printf("  learned   mse %.6f   ssim %.4f   cw-ssim %.4f, at its best gain (%.2f) %.4f\n",
+           s->learned.mse, s->learned.ssim, s->learned.cw_ssim, s->learned_best_gain,
+           s->learned_best);
+    printf("  own law   mse %.6f   ssim %.4f   cw-ssim %.4f, at its best gain (%.2f) %.4f\n",
+           s->own.mse, s->own.ssim, s->own.cw_ssim, s->own_best_gain, s->own_best);
+    printf("  the own law's gain of least squares on the training chips is %.3g of the kernel's\n",
+           s->own_gain);
 }

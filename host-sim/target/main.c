@@ -30,7 +30,10 @@ static void print_menu(FILE *out)
     for (int i = 0; i < COMMANDS; i++) {
         fprintf(out, "  %-9s  %s\n", commands[i].name, commands[i].help);
     }
-    fputs("\n`landmass-target COMMAND --help` explains a command.\n", out);
+    fputs(
+        "\n`landmass-target COMMAND --help` explains a command.\n"
+        "landmass-netem learns the reflection from real chips.\n",
+        out);
 }
 
 int main(int argc, char **argv)
