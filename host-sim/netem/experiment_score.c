@@ -276,7 +276,7 @@ static int fit_gains(struct nm_experiment *e, double *scratch, struct nm_summary
 int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
                         const char *folder, struct nm_summary *summary)
 {
-    struct shown s;
+    struct shown s = {0};
     const int side = e->training->simulator.side_px;
     double *scratch = malloc((size_t)(side * side) * sizeof *scratch);
     struct scored *scored = malloc(((size_t)samples->count + 1) * sizeof *scored);

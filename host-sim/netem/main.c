@@ -17,6 +17,7 @@ static const struct command {
     {"plot", "draw what was learned: loss, reflection curves, kernels", nm_cmd_plot},
     {"recover", "hide a law in made chips, learn it, and tell how well it was found",
      nm_cmd_recover},
+    {"response", "impulse response and speckle beside a real radar's", nm_cmd_response},
     {"paper", "the whole experiment of the paper on the full MSTAR set", nm_cmd_paper},
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };

@@ -65,8 +65,9 @@ static void a_training_killed_at_any_epoch_ends_in_the_same_file(void **state)
                                  "table.png cw-ssim.png scores.tsv training.netem",
                                  folder),
                      0);
-    assert_int_equal(support_run(RECOVER " & p=$!; while [ ! -s %s/cut/training.netem ]; do sleep "
-                                         "0.05; done; kill -9 $p; wait $p; true",
+    assert_int_equal(support_run(RECOVER
+                                 " & p=$!; while [ ! -s %s/cut/training.netem ] && "
+                                 "kill -0 $p; do sleep 0.05; done; kill -9 $p; wait $p; true",
                                  b, folder, "cut", folder),
                      0);
     assert_int_equal(support_run(RECOVER, b, folder, "cut"), 1);
@@ -118,6 +119,28 @@ static void real_chips_go_all_the_way(void **state)
     assert_int_equal(support_run("test $(wc -l < %s/scored/scores.tsv) = 4", folder), 0);
 }
 
+/* The simulated response lies on the real ones within a twentieth of the peak, and one look is one
+ * look. */
+static void the_response_is_that_of_a_real_radar(void **state)
+{
+    (void)state;
+    char history[512];
+    if (!support_data_path("gotcha_xband/data_3dsar_pass1_az001_HH.mat", history, sizeof history)) {
+        skip();
+    }
+    assert_int_equal(support_run("%s/bin/landmass-netem response --history %s > %s/response",
+                                 support_build_dir(), history, folder),
+                     0);
+    assert_int_equal(support_run("awk '/range|cross/ { n++; worse += $4 > 0.05 } "
+                                 "END { exit !(n >= 4 && worse == 0) }' %s/response",
+                                 folder),
+                     0);
+    assert_int_equal(support_run("awk '/^simulated/ { ok = $3 > 0.99 && $3 < 1.01 } "
+                                 "END { exit !ok }' %s/response",
+                                 folder),
+                     0);
+}
+
 /* Raw chips by the published description, with the models' own pictures for magnitudes would teach
  * nothing new; that they are taken, divided and trained on in one command is what is shown. */
 static void the_papers_experiment_is_one_command(void **state)
@@ -151,6 +174,7 @@ int main(void)
         cmocka_unit_test(a_training_killed_at_any_epoch_ends_in_the_same_file),
         cmocka_unit_test(trainings_are_drawn_together),
         cmocka_unit_test(real_chips_go_all_the_way),
+        cmocka_unit_test(the_response_is_that_of_a_real_radar),
         cmocka_unit_test(the_papers_experiment_is_one_command),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
