@@ -10,19 +10,19 @@
 
 static const struct db_usage usage = {
     "recover", "hide a law in made chips, learn it, and tell how well it was found",
-    "Make \"real\" chips of the model by a hidden law of reflection, seen from azimuths drawn by\n"
+    "Make \"real\" chips of the model by a hidden law of reflection, seen from aspects drawn by\n"
     "lot, with speckle and a hidden translation; train on a part of them without telling the\n"
     "law; report the loss on aspects never shown and the error of what was learned, over the\n"
     "reflections that occur there, weighted by the power that meets them. Leaves the same\n"
     "files as `train`; the true law is drawn as dots beside the learned curves. The paper's\n"
     "loss on real chips of SLICY is 0.003253."};
 
-enum { OPTIONS = NM_TARGET_OPTIONS + NM_TRAIN_OPTIONS + 8 };
+enum { OPTIONS = NM_TARGET_OPTIONS + NM_TRAIN_OPTIONS + 9 };
 
 struct hidden {
     const char *law, *materials, *out;
     long chips, looks, shift_px;
-    double share;
+    double share, highest_deg;
     double noise; /* mean square of what speckle adds: no simulator comes below it */
     struct reflect_law truth;
 };
@@ -68,10 +68,10 @@ static int make_chip(struct hidden *h, struct nm_simulator *s, const struct nm_m
 }
 
 /* Trace one aspect: paths, the simulator's own picture, and the truth's table of materials. */
-static int trace_aspect(struct nm_experiment *e, struct hidden *h, struct nm_sample *sample)
+static int trace_aspect(struct nm_experiment *e, struct hidden *h, struct nm_sample *sample,
+                        double depression_deg)
 {
     struct nm_target_view view = e->view;
-    const double depression_deg = e->settings.setup.depression_deg;
     const size_t cells = (size_t)e->settings.setup.cells * (size_t)e->settings.setup.cells;
     struct nm_paths again;
     view.setup.law = h->law;
@@ -98,6 +98,8 @@ static int make_chips(struct nm_experiment *e, struct hidden *h)
     double kernel[NM_LARGE * NM_LARGE];
     struct nm_dataset *d = &e->dataset;
     struct hs_progress progress;
+    const double lowest_deg = e->settings.setup.depression_deg;
+    const double span_deg = fmax(h->highest_deg - lowest_deg, 0);
     hs_rng_seed(&rng, (uint64_t)e->settings.seed + 1);
     nm_settings_kernel(&e->settings, kernel);
     d->samples = calloc((size_t)h->chips, sizeof *d->samples);
@@ -109,9 +111,11 @@ static int make_chips(struct nm_experiment *e, struct hidden *h)
     while (result == 0 && d->count < h->chips) {
         struct nm_sample *sample = &d->samples[d->count++];
         sample->azimuth_deg = 360 * hs_rng_uniform(&rng);
+        const double depression_deg = lowest_deg + span_deg * hs_rng_uniform(&rng);
         snprintf(sample->name, sizeof sample->name, "made-%03d", d->count);
-        result =
-            trace_aspect(e, h, sample) == 0 ? make_chip(h, &simulator, &model, sample, &rng) : -1;
+        result = trace_aspect(e, h, sample, depression_deg) == 0
+                     ? make_chip(h, &simulator, &model, sample, &rng)
+                     : -1;
         hs_progress_update(&progress, (uint64_t)d->count);
     }
     hs_progress_end(&progress);
@@ -218,6 +222,8 @@ int nm_cmd_recover(int argc, char **argv)
          "its surfaces, in the form that `landmass-target materials` prints", false},
         {"number", DB_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},
         {"share", DB_REAL, &h.share, 0, 1, "P", "of them for training", false},
+        {"depression-to", DB_REAL, &h.highest_deg, 0, 89, "DEG",
+         "draw depressions by lot, from --depression to this; 0: all are the same", false},
         {"looks", DB_INTEGER, &h.looks, 0, 64, "N", "of their speckle; 0: none", false},
         {"shift", DB_INTEGER, &h.shift_px, 0, 20, "PX", "of the hidden translation, at most",
          false},
@@ -225,8 +231,8 @@ int nm_cmd_recover(int argc, char **argv)
         {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };
-    nm_target_options(&s, options + 8);
-    nm_train_options(&s, options + 8 + NM_TARGET_OPTIONS);
+    nm_target_options(&s, options + 9);
+    nm_train_options(&s, options + 9 + NM_TARGET_OPTIONS);
     if (!db_options_read(&usage, options, OPTIONS, argc, argv, &exit_code)) {
         return exit_code;
     }

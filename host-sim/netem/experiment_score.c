@@ -279,7 +279,7 @@ int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *sample
     struct shown s = {0};
     const int side = e->training->simulator.side_px;
     double *scratch = malloc((size_t)(side * side) * sizeof *scratch);
-    struct scored *scored = malloc(((size_t)samples->count + 1) * sizeof *scored);
+    struct scored *scored = calloc((size_t)samples->count + 1, sizeof *scored);
     *summary = (struct nm_summary){.count = samples->count};
     int result = scratch && scored ? 0 : hs_error("scores", NULL, "out of memory");
     if (result == 0 && samples->count == 0) {
