@@ -3,6 +3,7 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
+#include "hs/taylor.h"
 
 #include <fftw3.h>
 #include <math.h>
@@ -12,32 +13,6 @@
 enum { OVERSAMPLING = 16, TAYLOR_N_BAR = 5 };
 
 static const double pi = 3.14159265358979323846;
-
-/* Coefficient m of the weighting's cosine series (Taylor 1955; the same in Carrara, appendix D). */
-static double taylor_coefficient(int m, double a, double sigma2, int n_bar)
-{
-    double above = 1, below = 1;
-    for (int n = 1; n < n_bar; n++) {
-        above *= 1 - m * m / (sigma2 * (a * a + (n - 0.5) * (n - 0.5)));
-        if (n != m) {
-            below *= 1 - (double)(m * m) / (n * n);
-        }
-    }
-    return (m % 2 ? 0.5 : -0.5) * above / below;
-}
-
-void rr_taylor(double *weight, int count, double sidelobe_db, int n_bar)
-{
-    const double a = acosh(pow(10, sidelobe_db / 20)) / pi;
-    const double sigma2 = n_bar * n_bar / (a * a + (n_bar - 0.5) * (n_bar - 0.5));
-    for (int i = 0; i < count; i++) {
-        const double x = (i + 0.5) / count - 0.5;
-        weight[i] = 1;
-        for (int m = 1; m < n_bar && sidelobe_db > 0; m++) {
-            weight[i] += 2 * taylor_coefficient(m, a, sigma2, n_bar) * cos(2 * pi * m * x);
-        }
-    }
-}
 
 static int bins_for(int frequencies)
 {
@@ -97,8 +72,8 @@ int rr_compress(struct rr_profiles *profiles, const struct rr_phase_history *ph,
         return hs_error("range compression", NULL, "out of memory");
     }
     double *by_frequency = weight, *by_pulse = weight + most;
-    rr_taylor(by_frequency, ph->frequencies, taylor_db, TAYLOR_N_BAR);
-    rr_taylor(by_pulse, ph->pulses, taylor_db, TAYLOR_N_BAR);
+    hs_taylor(by_frequency, ph->frequencies, taylor_db, TAYLOR_N_BAR);
+    hs_taylor(by_pulse, ph->pulses, taylor_db, TAYLOR_N_BAR);
     profiles->bin_m = rr_light_m_s / (2 * ph->step_hz * profiles->bins);
     profiles->carrier_rad_m =
         4 * pi * (ph->first_hz + ph->frequencies / 2 * ph->step_hz) / rr_light_m_s;

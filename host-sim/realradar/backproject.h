@@ -48,9 +48,4 @@ struct rr_place rr_image_place(const struct rr_image *image, int column, int row
  * or -1 with the error reported. */
 int rr_image_write(const struct rr_image *image, const char *path, double span_db);
 
-/* Taylor's weighting for `count` values, the middle ones largest (T. T. Taylor, "Design of
- * line-source antennas for narrow beamwidth and low side lobes", IRE Trans. AP-3, 1955).
- * `sidelobe_db` > 0; 0 gives ones. */
-void rr_taylor(double *weight, int count, double sidelobe_db, int n_bar);
-
 #endif

@@ -1,56 +1,29 @@
 #include "pix.h"
 
 #include "hs/error.h"
+#include "hs/taylor.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-enum { NBAR = 4 };
-
 static const double pi = 3.14159265358979323846;
 static const double side_lobe_db = 35;
+static const int n_bar = 4;
 static const double width_in_nulls = 1.184; /* -3 dB width of Taylor -35 dB, nbar 4 */
-
-/* Coefficients of the window's cosines: T. T. Taylor (1955); the form of Carrara, Goodman,
- * Majewski, Spotlight Synthetic Aperture Radar, appendix D.2. */
-static void taylor_terms(double terms[NBAR])
-{
-    const double a = acosh(pow(10, side_lobe_db / 20)) / pi;
-    const double dilation = NBAR * NBAR / (a * a + (NBAR - 0.5) * (NBAR - 0.5));
-    terms[0] = 0;
-    for (int m = 1; m < NBAR; m++) {
-        double above = m % 2 == 1 ? 1 : -1, below = 2;
-        for (int n = 1; n < NBAR; n++) {
-            above *= 1 - m * m / (dilation * (a * a + (n - 0.5) * (n - 0.5)));
-            below *= n == m ? 1 : 1 - (double)(m * m) / (n * n);
-        }
-        terms[m] = above / below;
-    }
-}
-
-static double window_at(const double terms[NBAR], double turn)
-{
-    double weight = 1;
-    for (int m = 1; m < NBAR; m++) {
-        weight += 2 * terms[m] * cos(m * turn);
-    }
-    return weight;
-}
 
 void pix_taylor(int aperture, double response[PIX_KERNEL_SIDE])
 {
-    double terms[NBAR], sum = 0;
-    taylor_terms(terms);
+    double window[PIX_KERNEL_SIDE], sum = 0;
+    hs_taylor(window, aperture, side_lobe_db, n_bar);
     for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
         response[i] = 0;
     }
     for (int n = 0; n < aperture; n++) {
-        const double off = n - (aperture - 1) / 2.0;
-        const double weight = window_at(terms, 2 * pi * off / aperture);
-        sum += weight;
+        const double turn = 2 * pi * (n - (aperture - 1) / 2.0) / PIX_KERNEL_SIDE;
+        sum += window[n];
         for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
-            response[i] += weight * cos(2 * pi * off * (i - PIX_KERNEL_SIDE / 2) / PIX_KERNEL_SIDE);
+            response[i] += window[n] * cos(turn * (i - PIX_KERNEL_SIDE / 2));
         }
     }
     for (int i = 0; i < PIX_KERNEL_SIDE; i++) {
