@@ -232,24 +232,47 @@ static void trace_runup(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
                                &line->ground, LM_HORIZON_OPEN, &line->sight);
 }
 
-void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line)
+static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
+                       struct lm_line *line)
 {
     const struct lm_line_setup setup = {.grid = &s->grid,
                                         .aspect = &s->radar->aspect,
                                         .texture = &s->texture,
                                         .sampling = s->sampling};
+    const struct lm_ground_path path = patch_path(s, number);
+    lm_line_trace(line, tiles, &setup, &path, s->horizon);
+}
+
+void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
+                        struct lm_line *line)
+{
     int32_t *level_q8 = line->sight.level_q8;
     if (number % LM_SAR_RUNUP_LINES == 0) {
         trace_runup(s, tiles, number, line);
     }
-    const struct lm_ground_path path = patch_path(s, number);
-    lm_line_trace(line, tiles, &setup, &path, s->horizon);
+    trace_line(s, tiles, number, line);
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
     }
     lm_floor_run(s->radar->sar.noise_floor_q8, level_q8, s->grid.cells);
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
+}
+
+/* Ask now what hides movers, which may appear long before the line that they stand on. */
+static void hide_displaced(struct lm_sar *s, struct lm_tile_cache *tiles, struct lm_line *line)
+{
+    int32_t traced = -1;
+    for (uint32_t i = 0; i < s->points.count; i++) {
+        const struct lm_patch_point *p = &s->points.item[i];
+        if (p->is_displaced && p->line != traced && p->line >= 0 &&
+            p->line < (int32_t)s->radar->sar.cells) {
+            traced = p->line;
+            trace_runup(s, tiles, (uint32_t)traced / LM_SAR_RUNUP_LINES * LM_SAR_RUNUP_LINES, line);
+            trace_line(s, tiles, (uint32_t)traced, line);
+            lm_patch_points_hide(&s->points, (uint32_t)traced, line->sight.horizon,
+                                 s->grid.tangent_bits, s->grid.cells);
+        }
+    }
 }
 
 static int32_t *ring_line(struct lm_sar *s, uint32_t number)
@@ -303,6 +326,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
     const uint32_t lines = s->radar->sar.cells;
     if (s->sampled == 0) {
         find_points(s, tiles);
+        hide_displaced(s, tiles, line);
     }
     sample_lines(s, tiles, fx_min_u32(s->line + 1 + LM_SAR_AHEAD, lines), line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));

@@ -74,6 +74,7 @@ static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
         .tangent_q38 = lm_target_tangent_q38(top_q10, at_q8, &g->heights),
         .line = cell_at(in_cells(g, across_q8 + left_q8)),
         .cell = cell_at(in_cells(g, range_q8 - near_q8)),
+        .is_displaced = spot->shift_q8 != 0,
     };
     return p;
 }

@@ -35,6 +35,7 @@ struct lm_patch_point {
     int64_t tangent_q38; /* at which it appears */
     int32_t line, cell;  /* that hold its place on the ground */
     uint8_t target;      /* bodies of one target add as phasors */
+    bool is_displaced;   /* by Doppler: it may appear on a line before its own */
     bool is_hidden;
 };
 

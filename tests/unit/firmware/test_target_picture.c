@@ -81,6 +81,36 @@ static void a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched(voi
     tiny_image_free(&image);
 }
 
+/* Forty lines to the left of where it is, so that its line comes long after it has been shown. */
+static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
+    const struct lm_target_set none = {NULL, 0};
+    open_soil(&image, &flash);
+    draw_patch(&none, without);
+    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
+        struct lm_target t = point_at(46, 11, is_hidden ? -3 : 3, 45);
+        t.heading = bam(270); /* towards the radar at 2 m/s: 160 m to the left at 20 km */
+        t.speed_mm_s = 2000;
+        t.leg_m = 10;
+        seal_target(&t);
+        const struct lm_target_set set = {&t, 1};
+        draw_patch(&set, with);
+        int changed = 0;
+        for (int k = 0; k < SIDE; k++) {
+            for (int c = 0; c < SIDE; c++) {
+                changed += with[k][c] != without[k][c];
+                assert_true(with[k][c] == without[k][c] || abs(k - 88) < 10);
+            }
+        }
+        assert_int_equal(changed > 0, !is_hidden);
+    }
+    tiny_image_free(&image);
+}
+
 /* A sweep over the target, from the right height and place; returns the number of changed pixels.
  */
 static int sweep(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
@@ -156,6 +186,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched),
+        cmocka_unit_test(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch),
         cmocka_unit_test(a_target_shows_in_one_cell_of_a_sweep_and_a_hidden_one_nowhere),
         cmocka_unit_test(the_unit_reads_the_targets_and_counts_those_it_has_not),
     };
