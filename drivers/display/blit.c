@@ -80,7 +80,7 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 /* In tiles: a picture that lies on its side is read down its columns, and a cache line that was
  * fetched for one row of the target holds the next rows' pixels too. Small ones, because the lines
  * of a column fall into few of a cache's sets: 16 x 16 take 0.27 ms for 768 x 768 pixels where
- * whole rows take 0.74 (Xeon, 3 KiB between rows). */
+ * whole rows take 0.74 (on a PC, 3 KiB between rows). */
 void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn)
 {
     const bool is_upright = turn == DRV_TURN_0 || turn == DRV_TURN_180;
