@@ -37,6 +37,14 @@ struct command {
     bool is_path_given, is_check;
 };
 
+static void print_options(void)
+{
+    for (uint32_t i = 0; i < config_option_count(); i++) {
+        const struct config_option o = config_option_at(i);
+        printf("%s = %s\n    %s\n    %s\n", o.name, o.initial, o.values, o.help);
+    }
+}
+
 /* -1: go on. Otherwise the exit code. */
 static int read_command_line(struct command *c, int argc, char **argv)
 {
@@ -58,10 +66,7 @@ static int read_command_line(struct command *c, int argc, char **argv)
             c->is_check = true;
             break;
         case 'o':
-            for (uint32_t i = 0; i < config_option_count(); i++) {
-                const struct config_option o = config_option_at(i);
-                printf("%s = %s\n    %s\n    %s\n", o.name, o.initial, o.values, o.help);
-            }
+            print_options();
             return EXIT_DONE;
         case 'v':
             printf("landmass-panel %s\n", LM_VERSION);

@@ -79,6 +79,20 @@ static const struct lm_bus_profile *bus_profile(const struct config *c)
     return profiles[c->can_profile];
 }
 
+/* A database that cannot be used is said on the glass: better than no glass. */
+static void start_with_flash(struct panel *p, const struct lm_flash *flash)
+{
+    if (lm_unit_init(p->unit, &p->board) != LM_OK) {
+        report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
+               p->config->database);
+        p->board.flash = &drv_no_flash;
+        (void)lm_unit_init(p->unit, &p->board);
+    } else if (!p->unit->has_db && flash != &drv_no_flash) {
+        report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
+               p->config->database);
+    }
+}
+
 static int start_unit(struct panel *p, const struct lm_flash *flash)
 {
     const size_t pixels = (size_t)p->glass.port.width_px * p->glass.port.height_px;
@@ -99,17 +113,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
         report(REPORT_ERROR, "start: out of memory");
         return -1;
     }
-    if (lm_unit_init(p->unit, &p->board) != LM_OK) {
-        report(REPORT_ERROR, "%s: its coarsest level has too many tiles; raise the option tiles",
-               p->config->database);
-        return -1;
-    }
-    if (!p->unit->has_db && flash != &drv_no_flash) {
-        report(REPORT_ERROR,
-               "%s: not a database that this firmware can use; "
-               "landmass-db verify tells why",
-               p->config->database);
-    }
+    start_with_flash(p, flash);
     p->flash.patience_us = 0;
     return 0;
 }

@@ -124,6 +124,13 @@ static void fly(struct flight *f, double seconds)
     }
 }
 
+static struct tiny_cell flat_soil(void *ctx, const struct tiny_place *place)
+{
+    (void)ctx;
+    (void)place;
+    return (struct tiny_cell){-20, TINY_SOIL, 0};
+}
+
 /* A patch around the cursor, away from the nose: it needs tiles that the sector did not. */
 static void look_closely(struct flight *f)
 {
@@ -188,6 +195,32 @@ static void a_database_that_is_lost_in_flight_is_said_and_outlived(void **state)
     fly(f, 1);
     assert_in_range(f->panel.unit->count.frames, frames + 28, frames + 32);
     land(f);
+}
+
+/* A country without coarser levels: 121 tiles at its coarsest level, and 16 more are needed. */
+static void a_database_that_needs_more_tiles_is_said_on_the_glass(void **state)
+{
+    (void)state;
+    struct config c = nothing_fitted();
+    struct panel p;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    struct tiny_image image;
+    spec.level_count = 1;
+    spec.rows = spec.columns = 11;
+    spec.shift0 = 11;
+    spec.cell = flat_soil;
+    assert_int_equal(tiny_image_build(&image, &spec), 0);
+    snprintf(c.database, sizeof c.database, "%s/tmp/panel-large.lmdb", support_build_dir());
+    assert_int_equal(tiny_image_write(&image, c.database), 0);
+    c.tiles = 120;
+    assert_int_equal(panel_open(&p, &c), 0);
+    for (uint64_t now = 0; now < 100000; now += PANEL_TICK_US) {
+        panel_step(&p, now);
+    }
+    assert_true((p.unit->flags & LM_FLAG_DB) != 0);
+    panel_close(&p);
+    unlink(c.database);
+    tiny_image_free(&image);
 }
 
 static void the_hand_controllers_ring_reaches_the_page(void **state)
@@ -262,6 +295,7 @@ int main(void)
         cmocka_unit_test(a_panel_without_any_device_draws_its_page_and_says_what_is_missing),
         cmocka_unit_test(from_the_first_step_on_the_loop_allocates_nothing),
         cmocka_unit_test(a_database_that_is_lost_in_flight_is_said_and_outlived),
+        cmocka_unit_test(a_database_that_needs_more_tiles_is_said_on_the_glass),
         cmocka_unit_test(the_hand_controllers_ring_reaches_the_page),
         cmocka_unit_test(it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told),
     };
