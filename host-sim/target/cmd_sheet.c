@@ -106,7 +106,7 @@ static int run(const struct setup *s, const struct layout *l, const char *path)
         hs_progress_update(&progress, (uint64_t)i + 1);
     }
     hs_progress_end(&progress);
-    if (result == 0 && strip.width > l->side_px) {
+    if (result == 0 && (strip.width < 1 || strip.width > l->side_px)) {
         result = hs_error("--size", "give more", "%d dots are too few for %d pixels", l->side_px,
                           strip.width);
     }
