@@ -40,7 +40,7 @@ TESTS    :=
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check panel package bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
+.PHONY: help deps all run check check-panel panel package bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -64,6 +64,9 @@ panel: deps ## Build the cockpit panel's program for this machine, or for ARCH=a
 package: deps ## Build the panel's Debian packages for arm64 and amd64 in build/packages
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package
+
+check-panel: deps ## Run the panel on real kernel interfaces: a Debian kernel in QEMU (part of check)
+	@$(MAKE) --no-print-directory -j2 check-panel-built
 
 bench: deps ## Measure: instructions a pixel, ratios against peers, memory
 	@$(MAKE) --no-print-directory all

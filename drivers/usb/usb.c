@@ -306,6 +306,28 @@ static void try_device(struct slot *s, libusb_device *device)
     }
 }
 
+static bool has_device(const struct drv_usb *u)
+{
+    bool is_any = false;
+    for (uint32_t i = 0; i < u->slot_count; i++) {
+        is_any = is_any || u->slot[i].handle != NULL;
+    }
+    return is_any;
+}
+
+/* The library learns of devices that come from udev alone; where no udevd runs, what it knows is
+ * what was there when its context was made. While nobody has a device a new one costs nothing. */
+static void renew_context(struct drv_usb *u)
+{
+    if (u->context != NULL && !has_device(u)) {
+        libusb_exit(u->context);
+        u->context = NULL;
+    }
+    if (u->context == NULL && libusb_init(&u->context) != 0) {
+        u->context = NULL;
+    }
+}
+
 /* Every client without a device looks at every device. */
 static void look(struct drv_usb *u)
 {
@@ -348,9 +370,7 @@ static void *run(void *argument)
         clock_gettime(CLOCK_MONOTONIC, &now);
         if (now.tv_sec >= look_s) {
             look_s = now.tv_sec + LOOK_EVERY_S;
-            if (u->context == NULL && libusb_init(&u->context) != 0) {
-                u->context = NULL;
-            }
+            renew_context(u);
             if (u->context != NULL) {
                 look(u);
             }

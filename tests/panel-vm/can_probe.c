@@ -1,21 +1,22 @@
-/* What the SocketCAN driver hands to the firmware, as `candump -L` text that can be laid beside
- * that of candump itself.
+/* What the SocketCAN driver hands to the firmware, to be laid beside what others say about the same
+ * frames (can_driver.c tries the driver from inside).
  *
- *   can_probe INTERFACE [PAUSE]    until a signal; PAUSE: sleep so many seconds first, the socket
- *                                  open and not looked at
+ *   can_probe INTERFACE frames    as `candump -L` text
+ *   can_probe INTERFACE values    what the decoder makes of the frames: "IDENTIFIER CHANNEL VALUE
+ *                                 STEP", in the unit of the bus; STEP: of the fixed point
  *
- * Lines beginning with '!' are the driver's words about a bus that is lost, and, at the end, its
+ * Runs until SIGTERM. Lines beginning with '!' are the driver's words, and, at the end, its
  * counters. */
 #include "drv/can_socket.h"
+#include "lm/bus.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { TICK_US = 2000, REOPEN_TICKS = 50 };
+enum { TICK_US = 2000 };
 
 static volatile sig_atomic_t is_over;
 
@@ -38,54 +39,63 @@ static void print_frame(const char *interface, const struct lm_can_frame *f)
     printf("\n");
 }
 
-/* Take what waits. An error is told once, until something else happens. */
-static int take(struct drv_can_socket *s, const char *interface, char *told, size_t size)
+/* The fixed point back to the unit of the bus, exactly. */
+static void print_values(struct lm_bus *bus, const struct lm_can_frame *frame)
+{
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const uint32_t count = lm_bus_take(bus, frame, events);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct lm_bus_row *row = &bus->profile->rows[events[i].row];
+        const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);
+        const double counts_a_unit = ldexp(scale->multiplier, scale->frac_bits) / scale->divisor;
+        printf("%u %u %.10f %.3g\n", row->id, events[i].channel, events[i].value / counts_a_unit,
+               1 / counts_a_unit);
+    }
+}
+
+static void take(struct drv_can_socket *s, struct lm_bus *bus)
 {
     const struct lm_can port = drv_can_socket_port(s);
     struct lm_can_frame frame;
     int status;
     while ((status = port.receive(port.ctx, &frame)) == 1) {
-        print_frame(interface, &frame);
+        if (bus != NULL) {
+            print_values(bus, &frame);
+        } else {
+            print_frame(s->interface, &frame);
+        }
     }
-    if (status < 0 && strcmp(told, s->error) != 0) {
-        snprintf(told, size, "%s", s->error);
-        printf("! %s\n", told);
+    if (status < 0) {
+        printf("! %s\n", s->error);
     }
-    return status;
 }
 
-static void run(const char *interface, unsigned pause_s)
+/* `bus` is NULL, or decodes. */
+static void run(const char *interface, struct lm_bus *bus)
 {
     struct drv_can_socket s;
-    char told[sizeof s.error] = "";
-    int ticks_lost = 0, status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
-    printf(status == LM_OK ? "! open\n" : "! %s\n", s.error);
-    fflush(stdout);
-    sleep(pause_s);
+    const int status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
+    printf("! %s\n", status == LM_OK ? "open" : s.error);
     while (!is_over) {
-        status = take(&s, interface, told, sizeof told);
-        ticks_lost = status < 0 ? ticks_lost + 1 : 0;
-        if (ticks_lost >= REOPEN_TICKS) { /* the interface may have come back as another one */
-            drv_can_socket_close(&s);
-            status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
-            printf(status == LM_OK ? "! open\n" : "! %s\n", s.error);
-            ticks_lost = 0;
-        }
+        take(&s, bus);
         fflush(stdout);
         usleep(TICK_US);
     }
-    printf("! frames %u malformed %u down %u overflowed %u\n", s.count.frames, s.count.malformed,
-           s.count.down, s.count.overflowed);
+    printf("! frames %u malformed %u overflowed %u\n", s.count.frames, s.count.malformed,
+           s.count.overflowed);
     drv_can_socket_close(&s);
 }
 
 int main(int argc, char **argv)
 {
-    if (argc < 2 || argc > 3) {
-        fprintf(stderr, "can_probe INTERFACE [PAUSE]\n");
+    const bool is_decoding = argc == 3 && strcmp(argv[2], "values") == 0;
+    if (!is_decoding && (argc != 3 || strcmp(argv[2], "frames") != 0)) {
+        fprintf(stderr, "can_probe INTERFACE frames | values\n");
         return 2;
     }
+    struct lm_bus bus;
+    lm_bus_init(&bus, &lm_bus_canas17);
     signal(SIGTERM, end);
-    run(argv[1], argc == 3 ? (unsigned)atoi(argv[2]) : 0);
+    run(argv[1], is_decoding ? &bus : NULL);
     return 0;
 }

@@ -29,6 +29,10 @@ def case(sentence):
     return register
 
 
+class Skip(Exception):
+    """What a case needs is not at hand; the words say what."""
+
+
 def expect(condition, *evidence):
     """Fail the case, with what was seen instead, unless the condition holds."""
     if not condition:
@@ -80,6 +84,8 @@ def _run(boot, prepare):
             m = m or _start(boot, prepare)
             function(m)
             print("ok %d - %s" % (number, sentence))
+        except Skip as reason:
+            print("ok %d - %s # SKIP\n# skipped: %s" % (number, sentence, reason))
         except Exception as error:  # pylint: disable=broad-except
             failures += 1
             print("not ok %d - %s" % (number, sentence))

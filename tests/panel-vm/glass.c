@@ -2,9 +2,17 @@
  *
  *   glass text FILE.png              every line of text on the picture, one a line, from the top;
  *                                    * is the degree sign, ^ and v are the triangles
- *   glass differ A.png B.png [X Y W H]
- *                                    how many pixels are not the same in both; those of the
- *                                    rectangle are not looked at */
+ *   glass differ SCREEN.png PICTURE.png [TURN]
+ *                                    how many pixels of the screen are not as they should be when
+ *                                    it shows the picture turned clockwise by TURN degrees, in its
+ *                                    middle, and is black around it
+ *   glass among SCREEN.png X Y WIDTH HEIGHT PICTURE.png...
+ *                                    the pictures follow each other: the least number of pixels of
+ *                                    the rectangle that are in none of three neighbours, because
+ *                                    the beam's line hides some in each. It is 0 for a screen that
+ *                                    stopped at some moment of that film
+ *
+ * The hand that turns with every picture is never looked at. */
 #include "lm/draw.h"
 #include "lm/font.h"
 
@@ -15,6 +23,7 @@
 #include <string.h>
 
 enum { GAP_MAX = 12 };
+#define BLACK 0xff000000u
 
 /* Glyphs and how they are printed. */
 static const char glyphs[] = LM_GLYPH_UP LM_GLYPH_DOWN LM_GLYPH_DEGREE
@@ -46,6 +55,12 @@ static int load(struct picture *p, const char *path)
         return -1;
     }
     return 0;
+}
+
+static void unload(struct picture *p)
+{
+    free(p->pixels);
+    free(p->is_read);
 }
 
 static uint32_t at(const struct picture *p, int32_t x, int32_t y)
@@ -164,34 +179,97 @@ static int print_text(const char *path)
             }
         }
     }
-    free(p.pixels);
-    free(p.is_read);
+    unload(&p);
     return 0;
 }
 
-static int print_differences(int count, char **argument)
+/* Whether the hand of lm_overlay_alive may be there. */
+static bool is_hand(const struct picture *p, int32_t x, int32_t y)
 {
-    struct picture a, b;
-    if (load(&a, argument[0]) != 0 || load(&b, argument[1]) != 0) {
-        return 1;
+    const struct lm_surface surface = {.width_px = (uint16_t)p->width,
+                                       .height_px = (uint16_t)p->height};
+    const int32_t reach = 4 * lm_pen_for(&surface, 0).dot_px;
+    return abs(x - (p->width - 2 * reach)) <= reach + 2 &&
+           abs(y - (p->height - 2 * reach)) <= reach + 2;
+}
+
+/* Where a place of the screen lies in the turned and centred picture. */
+static struct lm_point into_picture(const struct picture *screen, const struct picture *p,
+                                    int32_t turn, int32_t x, int32_t y)
+{
+    const bool is_upright = turn % 180 == 0;
+    const int32_t width = is_upright ? p->width : p->height;
+    const int32_t height = is_upright ? p->height : p->width;
+    const int32_t u = x - (screen->width - width) / 2, v = y - (screen->height - height) / 2;
+    switch (turn) {
+    case 90:
+        return (struct lm_point){v, p->height - 1 - u};
+    case 180:
+        return (struct lm_point){p->width - 1 - u, p->height - 1 - v};
+    case 270:
+        return (struct lm_point){p->width - 1 - v, u};
+    default:
+        return (struct lm_point){u, v};
     }
-    if (a.width != b.width || a.height != b.height) {
-        printf("sizes %dx%d and %dx%d\n", a.width, a.height, b.width, b.height);
+}
+
+static int print_differences(const char *screen_path, const char *path, int32_t turn)
+{
+    struct picture screen, p;
+    if (load(&screen, screen_path) != 0 || load(&p, path) != 0) {
         return 1;
-    }
-    int32_t box[4] = {0};
-    for (int i = 0; i < 4 && count == 6; i++) {
-        box[i] = atoi(argument[2 + i]);
     }
     uint32_t differences = 0;
-    for (int32_t y = 0; y < a.height; y++) {
-        for (int32_t x = 0; x < a.width; x++) {
-            const bool is_left_out =
-                x >= box[0] && x < box[0] + box[2] && y >= box[1] && y < box[1] + box[3];
-            differences += !is_left_out && at(&a, x, y) != at(&b, x, y);
+    for (int32_t y = 0; y < screen.height; y++) {
+        for (int32_t x = 0; x < screen.width; x++) {
+            const struct lm_point at_picture = into_picture(&screen, &p, turn, x, y);
+            const bool is_inside = at_picture.x >= 0 && at_picture.x < p.width &&
+                                   at_picture.y >= 0 && at_picture.y < p.height;
+            if (is_inside && is_hand(&p, at_picture.x, at_picture.y)) {
+                continue;
+            }
+            const uint32_t wanted = is_inside ? at(&p, at_picture.x, at_picture.y) : BLACK;
+            differences += at(&screen, x, y) != wanted;
         }
     }
     printf("%u\n", differences);
+    return 0;
+}
+
+static uint32_t count_strangers(const struct picture *screen, const struct picture *film,
+                                const int32_t *box)
+{
+    uint32_t count = 0;
+    for (int32_t y = box[1]; y < box[1] + box[3]; y++) {
+        for (int32_t x = box[0]; x < box[0] + box[2]; x++) {
+            const uint32_t pixel = at(screen, x, y);
+            count += pixel != at(&film[0], x, y) && pixel != at(&film[1], x, y) &&
+                     pixel != at(&film[2], x, y);
+        }
+    }
+    return count;
+}
+
+static int print_among(const char *screen_path, char **box_words, int count, char **paths)
+{
+    struct picture screen, film[3] = {{0}};
+    int32_t box[4];
+    for (int i = 0; i < 4; i++) {
+        box[i] = atoi(box_words[i]);
+    }
+    if (load(&screen, screen_path) != 0) {
+        return 1;
+    }
+    uint32_t least = UINT32_MAX;
+    for (int i = 0; i < count; i++) {
+        unload(&film[i % 3]);
+        if (load(&film[i % 3], paths[i]) != 0) {
+            return 1;
+        }
+        const uint32_t found = i >= 2 ? count_strangers(&screen, film, box) : least;
+        least = found < least ? found : least;
+    }
+    printf("%u\n", least);
     return 0;
 }
 
@@ -200,9 +278,14 @@ int main(int argc, char **argv)
     if (argc == 3 && strcmp(argv[1], "text") == 0) {
         return print_text(argv[2]);
     }
-    if ((argc == 4 || argc == 8) && strcmp(argv[1], "differ") == 0) {
-        return print_differences(argc - 2, argv + 2);
+    if ((argc == 4 || argc == 5) && strcmp(argv[1], "differ") == 0) {
+        return print_differences(argv[2], argv[3], argc == 5 ? atoi(argv[4]) : 0);
     }
-    fprintf(stderr, "glass: text FILE.png | differ A.png B.png [X Y W H]\n");
+    if (argc >= 9 && strcmp(argv[1], "among") == 0) {
+        return print_among(argv[2], argv + 3, argc - 7, argv + 7);
+    }
+    fprintf(stderr,
+            "glass: text FILE.png | differ SCREEN.png PICTURE.png [TURN] | "
+            "among SCREEN.png X Y WIDTH HEIGHT PICTURE.png...\n");
     return 2;
 }

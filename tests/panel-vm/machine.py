@@ -41,7 +41,7 @@ def archive(tree, path):
 class Machine:
     """Boots at once; close() it. `tree` is a folder whose files appear in the machine, from / on."""
 
-    def __init__(self, arch="arm64", tree=None, devices=(), limit_s=300, memory_mb=256):
+    def __init__(self, arch="arm64", tree=None, devices=(), limit_s=800, memory_mb=256):
         self.run = tempfile.mkdtemp(prefix="panel-vm.")
         initrd = os.path.join(self.run, "initrd")
         folder = os.path.abspath(os.path.join(FOLDER, arch))
@@ -59,6 +59,7 @@ class Machine:
         with open(os.path.join(self.run, "qemu"), "w", encoding="utf-8") as log:
             self.process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=log,
                                             stderr=log)
+        self.events = []  # what QEMU told by itself, by name
         try:
             self._qmp = self._connect("qmp")
             self._read_json()
@@ -95,17 +96,17 @@ class Machine:
 
     def _read_until(self, mark, limit_s):
         """All that the shell says before a line that begins with `mark`, and the rest of that line."""
-        heard, deadline = b"", time.monotonic() + limit_s
+        heard, deadline, looked = b"\n", time.monotonic() + limit_s, 0
         mark = b"\n" + mark.encode()
         while True:
-            found = (b"\n" + heard).find(mark)
-            end = (b"\n" + heard).find(b"\n", found + 1)
+            found = heard.find(mark, looked)
+            end = heard.find(b"\n", found + 1)
             if found >= 0 and end >= 0:
-                line = (b"\n" + heard)[found + len(mark):end]
-                return (b"\n" + heard)[1:found + 1].decode(errors="replace"), line.decode().strip()
+                return heard[1:found + 1].decode(errors="replace"), heard[found + len(mark):end].decode().strip()
+            looked = found if found >= 0 else max(0, len(heard) - len(mark))
             self._shell.settimeout(max(0.01, deadline - time.monotonic()))
             try:
-                more = self._shell.recv(65536)
+                more = self._shell.recv(1 << 20)
             except socket.timeout:
                 raise MachineError("no answer in %g s: %s\n%s" % (limit_s, heard[-500:], self.said())) from None
             if not more:
@@ -140,7 +141,10 @@ class Machine:
     # ---- QEMU's own doors ----
 
     def _read_json(self):
-        return json.loads(self._qmp.readline())
+        answer = json.loads(self._qmp.readline())
+        if "event" in answer:
+            self.events.append(answer["event"])
+        return answer
 
     def qmp(self, command, **arguments):
         """A command to QEMU; its answer."""

@@ -1,4 +1,27 @@
-# The panel in a machine with real kernel interfaces (docs/panel-vm.md).
+# The panel in a machine with real kernel interfaces (docs/panel-vm.md). The machine's programs are built for the panel's
+# architecture by a make of its own; here are what looks at them and the tests.
 PANEL_VM := $(O)/bin/tests/panel-vm
 $(PANEL_VM)/glass: $(O)/tests/panel-vm/glass.o $(LIB_firmware) $(LIB_fixed)
 $(PANEL_VM)/glass: LDLIBS := $(call pkgs,libs,libpng)
+$(PANEL_VM)/can_probe: $(O)/tests/panel-vm/can_probe.o $(O)/drivers/can/can_socket.o $(LIB_firmware) $(LIB_fixed)
+$(O)/tests/panel-vm/count_malloc.o: EXTRA_CFLAGS := -fPIC
+$(PANEL_VM)/count_malloc.so: $(O)/tests/panel-vm/count_malloc.o
+$(PANEL_VM)/count_malloc.so: LDFLAGS := -shared
+
+PANEL_VM_TESTS := $(addprefix $(PANEL_VM)/,test_bus test_panel test_flash)
+ifeq ($(BOARD),bench-linux)
+TESTS += $(PANEL_VM_TESTS)
+endif
+$(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(O)/bin/landmass-sim $(O)/bin/landmass-nav \
+    $(O)/bin/tests/system/test_sim_tool | panel-vm-guest
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec python3 -B %s "$$@"\n' $< >$@
+	@chmod +x $@
+
+.PHONY: panel-vm-guest panel-vm-programs check-panel-built
+panel-vm-guest:
+	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package >/dev/null
+	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package panel-vm-programs >/dev/null
+panel-vm-programs: $(addprefix $(PANEL_VM)/,can_probe can_driver count_malloc.so)
+check-panel-built: $(PANEL_VM_TESTS)
+	@sh tests/run.sh $(O) $(PANEL_VM_TESTS)

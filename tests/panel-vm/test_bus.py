@@ -1,15 +1,16 @@
 """The SocketCAN driver on real interfaces of the kernel, beside can-utils' candump."""
 
-from cases import case, expect, main
-from fixtures import frames, tree
+import csv
+
+from cases import Skip, case, expect, main
+from fixtures import busy_log, counters, frames, lines_of, log, peer_data, tree
 from machine import Machine
 
 PROBE, CANDUMP = "/tmp/probe", "/tmp/candump"
-WANTED, UNWANTED = "40C#091E000040459E04", "40C#R"
 
 
 def boot():
-    return Machine(tree=tree("can_probe", logs=("flight",)),
+    return Machine(tree=tree("can_probe", "can_driver", files=[log("flight"), busy_log(peer_data("peer_frames_3s.log") or lines_of(log("flight")))], package=False),
                    devices=["-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus", "-device", "kvaser_pci,canbus=bus"])
 
 
@@ -21,29 +22,18 @@ def prepare(m):
         m.do("/sbin/ip link set %s up txqueuelen 1000 type can bitrate 1000000" % card)
 
 
-def listen(m, interface, pause_s=""):
-    """Start the driver and candump on an interface."""
-    m.sh("kill $(pidof candump can_probe)") # of a case that failed
-    m.do("candump -L %s >%s & /t/can_probe %s %s >%s &" % (interface, CANDUMP, interface, pause_s, PROBE))
-    m.until("grep -q '! open' %s && pidof candump" % PROBE)
-
-
-def heard(m):
-    """End both; (frames of the driver, frames of candump, the driver's words)."""
-    m.do("sleep 0.2; kill $(pidof candump can_probe); while pidof can_probe; do usleep 20000; done")
-    said = m.do("cat " + PROBE)
-    return frames(said), frames(m.do("cat " + CANDUMP)), [line for line in said.splitlines() if line.startswith("!")]
-
-
 def hears_a_flight(m, sender, receiver):
     """Play a flight on `sender`; the driver on `receiver` must hand over what candump sees there."""
-    listen(m, receiver)
-    m.do("canplayer -I /t/flight.log %s=can0" % sender)
-    mine, others, words = heard(m)
+    m.do("candump -L %s >%s & /t/can_probe %s frames >%s &" % (receiver, CANDUMP, receiver, PROBE))
+    m.until("grep -q '! open' %s && pidof candump" % PROBE)
+    m.do("canplayer -I /t/flight.log %s=can0; sleep 0.2; kill $(pidof candump can_probe)" % sender)
+    m.until("! pidof can_probe")
+    said = m.do("cat " + PROBE)
+    mine, others, count = frames(said), frames(m.do("cat " + CANDUMP)), counters(said.splitlines()[-1])
     asked_for = {frame.split("#")[0] for frame in mine}
     expect(len(others) > 3000 and len(asked_for) > 12, len(others), "frames of", asked_for)
     expect(mine == [frame for frame in others if frame.split("#")[0] in asked_for], "other frames, or another order")
-    expect(words[-1].endswith("malformed 0 down 0 overflowed 0"), words)
+    expect(count == {"frames": len(mine), "malformed": 0, "overflowed": 0}, count)
 
 
 @case("on vcan the driver hands over what candump sees, every frame in its place")
@@ -56,57 +46,49 @@ def real_bus(m):
     hears_a_flight(m, "can0", "can1")
 
 
-@case("remote frames, unknown identifiers and identifiers that only look alike stay in the kernel")
-def filters(m):
-    listen(m, "vcan0")
-    for frame in (UNWANTED, "7FF#01", "0001F40C#091E000040459E04", WANTED, "0001040C#091E000040459E04"):
-        m.do("cansend vcan0 " + frame)
-    mine, others, _ = heard(m)
-    expect(len(others) == 5 and mine == [WANTED, "0001040C#091E000040459E04"], mine, others)
+@case("the driver's own statements hold: filters, stamps, losses, answers, down, removed, full queue")
+def from_inside(m):
+    code, said = m.sh("/t/can_driver /t/flight.log", 120)
+    print("".join("# %s\n" % line for line in said.splitlines()), end="")
+    passed = sum(line.startswith("ok ") and "SKIP" not in line for line in said.splitlines())
+    expect(code == 0 and passed >= 11, "ended with", code, "after", passed, "statements")
 
 
-@case("the controller's report of bus-off is handed over as a report")
-def bus_off(m):
-    listen(m, "vcan0")
-    m.do("cansend vcan0 20000040#0000000000000000; cansend vcan0 " + WANTED)
-    mine, _, words = heard(m)
-    expect(mine == ["20000040#0000000000000000", WANTED], mine, words)
+def wrong_values(decoded, expected, loops):
+    """What of the decoded lines of can_probe is not what the sender's list expects, `loops` times over."""
+    values = {}
+    for line in decoded:
+        identifier, channel, value, step = line.split()
+        values.setdefault((identifier, channel), []).append((float(value), float(step)))
+    wrong = ["%d sources" % len(values)] if len(values) < 20 else []
+    for source, heard in values.items():
+        wanted = [(float(row["value"]), float(row["tolerance"])) for row in expected
+                  if (str(int(row["can_id"]) % 65536), row["redundancy"]) == source and row["type"] not in ("NODATA", "ERROR")]
+        if len(heard) != loops * len(wanted):
+            wrong.append("%s: %d values, not %d" % (source, len(heard), loops * len(wanted)))
+        for (value, step), (want, tolerance) in zip(heard, wanted * loops):
+            error = abs((value - want + 180) % 360 - 180) if abs(want) <= 360 else abs(value - want)
+            if error > tolerance + 5e-11 + 0.503 * step:
+                wrong.append("%s: %g, not %g" % (source, value, want))
+    return wrong
 
 
-@case("an interface that goes down is told once, and heard again when it is up")
-def down_and_up(m):
-    listen(m, "vcan0")
-    m.do("cansend vcan0 %s; ip link set vcan0 down; sleep 0.3; ip link set vcan0 up" % WANTED)
-    m.until("cansend vcan0 %s && sleep 0.2 && [ $(grep -c '#' %s) -gt 1 ]" % (WANTED, PROBE))
-    _, _, words = heard(m)
-    expect(len(words) == 3 and "Network is down" in words[1], words)
+@case("a minute of another library's frames at 80 % of a bus: every value as expected, and none lost")
+def busy_bus(m):
+    expected = peer_data("peer_expected_3s.csv")
+    if not expected:
+        raise Skip("no frames of another library here (can_peer)")
+    m.do("/t/can_probe vcan0 values >/tmp/values &")
+    m.until("grep -q '! open' /tmp/values")
+    loops = 60 // 4  # the log has 3 s of flight, and a second of services before it
+    took_s = int(m.do("t=$(date +%%s); canplayer -l %d -I /t/busy.log vcan0=can0; echo $(($(date +%%s) - t))" % loops, 200))
+    m.do("sleep 0.5; kill $(pidof can_probe); while pidof can_probe; do usleep 20000; done")
+    lines = m.do("cat /tmp/values").splitlines()
+    wrong = wrong_values([line for line in lines if line[0].isdigit()], list(csv.DictReader(expected)), loops)
+    expect(not wrong and counters(lines[-1])["overflowed"] == 0, len(wrong), wrong[:5], lines[-1])
+    if took_s > 66:
+        raise Skip("none was lost, but this computer is too busy to offer 80 %% of a bus: %.0f %%" % (80 * 60 / took_s))
 
 
-@case("an interface that is removed and comes back under its name is heard again")
-def removed_and_back(m):
-    listen(m, "vcan0")
-    m.do("cansend vcan0 %s; ip link del vcan0; sleep 0.3; ip link add vcan0 type vcan; ip link set vcan0 up" % WANTED)
-    m.until("cansend vcan0 %s && sleep 0.2 && [ $(grep -c '#' %s) -gt 1 ]" % (WANTED, PROBE))
-
-
-@case("what arrives while nobody looks is kept: 5,000 frames")
-def burst(m):
-    listen(m, "vcan0", 3)
-    m.do("cangen vcan0 -g 0 -n 5000 -I 40C -L 8 -D i")
-    m.until("[ $(grep -c '#' %s) -ge 5000 ]" % PROBE)
-    mine, _, words = heard(m)
-    counted = [int.from_bytes(bytes.fromhex(frame[4:]), "little") for frame in mine]
-    expect(counted == list(range(counted[0], counted[0] + 5000)) and words[-1].endswith("overflowed 0"), mine[:3], words)
-
-
-@case("what the kernel could not keep is counted, frame by frame")
-def overflow(m):
-    listen(m, "vcan0", 4)
-    m.do("kill $(pidof candump); cangen vcan0 -g 0 -n 30000 -I 40C -L 8 -D i", 120)
-    m.until("sleep 1; grep -q '#' %s && cansend vcan0 %s" % (PROBE, WANTED))
-    mine, _, words = heard(m)
-    lost = int(words[-1].split()[-1])
-    expect(lost > 0 and len(mine) + lost >= 30001, len(mine), words)
-
-
-main(boot, prepare)
+if __name__ == "__main__":
+    main(boot, prepare)

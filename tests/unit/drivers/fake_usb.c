@@ -61,6 +61,10 @@ int libusb_init(libusb_context **context)
         atomic_fetch_sub(&fake_usb_init_failures, 1);
         return LIBUSB_ERROR_OTHER;
     }
+    for (int i = 0; i < FAKE_USB_DEVICES; i++) {
+        fake_usb[i].listed_address =
+            atomic_load(&fake_usb[i].is_plugged) ? atomic_load(&fake_usb[i].address) : -1;
+    }
     *context = (libusb_context *)(void *)fake_usb;
     return 0;
 }
@@ -76,7 +80,8 @@ ssize_t libusb_get_device_list(libusb_context *context, libusb_device ***list)
     libusb_device **devices = calloc(FAKE_USB_DEVICES + 1, sizeof *devices);
     ssize_t count = 0;
     for (int i = 0; i < FAKE_USB_DEVICES; i++) {
-        if (atomic_load(&fake_usb[i].is_plugged)) {
+        if (atomic_load(&fake_usb[i].is_plugged) &&
+            atomic_load(&fake_usb[i].address) == fake_usb[i].listed_address) {
             devices[count++] = (libusb_device *)(void *)&fake_usb[i];
         }
     }

@@ -1,5 +1,6 @@
 /* A USB bus for tests, in the place of libusb. It is as strict as the library's documentation: what
- * may not be called from a callback, or with transfers in flight, ends the test. */
+ * may not be called from a callback, or with transfers in flight, ends the test. No udevd runs, so
+ * that a context knows the devices that were there when it was made, and never another one. */
 #ifndef FAKE_USB_H
 #define FAKE_USB_H
 
@@ -13,6 +14,7 @@ enum { FAKE_USB_DEVICES = 4, FAKE_USB_TRANSFERS = 16 };
 struct fake_device {
     atomic_bool is_plugged;
     atomic_int address;
+    int listed_address; /* as the context knows it; -1: not at all */
     uint16_t vendor, product;
     const char *serial;
     const uint8_t *descriptor; /* of its reports */

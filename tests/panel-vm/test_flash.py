@@ -1,0 +1,80 @@
+"""The panel's database in flash chips, on amd64, whose kernel has chips to play with (mtdram, nandsim)."""
+
+import os
+
+from cases import case, expect, main
+from fixtures import database, log, tree
+from machine import Machine
+from panel import Panel, fly, is_fine
+
+BLOCK = 128 << 10
+CHIP = "id_bytes=0x20,0xa2,0x00,0x15 parts=128"  # NAND of 64 MiB, its first 16 MiB as /dev/mtd0
+
+
+def boot():
+    return Machine("amd64", tree=tree(files=[log("still"), database("small")], arch="amd64"),
+                   devices=["-device", "virtio-gpu-pci,xres=640,yres=480"])
+
+
+def prepare(m):
+    m.do("modprobe -a can_raw vcan virtio-gpu && ip link add vcan0 type vcan && ip link set vcan0 up")
+    fly(m)
+
+
+def start(m):
+    """The panel on /dev/mtd0."""
+    return Panel(m, database="/dev/mtd0", bezel=False)
+
+
+def change_chip(m, module):
+    """Take the chip that is there away, and put in another one."""
+    m.sh("kill $(pidof landmass-panel); while pidof landmass-panel; do usleep 20000; done; rmmod mtdram; rmmod nandsim")
+    m.do("modprobe " + module)
+
+
+def write_nand(m, bad=()):
+    """Write the database as nandwrite does, block after block, the bad ones left out."""
+    blocks = (os.path.getsize(database("small")) + BLOCK - 1) // BLOCK
+    good = [number for number in range(blocks + len(bad)) if number not in bad][:blocks]
+    m.do("n=0; for to in %s; do dd if=/t/small.lmdb of=/dev/mtd0 bs=%d skip=$n seek=$to count=1 conv=notrunc,sync "
+         "2>/tmp/dd || cat /tmp/dd; n=$((n + 1)); done" % (" ".join(map(str, good)), BLOCK), 120)
+
+
+@case("a database in NOR flash is shown")
+def nor(m):
+    change_chip(m, "mtdram total_size=16384 erase_size=128")
+    m.do("dd if=/t/small.lmdb of=/dev/mtd0 bs=128k conv=notrunc 2>/dev/null")
+    p = start(m)
+    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    expect("good erase blocks of 131072 bytes, 0 bad ones" in p.said(), p.said())
+
+
+@case("a database in NAND flash with bad blocks is shown")
+def nand(m):
+    change_chip(m, "nandsim %s badblocks=3,9" % CHIP)
+    write_nand(m, bad=(3, 9))
+    p = start(m)
+    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    expect(", 2 bad ones" in p.said(), p.said())
+
+
+@case("bits that the chip flips are put right on the way")
+def flipped_bits(m):
+    change_chip(m, "nandsim %s bitflips=1" % CHIP)
+    write_nand(m)
+    p = start(m)
+    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+
+
+@case("pages that lose their data are told on the glass, and the picture goes on")
+def lost_pages(m):
+    pages = ",".join("%d:1" % page for page in range(600, 1800, 8))
+    change_chip(m, "nandsim %s gravepages=%s" % (CHIP, pages))
+    write_nand(m)
+    p = start(m)
+    p.until(lambda text: "TILE" in text and "NAV FAIL" not in text)
+    expect(p.is_alive(), "the display stands")
+
+
+if __name__ == "__main__":
+    main(boot, prepare, "amd64")
