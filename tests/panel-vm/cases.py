@@ -12,6 +12,7 @@ A case that raises anything has failed. When the machine is gone the next case g
 had, all are skipped, and the reason is said.
 """
 
+import signal
 import sys
 import time
 import traceback
@@ -59,6 +60,7 @@ def _skip_all(reason):
 def main(boot, prepare, arch="arm64"):
     """Run the cases, or those whose sentence holds a word of the command line; ends the program."""
     sys.stdout.reconfigure(line_buffering=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the machine ends with its test
     words = sys.argv[1:]
     CASES[:] = [c for c in CASES if not words or any(word in c[0] for word in words)]
     print("1..%d" % len(CASES))
@@ -78,22 +80,24 @@ def _start(boot, prepare):
 
 def _run(boot, prepare):
     failures, m = 0, None
-    for number, (sentence, function) in enumerate(CASES, 1):
-        start = time.monotonic()
-        try:
-            m = m or _start(boot, prepare)
-            function(m)
-            print("ok %d - %s" % (number, sentence))
-        except Skip as reason:
-            print("ok %d - %s # SKIP\n# skipped: %s" % (number, sentence, reason))
-        except Exception as error:  # pylint: disable=broad-except
-            failures += 1
-            print("not ok %d - %s" % (number, sentence))
-            _explain(error, m)
-            if isinstance(error, (machine.MachineError, OSError)) and m:
-                m.close()
-                m = None
-        print("# %.1f s" % (time.monotonic() - start))
-    if m:
-        m.close()
+    try:
+        for number, (sentence, function) in enumerate(CASES, 1):
+            start = time.monotonic()
+            try:
+                m = m or _start(boot, prepare)
+                function(m)
+                print("ok %d - %s" % (number, sentence))
+            except Skip as reason:
+                print("ok %d - %s # SKIP\n# skipped: %s" % (number, sentence, reason))
+            except Exception as error:  # pylint: disable=broad-except
+                failures += 1
+                print("not ok %d - %s" % (number, sentence))
+                _explain(error, m)
+                if m and isinstance(error, (machine.MachineError, OSError)):
+                    m.close()
+                    m = None
+            print("# %.1f s" % (time.monotonic() - start))
+    finally:
+        if m:
+            m.close()
     return 1 if failures else 0

@@ -71,12 +71,7 @@ def tree(*programs, files=(), package=True, arch="arm64"):
         shutil.copy(path, os.path.join(top, "t"))
     shutil.copy("tests/panel-vm/gadget.sh", os.path.join(top, "t", "gadget"))
     if package:
-        debs = glob.glob("build/packages/landmass-panel_*_%s.deb" % arch)
-        if not debs:
-            os.makedirs(os.path.join(top, "usr/bin"))
-            shutil.copy(os.path.join(CROSS % arch, "landmass-panel"), os.path.join(top, "usr/bin"))
-            return top
-        (deb,) = debs
+        deb = max(glob.glob("build/packages/landmass-panel_*_%s.deb" % arch), key=os.path.getmtime)
         subprocess.run(["dpkg-deb", "-x", deb, top], check=True)
     return top
 

@@ -2,6 +2,9 @@
 
 The machine's shell is reached through a port of its own, so that nothing the kernel says gets in between. Sockets and logs
 of a run lie in a folder of its own. QEMU never outlives its time limit.
+
+Time in the machine is counted in instructions, a nanosecond each, and goes no faster than the real one. A busy computer
+makes the machine slow, but nothing in it late; so what the tests wait for are states, or time in the machine.
 """
 
 import json
@@ -49,7 +52,7 @@ class Machine:
         if tree:
             archive(tree, initrd)
         program, console, board = BOARDS[arch]
-        command = ["timeout", "-k", "2", str(limit_s), program, *board, "-smp", "1", "-accel", "tcg,thread=multi",
+        command = ["timeout", "-k", "2", str(limit_s), program, *board, "-smp", "1", "-accel", "tcg", "-icount", "shift=0,sleep=on",
                    "-m", str(memory_mb), "-nodefaults", "-no-reboot", "-display", "none",
                    "-kernel", "Image", "-initrd", initrd, "-append", "console=%s quiet panic=-1" % console,
                    "-serial", "file:" + os.path.join(self.run, "console"),
@@ -113,21 +116,25 @@ class Machine:
                 raise MachineError("the machine is gone: " + self.said())
             heard += more
 
-    def sh(self, script, limit_s=60):
+    def sh(self, script, limit_s=180):
         """Run a script; (exit code, what it printed)."""
         line = "sh -c %s </dev/null 2>&1; printf '\\n@@rc %%d\\n' $?\n" % shlex.quote(script)
         self._shell.sendall(line.encode())
         output, code = self._read_until("@@rc", limit_s)
         return int(code), output.rstrip("\n")
 
-    def do(self, script, limit_s=60):
+    def do(self, script, limit_s=180):
         """Run a script that must succeed; what it printed."""
         code, output = self.sh(script, limit_s)
         if code != 0:
             raise AssertionError("%s: ended with %d: %s" % (script, code, output))
         return output
 
-    def until(self, script, limit_s=30):
+    def sleep(self, seconds):
+        """Let time pass in the machine."""
+        self.do("sleep %g" % seconds)
+
+    def until(self, script, limit_s=120):
         """Repeat a script until it succeeds; what it printed then."""
         deadline = time.monotonic() + limit_s
         while True:

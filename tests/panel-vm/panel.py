@@ -110,7 +110,7 @@ class Panel:
         """The lines of text on the glass."""
         return _glass("text", self.look()).splitlines()
 
-    def until(self, condition, limit_s=20):
+    def until(self, condition, limit_s=90):
         """Look at the glass until the condition holds of its lines of text; these."""
         deadline = time.monotonic() + limit_s
         while True:
@@ -125,7 +125,7 @@ class Panel:
         """Whether the hand turns."""
         first = self.look("hand")
         for _ in range(40):
-            time.sleep(0.05)
+            self.machine.sleep(0.05)
             with open(first, "rb") as before, open(self.look("hand-later"), "rb") as after:
                 is_same = before.read() == after.read()
             if not is_same:
@@ -150,6 +150,6 @@ class Panel:
     def press(self, name):
         """Press a key and let it go."""
         self.set_key(name, PRESSED)
-        time.sleep(0.1)
+        self.machine.sleep(0.1)
         self.set_key(name, RELEASED)
-        time.sleep(0.1)
+        self.machine.sleep(0.1)

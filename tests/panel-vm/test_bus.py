@@ -81,13 +81,12 @@ def busy_bus(m):
     m.do("/t/can_probe vcan0 values >/tmp/values &")
     m.until("grep -q '! open' /tmp/values")
     loops = 60 // 4  # the log has 3 s of flight, and a second of services before it
-    took_s = int(m.do("t=$(date +%%s); canplayer -l %d -I /t/busy.log vcan0=can0; echo $(($(date +%%s) - t))" % loops, 200))
+    took_s = int(m.do("t=$(date +%%s); canplayer -l %d -I /t/busy.log vcan0=can0; echo $(($(date +%%s) - t))" % loops, 600))
     m.do("sleep 0.5; kill $(pidof can_probe); while pidof can_probe; do usleep 20000; done")
     lines = m.do("cat /tmp/values").splitlines()
     wrong = wrong_values([line for line in lines if line[0].isdigit()], list(csv.DictReader(expected)), loops)
     expect(not wrong and counters(lines[-1])["overflowed"] == 0, len(wrong), wrong[:5], lines[-1])
-    if took_s > 66:
-        raise Skip("none was lost, but this computer is too busy to offer 80 %% of a bus: %.0f %%" % (80 * 60 / took_s))
+    expect(59 <= took_s <= 62, "a minute took", took_s, "s of the machine's time")
 
 
 if __name__ == "__main__":

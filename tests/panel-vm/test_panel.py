@@ -1,7 +1,5 @@
 """The panel, with its package's files, on a machine with a bus, keys, a hand controller, a glass and a watchdog."""
 
-import time
-
 from cases import case, expect, main
 from fixtures import busy_log, counters, database, lines_of, log, tree
 from machine import Machine
@@ -22,7 +20,7 @@ MODULES = "can_raw vcan virtio-gpu xhci-pci i6300esb dummy_hcd libcomposite usb_
 
 
 def boot():
-    files = [log("still"), log("flight"), busy_log(lines_of(log("flight"))), database("small"), database("broken")]
+    files = [log("still"), log("flight"), busy_log(lines_of(log("flight"))[:1400]), database("small"), database("broken")]
     return Machine(tree=tree("can_probe", "count_malloc.so", files=files), devices=DEVICES)
 
 
@@ -55,7 +53,7 @@ def radar_picture(m):
     fly(m)
     p = Panel(m)
     p.until(lambda text: is_fine(text) and "ELV +981FT" in text)
-    time.sleep(3)  # the tiles are there, and the second sweep is under way
+    m.sleep(3)  # the tiles are there, and the second sweep is under way
     p.press("OSB7")
     p.until(lambda text: "FZ" in text[:6])
     wrong = strangers(p.look(), film)
@@ -68,7 +66,7 @@ def shows(p, picture, turn):
         wrong = differences(p.look(), picture, turn)
         if wrong == 0:
             break
-        time.sleep(0.1)
+        p.machine.sleep(0.1)
     return wrong
 
 
@@ -149,7 +147,7 @@ def busy_bus(m):
     m.do("sleep 1; kill $(pidof can_probe); while pidof can_probe; do usleep 20000; done")
     asked_for = counters(m.do("tail -n 1 /tmp/values"))["frames"]
     after = p.report("bus")
-    expect(after["frames"] - before["frames"] == asked_for > 20000 and after["overflowed"] == 0, after, asked_for)
+    expect(after["frames"] - before["frames"] == asked_for > 9000 and after["overflowed"] == 0, after, asked_for)
     expect(p.is_alive(), "the display stands")
 
 
@@ -177,9 +175,10 @@ def unplugged_screen(m):
     p = Panel(m)
     p.until(is_fine)
     m.do("echo off >/sys/class/drm/card0-Virtual-1/status")
-    m.until("tail -n 1 /tmp/panel.log | grep -q 'it is looked for'")
+    code, _ = m.sh("sleep 3; grep 'glass: .* it is looked for' /tmp/panel.log")
     m.do("echo detect >/sys/class/drm/card0-Virtual-1/status")
-    m.until("tail -n 1 /tmp/panel.log | grep -q 'DRM connector'")
+    expect(code == 0, "it was not noticed:", p.said())
+    m.until("[ $(grep -c 'DRM connector' /tmp/panel.log) -eq 2 ]")
     p.until(is_fine)
     expect(p.is_alive(), "the display stands")
 
@@ -201,9 +200,9 @@ def bounce(m):
         for _ in range(9):
             p.set_key("OSB19", 1 - last)
             p.set_key("OSB19", last)
-        time.sleep(0.3)
+        m.sleep(0.3)
     p.until(lambda text: "20" in text)
-    time.sleep(0.3)
+    m.sleep(0.3)
     expect("20" in p.read(), p.read())
 
 
@@ -216,7 +215,7 @@ def glitch(m):
     p.set_key("OSB19", PRESSED)
     p.set_key("OSB19", RELEASED)
     m.qmp("cont")
-    time.sleep(0.5)
+    m.sleep(0.5)
     expect("40" in p.read(), p.read())
 
 
@@ -252,7 +251,7 @@ def lamps(m):
     levels = set()
     for _ in range(40):
         levels.add(m.gpio_out(GPIO.index("LED-ALIVE")))
-        time.sleep(0.1)
+        m.sleep(0.1)
     expect(levels == {0, 1} and m.gpio_out(GPIO.index("LED-FAULT")) == 0, levels, m.gpio_out(GPIO.index("LED-FAULT")))
 
 
@@ -274,7 +273,7 @@ def cursor_rests(p):
         if now == before:
             return now
         before = now
-        time.sleep(0.5)
+        p.machine.sleep(0.5)
     raise AssertionError("the cursor keeps moving")
 
 
@@ -350,10 +349,10 @@ def watchdog(m):
     fly(m)
     p = Panel(m, watchdog="/dev/watchdog", watchdog__timeout="3")
     p.until(is_fine)
-    time.sleep(7)
+    m.sleep(7)
     m.qmp("query-status")
     expect("WATCHDOG" not in m.events, "it bit while the panel worked;", p.said())
-    m.do("kill -STOP $(pidof landmass-panel); sleep 7")
+    m.do("kill -STOP $(pidof landmass-panel); sleep 6")
     m.qmp("query-status")
     m.do("kill -CONT $(pidof landmass-panel)")
     expect("WATCHDOG" in m.events, "it did not bite;", p.said())
@@ -363,7 +362,7 @@ def watchdog(m):
 def watchdog_stopped(m):
     m.events.clear()
     Panel(m, watchdog="/dev/watchdog", watchdog__timeout="2").stop()
-    time.sleep(5)
+    m.sleep(5)
     m.qmp("query-status")
     expect("WATCHDOG" not in m.events, m.events)
 
