@@ -18,7 +18,11 @@ $(PANEL_VM_TESTS): $(PANEL_VM)/%: tests/panel-vm/%.py $(PANEL_VM)/glass $(O)/bin
 	@printf '#!/bin/sh\nexec python3 -B %s "$$@"\n' $< >$@
 	@chmod +x $@
 
-.PHONY: panel-vm-guest panel-vm-programs check-panel-built
+bench-panel: deps ## Measure the panel in QEMU: nav frame to glass, regularity, processor, memory
+	@$(MAKE) --no-print-directory -j2 $(PANEL_VM_TESTS)
+	@python3 -B tests/panel-vm/bench_panel.py
+
+.PHONY: bench-panel panel-vm-guest panel-vm-programs check-panel-built
 panel-vm-guest:
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package >/dev/null
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package panel-vm-programs >/dev/null
