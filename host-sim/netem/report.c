@@ -38,18 +38,19 @@ static void draw_key(struct sheet *s, int x, int y, const char *name, int curve)
 
 /* ---- losses ---- */
 
-struct loss_line {
-    const struct nm_loss_curve *curve;
-    int is_validation;
-};
+static double log_loss(const struct nm_loss_curve *curve, int i)
+{
+    const double loss = curve->epochs[i].validation;
+    return loss > 0 ? log10(loss) : NAN;
+}
 
 static double loss_at(void *ctx, double epoch)
 {
-    const struct loss_line *line = ctx;
-    const int i = (int)fmin(fmax(floor(epoch) - 1, 0), line->curve->count - 1);
-    const struct nm_epoch *e = &line->curve->epochs[i];
-    const double loss = line->is_validation ? e->validation : e->training;
-    return loss > 0 ? log10(loss) : NAN;
+    const struct nm_loss_curve *curve = ctx;
+    const int i = (int)fmin(fmax(floor(epoch) - 1, 0), curve->count - 1);
+    const int next = i + 1 < curve->count ? i + 1 : i;
+    const double from = log_loss(curve, i);
+    return from + (log_loss(curve, next) - from) * (epoch - 1 - i);
 }
 
 static void loss_bounds(const struct nm_loss_curve *curves, int count, struct chart *c)
@@ -87,12 +88,12 @@ int nm_report_losses(const char *path, const char *title, const struct nm_loss_c
     chart_axes(&c);
     sheet_text(&s, 80, 475, "log10 of the loss on validation chips", INK_BLACK);
     for (int k = 0; k < count; k++) {
-        struct loss_line line = {&curves[k], 1};
+        struct nm_loss_curve curve = curves[k];
         struct chart own = c;
         own.x_high = curves[k].count;
         own.width = (int)lround(c.width * (own.x_high - 1) / (c.x_high - 1));
         if (curves[k].count > 1) {
-            chart_curve(&own, loss_at, &line, 4 * curves[k].count, inks[k % INKS]);
+            chart_curve(&own, loss_at, &curve, 4 * curves[k].count, inks[k % INKS]);
         }
         draw_key(&s, 80, 500 + 22 * k, curves[k].name, k);
     }
