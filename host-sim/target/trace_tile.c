@@ -13,8 +13,9 @@ static const double grazing_cos_min = 2e-4;
 /* A ray under way. */
 struct flight {
     struct vec from, along;
-    double across_m; /* where its primary ray left the plane */
-    double way_m;    /* from the plane through the origin to `from` */
+    struct vec start; /* `from`, lifted off its surface: where Embree's ray begins */
+    double across_m;  /* where its primary ray left the plane */
+    double way_m;     /* from the plane through the origin to `from` */
     uint32_t ray, parent;
 };
 
@@ -45,8 +46,8 @@ static void start_wave(const struct trace_tiles *t, uint32_t first, struct wave 
         const double back_m = clear_m + (up_m < 0 ? up_m * sink : 0);
         const struct vec on_plane =
             vec_mad(vec_scale(t->axes.across, across_m), t->axes.rise, up_m);
-        w->flights[i] = (struct flight){
-            vec_mad(on_plane, t->axes.sight, -back_m), t->axes.sight, across_m, -back_m, ray, 0};
+        const struct vec from = vec_mad(on_plane, t->axes.sight, -back_m);
+        w->flights[i] = (struct flight){from, t->axes.sight, from, across_m, -back_m, ray, 0};
     }
 }
 
@@ -56,7 +57,7 @@ static void meet_wave(const struct trace_tiles *t, struct wave *w, struct bare_r
         struct scene_rays rays;
         rays.count = w->count - i < SCENE_PACKET ? w->count - i : SCENE_PACKET;
         for (uint32_t k = 0; k < rays.count; k++) {
-            rays.from[k] = w->flights[i + k].from;
+            rays.from[k] = w->flights[i + k].start;
             rays.along[k] = w->flights[i + k].along;
         }
         scene_meet(t->scene, &rays, &w->facets[i]);
@@ -114,7 +115,8 @@ static struct trace_record reflect(const struct trace_tiles *t, struct flight *f
                    (float)normal.z},
         .flags = (uint8_t)(echo_cos > 0 ? 0 : TRACE_BLOCKED),
     };
-    f->from = vec_mad(at, normal, lift_m);
+    f->from = at;
+    f->start = vec_mad(at, normal, lift_m);
     f->along = vec_mad(f->along, normal, 2 * fabs(slope));
     return record;
 }
@@ -154,7 +156,7 @@ static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
     for (uint32_t i = 0; i < w->count; i++) {
         if (!(bounce->records[i].flags & TRACE_BLOCKED)) {
             asker[rays.count] = i;
-            rays.from[rays.count] = w->flights[i].from;
+            rays.from[rays.count] = w->flights[i].start;
             rays.along[rays.count++] = vec_scale(t->axes.sight, -1);
         }
         if (rays.count == SCENE_PACKET || (i + 1 == w->count && rays.count > 0)) {

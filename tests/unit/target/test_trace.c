@@ -116,7 +116,7 @@ static void a_dihedral_gives_the_records_of_its_closed_form(void **state)
             const double up =
                 r.sensor.low_up_m + (t->ray / r.sensor.columns + 0.5) * r.sensor.step_up_m;
             const double range = b == 1 ? 0 : is_wall ? -up * tan(psi) : up / tan(psi);
-            assert_true(fabs((double)t->range_m - range) < 2e-4); /* the lift off the surface */
+            assert_true(fabs((double)t->range_m - range) < 1e-6);
         }
     }
     trace_records_free(&known);
@@ -201,8 +201,8 @@ static void three_bounces_of_a_trihedral_focus_in_its_apex(void **state)
         const double range = -(apex.x * cos(a) - apex.y * sin(a)) * cos(psi) - apex.z * sin(psi);
         assert_true(r.bounces[2].count > 1000);
         for (uint32_t i = 0; i < r.bounces[2].count; i++) {
-            assert_true(fabs((double)r.bounces[2].records[i].across_m - across) < 1e-3);
-            assert_true(fabs((double)r.bounces[2].records[i].range_m - range) < 1e-3);
+            assert_true(fabs((double)r.bounces[2].records[i].across_m - across) < 2e-6);
+            assert_true(fabs((double)r.bounces[2].records[i].range_m - range) < 2e-6);
         }
         assert_int_equal(r.bounces[3].count, 0);
         trace_records_free(&r);
