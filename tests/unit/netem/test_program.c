@@ -33,8 +33,8 @@ static int remove_folder(void **state)
 static void every_command_explains_itself(void **state)
 {
     (void)state;
-    static const char *const commands[] = {"",     "register", "train", "score",
-                                           "plot", "recover",  "paper"};
+    static const char *const commands[] = {"",         "register", "train",   "score",
+                                           "simulate", "plot",     "recover", "paper"};
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         assert_int_equal(support_run("%s/bin/landmass-netem %s --help | grep -q sage:",
                                      support_build_dir(), commands[i]),
@@ -86,6 +86,32 @@ static void trainings_are_drawn_together(void **state)
                      0);
     assert_int_equal(
         support_run("cd %s/both && ls loss.png specular.png back.png kernels.png", folder), 0);
+}
+
+/* What `simulate` writes is a chip: trained on itself it is scored as equal. */
+static void learned_chips_can_be_made_and_read_again(void **state)
+{
+    (void)state;
+    const char *b = support_build_dir();
+    assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 "
+                                 "--training %s/whole/training.netem --views 3 --out %s/made",
+                                 b, folder, folder),
+                     0);
+    assert_int_equal(
+        support_run("cd %s/made && ls 000.00.png 120.00.png 240.00.csv && for a in 000 "
+                    "120 240; do echo $a.00.csv $a 15 0 0 1 validation; done > list && "
+                    "sed -i '1s/validation/training/' list",
+                    folder),
+        0);
+    assert_int_equal(support_run("%s/bin/landmass-netem score --model slicy --cells 64 --rays 1 "
+                                 "--training %s/whole/training.netem --chips %s/made/list --out "
+                                 "%s/made/score",
+                                 b, folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("awk -F '\t' 'NR > 1 { n++; bad += $3 > 1e-9 } "
+                                 "END { exit !(n == 2 && bad == 0) }' %s/made/score/scores.tsv",
+                                 folder),
+                     0);
 }
 
 /* The chips of the real T-72: found, learned for a moment, and scored. */
@@ -173,6 +199,7 @@ int main(void)
         cmocka_unit_test(a_command_line_that_makes_no_sense_is_told_so),
         cmocka_unit_test(a_training_killed_at_any_epoch_ends_in_the_same_file),
         cmocka_unit_test(trainings_are_drawn_together),
+        cmocka_unit_test(learned_chips_can_be_made_and_read_again),
         cmocka_unit_test(real_chips_go_all_the_way),
         cmocka_unit_test(the_response_is_that_of_a_real_radar),
         cmocka_unit_test(the_papers_experiment_is_one_command),
