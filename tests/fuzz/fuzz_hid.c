@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                       .up = {.usage = DRV_STICK_HAT_Y, .is_inverted = true},
                                       .knob = {.usage = DRV_STICK_THROTTLE},
                                       .dead_percent = 50};
-    for (uint8_t i = 0; i < DRV_STICK_BUTTONS; i++) {
+    for (uint32_t i = 0; i < DRV_STICK_BUTTONS; i++) {
         config.button[i] =
             (struct drv_stick_button){DRV_STICK_PRESS, (uint8_t)(i % LM_BUTTONS + 1)};
     }

@@ -77,10 +77,10 @@ static bool is_active_low(int flags)
 }
 
 int gpiod_line_request_output_flags(struct gpiod_line *line, const char *consumer, int flags,
-                                    int value)
+                                    int default_val)
 {
     (void)consumer;
-    (void)value;
+    (void)default_val;
     return status_of(fake_gpio_request(fake(line), true, is_active_low(flags), false));
 }
 
@@ -119,8 +119,8 @@ int gpiod_line_set_value(struct gpiod_line *line, int value)
 
 /* The events of 1.6 may be the wrong ones: their contents are nonsense here. */
 int gpiod_line_event_read_multiple(struct gpiod_line *line, struct gpiod_line_event *events,
-                                   unsigned int count)
+                                   unsigned int num_events)
 {
-    memset(events, 0xee, count * sizeof *events);
+    memset(events, 0xee, num_events * sizeof *events);
     return fake_gpio_read_events(fake(line)) == 0 ? 1 : -1;
 }

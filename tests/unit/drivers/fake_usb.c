@@ -55,7 +55,7 @@ void fake_usb_plug(struct fake_device *d)
     atomic_store(&d->is_plugged, true);
 }
 
-int libusb_init(libusb_context **context)
+int libusb_init(libusb_context **ctx)
 {
     if (atomic_load(&fake_usb_init_failures) > 0) {
         atomic_fetch_sub(&fake_usb_init_failures, 1);
@@ -65,19 +65,19 @@ int libusb_init(libusb_context **context)
         fake_usb[i].listed_address =
             atomic_load(&fake_usb[i].is_plugged) ? atomic_load(&fake_usb[i].address) : -1;
     }
-    *context = (libusb_context *)(void *)fake_usb;
+    *ctx = (libusb_context *)(void *)fake_usb;
     return 0;
 }
 
-void libusb_exit(libusb_context *context)
+void libusb_exit(libusb_context *ctx)
 {
-    must(context != NULL, "exit without context");
+    must(ctx != NULL, "exit without context");
 }
 
-ssize_t libusb_get_device_list(libusb_context *context, libusb_device ***list)
+ssize_t libusb_get_device_list(libusb_context *ctx, libusb_device ***list)
 {
-    must(context != NULL && !is_in_callback, "list");
-    libusb_device **devices = calloc(FAKE_USB_DEVICES + 1, sizeof *devices);
+    must(ctx != NULL && !is_in_callback, "list");
+    static libusb_device *devices[FAKE_USB_DEVICES + 1];
     ssize_t count = 0;
     for (int i = 0; i < FAKE_USB_DEVICES; i++) {
         if (atomic_load(&fake_usb[i].is_plugged) &&
@@ -85,14 +85,15 @@ ssize_t libusb_get_device_list(libusb_context *context, libusb_device ***list)
             devices[count++] = (libusb_device *)(void *)&fake_usb[i];
         }
     }
+    devices[count] = NULL;
     *list = devices;
     return count;
 }
 
-void libusb_free_device_list(libusb_device **list, int unreference)
+void libusb_free_device_list(libusb_device **list, int unref_devices)
 {
-    (void)unreference;
-    free(list);
+    (void)list;
+    (void)unref_devices;
 }
 
 uint8_t libusb_get_bus_number(libusb_device *device)
@@ -286,12 +287,11 @@ static bool is_finished(const struct flight *f)
     return true;
 }
 
-int libusb_handle_events_timeout_completed(libusb_context *context, struct timeval *timeout,
-                                           int *completed)
+int libusb_handle_events_timeout_completed(libusb_context *ctx, struct timeval *tv, int *completed)
 {
-    (void)timeout;
+    (void)tv;
     (void)completed;
-    must(context != NULL && !is_in_callback, "events in a callback");
+    must(ctx != NULL && !is_in_callback, "events in a callback");
     const struct timespec rest = {.tv_nsec = 200000};
     nanosleep(&rest, NULL);
     for (int i = 0; i < FAKE_USB_TRANSFERS; i++) {

@@ -49,7 +49,7 @@ static void feel(struct drv_stick *s, int x, int y, int slider, int hat, int but
 static void expect(struct drv_control_ring *ring, enum lm_control_kind kind, int32_t value,
                    int32_t value_y)
 {
-    struct lm_control c;
+    struct lm_control c = {0};
     assert_true(drv_control_ring_take(ring, &c));
     assert_int_equal(c.kind, kind);
     assert_int_equal(c.value, value);

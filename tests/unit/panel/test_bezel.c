@@ -83,7 +83,7 @@ static void wait_us(struct bezel *b, uint64_t *now_us, uint64_t us)
 
 static void expect(struct bezel *b, enum lm_control_kind kind, int32_t value)
 {
-    struct lm_control c;
+    struct lm_control c = {0};
     assert_true(drv_control_ring_take(&b->ring, &c));
     assert_int_equal(c.kind, kind);
     assert_int_equal(c.value, value);
