@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "setup.h"
+#include "table_picture.h"
 
 #include "hs/error.h"
 
@@ -11,7 +12,26 @@ static const struct db_usage usage = {
     "material and the place where its echo is focused (docs/FORMATS.md, Traced records), for\n"
     "`landmass-target render` with any law of reflection, or to train a network on."};
 
-static int run(const struct setup *s, const char *out)
+struct outputs {
+    const char *records, *picture;
+    long bounce; /* of the picture, from 1 */
+};
+
+static int write_outputs(const struct trace_records *r, const struct outputs *o)
+{
+    if (trace_records_write(r, o->records) != 0) {
+        return -1;
+    }
+    if (!o->picture) {
+        return 0;
+    }
+    return o->bounce <= r->bounce_count
+               ? table_picture(r, (uint32_t)o->bounce - 1, o->picture)
+               : hs_error("--picture-of", "give at most the number of --bounces",
+                          "reflection %ld was not traced", o->bounce);
+}
+
+static int run(const struct setup *s, const struct outputs *outputs)
 {
     struct scene scene;
     struct trace_records r;
@@ -23,7 +43,7 @@ static int run(const struct setup *s, const char *out)
     int result = trace_run(&scene, &order, s->model, &r, &rays_cast);
     scene_close(&scene);
     if (result == 0) {
-        result = trace_records_write(&r, out);
+        result = write_outputs(&r, outputs);
         printf("%u x %u primary rays, %llu rays in all; reflections by bounce:", r.sensor.columns,
                r.sensor.rows, (unsigned long long)rays_cast);
         for (uint32_t b = 0; b < r.bounce_count; b++) {
@@ -38,10 +58,16 @@ static int run(const struct setup *s, const char *out)
 int target_cmd_trace(int argc, char **argv)
 {
     struct setup s = setup_default();
-    const char *out = NULL;
-    enum { OWN = 2, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    struct outputs outputs = {NULL, NULL, 2};
+    enum { OWN = 4, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
     struct db_option options[COUNT] = {
-        {"out", DB_TEXT, &out, 0, 0, "FILE.trace", "the records", true},
+        {"out", DB_TEXT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
+        {"picture", DB_TEXT, &outputs.picture, 0, 0, "FILE.png",
+         "what was recorded at one reflection, channel by channel, at the places where the\nrays "
+         "were sent (paper B, Table I)",
+         false},
+        {"picture-of", DB_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
+         "which reflection that is", false},
         {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},
     };
@@ -51,5 +77,5 @@ int target_cmd_trace(int argc, char **argv)
     if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }
-    return run(&s, out);
+    return run(&s, &outputs);
 }

@@ -93,12 +93,16 @@ static void sheets_and_curves_are_pictures(void **state)
 {
     (void)state;
     assert_int_equal(run("sheet --model slicy --count 2 --rays 1 --out sheet.png"), 0);
+    assert_int_equal(run("trace --model slicy --bounces 2 --out s.trace --picture table.png"), 0);
+    assert_int_equal(run("trace --model slicy --bounces 2 --out s.trace --picture no.png "
+                         "--picture-of 3"),
+                     1);
     for (int figure = 3; figure <= 6; figure++) {
         char line[64];
         snprintf(line, sizeof line, "curves --figure %d --out curves%d.png", figure, figure);
         assert_int_equal(run(line), 0);
     }
-    assert_int_equal(shell("for f in sheet.png curves[3456].png; do "
+    assert_int_equal(shell("for f in sheet.png table.png curves[3456].png; do "
                            "head -c 4 $f | tail -c 3 | grep -q PNG || exit 1; done"),
                      0);
 }
