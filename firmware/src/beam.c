@@ -17,7 +17,7 @@ void lm_beam_clear(struct lm_beam *b)
 
 fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar)
 {
-    return radar->line >> b->fineness;
+    return radar->sample >> b->fineness;
 }
 
 int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, int32_t sample)
@@ -35,7 +35,7 @@ static uint8_t fineness_of(uint32_t ratio_q8)
 /* 2^(-8 x^2) in Q16, x = off * ratio / beam. */
 static uint32_t pattern_q16(int32_t off, uint32_t ratio_q8, fx_bam_t beam)
 {
-    /* |off| is below nine spacings, so below 2^26 for any beam; x in Q12, cut at 4, where nothing
+    /* |off| is below five spacings, so below 2^27; x in Q12, cut at 4, where nothing
      * is left. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32(off) * ratio_q8 << 4) / (beam ? beam : 1);
     const int32_t x = x_q12 < 4 << 12 ? (int32_t)x_q12 : 4 << 12;
@@ -58,7 +58,7 @@ void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimut
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
         const int32_t off = azimuth - lm_beam_azimuth(b, radar, look->first + j);
         look->weight_q16[j] = pattern_q16(off, ratio_q8, radar->antenna.azimuth_beam);
-        sum += look->weight_q16[j]; /* at most 2^20 */
+        sum += look->weight_q16[j]; /* at most 2^19 */
     }
     uint32_t left = 65536;
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
@@ -83,34 +83,48 @@ uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
     return b->power_q24[slot];
 }
 
-/* Four samples at a time: their products are below 2^48, all sixteen below 2^48 together as the
- * weights add up to 2^16. */
-static void add_four(const uint32_t *restrict const power[4], const uint32_t weight[4],
-                     uint64_t *restrict sum_q40, uint32_t cells)
+enum { BLOCK = 64 }; /* cells that are added up together: half a kilobyte of the stack */
+
+/* Powers are cut into halves so that the products fit 32 bits, which vectors multiply: weights add
+ * up to 2^16, so that both sums stay below 2^32, and together they are exact. */
+struct halves {
+    uint32_t high[BLOCK], low[BLOCK];
+};
+
+/* Four samples at a time, so that sums are fetched and put back half as often. */
+static inline void add_four(struct halves *restrict sum, const uint32_t *const power[4],
+                            const uint32_t weight_q16[4])
 {
-    const uint32_t *restrict p0 = power[0], *restrict p1 = power[1], *restrict p2 = power[2],
-                             *restrict p3 = power[3];
-    const uint64_t w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
-    for (uint32_t i = 0; i < cells; i++) {
-        sum_q40[i] += p0[i] * w0 + p1[i] * w1 + p2[i] * w2 + p3[i] * w3;
+    const uint32_t *restrict a = power[0], *restrict b = power[1];
+    const uint32_t *restrict c = power[2], *restrict d = power[3];
+    const uint32_t wa = weight_q16[0], wb = weight_q16[1], wc = weight_q16[2], wd = weight_q16[3];
+    for (uint32_t i = 0; i < BLOCK; i++) {
+        sum->high[i] +=
+            (a[i] >> 16) * wa + (b[i] >> 16) * wb + (c[i] >> 16) * wc + (d[i] >> 16) * wd;
+        sum->low[i] += (a[i] & 0xFFFF) * wa + (b[i] & 0xFFFF) * wb + (c[i] & 0xFFFF) * wc +
+                       (d[i] & 0xFFFF) * wd;
+    }
+}
+
+static void put_together(const struct halves *restrict sum, uint32_t *restrict power)
+{
+    for (uint32_t i = 0; i < BLOCK; i++) {
+        power[i] = sum->high[i] + (sum->low[i] >> 16);
     }
 }
 
 void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
                  uint32_t cells)
 {
-    uint64_t sum_q40[LM_CELLS_ROOM];
-    for (uint32_t i = 0; i < cells; i++) {
-        sum_q40[i] = 0;
-    }
-    for (int32_t j = 0; j < LM_BEAM_TAPS; j += 4) {
-        const uint32_t *restrict power[4];
-        for (int32_t k = 0; k < 4; k++) {
-            power[k] = b->power_q24[slot_of(look->first + j + k)];
+    for (uint32_t begin = 0; begin < cells; begin += BLOCK) {
+        struct halves sum = {{0}, {0}};
+        for (int32_t j = 0; j < LM_BEAM_TAPS; j += 4) {
+            const uint32_t *power[4];
+            for (int32_t k = 0; k < 4; k++) {
+                power[k] = b->power_q24[slot_of(look->first + j + k)] + begin;
+            }
+            add_four(&sum, power, look->weight_q16 + j);
         }
-        add_four(power, look->weight_q16 + j, sum_q40, cells);
-    }
-    for (uint32_t i = 0; i < cells; i++) {
-        power_q24[i] = (uint32_t)(sum_q40[i] >> 16);
+        put_together(&sum, power_q24 + begin);
     }
 }

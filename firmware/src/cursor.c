@@ -29,17 +29,19 @@ static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
     return o;
 }
 
-static struct lm_offset within_patch(struct lm_offset o, int32_t radius_px)
+/* The nearest offset within the square around the middle. */
+static struct lm_offset within_square(struct lm_offset o, const struct lm_view *view)
 {
-    const int32_t edge_q8 = (radius_px - 1) * 256;
-    return (struct lm_offset){fx_clamp_i32(o.x_q8, -edge_q8, edge_q8),
-                              fx_clamp_i32(o.y_q8, -edge_q8, edge_q8)};
+    const int32_t edge_q8 = (view->radius_px - 1) * 256;
+    const struct lm_offset middle = lm_view_middle(view);
+    return (struct lm_offset){middle.x_q8 + fx_clamp_i32(o.x_q8 - middle.x_q8, -edge_q8, edge_q8),
+                              middle.y_q8 + fx_clamp_i32(o.y_q8 - middle.y_q8, -edge_q8, edge_q8)};
 }
 
-static struct lm_offset within(struct lm_offset o, const struct lm_cursor_scene *scene)
+static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
 {
-    return scene->is_sector ? within_sector(o, scene->view->radius_px)
-                            : within_patch(o, scene->view->radius_px);
+    return view->shape == LM_VIEW_SECTOR ? within_sector(o, view->radius_px)
+                                         : within_square(o, view);
 }
 
 /* The deflection's way in one step, pixels * 256: at most 512 * 256 / 50. */
@@ -56,9 +58,9 @@ static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
         lm_cursor_zero(c, scene);
         return;
     }
-    o.x_q8 += way_q8(c->slew_x, scene->half_px);
-    o.y_q8 += way_q8(c->slew_y, scene->half_px);
-    c->place = lm_view_place(scene->view, within(o, scene));
+    o.x_q8 += way_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
+    o.y_q8 += way_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
+    c->place = lm_view_place(scene->view, within(o, scene->view));
 }
 
 bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us)
@@ -85,7 +87,7 @@ void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     c->is_on_glass = lm_view_find(scene->view, c->place, &c->offset);
     if (c->is_on_glass) {
         /* A pixel's grace: a place comes back from the ground a little moved. */
-        const struct lm_offset o = within(c->offset, scene);
+        const struct lm_offset o = within(c->offset, scene->view);
         c->is_on_glass = fx_hypot_u32(o.x_q8 - c->offset.x_q8, o.y_q8 - c->offset.y_q8) <= 256;
     }
 }

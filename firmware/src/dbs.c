@@ -1,5 +1,6 @@
 #include "lm/dbs.h"
 
+#include "fx/bits.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 
@@ -23,5 +24,6 @@ uint32_t lm_dbs_sharpening_q8(const struct lm_field_row *field, uint32_t had_q8)
     if (had_q8 < field->sharpening_least * 256u) {
         return 256;
     }
-    return fx_min_u32(had_q8, field->sharpening * 256u);
+    const uint32_t ratio = fx_min_u32(had_q8 / 256, field->sharpening);
+    return 256u << (31 - fx_clz32(fx_max_u32(ratio, 1)));
 }

@@ -42,11 +42,11 @@ static bool sector_label(const struct lm_page *p, uint8_t osb, struct lm_label *
     case OSB_AUTO:
         return say(label, p->is_auto_range ? "AUTO" : "MAN", "", false);
     case OSB_AZIMUTH:
-        return say_azimuth(p, label);
+        return p->field == LM_FIELD_NORM && say_azimuth(p, label);
     case OSB_RANGE_DOWN:
         return p->range > 0 && say(label, LM_GLYPH_DOWN, "", false);
     case OSB_RANGE_UP:
-        return p->range < LM_RANGES - 1 && say(label, LM_GLYPH_UP, "", false);
+        return p->range < lm_page_range_last(p) && say(label, LM_GLYPH_UP, "", false);
     default:
         return false;
     }
@@ -56,10 +56,9 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
 {
     switch (osb) {
     case OSB_MODE:
-        return say(label, lm_page_modes[0], "", false);
+        return say(label, lm_page_modes[p->mode], "", false);
     case OSB_FIELD:
-        return say(label, lm_page_is_patch(p) ? "SAR" : lm_page_fields[p->field_of_view], "",
-                   false);
+        return say(label, p->is_patch ? "SAR" : lm_page_fields[p->field], "", false);
     case OSB_OVERRIDE:
         return say(label, "OVRD", "", p->is_override);
     case OSB_FREEZE:
@@ -77,18 +76,36 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
     case OSB_CELL:
         return say(label, "CELL", lm_page_cells[p->cell].label, false);
     default:
-        return !lm_page_is_patch(p) && sector_label(p, osb, label);
+        return !p->is_patch && sector_label(p, osb, label);
     }
+}
+
+/* Degrees up of the beam's axis, and who points it. */
+static bool say_tilt(const struct lm_page *p, struct lm_label *label)
+{
+    const uint32_t tenths = (uint32_t)(p->tilt_tenths < 0 ? -p->tilt_tenths : p->tilt_tenths);
+    struct lm_text t = {0};
+    lm_text_add(&t, p->tilt_tenths < 0 ? "-" : "+");
+    lm_text_number(&t, tenths / 10, 1);
+    lm_text_add(&t, ".");
+    lm_text_number(&t, tenths % 10, 1);
+    return say(label, p->is_tilt_manual ? "TILT" : "AUTO", t.words, p->is_tilt_manual);
 }
 
 static bool cntl_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
 {
     static const char tints[LM_TINTS][6] = {"GREY", "GREEN", "AMBER"};
     switch (osb) {
+    case OSB_TILT:
+        return say_tilt(p, label);
+    case OSB_BEAM:
+        return say(label, "BEAM", p->is_pencil ? "PNCL" : "FAN", p->is_pencil);
+    case OSB_TILT_UP:
     case OSB_BLACK_UP:
     case OSB_WHITE_UP:
     case OSB_GAMMA_UP:
         return say(label, LM_GLYPH_UP, "", false);
+    case OSB_TILT_DOWN:
     case OSB_BLACK_DOWN:
     case OSB_WHITE_DOWN:
     case OSB_GAMMA_DOWN:
@@ -162,7 +179,8 @@ bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
 
 static bool say_gamma(const struct lm_page *p, struct lm_label *value)
 {
-    const uint32_t tenths = (lm_page_tone(p, &p->radar->gm_tone).gamma_q8 * 10u + 128u) / 256u;
+    const uint32_t tenths =
+        (lm_page_tone(p, &p->radar->mode[p->mode].tone).gamma_q8 * 10u + 128u) / 256u;
     struct lm_text t = {0};
     lm_text_number(&t, tenths / 10, 1);
     lm_text_add(&t, ".");
@@ -173,7 +191,7 @@ static bool say_gamma(const struct lm_page *p, struct lm_label *value)
 bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value)
 {
     const bool is_range_shown = p->format == LM_FORMAT_RADAR || p->format == LM_FORMAT_DCLT;
-    if (is_range_shown && osb == OSB_RANGE_UP && !lm_page_is_patch(p)) {
+    if (is_range_shown && osb == OSB_RANGE_UP && !p->is_patch) {
         return say_number(value, "", p->radar->range_nm[p->range], false);
     }
     if (p->format != LM_FORMAT_CNTL) {

@@ -17,12 +17,31 @@ void lm_begin_picture(struct lm_unit *u, uint64_t now_us)
     lm_plane_clear(&u->plane, &u->frame);
 }
 
-static void start_ground_map(struct lm_unit *u, uint64_t now_us)
+static struct lm_beam_setting beam_of(const struct lm_page *p)
 {
-    lm_ground_map_start(&u->ground_map, u->board->radar, u->page.range, u->page.azimuth,
-                        u->board->noise_seed);
-    u->ground_map.targets = &u->target_set;
-    u->page.mode = LM_MODE_GM;
+    return (struct lm_beam_setting){
+        .is_tilt_manual = p->is_tilt_manual,
+        .is_pencil = p->is_pencil,
+        .tilt = (int32_t)(p->tilt_tenths * (1LL << 32) / 3600),
+    };
+}
+
+/* A window needs a cursor: until there is one, the whole sector. */
+static void start_sector(struct lm_unit *u, uint64_t now_us)
+{
+    const struct lm_page *p = &u->page;
+    const struct lm_sector_command command = {
+        .mode = p->mode,
+        .field = u->cursor.is_placed ? p->field : (uint8_t)LM_FIELD_NORM,
+        .range = p->range,
+        .azimuth = p->azimuth,
+        .centre = u->cursor.place,
+        .beam = beam_of(p),
+    };
+    lm_sector_start(&u->sector, u->board->radar, &command, u->board->noise_seed);
+    u->sector.targets = &u->target_set;
+    u->sector.environment = &u->environment;
+    u->page.is_patch = false;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);
 }
@@ -79,7 +98,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
     if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
         return false;
     }
-    u->page.mode = LM_MODE_SAR;
+    u->page.is_patch = true;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);
     const uint32_t last = u->board->radar->sar.cells - 1u;
@@ -110,22 +129,26 @@ static void restart_patch(struct lm_unit *u, uint64_t now_us)
 static void set_tones(struct lm_unit *u)
 {
     const struct lm_radar *radar = u->board->radar;
-    struct lm_tone_config config = lm_page_tone(&u->page, &radar->gm_tone);
-    lm_tone_set(&u->gm_tone, &config);
+    struct lm_tone_config config = lm_page_tone(&u->page, &radar->mode[u->page.mode].tone);
+    lm_tone_set(&u->sector_tone, &config);
     config = lm_page_tone(&u->page, &radar->sar.tone);
     lm_tone_set(&u->sar_tone, &config);
 }
 
 void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
-    if (effects & LM_EFFECT_GROUND_MAP) {
-        start_ground_map(u, now_us);
+    if (effects & LM_EFFECT_SECTOR) {
+        start_sector(u, now_us);
     }
     if (effects & LM_EFFECT_PATCH) {
         restart_patch(u, now_us);
     }
     if (effects & LM_EFFECT_TONE) {
         set_tones(u);
+    }
+    if (effects & LM_EFFECT_BEAM) {
+        const struct lm_beam_setting beam = beam_of(&u->page);
+        lm_sector_set_beam(&u->sector, &beam);
     }
     if (effects & LM_EFFECT_PALETTE) {
         lm_palette_set(&u->palette, &u->page.palette);
@@ -166,7 +189,8 @@ static bool is_within(int32_t value, int32_t low, int32_t high)
 static bool obey_scales(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     const bool is_range = control->kind == LM_CONTROL_RANGE;
-    if (!is_within(control->value, 0, is_range ? LM_RANGES - 1 : LM_AZIMUTHS - 1)) {
+    const int32_t last = is_range ? lm_page_range_last(&u->page) : LM_AZIMUTHS - 1;
+    if (!is_within(control->value, 0, last)) {
         return false;
     }
     if (is_range) {
@@ -175,7 +199,30 @@ static bool obey_scales(struct lm_unit *u, const struct lm_control *control, uin
     } else {
         u->page.azimuth = (uint8_t)control->value;
     }
-    start_ground_map(u, now_us);
+    start_sector(u, now_us);
+    return true;
+}
+
+static bool obey_sector(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    const struct lm_radar *radar = u->board->radar;
+    if (!is_within(control->value, 0, LM_SECTOR_MODES - 1) ||
+        !is_within(control->value_y, 0, radar->mode[control->value].field_last)) {
+        return false;
+    }
+    u->page.mode = (uint8_t)control->value;
+    u->page.field = (uint8_t)control->value_y;
+    u->page.range = (uint8_t)fx_min_u32(u->page.range, lm_page_range_last(&u->page));
+    lm_apply(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE, now_us);
+    return true;
+}
+
+static bool obey_environment(struct lm_unit *u, const struct lm_control *control)
+{
+    if (lm_environment_check(&control->environment) != LM_OK) {
+        return false;
+    }
+    u->environment = control->environment; /* the next sweep or patch meets it */
     return true;
 }
 
@@ -214,9 +261,12 @@ static bool obey_deflection(struct lm_unit *u, const struct lm_control *control)
 static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     switch (control->kind) {
-    case LM_CONTROL_GM:
+    case LM_CONTROL_SECTOR:
+        return obey_sector(u, control, now_us);
+    case LM_CONTROL_ENVIRONMENT:
+        return obey_environment(u, control);
     case LM_CONTROL_DROP:
-        start_ground_map(u, now_us);
+        start_sector(u, now_us);
         return true;
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
@@ -258,21 +308,51 @@ void lm_take_controls(struct lm_unit *u, uint64_t now_us)
     }
 }
 
-/* How the picture lies. A picture that stands keeps the view it was drawn with. */
-static void follow_view(struct lm_unit *u)
+static struct lm_view view_of_sector(const struct lm_unit *u)
 {
-    if (u->page.mode == LM_MODE_SAR) {
-        const struct lm_sar_command *c = &u->sar.command;
-        u->view = lm_view_of_patch(&u->frame, c->centre, c->look_azimuth, u->sar.radar->sar.cells,
-                                   c->cell_mm);
-        return;
-    }
-    const bool is_standing = (u->flags & LM_FLAGS_STANDING) != 0;
+    const struct lm_sector *s = &u->sector;
+    const bool has_geometry = s->grid.cells != 0, is_window = has_geometry && s->half_m != 0;
+    const struct lm_view_from from = {
+        .place = is_window ? s->platform.place : lm_ownship_place(u),
+        .up = is_window ? s->up : u->ownship.heading,
+        .height_q10 = has_geometry ? s->grid.height_q10 - s->grid.reference_q10 : 0,
+    };
+    return is_window ? lm_view_of_window(&u->frame, &from, s->command.centre, s->half_m)
+                     : lm_view_of_sector(&u->frame, &from, u->board->radar->range_m[u->page.range]);
+}
+
+static struct lm_cursor_scene scene_of(const struct lm_unit *u)
+{
+    const struct lm_radar *radar = u->board->radar;
+    return (struct lm_cursor_scene){
+        .view = &u->view,
+        .ownship = lm_ownship_place(u),
+        .heading = u->ownship.heading,
+        .scale_m = radar->range_m[u->page.range],
+        .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
+        .slew_percent = u->page.is_patch ? 100 : radar->field[u->sector.command.field].slew_percent,
+    };
+}
+
+static struct lm_view view_of_picture(const struct lm_unit *u)
+{
+    const struct lm_sar_command *c = &u->sar.command;
+    return u->page.is_patch ? lm_view_of_patch(&u->frame, c->centre, c->look_azimuth,
+                                               u->sar.radar->sar.cells, c->cell_mm)
+                            : view_of_sector(u);
+}
+
+void lm_follow_view(struct lm_unit *u)
+{
+    const bool is_standing = !u->page.is_patch && (u->flags & LM_FLAGS_STANDING) != 0;
     if (!is_standing || !u->is_view_held) {
-        u->view = lm_view_of_sector(&u->frame, lm_ownship_place(u), u->ownship.heading,
-                                    u->board->radar->range_m[u->page.range]);
+        u->view = view_of_picture(u);
     }
-    u->is_view_held = is_standing;
+    u->is_view_held = u->page.is_patch ? u->is_view_held : is_standing;
+    if (lm_has_ownship(u)) {
+        const struct lm_cursor_scene scene = scene_of(u);
+        lm_cursor_locate(&u->cursor, &scene);
+    }
 }
 
 static void read_elevation(struct lm_unit *u)
@@ -284,34 +364,35 @@ static void read_elevation(struct lm_unit *u)
     }
 }
 
-void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
+/* The page's range follows the cursor, when it is to. */
+static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t scale_m = u->board->radar->range_m[u->page.range];
-    follow_view(u);
+    if (u->page.is_patch || !u->page.is_auto_range || u->is_view_held) {
+        return;
+    }
+    const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
+    const uint32_t effects = step != 0 ? lm_page_step_range(&u->page, step) : 0;
+    if (effects) {
+        lm_apply(u, effects, now_us);
+        lm_follow_view(u);
+    }
+}
+
+void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
+{
+    lm_follow_view(u);
     if (!lm_has_ownship(u)) {
         return;
     }
-    const struct lm_cursor_scene scene = {
-        .view = &u->view,
-        .ownship = lm_ownship_place(u),
-        .heading = u->ownship.heading,
-        .scale_m = scale_m,
-        .is_sector = u->page.mode == LM_MODE_GM,
-        .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
-    };
-    const bool has_stepped = lm_cursor_step(&u->cursor, &scene, now_us);
-    lm_cursor_locate(&u->cursor, &scene);
-    if (!has_stepped) {
+    const struct lm_cursor_scene scene = scene_of(u);
+    if (!lm_cursor_step(&u->cursor, &scene, now_us)) {
         return;
     }
+    lm_cursor_locate(&u->cursor, &scene);
     read_elevation(u);
-    if (scene.is_sector && u->page.is_auto_range && !u->is_view_held) {
-        const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
-        const uint32_t effects = step != 0 ? lm_page_step_range(&u->page, step) : 0;
-        if (effects) {
-            lm_apply(u, effects, now_us);
-            follow_view(u);
-            lm_cursor_locate(&u->cursor, &scene);
-        }
+    if (!u->page.is_patch && u->sector.command.field != u->page.field && u->cursor.is_placed) {
+        lm_apply(u, LM_EFFECT_SECTOR, now_us); /* the window had no cursor to go by until now */
     }
+    follow_range(u, now_us);
 }

@@ -3,8 +3,8 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 
-const char lm_page_modes[LM_PAGE_MODES][6] = {"GM"};
-const char lm_page_fields[LM_PAGE_FIELDS][6] = {"NORM"};
+const char lm_page_modes[LM_SECTOR_MODES][6] = {"GM", "GMT", "SEA"};
+const char lm_page_fields[LM_FIELDS][6] = {"NORM", "EXP", "DBS1", "DBS2"};
 
 const struct lm_page_cell lm_page_cells[LM_SAR_CELLS_OFFERED] = {
     {1000, "1M"}, {2000, "2M"}, {3000, "3M"}, {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
@@ -13,7 +13,6 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 {
     memset(p, 0, sizeof *p);
     p->radar = radar;
-    p->mode = LM_MODE_GM;
     p->range = 2;
     p->cell = 3;
     p->hidden = LM_OSB_BIT(OSB_FREEZE) | LM_OSB_BIT(OSB_SNOWPLOW) | LM_OSB_BIT(OSB_CURSOR_ZERO) |
@@ -73,50 +72,77 @@ static uint32_t press_rocker(struct lm_page *p, uint8_t button)
     return 0;
 }
 
+uint8_t lm_page_range_last(const struct lm_page *p)
+{
+    const struct lm_radar *radar = p->radar;
+    return (uint8_t)fx_min_u32(radar->mode[p->mode].range_last, radar->field[p->field].range_last);
+}
+
 uint32_t lm_page_step_range(struct lm_page *p, int32_t step)
 {
-    const int32_t range = fx_clamp_i32(p->range + step, 0, LM_RANGES - 1);
+    const int32_t range = fx_clamp_i32(p->range + step, 0, lm_page_range_last(p));
     if (range == p->range) {
         return 0;
     }
     p->range = (uint8_t)range;
-    return LM_EFFECT_GROUND_MAP;
+    return LM_EFFECT_SECTOR;
 }
 
 static uint32_t press_range(struct lm_page *p, int32_t step)
 {
-    if (lm_page_is_patch(p)) {
+    if (p->is_patch) {
         return 0;
     }
     p->is_auto_range = false;
     return lm_page_step_range(p, step);
 }
 
+/* The sector's scan, which a window around the cursor does not have. */
 static uint32_t press_azimuth(struct lm_page *p)
 {
-    if (lm_page_is_patch(p)) {
+    if (p->is_patch || p->field != LM_FIELD_NORM) {
         return 0;
     }
     p->azimuth = (uint8_t)((p->azimuth + 1) % LM_AZIMUTHS);
-    return LM_EFFECT_GROUND_MAP;
+    return LM_EFFECT_SECTOR;
 }
 
+/* The next mode of the rotary, with a field and a scale that it has. In a patch: back to the
+ * sector. */
+static uint32_t press_mode(struct lm_page *p)
+{
+    if (!p->is_patch) {
+        p->mode = (uint8_t)((p->mode + 1u) % LM_SECTOR_MODES);
+        p->field =
+            p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
+        p->range = (uint8_t)fx_min_u32(p->range, lm_page_range_last(p));
+    }
+    return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
+}
+
+/* The next field of view that this mode has at this range. In a patch: the whole sector. */
 static uint32_t press_field(struct lm_page *p)
 {
-    if (lm_page_is_patch(p)) {
-        p->field_of_view = 0;
-        return LM_EFFECT_GROUND_MAP;
+    const uint8_t before = p->field;
+    const struct lm_radar *radar = p->radar;
+    if (p->is_patch) {
+        p->field = LM_FIELD_NORM;
+        return LM_EFFECT_SECTOR;
     }
-    const uint8_t next = (uint8_t)((p->field_of_view + 1u) % (LM_PAGE_FIELDS));
-    const bool has_moved = next != p->field_of_view;
-    p->field_of_view = next;
-    return has_moved ? LM_EFFECT_GROUND_MAP : 0;
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        p->field = (uint8_t)((p->field + 1u) % LM_FIELDS);
+        if (p->field <= radar->mode[p->mode].field_last &&
+            p->range <= radar->field[p->field].range_last) {
+            break;
+        }
+    }
+    return p->field != before ? LM_EFFECT_SECTOR : 0;
 }
 
 static uint32_t press_cell(struct lm_page *p)
 {
     p->cell = (uint8_t)((p->cell + 1u) % LM_SAR_CELLS_OFFERED);
-    return lm_page_is_patch(p) ? LM_EFFECT_PATCH : 0;
+    return p->is_patch ? LM_EFFECT_PATCH : 0;
 }
 
 static uint32_t set_snowplow(struct lm_page *p, bool is_on)
@@ -139,8 +165,8 @@ static uint32_t press_declutter(struct lm_page *p, bool is_long)
 static uint32_t press_on_radar(struct lm_page *p, uint8_t osb, bool is_long)
 {
     switch (osb) {
-    case OSB_MODE: /* with one mode the rotary has no other place, but it leaves the patch */
-        return lm_page_is_patch(p) ? LM_EFFECT_GROUND_MAP : 0;
+    case OSB_MODE:
+        return press_mode(p);
     case OSB_AUTO:
         p->is_auto_range = !p->is_auto_range;
         return 0;
@@ -173,17 +199,38 @@ static uint32_t press_on_radar(struct lm_page *p, uint8_t osb, bool is_long)
     }
 }
 
+/* Half a degree up or down, from where the beam is. */
+static uint32_t step_tilt(struct lm_page *p, int32_t step)
+{
+    const int32_t most =
+        (int32_t)(((uint64_t)p->radar->antenna.tilt_max * 3600 + (1u << 31)) >> 32);
+    p->is_tilt_manual = true;
+    p->tilt_tenths = (int16_t)fx_clamp_i32(p->tilt_tenths + 5 * step, -most, most);
+    return LM_EFFECT_BEAM;
+}
+
 static uint32_t reset_settings(struct lm_page *p)
 {
+    p->is_tilt_manual = p->is_pencil = false;
     p->black_db = p->white_db = p->gamma_tenths = 0;
     p->gain_db = 0;
     memset(&p->palette, 0, sizeof p->palette);
-    return LM_EFFECT_TONE | LM_EFFECT_PALETTE;
+    return LM_EFFECT_TONE | LM_EFFECT_PALETTE | LM_EFFECT_BEAM;
 }
 
 static uint32_t press_on_cntl(struct lm_page *p, uint8_t osb)
 {
     switch (osb) {
+    case OSB_TILT:
+        p->is_tilt_manual = !p->is_tilt_manual;
+        return LM_EFFECT_BEAM;
+    case OSB_TILT_UP:
+        return step_tilt(p, 1);
+    case OSB_TILT_DOWN:
+        return step_tilt(p, -1);
+    case OSB_BEAM:
+        p->is_pencil = !p->is_pencil;
+        return LM_EFFECT_BEAM;
     case OSB_BLACK_UP:
         return step_int8(&p->black_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
     case OSB_BLACK_DOWN:
@@ -279,7 +326,8 @@ enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button)
 {
     const uint32_t pairs = LM_OSB_BIT(OSB_BLACK_UP) | LM_OSB_BIT(OSB_BLACK_DOWN) |
                            LM_OSB_BIT(OSB_WHITE_UP) | LM_OSB_BIT(OSB_WHITE_DOWN) |
-                           LM_OSB_BIT(OSB_GAMMA_UP) | LM_OSB_BIT(OSB_GAMMA_DOWN);
+                           LM_OSB_BIT(OSB_GAMMA_UP) | LM_OSB_BIT(OSB_GAMMA_DOWN) |
+                           LM_OSB_BIT(OSB_TILT_UP) | LM_OSB_BIT(OSB_TILT_DOWN);
     if (button > LM_OSBS || (p->format == LM_FORMAT_CNTL && (pairs & LM_OSB_BIT(button)))) {
         return LM_KEY_REPEATS;
     }

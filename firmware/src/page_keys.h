@@ -26,6 +26,10 @@ enum {
     OSB_RANGE_UP = 20,
 
     /* On the control page. */
+    OSB_TILT = 1,
+    OSB_TILT_UP = 2,
+    OSB_TILT_DOWN = 3,
+    OSB_BEAM = 4,
     OSB_BLACK_UP = 6,
     OSB_BLACK_DOWN = 7,
     OSB_TINT = 8,
@@ -39,9 +43,7 @@ enum {
 
 #define LM_OSB_BIT(osb) (1u << ((osb)-1))
 
-/* Modes in the order of the rotary, and fields of view in the order of theirs. */
-enum { LM_PAGE_MODES = 1, LM_PAGE_FIELDS = 1 };
-extern const char lm_page_modes[LM_PAGE_MODES][6], lm_page_fields[LM_PAGE_FIELDS][6];
+extern const char lm_page_modes[LM_SECTOR_MODES][6], lm_page_fields[LM_FIELDS][6];
 
 /* Cells of a patch. */
 struct lm_page_cell {
@@ -49,10 +51,5 @@ struct lm_page_cell {
     char label[6];
 };
 extern const struct lm_page_cell lm_page_cells[LM_SAR_CELLS_OFFERED];
-
-static inline bool lm_page_is_patch(const struct lm_page *p)
-{
-    return p->mode == LM_MODE_SAR;
-}
 
 #endif

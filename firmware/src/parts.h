@@ -1,5 +1,5 @@
-/* The unit's parts: unit.c knows the order of things, operate.c what the operator wants, show.c
- * what the glass shows. */
+/* The unit's parts: unit.c knows the order of things, operate.c what the operator wants, scan.c
+ * what the radar draws, show.c what the glass shows. */
 #ifndef LM_PARTS_H
 #define LM_PARTS_H
 
@@ -23,6 +23,12 @@ void lm_take_controls(struct lm_unit *u, uint64_t now_us);
 
 /* Move view and cursor on, and the range when it follows the cursor. */
 void lm_follow_cursor(struct lm_unit *u, uint64_t now_us);
+
+/* How the picture lies on the glass. A picture that stands keeps the view it was drawn with. */
+void lm_follow_view(struct lm_unit *u);
+
+/* Draw the lines whose time has come, at most LM_STEP_LINES. */
+void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us);
 
 /* Draw the glass and show it. */
 void lm_show_frame(struct lm_unit *u, uint64_t now_us);

@@ -17,6 +17,8 @@ const struct lm_radar lm_radar_default = {
        resources". */
     .cells = 256,
     .line = FX_BAM_DEG(120) / 256,
+    /* Every other line: two and a half samples across the two-way beam. */
+    .sample = FX_BAM_DEG(120) / 128,
     /* 3.3 degrees: RADAR.md 1.5 and 2.3. Everything else of the antenna is UNSOURCED: a beam a
      * little taller than wide, a fan that reaches from the horizon to well below the aircraft's
      * nose, gimbals of 60 degrees. */
@@ -58,14 +60,17 @@ const struct lm_radar lm_radar_default = {
                                 .gate_mm_s = {0, UINT32_MAX},
                                 .speckle = {.looks_log2 = 0},
                                 .tone = {DB(-48), DB(-6), 320}}},
-    /* Windows, azimuth limits and DBS rates (a quarter and a twentieth of the base): FreeFalcon, as
-     * RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below half of that:
-     * UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED. */
+    /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
+     * base): FreeFalcon, as RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below
+     * half of that: UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED.
+     */
     .field = {[LM_FIELD_NORM] = {.range_last = 3,
+                                 .slew_percent = 100,
                                  .sharpening = 1,
                                  .sharpening_least = 1,
                                  .pulse_ns = {400, 1000, 3200, 6400}},
               [LM_FIELD_EXP] = {.range_last = 3,
+                                .slew_percent = 50,
                                 .window_permille = 125,
                                 .azimuth_half_max = FX_BAM_DEG(60),
                                 .sharpening = 1,
@@ -73,6 +78,7 @@ const struct lm_radar lm_radar_default = {
                                 .pulse_ns = {100, 400, 1000, 3200}},
               [LM_FIELD_DBS1] = {.bam_per_s = FX_BAM_DEG(15),
                                  .range_last = 2,
+                                 .slew_percent = 75,
                                  .window_permille = 125,
                                  .azimuth_half_max = FX_BAM_DEG(15),
                                  .sharpening = 8,
@@ -81,6 +87,7 @@ const struct lm_radar lm_radar_default = {
                                  .pulse_ns = {100, 100, 400, 400}},
               [LM_FIELD_DBS2] = {.bam_per_s = FX_BAM_DEG(3),
                                  .range_last = 2,
+                                 .slew_percent = 85,
                                  .window_permille = 30,
                                  .azimuth_half_max = FX_BAM_DEG(5),
                                  .sharpening = 64,
@@ -111,10 +118,4 @@ const struct lm_radar lm_radar_default = {
                                [LM_KIND_WATER] = LM_TEXTURE_NONE,
                                [LM_KIND_STRUCTURE] = 1,
                                [LM_KIND_TREES] = 2}},
-
-    .sweep_bam_per_ms = FX_BAM_DEG(120) / 1000,
-    .gm_cells = 256,
-    .gm_line = FX_BAM_DEG(120) / 256,
-    .gm_speckle = {.looks_log2 = 4},
-    .gm_tone = {.black_q8 = DB(-42), .white_q8 = DB(6), .gamma_q8 = 384},
 };

@@ -120,23 +120,26 @@ void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam
     struct edge from_edge = edge_at(left, rows.first), to_edge = edge_at(right, rows.first);
     const int32_t leftmost = clip->left_px - ppi->apex_x_px;
     const int32_t beyond_right = leftmost + clip->width_px;
-    const int32_t right_q17 = (int32_t)(d.right_q32 >> 15); /* two half pixels */
-    /* Ranges in cells of pixel centres, which lie at odd halves of a pixel. |2 c + 1| < 2^15 and
-     * cells a pixel below 2^36 in Q32: below 2^52. */
+    const int32_t right_q17 = (int32_t)(d.right_q32 >> 15); /* a pixel */
+    uint8_t *apex = plane->pixels + ppi->apex_x_px +
+                    (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * plane->width_px;
+    /* Ranges in cells of pixel centres, which lie at odd halves of a pixel: Q33 of two halves.
+     * |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52. */
+    int64_t row_q33 =
+        (2 * rows.first + 1) * d.up_q32 + d.right_q32 - (int64_t)ppi->near_cell_q8 * (1 << 25);
     for (int32_t row = rows.first; row < rows.end; row++) {
         const int32_t from = fx_max_i32(next_column(&from_edge), leftmost);
         const int32_t to = fx_min_i32(next_column(&to_edge), beyond_right);
-        const int64_t begin_q33 = (2 * row + 1) * d.up_q32 + (2 * from + 1) * d.right_q32;
-        int32_t cell_q17 = (int32_t)((begin_q33 >> 16) - (int64_t)ppi->near_cell_q8 * 512);
-        uint8_t *pixel = plane->pixels + ppi->apex_x_px + from +
-                         (int64_t)(ppi->apex_y_px - 1 - row) * plane->width_px;
-        for (int32_t column = from; column < to; column++, cell_q17 += right_q17) {
+        int32_t cell_q17 = (int32_t)((row_q33 + 2 * from * d.right_q32) >> 16);
+        for (int32_t column = from; column < to; column++) {
             const uint32_t cell = (uint32_t)(cell_q17 >> 17);
             if (cell < cells) {
-                *pixel = grey[cell];
+                apex[column] = grey[cell];
             }
-            pixel++;
+            cell_q17 += right_q17;
         }
+        apex -= plane->width_px;
+        row_q33 += 2 * d.up_q32;
     }
 }
 

@@ -1,24 +1,5 @@
-#include "fx/trig.h"
 #include "lm/bit.h"
 #include "parts.h"
-
-/* Twice the radius of the Earth, 4/3 as large as it is: what refraction makes of it. */
-enum { TWO_RADII_M = 16989333 };
-
-/* The antenna's elevation: along the line of sight to the cursor, or to half the range when the
- * cursor is not on the glass. The beam is as tall as the picture, so that it changes nothing yet.
- */
-static int32_t antenna_elevation(const struct lm_unit *u)
-{
-    if (!u->has_db) {
-        return 0;
-    }
-    const uint32_t half_m = u->board->radar->range_m[u->page.range] / 2;
-    const uint32_t range_m = u->cursor.is_on_glass ? u->cursor.range_m : half_m;
-    const int32_t drop_m = (int32_t)((uint64_t)range_m * range_m / TWO_RADII_M);
-    const int32_t above_m = (lm_antenna_height_q6(u) - u->db.mean_elevation_q6) / 64;
-    return (int32_t)fx_atan2(-(above_m + drop_m), (int32_t)range_m);
-}
 
 static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
 {
@@ -33,27 +14,47 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_elevation_m = u->cursor_elevation_q10 / 1024;
 }
 
+/* Where the cursor would be if the whole sector were shown. */
+static void describe_window(const struct lm_unit *u, struct lm_symbols *s)
+{
+    const struct lm_view_from from = {lm_ownship_place(u), u->view.up, u->view.height_q10};
+    const struct lm_view whole =
+        lm_view_of_sector(&u->frame, &from, u->board->radar->range_m[u->page.range]);
+    struct lm_offset at;
+    s->is_cue_shown = u->cursor.is_placed && lm_view_find(&whole, u->cursor.place, &at);
+    if (s->is_cue_shown) {
+        s->cue = lm_view_point(&whole, at);
+    }
+    s->is_finer_offered = u->page.field == LM_FIELD_DBS1;
+}
+
 static struct lm_symbols describe(const struct lm_unit *u)
 {
-    const struct lm_ground_map *g = &u->ground_map;
+    const struct lm_sector *sector = &u->sector;
+    const struct lm_radar *radar = sector->radar;
     struct lm_symbols s = {
         .view = u->view,
-        .is_patch = u->page.mode == LM_MODE_SAR,
         .is_sweeping = !(u->flags & LM_FLAGS_NO_LINES),
-        .range_nm = g->radar->range_nm[g->range],
-        .azimuth_half = g->radar->azimuth_half[g->azimuth],
-        .antenna_azimuth = lm_ground_map_edge_bam(g, g->line),
-        .antenna_elevation = antenna_elevation(u),
+        .range_nm = radar->range_nm[sector->command.range],
+        .azimuth_half = radar->azimuth_half[sector->command.azimuth],
+        .antenna_azimuth = lm_sector_edge_bam(sector, sector->line),
+        .antenna_elevation = sector->tilt,
         .gain_db = u->page.gain_db,
         .heading = u->ownship.heading,
         .has_heading = u->ownship.heading_quality != LM_NAV_DEAD,
     };
+    if (u->view.shape == LM_VIEW_WINDOW) {
+        describe_window(u, &s);
+    }
     describe_cursor(u, &s);
     if (u->is_view_held && lm_has_ownship(u)) {
-        s.is_ownship_shown = lm_view_find(&u->view, lm_ownship_place(u), &s.ownship);
+        /* It flies over the map and does not stand on the ground that slant ranges are for. */
+        struct lm_view level = u->view;
+        level.height_q10 = 0;
+        s.is_ownship_shown = lm_view_find(&level, lm_ownship_place(u), &s.ownship);
         s.ownship_heading = u->ownship.heading - u->view.up;
     }
-    if (s.is_patch) {
+    if (u->view.shape == LM_VIEW_PATCH) {
         s.patch_cell_mm = u->sar.command.cell_mm;
         s.patch_percent = (uint16_t)(u->sar.line * 100 / u->sar.radar->sar.cells);
         s.patch_to_go_s = (uint32_t)((lm_sar_time_to_go_us(&u->sar) + 999999) / 1000000);

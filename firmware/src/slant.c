@@ -35,10 +35,15 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint3
         const int64_t past_q8 = ground_q8 - edge_q8;
         const uint64_t cell = past_q8 < 0 ? grid->cells : (uint64_t)past_q8 / grid->cell_q8;
         const bool has_ground = ground_q8 != 0 && cell < grid->cells;
-        s->cell_of[i] = has_ground ? (uint32_t)cell : grid->cells;
+        s->cell_of[i] = (int32_t)(has_ground ? cell : grid->cells);
     }
     for (uint32_t i = cells; i < cells + LM_LANES; i++) {
-        s->cell_of[i] = grid->cells;
+        s->cell_of[i] = (int32_t)grid->cells;
+    }
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t here = s->cell_of[i], next = s->cell_of[i + 1];
+        const bool has_more = next > here + 1 && next < (int32_t)grid->cells;
+        s->last_of[i] = has_more ? next - 1 : here;
     }
 }
 
@@ -46,9 +51,11 @@ void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, in
                   uint32_t *restrict power_q24)
 {
     level_q8[grid->cells] = LM_LEVEL_SHADOW;
-    const uint32_t *restrict cell_of = s->cell_of;
+    const int32_t *restrict cell_of = s->cell_of, *restrict last_of = s->last_of;
+    const uint32_t cells = s->cells;
     const int32_t *restrict level = level_q8;
-    for (uint32_t i = 0; i < s->cells; i++) {
-        power_q24[i] = fx_power_q24_of_many(level[cell_of[i]]);
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t first_q8 = level[cell_of[i]], last_q8 = level[last_of[i]];
+        power_q24[i] = fx_power_q24_of_many(first_q8 > last_q8 ? first_q8 : last_q8);
     }
 }

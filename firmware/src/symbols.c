@@ -42,6 +42,25 @@ static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
+/* A window: a bracket 1,500 feet long above its left corner, and a small cross where its middle
+ * would be on the whole sector. */
+static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t dot = pen.dot_px;
+    const int32_t length = (int32_t)(1500ull * 304800 * 256 / 1000 / s->view.mm_q8_per_px);
+    const int32_t x = s->view.middle.x - s->view.radius_px + 4 * dot;
+    const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
+    line(&pen, x, y, x + length, y);
+    line(&pen, x, y, x, y + 3 * dot);
+    line(&pen, x + length, y, x + length, y + 3 * dot);
+    if (s->is_cue_shown) {
+        const int32_t arm = part_of_half(g, 30);
+        line(&pen, s->cue.x - arm, s->cue.y, s->cue.x + arm, s->cue.y);
+        line(&pen, s->cue.x, s->cue.y - arm, s->cue.x, s->cue.y + arm);
+    }
+}
+
 /* Way of an angle along the antenna's scales: 60 degrees are 0.72 of half the glass. */
 static int32_t scale_px(const struct lm_glass *g, int32_t angle)
 {
@@ -56,7 +75,8 @@ static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
     const int32_t dot = pen.dot_px, tick = 2 * dot, stem = 3 * dot;
-    const int32_t middle_x = s->view.at.x, bottom = g->frame->top_px + g->frame->height_px + dot;
+    const int32_t middle_x = s->view.middle.x,
+                  bottom = g->frame->top_px + g->frame->height_px + dot;
     const int32_t middle_y = g->surface.height_px / 2, left = g->frame->left_px;
     for (int32_t tens = -3; tens <= 3; tens++) {
         const int32_t at = scale_px(g, tens * (int32_t)FX_BAM_DEG(10));
@@ -91,7 +111,7 @@ static void draw_gain(const struct lm_glass *g, int32_t gain_db)
 }
 
 /* Lines across the whole frame; in a sector also the expansion cue, four ticks an eighth of the
- * range away. */
+ * range away; in DBS1 the window of DBS2. */
 static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -102,10 +122,13 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     const int32_t y = fx_clamp_i32(at.y, f->top_px, bottom);
     line(&pen, x, f->top_px, x, bottom);
     line(&pen, f->left_px, y, right, y);
-    if (s->is_patch) {
+    int32_t away = s->view.radius_px / 8;
+    if (s->view.shape == LM_VIEW_WINDOW && s->is_finer_offered) {
+        away = s->view.radius_px * 6 / 25; /* DBS2's 0.03 of the range in EXP's eighth */
+    } else if (s->view.shape != LM_VIEW_SECTOR) {
         return;
     }
-    const int32_t away = s->view.radius_px / 8, half = part_of_half(g, 65) / 2;
+    const int32_t half = part_of_half(g, 65) / 2;
     for (int32_t side = -1; side <= 1; side += 2) {
         line(&pen, x + side * away, y - half, x + side * away, y + half);
         line(&pen, x - half, y + side * away, x + half, y + side * away);
@@ -227,10 +250,14 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
     if (s->has_cursor) {
         write_cursor(g, s);
     }
-    if (s->is_patch) {
+    if (s->view.shape == LM_VIEW_PATCH) {
         write_patch(g, s);
     } else {
-        draw_sector(g, s);
+        if (s->view.shape == LM_VIEW_SECTOR) {
+            draw_sector(g, s);
+        } else {
+            draw_window(g, s);
+        }
         draw_antenna(g, s);
         if (s->has_heading) {
             write_heading(g, s->heading);

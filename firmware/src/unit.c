@@ -5,7 +5,6 @@
 enum {
     TILE_READS_A_STEP = 16,
     TILE_FAULT_SHOWN_US = 3000000,
-    NONE_SAMPLE_CELLS = 16,
     FAULTS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD | LM_FLAG_DB | LM_FLAG_TILE | LM_FLAG_BUS |
              LM_FLAG_OFF_MAP
 };
@@ -39,8 +38,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     lm_nav_init(&u->nav, bus);
     lm_canas_service_init(&u->service, bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0,
                           board->hardware_revision, LM_VERSION_NUMBER);
+    u->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
     lm_page_init(&u->page, board->radar);
-    lm_apply(u, LM_EFFECT_GROUND_MAP | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
+    lm_apply(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 
     u->has_db = lm_db_open(&u->db, board->flash, board->flash_poll_limit) == LM_OK;
     if (!u->has_db) {
@@ -84,8 +84,8 @@ static void heed_jump(struct lm_unit *u, uint64_t now_us)
     if (is_other_source || u->nav.position_jumps != u->jumps_seen) {
         u->jumps_seen = u->nav.position_jumps;
         u->cursor.is_placed = false;
-        if (u->page.mode == LM_MODE_GM) {
-            lm_begin_picture(u, now_us);
+        if (!u->page.is_patch) {
+            lm_apply(u, LM_EFFECT_SECTOR, now_us);
         }
     }
 }
@@ -94,7 +94,7 @@ static void heed_jump(struct lm_unit *u, uint64_t now_us)
 static uint32_t judge_nav(const struct lm_unit *u)
 {
     const struct lm_ownship *own = &u->ownship;
-    if (u->page.mode == LM_MODE_SAR && !u->sar.command.is_from_ownship) {
+    if (u->page.is_patch && !u->sar.command.is_from_ownship) {
         return 0;
     }
     if (own->position_quality == LM_NAV_DEAD || own->height_quality == LM_NAV_DEAD ||
@@ -134,79 +134,6 @@ static void judge(struct lm_unit *u, uint64_t now_us)
     u->flags = flags;
 }
 
-/* Count how much of the line lies outside the map, a cell in sixteen. */
-static void sample_coverage(struct lm_unit *u, uint32_t cells)
-{
-    for (uint32_t i = 0; i < cells; i += NONE_SAMPLE_CELLS) {
-        u->cells_seen++;
-        u->cells_none += u->line.ground.cell[i] == LM_CELL_NONE;
-    }
-}
-
-static void draw_ground_map_line(struct lm_unit *u)
-{
-    struct lm_ground_map *g = &u->ground_map;
-    const struct lm_antenna antenna = {
-        .place = lm_ownship_place(u),
-        .height_q10 = lm_antenna_height_q6(u) * 16,
-        .heading = u->ownship.heading,
-    };
-    const uint32_t sweep = g->sweep, cells = g->radar->gm_cells;
-    const uint32_t drawn = lm_ground_map_draw_line(g, &u->tiles, &antenna, &u->gm_tone, &u->line);
-    const struct lm_ppi ppi = lm_ppi_of_sector(&u->frame, cells);
-    lm_ppi_paint(&u->plane, &ppi, (fx_bam_t)lm_ground_map_edge_bam(g, drawn),
-                 (fx_bam_t)lm_ground_map_edge_bam(g, drawn + 1), u->line.grey, cells);
-    sample_coverage(u, cells);
-    if (g->sweep != sweep) {
-        u->is_off_map = 2 * u->cells_none > u->cells_seen;
-        u->cells_none = u->cells_seen = 0;
-    }
-    u->next_line_us += lm_ground_map_line_us(g);
-}
-
-static void draw_patch_line(struct lm_unit *u)
-{
-    const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
-    lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
-    lm_patch_paint(&u->plane, &u->frame, drawn, u->line.grey + LM_SAR_GUARD, cells);
-    sample_coverage(u, cells);
-    u->is_off_map = 2 * u->cells_none > u->cells_seen;
-    u->next_line_us += u->sar.line_us;
-}
-
-/* Whether lines may be drawn now; while they may not, time does not owe any. */
-static bool is_drawing(struct lm_unit *u, uint64_t now_us)
-{
-    if (u->flags & LM_FLAGS_NO_LINES) {
-        return false;
-    }
-    if (u->page.mode == LM_MODE_GM) {
-        return true;
-    }
-    if (u->is_acquiring) {
-        u->is_acquiring = !lm_tile_cache_is_idle(&u->tiles) && now_us < u->acquire_until_us;
-        u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
-    }
-    return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;
-}
-
-static void draw_due_lines(struct lm_unit *u, uint64_t now_us)
-{
-    for (uint32_t i = 0; i < LM_STEP_LINES && is_drawing(u, now_us) && u->next_line_us <= now_us;
-         i++) {
-        u->count.lines++;
-        if (u->page.mode == LM_MODE_GM) {
-            draw_ground_map_line(u);
-        } else {
-            draw_patch_line(u);
-        }
-    }
-    if (u->next_line_us <= now_us) {
-        u->count.lines_dropped += is_drawing(u, now_us);
-        u->next_line_us = now_us;
-    }
-}
-
 void lm_unit_step(struct lm_unit *u, uint64_t now_us)
 {
     take_bus(u, now_us);
@@ -217,7 +144,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     if (u->has_db) {
         lm_tile_cache_service(&u->tiles, now_us, TILE_READS_A_STEP);
     }
-    draw_due_lines(u, now_us);
+    lm_draw_due_lines(u, now_us);
     if (now_us >= u->next_frame_us) {
         lm_show_frame(u, now_us);
     }

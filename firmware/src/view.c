@@ -3,20 +3,32 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/slant.h"
 
 enum { FARTHEST_Q8 = 250000 * 256 };
 
-struct lm_view lm_view_of_sector(const struct lm_frame *frame, struct lm_place place,
-                                 fx_bam_t heading, uint32_t range_m)
+struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_view_from *from,
+                                 uint32_t range_m)
 {
     const uint16_t radius_px = lm_ppi_radius_px(frame);
+    const struct lm_point apex = {frame->left_px + frame->width_px / 2,
+                                  frame->top_px + frame->height_px - 1};
     return (struct lm_view){
-        .origin = place,
-        .up = heading,
-        .at = {frame->left_px + frame->width_px / 2, frame->top_px + frame->height_px - 1},
+        .shape = LM_VIEW_SECTOR,
+        .origin = from->place,
+        .up = from->up,
+        .height_q10 = from->height_q10,
+        .at = apex,
+        .middle = apex,
         .mm_q8_per_px = (uint32_t)((uint64_t)range_m * 256000u / radius_px),
         .radius_px = radius_px,
     };
+}
+
+static struct lm_point middle_of(const struct lm_frame *frame)
+{
+    return (struct lm_point){frame->left_px + frame->width_px / 2,
+                             frame->top_px + frame->height_px / 2};
 }
 
 struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_place centre, fx_bam_t look,
@@ -24,22 +36,34 @@ struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_place ce
 {
     const uint16_t cell_px = lm_patch_cell_px(frame, cells);
     return (struct lm_view){
+        .shape = LM_VIEW_PATCH,
         .origin = centre,
         .up = look,
-        .at = {frame->left_px + frame->width_px / 2, frame->top_px + frame->height_px / 2},
+        .at = middle_of(frame),
+        .middle = middle_of(frame),
         .mm_q8_per_px = cell_mm * 256u / cell_px,
         .radius_px = cell_px * (int32_t)cells / 2,
     };
 }
 
-bool lm_view_find(const struct lm_view *v, struct lm_place place, struct lm_offset *offset)
+/* Length on the glass of a way over the ground from the origin, pixels * 256: a radar's is the
+ * slant range. */
+static uint64_t length_q8_of(const struct lm_view *v, uint32_t ground_q8)
+{
+    const uint32_t length_q8 =
+        v->height_q10 ? lm_slant_of_ground(ground_q8, v->height_q10) : ground_q8;
+    /* metres * 256 -> pixels * 256: times 256,000 / mm_q8_per_px. */
+    return (uint64_t)length_q8 * 256000u / v->mm_q8_per_px;
+}
+
+/* Offset of a place not farther than FARTHEST_Q8; false when it is. */
+static bool offset_of(const struct lm_view *v, struct lm_place place, struct lm_offset *offset)
 {
     uint32_t distance_q8;
     fx_bam_t azimuth;
     lm_geo_inverse(v->origin, place, &distance_q8, &azimuth);
-    /* metres * 256 -> pixels * 256: times 256,000 / mm_q8_per_px. */
-    const uint64_t length_q8 = (uint64_t)distance_q8 * 256000u / v->mm_q8_per_px;
-    if (distance_q8 > FARTHEST_Q8 || length_q8 > (uint64_t)LM_DRAW_FAR * 256u) {
+    const uint64_t length_q8 = length_q8_of(v, distance_q8);
+    if (distance_q8 > FARTHEST_Q8 || length_q8 > INT32_MAX / 2) {
         return false;
     }
     const fx_bam_t turn = azimuth - v->up;
@@ -48,14 +72,71 @@ bool lm_view_find(const struct lm_view *v, struct lm_place place, struct lm_offs
     return true;
 }
 
+struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_view_from *from,
+                                 struct lm_place centre, uint32_t half_m)
+{
+    const struct lm_frame square = lm_frame_square(frame);
+    struct lm_view v = {
+        .shape = LM_VIEW_WINDOW,
+        .origin = from->place,
+        .up = from->up,
+        .height_q10 = from->height_q10,
+        .middle = middle_of(&square),
+        .mm_q8_per_px = (uint32_t)((uint64_t)half_m * 512000u / square.width_px),
+        .radius_px = square.width_px / 2,
+    };
+    struct lm_offset offset = {0, 0};
+    if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_q8) > LM_VIEW_APEX_FAR_PX * 256 ||
+        fx_abs_u32(offset.y_q8) > LM_VIEW_APEX_FAR_PX * 256) {
+        offset = (struct lm_offset){0, LM_VIEW_APEX_FAR_PX * 256}; /* nothing of it can be seen */
+    }
+    v.at = (struct lm_point){v.middle.x - ((offset.x_q8 + 128) >> 8),
+                             v.middle.y + ((offset.y_q8 + 128) >> 8)};
+    return v;
+}
+
+struct lm_offset lm_view_middle(const struct lm_view *v)
+{
+    return (struct lm_offset){(v->middle.x - v->at.x) * 256, (v->at.y - v->middle.y) * 256};
+}
+
+bool lm_view_find(const struct lm_view *v, struct lm_place place, struct lm_offset *offset)
+{
+    struct lm_offset found;
+    if (!offset_of(v, place, &found)) {
+        return false;
+    }
+    const struct lm_offset middle = lm_view_middle(v);
+    if (fx_abs_u32(found.x_q8 - middle.x_q8) > LM_DRAW_FAR * 256u ||
+        fx_abs_u32(found.y_q8 - middle.y_q8) > LM_DRAW_FAR * 256u) {
+        return false;
+    }
+    *offset = found;
+    return true;
+}
+
 struct lm_place lm_view_place(const struct lm_view *v, struct lm_offset offset)
 {
     struct lm_geo_origin origin;
     const uint64_t length_q8 = fx_hypot_u32(offset.x_q8, offset.y_q8);
-    const uint64_t distance_q8 = (length_q8 * v->mm_q8_per_px + 128000u) / 256000u;
+    const uint64_t along_q8 = (length_q8 * v->mm_q8_per_px + 128000u) / 256000u;
+    const uint32_t range_q8 = along_q8 < FARTHEST_Q8 ? (uint32_t)along_q8 : FARTHEST_Q8;
+    const uint32_t ground_q8 =
+        v->height_q10 ? lm_ground_of_slant(range_q8, v->height_q10) : range_q8;
     lm_geo_set_origin(&origin, v->origin);
-    return lm_geo_direct(&origin, v->up + fx_atan2(offset.x_q8, offset.y_q8),
-                         distance_q8 < FARTHEST_Q8 ? (uint32_t)distance_q8 : FARTHEST_Q8);
+    return lm_geo_direct(&origin, v->up + fx_atan2(offset.x_q8, offset.y_q8), ground_q8);
+}
+
+struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame, uint32_t cell_q8,
+                          uint32_t edge_q8)
+{
+    return (struct lm_ppi){
+        .clip = v->shape == LM_VIEW_WINDOW ? lm_frame_square(frame) : *frame,
+        .apex_x_px = v->at.x,
+        .apex_y_px = v->at.y + 1,
+        .cells_per_px_q16 = (uint32_t)(((uint64_t)v->mm_q8_per_px << 16) / (cell_q8 * 1000ull)),
+        .near_cell_q8 = (int32_t)((uint64_t)edge_q8 * 256 / cell_q8),
+    };
 }
 
 struct lm_point lm_view_point(const struct lm_view *v, struct lm_offset offset)

@@ -86,6 +86,12 @@ void ref_slant_power(const struct ref_bins *bins, double height_m, double near_e
     for (size_t i = 0; i < bins->count; i++) {
         const double slant_m = bins->first_m + (double)i * bins->step_m;
         const size_t cell = ref_slant_cell(slant_m, height_m, near_edge_m, cell_m, cells);
+        const size_t next = i + 1 < bins->count ? ref_slant_cell(slant_m + bins->step_m, height_m,
+                                                                 near_edge_m, cell_m, cells)
+                                                : cells;
         power[i] = cell < cells ? ground[cell] : 0;
+        if (next < cells && next > cell + 1) {
+            power[i] = fmax(power[i], ground[next - 1]);
+        }
     }
 }

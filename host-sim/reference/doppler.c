@@ -18,7 +18,7 @@ double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio)
 
 double ref_dbs_used(double had, double wanted, double least)
 {
-    return had < least ? 1 : fmin(had, wanted);
+    return had < least ? 1 : pow(2, floor(log2(fmin(had, wanted))));
 }
 
 double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg)

@@ -372,7 +372,7 @@ static int render_sector(const struct request *request, const struct ref_db *db)
     struct ref_sector s = {
         .ground = sector_of(request, db),
         .beam_deg = request->beam_deg,
-        .sample_deg = 120.0 / 256,
+        .sample_deg = 120.0 / 128,
         .sharpening = request->sharpening,
         .sharpening_least = request->sharpening / 2,
         .dbs = {request->speed_m_s, request->beam_deg, 0.031228, request->rate_deg_s},

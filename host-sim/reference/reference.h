@@ -315,7 +315,7 @@ void ref_weather(const struct ref_environment *e, double wavelength_m, double az
 
 /* ---- real beam: the antenna (beam.c), and a line (sector.c) ---- */
 
-enum { REF_BEAM_SAMPLES = 16 };
+enum { REF_BEAM_SAMPLES = 8 };
 
 struct ref_beam {
     double beam_deg; /* B, one-way half-power width */
@@ -374,7 +374,7 @@ struct ref_sector_line {
     uint32_t line, sweep;
 };
 
-/* Levels of a line's bins from 16 sampled lines of `cells` cells each (up to REF_CELLS_MAX), whose
+/* Levels of a line's bins from 8 sampled lines of `cells` cells each (up to REF_CELLS_MAX), whose
  * `echo_db` is known; NULL `weather`: fair. */
 void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
                      size_t cells, const struct ref_weather_line *weather, double *level_db);

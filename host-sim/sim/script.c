@@ -2,6 +2,7 @@
 
 #include "fx/types.h"
 #include "hs/error.h"
+#include "lm/radar.h"
 
 #include <errno.h>
 #include <math.h>
@@ -164,22 +165,99 @@ static bool parse_deflection(char **words, int count, struct line_events *line)
     return true;
 }
 
+/* "gm", "gmt", "sea", and which part of it. */
+static bool parse_sector(char **words, int count, struct lm_control *c)
+{
+    static const char *const modes[LM_SECTOR_MODES] = {"gm", "gmt", "sea"};
+    static const char *const fields[LM_FIELDS] = {"norm", "exp", "dbs1", "dbs2"};
+    c->kind = LM_CONTROL_SECTOR;
+    return choice(words[1], modes, LM_SECTOR_MODES, &c->value) &&
+           (count == 2 || (count == 3 && choice(words[2], fields, LM_FIELDS, &c->value_y)));
+}
+
 /* Commands of one word. */
 static bool parse_plain(const char *word, struct lm_control *c)
 {
-    static const char *const names[] = {"gm", "designate", "drop"};
-    static const enum lm_control_kind kinds[] = {LM_CONTROL_GM, LM_CONTROL_DESIGNATE,
-                                                 LM_CONTROL_DROP};
+    static const char *const names[] = {"designate", "drop"};
+    static const enum lm_control_kind kinds[] = {LM_CONTROL_DESIGNATE, LM_CONTROL_DROP};
     int32_t index;
-    if (!choice(word, names, 3, &index)) {
+    if (!choice(word, names, 2, &index)) {
         return false;
     }
     c->kind = kinds[index];
     return true;
 }
 
-static bool parse_line(char **words, int count, struct line_events *line)
+static bool place(char **words, struct lm_place *at)
 {
+    double lat, lon;
+    if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
+        return false;
+    }
+    *at = (struct lm_place){bam_of_degrees(lat), bam_of_degrees(lon)};
+    return true;
+}
+
+static bool add_rain(char **words, int count, struct lm_environment *e)
+{
+    double radius_km, mm_per_h;
+    if (count != 6 || e->rain_count == LM_RAINS_MAX || !number(words[4], 0.1, 100, &radius_km) ||
+        !number(words[5], 1, 150, &mm_per_h)) {
+        return false;
+    }
+    struct lm_rain *rain = &e->rain[e->rain_count++];
+    rain->radius_m = (uint32_t)lround(radius_km * 1000);
+    rain->mm_per_h = (uint16_t)lround(mm_per_h);
+    return place(words + 2, &rain->centre);
+}
+
+static bool add_jammer(char **words, int count, struct lm_environment *e)
+{
+    double ratio_db;
+    if (count != 5 || e->jammer_count == LM_JAMMERS_MAX || !number(words[4], -20, 80, &ratio_db)) {
+        return false;
+    }
+    struct lm_jammer *jammer = &e->jammer[e->jammer_count++];
+    jammer->ratio_q8 = (int16_t)lround(ratio_db * 256);
+    return place(words + 2, &jammer->place);
+}
+
+/* What changes the environment; the control carries the whole of it. */
+static bool parse_environment(char **words, int count, struct lm_environment *e)
+{
+    double state;
+    if (strcmp(words[1], "rain") == 0) {
+        return add_rain(words, count, e);
+    }
+    if (strcmp(words[1], "jam") == 0) {
+        return add_jammer(words, count, e);
+    }
+    if (strcmp(words[1], "weather") == 0) {
+        e->rain_count = e->jammer_count = 0;
+        return count == 3 && strcmp(words[2], "fair") == 0;
+    }
+    if (count != 3 || !number(words[2], 0, LM_SEA_STATE_MAX, &state) || state != floor(state)) {
+        return false;
+    }
+    e->sea_state = (uint8_t)state;
+    return true;
+}
+
+static bool is_one_of(const char *word, const char *const *names)
+{
+    for (; *names; names++) {
+        if (strcmp(word, *names) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool parse_line(char **words, int count, struct lm_environment *environment,
+                       struct line_events *line)
+{
+    static const char *const sectors[] = {"gm", "gmt", "sea", NULL};
+    static const char *const weathers[] = {"rain", "jam", "weather", "seastate", NULL};
     double seconds;
     struct script_event *e = &line->event[0];
     memset(line, 0, sizeof *line);
@@ -188,6 +266,15 @@ static bool parse_line(char **words, int count, struct line_events *line)
         return false;
     }
     e->time_us = (uint64_t)llround(seconds * 1e6);
+    if (is_one_of(words[1], sectors)) {
+        return parse_sector(words, count, &e->control);
+    }
+    if (is_one_of(words[1], weathers)) {
+        const bool is_understood = parse_environment(words, count, environment);
+        e->control.kind = LM_CONTROL_ENVIRONMENT;
+        e->control.environment = *environment;
+        return is_understood;
+    }
     if (count == 2) {
         return parse_plain(words[1], &e->control);
     }
@@ -247,7 +334,7 @@ static int take_line(struct script *s, const char *path, int line_number, char *
         return 0;
     }
     struct line_events parsed;
-    if (count > WORDS_MAX || !parse_line(words, count, &parsed)) {
+    if (count > WORDS_MAX || !parse_line(words, count, &s->environment, &parsed)) {
         return hs_error(place, "landmass-sim --help lists the commands",
                         "is not a command of a script");
     }
@@ -282,6 +369,7 @@ int script_read(struct script *s, const char *path)
 {
     memset(s, 0, sizeof *s);
     s->port = (struct lm_controls){.ctx = s, .next = next_control};
+    s->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
     if (!path) {
         return 0;
     }

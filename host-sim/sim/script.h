@@ -1,11 +1,15 @@
 /* Scripted operation of the bench: what happens when, one line each.
  *
- *   SECONDS gm
+ *   SECONDS gm|gmt|sea [norm|exp|dbs1|dbs2]   mode and field of view; norm when none is named
  *   SECONDS range 10|20|40|80                 nautical miles
  *   SECONDS azimuth 60|30|10                  degrees to each side
  *   SECONDS sar LAT LON CELL_M [EFFECT..]     a patch seen from the ownship
  *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M [EFFECT..]
  *                                             EFFECT: layover; steady, without the blur of turns
+ *   SECONDS weather fair                      no rain, nobody jams
+ *   SECONDS rain LAT LON RADIUS_KM MM_PER_H   one more circle of rain
+ *   SECONDS jam LAT LON DB                    one more jammer, over the noise at ten nautical miles
+ *   SECONDS seastate 0..8
  *   SECONDS gain DB                           -30..30
  *   SECONDS freeze on|off
  *   SECONDS osb N [HELD_S]                    press option select button 1..20, for 0.1 s or HELD_S
@@ -33,7 +37,8 @@ struct script_event {
 };
 
 struct script {
-    struct script_event *events; /* owned */
+    struct lm_environment environment; /* of the line read last: rain and jammers add up */
+    struct script_event *events;       /* owned */
     int count, next;
     uint64_t last_us; /* of the line read last */
     uint64_t now_us;

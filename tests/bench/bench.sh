@@ -11,8 +11,8 @@ trap 'rm -rf "$work"' EXIT INT TERM
 
 # "function instructions" of a run, calls included. A function with inlined headers has a line for each file: the
 # largest is the whole.
-count() { # sar|gm
-    valgrind --tool=callgrind --callgrind-out-file="$work/out" "$bench" "$1" 1 2> "$work/log" || {
+count() { # what stage_bench is to draw
+    valgrind --tool=callgrind --callgrind-out-file="$work/out" "$bench" "$1" 1 > "$work/said" 2> "$work/log" || {
         cat "$work/log" >&2
         exit 1
     }
@@ -24,20 +24,23 @@ count() { # sar|gm
 # Rows of a table from such a list; "rest" is what the whole has and its parts have not.
 table() { # divisor format
     awk -v per="$1" -v format="$2" '
-        function row(name, n) { printf "  %-44s " format "\n", name, n / per }
+        function row(name, n) { if (n) printf "  %-44s " format "\n", name, n / per }
+        function part(name, n) { parts += n; row(name, n) }
         { n[$1] = $2 }
         END {
-            whole = n["lm_sar_draw_line"] + n["lm_ground_map_draw_line"]
+            whole = n["lm_sar_draw_line"] + n["lm_sector_draw_line"] + n["lm_sar_start"]
             paint = n["lm_patch_paint"] + n["lm_ppi_paint"]
-            noise = n["lm_speckle_run"] + n["lm_texture_run"] + n["lm_floor_run"]
-            parts = n["lm_scan_line_run"] + n["lm_aspect_run"] + noise + n["lm_tone_run"]
-            row("scan_line: cells, terrain, noise", n["lm_scan_line_run"])
-            row("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"])
-            row("texture, noise, speckle", noise)
-            row("tone", n["lm_tone_run"])
-            row("rest: geometry, tiles asked for, set-up", whole - parts + n["lm_sar_start"])
+            part("scan_line: cells, terrain, noise", n["lm_scan_line_run"])
+            part("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"])
+            part("texture and speckle", n["lm_texture_run"] + n["lm_speckle_run"])
+            part("elevation pattern", n["lm_elevation_run"])
+            part("slant range, levels to power", n["lm_slant_run"])
+            part("beam", n["lm_beam_aim"] + n["lm_beam_sum"])
+            part("receiver: pulse, noise, logarithm", n["lm_receiver_run"] + n["lm_floor_run"])
+            part("tone", n["lm_tone_run"])
+            row("rest: geometry, tiles asked for, set-up", whole - parts)
             row("paint into the plane", paint)
-            row("all", whole + n["lm_sar_start"] + paint)
+            row("all", whole + paint)
         }'
 }
 
@@ -46,9 +49,13 @@ if command -v valgrind > /dev/null; then
     count sar > "$work/sar"
     table 65536 '%7.1f' < "$work/sar"
     awk '$1 == "lm_sar_prefetch" { printf "  %-44s %7.1f\n", "and, before it: asking for its tiles", $2 / 65536 }' "$work/sar"
-    echo
-    echo "Ground map of 10 nautical miles, 256 cells, on a glass of 512 x 512: instructions a line"
-    count gm | table 256 '%7.0f'
+    for mode in gm exp dbs1 dbs2 gmt sea; do
+        count $mode > "$work/$mode"
+        read -r _ lines _ samples < "$work/said"
+        echo
+        echo "$mode, 10 nautical miles, on a glass of 512 x 512: instructions a line drawn ($lines lines, $samples sampled)"
+        table "$lines" '%7.0f' < "$work/$mode"
+    done
 else
     echo "bench: valgrind is missing (make deps), no instructions counted"
 fi

@@ -1,13 +1,16 @@
 /* The work that `make bench` measures: whole pictures from an image made in memory, all tiles
  * resident.
  *
- *   stage_bench sar|gm N      draw N patches or sweeps and print nothing: callgrind counts the
- *                             instructions of the functions called here (tests/bench/bench.sh)
+ *   stage_bench sar N         draw N patches and print nothing: callgrind counts the instructions
+ *                             of the functions called here (tests/bench/bench.sh)
+ *   stage_bench gm|exp|dbs1|dbs2|gmt|sea N
+ *                             N sweeps; prints the lines drawn and sampled
  *   stage_bench compare N     N times: processor time a pixel of a patch, by the firmware and by
  * the reference in double precision, both without the image's checks */
-#include "lm/ground_map.h"
 #include "lm/sar.h"
 #include "lm/scan_conv.h"
+#include "lm/sector.h"
+#include "lm/view.h"
 #include "memory_flash.h"
 #include "reference/reference.h"
 #include "tiny_image.h"
@@ -115,26 +118,64 @@ static int draw_patches(struct world *w, int count)
     return 0;
 }
 
-static void draw_sweeps(struct world *w, int count)
+static const struct sector_case {
+    const char *name;
+    uint8_t mode, field;
+} sector_cases[] = {
+    {"gm", LM_SECTOR_GM, LM_FIELD_NORM},   {"exp", LM_SECTOR_GM, LM_FIELD_EXP},
+    {"dbs1", LM_SECTOR_GM, LM_FIELD_DBS1}, {"dbs2", LM_SECTOR_GM, LM_FIELD_DBS2},
+    {"gmt", LM_SECTOR_GMT, LM_FIELD_NORM}, {"sea", LM_SECTOR_SEA, LM_FIELD_NORM},
+};
+
+static const struct sector_case *find_case(const char *name)
 {
-    struct lm_ground_map map;
-    const struct lm_antenna antenna = {
-        .place = {w->db.centre_latitude - (fx_bam_t)(8000 / 9.3e-3), w->db.centre_longitude},
-        .height_q10 = 3000 * 1024,
-        .heading = 0,
-    };
-    const struct lm_ppi ppi = lm_ppi_of_sector(&w->frame, lm_radar_default.gm_cells);
-    lm_ground_map_start(&map, &lm_radar_default, 0, 0, 0);
-    for (int n = 0; n < count; n++) {
-        for (uint32_t i = 0; i < lm_ground_map_lines(&map); i++) {
-            const uint32_t line =
-                lm_ground_map_draw_line(&map, &w->tiles, &antenna, &w->tone, &w->line);
-            lm_ppi_paint(&w->plane, &ppi, (fx_bam_t)lm_ground_map_edge_bam(&map, line),
-                         (fx_bam_t)lm_ground_map_edge_bam(&map, line + 1), w->line.grey,
-                         lm_radar_default.gm_cells);
-            make_resident(w);
+    for (size_t i = 0; i < sizeof sector_cases / sizeof *sector_cases; i++) {
+        if (strcmp(sector_cases[i].name, name) == 0) {
+            return &sector_cases[i];
         }
     }
+    return NULL;
+}
+
+/* Sweeps of one mode and field of view, around the middle of the scene. Says how many lines were
+ * drawn and how many sampled for them. */
+static void draw_sweeps(struct world *w, const struct sector_case *what, int count)
+{
+    uint32_t drawn = 0;
+    static struct lm_sector sector;
+    const struct lm_platform platform = {
+        .place = {w->db.centre_latitude - (fx_bam_t)(8000 / 9.3e-3), w->db.centre_longitude},
+        .height_q10 = 3000 * 1024,
+        .track = FX_BAM_DEG(-30),
+        .speed_mm_s = 250000,
+    };
+    const struct lm_environment fair = {.sea_state = LM_SEA_STATE_OF_IMAGE};
+    const struct lm_sector_command command = {
+        .mode = what->mode,
+        .field = what->field,
+        .centre = {w->db.centre_latitude, w->db.centre_longitude}};
+    lm_sector_start(&sector, &lm_radar_default, &command, 0);
+    sector.environment = &fair;
+    for (int n = 0; n < count; n++) {
+        lm_sector_begin(&sector, &w->tiles, &platform);
+        const struct lm_view_from from = {platform.place, platform.heading, 3000 * 1024};
+        const struct lm_view view =
+            sector.half_m ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
+                          : lm_view_of_sector(&w->frame, &from, lm_radar_default.range_m[0]);
+        const struct lm_ppi ppi =
+            lm_view_ppi(&view, &w->frame, sector.slant.cell_q8, sector.edge_q8);
+        const uint32_t lines = sector.lines;
+        for (uint32_t i = 0; i < lines; i++) {
+            const uint32_t line =
+                lm_sector_draw_line(&sector, &w->tiles, &platform, &w->tone, &w->line);
+            lm_ppi_paint(&w->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(&sector, line),
+                         (fx_bam_t)lm_sector_edge_bam(&sector, line + 1), w->line.grey,
+                         sector.slant.cells);
+            make_resident(w);
+            drawn++;
+        }
+    }
+    printf("lines %u samples %u\n", drawn, sector.samples);
 }
 
 static double processor_ns(void)
@@ -196,20 +237,21 @@ int main(int argc, char **argv)
     static struct world world; /* large, and this is a program, not the firmware */
     const char *what = argc == 3 ? argv[1] : "";
     const int count = argc == 3 ? atoi(argv[2]) : 0;
-    const int is_gm = strcmp(what, "gm") == 0, is_comparison = strcmp(what, "compare") == 0;
-    if (count < 1 || (!is_gm && !is_comparison && strcmp(what, "sar") != 0)) {
-        fputs("usage: stage_bench sar|gm|compare N\n", stderr);
+    const int is_patch = strcmp(what, "sar") == 0, is_comparison = strcmp(what, "compare") == 0;
+    const struct sector_case *sector = find_case(what);
+    if (count < 1 || (!is_patch && !is_comparison && !sector)) {
+        fputs("usage: stage_bench sar|gm|exp|dbs1|dbs2|gmt|sea|compare N\n", stderr);
         return 2;
     }
-    if (open_world(&world, is_gm ? 12 : 9) != 0) {
+    if (open_world(&world, sector ? 12 : 9) != 0) {
         fputs("stage_bench: the scene could not be made\n", stderr);
         return 1;
     }
     if (is_comparison) {
         return compare(&world, count) != 0;
     }
-    if (is_gm) {
-        draw_sweeps(&world, count);
+    if (sector) {
+        draw_sweeps(&world, sector, count);
         return 0;
     }
     return draw_patches(&world, count) != 0;

@@ -250,8 +250,8 @@ static void act(struct world *w, struct fuzz_supply *s)
 static void check(const struct world *w)
 {
     const struct lm_unit *u = &w->unit;
-    FUZZ_ASSERT(u->ground_map.range < LM_RANGES && u->ground_map.azimuth < LM_AZIMUTHS);
-    FUZZ_ASSERT(u->ground_map.line < lm_ground_map_lines(&u->ground_map));
+    FUZZ_ASSERT(u->sector.command.range < LM_RANGES && u->sector.command.azimuth < LM_AZIMUTHS);
+    FUZZ_ASSERT(!u->sector.is_begun || u->sector.line < u->sector.lines);
     FUZZ_ASSERT(u->sar.line <= lm_radar_default.sar.cells);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {

@@ -198,7 +198,7 @@ static int next_control(void *ctx, struct lm_control *control)
         {.kind = LM_CONTROL_RANGE, .value = p->range},
         {.kind = LM_CONTROL_AZIMUTH, .value = p->azimuth},
         {.kind = LM_CONTROL_GAIN, .value = p->gain_db},
-        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_GM, .sar = patch_command(p, r->centre)},
+        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_SECTOR, .sar = patch_command(p, r->centre)},
         {.kind = LM_CONTROL_FREEZE, .value = p->fault == GOLDEN_FROZEN}};
     const uint64_t due_us = r->control_item < 4 ? START_US : START_US + 700000;
     if (r->control_item == sizeof script / sizeof script[0] || r->now_us < due_us) {

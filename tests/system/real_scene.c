@@ -97,7 +97,8 @@ int real_patch_read(struct real_picture *p, const struct real_scene *scene, cons
     return 0;
 }
 
-int real_ground_map_read(struct real_picture *p, const struct real_scene *scene, const char *name)
+int real_ground_map_read(struct real_picture *p, const struct real_scene *scene, const char *name,
+                         double height_cells)
 {
     struct glass g;
     if (glass_read(&g, scene, name) != 0) {
@@ -115,7 +116,8 @@ int real_ground_map_read(struct real_picture *p, const struct real_scene *scene,
                 continue;
             }
             const double middle = ((floor(line) + 0.5) / REAL_CELLS * 120 - 60) * pi / 180;
-            const double cell = (right * sin(middle) + up * cos(middle)) / radius * REAL_CELLS;
+            const double slant = (right * sin(middle) + up * cos(middle)) / radius * REAL_CELLS;
+            const double cell = sqrt(fmax(slant * slant - height_cells * height_cells, 0));
             const int grey = g.grey[y * g.width + x];
             if (cell < REAL_CELLS && grey != REAL_NO_PIXEL) {
                 p->grey[(int)line][(int)cell] = grey;

@@ -28,10 +28,13 @@ struct real_picture {
     int grey[REAL_CELLS][REAL_CELLS];
 };
 
-/* Read the scene's picture `name` (without .png) of a SAR patch, or of a ground map of A6. 0 or -1.
- */
+/* Read the scene's picture `name` (without .png) of a SAR patch. 0 or -1. */
 int real_patch_read(struct real_picture *p, const struct real_scene *scene, const char *name);
-int real_ground_map_read(struct real_picture *p, const struct real_scene *scene, const char *name);
+
+/* The same of a ground map of A6, whose cells are made ground ranges: the glass shows slant ranges,
+ * `height_cells` is the antenna's height in cells. */
+int real_ground_map_read(struct real_picture *p, const struct real_scene *scene, const char *name,
+                         double height_cells);
 
 /* A place as degrees. */
 struct real_place {

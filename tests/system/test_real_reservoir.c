@@ -23,14 +23,12 @@ static const struct real_place centre = {-3.7525, -49.886};
 
 /* The aircraft while the ground map's last sweep was drawn: 3.5 s at 150 m/s from where it started.
  */
-static const struct real_place ground_map_start = {-3.7875, -49.98};
 
 struct polygon {
     char name[32];
     OGRGeometryH shape; /* in UTM 22 north */
     OGREnvelope box;
     double grey_sum[QUARTERS], grey_count[QUARTERS]; /* by look */
-    double map_sum, map_count;                       /* in the ground map */
 };
 
 static struct real_scene scene;
@@ -104,24 +102,6 @@ static void look_at_patch(int quarter)
     }
 }
 
-static void look_at_ground_map(void)
-{
-    static struct real_picture picture;
-    const struct real_place antenna = real_geodesic(ground_map_start, 90, 3.5 * 150);
-    assert_int_equal(real_ground_map_read(&picture, &scene, "ground-map-10nm"), 0);
-    for (int line = 0; line < REAL_CELLS; line++) {
-        for (int cell = 0; cell < REAL_CELLS; cell++) {
-            const double azimuth = 90 + (line + 0.5) * 120 / REAL_CELLS - 60,
-                         range = (cell + 0.5) * 18520 / REAL_CELLS;
-            struct polygon *p = polygon_at(real_geodesic(antenna, azimuth, range));
-            if (p && picture.grey[line][cell] != REAL_NO_PIXEL) {
-                p->map_sum += picture.grey[line][cell];
-                p->map_count++;
-            }
-        }
-    }
-}
-
 static int is_water(const struct polygon *p)
 {
     return strcmp(p->name, "water") == 0;
@@ -159,27 +139,6 @@ static void each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_b
         assert_true(!is_forest(p) || sum / count > 60);
     }
     assert_true(waters >= 5 && forests >= 5);
-}
-
-static void in_the_flown_ground_map_water_is_dark_and_forest_is_bright(void **state)
-{
-    (void)state;
-    if (!scene.is_here) {
-        skip();
-    }
-    double water = 0, waters = 0, forest = 0, forests = 0;
-    for (int i = 0; i < polygon_count; i++) {
-        const struct polygon *p = &polygons[i];
-        water += is_water(p) ? p->map_sum : 0;
-        waters += is_water(p) ? p->map_count : 0;
-        forest += is_forest(p) ? p->map_sum : 0;
-        forests += is_forest(p) ? p->map_count : 0;
-    }
-    print_message("# grey of water %.1f (%.0f cells), of forest %.1f (%.0f)\n", water / waters,
-                  waters, forest / forests, forests);
-    assert_true(waters > 20 && forests > 20);
-    assert_true(water / waters < 20);
-    assert_true(forest / forests > 60);
 }
 
 /* Northings below zero, a projection's position: the firmware's own look-up of the polygon's middle
@@ -239,7 +198,6 @@ static int make_scene(void **state)
     for (int quarter = 0; quarter < QUARTERS; quarter++) {
         look_at_patch(quarter);
     }
-    look_at_ground_map();
     return 0;
 }
 
@@ -258,7 +216,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_bright),
-        cmocka_unit_test(in_the_flown_ground_map_water_is_dark_and_forest_is_bright),
         cmocka_unit_test(the_middle_of_each_polygon_has_its_class_in_the_flash_image),
     };
     return cmocka_run_group_tests_name("real_reservoir", tests, make_scene, forget_scene);

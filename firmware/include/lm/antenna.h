@@ -8,10 +8,11 @@
 #include "lm/aspect.h"
 #include "lm/radar.h"
 
-/* Two-way gain behind the fan's edge, 1/256 dB: entry n for tangents (n + 1/2) / 2048 beyond it. */
+/* Two-way gain behind the fan's edge, 1/256 dB: entry n + 1 for tangents (n + 1/2) / 2048 beyond
+ * it, entry 0 within the fan. */
 enum { LM_ELEVATION_STEPS = 256 };
 struct lm_elevation {
-    int32_t gain_q8[LM_ELEVATION_STEPS];
+    int32_t gain_q8[1 + LM_ELEVATION_STEPS];
 };
 
 /* The fan between two tangents of elevation, Q20: looks between them are not weakened. */
@@ -22,8 +23,9 @@ struct lm_fan {
 /* Cost: about 20 k instructions; once for a radar. */
 void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *antenna);
 
-/* The fan below an axis at `tilt` (signed BAM, up positive; within +-60 degrees). */
-struct lm_fan lm_fan_at(const struct lm_antenna_table *antenna, int32_t tilt);
+/* The fan that reaches `fan` below an axis at `tilt` (signed BAM, up positive); both edges within
+ * +-80 degrees. */
+struct lm_fan lm_fan_at(int32_t tilt, fx_bam_t fan);
 
 /* AUTO: the tilt, signed BAM, that points the axis at flat ground `height_m` below the antenna at
  * ground range `range_m`. */

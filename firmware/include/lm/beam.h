@@ -1,5 +1,5 @@
-/* The beam across the line: a ring of lines sampled side by side, and the lines of the display as
- * their mean under the antenna's two-way pattern. docs/DESIGN.md, "Real beam". */
+/* The beam across the line: a ring of azimuths sampled side by side, and the lines of the display
+ * as their mean under the antenna's two-way pattern. docs/DESIGN.md, "Real beam". */
 #ifndef LM_BEAM_H
 #define LM_BEAM_H
 
@@ -10,17 +10,21 @@
 #include "lm/radar.h"
 #include "lm/scan_line.h"
 
-enum { LM_BEAM_TAPS = 16, LM_BEAM_FINEST = 8 /* largest k of D = D0 / 2^k */ };
+enum {
+    LM_BEAM_TAPS = 8,
+    LM_BEAM_FINEST = 8,                           /* largest k of D = D0 / 2^k */
+    LM_BEAM_ROOM = (LM_CELLS_ROOM + 63) / 64 * 64 /* cells are added up in blocks of 64 */
+};
 
-/* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 16. */
+/* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 8. */
 struct lm_beam {
     uint8_t fineness; /* k */
     uint16_t held;    /* bit s: slot s holds sample number[s] */
     int32_t number[LM_BEAM_TAPS];
-    uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
+    uint32_t power_q24[LM_BEAM_TAPS][LM_BEAM_ROOM];
 };
 
-/* What one line of the display is made of: samples first .. first + 15, each with its weight. */
+/* What one line of the display is made of: samples first .. first + 7, each with its weight. */
 struct lm_beam_look {
     int32_t first;
     uint32_t weight_q16[LM_BEAM_TAPS]; /* of sample first + j; they add up to 65536 */
@@ -30,8 +34,9 @@ struct lm_beam_look {
 void lm_beam_clear(struct lm_beam *b);
 
 /* Look at `azimuth` (signed BAM from the sector's middle, within +-90 degrees) with the radar's
- * beam sharpened `ratio_q8` / 256 times (1..256 times). Samples of another fineness are dropped.
- * Cost: about 1,200 instructions. */
+ * beam sharpened `ratio_q8` / 256 times, a power of two (1..256). The table's `sample` is to be 2/7
+ * of the beam or less, and 1/4 or more: eight samples then hold it. Samples of another fineness are
+ * dropped. Cost: about 1,200 instructions. */
 void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                  uint32_t ratio_q8, struct lm_beam_look *look);
 
@@ -45,7 +50,8 @@ bool lm_beam_has(const struct lm_beam *b, int32_t sample);
 /* The room of a sample, which counts as held from now on. */
 uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample);
 
-/* The line: all of the look's samples are held. Cost: see docs/benchmarks.md. */
+/* The line: all of the look's samples are held. Whole blocks are written: power_q24 has
+ * LM_BEAM_ROOM. Cost: see docs/benchmarks.md. */
 void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
                  uint32_t cells);
 

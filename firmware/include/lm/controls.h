@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/environment.h"
 #include "lm/geo.h"
 
 /* Buttons are numbered from 1: the option select buttons (OSB) clockwise from the top left, then
@@ -24,12 +25,13 @@ enum { LM_FULL_DEFLECTION = 1000 };
 
 enum lm_control_kind {
     /* Direct commands, for scripts, tests and an instructor's station. */
-    LM_CONTROL_GM,      /* ground map */
-    LM_CONTROL_SAR,     /* a patch: see `sar` */
-    LM_CONTROL_RANGE,   /* value: 0..LM_RANGES - 1 */
-    LM_CONTROL_AZIMUTH, /* value: 0..LM_AZIMUTHS - 1 */
-    LM_CONTROL_GAIN,    /* value: decibels brighter than the table says, -30..30 */
-    LM_CONTROL_FREEZE,  /* value: 1 on, 0 off */
+    LM_CONTROL_SECTOR,      /* value: enum lm_sector_mode; value_y: enum lm_field */
+    LM_CONTROL_SAR,         /* a patch: see `sar` */
+    LM_CONTROL_ENVIRONMENT, /* rain, jammers, sea: see `environment` */
+    LM_CONTROL_RANGE,       /* value: 0..LM_RANGES - 1 */
+    LM_CONTROL_AZIMUTH,     /* value: 0..LM_AZIMUTHS - 1 */
+    LM_CONTROL_GAIN,        /* value: decibels brighter than the table says, -30..30 */
+    LM_CONTROL_FREEZE,      /* value: 1 on, 0 off */
 
     /* What hands do. lm/keys.h says when a button that is held acts again. */
     LM_CONTROL_DOWN,      /* value: the button, 1..LM_BUTTONS, that has just been pressed */
@@ -58,6 +60,7 @@ struct lm_control {
     enum lm_control_kind kind;
     int32_t value, value_y;
     struct lm_sar_command sar;
+    struct lm_environment environment;
 };
 
 #endif

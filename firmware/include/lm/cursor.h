@@ -32,9 +32,9 @@ struct lm_cursor_scene {
     const struct lm_view *view;
     struct lm_place ownship;
     fx_bam_t heading;
-    uint32_t scale_m; /* the display's range scale */
-    bool is_sector;   /* a sector around the ownship, or a patch */
-    int32_t half_px;  /* half the shorter side of the glass */
+    uint32_t scale_m;     /* the display's range scale */
+    int32_t half_px;      /* half the shorter side of the glass */
+    int32_t slew_percent; /* of the whole sector's pace over the glass, 1..100 */
 };
 
 /* To its home: straight ahead at half the scale, held there. */

@@ -32,7 +32,7 @@ const char *lm_flag_word(uint32_t number);
 /* The symbols of the radar picture. */
 struct lm_symbols {
     struct lm_view view;
-    bool is_patch, is_sweeping;
+    bool is_sweeping;
     uint16_t range_nm;     /* of the sector */
     fx_bam_t azimuth_half; /* of the sector */
     int32_t antenna_azimuth,
@@ -49,6 +49,10 @@ struct lm_symbols {
     fx_bam_t cursor_bearing;
     int32_t cursor_elevation_m;
     bool has_cursor_elevation;
+
+    bool is_cue_shown; /* window: where the cursor would be in the whole sector */
+    struct lm_point cue;
+    bool is_finer_offered; /* window: show what the next field of view will cut out */
 
     bool is_ownship_shown; /* over a frozen picture */
     struct lm_offset ownship;

@@ -11,8 +11,6 @@
 #include "lm/radar.h"
 #include "lm/tone.h"
 
-enum lm_mode { LM_MODE_GM, LM_MODE_SAR };
-
 enum lm_format {
     LM_FORMAT_RADAR,
     LM_FORMAT_CNTL, /* settings, over the radar picture */
@@ -23,13 +21,14 @@ enum lm_format {
 
 /* What a press asks of the unit, bits. */
 enum lm_effect {
-    LM_EFFECT_GROUND_MAP = 1 << 0, /* begin a ground map with the page's range and azimuth */
-    LM_EFFECT_PATCH = 1 << 1,      /* the patch's cell is another */
+    LM_EFFECT_SECTOR = 1 << 0, /* begin a sector with the page's mode, field and scales */
+    LM_EFFECT_PATCH = 1 << 1,  /* the patch's cell is another */
     LM_EFFECT_TONE = 1 << 2,
     LM_EFFECT_PALETTE = 1 << 3,
     LM_EFFECT_CURSOR_HOME = 1 << 4,
     LM_EFFECT_SNOWPLOW = 1 << 5, /* switched on or off */
-    LM_EFFECT_SWAP = 1 << 6      /* exchange this display's page with the other's */
+    LM_EFFECT_SWAP = 1 << 6,     /* exchange this display's page with the other's */
+    LM_EFFECT_BEAM = 1 << 7      /* tilt or shape of the beam */
 };
 
 enum {
@@ -41,11 +40,14 @@ enum {
 };
 
 struct lm_page {
-    const struct lm_radar *radar; /* borrowed */
-    uint8_t format;               /* enum lm_format */
-    uint8_t mode;                 /* enum lm_mode: what is shown; the unit sets it */
-    uint8_t range, azimuth;       /* indices into the radar table */
-    uint8_t field_of_view, cell;  /* indices into this page's own tables */
+    const struct lm_radar *radar;   /* borrowed */
+    uint8_t format;                 /* enum lm_format */
+    bool is_patch;                  /* a patch is shown, not a sector; the unit sets it */
+    uint8_t mode, field;            /* of the sector: enum lm_sector_mode, enum lm_field */
+    uint8_t range, azimuth;         /* indices into the radar table */
+    uint8_t cell;                   /* of the patch: index into this page's own table */
+    bool is_tilt_manual, is_pencil; /* the beam: its axis by hand, and not spoiled into a fan */
+    int16_t tilt_tenths;            /* of its axis, degrees up; the unit's while it is automatic */
     bool is_auto_range, is_override, is_frozen, is_snowplow, is_decluttered;
     uint32_t hidden; /* bit n - 1: declutter takes OSB n's label away */
 
@@ -54,7 +56,7 @@ struct lm_page {
     struct lm_palette_config palette;
 };
 
-/* As after power-up: ground map, 40 nm, A6, manual range. */
+/* As after power-up: ground map, 40 nm, A6, manual range, automatic tilt. */
 void lm_page_init(struct lm_page *p, const struct lm_radar *radar);
 
 /* How button 1..LM_BUTTONS behaves while it is held. */
@@ -63,6 +65,9 @@ enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button);
 /* Obey a button. Returns the effects, 0 for a button that means nothing here. A button whose value
  * stands at its end does nothing. */
 uint32_t lm_page_press(struct lm_page *p, struct lm_press press);
+
+/* Index of the largest scale that the page's mode and field have. */
+uint8_t lm_page_range_last(const struct lm_page *p);
 
 /* One scale up (1) or down (-1), as an automatic range does. Returns the effects. */
 uint32_t lm_page_step_range(struct lm_page *p, int32_t step);

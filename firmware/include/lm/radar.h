@@ -35,9 +35,10 @@ struct lm_sector_mode_row {
 struct lm_field_row {
     uint32_t bam_per_s;        /* antenna rate; 0: the mode's */
     uint8_t range_last;        /* index of the largest scale */
+    uint8_t slew_percent;      /* pace of the cursor over the glass, of that in NORM */
     uint16_t window_permille;  /* half the window's side, of the range scale; 0: the sector */
     fx_bam_t azimuth_half_max; /* of a window, as swept */
-    uint16_t sharpening;       /* azimuth cells in a beam width; 1: real beam */
+    uint16_t sharpening;       /* azimuth cells in a beam width, a power of two; 1: real beam */
     uint16_t sharpening_least; /* real beam where there is less than this */
     bool is_doppler;           /* movers are displaced */
     uint32_t pulse_ns[LM_RANGES];
@@ -75,7 +76,8 @@ struct lm_radar {
     fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1 */
     uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM (lm/rcs.h) */
     uint16_t cells;                     /* range cells of a sector line */
-    fx_bam_t line;                      /* azimuth between lines sampled in real beam */
+    fx_bam_t line;                      /* azimuth of a line of the whole sector */
+    fx_bam_t sample;                    /* between azimuths sampled in real beam: lm/beam.h */
     struct lm_antenna_table antenna;
     struct lm_receiver_table receiver;
     struct lm_sector_mode_row mode[LM_SECTOR_MODES];
@@ -83,13 +85,6 @@ struct lm_radar {
     struct lm_sar_table sar;
     struct lm_aspect_config aspect;
     struct lm_texture_config texture;
-
-    /* The table of the picture as it was until every mode stands. */
-    uint32_t sweep_bam_per_ms;
-    uint16_t gm_cells;
-    fx_bam_t gm_line;
-    struct lm_speckle_config gm_speckle;
-    struct lm_tone_config gm_tone;
 };
 
 extern const struct lm_radar lm_radar_default;

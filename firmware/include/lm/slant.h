@@ -11,7 +11,9 @@
 struct lm_slant {
     uint32_t first_q8, cell_q8; /* of bin 0's centre, and between centres; metres * 256 */
     uint32_t cells;
-    uint32_t cell_of[LM_CELLS_ROOM]; /* index into the ground grid; its `cells`: no ground there */
+    /* The ground cell at the bin's centre, and the last one before that of the next bin's; the
+     * grid's number of cells: no ground there. Near the hole a bin covers two or three. */
+    int32_t cell_of[LM_CELLS_ROOM], last_of[LM_CELLS_ROOM];
 };
 
 /* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,
@@ -24,7 +26,8 @@ uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10);
 void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
                   const struct lm_range_grid *grid, uint32_t ground_first_q8);
 
-/* Power (1.0 in Q24 is 0 dB of gamma) of each bin from the ground cells' levels. A bin without
+/* Power (1.0 in Q24 is 0 dB of gamma) of each bin: that of the stronger of its two cells, from the
+ * ground cells' levels. A bin without
  * ground has none. `level_q8` has room for one more than the grid's cells, which is written. */
 void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_q8,
                   uint32_t *power_q24);

@@ -8,12 +8,12 @@
 #include "lm/controls.h"
 #include "lm/cursor.h"
 #include "lm/environment.h"
-#include "lm/ground_map.h"
 #include "lm/keys.h"
 #include "lm/nav.h"
 #include "lm/overlay.h"
 #include "lm/page.h"
 #include "lm/sar.h"
+#include "lm/sector.h"
 
 /* What a board lends, for as long as the unit lives. */
 struct lm_board {
@@ -65,12 +65,12 @@ struct lm_unit {
     int32_t cursor_elevation_q10; /* metres * 1024, or LM_NO_ELEVATION */
     uint64_t unable_until_us;     /* the glass says LM_FLAG_UNABLE until then */
 
-    struct lm_ground_map ground_map;
+    struct lm_sector sector;
     struct lm_sar sar;
     bool is_acquiring; /* the patch's tiles are being read */
     uint64_t acquire_until_us;
     uint64_t next_line_us, next_frame_us;
-    struct lm_tone gm_tone, sar_tone;
+    struct lm_tone sector_tone, sar_tone;
     struct lm_line line;
     struct lm_plane plane;
     struct lm_frame frame;

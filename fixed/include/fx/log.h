@@ -60,7 +60,8 @@ static inline uint32_t fx_power_q24_of_many(int32_t db_q8)
     const int32_t octaves_q16 = (db_q8 * 21771 >> 8) + (24 << 16) + 128;
     const int32_t low_q16 = octaves_q16 < 0 ? 0 : octaves_q16;
     const uint32_t t_q16 = (uint32_t)(low_q16 > (32 << 16) - 1 ? (32 << 16) - 1 : low_q16);
-    return fx_table_exp2_q31[t_q16 >> 8 & 255u] >> (31 - (t_q16 >> 16));
+    const int32_t fraction = (int32_t)(t_q16 >> 8 & 255u); /* signed, as vector gathers want it */
+    return fx_table_exp2_q31[fraction] >> (31 - (t_q16 >> 16));
 }
 
 /* 10^(dB / 10) in Q32 of 64 bits, likewise: 1 up to -96.3 dB and 2^63's octave from 93.3 dB up.

@@ -1,7 +1,6 @@
 /* The fixed-point picture against the double-precision reference, stage by stage and whole. Each
  * stage is judged on what the firmware's stage before it handed on, so that no error hides behind
  * another; then the pictures as they are. */
-#include "lm/ground_map.h"
 #include "lm/sar.h"
 
 #include "memory_flash.h"
@@ -265,76 +264,10 @@ static void patches_agree_with_the_reference(void **state)
     assert_true(whole.beyond_1_grey * 200 <= whole.pixels);
 }
 
-/* ---- ground map ---- */
-
-static void score_sweep(struct world *w, uint8_t range, double height_m, struct score *stage,
-                        struct score *whole)
-{
-    const struct lm_radar *radar = &w->radar;
-    const double cell_m = radar->range_m[range] / (double)radar->gm_cells;
-    const struct ref_gm wanted = {
-        .antenna = {w->ref.centre.latitude_deg - 0.6 * radar->range_m[range] / 111200,
-                    w->ref.centre.longitude_deg},
-        .antenna_m = height_m,
-        .cell_m = cell_m,
-        .half_angle_deg = 60,
-        .cell_count = radar->gm_cells,
-        .line_count = CELLS};
-    const double bam = 4294967296.0 / 360;
-    const struct lm_antenna antenna = {
-        .place = {(fx_bam_t)(int64_t)llround(wanted.antenna.latitude_deg * bam),
-                  (fx_bam_t)(int64_t)llround(wanted.antenna.longitude_deg * bam)},
-        .height_q10 = (int32_t)lround(height_m * 1024)};
-    struct lm_ground_map map;
-    struct ref_picture picture;
-    set_params(w, &radar->gm_tone, &radar->gm_speckle);
-    assert_int_equal(ref_gm_sweep(&picture, &w->ref, &wanted, &w->params), 0);
-    lm_ground_map_start(&map, radar, range, 0, 0);
-    for (int pass = 0; pass < 2; pass++) { /* the first brings the tiles, the second comes back */
-        for (uint32_t k = 0; k < CELLS; k++) {
-            const uint32_t drawn =
-                lm_ground_map_draw_line(&map, &w->tiles, &antenna, &w->tone, &w->line);
-            make_resident(w);
-            if (pass == 0) {
-                continue;
-            }
-            struct ref_bin *bins = ref_picture_bin(&picture, drawn, 0), copy[CELLS];
-            for (uint32_t i = 0; i < CELLS; i++) {
-                copy[i] = bins[i];
-            }
-            take_ground(w, copy, CELLS);
-            const size_t first = ref_first_shown(copy, CELLS, &picture.view);
-            ref_aspect(copy, CELLS, &picture.view, &w->params,
-                       ref_gm_horizon(&copy[first], &picture.view));
-            compare_line(w, copy, 0, CELLS, stage);
-            compare_line(w, bins, 0, CELLS, whole);
-        }
-    }
-    ref_picture_free(&picture);
-}
-
-static void sweeps_agree_with_the_reference(void **state)
-{
-    (void)state;
-    struct score stage = {0}, whole = {0};
-    struct world *w = make_world(13, 8, 46, 11);
-    score_sweep(w, 0, 3000, &stage, &whole);
-    score_sweep(w, 1, 5000, &stage, &whole);
-    score_sweep(w, 2, 8000, &stage, &whole);
-    score_sweep(w, 3, 9000, &stage, &whole);
-    free_world(w);
-    report("sweeps, aspect to tone on the same ground", &stage);
-    report("sweeps, whole", &whole);
-    judge_stages(&stage);
-    assert_true(whole.beyond_half_db * 1000 <= whole.pixels);
-    assert_true(whole.beyond_1_grey * 1000 <= whole.pixels);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(patches_agree_with_the_reference),
-        cmocka_unit_test(sweeps_agree_with_the_reference),
     };
     return cmocka_run_group_tests_name("against_reference", tests, NULL, NULL);
 }

@@ -29,7 +29,7 @@ static int32_t bam(double degrees)
 static struct ref_beam ref_of(uint32_t ratio_q8)
 {
     return (struct ref_beam){radar->antenna.azimuth_beam * degrees_per_bam,
-                             radar->line * degrees_per_bam, ratio_q8 / 256.0};
+                             radar->sample * degrees_per_bam, ratio_q8 / 256.0};
 }
 
 static void weights_are_those_of_the_pattern(void **state)
@@ -39,7 +39,7 @@ static void weights_are_those_of_the_pattern(void **state)
     hs_rng_seed(&rng, 31);
     double worst = 0;
     for (int n = 0; n < 4000; n++) {
-        const uint32_t ratio_q8 = 256 + (n % 3 ? hs_rng_below(&rng, 63 * 256 + 1) : 0);
+        const uint32_t ratio_q8 = 256u << (n % 3 ? hs_rng_below(&rng, 7) : 0);
         const int32_t azimuth = bam(120 * hs_rng_uniform(&rng) - 60);
         struct ref_beam ref = ref_of(ratio_q8);
         struct lm_beam_look look;
@@ -72,7 +72,7 @@ static void a_line_is_the_weighted_sum_of_its_samples(void **state)
     struct hs_rng rng;
     hs_rng_seed(&rng, 32);
     static double power[LM_BEAM_TAPS][CELLS], wanted[CELLS];
-    static uint32_t sum[LM_CELLS_ROOM];
+    static uint32_t sum[LM_BEAM_ROOM];
     const double *lines[LM_BEAM_TAPS];
     for (int n = 0; n < 50; n++) {
         struct lm_beam_look look;
@@ -194,7 +194,8 @@ static void the_notch_opens_where_the_formula_says(void **state)
                 full_deg = off_deg;
             }
             /* Outside of the notch cells are within a tenth of what they should be. */
-            if (fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening_least)) > 0.1) {
+            if (fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening_least)) > 0.1 &&
+                fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening)) > 0.1) {
                 assert_true(fabs(used_q8 / 256.0 / used - 1) < 0.1);
             }
         }
@@ -223,7 +224,7 @@ static void each_look_is_weighed_at_its_own_tangent(void **state)
         lm_range_grid_set(&grid, &radar->aspect, 256 * 36, 256 * 72, 256,
                           (int32_t)lround(height_m * 1024), 0);
         for (double tilt_deg = -35; tilt_deg <= 25; tilt_deg += 2.3) {
-            const struct lm_fan fan = lm_fan_at(&radar->antenna, bam(tilt_deg));
+            const struct lm_fan fan = lm_fan_at(bam(tilt_deg), radar->antenna.fan);
             for (uint32_t i = 0; i < 256; i++) {
                 const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
                 sight.level_q8[i] = 0;

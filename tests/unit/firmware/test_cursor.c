@@ -61,13 +61,14 @@ struct scene {
 static void look_from(struct scene *s, struct lm_place ownship, double heading)
 {
     s->frame = lm_frame_of_display(SIDE, SIDE);
-    s->view = lm_view_of_sector(&s->frame, ownship, bam(heading), RANGE_M);
+    const struct lm_view_from from = {ownship, bam(heading), 0};
+    s->view = lm_view_of_sector(&s->frame, &from, RANGE_M);
     s->against = (struct lm_cursor_scene){.view = &s->view,
                                           .ownship = ownship,
                                           .heading = bam(heading),
                                           .scale_m = RANGE_M,
-                                          .is_sector = true,
-                                          .half_px = SIDE / 2};
+                                          .half_px = SIDE / 2,
+                                          .slew_percent = 100};
 }
 
 static void steps(struct scene *s, double seconds)
@@ -165,7 +166,6 @@ static void slewing_stops_at_the_edge_of_what_is_shown(void **state)
                     (s.view.radius_px + 1.5) * 256);
         assert_true(s.cursor.offset.y_q8 > -256);
         s.view = lm_view_of_patch(&s.frame, moved(origins[1], 10, 15000), bam(40), 256, 5000);
-        s.against.is_sector = false;
         steps(&s, 5);
         assert_true(s.cursor.is_on_glass);
         assert_in_range(s.cursor.offset.x_q8 + 129 * 256, 0, 258 * 256);

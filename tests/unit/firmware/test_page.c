@@ -100,18 +100,25 @@ static void the_page_after_power_up_has_the_labels_of_the_key_map(void **state)
     free_rig(r);
 }
 
-static void osb_1_leaves_the_patch_for_the_ground_map(void **state)
+static void osb_1_goes_round_the_modes_and_leaves_the_patch(void **state)
 {
     (void)state;
+    static const char *const modes[] = {"GMT", "SEA", "GM"};
     struct rig *r = fly();
-    press(r, 1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM); /* the only mode of the rotary */
+    for (int i = 0; i < 3; i++) {
+        const uint32_t before = plane_sum(r);
+        press(r, 1);
+        assert_true(labelled(r, 1, modes[i], 0));
+        assert_int_equal(r->unit.sector.command.mode, (i + 1) % LM_SECTOR_MODES);
+        run(r, 2.2);
+        assert_true(plane_sum(r) != before);
+    }
     command(r, patch_here);
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     assert_true(labelled(r, 3, "SAR", 0));
     press(r, 1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     assert_true(labelled(r, 3, "NORM", 0));
     free_rig(r);
 }
@@ -142,18 +149,47 @@ static void osb_2_lets_the_range_follow_the_cursor(void **state)
     free_rig(r);
 }
 
-static void osb_3_leaves_the_patch_and_offers_no_field_of_view_that_is_not_there(void **state)
+static void osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture(void **state)
 {
     (void)state;
+    static const char *const fields[] = {"EXP", "DBS1", "DBS2", "NORM"};
     struct rig *r = fly();
-    const uint32_t lines = r->unit.count.lines;
-    press(r, 3);
-    assert_true(labelled(r, 3, "NORM", 0));
-    assert_true(r->unit.count.lines > lines && lit_pixels(r) > 10000); /* the picture went on */
+    uint32_t sums[4];
+    for (int i = 0; i < 4; i++) {
+        press(r, 3);
+        assert_true(labelled(r, 3, fields[i], 0));
+        assert_int_equal(r->unit.sector.command.field, (i + 1) % LM_FIELDS);
+        struct lm_label label; /* a window has no scan of its own */
+        assert_int_equal(lm_page_label(&r->unit.page, 18, &label), i == 3);
+        run(r, 4);
+        assert_true(lit_pixels(r) > 10000);
+        sums[i] = plane_sum(r);
+        assert_true(i == 0 || sums[i] != sums[i - 1]);
+    }
     command(r, patch_here);
     run(r, 0.2);
     press(r, 3);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
+    free_rig(r);
+}
+
+static void osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .value = 3});
+    press(r, 3);
+    assert_true(labelled(r, 3, "EXP", 0));
+    press(r, 3);
+    assert_true(labelled(r, 3, "NORM", 0));
+    press(r, 1);
+    assert_true(labelled(r, 1, "GMT", 0));
+    assert_true(says(r, "40")); /* the largest scale of GMT */
+    press(r, 20);
+    assert_true(says(r, "40"));
+    press(r, 3);
+    press(r, 3);
+    assert_true(labelled(r, 3, "NORM", 0));
     free_rig(r);
 }
 
@@ -170,7 +206,7 @@ static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
     assert_true(warns(r, "NO RAD"));
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* a patch would need it */
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     assert_true(warns(r, "UNABLE"));
     press(r, 4);
     run(r, 0.5);
@@ -219,20 +255,20 @@ static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
     } pairs[] = {{20, 19, "1.6", "1.4"}, {18, 17, "+1", "-1"}, {6, 7, "+1", "-1"}};
     for (size_t i = 0; i < 3; i++) {
         struct rig *r = fly();
-        const struct lm_tone before = r->unit.gm_tone;
+        const struct lm_tone before = r->unit.sector_tone;
         press(r, 5);
         press(r, pairs[i].up);
         assert_true(says(r, pairs[i].words_up));
-        assert_memory_not_equal(&r->unit.gm_tone, &before, sizeof before);
+        assert_memory_not_equal(&r->unit.sector_tone, &before, sizeof before);
         press(r, pairs[i].down);
-        assert_memory_equal(&r->unit.gm_tone, &before, sizeof before);
+        assert_memory_equal(&r->unit.sector_tone, &before, sizeof before);
         press(r, pairs[i].down);
         assert_true(says(r, pairs[i].words_down));
         hold(r, pairs[i].up, 5); /* repeats until it stands at its end */
         const struct lm_page *p = &r->unit.page;
         assert_int_equal(p->gamma_tenths + p->white_db + p->black_db, i == 0 ? 10 : 20);
         press(r, 10); /* RESET */
-        assert_memory_equal(&r->unit.gm_tone, &before, sizeof before);
+        assert_memory_equal(&r->unit.sector_tone, &before, sizeof before);
         free_rig(r);
     }
 }
@@ -329,7 +365,7 @@ static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* stabilises, and no more */
     run(r, 0.05);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     const struct lm_place held = r->unit.cursor.place;
     run(r, 10);
     assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
@@ -446,7 +482,7 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
     slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     assert_int_equal(r->unit.sar.command.cell_mm, 10000);
     const struct lm_place centre = r->unit.sar.command.centre;
     press(r, 16);
@@ -480,7 +516,7 @@ static void osb_18_goes_through_the_azimuths(void **state)
     const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
     for (int i = 0; i < 3; i++) {
         press(r, 18);
-        assert_int_equal(lm_radar_default.azimuth_half[r->unit.ground_map.azimuth], halves[i]);
+        assert_int_equal(lm_radar_default.azimuth_half[r->unit.sector.command.azimuth], halves[i]);
         struct lm_label label;
         assert_true(lm_page_label(&r->unit.page, 18, &label));
         assert_string_equal(label.line[0], "A");
@@ -501,16 +537,16 @@ static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
     press(r, 2);
     for (int range = 1; range < LM_RANGES; range++) {
         press(r, 20);
-        assert_int_equal(r->unit.ground_map.range, range);
+        assert_int_equal(r->unit.sector.command.range, range);
         assert_true(says(r, words[range]));
         assert_false(r->unit.page.is_auto_range);
     }
     assert_false(says(r, LM_GLYPH_UP)); /* no further */
     press(r, 20);
-    assert_int_equal(r->unit.ground_map.range, 3);
+    assert_int_equal(r->unit.sector.command.range, 3);
     for (int range = LM_RANGES - 2; range >= 0; range--) {
         press(r, 19);
-        assert_int_equal(r->unit.ground_map.range, range);
+        assert_int_equal(r->unit.sector.command.range, range);
         assert_true(says(r, words[range]));
     }
     assert_false(says(r, LM_GLYPH_DOWN));
@@ -521,20 +557,20 @@ static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    const struct lm_tone tone = r->unit.gm_tone;
+    const struct lm_tone tone = r->unit.sector_tone;
     press(r, lm_rocker_button(LM_ROCKER_GAIN, true));
     assert_int_equal(r->unit.page.gain_db, 1);
-    assert_memory_not_equal(&r->unit.gm_tone, &tone, sizeof tone);
+    assert_memory_not_equal(&r->unit.sector_tone, &tone, sizeof tone);
     press(r, lm_rocker_button(LM_ROCKER_GAIN, false));
     command(r, (struct lm_control){.kind = LM_CONTROL_KNOB, .value = 1000});
     run(r, 0.01);
-    const struct lm_tone_config table = lm_radar_default.gm_tone;
+    const struct lm_tone_config table = lm_radar_default.mode[LM_SECTOR_GM].tone;
     const struct lm_tone_config config = lm_page_tone(&r->unit.page, &table);
     /* 20 % of amplitude: 20 log10 1.2 = 1.584 dB */
     assert_true(fabs((table.black_q8 - config.black_q8) / 256.0 - 1.584) < 0.01);
     command(r, (struct lm_control){.kind = LM_CONTROL_KNOB});
     run(r, 0.01);
-    assert_memory_equal(&r->unit.gm_tone, &tone, sizeof tone);
+    assert_memory_equal(&r->unit.sector_tone, &tone, sizeof tone);
     const struct lm_palette palette = r->unit.palette;
     const enum lm_rocker rockers[] = {LM_ROCKER_SYM, LM_ROCKER_BRT, LM_ROCKER_CON};
     for (int i = 0; i < 3; i++) {
@@ -625,7 +661,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 4);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
                         sizeof(struct lm_place));
     assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
@@ -636,7 +672,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
     command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     free_rig(r);
 }
 
@@ -650,7 +686,7 @@ static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(
     command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     assert_int_equal(r->unit.count.commands_refused, 1);
     assert_true(warns(r, "UNABLE"));
     run(r, 2);
@@ -664,7 +700,7 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     struct rig *r = fly();
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+    assert_false(r->unit.page.is_patch);
     assert_true(warns(r, "UNABLE"));
     /* 10 km away at 150 m/s, 30 degrees off, with cells of 1 m: about 2 s. */
     for (int i = 0; i < 3; i++) {
@@ -676,7 +712,7 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     run(r, 0.3);
     command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
     run(r, 0.1);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     char words[24];
     snprintf(words, sizeof words, "%u%% %.0fS", r->unit.sar.line * 100 / 256,
              ceil((double)lm_sar_time_to_go_us(&r->unit.sar) / 1e6));
@@ -800,9 +836,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_page_after_power_up_has_the_labels_of_the_key_map),
-        cmocka_unit_test(osb_1_leaves_the_patch_for_the_ground_map),
+        cmocka_unit_test(osb_1_goes_round_the_modes_and_leaves_the_patch),
         cmocka_unit_test(osb_2_lets_the_range_follow_the_cursor),
-        cmocka_unit_test(osb_3_leaves_the_patch_and_offers_no_field_of_view_that_is_not_there),
+        cmocka_unit_test(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture),
+        cmocka_unit_test(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt),
         cmocka_unit_test(osb_4_stops_the_transmitter_and_the_picture_says_so),
         cmocka_unit_test(osb_5_opens_the_control_page_over_the_picture_and_closes_it),
         cmocka_unit_test(osb_6_and_17_mean_nothing_on_the_radar_page),

@@ -56,7 +56,7 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
     uint64_t first_us = 0;
     command(r, control);
     run(r, 0.004);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     while (r->unit.sar.line < CELLS) {
         if (r->unit.sar.line == 1 && first_us == 0) {
             first_us = r->now_us;
@@ -113,7 +113,7 @@ static bool is_refused(double speed_m_s, double nose_deg, double bearing_deg, do
     struct rig *r = fly_at(speed_m_s, nose_deg);
     command(r, patch_at(r, bearing_deg, range_m, cell_m));
     run(r, 0.01);
-    const bool is_made = r->unit.page.mode == LM_MODE_SAR;
+    const bool is_made = r->unit.page.is_patch;
     assert_int_equal(r->unit.count.commands_refused, !is_made);
     assert_int_equal((r->unit.flags & LM_FLAG_UNABLE) != 0, !is_made);
     free_rig(r);

@@ -330,7 +330,7 @@ static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(vo
         control.sar.cell_mm = 1000;
         command(r, control);
         run(r, 0.1);
-        assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+        assert_true(r->unit.page.is_patch);
         const double lateral = 6 * pi / 180 * 150;
         const double dwell_s = (double)(r->unit.sar.line_us * CELLS) / 1e6;
         const double f = pi * lateral * 0.01 * dwell_s * dwell_s / (2 * 0.031228);

@@ -109,7 +109,7 @@ static void every_pixel_of_a_sector_is_painted_by_exactly_one_line(void **state)
             struct glass back;
             make_glass(&back, sizes[n][0], sizes[n][1]);
             /* A line is a whole share of 120 degrees; sectors are cut to whole lines. */
-            const int32_t line = (int32_t)lm_radar_default.gm_line;
+            const int32_t line = (int32_t)lm_radar_default.line;
             const int32_t half =
                 (int32_t)(lm_radar_default.azimuth_half[a] / (uint32_t)line) * line;
             paint_sector(&g, half, line, 0);
@@ -148,7 +148,7 @@ static void a_pixel_shows_the_cell_at_its_range(void **state)
         make_glass(&g, sizes[n][0], sizes[n][1]);
         const struct lm_ppi ppi = lm_ppi_of_sector(&g.frame, CELLS);
         const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame);
-        const int32_t width = (int32_t)lm_radar_default.gm_line;
+        const int32_t width = (int32_t)lm_radar_default.line;
         for (int32_t i = -128; i < 128; i += 9) {
             memset(g.plane.pixels, GUARD, (size_t)g.plane.width_px * g.plane.height_px);
             lm_plane_clear(&g.plane, &g.frame);

@@ -111,42 +111,65 @@ static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void
     tiny_image_free(&image);
 }
 
-/* A sweep over the target, from the right height and place; returns the number of changed pixels.
- */
-static int sweep(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+/* A sweep over the target, from the right height and place: levels of each line and bin. */
+static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
 {
-    static struct lm_ground_map map;
-    const struct lm_antenna antenna = {{bam(45.95), bam(11)}, 3000 * 1024, 0};
-    lm_ground_map_start(&map, &lm_radar_default, 0, 0, 5);
-    map.targets = set;
-    int changed = 0;
-    for (uint32_t k = 0; k < lm_ground_map_lines(&map); k++) {
-        uint8_t grey[SIDE];
-        const uint32_t drawn = lm_ground_map_draw_line(&map, &tiles, &antenna, &tone, &line);
-        memcpy(grey, line.grey, SIDE);
-        for (int c = 0; set->count && c < SIDE; c++) {
-            changed += grey[c] != picture[drawn][c];
-        }
-        memcpy(picture[drawn], grey, SIDE);
+    static struct lm_sector sector;
+    const struct lm_platform platform = {.place = {bam(45.95), bam(11)}, .height_q10 = 3000 * 1024};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
+    lm_sector_start(&sector, &lm_radar_default, &command, 5);
+    sector.targets = set;
+    for (uint32_t k = 0; k < SIDE; k++) {
+        const uint32_t drawn = lm_sector_draw_line(&sector, &tiles, &platform, &tone, &line);
+        memcpy(level_q8[drawn], sector.level_q8, sizeof level_q8[drawn]);
     }
-    return changed;
 }
 
-static void a_target_shows_in_one_cell_of_a_sweep_and_a_hidden_one_nowhere(void **state)
+/* Bins of a line that differ by more than a quarter of a decibel, and the line where they differ
+ * most. */
+static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], int bin,
+                        int *brightest)
+{
+    int bins = 0, most = 0;
+    for (int k = 0; k < SIDE; k++) {
+        for (int i = 0; i < SIDE; i++) {
+            const int rise = with[k][i] - without[k][i];
+            bins += rise > 64 && i != bin;
+            if (rise > most) {
+                most = rise;
+                *brightest = k;
+            }
+        }
+    }
+    return bins;
+}
+
+static void a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere(void **state)
 {
     (void)state;
     struct tiny_image image;
     struct memory_flash flash;
-    static uint8_t picture[SIDE][SIDE];
+    static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
     open_soil(&image, &flash);
     const struct lm_target_set none = {NULL, 0};
-    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
-        const struct lm_target t = point_at(46, 11.001, is_hidden ? -100 : 1, 60);
-        const struct lm_target_set set = {&t, 1};
-        sweep(&none, picture);
-        assert_int_equal(sweep(&set, picture), !is_hidden);
+    sweep(&none, without);
+    const struct lm_target shown = point_at(46, 11, 1, 60), hidden = point_at(46, 11, -100, 60);
+    const struct lm_target_set set = {&shown, 1}, hidden_set = {&hidden, 1};
+    sweep(&hidden_set, with);
+    assert_memory_equal(with, without, sizeof with);
+    /* Dead ahead, 0.05 degrees of latitude away, from 3 km of height. */
+    const double slant_m = hypot(5557, 3000 - 100);
+    const int bin = (int)(slant_m / (18520.0 / SIDE));
+    int brightest = -1;
+    sweep(&set, with);
+    assert_true(changed_bins(with, without, bin, &brightest) <= 4); /* the pulse is no longer */
+    assert_in_range(brightest, 126, 129);
+    /* Two-way half-power width: 3.3 degrees / sqrt 2 are 4.98 lines. */
+    int lines = 0;
+    for (int k = 0; k < SIDE; k++) {
+        lines += with[k][bin] > with[brightest][bin] - 3 * 256;
     }
-    tiny_image_free(&image);
+    assert_in_range(lines, 4, 6);
 }
 
 /* A unit is large: one is enough. */
@@ -177,7 +200,7 @@ static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
     assert_int_equal(unit.target_set.count, 2);
     assert_int_equal(unit.target_set.items[1].id, 2);
     assert_int_equal(unit.count.targets_lost, 1);
-    assert_ptr_equal(unit.ground_map.targets, &unit.target_set);
+    assert_ptr_equal(unit.sector.targets, &unit.target_set);
     free(w.bytes);
     tiny_image_free(&image);
 }
@@ -187,7 +210,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched),
         cmocka_unit_test(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch),
-        cmocka_unit_test(a_target_shows_in_one_cell_of_a_sweep_and_a_hidden_one_nowhere),
+        cmocka_unit_test(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere),
         cmocka_unit_test(the_unit_reads_the_targets_and_counts_those_it_has_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

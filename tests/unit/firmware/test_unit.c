@@ -185,7 +185,7 @@ static void a_patch_completes_and_stays(void **state)
     command(r, patch_here);
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
-    assert_int_equal(r->unit.page.mode, LM_MODE_SAR);
+    assert_true(r->unit.page.is_patch);
     assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
@@ -234,7 +234,7 @@ static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
                                                   .look_azimuth = FX_BAM_DEG(10) + (i ? 1000 : 0),
                                                   .range_m = 20000}});
         lm_unit_step(&r[i]->unit, 0); /* the page, before the first line */
-        assert_int_equal(r[i]->unit.page.mode, LM_MODE_SAR);
+        assert_true(r[i]->unit.page.is_patch);
     }
     assert_memory_equal(r[0]->glass, r[1]->glass, sizeof r[0]->glass);
     free_rig(r[0]);
@@ -290,7 +290,7 @@ static void hostile_commands_are_refused_and_counted(void **state)
         command(r, bad[i]);
         run(r, 0.01);
         assert_int_equal(r->unit.count.commands_refused, i + 1);
-        assert_int_equal(r->unit.page.mode, LM_MODE_GM);
+        assert_false(r->unit.page.is_patch);
     }
     free_rig(r);
 }

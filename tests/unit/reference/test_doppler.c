@@ -68,11 +68,11 @@ static void a_dwell_tells_two_neighbouring_cells_apart_by_one_turn(void **state)
     }
 }
 
-static void what_is_used_is_what_is_wanted_or_had_and_real_beam_in_the_notch(void **state)
+static void what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch(void **state)
 {
     (void)state;
     assert_true(ref_dbs_used(100, 8, 4) == 8);
-    assert_true(ref_dbs_used(5.5, 8, 4) == 5.5);
+    assert_true(ref_dbs_used(5.5, 8, 4) == 4);
     assert_true(ref_dbs_used(4, 8, 4) == 4);
     assert_true(ref_dbs_used(3.99, 8, 4) == 1);
 }
@@ -103,7 +103,7 @@ int main(void)
         cmocka_unit_test(the_notch_opens_as_in_the_table),
         cmocka_unit_test(the_notch_is_where_the_ratio_runs_out),
         cmocka_unit_test(a_dwell_tells_two_neighbouring_cells_apart_by_one_turn),
-        cmocka_unit_test(what_is_used_is_what_is_wanted_or_had_and_real_beam_in_the_notch),
+        cmocka_unit_test(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch),
         cmocka_unit_test(a_mover_lies_where_still_ground_has_its_frequency),
     };
     return cmocka_run_group_tests_name("reference doppler", tests, NULL, NULL);

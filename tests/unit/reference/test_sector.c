@@ -65,12 +65,12 @@ static struct ref_sector sector_of(const struct world *w, double half_deg)
         .ground = {.antenna = {46, 11},
                    .antenna_m = height_m,
                    .cell_m = 18520.0 / CELLS,
-                   .centre_azimuth_deg = 60.0 / 256, /* sample -1 looks north */
+                   .centre_azimuth_deg = 60.0 / 128, /* sample -1 looks north */
                    .half_angle_deg = half_deg,
                    .cell_count = CELLS,
                    .line_count = 128},
         .beam_deg = 3.3,
-        .sample_deg = 120.0 / 256,
+        .sample_deg = 120.0 / 128,
         .sharpening = 1,
         .sharpening_least = 1,
         .dbs = {250, 3.3, 0.0313, 15},

@@ -62,7 +62,7 @@ static void a_long_press_overlaps_what_the_next_lines_do(void **state)
     struct script s;
     assert_int_equal(read_text(&s, "1 osb 11 1.5\n2 gm\n2.2 picture now\n3 drop\n"), 0);
     assert_int_equal(at(&s, 1).kind, LM_CONTROL_DOWN);
-    assert_int_equal(at(&s, 2.1).kind, LM_CONTROL_GM);
+    assert_int_equal(at(&s, 2.1).kind, LM_CONTROL_SECTOR);
     assert_int_equal(at(&s, 2.1).kind, NOTHING);
     assert_string_equal(script_advance(&s, 2200000), "now");
     assert_int_equal(at(&s, 2.49).kind, NOTHING);

@@ -1,0 +1,121 @@
+/* A sector swept line by line, out and back: the whole of it, or a window around the cursor that
+ * the display shows enlarged (EXP, DBS). docs/DESIGN.md, "Real beam" and "Doppler beam sharpening".
+ */
+#ifndef LM_SECTOR_H
+#define LM_SECTOR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "lm/antenna.h"
+#include "lm/beam.h"
+#include "lm/line.h"
+#include "lm/radar.h"
+#include "lm/receiver.h"
+#include "lm/slant.h"
+#include "lm/tone.h"
+#include "lm/weather.h"
+
+enum {
+    LM_SECTOR_RUNUP = 128,      /* coarse cells between the antenna and a window */
+    LM_SECTOR_LINES_MAX = 256,  /* that a sweep over a window draws */
+    LM_SECTOR_LINES_PER_S = 512 /* at most, in a window */
+};
+
+/* From where a line is drawn. */
+struct lm_platform {
+    struct lm_place place;
+    int32_t height_q10;  /* metres * 1024 above mean sea level */
+    fx_bam_t heading;    /* of the nose: the middle of the sector */
+    fx_bam_t track;      /* of the velocity over the ground */
+    uint32_t speed_mm_s; /* 0 where it is not known: nothing is sharpened then */
+    uint64_t time_us;    /* where movers are */
+};
+
+/* What is asked for. */
+struct lm_sector_command {
+    uint8_t mode, field;    /* enum lm_sector_mode, enum lm_field */
+    uint8_t range, azimuth; /* indices into the radar table; azimuth counts in NORM alone */
+    struct lm_place centre; /* of the window; not read in NORM */
+    struct lm_beam_setting {
+        bool is_tilt_manual, is_pencil; /* not automatic; not spoiled into a fan */
+        int32_t tilt;                   /* manual: signed BAM */
+    } beam;
+};
+
+/* A sector that is being swept. Set up by lm_sector_start; the rest is worked out when a sweep
+ * begins. */
+struct lm_sector {
+    const struct lm_radar *radar;             /* borrowed */
+    const struct lm_environment *environment; /* borrowed; NULL: fair weather, sea state 3 */
+    const struct lm_target_set *targets;      /* borrowed; NULL: none */
+    struct lm_sector_command command;
+
+    bool is_begun; /* the geometry below is that of the running sweep */
+    bool is_leftward;
+    uint32_t line;               /* next to be drawn, 0 at the left edge */
+    uint32_t sweep;              /* sweeps begun, from the epoch given: the epoch of the noise */
+    struct lm_platform platform; /* as it was when the sweep began; in NORM its place follows */
+    fx_bam_t up;    /* azimuth from north of the sector's middle: follows the nose in NORM */
+    int32_t left;   /* the sweep's left edge from the middle, signed BAM */
+    fx_bam_t width; /* of a line */
+    uint32_t lines;
+    uint32_t half_m;         /* window: half its side on the ground; 0 in NORM */
+    uint32_t edge_q8;        /* slant range where bin 0 begins, metres * 256 */
+    uint32_t ground_edge_q8; /* ground range where cell 0 begins */
+    int32_t tilt;            /* of the beam's axis in this sweep, signed BAM */
+
+    struct lm_sampling sampling;
+    struct lm_range_grid grid;
+    struct lm_slant slant;
+    struct lm_elevation elevation;
+    struct lm_fan fan;
+    struct lm_texture texture;
+    struct lm_beam beam;
+    struct lm_receiver receiver;
+    struct lm_weather weather;
+    struct lm_targets_near near;
+
+    struct lm_sampling runup_sampling;
+    struct lm_range_grid runup_grid; /* no cells: the line begins at the antenna */
+    lm_horizon_q40_t runup_horizon;  /* behind it, */
+    fx_bam_t runup_azimuth;          /* at this azimuth from north, */
+    bool has_runup;                  /* once it was traced */
+
+    uint32_t samples;                 /* lines sampled so far: only grows */
+    uint32_t power_q24[LM_BEAM_ROOM]; /* of the line drawn last, behind the beam */
+    int32_t level_q8[LM_CELLS_ROOM];  /* and behind the receiver: what the tone is made of */
+};
+
+/* Begin with these scales, all valid; `epoch` is that of the first sweep's noise. Environment and
+ * targets are none. */
+void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
+                     const struct lm_sector_command *command, uint32_t epoch);
+
+/* Point the beam otherwise, in the middle of a sweep if need be. */
+void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting);
+
+/* Whether a sweep is to begin with the next line: the moment to change command.centre. */
+static inline bool lm_sector_is_at_edge(const struct lm_sector *s)
+{
+    return !s->is_begun;
+}
+
+/* Work out the sweep's geometry. Cost: about 200 k instructions. */
+void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
+                     const struct lm_platform *platform);
+
+/* Time that a line takes; after lm_sector_begin. */
+uint32_t lm_sector_line_us(const struct lm_sector *s);
+
+/* Edges of line `line` (up to `lines`) from the sector's middle, right positive. */
+int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line);
+
+/* Draw the next line into line->grey[0 .. slant.cells - 1], ask for the tiles of one some way
+ * ahead, and move on. At an edge, begins the sweep itself. Returns the number of the line. At most
+ * LM_BEAM_TAPS lines are sampled for it, one or a few once the ring is full. */
+uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
+                             const struct lm_platform *platform, const struct lm_tone *tone,
+                             struct lm_line *line);
+
+#endif

@@ -1,0 +1,117 @@
+#include "parts.h"
+
+enum { NONE_SAMPLE_CELLS = 16 };
+
+/* Count how much of the line lies outside the map, a cell in sixteen. */
+static void sample_coverage(struct lm_unit *u, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i += NONE_SAMPLE_CELLS) {
+        u->cells_seen++;
+        u->cells_none += u->line.ground.cell[i] == LM_CELL_NONE;
+    }
+}
+
+static struct lm_platform platform_of(const struct lm_unit *u, uint64_t now_us)
+{
+    const struct lm_ownship *own = &u->ownship;
+    const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
+    return (struct lm_platform){
+        .place = lm_ownship_place(u),
+        .height_q10 = lm_antenna_height_q6(u) * 16,
+        .heading = own->heading,
+        .track = own->track,
+        .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
+        .time_us = now_us,
+    };
+}
+
+/* A window is put around the cursor anew before each sweep: what is drawn moves with it. */
+static void recentre(struct lm_unit *u)
+{
+    struct lm_offset at;
+    const struct lm_frame square = lm_frame_square(&u->frame);
+    const struct lm_offset middle = lm_view_middle(&u->view);
+    if (!u->cursor.is_placed || u->view.shape != LM_VIEW_WINDOW) {
+        return;
+    }
+    if (lm_view_find(&u->view, u->cursor.place, &at)) {
+        lm_plane_shift(&u->plane, &square, -((at.x_q8 - middle.x_q8 + 128) >> 8),
+                       (at.y_q8 - middle.y_q8 + 128) >> 8);
+    } else {
+        lm_plane_clear(&u->plane, &u->frame);
+    }
+    u->sector.command.centre = u->cursor.place;
+}
+
+static void begin_sweep(struct lm_unit *u, const struct lm_platform *platform)
+{
+    recentre(u);
+    lm_sector_begin(&u->sector, &u->tiles, platform);
+    lm_follow_view(u);
+    if (!u->page.is_tilt_manual) {
+        u->page.tilt_tenths = (int16_t)(((int64_t)u->sector.tilt * 3600 + (1LL << 31)) >> 32);
+    }
+    u->is_off_map = 2 * u->cells_none > u->cells_seen;
+    u->cells_none = u->cells_seen = 0;
+}
+
+static void draw_sector_line(struct lm_unit *u, uint64_t now_us)
+{
+    struct lm_sector *s = &u->sector;
+    const struct lm_platform platform = platform_of(u, now_us);
+    if (lm_sector_is_at_edge(s)) {
+        begin_sweep(u, &platform);
+    }
+    const uint32_t samples = s->samples;
+    const uint32_t drawn = lm_sector_draw_line(s, &u->tiles, &platform, &u->sector_tone, &u->line);
+    const struct lm_ppi ppi = lm_view_ppi(&u->view, &u->frame, s->slant.cell_q8, s->edge_q8);
+    lm_ppi_paint(&u->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, drawn),
+                 (fx_bam_t)lm_sector_edge_bam(s, drawn + 1), u->line.grey, s->slant.cells);
+    if (s->samples != samples) {
+        sample_coverage(u, s->grid.cells);
+    }
+    u->next_line_us += lm_sector_line_us(s);
+}
+
+static void draw_patch_line(struct lm_unit *u)
+{
+    const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
+    lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
+    lm_patch_paint(&u->plane, &u->frame, drawn, u->line.grey + LM_SAR_GUARD, cells);
+    sample_coverage(u, cells);
+    u->is_off_map = 2 * u->cells_none > u->cells_seen;
+    u->next_line_us += u->sar.line_us;
+}
+
+/* Whether lines may be drawn now; while they may not, time does not owe any. */
+static bool is_drawing(struct lm_unit *u, uint64_t now_us)
+{
+    if (u->flags & LM_FLAGS_NO_LINES) {
+        return false;
+    }
+    if (!u->page.is_patch) {
+        return true;
+    }
+    if (u->is_acquiring) {
+        u->is_acquiring = !lm_tile_cache_is_idle(&u->tiles) && now_us < u->acquire_until_us;
+        u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
+    }
+    return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;
+}
+
+void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)
+{
+    for (uint32_t i = 0; i < LM_STEP_LINES && is_drawing(u, now_us) && u->next_line_us <= now_us;
+         i++) {
+        u->count.lines++;
+        if (u->page.is_patch) {
+            draw_patch_line(u);
+        } else {
+            draw_sector_line(u, now_us);
+        }
+    }
+    if (u->next_line_us <= now_us) {
+        u->count.lines_dropped += is_drawing(u, now_us);
+        u->next_line_us = now_us;
+    }
+}

@@ -1,0 +1,444 @@
+#include "lm/sector.h"
+
+#include "fx/root.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/dbs.h"
+#include "lm/environment.h"
+
+enum {
+    /* Tiles are asked for this many display lines ahead of the beam, and for every fourth line
+     * only: between two of those lie nine cells at the most, where a tile has 64. */
+    LINES_AHEAD = 24,
+    LINES_APART = 4,
+    WINDOW_LINES_MIN = 32,
+    RUNUP_LEAST_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
+};
+
+static const struct lm_field_row *field_of(const struct lm_sector *s)
+{
+    return &s->radar->field[s->command.field];
+}
+
+static const struct lm_sector_mode_row *mode_of(const struct lm_sector *s)
+{
+    return &s->radar->mode[s->command.mode];
+}
+
+static uint32_t rate_of(const struct lm_sector *s)
+{
+    const uint32_t own = field_of(s)->bam_per_s;
+    return own ? own : mode_of(s)->bam_per_s;
+}
+
+void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
+                     const struct lm_sector_command *command, uint32_t epoch)
+{
+    s->radar = radar;
+    s->environment = NULL;
+    s->targets = NULL;
+    s->command = *command;
+    s->is_begun = s->is_leftward = false;
+    s->line = 0;
+    s->sweep = epoch;
+    s->grid.cells = 0; /* none yet */
+    s->near.is_chosen = false;
+    s->samples = 0;
+    lm_elevation_set(&s->elevation, &radar->antenna);
+    lm_beam_clear(&s->beam);
+}
+
+uint32_t lm_sector_line_us(const struct lm_sector *s)
+{
+    return (uint32_t)((uint64_t)s->width * 1000000 / rate_of(s));
+}
+
+int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line)
+{
+    return s->left + (int32_t)(line * s->width);
+}
+
+/* ---- what a sweep looks at ---- */
+
+/* The whole sector, in lines of the table. */
+static void set_sector(struct lm_sector *s)
+{
+    const uint32_t half_lines = s->radar->azimuth_half[s->command.azimuth] / s->radar->line;
+    s->width = s->radar->line;
+    s->lines = 2 * half_lines;
+    s->left = -(int32_t)(half_lines * s->width);
+    s->half_m = 0;
+    s->edge_q8 = 0;
+}
+
+/* The angle at which half the diagonal of a window is seen, from outside of it. */
+static fx_bam_t half_angle_of(uint32_t half_m, uint32_t range_m)
+{
+    const uint32_t diagonal_m = half_m * 3 / 2; /* 1.5 for the root of 2 */
+    const uint64_t range2 = (uint64_t)range_m * range_m, off2 = (uint64_t)diagonal_m * diagonal_m;
+    return range2 <= off2 ? FX_BAM_90
+                          : fx_atan2((int32_t)diagonal_m, (int32_t)fx_sqrt_u64(range2 - off2));
+}
+
+/* Lines over the window, as far as the antenna turns. */
+static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half_angle)
+{
+    const int32_t limit = (int32_t)s->radar->antenna.azimuth_limit;
+    const int32_t half = (int32_t)fx_min_u32(half_angle, field_of(s)->azimuth_half_max);
+    const int64_t wanted_left = (int64_t)bearing - half, wanted_right = (int64_t)bearing + half;
+    const int32_t least = (int32_t)s->radar->line;
+    s->left = (int32_t)(wanted_left < -limit          ? -limit
+                        : wanted_left > limit - least ? limit - least
+                                                      : wanted_left);
+    const int32_t right = (int32_t)(wanted_right > limit             ? limit
+                                    : wanted_right < s->left + least ? s->left + least
+                                                                     : wanted_right);
+    const uint32_t turn = (uint32_t)(right - s->left);
+    const uint64_t lines = (uint64_t)turn * LM_SECTOR_LINES_PER_S / rate_of(s);
+    s->lines = lines < WINDOW_LINES_MIN      ? WINDOW_LINES_MIN
+               : lines > LM_SECTOR_LINES_MAX ? LM_SECTOR_LINES_MAX
+                                             : (uint32_t)lines;
+    s->width = turn / s->lines;
+}
+
+/* A window: what lies within half the diagonal of its centre. */
+static void set_window(struct lm_sector *s, const struct lm_platform *platform, int32_t above_q10)
+{
+    uint32_t distance_q8;
+    fx_bam_t azimuth;
+    lm_geo_inverse(platform->place, s->command.centre, &distance_q8, &azimuth);
+    s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
+    const uint32_t reach_q8 = s->half_m * 256u / 8 * 11;
+    /* Places farther than any radar looks count as that far: the window is empty there. */
+    const uint32_t ground_q8 = fx_min_u32(distance_q8, 250000u * 256u);
+    const uint32_t slant_q8 = lm_slant_of_ground(ground_q8, above_q10);
+    s->edge_q8 = slant_q8 > reach_q8 ? slant_q8 - reach_q8 : 0;
+    set_window_lines(s, (int32_t)(azimuth - s->up), half_angle_of(s->half_m, ground_q8 / 256));
+}
+
+/* ---- its geometry in range ---- */
+
+/* Elevation of the flat ground that the time gain assumes: what lies below the aircraft, but not
+ * above the mean of the map's land, so that a mountain below does not turn up the plains around it.
+ */
+static int32_t reference_q10_of(struct lm_tile_cache *tiles, uint8_t level, struct lm_place place)
+{
+    return fx_min_i32(lm_scan_elevation(tiles, level, place, 0), tiles->db->mean_elevation_q6 * 16);
+}
+
+/* Coarse cells from a sixteenth of the way up to the window, for what throws shadows into it. */
+static void set_runup(struct lm_sector *s, const struct lm_db *db)
+{
+    s->has_runup = false;
+    s->runup_grid.cells = 0;
+    if (s->ground_edge_q8 < RUNUP_LEAST_Q8) {
+        return;
+    }
+    const uint32_t begin_q8 = s->ground_edge_q8 / 16;
+    const uint32_t cell_q8 = (s->ground_edge_q8 - begin_q8) / LM_SECTOR_RUNUP;
+    s->runup_sampling = lm_sampling_for(db, (uint32_t)((uint64_t)cell_q8 * 1000 / 256), s->sweep);
+    lm_range_grid_set(&s->runup_grid, &s->radar->aspect, begin_q8 + cell_q8 / 2, cell_q8,
+                      LM_SECTOR_RUNUP, s->grid.height_q10, s->grid.reference_q10);
+}
+
+/* Bins of slant range, the cells of ground under them, and everything that depends on both. */
+static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_q10,
+                       int32_t reference_q10)
+{
+    const uint32_t range_m = s->radar->range_m[s->command.range];
+    const uint32_t bins = s->half_m ? s->radar->cells * 11u / 8 : s->radar->cells;
+    const uint32_t bin_q8 = (s->half_m ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
+    const int32_t above_q10 = height_q10 - reference_q10;
+    const uint32_t end_q8 = lm_ground_of_slant(s->edge_q8 + bins * bin_q8, above_q10);
+    s->ground_edge_q8 = lm_ground_of_slant(s->edge_q8, above_q10);
+    const uint32_t cell_q8 = fx_max_u32((end_q8 - s->ground_edge_q8 + bins - 1) / bins, bin_q8);
+    const uint32_t first_q8 = s->ground_edge_q8 + cell_q8 / 2;
+    lm_range_grid_set(&s->grid, &s->radar->aspect, first_q8, cell_q8, bins, height_q10,
+                      reference_q10);
+    lm_slant_set(&s->slant, s->edge_q8 + bin_q8 / 2, bin_q8, bins, &s->grid, first_q8);
+    lm_receiver_set(&s->receiver, s->radar, &s->slant, above_q10, s->command.range,
+                    field_of(s)->pulse_ns[s->command.range]);
+    set_runup(s, tiles->db);
+    lm_beam_clear(&s->beam);
+}
+
+/* The sampling goes by the bins of the display. */
+static struct lm_sampling sampling_of(const struct lm_sector *s, const struct lm_db *db)
+{
+    const uint32_t side_m = s->half_m ? 2 * s->half_m : s->radar->range_m[s->command.range];
+    return lm_sampling_for(db, side_m * 1000u / s->radar->cells, s->sweep);
+}
+
+static bool differs(int32_t a_q10, int32_t b_q10)
+{
+    return fx_abs_u32(a_q10 - b_q10) > fx_abs_u32(a_q10) / 128 + 1024;
+}
+
+/* The geometry depends on the height: it is made again when that has changed by a hundredth and a
+ * metre. Until then all of it stays that of the old height, gain and horizon alike. */
+static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_q10,
+                           int32_t reference_q10, uint32_t old_edge_q8, uint32_t old_half_m)
+{
+    const bool is_same = s->grid.cells != 0 && s->edge_q8 == old_edge_q8 &&
+                         s->half_m == old_half_m && !differs(height_q10, s->grid.height_q10) &&
+                         !differs(reference_q10, s->grid.reference_q10);
+    if (!is_same) {
+        set_ranges(s, tiles, height_q10, reference_q10);
+    }
+}
+
+/* ---- sweeps ---- */
+
+/* Where the beam's axis points: as commanded, or at the far end of what is shown; then its bar. */
+static void set_tilt(struct lm_sector *s)
+{
+    const struct lm_antenna_table *antenna = &s->radar->antenna;
+    const int32_t above_m = (s->grid.height_q10 - s->grid.reference_q10) / 1024;
+    const uint32_t far_m = (s->edge_q8 + s->slant.cells * s->slant.cell_q8) / 256;
+    const struct lm_beam_setting *set = &s->command.beam;
+    const int32_t axis =
+        set->is_tilt_manual ? set->tilt : lm_auto_tilt(above_m, fx_max_u32(far_m, 1));
+    const int32_t bars = mode_of(s)->bars, bar = (int32_t)(s->sweep % (uint32_t)bars);
+    s->tilt = axis + (2 * bar - bars + 1) * (int32_t)(antenna->bar_spacing / 2);
+    s->fan = lm_fan_at(s->tilt, set->is_pencil ? 0 : antenna->fan);
+}
+
+void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting)
+{
+    s->command.beam = *setting;
+    if (s->is_begun) {
+        set_tilt(s);
+    }
+}
+
+static void set_texture(struct lm_sector *s, const struct lm_classes *classes)
+{
+    const uint8_t sea_state = s->environment ? s->environment->sea_state : LM_SEA_STATE_OF_IMAGE;
+    lm_texture_set(&s->texture, &s->radar->texture, classes, sea_state);
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        s->texture.gain_q8[i] -= mode_of(s)->clutter_q8;
+    }
+}
+
+void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
+                     const struct lm_platform *platform)
+{
+    const uint32_t old_edge_q8 = s->edge_q8, old_half_m = s->half_m;
+    const bool is_window = field_of(s)->window_permille != 0;
+    s->sampling = sampling_of(s, tiles->db);
+    const int32_t reference_q10 = reference_q10_of(tiles, s->sampling.level, platform->place);
+    s->up = platform->heading;
+    s->platform = *platform;
+    if (is_window) {
+        set_window(s, platform, platform->height_q10 - reference_q10);
+    } else {
+        set_sector(s);
+    }
+    s->sampling = sampling_of(s, tiles->db);
+    refresh_ranges(s, tiles, platform->height_q10, reference_q10, old_edge_q8, old_half_m);
+    if (is_window) {
+        s->has_runup = false;
+        lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
+    }
+    set_tilt(s);
+    set_texture(s, &tiles->db->classes);
+    s->line = s->is_leftward ? s->lines - 1 : 0;
+    s->is_begun = true;
+}
+
+static void move_on(struct lm_sector *s)
+{
+    const bool at_edge = s->is_leftward ? s->line == 0 : s->line + 1 >= s->lines;
+    if (at_edge) {
+        s->is_leftward = !s->is_leftward;
+        s->is_begun = false;
+        s->sweep++;
+    } else {
+        s->line += s->is_leftward ? UINT32_MAX : 1;
+    }
+}
+
+/* The line that the beam will be on `ahead` lines from now; ahead is less than a sweep. */
+static uint32_t line_ahead(const struct lm_sector *s, uint32_t ahead)
+{
+    const uint32_t last = s->lines - 1;
+    const uint32_t to_edge = s->is_leftward ? s->line : last - s->line;
+    if (ahead <= to_edge) {
+        return s->is_leftward ? s->line - ahead : s->line + ahead;
+    }
+    const uint32_t beyond = ahead - to_edge - 1;
+    return s->is_leftward ? beyond : last - beyond;
+}
+
+static int32_t middle_of(const struct lm_sector *s, uint32_t line)
+{
+    return lm_sector_edge_bam(s, line) + (int32_t)(s->width / 2);
+}
+
+/* ---- samples ---- */
+
+/* A path of `cells` equal cells outwards from `from_q8` to `to_q8`. */
+static struct lm_ground_path path_of(const struct lm_geo_origin *origin, fx_bam_t azimuth,
+                                     uint32_t from_q8, uint32_t to_q8, uint32_t cells)
+{
+    struct lm_ground_path path;
+    const struct lm_place points[3] = {
+        from_q8 ? lm_geo_direct(origin, azimuth, from_q8) : origin->place,
+        lm_geo_direct(origin, azimuth, from_q8 + (to_q8 - from_q8) / 2),
+        lm_geo_direct(origin, azimuth, to_q8),
+    };
+    lm_ground_path_fit(&path, points, cells);
+    return path;
+}
+
+static struct lm_ground_path sample_path(const struct lm_sector *s,
+                                         const struct lm_geo_origin *origin, fx_bam_t azimuth)
+{
+    return path_of(origin, azimuth, s->ground_edge_q8,
+                   s->ground_edge_q8 + s->grid.cells * s->grid.cell_q8, s->grid.cells);
+}
+
+/* The horizon that the ground before a window makes; samples less than half a line of the table
+ * apart share one. */
+static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
+                                   const struct lm_geo_origin *origin, fx_bam_t azimuth,
+                                   struct lm_line *line)
+{
+    if (s->runup_grid.cells == 0) {
+        return LM_HORIZON_OPEN;
+    }
+    if (!s->has_runup || fx_abs_u32((int32_t)(azimuth - s->runup_azimuth)) > s->radar->line / 2) {
+        const struct lm_ground_path path =
+            path_of(origin, azimuth, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
+        lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
+        s->runup_horizon = lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes,
+                                         &line->ground, LM_HORIZON_OPEN, &line->sight);
+        s->runup_azimuth = azimuth;
+        s->has_runup = true;
+    }
+    return s->runup_horizon;
+}
+
+/* Add the targets that the sampled line meets. */
+static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
+                        const struct lm_line_setup *setup, struct lm_line *line)
+{
+    const struct lm_sector_mode_row *mode = mode_of(s);
+    const struct lm_target_scene scene = {.place = s->platform.place,
+                                          .reach_m = s->radar->range_m[s->command.range],
+                                          .time_us = s->platform.time_us,
+                                          .tiles = tiles,
+                                          .level = s->sampling.level};
+    lm_targets_refresh(&s->near, s->targets, &scene);
+    const struct lm_line_targets targets = {
+        .items = s->targets->items,
+        .near = &s->near,
+        .where = {.place = s->platform.place,
+                  .azimuth = azimuth,
+                  .width = lm_beam_spacing(&s->beam, s->radar),
+                  .first_q8 = s->ground_edge_q8 + s->grid.cell_q8 / 2,
+                  .cell_q8 = s->grid.cell_q8,
+                  .cells = s->grid.cells,
+                  .first = s->grid.first,
+                  .height_q10 = s->grid.height_q10,
+                  .reference_q10 = s->grid.reference_q10,
+                  .wavelength_um = s->radar->wavelength_um,
+                  .is_doppler = mode->is_doppler || field_of(s)->is_doppler,
+                  .speed_mm_s = s->platform.speed_mm_s,
+                  .track = s->platform.track,
+                  .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
+                  .scan = s->sweep,
+                  .pulse = s->samples},
+    };
+    lm_line_add_targets(line, setup, &targets);
+}
+
+/* Trace one azimuth into its place in the beam's ring. */
+static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles,
+                        const struct lm_geo_origin *origin, int32_t sample, struct lm_line *line)
+{
+    const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .aspect = &s->radar->aspect,
+                                        .texture = &s->texture,
+                                        .sampling = s->sampling};
+    const lm_horizon_q40_t horizon = horizon_at(s, tiles, origin, azimuth, line);
+    const struct lm_ground_path path = sample_path(s, origin, azimuth);
+    lm_line_trace(line, tiles, &setup, &path, horizon);
+    lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
+    if (s->targets && s->targets->count != 0) {
+        add_targets(s, tiles, azimuth, &setup, line);
+    }
+    lm_elevation_run(&s->elevation, &s->fan, &s->grid, &line->sight);
+    lm_slant_run(&s->slant, &s->grid, line->sight.level_q8, lm_beam_room(&s->beam, sample));
+    s->samples++;
+}
+
+/* ---- lines of the display ---- */
+
+/* How much sharper than the beam the picture is at this azimuth. */
+static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform *platform,
+                            int32_t azimuth)
+{
+    const struct lm_field_row *field = field_of(s);
+    if (field->sharpening <= 1) {
+        return 256;
+    }
+    const fx_bam_t off = s->up + (fx_bam_t)azimuth - platform->track;
+    return lm_dbs_sharpening_q8(field,
+                                lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
+}
+
+static void take_missing_samples(struct lm_sector *s, struct lm_tile_cache *tiles,
+                                 const struct lm_beam_look *look, struct lm_line *line)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, s->platform.place);
+    for (int32_t n = look->first; n < look->first + LM_BEAM_TAPS; n++) {
+        if (!lm_beam_has(&s->beam, n)) {
+            take_sample(s, tiles, &origin, n, line);
+        }
+    }
+}
+
+static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, s->platform.place);
+    const uint32_t ahead = fx_min_u32(LINES_AHEAD, s->lines - 1);
+    const fx_bam_t azimuth = s->up + (fx_bam_t)middle_of(s, line_ahead(s, ahead));
+    const struct lm_ground_path path = sample_path(s, &origin, azimuth);
+    lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
+}
+
+uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
+                             const struct lm_platform *platform, const struct lm_tone *tone,
+                             struct lm_line *line)
+{
+    if (!s->is_begun) {
+        lm_sector_begin(s, tiles, platform);
+    }
+    if (s->half_m == 0) {
+        s->up = platform->heading;
+        s->platform.place = platform->place;
+    }
+    const uint32_t drawn = s->line, cells = s->slant.cells;
+    const int32_t azimuth = middle_of(s, drawn);
+    struct lm_beam_look look;
+    lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), &look);
+    take_missing_samples(s, tiles, &look, line);
+    lm_beam_sum(&s->beam, &look, s->power_q24, cells);
+    const struct lm_weather *weather = NULL;
+    if (s->environment) {
+        lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.place,
+                        s->up + (fx_bam_t)azimuth);
+        weather = &s->weather;
+    }
+    lm_receiver_run(&s->receiver, weather, drawn, s->sweep, s->power_q24, s->level_q8);
+    lm_tone_run(tone, s->level_q8, line->grey, cells);
+    if (drawn % LINES_APART == 0) {
+        prefetch(s, tiles);
+    }
+    move_on(s);
+    return drawn;
+}
