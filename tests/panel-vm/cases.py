@@ -97,6 +97,8 @@ def _run(boot, prepare):
                     m.close()
                     m = None
             print("# %.1f s" % (time.monotonic() - start))
+        if m:
+            print("# %s s of the machine's time" % m.do("cut -d' ' -f1 /proc/uptime"))
     finally:
         if m:
             m.close()

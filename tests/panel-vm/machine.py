@@ -52,8 +52,8 @@ class Machine:
         if tree:
             archive(tree, initrd)
         program, console, board = BOARDS[arch]
-        command = ["timeout", "-k", "2", str(limit_s), program, *board, "-smp", "1", "-accel", "tcg", "-icount", "shift=0,sleep=on",
-                   "-m", str(memory_mb), "-nodefaults", "-no-reboot", "-display", "none",
+        command = ["timeout", "-k", "2", str(limit_s), program, *board, "-smp", "1", "-accel", "tcg",
+                   "-icount", "shift=0,sleep=on", "-m", str(memory_mb), "-nodefaults", "-no-reboot", "-display", "none",
                    "-kernel", "Image", "-initrd", initrd, "-append", "console=%s quiet panic=-1" % console,
                    "-serial", "file:" + os.path.join(self.run, "console"),
                    "-qmp", self._listen("qmp"), "-qtest", self._listen("qtest"), "-qtest-log", "/dev/null",
@@ -69,7 +69,7 @@ class Machine:
             self.qmp("qmp_capabilities")
             self._qtest = self._connect("qtest")
             self._shell = self._connect("shell")
-            self._read_until("@@ready", 60)
+            self._read_until("@@ready", 180)
         except BaseException:
             self.close()
             raise
@@ -83,7 +83,7 @@ class Machine:
             connection = socket.socket(socket.AF_UNIX)
             try:
                 connection.connect(os.path.join(self.run, name))
-                connection.settimeout(60)
+                connection.settimeout(180)
                 return connection.makefile("rwb", buffering=0) if name != "shell" else connection
             except OSError:
                 connection.close()

@@ -6,12 +6,13 @@ from cases import Skip, case, expect, main
 from fixtures import busy_log, counters, frames, lines_of, log, peer_data, tree
 from machine import Machine
 
+CARDS = ["-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus", "-device", "kvaser_pci,canbus=bus"]
 PROBE, CANDUMP = "/tmp/probe", "/tmp/candump"
 
 
 def boot():
-    return Machine(tree=tree("can_probe", "can_driver", files=[log("flight"), busy_log(peer_data("peer_frames_3s.log") or lines_of(log("flight")))], package=False),
-                   devices=["-object", "can-bus,id=bus", "-device", "kvaser_pci,canbus=bus", "-device", "kvaser_pci,canbus=bus"])
+    busy = busy_log(peer_data("peer_frames_3s.log") or lines_of(log("flight")))
+    return Machine(tree=tree("can_probe", "can_driver", files=[log("flight"), busy], package=False), devices=CARDS)
 
 
 def prepare(m):

@@ -151,6 +151,21 @@ def busy_bus(m):
     expect(p.is_alive(), "the display stands")
 
 
+@case("a controller that has left the bus is counted, on the page that says so")
+def bus_off(m):
+    fly(m)
+    p = Panel(m)
+    p.until(is_fine)
+    p.press("OSB12")
+    p.until(lambda text: any("BUS ERR" in line for line in text))
+    before = p.counter("BUS ERR")
+    m.do("cansend vcan0 20000040#0000000000000000")
+    p.until(lambda text: p.counter("BUS ERR") == before + 1)
+    m.do("cansend vcan0 20000100#0000000000000000")
+    p.press("OSB13")
+    p.until(is_fine)
+
+
 @case("a database that is cut off, empty, missing or a folder ends in DB FAIL, not in a panel that ends")
 def bad_database(m):
     fly(m)
