@@ -41,16 +41,16 @@ void *malloc(size_t size)
     return __libc_malloc(size);
 }
 
-void *calloc(size_t members, size_t size)
+void *calloc(size_t nmemb, size_t size)
 {
     count();
-    return __libc_calloc(members, size);
+    return __libc_calloc(nmemb, size);
 }
 
-void *realloc(void *old, size_t size)
+void *realloc(void *ptr, size_t size)
 {
     count();
-    return __libc_realloc(old, size);
+    return __libc_realloc(ptr, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
@@ -59,9 +59,9 @@ void *aligned_alloc(size_t alignment, size_t size)
     return __libc_memalign(alignment, size);
 }
 
-int posix_memalign(void **out, size_t alignment, size_t size)
+int posix_memalign(void **memptr, size_t alignment, size_t size)
 {
     count();
-    *out = __libc_memalign(alignment, size);
-    return *out ? 0 : 12; /* ENOMEM */
+    *memptr = __libc_memalign(alignment, size);
+    return *memptr ? 0 : 12; /* ENOMEM */
 }

@@ -39,8 +39,17 @@ struct picture {
     bool *is_read;    /* text was found here */
 };
 
+static void unload(struct picture *p)
+{
+    free(p->pixels);
+    free(p->is_read);
+    *p = (struct picture){0};
+}
+
+/* 0, or -1 with the cause told and nothing kept. */
 static int load(struct picture *p, const char *path)
 {
+    *p = (struct picture){0};
     png_image png = {.version = PNG_IMAGE_VERSION};
     if (!png_image_begin_read_from_file(&png, path)) {
         fprintf(stderr, "%s: %s\n", path, png.message);
@@ -52,15 +61,10 @@ static int load(struct picture *p, const char *path)
     p->is_read = calloc((size_t)png.width * png.height, sizeof *p->is_read);
     if (!p->pixels || !p->is_read || !png_image_finish_read(&png, NULL, p->pixels, 0, NULL)) {
         fprintf(stderr, "%s: cannot be read: %s\n", path, png.message);
+        unload(p);
         return -1;
     }
     return 0;
-}
-
-static void unload(struct picture *p)
-{
-    free(p->pixels);
-    free(p->is_read);
 }
 
 static uint32_t at(const struct picture *p, int32_t x, int32_t y)
@@ -213,27 +217,36 @@ static struct lm_point into_picture(const struct picture *screen, const struct p
     }
 }
 
+static uint32_t count_differences(const struct picture *screen, const struct picture *p,
+                                  int32_t turn)
+{
+    uint32_t differences = 0;
+    for (int32_t y = 0; y < screen->height; y++) {
+        for (int32_t x = 0; x < screen->width; x++) {
+            const struct lm_point at_picture = into_picture(screen, p, turn, x, y);
+            const bool is_inside = at_picture.x >= 0 && at_picture.x < p->width &&
+                                   at_picture.y >= 0 && at_picture.y < p->height;
+            const uint32_t wanted = is_inside ? at(p, at_picture.x, at_picture.y) : BLACK;
+            differences += !(is_inside && is_hand(p, at_picture.x, at_picture.y)) &&
+                           at(screen, x, y) != wanted;
+        }
+    }
+    return differences;
+}
+
 static int print_differences(const char *screen_path, const char *path, int32_t turn)
 {
     struct picture screen, p;
-    if (load(&screen, screen_path) != 0 || load(&p, path) != 0) {
+    if (load(&screen, screen_path) != 0) {
         return 1;
     }
-    uint32_t differences = 0;
-    for (int32_t y = 0; y < screen.height; y++) {
-        for (int32_t x = 0; x < screen.width; x++) {
-            const struct lm_point at_picture = into_picture(&screen, &p, turn, x, y);
-            const bool is_inside = at_picture.x >= 0 && at_picture.x < p.width &&
-                                   at_picture.y >= 0 && at_picture.y < p.height;
-            if (is_inside && is_hand(&p, at_picture.x, at_picture.y)) {
-                continue;
-            }
-            const uint32_t wanted = is_inside ? at(&p, at_picture.x, at_picture.y) : BLACK;
-            differences += at(&screen, x, y) != wanted;
-        }
+    const int status = load(&p, path);
+    if (status == 0) {
+        printf("%u\n", count_differences(&screen, &p, turn));
+        unload(&p);
     }
-    printf("%u\n", differences);
-    return 0;
+    unload(&screen);
+    return status != 0;
 }
 
 static uint32_t count_strangers(const struct picture *screen, const struct picture *film,
@@ -261,16 +274,21 @@ static int print_among(const char *screen_path, char **box_words, int count, cha
         return 1;
     }
     uint32_t least = UINT32_MAX;
-    for (int i = 0; i < count; i++) {
+    int status = 0;
+    for (int i = 0; i < count && status == 0; i++) {
         unload(&film[i % 3]);
-        if (load(&film[i % 3], paths[i]) != 0) {
-            return 1;
-        }
-        const uint32_t found = i >= 2 ? count_strangers(&screen, film, box) : least;
+        status = load(&film[i % 3], paths[i]);
+        const uint32_t found = status == 0 && i >= 2 ? count_strangers(&screen, film, box) : least;
         least = found < least ? found : least;
     }
-    printf("%u\n", least);
-    return 0;
+    if (status == 0) {
+        printf("%u\n", least);
+    }
+    for (int i = 0; i < 3; i++) {
+        unload(&film[i]);
+    }
+    unload(&screen);
+    return status != 0;
 }
 
 int main(int argc, char **argv)
