@@ -14,7 +14,10 @@ import machine
 
 LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
-MODES = {0: "ground map", 1: "SAR patch"}  # enum lm_mode
+# As bench.c numbers them: enum lm_sector_mode times enum lm_field, and the patch behind them.
+SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA") for field in ("NORM", "EXP", "DBS1", "DBS2")]
+MODES = dict(enumerate(SECTORS + ["SAR patch"]))
+PATCH = len(SECTORS)
 
 
 def run(out, chips, scenario):

@@ -16,6 +16,8 @@ void instrument_nothing(void)
 {
 }
 
+_Static_assert(LM_SECTOR_MODES *LM_FIELDS < INSTRUMENT_MODES, "a sum for each mode and the patch");
+
 struct bench {
     struct zcu102 z;
     struct handed handed;
@@ -31,11 +33,18 @@ static void add(struct instrument_sum *sum, uint64_t spent)
     sum->most = spent > sum->most ? (uint32_t)spent : sum->most;
 }
 
+/* A number for what is being drawn: mode and field of the sector, behind them the patch. */
+static uint32_t mode_of(const struct lm_page *page)
+{
+    return page->is_patch ? LM_SECTOR_MODES * LM_FIELDS
+                          : (uint32_t)page->mode * LM_FIELDS + page->field;
+}
+
 static void fly(struct bench *b)
 {
     struct zcu102 *z = &b->z;
     for (z->step_us = 0; z->step_us <= b->handed.header->end_us; z->step_us += ZCU102_STEP_US) {
-        const uint32_t mode = z->unit.page.mode, frames = z->unit.count.frames;
+        const uint32_t mode = mode_of(&z->unit.page), frames = z->unit.count.frames;
         instrument_set_mode(mode);
         const uint64_t start = instrument_now();
         lm_unit_step(&z->unit, z->step_us);
