@@ -1,12 +1,15 @@
 /* What a line of a script makes the operator do, and when. */
 #include "script.h"
 
+#include "lm/radar.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -143,15 +146,152 @@ static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(voi
     assert_int_equal(seen, 0xFF);
 }
 
+/* The binary angle of whole degrees. */
+static fx_bam_t degrees(double value)
+{
+    return (fx_bam_t)(int64_t)(value * 4294967296.0 / 360);
+}
+
+static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void **state)
+{
+    (void)state;
+    static const char *const modes[] = {"gm", "gmt", "sea"};
+    static const char *const fields[] = {"norm", "exp", "dbs1", "dbs2"};
+    for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
+        struct script s;
+        char text[40];
+        snprintf(text, sizeof text, "0 %s\n", modes[mode]);
+        assert_int_equal(read_text(&s, text), 0);
+        const struct lm_control plain = at(&s, 0);
+        assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
+        assert_int_equal(plain.value, mode);
+        assert_int_equal(plain.value_y, LM_FIELD_NORM);
+        script_free(&s);
+        for (int field = 0; field < LM_FIELDS; field++) {
+            snprintf(text, sizeof text, "0 %s %s\n", modes[mode], fields[field]);
+            assert_int_equal(read_text(&s, text), 0);
+            const struct lm_control c = at(&s, 0);
+            assert_int_equal(c.value, mode);
+            assert_int_equal(c.value_y, field);
+            script_free(&s);
+        }
+    }
+}
+
+static void rain_and_jammers_add_up_until_the_weather_is_fair(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s,
+                               "1 rain 45 -90 10 30\n2 jam -45 90 12.5\n3 rain 0 0 0.1 150\n"
+                               "4 seastate 6\n5 weather fair\n6 jam 0 45 -20\n"),
+                     0);
+    struct lm_environment e = at(&s, 1).environment;
+    assert_int_equal(e.rain_count, 1);
+    assert_int_equal(e.jammer_count, 0);
+    assert_int_equal(e.sea_state, LM_SEA_STATE_OF_IMAGE);
+    assert_int_equal(e.rain[0].centre.latitude, degrees(45));
+    assert_int_equal(e.rain[0].centre.longitude, degrees(-90));
+    assert_int_equal(e.rain[0].radius_m, 10000);
+    assert_int_equal(e.rain[0].mm_per_h, 30);
+    e = at(&s, 2).environment;
+    assert_int_equal(e.rain_count, 1);
+    assert_int_equal(e.jammer_count, 1);
+    assert_int_equal(e.jammer[0].place.latitude, degrees(-45));
+    assert_int_equal(e.jammer[0].place.longitude, degrees(90));
+    assert_int_equal(e.jammer[0].ratio_q8, 3200);
+    e = at(&s, 3).environment;
+    assert_int_equal(e.rain_count, 2);
+    assert_int_equal(e.rain[1].radius_m, 100);
+    e = at(&s, 4).environment;
+    assert_int_equal(e.sea_state, 6);
+    assert_int_equal(e.rain_count, 2);
+    e = at(&s, 5).environment;
+    assert_int_equal(e.rain_count + e.jammer_count, 0);
+    assert_int_equal(e.sea_state, 6); /* the sea outlasts the weather */
+    e = at(&s, 6).environment;
+    assert_int_equal(e.jammer_count, 1);
+    assert_int_equal(e.jammer[0].ratio_q8, -5120);
+    assert_int_equal(lm_environment_check(&e), LM_OK);
+    script_free(&s);
+}
+
+/* `count` times the line, and whether a script of it is accepted. */
+static bool is_accepted(const char *line, int count)
+{
+    char text[1000] = "";
+    for (int i = 0; i < count; i++) {
+        strcat(text, line);
+    }
+    struct script s;
+    const bool is_read = read_text(&s, text) == 0;
+    script_free(&s);
+    return is_read;
+}
+
+static void there_is_no_more_rain_and_jamming_than_the_unit_has_room_for(void **state)
+{
+    (void)state;
+    freopen("/dev/null", "w", stderr);
+    assert_true(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX));
+    assert_false(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX + 1));
+    assert_true(is_accepted("0 jam 1 2 3\n", LM_JAMMERS_MAX));
+    assert_false(is_accepted("0 jam 1 2 3\n", LM_JAMMERS_MAX + 1));
+    assert_true(is_accepted("0 rain 1 2 3 4\n0 weather fair\n", LM_RAINS_MAX + 1));
+}
+
 static void commands_that_are_none_are_refused(void **state)
 {
     (void)state;
-    const char *const bad[] = {
-        "0 osb\n",           "0 osb 0\n",          "0 osb 21\n",       "0 osb 1.5\n",
-        "0 osb 1 -1\n",      "0 osb 1 1 1\n",      "0 rocker gain\n",  "0 rocker gain 1\n",
-        "0 rocker hue +1\n", "0 knob\n",           "0 knob 1.1\n",     "0 slew 1 1\n",
-        "0 slew 2 0 1\n",    "0 slew 0 0 -1\n",    "0 slew nan 0 1\n", "0 designate 1\n",
-        "0 drop it\n",       "1 osb 1\n0 osb 1\n", "0 slew 0 0 1 1\n", "0 osb 1x\n"};
+    const char *const bad[] = {"0 osb\n",
+                               "0 osb 0\n",
+                               "0 osb 21\n",
+                               "0 osb 1.5\n",
+                               "0 osb 1 -1\n",
+                               "0 osb 1 1 1\n",
+                               "0 rocker gain\n",
+                               "0 rocker gain 1\n",
+                               "0 rocker hue +1\n",
+                               "0 knob\n",
+                               "0 knob 1.1\n",
+                               "0 slew 1 1\n",
+                               "0 slew 2 0 1\n",
+                               "0 slew 0 0 -1\n",
+                               "0 slew nan 0 1\n",
+                               "0 designate 1\n",
+                               "0 drop it\n",
+                               "1 osb 1\n0 osb 1\n",
+                               "0 slew 0 0 1 1\n",
+                               "0 osb 1x\n",
+                               "0 gm dbs3\n",
+                               "0 gm norm exp\n",
+                               "0 sea of\n",
+                               "0 gmtx\n",
+                               "0 dbs1\n",
+                               "0 rain\n",
+                               "0 rain 91 0 1 1\n",
+                               "0 rain 0 181 1 1\n",
+                               "0 rain 0 0 0.09 1\n",
+                               "0 rain 0 0 101 1\n",
+                               "0 rain 0 0 1 0.9\n",
+                               "0 rain 0 0 1 151\n",
+                               "0 rain 0 0 1\n",
+                               "0 rain 0 0 1 1 1\n",
+                               "0 rain nan 0 1 1\n",
+                               "0 jam 0 0\n",
+                               "0 jam 0 0 81\n",
+                               "0 jam 0 0 -21\n",
+                               "0 jam -91 0 1\n",
+                               "0 jam 0 0 1 1\n",
+                               "0 jam 0 0 x\n",
+                               "0 weather\n",
+                               "0 weather foul\n",
+                               "0 weather fair 1\n",
+                               "0 seastate\n",
+                               "0 seastate 9\n",
+                               "0 seastate -1\n",
+                               "0 seastate 2.5\n",
+                               "0 seastate 1 1\n"};
     freopen("/dev/null", "w", stderr);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct script s;
@@ -170,6 +310,9 @@ int main(void)
         cmocka_unit_test(a_slew_lasts_as_long_as_it_says),
         cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
         cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
+        cmocka_unit_test(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector),
+        cmocka_unit_test(rain_and_jammers_add_up_until_the_weather_is_fair),
+        cmocka_unit_test(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for),
         cmocka_unit_test(commands_that_are_none_are_refused),
     };
     return cmocka_run_group_tests_name("script", tests, NULL, NULL);
