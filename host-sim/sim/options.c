@@ -48,7 +48,7 @@ static const char help[] =
     "  SECONDS jam LAT LON DB                     one more jammer (4 at most), -20..80 dB over\n"
     "                                             the noise at ten nautical miles\n"
     "  SECONDS weather fair                       no rain, nobody jams\n"
-    "  SECONDS seastate 0..8                      (default: the sea as the image has it)\n"
+    "  SECONDS seastate 0..8                      (3, the default, is that of the image)\n"
     "  SECONDS osb N [HELD_S]                     press option select button 1..20\n"
     "  SECONDS rocker gain|sym|brt|con +1|-1      one step\n"
     "  SECONDS knob X                             range knob, -1..1\n"
