@@ -100,6 +100,8 @@ static bool cntl_label(const struct lm_page *p, uint8_t osb, struct lm_label *la
         return say_tilt(p, label);
     case OSB_BEAM:
         return say(label, "BEAM", p->is_pencil ? "PNCL" : "FAN", p->is_pencil);
+    case OSB_SLANT:
+        return say(label, "SAR", p->is_slant ? "SLNT" : "PLAN", p->is_slant);
     case OSB_TILT_UP:
     case OSB_BLACK_UP:
     case OSB_WHITE_UP:

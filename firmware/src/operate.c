@@ -123,6 +123,7 @@ static void restart_patch(struct lm_unit *u, uint64_t now_us)
 {
     struct lm_sar_command command = u->sar.command;
     command.cell_mm = lm_page_cell_mm(&u->page);
+    command.has_layover = u->page.is_slant;
     u->count.commands_refused += !try_patch(u, &command, now_us);
 }
 
@@ -172,8 +173,10 @@ static bool designate(struct lm_unit *u, uint64_t now_us)
         lm_cursor_stabilise(&u->cursor);
         return true;
     }
-    const struct lm_sar_command command = {
-        .centre = u->cursor.place, .cell_mm = lm_page_cell_mm(&u->page), .is_from_ownship = true};
+    const struct lm_sar_command command = {.centre = u->cursor.place,
+                                           .cell_mm = lm_page_cell_mm(&u->page),
+                                           .is_from_ownship = true,
+                                           .has_layover = u->page.is_slant};
     if (!u->cursor.is_placed || u->page.is_override) {
         u->unable_until_us = now_us + UNABLE_SHOWN_US;
         return false;

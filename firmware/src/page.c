@@ -211,7 +211,7 @@ static uint32_t step_tilt(struct lm_page *p, int32_t step)
 
 static uint32_t reset_settings(struct lm_page *p)
 {
-    p->is_tilt_manual = p->is_pencil = false;
+    p->is_tilt_manual = p->is_pencil = p->is_slant = false;
     p->black_db = p->white_db = p->gamma_tenths = 0;
     p->gain_db = 0;
     memset(&p->palette, 0, sizeof p->palette);
@@ -231,6 +231,9 @@ static uint32_t press_on_cntl(struct lm_page *p, uint8_t osb)
     case OSB_BEAM:
         p->is_pencil = !p->is_pencil;
         return LM_EFFECT_BEAM;
+    case OSB_SLANT:
+        p->is_slant = !p->is_slant;
+        return p->is_patch ? LM_EFFECT_PATCH : 0;
     case OSB_BLACK_UP:
         return step_int8(&p->black_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
     case OSB_BLACK_DOWN:

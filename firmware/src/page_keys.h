@@ -35,6 +35,7 @@ enum {
     OSB_TINT = 8,
     OSB_NIGHT = 9,
     OSB_RESET = 10,
+    OSB_SLANT = 16,
     OSB_WHITE_DOWN = 17,
     OSB_WHITE_UP = 18,
     OSB_GAMMA_DOWN = 19,

@@ -40,12 +40,13 @@ enum {
 };
 
 struct lm_page {
-    const struct lm_radar *radar;   /* borrowed */
-    uint8_t format;                 /* enum lm_format */
-    bool is_patch;                  /* a patch is shown, not a sector; the unit sets it */
-    uint8_t mode, field;            /* of the sector: enum lm_sector_mode, enum lm_field */
-    uint8_t range, azimuth;         /* indices into the radar table */
-    uint8_t cell;                   /* of the patch: index into this page's own table */
+    const struct lm_radar *radar; /* borrowed */
+    uint8_t format;               /* enum lm_format */
+    bool is_patch;                /* a patch is shown, not a sector; the unit sets it */
+    uint8_t mode, field;          /* of the sector: enum lm_sector_mode, enum lm_field */
+    uint8_t range, azimuth;       /* indices into the radar table */
+    uint8_t cell;                 /* of the patch: index into this page's own table */
+    bool is_slant; /* a patch is shown in slant range: what stands high leans nearer */
     bool is_tilt_manual, is_pencil; /* the beam: its axis by hand, and not spoiled into a fan */
     int16_t tilt_tenths;            /* of its axis, degrees up; the unit's while it is automatic */
     bool is_auto_range, is_override, is_frozen, is_snowplow, is_decluttered;

@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -271,6 +272,72 @@ static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
         assert_memory_equal(&r->unit.sector_tone, &before, sizeof before);
         free_rig(r);
     }
+}
+
+/* How bright the radar picture is: its greys added up. */
+static uint64_t brightness(const struct rig *r)
+{
+    const struct lm_plane *plane = &r->unit.plane;
+    uint64_t sum = 0;
+    for (int i = 0; i < plane->width_px * plane->height_px; i++) {
+        sum += plane->pixels[i];
+    }
+    return sum;
+}
+
+static void osb_1_to_4_of_the_control_page_point_and_shape_the_beam(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    run(r, 1.5);
+    press(r, 5);
+    assert_true(labelled(r, 1, "AUTO", 0));
+    assert_true(labelled(r, 4, "BEAM", 0));
+    const int32_t automatic = r->unit.sector.tilt;
+    const uint64_t before = brightness(r);
+    assert_true(automatic < 0); /* down at the end of the range */
+    for (int i = 0; i < 50; i++) {
+        press(r, 2);
+    }
+    assert_true(labelled(r, 1, "TILT", 1));
+    /* Twenty-five degrees up, as near as tenths of a degree tell where it was. */
+    const double up_deg = (r->unit.sector.tilt - automatic) * 360.0 / 4294967296;
+    assert_true(fabs(up_deg - 25) < 0.1);
+    run(r, 2.5);
+    assert_true(brightness(r) < before / 2); /* it looks over the near ground */
+    press(r, 3);
+    assert_true(r->unit.sector.tilt < automatic + (int32_t)FX_BAM_DEG(25));
+    press(r, 1);
+    assert_true(labelled(r, 1, "AUTO", 0));
+    run(r, 1.5);
+    assert_true(abs(r->unit.sector.tilt - automatic) < (int32_t)FX_BAM_DEG(1));
+    const uint64_t fan = brightness(r);
+    press(r, 4);
+    assert_true(labelled(r, 4, "BEAM", 1));
+    run(r, 2.5);
+    assert_true(brightness(r) < fan / 2); /* only a ring is lit */
+    press(r, 10);
+    assert_true(labelled(r, 4, "BEAM", 0));
+    free_rig(r);
+}
+
+static void osb_16_of_the_control_page_shows_patches_in_slant_range(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    command(r, patch_here);
+    run(r, 5);
+    assert_false(r->unit.sar.command.has_layover);
+    press(r, 5);
+    assert_true(labelled(r, 16, "SAR", 0));
+    press(r, 16);
+    assert_true(labelled(r, 16, "SAR", 1));
+    assert_true(r->unit.page.is_patch && r->unit.sar.command.has_layover);
+    run(r, 5);
+    assert_true(lit_pixels(r) > 10000);
+    press(r, 16);
+    assert_false(r->unit.sar.command.has_layover);
+    free_rig(r);
 }
 
 static void osb_8_and_9_of_the_control_page_choose_tint_and_night(void **state)
@@ -844,6 +911,8 @@ int main(void)
         cmocka_unit_test(osb_5_opens_the_control_page_over_the_picture_and_closes_it),
         cmocka_unit_test(osb_6_and_17_mean_nothing_on_the_radar_page),
         cmocka_unit_test(the_control_pages_keys_change_the_tone_of_the_picture),
+        cmocka_unit_test(osb_1_to_4_of_the_control_page_point_and_shape_the_beam),
+        cmocka_unit_test(osb_16_of_the_control_page_shows_patches_in_slant_range),
         cmocka_unit_test(osb_8_and_9_of_the_control_page_choose_tint_and_night),
         cmocka_unit_test(osb_7_freezes_the_map_and_the_ownship_moves_over_it),
         cmocka_unit_test(a_new_scale_ends_the_freeze),
