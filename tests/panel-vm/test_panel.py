@@ -258,6 +258,19 @@ def edge_overflow(m):
     p.until(lambda text: any("DB TINY IMAGE" in line for line in text))
 
 
+@case("a key that is held down for ever is told, and lights the lamp of faults until it is let go")
+def stuck_key(m):
+    fly(m)
+    p = Panel(m)
+    p.until(is_fine)
+    p.set_key("OSB19", PRESSED)
+    m.sleep(16)
+    expect("key: OSB19 has been down for 15 s: stuck" in p.said(), p.said())
+    expect(m.gpio_out(GPIO.index("LED-FAULT")) == 1, "the lamp of faults is dark")
+    p.set_key("OSB19", RELEASED)
+    m.until("grep -q 'is let go again' /tmp/panel.log")
+
+
 @case("the lamps blink while pictures go to the glass, and tell a fault")
 def lamps(m):
     fly(m)
