@@ -4,7 +4,7 @@
 #include "lm/sar.h"
 
 #include "memory_flash.h"
-#include "reference.h"
+#include "reference_support.h"
 #include "tiny_image.h"
 
 #include <math.h>
@@ -40,55 +40,13 @@ struct score {
     double worst_db, squares;
 };
 
-/* Lakes, woods, blocks of houses and fields over hills of 80 m; scale 1 for a patch, 8 for a
- * sector. */
-static struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
+static void set_params(struct world *w)
 {
-    const double scale = *(const double *)ctx, east = p->east_m / scale, north = p->north_m / scale;
-    const double u = sin(east / 170) + sin(north / 230);
-    if (u < -1.2) {
-        return (struct tiny_cell){-40, TINY_WATER, 0};
-    }
-    if (fabs(remainder(east, 90)) < 14 && fabs(remainder(north, 110)) < 17) {
-        return (struct tiny_cell){1, TINY_STRUCTURE, 5};
-    }
-    if (u > 0.9) {
-        return (struct tiny_cell){-15, TINY_TREES, 7};
-    }
-    return (struct tiny_cell){-20 + 2 * sin(east / 31), TINY_SOIL, 0};
-}
-
-static double scene_elevation_m(void *ctx, const struct tiny_place *p)
-{
-    const double scale = *(const double *)ctx;
-    return 90 + 80 * sin(p->east_m / (400 * scale)) * cos(p->north_m / (300 * scale));
-}
-
-static double decibels(int32_t q8)
-{
-    return q8 / 256.0;
-}
-
-static void set_params(struct world *w, const struct lm_tone_config *tone,
-                       const struct lm_speckle_config *speckle)
-{
-    const struct lm_aspect_config *a = &w->radar.aspect;
-    w->params = (struct ref_params){.edge_structure_db = decibels(a->edge_structure_q8),
-                                    .edge_trees_db = decibels(a->edge_trees_q8),
-                                    .shore_db = decibels(a->shore_q8),
-                                    .shore_width_m = a->shore_width_m,
-                                    .noise_floor_db = decibels(w->radar.sar.noise_floor_q8),
-                                    .looks = 1u << speckle->looks_log2,
-                                    .black_db = decibels(tone->black_q8),
-                                    .white_db = decibels(tone->white_q8),
-                                    .gamma_exponent = decibels(tone->gamma_q8)};
-    for (int kind = 0; kind < LM_KINDS; kind++) {
-        const uint8_t log2 = w->radar.texture.shape_log2[kind];
-        w->params.texture_shape[kind] = log2 == LM_TEXTURE_NONE ? 0 : 1u << log2;
-    }
+    const struct lm_sar_table *sar = &w->radar.sar;
+    w->params = params_of(&w->radar, decibels(sar->noise_floor_q8), &sar->tone, &sar->speckle);
     ref_speckle_table(w->params.looks, w->table_db);
     ref_texture_tables(&w->texture, &w->params);
-    assert_int_equal(lm_tone_set(&w->tone, tone), LM_OK);
+    assert_int_equal(lm_tone_set(&w->tone, &sar->tone), LM_OK);
 }
 
 static struct world *make_world(uint8_t shift0, double scale, double latitude, double longitude)
@@ -127,34 +85,11 @@ static void make_resident(struct world *w)
     } while (!lm_tile_cache_is_idle(&w->tiles));
 }
 
-/* The reference's bins filled with what the firmware found on the ground. */
-static void take_ground(const struct world *w, struct ref_bin *bins, uint32_t cells)
-{
-    const struct lm_scan_line *ground = &w->line.ground;
-    for (uint32_t i = 0; i < cells; i++) {
-        const uint32_t cell = ground->cell[i];
-        bins[i].class_index = (int)(cell >> 4 & 15);
-        bins[i].has_data = bins[i].class_index != LM_DB_CLASS_NONE;
-        bins[i].kind = w->db.classes.entry[bins[i].class_index].kind;
-        bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
-        bins[i].height_m = w->db.classes.height_dm[cell & 15] / 10.0;
-        bins[i].elevation_m = ground->elevation_q14[i] / 16384.0;
-    }
-}
-
-static void take_noise(const struct world *w, struct ref_bin *bins, uint32_t cells)
-{
-    for (uint32_t i = 0; i < cells; i++) {
-        bins[i].hash = w->line.ground.noise[i];
-        bins[i].slice = bins[i].hash >> 22;
-    }
-}
-
 /* Compare what came out of a line with bins whose aspect is done. */
 static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t from, uint32_t cells,
                          struct score *score)
 {
-    take_noise(w, bins, cells);
+    take_noise(&w->line.ground, bins, cells);
     ref_texture(bins, cells, &w->texture, &w->params);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
@@ -198,7 +133,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
         .height_q6 = height_m * 64};
-    set_params(w, &w->radar.sar.tone, &w->radar.sar.speckle);
+    set_params(w);
     const struct lm_sar_scene scene = {.reference_q10 = (int32_t)lround(reference_m * 1024),
                                        .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);
@@ -219,7 +154,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
                                    .cell_m = cell_m,
                                    .cell_count = CELLS};
     struct ref_picture picture;
-    set_params(w, &w->radar.sar.tone, &w->radar.sar.speckle);
+    set_params(w);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
@@ -232,7 +167,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
         for (uint32_t i = 0; i < bins_count; i++) {
             copy[i] = bins[i];
         }
-        take_ground(w, copy, bins_count);
+        take_ground(&w->line.ground, &w->db.classes, copy, bins_count);
         ref_aspect(copy, bins_count, &picture.view, &w->params, ldexp((double)sar.horizon, -40));
         compare_line(w, copy, REF_GUARD_CELLS, bins_count, stage);
         compare_line(w, bins, REF_GUARD_CELLS, bins_count, whole);

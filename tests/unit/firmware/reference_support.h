@@ -1,0 +1,90 @@
+/* What the firmware handed on, as the double-precision reference takes it; and the country that
+ * both look at. */
+#ifndef REFERENCE_SUPPORT_H
+#define REFERENCE_SUPPORT_H
+
+#include "lm/line.h"
+#include "lm/radar.h"
+
+#include "reference.h"
+#include "tiny_image.h"
+
+#include <math.h>
+
+/* Decibels of the firmware's 1/256. */
+static inline double decibels(int32_t q8)
+{
+    return q8 / 256.0;
+}
+
+/* The radar table's choices. */
+static inline struct ref_params params_of(const struct lm_radar *radar, double noise_floor_db,
+                                          const struct lm_tone_config *tone,
+                                          const struct lm_speckle_config *speckle)
+{
+    const struct lm_aspect_config *a = &radar->aspect;
+    struct ref_params params = {.edge_structure_db = decibels(a->edge_structure_q8),
+                                .edge_trees_db = decibels(a->edge_trees_q8),
+                                .shore_db = decibels(a->shore_q8),
+                                .shore_width_m = a->shore_width_m,
+                                .noise_floor_db = noise_floor_db,
+                                .looks = 1u << speckle->looks_log2,
+                                .black_db = decibels(tone->black_q8),
+                                .white_db = decibels(tone->white_q8),
+                                .gamma_exponent = decibels(tone->gamma_q8)};
+    for (int kind = 0; kind < LM_KINDS; kind++) {
+        const uint8_t log2 = radar->texture.shape_log2[kind];
+        params.texture_shape[kind] = log2 == LM_TEXTURE_NONE ? 0 : 1u << log2;
+    }
+    return params;
+}
+
+/* The reference's bins filled with what the firmware found on the ground, and with its noise. */
+static inline void take_ground(const struct lm_scan_line *ground, const struct lm_classes *classes,
+                               struct ref_bin *bins, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint32_t cell = ground->cell[i];
+        bins[i].class_index = (int)(cell >> 4 & 15);
+        bins[i].has_data = bins[i].class_index != LM_DB_CLASS_NONE;
+        bins[i].kind = classes->entry[bins[i].class_index].kind;
+        bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
+        bins[i].height_m = classes->height_dm[cell & 15] / 10.0;
+        bins[i].elevation_m = ground->elevation_q14[i] / 16384.0;
+    }
+}
+
+static inline void take_noise(const struct lm_scan_line *ground, struct ref_bin *bins,
+                              uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        bins[i].hash = ground->noise[i];
+        bins[i].slice = bins[i].hash >> 22;
+    }
+}
+
+/* Lakes, woods, blocks of houses and fields over hills of 80 m; scale 1 for a patch, 8 for a
+ * sector. */
+static inline struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
+{
+    const double scale = *(const double *)ctx, east = p->east_m / scale, north = p->north_m / scale;
+    const double u = sin(east / 170) + sin(north / 230);
+    if (u < -1.2) {
+        return (struct tiny_cell){-40, TINY_WATER, 0};
+    }
+    if (fabs(remainder(east, 90)) < 14 && fabs(remainder(north, 110)) < 17) {
+        return (struct tiny_cell){1, TINY_STRUCTURE, 5};
+    }
+    if (u > 0.9) {
+        return (struct tiny_cell){-15, TINY_TREES, 7};
+    }
+    return (struct tiny_cell){-20 + 2 * sin(east / 31), TINY_SOIL, 0};
+}
+
+static inline double scene_elevation_m(void *ctx, const struct tiny_place *p)
+{
+    const double scale = *(const double *)ctx;
+    return 90 + 80 * sin(p->east_m / (400 * scale)) * cos(p->north_m / (300 * scale));
+}
+
+#endif

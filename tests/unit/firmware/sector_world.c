@@ -1,0 +1,83 @@
+#include "sector_world.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { POOL_TILES = 400 };
+
+struct sector_world *make_sector_world(const struct tiny_spec *spec)
+{
+    struct sector_world *w = calloc(1, sizeof *w);
+    const size_t pool_bytes = POOL_TILES * sizeof(struct lm_tile);
+    w->radar = lm_radar_default;
+    assert_int_equal(tiny_image_build(&w->image, spec), 0);
+    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
+    w->pool = malloc(pool_bytes);
+    assert_int_equal(lm_db_open(&w->db, &w->flash.port, 10), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&w->tiles, &w->db, w->pool, pool_bytes, 10), LM_OK);
+    assert_int_equal(lm_tone_set(&w->tone, &w->radar.mode[LM_SECTOR_GM].tone), LM_OK);
+    return w;
+}
+
+void free_sector_world(struct sector_world *w)
+{
+    tiny_image_free(&w->image);
+    free(w->pool);
+    free(w);
+}
+
+static void read_tiles(struct sector_world *w)
+{
+    do {
+        lm_tile_cache_service(&w->tiles, 0, 1);
+    } while (!lm_tile_cache_is_idle(&w->tiles));
+}
+
+void start_sector(struct sector_world *w, const struct lm_sector_command *command,
+                  const struct lm_environment *environment, const struct lm_target_set *targets)
+{
+    lm_sector_start(&w->sector, &w->radar, command, 0);
+    draw_sweep(w);
+    lm_sector_start(&w->sector, &w->radar, command, 0);
+    w->sector.environment = environment;
+    w->sector.targets = targets;
+}
+
+uint32_t draw_line(struct sector_world *w)
+{
+    const uint32_t drawn =
+        lm_sector_draw_line(&w->sector, &w->tiles, &w->platform, &w->tone, &w->line);
+    read_tiles(w);
+    return drawn;
+}
+
+void draw_sweep(struct sector_world *w)
+{
+    do {
+        draw_line(w);
+    } while (!lm_sector_is_at_edge(&w->sector));
+}
+
+struct lm_place place_at(const struct sector_world *w, double azimuth_deg, double distance_m)
+{
+    struct lm_geo_origin origin;
+    const fx_bam_t azimuth = (fx_bam_t)(int64_t)llround(azimuth_deg / 360 * 4294967296.0);
+    lm_geo_set_origin(&origin, w->platform.place);
+    return lm_geo_direct(&origin, azimuth, (uint32_t)lround(distance_m * 256));
+}
+
+double line_azimuth_deg(const struct lm_sector *s, uint32_t line)
+{
+    return degrees_of((fx_bam_t)lm_sector_edge_bam(s, line)) + degrees_of(s->width) / 2;
+}
+
+double degrees_of(fx_bam_t angle)
+{
+    return (int32_t)angle * (360 / 4294967296.0);
+}

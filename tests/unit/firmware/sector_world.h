@@ -1,0 +1,46 @@
+/* A radar over a small country, for tests of its sectors: the map, the sector and a platform that
+ * stays where it is put, and nothing else of the unit. */
+#ifndef SECTOR_WORLD_H
+#define SECTOR_WORLD_H
+
+#include "lm/sector.h"
+
+#include "memory_flash.h"
+#include "tiny_image.h"
+
+struct sector_world {
+    struct tiny_image image;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache tiles;
+    void *pool;
+    struct lm_radar radar; /* the default table; a test may change it before it starts a sector */
+    struct lm_tone tone;
+    struct lm_line line;
+    struct lm_platform platform;
+    struct lm_sector sector;
+};
+
+struct sector_world *make_sector_world(const struct tiny_spec *spec);
+void free_sector_world(struct sector_world *w);
+
+/* Begin a sector with all the tiles that it needs in memory. What is lent may be NULL. */
+void start_sector(struct sector_world *w, const struct lm_sector_command *command,
+                  const struct lm_environment *environment, const struct lm_target_set *targets);
+
+/* Draw a line, and wait for the tiles that it asked for. Returns its number. */
+uint32_t draw_line(struct sector_world *w);
+
+/* Draw to the end of the sweep. */
+void draw_sweep(struct sector_world *w);
+
+/* The place at a distance and azimuth from the platform. */
+struct lm_place place_at(const struct sector_world *w, double azimuth_deg, double distance_m);
+
+/* Azimuth of the middle of a line, degrees from the sector's middle. */
+double line_azimuth_deg(const struct lm_sector *s, uint32_t line);
+
+/* Degrees of a signed angle. */
+double degrees_of(fx_bam_t angle);
+
+#endif

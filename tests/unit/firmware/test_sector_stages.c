@@ -1,0 +1,400 @@
+/* A sweep against the double-precision reference, stage by stage: what a sample shows, what the
+ * antenna leaves of it, slant range, beam, receiver. Each stage is judged on what the firmware's
+ * stage before it handed on, so that no error hides behind another. */
+#include "reference_support.h"
+#include "sector_world.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum stage { SAMPLE, ELEVATION, SLANT, BEAM, RECEIVER, STAGES };
+
+/* Of power, that a pulse over nine bins may lose (receiver.c); 20 dB below what is black. */
+enum { PULSE_STEPS = 9 };
+
+static const char *const stage_names[STAGES] = {"sample", "elevation", "slant", "beam", "receiver"};
+
+struct score {
+    uint32_t values, beyond_half_db;
+    double squares, worst_db;
+};
+
+/* A sweep that is being judged. */
+struct trial {
+    struct sector_world *w;
+    struct ref_params params;
+    double speckle_db[REF_SPECKLE_SLICES], noise_db[REF_SPECKLE_SLICES];
+    struct ref_texture texture;
+    struct ref_environment environment;
+    const struct lm_environment *weather; /* NULL: fair */
+    struct score score[STAGES];
+    uint32_t pixels, beyond_1_grey;
+};
+
+static double metres(uint32_t q8)
+{
+    return q8 / 256.0;
+}
+
+/* What lies below the least power that the firmware tells from none is all the same. */
+static double shown(double level_db)
+{
+    return fmax(level_db, -72);
+}
+
+static void note(struct score *s, double error_db)
+{
+    s->values++;
+    s->squares += error_db * error_db;
+    s->worst_db = fmax(s->worst_db, fabs(error_db));
+    s->beyond_half_db += fabs(error_db) > 0.5;
+}
+
+/* Powers are whole steps of 2^-24, of which a stage may lose `steps`: what differs by no more is as
+ * good as it gets. */
+static void note_power(struct score *s, double power, double wanted, int steps)
+{
+    const double step = ldexp(1, -24);
+    const bool is_within = fabs(power - wanted) <= steps * step;
+    note(s, is_within ? 0 : 10 * log10(fmax(power, step) / fmax(wanted, step)));
+}
+
+static double height_m(const struct lm_sector *s)
+{
+    return (s->grid.height_q10 - s->grid.reference_q10) / 1024.0;
+}
+
+/* ---- what a sample shows ---- */
+
+static double horizon_of(const struct lm_sector *s, const struct ref_bin *bins, size_t cells,
+                         const struct ref_view *view)
+{
+    const size_t first = ref_first_shown(bins, cells, view);
+    const bool is_open = s->runup_grid.cells == 0 || s->runup_horizon == LM_HORIZON_OPEN;
+    return is_open ? ref_gm_horizon(&bins[first], view) : ldexp((double)s->runup_horizon, -40);
+}
+
+static struct ref_antenna antenna_of(const struct lm_radar *radar)
+{
+    return (struct ref_antenna){.elevation_beam_deg = degrees_of(radar->antenna.elevation_beam),
+                                .fan_deg = degrees_of(radar->antenna.fan)};
+}
+
+/* The levels that the reference finds on the firmware's ground, before the antenna. */
+static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
+{
+    const struct sector_world *w = t->w;
+    const struct lm_sector *s = &w->sector;
+    const struct ref_view view = {s->grid.height_q10 / 1024.0, s->grid.reference_q10 / 1024.0,
+                                  metres(s->grid.cell_q8)};
+    for (uint32_t i = 0; i < cells; i++) {
+        bins[i].range_m = metres(s->ground_edge_q8 + s->grid.cell_q8 / 2 + i * s->grid.cell_q8);
+    }
+    take_ground(&w->line.ground, &w->db.classes, bins, cells);
+    take_noise(&w->line.ground, bins, cells);
+    ref_aspect(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
+    ref_texture(bins, cells, &t->texture, &t->params);
+    ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
+}
+
+/* The sample taken last, whose ground and levels are still in the line. */
+static void judge_sample(struct trial *t)
+{
+    const struct sector_world *w = t->w;
+    const struct lm_sector *s = &w->sector;
+    const uint32_t cells = s->grid.cells;
+    struct ref_bin bins[LM_CELLS_MAX] = {0};
+    struct lm_sight gain = w->line.sight;
+    memset(gain.level_q8, 0, sizeof gain.level_q8);
+    lm_elevation_run(&s->elevation, &s->fan, &s->grid, &gain);
+    see(t, bins, cells);
+    const struct ref_antenna antenna = antenna_of(&w->radar);
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t level_q8 = w->line.sight.level_q8[i];
+        const double before_db = decibels(level_q8 - gain.level_q8[i]);
+        const double tangent = ldexp(gain.horizon[i + 1], -(int)s->grid.tangent_bits);
+        const double left_db = ref_elevation_db(&antenna, degrees_of((fx_bam_t)s->tilt), tangent);
+        note(&t->score[SAMPLE], shown(before_db) - shown(bins[i].echo_db));
+        note(&t->score[ELEVATION], shown(decibels(level_q8)) - shown(before_db + left_db));
+    }
+}
+
+/* ---- what becomes of samples ---- */
+
+static struct ref_bins bins_of(const struct lm_sector *s)
+{
+    return (struct ref_bins){metres(s->slant.first_q8), metres(s->slant.cell_q8), s->slant.cells};
+}
+
+/* The slant range of the sample taken last, `sample`. */
+static void judge_slant(struct trial *t, long sample)
+{
+    const struct lm_sector *s = &t->w->sector;
+    const struct ref_bins bins = bins_of(s);
+    double ground[REF_CELLS_MAX], power[REF_CELLS_MAX];
+    for (uint32_t i = 0; i < s->grid.cells; i++) {
+        ground[i] = pow(10, decibels(t->w->line.sight.level_q8[i]) / 10);
+    }
+    ref_slant_power(&bins, height_m(s), metres(s->ground_edge_q8), metres(s->grid.cell_q8), ground,
+                    s->grid.cells, power);
+    for (uint32_t i = 0; i < s->slant.cells; i++) {
+        const uint32_t slot = (uint32_t)sample % LM_BEAM_TAPS;
+        note_power(&t->score[SLANT], ldexp(s->beam.power_q24[slot][i], -24), fmin(power[i], 255),
+                   1);
+    }
+}
+
+static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
+{
+    const struct lm_field_row *field = &s->radar->field[s->command.field];
+    const uint32_t rate = field->bam_per_s ? field->bam_per_s : s->radar->mode[0].bam_per_s;
+    const struct ref_dbs dbs = {.speed_m_s = s->platform.speed_mm_s / 1000.0,
+                                .beam_deg = degrees_of(s->radar->antenna.azimuth_beam),
+                                .wavelength_m = s->radar->wavelength_um * 1e-6,
+                                .rate_deg_s = degrees_of(rate)};
+    const double off_deg = degrees_of(s->up - s->platform.track) + azimuth_deg;
+    const double had = ref_dbs_ratio(&dbs, off_deg);
+    return (struct ref_beam){.beam_deg = dbs.beam_deg,
+                             .line_deg = degrees_of(s->radar->sample),
+                             .ratio = field->sharpening > 1 ? ref_dbs_used(had, field->sharpening,
+                                                                           field->sharpening_least)
+                                                            : 1};
+}
+
+/* The firmware's line behind the beam is made once more: the receiver has changed its own. */
+static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
+{
+    const struct lm_sector *s = &t->w->sector;
+    const double azimuth_deg = line_azimuth_deg(s, line);
+    const struct ref_beam beam = beam_of(s, azimuth_deg);
+    const struct ref_beam_look look = ref_beam_look(&beam, azimuth_deg);
+    double power[REF_BEAM_SAMPLES][REF_CELLS_MAX], sum[REF_CELLS_MAX];
+    const double *samples[REF_BEAM_SAMPLES];
+    for (int j = 0; j < REF_BEAM_SAMPLES; j++) {
+        const uint32_t slot = (uint32_t)(look.first + j) % LM_BEAM_TAPS;
+        assert_int_equal(s->beam.number[slot], look.first + j);
+        for (uint32_t i = 0; i < s->slant.cells; i++) {
+            power[j][i] = ldexp(s->beam.power_q24[slot][i], -24);
+        }
+        samples[j] = power[j];
+    }
+    ref_beam_sum(&look, samples, sum, s->slant.cells);
+    struct lm_beam_look own;
+    lm_beam_aim(&t->w->sector.beam, s->radar, (int32_t)lround(azimuth_deg / 360 * 4294967296.0),
+                (uint32_t)lround(beam.ratio * 256), &own);
+    lm_beam_sum(&s->beam, &own, drawn_q24, s->slant.cells);
+    for (uint32_t i = 0; i < s->slant.cells; i++) {
+        note_power(&t->score[BEAM], ldexp(drawn_q24[i], -24), sum[i], 1);
+    }
+}
+
+static struct ref_receiver receiver_of(const struct trial *t)
+{
+    const struct lm_sector *s = &t->w->sector;
+    const uint8_t range = s->command.range;
+    const struct lm_receiver_table *table = &s->radar->receiver;
+    return (struct ref_receiver){.bins = bins_of(s),
+                                 .height_m = height_m(s),
+                                 .end_m = s->radar->range_m[range],
+                                 .noise_end_db = decibels(table->noise_end_q8[range]),
+                                 .noise_table_db = t->noise_db,
+                                 .stc_m = table->stc_m[range],
+                                 .pulse_s =
+                                     s->radar->field[s->command.field].pulse_ns[range] * 1e-9};
+}
+
+/* The environment as the line at an azimuth from north meets it. */
+static void look_at_weather(struct trial *t, const struct ref_receiver *r, double azimuth_deg,
+                            struct ref_weather_line *weather)
+{
+    const struct lm_environment *e = t->weather;
+    struct ref_environment *ref = &t->environment;
+    const struct lm_place *own = &t->w->platform.place;
+    const struct ref_place from = {degrees_of(own->latitude), degrees_of(own->longitude)};
+    double bearing_deg;
+    ref->rain_count = e->rain_count;
+    ref->jammer_count = e->jammer_count;
+    for (size_t n = 0; n < e->rain_count; n++) {
+        const struct lm_place *at = &e->rain[n].centre;
+        ref_geo_inverse(from,
+                        (struct ref_place){degrees_of(at->latitude), degrees_of(at->longitude)},
+                        &bearing_deg, &ref->rain[n].distance_m);
+        ref->rain[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
+        ref->rain[n].radius_m = e->rain[n].radius_m;
+        ref->rain[n].mm_per_h = e->rain[n].mm_per_h;
+    }
+    for (size_t n = 0; n < e->jammer_count; n++) {
+        const struct lm_place *at = &e->jammer[n].place;
+        ref_geo_inverse(from,
+                        (struct ref_place){degrees_of(at->latitude), degrees_of(at->longitude)},
+                        &bearing_deg, &ref->jammer[n].distance_m);
+        ref->jammer[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
+        ref->jammer[n].ratio_db = decibels(e->jammer[n].ratio_q8);
+    }
+    const struct lm_radar *radar = &t->w->radar;
+    ref_weather(ref, radar->wavelength_um * 1e-6, degrees_of(radar->antenna.azimuth_beam),
+                degrees_of(radar->antenna.elevation_beam), r->height_m, &r->bins, weather);
+}
+
+static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
+                           const uint32_t *drawn_q24)
+{
+    const struct lm_sector *s = &t->w->sector;
+    const struct ref_receiver receiver = receiver_of(t);
+    struct ref_weather_line weather;
+    double power[REF_CELLS_MAX], level_db[REF_CELLS_MAX];
+    for (uint32_t i = 0; i < s->slant.cells; i++) {
+        power[i] = ldexp(drawn_q24[i], -24);
+    }
+    if (t->weather) {
+        look_at_weather(t, &receiver, degrees_of(s->up) + line_azimuth_deg(s, line), &weather);
+    }
+    ref_receive(&receiver, t->weather ? &weather : NULL, line, sweep, power, level_db);
+    for (uint32_t i = 0; i < s->slant.cells; i++) {
+        const double brightness = ref_brightness(level_db[i], &t->params);
+        const double fall_db =
+            ref_stc_fall_db(&receiver, receiver.bins.first_m + i * receiver.bins.step_m);
+        note_power(&t->score[RECEIVER], pow(10, (decibels(s->level_q8[i]) + fall_db) / 10),
+                   pow(10, (level_db[i] + fall_db) / 10), PULSE_STEPS);
+        t->pixels++;
+        t->beyond_1_grey += abs(t->w->line.grey[i] - ref_grey(brightness, &t->params)) > 1;
+    }
+}
+
+/* ---- sweeps ---- */
+
+static void judge_line(struct trial *t)
+{
+    struct lm_sector *s = &t->w->sector;
+    const uint32_t samples = s->samples, sweep = s->sweep, line = draw_line(t->w);
+    uint32_t drawn_q24[LM_BEAM_ROOM];
+    /* To the right, the sample taken last is the outermost. */
+    const double azimuth_deg = line_azimuth_deg(s, line);
+    const struct ref_beam beam = beam_of(s, azimuth_deg);
+    const long last = ref_beam_look(&beam, azimuth_deg).first + REF_BEAM_SAMPLES - 1;
+    if (s->samples != samples) {
+        judge_sample(t);
+        judge_slant(t, last);
+    }
+    judge_beam(t, line, drawn_q24);
+    judge_receiver(t, line, sweep, drawn_q24);
+}
+
+static void report(const char *what, const struct trial *t)
+{
+    for (int stage = 0; stage < STAGES; stage++) {
+        const struct score *s = &t->score[stage];
+        print_message("# %s, %s: %u values, rms %.3f dB, worst %.2f dB, beyond 0.5 dB: %u\n", what,
+                      stage_names[stage], s->values, sqrt(s->squares / s->values), s->worst_db,
+                      s->beyond_half_db);
+    }
+    print_message("# %s: beyond one grey level %.4f %%\n", what,
+                  100.0 * t->beyond_1_grey / t->pixels);
+}
+
+/* At most one value in ten thousand beyond half a decibel, one pixel in a thousand more than one
+ * grey level off. */
+static void judge(const struct trial *t)
+{
+    for (int stage = 0; stage < STAGES; stage++) {
+        assert_true(t->score[stage].values > 10000);
+        assert_true(t->score[stage].beyond_half_db * 10000.0 <= t->score[stage].values);
+    }
+    assert_true(t->beyond_1_grey * 1000.0 <= t->pixels);
+}
+
+static void judge_sweep(struct sector_world *w, const char *what,
+                        const struct lm_sector_command *command, const struct lm_environment *e)
+{
+    struct trial *t = calloc(1, sizeof *t);
+    const struct lm_sector_mode_row *mode = &w->radar.mode[command->mode];
+    t->w = w;
+    t->weather = e;
+    t->params = params_of(&w->radar, -INFINITY, &mode->tone, &mode->speckle);
+    t->params.sea_db = e ? ref_sea_db(e->sea_state) : 0;
+    ref_speckle_table(t->params.looks, t->speckle_db);
+    ref_speckle_table(1u << w->radar.receiver.noise_looks_log2, t->noise_db);
+    ref_texture_tables(&t->texture, &t->params);
+    start_sector(w, command, e, NULL);
+    do {
+        judge_line(t);
+    } while (!lm_sector_is_at_edge(&w->sector));
+    report(what, t);
+    judge(t);
+    free(t);
+}
+
+/* 65 km of country, with the aircraft above its southern part. */
+static struct sector_world *make_country(void)
+{
+    double scale = 8;
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = scene_cell;
+    spec.elevation_m = scene_elevation_m;
+    spec.ctx = &scale;
+    spec.shift0 = 13;
+    spec.rows = spec.columns = 14;
+    struct sector_world *w = make_sector_world(&spec);
+    w->platform = (struct lm_platform){
+        .place = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .height_q10 = 2500 * 1024,
+        .heading = FX_BAM_DEG(7),
+        .speed_mm_s = 180000};
+    return w;
+}
+
+static void real_beam_sweeps_agree_with_the_reference_at_every_stage(void **state)
+{
+    (void)state;
+    struct sector_world *w = make_country();
+    struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 0};
+    judge_sweep(w, "GM, 10 nm", &command, NULL);
+    command.range = 2;
+    judge_sweep(w, "GM, 40 nm", &command, NULL);
+    free_sector_world(w);
+}
+
+static void rain_jammer_and_sea_agree_with_the_reference(void **state)
+{
+    (void)state;
+    struct sector_world *w = make_country();
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 1};
+    const struct lm_environment e = {
+        .rain = {{place_at(w, 12, 17000), 5000, 25}, {place_at(w, -20, 24000), 7000, 4}},
+        .jammer = {{place_at(w, 30, 50000), 25 * 256}},
+        .rain_count = 2,
+        .jammer_count = 1,
+        .sea_state = 5};
+    judge_sweep(w, "GM, 20 nm, rain and jammer", &command, &e);
+    free_sector_world(w);
+}
+
+static void windows_agree_with_the_reference_at_every_stage(void **state)
+{
+    (void)state;
+    struct sector_world *w = make_country();
+    struct lm_sector_command command = {
+        .mode = LM_SECTOR_GM, .field = LM_FIELD_EXP, .range = 1, .centre = place_at(w, 25, 25000)};
+    judge_sweep(w, "EXP, 20 nm", &command, NULL);
+    command.field = LM_FIELD_DBS1;
+    command.centre = place_at(w, 45, 25000);
+    judge_sweep(w, "DBS1, 20 nm", &command, NULL);
+    free_sector_world(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(real_beam_sweeps_agree_with_the_reference_at_every_stage),
+        cmocka_unit_test(rain_jammer_and_sea_agree_with_the_reference),
+        cmocka_unit_test(windows_agree_with_the_reference_at_every_stage),
+    };
+    return cmocka_run_group_tests_name("sector_stages", tests, NULL, NULL);
+}
