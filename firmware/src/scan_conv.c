@@ -38,16 +38,6 @@ static int32_t tangent_q16_of(fx_bam_t azimuth)
     return (int32_t)((int64_t)fx_sin_q30(azimuth) * 65536 / fx_cos_q30(azimuth));
 }
 
-struct lm_ppi lm_ppi_of_sector(const struct lm_frame *frame, uint32_t cells)
-{
-    return (struct lm_ppi){
-        .clip = *frame,
-        .apex_x_px = frame->left_px + frame->width_px / 2,
-        .apex_y_px = frame->top_px + frame->height_px,
-        .cells_per_px_q16 = (cells << 16) / lm_ppi_radius_px(frame),
-    };
-}
-
 /* An edge of a wedge, row by row upwards from the apex; row 0 has its centres half a pixel above
  * it. The column is the first one, counted from the apex, whose centre is at or right of the edge:
  * the same edge gives the same column to the lines on both its sides. */

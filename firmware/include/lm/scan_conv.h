@@ -37,9 +37,6 @@ struct lm_ppi {
     int32_t near_cell_q8; /* where the lines' first cell begins, cells * 256 from the apex */
 };
 
-/* The whole sector: apex at the bottom centre of the frame, `cells` cells in its radius. */
-struct lm_ppi lm_ppi_of_sector(const struct lm_frame *frame, uint32_t cells);
-
 /* Paint the wedge from azimuth `left` up to, not including, `right` (from straight up, clockwise,
  * both within +-80 degrees, right after left). Lines that share an edge share no pixel and leave
  * none out. */

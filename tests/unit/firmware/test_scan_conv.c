@@ -72,11 +72,22 @@ static struct polar polar_of(const struct glass *g, int32_t x, int32_t y)
     return p;
 }
 
+/* The whole sector, as a view of one lays it out: `CELLS` cells in its radius. */
+static struct lm_ppi sector_ppi(const struct lm_frame *frame)
+{
+    return (struct lm_ppi){
+        .clip = *frame,
+        .apex_x_px = frame->left_px + frame->width_px / 2,
+        .apex_y_px = frame->top_px + frame->height_px,
+        .cells_per_px_q16 = (CELLS << 16) / lm_ppi_radius_px(frame),
+    };
+}
+
 static void paint(const struct glass *g, int32_t left_bam, int32_t right_bam, uint8_t grey)
 {
     uint8_t line[CELLS];
     memset(line, grey, sizeof line);
-    const struct lm_ppi ppi = lm_ppi_of_sector(&g->frame, CELLS);
+    const struct lm_ppi ppi = sector_ppi(&g->frame);
     lm_ppi_paint(&g->plane, &ppi, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
 }
 
@@ -146,7 +157,7 @@ static void a_pixel_shows_the_cell_at_its_range(void **state)
     for (int n = 0; n < SIZES; n++) {
         struct glass g;
         make_glass(&g, sizes[n][0], sizes[n][1]);
-        const struct lm_ppi ppi = lm_ppi_of_sector(&g.frame, CELLS);
+        const struct lm_ppi ppi = sector_ppi(&g.frame);
         const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame);
         const int32_t width = (int32_t)lm_radar_default.line;
         for (int32_t i = -128; i < 128; i += 9) {
