@@ -1,6 +1,9 @@
 #include "parts.h"
 
-enum { NONE_SAMPLE_CELLS = 16 };
+enum {
+    NONE_SAMPLE_CELLS = 16,
+    SAMPLES_A_STEP = 3 /* taken for one line; a line that needs more waits for the next step */
+};
 
 /* Count how much of the line lies outside the map, a cell in sixteen. */
 static void sample_coverage(struct lm_unit *u, uint32_t cells)
@@ -55,7 +58,8 @@ static void begin_sweep(struct lm_unit *u, const struct lm_platform *platform)
     u->cells_none = u->cells_seen = 0;
 }
 
-static void draw_sector_line(struct lm_unit *u, uint64_t now_us)
+/* Draw the next line, or take a part of the samples that it needs. Whether it was drawn. */
+static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
 {
     struct lm_sector *s = &u->sector;
     const struct lm_platform platform = platform_of(u, now_us);
@@ -63,14 +67,19 @@ static void draw_sector_line(struct lm_unit *u, uint64_t now_us)
         begin_sweep(u, &platform);
     }
     const uint32_t samples = s->samples;
+    const bool is_ready = lm_sector_sample_ahead(s, &u->tiles, &platform, SAMPLES_A_STEP, &u->line);
+    if (s->samples != samples) {
+        sample_coverage(u, s->grid.cells);
+    }
+    if (!is_ready) {
+        return false;
+    }
     const uint32_t drawn = lm_sector_draw_line(s, &u->tiles, &platform, &u->sector_tone, &u->line);
     const struct lm_ppi ppi = lm_view_ppi(&u->view, &u->frame, s->slant.cell_q8, s->edge_q8);
     lm_ppi_paint(&u->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, drawn),
                  (fx_bam_t)lm_sector_edge_bam(s, drawn + 1), u->line.grey, s->slant.cells);
-    if (s->samples != samples) {
-        sample_coverage(u, s->grid.cells);
-    }
     u->next_line_us += lm_sector_line_us(s);
+    return true;
 }
 
 static void draw_patch_line(struct lm_unit *u)
@@ -99,16 +108,24 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
     return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;
 }
 
+/* Draw a line of what is shown. False when it needs more than one step. */
+static bool draw_line(struct lm_unit *u, uint64_t now_us)
+{
+    if (!u->page.is_patch) {
+        return draw_sector_line(u, now_us);
+    }
+    draw_patch_line(u);
+    return true;
+}
+
 void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)
 {
     for (uint32_t i = 0; i < LM_STEP_LINES && is_drawing(u, now_us) && u->next_line_us <= now_us;
          i++) {
-        u->count.lines++;
-        if (u->page.is_patch) {
-            draw_patch_line(u);
-        } else {
-            draw_sector_line(u, now_us);
+        if (!draw_line(u, now_us)) {
+            return; /* it stays due */
         }
+        u->count.lines++;
     }
     if (u->next_line_us <= now_us) {
         u->count.lines_dropped += is_drawing(u, now_us);

@@ -389,16 +389,47 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
-static void take_missing_samples(struct lm_sector *s, struct lm_tile_cache *tiles,
-                                 const struct lm_beam_look *look, struct lm_line *line)
+/* Take what the look still lacks, at most so many samples. Whether it then has all. */
+static bool take_missing_samples(struct lm_sector *s, struct lm_tile_cache *tiles,
+                                 const struct lm_beam_look *look, uint32_t at_most,
+                                 struct lm_line *line)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, s->platform.place);
     for (int32_t n = look->first; n < look->first + LM_BEAM_TAPS; n++) {
-        if (!lm_beam_has(&s->beam, n)) {
-            take_sample(s, tiles, &origin, n, line);
+        if (lm_beam_has(&s->beam, n)) {
+            continue;
         }
+        if (at_most-- == 0) {
+            return false;
+        }
+        take_sample(s, tiles, &origin, n, line);
     }
+    return true;
+}
+
+/* Begin the sweep if that is due, and look where the next line is. */
+static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
+                const struct lm_platform *platform, struct lm_beam_look *look)
+{
+    if (!s->is_begun) {
+        lm_sector_begin(s, tiles, platform);
+    }
+    if (s->half_m == 0) {
+        s->up = platform->heading;
+        s->platform.place = platform->place;
+    }
+    const int32_t azimuth = middle_of(s, s->line);
+    lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), look);
+}
+
+bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
+                            const struct lm_platform *platform, uint32_t at_most,
+                            struct lm_line *line)
+{
+    struct lm_beam_look look;
+    aim(s, tiles, platform, &look);
+    return take_missing_samples(s, tiles, &look, at_most, line);
 }
 
 static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
@@ -415,18 +446,11 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line)
 {
-    if (!s->is_begun) {
-        lm_sector_begin(s, tiles, platform);
-    }
-    if (s->half_m == 0) {
-        s->up = platform->heading;
-        s->platform.place = platform->place;
-    }
+    struct lm_beam_look look;
+    aim(s, tiles, platform, &look);
+    take_missing_samples(s, tiles, &look, LM_BEAM_TAPS, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    struct lm_beam_look look;
-    lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), &look);
-    take_missing_samples(s, tiles, &look, line);
     lm_beam_sum(&s->beam, &look, s->power_q24, cells);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
