@@ -16,6 +16,16 @@ enum { STEP_US = 2000, FIX_US = 100000, START_US = 200000, POLLS = 1000 };
         .azimuth = (a)                                                                             \
     }
 
+/* Keys of the radar page and of the control page. */
+#define CNTL        5
+#define CURSOR_ZERO 9
+#define TILT_UP     2
+#define PENCIL      4
+/* The town 9,260 m ahead, where the cursor goes on the shortest range. */
+#define TOWN_AHEAD                                                                                 \
+    GLASS, .north_m = -7560, .east_m = 600, .height_m = 2500, .speed_m_s = 200,                    \
+           .keys = {CURSOR_ZERO}
+
 const struct golden_picture golden_pictures[] = {
     GM("10", 0, "60deg", 0),
     GM("10", 0, "30deg", 1),
@@ -46,6 +56,37 @@ const struct golden_picture golden_pictures[] = {
      .height_m = 2500,
      .heading_deg = 80},
     {.name = "gm-north", .place = GOLDEN_NORTH, GLASS, .north_m = -5000, .height_m = 2500},
+    {.name = "gmt", GLASS, FROM_SOUTH, .speed_m_s = 200, .mode = LM_SECTOR_GMT, .has_movers = true},
+    {.name = "gmt-exp",
+     TOWN_AHEAD,
+     .mode = LM_SECTOR_GMT,
+     .has_movers = true,
+     .field = LM_FIELD_EXP},
+    {.name = "sea",
+     GLASS,
+     .speed_m_s = 200,
+     .height_m = 700,
+     .heading_deg = -80,
+     .mode = LM_SECTOR_SEA,
+     .has_movers = true},
+    {.name = "sea-exp", TOWN_AHEAD, .mode = LM_SECTOR_SEA, .field = LM_FIELD_EXP},
+    {.name = "sea-state-6",
+     GLASS,
+     .height_m = 700,
+     .heading_deg = -80,
+     .mode = LM_SECTOR_SEA,
+     .sea_state = 6},
+    {.name = "exp", TOWN_AHEAD, .field = LM_FIELD_EXP},
+    {.name = "dbs1-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FIELD_DBS1},
+    {.name = "dbs1-across-the-notch", TOWN_AHEAD, .field = LM_FIELD_DBS1},
+    {.name = "dbs2-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FIELD_DBS2},
+    {.name = "gm-rain", FROM_SOUTH, GLASS, .rain_mm_h = 60},
+    {.name = "gm-jammer", FROM_SOUTH, GLASS, .jam_db = 40},
+    {.name = "gm-pencil-beam", FROM_SOUTH, GLASS, .keys = {CNTL, PENCIL}},
+    {.name = "page-control-tilt-by-hand",
+     FROM_SOUTH,
+     GLASS,
+     .keys = {CNTL, PENCIL, TILT_UP, TILT_UP, TILT_UP, TILT_UP}},
     {.name = "sar-5m-from-the-ownship",
      GLASS,
      .north_m = -8000,
@@ -126,8 +167,13 @@ const uint32_t golden_picture_count = sizeof golden_pictures / sizeof golden_pic
 
 static uint64_t duration_us(const struct golden_picture *p)
 {
-    /* A sweep of 120 degrees takes a second, a patch two and the reading of its tiles. */
-    return START_US + (p->cell_mm ? 2600000u : 1300000u);
+    /* A sweep of GM takes a second, of the other modes two; a patch two and the reading of its
+     * tiles; the window of DBS1 two and of DBS2 3.3, once the cursor is in its place. */
+    uint32_t flown_us = p->cell_mm || p->mode || p->keys[0] ? 2600000 : 1300000;
+    if (p->field != LM_FIELD_NORM) {
+        flown_us = p->field == LM_FIELD_DBS2 ? 5600000 : 3800000;
+    }
+    return START_US + flown_us;
 }
 
 /* The bits of a whole number as IEEE 754 single; |value| below 2^24. */
@@ -161,7 +207,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
                  {1037, LM_CANAS_LONG, long_of(r->aircraft.longitude)},
                  {1038, LM_CANAS_FLOAT, float_bits(p->height_m)},
                  {1039, LM_CANAS_FLOAT, float_bits(p->speed_m_s)},
-                 {1040, LM_CANAS_FLOAT, float_bits(p->heading_deg)},
+                 {1040, LM_CANAS_FLOAT, float_bits(p->heading_deg + p->drift_deg)},
                  {1133, LM_CANAS_FLOAT, float_bits(p->heading_deg)}};
     const uint32_t bits = items[r->bus_item].bits;
     *frame = (struct lm_can_frame){.id = items[r->bus_item].id,
@@ -189,20 +235,61 @@ static struct lm_sar_command patch_command(const struct golden_picture *p, struc
                                    .height_q6 = p->height_m * 64};
 }
 
-/* The operator: scale, sector and gain when the bus is heard, then the patch; freezes late. */
+static struct lm_place moved(struct lm_place from, fx_bam_t azimuth, int32_t metres)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, from);
+    return metres < 0 ? lm_geo_direct(&origin, azimuth + FX_BAM_180, (uint32_t)-metres * 256)
+                      : lm_geo_direct(&origin, azimuth, (uint32_t)metres * 256);
+}
+
+static struct lm_environment environment_of(const struct golden_rig *r)
+{
+    const struct golden_picture *p = r->picture;
+    return (struct lm_environment){
+        .rain = {{.centre = r->centre, .radius_m = 2000, .mm_per_h = p->rain_mm_h}},
+        .jammer = {{moved(r->centre, FX_BAM_90, 2000), (int16_t)(p->jam_db * 256)}},
+        .rain_count = p->rain_mm_h != 0,
+        .jammer_count = p->jam_db != 0,
+        .sea_state = p->sea_state ? p->sea_state : (uint8_t)LM_SEA_STATE_OF_IMAGE};
+}
+
+/* Event `item` of those that press and let go the keys, one after the other. */
+static int next_key(const struct golden_picture *p, uint32_t item, struct lm_control *control)
+{
+    if (item / 2 == sizeof p->keys || p->keys[item / 2] == 0) {
+        return 0;
+    }
+    *control = (struct lm_control){.kind = item % 2 ? LM_CONTROL_UP : LM_CONTROL_DOWN,
+                                   .value = p->keys[item / 2]};
+    return 1;
+}
+
+/* The operator: weather, scale, sector and gain when the bus is heard, then mode or patch; freezes
+ * and presses keys late. */
 static int next_control(void *ctx, struct lm_control *control)
 {
+    enum { EARLY = 5, ITEMS };
     struct golden_rig *r = ctx;
     const struct golden_picture *p = r->picture;
-    const struct lm_control script[] = {
+    const struct lm_control script[ITEMS] = {
+        {.kind = LM_CONTROL_ENVIRONMENT, .environment = environment_of(r)},
         {.kind = LM_CONTROL_RANGE, .value = p->range},
         {.kind = LM_CONTROL_AZIMUTH, .value = p->azimuth},
         {.kind = LM_CONTROL_GAIN, .value = p->gain_db},
-        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_SECTOR, .sar = patch_command(p, r->centre)},
+        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_SECTOR,
+         .value = p->mode,
+         .value_y = p->field,
+         .sar = patch_command(p, r->centre)},
         {.kind = LM_CONTROL_FREEZE, .value = p->fault == GOLDEN_FROZEN}};
-    const uint64_t due_us = r->control_item < 4 ? START_US : START_US + 700000;
-    if (r->control_item == sizeof script / sizeof script[0] || r->now_us < due_us) {
+    const uint64_t due_us = r->control_item < EARLY ? START_US : START_US + 700000;
+    if (r->now_us < due_us) {
         return 0;
+    }
+    if (r->control_item >= ITEMS) {
+        const int count = next_key(p, r->control_item - ITEMS, control);
+        r->control_item += (uint32_t)count;
+        return count;
     }
     *control = script[r->control_item++];
     return 1;
@@ -220,14 +307,6 @@ static int present(void *ctx)
 {
     (void)ctx;
     return LM_OK;
-}
-
-static struct lm_place moved(struct lm_place from, fx_bam_t azimuth, int32_t metres)
-{
-    struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, from);
-    return metres < 0 ? lm_geo_direct(&origin, azimuth + FX_BAM_180, (uint32_t)-metres * 256)
-                      : lm_geo_direct(&origin, azimuth, (uint32_t)metres * 256);
 }
 
 static void prepare(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
@@ -252,11 +331,38 @@ static void prepare(struct golden_rig *r, const struct golden_picture *p, struct
                                  .flash_poll_limit = POLLS};
 }
 
+/* A vehicle that answers as a whole, driving to and fro over 6 km. */
+static struct lm_target mover(uint32_t id, struct lm_place place, int32_t heading_deg,
+                              uint32_t speed_mm_s)
+{
+    return (struct lm_target){.id = id,
+                              .latitude = place.latitude,
+                              .longitude = place.longitude,
+                              .elevation_q6 = 3 * 64,
+                              .heading = FX_BAM_DEG(heading_deg),
+                              .swerling = 1,
+                              .flags = LM_TARGET_ABOVE_GROUND,
+                              .mean_rcs_q8 = 35 * 256,
+                              .speed_mm_s = speed_mm_s,
+                              .leg_m = 6000};
+}
+
+static void put_movers(struct golden_rig *r)
+{
+    r->movers[0] = mover(1, moved(r->centre, 0, 1000), 180, 15000);
+    r->movers[1] = mover(2, moved(moved(r->centre, 0, 2200), FX_BAM_90, 1100), 30, 25000);
+    r->movers[2] = mover(3, moved(moved(r->centre, 0, 1500), FX_BAM_90, -3300), 25, 8000);
+    r->unit.target_set = (struct lm_target_set){r->movers, GOLDEN_MOVERS};
+}
+
 int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
                const uint8_t *image, size_t image_bytes)
 {
     prepare(r, p, centre, image, image_bytes);
     const int status = lm_unit_init(&r->unit, &r->board);
+    if (p->has_movers) {
+        put_movers(r);
+    }
     r->flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */
     for (; status == LM_OK && r->now_us <= duration_us(p); r->now_us += STEP_US) {
         lm_unit_step(&r->unit, r->now_us);

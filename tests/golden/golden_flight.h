@@ -23,10 +23,17 @@ struct golden_picture {
     uint16_t width_px, height_px;
     /* The aircraft: where from the middle, how high, where it looks, whole units. */
     int32_t north_m, east_m, height_m, heading_deg;
-    uint16_t speed_m_s; /* along the heading; it stands still all the same */
-    /* Ground map: indices into the radar table. */
+    uint16_t speed_m_s; /* along the track; it stands still all the same */
+    int8_t drift_deg;   /* the track is so far to the right of the heading */
+    /* A sector: enum lm_sector_mode and lm_field, indices into the radar table. A window lies half
+     * the range straight ahead, where the cursor begins. */
+    uint8_t mode, field;
     uint8_t range, azimuth;
     int8_t gain_db;
+    /* Rain over 2 km around the middle, a jammer 2 km east of it, the sea (0: as in the image). */
+    uint8_t rain_mm_h, jam_db, sea_state;
+    bool has_movers; /* two of GOLDEN_MOVERS on land, one at sea */
+    uint8_t keys[6]; /* option select buttons pressed later, 0 behind the last */
     /* SAR when cell_mm is not 0: a patch at the middle, seen from the aircraft, or when range_m is
      * not 0 from so far in the direction of the heading. */
     uint32_t cell_mm, range_m;
@@ -36,7 +43,7 @@ struct golden_picture {
 extern const struct golden_picture golden_pictures[];
 extern const uint32_t golden_picture_count;
 
-enum { GOLDEN_POOL_TILES = 256, GOLDEN_PIXELS_MAX = 1024 * 768 };
+enum { GOLDEN_POOL_TILES = 256, GOLDEN_PIXELS_MAX = 1024 * 768, GOLDEN_MOVERS = 3 };
 
 /* Everything a flight needs; the caller owns it, 15 MB. */
 struct golden_rig {
@@ -48,7 +55,8 @@ struct golden_rig {
     struct lm_display display;
     const struct golden_picture *picture;
     struct lm_place centre, aircraft;
-    uint64_t now_us, bus_us; /* bus_us: when the next set of values is due */
+    struct lm_target movers[GOLDEN_MOVERS]; /* in place of the image's targets */
+    uint64_t now_us, bus_us;                /* bus_us: when the next set of values is due */
     uint32_t bus_item, control_item;
     uint8_t message_code;
     uint8_t plane[GOLDEN_PIXELS_MAX];
