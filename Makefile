@@ -68,9 +68,10 @@ package: deps ## Build the panel's Debian packages for arm64 and amd64 in build/
 check-panel: deps ## Run the panel on real kernel interfaces: a Debian kernel in QEMU (part of check)
 	@$(MAKE) --no-print-directory -j2 check-panel-built
 
-bench: deps ## Measure: instructions a pixel, ratios against peers, memory
+bench: deps ## Measure: instructions a pixel, ratios against peers, memory, the panel's latency
 	@$(MAKE) --no-print-directory all
 	@sh tests/bench/bench.sh $(O)
+	@$(MAKE) --no-print-directory bench-panel
 
 gallery: deps ## Fly the real data of ../shared/data and leave the pictures in build/gallery
 	@$(MAKE) --no-print-directory all
