@@ -61,6 +61,8 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
         return say(label, p->is_patch ? "SAR" : lm_page_fields[p->field], "", false);
     case OSB_OVERRIDE:
         return say(label, "OVRD", "", p->is_override);
+    case OSB_BARO:
+        return say(label, "BARO", "", p->is_baro);
     case OSB_FREEZE:
         return say(label, "FZ", "", p->is_frozen);
     case OSB_SNOWPLOW:
@@ -151,6 +153,7 @@ static bool is_hidden(const struct lm_page *p, uint8_t osb)
 {
     const bool is_unusual = (osb == OSB_OVERRIDE && p->is_override) ||
                             (osb == OSB_FREEZE && p->is_frozen) ||
+                            (osb == OSB_BARO && p->is_baro) ||
                             (osb == OSB_SNOWPLOW && p->is_snowplow) || osb == OSB_DECLUTTER;
     return p->is_decluttered && (p->hidden & LM_OSB_BIT(osb)) && !is_unusual;
 }

@@ -156,9 +156,10 @@ static struct velocity read_velocity(const struct lm_nav *n, uint64_t now_us)
 
 static struct reading read_height(const struct lm_nav *n, uint64_t now_us)
 {
-    return first_alive(first_alive(read_field(n, LM_BUS_ELLIPSOID_HEIGHT, now_us),
-                                   read_field(n, LM_BUS_TRUE_ALTITUDE, now_us)),
-                       read_field(n, LM_BUS_BARO_ALTITUDE, now_us));
+    const struct reading true_height = first_alive(read_field(n, LM_BUS_ELLIPSOID_HEIGHT, now_us),
+                                                   read_field(n, LM_BUS_TRUE_ALTITUDE, now_us));
+    const struct reading baro = read_field(n, LM_BUS_BARO_ALTITUDE, now_us);
+    return n->is_baro_preferred ? first_alive(baro, true_height) : first_alive(true_height, baro);
 }
 
 static void set_velocity(struct lm_ownship *out, const struct velocity *v)

@@ -151,6 +151,9 @@ void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us)
         const struct lm_beam_setting beam = beam_of(&u->page);
         lm_sector_set_beam(&u->sector, &beam);
     }
+    if (effects & LM_EFFECT_HEIGHT) {
+        u->nav.is_baro_preferred = u->page.is_baro;
+    }
     if (effects & LM_EFFECT_PALETTE) {
         lm_palette_set(&u->palette, &u->page.palette);
     }

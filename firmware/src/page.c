@@ -17,7 +17,8 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
     p->cell = 3;
     p->hidden = LM_OSB_BIT(OSB_FREEZE) | LM_OSB_BIT(OSB_SNOWPLOW) | LM_OSB_BIT(OSB_CURSOR_ZERO) |
                 LM_OSB_BIT(OSB_STEERPOINT) | LM_OSB_BIT(OSB_BIT) | LM_OSB_BIT(OSB_RADAR) |
-                LM_OSB_BIT(OSB_TEST) | LM_OSB_BIT(OSB_SWAP) | LM_OSB_BIT(OSB_CELL);
+                LM_OSB_BIT(OSB_TEST) | LM_OSB_BIT(OSB_BARO) | LM_OSB_BIT(OSB_SWAP) |
+                LM_OSB_BIT(OSB_CELL);
 }
 
 uint32_t lm_page_cell_mm(const struct lm_page *p)
@@ -175,6 +176,9 @@ static uint32_t press_on_radar(struct lm_page *p, uint8_t osb, bool is_long)
     case OSB_OVERRIDE:
         p->is_override = !p->is_override;
         return 0;
+    case OSB_BARO:
+        p->is_baro = !p->is_baro;
+        return LM_EFFECT_HEIGHT;
     case OSB_FREEZE:
         p->is_frozen = !p->is_frozen;
         return 0;

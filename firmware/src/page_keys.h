@@ -11,6 +11,7 @@ enum {
     OSB_FIELD = 3,
     OSB_OVERRIDE = 4,
     OSB_CNTL = 5,
+    OSB_BARO = 6,
     OSB_FREEZE = 7,
     OSB_SNOWPLOW = 8,
     OSB_CURSOR_ZERO = 9,

@@ -42,6 +42,9 @@ struct lm_nav {
         bool has_value;
     } item[LM_BUS_FIELDS][LM_NAV_SOURCES];
 
+    bool is_baro_preferred; /* height: barometric altitude before the others; the operator's choice
+                             */
+
     /* Fixes that lie further from the sender's one before than LM_NAV_JUMP_M_S allows (at least
      * 150 m), each coordinate counted for itself. A jump is believed at once: an instructor moves
      * the aircraft. Whoever draws watches this number and starts the picture anew when it changes.
@@ -127,8 +130,8 @@ void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame);
  *
  * Velocity: north and east, or else ground speed along the track.
  *
- * Height: above the ellipsoid, or else true altitude, or else corrected barometric; moved on by
- * up-velocity, or else altitude rate.
+ * Height: above the ellipsoid, or else true altitude, or else corrected barometric (this one first
+ * when is_baro_preferred); moved on by up-velocity, or else altitude rate.
  *
  * Heading: true heading, or else heading; turned on by the body's pitch and yaw rates while these
  * and the attitude are good, within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60 degrees

@@ -28,7 +28,8 @@ enum lm_effect {
     LM_EFFECT_CURSOR_HOME = 1 << 4,
     LM_EFFECT_SNOWPLOW = 1 << 5, /* switched on or off */
     LM_EFFECT_SWAP = 1 << 6,     /* exchange this display's page with the other's */
-    LM_EFFECT_BEAM = 1 << 7      /* tilt or shape of the beam */
+    LM_EFFECT_BEAM = 1 << 7,     /* tilt or shape of the beam */
+    LM_EFFECT_HEIGHT = 1 << 8    /* which height is flown by */
 };
 
 enum {
@@ -46,6 +47,7 @@ struct lm_page {
     uint8_t mode, field;          /* of the sector: enum lm_sector_mode, enum lm_field */
     uint8_t range, azimuth;       /* indices into the radar table */
     uint8_t cell;                 /* of the patch: index into this page's own table */
+    bool is_baro;  /* the aircraft's height is the barometric one, where there is one */
     bool is_slant; /* a patch is shown in slant range: what stands high leans nearer */
     bool is_tilt_manual, is_pencil; /* the beam: its axis by hand, and not spoiled into a fan */
     int16_t tilt_tenths;            /* of its axis, degrees up; the unit's while it is automatic */

@@ -240,6 +240,20 @@ static void the_best_height_that_lives_is_used_and_moved_on(void **state)
     assert_int_equal(at(&nav, 5600001).height_source, LM_BUS_TRUE_ALTITUDE);
 }
 
+static void the_barometric_height_comes_first_when_it_is_preferred_and_lives(void **state)
+{
+    (void)state;
+    struct lm_nav nav;
+    lm_nav_init(&nav, &lm_bus_canas17);
+    nav.is_baro_preferred = true;
+    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 0);
+    assert_int_equal(at(&nav, 0).height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    hear_float(&nav, LM_BUS_BARO_ALTITUDE, 1000, 0);
+    assert_int_equal(at(&nav, 0).height_source, LM_BUS_BARO_ALTITUDE);
+    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 6000000);
+    assert_int_equal(at(&nav, 6000000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
+}
+
 static void true_heading_is_preferred_while_it_lives(void **state)
 {
     (void)state;
@@ -791,6 +805,7 @@ int main(void)
         cmocka_unit_test(near_a_pole_the_position_stays_one),
         cmocka_unit_test(ground_speed_and_track_serve_when_there_is_no_velocity),
         cmocka_unit_test(the_best_height_that_lives_is_used_and_moved_on),
+        cmocka_unit_test(the_barometric_height_comes_first_when_it_is_preferred_and_lives),
         cmocka_unit_test(true_heading_is_preferred_while_it_lives),
         cmocka_unit_test(heading_turns_as_the_body_does),
         cmocka_unit_test(heading_stands_still_where_it_means_nothing),

@@ -232,16 +232,33 @@ static void osb_5_opens_the_control_page_over_the_picture_and_closes_it(void **s
     free_rig(r);
 }
 
-static void osb_6_and_17_mean_nothing_on_the_radar_page(void **state)
+static void osb_6_flies_by_the_barometric_height(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    assert_true(labelled(r, 6, "BARO", 0));
+    assert_int_equal(r->unit.ownship.height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    const uint32_t before = plane_sum(r);
+    press(r, 6);
+    run(r, 2.5);
+    assert_true(labelled(r, 6, "BARO", 1));
+    assert_int_equal(r->unit.ownship.height_source, LM_BUS_BARO_ALTITUDE);
+    assert_int_equal(r->unit.ownship.height_q6, 2300 * 64);
+    assert_true(plane_sum(r) != before); /* the hole is wider from higher up */
+    press(r, 6);
+    run(r, 0.1);
+    assert_int_equal(r->unit.ownship.height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    free_rig(r);
+}
+
+static void osb_17_means_nothing_on_the_radar_page(void **state)
 {
     (void)state;
     struct rig *r = fly();
     const struct lm_page before = r->unit.page;
-    press(r, 6);
     press(r, 17);
     assert_memory_equal(&r->unit.page, &before, sizeof before);
     struct lm_label label;
-    assert_false(lm_page_label(&before, 6, &label));
     assert_false(lm_page_label(&before, 17, &label));
     free_rig(r);
 }
@@ -909,7 +926,8 @@ int main(void)
         cmocka_unit_test(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt),
         cmocka_unit_test(osb_4_stops_the_transmitter_and_the_picture_says_so),
         cmocka_unit_test(osb_5_opens_the_control_page_over_the_picture_and_closes_it),
-        cmocka_unit_test(osb_6_and_17_mean_nothing_on_the_radar_page),
+        cmocka_unit_test(osb_6_flies_by_the_barometric_height),
+        cmocka_unit_test(osb_17_means_nothing_on_the_radar_page),
         cmocka_unit_test(the_control_pages_keys_change_the_tone_of_the_picture),
         cmocka_unit_test(osb_1_to_4_of_the_control_page_point_and_shape_the_beam),
         cmocka_unit_test(osb_16_of_the_control_page_shows_patches_in_slant_range),

@@ -49,6 +49,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
                  {1037, 11.0},
                  {1038, 2000},
+                 {320, 2300},
                  {1133, b->nose_deg},
                  {321, b->nose_deg},
                  {1039, b->speed_m_s},
