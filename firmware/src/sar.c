@@ -320,15 +320,23 @@ static void focus_line(struct lm_sar *s, int32_t *level_q8)
     lm_defocus_run(near_lines, share_q16, level_q8, s->power_q32, s->grid.cells);
 }
 
-void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
-                      struct lm_line *line)
+bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
+                         struct lm_line *line)
 {
-    const uint32_t lines = s->radar->sar.cells;
+    const uint32_t end = fx_min_u32(s->line + 1 + LM_SAR_AHEAD, s->radar->sar.cells);
     if (s->sampled == 0) {
         find_points(s, tiles);
         hide_displaced(s, tiles, line);
     }
-    sample_lines(s, tiles, fx_min_u32(s->line + 1 + LM_SAR_AHEAD, lines), line);
+    sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
+    return s->sampled >= end;
+}
+
+void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
+                      struct lm_line *line)
+{
+    const uint32_t lines = s->radar->sar.cells;
+    lm_sar_sample_ahead(s, tiles, LM_SAR_AHEAD + 1, line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
     focus_line(s, line->sight.level_q8);
     lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);

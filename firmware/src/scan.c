@@ -82,14 +82,18 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
     return true;
 }
 
-static void draw_patch_line(struct lm_unit *u)
+static bool draw_patch_line(struct lm_unit *u)
 {
     const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
+    if (!lm_sar_sample_ahead(&u->sar, &u->tiles, SAMPLES_A_STEP, &u->line)) {
+        return false;
+    }
     lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
     lm_patch_paint(&u->plane, &u->frame, drawn, u->line.grey + LM_SAR_GUARD, cells);
     sample_coverage(u, cells);
     u->is_off_map = 2 * u->cells_none > u->cells_seen;
     u->next_line_us += u->sar.line_us;
+    return true;
 }
 
 /* Whether lines may be drawn now; while they may not, time does not owe any. */
@@ -111,11 +115,7 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 /* Draw a line of what is shown. False when it needs more than one step. */
 static bool draw_line(struct lm_unit *u, uint64_t now_us)
 {
-    if (!u->page.is_patch) {
-        return draw_sector_line(u, now_us);
-    }
-    draw_patch_line(u);
-    return true;
+    return u->page.is_patch ? draw_patch_line(u) : draw_sector_line(u, now_us);
 }
 
 void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)

@@ -87,6 +87,11 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 /* Ask for the tiles of line `line` and of its run-up. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
+/* Take samples that the next line needs, at most `at_most` of them: the first line needs
+ * LM_SAR_AHEAD + 1, which is more than the time of one line. True when it has all. */
+bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
+                         struct lm_line *line);
+
 /* Draw the next line: line->sight.level_q8 has its levels and line->grey its greys, its cells from
  * [LM_SAR_GUARD] on; line->ground is that of the line sampled last, up to LM_SAR_AHEAD lines on,
  * which the first line brings at once. Call while s->line < radar->sar.cells. */

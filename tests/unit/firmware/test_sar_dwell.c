@@ -54,17 +54,21 @@ static struct rig *fly_at(double speed_m_s, double nose_deg)
 static double seconds_of_patch(struct rig *r, struct lm_control control)
 {
     uint64_t first_us = 0;
+    uint32_t first =
+        0; /* lines that stood when first_us was taken: the first waits for those ahead */
     command(r, control);
     run(r, 0.004);
     assert_true(r->unit.page.is_patch);
     while (r->unit.sar.line < CELLS) {
-        if (r->unit.sar.line == 1 && first_us == 0) {
+        if (first_us == 0 && r->now_us >= r->unit.next_line_us - r->unit.sar.line_us &&
+            r->unit.sar.line > 0) {
             first_us = r->now_us;
+            first = r->unit.sar.line;
         }
         assert_true(r->now_us < 100000000);
         run(r, 0.002);
     }
-    return (double)(r->now_us - first_us) / 1e6 * CELLS / (CELLS - 1);
+    return (double)(r->now_us - first_us) / 1e6 * CELLS / (CELLS - first);
 }
 
 /* RADAR.md 2.3: 20 nautical miles, 45 degrees, 250 m/s. */
