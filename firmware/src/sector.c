@@ -108,7 +108,7 @@ static void set_window(struct lm_sector *s, const struct lm_platform *platform, 
     fx_bam_t azimuth;
     lm_geo_inverse(platform->place, s->command.centre, &distance_q8, &azimuth);
     s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
-    const uint32_t reach_q8 = s->half_m * 256u / 8 * 11;
+    const uint32_t reach_q8 = s->half_m * 256u / 16 * 23; /* a little more than the root of 2 */
     /* Places farther than any radar looks count as that far: the window is empty there. */
     const uint32_t ground_q8 = fx_min_u32(distance_q8, 250000u * 256u);
     const uint32_t slant_q8 = lm_slant_of_ground(ground_q8, above_q10);
@@ -146,7 +146,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
                        int32_t reference_q10)
 {
     const uint32_t range_m = s->radar->range_m[s->command.range];
-    const uint32_t bins = s->half_m ? s->radar->cells * 11u / 8 : s->radar->cells;
+    const uint32_t bins = s->half_m ? s->radar->cells * 23u / 16 : s->radar->cells;
     const uint32_t bin_q8 = (s->half_m ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
     const int32_t above_q10 = height_q10 - reference_q10;
     const uint32_t end_q8 = lm_ground_of_slant(s->edge_q8 + bins * bin_q8, above_q10);
