@@ -48,8 +48,8 @@ static int receive(void *ctx, struct lm_can_frame *frame)
         double value;
     } items[] = {{1036, 46.0 - 0.05 + north / 111132.0 + b->jump_degrees},
                  {1037, 11.0},
-                 {1038, 2000},
-                 {320, 2300},
+                 {1038, b->height_m},
+                 {320, b->height_m + 300},
                  {1133, b->nose_deg},
                  {321, b->nose_deg},
                  {1039, b->speed_m_s},
@@ -117,6 +117,7 @@ struct rig *make_rig(void)
     memory_flash_open(&r->flash, r->image.bytes, r->image.size);
     r->bus.stop_us = UINT64_MAX;
     r->bus.speed_m_s = 150;
+    r->bus.height_m = 2000;
     r->can = (struct lm_can){.ctx = &r->bus, .receive = receive};
     r->controls = (struct lm_controls){r, next_control};
     r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};

@@ -10,12 +10,13 @@
 
 enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120, CONTROLS_MAX = 64 };
 
-/* A bus that flies north at 150 m/s from 45.95 N 11 E, 2,000 m up, until told to stop. */
+/* A bus that flies north at 150 m/s from 45.95 N 11 E, until told to stop. */
 struct fake_bus {
     uint64_t now_us, sent_us, stop_us;
     int queue_next;
     int is_down;
     double jump_degrees;
+    double height_m;                        /* 2,000 at first */
     double speed_m_s, nose_deg, turn_deg_s; /* north, whatever nose and turn say */
     uint8_t code;
 };

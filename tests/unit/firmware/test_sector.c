@@ -1,0 +1,421 @@
+/* Sectors in flight: how fast they are swept, where a window lies over the ground, and that no
+ * picture outlives its mode. */
+#include "lm/sar.h"
+
+#include "reference.h"
+#include "sector_world.h"
+#include "target_support.h"
+#include "unit_rig.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct tiny_cell sea(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return (struct tiny_cell){-40, TINY_WATER, 0};
+}
+
+/* A unit in flight over the sea, on the 10 nm scale. */
+static struct rig *start_over_sea(double height_m, double speed_m_s)
+{
+    struct rig *r = make_rig();
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = sea;
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 10;
+    tiny_image_free(&r->image);
+    assert_int_equal(tiny_image_build(&r->image, &spec), 0);
+    memory_flash_open(&r->flash, r->image.bytes, r->image.size);
+    r->bus.height_m = height_m;
+    r->bus.speed_m_s = speed_m_s;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    command(r, range_10);
+    run(r, 0.5);
+    return r;
+}
+
+static void step(struct rig *r)
+{
+    run(r, STEP_US / 1e6);
+}
+
+static void show(struct rig *r, enum lm_sector_mode mode, enum lm_field field)
+{
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .value = mode, .value_y = field});
+    step(r);
+}
+
+static void finish_sweep(struct rig *r)
+{
+    const uint32_t sweep = r->unit.sector.sweep;
+    while (r->unit.sector.sweep == sweep) {
+        step(r);
+    }
+}
+
+static struct ref_place ref_of(struct lm_place place)
+{
+    return (struct ref_place){degrees_of(place.latitude), degrees_of(place.longitude)};
+}
+
+/* Put the cursor somewhere from the ownship. */
+static void put_cursor(struct rig *r, double azimuth_deg, double ground_m)
+{
+    const struct lm_ownship *own = &r->unit.ownship;
+    const struct lm_place from = {own->latitude, own->longitude};
+    const struct ref_place at = ref_geo_direct(ref_of(from), azimuth_deg, ground_m);
+    r->unit.cursor.place = (struct lm_place){bam(at.latitude_deg), bam(at.longitude_deg)};
+}
+
+/* ---- timing ---- */
+
+/* Degrees a second, from the first edge on, over so many seconds and up to a sweep's end. */
+static double measured_rate(struct rig *r, double seconds)
+{
+    double swept_deg = 0;
+    finish_sweep(r);
+    const uint64_t begin_us = r->now_us;
+    while ((double)(r->now_us - begin_us) < seconds * 1e6) {
+        finish_sweep(r);
+        swept_deg += degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+    }
+    return swept_deg * 1e6 / (double)(r->now_us - begin_us);
+}
+
+static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost(void **state)
+{
+    (void)state;
+    const double sector_deg[LM_AZIMUTHS] = {120, 60, 20}, seconds[LM_AZIMUTHS] = {60, 10, 10};
+    struct rig *r = start_rig();
+    for (int azimuth = 0; azimuth < LM_AZIMUTHS; azimuth++) {
+        command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .value = azimuth});
+        run(r, 0.2);
+        const double rate = measured_rate(r, seconds[azimuth]);
+        const double swept_deg = degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+        print_message("# %.0f degrees: %.2f degrees a second\n", sector_deg[azimuth], rate);
+        assert_true(fabs(rate / 120 - 1) < 0.02);
+        assert_true(fabs(swept_deg / sector_deg[azimuth] - 1) < 0.02);
+    }
+    assert_int_equal(r->unit.count.lines_dropped, 0);
+    free_rig(r);
+}
+
+static void windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen(void **state)
+{
+    (void)state;
+    const struct {
+        enum lm_field field;
+        double rate, half_window, half_max_deg;
+    } cases[] = {{LM_FIELD_EXP, 120, 0.125, 60},
+                 {LM_FIELD_DBS1, 15, 0.125, 15},
+                 {LM_FIELD_DBS2, 3, 0.03, 5}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct rig *r = start_rig();
+        command(r, range_10);
+        run(r, 0.5);
+        put_cursor(r, 30, 15000);
+        show(r, LM_SECTOR_GM, cases[i].field);
+        const double rate = measured_rate(r, 12);
+        const double swept_deg = degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+        double ground_m, bearing_deg;
+        ref_geo_inverse(ref_of(r->unit.sector.platform.place), ref_of(r->unit.cursor.place),
+                        &bearing_deg, &ground_m);
+        const double seen_deg =
+            degrees_of(bam(asin(1.5 * cases[i].half_window * 18520 / ground_m) * 57.29578));
+        print_message("# field %d: %.3f degrees a second over %.2f degrees\n", cases[i].field, rate,
+                      swept_deg);
+        assert_true(fabs(rate / cases[i].rate - 1) < 0.02);
+        assert_true(fabs(swept_deg / (2 * fmin(seen_deg, cases[i].half_max_deg)) - 1) < 0.02);
+        assert_int_equal(r->unit.count.lines_dropped, 0);
+        free_rig(r);
+    }
+}
+
+/* ---- geometry ---- */
+
+struct pixel {
+    double x, y;
+};
+
+/* Where a point is drawn: the mean of the pixels almost as bright as the brightest. */
+static struct pixel bright_spot(const struct rig *r)
+{
+    struct pixel sum = {0, 0};
+    double count = 0;
+    uint8_t peak = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        peak = r->plane[i] > peak ? r->plane[i] : peak;
+    }
+    assert_true(peak > 120);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        if (r->plane[i] > 0.8 * peak) {
+            sum.x += i % WIDTH;
+            sum.y += i / WIDTH;
+            count++;
+        }
+    }
+    return (struct pixel){sum.x / count, sum.y / count};
+}
+
+static struct pixel middle_of(const struct rig *r)
+{
+    const struct lm_frame square = lm_frame_square(&r->unit.frame);
+    return (struct pixel){square.left_px + square.width_px / 2,
+                          square.top_px + square.height_px / 2};
+}
+
+static bool is_near(struct pixel a, struct pixel b, double slack_px)
+{
+    const bool is = fabs(a.x - b.x) <= slack_px && fabs(a.y - b.y) <= slack_px;
+    if (!is) {
+        print_message("# drawn at %.1f %.1f, wanted at %.1f %.1f\n", a.x, a.y, b.x, b.y);
+    }
+    return is;
+}
+
+/* Slant range rightwards and upwards, metres, of a place on the sea as the window sees it. */
+static struct pixel slant_offset(const struct rig *r, struct lm_place place)
+{
+    const struct lm_platform *from = &r->unit.sector.platform;
+    double azimuth_deg, ground_m;
+    ref_geo_inverse(ref_of(from->place), ref_of(place), &azimuth_deg, &ground_m);
+    const double slant_m = hypot(ground_m, from->height_q10 / 1024.0);
+    const double turn = (azimuth_deg - degrees_of(r->unit.sector.up)) / 57.29577951;
+    return (struct pixel){slant_m * sin(turn), slant_m * cos(turn)};
+}
+
+/* Where a place belongs when the cursor's is in the middle. */
+static struct pixel wanted_at(const struct rig *r, struct lm_place place)
+{
+    const struct pixel at = slant_offset(r, place), centre = slant_offset(r, r->unit.cursor.place);
+    const struct lm_frame square = lm_frame_square(&r->unit.frame);
+    const double px_per_m = square.width_px / (2.0 * r->unit.sector.half_m);
+    const struct pixel middle = middle_of(r);
+    return (struct pixel){middle.x + (at.x - centre.x) * px_per_m,
+                          middle.y - (at.y - centre.y) * px_per_m};
+}
+
+static void put_target(struct rig *r, struct lm_place place, double rcs_db)
+{
+    r->unit.targets[0] =
+        point_at(degrees_of(place.latitude), degrees_of(place.longitude), 10, rcs_db);
+    r->unit.target_set = (struct lm_target_set){r->unit.targets, 1};
+}
+
+/* The window's place, and how bright a point must be to stand out well within the scale. Real beam
+ * is sampled every 15/16 of a degree from the nose, and a point is put on the nearest sample: in
+ * EXP the aircraft stands still and the point lies on one, 21 1/2 samples off the nose. */
+struct view_case {
+    enum lm_field field;
+    double speed_m_s, height_m, azimuth_deg, ground_m, rcs_db;
+};
+
+static const double on_a_sample_deg = 21.5 * 15 / 16;
+
+/* Push the cursor away from the aircraft, for a fifth of a second. */
+static void push_cursor(struct rig *r, double azimuth_deg)
+{
+    const double azimuth = azimuth_deg / 57.29577951;
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW,
+                                   .value = (int32_t)lround(900 * sin(azimuth)),
+                                   .value_y = (int32_t)lround(900 * cos(azimuth))});
+    run(r, 0.2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+}
+
+static void judge_window(const struct view_case *c)
+{
+    struct rig *r = start_over_sea(c->height_m, c->speed_m_s);
+    put_cursor(r, c->azimuth_deg, c->ground_m);
+    const struct lm_place first = r->unit.cursor.place;
+    put_target(r, first, c->rcs_db);
+    show(r, LM_SECTOR_GM, c->field);
+    finish_sweep(r);
+    assert_true(is_near(bright_spot(r), middle_of(r), 2));
+    finish_sweep(r);
+    assert_true(is_near(bright_spot(r), middle_of(r), 2));
+
+    /* The cursor moves over the picture; the next sweep moves the picture under the cursor, what
+     * is already drawn at once and what is drawn anew after it. Off the middle there is the scale's
+     * rounding as well: a pixel more. */
+    push_cursor(r, c->azimuth_deg);
+    finish_sweep(r);
+    while (!r->unit.sector.is_begun) {
+        step(r);
+    }
+    const struct pixel moved = wanted_at(r, first), middle = middle_of(r);
+    assert_true(hypot(moved.x - middle.x, moved.y - middle.y) > 10);
+    assert_true(moved.x < middle.x && moved.y > middle.y);
+    assert_true(is_near(bright_spot(r), moved, 3));
+    finish_sweep(r);
+    assert_true(is_near(bright_spot(r), wanted_at(r, first), 3));
+    put_target(r, r->unit.cursor.place, c->rcs_db);
+    finish_sweep(r);
+    finish_sweep(r);
+    assert_true(is_near(bright_spot(r), middle_of(r), 2));
+    free_rig(r);
+}
+
+static void a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window(void **state)
+{
+    (void)state;
+    const struct view_case cases[] = {{LM_FIELD_EXP, 0, 2000, on_a_sample_deg, 14000, 29},
+                                      {LM_FIELD_DBS1, 150, 2000, 40, 14000, 20},
+                                      {LM_FIELD_DBS2, 150, 2000, 40, 14000, 11}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        judge_window(&cases[i]);
+    }
+}
+
+/* Five nautical miles of slant range at 6 km are 7,053 m over the ground. */
+static void a_point_close_below_is_drawn_in_the_middle_of_the_window_too(void **state)
+{
+    (void)state;
+    const double ground_m = sqrt(9260.0 * 9260 - 6000.0 * 6000);
+    const struct view_case cases[] = {{LM_FIELD_EXP, 0, 6000, on_a_sample_deg, ground_m, 33},
+                                      {LM_FIELD_DBS1, 150, 6000, 40, ground_m, 24},
+                                      {LM_FIELD_DBS2, 150, 6000, 40, ground_m, 15}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        judge_window(&cases[i]);
+    }
+}
+
+/* ---- changes of picture ---- */
+
+enum { OLD = 1 }; /* grey of a picture that must go */
+
+static void fill_frame(struct rig *r, uint8_t grey)
+{
+    const struct lm_frame *f = &r->unit.frame;
+    for (int y = 0; y < f->height_px; y++) {
+        memset(r->plane + (f->top_px + y) * WIDTH + f->left_px, grey, f->width_px);
+    }
+}
+
+/* What is left of it on the right, where the first lines of a new picture do not come. */
+static uint32_t old_pixels(const struct rig *r)
+{
+    uint32_t count = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        count += i % WIDTH >= WIDTH / 2 && r->plane[i] == OLD;
+    }
+    return count;
+}
+
+/* Whether a pixel lies well within what the sweep paints, and so far out that noise alone makes it
+ * grey at full gain. */
+static bool is_swept(const struct rig *r, int x, int y)
+{
+    const struct lm_sector *s = &r->unit.sector;
+    const struct lm_view *v = &r->unit.view;
+    const bool is_window = s->half_m != 0;
+    const struct lm_frame f = is_window ? lm_frame_square(&r->unit.frame) : r->unit.frame;
+    const double right = x + 0.5 - v->at.x, up = v->at.y + 1 - (y + 0.5);
+    const double azimuth_deg = atan2(right, up) * 57.29578, length_px = hypot(right, up);
+    const double edge_deg = degrees_of((fx_bam_t)s->left), slack_deg = degrees_of(s->width);
+    const double width_deg = degrees_of(s->width) * s->lines;
+    const bool is_inside =
+        x >= f.left_px && x < f.left_px + f.width_px && y >= f.top_px && y < f.top_px + f.height_px;
+    return is_inside && azimuth_deg > edge_deg + slack_deg &&
+           azimuth_deg < edge_deg + width_deg - slack_deg &&
+           length_px * v->mm_q8_per_px / 256e3 > 5500 &&
+           (is_window || length_px < v->radius_px - 1);
+}
+
+static void judge_completeness(const struct rig *r)
+{
+    uint32_t swept = 0, empty = 0;
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) {
+            if (is_swept(r, x, y)) {
+                swept++;
+                empty += r->plane[y * WIDTH + x] == 0;
+            }
+        }
+    }
+    print_message("# %u pixels swept, %u left empty\n", swept, empty);
+    assert_true(swept > 20000);
+    assert_int_equal(empty, 0);
+}
+
+static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void **state)
+{
+    (void)state;
+    const struct {
+        enum lm_sector_mode mode;
+        enum lm_field field;
+    } cases[] = {{LM_SECTOR_GM, LM_FIELD_EXP},   {LM_SECTOR_GM, LM_FIELD_DBS1},
+                 {LM_SECTOR_GM, LM_FIELD_DBS2},  {LM_SECTOR_GM, LM_FIELD_NORM},
+                 {LM_SECTOR_SEA, LM_FIELD_NORM}, {LM_SECTOR_SEA, LM_FIELD_EXP},
+                 {LM_SECTOR_GMT, LM_FIELD_EXP},  {LM_SECTOR_GMT, LM_FIELD_NORM}};
+    struct rig *r = start_rig();
+    command(r, range_10);
+    command(r, (struct lm_control){.kind = LM_CONTROL_GAIN, .value = 30});
+    run(r, 1.5);
+    put_cursor(r, 45, 14000);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        fill_frame(r, OLD);
+        show(r, cases[i].mode, cases[i].field);
+        assert_int_equal(old_pixels(r), 0);
+        finish_sweep(r);
+        judge_completeness(r);
+    }
+    fill_frame(r, OLD);
+    command(r, patch_here);
+    step(r);
+    assert_true(r->unit.page.is_patch);
+    assert_int_equal(old_pixels(r), 0);
+    fill_frame(r, OLD);
+    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    step(r);
+    assert_false(r->unit.page.is_patch);
+    assert_int_equal(old_pixels(r), 0);
+    free_rig(r);
+}
+
+/* Once the tiles are there: the ground's elevation is taken when a patch is commanded. */
+static void a_patch_drawn_twice_is_the_same(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    struct lm_control patch = patch_here;
+    patch.sar.is_from_ownship = false;
+    patch.sar.look_azimuth = FX_BAM_DEG(30);
+    patch.sar.range_m = 20000;
+    patch.sar.height_q6 = 3000 * 64;
+    uint32_t sums[3];
+    run(r, 0.5);
+    for (int i = 0; i < 3; i++) {
+        command(r, patch);
+        step(r);
+        assert_true(r->unit.page.is_patch);
+        while (r->unit.sar.line < r->unit.sar.radar->sar.cells) {
+            step(r);
+        }
+        assert_true(lit_pixels(r) > 10000);
+        sums[i] = plane_sum(r);
+    }
+    assert_int_equal(sums[1], sums[2]);
+    free_rig(r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost),
+        cmocka_unit_test(windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen),
+        cmocka_unit_test(a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window),
+        cmocka_unit_test(a_point_close_below_is_drawn_in_the_middle_of_the_window_too),
+        cmocka_unit_test(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep),
+        cmocka_unit_test(a_patch_drawn_twice_is_the_same),
+    };
+    return cmocka_run_group_tests_name("sector", tests, NULL, NULL);
+}
