@@ -65,6 +65,9 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
     const struct lm_platform platform = platform_of(u, now_us);
     if (lm_sector_is_at_edge(s)) {
         begin_sweep(u, &platform);
+        if (s->half_m != 0) {
+            return false; /* a window's geometry is work enough for a step */
+        }
     }
     const uint32_t samples = s->samples;
     const bool is_ready = lm_sector_sample_ahead(s, &u->tiles, &platform, SAMPLES_A_STEP, &u->line);
