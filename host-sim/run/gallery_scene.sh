@@ -1,6 +1,6 @@
 #!/bin/sh
 # One real scene, from its data to pictures of it.
-# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera
+# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|modes|island_modes
 # The tests of tests/system run the same scenes through the same script.
 set -eu
 bin=$1
@@ -59,6 +59,71 @@ pass() { # NAME LAT,LON,HEADING,HEIGHT,SPEED "LAT LON CELL": fly by, and after 4
         --png "$out" --every 0 --size 1024x1024
 }
 
+show() { # DATABASE NAME TRACK-LOG: fly that script for a look at small pictures
+    say "show $2"
+    "$bin"/landmass-sim --db "$1" --bus "$3" --script "$out/$2.script" --png "$out" --every 0 --size 480x480
+}
+
+modes_of() { # DATABASE RANGE_NM "LAT LON of weather" RADIUS_KM "LAT LON CELL of a patch", then what landmass-nav shall fly
+    database=$1 range=$2 weather=$3 radius=$4 patch=$5
+    shift 5
+    "$bin"/landmass-nav --quiet --out "$out/straight.log" "$@" --seconds 60
+    { echo "0 range $range" && cat $in/modes.script; } > "$out/modes.script"
+    show "$database" modes "$out/straight.log"
+    cat > "$out/effects.script" <<EOF
+0    range $range
+2.1  picture effect-none
+2.1  rain $weather $radius 30
+4.2  picture effect-rain
+4.2  weather fair
+4.2  jam $weather 30
+6.3  picture effect-jammer
+6.3  weather fair
+6.3  osb 5
+6.4  osb 4
+8.5  picture effect-pencil-beam
+8.5  osb 2 1.2
+11.8 picture effect-pencil-beam-tilted-up
+EOF
+    show "$database" effects "$out/straight.log"
+    cat > "$out/seas.script" <<EOF
+0    range $range
+0    sea
+0    seastate 1
+4.2  picture effect-sea-state-1
+4.2  seastate 6
+8.4  picture effect-sea-state-6
+EOF
+    show "$database" seas "$out/straight.log"
+    printf '1 sar %s\n6 picture effect-no-layover\n6 sar %s layover\n11 picture effect-layover\n' "$patch" "$patch" \
+        > "$out/layover.script"
+    show "$database" layover "$out/straight.log"
+}
+
+modes() { # the built-in scene, as `make run` leaves it
+    if [ ! -r build/run/scene.lmdb ]; then
+        say "skipped, there is no build/run/scene.lmdb here: make run makes it"
+        exit 0
+    fi
+    modes_of build/run/scene.lmdb 10 "42.02 -29.07" 2.5 "41.9950 -29.0080 5" \
+        --straight 42.05,-29.16,90,3000,180
+    # A turn of 8.1 m/s2, the town 10 km off and 40 degrees to the right.
+    "$bin"/landmass-nav --quiet --out "$out/turn.log" --circle 41.9674,-28.9225,4000,3000,180,180 --seconds 20
+    cat > "$out/turn.script" <<EOF
+1    sar 41.9950 -29.0080 1
+4    picture effect-turn
+4    sar 41.9950 -29.0080 1 steady
+8    picture effect-turn-steady
+EOF
+    show build/run/scene.lmdb turn "$out/turn.log"
+}
+
+island_modes() { # Hilo, and Mauna Kea behind it
+    island_image
+    modes_of "$out/scene.lmdb" 20 "19.73 -155.10" 5 "19.82 -155.47 30" \
+        --straight 19.75,-154.9,250,3000,200
+}
+
 village() {
     need sentinel2_amazon_village_srtm_labels
     source=$data/sentinel2_amazon_village_srtm_labels/derived
@@ -103,12 +168,16 @@ campus() {
     done
 }
 
-island() {
+island_image() {
     need dted1_hawaii
     source=$data/dted1_hawaii
     build Hawaii --classes $in/terrain.classes --terrain "$source/n19_w155_3arc_v2.dt1" \
         --terrain "$source/n19_w156_3arc_v2.dt1" --terrain "$source/n20_w156_3arc_v2.dt1" \
         --land-class land --water-class sea --steep-class rock --steep-degrees 20
+}
+
+island() {
+    island_image
     fly island-high --straight 19.75,-154.75,270,3000,200 --seconds 10
     fly island-low --straight 19.75,-154.75,270,1500,200 --seconds 10
 }

@@ -30,10 +30,19 @@ say "Assign reflectivity"
 "$bin"/landmass-db reflect --class-raster $out/classes.tif --classes $classes --method assign \
     --out $out/reflectivity.tif
 
+# What moves: four vehicles on land and a ferry (docs/targets.md).
+cat >$out/targets.txt <<EOF
+target road-train 42.0120 -29.0330 ground+3 30 swerling 1 35 moving 22 3000
+target lorry-1 41.9700 -28.9900 ground+3 40 swerling 1 35 moving 20 3000
+target lorry-2 42.0350 -29.0100 ground+3 15 swerling 1 35 moving 18 3000
+target coach 42.0060 -28.9900 ground+3 10 swerling 1 35 moving 16 3000
+target ferry 42.0250 -29.0900 ground+6 20 swerling 1 42 moving 7 6000
+EOF
+
 say "Build the flash image and check every byte of it"
 "$bin"/landmass-db build --classes $classes --class-raster $out/classes.tif \
     --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif --terrain $out/surroundings/terrain.tif \
-    --heights $out/scene/heights.tif --title "built-in scene" --out $out/scene.lmdb
+    --heights $out/scene/heights.tif --targets $out/targets.txt --title "built-in scene" --out $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
 
 place() { # latitude and longitude of a place of the scene
@@ -64,6 +73,11 @@ window=
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then window=--window; fi
 "$bin"/landmass-sim --db $out/scene.lmdb --bus $out/flight.log --script $out/flight.script \
     --png $out/pictures --every 150 --seconds 50 $window
+
+say "Fly past the town once more: sea, moving targets, and the ground map through every field of view"
+"$bin"/landmass-nav --straight 42.05,-29.16,90,3000,180 --seconds 25 --out $out/modes.log
+{ echo "0 range 10" && cat host-sim/gallery/modes.script; } >$out/modes.script
+"$bin"/landmass-sim --db $out/scene.lmdb --bus $out/modes.log --script $out/modes.script --png $out/pictures --every 0
 
 say "Done in $(($(date +%s) - start)) s. Look at:"
 ls $out/scene/preview.png $out/classes.png $out/pictures/*.png
