@@ -1,0 +1,393 @@
+/* What a sweep shows of points, movers, noise and sea: how sharp it is where, and what GMT and SEA
+ * make of it. Measured on the lines behind the receiver, before the tone. */
+#include "reference.h"
+#include "sector_world.h"
+#include "target_support.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { POINTS_MAX = LM_TARGETS_NEAR, LINES_MAX = 256 };
+
+static struct tiny_cell sea(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return (struct tiny_cell){-40, TINY_WATER, 0};
+}
+
+/* Flat country of 65 km, 2,000 m below a radar that flies north with its nose to the north. */
+static struct sector_world *make_flat(bool is_sea)
+{
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.cell = is_sea ? sea : spec.cell;
+    spec.shift0 = 13;
+    spec.rows = spec.columns = 14;
+    struct sector_world *w = make_sector_world(&spec);
+    w->platform = (struct lm_platform){
+        .place = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .height_q10 = 2000 * 1024};
+    return w;
+}
+
+struct points {
+    struct lm_target items[POINTS_MAX];
+    double azimuth_deg[POINTS_MAX];
+    uint32_t count;
+};
+
+/* A steady point; returns it, for what else it is to be. */
+static struct lm_target *add_point(struct points *p, const struct sector_world *w,
+                                   double azimuth_deg, double ground_m, double rcs_db)
+{
+    const struct lm_place at = place_at(w, azimuth_deg, ground_m);
+    assert_true(p->count < POINTS_MAX);
+    p->azimuth_deg[p->count] = azimuth_deg;
+    p->items[p->count] = point_at(degrees_of(at.latitude), degrees_of(at.longitude), 10, rcs_db);
+    return &p->items[p->count++];
+}
+
+static struct lm_target_set set_of(const struct points *p)
+{
+    return (struct lm_target_set){p->items, p->count};
+}
+
+/* The largest level of the line drawn last within two bins of a ground range. */
+static double level_near(const struct sector_world *w, double ground_m)
+{
+    const struct lm_sector *s = &w->sector;
+    const double slant_m = hypot(ground_m, w->platform.height_q10 / 1024.0);
+    const int32_t bin =
+        (int32_t)lround((slant_m - s->slant.first_q8 / 256.0) * 256 / s->slant.cell_q8);
+    int32_t level_q8 = INT32_MIN;
+    assert_true(bin >= 2 && bin + 2 < (int32_t)s->slant.cells);
+    for (int32_t i = bin - 2; i <= bin + 2; i++) {
+        level_q8 = s->level_q8[i] > level_q8 ? s->level_q8[i] : level_q8;
+    }
+    return level_q8 / 256.0;
+}
+
+static struct ref_dbs dbs_of(const struct sector_world *w, double rate_deg_s)
+{
+    return (struct ref_dbs){.speed_m_s = w->platform.speed_mm_s / 1000.0,
+                            .beam_deg = degrees_of(w->radar.antenna.azimuth_beam),
+                            .wavelength_m = w->radar.wavelength_um * 1e-6,
+                            .rate_deg_s = rate_deg_s};
+}
+
+/* ---- how sharp ---- */
+
+/* -3 dB width of what is drawn around an azimuth: half power at both ends of a parabola through
+ * the brightest line and one to either side of it, about half as far away as it should be wide. */
+static double width_at(const struct sector_world *w, const double *level_db, uint32_t lines,
+                       double azimuth_deg, double wanted_deg)
+{
+    const double line_deg = degrees_of(w->sector.width);
+    const double half_deg = fmin(wanted_deg, 0.3);
+    const uint32_t apart = (uint32_t)fmax(1, floor(wanted_deg / 2 / line_deg));
+    uint32_t best = apart;
+    for (uint32_t k = apart; k + apart < lines; k++) {
+        const bool is_of_point = fabs(line_azimuth_deg(&w->sector, k) - azimuth_deg) < half_deg;
+        best = is_of_point && level_db[k] > level_db[best] ? k : best;
+    }
+    assert_true(level_db[best] > -15 && level_db[best] < 20); /* of the point, and not saturated */
+    const double fall_db = level_db[best - apart] - 2 * level_db[best] + level_db[best + apart];
+    const double step_deg = apart * line_deg;
+    return 2 * step_deg * sqrt(10 * log10(2) * 2 / -fall_db);
+}
+
+static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, double spacing_deg,
+                        uint32_t points, uint32_t speed_m_s, double ratio)
+{
+    const double ground_m = 15000;
+    struct sector_world *w = make_flat(true);
+    struct points p = {.count = 0};
+    w->platform.speed_mm_s = speed_m_s * 1000;
+    for (uint32_t i = 0; i < points; i++) {
+        add_point(&p, w, azimuth_deg + (i - (points - 1) / 2.0) * spacing_deg, ground_m, rcs_db);
+    }
+    const struct lm_target_set set = set_of(&p);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .field = (uint8_t)field,
+                                              .centre = place_at(w, azimuth_deg, ground_m)};
+    start_sector(w, &command, NULL, &set);
+    static double level_db[LINES_MAX];
+    do {
+        const uint32_t line = draw_line(w);
+        assert_true(line < LINES_MAX);
+        level_db[line] = level_near(w, ground_m);
+    } while (!lm_sector_is_at_edge(&w->sector));
+    const double wanted_deg = degrees_of(w->radar.antenna.azimuth_beam) / (sqrt(2) * ratio);
+    for (uint32_t i = 0; i < p.count; i++) {
+        const double width_deg =
+            width_at(w, level_db, w->sector.lines, p.azimuth_deg[i], wanted_deg);
+        if (i == 0 || fabs(width_deg / wanted_deg - 1) >= 0.1) {
+            print_message("# field %d, %.2f degrees off: %.4f degrees wide, wanted %.4f\n", field,
+                          p.azimuth_deg[i], width_deg, wanted_deg);
+        }
+        assert_true(fabs(width_deg / wanted_deg - 1) < 0.1);
+    }
+    free_sector_world(w);
+}
+
+static void a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch(void **state)
+{
+    (void)state;
+    judge_width(LM_FIELD_DBS1, 45, 20, 0.71, 16, 180, 8);
+    judge_width(LM_FIELD_DBS1, -30, 20, 0.71, 16, 180, 8);
+    judge_width(LM_FIELD_DBS2, 45, 10, 0.31, 16, 180, 64);
+    /* On a sampled azimuth: half a sample right of the nose. */
+    judge_width(LM_FIELD_DBS1, 0.46875, 30, 0, 1, 60, 1);
+    judge_width(LM_FIELD_DBS2, 0.46875, 30, 0, 1, 60, 1);
+}
+
+/* ---- the notch ---- */
+
+enum { RINGS = 5, RING_POINTS = 6 };
+
+/* Five rings of points 2 degrees apart, each ring turned by 0.4 degree against the next: in real
+ * beam each is a closed band, and sharpened at least one has a gap on any line. */
+static void add_rings(struct points *p, const struct sector_world *w, double ground_m,
+                      double apart_m, double rcs_db)
+{
+    for (int ring = 0; ring < RINGS; ring++) {
+        for (int n = 0; n < RING_POINTS; n++) {
+            add_point(p, w, -5.8 + 0.4 * ring + 2 * n, ground_m + (ring - RINGS / 2) * apart_m,
+                      rcs_db);
+        }
+    }
+}
+
+/* The darkest of the rings on the line drawn last. */
+static double darkest_ring(const struct sector_world *w, double ground_m, double apart_m)
+{
+    double level_db = INFINITY;
+    for (int ring = 0; ring < RINGS; ring++) {
+        level_db = fmin(level_db, level_near(w, ground_m + (ring - RINGS / 2) * apart_m));
+    }
+    return level_db;
+}
+
+/* How far real beam reaches to either side of the velocity. */
+static void measure_notch(struct sector_world *w, double ground_m, double apart_m, double *left_deg,
+                          double *right_deg)
+{
+    static double azimuth_deg[LINES_MAX], level_db[LINES_MAX];
+    double ahead_db = 0, least_deg = INFINITY;
+    uint32_t lines = 0;
+    do {
+        assert_true(lines < LINES_MAX);
+        azimuth_deg[lines] = line_azimuth_deg(&w->sector, draw_line(w));
+        level_db[lines] = darkest_ring(w, ground_m, apart_m);
+        if (fabs(azimuth_deg[lines]) < least_deg) {
+            least_deg = fabs(azimuth_deg[lines]);
+            ahead_db = level_db[lines];
+        }
+        lines++;
+    } while (!lm_sector_is_at_edge(&w->sector));
+    assert_true(ahead_db > -25); /* the bands stand out of the clutter */
+    *left_deg = *right_deg = 0;
+    for (uint32_t k = 0; k < lines; k++) {
+        const double width_deg = degrees_of(w->sector.width);
+        const bool is_real_beam = level_db[k] > ahead_db - 8;
+        *left_deg += azimuth_deg[k] < 0 && is_real_beam ? width_deg : 0;
+        *right_deg += azimuth_deg[k] > 0 && is_real_beam ? width_deg : 0;
+    }
+}
+
+static void the_notch_ends_where_the_formula_says(void **state)
+{
+    (void)state;
+    const struct {
+        enum lm_field field;
+        double rate_deg_s, least;
+        uint32_t speed_m_s;
+        double ground_m, apart_m, rcs_db;
+    } cases[] = {
+        {LM_FIELD_DBS1, 15, 4, 60, 14500, 300, 22},  {LM_FIELD_DBS1, 15, 4, 100, 14500, 300, 22},
+        {LM_FIELD_DBS1, 15, 4, 200, 14500, 300, 22}, {LM_FIELD_DBS2, 3, 32, 120, 9200, 100, 12},
+        {LM_FIELD_DBS2, 3, 32, 150, 9200, 100, 12},  {LM_FIELD_DBS2, 3, 32, 250, 9200, 100, 12}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct sector_world *w = make_flat(true);
+        struct points p = {.count = 0};
+        double left_deg, right_deg;
+        w->platform.speed_mm_s = cases[i].speed_m_s * 1000;
+        add_rings(&p, w, cases[i].ground_m, cases[i].apart_m, cases[i].rcs_db);
+        const struct lm_target_set set = set_of(&p);
+        const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                                  .field = (uint8_t)cases[i].field,
+                                                  .centre = place_at(w, 0, cases[i].ground_m)};
+        start_sector(w, &command, NULL, &set);
+        measure_notch(w, cases[i].ground_m, cases[i].apart_m, &left_deg, &right_deg);
+        const struct ref_dbs dbs = dbs_of(w, cases[i].rate_deg_s);
+        const double wanted_deg = ref_dbs_notch_deg(&dbs, cases[i].least);
+        print_message("# field %d at %u m/s: notch to %.2f and %.2f degrees, wanted %.2f\n",
+                      cases[i].field, cases[i].speed_m_s, left_deg, right_deg, wanted_deg);
+        assert_true(fabs(left_deg - wanted_deg) < 0.5);
+        assert_true(fabs(right_deg - wanted_deg) < 0.5);
+        free_sector_world(w);
+    }
+}
+
+/* ---- speckle ---- */
+
+enum { FIRST_BIN = 60, END_BIN = 240 };
+
+/* Levels of a sweep by line and bin, less each bin's mean over the lines. */
+static void take_sweep(struct sector_world *w, double level_db[LINES_MAX][END_BIN])
+{
+    do {
+        const uint32_t line = draw_line(w);
+        for (int i = FIRST_BIN; i < END_BIN; i++) {
+            level_db[line][i] = w->sector.level_q8[i] / 256.0;
+        }
+    } while (!lm_sector_is_at_edge(&w->sector));
+    for (int i = FIRST_BIN; i < END_BIN; i++) {
+        double sum = 0;
+        for (int line = 0; line < LINES_MAX; line++) {
+            sum += level_db[line][i];
+        }
+        for (int line = 0; line < LINES_MAX; line++) {
+            level_db[line][i] -= sum / LINES_MAX;
+        }
+    }
+}
+
+static double correlation(double a[LINES_MAX][END_BIN], double b[LINES_MAX][END_BIN])
+{
+    double aa = 0, bb = 0, ab = 0;
+    for (int line = 0; line < LINES_MAX; line++) {
+        for (int i = FIRST_BIN; i < END_BIN; i++) {
+            aa += a[line][i] * a[line][i];
+            bb += b[line][i] * b[line][i];
+            ab += a[line][i] * b[line][i];
+        }
+    }
+    assert_true(aa > 0.1 * LINES_MAX * (END_BIN - FIRST_BIN)); /* there is speckle at all */
+    return ab / sqrt(aa * bb);
+}
+
+static void speckle_is_another_one_in_each_sweep_of_real_beam(void **state)
+{
+    (void)state;
+    static double first[LINES_MAX][END_BIN], second[LINES_MAX][END_BIN];
+    struct sector_world *w = make_flat(false);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
+    start_sector(w, &command, NULL, NULL);
+    take_sweep(w, first);
+    assert_int_equal(w->sector.lines, LINES_MAX);
+    take_sweep(w, second);
+    const double r = correlation(first, second);
+    print_message("# correlation %.4f\n", r);
+    assert_true(fabs(r) < 0.1);
+    free_sector_world(w);
+}
+
+/* ---- movers and the sea ---- */
+
+static void set_in_motion(struct lm_target *t, double heading_deg, uint32_t speed_mm_s)
+{
+    t->heading = bam(heading_deg);
+    t->speed_mm_s = speed_mm_s;
+    t->leg_m = speed_mm_s ? 10000 : 0;
+    seal_target(t);
+}
+
+/* The largest level about a point in the four bars of GMT. */
+static double brightest_of_bars(struct sector_world *w, double azimuth_deg, double ground_m)
+{
+    double level_db = -INFINITY;
+    for (int bar = 0; bar < 4; bar++) {
+        do {
+            const uint32_t line = draw_line(w);
+            if (fabs(line_azimuth_deg(&w->sector, line) - azimuth_deg) < 1) {
+                level_db = fmax(level_db, level_near(w, ground_m));
+            }
+        } while (!lm_sector_is_at_edge(&w->sector));
+    }
+    return level_db;
+}
+
+/* The table's gates are 3 and 100 knots: 1.543 and 51.44 m/s. */
+static void gmt_shows_what_moves_within_its_gates_and_nothing_else(void **state)
+{
+    (void)state;
+    const struct {
+        double azimuth_deg;
+        bool is_closing;
+        uint32_t speed_mm_s;
+        bool is_shown;
+    } cases[] = {{-40, true, 10000, true},  {-30, false, 10000, true}, {-20, true, 1400, false},
+                 {-10, true, 1700, true},   {0, true, 50000, true},    {10, true, 53000, false},
+                 {20, false, 53000, false}, {30, true, 0, false}};
+    const uint32_t count = sizeof cases / sizeof *cases;
+    struct sector_world *w = make_flat(false);
+    struct points p = {.count = 0};
+    for (uint32_t i = 0; i < count; i++) {
+        struct lm_target *t = add_point(&p, w, cases[i].azimuth_deg, 9000 + 700.0 * i, 40);
+        set_in_motion(t, cases[i].azimuth_deg + (cases[i].is_closing ? 180 : 0),
+                      cases[i].speed_mm_s);
+    }
+    const struct lm_target_set set = set_of(&p);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GMT};
+    start_sector(w, &command, NULL, &set);
+    for (uint32_t i = 0; i < count; i++) {
+        const double level_db = brightest_of_bars(w, cases[i].azimuth_deg, 9000 + 700.0 * i);
+        print_message("# %u mm/s: %.1f dB\n", cases[i].speed_mm_s, level_db);
+        assert_true(cases[i].is_shown ? level_db > -5 : level_db < -30);
+    }
+    free_sector_world(w);
+}
+
+/* Mean power of the sea between 3 and 5 km, dB. */
+static double mean_sea_db(struct sector_world *w)
+{
+    double sum = 0, count = 0;
+    do {
+        draw_line(w);
+        for (uint32_t i = 0; i < w->sector.slant.cells; i++) {
+            const double slant_m = (w->sector.slant.first_q8 + i * w->sector.slant.cell_q8) / 256.0;
+            if (slant_m > 3000 && slant_m < 5000) {
+                sum += pow(10, w->sector.level_q8[i] / 2560.0);
+                count++;
+            }
+        }
+    } while (!lm_sector_is_at_edge(&w->sector));
+    return 10 * log10(sum / count);
+}
+
+static void the_sea_brightens_by_5_dB_a_state(void **state)
+{
+    (void)state;
+    const struct lm_sector_command command = {.mode = LM_SECTOR_SEA, .azimuth = 1};
+    struct sector_world *w = make_flat(true);
+    double before_db = 0;
+    for (uint8_t sea_state = 0; sea_state <= LM_SEA_STATE_MAX; sea_state++) {
+        const struct lm_environment e = {.sea_state = sea_state};
+        start_sector(w, &command, &e, NULL);
+        const double level_db = mean_sea_db(w);
+        print_message("# state %u: %.2f dB\n", sea_state, level_db);
+        if (sea_state > 0) {
+            assert_true(fabs(level_db - before_db - 5) < 0.5);
+        }
+        before_db = level_db;
+    }
+    free_sector_world(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch),
+        cmocka_unit_test(the_notch_ends_where_the_formula_says),
+        cmocka_unit_test(speckle_is_another_one_in_each_sweep_of_real_beam),
+        cmocka_unit_test(gmt_shows_what_moves_within_its_gates_and_nothing_else),
+        cmocka_unit_test(the_sea_brightens_by_5_dB_a_state),
+    };
+    return cmocka_run_group_tests_name("sector_doppler", tests, NULL, NULL);
+}
