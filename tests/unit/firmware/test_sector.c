@@ -49,7 +49,8 @@ static void step(struct rig *r)
 
 static void show(struct rig *r, enum lm_sector_mode mode, enum lm_field field)
 {
-    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .value = mode, .value_y = field});
+    command(r, (struct lm_control){
+                   .kind = LM_CONTROL_SECTOR, .value = (int32_t)mode, .value_y = (int32_t)field});
     step(r);
 }
 
