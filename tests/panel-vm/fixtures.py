@@ -40,6 +40,7 @@ def busy_log(lines):
     start, seconds = stamped[0][0], stamped[-1][0] - stamped[0][0]
     fillers = round(BUSY_FRAMES_A_SECOND * seconds) - len(stamped)
     stamped += [(start + (number + 0.5) * seconds / fillers, "0001046D#0914000000000000") for number in range(fillers)]
+    os.makedirs(WORK, exist_ok=True)
     path = os.path.join(WORK, "busy.log")
     with open(path, "w", encoding="ascii") as out:
         out.writelines("(%.6f) can0 %s\n" % frame for frame in sorted(stamped))
