@@ -323,7 +323,7 @@ struct ref_beam {
     double ratio;    /* N >= 1; 1: real beam */
 };
 
-/* A line of the display: samples first .. first + 15, whose weights add up to 1. */
+/* A line of the display: samples first .. first + 7, whose weights add up to 1. */
 struct ref_beam_look {
     long first;
     double weight[REF_BEAM_SAMPLES];

@@ -22,9 +22,9 @@ void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *cons
     ref_receive(&s->receiver, weather, s->line, s->sweep, sum, level_db);
 }
 
-/* The lines sampled last: sample n of a spacing is in slot n mod 16. */
+/* The lines sampled last: sample n of a spacing is in slot n mod 8. */
 struct samples {
-    struct ref_bin *bins; /* owned: 16 lines */
+    struct ref_bin *bins; /* owned: 8 lines */
     double spacing_deg[REF_BEAM_SAMPLES];
     long number[REF_BEAM_SAMPLES];
 };
@@ -132,7 +132,7 @@ int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
         .bins = calloc(REF_BEAM_SAMPLES * (size_t)picture->cell_count, sizeof *samples.bins)};
     if (samples.bins == NULL) {
         ref_picture_free(picture);
-        return hs_error("picture", "ask for fewer cells", "not enough memory for 16 lines");
+        return hs_error("picture", "ask for fewer cells", "not enough memory for 8 lines");
     }
     draw(picture, &samples, db, sector, &quiet);
     free(samples.bins);
