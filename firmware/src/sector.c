@@ -67,7 +67,6 @@ static void set_sector(struct lm_sector *s)
     s->width = s->radar->line;
     s->lines = 2 * half_lines;
     s->left = -(int32_t)(half_lines * s->width);
-    s->half_m = 0;
     s->edge_q8 = 0;
 }
 
@@ -107,7 +106,6 @@ static void set_window(struct lm_sector *s, const struct lm_platform *platform, 
     uint32_t distance_q8;
     fx_bam_t azimuth;
     lm_geo_inverse(platform->place, s->command.centre, &distance_q8, &azimuth);
-    s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
     const uint32_t reach_q8 = s->half_m * 256u / 16 * 23; /* a little more than the root of 2 */
     /* Places farther than any radar looks count as that far: the window is empty there. */
     const uint32_t ground_q8 = fx_min_u32(distance_q8, 250000u * 256u);
@@ -224,19 +222,18 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
     const uint32_t old_edge_q8 = s->edge_q8, old_half_m = s->half_m;
-    const bool is_window = field_of(s)->window_permille != 0;
+    s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
     s->sampling = sampling_of(s, tiles->db);
     const int32_t reference_q10 = reference_q10_of(tiles, s->sampling.level, platform->place);
     s->up = platform->heading;
     s->platform = *platform;
-    if (is_window) {
+    if (s->half_m != 0) {
         set_window(s, platform, platform->height_q10 - reference_q10);
     } else {
         set_sector(s);
     }
-    s->sampling = sampling_of(s, tiles->db);
     refresh_ranges(s, tiles, platform->height_q10, reference_q10, old_edge_q8, old_half_m);
-    if (is_window) {
+    if (s->half_m != 0) {
         s->has_runup = false;
         lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
     }
@@ -244,10 +241,12 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     set_texture(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
+    s->is_aimed = false;
 }
 
 static void move_on(struct lm_sector *s)
 {
+    s->is_aimed = false;
     const bool at_edge = s->is_leftward ? s->line == 0 : s->line + 1 >= s->lines;
     if (at_edge) {
         s->is_leftward = !s->is_leftward;
@@ -389,28 +388,9 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
-/* Take what the look still lacks, at most so many samples. Whether it then has all. */
-static bool take_missing_samples(struct lm_sector *s, struct lm_tile_cache *tiles,
-                                 const struct lm_beam_look *look, uint32_t at_most,
-                                 struct lm_line *line)
-{
-    struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, s->platform.place);
-    for (int32_t n = look->first; n < look->first + LM_BEAM_TAPS; n++) {
-        if (lm_beam_has(&s->beam, n)) {
-            continue;
-        }
-        if (at_most-- == 0) {
-            return false;
-        }
-        take_sample(s, tiles, &origin, n, line);
-    }
-    return true;
-}
-
-/* Begin the sweep if that is due, and look where the next line is. */
+/* Begin the sweep if that is due, and look, once, where the next line is. */
 static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
-                const struct lm_platform *platform, struct lm_beam_look *look)
+                const struct lm_platform *platform)
 {
     if (!s->is_begun) {
         lm_sector_begin(s, tiles, platform);
@@ -419,17 +399,39 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
         s->up = platform->heading;
         s->platform.place = platform->place;
     }
-    const int32_t azimuth = middle_of(s, s->line);
-    lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), look);
+    if (!s->is_aimed) {
+        const int32_t azimuth = middle_of(s, s->line);
+        lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), &s->look);
+        s->is_aimed = true;
+    }
+}
+
+/* The first sample that the look lacks; the one behind its last when it has all. */
+static int32_t first_missing(const struct lm_sector *s)
+{
+    int32_t n = s->look.first;
+    while (n < s->look.first + LM_BEAM_TAPS && lm_beam_has(&s->beam, n)) {
+        n++;
+    }
+    return n;
 }
 
 bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
                             const struct lm_platform *platform, uint32_t at_most,
                             struct lm_line *line)
 {
-    struct lm_beam_look look;
-    aim(s, tiles, platform, &look);
-    return take_missing_samples(s, tiles, &look, at_most, line);
+    aim(s, tiles, platform);
+    const int32_t end = s->look.first + LM_BEAM_TAPS;
+    int32_t n = first_missing(s);
+    if (n == end) {
+        return true;
+    }
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, s->platform.place);
+    for (uint32_t taken = 0; n != end && taken < at_most; taken++, n = first_missing(s)) {
+        take_sample(s, tiles, &origin, n, line);
+    }
+    return n == end;
 }
 
 static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
@@ -446,12 +448,10 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line)
 {
-    struct lm_beam_look look;
-    aim(s, tiles, platform, &look);
-    take_missing_samples(s, tiles, &look, LM_BEAM_TAPS, line);
+    lm_sector_sample_ahead(s, tiles, platform, LM_BEAM_TAPS, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    lm_beam_sum(&s->beam, &look, s->power_q24, cells);
+    lm_beam_sum(&s->beam, &s->look, s->power_q24, cells);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
         lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.place,

@@ -56,13 +56,23 @@ static bool parse_effects(char **words, int count, struct lm_sar_command *sar)
     return true;
 }
 
+static bool place(char **words, struct lm_place *at)
+{
+    double lat, lon;
+    if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
+        return false;
+    }
+    *at = (struct lm_place){bam_of_degrees(lat), bam_of_degrees(lon)};
+    return true;
+}
+
 static bool parse_sar(char **words, int count, struct lm_control *c)
 {
-    double lat, lon, cell, look = 0, range = 0, height = 0;
+    struct lm_place centre;
+    double cell, look = 0, range = 0, height = 0;
     const bool is_from_ownship = strcmp(words[1], "sar") == 0;
     const int least = is_from_ownship ? 5 : 8;
-    if (count < least || !number(words[2], -90, 90, &lat) || !number(words[3], -180, 180, &lon) ||
-        !number(words[4], 0.1, 1000, &cell)) {
+    if (count < least || !place(words + 2, &centre) || !number(words[4], 0.1, 1000, &cell)) {
         return false;
     }
     if (!is_from_ownship &&
@@ -72,7 +82,7 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
     }
     c->kind = LM_CONTROL_SAR;
     c->sar = (struct lm_sar_command){
-        .centre = {bam_of_degrees(lat), bam_of_degrees(lon)},
+        .centre = centre,
         .cell_mm = (uint32_t)lround(cell * 1000),
         .is_from_ownship = is_from_ownship,
         .look_azimuth = bam_of_degrees(look),
@@ -188,16 +198,6 @@ static bool parse_plain(const char *word, struct lm_control *c)
     return true;
 }
 
-static bool place(char **words, struct lm_place *at)
-{
-    double lat, lon;
-    if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
-        return false;
-    }
-    *at = (struct lm_place){bam_of_degrees(lat), bam_of_degrees(lon)};
-    return true;
-}
-
 static bool add_rain(char **words, int count, struct lm_environment *e)
 {
     double radius_km, mm_per_h;
@@ -243,21 +243,12 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
     return true;
 }
 
-static bool is_one_of(const char *word, const char *const *names)
-{
-    for (; *names; names++) {
-        if (strcmp(word, *names) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool parse_line(char **words, int count, struct lm_environment *environment,
                        struct line_events *line)
 {
-    static const char *const sectors[] = {"gm", "gmt", "sea", NULL};
-    static const char *const weathers[] = {"rain", "jam", "weather", "seastate", NULL};
+    static const char *const sectors[] = {"gm", "gmt", "sea"};
+    static const char *const weathers[] = {"rain", "jam", "weather", "seastate"};
+    int32_t which;
     double seconds;
     struct script_event *e = &line->event[0];
     memset(line, 0, sizeof *line);
@@ -266,10 +257,10 @@ static bool parse_line(char **words, int count, struct lm_environment *environme
         return false;
     }
     e->time_us = (uint64_t)llround(seconds * 1e6);
-    if (is_one_of(words[1], sectors)) {
+    if (choice(words[1], sectors, 3, &which)) {
         return parse_sector(words, count, &e->control);
     }
-    if (is_one_of(words[1], weathers)) {
+    if (choice(words[1], weathers, 4, &which)) {
         const bool is_understood = parse_environment(words, count, environment);
         e->control.kind = LM_CONTROL_ENVIRONMENT;
         e->control.environment = *environment;

@@ -72,6 +72,8 @@ struct lm_sector {
     struct lm_fan fan;
     struct lm_texture texture;
     struct lm_beam beam;
+    struct lm_beam_look look; /* of the next line, once `is_aimed` */
+    bool is_aimed;
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_targets_near near;
