@@ -13,6 +13,7 @@ enum {
     SECTION_DIRECTORY,
     SECTION_TILES,
     SECTION_TARGETS = 6,
+    SECTION_SIGNATURES,
     SECTIONS_MAX = 16
 };
 enum { HEIGHT_MAX_Q6 = 1 << 20 };
@@ -147,30 +148,67 @@ static bool classes_are_sound(const struct lm_classes *c)
     return c->height_dm[0] == 0;
 }
 
-/* The targets' head; an image need not have any. Their records are checked when they are read. */
-static int read_targets_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+/* The head of a section of records, which an image need not have: its bytes, sealed by a CRC in the
+ * last four. LM_OK and *s NULL when there is none. */
+static int read_head(const struct lm_db *db, const struct header *h, uint32_t type, void *head,
+                     uint32_t head_bytes, const struct section **s, uint32_t poll_limit)
 {
-    struct lm_targets_head head;
-    const struct section *s = section_of_type(h, SECTION_TARGETS);
-    db->target_count = 0;
-    db->targets_offset = 0;
-    if (s == NULL) {
+    *s = section_of_type(h, type);
+    if (*s == NULL) {
         return LM_OK;
     }
-    if (s->bytes < sizeof head || !is_inside(h, s)) {
+    if ((*s)->bytes < head_bytes || !is_inside(h, *s)) {
         return LM_ERR_CORRUPT;
     }
-    const int status = lm_db_read(db->flash, s->offset, &head, sizeof head, poll_limit);
+    const int status = lm_db_read(db->flash, (*s)->offset, head, head_bytes, poll_limit);
     if (status != LM_OK) {
         return status;
     }
-    if (fx_crc32c(0, &head, sizeof head - sizeof head.crc) != head.crc ||
-        head.record_bytes != LM_TARGET_BYTES || head.count > LM_DB_TARGETS_MAX ||
+    const uint8_t *bytes = head;
+    const uint32_t crc_at = head_bytes - (uint32_t)sizeof(uint32_t);
+    return fx_crc32c(0, bytes, crc_at) == fx_load_u32(bytes + crc_at) ? LM_OK : LM_ERR_CORRUPT;
+}
+
+/* The records of targets and signatures are checked when they are read. */
+static int read_targets_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+{
+    struct lm_targets_head head;
+    const struct section *s;
+    const int status = read_head(db, h, SECTION_TARGETS, &head, sizeof head, &s, poll_limit);
+    db->target_count = 0;
+    db->targets_offset = 0;
+    if (status != LM_OK || s == NULL) {
+        return status;
+    }
+    if (head.record_bytes != LM_TARGET_BYTES || head.count > LM_DB_TARGETS_MAX ||
         s->bytes != sizeof head + (uint64_t)head.count * LM_TARGET_BYTES) {
         return LM_ERR_CORRUPT;
     }
     db->target_count = head.count;
     db->targets_offset = s->offset + sizeof head;
+    return LM_OK;
+}
+
+static int read_signatures_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+{
+    struct lm_signatures_head head;
+    const struct section *s;
+    const int status = read_head(db, h, SECTION_SIGNATURES, &head, sizeof head, &s, poll_limit);
+    db->signature_count = db->chip_count = 0;
+    db->signatures_offset = db->chips_offset = 0;
+    if (status != LM_OK || s == NULL) {
+        return status;
+    }
+    const uint64_t records = (uint64_t)head.count * LM_SIGNATURE_BYTES;
+    if (head.record_bytes != LM_SIGNATURE_BYTES || head.chip_bytes != LM_CHIP_BYTES ||
+        head.count > LM_DB_SIGNATURES_MAX || head.chip_count > LM_DB_CHIPS_MAX ||
+        s->bytes != sizeof head + records + (uint64_t)head.chip_count * LM_CHIP_BYTES) {
+        return LM_ERR_CORRUPT;
+    }
+    db->signature_count = head.count;
+    db->chip_count = head.chip_count;
+    db->signatures_offset = s->offset + sizeof head;
+    db->chips_offset = db->signatures_offset + records;
     return LM_OK;
 }
 
@@ -234,8 +272,11 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     db->centre_longitude = h.centre_longitude;
     memcpy(db->title, h.title, sizeof h.title);
     db->title[sizeof h.title] = 0;
-    const int tables = read_tables(db, &h, poll_limit);
-    return tables == LM_OK ? read_targets_head(db, &h, poll_limit) : tables;
+    int tables = read_tables(db, &h, poll_limit);
+    if (tables == LM_OK) {
+        tables = read_targets_head(db, &h, poll_limit);
+    }
+    return tables == LM_OK ? read_signatures_head(db, &h, poll_limit) : tables;
 }
 
 uint8_t lm_db_zone(fx_bam_t latitude)

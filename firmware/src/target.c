@@ -39,14 +39,23 @@ static bool motion_is_sound(const struct lm_target *t)
                                     t->leg_m <= LM_TARGET_LEG_MAX_M;
 }
 
+/* What gives the target its return: bodies, a signature, or neither. */
+static bool kind_is_sound(const struct lm_target *t)
+{
+    const bool has_signature = (t->flags & LM_TARGET_HAS_SIGNATURE) != 0;
+    return t->scatterer_count <= LM_SCATTERERS_MAX &&
+           (has_signature ? t->scatterer_count == 0 && t->signature < LM_DB_SIGNATURES_MAX
+                          : t->signature == 0);
+}
+
 int lm_target_check(const struct lm_target *t)
 {
     const uint8_t *bytes = (const uint8_t *)t;
     bool is_sound = fx_crc32c(0, bytes + 4, LM_TARGET_BYTES - 4) == t->crc &&
                     fx_abs_u32((int32_t)t->latitude) <= FX_BAM_90 &&
-                    is_within(t->elevation_q6, ELEVATION_MAX_Q6) &&
-                    t->scatterer_count <= LM_SCATTERERS_MAX && (t->flags & ~LM_TARGET_FLAGS) == 0 &&
-                    motion_is_sound(t) && t->swerling <= LM_TARGET_SWERLING_MAX &&
+                    is_within(t->elevation_q6, ELEVATION_MAX_Q6) && kind_is_sound(t) &&
+                    (t->flags & ~LM_TARGET_FLAGS) == 0 && motion_is_sound(t) &&
+                    t->swerling <= LM_TARGET_SWERLING_MAX &&
                     is_within(t->mean_rcs_q8, LM_TARGET_RCS_MAX_Q8);
     for (uint32_t i = 0; is_sound && i < t->scatterer_count; i++) {
         is_sound = scatterer_is_sound(&t->scatterers[i]);

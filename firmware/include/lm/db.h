@@ -36,7 +36,11 @@ enum {
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
     LM_TILE_BYTES = 16704,
     LM_TARGET_BYTES = 640, /* a record of TARGETS: lm/target.h */
-    LM_DB_TARGETS_MAX = 1024
+    LM_DB_TARGETS_MAX = 1024,
+    LM_SIGNATURE_BYTES = 1152, /* a record of SIGNATURES, and a chip of it: lm/signature.h */
+    LM_CHIP_BYTES = 4672,
+    LM_DB_SIGNATURES_MAX = 16,
+    LM_DB_CHIPS_MAX = LM_DB_SIGNATURES_MAX * 128 * 8
 };
 
 /* What a class is to the radar, apart from how bright. */
@@ -105,8 +109,10 @@ struct lm_db {
     uint8_t level_count, shift0;
     uint16_t band_count;
     uint32_t entry_count, record_count;
-    uint32_t target_count; /* 0 when the image has no section TARGETS */
+    uint32_t target_count;                /* 0 when the image has no section TARGETS */
+    uint32_t signature_count, chip_count; /* 0 when it has no section SIGNATURES */
     uint64_t directory_offset, records_offset, targets_offset; /* of the first record each */
+    uint64_t signatures_offset, chips_offset;
     int32_t mean_elevation_q6; /* of the land in the image, metres * 64 */
     int32_t geoid_q6;          /* height of mean sea level above the ellipsoid here, metres * 64 */
     fx_bam_t centre_latitude, centre_longitude;
@@ -123,14 +129,24 @@ struct lm_targets_head {
 };
 _Static_assert(sizeof(struct lm_targets_head) == 64, "the record must be what FORMATS.md says");
 
+/* Head of the section SIGNATURES; signature_count records and chip_count chips (lm/signature.h)
+ * follow it. */
+struct lm_signatures_head {
+    uint32_t count, record_bytes, chip_count, chip_bytes;
+    uint8_t reserved[44];
+    uint32_t crc; /* CRC-32C of the bytes before it */
+};
+_Static_assert(sizeof(struct lm_signatures_head) == 64, "the record must be what FORMATS.md says");
+
 /* Read from the flash and wait for it, polling at most `poll_limit` times: for start-up, when no
  * other read is under way. LM_OK, or LM_ERR_IO with *destination unspecified. */
 int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination, uint32_t length,
                uint32_t poll_limit);
 
-/* Read and check header, class table, band table and head of the targets. Polls each read at most
- * `poll_limit` times. LM_OK, or LM_ERR_IO, LM_ERR_CORRUPT, LM_ERR_VERSION with *db unspecified.
- * After LM_OK every offset and count in *db has been checked against the size of the flash. */
+/* Read and check header, class table, band table and the heads of targets and signatures. Polls
+ * each read at most `poll_limit` times. LM_OK, or LM_ERR_IO, LM_ERR_CORRUPT, LM_ERR_VERSION with
+ * *db unspecified. After LM_OK every offset and count in *db has been checked against the size of
+ * the flash. */
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
 
 /* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders at 61.875, 73.125

@@ -24,7 +24,7 @@ enum {
 };
 
 /* Flags of a target, bits. */
-enum { LM_TARGET_ABOVE_GROUND = 1, LM_TARGET_FLAGS = 1 };
+enum { LM_TARGET_ABOVE_GROUND = 1, LM_TARGET_HAS_SIGNATURE = 2, LM_TARGET_FLAGS = 3 };
 
 /* One body of a target. Its boresight points to azimuth (from forward towards right) and elevation;
  * its right axis is then level, and roll turns it towards its up axis. */
@@ -45,7 +45,7 @@ struct lm_target {
     fx_bam_t latitude, longitude;
     int32_t elevation_q6;    /* of the origin, metres * 64: above mean sea level, or as flagged */
     fx_bam_t heading;        /* of the forward axis, from north by east */
-    uint8_t scatterer_count; /* 0..16; 0: a point that fluctuates by itself */
+    uint8_t scatterer_count; /* 0..16; 0: a signature, or a point that fluctuates by itself */
     uint8_t swerling;        /* 0..4, of such a point */
     uint16_t flags;          /* LM_TARGET_...; others make it unsound */
     int32_t mean_rcs_q8;     /* of such a point, dBsm * 256 */
@@ -53,7 +53,8 @@ struct lm_target {
     struct lm_scatterer scatterers[LM_SCATTERERS_MAX];
     uint32_t speed_mm_s; /* along the heading and back again; 0: stands still */
     uint32_t leg_m;      /* of that way, 1..LM_TARGET_LEG_MAX_M; 0 when it stands still */
-    uint8_t reserved[8];
+    uint8_t signature;   /* which one of the image's, when flagged; the target then has no bodies */
+    uint8_t reserved[7];
 };
 _Static_assert(sizeof(struct lm_target) == LM_TARGET_BYTES,
                "the record must be what FORMATS.md says");
