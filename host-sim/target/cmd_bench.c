@@ -163,20 +163,13 @@ int target_cmd_bench(int argc, char **argv)
 {
     struct setup s = setup_default();
     double seconds = 3;
-    enum {
-        OWN = 2,
-        TRACE = OWN + SETUP_MODEL_OPTIONS,
-        CHIP = TRACE + SETUP_TRACE_OPTIONS,
-        COUNT = CHIP + SETUP_CHIP_OPTIONS
-    };
+    enum { OWN = 2, COUNT = OWN + SETUP_OPTIONS };
     struct db_option options[COUNT] = {
         {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the radar", false},
         {"seconds", DB_REAL, &seconds, 0.1, 600, "S", "to measure", false},
     };
     int exit_code;
-    setup_model_options(&s, options + OWN);
-    setup_trace_options(&s, options + TRACE);
-    setup_chip_options(&s, options + CHIP);
+    setup_options(&s, options + OWN);
     if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }

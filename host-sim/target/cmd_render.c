@@ -96,12 +96,7 @@ int target_cmd_render(int argc, char **argv)
     struct setup s = setup_default();
     const char *records = NULL, *png = NULL, *csv = NULL;
     long zoom = 6;
-    enum {
-        OWN = 5,
-        TRACE = OWN + SETUP_MODEL_OPTIONS,
-        CHIP = TRACE + SETUP_TRACE_OPTIONS,
-        COUNT = CHIP + SETUP_CHIP_OPTIONS
-    };
+    enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
     struct db_option options[COUNT] = {
         {"records", DB_TEXT, &records, 0, 0, "FILE.trace", "in place of a model", false},
         {"out", DB_TEXT, &png, 0, 0, "FILE.png", "the picture", false},
@@ -111,10 +106,8 @@ int target_cmd_render(int argc, char **argv)
          "of the radar, from the model's nose towards its right", false},
     };
     int exit_code;
-    setup_model_options(&s, options + OWN);
+    setup_options(&s, options + OWN);
     options[OWN].is_required = false; /* the model: there may be records instead */
-    setup_trace_options(&s, options + TRACE);
-    setup_chip_options(&s, options + CHIP);
     if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }

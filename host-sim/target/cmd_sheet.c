@@ -123,12 +123,7 @@ int target_cmd_sheet(int argc, char **argv)
     struct setup s = setup_default();
     const char *out = NULL;
     long count = 12, columns = 3, size_px = 216;
-    enum {
-        OWN = 5,
-        TRACE = OWN + SETUP_MODEL_OPTIONS,
-        CHIP = TRACE + SETUP_TRACE_OPTIONS,
-        COUNT = CHIP + SETUP_CHIP_OPTIONS
-    };
+    enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
     struct db_option options[COUNT] = {
         {"out", DB_TEXT, &out, 0, 0, "FILE.png", "the sheet", true},
         {"count", DB_INTEGER, &count, 1, 360, "N", "azimuths, evenly around", false},
@@ -137,9 +132,7 @@ int target_cmd_sheet(int argc, char **argv)
         {"size", DB_INTEGER, &size_px, 16, 2048, "DOTS", "side of each picture, at most", false},
     };
     int exit_code;
-    setup_model_options(&s, options + OWN);
-    setup_trace_options(&s, options + TRACE);
-    setup_chip_options(&s, options + CHIP);
+    setup_options(&s, options + OWN);
     if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
         return exit_code;
     }

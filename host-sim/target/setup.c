@@ -93,6 +93,13 @@ void setup_chip_options(struct setup *s, struct db_option *o)
     memcpy(o, options, sizeof options);
 }
 
+void setup_options(struct setup *s, struct db_option *o)
+{
+    setup_model_options(s, o);
+    setup_trace_options(s, o + SETUP_MODEL_OPTIONS);
+    setup_chip_options(s, o + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS);
+}
+
 /* Closed bodies only, unless the user or the built-in model says otherwise. */
 static int check_model(const struct setup *s, const struct model_kind *kind, struct mesh *m)
 {

@@ -25,7 +25,12 @@ struct setup {
     long ratio, looks, seed;
 };
 
-enum { SETUP_MODEL_OPTIONS = 5, SETUP_TRACE_OPTIONS = 8, SETUP_CHIP_OPTIONS = 7 };
+enum {
+    SETUP_MODEL_OPTIONS = 5,
+    SETUP_TRACE_OPTIONS = 8,
+    SETUP_CHIP_OPTIONS = 7,
+    SETUP_OPTIONS = SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS + SETUP_CHIP_OPTIONS
+};
 
 /* The defaults: paper B's chip of 54 x 54 pixels of 0.2 m, 0.3 m resolution, X band. */
 struct setup setup_default(void);
@@ -34,6 +39,7 @@ struct setup setup_default(void);
 void setup_model_options(struct setup *s, struct db_option *o);
 void setup_trace_options(struct setup *s, struct db_option *o); /* without the azimuth */
 void setup_chip_options(struct setup *s, struct db_option *o);  /* law and chip */
+void setup_options(struct setup *s, struct db_option *o);       /* all three, the model first */
 
 /* The built-in or read model, checked and placed. Returns 0, or -1 reported. */
 int setup_load(const struct setup *s, struct mesh *m);
