@@ -5,6 +5,7 @@
 
 #include "fx/crc32c.h"
 
+#include "hs/angle.h"
 #include "hs/error.h"
 
 #include <inttypes.h>
@@ -64,11 +65,6 @@ static bool read_numbers(char *const *words, int count, double *numbers, double 
         }
     }
     return true;
-}
-
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)image_bam(degrees);
 }
 
 /* ---- reading ---- */
@@ -142,9 +138,9 @@ static int read_target(const struct db_text_file *f, struct lm_target *t, char *
                              "place, elevation or heading is no number of its range");
     }
     memcpy(t->name, words[1], strlen(words[1]));
-    t->latitude = bam(latitude);
-    t->longitude = bam(longitude);
-    t->heading = bam(heading);
+    t->latitude = hs_bam(latitude);
+    t->longitude = hs_bam(longitude);
+    t->heading = hs_bam(heading);
     return set_kind(t, words + 6, set_motion(t, words + 6, count - 6))
                ? 0
                : db_text_error(f, target_form, "\"%s\" and what follows is no kind", words[6]);
@@ -171,9 +167,9 @@ static bool set_direction(struct lm_scatterer *s, char *const *words, int count)
     if (count < 2 || count > 3 || !read_numbers(words, count, degrees, -360, 360)) {
         return false;
     }
-    s->azimuth = bam(degrees[0]);
-    s->elevation = bam(degrees[1]);
-    s->roll = bam(degrees[2]);
+    s->azimuth = hs_bam(degrees[0]);
+    s->elevation = hs_bam(degrees[1]);
+    s->roll = hs_bam(degrees[2]);
     return true;
 }
 

@@ -3,6 +3,7 @@
 #include "chart.h"
 #include "figures.h"
 
+#include "hs/angle.h"
 #include "lm/aspect.h"
 #include "lm/target_line.h"
 #include "lm/target_patch.h"
@@ -17,24 +18,19 @@ static const double first_deg = -15, step_deg = 5, map_m = 46, fine_m = 2, coars
 static const double range_m = 20000, height_m = 7280; /* 20 degrees above the horizon */
 static const double latitude_deg = 46;
 
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(degrees / 360 * 4294967296.0);
-}
-
 /* Corners of one metre about the origin, a few metres apart and off a grid, all opening to the
  * south. */
 static struct lm_target nine_corners(void)
 {
     struct lm_target t = {
-        .id = 1, .latitude = bam(latitude_deg), .heading = FX_BAM_180, .scatterer_count = 9};
+        .id = 1, .latitude = hs_bam(latitude_deg), .heading = FX_BAM_180, .scatterer_count = 9};
     for (int i = 0; i < 9; i++) {
         const int row = i / 3, column = i % 3;
         t.scatterers[i] = (struct lm_scatterer){
             .kind = LM_SHAPE_TRIHEDRAL,
             .size_mm = {1000, 0},
             .offset_mm = {7000 * (row - 1) + 400 * column, 6000 * (column - 1) - 300 * row, 0},
-            .elevation = bam(35.264)};
+            .elevation = hs_bam(35.264)};
     }
     return t;
 }
@@ -66,7 +62,7 @@ static struct lm_targets_near near_of(const struct lm_target_set *set, struct lm
 static void look_finely(struct patch *p, const struct lm_target *t, double look_deg)
 {
     const struct lm_patch_geometry g = {.centre = {t->latitude, t->longitude},
-                                        .look = bam(look_deg),
+                                        .look = hs_bam(look_deg),
                                         .centre_q8 = (uint32_t)(range_m * 256),
                                         .cell_q8 = (uint32_t)(p->cell_m * 256),
                                         .lines = (uint32_t)p->cells,
@@ -101,9 +97,9 @@ static void look_coarsely(struct patch *p, const struct lm_target *t, double loo
     int32_t level_q8 = LM_LEVEL_SHADOW;
     lm_geo_set_origin(&origin, (struct lm_place){t->latitude, t->longitude});
     place = lm_geo_direct(&origin, FX_BAM_180, (uint32_t)(range_m * 256));
-    turned.heading -= bam(look_deg);
+    turned.heading -= hs_bam(look_deg);
     const struct lm_target_line line = {.place = place,
-                                        .width = bam(p->cell_m / range_m * 180 / pi),
+                                        .width = hs_bam(p->cell_m / range_m * 180 / pi),
                                         .first_q8 = (uint32_t)(range_m * 256),
                                         .cell_q8 = (uint32_t)(p->cell_m * 256),
                                         .cells = 1,

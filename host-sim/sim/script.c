@@ -1,6 +1,7 @@
 #include "script.h"
 
 #include "fx/types.h"
+#include "hs/angle.h"
 #include "hs/error.h"
 #include "lm/radar.h"
 
@@ -17,11 +18,6 @@ struct line_events {
     struct script_event event[2];
     int count;
 };
-
-static fx_bam_t bam_of_degrees(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(remainder(degrees, 360.0) * 4294967296.0 / 360.0);
-}
 
 /* All of `word` as a number within the limits. */
 static bool number(const char *word, double low, double high, double *value)
@@ -62,7 +58,7 @@ static bool place(char **words, struct lm_place *at)
     if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
         return false;
     }
-    *at = (struct lm_place){bam_of_degrees(lat), bam_of_degrees(lon)};
+    *at = (struct lm_place){hs_bam(lat), hs_bam(lon)};
     return true;
 }
 
@@ -85,7 +81,7 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
         .centre = centre,
         .cell_mm = (uint32_t)lround(cell * 1000),
         .is_from_ownship = is_from_ownship,
-        .look_azimuth = bam_of_degrees(look),
+        .look_azimuth = hs_bam(look),
         .range_m = (uint32_t)lround(range),
         .height_q6 = (int32_t)lround(height * 64),
     };

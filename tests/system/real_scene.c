@@ -1,6 +1,7 @@
 #include "real_scene.h"
 
 #include "drv/flash_file.h"
+#include "hs/angle.h"
 #include "lm/db.h"
 #include "lm/scan_conv.h"
 #include "support.h"
@@ -217,17 +218,12 @@ static int read_flash(const struct lm_flash *flash, uint64_t offset, void *to, u
     return status == LM_OK ? 0 : -1;
 }
 
-static uint32_t bam_of_degrees(double degrees)
-{
-    return (uint32_t)(int64_t)llround(degrees / 360 * 4294967296.0);
-}
-
 /* The class index, or LM_DB_CLASS_NONE. */
 static unsigned class_at(const struct lm_db *db, struct real_place place)
 {
-    const uint32_t latitude = bam_of_degrees(place.latitude) + (1u << 30),
-                   longitude = bam_of_degrees(place.longitude);
-    const uint32_t zone = lm_db_zone(bam_of_degrees(place.latitude)), down = db->shift0,
+    const uint32_t latitude = hs_bam(place.latitude) + (1u << 30),
+                   longitude = hs_bam(place.longitude);
+    const uint32_t zone = lm_db_zone(hs_bam(place.latitude)), down = db->shift0,
                    across = db->shift0 + zone;
     const uint32_t row = latitude >> (down + LM_TILE_CELLS_LOG2),
                    column = longitude >> (across + LM_TILE_CELLS_LOG2);

@@ -4,6 +4,7 @@
 #include "image_reader.h"
 #include "image_verify.h"
 
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/target.h"
 
@@ -35,11 +36,6 @@ static const char text[] =
     "target convoy 47 8 ground 45 scatterers moving 16 100000\n"
     "  sphere 0.5  0 0 -1.5\n";
 
-static double degrees(fx_bam_t angle)
-{
-    return (int32_t)angle * (360.0 / 4294967296.0);
-}
-
 static void a_file_says_all_that_a_record_holds(void **state)
 {
     (void)state;
@@ -49,10 +45,10 @@ static void a_file_says_all_that_a_record_holds(void **state)
     assert_int_equal(t.count, 5);
     const struct lm_target *c = &t.items[0];
     assert_string_equal(c->name, "corners");
-    assert_true(fabs(degrees(c->latitude) - 47.01) < 1e-7);
-    assert_true(fabs(degrees(c->longitude) - 8.02) < 1e-7);
+    assert_true(fabs(hs_degrees(c->latitude) - 47.01) < 1e-7);
+    assert_true(fabs(hs_degrees(c->longitude) - 8.02) < 1e-7);
     assert_int_equal(c->elevation_q6, 451.5 * 64);
-    assert_true(fabs(degrees(c->heading) - 30) < 1e-7);
+    assert_true(fabs(hs_degrees(c->heading) - 30) < 1e-7);
     assert_int_equal(c->scatterer_count, 4);
     const struct lm_scatterer *plate = &c->scatterers[1];
     assert_int_equal(plate->kind, LM_SHAPE_PLATE);
@@ -60,9 +56,9 @@ static void a_file_says_all_that_a_record_holds(void **state)
     assert_int_equal(plate->size_mm[0], 300);
     assert_int_equal(plate->size_mm[1], 700);
     assert_int_equal(plate->offset_mm[0], -10250);
-    assert_true(fabs(degrees(plate->azimuth) + 10) < 1e-7);
-    assert_true(fabs(degrees(plate->elevation) - 20) < 1e-7);
-    assert_true(fabs(degrees(plate->roll) - 45) < 1e-7);
+    assert_true(fabs(hs_degrees(plate->azimuth) + 10) < 1e-7);
+    assert_true(fabs(hs_degrees(plate->elevation) - 20) < 1e-7);
+    assert_true(fabs(hs_degrees(plate->roll) - 45) < 1e-7);
     assert_int_equal(c->scatterers[3].offset_mm[1], -LM_TARGET_OFFSET_MAX_MM);
     assert_int_equal(t.items[1].scatterer_count, 0);
     assert_int_equal(t.items[1].swerling, 3);

@@ -1,5 +1,7 @@
 #include "sector_world.h"
 
+#include "hs/angle.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,17 +69,12 @@ void draw_sweep(struct sector_world *w)
 struct lm_place place_at(const struct sector_world *w, double azimuth_deg, double distance_m)
 {
     struct lm_geo_origin origin;
-    const fx_bam_t azimuth = (fx_bam_t)(int64_t)llround(azimuth_deg / 360 * 4294967296.0);
+    const fx_bam_t azimuth = hs_bam(azimuth_deg);
     lm_geo_set_origin(&origin, w->platform.place);
     return lm_geo_direct(&origin, azimuth, (uint32_t)lround(distance_m * 256));
 }
 
 double line_azimuth_deg(const struct lm_sector *s, uint32_t line)
 {
-    return degrees_of((fx_bam_t)lm_sector_edge_bam(s, line)) + degrees_of(s->width) / 2;
-}
-
-double degrees_of(fx_bam_t angle)
-{
-    return (int32_t)angle * (360 / 4294967296.0);
+    return hs_degrees((fx_bam_t)lm_sector_edge_bam(s, line)) + hs_degrees(s->width) / 2;
 }

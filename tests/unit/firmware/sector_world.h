@@ -40,7 +40,4 @@ struct lm_place place_at(const struct sector_world *w, double azimuth_deg, doubl
 /* Azimuth of the middle of a line, degrees from the sector's middle. */
 double line_azimuth_deg(const struct lm_sector *s, uint32_t line);
 
-/* Degrees of a signed angle. */
-double degrees_of(fx_bam_t angle);
-
 #endif

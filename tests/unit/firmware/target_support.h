@@ -3,6 +3,7 @@
 #define TARGET_SUPPORT_H
 
 #include "fx/crc32c.h"
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/target.h"
 
@@ -10,11 +11,6 @@
 #include <string.h>
 
 #define X_BAND_UM 31228u /* 9.6 GHz */
-
-static inline fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(degrees / 360 * 4294967296.0);
-}
 
 static inline void seal_target(struct lm_target *t)
 {
@@ -26,8 +22,8 @@ static inline struct lm_target point_at(double latitude, double longitude, doubl
                                         double rcs_db)
 {
     struct lm_target t = {.id = 7,
-                          .latitude = bam(latitude),
-                          .longitude = bam(longitude),
+                          .latitude = hs_bam(latitude),
+                          .longitude = hs_bam(longitude),
                           .elevation_q6 = (int32_t)lround(elevation_m * 64),
                           .mean_rcs_q8 = (int32_t)lround(rcs_db * 256)};
     seal_target(&t);
@@ -42,8 +38,8 @@ static inline void add_scatterer(struct lm_target *t, uint8_t kind, uint32_t siz
         (struct lm_scatterer){.kind = kind,
                               .size_mm = {size_mm, size_mm},
                               .offset_mm = {forward_mm, right_mm, up_mm},
-                              .azimuth = bam(azimuth_deg),
-                              .elevation = bam(elevation_deg)};
+                              .azimuth = hs_bam(azimuth_deg),
+                              .elevation = hs_bam(elevation_deg)};
     seal_target(t);
 }
 

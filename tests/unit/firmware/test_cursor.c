@@ -1,4 +1,5 @@
 /* View and cursor against PROJ's geodesics. */
+#include "hs/angle.h"
 #include "lm/cursor.h"
 
 #include <geodesic.h>
@@ -14,19 +15,9 @@ enum { SIDE = 480, RANGE_M = 37040 };
 
 static const double pi = 3.14159265358979323846;
 
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(remainder(degrees, 360) / 360 * 4294967296.0);
-}
-
-static double degrees(fx_bam_t angle)
-{
-    return (int32_t)angle * 360.0 / 4294967296.0;
-}
-
 static struct lm_place place_at(double lat, double lon)
 {
-    return (struct lm_place){bam(lat), bam(lon)};
+    return (struct lm_place){hs_bam(lat), hs_bam(lon)};
 }
 
 static struct lm_place moved(struct lm_place from, double azimuth, double metres)
@@ -34,8 +25,8 @@ static struct lm_place moved(struct lm_place from, double azimuth, double metres
     struct geod_geodesic earth;
     double lat, lon, back;
     geod_init(&earth, 6378137, 1 / 298.257223563);
-    geod_direct(&earth, degrees(from.latitude), degrees(from.longitude), azimuth, metres, &lat,
-                &lon, &back);
+    geod_direct(&earth, hs_degrees(from.latitude), hs_degrees(from.longitude), azimuth, metres,
+                &lat, &lon, &back);
     return place_at(lat, lon);
 }
 
@@ -44,8 +35,8 @@ static double distance(struct lm_place a, struct lm_place b)
     struct geod_geodesic earth;
     double metres, there, back;
     geod_init(&earth, 6378137, 1 / 298.257223563);
-    geod_inverse(&earth, degrees(a.latitude), degrees(a.longitude), degrees(b.latitude),
-                 degrees(b.longitude), &metres, &there, &back);
+    geod_inverse(&earth, hs_degrees(a.latitude), hs_degrees(a.longitude), hs_degrees(b.latitude),
+                 hs_degrees(b.longitude), &metres, &there, &back);
     return metres;
 }
 
@@ -61,11 +52,11 @@ struct scene {
 static void look_from(struct scene *s, struct lm_place ownship, double heading)
 {
     s->frame = lm_frame_of_display(SIDE, SIDE);
-    const struct lm_view_from from = {ownship, bam(heading), 0};
+    const struct lm_view_from from = {ownship, hs_bam(heading), 0};
     s->view = lm_view_of_sector(&s->frame, &from, RANGE_M);
     s->against = (struct lm_cursor_scene){.view = &s->view,
                                           .ownship = ownship,
-                                          .heading = bam(heading),
+                                          .heading = hs_bam(heading),
                                           .scale_m = RANGE_M,
                                           .half_px = SIDE / 2,
                                           .slew_percent = 100};
@@ -129,7 +120,7 @@ static void zero_is_half_the_range_straight_ahead(void **state)
     assert_true(distance(s.cursor.place, moved(origins[0], 77, RANGE_M / 2)) < 1);
     assert_true(s.cursor.is_on_glass);
     assert_in_range(s.cursor.range_m, RANGE_M / 2 - 40, RANGE_M / 2 + 40);
-    assert_true(fabs(degrees(s.cursor.bearing) - 77) < 0.2);
+    assert_true(fabs(hs_degrees(s.cursor.bearing) - 77) < 0.2);
 }
 
 static void full_deflection_crosses_half_the_glass_in_a_second_in_every_direction(void **state)
@@ -165,7 +156,7 @@ static void slewing_stops_at_the_edge_of_what_is_shown(void **state)
         assert_true(hypot(s.cursor.offset.x_q8, s.cursor.offset.y_q8) <
                     (s.view.radius_px + 1.5) * 256);
         assert_true(s.cursor.offset.y_q8 > -256);
-        s.view = lm_view_of_patch(&s.frame, moved(origins[1], 10, 15000), bam(40), 256, 5000);
+        s.view = lm_view_of_patch(&s.frame, moved(origins[1], 10, 15000), hs_bam(40), 256, 5000);
         steps(&s, 5);
         assert_true(s.cursor.is_on_glass);
         assert_in_range(s.cursor.offset.x_q8 + 129 * 256, 0, 258 * 256);

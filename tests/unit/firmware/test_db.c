@@ -2,6 +2,7 @@
 #include "lm/db.h"
 
 #include "fx/crc32c.h"
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "memory_flash.h"
 #include "tiny_image.h"
@@ -186,11 +187,6 @@ static void failing_and_hanging_flash_is_an_io_error(void **state)
     tiny_image_free(&image);
 }
 
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(degrees * 4294967296.0 / 360);
-}
-
 static void zones_change_where_the_format_says(void **state)
 {
     (void)state;
@@ -200,12 +196,14 @@ static void zones_change_where_the_format_says(void **state)
     } border[] = {{61.875, 0, 1}, {73.125, 1, 2}, {84.375, 2, 3}};
     for (size_t i = 0; i < 3; i++) {
         for (int sign = -1; sign <= 1; sign += 2) {
-            assert_int_equal(lm_db_zone(bam(sign * (border[i].degrees - 1e-5))), border[i].below);
-            assert_int_equal(lm_db_zone(bam(sign * (border[i].degrees + 1e-5))), border[i].above);
+            assert_int_equal(lm_db_zone(hs_bam(sign * (border[i].degrees - 1e-5))),
+                             border[i].below);
+            assert_int_equal(lm_db_zone(hs_bam(sign * (border[i].degrees + 1e-5))),
+                             border[i].above);
         }
     }
-    assert_int_equal(lm_db_zone(bam(90)), 3);
-    assert_int_equal(lm_db_zone(bam(-90)), 3);
+    assert_int_equal(lm_db_zone(hs_bam(90)), 3);
+    assert_int_equal(lm_db_zone(hs_bam(-90)), 3);
     assert_int_equal(lm_db_zone(0), 0);
 }
 

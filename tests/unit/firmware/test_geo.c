@@ -1,4 +1,5 @@
 /* Positions along a scan line, against PROJ's geodesics. */
+#include "hs/angle.h"
 #include "lm/geo.h"
 
 #include <geodesic.h>
@@ -11,22 +12,9 @@
 
 #include <cmocka.h>
 
-static const double bam_degrees = 360.0 / 4294967296.0;
-
 static struct lm_place place_of(double latitude, double longitude)
 {
-    return (struct lm_place){(fx_bam_t)(int64_t)llround(latitude / bam_degrees),
-                             (fx_bam_t)(int64_t)llround(longitude / bam_degrees)};
-}
-
-static double latitude_of(struct lm_place p)
-{
-    return (int32_t)p.latitude * bam_degrees;
-}
-
-static double longitude_of(struct lm_place p)
-{
-    return (int32_t)p.longitude * bam_degrees;
+    return (struct lm_place){hs_bam(latitude), hs_bam(longitude)};
 }
 
 static double metres_between(double lat1, double lon1, double lat2, double lon2)
@@ -56,8 +44,10 @@ static double worst_direct(double lat, double lon, double metres)
     for (int deg = 0; deg < 360; deg += 7) {
         const struct lm_place p = lm_geo_direct(&o, FX_BAM_DEG(deg), (uint32_t)(metres * 256));
         double to_lat, to_lon;
-        geodesic_direct(latitude_of(start), longitude_of(start), deg, metres, &to_lat, &to_lon);
-        const double miss = metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p));
+        geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg, metres,
+                        &to_lat, &to_lon);
+        const double miss =
+            metres_between(to_lat, to_lon, hs_degrees(p.latitude), hs_degrees(p.longitude));
         worst = fmax(worst, miss);
     }
     return worst;
@@ -102,9 +92,10 @@ static double worst_cell(double lat, double lon, double metres, uint32_t cells)
             const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
                                        (fx_bam_t)(path.longitude >> 32)};
             double to_lat, to_lon;
-            geodesic_direct(latitude_of(start), longitude_of(start), deg,
+            geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg,
                             (i + 0.5) * metres / cells, &to_lat, &to_lon);
-            worst = fmax(worst, metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p)));
+            worst = fmax(worst, metres_between(to_lat, to_lon, hs_degrees(p.latitude),
+                                               hs_degrees(p.longitude)));
         }
     }
     return worst;
@@ -140,12 +131,13 @@ static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
             const double across = (line + 0.5 - 128) * side / 256,
                          along = (i + 0.5 - 128) * side / 256;
             double to_lat, to_lon;
-            geodesic_direct(latitude_of(centre), longitude_of(centre),
+            geodesic_direct(hs_degrees(centre.latitude), hs_degrees(centre.longitude),
                             azimuth + atan2(across, along) * 180 / 3.14159265358979,
                             hypot(across, along), &to_lat, &to_lon);
             const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
                                        (fx_bam_t)(path.longitude >> 32)};
-            worst = fmax(worst, metres_between(to_lat, to_lon, latitude_of(p), longitude_of(p)));
+            worst = fmax(worst, metres_between(to_lat, to_lon, hs_degrees(p.latitude),
+                                               hs_degrees(p.longitude)));
         }
     }
     print_message("# patch of 10 m cells: worst cell %.3f m off\n", worst);
@@ -162,7 +154,7 @@ static void the_inverse_problem_finds_distance_and_azimuth(void **state)
         fx_bam_t azimuth;
         lm_geo_inverse(place_of(52, 179.9), place_of(to_lat, to_lon), &distance_q8, &azimuth);
         assert_true(fabs(distance_q8 / 256.0 - 60000) < 120);
-        assert_true(fabs(remainder(azimuth * bam_degrees - deg, 360)) < 0.1);
+        assert_true(fabs(remainder(hs_degrees(azimuth) - deg, 360)) < 0.1);
     }
 }
 

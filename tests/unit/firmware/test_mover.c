@@ -1,5 +1,6 @@
 /* Targets that move: where they are, and where a Doppler picture puts them. Places come from
  * PROJ's geodesics, displacements from theory: v_r / V R. */
+#include "hs/angle.h"
 #include "lm/target_line.h"
 
 #include "lm/aspect.h"
@@ -32,8 +33,8 @@ static double metres_apart(const double a[2], struct lm_place b)
     struct geod_geodesic earth;
     double metres;
     geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_inverse(&earth, a[0], a[1], (int32_t)b.latitude * (360 / 4294967296.0),
-                 (int32_t)b.longitude * (360 / 4294967296.0), &metres, NULL, NULL);
+    geod_inverse(&earth, a[0], a[1], hs_degrees(b.latitude), hs_degrees(b.longitude), &metres, NULL,
+                 NULL);
     return metres;
 }
 
@@ -41,7 +42,7 @@ static struct lm_target moving_point(double lat, double lon, double heading, dou
                                      uint32_t leg_m)
 {
     struct lm_target t = point_at(lat, lon, 0, 40);
-    t.heading = bam(heading);
+    t.heading = hs_bam(heading);
     t.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
     t.leg_m = leg_m;
     seal_target(&t);
@@ -62,7 +63,7 @@ static void a_mover_goes_to_the_end_of_its_leg_and_back(void **state)
         destination(46, 11, 30, way, to);
         const struct lm_pose pose = lm_target_pose(&t, (uint64_t)(times_s[i] * 1e6));
         assert_true(metres_apart(to, pose.place) < 0.05);
-        assert_int_equal(pose.heading, gone > 5000 ? bam(210) : bam(30));
+        assert_int_equal(pose.heading, gone > 5000 ? hs_bam(210) : hs_bam(30));
     }
 }
 
@@ -136,13 +137,13 @@ static void the_shift_is_v_over_v_sin_o_towards_the_velocity_and_at_most_o(void 
             if (off_deg == 0 || fabs(expected) > fabs(off)) {
                 expected = off_deg == 0 ? 0 : copysign(fabs(off), expected);
             }
-            const int32_t shift = lm_mover_shift(closing, 250000, bam(off_deg));
+            const int32_t shift = lm_mover_shift(closing, 250000, hs_bam(off_deg));
             const double error = fabs(shift * (2 * pi / 4294967296.0) - expected);
             worst = fmax(worst, error / (1e-6 + 3e-4 * fabs(expected)));
         }
     }
     assert_true(worst < 1);
-    assert_int_equal(lm_mover_shift(1000, 0, bam(45)), 0);
+    assert_int_equal(lm_mover_shift(1000, 0, hs_bam(45)), 0);
 }
 
 /* Lines of 120 degrees / 4096, half a milliradian: 19 m at 37 km. */
@@ -151,7 +152,7 @@ static struct lm_target_line sector_line(uint32_t line)
     const fx_bam_t width = FX_BAM_DEG(120) / LINES;
     const uint32_t cell_q8 = (uint32_t)(cell_m * 256);
     return (struct lm_target_line){
-        .place = {bam(46), bam(11)},
+        .place = {hs_bam(46), hs_bam(11)},
         .azimuth = (fx_bam_t)(((int32_t)line - LINES / 2) * (int32_t)width) + width / 2,
         .width = width,
         .first_q8 = cell_q8 / 2,
@@ -166,7 +167,7 @@ static int lines_with(const struct lm_target *t, const struct lm_target_line *ho
 {
     struct lm_targets_near near;
     const struct lm_target_set set = {t, 1};
-    const struct lm_target_scene scene = {.place = {bam(46), bam(11)}, .reach_m = RANGE_M};
+    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     int32_t level_q8[LM_CELLS_MAX];
     int lines = 0;
     lm_targets_select(&near, &set, &scene);
@@ -181,7 +182,7 @@ static int lines_with(const struct lm_target *t, const struct lm_target_line *ho
             level_q8[k] = LM_LEVEL_SHADOW;
         }
         if (lm_target_add(t, &near, &line, NULL, level_q8) == 1) {
-            *at_deg = (int32_t)line.azimuth * (360 / 4294967296.0);
+            *at_deg = hs_degrees(line.azimuth);
             lines++;
         }
     }
@@ -202,7 +203,7 @@ static void a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_
         const struct lm_target t = moving_point(to[0], to[1], heading, speed, 1000);
         const struct lm_target_line how = {.is_doppler = true,
                                            .speed_mm_s = 250000,
-                                           .track = bam(track)},
+                                           .track = hs_bam(track)},
                                     plain = {0};
         assert_int_equal(lines_with(&t, &plain, &at_deg), 1);
         assert_int_equal(lines_with(&t, &how, &moved_deg), 1);
@@ -218,7 +219,7 @@ static void the_gates_show_only_closing_speeds_within_them_either_way(void **sta
 {
     (void)state;
     const struct lm_target_line how = {
-        .is_doppler = true, .speed_mm_s = 250000, .track = bam(90), .gate_mm_s = {2000, 20000}};
+        .is_doppler = true, .speed_mm_s = 250000, .track = hs_bam(90), .gate_mm_s = {2000, 20000}};
     double at_deg;
     for (int speed = 0; speed <= 24; speed++) {
         for (int is_away = 0; is_away < 2; is_away++) {
@@ -243,7 +244,7 @@ static void movers_are_placed_anew_for_every_sweep_and_not_for_every_line(void *
     (void)state;
     const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
     const struct lm_target_set set = {&t, 1};
-    struct lm_target_scene scene = {.place = {bam(46), bam(11)}, .reach_m = RANGE_M};
+    struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     struct lm_targets_near near = {0};
     lm_targets_refresh(&near, &set, &scene);
     const struct lm_place first = near.item[0].pose.place;
@@ -287,7 +288,7 @@ static void a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone(voi
     seal_target(&t);
     const struct lm_target_set set = {&t, 1};
     for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
-        const struct lm_target_scene scene = {.place = {bam(46), bam(11)},
+        const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)},
                                               .reach_m = 5000,
                                               .time_us = seconds * 1000000,
                                               .tiles = &tiles};

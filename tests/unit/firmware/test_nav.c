@@ -1,5 +1,6 @@
 /* The ownship between two messages: where it is by geodesy, and when it stops being believed. */
 #include "bus_frames.h"
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/nav.h"
 
@@ -30,11 +31,6 @@ static void hear_double(struct lm_nav *nav, enum lm_bus_field field, double degr
     const uint64_t bits = bus_double_bits(degrees);
     hear(nav, bus_frame(id, LM_CANAS_DOUBLEH, 0, (uint32_t)(bits >> 32), time_us));
     hear(nav, bus_frame(id, LM_CANAS_DOUBLEL, 1, (uint32_t)bits, time_us));
-}
-
-static double degrees_of(fx_bam_t angle)
-{
-    return (int32_t)angle * (360.0 / 0x1p32);
 }
 
 static struct lm_ownship at(const struct lm_nav *nav, uint64_t now_us)
@@ -120,8 +116,8 @@ static void two_seconds_of_constant_velocity_are_within_2_cm(void **state)
             double latitude_deg, longitude_deg;
             fly_in_doubles(&c, 2, &latitude_deg, &longitude_deg);
             const double error =
-                metres_between(latitude_deg, longitude_deg, degrees_of(ownship.latitude),
-                               degrees_of(ownship.longitude));
+                metres_between(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
+                               hs_degrees(ownship.longitude));
             worst = fmax(worst, error);
         }
     }
@@ -148,8 +144,8 @@ static void two_seconds_are_within_17_cm_of_the_geodesic(void **state)
             geod_direct(&earth, latitude, 179.999, azimuth, 600, &latitude_deg, &longitude_deg,
                         NULL);
             const double error =
-                metres_between(latitude_deg, longitude_deg, degrees_of(ownship.latitude),
-                               degrees_of(ownship.longitude));
+                metres_between(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
+                               hs_degrees(ownship.longitude));
             worst = fmax(worst, error);
             worst_below_60 =
                 latitude >= -60 && latitude <= 60 ? fmax(worst_below_60, error) : worst_below_60;
@@ -202,13 +198,13 @@ static void ground_speed_and_track_serve_when_there_is_no_velocity(void **state)
     assert_in_range(o.velocity_north_mm_s + 50000, 0, 2);
     assert_in_range(o.velocity_east_mm_s - 86602, 0, 2);
     assert_in_range(o.ground_speed_mm_s - 99998, 0, 3);
-    assert_true(fabs(degrees_of(o.track) - 120) < 0.001);
+    assert_true(fabs(hs_degrees(o.track) - 120) < 0.001);
     hear_float(&nav, LM_BUS_NORTH_VELOCITY, -30, 1000000);
     hear_float(&nav, LM_BUS_EAST_VELOCITY, -40, 1000000);
     o = at(&nav, 1000000);
     assert_int_equal(o.velocity_north_mm_s, -30000);
     assert_int_equal(o.ground_speed_mm_s, 50000);
-    assert_true(fabs(degrees_of(o.track) - (atan2(-40, -30) * 57.29577951308232)) < 1e-5);
+    assert_true(fabs(hs_degrees(o.track) - (atan2(-40, -30) * 57.29577951308232)) < 1e-5);
     /* Stale is not yet dead. */
     hear_float(&nav, LM_BUS_GROUND_SPEED, 100, 3000000);
     hear_float(&nav, LM_BUS_TRUE_TRACK, 0, 3000000);
@@ -264,7 +260,7 @@ static void true_heading_is_preferred_while_it_lives(void **state)
     assert_int_equal(o.heading, 0xc0000000u);
     assert_int_equal(o.heading_source, LM_BUS_HEADING);
     hear_float(&nav, LM_BUS_TRUE_HEADING, 272, 0);
-    assert_true(fabs(degrees_of(at(&nav, 0).heading) + 88) < 1e-6);
+    assert_true(fabs(hs_degrees(at(&nav, 0).heading) + 88) < 1e-6);
     hear_float(&nav, LM_BUS_HEADING, -90, 1000001);
     assert_int_equal(at(&nav, 1000000).heading_source, LM_BUS_TRUE_HEADING);
     assert_int_equal(at(&nav, 1000001).heading_source, LM_BUS_HEADING);
@@ -309,12 +305,12 @@ static void heading_turns_as_the_body_does(void **state)
             hear_float(&nav, LM_BUS_ROLL, roll, 50000);
             hear_float(&nav, LM_BUS_PITCH_RATE, 12, 50000);
             hear_float(&nav, LM_BUS_YAW_RATE, -7, 50000);
-            const double got = degrees_of(at(&nav, 100000).heading) * radian;
+            const double got = hs_degrees(at(&nav, 100000).heading) * radian;
             const double wanted = heading_by_rotation(350 * radian, pitch * radian, roll * radian,
                                                       12 * radian, -7 * radian, 0.1);
             worst = fmax(worst, fabs(remainder(got - wanted, 360 * radian)) / radian);
             /* Too old a rate is no rate. */
-            assert_true(fabs(degrees_of(at(&nav, 150001).heading) + 10) < 1e-6);
+            assert_true(fabs(hs_degrees(at(&nav, 150001).heading) + 10) < 1e-6);
         }
     }
     /* The rates also change the attitude, which the firmware holds still for these 100 ms. */
@@ -332,7 +328,7 @@ static void heading_stands_still_where_it_means_nothing(void **state)
     hear_float(&nav, LM_BUS_ROLL, 0, 0);
     hear_float(&nav, LM_BUS_PITCH_RATE, 0, 0);
     hear_float(&nav, LM_BUS_YAW_RATE, 100, 0);
-    assert_true(fabs(degrees_of(at(&nav, 100000).heading) - 10) < 1e-6);
+    assert_true(fabs(hs_degrees(at(&nav, 100000).heading) - 10) < 1e-6);
 }
 
 /* ---- several senders ---- */
@@ -365,8 +361,8 @@ static void assert_place(const struct lm_nav *nav, uint64_t now_us, int degrees,
 {
     const struct lm_ownship o = at(nav, now_us);
     assert_int_equal(o.position_quality, quality);
-    assert_true(fabs(degrees_of(o.latitude) - degrees) < 1e-5);
-    assert_true(fabs(degrees_of(o.longitude) - degrees) < 1e-5);
+    assert_true(fabs(hs_degrees(o.latitude) - degrees) < 1e-5);
+    assert_true(fabs(hs_degrees(o.longitude) - degrees) < 1e-5);
 }
 
 static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady(void **state)
@@ -419,7 +415,7 @@ static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void *
             }
         }
         const struct lm_ownship o = at(&nav, t);
-        assert_true(fabs(degrees_of(o.longitude) - (t <= 1200000 ? 90 : 80)) < 1e-5);
+        assert_true(fabs(hs_degrees(o.longitude) - (t <= 1200000 ? 90 : 80)) < 1e-5);
         assert_int_equal(o.position_origin.node, t <= 1200000 ? 9 : 8);
     }
     assert_int_equal(nav.rivals, 2 * 12);
@@ -521,8 +517,8 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
         if (t >= 1000000) {
             ride.worst_hop_m =
                 fmax(ride.worst_hop_m,
-                     metres_between(degrees_of(before.latitude), degrees_of(before.longitude),
-                                    degrees_of(now.latitude), degrees_of(now.longitude)));
+                     metres_between(hs_degrees(before.latitude), hs_degrees(before.longitude),
+                                    hs_degrees(now.latitude), hs_degrees(now.longitude)));
             /* What the last fix, carried on for 100 ms, would have been. */
             const struct course leg = {told_latitude, told_longitude, 0, north_m_s, east_m_s};
             double carried_latitude, carried_longitude;
@@ -540,8 +536,8 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
         /* 2 cm are left for the velocity, which the bus rounds too. */
         ride.worst_error_steps = fmax(
             ride.worst_error_steps,
-            fmax(fabs(degrees_of(now.latitude) - true_latitude) * metres / (latitude_half_m + 0.02),
-                 fabs(remainder(degrees_of(now.longitude) - true_longitude, 360)) * metres *
+            fmax(fabs(hs_degrees(now.latitude) - true_latitude) * metres / (latitude_half_m + 0.02),
+                 fabs(remainder(hs_degrees(now.longitude) - true_longitude, 360)) * metres *
                      cosine / (longitude_half_m + 0.02)));
     }
     assert_int_equal(nav.position_jumps, 0);
@@ -588,7 +584,7 @@ static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
         hear_float(&nav, LM_BUS_LATITUDE, 60, (uint64_t)i * 100000);
         hear_float(&nav, LM_BUS_LONGITUDE, degrees, (uint64_t)i * 100000);
         const struct lm_ownship o = at(&nav, (uint64_t)i * 100000);
-        assert_true(fabs(degrees_of(o.longitude) - (double)(float)degrees) < 1e-7);
+        assert_true(fabs(hs_degrees(o.longitude) - (double)(float)degrees) < 1e-7);
     }
 }
 
@@ -683,7 +679,7 @@ static void a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best(voi
     hear_double(&nav, LM_BUS_LATITUDE, 47, 0);
     hear_double(&nav, LM_BUS_LONGITUDE, 11, 0);
     assert_int_equal(at(&nav, 100).position_quality, LM_NAV_STALE);
-    assert_true(fabs(degrees_of(at(&nav, 100000).latitude) - 47) < 1e-7);
+    assert_true(fabs(hs_degrees(at(&nav, 100000).latitude) - 47) < 1e-7);
     hear_float(&nav, LM_BUS_NORTH_VELOCITY, 0, 0);
     hear_float(&nav, LM_BUS_EAST_VELOCITY, 0, 0);
     assert_int_equal(at(&nav, 100).position_quality, LM_NAV_GOOD);
@@ -747,7 +743,7 @@ static void a_jump_is_believed_and_counted(void **state)
     assert_int_equal(nav.position_jumps, 3);
     hear_double(&nav, LM_BUS_LONGITUDE, -100, 300000);
     assert_int_equal(nav.position_jumps, 4);
-    assert_true(fabs(degrees_of(at(&nav, 300000).latitude) + 45) < 1e-7);
+    assert_true(fabs(hs_degrees(at(&nav, 300000).latitude) + 45) < 1e-7);
     /* Two fixes in one millisecond: what jitters is the bus. */
     hear_double(&nav, LM_BUS_LATITUDE, -45.001, 301000);
     assert_int_equal(nav.position_jumps, 4);

@@ -2,6 +2,7 @@
  * where RADAR facts put them: 1 = top left, clockwise, five to a side, three tenths of half a
  * screen apart. */
 #include "glass_text.h"
+#include "hs/angle.h"
 #include "lm/bit.h"
 #include "lm/font.h"
 #include "unit_rig.h"
@@ -704,7 +705,7 @@ static void the_cursors_numbers_are_right(void **state)
     press(r, 9);
     run(r, 0.1);
     const double flown = 150 * (double)r->now_us / 1e6;
-    const double lat = (int32_t)r->unit.cursor.place.latitude * 360.0 / 4294967296.0;
+    const double lat = hs_degrees(r->unit.cursor.place.latitude);
     const double own = 46 - 0.05 + flown / 111132.0;
     assert_true(fabs((lat - own) * 111149 - 9260) < 60); /* a degree at 46 N: 111,149 m */
     char words[32];

@@ -1,6 +1,8 @@
 /* How long a patch takes and which cannot be made, in flight: DESIGN.md, "Synthetic aperture". */
 #include "unit_rig.h"
 
+#include "hs/angle.h"
+
 #include <geodesic.h>
 #include <math.h>
 #include <setjmp.h>
@@ -15,16 +17,6 @@ enum { CELLS = 256 };
 static const double pi = 3.14159265358979323846;
 static const double wavelength_m = 0.031228; /* 9.6 GHz */
 
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(remainder(degrees, 360) / 360 * 4294967296.0);
-}
-
-static double degrees(fx_bam_t angle)
-{
-    return (int32_t)angle * (360 / 4294967296.0);
-}
-
 /* A patch as far away as said, `bearing_deg` off the track, which is north. */
 static struct lm_control patch_at(const struct rig *r, double bearing_deg, double range_m,
                                   double cell_m)
@@ -32,10 +24,10 @@ static struct lm_control patch_at(const struct rig *r, double bearing_deg, doubl
     struct geod_geodesic earth;
     double lat, lon;
     geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, degrees(r->unit.ownship.latitude), degrees(r->unit.ownship.longitude),
+    geod_direct(&earth, hs_degrees(r->unit.ownship.latitude), hs_degrees(r->unit.ownship.longitude),
                 bearing_deg, range_m, &lat, &lon, NULL);
     return (struct lm_control){.kind = LM_CONTROL_SAR,
-                               .sar = {.centre = {bam(lat), bam(lon)},
+                               .sar = {.centre = {hs_bam(lat), hs_bam(lon)},
                                        .cell_mm = (uint32_t)lround(cell_m * 1000),
                                        .is_from_ownship = true}};
 }

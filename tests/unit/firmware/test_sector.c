@@ -1,5 +1,6 @@
 /* Sectors in flight: how fast they are swept, where a window lies over the ground, and that no
  * picture outlives its mode. */
+#include "hs/angle.h"
 #include "lm/sar.h"
 
 #include "reference.h"
@@ -64,7 +65,7 @@ static void finish_sweep(struct rig *r)
 
 static struct ref_place ref_of(struct lm_place place)
 {
-    return (struct ref_place){degrees_of(place.latitude), degrees_of(place.longitude)};
+    return (struct ref_place){hs_degrees(place.latitude), hs_degrees(place.longitude)};
 }
 
 /* Put the cursor somewhere from the ownship. */
@@ -73,7 +74,7 @@ static void put_cursor(struct rig *r, double azimuth_deg, double ground_m)
     const struct lm_ownship *own = &r->unit.ownship;
     const struct lm_place from = {own->latitude, own->longitude};
     const struct ref_place at = ref_geo_direct(ref_of(from), azimuth_deg, ground_m);
-    r->unit.cursor.place = (struct lm_place){bam(at.latitude_deg), bam(at.longitude_deg)};
+    r->unit.cursor.place = (struct lm_place){hs_bam(at.latitude_deg), hs_bam(at.longitude_deg)};
 }
 
 /* ---- timing ---- */
@@ -86,7 +87,7 @@ static double measured_rate(struct rig *r, double seconds)
     const uint64_t begin_us = r->now_us;
     while ((double)(r->now_us - begin_us) < seconds * 1e6) {
         finish_sweep(r);
-        swept_deg += degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+        swept_deg += hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
     }
     return swept_deg * 1e6 / (double)(r->now_us - begin_us);
 }
@@ -100,7 +101,7 @@ static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lo
         command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .value = azimuth});
         run(r, 0.2);
         const double rate = measured_rate(r, seconds[azimuth]);
-        const double swept_deg = degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+        const double swept_deg = hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
         print_message("# %.0f degrees: %.2f degrees a second\n", sector_deg[azimuth], rate);
         assert_true(fabs(rate / 120 - 1) < 0.02);
         assert_true(fabs(swept_deg / sector_deg[azimuth] - 1) < 0.02);
@@ -125,12 +126,12 @@ static void windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_s
         put_cursor(r, 30, 15000);
         show(r, LM_SECTOR_GM, cases[i].field);
         const double rate = measured_rate(r, 12);
-        const double swept_deg = degrees_of(r->unit.sector.width) * r->unit.sector.lines;
+        const double swept_deg = hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
         double ground_m, bearing_deg;
         ref_geo_inverse(ref_of(r->unit.sector.platform.place), ref_of(r->unit.cursor.place),
                         &bearing_deg, &ground_m);
         const double seen_deg =
-            degrees_of(bam(asin(1.5 * cases[i].half_window * 18520 / ground_m) * 57.29578));
+            hs_degrees(hs_bam(asin(1.5 * cases[i].half_window * 18520 / ground_m) * 57.29578));
         print_message("# field %d: %.3f degrees a second over %.2f degrees\n", cases[i].field, rate,
                       swept_deg);
         assert_true(fabs(rate / cases[i].rate - 1) < 0.02);
@@ -189,7 +190,7 @@ static struct pixel slant_offset(const struct rig *r, struct lm_place place)
     double azimuth_deg, ground_m;
     ref_geo_inverse(ref_of(from->place), ref_of(place), &azimuth_deg, &ground_m);
     const double slant_m = hypot(ground_m, from->height_q10 / 1024.0);
-    const double turn = (azimuth_deg - degrees_of(r->unit.sector.up)) / 57.29577951;
+    const double turn = (azimuth_deg - hs_degrees(r->unit.sector.up)) / 57.29577951;
     return (struct pixel){slant_m * sin(turn), slant_m * cos(turn)};
 }
 
@@ -207,7 +208,7 @@ static struct pixel wanted_at(const struct rig *r, struct lm_place place)
 static void put_target(struct rig *r, struct lm_place place, double rcs_db)
 {
     r->unit.targets[0] =
-        point_at(degrees_of(place.latitude), degrees_of(place.longitude), 10, rcs_db);
+        point_at(hs_degrees(place.latitude), hs_degrees(place.longitude), 10, rcs_db);
     r->unit.target_set = (struct lm_target_set){r->unit.targets, 1};
 }
 
@@ -321,8 +322,8 @@ static bool is_swept(const struct rig *r, int x, int y)
     const struct lm_frame f = is_window ? lm_frame_square(&r->unit.frame) : r->unit.frame;
     const double right = x + 0.5 - v->at.x, up = v->at.y + 1 - (y + 0.5);
     const double azimuth_deg = atan2(right, up) * 57.29578, length_px = hypot(right, up);
-    const double edge_deg = degrees_of((fx_bam_t)s->left), slack_deg = degrees_of(s->width);
-    const double width_deg = degrees_of(s->width) * s->lines;
+    const double edge_deg = hs_degrees((fx_bam_t)s->left), slack_deg = hs_degrees(s->width);
+    const double width_deg = hs_degrees(s->width) * s->lines;
     const bool is_inside =
         x >= f.left_px && x < f.left_px + f.width_px && y >= f.top_px && y < f.top_px + f.height_px;
     return is_inside && azimuth_deg > edge_deg + slack_deg &&

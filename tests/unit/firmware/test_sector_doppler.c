@@ -4,6 +4,8 @@
 #include "sector_world.h"
 #include "target_support.h"
 
+#include "hs/angle.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,7 +50,7 @@ static struct lm_target *add_point(struct points *p, const struct sector_world *
     const struct lm_place at = place_at(w, azimuth_deg, ground_m);
     assert_true(p->count < POINTS_MAX);
     p->azimuth_deg[p->count] = azimuth_deg;
-    p->items[p->count] = point_at(degrees_of(at.latitude), degrees_of(at.longitude), 10, rcs_db);
+    p->items[p->count] = point_at(hs_degrees(at.latitude), hs_degrees(at.longitude), 10, rcs_db);
     return &p->items[p->count++];
 }
 
@@ -75,7 +77,7 @@ static double level_near(const struct sector_world *w, double ground_m)
 static struct ref_dbs dbs_of(const struct sector_world *w, double rate_deg_s)
 {
     return (struct ref_dbs){.speed_m_s = w->platform.speed_mm_s / 1000.0,
-                            .beam_deg = degrees_of(w->radar.antenna.azimuth_beam),
+                            .beam_deg = hs_degrees(w->radar.antenna.azimuth_beam),
                             .wavelength_m = w->radar.wavelength_um * 1e-6,
                             .rate_deg_s = rate_deg_s};
 }
@@ -87,7 +89,7 @@ static struct ref_dbs dbs_of(const struct sector_world *w, double rate_deg_s)
 static double width_at(const struct sector_world *w, const double *level_db, uint32_t lines,
                        double azimuth_deg, double wanted_deg)
 {
-    const double line_deg = degrees_of(w->sector.width);
+    const double line_deg = hs_degrees(w->sector.width);
     const double half_deg = fmin(wanted_deg, 0.3);
     const uint32_t apart = (uint32_t)fmax(1, floor(wanted_deg / 2 / line_deg));
     uint32_t best = apart;
@@ -122,7 +124,7 @@ static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, 
         assert_true(line < LINES_MAX);
         level_db[line] = level_near(w, ground_m);
     } while (!lm_sector_is_at_edge(&w->sector));
-    const double wanted_deg = degrees_of(w->radar.antenna.azimuth_beam) / (sqrt(2) * ratio);
+    const double wanted_deg = hs_degrees(w->radar.antenna.azimuth_beam) / (sqrt(2) * ratio);
     for (uint32_t i = 0; i < p.count; i++) {
         const double width_deg =
             width_at(w, level_db, w->sector.lines, p.azimuth_deg[i], wanted_deg);
@@ -193,7 +195,7 @@ static void measure_notch(struct sector_world *w, double ground_m, double apart_
     assert_true(ahead_db > -25); /* the bands stand out of the clutter */
     *left_deg = *right_deg = 0;
     for (uint32_t k = 0; k < lines; k++) {
-        const double width_deg = degrees_of(w->sector.width);
+        const double width_deg = hs_degrees(w->sector.width);
         const bool is_real_beam = level_db[k] > ahead_db - 8;
         *left_deg += azimuth_deg[k] < 0 && is_real_beam ? width_deg : 0;
         *right_deg += azimuth_deg[k] > 0 && is_real_beam ? width_deg : 0;
@@ -292,7 +294,7 @@ static void speckle_is_another_one_in_each_sweep_of_real_beam(void **state)
 
 static void set_in_motion(struct lm_target *t, double heading_deg, uint32_t speed_mm_s)
 {
-    t->heading = bam(heading_deg);
+    t->heading = hs_bam(heading_deg);
     t->speed_mm_s = speed_mm_s;
     t->leg_m = speed_mm_s ? 10000 : 0;
     seal_target(t);

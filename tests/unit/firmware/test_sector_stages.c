@@ -4,6 +4,8 @@
 #include "reference_support.h"
 #include "sector_world.h"
 
+#include "hs/angle.h"
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -83,8 +85,8 @@ static double horizon_of(const struct lm_sector *s, const struct ref_bin *bins, 
 
 static struct ref_antenna antenna_of(const struct lm_radar *radar)
 {
-    return (struct ref_antenna){.elevation_beam_deg = degrees_of(radar->antenna.elevation_beam),
-                                .fan_deg = degrees_of(radar->antenna.fan)};
+    return (struct ref_antenna){.elevation_beam_deg = hs_degrees(radar->antenna.elevation_beam),
+                                .fan_deg = hs_degrees(radar->antenna.fan)};
 }
 
 /* The levels that the reference finds on the firmware's ground, before the antenna. */
@@ -120,7 +122,7 @@ static void judge_sample(struct trial *t)
         const int32_t level_q8 = w->line.sight.level_q8[i];
         const double before_db = decibels(level_q8 - gain.level_q8[i]);
         const double tangent = ldexp(gain.horizon[i + 1], -(int)s->grid.tangent_bits);
-        const double left_db = ref_elevation_db(&antenna, degrees_of((fx_bam_t)s->tilt), tangent);
+        const double left_db = ref_elevation_db(&antenna, hs_degrees((fx_bam_t)s->tilt), tangent);
         note(&t->score[SAMPLE], shown(before_db) - shown(bins[i].echo_db));
         note(&t->score[ELEVATION], shown(decibels(level_q8)) - shown(before_db + left_db));
     }
@@ -156,13 +158,13 @@ static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
     const struct lm_field_row *field = &s->radar->field[s->command.field];
     const uint32_t rate = field->bam_per_s ? field->bam_per_s : s->radar->mode[0].bam_per_s;
     const struct ref_dbs dbs = {.speed_m_s = s->platform.speed_mm_s / 1000.0,
-                                .beam_deg = degrees_of(s->radar->antenna.azimuth_beam),
+                                .beam_deg = hs_degrees(s->radar->antenna.azimuth_beam),
                                 .wavelength_m = s->radar->wavelength_um * 1e-6,
-                                .rate_deg_s = degrees_of(rate)};
-    const double off_deg = degrees_of(s->up - s->platform.track) + azimuth_deg;
+                                .rate_deg_s = hs_degrees(rate)};
+    const double off_deg = hs_degrees(s->up - s->platform.track) + azimuth_deg;
     const double had = ref_dbs_ratio(&dbs, off_deg);
     return (struct ref_beam){.beam_deg = dbs.beam_deg,
-                             .line_deg = degrees_of(s->radar->sample),
+                             .line_deg = hs_degrees(s->radar->sample),
                              .ratio = field->sharpening > 1 ? ref_dbs_used(had, field->sharpening,
                                                                            field->sharpening_least)
                                                             : 1};
@@ -217,14 +219,14 @@ static void look_at_weather(struct trial *t, const struct ref_receiver *r, doubl
     const struct lm_environment *e = t->weather;
     struct ref_environment *ref = &t->environment;
     const struct lm_place *own = &t->w->platform.place;
-    const struct ref_place from = {degrees_of(own->latitude), degrees_of(own->longitude)};
+    const struct ref_place from = {hs_degrees(own->latitude), hs_degrees(own->longitude)};
     double bearing_deg;
     ref->rain_count = e->rain_count;
     ref->jammer_count = e->jammer_count;
     for (size_t n = 0; n < e->rain_count; n++) {
         const struct lm_place *at = &e->rain[n].centre;
         ref_geo_inverse(from,
-                        (struct ref_place){degrees_of(at->latitude), degrees_of(at->longitude)},
+                        (struct ref_place){hs_degrees(at->latitude), hs_degrees(at->longitude)},
                         &bearing_deg, &ref->rain[n].distance_m);
         ref->rain[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
         ref->rain[n].radius_m = e->rain[n].radius_m;
@@ -233,14 +235,14 @@ static void look_at_weather(struct trial *t, const struct ref_receiver *r, doubl
     for (size_t n = 0; n < e->jammer_count; n++) {
         const struct lm_place *at = &e->jammer[n].place;
         ref_geo_inverse(from,
-                        (struct ref_place){degrees_of(at->latitude), degrees_of(at->longitude)},
+                        (struct ref_place){hs_degrees(at->latitude), hs_degrees(at->longitude)},
                         &bearing_deg, &ref->jammer[n].distance_m);
         ref->jammer[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
         ref->jammer[n].ratio_db = decibels(e->jammer[n].ratio_q8);
     }
     const struct lm_radar *radar = &t->w->radar;
-    ref_weather(ref, radar->wavelength_um * 1e-6, degrees_of(radar->antenna.azimuth_beam),
-                degrees_of(radar->antenna.elevation_beam), r->height_m, &r->bins, weather);
+    ref_weather(ref, radar->wavelength_um * 1e-6, hs_degrees(radar->antenna.azimuth_beam),
+                hs_degrees(radar->antenna.elevation_beam), r->height_m, &r->bins, weather);
 }
 
 static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
@@ -254,7 +256,7 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
         power[i] = ldexp(drawn_q24[i], -24);
     }
     if (t->weather) {
-        look_at_weather(t, &receiver, degrees_of(s->up) + line_azimuth_deg(s, line), &weather);
+        look_at_weather(t, &receiver, hs_degrees(s->up) + line_azimuth_deg(s, line), &weather);
     }
     ref_receive(&receiver, t->weather ? &weather : NULL, line, sweep, power, level_db);
     for (uint32_t i = 0; i < s->slant.cells; i++) {

@@ -1,4 +1,5 @@
 /* Targets: their records, what their scatterers return, and the draws of those that fluctuate. */
+#include "hs/angle.h"
 #include "lm/target.h"
 
 #include "memory_flash.h"
@@ -48,7 +49,7 @@ static void a_number_out_of_range_is_refused_under_a_right_checksum(void **state
 {
     (void)state;
     struct lm_target t = sound_target();
-    refused((t.latitude = bam(90.001), t));
+    refused((t.latitude = hs_bam(90.001), t));
     refused((t = sound_target(), t.elevation_q6 = (1 << 20) + 1, t));
     refused((t = sound_target(), t.scatterer_count = LM_SCATTERERS_MAX + 1, t));
     refused((t = sound_target(), t.swerling = 5, t));
@@ -60,7 +61,7 @@ static void a_number_out_of_range_is_refused_under_a_right_checksum(void **state
     refused((t = sound_target(), t.scatterers[0].size_mm[1] = LM_SHAPE_SIZE_MAX_MM + 1, t));
     refused((t = sound_target(), t.scatterers[0].offset_mm[2] = -LM_TARGET_OFFSET_MAX_MM - 1, t));
     t = sound_target();
-    t.latitude = bam(-90);
+    t.latitude = hs_bam(-90);
     t.scatterers[0].offset_mm[1] = LM_TARGET_OFFSET_MAX_MM;
     seal_target(&t);
     assert_int_equal(lm_target_check(&t), LM_OK);
@@ -181,7 +182,7 @@ static void phases_are_those_of_the_true_way_to_every_scatterer(void **state)
         /* From the nearest range with the largest offsets on. */
         const struct lm_target t = random_target(&rng, i % 2 ? LM_TARGET_OFFSET_MAX_MM : 20000);
         const fx_bam_t bearing = (fx_bam_t)hs_rng_u64(&rng);
-        const fx_bam_t elevation = bam(89 * hs_rng_uniform(&rng));
+        const fx_bam_t elevation = hs_bam(89 * hs_rng_uniform(&rng));
         const uint32_t range_mm = 1000000 + (i % 4 ? hs_rng_below(&rng, 200000000) : 0);
         const struct ref_vector radar = radar_of(bearing, elevation, range_mm);
         struct lm_target_view v;
@@ -250,7 +251,7 @@ static void sums_are_those_of_the_phasors(void **state)
     for (int i = 0; i < 3000; i++) {
         const struct lm_target t = random_target(&rng, 30000);
         const fx_bam_t bearing = (fx_bam_t)hs_rng_u64(&rng),
-                       elevation = bam(60 * hs_rng_uniform(&rng));
+                       elevation = hs_bam(60 * hs_rng_uniform(&rng));
         const uint32_t range_mm = 3000000 + hs_rng_below(&rng, 90000000);
         struct lm_target_view v;
         lm_target_view_set(&v, bearing, elevation, range_mm);
@@ -297,7 +298,7 @@ static void the_same_corners_are_steady_in_fine_cells_and_fluctuate_in_a_coarse_
     double low[2] = {1e9, -1e9}, one[2] = {1e9, -1e9};
     for (double deg = -15; deg <= 15; deg += 0.01) {
         struct lm_target_view v;
-        lm_target_view_set(&v, bam(deg), bam(20), 20000000);
+        lm_target_view_set(&v, hs_bam(deg), hs_bam(20), 20000000);
         const double sum = sum_db(&t, &v, 0x1FF), single = sum_db(&t, &v, 1);
         low[0] = fmin(low[0], sum), low[1] = fmax(low[1], sum);
         one[0] = fmin(one[0], single), one[1] = fmax(one[1], single);

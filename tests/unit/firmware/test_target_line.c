@@ -1,5 +1,6 @@
 /* Targets in lines of the picture: the right cell, the right level, hidden by what stands before
  * them. Places come from PROJ's geodesics, levels from the equations in double precision. */
+#include "hs/angle.h"
 #include "lm/target_line.h"
 
 #include "lm/aspect.h"
@@ -34,8 +35,8 @@ static struct lm_target_line sector_line(double lat, double lon, double heading,
     const fx_bam_t width = FX_BAM_DEG(120) / LINES;
     const int32_t from_middle = (int32_t)line - LINES / 2;
     const uint32_t cell_q8 = (uint32_t)(range_m * 256 / CELLS);
-    return (struct lm_target_line){.place = {bam(lat), bam(lon)},
-                                   .azimuth = bam(heading) +
+    return (struct lm_target_line){.place = {hs_bam(lat), hs_bam(lon)},
+                                   .azimuth = hs_bam(heading) +
                                               (fx_bam_t)(from_middle * (int32_t)width) + width / 2,
                                    .width = width,
                                    .first_q8 = cell_q8 / 2,
@@ -82,7 +83,7 @@ static struct found sweep(const struct lm_target *targets, uint32_t count, doubl
     struct lm_targets_near near;
     struct found f = {0};
     int32_t level_q8[LM_CELLS_MAX];
-    near = near_of(targets, count, (struct lm_place){bam(lat), bam(lon)}, (uint32_t)range_m);
+    near = near_of(targets, count, (struct lm_place){hs_bam(lat), hs_bam(lon)}, (uint32_t)range_m);
     for (uint32_t i = 0; i < LINES; i++) {
         const struct lm_target_line line = sector_line(lat, lon, heading, i);
         clear(level_q8);
@@ -144,8 +145,8 @@ static void a_target_is_where_the_geodesic_puts_it_within_a_metre(void **state)
         struct lm_target_line l = sector_line(lat, 11, azimuth, 0);
         struct lm_targets_near near;
         int32_t level_q8[LM_CELLS_MAX];
-        l.azimuth = bam(azimuth);
-        l.width = bam(2.0 / 70000 * 180 / pi);
+        l.azimuth = hs_bam(azimuth);
+        l.width = hs_bam(2.0 / 70000 * 180 / pi);
         l.cell_q8 = 2 * 256;
         l.first_q8 = (70000 - 200) * 256;
         clear(level_q8);
@@ -238,7 +239,7 @@ static void no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted(vo
     for (int i = 1; i <= MANY; i++) {
         t[i] = point_at(46 + i * 0.001, 11, 0, 0);
     }
-    near = near_of(t, MANY + 1, (struct lm_place){bam(46), bam(11)}, 37040);
+    near = near_of(t, MANY + 1, (struct lm_place){hs_bam(46), hs_bam(11)}, 37040);
     assert_int_equal(near.count, LM_TARGETS_NEAR);
     assert_int_equal(near.left_out, 9);
     assert_int_equal(near.item[0].index, 1);
@@ -258,8 +259,8 @@ static void a_choice_holds_for_a_kilometre_of_flight(void **state)
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_targets_near before, now;
         int32_t level_q8[LM_CELLS_MAX];
-        const struct lm_place here = {bam(from[0]), bam(from[1])};
-        before = near_of(&t, 1, (struct lm_place){bam(46), bam(11)}, 37040);
+        const struct lm_place here = {hs_bam(from[0]), hs_bam(from[1])};
+        before = near_of(&t, 1, (struct lm_place){hs_bam(46), hs_bam(11)}, 37040);
         now = near_of(&t, 1, here, 37040);
         struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
         l.azimuth = now.item[0].azimuth;

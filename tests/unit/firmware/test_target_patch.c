@@ -1,6 +1,7 @@
 /* Targets in a patch: the shape of a point, its place and its power, sums of points, movers, and
  * what hides them. The shape is judged by RADAR.md 2.4, places by PROJ's geodesics, sums by the
  * equations of DESIGN.md in double precision. */
+#include "hs/angle.h"
 #include "lm/target_patch.h"
 
 #include "lm/aspect.h"
@@ -29,8 +30,8 @@ static int32_t picture[LINES][LM_CELLS_ROOM];
 
 static struct lm_patch_geometry geometry(double lat, double lon, double look)
 {
-    return (struct lm_patch_geometry){.centre = {bam(lat), bam(lon)},
-                                      .look = bam(look),
+    return (struct lm_patch_geometry){.centre = {hs_bam(lat), hs_bam(lon)},
+                                      .look = hs_bam(look),
                                       .centre_q8 = (uint32_t)(range_m * 256),
                                       .cell_q8 = (uint32_t)(cell_m * 256),
                                       .lines = LINES,
@@ -262,8 +263,8 @@ static void bodies_add_as_phasors_and_targets_as_powers_everywhere(void **state)
             double to[2];
             t[k] = random_target(&rng, 15000);
             place_at(46, 11, 0, middle_of(40 + 12 * k), middle_of(80 - 9 * k), to);
-            t[k].latitude = bam(to[0]);
-            t[k].longitude = bam(to[1]);
+            t[k].latitude = hs_bam(to[0]);
+            t[k].longitude = hs_bam(to[1]);
             seal_target(&t[k]);
         }
         const struct lm_patch_geometry g = geometry(46, 11, 0);
@@ -326,7 +327,7 @@ static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
         const double speed = 0.5 + hs_rng_uniform(&rng), heading = 360 * hs_rng_uniform(&rng);
         const double across_m_s = i % 2 ? 176.8 : -240;
         struct lm_target t = point_in(64, 70, 35);
-        t.heading = bam(heading);
+        t.heading = hs_bam(heading);
         t.speed_mm_s = (uint32_t)lround(speed * 1000);
         t.leg_m = 10;
         seal_target(&t);

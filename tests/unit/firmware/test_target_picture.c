@@ -1,4 +1,5 @@
 /* Targets in the pictures themselves: patch, sweep, and the unit that reads them. */
+#include "hs/angle.h"
 #include "lm/unit.h"
 
 #include "memory_flash.h"
@@ -36,10 +37,10 @@ static void open_soil(struct tiny_image *image, struct memory_flash *flash)
 static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
 {
     static struct lm_sar sar;
-    const struct lm_sar_command command = {.centre = {bam(46), bam(11)},
+    const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
                                            .range_m = 20000,
                                            .height_q6 = 6000 * 64,
-                                           .look_azimuth = bam(90),
+                                           .look_azimuth = hs_bam(90),
                                            .cell_mm = 4000};
     const struct lm_sar_scene scene = {
         .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
@@ -93,7 +94,7 @@ static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void
     draw_patch(&none, without);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
         struct lm_target t = point_at(46, 11, is_hidden ? -3 : 3, 45);
-        t.heading = bam(270); /* towards the radar at 2 m/s: 160 m to the left at 20 km */
+        t.heading = hs_bam(270); /* towards the radar at 2 m/s: 160 m to the left at 20 km */
         t.speed_mm_s = 2000;
         t.leg_m = 10;
         seal_target(&t);
@@ -115,7 +116,8 @@ static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void
 static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
 {
     static struct lm_sector sector;
-    const struct lm_platform platform = {.place = {bam(45.95), bam(11)}, .height_q10 = 3000 * 1024};
+    const struct lm_platform platform = {.place = {hs_bam(45.95), hs_bam(11)},
+                                         .height_q10 = 3000 * 1024};
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
     lm_sector_start(&sector, &lm_radar_default, &command, 5);
     sector.targets = set;

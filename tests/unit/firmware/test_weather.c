@@ -1,5 +1,6 @@
 /* Rain and jammers along a line, against the closed forms and the reference in double precision:
  * docs/DESIGN.md, "Rain" and "Noise". */
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/receiver.h"
 #include "lm/speckle.h"
@@ -19,8 +20,6 @@
 
 enum { CELLS = 256, HEIGHT_M = 4000 };
 
-static const double degrees_per_bam = 360 / 4294967296.0;
-
 struct world {
     struct lm_radar radar;
     struct lm_slant slant;
@@ -33,11 +32,6 @@ struct world {
     struct ref_environment ref;
     struct ref_weather_line ref_weather;
 };
-
-static fx_bam_t bam(double degrees)
-{
-    return (fx_bam_t)(int64_t)llround(degrees / degrees_per_bam);
-}
 
 /* A line of the 40 nautical mile scale seen from 4,000 m, at 46 N 11 E. */
 static struct world *make_world(void)
@@ -66,7 +60,7 @@ static double bin_m(const struct world *w, uint32_t i)
 
 static struct lm_place place_at(const struct world *w, double distance_m, double azimuth_deg)
 {
-    return lm_geo_direct(&w->origin, bam(azimuth_deg), (uint32_t)lround(distance_m * 256));
+    return lm_geo_direct(&w->origin, hs_bam(azimuth_deg), (uint32_t)lround(distance_m * 256));
 }
 
 /* Both environments get the same; lines are looked at along north. */
@@ -91,9 +85,8 @@ static void look(struct world *w)
 {
     assert_int_equal(lm_environment_check(&w->environment), LM_OK);
     lm_weather_line(&w->weather, &w->environment, &w->receiver, &w->radar, w->antenna, 0);
-    ref_weather(
-        &w->ref, w->radar.wavelength_um * 1e-6, w->radar.antenna.azimuth_beam * degrees_per_bam,
-        w->radar.antenna.elevation_beam * degrees_per_bam, HEIGHT_M, &w->bins, &w->ref_weather);
+    ref_weather(&w->ref, w->radar.wavelength_um * 1e-6, hs_degrees(w->radar.antenna.azimuth_beam),
+                hs_degrees(w->radar.antenna.elevation_beam), HEIGHT_M, &w->bins, &w->ref_weather);
 }
 
 static void clear(struct world *w)
@@ -314,13 +307,13 @@ static void what_is_far_away_is_not_there(void **state)
     e->rain_count = LM_RAINS_MAX;
     e->jammer_count = LM_JAMMERS_MAX;
     for (uint32_t n = 0; n < 4; n++) {
-        const struct lm_place far = {FX_BAM_DEG(46) + (n & 1 ? bam(11.3) : 0),
-                                     FX_BAM_DEG(11) + (n & 2 ? bam(-170) : bam(11.3))};
+        const struct lm_place far = {FX_BAM_DEG(46) + (n & 1 ? hs_bam(11.3) : 0),
+                                     FX_BAM_DEG(11) + (n & 2 ? hs_bam(-170) : hs_bam(11.3))};
         e->rain[n] = (struct lm_rain){far, 100000, 150};
         e->jammer[n] = (struct lm_jammer){far, 80 * 256};
     }
     assert_int_equal(lm_environment_check(e), LM_OK);
-    lm_weather_line(&w->weather, e, &w->receiver, &w->radar, w->antenna, bam(90));
+    lm_weather_line(&w->weather, e, &w->receiver, &w->radar, w->antenna, hs_bam(90));
     assert_false(w->weather.has_rain);
     assert_int_equal(w->weather.noise_rise_q8, 0);
     free(w);
@@ -338,15 +331,15 @@ static void no_environment_in_range_leaves_the_bounds(void **state)
     static int32_t level[LM_CELLS_ROOM];
     for (int n = 0; n < 2000; n++) {
         struct lm_environment *e = &w->environment;
-        w->antenna = (struct lm_place){bam(180 * hs_rng_uniform(&rng) - 90),
-                                       bam(360 * hs_rng_uniform(&rng))};
+        w->antenna = (struct lm_place){hs_bam(180 * hs_rng_uniform(&rng) - 90),
+                                       hs_bam(360 * hs_rng_uniform(&rng))};
         e->rain_count = (uint8_t)hs_rng_below(&rng, LM_RAINS_MAX + 1);
         e->jammer_count = (uint8_t)hs_rng_below(&rng, LM_JAMMERS_MAX + 1);
         for (int k = 0; k < 4; k++) {
             const double spread = n % 3 ? 1 : 0;
-            const struct lm_place near = {w->antenna.latitude +
-                                              bam(spread * hs_rng_normal(&rng)) / 4,
-                                          w->antenna.longitude + bam(spread * hs_rng_normal(&rng))};
+            const struct lm_place near = {
+                w->antenna.latitude + hs_bam(spread * hs_rng_normal(&rng)) / 4,
+                w->antenna.longitude + hs_bam(spread * hs_rng_normal(&rng))};
             e->rain[k] = (struct lm_rain){near, 100 + hs_rng_below(&rng, 99901),
                                           (uint16_t)(1 + hs_rng_below(&rng, 150))};
             e->jammer[k] =

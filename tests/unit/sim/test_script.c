@@ -1,6 +1,7 @@
 /* What a line of a script makes the operator do, and when. */
 #include "script.h"
 
+#include "hs/angle.h"
 #include "lm/radar.h"
 
 #include <setjmp.h>
@@ -146,12 +147,6 @@ static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(voi
     assert_int_equal(seen, 0xFF);
 }
 
-/* The binary angle of whole degrees. */
-static fx_bam_t degrees(double value)
-{
-    return (fx_bam_t)(int64_t)(value * 4294967296.0 / 360);
-}
-
 static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void **state)
 {
     (void)state;
@@ -190,15 +185,15 @@ static void rain_and_jammers_add_up_until_the_weather_is_fair(void **state)
     assert_int_equal(e.rain_count, 1);
     assert_int_equal(e.jammer_count, 0);
     assert_int_equal(e.sea_state, LM_SEA_STATE_OF_IMAGE);
-    assert_int_equal(e.rain[0].centre.latitude, degrees(45));
-    assert_int_equal(e.rain[0].centre.longitude, degrees(-90));
+    assert_int_equal(e.rain[0].centre.latitude, hs_bam(45));
+    assert_int_equal(e.rain[0].centre.longitude, hs_bam(-90));
     assert_int_equal(e.rain[0].radius_m, 10000);
     assert_int_equal(e.rain[0].mm_per_h, 30);
     e = at(&s, 2).environment;
     assert_int_equal(e.rain_count, 1);
     assert_int_equal(e.jammer_count, 1);
-    assert_int_equal(e.jammer[0].place.latitude, degrees(-45));
-    assert_int_equal(e.jammer[0].place.longitude, degrees(90));
+    assert_int_equal(e.jammer[0].place.latitude, hs_bam(-45));
+    assert_int_equal(e.jammer[0].place.longitude, hs_bam(90));
     assert_int_equal(e.jammer[0].ratio_q8, 3200);
     e = at(&s, 3).environment;
     assert_int_equal(e.rain_count, 2);
