@@ -376,7 +376,7 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
             t[0].swerling = 1;
             break; /* it has bodies */
         case 10:
-            t[2].reserved[7] = 1;
+            t[2].reserved[6] = 1;
             break;
         default:
             c.bytes[c.head_at + 40] = 1;
