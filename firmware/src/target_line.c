@@ -82,14 +82,25 @@ static struct spot beside(const struct spot *target, const struct lm_return *r)
                          .azimuth = target->azimuth + fx_atan2(across_q8, along_q8)};
 }
 
-/* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two lines and no two
- * cells share one. */
+static uint32_t off_line(const struct lm_target_line *line, const struct spot *s)
+{
+    return fx_abs_u32((int32_t)(s->azimuth - line->azimuth));
+}
+
+/* What the line takes of a spot's power, 1/256 dB: a spot is shared by the two lines that it lies
+ * between, by its nearness to each, so that what the beam makes of both has its middle at the spot.
+ * Only for a spot less than a line's width off. */
+static int32_t share_q8(const struct lm_target_line *line, const struct spot *s)
+{
+    return fx_db_q8(line->width - off_line(line, s)) - fx_db_q8(line->width);
+}
+
+/* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two cells share one. */
 static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 {
     const int32_t half_q8 = (int32_t)(line->cell_q8 / 2);
-    const bool is_in_line = (fx_bam_t)(s->azimuth - line->azimuth + line->width / 2) < line->width;
     const int64_t past_q8 = (int64_t)s->range_q8 - line->first_q8 + half_q8;
-    if (!is_in_line || past_q8 < 0) {
+    if (off_line(line, s) >= line->width || past_q8 < 0) {
         return NO_CELL;
     }
     const uint32_t cell = (uint32_t)past_q8 / line->cell_q8;
@@ -122,20 +133,18 @@ struct echo {
     uint32_t count;
 };
 
-/* The line's cell of a return, unless something nearer hides it. */
+/* The line's cell of a return at a spot, unless something nearer hides it. */
 static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_sight *sight,
-                        const struct lm_target_item *item, const struct spot *target,
-                        const struct lm_return *r)
+                        const struct lm_target_item *item, const struct spot *s, int32_t up_mm)
 {
-    const struct spot s = beside(target, r);
     const struct lm_target_heights h = heights_of(line);
-    const int32_t cell = cell_of(line, &s);
+    const int32_t cell = cell_of(line, s);
     if (cell == NO_CELL || sight == NULL) {
         return cell;
     }
-    const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
+    const int32_t top_q10 = item->elevation_q6 * 16 + up_mm * 128 / 125;
     const int64_t horizon_q38 = sight->horizon[cell] * ((int64_t)1 << (38 - sight->bits));
-    return lm_target_tangent_q38(top_q10, s.range_q8, &h) > horizon_q38 ? cell : NO_CELL;
+    return lm_target_tangent_q38(top_q10, s->range_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 
 static void make_echo(struct echo *e, const struct lm_target_line *line,
@@ -153,7 +162,11 @@ static void make_echo(struct echo *e, const struct lm_target_line *line,
         e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     }
     for (uint32_t i = 0; i < e->count; i++) {
-        e->cell[i] = lit_cell(line, sight, item, spot, &e->returns[i]);
+        const struct spot s = beside(spot, &e->returns[i]);
+        e->cell[i] = lit_cell(line, sight, item, &s, e->returns[i].up_mm);
+        if (e->cell[i] != NO_CELL) {
+            e->returns[i].rcs_q8 += share_q8(line, &s);
+        }
     }
 }
 

@@ -87,19 +87,20 @@ static void look_finely(struct patch *p, const struct lm_target *t, double look_
     }
 }
 
-/* By a beam that is one cell wide where the target stands, from a place due south of it: the target
- * is turned instead of the radar. */
+/* By a beam of many cells' width, in whose middle all corners stand, from a place due south of the
+ * target, which is turned instead of the radar. */
 static void look_coarsely(struct patch *p, const struct lm_target *t, double look_deg)
 {
     struct lm_target turned = *t;
     struct lm_geo_origin origin;
     struct lm_place place;
     int32_t level_q8 = LM_LEVEL_SHADOW;
+    const double beam_m = 64 * p->cell_m;
     lm_geo_set_origin(&origin, (struct lm_place){t->latitude, t->longitude});
     place = lm_geo_direct(&origin, FX_BAM_180, (uint32_t)(range_m * 256));
     turned.heading -= hs_bam(look_deg);
     const struct lm_target_line line = {.place = place,
-                                        .width = hs_bam(p->cell_m / range_m * 180 / pi),
+                                        .width = hs_bam(beam_m / range_m * 180 / pi),
                                         .first_q8 = (uint32_t)(range_m * 256),
                                         .cell_q8 = (uint32_t)(p->cell_m * 256),
                                         .cells = 1,
@@ -109,7 +110,8 @@ static void look_coarsely(struct patch *p, const struct lm_target *t, double loo
     const struct lm_target_set set = {&turned, 1};
     const struct lm_targets_near near = near_of(&set, place);
     lm_target_add(&turned, &near, &line, NULL, &level_q8);
-    p->dbsm[0][0] = level_q8 / 256.0 + cell_area_db(p->cell_m, range_m);
+    p->dbsm[0][0] =
+        level_q8 / 256.0 + cell_area_db(p->cell_m, range_m) + 10 * log10(beam_m / p->cell_m);
 }
 
 static double strongest(const struct patch *p)

@@ -9,7 +9,7 @@
 struct lm_target_line {
     struct lm_place place; /* the antenna */
     fx_bam_t azimuth;      /* of the line's middle */
-    fx_bam_t width;
+    fx_bam_t width;        /* from the middle of a line to that of the next */
     uint32_t first_q8, cell_q8, cells; /* as lm_range_grid_set has them */
     uint32_t first;                    /* cells before this are not shown */
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain */
@@ -29,7 +29,8 @@ struct lm_target_sight {
 };
 
 /* Add what the targets return to the levels of a line's cells: a cross section sigma in a cell of
- * width w, length ds and flat-ground grazing g counts as gamma = sigma / (w ds g). A scatterer
+ * width w, length ds and flat-ground grazing g counts as gamma = sigma / (w ds g). The two lines
+ * that a scatterer lies between share its power, so that their mean stands where it is. A scatterer
  * below the horizon of the cells before its own is hidden; `sight` NULL hides nothing; a mover is
  * looked for where it appears. `targets` are checked records, `near` was chosen for this sweep or
  * patch. Returns how many times a cell was
