@@ -112,7 +112,7 @@ static void unsound_motion_is_refused(void **state)
                  {1, 0, 0, LM_ERR_CORRUPT},
                  {1, LM_TARGET_LEG_MAX_M + 1, 0, LM_ERR_CORRUPT},
                  {LM_TARGET_SPEED_MAX_MM_S + 1, 1, 0, LM_ERR_CORRUPT},
-                 {0, 0, 2, LM_ERR_CORRUPT},
+                 {0, 0, LM_TARGET_FLAGS + 1, LM_ERR_CORRUPT},
                  {0, 0, 0x8000, LM_ERR_CORRUPT}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct lm_target t = point_at(46, 11, 0, 10);
