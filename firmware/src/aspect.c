@@ -216,7 +216,7 @@ static int32_t start_of(const struct lm_range_grid *grid, const struct lm_sight 
     const int64_t first = sight->horizon[grid->first + 1];
     const int64_t start =
         horizon == LM_HORIZON_OPEN ? first - grid->flat_rise : horizon >> (40 - grid->tangent_bits);
-    return fx_sat_i32(start, NULL);
+    return fx_sat_i32(start);
 }
 
 lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,

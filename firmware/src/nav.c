@@ -279,7 +279,7 @@ static void set_heading(struct lm_ownship *out, const struct lm_nav *n, uint64_t
     /* A good attitude and rates keep the rate below 2^35, and no age passes 65.5 s, 2^26 us. */
     const int64_t rate = heading_rate(out, n, now_us);
     out->heading = (fx_bam_t)heading.value + (fx_bam_t)(rate * heading.age_us / 1000000);
-    out->turn_bam_s = fx_sat_i32(rate, NULL);
+    out->turn_bam_s = fx_sat_i32(rate);
 }
 
 static void set_utc(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)

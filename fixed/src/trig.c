@@ -79,7 +79,7 @@ int32_t fx_tan_q16(fx_bam_t angle)
     const uint32_t recip = fx_recip_q(fx_abs_u32(cosine_q30), &s);
     const uint64_t product = (uint64_t)fx_abs_u32(sine_q30) * recip;
     const int64_t size_q16 = (int64_t)((product + (1ull << (s - 17))) >> (s - 16));
-    return fx_sat_i32((sine_q30 < 0) != (cosine_q30 < 0) ? -size_q16 : size_q16, NULL);
+    return fx_sat_i32((sine_q30 < 0) != (cosine_q30 < 0) ? -size_q16 : size_q16);
 }
 
 /* atan(r0 + h) = atan r0 + t - r0 t^2 + (r0^2 - 1/3) t^3 ..., where t = h / (1 + r0^2). With the

@@ -49,14 +49,6 @@ void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3
 /* Move the path by `cells` steps (either way, |cells| <= 4096) before the first cell is read. */
 void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells);
 
-static inline void lm_ground_path_step(struct lm_ground_path *p)
-{
-    p->latitude += p->latitude_step;
-    p->longitude += p->longitude_step;
-    p->latitude_step += p->latitude_bend;
-    p->longitude_step += p->longitude_bend;
-}
-
 /* A square patch of ground around a centre, its `along` axis at `azimuth`: nine points that carry a
  * biquadratic surface in latitude and longitude, rows from near to far, columns from left to right
  * as seen along the azimuth. */

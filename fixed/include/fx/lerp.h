@@ -4,13 +4,6 @@
 
 #include <stdint.h>
 
-/* From a (t = 0) to b (t = 65536), rounded to nearest with halves up, exact at both ends and never
- * outside them. t_q16 0..65536. The difference takes 33 bits and the product 50. */
-static inline int32_t fx_lerp_i32(int32_t a, int32_t b, uint32_t t_q16)
-{
-    return (int32_t)(a + ((((int64_t)b - a) * (int64_t)t_q16 + 32768) >> 16));
-}
-
 /* Blend four samples; tx and ty run 0..256, where 0 is the c00 corner and 256 exactly the far one.
  * The result is the value times 65536, without any rounding.
  *

@@ -7,12 +7,6 @@
 /* floor(sqrt(x)) for every x. Cost about 50 instructions, no division, no loop. */
 uint32_t fx_sqrt_u64(uint64_t x);
 
-/* floor(sqrt(x)), 0..65535. */
-static inline uint32_t fx_sqrt_u32(uint32_t x)
-{
-    return fx_sqrt_u64(x);
-}
-
 /* floor(sqrt(x^2 + y^2)) for every x and y. The largest sum, 2 * 2^62, fits 64 bits. */
 static inline uint32_t fx_hypot_u32(int32_t x, int32_t y)
 {

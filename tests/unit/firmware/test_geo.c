@@ -88,7 +88,7 @@ static double worst_cell(double lat, double lon, double metres, uint32_t cells)
                                            lm_geo_direct(&o, azimuth, length_q8)};
         struct lm_ground_path path;
         lm_ground_path_fit(&path, points, cells);
-        for (uint32_t i = 0; i < cells; i++, lm_ground_path_step(&path)) {
+        for (uint32_t i = 0; i < cells; i++, lm_ground_path_skip(&path, 1)) {
             const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
                                        (fx_bam_t)(path.longitude >> 32)};
             double to_lat, to_lon;
@@ -127,7 +127,7 @@ static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
         lm_ground_patch_line(&patch, line, 256, points);
         lm_ground_path_fit(&path, points, 256);
         lm_ground_path_skip(&path, -4);
-        for (int i = -4; i < 256; i++, lm_ground_path_step(&path)) {
+        for (int i = -4; i < 256; i++, lm_ground_path_skip(&path, 1)) {
             const double across = (line + 0.5 - 128) * side / 256,
                          along = (i + 0.5 - 128) * side / 256;
             double to_lat, to_lon;
