@@ -2,45 +2,13 @@
 
 #include "fx/crc32c.h"
 #include "fx/mem.h"
+#include "lm/image.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "records are used in place: landmass needs a little-endian machine"
 #endif
 
-enum {
-    SECTION_CLASSES = 1,
-    SECTION_BANDS,
-    SECTION_DIRECTORY,
-    SECTION_TILES,
-    SECTION_TARGETS = 6,
-    SECTION_SIGNATURES,
-    SECTIONS_MAX = 16
-};
 enum { HEIGHT_MAX_Q6 = 1 << 20 };
-
-struct section {
-    uint32_t type, crc;
-    uint64_t offset, bytes;
-};
-
-/* FORMATS.md 1.1. Laid out so that no compiler pads it. */
-struct header {
-    char magic[8];
-    uint32_t version, header_bytes;
-    uint64_t image_bytes;
-    uint8_t shift0, level_count;
-    uint16_t band_count;
-    uint32_t entry_count, record_count, record_bytes;
-    int32_t mean_elevation_q6, geoid_q6;
-    uint32_t centre_latitude, centre_longitude;
-    uint32_t section_count, reserved0;
-    struct section sections[SECTIONS_MAX];
-    char title[32];
-    uint8_t reserved1[28];
-    uint32_t crc;
-};
-_Static_assert(sizeof(struct header) == LM_DB_HEADER_BYTES,
-               "the header must be what FORMATS.md says");
 
 int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination, uint32_t length,
                uint32_t poll_limit)
@@ -65,18 +33,19 @@ static bool is_height(int32_t height_q6)
     return height_q6 >= -HEIGHT_MAX_Q6 && height_q6 <= HEIGHT_MAX_Q6;
 }
 
-static bool header_is_sound(const struct header *h, uint64_t flash_bytes)
+static bool header_is_sound(const struct lm_image_header *h, uint64_t flash_bytes)
 {
     return h->header_bytes == LM_DB_HEADER_BYTES && h->image_bytes <= flash_bytes &&
            h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 &&
            h->level_count <= LM_DB_LEVELS_MAX &&
            h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
            h->band_count <= LM_DB_BANDS_MAX && h->record_bytes == LM_TILE_BYTES &&
-           h->section_count <= SECTIONS_MAX && is_height(h->mean_elevation_q6) &&
+           h->section_count <= LM_IMAGE_SECTIONS_MAX && is_height(h->mean_elevation_q6) &&
            is_height(h->geoid_q6);
 }
 
-static const struct section *section_of_type(const struct header *h, uint32_t type)
+static const struct lm_image_section *section_of_type(const struct lm_image_header *h,
+                                                      uint32_t type)
 {
     for (uint32_t i = 0; i < h->section_count; i++) {
         if (h->sections[i].type == type) {
@@ -86,21 +55,22 @@ static const struct section *section_of_type(const struct header *h, uint32_t ty
     return NULL;
 }
 
-static bool is_inside(const struct header *h, const struct section *s)
+static bool is_inside(const struct lm_image_header *h, const struct lm_image_section *s)
 {
-    return s->offset % 64 == 0 && s->bytes <= h->image_bytes &&
+    return s->offset % LM_IMAGE_SECTION_ALIGNMENT == 0 && s->bytes <= h->image_bytes &&
            s->offset <= h->image_bytes - s->bytes;
 }
 
 /* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL.
  */
-static const struct section *find_section(const struct header *h, uint32_t type, uint64_t bytes)
+static const struct lm_image_section *find_section(const struct lm_image_header *h, uint32_t type,
+                                                   uint64_t bytes)
 {
-    const struct section *s = section_of_type(h, type);
+    const struct lm_image_section *s = section_of_type(h, type);
     return s && s->bytes == bytes && is_inside(h, s) ? s : NULL;
 }
 
-static int read_section(struct lm_db *db, const struct section *s, void *destination,
+static int read_section(struct lm_db *db, const struct lm_image_section *s, void *destination,
                         uint32_t poll_limit)
 {
     const uint32_t length = (uint32_t)s->bytes; /* bounded by find_section */
@@ -150,8 +120,9 @@ static bool classes_are_sound(const struct lm_classes *c)
 
 /* The head of a section of records, which an image need not have: its bytes, sealed by a CRC in the
  * last four. LM_OK and *s NULL when there is none. */
-static int read_head(const struct lm_db *db, const struct header *h, uint32_t type, void *head,
-                     uint32_t head_bytes, const struct section **s, uint32_t poll_limit)
+static int read_head(const struct lm_db *db, const struct lm_image_header *h, uint32_t type,
+                     void *head, uint32_t head_bytes, const struct lm_image_section **s,
+                     uint32_t poll_limit)
 {
     *s = section_of_type(h, type);
     if (*s == NULL) {
@@ -170,11 +141,11 @@ static int read_head(const struct lm_db *db, const struct header *h, uint32_t ty
 }
 
 /* The records of targets and signatures are checked when they are read. */
-static int read_targets_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+static int read_targets_head(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     struct lm_targets_head head;
-    const struct section *s;
-    const int status = read_head(db, h, SECTION_TARGETS, &head, sizeof head, &s, poll_limit);
+    const struct lm_image_section *s;
+    const int status = read_head(db, h, LM_IMAGE_TARGETS, &head, sizeof head, &s, poll_limit);
     db->target_count = 0;
     db->targets_offset = 0;
     if (status != LM_OK || s == NULL) {
@@ -189,11 +160,12 @@ static int read_targets_head(struct lm_db *db, const struct header *h, uint32_t 
     return LM_OK;
 }
 
-static int read_signatures_head(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+static int read_signatures_head(struct lm_db *db, const struct lm_image_header *h,
+                                uint32_t poll_limit)
 {
     struct lm_signatures_head head;
-    const struct section *s;
-    const int status = read_head(db, h, SECTION_SIGNATURES, &head, sizeof head, &s, poll_limit);
+    const struct lm_image_section *s;
+    const int status = read_head(db, h, LM_IMAGE_SIGNATURES, &head, sizeof head, &s, poll_limit);
     db->signature_count = db->chip_count = 0;
     db->signatures_offset = db->chips_offset = 0;
     if (status != LM_OK || s == NULL) {
@@ -212,15 +184,15 @@ static int read_signatures_head(struct lm_db *db, const struct header *h, uint32
     return LM_OK;
 }
 
-static int read_tables(struct lm_db *db, const struct header *h, uint32_t poll_limit)
+static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
-    const struct section *classes = find_section(h, SECTION_CLASSES, sizeof db->classes);
-    const struct section *bands = find_section(h, SECTION_BANDS, band_bytes);
-    const struct section *directory =
-        find_section(h, SECTION_DIRECTORY, (uint64_t)db->entry_count * 8);
-    const struct section *tiles =
-        find_section(h, SECTION_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
+    const struct lm_image_section *classes = find_section(h, LM_IMAGE_CLASSES, sizeof db->classes);
+    const struct lm_image_section *bands = find_section(h, LM_IMAGE_BANDS, band_bytes);
+    const struct lm_image_section *directory =
+        find_section(h, LM_IMAGE_DIRECTORY, (uint64_t)db->entry_count * 8);
+    const struct lm_image_section *tiles =
+        find_section(h, LM_IMAGE_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
     if (!classes || !bands || !directory || !tiles) {
         return LM_ERR_CORRUPT;
     }
@@ -243,7 +215,7 @@ static int read_tables(struct lm_db *db, const struct header *h, uint32_t poll_l
 
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit)
 {
-    struct header h;
+    struct lm_image_header h;
     if (flash->size_bytes < sizeof h) {
         return LM_ERR_CORRUPT;
     }

@@ -123,7 +123,7 @@ static int check_settings(struct settings *s)
     if (s->shift0 > 0 && s->shift0 < LM_DB_SHIFT_MIN) {
         return usage_error("--shift0", "must be 4 to 20");
     }
-    if (s->title && strlen(s->title) > IMAGE_TITLE_BYTES) {
+    if (s->title && strlen(s->title) > LM_IMAGE_TITLE_BYTES) {
         return usage_error("--title", "is longer than 32 bytes");
     }
     if (!s->class_raster && (s->reflectivity || s->heights)) {
@@ -360,7 +360,7 @@ static char *make_manifest(const struct build_context *b, const struct settings 
     return text;
 }
 
-static void fill_header(struct image_header *h, const struct build_context *b,
+static void fill_header(struct lm_image_header *h, const struct build_context *b,
                         const struct settings *s, const uint32_t centre[2])
 {
     const struct build_counts *n = &b->counts;
@@ -425,10 +425,10 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     uint32_t centre[2];
     choose_centre(b, s, centre);
     struct image_writer w;
-    const struct image_header header = {.shift0 = b->plan.shift0,
-                                        .level_count = b->plan.level_count,
-                                        .band_count = b->plan.band_count,
-                                        .entry_count = b->plan.entry_count};
+    const struct lm_image_header header = {.shift0 = b->plan.shift0,
+                                           .level_count = b->plan.level_count,
+                                           .band_count = b->plan.band_count,
+                                           .entry_count = b->plan.entry_count};
     if (image_writer_begin(&w, s->out, &header, &b->classes, b->plan.bands) != 0) {
         return -1;
     }

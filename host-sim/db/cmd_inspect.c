@@ -20,8 +20,8 @@ static const struct db_usage usage = {
 
 static void print_header(const struct image *image)
 {
-    const struct image_header *h = &image->header;
-    printf("title           %.*s\n", IMAGE_TITLE_BYTES, h->title);
+    const struct lm_image_header *h = &image->header;
+    printf("title           %.*s\n", LM_IMAGE_TITLE_BYTES, h->title);
     printf("version         %" PRIu32 "\n", h->version);
     printf("bytes           %" PRIu64 "\n", h->image_bytes);
     printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
@@ -32,7 +32,7 @@ static void print_header(const struct image *image)
            h->shift0);
     printf("\nsection     offset         bytes  crc\n");
     for (uint32_t i = 0; i < h->section_count; i++) {
-        const struct image_section *s = &h->sections[i];
+        const struct lm_image_section *s = &h->sections[i];
         printf("%-9s %8" PRIu64 "  %12" PRIu64 "  %08" PRIx32 "\n", image_section_name(s->type),
                s->offset, s->bytes, s->crc);
     }
@@ -102,7 +102,7 @@ static void print_classes(const struct image *image)
 /* Control characters of a damaged or hostile file do not reach the terminal. */
 static void print_manifest(const struct image *image)
 {
-    const struct image_section *s = image->sections[IMAGE_MANIFEST];
+    const struct lm_image_section *s = image->sections[LM_IMAGE_MANIFEST];
     putchar('\n');
     for (uint64_t i = 0; i < s->bytes; i++) {
         const uint8_t c = image->bytes[s->offset + i];

@@ -10,7 +10,7 @@ uint32_t image_entry_crc(uint32_t entry, uint32_t record)
 
 const char *image_section_name(uint32_t type)
 {
-    static const char *const names[IMAGE_SECTION_TYPES] = {
-        "unknown", "CLASSES", "BANDS", "DIRECTORY", "TILES", "MANIFEST", "TARGETS"};
-    return type < IMAGE_SECTION_TYPES ? names[type] : names[0];
+    static const char *const names[LM_IMAGE_SECTION_TYPES] = {
+        "unknown", "CLASSES", "BANDS", "DIRECTORY", "TILES", "MANIFEST", "TARGETS", "SIGNATURES"};
+    return type < LM_IMAGE_SECTION_TYPES ? names[type] : names[0];
 }

@@ -81,7 +81,7 @@ static bool is_zero(const void *bytes, uint64_t count)
 
 static int check_header(const struct image *image, struct image_findings *f)
 {
-    const struct image_header *h = &image->header;
+    const struct lm_image_header *h = &image->header;
     if (memcmp(h->magic, "LANDMASS", sizeof h->magic) != 0) {
         image_find(f, 0, "the file does not begin with LANDMASS: it is no image");
         return -1;
@@ -90,8 +90,9 @@ static int check_header(const struct image *image, struct image_findings *f)
         image_find(f, 8, "version %" PRIu32 " instead of %d", h->version, LM_DB_VERSION);
         return -1;
     }
-    if (fx_crc32c(0, h, offsetof(struct image_header, crc)) != h->crc) {
-        image_find(f, offsetof(struct image_header, crc), "the header's checksum does not fit it");
+    if (fx_crc32c(0, h, offsetof(struct lm_image_header, crc)) != h->crc) {
+        image_find(f, offsetof(struct lm_image_header, crc),
+                   "the header's checksum does not fit it");
     }
     if (h->image_bytes != image->size_bytes) {
         image_find(f, 16, "the header says %" PRIu64 " bytes, the file has %" PRIu64,
@@ -104,24 +105,24 @@ static int check_header(const struct image *image, struct image_findings *f)
         h->header_bytes == LM_DB_HEADER_BYTES && h->record_bytes == LM_TILE_BYTES &&
         h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 && h->level_count <= LM_DB_LEVELS_MAX &&
         h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
-        h->band_count <= LM_DB_BANDS_MAX && h->section_count >= IMAGE_MANIFEST &&
-        h->section_count <= IMAGE_SECTIONS_MAX && h->image_bytes >= LM_DB_HEADER_BYTES;
+        h->band_count <= LM_DB_BANDS_MAX && h->section_count >= LM_IMAGE_MANIFEST &&
+        h->section_count <= LM_IMAGE_SECTIONS_MAX && h->image_bytes >= LM_DB_HEADER_BYTES;
     if (!is_sound) {
         image_find(f, 12, "a field of the header is out of its range");
     }
     return is_sound ? 0 : -1;
 }
 
-static uint64_t expected_bytes(const struct image_header *h, uint32_t type)
+static uint64_t expected_bytes(const struct lm_image_header *h, uint32_t type)
 {
     switch (type) {
-    case IMAGE_CLASSES:
+    case LM_IMAGE_CLASSES:
         return sizeof(struct lm_classes);
-    case IMAGE_BANDS:
+    case LM_IMAGE_BANDS:
         return (uint64_t)h->band_count * sizeof(struct lm_band);
-    case IMAGE_DIRECTORY:
+    case LM_IMAGE_DIRECTORY:
         return (uint64_t)h->entry_count * sizeof(struct image_entry);
-    case IMAGE_TILES:
+    case LM_IMAGE_TILES:
         return (uint64_t)h->record_count * LM_TILE_BYTES;
     default:
         return UINT64_MAX; /* as long as it says */
@@ -130,10 +131,10 @@ static uint64_t expected_bytes(const struct image_header *h, uint32_t type)
 
 static int check_section(struct image *image, uint32_t index, struct image_findings *f)
 {
-    const struct image_section *s = &image->header.sections[index];
-    const uint64_t at = offsetof(struct image_header, sections) + index * sizeof *s;
+    const struct lm_image_section *s = &image->header.sections[index];
+    const uint64_t at = offsetof(struct lm_image_header, sections) + index * sizeof *s;
     const uint64_t expected = expected_bytes(&image->header, s->type);
-    if (s->offset % IMAGE_SECTION_ALIGNMENT != 0 || s->offset < LM_DB_HEADER_BYTES ||
+    if (s->offset % LM_IMAGE_SECTION_ALIGNMENT != 0 || s->offset < LM_DB_HEADER_BYTES ||
         s->offset > image->size_bytes || s->bytes > image->size_bytes - s->offset) {
         image_find(f, at, "section %s does not lie inside the image", image_section_name(s->type));
         return -1;
@@ -143,7 +144,7 @@ static int check_section(struct image *image, uint32_t index, struct image_findi
                    image_section_name(s->type), s->bytes, expected);
         return -1;
     }
-    if (s->type >= IMAGE_SECTION_TYPES || s->type == 0) {
+    if (s->type >= LM_IMAGE_SECTION_TYPES || s->type == 0) {
         return 0;
     }
     if (image->sections[s->type]) {
@@ -156,21 +157,21 @@ static int check_section(struct image *image, uint32_t index, struct image_findi
 
 static int check_sections(struct image *image, struct image_findings *f)
 {
-    const struct image_header *h = &image->header;
+    const struct lm_image_header *h = &image->header;
     int result = 0;
     for (uint32_t i = 0; i < h->section_count; i++) {
         result |= check_section(image, i, f);
     }
-    for (uint32_t type = IMAGE_CLASSES; type <= IMAGE_MANIFEST; type++) {
+    for (uint32_t type = LM_IMAGE_CLASSES; type <= LM_IMAGE_MANIFEST; type++) {
         if (!image->sections[type]) {
-            image_find(f, offsetof(struct image_header, sections), "section %s is missing",
+            image_find(f, offsetof(struct lm_image_header, sections), "section %s is missing",
                        image_section_name(type));
             result = -1;
         }
     }
-    const uint32_t unused = IMAGE_SECTIONS_MAX - h->section_count;
+    const uint32_t unused = LM_IMAGE_SECTIONS_MAX - h->section_count;
     if (!is_zero(&h->sections[h->section_count], unused * sizeof h->sections[0])) {
-        image_find(f, offsetof(struct image_header, sections),
+        image_find(f, offsetof(struct lm_image_header, sections),
                    "unused section entries are not zero");
     }
     return result;
@@ -179,7 +180,7 @@ static int check_sections(struct image *image, struct image_findings *f)
 static int check_band(const struct image *image, uint32_t index, struct image_findings *f)
 {
     const struct lm_band *b = &image->db.bands[index];
-    const uint64_t at = image->sections[IMAGE_BANDS]->offset + index * sizeof *b;
+    const uint64_t at = image->sections[LM_IMAGE_BANDS]->offset + index * sizeof *b;
     if (b->reserved != 0) {
         image_find(f, at, "band %" PRIu32 ": unused bytes are not zero", index);
     }
@@ -219,23 +220,23 @@ static int check_bands(const struct image *image, struct image_findings *f)
 
 static void fill_db(struct image *image)
 {
-    const struct image_header *h = &image->header;
+    const struct lm_image_header *h = &image->header;
     image->db = (struct lm_db){
         .level_count = h->level_count,
         .shift0 = h->shift0,
         .band_count = h->band_count,
         .entry_count = h->entry_count,
         .record_count = h->record_count,
-        .directory_offset = image->sections[IMAGE_DIRECTORY]->offset,
-        .records_offset = image->sections[IMAGE_TILES]->offset,
+        .directory_offset = image->sections[LM_IMAGE_DIRECTORY]->offset,
+        .records_offset = image->sections[LM_IMAGE_TILES]->offset,
         .mean_elevation_q6 = h->mean_elevation_q6,
         .geoid_q6 = h->geoid_q6,
         .centre_latitude = h->centre_latitude,
         .centre_longitude = h->centre_longitude,
     };
-    memcpy(&image->db.classes, image->bytes + image->sections[IMAGE_CLASSES]->offset,
+    memcpy(&image->db.classes, image->bytes + image->sections[LM_IMAGE_CLASSES]->offset,
            sizeof image->db.classes);
-    memcpy(image->db.bands, image->bytes + image->sections[IMAGE_BANDS]->offset,
+    memcpy(image->db.bands, image->bytes + image->sections[LM_IMAGE_BANDS]->offset,
            h->band_count * sizeof(struct lm_band));
     image->entries = (const void *)(image->bytes + image->db.directory_offset);
     image->tiles = (const void *)(image->bytes + image->db.records_offset);
@@ -244,7 +245,7 @@ static void fill_db(struct image *image)
 /* The head of the targets says how many there are. */
 static int read_targets_head(struct image *image, struct image_findings *f)
 {
-    const struct image_section *s = image->sections[IMAGE_TARGETS];
+    const struct lm_image_section *s = image->sections[LM_IMAGE_TARGETS];
     struct lm_targets_head head;
     if (!s) {
         return 0;

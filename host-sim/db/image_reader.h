@@ -25,10 +25,10 @@ struct image {
     const uint8_t *bytes; /* the whole file, mapped, or lent by the caller */
     uint64_t size_bytes;
     int is_mapped;
-    struct image_header header;
+    struct lm_image_header header;
     struct lm_db db; /* as the firmware holds it, without a flash */
-    const struct image_section
-        *sections[IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: no TARGETS */
+    const struct lm_image_section
+        *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
     const struct image_entry *entries;
     const struct lm_tile *tiles;
     const struct lm_target *targets; /* db.target_count of them, their contents not yet checked */

@@ -24,9 +24,9 @@ struct verify {
 
 static void check_section_crcs(struct verify *v)
 {
-    const struct image_header *h = &v->image->header;
+    const struct lm_image_header *h = &v->image->header;
     for (uint32_t i = 0; i < h->section_count; i++) {
-        const struct image_section *s = &h->sections[i];
+        const struct lm_image_section *s = &h->sections[i];
         if (fx_crc32c(0, v->image->bytes + s->offset, s->bytes) != s->crc) {
             image_find(v->findings, s->offset, "section %s: its checksum does not fit it",
                        image_section_name(s->type));
@@ -36,7 +36,7 @@ static void check_section_crcs(struct verify *v)
 
 static int by_offset(const void *a, const void *b)
 {
-    const struct image_section *x = a, *y = b;
+    const struct lm_image_section *x = a, *y = b;
     if (x->offset != y->offset) {
         return x->offset < y->offset ? -1 : 1;
     }
@@ -54,8 +54,8 @@ static void check_gap(struct verify *v, uint64_t from, uint64_t to)
 
 static void check_layout(struct verify *v)
 {
-    const struct image_header *h = &v->image->header;
-    struct image_section sorted[IMAGE_SECTIONS_MAX];
+    const struct lm_image_header *h = &v->image->header;
+    struct lm_image_section sorted[LM_IMAGE_SECTIONS_MAX];
     memcpy(sorted, h->sections, sizeof sorted);
     qsort(sorted, h->section_count, sizeof sorted[0], by_offset);
     uint64_t end = sizeof *h;
@@ -82,7 +82,7 @@ static bool is_unused(const struct lm_class *c)
 static void check_class(struct verify *v, int number)
 {
     const struct lm_class *c = &v->image->db.classes.entry[number];
-    const uint64_t at = v->image->sections[IMAGE_CLASSES]->offset + (uint64_t)number * sizeof *c;
+    const uint64_t at = v->image->sections[LM_IMAGE_CLASSES]->offset + (uint64_t)number * sizeof *c;
     if (is_unused(c)) {
         return;
     }
@@ -111,7 +111,7 @@ static void check_classes(struct verify *v)
     }
     if (!is_rising) {
         image_find(v->findings,
-                   v->image->sections[IMAGE_CLASSES]->offset +
+                   v->image->sections[LM_IMAGE_CLASSES]->offset +
                        offsetof(struct lm_classes, height_dm),
                    "the heights do not rise from 0");
     }
@@ -138,7 +138,7 @@ static int check_bands(struct verify *v)
     int result = 0;
     for (uint32_t i = 0; i < image->header.band_count; i++) {
         const struct lm_band *a = &image->db.bands[i];
-        const uint64_t at = image->sections[IMAGE_BANDS]->offset + i * sizeof *a;
+        const uint64_t at = image->sections[LM_IMAGE_BANDS]->offset + i * sizeof *a;
         entries += (uint64_t)a->rows * a->columns;
         for (uint32_t k = 0; k < i; k++) {
             const struct lm_band *b = &image->db.bands[k];
@@ -151,7 +151,7 @@ static int check_bands(struct verify *v)
         }
     }
     if (entries != image->header.entry_count) {
-        image_find(v->findings, image->sections[IMAGE_BANDS]->offset,
+        image_find(v->findings, image->sections[LM_IMAGE_BANDS]->offset,
                    "the bands have %" PRIu64 " entries, the directory %" PRIu32, entries,
                    image->header.entry_count);
     }

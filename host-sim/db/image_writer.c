@@ -10,7 +10,7 @@
 
 static uint64_t aligned(uint64_t offset)
 {
-    const uint64_t a = IMAGE_SECTION_ALIGNMENT;
+    const uint64_t a = LM_IMAGE_SECTION_ALIGNMENT;
     return (offset + a - 1) / a * a;
 }
 
@@ -31,12 +31,12 @@ static int put(struct image_writer *w, const void *data, size_t bytes)
 /* Zeros up to `offset`, which is less than a section's alignment away. */
 static int pad_to(struct image_writer *w, uint64_t offset)
 {
-    static const uint8_t zeros[IMAGE_SECTION_ALIGNMENT];
+    static const uint8_t zeros[LM_IMAGE_SECTION_ALIGNMENT];
     const off_t here = ftello(w->file.stream);
     return here < 0 ? write_failed(w) : put(w, zeros, offset - (uint64_t)here);
 }
 
-static struct image_section *section(struct image_writer *w, enum image_section_type type)
+static struct lm_image_section *section(struct image_writer *w, enum lm_image_section_type type)
 {
     return &w->header.sections[type - 1];
 }
@@ -44,29 +44,31 @@ static struct image_section *section(struct image_writer *w, enum image_section_
 /* Everything before the tiles has a known length; their length follows when all are written. */
 static void place_sections(struct image_writer *w)
 {
-    const uint64_t bytes[IMAGE_SECTION_TYPES] = {
-        [IMAGE_CLASSES] = sizeof w->classes,
-        [IMAGE_BANDS] = (uint64_t)w->header.band_count * sizeof(struct lm_band),
-        [IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct image_entry),
+    const uint64_t bytes[LM_IMAGE_SECTION_TYPES] = {
+        [LM_IMAGE_CLASSES] = sizeof w->classes,
+        [LM_IMAGE_BANDS] = (uint64_t)w->header.band_count * sizeof(struct lm_band),
+        [LM_IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct image_entry),
     };
     uint64_t offset = sizeof w->header;
-    for (uint32_t type = IMAGE_CLASSES; type <= IMAGE_MANIFEST; type++) {
-        struct image_section *s = section(w, type);
-        *s = (struct image_section){.type = type, .offset = aligned(offset), .bytes = bytes[type]};
+    for (uint32_t type = LM_IMAGE_CLASSES; type <= LM_IMAGE_MANIFEST; type++) {
+        struct lm_image_section *s = section(w, type);
+        *s = (struct lm_image_section){
+            .type = type, .offset = aligned(offset), .bytes = bytes[type]};
         offset = s->offset + s->bytes;
     }
 }
 
 static int write_zeros_before_tiles(struct image_writer *w)
 {
-    if (fseeko(w->file.stream, (off_t)section(w, IMAGE_TILES)->offset, SEEK_SET) != 0) {
+    if (fseeko(w->file.stream, (off_t)section(w, LM_IMAGE_TILES)->offset, SEEK_SET) != 0) {
         return write_failed(w);
     }
     return 0;
 }
 
-int image_writer_begin(struct image_writer *w, const char *path, const struct image_header *header,
-                       const struct lm_classes *classes, const struct lm_band *bands)
+int image_writer_begin(struct image_writer *w, const char *path,
+                       const struct lm_image_header *header, const struct lm_classes *classes,
+                       const struct lm_band *bands)
 {
     memset(w, 0, sizeof *w);
     w->header = *header;
@@ -74,7 +76,7 @@ int image_writer_begin(struct image_writer *w, const char *path, const struct im
     w->header.version = LM_DB_VERSION;
     w->header.header_bytes = LM_DB_HEADER_BYTES;
     w->header.record_bytes = LM_TILE_BYTES;
-    w->header.section_count = IMAGE_MANIFEST;
+    w->header.section_count = LM_IMAGE_MANIFEST;
     w->classes = *classes;
     memcpy(w->bands, bands, header->band_count * sizeof *bands);
     place_sections(w);
@@ -101,10 +103,10 @@ int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *ti
 }
 
 /* Hash a section that is in memory, write it, and add its line to the manifest. */
-static int put_section(struct image_writer *w, enum image_section_type type, const void *data,
+static int put_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
                        FILE *manifest)
 {
-    struct image_section *s = section(w, type);
+    struct lm_image_section *s = section(w, type);
     struct image_sha256 sha;
     char digest[IMAGE_SHA256_TEXT];
     image_sha256_begin(&sha);
@@ -131,18 +133,19 @@ static int put_directory(struct image_writer *w, FILE *manifest)
         entries[i] =
             (struct image_entry){.record = w->records[i], .crc = image_entry_crc(i, w->records[i])};
     }
-    const int result = put_section(w, IMAGE_DIRECTORY, entries, manifest);
+    const int result = put_section(w, LM_IMAGE_DIRECTORY, entries, manifest);
     free(entries);
     return result;
 }
 
 static int put_tables(struct image_writer *w, FILE *manifest)
 {
-    if (put_section(w, IMAGE_CLASSES, &w->classes, manifest) != 0 ||
-        put_section(w, IMAGE_BANDS, w->bands, manifest) != 0 || put_directory(w, manifest) != 0) {
+    if (put_section(w, LM_IMAGE_CLASSES, &w->classes, manifest) != 0 ||
+        put_section(w, LM_IMAGE_BANDS, w->bands, manifest) != 0 ||
+        put_directory(w, manifest) != 0) {
         return -1;
     }
-    struct image_section *tiles = section(w, IMAGE_TILES);
+    struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
     char digest[IMAGE_SHA256_TEXT];
     image_sha256_end(&w->tiles_sha256, digest);
     fprintf(manifest, "section-sha256: TILES %s\n", digest);
@@ -152,11 +155,11 @@ static int put_tables(struct image_writer *w, FILE *manifest)
 }
 
 /* Append a section whose length was not known before to the image, which ends at `*end`. */
-static int append_section(struct image_writer *w, enum image_section_type type, const void *data,
+static int append_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
                           size_t bytes, FILE *manifest, uint64_t *end)
 {
-    struct image_section *s = section(w, type);
-    *s = (struct image_section){.type = type, .offset = aligned(*end), .bytes = bytes};
+    struct lm_image_section *s = section(w, type);
+    *s = (struct lm_image_section){.type = type, .offset = aligned(*end), .bytes = bytes};
     if (fseeko(w->file.stream, (off_t)*end, SEEK_SET) != 0) {
         return write_failed(w);
     }
@@ -169,8 +172,8 @@ static int put_targets(struct image_writer *w, FILE *manifest, uint64_t *end)
     if (!w->targets) {
         return 0;
     }
-    w->header.section_count = IMAGE_TARGETS;
-    return append_section(w, IMAGE_TARGETS, w->targets, w->targets_bytes, manifest, end);
+    w->header.section_count = LM_IMAGE_TARGETS;
+    return append_section(w, LM_IMAGE_TARGETS, w->targets, w->targets_bytes, manifest, end);
 }
 
 static int put_header(struct image_writer *w)
@@ -192,7 +195,7 @@ static int finish(struct image_writer *w, const char *manifest)
     }
     fputs(manifest, stream);
     int result = put_tables(w, stream);
-    const struct image_section *tiles = section(w, IMAGE_TILES);
+    const struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
     uint64_t end = tiles->offset + tiles->bytes;
     if (result == 0) {
         result = put_targets(w, stream, &end);
@@ -201,7 +204,7 @@ static int finish(struct image_writer *w, const char *manifest)
         result = hs_error(w->file.path, NULL, "out of memory");
     }
     if (result == 0) {
-        result = append_section(w, IMAGE_MANIFEST, text, bytes, NULL, &end);
+        result = append_section(w, LM_IMAGE_MANIFEST, text, bytes, NULL, &end);
         w->header.image_bytes = end;
     }
     free(text);

@@ -12,7 +12,7 @@
 
 struct image_writer {
     struct hs_atomic_file file;
-    struct image_header header;
+    struct lm_image_header header;
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
     uint32_t *records; /* record number of each directory entry; owned */
@@ -25,8 +25,9 @@ struct image_writer {
 
 /* Start `path`. `header` gives shift0, level_count, band_count and entry_count; the rest is filled
  * in here. Returns 0, or -1 with the error reported and nothing left behind. */
-int image_writer_begin(struct image_writer *w, const char *path, const struct image_header *header,
-                       const struct lm_classes *classes, const struct lm_band *bands);
+int image_writer_begin(struct image_writer *w, const char *path,
+                       const struct lm_image_header *header, const struct lm_classes *classes,
+                       const struct lm_band *bands);
 
 /* Append a tile and enter it as directory entry `entry`, which must not have been used. Fills in
  * tile->crc and `w->header.record_count`. Returns 0, or -1 with the error reported. */

@@ -321,7 +321,7 @@ static void a_cut_or_lengthened_image_is_found(void **state)
     memcpy(longer, tiny.bytes, tiny.size);
     assert_true(faults_of(longer, tiny.size + 64) > 0);
     /* Longer by its own account: sound while what follows the last section is zero. */
-    struct image_header *header = (struct image_header *)(void *)longer;
+    struct lm_image_header *header = (struct lm_image_header *)(void *)longer;
     header->image_bytes += 64;
     header->crc = fx_crc32c(0, header, sizeof *header - sizeof header->crc);
     assert_int_equal(faults_of(longer, tiny.size + 64), 0);
@@ -510,7 +510,7 @@ static void a_tile_written_is_a_tile_the_firmware_reads(void **state)
         .level = 0, .zone = 1, .row = image_row_of(12, image_bam(65.0)), .column = 5};
     const struct lm_band band = {
         .level = 0, .zone = 1, .row0 = tile.row, .rows = 1, .column0 = 4, .columns = 3};
-    const struct image_header header = {
+    const struct lm_image_header header = {
         .shift0 = 12, .level_count = 1, .band_count = 1, .entry_count = 3};
     struct image_writer w;
     unlink(path);

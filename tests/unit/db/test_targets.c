@@ -283,8 +283,8 @@ static void an_image_without_targets_is_what_it_was(void **state)
     assert_int_equal(without.header.section_count, 5);
     assert_int_equal(without.db.target_count, 0);
     assert_int_equal(faults(without.bytes, without.size_bytes), 0);
-    for (int type = IMAGE_CLASSES; type <= IMAGE_TILES; type++) {
-        const struct image_section *a = with.sections[type], *b = without.sections[type];
+    for (int type = LM_IMAGE_CLASSES; type <= LM_IMAGE_TILES; type++) {
+        const struct lm_image_section *a = with.sections[type], *b = without.sections[type];
         assert_int_equal(a->offset, b->offset);
         assert_int_equal(a->bytes, b->bytes);
         assert_memory_equal(with.bytes + a->offset, without.bytes + b->offset, b->bytes);
@@ -309,14 +309,14 @@ static void copy_image(struct copy *c)
     c->size = image.size_bytes;
     c->bytes = malloc(c->size);
     memcpy(c->bytes, image.bytes, c->size);
-    c->head_at = image.sections[IMAGE_TARGETS]->offset;
+    c->head_at = image.sections[LM_IMAGE_TARGETS]->offset;
     image_close(&image);
 }
 
 /* Put every checksum right again: records, head, section and header. */
 static void seal(struct copy *c)
 {
-    struct image_header h;
+    struct lm_image_header h;
     memcpy(&h, c->bytes, sizeof h);
     uint8_t *head = c->bytes + c->head_at;
     for (int i = 0; i < 3; i++) {
@@ -326,9 +326,9 @@ static void seal(struct copy *c)
     }
     const uint32_t head_crc = fx_crc32c(0, head, 60);
     memcpy(head + 60, &head_crc, 4);
-    struct image_section *s = &h.sections[IMAGE_TARGETS - 1];
+    struct lm_image_section *s = &h.sections[LM_IMAGE_TARGETS - 1];
     s->crc = fx_crc32c(0, head, s->bytes);
-    h.crc = fx_crc32c(0, &h, offsetof(struct image_header, crc));
+    h.crc = fx_crc32c(0, &h, offsetof(struct lm_image_header, crc));
     memcpy(c->bytes, &h, sizeof h);
 }
 
