@@ -1,8 +1,5 @@
 #include "convolve.h"
 
-#include "hs/error.h"
-
-#include <stdbool.h>
 #include <string.h>
 
 /* The next length that FFTW transforms fast. */
@@ -23,41 +20,20 @@ static int smooth_length(int n)
 
 int nm_convolver_open(struct nm_convolver *c, int side, int kernel_max)
 {
-    const int n = smooth_length(side + kernel_max - 1);
-    *c = (struct nm_convolver){
-        .side = side,
-        .period = n,
-        .spectrum_size = (size_t)n * (size_t)(n / 2 + 1),
-        .padded = fftw_alloc_real((size_t)n * (size_t)n),
-    };
-    c->transient = fftw_alloc_complex(c->spectrum_size);
-    if (c->padded && c->transient) {
-        c->forward = fftw_plan_dft_r2c_2d(n, n, c->padded, c->transient, FFTW_ESTIMATE);
-        c->backward = fftw_plan_dft_c2r_2d(n, n, c->transient, c->padded, FFTW_ESTIMATE);
-    }
-    if (!c->forward || !c->backward) {
-        nm_convolver_close(c);
-        return hs_error("convolution", "use a smaller picture", "out of memory");
-    }
-    return 0;
+    const int period = smooth_length(side + kernel_max - 1);
+    *c = (struct nm_convolver){.side = side, .period = period};
+    return nm_fft_open(&c->fft, period, period, "convolution");
 }
 
 void nm_convolver_close(struct nm_convolver *c)
 {
-    if (c->forward) {
-        fftw_destroy_plan(c->forward);
-    }
-    if (c->backward) {
-        fftw_destroy_plan(c->backward);
-    }
-    fftw_free(c->padded);
-    fftw_free(c->transient);
+    nm_fft_close(&c->fft);
     *c = (struct nm_convolver){0};
 }
 
 fftw_complex *nm_spectrum_new(const struct nm_convolver *c)
 {
-    return fftw_alloc_complex(c->spectrum_size);
+    return nm_fft_spectrum_new(&c->fft);
 }
 
 /* Position of `offset` on a circle of the period. */
@@ -70,24 +46,24 @@ static size_t wrapped(const struct nm_convolver *c, int offset)
 static void to_spectrum(struct nm_convolver *c, const double *square, int size, int before,
                         fftw_complex *spectrum)
 {
-    memset(c->padded, 0, (size_t)c->period * (size_t)c->period * sizeof *c->padded);
+    memset(c->fft.plane, 0, (size_t)c->period * (size_t)c->period * sizeof *c->fft.plane);
     for (int y = 0; y < size; y++) {
-        double *row = c->padded + wrapped(c, y - before) * (size_t)c->period;
+        double *row = c->fft.plane + wrapped(c, y - before) * (size_t)c->period;
         for (int x = 0; x < size; x++) {
             row[wrapped(c, x - before)] = square[y * size + x];
         }
     }
-    fftw_execute_dft_r2c(c->forward, c->padded, spectrum);
+    nm_fft_to(&c->fft, spectrum);
 }
 
 static void from_spectrum(struct nm_convolver *c, const fftw_complex *spectrum, int size,
                           int before, double *square)
 {
-    memcpy(c->transient, spectrum, c->spectrum_size * sizeof *spectrum);
-    fftw_execute(c->backward);
+    memcpy(c->fft.spectrum, spectrum, c->fft.spectrum_size * sizeof *spectrum);
+    nm_fft_back(&c->fft);
     const double scale = 1.0 / ((double)c->period * c->period);
     for (int y = 0; y < size; y++) {
-        const double *row = c->padded + wrapped(c, y - before) * (size_t)c->period;
+        const double *row = c->fft.plane + wrapped(c, y - before) * (size_t)c->period;
         for (int x = 0; x < size; x++) {
             square[y * size + x] = scale * row[wrapped(c, x - before)];
         }
@@ -118,13 +94,13 @@ void nm_kernel_of_spectrum(struct nm_convolver *c, const fftw_complex *spectrum,
 
 void nm_spectrum_clear(const struct nm_convolver *c, fftw_complex *spectrum)
 {
-    memset(spectrum, 0, c->spectrum_size * sizeof *spectrum);
+    memset(spectrum, 0, c->fft.spectrum_size * sizeof *spectrum);
 }
 
 void nm_spectrum_add_product(const struct nm_convolver *c, const fftw_complex *a,
                              const fftw_complex *b, fftw_complex *sum)
 {
-    for (size_t i = 0; i < c->spectrum_size; i++) {
+    for (size_t i = 0; i < c->fft.spectrum_size; i++) {
         sum[i][0] += a[i][0] * b[i][0] - a[i][1] * b[i][1];
         sum[i][1] += a[i][0] * b[i][1] + a[i][1] * b[i][0];
     }
@@ -133,7 +109,7 @@ void nm_spectrum_add_product(const struct nm_convolver *c, const fftw_complex *a
 void nm_spectrum_add_correlation(const struct nm_convolver *c, const fftw_complex *a,
                                  const fftw_complex *b, fftw_complex *sum)
 {
-    for (size_t i = 0; i < c->spectrum_size; i++) {
+    for (size_t i = 0; i < c->fft.spectrum_size; i++) {
         sum[i][0] += a[i][0] * b[i][0] + a[i][1] * b[i][1];
         sum[i][1] += a[i][1] * b[i][0] - a[i][0] * b[i][1];
     }

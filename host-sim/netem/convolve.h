@@ -1,18 +1,13 @@
-/* Convolution of square pictures by FFT (FFTW, double precision). Plans are estimated, not
- * measured, so that a run gives the same bits again. */
+/* Convolution of square pictures by FFT. */
 #ifndef NM_CONVOLVE_H
 #define NM_CONVOLVE_H
 
-#include <fftw3.h>
-#include <stddef.h>
+#include "fft.h"
 
 struct nm_convolver {
-    int side;   /* of the pictures */
-    int period; /* of the transforms: no smaller than side + largest kernel - 1 */
-    size_t spectrum_size;
-    fftw_plan forward, backward;
-    double *padded;          /* owned; period x period */
-    fftw_complex *transient; /* owned; the inverse transform spoils its input */
+    int side;          /* of the pictures */
+    int period;        /* of the transforms: no smaller than side + largest kernel - 1 */
+    struct nm_fft fft; /* period x period */
 };
 
 /* For kernels of an odd width up to `kernel_max`. Returns 0, or -1 with the error reported. */

@@ -3,27 +3,19 @@
 #include "hs/error.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Of the largest term of the simulated spectrum: what is weaker is not compared. */
 static const double band_floor = 0.02;
 
 int nm_registrar_open(struct nm_registrar *r, int side)
 {
-    const size_t pixels = (size_t)side * (size_t)side;
-    const size_t half = (size_t)side * (size_t)(side / 2 + 1);
-    *r = (struct nm_registrar){side,
-                               fftw_alloc_real(pixels),
-                               fftw_alloc_real(pixels),
-                               fftw_alloc_real(pixels),
-                               fftw_alloc_complex(half),
-                               fftw_alloc_complex(half),
-                               NULL,
-                               NULL};
-    if (r->real && r->simulated && r->peak && r->real_spectrum && r->simulated_spectrum) {
-        r->forward = fftw_plan_dft_r2c_2d(side, side, r->real, r->real_spectrum, FFTW_ESTIMATE);
-        r->backward = fftw_plan_dft_c2r_2d(side, side, r->real_spectrum, r->peak, FFTW_ESTIMATE);
+    *r = (struct nm_registrar){.side = side};
+    if (nm_fft_open(&r->fft, side, side, "registration") != 0) {
+        return -1;
     }
-    if (!r->forward || !r->backward) {
+    r->simulated_spectrum = nm_fft_spectrum_new(&r->fft);
+    if (!r->simulated_spectrum) {
         nm_registrar_close(r);
         return hs_error("registration", "use smaller chips", "out of memory");
     }
@@ -32,16 +24,7 @@ int nm_registrar_open(struct nm_registrar *r, int side)
 
 void nm_registrar_close(struct nm_registrar *r)
 {
-    if (r->forward) {
-        fftw_destroy_plan(r->forward);
-    }
-    if (r->backward) {
-        fftw_destroy_plan(r->backward);
-    }
-    fftw_free(r->real);
-    fftw_free(r->simulated);
-    fftw_free(r->peak);
-    fftw_free(r->real_spectrum);
+    nm_fft_close(&r->fft);
     fftw_free(r->simulated_spectrum);
     *r = (struct nm_registrar){0};
 }
@@ -70,11 +53,11 @@ static double largest_of(const fftw_complex *spectrum, int count)
  * Outside the radar's band the simulated picture holds nothing, and the phase there is noise. */
 static void cross_phase(struct nm_registrar *r)
 {
-    const int half = r->side * (r->side / 2 + 1);
+    const int half = (int)r->fft.spectrum_size;
     const double floor = band_floor * largest_of(r->simulated_spectrum, half);
     for (int i = 0; i < half; i++) {
         const double *g = r->simulated_spectrum[i];
-        double *h = r->real_spectrum[i];
+        double *h = r->fft.spectrum[i];
         const double re = h[0] * g[0] + h[1] * g[1], im = h[1] * g[0] - h[0] * g[1];
         const double size = hypot(re, im);
         const double scale = hypot(g[0], g[1]) > floor && size > 0 ? 1 / size : 0;
@@ -86,7 +69,7 @@ static void cross_phase(struct nm_registrar *r)
 static double peak_at(const struct nm_registrar *r, int x, int y)
 {
     const int n = r->side;
-    return r->peak[(y + n) % n * n + (x + n) % n] / ((double)n * n);
+    return r->fft.plane[(y + n) % n * n + (x + n) % n] / ((double)n * n);
 }
 
 struct nm_origin nm_register(struct nm_registrar *r, const double *simulated,
@@ -94,16 +77,14 @@ struct nm_origin nm_register(struct nm_registrar *r, const double *simulated,
                              double *sharpness)
 {
     const int pixels = r->side * r->side;
-    nm_picture_cut(real, near, r->side, r->real);
-    for (int i = 0; i < pixels; i++) {
-        r->simulated[i] = simulated[i];
-    }
-    take_mean(r->real, pixels);
-    take_mean(r->simulated, pixels);
-    fftw_execute_dft_r2c(r->forward, r->real, r->real_spectrum);
-    fftw_execute_dft_r2c(r->forward, r->simulated, r->simulated_spectrum);
+    memcpy(r->fft.plane, simulated, (size_t)pixels * sizeof *simulated);
+    take_mean(r->fft.plane, pixels);
+    nm_fft_to(&r->fft, r->simulated_spectrum);
+    nm_picture_cut(real, near, r->side, r->fft.plane);
+    take_mean(r->fft.plane, pixels);
+    nm_fft_to(&r->fft, r->fft.spectrum);
     cross_phase(r);
-    fftw_execute(r->backward);
+    nm_fft_back(&r->fft);
     const int limit = reach < (r->side - 1) / 2 ? reach : (r->side - 1) / 2;
     struct nm_origin best = {0, 0};
     for (int y = -limit; y <= limit; y++) {

@@ -4,15 +4,13 @@
 #ifndef NM_REGISTRATION_H
 #define NM_REGISTRATION_H
 
+#include "fft.h"
 #include "picture.h"
-
-#include <fftw3.h>
 
 struct nm_registrar {
     int side;
-    double *real, *simulated, *peak; /* owned */
-    fftw_complex *real_spectrum, *simulated_spectrum;
-    fftw_plan forward, backward;
+    struct nm_fft fft;                /* of the real picture, and back to the peak */
+    fftw_complex *simulated_spectrum; /* owned */
 };
 
 /* For squares of `side` pixels. Returns 0, or -1 with the error reported. */

@@ -63,11 +63,6 @@ void nm_match_close(struct nm_match *m)
     *m = (struct nm_match){0};
 }
 
-static size_t spectrum_size(const struct nm_searcher *s)
-{
-    return (size_t)s->height * (size_t)(s->width / 2 + 1);
-}
-
 /* Mean 0 and length 1, on a plane of the chips' size. */
 static void take_view(struct nm_searcher *s, const double *picture, fftw_complex *spectrum)
 {
@@ -80,11 +75,12 @@ static void take_view(struct nm_searcher *s, const double *picture, fftw_complex
         square += (picture[i] - sum / pixels) * (picture[i] - sum / pixels);
     }
     const double scale = square > 0 ? 1 / sqrt(square) : 0;
-    memset(s->plane, 0, (size_t)s->width * (size_t)s->height * sizeof *s->plane);
+    double *plane = s->fft.plane;
+    memset(plane, 0, (size_t)s->width * (size_t)s->height * sizeof *plane);
     for (int i = 0; i < pixels; i++) {
-        s->plane[i / s->side_px * s->width + i % s->side_px] = scale * (picture[i] - sum / pixels);
+        plane[i / s->side_px * s->width + i % s->side_px] = scale * (picture[i] - sum / pixels);
     }
-    fftw_execute_dft_r2c(s->forward, s->plane, spectrum);
+    nm_fft_to(&s->fft, spectrum);
 }
 
 int nm_searcher_open(struct nm_searcher *s, const struct nm_library *library, int width, int height)
@@ -96,40 +92,29 @@ int nm_searcher_open(struct nm_searcher *s, const struct nm_library *library, in
                         "chips of %d x %d pixels are smaller than the simulated ones", width,
                         height);
     }
+    if (nm_fft_open(&s->fft, height, width, "search") != 0) {
+        return -1;
+    }
     const size_t integrals = (size_t)(width + 1) * (size_t)(height + 1);
-    s->plane = fftw_alloc_real((size_t)width * (size_t)height);
-    s->chip = fftw_alloc_complex(spectrum_size(s));
-    s->product = fftw_alloc_complex(spectrum_size(s));
-    s->library = fftw_alloc_complex(spectrum_size(s) * (size_t)s->views);
+    s->chip = nm_fft_spectrum_new(&s->fft);
+    s->library = fftw_alloc_complex(s->fft.spectrum_size * (size_t)s->views);
     s->sums = calloc(integrals, sizeof *s->sums);
     s->squares = calloc(integrals, sizeof *s->squares);
-    const int is_whole = s->plane && s->chip && s->product && s->library && s->sums && s->squares;
-    if (is_whole) {
-        s->forward = fftw_plan_dft_r2c_2d(height, width, s->plane, s->chip, FFTW_ESTIMATE);
-        s->backward = fftw_plan_dft_c2r_2d(height, width, s->product, s->plane, FFTW_ESTIMATE);
-    }
-    if (!is_whole || !s->forward || !s->backward) {
+    if (!s->chip || !s->library || !s->sums || !s->squares) {
         nm_searcher_close(s);
         return hs_error("search", "take fewer views", "out of memory");
     }
     for (int v = 0; v < s->views; v++) {
         take_view(s, library->pictures + (size_t)v * (size_t)(s->side_px * s->side_px),
-                  s->library + (size_t)v * spectrum_size(s));
+                  s->library + (size_t)v * s->fft.spectrum_size);
     }
     return 0;
 }
 
 void nm_searcher_close(struct nm_searcher *s)
 {
-    if (s->forward) {
-        fftw_destroy_plan(s->forward);
-    }
-    if (s->backward) {
-        fftw_destroy_plan(s->backward);
-    }
-    fftw_free(s->plane);
+    nm_fft_close(&s->fft);
     fftw_free(s->chip);
-    fftw_free(s->product);
     fftw_free(s->library);
     free(s->sums);
     free(s->squares);
@@ -170,19 +155,20 @@ static double length_at(const struct nm_searcher *s, int x, int y)
 static void search_view(struct nm_searcher *s, int view, int reach, double *score,
                         struct nm_origin *origin)
 {
-    const fftw_complex *v = s->library + (size_t)view * spectrum_size(s);
-    for (size_t i = 0; i < spectrum_size(s); i++) {
-        s->product[i][0] = s->chip[i][0] * v[i][0] + s->chip[i][1] * v[i][1];
-        s->product[i][1] = s->chip[i][1] * v[i][0] - s->chip[i][0] * v[i][1];
+    const fftw_complex *v = s->library + (size_t)view * s->fft.spectrum_size;
+    fftw_complex *product = s->fft.spectrum;
+    for (size_t i = 0; i < s->fft.spectrum_size; i++) {
+        product[i][0] = s->chip[i][0] * v[i][0] + s->chip[i][1] * v[i][1];
+        product[i][1] = s->chip[i][1] * v[i][0] - s->chip[i][0] * v[i][1];
     }
-    fftw_execute(s->backward);
+    nm_fft_back(&s->fft);
     const int mx = (s->width - s->side_px) / 2, my = (s->height - s->side_px) / 2;
     *score = -1;
     *origin = (struct nm_origin){mx, my};
     for (int y = my - reach > 0 ? my - reach : 0; y <= my + reach && y <= 2 * my; y++) {
         for (int x = mx - reach > 0 ? mx - reach : 0; x <= mx + reach && x <= 2 * mx; x++) {
             const double length = length_at(s, x, y) * s->width * s->height;
-            const double fit = length > 0 ? s->plane[y * s->width + x] / length : 0;
+            const double fit = length > 0 ? s->fft.plane[y * s->width + x] / length : 0;
             if (fit > *score) {
                 *score = fit;
                 *origin = (struct nm_origin){x, y};
@@ -195,8 +181,8 @@ void nm_search(struct nm_searcher *s, const struct nm_picture *chip, int reach,
                struct nm_match *match)
 {
     integrate(s, chip);
-    memcpy(s->plane, chip->pixels, (size_t)s->width * (size_t)s->height * sizeof *s->plane);
-    fftw_execute(s->forward);
+    memcpy(s->fft.plane, chip->pixels, (size_t)s->width * (size_t)s->height * sizeof *chip->pixels);
+    nm_fft_to(&s->fft, s->chip);
     for (int v = 0; v < s->views; v++) {
         search_view(s, v, reach, &match->scores[v], &match->origins[v]);
     }

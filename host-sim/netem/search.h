@@ -3,9 +3,8 @@
 #ifndef NM_SEARCH_H
 #define NM_SEARCH_H
 
+#include "fft.h"
 #include "picture.h"
-
-#include <fftw3.h>
 
 /* Simulated pictures from `views` azimuths, evenly around, the first at 0. */
 struct nm_library {
@@ -33,11 +32,10 @@ void nm_match_close(struct nm_match *match);
 struct nm_searcher {
     int width, height; /* of the chips */
     int views, side_px;
-    double *plane;                /* owned scratch */
-    fftw_complex *chip, *product; /* owned scratch */
-    fftw_complex *library;        /* owned: conjugate spectra of the views, mean 0, length 1 */
-    double *sums, *squares;       /* owned: integrals of the chip and its square */
-    fftw_plan forward, backward;
+    struct nm_fft fft;      /* of the chip, and of its product with a view back to a plane */
+    fftw_complex *chip;     /* owned scratch: its spectrum */
+    fftw_complex *library;  /* owned: conjugate spectra of the views, mean 0, length 1 */
+    double *sums, *squares; /* owned: integrals of the chip and its square */
 };
 
 /* For chips of width x height, no smaller than the library's pictures. Returns 0, or -1 with the
