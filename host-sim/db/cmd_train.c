@@ -60,94 +60,84 @@ static const struct options defaults = {
     .thin = 0.002,
 };
 
-#define TEXT(key, at, value, text)                                                                 \
-    {                                                                                              \
-        .name = (key), .kind = DB_TEXT, .target = &o->at, .value_name = (value), .help = (text)    \
-    }
-#define INTEGER(key, at, from, to, text)                                                           \
-    {                                                                                              \
-        .name = (key), .kind = DB_INTEGER, .target = &o->at, .low = (from), .high = (to),          \
-        .value_name = "N", .help = (text)                                                          \
-    }
-#define REAL(key, at, from, to, text)                                                              \
-    {                                                                                              \
-        .name = (key), .kind = DB_REAL, .target = &o->at, .low = (from), .high = (to),             \
-        .value_name = "X", .help = (text)                                                          \
-    }
-
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
     const struct db_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
-        {.name = "classes",
-         .kind = DB_TEXT,
-         .target = &o->classes,
-         .value_name = "FILE",
-         .is_required = true,
-         .help = "The class table."},
-        {.name = "net",
-         .kind = DB_TEXT,
-         .target = &o->net,
-         .value_name = "FILE",
-         .is_required = true,
-         .help = "Where the trained network goes."},
-        TEXT("exemplars", exemplars, "FILE",
-             "Polygons of known class: any vector format OGR reads, or a TSV or CSV with a column "
-             "`WKT`.\n"
-             "Reprojected when file and image name different CRS. Pixels whose centre lies inside "
-             "count."),
-        TEXT("field", field, "NAME", "The polygons' field that holds the label; default `class`."),
-        TEXT("labels", labels, "FILE",
-             "Instead of --exemplars: a raster of label numbers over the same extent. Where it is "
-             "finer\n"
-             "than the image a pixel takes the most frequent label in it. Connected patches of one "
-             "label\n"
-             "take the place of polygons."),
-        TEXT("map", map, "FILE",
-             "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "
-             "Without it\n"
-             "labels must be the names of classes."),
-        TEXT("hold-out", hold_out, "HOW:PART",
-             "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
-             "`pixels:0.3` pixels\n"
-             "at random (only for comparison with others: it flatters)."),
-        TEXT("report", report, "FOLDER",
-             "Write confusion matrices, recognition by polygon and by square, and the error curve "
-             "there."),
-        TEXT("split-out", split_out, "FILE",
-             "Write each exemplar with its part (train or held-out) and inputs as CSV, for other "
-             "programs."),
-        INTEGER("per-class", per_class, 10, 1e7,
-                "Exemplars of each class at most, drawn evenly from all its pixels."),
-        INTEGER("context", context, 1, DB_CONTEXT_MAX,
-                "Odd side of a window whose mean and standard deviation of each band are further "
-                "inputs;\n"
-                "1 for the pixel's own bands only, as in Heaton."),
-        INTEGER("hidden", hidden, 0, DB_HIDDEN_MAX,
-                "Hidden units; 0 for inputs x outputs, at most 128."),
-        TEXT("unit", unit, "KIND", "Hidden units: tanh (default) or sigmoid."),
-        TEXT("loss", loss, "KIND",
-             "square (default): mean-square error, as in Heaton; or cross-entropy."),
-        INTEGER("committee", members, 1, DB_MEMBERS_MAX,
-                "Networks trained from different seeds whose outputs are added; segmenting slows "
-                "as much."),
-        REAL("goal", goal, 0, 1.01,
-             "Stop when this part of the exemplars, as the mean over the classes, is recognised."),
-        INTEGER("epochs", epochs, 1, DB_EPOCHS_MAX, "Stop after so many rounds."),
-        INTEGER("patience", patience, 1, DB_EPOCHS_MAX,
-                "Epochs without progress that make a plateau."),
-        REAL("validate", validate, 0, 0.9,
-             "Part of the training polygons set aside to choose the best weights by."),
-        REAL("noise", noise, 0, 10,
-             "Standard deviation of the noise on the exemplars, in deviations of each input."),
-        REAL("rate", rate, 1e-6, 10, "Learning rate."),
-        REAL("momentum", momentum, 0, 0.999, "Part of a change of weights that is carried on."),
-        REAL("decay", decay, 0, 1, "Pull of the weights towards zero."),
-        INTEGER("batch", batch, 1, 65536, "Exemplars between two changes of weights."),
-        REAL("thin", thin, 0, 10,
-             "Keep one of the exemplars of a class that share a cell of so many deviations in each "
-             "input."),
-        INTEGER("seed", seed, 0, 2147483647, "Seed of everything random."),
+        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE", "The class table.", true},
+        {"net", DB_TEXT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
+        {"exemplars", DB_TEXT, &o->exemplars, 0, 0, "FILE",
+         "Polygons of known class: any vector format OGR reads, or a TSV or CSV with a column "
+         "`WKT`.\n"
+         "Reprojected when file and image name different CRS. Pixels whose centre lies inside "
+         "count.",
+         false},
+        {"field", DB_TEXT, &o->field, 0, 0, "NAME",
+         "The polygons' field that holds the label; default `class`.", false},
+        {"labels", DB_TEXT, &o->labels, 0, 0, "FILE",
+         "Instead of --exemplars: a raster of label numbers over the same extent. Where it is "
+         "finer\n"
+         "than the image a pixel takes the most frequent label in it. Connected patches of one "
+         "label\n"
+         "take the place of polygons.",
+         false},
+        {"map", DB_TEXT, &o->map, 0, 0, "FILE",
+         "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "
+         "Without it\n"
+         "labels must be the names of classes.",
+         false},
+        {"hold-out", DB_TEXT, &o->hold_out, 0, 0, "HOW:PART",
+         "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
+         "`pixels:0.3` pixels\n"
+         "at random (only for comparison with others: it flatters).",
+         false},
+        {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
+         "Write confusion matrices, recognition by polygon and by square, and the error curve "
+         "there.",
+         false},
+        {"split-out", DB_TEXT, &o->split_out, 0, 0, "FILE",
+         "Write each exemplar with its part (train or held-out) and inputs as CSV, for other "
+         "programs.",
+         false},
+        {"per-class", DB_INTEGER, &o->per_class, 10, 1e7, "N",
+         "Exemplars of each class at most, drawn evenly from all its pixels.", false},
+        {"context", DB_INTEGER, &o->context, 1, DB_CONTEXT_MAX, "N",
+         "Odd side of a window whose mean and standard deviation of each band are further "
+         "inputs;\n"
+         "1 for the pixel's own bands only, as in Heaton.",
+         false},
+        {"hidden", DB_INTEGER, &o->hidden, 0, DB_HIDDEN_MAX, "N",
+         "Hidden units; 0 for inputs x outputs, at most 128.", false},
+        {"unit", DB_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
+         false},
+        {"loss", DB_TEXT, &o->loss, 0, 0, "KIND",
+         "square (default): mean-square error, as in Heaton; or cross-entropy.", false},
+        {"committee", DB_INTEGER, &o->members, 1, DB_MEMBERS_MAX, "N",
+         "Networks trained from different seeds whose outputs are added; segmenting slows "
+         "as much.",
+         false},
+        {"goal", DB_REAL, &o->goal, 0, 1.01, "X",
+         "Stop when this part of the exemplars, as the mean over the classes, is recognised.",
+         false},
+        {"epochs", DB_INTEGER, &o->epochs, 1, DB_EPOCHS_MAX, "N", "Stop after so many rounds.",
+         false},
+        {"patience", DB_INTEGER, &o->patience, 1, DB_EPOCHS_MAX, "N",
+         "Epochs without progress that make a plateau.", false},
+        {"validate", DB_REAL, &o->validate, 0, 0.9, "X",
+         "Part of the training polygons set aside to choose the best weights by.", false},
+        {"noise", DB_REAL, &o->noise, 0, 10, "X",
+         "Standard deviation of the noise on the exemplars, in deviations of each input.", false},
+        {"rate", DB_REAL, &o->rate, 1e-6, 10, "X", "Learning rate.", false},
+        {"momentum", DB_REAL, &o->momentum, 0, 0.999, "X",
+         "Part of a change of weights that is carried on.", false},
+        {"decay", DB_REAL, &o->decay, 0, 1, "X", "Pull of the weights towards zero.", false},
+        {"batch", DB_INTEGER, &o->batch, 1, 65536, "N", "Exemplars between two changes of weights.",
+         false},
+        {"thin", DB_REAL, &o->thin, 0, 10, "X",
+         "Keep one of the exemplars of a class that share a cell of so many deviations in each "
+         "input.",
+         false},
+        {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
     };
     return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
 }
