@@ -2,6 +2,7 @@
 
 #include "image_grid.h"
 #include "text_file.h"
+#include "zero_bytes.h"
 
 #include "fx/crc32c.h"
 
@@ -34,8 +35,8 @@ static const struct body {
 };
 
 static const char target_form[] =
-    "target NAME LATITUDE LONGITUDE ELEVATION|ground[+HEIGHT] HEADING, then `scatterers` or "
-    "`swerling CASE DBSM`, then perhaps `moving SPEED LEG`";
+    "target NAME LATITUDE LONGITUDE ELEVATION|ground[+HEIGHT] HEADING, then `scatterers`, "
+    "`swerling CASE DBSM` or `signature NAME`, then perhaps `moving SPEED LEG`";
 
 /* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
 static int split_words(char *line, char *words[WORDS_MAX])
@@ -103,12 +104,27 @@ static int set_motion(struct lm_target *t, char *const *words, int count)
     return count - 3;
 }
 
+static bool set_signature(struct lm_target *t, const struct build_signatures *signatures,
+                          const char *name)
+{
+    const int number = build_signatures_find(signatures, name);
+    if (number >= 0) {
+        t->flags |= LM_TARGET_HAS_SIGNATURE;
+        t->signature = (uint8_t)number;
+    }
+    return number >= 0;
+}
+
 /* Behind HEADING: what gives the target its return. */
-static bool set_kind(struct lm_target *t, char *const *words, int count)
+static bool set_kind(struct lm_target *t, const struct build_signatures *signatures,
+                     char *const *words, int count)
 {
     double number[2];
     if (count == 1 && strcmp(words[0], "scatterers") == 0) {
         return true;
+    }
+    if (count == 2 && strcmp(words[0], "signature") == 0) {
+        return set_signature(t, signatures, words[1]);
     }
     if (count != 3 || strcmp(words[0], "swerling") != 0 ||
         !read_numbers(words + 1, 1, &number[0], 0, LM_TARGET_SWERLING_MAX) ||
@@ -122,8 +138,8 @@ static bool set_kind(struct lm_target *t, char *const *words, int count)
     return true;
 }
 
-static int read_target(const struct db_text_file *f, struct lm_target *t, char *const *words,
-                       int count)
+static int read_target(const struct db_text_file *f, const struct build_signatures *signatures,
+                       struct lm_target *t, char *const *words, int count)
 {
     double latitude, longitude, heading;
     if (count < 7 || strlen(words[1]) > sizeof t->name) {
@@ -141,9 +157,11 @@ static int read_target(const struct db_text_file *f, struct lm_target *t, char *
     t->latitude = hs_bam(latitude);
     t->longitude = hs_bam(longitude);
     t->heading = hs_bam(heading);
-    return set_kind(t, words + 6, set_motion(t, words + 6, count - 6))
+    return set_kind(t, signatures, words + 6, set_motion(t, words + 6, count - 6))
                ? 0
-               : db_text_error(f, target_form, "\"%s\" and what follows is no kind", words[6]);
+               : db_text_error(f, target_form,
+                               "\"%s\" and what follows is no kind, or names no library before it",
+                               words[6]);
 }
 
 static int find_body(const char *word)
@@ -238,12 +256,44 @@ static int begin_target(struct reading *r, char *const *words, int count)
         return db_text_error(&r->file, "leave some out", "more than %d targets", LM_DB_TARGETS_MAX);
     }
     t->items[t->count] = (struct lm_target){.id = t->count};
-    if (read_target(&r->file, &t->items[t->count], words, count) != 0) {
+    if (read_target(&r->file, &t->signatures, &t->items[t->count], words, count) != 0) {
         return -1;
     }
     r->wants_bodies = strcmp(words[6], "scatterers") == 0;
     t->count++;
     return 0;
+}
+
+/* A path in the file is from the file's own folder. The caller frees it; NULL without memory. */
+static char *path_beside(const char *file, const char *path)
+{
+    const char *slash = strrchr(file, '/');
+    const int folder = slash && path[0] != '/' ? (int)(slash - file) + 1 : 0;
+    char *whole = NULL;
+    return asprintf(&whole, "%.*s%s", folder, file, path) < 0 ? NULL : whole;
+}
+
+/* library NAME FILE.sig */
+static int read_library(struct reading *r, char *const *words, int count)
+{
+    struct build_signatures *s = &r->targets->signatures;
+    if (count != 3 || strlen(words[1]) > sizeof s->items[0].head.name) {
+        return db_text_error(&r->file, "library NAME FILE.sig",
+                             "a library needs a name of up to 16 letters and a file");
+    }
+    if (build_signatures_find(s, words[1]) >= 0) {
+        return db_text_error(&r->file, "give another name", "there is a library %s already",
+                             words[1]);
+    }
+    if (s->count == LM_DB_SIGNATURES_MAX) {
+        return db_text_error(&r->file, "leave some out", "more than %d libraries",
+                             LM_DB_SIGNATURES_MAX);
+    }
+    char *path = path_beside(r->file.path, words[2]);
+    const int result = path ? build_signatures_add(s, words[1], path)
+                            : hs_error(r->file.path, NULL, "out of memory");
+    free(path);
+    return result == 0 ? 0 : db_text_error(&r->file, NULL, "library %s cannot be taken", words[1]);
 }
 
 static int read_line(struct reading *r)
@@ -256,9 +306,13 @@ static int read_line(struct reading *r)
     if (strcmp(words[0], "target") == 0) {
         return begin_target(r, words, count);
     }
+    if (strcmp(words[0], "library") == 0) {
+        return read_library(r, words, count);
+    }
     const int kind = find_body(words[0]);
     if (!kind) {
-        return db_text_error(&r->file, "begin with target, sphere, plate, dihedral or trihedral",
+        return db_text_error(&r->file,
+                             "begin with library, target, sphere, plate, dihedral or trihedral",
                              "\"%s\" is none of these", words[0]);
     }
     struct build_targets *t = r->targets;
@@ -304,6 +358,7 @@ int build_targets_read(struct build_targets *t, const char *path)
 void build_targets_free(struct build_targets *t)
 {
     free(t->items);
+    build_signatures_free(&t->signatures);
     *t = (struct build_targets){0};
 }
 
@@ -338,14 +393,6 @@ static void print_body(const struct lm_scatterer *s)
     puts(s->is_two_sided ? ", both sides" : "");
 }
 
-/* A name of a damaged or hostile file: only what a terminal can show. */
-static void print_name(const char name[16])
-{
-    for (int i = 0; i < 16; i++) {
-        putchar(name[i] == '\0' ? ' ' : name[i] > ' ' && name[i] < 127 ? name[i] : '?');
-    }
-}
-
 void build_targets_print(const struct image *image)
 {
     if (image->db.target_count == 0) {
@@ -355,13 +402,15 @@ void build_targets_print(const struct image *image)
     for (uint32_t i = 0; i < image->db.target_count; i++) {
         const struct lm_target *t = &image->targets[i];
         printf("%6" PRIu32 "  ", t->id);
-        print_name(t->name);
+        build_name_print(t->name);
         const bool is_above_ground = (t->flags & LM_TARGET_ABOVE_GROUND) != 0;
         printf("%10.6f %11.6f %s%*.1f %8.2f", image_degrees((int32_t)t->latitude),
                image_longitude_degrees(t->longitude), is_above_ground ? "ground" : "",
                is_above_ground ? 6 : 12, t->elevation_q6 / 64.0,
                image_degrees((int64_t)t->heading));
-        if (t->scatterer_count == 0) {
+        if (t->flags & LM_TARGET_HAS_SIGNATURE) {
+            printf("  signature %u", t->signature);
+        } else if (t->scatterer_count == 0) {
             printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
         }
         if (t->speed_mm_s != 0) {
@@ -374,32 +423,21 @@ void build_targets_print(const struct image *image)
     }
 }
 
-static bool is_zero(const void *bytes, size_t count)
-{
-    const uint8_t *b = bytes;
-    for (size_t i = 0; i < count; i++) {
-        if (b[i] != 0) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* What the firmware does not look at: unused numbers of the record. */
 static bool rest_is_zero(const struct lm_target *t)
 {
     const size_t used = strnlen(t->name, sizeof t->name);
-    bool rest =
-        is_zero(t->reserved, sizeof t->reserved) && is_zero(t->name + used, sizeof t->name - used);
+    bool rest = db_is_zero(t->reserved, sizeof t->reserved) &&
+                db_is_zero(t->name + used, sizeof t->name - used);
     for (int i = 0; i < t->scatterer_count; i++) {
         const struct lm_scatterer *s = &t->scatterers[i];
         rest = rest && s->reserved == 0 && (bodies[s->kind].sizes == 2 || s->size_mm[1] == 0) &&
                (s->kind == LM_SHAPE_PLATE || !s->is_two_sided);
     }
     const int unused = LM_SCATTERERS_MAX - t->scatterer_count;
-    const bool is_point = t->scatterer_count == 0;
+    const bool is_point = t->scatterer_count == 0 && !(t->flags & LM_TARGET_HAS_SIGNATURE);
     return rest && (is_point || (t->swerling == 0 && t->mean_rcs_q8 == 0)) &&
-           is_zero(&t->scatterers[t->scatterer_count], (size_t)unused * sizeof t->scatterers[0]);
+           db_is_zero(&t->scatterers[t->scatterer_count], (size_t)unused * sizeof t->scatterers[0]);
 }
 
 static bool id_is_new(const struct image *image, uint32_t index)
@@ -423,6 +461,10 @@ void build_targets_check(const struct image *image, struct image_findings *findi
                        ": its checksum does not fit it, or a number is out of "
                        "its range",
                        i);
+        } else if ((t->flags & LM_TARGET_HAS_SIGNATURE) &&
+                   t->signature >= image->db.signature_count) {
+            image_find(findings, at, "target %" PRIu32 ": its signature %u is not in the image", i,
+                       t->signature);
         } else if (!rest_is_zero(t)) {
             image_find(findings, at, "target %" PRIu32 ": unused numbers are not zero", i);
         }

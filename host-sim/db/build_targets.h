@@ -3,6 +3,7 @@
 #ifndef BUILD_TARGETS_H
 #define BUILD_TARGETS_H
 
+#include "build_signatures.h"
 #include "image_reader.h"
 
 #include "lm/target.h"
@@ -13,9 +14,11 @@
 struct build_targets {
     struct lm_target *items; /* owned; sealed, id = place in the file */
     uint32_t count;
+    struct build_signatures signatures; /* owned: of its `library` lines */
 };
 
-/* Read a file of targets. Returns 0, or -1 with the error reported and nothing to free. */
+/* Read a file of targets, and the signatures that it names. Returns 0, or -1 with the error
+ * reported and nothing to free. */
 int build_targets_read(struct build_targets *t, const char *path);
 void build_targets_free(struct build_targets *t);
 

@@ -66,7 +66,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
             "heights", DB_TEXT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
         OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
-               "specific targets (docs/targets.md); left out: none"),
+               "specific targets and their signatures (docs/targets.md); left out: none"),
         OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",
                "about this cell size: the nearest of 0.149 m x 2^n\n"
                "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
@@ -314,7 +314,51 @@ static void close_inputs(struct build_context *b)
     terrain_close(&b->terrain);
 }
 
-static int write_inputs(FILE *out, const struct build_context *b, const struct settings *s)
+/* Specific targets and their signatures, with the sections made of them; all zero without any. */
+struct extras {
+    struct build_targets targets;           /* owned */
+    void *targets_bytes, *signatures_bytes; /* owned */
+    size_t targets_size, signatures_size;
+};
+
+static int read_extras(struct extras *e, const char *path)
+{
+    *e = (struct extras){.targets_bytes = NULL};
+    if (!path) {
+        return 0;
+    }
+    if (build_targets_read(&e->targets, path) != 0) {
+        return -1;
+    }
+    const bool has_signatures = e->targets.signatures.count > 0;
+    e->targets_bytes = build_targets_section(&e->targets, &e->targets_size);
+    if (has_signatures) {
+        e->signatures_bytes = build_signatures_section(&e->targets.signatures, &e->signatures_size);
+    }
+    return e->targets_bytes && (!has_signatures || e->signatures_bytes)
+               ? 0
+               : hs_error(path, NULL, "out of memory");
+}
+
+static void free_extras(struct extras *e)
+{
+    build_targets_free(&e->targets);
+    free(e->targets_bytes);
+    free(e->signatures_bytes);
+}
+
+static int write_targets_inputs(FILE *out, const char *path,
+                                const struct build_signatures *signatures)
+{
+    int result = build_manifest_file(out, "targets", path);
+    for (uint32_t i = 0; i < signatures->count && result == 0; i++) {
+        result = build_manifest_file(out, "signature", signatures->paths[i]);
+    }
+    return result;
+}
+
+static int write_inputs(FILE *out, const struct build_context *b, const struct settings *s,
+                        const struct build_signatures *signatures)
 {
     const struct resample_plane *planes[3] = {&b->cover.classes, &b->cover.reflectivity,
                                               &b->cover.heights};
@@ -331,11 +375,12 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
             result = build_manifest_dataset(out, "terrain", m->members[k].dataset);
         }
     }
-    return result == 0 && s->targets ? build_manifest_file(out, "targets", s->targets) : result;
+    return result == 0 && s->targets ? write_targets_inputs(out, s->targets, signatures) : result;
 }
 
 /* The whole text; the caller frees it. NULL with the error reported. */
-static char *make_manifest(const struct build_context *b, const struct settings *s)
+static char *make_manifest(const struct build_context *b, const struct settings *s,
+                           const struct build_signatures *signatures)
 {
     char *text = NULL, options[512];
     size_t bytes = 0;
@@ -352,7 +397,7 @@ static char *make_manifest(const struct build_context *b, const struct settings 
              s->steep_class ? s->steep_class : "none", s->steep_degrees);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
-    const int result = write_inputs(out, b, s);
+    const int result = write_inputs(out, b, s, signatures);
     if (fclose(out) != 0 || result != 0) {
         free(text);
         return NULL;
@@ -397,30 +442,8 @@ struct report {
     int32_t mean_elevation_q6;
 };
 
-/* The section TARGETS; bytes NULL without one. */
-struct targets_section {
-    void *bytes; /* owned */
-    size_t size;
-    uint32_t count;
-};
-
-static int read_targets(struct targets_section *section, const char *path)
-{
-    struct build_targets targets;
-    if (!path) {
-        return 0;
-    }
-    if (build_targets_read(&targets, path) != 0) {
-        return -1;
-    }
-    section->bytes = build_targets_section(&targets, &section->size);
-    section->count = targets.count;
-    build_targets_free(&targets);
-    return section->bytes ? 0 : hs_error(path, NULL, "out of memory");
-}
-
 static int write_image(struct build_context *b, const struct settings *s, const char *manifest,
-                       const struct targets_section *targets, struct report *report)
+                       const struct extras *extras, struct report *report)
 {
     uint32_t centre[2];
     choose_centre(b, s, centre);
@@ -442,8 +465,8 @@ static int write_image(struct build_context *b, const struct settings *s, const 
                         "no cell of the image would hold data");
     }
     fill_header(&w.header, b, s, centre);
-    w.targets = targets->bytes;
-    w.targets_bytes = targets->size;
+    w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
+    w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
     if (image_writer_end(&w, manifest) != 0) {
         return -1;
     }
@@ -529,20 +552,21 @@ static int build(const struct settings *s)
     }
     b->seed = (uint32_t)s->seed;
     struct report report = {0};
-    struct targets_section targets = {0};
+    struct extras extras;
     char *manifest = NULL;
-    int result = read_targets(&targets, s->targets) == 0 ? open_inputs(b, s) : -1;
+    int result = read_extras(&extras, s->targets) == 0 ? open_inputs(b, s) : -1;
     if (result == 0) {
-        manifest = make_manifest(b, s);
-        result = manifest ? write_image(b, s, manifest, &targets, &report) : -1;
+        manifest = make_manifest(b, s, &extras.targets.signatures);
+        result = manifest ? write_image(b, s, manifest, &extras, &report) : -1;
     }
-    if (result == 0 && targets.bytes) {
-        printf("targets %" PRIu32 "\n", targets.count);
+    if (result == 0 && s->targets) {
+        printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras.targets.count,
+               extras.targets.signatures.count);
     }
     if (result == 0) {
         print_report(b, &report, now_seconds() - start);
     }
-    free(targets.bytes);
+    free_extras(&extras);
     free(manifest);
     close_inputs(b);
     free(b);

@@ -1,5 +1,6 @@
 #include "commands.h"
 
+#include "build_signatures.h"
 #include "build_targets.h"
 #include "image_codes.h"
 #include "image_command.h"
@@ -16,7 +17,7 @@
 static const struct db_usage usage = {
     "inspect FILE", "print what a database image holds",
     "Prints header, sections, bands, levels, extents, classes, "
-    "targets and manifest. `verify` checks the image's every byte."};
+    "targets, signatures and manifest. `verify` checks the image's every byte."};
 
 static void print_header(const struct image *image)
 {
@@ -126,6 +127,7 @@ int db_cmd_inspect(int argc, char **argv)
     print_bands(&image);
     print_classes(&image);
     build_targets_print(&image);
+    build_signatures_print(&image);
     print_manifest(&image);
     image_close(&image);
     return HS_EXIT_OK;

@@ -1,6 +1,8 @@
 #include "image_reader.h"
 
 #include "image_grid.h"
+#include "signature_file.h"
+#include "zero_bytes.h"
 
 #include "fx/crc32c.h"
 
@@ -68,17 +70,6 @@ void image_close(struct image *image)
     *image = (struct image){0};
 }
 
-static bool is_zero(const void *bytes, uint64_t count)
-{
-    const uint8_t *b = bytes;
-    for (uint64_t i = 0; i < count; i++) {
-        if (b[i] != 0) {
-            return false;
-        }
-    }
-    return true;
-}
-
 static int check_header(const struct image *image, struct image_findings *f)
 {
     const struct lm_image_header *h = &image->header;
@@ -98,7 +89,7 @@ static int check_header(const struct image *image, struct image_findings *f)
         image_find(f, 16, "the header says %" PRIu64 " bytes, the file has %" PRIu64,
                    h->image_bytes, image->size_bytes);
     }
-    if (h->reserved0 != 0 || !is_zero(h->reserved1, sizeof h->reserved1)) {
+    if (h->reserved0 != 0 || !db_is_zero(h->reserved1, sizeof h->reserved1)) {
         image_find(f, 60, "unused bytes of the header are not zero");
     }
     const bool is_sound =
@@ -170,7 +161,7 @@ static int check_sections(struct image *image, struct image_findings *f)
         }
     }
     const uint32_t unused = LM_IMAGE_SECTIONS_MAX - h->section_count;
-    if (!is_zero(&h->sections[h->section_count], unused * sizeof h->sections[0])) {
+    if (!db_is_zero(&h->sections[h->section_count], unused * sizeof h->sections[0])) {
         image_find(f, offsetof(struct lm_image_header, sections),
                    "unused section entries are not zero");
     }
@@ -261,12 +252,41 @@ static int read_targets_head(struct image *image, struct image_findings *f)
         image_find(f, s->offset, "the head of section TARGETS does not fit it or its checksum");
         return -1;
     }
-    if (!is_zero(head.reserved, sizeof head.reserved)) {
+    if (!db_is_zero(head.reserved, sizeof head.reserved)) {
         image_find(f, s->offset, "unused bytes of the head of section TARGETS are not zero");
     }
     image->db.target_count = head.count;
     image->db.targets_offset = s->offset + sizeof head;
     image->targets = (const void *)(image->bytes + image->db.targets_offset);
+    return 0;
+}
+
+static int read_signatures_head(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_SIGNATURES];
+    struct lm_signatures_head head;
+    if (!s) {
+        return 0;
+    }
+    if (s->bytes < sizeof head) {
+        image_find(f, s->offset, "section SIGNATURES is too short for its head");
+        return -1;
+    }
+    memcpy(&head, image->bytes + s->offset, sizeof head);
+    if (!db_signatures_head_fits(&head, s->bytes)) {
+        image_find(f, s->offset, "the head of section SIGNATURES does not fit it or its checksum");
+        return -1;
+    }
+    if (!db_signatures_head_rest_is_zero(&head)) {
+        image_find(f, s->offset, "unused bytes of the head of section SIGNATURES are not zero");
+    }
+    image->db.signature_count = head.count;
+    image->db.chip_count = head.chip_count;
+    image->db.signatures_offset = s->offset + sizeof head;
+    image->db.chips_offset =
+        image->db.signatures_offset + (uint64_t)head.count * LM_SIGNATURE_BYTES;
+    image->signatures = (const void *)(image->bytes + image->db.signatures_offset);
+    image->chips = (const void *)(image->bytes + image->db.chips_offset);
     return 0;
 }
 
@@ -281,7 +301,9 @@ int image_read_tables(struct image *image, struct image_findings *findings)
         return -1;
     }
     fill_db(image);
-    return read_targets_head(image, findings) == 0 ? check_bands(image, findings) : -1;
+    return read_targets_head(image, findings) == 0 && read_signatures_head(image, findings) == 0
+               ? check_bands(image, findings)
+               : -1;
 }
 
 int image_open(struct image *image, const char *path)

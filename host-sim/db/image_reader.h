@@ -5,6 +5,7 @@
 #include "image_format.h"
 
 #include "lm/db.h"
+#include "lm/signature.h"
 #include "lm/target.h"
 
 #include <stddef.h>
@@ -31,7 +32,10 @@ struct image {
         *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
     const struct image_entry *entries;
     const struct lm_tile *tiles;
-    const struct lm_target *targets; /* db.target_count of them, their contents not yet checked */
+    /* db.target_count, signature_count and chip_count of them, their contents not yet checked */
+    const struct lm_target *targets;
+    const struct lm_signature *signatures;
+    const struct lm_chip *chips;
 };
 
 /* Map a file. Returns 0, or -1 with the error reported. */

@@ -167,13 +167,15 @@ static int append_section(struct image_writer *w, enum lm_image_section_type typ
     return pad_to(w, s->offset) == 0 ? put_section(w, type, data, manifest) : -1;
 }
 
-static int put_targets(struct image_writer *w, FILE *manifest, uint64_t *end)
+/* Sections that an image need not have. */
+static int put_extra(struct image_writer *w, enum lm_image_section_type type,
+                     const struct image_bytes *bytes, FILE *manifest, uint64_t *end)
 {
-    if (!w->targets) {
+    if (!bytes->data) {
         return 0;
     }
-    w->header.section_count = LM_IMAGE_TARGETS;
-    return append_section(w, LM_IMAGE_TARGETS, w->targets, w->targets_bytes, manifest, end);
+    w->header.section_count = type;
+    return append_section(w, type, bytes->data, bytes->count, manifest, end);
 }
 
 static int put_header(struct image_writer *w)
@@ -198,7 +200,10 @@ static int finish(struct image_writer *w, const char *manifest)
     const struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
     uint64_t end = tiles->offset + tiles->bytes;
     if (result == 0) {
-        result = put_targets(w, stream, &end);
+        result = put_extra(w, LM_IMAGE_TARGETS, &w->targets, stream, &end);
+    }
+    if (result == 0) {
+        result = put_extra(w, LM_IMAGE_SIGNATURES, &w->signatures, stream, &end);
     }
     if (fclose(stream) != 0) {
         result = hs_error(w->file.path, NULL, "out of memory");

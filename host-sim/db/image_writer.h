@@ -10,15 +10,19 @@
 
 #include <stdint.h>
 
+/* A section made elsewhere. */
+struct image_bytes {
+    const void *data; /* borrowed until the end */
+    size_t count;
+};
+
 struct image_writer {
     struct hs_atomic_file file;
     struct lm_image_header header;
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
-    uint32_t *records; /* record number of each directory entry; owned */
-    const void
-        *targets; /* borrowed until the end: the section TARGETS; NULL for an image without */
-    size_t targets_bytes;
+    uint32_t *records;                      /* record number of each directory entry; owned */
+    struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };
@@ -34,9 +38,9 @@ int image_writer_begin(struct image_writer *w, const char *path,
 int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile);
 
 /* Finish: directory, manifest and header. `manifest` is text to which the SHA-256 of the other
- * sections is added. Title, centre, mean elevation and geoid are taken from w->header, the targets
- * from w->targets, where the caller has put them. Returns 0, or -1 with the error reported; either
- * way the writer is done with. */
+ * sections is added. Title, centre, mean elevation and geoid are taken from w->header, targets and
+ * signatures from w->targets and w->signatures, where the caller has put them. Returns 0, or -1
+ * with the error reported; either way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 
 /* Give up: nothing is left of the file. Harmless after image_writer_end. */
