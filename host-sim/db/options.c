@@ -3,6 +3,7 @@
 #include "hs/error.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +34,9 @@ static void print_help(const struct db_usage *usage, const struct db_option *opt
         printf("  --%s%s%s%s\n", o->name, o->value_name ? " " : "",
                o->value_name ? o->value_name : "", o->is_required ? "  (required)" : "");
         print_lines(o->help, 6);
-        if (o->kind == DB_REAL) {
+        if (o->kind == DB_REAL && isnan(*(double *)o->target)) {
+            printf("      Range %g to %g.\n", o->low, o->high);
+        } else if (o->kind == DB_REAL) {
             printf("      Range %g to %g; default %g.\n", o->low, o->high, *(double *)o->target);
         } else if (o->kind == DB_INTEGER) {
             printf("      Range %.0f to %.0f; default %ld.\n", o->low, o->high, *(long *)o->target);

@@ -18,7 +18,7 @@ enum db_option_kind {
     DB_FLAG,    /* bool */
     DB_TEXT,    /* const char *, borrowed from argv */
     DB_LIST,    /* struct db_list */
-    DB_REAL,    /* double within low..high */
+    DB_REAL,    /* double within low..high; NAN before: there is no default */
     DB_INTEGER, /* long within low..high */
 };
 

@@ -6,6 +6,7 @@ int nm_cmd_register(int argc, char **argv);
 int nm_cmd_train(int argc, char **argv);
 int nm_cmd_score(int argc, char **argv);
 int nm_cmd_simulate(int argc, char **argv);
+int nm_cmd_bake(int argc, char **argv);
 int nm_cmd_plot(int argc, char **argv);
 int nm_cmd_recover(int argc, char **argv);
 int nm_cmd_response(int argc, char **argv);

@@ -9,6 +9,7 @@ static const struct hs_command commands[] = {
     {"train", "learn the reflection of a target from real chips", nm_cmd_train},
     {"score", "simulated chips beside real ones: MSE, SSIM, CW-SSIM and a picture", nm_cmd_score},
     {"simulate", "chips of any aspect by what was learned", nm_cmd_simulate},
+    {"bake", "the signature of what was learned, for the display unit", nm_cmd_bake},
     {"plot", "draw what was learned: loss, reflection curves, kernels", nm_cmd_plot},
     {"recover", "hide a law in made chips, learn it, and tell how well it was found",
      nm_cmd_recover},

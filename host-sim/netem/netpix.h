@@ -47,8 +47,8 @@ struct nm_netpix {
     double *fixed_kernel; /* owned: the fixed kernel last used; NaN before */
     fftw_complex *channel[NM_FIRST_KERNELS];
     double *plane[NM_FIRST_KERNELS]; /* owned: the first layer's results, after ReLU */
-    double *cells;                   /* owned scratch, side x side */
-    double *d_cells;                 /* owned scratch */
+    double *cells;   /* owned, side x side: amplitudes of the last forward call, not yet sampled */
+    double *d_cells; /* owned scratch */
 };
 
 /* Returns 0, or -1 with the error reported. */

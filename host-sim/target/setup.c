@@ -52,36 +52,51 @@ void setup_model_options(struct setup *s, struct db_option *o)
     memcpy(o, options, sizeof options);
 }
 
-void setup_trace_options(struct setup *s, struct db_option *o)
+void setup_ray_options(struct setup *s, struct db_option *o)
 {
-    const struct db_option options[SETUP_TRACE_OPTIONS] = {
-        {"depression", DB_REAL, &s->depression_deg, 1, 89, "DEG",
-         "of the line of sight below the horizon", false},
+    const struct db_option options[SETUP_RAY_OPTIONS] = {
         {"wavelength", DB_REAL, &s->wavelength_m, 0.001, 10, "M", "of the radar", false},
-        {"cell", DB_REAL, &s->cell_m, 0.001, 1000, "M",
-         "side of the cells, slant range and across, in which echoes are added up", false},
-        {"cells", DB_INTEGER, &s->cells, 2, TRACE_CELLS_MAX, "N", "of the picture, either way",
-         false},
         {"rays", DB_INTEGER, &s->rays_per_cell, 1, 16, "N",
          "N x N of them meet a cell of level "
          "ground",
          false},
         {"bounces", DB_INTEGER, &s->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
          false},
+        {"threads", DB_INTEGER, &s->threads, 1, 64, "N", "the result does not depend on it", false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+void setup_trace_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS] = {
+        {"depression", DB_REAL, &s->depression_deg, 1, 89, "DEG",
+         "of the line of sight below the horizon", false},
+        {"cell", DB_REAL, &s->cell_m, 0.001, 1000, "M",
+         "side of the cells, slant range and across, in which echoes are added up", false},
+        {"cells", DB_INTEGER, &s->cells, 2, TRACE_CELLS_MAX, "N", "of the picture, either way",
+         false},
         {"no-ground", DB_FLAG, &s->has_no_ground, 0, 0, NULL, "the model floats in empty space",
          false},
-        {"threads", DB_INTEGER, &s->threads, 1, 64, "N", "the result does not depend on it", false},
+    };
+    memcpy(o, options, sizeof options);
+    setup_ray_options(s, o + SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS);
+}
+
+void setup_law_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_LAW_OPTIONS] = {
+        {"law", DB_TEXT, &s->law, 0, 0, "NAME",
+         "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
+        {"materials", DB_TEXT, &s->materials, 0, 0, "FILE",
+         "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
     memcpy(o, options, sizeof options);
 }
 
 void setup_chip_options(struct setup *s, struct db_option *o)
 {
-    const struct db_option options[SETUP_CHIP_OPTIONS] = {
-        {"law", DB_TEXT, &s->law, 0, 0, "NAME",
-         "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
-        {"materials", DB_TEXT, &s->materials, 0, 0, "FILE",
-         "surfaces by name, in the form that `landmass-target materials` prints", false},
+    const struct db_option options[SETUP_CHIP_OPTIONS - SETUP_LAW_OPTIONS] = {
         {"resolution", DB_REAL, &s->resolution_m, 0.001, 1000, "M",
          "of the radar, between -3 dB points", false},
         {"pixel", DB_INTEGER, &s->ratio, 1, 16, "N", "cells a pixel, either way", false},
@@ -90,7 +105,8 @@ void setup_chip_options(struct setup *s, struct db_option *o)
         {"range-db", DB_REAL, &s->range_db, 1, 200, "DB", "from the brightest pixel to black",
          false},
     };
-    memcpy(o, options, sizeof options);
+    setup_law_options(s, o);
+    memcpy(o + SETUP_LAW_OPTIONS, options, sizeof options);
 }
 
 void setup_options(struct setup *s, struct db_option *o)

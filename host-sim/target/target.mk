@@ -2,8 +2,8 @@
 LIB_target := $(O)/host-sim/target/libtarget.a
 # Embree 3 has no pkg-config file in Debian.
 LIBS_target := -lembree3 -lpthread $(call pkgs,libs,libpng)
-# Command lines are read as landmass-db's are, and the curves are drawn on landmass-figures' sheets.
-SHARED_target := $(addprefix $(O)/host-sim/,db/options.o figures/chart.o)
+# Command lines are read as landmass-db's are, signatures are what it takes, and the curves are drawn on landmass-figures' sheets.
+SHARED_target := $(addprefix $(O)/host-sim/,db/options.o db/signature_file.o figures/chart.o)
 T := $(O)/bin/landmass-target
 PROGRAMS += $(T)
 $(O)/host-sim/target/%.o: EXTRA_CFLAGS := -Ihost-sim/db -Ihost-sim/figures

@@ -33,8 +33,8 @@ static int remove_folder(void **state)
 static void every_command_explains_itself(void **state)
 {
     (void)state;
-    static const char *const commands[] = {"",         "register", "train",   "score",
-                                           "simulate", "plot",     "recover", "paper"};
+    static const char *const commands[] = {"",     "register", "train",   "score", "simulate",
+                                           "bake", "plot",     "recover", "paper"};
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         assert_int_equal(support_run("%s/bin/landmass-netem %s --help | grep -q sage:",
                                      support_build_dir(), commands[i]),
@@ -112,6 +112,22 @@ static void learned_chips_can_be_made_and_read_again(void **state)
                                  "END { exit !(n == 2 && bad == 0) }' %s/made/score/scores.tsv",
                                  folder),
                      0);
+}
+
+static void what_was_learned_can_be_baked(void **state)
+{
+    (void)state;
+    assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 "
+                                 "--depressions 15,30 --training %s/whole/training.netem --out "
+                                 "%s/learned.sig && test $(wc -c <%s/learned.sig) = "
+                                 "$((64+1152+6*4672))",
+                                 support_build_dir(), folder, folder, folder),
+                     0);
+    assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --depressions 1 "
+                                 "--training %s/whole/training.netem --out %s/none.sig",
+                                 support_build_dir(), folder, folder),
+                     1);
+    assert_int_equal(support_run("test ! -e %s/none.sig", folder), 0);
 }
 
 /* The chips of the real T-72: found, learned for a moment, and scored. */
@@ -200,6 +216,7 @@ int main(void)
         cmocka_unit_test(a_training_killed_at_any_epoch_ends_in_the_same_file),
         cmocka_unit_test(trainings_are_drawn_together),
         cmocka_unit_test(learned_chips_can_be_made_and_read_again),
+        cmocka_unit_test(what_was_learned_can_be_baked),
         cmocka_unit_test(real_chips_go_all_the_way),
         cmocka_unit_test(the_response_is_that_of_a_real_radar),
         cmocka_unit_test(the_papers_experiment_is_one_command),

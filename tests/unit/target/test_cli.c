@@ -27,8 +27,8 @@ static int shell(const char *command)
 static void every_command_explains_itself(void **state)
 {
     (void)state;
-    static const char *const commands[] = {"",       "model ",  "trace ",     "render ",
-                                           "sheet ", "curves ", "materials ", "bench "};
+    static const char *const commands[] = {"",      "model ",  "trace ",     "render ", "sheet ",
+                                           "bake ", "curves ", "materials ", "bench "};
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         char line[64];
         snprintf(line, sizeof line, "%s--help >help", commands[i]);
@@ -63,6 +63,11 @@ static void bad_input_ends_with_1_and_leaves_no_file(void **state)
     assert_int_equal(run("render --records open.obj --out out.png"), 1);
     assert_int_equal(run("render --model tank --law ohm --out out.png"), 1);
     assert_int_equal(run("render --model tank --pixel 5 --out out.png"), 1);
+    assert_int_equal(run("bake --model tank --pixel 0.1 --out out.png"), 1);
+    assert_int_equal(run("bake --model tank --depressions 20,10 --out out.png"), 1);
+    assert_int_equal(run("bake --model tank --depressions 1,2,3,4,5,6,7,8,9 --out out.png"), 1);
+    assert_int_equal(run("bake --model tank --name 'a name' --out out.png"), 1);
+    assert_int_equal(run("bake --model tank --law ohm --out out.png"), 1);
     assert_int_equal(shell("printf 'metal 1 2 3\\n' >bad.txt"), 0);
     assert_int_equal(run("render --model tank --materials bad.txt --out out.png"), 1);
     assert_int_equal(shell("! test -e out.png"), 0);
@@ -87,6 +92,21 @@ static void records_render_as_their_model_does(void **state)
                          "--materials table.txt --csv d.csv"),
                      0);
     assert_int_equal(shell("cmp a.csv d.csv"), 0);
+}
+
+/* The same file whatever the number of threads; its size is that of its chips. */
+static void a_signature_is_baked_the_same_by_any_number_of_threads(void **state)
+{
+    (void)state;
+    assert_int_equal(run("bake --model slicy --aspects 3 --depressions 12,25 --rays 1 --threads 1 "
+                         "--mean 5 --out a.sig --sheet sheet.png"),
+                     0);
+    assert_int_equal(run("bake --model slicy --aspects 3 --depressions 12,25 --rays 1 --threads 3 "
+                         "--mean 5 --name a --out b.sig"),
+                     0);
+    assert_int_equal(shell("cmp a.sig b.sig && test $(wc -c <a.sig) = $((64+1152+6*4672)) && "
+                           "head -c 4 sheet.png | tail -c 3 | grep -q PNG"),
+                     0);
 }
 
 static void sheets_and_curves_are_pictures(void **state)
@@ -114,6 +134,7 @@ int main(void)
         cmocka_unit_test(a_command_line_without_sense_ends_with_2),
         cmocka_unit_test(bad_input_ends_with_1_and_leaves_no_file),
         cmocka_unit_test(records_render_as_their_model_does),
+        cmocka_unit_test(a_signature_is_baked_the_same_by_any_number_of_threads),
         cmocka_unit_test(sheets_and_curves_are_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
