@@ -63,11 +63,13 @@ const struct lm_radar lm_radar_default = {
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
      * base): FreeFalcon, as RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below
      * half of that: UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED.
-     */
+     * Azimuths across a sample: enough for the ground to err less than the speckle does
+     * (tests/unit/firmware/test_footprint.c). */
     .field = {[LM_FIELD_NORM] = {.range_last = 3,
                                  .slew_percent = 100,
                                  .sharpening = 1,
                                  .sharpening_least = 1,
+                                 .azimuths_log2 = 1,
                                  .pulse_ns = {400, 1000, 3200, 6400}},
               [LM_FIELD_EXP] = {.range_last = 3,
                                 .slew_percent = 50,
@@ -75,6 +77,7 @@ const struct lm_radar lm_radar_default = {
                                 .azimuth_half_max = FX_BAM_DEG(60),
                                 .sharpening = 1,
                                 .sharpening_least = 1,
+                                .azimuths_log2 = 2,
                                 .pulse_ns = {100, 400, 1000, 3200}},
               [LM_FIELD_DBS1] = {.bam_per_s = FX_BAM_DEG(15),
                                  .range_last = 2,
@@ -84,6 +87,7 @@ const struct lm_radar lm_radar_default = {
                                  .sharpening = 8,
                                  .sharpening_least = 4,
                                  .is_doppler = true,
+                                 .azimuths_log2 = 2,
                                  .pulse_ns = {100, 100, 400, 400}},
               [LM_FIELD_DBS2] = {.bam_per_s = FX_BAM_DEG(3),
                                  .range_last = 2,
@@ -93,6 +97,7 @@ const struct lm_radar lm_radar_default = {
                                  .sharpening = 64,
                                  .sharpening_least = 32,
                                  .is_doppler = true,
+                                 .azimuths_log2 = 2,
                                  .pulse_ns = {100, 100, 100, 100}}},
     /* UNSOURCED but for the formulas they go into: squints from 15 degrees (RADAR.md 1.4 on DBS), a
      * minute of dwell at the most, a patch shown with four looks. */

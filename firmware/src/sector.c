@@ -352,7 +352,44 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
     lm_line_add_targets(line, setup, &targets);
 }
 
-/* Trace one azimuth into its place in the beam's ring. */
+static void trace(struct lm_sector *s, struct lm_tile_cache *tiles,
+                  const struct lm_geo_origin *origin, fx_bam_t azimuth,
+                  const struct lm_line_setup *setup, struct lm_line *line)
+{
+    const lm_horizon_q40_t horizon = horizon_at(s, tiles, origin, azimuth, line);
+    const struct lm_ground_path path = sample_path(s, origin, azimuth);
+    lm_line_trace(line, tiles, setup, &path, horizon);
+}
+
+/* Samples that are closer for sharpness need fewer. */
+static uint32_t azimuths_log2_of(const struct lm_sector *s)
+{
+    const uint32_t log2 = field_of(s)->azimuths_log2, finer_log2 = s->beam.fineness;
+    return log2 > finer_log2 ? fx_min_u32(log2 - finer_log2, LM_FOOTPRINT_LOG2_MAX) : 0;
+}
+
+/* Trace the azimuths across a sample: everything in the line is that of the last one, but the
+ * levels are of the mean power. */
+static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles,
+                            const struct lm_geo_origin *origin, fx_bam_t azimuth,
+                            const struct lm_line_setup *setup, struct lm_line *line)
+{
+    const fx_bam_t spacing = lm_beam_spacing(&s->beam, s->radar);
+    const uint32_t log2 = azimuths_log2_of(s);
+    if (log2 == 0) {
+        trace(s, tiles, origin, azimuth, setup, line);
+        return;
+    }
+    lm_footprint_clear(&s->footprint, s->grid.cells);
+    for (uint32_t turn = 0; turn < 1u << log2; turn++) {
+        const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
+        trace(s, tiles, origin, azimuth + off, setup, line);
+        lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells, log2);
+    }
+    lm_footprint_levels(&s->footprint, line->sight.level_q8, s->grid.cells);
+}
+
+/* What lies about one azimuth, into its place in the beam's ring. */
 static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles,
                         const struct lm_geo_origin *origin, int32_t sample, struct lm_line *line)
 {
@@ -361,9 +398,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles,
                                         .aspect = &s->radar->aspect,
                                         .texture = &s->texture,
                                         .sampling = s->sampling};
-    const lm_horizon_q40_t horizon = horizon_at(s, tiles, origin, azimuth, line);
-    const struct lm_ground_path path = sample_path(s, origin, azimuth);
-    lm_line_trace(line, tiles, &setup, &path, horizon);
+    trace_footprint(s, tiles, origin, azimuth, &setup, line);
     lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
         add_targets(s, tiles, azimuth, &setup, line);

@@ -364,7 +364,7 @@ static void set_weather(const struct request *request, struct ref_sector *s)
 }
 
 /* Everything else of the antenna is that of the firmware's table: a fan of 30 degrees, 4.6 degrees
- * tall, samples 120/256 degrees apart; and the wavelength of 9.6 GHz. */
+ * tall, samples 120/128 degrees apart of two azimuths each; and the wavelength of 9.6 GHz. */
 static int render_sector(const struct request *request, const struct ref_db *db)
 {
     double noise_table_db[REF_SPECKLE_SLICES];
@@ -373,6 +373,7 @@ static int render_sector(const struct request *request, const struct ref_db *db)
         .ground = sector_of(request, db),
         .beam_deg = request->beam_deg,
         .sample_deg = 120.0 / 128,
+        .azimuths = 2,
         .sharpening = request->sharpening,
         .sharpening_least = request->sharpening / 2,
         .dbs = {request->speed_m_s, request->beam_deg, 0.031228, request->rate_deg_s},

@@ -508,6 +508,7 @@ struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line
 struct ref_sector {
     struct ref_gm ground; /* its lines are those that are drawn, its cells those that are sampled */
     double beam_deg, sample_deg;         /* B, D0 */
+    unsigned azimuths;                   /* traced across a sample in real beam; 0 is 1 */
     double sharpening, sharpening_least; /* 1 and 1: real beam */
     struct ref_dbs dbs;                  /* not used by real beam */
     double track_deg;                    /* azimuth of the velocity, likewise */

@@ -29,6 +29,37 @@ struct samples {
     long number[REF_BEAM_SAMPLES];
 };
 
+/* Azimuths across a sample: half as many for each doubling of the sharpness. */
+static unsigned azimuths_of(const struct ref_sector *s, const struct ref_beam *beam)
+{
+    const double fewer = pow(2, floor(log2(beam->ratio)));
+    return s->azimuths > fewer ? (unsigned)(s->azimuths / fewer) : 1;
+}
+
+/* The ground about an azimuth: everything that of the last azimuth traced, but the levels those of
+ * the mean power, with its speckle. */
+static void look_across(struct ref_bin *bins, const struct ref_db *db,
+                        const struct ref_sector *sector, const struct ref_params *params,
+                        const struct ref_tables *tables, const struct ref_beam *beam,
+                        double azimuth_deg)
+{
+    const unsigned azimuths = azimuths_of(sector, beam);
+    double power[REF_CELLS_MAX] = {0};
+    for (unsigned turn = 0; turn < azimuths; turn++) {
+        const unsigned part = (turn + azimuths / 2 + 1) % azimuths;
+        const double off_deg = ((part + 0.5) / azimuths - 0.5) * ref_beam_spacing_deg(beam);
+        ref_gm_line(bins, db, &sector->ground, params, tables, azimuth_deg + off_deg);
+        for (unsigned i = 0; i < sector->ground.cell_count; i++) {
+            const double level_db = bins[i].level_db + bins[i].texture_db;
+            power[i] += bins[i].is_lit ? pow(10, level_db / 10) / azimuths : 0;
+        }
+    }
+    for (unsigned i = 0; i < sector->ground.cell_count; i++) {
+        bins[i].is_lit = power[i] > 0;
+        bins[i].echo_db = 10 * log10(power[i]) + bins[i].speckle_db;
+    }
+}
+
 /* The bins of a sample, from the ground if they are not there any more. */
 static const struct ref_bin *sample(struct samples *s, const struct ref_db *db,
                                     const struct ref_sector *sector,
@@ -42,7 +73,7 @@ static const struct ref_bin *sample(struct samples *s, const struct ref_db *db,
     if (s->spacing_deg[slot] != spacing_deg || s->number[slot] != number) {
         s->spacing_deg[slot] = spacing_deg;
         s->number[slot] = number;
-        ref_gm_line(bins, db, &sector->ground, params, tables,
+        look_across(bins, db, sector, params, tables, beam,
                     sector->ground.centre_azimuth_deg + ref_beam_azimuth_deg(beam, number));
     }
     return bins;

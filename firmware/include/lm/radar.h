@@ -40,6 +40,7 @@ struct lm_field_row {
     fx_bam_t azimuth_half_max; /* of a window, as swept */
     uint16_t sharpening;       /* azimuth cells in a beam width, a power of two; 1: real beam */
     uint16_t sharpening_least; /* real beam where there is less than this */
+    uint8_t azimuths_log2;     /* traced across a sample of real beam: lm/footprint.h */
     bool is_doppler;           /* movers are displaced */
     uint32_t pulse_ns[LM_RANGES];
 };

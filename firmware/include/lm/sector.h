@@ -9,6 +9,7 @@
 
 #include "lm/antenna.h"
 #include "lm/beam.h"
+#include "lm/footprint.h"
 #include "lm/line.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
@@ -71,6 +72,7 @@ struct lm_sector {
     struct lm_elevation elevation;
     struct lm_fan fan;
     struct lm_texture texture;
+    struct lm_footprint footprint; /* of the sample that is being taken */
     struct lm_beam beam;
     struct lm_beam_look look; /* of the next line, once `is_aimed` */
     bool is_aimed;
@@ -84,7 +86,7 @@ struct lm_sector {
     fx_bam_t runup_azimuth;          /* at this azimuth from north, */
     bool has_runup;                  /* once it was traced */
 
-    uint32_t samples;                 /* lines sampled so far: only grows */
+    uint32_t samples;                 /* taken so far: only grows */
     uint32_t power_q24[LM_BEAM_ROOM]; /* of the line drawn last, behind beam and pulse */
     int32_t level_q8[LM_CELLS_ROOM];  /* and behind the receiver: what the tone is made of */
 };

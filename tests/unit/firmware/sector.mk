@@ -1,5 +1,6 @@
 # Sectors: every stage against the reference, what a sweep shows, and windows in flight.
-SECTOR_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_sector test_sector_stages test_sector_doppler)
+SECTOR_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_sector test_sector_stages test_sector_doppler \
+    test_footprint)
 TESTS += $(SECTOR_TESTS)
 $(SECTOR_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(SECTOR_TESTS): $(O)/bin/%: $(O)/%.o $(addprefix $(O)/tests/unit/firmware/,sector_world.o unit_rig.o) \

@@ -344,6 +344,10 @@ static struct sector_world *make_country(void)
     spec.shift0 = 13;
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
+    /* The mean across a sample is test_footprint's: here a sample is the azimuth in the line. */
+    for (int field = 0; field < LM_FIELDS; field++) {
+        w->radar.field[field].azimuths_log2 = 0;
+    }
     w->platform = (struct lm_platform){
         .place = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
         .height_q10 = 2500 * 1024,
