@@ -1,5 +1,9 @@
 #include "lm/aspect.h"
 
+#include <stdbool.h>
+
+#include "aspect_line.h"
+#include "aspect_neon.h"
 #include "fx/log.h"
 #include "fx/sat.h"
 
@@ -80,142 +84,125 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     }
 }
 
-/* Heights by the height code of a cell as a signed number of four bits, -8..7, behind the eighth:
- * the lookup becomes a vector gather where its index has a sign. */
-enum { CODES = 16, CODE_MIDDLE = 8 };
-
-static inline int32_t signed_code(uint32_t cell)
+static void set_legend(struct legend *l, const struct lm_aspect_config *config,
+                       const struct lm_classes *classes)
 {
-    return (int32_t)(cell << 28) >> 28;
-}
-
-static void set_heights(int32_t height_q14_of[CODES], const struct lm_classes *classes)
-{
-    for (uint32_t code = 0; code < CODES; code++) {
-        height_q14_of[signed_code(code) + CODE_MIDDLE] = classes->height_dm[code] * 8192 / 5;
+    const int32_t entry[LM_KINDS] = {
+        [LM_KIND_WATER] = MARK_WATER,
+        [LM_KIND_STRUCTURE] = config->edge_structure_q8 * (1 << MARK_BITS) + MARK_STRUCTURE,
+        [LM_KIND_TREES] = config->edge_trees_q8 * (1 << MARK_BITS) + MARK_TREES};
+    for (uint32_t n = 0; n < CODE_MIDDLE; n++) {
+        l->height_q14[n] = classes->height_dm[n + CODE_MIDDLE] * 8192 / 5;
+        l->height_q14[n + CODE_MIDDLE] = classes->height_dm[n] * 8192 / 5;
+        l->kind[n] = entry[classes->entry[n + CODE_MIDDLE].kind & (LM_KINDS - 1)];
+        l->kind[n + CODE_MIDDLE] = entry[classes->entry[n].kind & (LM_KINDS - 1)];
     }
 }
 
-/* Tangent of each cell's top, in the horizon's place, and its level but for the horizon's rise and
- * the edges. */
+/* Tangent of each cell's top, in the horizon's place; its kind, behind that of the cell before it;
+ * and its level but for the horizon's rise and the edges. */
 static void look(const struct lm_range_grid *grid, const struct lm_scan_line *line,
-                 const int32_t height_q14_of[CODES], struct lm_sight *restrict sight)
+                 const struct legend *legend, int32_t *restrict kind,
+                 struct lm_sight *restrict sight)
 {
-    const int32_t *const middle = height_q14_of + CODE_MIDDLE;
     for (uint32_t i = 0; i < grid->cells; i++) {
         const uint32_t cell = line->cell[i];
-        /* Elevation below 2^29, height below 2^27, fall below 2^30: below 2^31, times 2^30. */
-        const int32_t apparent_q14 =
-            line->elevation_q14[i] + middle[signed_code(cell)] - grid->fall_q14[i];
-        /* Without a sign, which the 32 bits kept do not see: vectors have no other shift. */
-        const int64_t tangent = (int64_t)apparent_q14 * grid->inverse_range[i];
-        sight->horizon[i + 1] = (int32_t)((uint64_t)tangent >> 30);
+        sight->horizon[i + 1] = tangent_of(grid, line, legend, i);
+        kind[i + 1] = kind_of(legend, cell);
         sight->level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
     }
 }
 
-enum { CLASS_BITS = 0xF0 };
-
-/* Whether each cell is of another class than the one before it. */
-static void find_borders(const uint32_t *cell, uint32_t cells, uint8_t *restrict is_border)
+/* The running horizon: tangents become the largest up to them. horizon[0] is where it starts. Eight
+ * neighbours, each the largest of eight, wait for the eight before them, and not a cell for the one
+ * before it. */
+static void raise_horizon(uint32_t cells, int32_t *horizon)
 {
-    is_border[0] = 0;
-    for (uint32_t i = 1; i < cells; i++) {
-        is_border[i] = ((cell[i] ^ cell[i - 1]) & CLASS_BITS) != 0;
+    enum { HALF = 4, ALL = 8 };
+    int32_t of_half[HALF + LM_CELLS_ROOM];
+    for (uint32_t i = 0; i < HALF; i++) {
+        of_half[i] = horizon[0];
     }
-    for (uint32_t i = cells; i < cells + LM_LANES; i++) {
-        is_border[i] = 0;
+    for (uint32_t i = 1; i <= cells && i < HALF; i++) {
+        of_half[HALF + i - 1] = fx_max_i32(of_half[HALF + i - 2], horizon[i]);
+    }
+    for (uint32_t i = HALF; i <= cells; i++) {
+        const int32_t *t = horizon + i;
+        of_half[i + HALF - 1] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
+    }
+    for (uint32_t i = 1; i <= cells && i < ALL; i++) {
+        horizon[i] = fx_max_i32(of_half[i - 1], of_half[i + HALF - 1]);
+    }
+    for (uint32_t i = ALL; i <= cells; i++) {
+        const int32_t of_all = fx_max_i32(of_half[i - 1], of_half[i + HALF - 1]);
+        horizon[i] = fx_max_i32(of_all, horizon[i - ALL]);
     }
 }
 
-/* The first border from cell `i` on; `cells` when there is none. Borders are rare: eight cells are
- * looked at in one go. (The compiler makes one load of the eight bytes where this is their order in
- * memory.) */
-static inline uint32_t next_border(const uint8_t *is_border, uint32_t i, uint32_t cells)
+/* Light cells by what they show above the horizon, and leading edges by what they are: E_i of the
+ * equations. 32 bits without a sign hold the rise from any tangent to any other. Returns whether
+ * some cell is behind a shore. */
+static bool light(const int32_t *horizon, const int32_t *kind, uint32_t cells,
+                  int32_t *restrict level_q8)
 {
-    for (; i < cells; i += 8) {
-        const uint8_t *b = is_border + i;
-        const uint64_t eight = b[0] | (uint64_t)b[1] << 8 | (uint64_t)b[2] << 16 |
-                               (uint64_t)b[3] << 24 | (uint64_t)b[4] << 32 | (uint64_t)b[5] << 40 |
-                               (uint64_t)b[6] << 48 | (uint64_t)b[7] << 56;
-        if (eight != 0) {
-            return i + (uint32_t)fx_ctz64(eight) / 8;
-        }
-    }
-    return cells;
-}
-
-/* The far shore's brightness, from its first cell on. */
-static void add_shore(const struct lm_range_grid *grid, int32_t shore_q8,
-                      const uint8_t kind_of[LM_DB_CLASSES], const uint32_t *cell, uint32_t i,
-                      int32_t *level_q8)
-{
-    for (; i < grid->cells && shore_q8 > 0; i++, shore_q8 -= grid->shore_fall_q8) {
-        if (kind_of[cell[i] >> 4 & 15] == LM_KIND_WATER) {
-            return;
-        }
-        level_q8[i] += shore_q8;
-    }
-}
-
-/* Leading edges and far shores: E_i of the equations. The first cell shown enters nothing. */
-static void add_edges(const struct lm_range_grid *grid, const struct lm_aspect_config *config,
-                      const struct lm_classes *classes, const uint32_t *cell, int32_t *level_q8)
-{
-    uint8_t kind_of[LM_DB_CLASSES], is_border[LM_CELLS_ROOM];
-    for (int i = 0; i < LM_DB_CLASSES; i++) {
-        kind_of[i] = classes->entry[i].kind;
-    }
-    find_borders(cell, grid->cells, is_border);
-    uint32_t i = next_border(is_border, grid->first + 1, grid->cells);
-    for (; i < grid->cells; i = next_border(is_border, i + 1, grid->cells)) {
-        const uint8_t kind = kind_of[cell[i] >> 4 & 15], before = kind_of[cell[i - 1] >> 4 & 15];
-        if (kind == before) {
-            continue;
-        }
-        if (kind == LM_KIND_STRUCTURE) {
-            level_q8[i] += config->edge_structure_q8;
-        } else if (kind == LM_KIND_TREES) {
-            level_q8[i] += config->edge_trees_q8;
-        }
-        if (before == LM_KIND_WATER) {
-            add_shore(grid, config->shore_q8, kind_of, cell, i, level_q8);
-        }
-    }
-}
-
-/* The running horizon: the only step in which a cell waits for the one before it. */
-static void raise_horizon(const struct lm_range_grid *grid, int32_t start, int32_t *horizon)
-{
-    for (uint32_t i = 0; i <= grid->first; i++) {
-        horizon[i] = start;
-    }
-    int32_t *const end = horizon + grid->cells + 1;
-    for (int32_t *tangent = horizon + grid->first + 1; tangent < end; tangent++) {
-        start = *tangent > start ? *tangent : start;
-        *tangent = start;
-    }
-}
-
-/* Light each cell by what it shows above the horizon; 32 bits without a sign hold the rise from any
- * tangent to any other. */
-static void light(const int32_t *horizon, uint32_t cells, int32_t *restrict level_q8)
-{
+    int32_t left = 0;
     for (uint32_t i = 0; i < cells; i++) {
         const uint32_t rise = (uint32_t)horizon[i + 1] - (uint32_t)horizon[i];
-        const int32_t lit_q8 = level_q8[i] + fx_db_q8_of_many(rise);
+        const int32_t edge_q8 = kind[i + 1] != kind[i] ? kind[i + 1] >> MARK_BITS : 0;
+        const int32_t lit_q8 = level_q8[i] + edge_q8 + fx_db_q8_of_many(rise);
         level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
+        left |= kind[i] & ~kind[i + 1];
+    }
+    return left & MARK_WATER;
+}
+
+/* One behind the last of `cells` cells that is behind a shore; 0 when none is. */
+static uint32_t last_shore(const int32_t *kind, uint32_t cells)
+{
+    int32_t last = 0;
+    for (int32_t i = 0; i < (int32_t)cells; i++) {
+        last = fx_max_i32(last, -(kind[i] & ~kind[i + 1] & MARK_WATER) & (i + 1));
+    }
+    return (uint32_t)last;
+}
+
+/* Far shores are rare: they are looked for where a stretch of cells has one. */
+enum { STRETCH = 64, STRETCHES = LM_CELLS_MAX / STRETCH + 1 };
+
+/* Horizon, level and edges of a line whose horizon starts with `start`. */
+static void light_line(const struct lm_range_grid *grid, int32_t shore_q8,
+                       const struct lm_scan_line *line, const struct legend *legend, int32_t start,
+                       struct lm_sight *sight)
+{
+    const uint32_t cells = grid->cells;
+    int32_t kind[1 + LM_CELLS_ROOM];
+    bool has_shore[STRETCHES];
+    look(grid, line, legend, kind, sight);
+    for (uint32_t i = 0; i <= grid->first; i++) {
+        sight->horizon[i] = start;
+    }
+    kind[grid->first] = kind[grid->first + 1]; /* the first cell shown enters nothing */
+    raise_horizon(cells, sight->horizon);
+    for (uint32_t i = 0; i < cells; i += STRETCH) {
+        has_shore[i / STRETCH] = light(sight->horizon + i, kind + i, fx_min_u32(cells - i, STRETCH),
+                                       sight->level_q8 + i);
+    }
+    for (uint32_t i = 0; i < cells; i += STRETCH) {
+        uint32_t left = has_shore[i / STRETCH] ? fx_min_u32(cells - i, STRETCH) : 0;
+        while ((left = last_shore(kind + i, left)) != 0) {
+            left--;
+            add_shore(grid, shore_q8, line, legend, i + left, sight);
+        }
     }
 }
 
 /* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
  * as far beyond. */
-static int32_t start_of(const struct lm_range_grid *grid, const struct lm_sight *sight,
+static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
                         lm_horizon_q40_t horizon)
 {
-    const int64_t first = sight->horizon[grid->first + 1];
-    const int64_t start =
-        horizon == LM_HORIZON_OPEN ? first - grid->flat_rise : horizon >> (40 - grid->tangent_bits);
+    const int64_t start = horizon == LM_HORIZON_OPEN ? (int64_t)first_tangent - grid->flat_rise
+                                                     : horizon >> (40 - grid->tangent_bits);
     return fx_sat_i32(start);
 }
 
@@ -224,14 +211,14 @@ lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
                                const struct lm_classes *classes, const struct lm_scan_line *line,
                                lm_horizon_q40_t horizon, struct lm_sight *sight)
 {
-    int32_t height_q14_of[CODES];
-    set_heights(height_q14_of, classes);
-    look(grid, line, height_q14_of, sight);
-    if (grid->first < grid->cells) {
-        add_edges(grid, config, classes, line->cell, sight->level_q8);
+    struct legend legend;
+    set_legend(&legend, config, classes);
+    const int32_t start = start_of(grid, tangent_of(grid, line, &legend, grid->first), horizon);
+    if (FX_HAS_NEON) {
+        light_line_neon(grid, config->shore_q8, line, &legend, start, sight);
+    } else {
+        light_line(grid, config->shore_q8, line, &legend, start, sight);
     }
-    raise_horizon(grid, start_of(grid, sight, horizon), sight->horizon);
-    light(sight->horizon, grid->cells, sight->level_q8);
     return grid->first < grid->cells
                ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
                : horizon;

@@ -211,6 +211,11 @@ def recursion_and_stack(tree):
     return bad
 
 
+def is_neon(path):
+    """Whether a file is about the vectors of 64-bit Arm: neon.h, stage_neon.h."""
+    return path.suffix == ".h" and path.stem.split("_")[-1] == "neon"
+
+
 def includes(tree, path):
     for number, line in numbered_lines(tree.text(path)):
         found = re.match(r'\s*#\s*include\s*([<"])([^>"]+)', line)
@@ -237,7 +242,8 @@ def includes_upwards(tree):
             for number, bracket, name in includes(tree, path):
                 place = f"{path}:{number}"
                 if bracket == "<":
-                    if layer in LOW_LAYERS and name not in SYSTEM_HEADERS:
+                    is_vectors = name == "arm_neon.h" and is_neon(path)
+                    if layer in LOW_LAYERS and name not in SYSTEM_HEADERS and not is_vectors:
                         bad.append(f"{place}: includes <{name}>")
                     continue
                 target = resolve(tree, layer, path, name)
@@ -282,10 +288,11 @@ def open_doors(tree):
 
 
 def conditionals(tree):
-    """One firmware for all boards: #if only in lm/config.h, for include guards, and to refuse a machine (#error)."""
+    """One firmware for all boards: #if only in lm/config.h, for include guards, to refuse a machine (#error), and where
+    vectors of Arm have a file of their own beside the plain code."""
     bad = []
     for path in tree.sources(*LOW_LAYERS):
-        if path == Path("firmware/include/lm/config.h"):
+        if path == Path("firmware/include/lm/config.h") or is_neon(path):
             continue
         lines = tree.text(path).splitlines()
         for number, line in enumerate(lines, 1):
