@@ -251,17 +251,6 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     return tables == LM_OK ? read_signatures_head(db, &h, poll_limit) : tables;
 }
 
-uint8_t lm_db_zone(fx_bam_t latitude)
-{
-    static const uint8_t zone_of_sixteenth[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 2, 2, 3};
-    /* 0..31 from pole to pole; 32, the north pole itself, belongs to the last one. */
-    const uint32_t sixteenth = (uint32_t)(latitude + FX_BAM_90) >> 26;
-    if (sixteenth >= 32) {
-        return 3;
-    }
-    return zone_of_sixteenth[sixteenth >= 16 ? sixteenth - 16 : 15 - sixteenth];
-}
-
 int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column)
 {
     for (uint32_t i = 0; i < db->band_count; i++) {

@@ -2,8 +2,7 @@
 
 #include "fx/bits.h"
 #include "fx/hash.h"
-#include "fx/lerp.h"
-#include "fx/mem.h"
+#include "fx/lanes.h"
 
 enum { RUN_CELLS = 64 }; /* longest run */
 
@@ -21,26 +20,12 @@ struct walk {
     uint32_t side_log2; /* of a tile, in BAM of latitude */
 };
 
-/* The place of a run's cells in its tile, as fractions of the side: 2^32 is the whole, so that no
- * value lies outside. */
-struct local_track {
-    uint32_t at, step, bend;
-};
-
 /* Consecutive cells of a line in one tile of the level asked for. */
 struct run {
     uint32_t cells; /* 1..RUN_CELLS */
     uint32_t row, column;
-    uint32_t high, wide; /* binary logarithms of the tile's sides, in BAM */
-    struct local_track north, east;
-};
-
-/* Where the cells of a run are found in the tile that answers, which may be an ancestor of the one
- * asked for: fraction of its side = origin + (fraction of the asked tile's side >> generations). */
-struct view {
-    const struct lm_tile *tile;
-    uint32_t north_origin, east_origin;
-    uint32_t generations;
+    uint32_t zone;
+    struct track north, east; /* from its first cell on */
 };
 
 struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uint32_t epoch)
@@ -75,11 +60,13 @@ static struct walk walk_of(const struct lm_ground_path *p, uint32_t shift)
         .side_log2 = side_log2};
 }
 
-static struct local_track local_track_of(const struct track *t, uint32_t zone)
+/* The same in a tile so many generations up, or of a zone so much wider. */
+static struct lm_tile_track tile_track(const struct track *t, uint32_t shift)
 {
-    return (struct local_track){.at = (uint32_t)(t->at >> zone),
-                                .step = (uint32_t)(t->step >> zone),
-                                .bend = (uint32_t)(t->bend >> zone)};
+    const uint32_t half_bend = (uint32_t)(t->bend >> shift >> 1);
+    return (struct lm_tile_track){.at = (uint32_t)(t->at >> shift),
+                                  .step = (uint32_t)(t->step >> shift) - half_bend,
+                                  .half_bend = half_bend};
 }
 
 static void advance(struct track *t, uint32_t cells)
@@ -113,95 +100,22 @@ static uint32_t cells_inside(const struct track *t, uint32_t zone)
 }
 
 /* The run that begins where the walk stands, of at most `cells` cells; the walk moves behind it. */
-static struct run next_run(struct walk *w, uint32_t cells)
+static inline struct run next_run(struct walk *w, uint32_t cells)
 {
     struct run run = {.cells = cells < RUN_CELLS ? cells : RUN_CELLS,
                       .row = (uint32_t)(w->north.at >> 32),
-                      .high = w->side_log2};
+                      .north = w->north,
+                      .east = w->east};
     /* Borders of zones are borders of tiles: the tile's own south edge tells its zone. */
-    const uint32_t zone = lm_db_zone((run.row << run.high) - FX_BAM_90);
-    run.wide = run.high + zone;
-    run.column = (uint32_t)(w->east.at >> (32 + zone)) & ((1u << (32 - run.wide)) - 1);
-    run.north = local_track_of(&w->north, 0);
-    run.east = local_track_of(&w->east, zone);
-    const uint32_t rows = cells_inside(&w->north, 0), columns = cells_inside(&w->east, zone);
+    run.zone = lm_db_zone((run.row << w->side_log2) - FX_BAM_90);
+    run.column =
+        (uint32_t)(w->east.at >> (32 + run.zone)) & ((1u << (32 - w->side_log2 - run.zone)) - 1);
+    const uint32_t rows = cells_inside(&w->north, 0), columns = cells_inside(&w->east, run.zone);
     run.cells = run.cells < rows ? run.cells : rows;
     run.cells = run.cells < columns ? run.cells : columns;
     advance(&w->north, run.cells);
     advance(&w->east, run.cells);
     return run;
-}
-
-static struct view view_of(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column)
-{
-    const uint32_t generations = tile->level - (uint32_t)level;
-    return (struct view){
-        .tile = tile,
-        .north_origin = (uint32_t)((uint64_t)row << (32 - generations)),
-        .east_origin = (uint32_t)((uint64_t)column << (32 - generations)),
-        .generations = generations,
-    };
-}
-
-/* Where the cells of a run are in the tile asked for, each way: fractions of its side. */
-struct places {
-    uint32_t north[RUN_CELLS], east[RUN_CELLS];
-};
-
-/* `count` places, and a whole number of groups of LM_LANES of them. */
-static inline void place_cells(const struct run *r, uint32_t count, struct places *restrict at)
-{
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t pairs = k * (k - 1) / 2;
-        at->north[k] = r->north.at + k * r->north.step + pairs * r->north.bend;
-        at->east[k] = r->east.at + k * r->east.step + pairs * r->east.bend;
-    }
-}
-
-/* What a place in a tile gives. Words hold two numbers of the tile side by side, the western one in
- * the low half: lm/db.h on the order of bytes. */
-struct ground {
-    uint32_t cell;
-    int32_t elevation_q14;
-};
-
-static inline struct ground read_ground(const struct lm_tile *tile, uint32_t north_q26,
-                                        uint32_t east_q26)
-{
-    const uint16_t *cells = (const uint16_t *)tile->cells, *posts = (const uint16_t *)tile->posts;
-    const int32_t row = (int32_t)(north_q26 >> 26), column = (int32_t)(east_q26 >> 26);
-    const int32_t post = row * LM_TILE_POSTS + column;
-    const uint32_t south = fx_load_u32(posts + post);
-    const uint32_t north = fx_load_u32(posts + post + LM_TILE_POSTS);
-    const uint32_t post_q16 =
-        fx_bilerp_u16_q16((uint16_t)south, (uint16_t)(south >> 16), (uint16_t)north,
-                          (uint16_t)(north >> 16), east_q26 >> 18 & 255, north_q26 >> 18 & 255);
-    /* A post step is 2^post_shift / 64 m, so the interpolated code's Q16 is Q22 of 2^post_shift m.
-     * lm_tile_check holds |base| to 2^20 and post_shift to 4: below 2^29. */
-    return (struct ground){.cell = fx_load_u32(cells + row * LM_TILE_CELLS + column) & 0xFFFF,
-                           .elevation_q14 = (int32_t)((uint32_t)tile->base_q6 * 256u +
-                                                      (post_q16 >> (8 - tile->post_shift)))};
-}
-
-/* Cells and elevations of `count` places from the tile that answers. They are gathered in arrays of
- * this function's own: the compiler then sees that no store touches the tile, and makes vectors of
- * the loop. */
-static void read_cells(const struct view *v, const struct places *at, uint32_t count,
-                       uint32_t *cell, int32_t *elevation_q14)
-{
-    uint32_t own_cell[RUN_CELLS];
-    int32_t own_elevation_q14[RUN_CELLS];
-    for (uint32_t k = 0; k < count; k++) {
-        const struct ground g =
-            read_ground(v->tile, v->north_origin + (at->north[k] >> v->generations),
-                        v->east_origin + (at->east[k] >> v->generations));
-        own_cell[k] = g.cell;
-        own_elevation_q14[k] = g.elevation_q14;
-    }
-    for (uint32_t k = 0; k < count; k++) {
-        cell[k] = own_cell[k];
-        elevation_q14[k] = own_elevation_q14[k];
-    }
 }
 
 static void no_cells(uint32_t count, uint32_t *restrict cell, int32_t *restrict elevation)
@@ -212,31 +126,89 @@ static void no_cells(uint32_t count, uint32_t *restrict cell, int32_t *restrict 
     }
 }
 
-/* Noise that belongs to the ground: a hash of the noise cell's latitude and longitude. */
-static void make_noise(const struct run *r, const struct lm_sampling *s, const struct places *at,
-                       uint32_t count, uint32_t *restrict noise)
+/* What the tile that answers, an ancestor perhaps, says on a run. */
+static void read_run(const struct run *run, const struct lm_tile *tile, uint8_t level,
+                     uint32_t *cell, int32_t *elevation_q14)
 {
-    const uint32_t south = (r->row << r->high) - FX_BAM_90;
-    const uint32_t west = r->column << r->wide;
-    for (uint32_t k = 0; k < count; k++) {
-        const uint32_t latitude = south + (at->north[k] >> (32 - r->high));
-        const uint32_t longitude = west + (at->east[k] >> (32 - r->wide));
-        noise[k] = fx_hash3(latitude >> s->noise_shift, longitude >> s->noise_shift, s->epoch);
-    }
+    const uint32_t generations = tile->level - (uint32_t)level;
+    const struct lm_tile_track north = tile_track(&run->north, generations);
+    const struct lm_tile_track east = tile_track(&run->east, run->zone + generations);
+    lm_tile_read(tile, &north, &east, run->cells, cell, elevation_q14);
 }
 
-static void read_run(struct lm_scan_line *line, uint32_t first, const struct run *run,
-                     const struct lm_tile *tile, const struct lm_sampling *sampling)
+/* One coordinate of a line, in noise cells from that of the line's middle: cell k behind the middle
+ * is at `at + k (step + k half_bend)`. */
+struct noise_track {
+    uint32_t at, step, half_bend;
+};
+
+/* Noise cells have a fraction of so many bits; a sign and those of LM_NOISE_REACH are the rest. The
+ * bend's rounding, to half a unit, moves the ends of the longest line by 528^2 / 4 units, which is
+ * 2^-4 of a noise cell. */
+enum { NOISE_BITS = 19 };
+_Static_assert(LM_NOISE_REACH == 1 << (31 - NOISE_BITS), "the reach is what the fraction leaves");
+
+static struct noise_track noise_track_of(uint64_t value, uint64_t step, uint64_t bend,
+                                         uint32_t noise_shift)
 {
-    struct places at;
-    const uint32_t count = (run->cells + LM_LANES - 1) / LM_LANES * LM_LANES;
-    place_cells(run, count, &at);
-    make_noise(run, sampling, &at, count, line->noise + first);
-    if (tile) {
-        const struct view view = view_of(tile, sampling->level, run->row, run->column);
-        read_cells(&view, &at, count, line->cell + first, line->elevation_q14 + first);
-    } else {
-        no_cells(count, line->cell + first, line->elevation_q14 + first);
+    const uint32_t shift = 32 - NOISE_BITS + noise_shift;
+    return (struct noise_track){
+        .at = (uint32_t)(value >> shift) & ((1u << NOISE_BITS) - 1),
+        .step = (uint32_t)((int64_t)(step - bend / 2) >> shift),
+        .half_bend = (uint32_t)((int64_t)(bend + ((uint64_t)1 << shift)) >> shift >> 1),
+    };
+}
+
+/* Such a coordinate of eight cells, and how far it is to that of the next eight. */
+struct noise_lanes {
+    fx_lanes_u32 at, step;
+};
+
+static inline void start_lanes(struct noise_lanes *l, const struct noise_track *t, uint32_t before)
+{
+    const fx_lanes_u32 k = (fx_lanes_u32){0, 1, 2, 3, 4, 5, 6, 7} - before;
+    l->at = t->at + k * (t->step + k * t->half_bend);
+    l->step = FX_LANES * t->step + (2 * FX_LANES * k + FX_LANES * FX_LANES) * t->half_bend;
+}
+
+/* Add what so many noise cells add to a hash's sum, and move on. */
+static inline void add_lanes(struct noise_lanes *l, const struct noise_track *t, uint32_t each,
+                             fx_lanes_u32 *sums)
+{
+    *sums += (fx_lanes_u32)((fx_lanes_i32)l->at >> NOISE_BITS) * each;
+    l->at += l->step;
+    l->step += 2 * FX_LANES * FX_LANES * t->half_bend;
+}
+
+/* The number of a noise cell, with a sign. */
+static uint32_t noise_cell(uint64_t value, uint32_t noise_shift)
+{
+    return (uint32_t)((int32_t)(value >> 32) >> noise_shift);
+}
+
+/* Noise that belongs to the ground: a hash of the noise cell's latitude and longitude. */
+static void make_noise(const struct lm_sampling *s, const struct lm_ground_path *path,
+                       uint32_t cells, uint32_t *noise)
+{
+    struct lm_ground_path p = *path;
+    lm_ground_path_skip(&p, (int32_t)(cells / 2));
+    const uint32_t shift = s->noise_shift;
+    const struct noise_track n =
+        noise_track_of(p.latitude, p.latitude_step, p.latitude_bend, shift);
+    const struct noise_track e =
+        noise_track_of(p.longitude, p.longitude_step, p.longitude_bend, shift);
+    const uint32_t middle =
+        fx_hash3_sum(noise_cell(p.latitude, shift), noise_cell(p.longitude, shift), s->epoch);
+    const uint32_t row = fx_hash3_sum(1, 0, 0), column = fx_hash3_sum(0, 1, 0);
+    struct noise_lanes north, east;
+    start_lanes(&north, &n, cells / 2);
+    start_lanes(&east, &e, cells / 2);
+    for (uint32_t i = 0; i < cells; i += FX_LANES) {
+        fx_lanes_u32 x = (fx_lanes_u32){0} + middle;
+        add_lanes(&north, &n, row, &x);
+        add_lanes(&east, &e, column, &x);
+        fx_hash3_of_sums(&x);
+        *(fx_lanes_in_memory *)(noise + i) = x;
     }
 }
 
@@ -244,13 +216,19 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
                       const struct lm_sampling *sampling, const struct lm_ground_path *path,
                       uint32_t cells)
 {
-    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + sampling->level);
+    const uint8_t level = sampling->level;
+    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + level);
     struct run run;
     for (uint32_t i = 0; i < cells; i += run.cells) {
         run = next_run(&walk, cells - i);
-        read_run(line, i, &run, lm_tile_cache_get(tiles, sampling->level, run.row, run.column),
-                 sampling);
+        const struct lm_tile *tile = lm_tile_cache_get(tiles, level, run.row, run.column);
+        if (tile) {
+            read_run(&run, tile, level, line->cell + i, line->elevation_q14 + i);
+        } else {
+            no_cells(run.cells, line->cell + i, line->elevation_q14 + i);
+        }
     }
+    make_noise(sampling, path, cells, line->noise);
 }
 
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, const struct lm_sampling *sampling,
@@ -275,9 +253,8 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_
     if (!tile) {
         return otherwise_q10;
     }
-    const struct view v = view_of(tile, level, run.row, run.column);
-    return read_ground(tile, v.north_origin + (run.north.at >> v.generations),
-                       v.east_origin + (run.east.at >> v.generations))
-               .elevation_q14 >>
-           4;
+    uint32_t cell[LM_LANES];
+    int32_t elevation_q14[LM_LANES];
+    read_run(&run, tile, level, cell, elevation_q14);
+    return elevation_q14[0] >> 4;
 }

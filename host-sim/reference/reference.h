@@ -186,8 +186,8 @@ unsigned ref_speckle_shift(double cell_m);
 /* The hash of a place; slice = hash >> 22. NULL stands for fx_hash3. */
 typedef uint32_t (*ref_hash_fn)(uint32_t latitude, uint32_t longitude, uint32_t epoch);
 
-/* Fill `hash` and `slice` from the places: latitude and longitude as unsigned BAM (rounded down),
- * >> shift. */
+/* Fill `hash` and `slice` from the places: latitude and longitude in units of 2^shift BAM, with a
+ * sign, rounded down. */
 void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
                         ref_hash_fn hash);
 

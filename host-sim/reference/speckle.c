@@ -71,17 +71,18 @@ unsigned ref_speckle_shift(double cell_m)
     return (unsigned)fmin(fmax(floor(log2(bam)), 0), 31);
 }
 
-static uint32_t bam_from_deg(double deg)
+/* The noise cells of a coordinate, which has a sign. */
+static uint32_t noise_cell(double deg, unsigned shift)
 {
-    return (uint32_t)(int64_t)floor(deg / 360 * 4294967296.0);
+    return (uint32_t)(int64_t)floor(ldexp(deg / 360 * 4294967296.0, -(int)shift));
 }
 
 void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
                         ref_hash_fn hash)
 {
     for (size_t i = 0; i < count; i++) {
-        const uint32_t latitude = bam_from_deg(bins[i].place.latitude_deg) >> shift;
-        const uint32_t longitude = bam_from_deg(bins[i].place.longitude_deg) >> shift;
+        const uint32_t latitude = noise_cell(bins[i].place.latitude_deg, shift);
+        const uint32_t longitude = noise_cell(bins[i].place.longitude_deg, shift);
         const uint32_t h =
             hash ? hash(latitude, longitude, epoch) : fx_hash3(latitude, longitude, epoch);
         bins[i].hash = h;

@@ -1,6 +1,5 @@
 #include "golden_scene.h"
 
-#include "fx/hash.h"
 #include "fx/root.h"
 
 #include <math.h>
@@ -50,10 +49,16 @@ static struct spot spot_of(const struct country *c, const struct tiny_place *p)
                          (int32_t)((north * 611) >> 16)};
 }
 
-/* 0..65535, the same all over a square of `size` metres. */
+/* 0..65535, the same all over a square of `size` metres. The hash is the scenes' own: another noise
+ * of the radar must not move the hills. */
 static int32_t dice(int32_t column, int32_t row, uint32_t salt)
 {
-    return (int32_t)(fx_hash3((uint32_t)row, (uint32_t)column, salt) >> 16);
+    uint32_t line = (uint32_t)row * 0xed5ad4bbu + salt * 0xac4c1b51u;
+    line = (line ^ line >> 16) * 0x31848babu;
+    uint32_t x = (line ^ line >> 15) + (uint32_t)column;
+    x = (x ^ x >> 16) * 0x7feb352du;
+    x = ((x ^ x >> 15) + line) * 0x846ca68bu;
+    return (int32_t)(x >> 16);
 }
 
 static int32_t floor_div(int32_t a, int32_t b)

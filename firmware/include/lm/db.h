@@ -151,7 +151,14 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
 
 /* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders at 61.875, 73.125
  * and 84.375 degrees (11, 13 and 15 sixteenths of a quarter turn), symmetric about the equator. */
-uint8_t lm_db_zone(fx_bam_t latitude);
+static inline uint32_t lm_db_zone(fx_bam_t latitude)
+{
+    /* Two bits for each sixteenth from pole to pole; the north pole itself, behind the last one, is
+     * answered by the first. */
+    const uint64_t zone_of_sixteenth = 0xE94000000000016B;
+    const uint32_t sixteenth = (latitude + FX_BAM_90) >> 26;
+    return (uint32_t)(zone_of_sixteenth >> (2 * sixteenth & 63)) & 3;
+}
 
 /* Directory entry of a tile, or -1 when no band holds it. Cost: one pass over the level's bands. */
 int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column);

@@ -10,7 +10,7 @@ $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 # The tests of lines and patches once more under the address and undefined-behaviour sanitizers: they use records made by chance.
 TARGET_SANE     := $(addprefix $(O)/bin/tests/unit/firmware/test_target_,line_sanitized patch_sanitized)
 TARGET_SANE_SRC := $(addprefix firmware/src/,rcs.c target.c target_near.c target_view.c mover.c target_line.c target_patch.c \
-    response_table.c db.c geo.c scan_line.c tile_cache.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c host-sim/reference/aspect.c
+    response_table.c db.c geo.c scan_line.c tile_cache.c tile_read.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c host-sim/reference/aspect.c
 TESTS += $(TARGET_SANE)
 $(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.c $(TARGET_SANE_SRC) \
     $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)

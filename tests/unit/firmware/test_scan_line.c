@@ -1,5 +1,6 @@
 /* What a line finds on the ground, against a direct evaluation of the image in double precision.
  * The evaluation reads the image's bytes by docs/FORMATS.md, not through the cache. */
+#include "fx/hash.h"
 #include "fx/trig.h"
 #include "hs/rng.h"
 #include "lm/scan_line.h"
@@ -141,15 +142,60 @@ static double path_at(uint64_t value, uint64_t step, uint64_t bend, uint32_t i, 
            4294967296.0;
 }
 
+static struct lm_sampling sampling(uint8_t level)
+{
+    return (struct lm_sampling){.level = level, .noise_shift = 8, .epoch = 3};
+}
+
+/* The number of the noise cell of a coordinate, counted as from that of the line's middle, which is
+ * signed. `doubt` is how close the coordinate is to another noise cell, in noise cells; 0 where it
+ * is too far from the middle. */
+static uint32_t noise_cell(double bam, double middle_bam, uint8_t noise_shift, double *doubt)
+{
+    const double turn = 4294967296.0;
+    const double at = ldexp(bam - floor(middle_bam / turn + 0.5) * turn, -noise_shift);
+    *doubt = fmin(*doubt, fabs(at - round(at)));
+    if (fabs(bam - middle_bam) > ldexp(LM_NOISE_REACH - 1, noise_shift)) {
+        *doubt = 0;
+    }
+    return (uint32_t)(int64_t)floor(at);
+}
+
+struct place {
+    double latitude, longitude; /* BAM with a fraction; without wrapping */
+};
+
+static struct place place_at(const struct lm_ground_path *p, uint32_t i)
+{
+    return (struct place){
+        path_at(p->latitude, p->latitude_step, p->latitude_bend, i, 1),
+        path_at(p->longitude, p->longitude_step, p->longitude_bend, i, 0),
+    };
+}
+
+/* Whether a cell's noise is that of the noise cell it lies in: within 1/16 of a border either side
+ * is right. */
+static void check_noise(uint32_t noise, const struct lm_sampling *s, struct place at,
+                        struct place middle)
+{
+    double doubt = 1;
+    const uint32_t row = noise_cell(at.latitude, middle.latitude, s->noise_shift, &doubt);
+    const uint32_t column = noise_cell(at.longitude, middle.longitude, s->noise_shift, &doubt);
+    if (doubt > 1.0 / 16) {
+        assert_int_equal(noise, fx_hash3(row, column, s->epoch));
+    }
+}
+
 /* Compare the line with the image; returns the number of cells that were known. */
 static uint32_t compare(const struct world *w, uint32_t level, const struct lm_ground_path *p,
                         uint32_t cells)
 {
+    const struct lm_sampling s = sampling((uint8_t)level);
     uint32_t known = 0, doubtful = 0;
     for (uint32_t i = 0; i < cells; i++) {
-        const double latitude = path_at(p->latitude, p->latitude_step, p->latitude_bend, i, 1);
-        const double longitude = path_at(p->longitude, p->longitude_step, p->longitude_bend, i, 0);
-        const struct ground g = ground_at(w, level, latitude, longitude);
+        const struct place at = place_at(p, i);
+        const struct ground g = ground_at(w, level, at.latitude, at.longitude);
+        check_noise(w->line.noise[i], &s, at, place_at(p, cells / 2));
         known += (uint32_t)g.is_known;
         /* Within a thousandth of a cell of a border either side is right; elevation has no border.
          */
@@ -180,11 +226,6 @@ static struct lm_ground_path path_from(double latitude_deg, double longitude_deg
         .longitude_step = (uint64_t)(int64_t)(sin(azimuth) * step_m / squeeze * to_bam),
         .latitude_bend = (uint64_t)(int64_t)(bend_m * to_bam),
         .longitude_bend = (uint64_t)(int64_t)(-bend_m * to_bam)};
-}
-
-static struct lm_sampling sampling(uint8_t level)
-{
-    return (struct lm_sampling){.level = level, .noise_shift = 8, .epoch = 3};
 }
 
 /* Ask for a line, read its tiles, ask again, compare. */
