@@ -17,5 +17,5 @@ void lm_line_add_targets(struct lm_line *line, const struct lm_line_setup *setup
                          const struct lm_line_targets *targets)
 {
     const struct lm_target_sight sight = {line->sight.horizon, setup->grid->tangent_bits};
-    lm_target_add(targets->items, targets->near, &targets->where, &sight, line->sight.level_q8);
+    lm_target_add(targets->near, &targets->where, &sight, line->sight.level_q8);
 }

@@ -40,6 +40,7 @@ static void start_sector(struct lm_unit *u, uint64_t now_us)
     };
     lm_sector_start(&u->sector, u->board->radar, &command, u->board->noise_seed);
     u->sector.targets = &u->target_set;
+    u->sector.chips = &u->chips;
     u->sector.environment = &u->environment;
     u->page.is_patch = false;
     u->page.is_frozen = false;
@@ -91,6 +92,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
         lm_scan_elevation(&u->tiles, sampling.level, command.centre, u->db.mean_elevation_q6 * 16);
     const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &u->target_set,
+                                       .chips = &u->chips,
                                        .reference_q10 = ground_q10,
                                        .epoch = u->board->noise_seed,
                                        .sea_state = u->environment.sea_state,
@@ -106,6 +108,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
         lm_sar_prefetch(&u->sar, &u->tiles, line);
     }
     lm_sar_prefetch(&u->sar, &u->tiles, last);
+    lm_sar_prefetch_targets(&u->sar, &u->tiles);
     u->is_acquiring = true;
     u->acquire_until_us = now_us + LM_SAR_ACQUIRE_US;
     return true;

@@ -133,6 +133,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->command = *command;
     s->line_us = line_us < LM_SAR_LINE_MIN_US ? LM_SAR_LINE_MIN_US : line_us;
     s->targets = scene->targets;
+    s->chips = scene->chips;
     s->time_us = scene->time_us;
     s->epoch = scene->epoch;
     s->horizon = LM_HORIZON_OPEN;
@@ -204,22 +205,41 @@ static uint32_t displaced_most_m(const struct lm_sar *s)
     return most_m < 200000 ? (uint32_t)most_m : 200000;
 }
 
-/* The points of the targets that the patch may show. */
-static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
+void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
-    s->points.count = 0;
+    s->near.count = 0;
     if (!s->targets || s->targets->count == 0) {
         return;
     }
     /* Half the diagonal: 1.5 is more than the root of 2. */
-    const uint32_t half_m = s->radar->sar.cells * s->grid.cell_q8 / 512;
+    const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_q8 / 512 * 3 / 2 + 1;
     const struct lm_target_scene scene = {.place = s->command.centre,
-                                          .reach_m = half_m * 3 / 2 + 1 + displaced_most_m(s),
+                                          .reach_m = half_diagonal_m + displaced_most_m(s),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
                                           .level = s->sampling.level};
     lm_targets_select(&s->near, s->targets, &scene);
-    lm_patch_points_set(&s->points, s->targets, &s->near, &s->geometry);
+    if (s->chips) {
+        const struct lm_chip_scene chips = {.centre = s->command.centre,
+                                            .reach_m = scene.reach_m,
+                                            .is_parallel = true,
+                                            .look = s->command.look_azimuth,
+                                            .range_q8 = s->command.range_m * 256,
+                                            .heights = s->geometry.heights,
+                                            .cell_mm = s->command.cell_mm,
+                                            .side_most = LM_CHIP_SIDE};
+        lm_chips_choose(s->chips, &s->near, &chips);
+    }
+}
+
+/* The points and chips of the targets that the patch may show. */
+static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
+{
+    lm_sar_prefetch_targets(s, tiles);
+    if (s->near.count != 0) {
+        lm_patch_points_set(&s->points, &s->near, &s->geometry);
+    }
+    s->has_points = true;
 }
 
 /* The horizon that the lines of a run-up start with. */
@@ -251,6 +271,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         trace_runup(s, tiles, number, line);
     }
     trace_line(s, tiles, number, line);
+    lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
     }
@@ -258,21 +279,32 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
 }
 
-/* Ask now what hides movers, which may appear long before the line that they stand on. */
-static void hide_displaced(struct lm_sar *s, struct lm_tile_cache *tiles, struct lm_line *line)
+/* Whether a point is seen on lines before the one that it stands on. */
+static bool is_early(const struct lm_sar *s, const struct lm_patch_point *p)
 {
-    int32_t traced = -1;
-    for (uint32_t i = 0; i < s->points.count; i++) {
-        const struct lm_patch_point *p = &s->points.item[i];
-        if (p->is_displaced && p->line != traced && p->line >= 0 &&
-            p->line < (int32_t)s->radar->sar.cells) {
-            traced = p->line;
-            trace_runup(s, tiles, (uint32_t)traced / LM_SAR_RUNUP_LINES * LM_SAR_RUNUP_LINES, line);
-            trace_line(s, tiles, (uint32_t)traced, line);
-            lm_patch_points_hide(&s->points, (uint32_t)traced, line->sight.horizon,
-                                 s->grid.tangent_bits, s->grid.cells);
+    return (p->is_displaced || p->is_chip) && p->line >= 0 &&
+           p->line < (int32_t)s->radar->sar.cells;
+}
+
+/* Chips reach far before the line that they stand on, and movers may appear far from it: what hides
+ * them is asked before the first line, one after the other. True when all are judged. */
+static bool judge_points(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
+                         struct lm_line *line)
+{
+    uint32_t traced = 0;
+    for (; s->judged < s->points.count && traced < at_most; s->judged++) {
+        const struct lm_patch_point *p = &s->points.item[s->judged];
+        const bool is_judged = s->judged != 0 && is_early(s, p - 1) && p[-1].line == p->line;
+        if (is_early(s, p) && !is_judged) {
+            const uint32_t number = (uint32_t)p->line;
+            trace_runup(s, tiles, number / LM_SAR_RUNUP_LINES * LM_SAR_RUNUP_LINES, line);
+            trace_line(s, tiles, number, line);
+            lm_patch_points_hide(&s->points, number, line->sight.horizon, s->grid.tangent_bits,
+                                 s->grid.cells);
+            traced++;
         }
     }
+    return s->judged == s->points.count;
 }
 
 static int32_t *ring_line(struct lm_sar *s, uint32_t number)
@@ -299,6 +331,7 @@ static void add_points(struct lm_sar *s, uint32_t end)
     const int32_t least_q8 = s->radar->sar.noise_floor_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
     for (; s->summed < end; s->summed++) {
         lm_patch_points_add(&s->points, s->summed, least_q8, &s->geometry, ring_line(s, s->summed));
+        lm_patch_chips_add(&s->points, s->summed, &s->geometry, ring_line(s, s->summed));
     }
 }
 
@@ -324,9 +357,11 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
                          struct lm_line *line)
 {
     const uint32_t end = fx_min_u32(s->line + 1 + LM_SAR_AHEAD, s->radar->sar.cells);
-    if (s->sampled == 0) {
+    if (!s->has_points) {
         find_points(s, tiles);
-        hide_displaced(s, tiles, line);
+    }
+    if (!judge_points(s, tiles, at_most, line)) {
+        return false;
     }
     sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
     return s->sampled >= end;
@@ -336,7 +371,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
                       struct lm_line *line)
 {
     const uint32_t lines = s->radar->sar.cells;
-    lm_sar_sample_ahead(s, tiles, LM_SAR_AHEAD + 1, line);
+    lm_sar_sample_ahead(s, tiles, LM_PATCH_POINTS_MAX, line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
     focus_line(s, line->sight.level_q8);
     lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);
@@ -345,5 +380,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = 0;
+    s->line = s->sampled = s->summed = s->judged = 0;
+    s->has_points = false;
+    s->points.count = s->points.chip_count = 0;
 }

@@ -109,7 +109,8 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
         return true;
     }
     if (u->is_acquiring) {
-        u->is_acquiring = !lm_tile_cache_is_idle(&u->tiles) && now_us < u->acquire_until_us;
+        const bool has_all = lm_tile_cache_is_idle(&u->tiles) && lm_chips_are_settled(&u->chips);
+        u->is_acquiring = !has_all && now_us < u->acquire_until_us;
         u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
     }
     return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;

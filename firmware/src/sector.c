@@ -3,6 +3,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
 
@@ -11,6 +12,7 @@ enum {
      * only: between two of those lie nine cells at the most, where a tile has 64. */
     LINES_AHEAD = 24,
     LINES_APART = 4,
+    CHIP_SIDE_MOST = 32, /* pixels of a target's chip: what one line may cost */
     WINDOW_LINES_MIN = 32,
     RUNUP_LEAST_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
 };
@@ -37,6 +39,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->radar = radar;
     s->environment = NULL;
     s->targets = NULL;
+    s->chips = NULL;
     s->command = *command;
     s->is_begun = s->is_leftward = false;
     s->line = 0;
@@ -318,19 +321,35 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
     return s->runup_horizon;
 }
 
-/* Add the targets that the sampled line meets. */
-static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                        const struct lm_line_setup *setup, struct lm_line *line)
+/* The targets in range, and in a window the chips of those that are in it. */
+static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 {
-    const struct lm_sector_mode_row *mode = mode_of(s);
     const struct lm_target_scene scene = {.place = s->platform.place,
                                           .reach_m = s->radar->range_m[s->command.range],
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .level = s->sampling.level};
-    lm_targets_refresh(&s->near, s->targets, &scene);
+    if (!lm_targets_refresh(&s->near, s->targets, &scene) || s->half_m == 0 || !s->chips) {
+        return;
+    }
+    const struct lm_chip_scene chips = {
+        .centre = s->command.centre,
+        .reach_m = s->half_m * 3 / 2,
+        .radar = s->platform.place,
+        .heights = {s->grid.height_q10, s->grid.reference_q10},
+        .cell_mm = (uint32_t)((uint64_t)s->grid.cell_q8 * 1000 / 256),
+        .side_most = CHIP_SIDE_MOST,
+    };
+    lm_chips_choose(s->chips, &s->near, &chips);
+}
+
+/* Add the targets that the sampled line meets. */
+static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
+                        const struct lm_line_setup *setup, struct lm_line *line)
+{
+    const struct lm_sector_mode_row *mode = mode_of(s);
+    find_targets(s, tiles);
     const struct lm_line_targets targets = {
-        .items = s->targets->items,
         .near = &s->near,
         .where = {.place = s->platform.place,
                   .azimuth = azimuth,

@@ -74,3 +74,11 @@ struct lm_chip_choice lm_signature_choose(const struct lm_signature *s, fx_bam_t
         .turn = bearing - seen_from,
     };
 }
+
+int32_t lm_signature_rcs_q8(const struct lm_signature *s, fx_bam_t bearing, fx_bam_t elevation)
+{
+    const struct lm_chip_choice choice = lm_signature_choose(s, bearing, elevation);
+    const int32_t code = s->rcs[choice.depression][choice.aspect];
+    return code == 0 ? LM_RCS_NONE_Q8
+                     : LM_SIGNATURE_CODE_ZERO_Q8 + code * LM_SIGNATURE_CODE_STEP_Q8;
+}

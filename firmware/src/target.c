@@ -95,6 +95,7 @@ void lm_target_view_set(struct lm_target_view *v, fx_bam_t bearing, fx_bam_t ele
 {
     const int32_t level_q30 = fx_cos_q30(elevation);
     v->bearing = bearing;
+    v->elevation = elevation;
     v->range_mm = fx_max_u32(range_mm, RANGE_MIN_MM);
     v->toward_q30[0] = turn(level_q30, fx_cos_q30(bearing), 0, 0);
     v->toward_q30[1] = turn(level_q30, fx_sin_q30(bearing), 0, 0);

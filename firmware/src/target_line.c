@@ -5,15 +5,17 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/aspect.h"
+#include "lm/chip_line.h"
 
 enum { TWO_PI_Q28 = 1686629713, NO_CELL = -1 };
 
 /* ---- where a target is from the line ---- */
 
 struct spot {
-    uint32_t range_q8; /* ground range from the antenna, metres * 256 */
-    fx_bam_t azimuth;  /* from the antenna, where it appears */
-    fx_bam_t back;     /* from the target to the antenna */
+    uint32_t range_q8;     /* ground range from the antenna, metres * 256 */
+    fx_bam_t azimuth;      /* from the antenna, where it appears */
+    fx_bam_t back;         /* from the target to the antenna */
+    fx_bam_t true_azimuth; /* where it is */
 };
 
 /* The farthest that a mover may be displaced, when the velocity is known to be `off` from it within
@@ -69,6 +71,7 @@ static bool find_spot(const struct lm_target_line *line, const struct lm_target 
     if (!lm_target_locate(line->place, item->pose.place, &spot->range_q8, &spot->azimuth)) {
         return false;
     }
+    spot->true_azimuth = spot->azimuth;
     lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
     return !line->is_doppler || displace(line, t, item, spot);
 }
@@ -147,18 +150,26 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
     return lm_target_tangent_q38(top_q10, s->range_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 
+/* What of a target without bodies can be hidden last: the top of its signature. */
+static int32_t top_mm(const struct lm_signature *s)
+{
+    return s ? (int32_t)s->height_mm : 0;
+}
+
 static void make_echo(struct echo *e, const struct lm_target_line *line,
-                      const struct lm_target_sight *sight, const struct lm_target *t,
+                      const struct lm_target_sight *sight, const struct lm_target_set *set,
                       const struct lm_target_item *item, const struct spot *spot)
 {
+    const struct lm_target *t = &set->items[item->index];
+    const struct lm_target_heights h = heights_of(line);
+    struct lm_target_view v;
+    lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
     if (t->scatterer_count == 0) {
         e->count = 1;
-        e->returns[0] = (struct lm_return){
-            .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, line->scan, line->pulse)};
+        e->returns[0] =
+            (struct lm_return){.rcs_q8 = lm_target_whole_q8(set, t, &v, line->scan, line->pulse),
+                               .up_mm = top_mm(lm_target_signature(set, t))};
     } else {
-        const struct lm_target_heights h = heights_of(line);
-        struct lm_target_view v;
-        lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
         e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     }
     for (uint32_t i = 0; i < e->count; i++) {
@@ -192,19 +203,54 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
     return cells;
 }
 
-uint32_t lm_target_add(const struct lm_target *targets, const struct lm_targets_near *near,
-                       const struct lm_target_line *line, const struct lm_target_sight *sight,
-                       int32_t *level_q8)
+/* Whether the line sees the top of a target that is shown by its chip: over the cell of its range,
+ * on whichever line. */
+static bool sees_top(const struct lm_target_line *line, const struct lm_target_sight *sight,
+                     const struct lm_target_set *set, const struct lm_target_item *item,
+                     const struct spot *spot)
+{
+    const int32_t up_mm = top_mm(lm_target_signature(set, &set->items[item->index]));
+    const struct spot ahead = {.range_q8 = spot->range_q8, .azimuth = line->azimuth};
+    return lit_cell(line, sight, item, &ahead, up_mm) != NO_CELL;
+}
+
+/* Draw a target by its chip. */
+static uint32_t add_chip(const struct lm_target_line *line, const struct lm_target_item *item,
+                         const struct spot *spot, int32_t *level_q8)
+{
+    const uint32_t cell = (spot->range_q8 - line->first_q8 + line->cell_q8 / 2) / line->cell_q8;
+    const int32_t clutter_q8 = area_q8(line, cell);
+    const struct lm_chip_spot at = {
+        .range_q8 = spot->range_q8,
+        .off_bam = (int32_t)(line->azimuth - spot->azimuth),
+        .shadow_off_bam = (int32_t)(line->azimuth - spot->true_azimuth),
+    };
+    return lm_chip_line_add(item, &at, line, clutter_q8, level_q8);
+}
+
+static uint32_t add_target(const struct lm_targets_near *near, const struct lm_target_item *item,
+                           const struct lm_target_line *line, const struct lm_target_sight *sight,
+                           const struct spot *spot, int32_t *level_q8)
+{
+    struct echo echo;
+    if (lm_chip_of(item)) {
+        return sees_top(line, sight, &near->set, item, spot) ? add_chip(line, item, spot, level_q8)
+                                                             : 0;
+    }
+    make_echo(&echo, line, sight, &near->set, item, spot);
+    return add_echo(&echo, line, level_q8);
+}
+
+uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_target_line *line,
+                       const struct lm_target_sight *sight, int32_t *level_q8)
 {
     uint32_t cells = 0;
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
-        const struct lm_target *t = &targets[item->index];
+        const struct lm_target *t = &near->set.items[item->index];
         struct spot spot;
-        struct echo echo;
         if (may_meet(line, t, item) && find_spot(line, t, item, &spot)) {
-            make_echo(&echo, line, sight, t, item, &spot);
-            cells += add_echo(&echo, line, level_q8);
+            cells += add_target(near, item, line, sight, &spot, level_q8);
         }
     }
     return cells;

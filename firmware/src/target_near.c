@@ -3,6 +3,15 @@
 #include "fx/sat.h"
 #include "lm/scan_line.h"
 
+const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
+                                               const struct lm_target *t)
+{
+    const bool has_one = (t->flags & LM_TARGET_HAS_SIGNATURE) &&
+                         t->signature < set->signature_count &&
+                         set->signatures[t->signature].aspects != 0;
+    return has_one ? &set->signatures[t->signature] : NULL;
+}
+
 static int32_t elevation_q6(const struct lm_target *t, struct lm_place place,
                             const struct lm_target_scene *scene)
 {
@@ -20,6 +29,7 @@ static int32_t elevation_q6(const struct lm_target *t, struct lm_place place,
 void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
                        const struct lm_target_scene *scene)
 {
+    near->set = *set;
     near->is_chosen = true;
     near->place = scene->place;
     near->time_us = scene->time_us;
@@ -42,7 +52,7 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set 
     }
 }
 
-void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
+bool lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
                         const struct lm_target_scene *scene)
 {
     /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
@@ -54,4 +64,5 @@ void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set
     if (!holds) {
         lm_targets_select(near, set, scene);
     }
+    return !holds;
 }

@@ -4,6 +4,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/aspect.h"
 
 /* ---- where the points are ---- */
 
@@ -79,36 +80,63 @@ static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
     return p;
 }
 
-/* The returns of a target; those of one without bodies are a single one. In a patch, all pulses of
- * the dwell make one picture: every kind of fluctuation is drawn once for it. */
-static uint32_t returns_of(const struct lm_patch_geometry *g, const struct lm_target *t,
-                           const struct lm_target_item *item, const struct spot *spot,
-                           struct lm_return returns[LM_SCATTERERS_MAX])
+/* Add a point for each return of a target. All pulses of the dwell make one picture: every kind of
+ * fluctuation is drawn once for it. Of a target with a signature, the top is what can be hidden. */
+static void add_points(struct lm_patch_points *p, const struct lm_target_set *set,
+                       const struct lm_target_item *item, const struct lm_patch_geometry *g,
+                       const struct spot *spot, uint8_t target)
 {
-    if (t->scatterer_count == 0) {
-        returns[0] = (struct lm_return){
-            .rcs_q8 = lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, g->epoch, 0)};
-        return 1;
-    }
+    const struct lm_target *t = &set->items[item->index];
+    const struct lm_signature *s = lm_target_signature(set, t);
+    struct lm_return returns[LM_SCATTERERS_MAX];
     struct lm_target_view v;
+    uint32_t count = 1;
     lm_target_view_of(&v, item, g->look + FX_BAM_180, (uint32_t)spot->range_q8, &g->heights);
-    return lm_target_returns(t, &v, g->wavelength_um, returns);
+    if (t->scatterer_count != 0) {
+        count = lm_target_returns(t, &v, g->wavelength_um, returns);
+    } else {
+        returns[0] = (struct lm_return){.rcs_q8 = lm_target_whole_q8(set, t, &v, g->epoch, 0)};
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        struct lm_patch_point *point = &p->item[p->count++];
+        *point = point_of(g, item, spot, &returns[k]);
+        point->target = target;
+        if (s) {
+            point->tangent_q38 =
+                lm_target_tangent_q38(item->elevation_q6 * 16 + (int32_t)(s->height_mm * 128 / 125),
+                                      (uint32_t)fx_max_i32(spot->range_q8, 1), &g->heights);
+        }
+    }
 }
 
-void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *set,
-                         const struct lm_targets_near *near, const struct lm_patch_geometry *g)
+/* Lay the target's chip over its point. */
+static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot, fx_bam_t turn,
+                     const struct lm_patch_geometry *g, const struct spot *spot)
+{
+    struct lm_patch_chip *chip = &p->chip[p->chip_count++];
+    struct lm_patch_point *point = &p->item[p->count - 1];
+    const uint32_t at_q8 = (uint32_t)fx_max_i32(spot->range_q8, 1);
+    chip->point = p->count - 1;
+    chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
+    chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
+                                       at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
+    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256));
+    point->is_chip = true;
+}
+
+void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near *near,
+                         const struct lm_patch_geometry *g)
 {
     memset(p, 0, sizeof *p);
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
-        const struct lm_target *t = &set->items[item->index];
-        struct lm_return returns[LM_SCATTERERS_MAX];
+        const struct lm_chip_slot *slot = lm_chip_of(item);
         struct spot spot;
-        const uint32_t count =
-            find_spot(g, t, item, &spot) ? returns_of(g, t, item, &spot, returns) : 0;
-        for (uint32_t k = 0; k < count; k++) {
-            p->item[p->count] = point_of(g, item, &spot, &returns[k]);
-            p->item[p->count++].target = (uint8_t)i;
+        if (find_spot(g, &near->set.items[item->index], item, &spot)) {
+            add_points(p, &near->set, item, g, &spot, (uint8_t)i);
+            if (slot) {
+                add_chip(p, slot, item->chip_turn, g, &spot);
+            }
         }
     }
 }
@@ -132,7 +160,7 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
 static int32_t reach_of(const struct lm_patch_point *p, int32_t dx_q8, int32_t least_q8)
 {
     const uint32_t away_q8 = fx_abs_u32(dx_q8);
-    if (p->is_hidden || away_q8 >= LM_RESPONSE_REACH * 256u) {
+    if (p->is_hidden || p->is_chip || away_q8 >= LM_RESPONSE_REACH * 256u) {
         return -1;
     }
     const int32_t most_q8 = p->level_q8 + lm_response_envelope_q8[away_q8 / 256];
@@ -208,5 +236,63 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
             }
         }
         collect(p, touched, reference_q8, level_q8);
+    }
+}
+
+/* ---- chips ---- */
+
+/* The cells of a line that a chip may lie over, its origin at `across_q8`. */
+static struct span cells_under(const struct lm_patch_chip *chip, const struct lm_patch_point *at,
+                               int32_t across_q8, uint32_t line, const struct lm_patch_geometry *g)
+{
+    const int32_t middle = cell_at(at->along_q8), reach = chip->lay.reach_beyond;
+    const int32_t aside = (int32_t)line - cell_at(across_q8);
+    const bool is_beside = aside < -chip->lay.reach_right || aside > chip->lay.reach_right;
+    if (at->is_hidden || is_beside) {
+        return (struct span){0, 0};
+    }
+    return (struct span){fx_max_i32(middle - reach, (int32_t)g->first),
+                         fx_min_i32(middle + reach + 1, (int32_t)g->cells)};
+}
+
+void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
+                          const struct lm_patch_geometry *g, int32_t *level_q8)
+{
+    const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
+    for (uint32_t k = 0; k < p->chip_count; k++) {
+        const struct lm_patch_chip *chip = &p->chip[k];
+        const struct lm_patch_point *at = &p->item[chip->point];
+        const int32_t right_q8 = (int32_t)line * 256 - chip->shadow_across_q8;
+        const struct span under = cells_under(chip, at, chip->shadow_across_q8, line, g);
+        for (int32_t i = under.first; i < under.end; i++) {
+            const uint32_t dark = lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - at->along_q8);
+            level_q8[i] = dark == LM_CHIP_SHADOW_ALL
+                              ? LM_LEVEL_SHADOW
+                              : level_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
+        }
+    }
+}
+
+void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct lm_patch_geometry *g,
+                        int32_t *level_q8)
+{
+    uint32_t room = LM_CHIP_CELLS_A_LINE;
+    for (uint32_t k = 0; k < p->chip_count; k++) {
+        const struct lm_patch_chip *chip = &p->chip[k];
+        const struct lm_patch_point *at = &p->item[chip->point];
+        const struct span under = cells_under(chip, at, at->across_q8, line, g);
+        const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
+        if (cells > room) {
+            p->cells_left_out += cells;
+            continue;
+        }
+        room -= cells;
+        for (int32_t i = under.first; i < under.end; i++) {
+            const int32_t rcs_q8 = lm_chip_cell_q8(&chip->lay, (int32_t)line * 256 - at->across_q8,
+                                                   i * 256 - at->along_q8);
+            if (rcs_q8 > LM_RCS_NONE_Q8) {
+                level_q8[i] = fx_db_q8_sum_of_many(level_q8[i], rcs_q8 - chip->area_q8);
+            }
+        }
     }
 }

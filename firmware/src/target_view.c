@@ -55,6 +55,18 @@ void lm_target_view_of(struct lm_target_view *v, const struct lm_target_item *it
                        (uint32_t)(slant_q10 * 1000 >> 10));
 }
 
+int32_t lm_target_whole_q8(const struct lm_target_set *set, const struct lm_target *t,
+                           const struct lm_target_view *v, uint32_t scan, uint32_t pulse)
+{
+    const struct lm_signature *s = lm_target_signature(set, t);
+    if (s) {
+        return lm_signature_rcs_q8(s, v->bearing, v->elevation);
+    }
+    return t->flags & LM_TARGET_HAS_SIGNATURE
+               ? LM_RCS_NONE_Q8
+               : lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, scan, pulse);
+}
+
 int64_t lm_target_tangent_q38(int32_t top_q10, uint32_t range_q8, const struct lm_target_heights *h)
 {
     const int64_t apparent_q10 = (int64_t)top_q10 - h->antenna_q10 - drop_q10(range_q8);

@@ -158,29 +158,84 @@ static void take_record(struct lm_tile_cache *c)
     finish(c, LM_SLOT_RESIDENT);
 }
 
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_guest_read *guest)
+{
+    if (c->guest) {
+        return false;
+    }
+    guest->status = LM_BUSY;
+    c->guest = guest;
+    return true;
+}
+
+static void finish_guest(struct lm_tile_cache *c, bool is_ok)
+{
+    c->guest->status = is_ok ? LM_OK : LM_ERR_IO;
+    c->count.io_errors += !is_ok;
+    c->guest = NULL;
+    c->is_reading_guest = false;
+}
+
+static void start_guest(struct lm_tile_cache *c)
+{
+    const struct lm_flash *flash = c->db->flash;
+    const struct lm_guest_read *g = c->guest;
+    c->count.bytes_read += g->length;
+    c->is_reading_guest =
+        flash->read_start(flash->ctx, g->offset, g->destination, g->length) == LM_OK;
+    if (!c->is_reading_guest) {
+        finish_guest(c, false);
+    }
+}
+
+/* Begin with what is to be read next; false when there is nothing. */
+static bool start_any(struct lm_tile_cache *c)
+{
+    if (c->guest) {
+        start_guest(c);
+    } else if (c->wanted_tail != c->wanted_head) {
+        start_next(c);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* What was being read is there, or is not to be had. */
+static void take_read(struct lm_tile_cache *c, bool is_ok)
+{
+    if (c->is_reading_guest) {
+        finish_guest(c, is_ok);
+    } else if (!is_ok) {
+        fail(c, &c->count.io_errors);
+    } else if (c->is_reading_entry) {
+        take_entry(c);
+    } else {
+        take_record(c);
+    }
+}
+
+static bool is_reading(const struct lm_tile_cache *c)
+{
+    return c->is_reading_guest || c->reading_slot != LM_SLOT_NONE;
+}
+
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads)
 {
     const struct lm_flash *flash = c->db->flash;
     c->now_us = now_us;
     for (uint32_t i = 0; i < reads; i++) {
-        if (c->reading_slot == LM_SLOT_NONE) {
-            if (c->wanted_tail == c->wanted_head) {
+        if (!is_reading(c)) {
+            if (!start_any(c)) {
                 return;
             }
-            start_next(c);
             continue;
         }
         const int status = flash->read_poll(flash->ctx);
         if (status == LM_BUSY) {
             return;
         }
-        if (status != LM_OK) {
-            fail(c, &c->count.io_errors);
-        } else if (c->is_reading_entry) {
-            take_entry(c);
-        } else {
-            take_record(c);
-        }
+        take_read(c, status == LM_OK);
     }
 }
 
@@ -257,7 +312,7 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, 
 
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
 {
-    return c->reading_slot == LM_SLOT_NONE && c->wanted_head == c->wanted_tail;
+    return !is_reading(c) && !c->guest && c->wanted_head == c->wanted_tail;
 }
 
 /* Read every tile of the coarsest level, waiting for each: this happens once, before the first

@@ -1,4 +1,5 @@
 #include "fx/mem.h"
+#include "fx/sat.h"
 #include "lm/version.h"
 #include "parts.h"
 
@@ -18,8 +19,26 @@ static void read_targets(struct lm_unit *u)
             count++;
         }
     }
-    u->target_set = (struct lm_target_set){u->targets, count};
+    u->target_set.items = u->targets;
+    u->target_set.count = count;
     u->count.targets_lost = u->db.target_count - count;
+}
+
+/* The image's signatures. Targets name them by number, so each stays in its place; one that is lost
+ * leaves its targets without a return. */
+static void read_signatures(struct lm_unit *u)
+{
+    const uint32_t count = fx_min_u32(u->db.signature_count, LM_SIGNATURES_MAX);
+    u->count.signatures_lost = u->db.signature_count - count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (lm_signature_read(&u->db, i, &u->signatures[i], u->board->flash_poll_limit) != LM_OK) {
+            memset(&u->signatures[i], 0, sizeof u->signatures[i]);
+            u->count.signatures_lost++;
+        }
+    }
+    u->target_set.signatures = u->signatures;
+    u->target_set.signature_count = count;
+    lm_chips_init(&u->chips, &u->db, u->signatures);
 }
 
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
@@ -47,6 +66,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
         return LM_OK;
     }
     read_targets(u);
+    read_signatures(u);
     return lm_tile_cache_init(&u->tiles, &u->db, board->tile_pool, board->tile_pool_bytes,
                               board->flash_poll_limit);
 }
@@ -142,6 +162,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     judge(u, now_us);
     lm_follow_cursor(u, now_us);
     if (u->has_db) {
+        lm_chips_service(&u->chips, &u->tiles);
         lm_tile_cache_service(&u->tiles, now_us, TILE_READS_A_STEP);
     }
     lm_draw_due_lines(u, now_us);

@@ -70,10 +70,10 @@ static void look_finely(struct patch *p, const struct lm_target *t, double look_
                                         .heights = {(int32_t)(height_m * 1024), 0},
                                         .wavelength_um =
                                             (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
-    const struct lm_target_set set = {t, 1};
+    const struct lm_target_set set = {.items = t, .count = 1};
     const struct lm_targets_near near = near_of(&set, g.centre);
     struct lm_patch_points points;
-    lm_patch_points_set(&points, &set, &near, &g);
+    lm_patch_points_set(&points, &near, &g);
     for (int k = 0; k < p->cells; k++) {
         int32_t level_q8[CELLS_MAX];
         for (int i = 0; i < p->cells; i++) {
@@ -107,9 +107,9 @@ static void look_coarsely(struct patch *p, const struct lm_target *t, double loo
                                         .height_q10 = (int32_t)(height_m * 1024),
                                         .wavelength_um =
                                             (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
-    const struct lm_target_set set = {&turned, 1};
+    const struct lm_target_set set = {.items = &turned, .count = 1};
     const struct lm_targets_near near = near_of(&set, place);
-    lm_target_add(&turned, &near, &line, NULL, &level_q8);
+    lm_target_add(&near, &line, NULL, &level_q8);
     p->dbsm[0][0] =
         level_q8 / 256.0 + cell_area_db(p->cell_m, range_m) + 10 * log10(beam_m / p->cell_m);
 }

@@ -73,7 +73,7 @@ static uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_si
 static void draw_sector(const struct lm_target *t, uint32_t count, const struct look *look)
 {
     struct lm_targets_near near;
-    const struct lm_target_set set = {t, count};
+    const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_scene scene = {
         .place = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
@@ -92,7 +92,7 @@ static void draw_sector(const struct lm_target *t, uint32_t count, const struct 
                                             .speed_mm_s = look->speed_mm_s & 0x1fffff,
                                             .track = look->track,
                                             .gate_mm_s = {1500, i % 3 ? 50000 : 0}};
-        (void)lm_target_add(t, &near, &line, NULL, level_q8);
+        (void)lm_target_add(&near, &line, NULL, level_q8);
     }
 }
 
@@ -100,7 +100,7 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
 {
     struct lm_patch_points *points = malloc(sizeof *points);
     struct lm_targets_near near;
-    const struct lm_target_set set = {t, count};
+    const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_scene scene = {
         .place = look->place, .reach_m = 2000, .time_us = (uint64_t)look->time_s * 1000000};
     const struct lm_patch_geometry g = {.centre = look->place,
@@ -118,7 +118,7 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     FUZZ_ASSERT(points);
     lm_targets_select(&near, &set, &scene);
-    lm_patch_points_set(points, &set, &near, &g);
+    lm_patch_points_set(points, &near, &g);
     FUZZ_ASSERT(points->count <= LM_PATCH_POINTS_MAX);
     for (uint32_t k = 0; k < LINES; k++) {
         lm_patch_points_hide(points, k, horizon, 26, CELLS);

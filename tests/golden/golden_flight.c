@@ -352,7 +352,7 @@ static void put_movers(struct golden_rig *r)
     r->movers[0] = mover(1, moved(r->centre, 0, 1000), 180, 15000);
     r->movers[1] = mover(2, moved(moved(r->centre, 0, 2200), FX_BAM_90, 1100), 30, 25000);
     r->movers[2] = mover(3, moved(moved(r->centre, 0, 1500), FX_BAM_90, -3300), 25, 8000);
-    r->unit.target_set = (struct lm_target_set){r->movers, GOLDEN_MOVERS};
+    r->unit.target_set = (struct lm_target_set){.items = r->movers, .count = GOLDEN_MOVERS};
 }
 
 int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,

@@ -30,6 +30,17 @@ _Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
 #endif
 _Static_assert(LM_TARGETS_MAX >= 1 && LM_TARGETS_MAX <= 1024, "LM_TARGETS_MAX out of range");
 
+/* Signatures of the image that are held in memory, 1152 bytes each, and chips of them, 13 kB each,
+ * that one sweep or patch may show. 1..16 and 1..64. */
+#ifndef LM_SIGNATURES_MAX
+#define LM_SIGNATURES_MAX 16
+#endif
+#ifndef LM_CHIPS_MAX
+#define LM_CHIPS_MAX 16
+#endif
+_Static_assert(LM_SIGNATURES_MAX >= 1 && LM_SIGNATURES_MAX <= 16, "LM_SIGNATURES_MAX out of range");
+_Static_assert(LM_CHIPS_MAX >= 1 && LM_CHIPS_MAX <= 64, "LM_CHIPS_MAX out of range");
+
 /* Redundancy channels of the bus that are used: 0 and those above it. 1..8. */
 #ifndef LM_BUS_CHANNELS
 #define LM_BUS_CHANNELS 4

@@ -9,7 +9,6 @@
 
 /* Specific targets that a line may meet. */
 struct lm_line_targets {
-    const struct lm_target *items;      /* borrowed */
     const struct lm_targets_near *near; /* borrowed: chosen for this sweep or patch */
     struct lm_target_line where;
 };

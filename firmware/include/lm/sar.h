@@ -40,6 +40,7 @@ struct lm_sar_flight {
 struct lm_sar_scene {
     const struct lm_sar_flight *flight;  /* NULL for a commanded place in the air; read at once */
     const struct lm_target_set *targets; /* borrowed; NULL: none */
+    struct lm_chips *chips;              /* borrowed; NULL: every signature is a point */
     int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     uint8_t sea_state;
@@ -56,6 +57,7 @@ struct lm_sar {
     struct lm_sampling sampling, runup_sampling;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
+    struct lm_chips *chips;              /* borrowed; NULL: none */
     uint64_t time_us;                    /* of the targets' places */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     int32_t across_mm_s;                 /* velocity to the right of the line of sight */
@@ -67,6 +69,8 @@ struct lm_sar {
     lm_horizon_q40_t horizon;      /* where the lines of the last run-up start */
     uint32_t line;                 /* next to be drawn; done when it is radar->sar.cells */
     uint32_t sampled, summed;      /* lines that are in the ring, and that have the points */
+    bool has_points;               /* the targets' were found, */
+    uint32_t judged;               /* and so many of them looked at, whether they are hidden */
     struct lm_patch_points points; /* of the targets, from the first line on */
     int32_t ring_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     uint64_t power_q32[LM_CELLS_ROOM];           /* scratch */
@@ -86,6 +90,9 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 
 /* Ask for the tiles of line `line` and of its run-up. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
+
+/* Choose the targets that the patch may show, and want their chips. */
+void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles);
 
 /* Take samples that the next line needs, at most `at_most` of them: the first line needs
  * LM_SAR_AHEAD + 1, which is more than the time of one line. True when it has all. */

@@ -50,6 +50,7 @@ struct lm_sector {
     const struct lm_radar *radar;             /* borrowed */
     const struct lm_environment *environment; /* borrowed; NULL: fair weather, sea state 3 */
     const struct lm_target_set *targets;      /* borrowed; NULL: none */
+    struct lm_chips *chips; /* borrowed; NULL: every signature is a point, as in NORM */
     struct lm_sector_command command;
 
     bool is_begun; /* the geometry below is that of the running sweep */
@@ -91,8 +92,8 @@ struct lm_sector {
     int32_t level_q8[LM_CELLS_ROOM];  /* and behind the receiver: what the tone is made of */
 };
 
-/* Begin with these scales, all valid; `epoch` is that of the first sweep's noise. Environment and
- * targets are none. */
+/* Begin with these scales, all valid; `epoch` is that of the first sweep's noise. Environment,
+ * targets and chips are none. */
 void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
                      const struct lm_sector_command *command, uint32_t epoch);
 

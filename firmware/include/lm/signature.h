@@ -14,6 +14,7 @@
 
 #include "fx/types.h"
 #include "lm/db.h"
+#include "lm/rcs.h"
 
 enum {
     LM_CHIP_SIDE = 64, /* pixels either way */
@@ -76,5 +77,9 @@ struct lm_chip_choice {
 };
 struct lm_chip_choice lm_signature_choose(const struct lm_signature *s, fx_bam_t bearing,
                                           fx_bam_t elevation);
+
+/* Cross section of the whole target from there, dBsm * 256: of the nearest chip; LM_RCS_NONE_Q8
+ * when that is empty. */
+int32_t lm_signature_rcs_q8(const struct lm_signature *s, fx_bam_t bearing, fx_bam_t elevation);
 
 #endif

@@ -75,6 +75,7 @@ struct lm_shape lm_scatterer_shape(const struct lm_scatterer *s);
 
 struct lm_target_view {
     fx_bam_t bearing;      /* of the radar from the target, from its forward towards its right */
+    fx_bam_t elevation;    /* of the radar above the target's horizon */
     uint32_t range_mm;     /* along the ray, from 10^6 up */
     int32_t toward_q30[3]; /* the radar: forward, right, up */
 };

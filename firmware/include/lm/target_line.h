@@ -7,9 +7,9 @@
 
 /* A line of the sector as targets need to know it. Lengths in metres * 256, heights * 1024. */
 struct lm_target_line {
-    struct lm_place place; /* the antenna */
-    fx_bam_t azimuth;      /* of the line's middle */
-    fx_bam_t width;        /* from the middle of a line to that of the next */
+    struct lm_place place;             /* the antenna */
+    fx_bam_t azimuth;                  /* of the line's middle */
+    fx_bam_t width;                    /* from the middle of a line to that of the next */
     uint32_t first_q8, cell_q8, cells; /* as lm_range_grid_set has them */
     uint32_t first;                    /* cells before this are not shown */
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain */
@@ -36,8 +36,7 @@ struct lm_target_sight {
  * patch. Returns how many times a cell was
  * given something. Cost: 70 instructions for each target near; some 2700 and 1100 a scatterer for
  * those that the line may touch. */
-uint32_t lm_target_add(const struct lm_target *targets, const struct lm_targets_near *near,
-                       const struct lm_target_line *line, const struct lm_target_sight *sight,
-                       int32_t *level_q8);
+uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_target_line *line,
+                       const struct lm_target_sight *sight, int32_t *level_q8);
 
 #endif

@@ -4,6 +4,7 @@
 #define LM_TARGET_NEAR_H
 
 #include "lm/mover.h"
+#include "lm/signature.h"
 #include "lm/tile_cache.h"
 
 enum {
@@ -14,9 +15,15 @@ enum {
 
 /* The targets of an image, as they were read. */
 struct lm_target_set {
-    const struct lm_target *items; /* borrowed, checked */
-    uint32_t count;                /* up to 65535 */
+    const struct lm_target *items;         /* borrowed, checked */
+    uint32_t count;                        /* up to 65535 */
+    const struct lm_signature *signatures; /* borrowed, checked; of no aspects: a lost one */
+    uint32_t signature_count;
 };
+
+/* The signature of a target, or NULL when it has none or that was lost. */
+const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
+                                               const struct lm_target *t);
 
 /* From where and when they are looked at. */
 struct lm_target_scene {
@@ -27,9 +34,12 @@ struct lm_target_scene {
     uint8_t level;               /* of the database, that the ground is taken from */
 };
 
+struct lm_chip_slot;
+
 struct lm_targets_near {
-    bool is_chosen;        /* false: not yet */
-    struct lm_place place; /* from where */
+    struct lm_target_set set; /* they are of */
+    bool is_chosen;           /* false: not yet */
+    struct lm_place place;    /* from where */
     uint64_t time_us;
     uint32_t count;
     uint32_t left_out; /* in reach, but there was no room */
@@ -38,7 +48,9 @@ struct lm_targets_near {
         fx_bam_t azimuth;     /* from the place that was given */
         uint32_t distance_q8; /* metres * 256 */
         struct lm_pose pose;
-        int32_t elevation_q6; /* of the origin above mean sea level, metres * 64 */
+        int32_t elevation_q6;            /* of the origin above mean sea level, metres * 64 */
+        const struct lm_chip_slot *chip; /* of lm/chips.h; borrowed; NULL: it has none */
+        fx_bam_t chip_turn;              /* how far that is to be turned: lm/signature.h */
     } item[LM_TARGETS_NEAR];
 };
 
@@ -48,8 +60,9 @@ struct lm_targets_near {
 void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
                        const struct lm_target_scene *scene);
 
-/* Choose anew unless that was done for the same time from within LM_TARGET_DRIFT_M of the place. */
-void lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
+/* Choose anew unless that was done for the same time from within LM_TARGET_DRIFT_M of the place.
+ * Whether it was done. */
+bool lm_targets_refresh(struct lm_targets_near *near, const struct lm_target_set *set,
                         const struct lm_target_scene *scene);
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef LM_TARGET_PATCH_H
 #define LM_TARGET_PATCH_H
 
+#include "lm/chip_lay.h"
 #include "lm/response.h"
 #include "lm/scan_line.h"
 #include "lm/target_view.h"
@@ -37,18 +38,33 @@ struct lm_patch_point {
     uint8_t target;      /* bodies of one target add as phasors */
     bool is_displaced;   /* by Doppler: it may appear on a line before its own */
     bool is_hidden;
+    bool is_chip; /* the place and level of one, not to be spread itself */
 };
+
+/* A chip in the patch. */
+struct lm_patch_chip {
+    struct lm_chip_lay lay;
+    uint32_t point;           /* its place, and whether it is hidden */
+    int32_t shadow_across_q8; /* where its shadow lies: Doppler does not displace that */
+    int32_t area_q8;          /* of a cell of clutter there, dB * 256 of a square metre */
+};
+
+/* Cells of a line that are given something of chips, so that its cost is bounded. */
+enum { LM_CHIP_CELLS_A_LINE = 1024 };
 
 struct lm_patch_points {
     uint32_t count;
     struct lm_patch_point item[LM_PATCH_POINTS_MAX];
+    uint32_t chip_count;
+    struct lm_patch_chip chip[LM_TARGETS_NEAR];
+    uint32_t cells_left_out;                              /* of chips, for the bound */
     int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* zero between calls */
 };
 
-/* Find the points of the targets near. Cost: some 3000 instructions for each target and 1200 for
- * each of its bodies. */
-void lm_patch_points_set(struct lm_patch_points *p, const struct lm_target_set *set,
-                         const struct lm_targets_near *near, const struct lm_patch_geometry *g);
+/* Find the points of the targets near, and their chips. Cost: some 3000 instructions for each
+ * target and 1200 for each of its bodies. */
+void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near *near,
+                         const struct lm_patch_geometry *g);
 
 /* Note which points something nearer hides: those that stand on line `line`, whose horizons before
  * its cells are `horizon`, times 2^bits (0..38). Points beside the patch are not hidden. */
@@ -60,5 +76,15 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
  * cell that it reaches, at most 17. */
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
+
+/* Put the ground of line `line` that lies in the chips' shadows into the dark: before speckle and
+ * noise. A hidden target throws none. Cost: 100 instructions for each cell under a chip. */
+void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
+                          const struct lm_patch_geometry *g, int32_t *level_q8);
+
+/* Add the chips to the levels of line `line`: behind speckle and noise, as the points. Cost: 250
+ * instructions for each cell under a chip, of LM_CHIP_CELLS_A_LINE at most. */
+void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct lm_patch_geometry *g,
+                        int32_t *level_q8);
 
 #endif

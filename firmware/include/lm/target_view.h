@@ -20,6 +20,11 @@ bool lm_target_locate(struct lm_place from, struct lm_place to, uint32_t *distan
 void lm_target_view_of(struct lm_target_view *v, const struct lm_target_item *item, fx_bam_t back,
                        uint32_t range_q8, const struct lm_target_heights *h);
 
+/* Cross section of a target without bodies, dBsm * 256: by its signature as `v` sees it, or as it
+ * fluctuates (lm_swerling_q8). LM_RCS_NONE_Q8 for one whose signature was lost. */
+int32_t lm_target_whole_q8(const struct lm_target_set *set, const struct lm_target *t,
+                           const struct lm_target_view *v, uint32_t scan, uint32_t pulse);
+
 /* Tangent of the elevation angle at which a height (metres * 1024, below 2^26) appears, Q38. */
 int64_t lm_target_tangent_q38(int32_t top_q10, uint32_t range_q8,
                               const struct lm_target_heights *h);

@@ -42,6 +42,14 @@ struct lm_tile_key {
     uint8_t level;
 };
 
+/* A read of somebody else's, taken between two tiles: the flash does one at a time. */
+struct lm_guest_read {
+    uint64_t offset;
+    void *destination;
+    uint32_t length;
+    int status; /* LM_BUSY until it is done; then LM_OK or LM_ERR_IO */
+};
+
 struct lm_tile_cache {
     const struct lm_db *db; /* borrowed */
     struct lm_tile *pool;   /* borrowed: one record a slot */
@@ -59,6 +67,8 @@ struct lm_tile_cache {
     bool is_reading_entry; /* first the directory entry, then the record */
     uint32_t reading_entry;
     uint32_t entry_bytes[2];
+    struct lm_guest_read *guest; /* borrowed: waits or is being read; NULL: none */
+    bool is_reading_guest;
 
     struct {
         uint32_t hits,
@@ -89,6 +99,11 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, 
 /* Ask for a tile that will be needed soon. Does nothing when it is resident or already asked for.
  */
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column);
+
+/* Read something else of the image before the next tile. `guest`, its offset, destination and
+ * length filled in, is borrowed until its status is no longer LM_BUSY. One at a time: false, and
+ * nothing is taken, while another one waits. */
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_guest_read *guest);
 
 /* Go on with the reading: at most `reads` polls or starts. Never waits. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);

@@ -50,7 +50,9 @@ struct lm_unit {
     bool has_db;
     struct lm_tile_cache tiles;
     struct lm_target targets[LM_TARGETS_MAX];
+    struct lm_signature signatures[LM_SIGNATURES_MAX];
     struct lm_target_set target_set; /* the part of them that was read */
+    struct lm_chips chips;
     struct lm_environment environment;
     struct lm_nav nav;
     struct lm_canas_service service;
@@ -86,6 +88,7 @@ struct lm_unit {
 
     struct {
         uint32_t targets_lost; /* of the image: damaged, or no room for them */
+        uint32_t signatures_lost;
         uint32_t frames, lines, bus_frames;
         uint32_t lines_dropped; /* due, but the step had its fill */
         uint32_t bus_errors;    /* the driver reported the bus down */

@@ -1,6 +1,6 @@
 # Specific targets, against their double-precision reference.
 TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line test_target_picture \
-    test_mover test_target_patch)
+    test_mover test_target_patch test_signature test_signature_picture)
 TESTS += $(TARGET_TESTS)
 $(TARGET_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \
@@ -8,13 +8,14 @@ $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(
 $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 
 # The tests of lines and patches once more under the address and undefined-behaviour sanitizers: they use records made by chance.
-TARGET_SANE     := $(addprefix $(O)/bin/tests/unit/firmware/test_target_,line_sanitized patch_sanitized)
+TARGET_SANE     := $(addprefix $(O)/bin/tests/unit/firmware/test_,target_line_sanitized target_patch_sanitized signature_sanitized)
 TARGET_SANE_SRC := $(addprefix firmware/src/,rcs.c target.c target_near.c target_view.c mover.c target_line.c target_patch.c \
-    response_table.c db.c geo.c scan_line.c tile_cache.c tile_read.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c host-sim/reference/aspect.c
+    signature.c chips.c chip_lay.c chip_line.c response_table.c db.c geo.c scan_line.c tile_cache.c tile_read.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c \
+    $(addprefix host-sim/reference/,aspect.c chip.c) $(addprefix tests/support/,tiny_image.c memory_flash.c)
 TESTS += $(TARGET_SANE)
 $(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.c $(TARGET_SANE_SRC) \
-    $(wildcard tests/unit/firmware/target_support.h firmware/include/lm/*.h)
+    $(wildcard tests/unit/firmware/target_*.h tests/unit/firmware/signature_image.h firmware/include/lm/*.h)
 	@mkdir -p $(@D)
 	@echo "  CC   $@ (sanitizers)"
-	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Ihost-sim/reference $< $(TARGET_SANE_SRC) \
+	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Ihost-sim/reference -Itests/support $< $(TARGET_SANE_SRC) \
 	    -lcmocka $(call pkgs,libs,proj) -lm -o $@

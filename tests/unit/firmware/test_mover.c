@@ -166,7 +166,7 @@ static struct lm_target_line sector_line(uint32_t line)
 static int is_shown(const struct lm_target *t, const struct lm_target_line *how, double *at_deg)
 {
     struct lm_targets_near near;
-    const struct lm_target_set set = {t, 1};
+    const struct lm_target_set set = {.items = t, .count = 1};
     const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     int32_t level_q8[LM_CELLS_MAX];
     double power = 0, moment = 0;
@@ -181,7 +181,7 @@ static int is_shown(const struct lm_target *t, const struct lm_target_line *how,
         for (int k = 0; k < LM_CELLS_MAX; k++) {
             level_q8[k] = LM_LEVEL_SHADOW;
         }
-        (void)lm_target_add(t, &near, &line, NULL, level_q8);
+        (void)lm_target_add(&near, &line, NULL, level_q8);
         for (int k = 0; k < CELLS; k++) {
             const double cell_power =
                 level_q8[k] == LM_LEVEL_SHADOW ? 0 : pow(10, level_q8[k] / 2560.0);
@@ -246,7 +246,7 @@ static void movers_are_placed_anew_for_every_sweep_and_not_for_every_line(void *
 {
     (void)state;
     const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
-    const struct lm_target_set set = {&t, 1};
+    const struct lm_target_set set = {.items = &t, .count = 1};
     struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     struct lm_targets_near near = {0};
     lm_targets_refresh(&near, &set, &scene);
@@ -289,7 +289,7 @@ static void a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone(voi
     t.elevation_q6 = 25 * 64;
     t.flags = LM_TARGET_ABOVE_GROUND;
     seal_target(&t);
-    const struct lm_target_set set = {&t, 1};
+    const struct lm_target_set set = {.items = &t, .count = 1};
     for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
         const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)},
                                               .reach_m = 5000,

@@ -265,7 +265,7 @@ static double width_of_point(const struct lm_sar_flight *flight, bool is_steady,
 {
     struct lm_target t =
         point_at(46, 11 + 202.5 / 77470, 0, 70); /* 40.5 lines right of the tower */
-    const struct lm_target_set set = {&t, 1};
+    const struct lm_target_set set = {.items = &t, .count = 1};
     const struct lm_sar_scene scene = {
         .flight = flight, .targets = &set, .epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
     struct lm_sar_command command = from_the_south;

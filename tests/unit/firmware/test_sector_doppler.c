@@ -56,7 +56,7 @@ static struct lm_target *add_point(struct points *p, const struct sector_world *
 
 static struct lm_target_set set_of(const struct points *p)
 {
-    return (struct lm_target_set){p->items, p->count};
+    return (struct lm_target_set){.items = p->items, .count = p->count};
 }
 
 /* The largest level of the line drawn last within two bins of a ground range. */

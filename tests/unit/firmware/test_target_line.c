@@ -50,7 +50,7 @@ static struct lm_targets_near near_of(const struct lm_target *targets, uint32_t 
                                       struct lm_place place, uint32_t reach_m)
 {
     struct lm_targets_near near;
-    const struct lm_target_set set = {targets, count};
+    const struct lm_target_set set = {.items = targets, .count = count};
     const struct lm_target_scene scene = {.place = place, .reach_m = reach_m};
     lm_targets_select(&near, &set, &scene);
     return near;
@@ -90,7 +90,7 @@ static struct found sweep(const struct lm_target *targets, uint32_t count, doubl
     for (uint32_t i = 0; i < LINES; i++) {
         const struct lm_target_line line = sector_line(lat, lon, heading, i);
         clear(level_q8);
-        const uint32_t given = lm_target_add(targets, &near, &line, NULL, level_q8);
+        const uint32_t given = lm_target_add(&near, &line, NULL, level_q8);
         uint32_t changed = 0;
         for (uint32_t k = 0; k < CELLS; k++) {
             if (level_q8[k] != LM_LEVEL_SHADOW) {
@@ -161,7 +161,7 @@ static void a_target_is_where_the_geodesic_puts_it_within_a_metre(void **state)
         l.first_q8 = (70000 - 200) * 256;
         clear(level_q8);
         near = near_of(&t, 1, l.place, 70000);
-        assert_int_equal(lm_target_add(&t, &near, &l, NULL, level_q8), 1);
+        assert_int_equal(lm_target_add(&near, &l, NULL, level_q8), 1);
         assert_true(level_q8[100] != LM_LEVEL_SHADOW);
     }
 }
@@ -236,7 +236,7 @@ static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **sta
             }
             const struct lm_target_sight sight = {horizon, BITS};
             clear(level_q8);
-            assert_int_equal(lm_target_add(&t, &near, &l, &sight, level_q8), i < 0);
+            assert_int_equal(lm_target_add(&near, &l, &sight, level_q8), i < 0);
         }
     }
 }
@@ -279,8 +279,8 @@ static void a_choice_holds_for_a_kilometre_of_flight(void **state)
         struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
         l.azimuth = now.item[0].azimuth;
         clear(level_q8);
-        assert_int_equal(lm_target_add(&t, &before, &l, NULL, level_q8),
-                         lm_target_add(&t, &now, &l, NULL, level_q8));
+        assert_int_equal(lm_target_add(&before, &l, NULL, level_q8),
+                         lm_target_add(&now, &l, NULL, level_q8));
     }
 }
 
@@ -326,7 +326,7 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
         const struct lm_target_sight sight = {horizon, 20};
         clear(level_q8);
         near = near_of(&t, 1, l.place, 250000);
-        given += lm_target_add(&t, &near, &l, i % 5 ? NULL : &sight, level_q8);
+        given += lm_target_add(&near, &l, i % 5 ? NULL : &sight, level_q8);
     }
     print_message("# %u records passed, %u cells were given something\n", passed, given);
     assert_true(passed > 2000 && given > 500);

@@ -45,10 +45,10 @@ static void find_points(const struct lm_target *t, uint32_t count,
                         const struct lm_patch_geometry *g, uint64_t time_us)
 {
     struct lm_targets_near near;
-    const struct lm_target_set set = {t, count};
+    const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_scene scene = {.place = g->centre, .reach_m = 20000, .time_us = time_us};
     lm_targets_select(&near, &set, &scene);
-    lm_patch_points_set(&points, &set, &near, g);
+    lm_patch_points_set(&points, &near, g);
 }
 
 static void draw(const struct lm_patch_geometry *g, int32_t least_q8)

@@ -64,7 +64,7 @@ static void a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched(voi
     struct lm_target t = point_at(46, 11, 0, 0);
     t.heading = FX_BAM_DEG(270); /* towards the radar */
     add_scatterer(&t, LM_SHAPE_TRIHEDRAL, 1500, -122000, 202000, 1000, 0, 35.264);
-    const struct lm_target_set set = {&t, 1}, none = {NULL, 0};
+    const struct lm_target_set set = {.items = &t, .count = 1}, none = {0};
     draw_patch(&none, without);
     draw_patch(&set, with);
     for (int k = 0; k < SIDE * SIDE; k++) {
@@ -89,7 +89,7 @@ static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void
     struct tiny_image image;
     struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
-    const struct lm_target_set none = {NULL, 0};
+    const struct lm_target_set none = {0};
     open_soil(&image, &flash);
     draw_patch(&none, without);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
@@ -98,7 +98,7 @@ static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void
         t.speed_mm_s = 2000;
         t.leg_m = 10;
         seal_target(&t);
-        const struct lm_target_set set = {&t, 1};
+        const struct lm_target_set set = {.items = &t, .count = 1};
         draw_patch(&set, with);
         int changed = 0;
         for (int k = 0; k < SIDE; k++) {
@@ -153,10 +153,11 @@ static void a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere(voi
     struct memory_flash flash;
     static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
     open_soil(&image, &flash);
-    const struct lm_target_set none = {NULL, 0};
+    const struct lm_target_set none = {0};
     sweep(&none, without);
     const struct lm_target shown = point_at(46, 11, 1, 60), hidden = point_at(46, 11, -100, 60);
-    const struct lm_target_set set = {&shown, 1}, hidden_set = {&hidden, 1};
+    const struct lm_target_set set = {.items = &shown, .count = 1},
+                               hidden_set = {.items = &hidden, .count = 1};
     sweep(&hidden_set, with);
     assert_memory_equal(with, without, sizeof with);
     /* Dead ahead, 0.05 degrees of latitude away, from 3 km of height. */

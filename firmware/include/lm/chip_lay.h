@@ -1,0 +1,32 @@
+/* A chip laid over the cells of a patch: turned to the line of sight, and its power and shadow
+ * brought from its pixels to the cells. docs/DESIGN.md, "Signatures". */
+#ifndef LM_CHIP_LAY_H
+#define LM_CHIP_LAY_H
+
+#include "lm/chips.h"
+
+/* Places are cells * 256 to the right of the target's origin, as the radar looks, and beyond it. */
+struct lm_chip_lay {
+    const struct lm_chip_slot *slot; /* borrowed: as long as it is in use */
+    int32_t right_q16[2];            /* a cell to the right, in columns and rows of the chip */
+    int32_t beyond_q16[2];
+    int32_t origin_q16[2];             /* column and row of the origin */
+    int32_t reach_right, reach_beyond; /* cells, either way, that the chip may lie over */
+    int32_t gain_q8;                   /* of a cell's area over that of a pixel, dB * 256 */
+};
+
+void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, fx_bam_t turn,
+                     uint32_t cell_mm);
+
+/* Cross section of what a cell has of the target, dBsm * 256; LM_RCS_NONE_Q8 for nothing. The sum
+ * over all cells differs from the target's by less than 0.5 dB
+ * (tests/unit/firmware/test_signature.c), most where the cell is three quarters of two pixels. Only
+ * for places within the lay's reach. Cost: 200 instructions. */
+int32_t lm_chip_cell_q8(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8);
+
+enum { LM_CHIP_SHADOW_ALL = 4 * 255 };
+
+/* How much of a cell lies in the target's shadow, 0..LM_CHIP_SHADOW_ALL. Cost: 130 instructions. */
+uint32_t lm_chip_cell_shadow(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8);
+
+#endif

@@ -1,0 +1,157 @@
+#include "lm/chip_line.h"
+
+#include "fx/log.h"
+#include "fx/mem.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/aspect.h"
+
+enum { RADIAN_BAM = 683565276 };
+
+/* From pixels to lines and cells: what the middle of pixel (0, 0) has, and what a column and a row
+ * more add. Places across are BAM to the right of the line; along, cells * 65536 from cell
+ * `first`. */
+struct raster {
+    int64_t across[3], along_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
+    int32_t first;
+    uint32_t cells; /* from there: 0..LM_CHIP_SPAN */
+};
+
+/* Lengths of a pixel's step: at most 16 m << 4 in Q8, 2^16, by sines and cosines. */
+static struct raster raster_of(const struct lm_chip_slot *slot, fx_bam_t turn,
+                               const struct lm_chip_spot *spot, const struct lm_target_line *line)
+{
+    const int64_t pixel_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
+    const int64_t cos_q24 = pixel_q24 * fx_cos_q30(turn) >> 30;
+    const int64_t sin_q24 = pixel_q24 * fx_sin_q30(turn) >> 30;
+    /* x = x0 cos - y0 sin, y = x0 sin + y0 cos, for steps of a column and of a row. Metres in Q24,
+     * below 2^32, times 2^29.3 over metres in Q8. */
+    const int64_t x_q24[3] = {0, cos_q24, -sin_q24}, y_q24[3] = {0, sin_q24, cos_q24};
+    const int64_t range_q8 = fx_max_u32(spot->range_q8, LM_RANGE_MIN_M * 256u);
+    /* Half pixels from the origin to the middle of pixel (0, 0), before the reduction. */
+    const int64_t columns = ((int64_t)1 - slot->side) * (1 << slot->key.shift);
+    const int64_t rows = (1 << slot->key.shift) - 2 * (int64_t)slot->origin_row;
+    struct raster r;
+    for (int i = 1; i < 3; i++) {
+        r.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_q8 >> 4;
+        r.along_q16[i] = y_q24[i] / line->cell_q8;
+    }
+    const uint32_t halves = slot->key.shift + 1u;
+    r.across[0] = (columns * r.across[1] + rows * r.across[2]) >> halves;
+    r.along_q16[0] = (columns * r.along_q16[1] + rows * r.along_q16[2]) >> halves;
+    /* From the middle of cell 0 of the line to that of its first cell under the chip. */
+    const int64_t origin_q16 = ((int64_t)spot->range_q8 - line->first_q8) * 65536 / line->cell_q8;
+    const int64_t reach_q16 =
+        (int64_t)slot->side * 3 / 2 * (int64_t)(fx_abs_u32((int32_t)(pixel_q24 / line->cell_q8)));
+    const int64_t near = (origin_q16 - reach_q16) >> 16, far = ((origin_q16 + reach_q16) >> 16) + 2;
+    const int64_t first = near < (int64_t)line->first ? (int64_t)line->first : near;
+    const int64_t end = far > (int64_t)line->cells ? (int64_t)line->cells : far;
+    r.first = (int32_t)first;
+    r.cells = end > first ? (uint32_t)(end - first < LM_CHIP_SPAN ? end - first : LM_CHIP_SPAN) : 0;
+    r.along_q16[0] += origin_q16 - first * 65536;
+    return r;
+}
+
+/* Share `amount` between the two cells that a place lies between. */
+static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along_q16,
+                  uint32_t amount)
+{
+    const int64_t whole = along_q16 >> 16;
+    const uint32_t beyond = (uint32_t)((uint64_t)amount * ((uint64_t)along_q16 & 65535u) >> 16);
+    if (whole >= 0 && whole < (int64_t)cells) {
+        cell[whole] += amount - beyond;
+    }
+    if (whole >= -1 && whole + 1 < (int64_t)cells) {
+        cell[whole + 1] += beyond;
+    }
+}
+
+/* What a pixel counts: its share of the target's power, Q31, or of its pixel's ground in the dark,
+ * Q20: the sum of either over a chip fits 32 bits. */
+static uint32_t power_q31(const struct lm_chip_slot *slot, uint32_t row, uint32_t column)
+{
+    const uint32_t amplitude_q16 = slot->amplitude_q16[row + 1][column + 1];
+    return amplitude_q16 * amplitude_q16 >> 1;
+}
+
+static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t column)
+{
+    return slot->shadow[row + 1][column + 1] * 4112u;
+}
+
+/* Add up, for each cell, what the pixels count, by their nearness to the line: `off` is the line's
+ * azimuth less that of the origin. */
+static void gather(const struct lm_chip_slot *slot, const struct raster *r,
+                   uint32_t (*count)(const struct lm_chip_slot *, uint32_t, uint32_t), int32_t off,
+                   uint32_t width, uint32_t cell[LM_CHIP_SPAN + 1])
+{
+    memset(cell, 0, (LM_CHIP_SPAN + 1) * sizeof *cell);
+    for (uint32_t row = 0; row < slot->side; row++) {
+        int64_t across = r->across[0] + row * r->across[2] - off;
+        int64_t along_q16 = r->along_q16[0] + row * r->along_q16[2];
+        for (uint32_t column = 0; column < slot->side; column++) {
+            const int64_t aside = across < 0 ? -across : across;
+            const uint32_t amount = aside < (int64_t)width ? count(slot, row, column) : 0;
+            if (amount != 0) {
+                const uint64_t near = width - (uint64_t)aside;
+                share(cell, r->cells, along_q16, (uint32_t)(amount * near / width));
+            }
+            across += r->across[1];
+            along_q16 += r->along_q16[1];
+        }
+    }
+}
+
+/* Area of a pixel of the chip over that of a cell of the line, Q16, and 2^24 when it is larger: a
+ * pixel of at most 256 m, whose square is 2^32 in Q16. The arc is as in target_line.c. */
+static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot, const struct lm_chip_spot *spot,
+                                  const struct lm_target_line *line)
+{
+    const uint64_t pixel_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
+    const uint64_t arc_q8 = ((uint64_t)spot->range_q8 * line->width >> 29) * 421657428u >> 29;
+    const uint64_t ratio_q16 = (pixel_q8 * pixel_q8 << 16) / ((arc_q8 + 1) * line->cell_q8);
+    return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
+}
+
+static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1],
+                   uint32_t ratio_q16, int32_t *level_q8)
+{
+    for (uint32_t i = 0; i < r->cells; i++) {
+        const uint64_t dark_q16 = (uint64_t)cell[i] * ratio_q16 >> 20;
+        if (dark_q16 >= 65536) {
+            level_q8[r->first + (int32_t)i] = LM_LEVEL_SHADOW;
+        } else if (dark_q16 != 0) {
+            level_q8[r->first + (int32_t)i] +=
+                fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536);
+        }
+    }
+}
+
+static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r,
+                         const uint32_t cell[LM_CHIP_SPAN + 1], int32_t clutter_q8,
+                         int32_t *level_q8)
+{
+    const int32_t unit_q8 = fx_db_q8(1u << 31);
+    uint32_t given = 0;
+    for (uint32_t i = 0; i < r->cells; i++) {
+        if (cell[i] != 0) {
+            int32_t *level = &level_q8[r->first + (int32_t)i];
+            *level = fx_db_q8_sum_of_many(*level, slot->total_q8 + fx_db_q8(cell[i]) - unit_q8 -
+                                                      clutter_q8);
+            given++;
+        }
+    }
+    return given;
+}
+
+uint32_t lm_chip_line_add(const struct lm_target_item *item, const struct lm_chip_spot *spot,
+                          const struct lm_target_line *line, int32_t clutter_q8, int32_t *level_q8)
+{
+    uint32_t cell[LM_CHIP_SPAN + 1];
+    const struct lm_chip_slot *slot = item->chip;
+    const struct raster r = raster_of(slot, item->chip_turn, spot, line);
+    gather(slot, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
+    darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_q8);
+    gather(slot, &r, power_q31, spot->off_bam, line->width, cell);
+    return brighten(slot, &r, cell, clutter_q8, level_q8);
+}

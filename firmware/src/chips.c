@@ -1,0 +1,278 @@
+#include "lm/chips.h"
+
+#include "fx/log.h"
+#include "fx/mem.h"
+#include "fx/sat.h"
+
+enum {
+    ROWS_A_STEP = 16, /* of the chip as it was read, reduced in one step */
+    SHIFT_MAX = 4,    /* what would be less than 4 x 4 pixels is a point */
+    POINT_BELOW_CELLS = 4
+};
+
+void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
+                   const struct lm_signature *signatures)
+{
+    memset(c, 0, sizeof *c);
+    c->db = db;
+    c->signatures = signatures;
+}
+
+/* ---- choosing ---- */
+
+static bool is_same(const struct lm_chip_key *a, const struct lm_chip_key *b)
+{
+    return a->signature == b->signature && a->aspect == b->aspect &&
+           a->depression == b->depression && a->shift == b->shift;
+}
+
+/* The reduction: to the largest pixel that is not larger than the cell, and to few enough. */
+static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_scene *scene)
+{
+    uint32_t shift = 0;
+    while (shift < SHIFT_MAX && ((s->pixel_mm << (shift + 1)) <= scene->cell_mm ||
+                                 (uint32_t)LM_CHIP_SIDE >> shift > scene->side_most)) {
+        shift++;
+    }
+    return shift;
+}
+
+/* Bearing and elevation of the radar, as the target sees it. */
+static void view_of(struct lm_target_view *v, const struct lm_target_item *item,
+                    const struct lm_chip_scene *scene)
+{
+    uint32_t range_q8 = scene->range_q8;
+    fx_bam_t back = scene->look + FX_BAM_180;
+    if (!scene->is_parallel) {
+        lm_geo_inverse(item->pose.place, scene->radar, &range_q8, &back);
+    }
+    lm_target_view_of(v, item, back, range_q8, &scene->heights);
+}
+
+static bool is_large_and_near(const struct lm_signature *s, const struct lm_target_item *item,
+                              const struct lm_chip_scene *scene)
+{
+    uint32_t distance_q8;
+    fx_bam_t azimuth;
+    lm_geo_inverse(scene->centre, item->pose.place, &distance_q8, &azimuth);
+    return distance_q8 / 256 <= scene->reach_m + LM_TARGET_EXTENT_M &&
+           s->pixel_mm * LM_CHIP_SIDE >= scene->cell_mm * POINT_BELOW_CELLS;
+}
+
+/* The slot of a key, or one that is free or holds what nobody uses; NULL when all are in use. */
+static struct lm_chip_slot *find_slot(struct lm_chips *c, const struct lm_chip_key *key)
+{
+    struct lm_chip_slot *unused = NULL;
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        struct lm_chip_slot *slot = &c->slots[i];
+        if (slot->state != LM_CHIP_FREE && is_same(&slot->key, key)) {
+            return slot;
+        }
+        if (!slot->is_in_use && slot != c->busy) {
+            unused = slot;
+        }
+    }
+    return unused;
+}
+
+static const struct lm_chip_slot *want(struct lm_chips *c, const struct lm_signature *s,
+                                       const struct lm_chip_key *key)
+{
+    struct lm_chip_slot *slot = find_slot(c, key);
+    if (!slot) {
+        c->count.left_out++;
+        return NULL;
+    }
+    if (slot->state == LM_CHIP_FREE || slot->state == LM_CHIP_BAD || !is_same(&slot->key, key)) {
+        memset(slot, 0, sizeof *slot);
+        slot->state = LM_CHIP_WANTED;
+        slot->key = *key;
+        slot->side = (uint8_t)(LM_CHIP_SIDE >> key->shift);
+        slot->origin_row = s->origin_row;
+        slot->pixel_mm = s->pixel_mm << key->shift;
+    }
+    slot->is_in_use = true;
+    return slot;
+}
+
+/* The chip that an item is best shown by. False when it has none or needs none. */
+static bool key_of(const struct lm_target_set *set, struct lm_target_item *item,
+                   const struct lm_chip_scene *scene, struct lm_chip_key *key)
+{
+    const struct lm_target *t = &set->items[item->index];
+    const struct lm_signature *s = lm_target_signature(set, t);
+    item->chip = NULL;
+    if (!s || !is_large_and_near(s, item, scene)) {
+        return false;
+    }
+    struct lm_target_view v;
+    view_of(&v, item, scene);
+    const struct lm_chip_choice choice = lm_signature_choose(s, v.bearing, v.elevation);
+    item->chip_turn = choice.turn;
+    *key = (struct lm_chip_key){.signature = t->signature,
+                                .aspect = (uint8_t)choice.aspect,
+                                .depression = (uint8_t)choice.depression,
+                                .shift = (uint8_t)shift_for(s, scene)};
+    return true;
+}
+
+void lm_chips_choose(struct lm_chips *c, struct lm_targets_near *near,
+                     const struct lm_chip_scene *scene)
+{
+    const struct lm_target_set *set = &near->set;
+    struct lm_chip_key key[LM_TARGETS_NEAR];
+    bool has_key[LM_TARGETS_NEAR];
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        c->slots[i].is_in_use = false;
+    }
+    /* What is there already is spoken for before room is made for the rest. */
+    for (uint32_t i = 0; i < near->count; i++) {
+        has_key[i] = key_of(set, &near->item[i], scene, &key[i]);
+        for (uint32_t k = 0; has_key[i] && k < LM_CHIPS_MAX; k++) {
+            struct lm_chip_slot *slot = &c->slots[k];
+            slot->is_in_use |= slot->state != LM_CHIP_FREE && is_same(&slot->key, &key[i]);
+        }
+    }
+    for (uint32_t i = 0; i < near->count; i++) {
+        if (has_key[i]) {
+            near->item[i].chip = want(c, &set->signatures[key[i].signature], &key[i]);
+        }
+    }
+}
+
+/* ---- reading ---- */
+
+static void finish(struct lm_chips *c, enum lm_chip_state state)
+{
+    c->busy->state = (uint8_t)state;
+    c->busy = NULL;
+    c->is_reading = false;
+}
+
+static void start_read(struct lm_chips *c, struct lm_tile_cache *tiles, struct lm_chip_slot *slot)
+{
+    const struct lm_chip_key *key = &slot->key;
+    const struct lm_signature *s = &c->signatures[key->signature];
+    const uint64_t number = s->chip0 + (uint32_t)key->depression * s->aspects + key->aspect;
+    c->read = (struct lm_guest_read){.offset = c->db->chips_offset + number * LM_CHIP_BYTES,
+                                     .destination = &c->stage,
+                                     .length = LM_CHIP_BYTES};
+    if (lm_tile_cache_read(tiles, &c->read)) {
+        c->busy = slot;
+        c->is_reading = true;
+    }
+}
+
+static bool is_missing(const struct lm_chip_slot *slot)
+{
+    return slot->is_in_use && slot->state == LM_CHIP_WANTED;
+}
+
+static void start_next(struct lm_chips *c, struct lm_tile_cache *tiles)
+{
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        if (is_missing(&c->slots[i])) {
+            start_read(c, tiles, &c->slots[i]);
+            return;
+        }
+    }
+}
+
+/* ---- reducing ---- */
+
+/* Cross section of a pixel, m2 in Q32: below 2^47.9, and the sum of a chip's below 2^60. */
+static uint64_t area_q32(uint8_t code)
+{
+    return code == 0
+               ? 0
+               : fx_power_q32_of_many(LM_SIGNATURE_CODE_ZERO_Q8 + code * LM_SIGNATURE_CODE_STEP_Q8);
+}
+
+/* dBsm * 256 of such a sum. */
+static int32_t level_q8(uint64_t sum_q32)
+{
+    return sum_q32 == 0 ? LM_SIGNATURE_CODE_ZERO_Q8
+                        : fx_db_q8_u64(sum_q32) - fx_db_q8_u64((uint64_t)1 << 32);
+}
+
+static int32_t total_q8(const struct lm_chip *chip)
+{
+    uint64_t sum_q32 = 0;
+    for (uint32_t row = 0; row < LM_CHIP_SIDE; row++) {
+        for (uint32_t column = 0; column < LM_CHIP_SIDE; column++) {
+            sum_q32 += area_q32(chip->level[row][column]);
+        }
+    }
+    return level_q8(sum_q32);
+}
+
+/* One pixel of the reduced chip from those of the chip that it takes the place of. */
+static void reduce_pixel(struct lm_chip_slot *slot, const struct lm_chip *chip, uint32_t row,
+                         uint32_t column)
+{
+    const uint32_t shift = slot->key.shift, side = 1u << shift;
+    uint64_t sum_q32 = 0;
+    uint32_t dark = 0;
+    for (uint32_t r = row << shift; r < (row << shift) + side; r++) {
+        for (uint32_t k = column << shift; k < (column << shift) + side; k++) {
+            sum_q32 += area_q32(chip->level[r][k]);
+            dark += (uint32_t)chip->shadow[r][k / 8] >> k % 8 & 1u;
+        }
+    }
+    const int32_t below_q8 = level_q8(sum_q32) - slot->total_q8;
+    const uint32_t amplitude_q16 = sum_q32 == 0 ? 0 : fx_power_q16_from_db_q8(below_q8 / 2);
+    slot->amplitude_q16[row + 1][column + 1] = (uint16_t)fx_min_u32(amplitude_q16, UINT16_MAX);
+    slot->shadow[row + 1][column + 1] = (uint8_t)(dark * 255 >> 2 * shift);
+}
+
+/* Some rows of the chip that has come; it is there when all are done. */
+static void reduce_rows(struct lm_chips *c)
+{
+    struct lm_chip_slot *slot = c->busy;
+    const uint32_t end = slot->rows_ready + ((uint32_t)ROWS_A_STEP >> slot->key.shift);
+    for (; slot->rows_ready < end; slot->rows_ready++) {
+        for (uint32_t column = 0; column < slot->side; column++) {
+            reduce_pixel(slot, &c->stage, slot->rows_ready, column);
+        }
+    }
+    if (slot->rows_ready == slot->side) {
+        c->count.read++;
+        finish(c, LM_CHIP_RESIDENT);
+    }
+}
+
+static void take_read(struct lm_chips *c)
+{
+    struct lm_chip_slot *slot = c->busy;
+    const struct lm_chip_key *key = &slot->key;
+    c->is_reading = false;
+    if (c->read.status != LM_OK) {
+        c->count.io_errors++;
+        finish(c, LM_CHIP_BAD);
+    } else if (lm_chip_check(&c->stage, key->signature, key->aspect, key->depression) != LM_OK) {
+        c->count.corrupt++;
+        finish(c, LM_CHIP_BAD);
+    } else {
+        slot->total_q8 = total_q8(&c->stage);
+    }
+}
+
+void lm_chips_service(struct lm_chips *c, struct lm_tile_cache *tiles)
+{
+    if (!c->busy) {
+        start_next(c, tiles);
+    } else if (!c->is_reading) {
+        reduce_rows(c);
+    } else if (c->read.status != LM_BUSY) {
+        take_read(c);
+    }
+}
+
+bool lm_chips_are_settled(const struct lm_chips *c)
+{
+    bool are_settled = true;
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        are_settled = are_settled && !is_missing(&c->slots[i]);
+    }
+    return are_settled;
+}

@@ -1,0 +1,26 @@
+/* A target's chip over the cells of a patch, in double precision: the judge of lm/chip_lay.h. */
+#ifndef REFERENCE_CHIP_H
+#define REFERENCE_CHIP_H
+
+#include "lm/signature.h"
+
+/* A chip as it lies on the ground: what a radar at `turn_rad` more than the chip's bearing sees. */
+struct ref_chip {
+    const struct lm_chip *chip;
+    double pixel_m, origin_row, turn_rad;
+};
+
+/* Cross section of all of it, m^2. */
+double ref_chip_total_m2(const struct lm_chip *chip);
+
+/* Cross section, m^2, of a square cell whose middle is so far to the right of the target's origin,
+ * as the radar looks, and beyond it: the integral over the cell of what is interpolated between
+ * the middles of `block` x `block` pixels made one. */
+double ref_chip_cell_m2(const struct ref_chip *c, int block, double right_m, double beyond_m,
+                        double cell_m);
+
+/* The part of the cell that lies in shadow. */
+double ref_chip_cell_shadow(const struct ref_chip *c, double right_m, double beyond_m,
+                            double cell_m);
+
+#endif

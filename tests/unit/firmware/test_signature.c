@@ -1,0 +1,343 @@
+/* Signatures: which chip is chosen, how it is read and reduced, and how it is laid over cells,
+ * against the double-precision reference. */
+#include "chip.h"
+#include "memory_flash.h"
+#include "signature_image.h"
+
+#include "lm/chip_lay.h"
+#include "lm/chips.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { POLLS = 16, SLOTS = 32 };
+
+static const double degree = 3.14159265358979323846 / 180;
+
+struct fixture {
+    struct tiny_image image;
+    struct with_signatures with;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_signature signature;
+    struct lm_tile_cache tiles;
+    struct lm_chips chips;
+    uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+    add_signatures(&f->with, &f->image);
+    memory_flash_open(&f->flash, f->with.bytes, f->with.size);
+    assert_int_equal(lm_db_open(&f->db, &f->flash.port, POLLS), LM_OK);
+    assert_int_equal(lm_signature_read(&f->db, 0, &f->signature, POLLS), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&f->tiles, &f->db, f->pool, sizeof f->pool, POLLS), LM_OK);
+    lm_chips_init(&f->chips, &f->db, &f->signature);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    tiny_image_free(&f->image);
+    free(f->with.bytes);
+    free(f);
+    return 0;
+}
+
+static void the_chip_nearest_to_the_bearing_and_the_depression_is_chosen(void **state)
+{
+    const struct fixture *f = *state;
+    struct hs_rng r;
+    hs_rng_seed(&r, 1);
+    for (int k = 0; k < 20000; k++) {
+        const fx_bam_t bearing = (fx_bam_t)hs_rng_u64(&r);
+        const double degrees = bearing * 360.0 / 4294967296.0, step = 360.0 / ASPECTS;
+        const double elevation = 90 * hs_rng_uniform(&r);
+        const struct lm_chip_choice c =
+            lm_signature_choose(&f->signature, bearing, hs_bam(elevation));
+        const double off = remainder(degrees - c.aspect * step, 360);
+        assert_true(c.aspect < ASPECTS && fabs(off) <= step / 2 + 1e-6);
+        assert_true(fabs((int32_t)c.turn * 360.0 / 4294967296.0 - off) < 1e-6);
+        if (fabs(elevation - 20) > 1e-6) {
+            assert_int_equal(c.depression, elevation > 20);
+        }
+    }
+}
+
+static void records_with_a_number_out_of_bounds_are_refused(void **state)
+{
+    const struct fixture *f = *state;
+    assert_int_equal(lm_signature_check(&f->signature, CHIPS), LM_OK);
+    assert_int_equal(lm_signature_check(&f->signature, CHIPS - 1), LM_ERR_CORRUPT);
+    for (int k = 0; k < 10; k++) {
+        struct lm_signature s = f->signature;
+        switch (k) {
+        case 0:
+            s.aspects = 0;
+            break;
+        case 1:
+            s.aspects = 129;
+            break;
+        case 2:
+            s.depressions = 0;
+            break;
+        case 3:
+            s.depressions = 9;
+            break;
+        case 4:
+            s.origin_row = 65;
+            break;
+        case 5:
+            s.pixel_mm = 9;
+            break;
+        case 6:
+            s.pixel_mm = 16001;
+            break;
+        case 7:
+            s.depression[1] = s.depression[0];
+            break;
+        case 8:
+            s.depression[1] = FX_BAM_90;
+            break;
+        case 9:
+            s.chip0 = 1;
+            break;
+        }
+        assert_int_equal(lm_signature_check(&s, CHIPS), LM_ERR_CORRUPT); /* not sealed */
+        seal_signature(&s);
+        assert_int_equal(lm_signature_check(&s, CHIPS), LM_ERR_CORRUPT);
+    }
+    struct lm_chip c = make_chip(3, 1);
+    assert_int_equal(lm_chip_check(&c, 0, 3, 1), LM_OK);
+    assert_int_equal(lm_chip_check(&c, 0, 4, 1), LM_ERR_CORRUPT);
+    assert_int_equal(lm_chip_check(&c, 1, 3, 1), LM_ERR_CORRUPT);
+    c.level[9][9] ^= 1;
+    assert_int_equal(lm_chip_check(&c, 0, 3, 1), LM_ERR_CORRUPT);
+}
+
+static void a_head_that_does_not_hold_makes_the_image_unsound(void **state)
+{
+    struct fixture *f = *state;
+    static const struct {
+        size_t at;
+        uint32_t value;
+    } wrong[] = {{0, 2}, {0, 17}, {4, 1151}, {8, CHIPS + 1}, {8, 0xFFFFFFFF}, {12, 4671}};
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        uint8_t *at = f->with.bytes + f->with.head_at + wrong[k].at, old[4];
+        struct lm_db db;
+        memcpy(old, at, 4);
+        put(at, wrong[k].value, 4);
+        seal_image(&f->with);
+        assert_int_equal(lm_db_open(&db, &f->flash.port, POLLS), LM_ERR_CORRUPT);
+        memcpy(at, old, 4);
+        seal_image(&f->with);
+        assert_int_equal(lm_db_open(&db, &f->flash.port, POLLS), LM_OK);
+        f->with.bytes[f->with.head_at + 60] ^= 1;
+        assert_int_equal(lm_db_open(&db, &f->flash.port, POLLS), LM_ERR_CORRUPT);
+        seal_image(&f->with);
+    }
+}
+
+/* ---- loading ---- */
+
+/* Targets with the signature near the centre, each turned another way, and the scene of a patch
+ * seen from the west. */
+static void choose(struct fixture *f, const struct lm_target *targets, uint32_t count,
+                   uint32_t cell_mm, struct lm_targets_near *near)
+{
+    const struct lm_target_set set = {
+        .items = targets, .count = count, .signatures = &f->signature, .signature_count = 1};
+    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
+    const struct lm_chip_scene chips = {.centre = scene.place,
+                                        .reach_m = scene.reach_m,
+                                        .is_parallel = true,
+                                        .look = FX_BAM_90,
+                                        .range_q8 = 20000 * 256,
+                                        .heights = {6000 * 1024, 0},
+                                        .cell_mm = cell_mm,
+                                        .side_most = LM_CHIP_SIDE};
+    lm_targets_select(near, &set, &scene);
+    lm_chips_choose(&f->chips, near, &chips);
+}
+
+static void serve(struct fixture *f)
+{
+    for (int k = 0; k < 400 && !lm_chips_are_settled(&f->chips); k++) {
+        lm_chips_service(&f->chips, &f->tiles);
+        lm_tile_cache_service(&f->tiles, 0, 2);
+    }
+    assert_true(lm_chips_are_settled(&f->chips));
+}
+
+static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_with_signature(46, 11, 30);
+    static const uint32_t cells_mm[] = {500, 999, 1000, 2000, 4000, 7999};
+    for (int k = 0; k < 6; k++) {
+        struct lm_targets_near near;
+        lm_chips_init(&f->chips, &f->db, &f->signature);
+        choose(f, &t, 1, cells_mm[k], &near);
+        assert_null(lm_chip_of(&near.item[0]));
+        serve(f);
+        const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
+        assert_non_null(slot);
+        /* The radar stands to the west, 240 degrees from its nose; 16.7 degrees up. */
+        const struct lm_chip chip = make_chip(240 * ASPECTS / 360, 0);
+        const double total_db = 10 * log10(ref_chip_total_m2(&chip));
+        assert_true(fabs(slot->total_q8 / 256.0 - total_db) < 0.05);
+        assert_true(slot->pixel_mm <= cells_mm[k] && 2 * slot->pixel_mm > cells_mm[k]);
+        double power = 0, dark = 0;
+        for (int i = 0; i < LM_CHIP_ROOM * LM_CHIP_ROOM; i++) {
+            power += pow(slot->amplitude_q16[i / LM_CHIP_ROOM][i % LM_CHIP_ROOM] / 65536.0, 2);
+            dark += slot->shadow[i / LM_CHIP_ROOM][i % LM_CHIP_ROOM] / 255.0;
+        }
+        assert_true(fabs(10 * log10(power)) < 0.05);
+        assert_true(fabs(dark * pow(slot->pixel_mm / 1000.0, 2) / (22 * 12 * 0.25) - 1) < 0.02);
+    }
+    struct lm_targets_near near;
+    choose(f, &t, 1, 8100, &near); /* 32 m of chip in less than four cells */
+    assert_null(near.item[0].chip);
+}
+
+static void damage_and_failure_leave_a_target_without_chip_and_are_counted(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_with_signature(46, 11, 30);
+    struct lm_targets_near near;
+    uint8_t *chip = f->with.bytes + f->with.chips_at + 16 * LM_CHIP_BYTES;
+    chip[100] ^= 1;
+    choose(f, &t, 1, 1000, &near);
+    serve(f);
+    assert_null(lm_chip_of(&near.item[0]));
+    assert_int_equal(f->chips.count.corrupt, 1);
+    chip[100] ^= 1;
+    f->flash.fail_read = f->flash.reads + 1;
+    choose(f, &t, 1, 1000, &near); /* tried again */
+    serve(f);
+    assert_null(lm_chip_of(&near.item[0]));
+    assert_int_equal(f->chips.count.io_errors, 1);
+    choose(f, &t, 1, 1000, &near);
+    serve(f);
+    assert_non_null(lm_chip_of(&near.item[0]));
+}
+
+static void chips_are_shared_kept_and_bounded(void **state)
+{
+    struct fixture *f = *state;
+    struct lm_target t[ASPECTS + 1];
+    struct lm_targets_near near;
+    for (int k = 0; k <= ASPECTS; k++) {
+        t[k] = target_with_signature(46, 11, k * 360.0 / ASPECTS);
+    }
+    choose(f, t, 8, 1000, &near);
+    serve(f);
+    assert_int_equal(f->chips.count.read, 8);
+    t[1] = t[0];
+    choose(f, t, 8, 1000, &near);
+    serve(f);
+    assert_int_equal(f->chips.count.read, 8);
+    assert_ptr_equal(near.item[0].chip, near.item[1].chip);
+    choose(f, t + 1, ASPECTS, 1000, &near);
+    serve(f);
+    uint32_t with_chip = 0;
+    for (uint32_t i = 0; i < near.count; i++) {
+        with_chip += lm_chip_of(&near.item[i]) != NULL;
+    }
+    /* The first and the last of them look alike. */
+    assert_int_equal(with_chip, LM_CHIPS_MAX + 1);
+    assert_int_equal(f->chips.count.left_out, ASPECTS - LM_CHIPS_MAX - 1);
+}
+
+/* ---- laying ---- */
+
+struct score {
+    double worst_power_db, shadow, cross, squares[2];
+};
+
+/* Every cell around the origin against the reference, the grid shifted by parts of a cell. */
+static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref, int block,
+                      double cell_m, int32_t shift_q8, struct score *s)
+{
+    double fixed = 0, exact = 0, dark = 0, exact_dark = 0;
+    for (int32_t i = -lay->reach_beyond; i <= lay->reach_beyond; i++) {
+        for (int32_t k = -lay->reach_right; k <= lay->reach_right; k++) {
+            const int32_t right_q8 = k * 256 + shift_q8, beyond_q8 = i * 256 - shift_q8;
+            const double right_m = right_q8 * cell_m / 256, beyond_m = beyond_q8 * cell_m / 256;
+            const double truth = ref_chip_cell_m2(ref, block, right_m, beyond_m, cell_m);
+            const int32_t q8 = lm_chip_cell_q8(lay, right_q8, beyond_q8);
+            const double got = q8 <= LM_RCS_NONE_Q8 ? 0 : pow(10, q8 / 2560.0);
+            fixed += got;
+            exact += truth;
+            s->cross += got * truth;
+            s->squares[0] += got * got;
+            s->squares[1] += truth * truth;
+            dark += lm_chip_cell_shadow(lay, right_q8, beyond_q8) / (double)LM_CHIP_SHADOW_ALL;
+            exact_dark += ref_chip_cell_shadow(ref, right_m, beyond_m, cell_m);
+        }
+    }
+    assert_true(fabs(10 * log10(exact / ref_chip_total_m2(ref->chip))) < 0.1);
+    s->worst_power_db = fmax(s->worst_power_db, fabs(10 * log10(fixed / exact)));
+    s->shadow = fmax(s->shadow, fabs(dark / exact_dark - 1));
+}
+
+static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference(void **state)
+{
+    struct fixture *f = *state;
+    struct hs_rng r;
+    hs_rng_seed(&r, 3);
+    struct score s = {0};
+    for (int k = 0; k < 60; k++) {
+        struct lm_targets_near near;
+        const double heading = 360 * hs_rng_uniform(&r);
+        const double cell_m = 0.25 + (k % 12) * 0.34;
+        const struct lm_target t = target_with_signature(46, 11, heading);
+        choose(f, &t, 1, (uint32_t)lround(cell_m * 1000), &near);
+        serve(f);
+        const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
+        struct lm_chip_lay lay;
+        lm_chip_lay_set(&lay, slot, near.item[0].chip_turn, (uint32_t)lround(cell_m * 1000));
+        const struct lm_chip chip = make_chip(slot->key.aspect, slot->key.depression);
+        const struct ref_chip ref = {&chip, PIXEL_MM / 1000.0, ORIGIN_ROW,
+                                     (int32_t)near.item[0].chip_turn * 360.0 / 4294967296.0 *
+                                         degree};
+        score_lay(&lay, &ref, 1 << slot->key.shift, cell_m, (int32_t)hs_rng_below(&r, 256), &s);
+    }
+    const double likeness = s.cross / sqrt(s.squares[0] * s.squares[1]);
+    print_message("# all of it within %.3f dB, cells alike to %.3f, shadow within %.1f %%\n",
+                  s.worst_power_db, likeness, 100 * s.shadow);
+    assert_true(s.worst_power_db < 0.5);
+    assert_true(likeness > 0.97);
+    assert_true(s.shadow < 0.02);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(
+            the_chip_nearest_to_the_bearing_and_the_depression_is_chosen, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(records_with_a_number_out_of_bounds_are_refused, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_head_that_does_not_hold_makes_the_image_unsound, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(
+            a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(
+            damage_and_failure_leave_a_target_without_chip_and_are_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(chips_are_shared_kept_and_bounded, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(
+            a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference, set_up,
+            tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

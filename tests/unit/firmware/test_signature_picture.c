@@ -1,0 +1,356 @@
+/* Targets with a signature in the pictures: a patch, the lines of a window, a sweep. */
+#include "memory_flash.h"
+#include "reference.h"
+#include "signature_image.h"
+
+#include "lm/chips.h"
+#include "lm/sar.h"
+#include "lm/target_line.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { POLLS = 16, SLOTS = 32, SIDE = 256, CELL_MM = 1000 };
+
+static const double degree = 3.14159265358979323846 / 180;
+static const double range_m = 20000, height_m = 6000; /* 16.7 degrees: the first depression */
+
+struct fixture {
+    struct tiny_image image;
+    struct with_signatures with;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_signature signature;
+    struct lm_tile_cache tiles;
+    struct lm_chips chips;
+    struct lm_sar sar;
+    struct lm_line line;
+    struct lm_tone tone;
+    int32_t bare[SIDE][SIDE], picture[SIDE][SIDE];
+    uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+};
+
+static int set_up(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
+    add_signatures(&f->with, &f->image);
+    memory_flash_open(&f->flash, f->with.bytes, f->with.size);
+    assert_int_equal(lm_db_open(&f->db, &f->flash.port, POLLS), LM_OK);
+    assert_int_equal(lm_signature_read(&f->db, 0, &f->signature, POLLS), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&f->tiles, &f->db, f->pool, sizeof f->pool, POLLS), LM_OK);
+    lm_chips_init(&f->chips, &f->db, &f->signature);
+    assert_int_equal(lm_tone_set(&f->tone, &lm_radar_default.sar.tone), LM_OK);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    tiny_image_free(&f->image);
+    free(f->with.bytes);
+    free(f);
+    return 0;
+}
+
+static struct lm_target_set set_of(const struct fixture *f, const struct lm_target *t,
+                                   uint32_t count)
+{
+    return (struct lm_target_set){
+        .items = t, .count = count, .signatures = &f->signature, .signature_count = 1};
+}
+
+static void serve(struct fixture *f)
+{
+    for (int k = 0; k < 1000 && !lm_chips_are_settled(&f->chips); k++) {
+        lm_chips_service(&f->chips, &f->tiles);
+        lm_tile_cache_service(&f->tiles, 0, 2);
+    }
+}
+
+/* Levels of a patch around 46 N 11 E, seen from the west. */
+static void draw_patch(struct fixture *f, const struct lm_target_set *set,
+                       int32_t picture[SIDE][SIDE])
+{
+    const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
+                                           .range_m = (uint32_t)range_m,
+                                           .height_q6 = (int32_t)(height_m * 64),
+                                           .look_azimuth = hs_bam(90),
+                                           .cell_mm = CELL_MM};
+    const struct lm_sar_scene scene = {
+        .targets = set, .chips = &f->chips, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&f->sar, &lm_radar_default, &f->db, &command, &scene), LM_OK);
+    lm_sar_prefetch_targets(&f->sar, &f->tiles);
+    serve(f);
+    for (int k = 0; k < SIDE; k++) {
+        lm_sar_draw_line(&f->sar, &f->tiles, &f->tone, &f->line);
+        memcpy(picture[k], f->line.sight.level_q8 + LM_SAR_GUARD, sizeof picture[k]);
+    }
+}
+
+/* Power that a target adds within `reach` cells of a place, and its middle. */
+struct found {
+    double power, line, cell;
+};
+
+static struct found find(const struct fixture *f, double line, double cell, int reach)
+{
+    struct found found = {0, 0, 0};
+    for (int l = (int)line - reach; l <= (int)line + reach + 1; l++) {
+        for (int c = (int)cell - reach; c <= (int)cell + reach + 1; c++) {
+            const double more =
+                pow(10, f->picture[l][c] / 2560.0) - pow(10, f->bare[l][c] / 2560.0);
+            found.power += more;
+            found.line += l * more;
+            found.cell += c * more;
+        }
+    }
+    found.line /= found.power;
+    found.cell /= found.power;
+    return found;
+}
+
+static double clutter_db(double width_m, double length_m, double at_m)
+{
+    const struct ref_view view = {height_m, 0, length_m};
+    return 10 * log10(width_m * length_m * ref_grazing(&view, at_m, at_m - length_m));
+}
+
+static void corners_are_where_they_stand_and_as_bright_from_every_side(void **state)
+{
+    struct fixture *f = *state;
+    const double cell_m = CELL_MM / 1000.0, centre = (SIDE - 1) / 2.0;
+    const struct lm_target_set none = {0};
+    double worst_place = 0, worst_level = 0;
+    draw_patch(f, &none, f->bare);
+    for (int k = 0; k < 24; k++) {
+        const double heading = k * 37;
+        const struct lm_target t = target_with_signature(46, 11, heading);
+        const struct lm_target_set set = set_of(f, &t, 1);
+        draw_patch(f, &set, f->picture);
+        for (int i = 0; i < CORNERS; i++) {
+            double right_m, beyond_m;
+            corner_place(&corners[i], (270 - heading) * degree, &right_m, &beyond_m);
+            /* Lines are centred on the patch; cells count from its near edge. */
+            const double line = centre + right_m / cell_m;
+            const double cell = SIDE / 2.0 - 0.5 + beyond_m / cell_m;
+            const struct found found = find(f, line, cell, 2);
+            const double level =
+                10 * log10(found.power) - (corners[i].dbsm - clutter_db(1, 1, range_m));
+            worst_place = fmax(worst_place, hypot(found.line - line, found.cell - cell));
+            worst_level = fmax(worst_level, fabs(level));
+        }
+    }
+    print_message("# places within %.2f cells, levels within %.2f dB\n", worst_place, worst_level);
+    assert_true(worst_place < 0.75); /* the chip is reduced to pixels of a cell */
+    assert_true(worst_level < 0.1);
+}
+
+static void its_shadow_lies_behind_it_and_nowhere_else(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target_set none = {0};
+    const struct lm_target t = target_with_signature(46, 11, 270);
+    const struct lm_target_set set = set_of(f, &t, 1);
+    draw_patch(f, &none, f->bare);
+    draw_patch(f, &set, f->picture);
+    double dark = 0;
+    int inside = 0;
+    for (int l = 0; l < SIDE; l++) {
+        for (int c = 0; c < SIDE; c++) {
+            /* From the origin: 6 m wide, from 1 to 12 m beyond; the corners are 6 m from it. */
+            const double right_m = l - (SIDE - 1) / 2.0, beyond_m = c - (SIDE - 1) / 2.0;
+            if (fabs(right_m) < 2 && beyond_m > 7.5 && beyond_m < 11) {
+                dark += (f->bare[l][c] - f->picture[l][c]) / 256.0;
+                inside++;
+            } else if (fabs(right_m) > 10 || beyond_m < -10 || beyond_m > 14) {
+                assert_int_equal(f->picture[l][c], f->bare[l][c]);
+            }
+        }
+    }
+    /* Soil of -20 dB and a floor of -46. */
+    assert_true(inside > 8 && dark / inside > 20);
+}
+
+static void a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target_set none = {0};
+    struct lm_target t = target_with_signature(46, 11, 45);
+    const struct lm_target_set set = set_of(f, &t, 1);
+    draw_patch(f, &none, f->bare);
+    for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
+        t.elevation_q6 = is_hidden ? -4 * 64 : -2 * 64; /* it is 3 m high */
+        seal_target(&t);
+        draw_patch(f, &set, f->picture);
+        assert_int_equal(memcmp(f->bare, f->picture, sizeof f->bare) == 0, is_hidden);
+    }
+}
+
+static void a_mover_is_displaced_and_its_shadow_stays(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target_set none = {0};
+    struct lm_target t = target_with_signature(46, 11, 270);
+    t.speed_mm_s = 500; /* towards the radar: 20,000 m * 0.5 / 250 are 40 m to the left */
+    t.leg_m = 1;
+    seal_target(&t);
+    const struct lm_target_set set = set_of(f, &t, 1);
+    draw_patch(f, &none, f->bare);
+    draw_patch(f, &set, f->picture);
+    const struct found found = find(f, 127.5 - 40, 127.5, 12);
+    assert_true(fabs(found.line - (127.5 - 40)) < 1.5);
+    assert_true(f->picture[127][137] < f->bare[127][137] - 10 * 256);
+    assert_true(f->picture[87][141] == f->bare[87][141]);
+}
+
+/* ---- lines ---- */
+
+enum { LINES = 33, CELLS = 128 };
+static const double cell_m = 2, spacing_m = 4;
+
+static struct lm_target_line line_of(int k)
+{
+    const double width = spacing_m / range_m * 4294967296.0 / (360 * degree);
+    return (struct lm_target_line){
+        .place = {hs_bam(46), hs_bam(11)},
+        .azimuth = hs_bam(90) + (fx_bam_t)(int32_t)lround(width * (k - LINES / 2)),
+        .width = (fx_bam_t)lround(width),
+        .first_q8 = (uint32_t)lround((range_m - CELLS / 2 * cell_m) * 256),
+        .cell_q8 = (uint32_t)(cell_m * 256),
+        .cells = CELLS,
+        .height_q10 = (int32_t)(height_m * 1024),
+        .wavelength_um = X_BAND_UM};
+}
+
+static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips,
+                    struct lm_targets_near *near)
+{
+    const struct lm_target_set set = set_of(f, t, 1);
+    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
+    const struct lm_chip_scene chips = {.centre = {t->latitude, t->longitude},
+                                        .reach_m = 500,
+                                        .radar = scene.place,
+                                        .heights = {(int32_t)(height_m * 1024), 0},
+                                        .cell_mm = PIXEL_MM, /* not reduced: places are exact */
+                                        .side_most = LM_CHIP_SIDE};
+    lm_targets_select(near, &set, &scene);
+    if (has_chips) {
+        lm_chips_choose(&f->chips, near, &chips);
+        serve(f);
+        assert_non_null(lm_chip_of(&near->item[0]));
+    }
+}
+
+/* A place so far to the east and to the south of 46 N 11 E. */
+static struct lm_target target_beyond(double east_m, double south_m, double heading)
+{
+    struct lm_geo_origin o;
+    lm_geo_set_origin(&o, (struct lm_place){hs_bam(46), hs_bam(11)});
+    const struct lm_place p = lm_geo_direct(
+        &o, hs_bam(90) + (fx_bam_t)(int32_t)lround(south_m / east_m / degree * 4294967296.0 / 360),
+        (uint32_t)lround(east_m * 256));
+    struct lm_target t = target_with_signature(0, 0, heading);
+    t.latitude = p.latitude;
+    t.longitude = p.longitude;
+    seal_target(&t);
+    return t;
+}
+
+static void the_lines_of_a_window_share_a_chip_without_loss(void **state)
+{
+    struct fixture *f = *state;
+    double worst_level = 0, worst_place_m = 0, worst_dark = 0;
+    for (int k = 0; k < 24; k++) {
+        const double heading = k * 31, right_m = -20 + 1.7 * k, beyond_m = 1.3 * k - 15;
+        const struct lm_target t = target_beyond(range_m + beyond_m, right_m, heading);
+        struct lm_targets_near near;
+        double power = 0, across = 0, along = 0, dark_m2 = 0, truth[3] = {0};
+        near_of(f, &t, true, &near);
+        for (int l = 0; l < LINES; l++) {
+            const struct lm_target_line line = line_of(l);
+            int32_t level_q8[CELLS], bright_q8[CELLS];
+            for (int c = 0; c < CELLS; c++) {
+                level_q8[c] = -100 * 256;
+                bright_q8[c] = 80 * 256; /* beside which the target is nothing */
+            }
+            lm_target_add(&near, &line, NULL, level_q8);
+            lm_target_add(&near, &line, NULL, bright_q8);
+            for (int c = 0; c < CELLS; c++) {
+                const double p = pow(10, level_q8[c] / 2560.0);
+                power += p;
+                across += p * (l - LINES / 2) * spacing_m;
+                along += p * (c - CELLS / 2) * cell_m;
+                dark_m2 += (1 - pow(10, bright_q8[c] / 2560.0 - 8)) * cell_m * spacing_m;
+            }
+        }
+        for (int i = 0; i < CORNERS; i++) {
+            double r, b;
+            corner_place(&corners[i], (270 - heading) * degree, &r, &b);
+            const double p = pow(10, corners[i].dbsm / 10);
+            truth[0] += p;
+            truth[1] += p * (right_m + r);
+            truth[2] += p * (beyond_m + b);
+        }
+        const double level = 10 * log10(power / truth[0]) + clutter_db(spacing_m, cell_m, range_m);
+        worst_level = fmax(worst_level, fabs(level));
+        worst_place_m = fmax(worst_place_m, hypot(across / power - truth[1] / truth[0],
+                                                  along / power - truth[2] / truth[0]));
+        worst_dark = fmax(worst_dark, fabs(dark_m2 / 66 - 1));
+    }
+    print_message("# levels within %.2f dB, places within %.2f m, shadow within %.1f %%\n",
+                  worst_level, worst_place_m, 100 * worst_dark);
+    assert_true(worst_level < 0.2);
+    assert_true(worst_place_m < 0.3);
+    assert_true(worst_dark < 0.06);
+}
+
+static void without_its_chip_a_target_is_a_point_of_its_cross_section(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_beyond(range_m, 0, 77);
+    struct lm_targets_near near;
+    double power = 0;
+    near_of(f, &t, false, &near);
+    for (int l = 0; l < LINES; l++) {
+        const struct lm_target_line line = line_of(l);
+        int32_t level_q8[CELLS];
+        for (int c = 0; c < CELLS; c++) {
+            level_q8[c] = -100 * 256;
+        }
+        (void)lm_target_add(&near, &line, NULL, level_q8);
+        for (int c = 0; c < CELLS; c++) {
+            power += pow(10, level_q8[c] / 2560.0);
+        }
+    }
+    const double level = 10 * log10(power) + clutter_db(spacing_m, cell_m, range_m);
+    assert_true(fabs(level - 22.5) < 0.1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(corners_are_where_they_stand_and_as_bright_from_every_side,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(its_shadow_lies_behind_it_and_nowhere_else, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(
+            a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_mover_is_displaced_and_its_shadow_stays, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(the_lines_of_a_window_share_a_chip_without_loss, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(without_its_chip_a_target_is_a_point_of_its_cross_section,
+                                        set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
