@@ -103,7 +103,7 @@ uint32_t image_rows_all(uint8_t shift)
 uint8_t image_row_zone(uint8_t shift, uint32_t row)
 {
     const struct image_frame frame = image_frame_of(shift, 0, row, 0);
-    return lm_db_zone((fx_bam_t)frame.south);
+    return (uint8_t)lm_db_zone((fx_bam_t)frame.south);
 }
 
 uint32_t image_row_of(uint8_t shift, int64_t latitude)
