@@ -1,9 +1,8 @@
 #include "lm/mover.h"
 
+#include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-
-enum { RADIAN_BAM = 683565276 };
 
 /* Millimetres along the leg, 0..leg, and whether it is the way back. There and back takes at most
  * 2 * 10^8 mm / (1 mm/s) = 2^47.6 us; the way within it, below 2 * 10^8 mm, is 2^47.6 before the
@@ -37,14 +36,21 @@ int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)
     return (int32_t)((int64_t)speed_mm_s * fx_cos_q30(heading - back) >> 30);
 }
 
-int32_t lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off)
+bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int32_t *shift)
 {
-    const int64_t across_mm_s = (int64_t)speed_mm_s * fx_sin_q30(off) >> 30;
-    /* Half a turn less one, so that its negative is one as well. */
-    const int64_t limit = fx_min_u32(fx_abs_u32((int32_t)off), INT32_MAX);
-    if (across_mm_s == 0) {
-        return 0; /* at rest, or no side to go to */
+    *shift = 0;
+    if (closing_mm_s == 0 || speed_mm_s == 0) {
+        return true;
     }
-    const int64_t shift = (int64_t)closing_mm_s * RADIAN_BAM / across_mm_s;
-    return (int32_t)(shift > limit ? limit : shift < -limit ? -limit : shift);
+    /* At most 2^30 and 2^21 * 2^30; what is kept is a cosine, its square 2^60. */
+    const int64_t one_q30 = 1 << 30;
+    const int64_t cos_q30 = fx_cos_q30(off) + closing_mm_s * one_q30 / (int64_t)speed_mm_s;
+    if (cos_q30 > one_q30 || cos_q30 < -one_q30) {
+        return false;
+    }
+    const uint32_t sin_q30 = fx_sqrt_u64((uint64_t)(one_q30 * one_q30 - cos_q30 * cos_q30));
+    const fx_bam_t appears = fx_atan2((int32_t)sin_q30, (int32_t)cos_q30);
+    const fx_bam_t nearer = fx_abs_u32((int32_t)off) - appears;
+    *shift = (int32_t)((int32_t)off < 0 ? 0 - nearer : nearer);
+    return true;
 }

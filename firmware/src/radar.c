@@ -47,7 +47,6 @@ const struct lm_radar lm_radar_default = {
                                 .range_last = 2,
                                 .field_last = LM_FIELD_EXP,
                                 .bars = 4,
-                                .is_doppler = true,
                                 .clutter_q8 = DB(35),
                                 .gate_mm_s = {1543, 51444},
                                 .speckle = {.looks_log2 = 2},
@@ -56,8 +55,6 @@ const struct lm_radar lm_radar_default = {
                                 .range_last = 2,
                                 .field_last = LM_FIELD_EXP,
                                 .bars = 1,
-                                .is_doppler = true,
-                                .gate_mm_s = {0, UINT32_MAX},
                                 .speckle = {.looks_log2 = 0},
                                 .tone = {DB(-48), DB(-6), 320}}},
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
@@ -86,7 +83,6 @@ const struct lm_radar lm_radar_default = {
                                  .azimuth_half_max = FX_BAM_DEG(15),
                                  .sharpening = 8,
                                  .sharpening_least = 4,
-                                 .is_doppler = true,
                                  .azimuths_log2 = 2,
                                  .pulse_ns = {100, 100, 400, 400}},
               [LM_FIELD_DBS2] = {.bam_per_s = FX_BAM_DEG(3),
@@ -96,7 +92,6 @@ const struct lm_radar lm_radar_default = {
                                  .azimuth_half_max = FX_BAM_DEG(5),
                                  .sharpening = 64,
                                  .sharpening_least = 32,
-                                 .is_doppler = true,
                                  .azimuths_log2 = 2,
                                  .pulse_ns = {100, 100, 100, 100}}},
     /* UNSOURCED but for the formulas they go into: squints from 15 degrees (RADAR.md 1.4 on DBS), a

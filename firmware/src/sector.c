@@ -361,7 +361,8 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .height_q10 = s->grid.height_q10,
                   .reference_q10 = s->grid.reference_q10,
                   .wavelength_um = s->radar->wavelength_um,
-                  .is_doppler = mode->is_doppler || field_of(s)->is_doppler,
+                  .is_doppler = s->beam.fineness != 0, /* sharpened */
+                  .beam = s->radar->antenna.azimuth_beam,
                   .speed_mm_s = s->platform.speed_mm_s,
                   .track = s->platform.track,
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},

@@ -16,22 +16,14 @@ struct spot {
     fx_bam_t azimuth;      /* from the antenna, where it appears */
     fx_bam_t back;         /* from the target to the antenna */
     fx_bam_t true_azimuth; /* where it is */
+    int32_t gain_q8;       /* of the beam, dB: 0 or less */
 };
 
-/* The farthest that a mover may be displaced, when the velocity is known to be `off` from it within
- * `slack`: v / (V sin o) at most o. Where the slack is a quarter of o or less, the sine is at least
- * two thirds of that of `off`. */
-static uint64_t shift_most(const struct lm_target_line *line, const struct lm_target *t,
-                           const struct lm_target_item *item, uint64_t slack)
+/* The farthest that a mover is displaced: beyond, the beam that points where it appears leaves less
+ * than -37 dB of it. */
+static uint32_t shift_most(const struct lm_target_line *line)
 {
-    if (!line->is_doppler || t->speed_mm_s == 0) {
-        return 0;
-    }
-    const fx_bam_t off = line->track - item->azimuth;
-    const uint64_t off_most = fx_abs_u32((int32_t)off) + slack;
-    const uint64_t shift =
-        fx_abs_u32(lm_mover_shift((int32_t)t->speed_mm_s, line->speed_mm_s, off)) * (uint64_t)3 / 2;
-    return slack * 4 > off_most || shift > off_most ? off_most : shift;
+    return line->beam + line->beam / 4;
 }
 
 /* Can the line meet the target at all, as far as was known when it was chosen? */
@@ -43,7 +35,8 @@ static bool may_meet(const struct lm_target_line *line, const struct lm_target *
      * arc against its sine and for the antenna's way towards it. */
     const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256u;
     const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(item->distance_q8, 1);
-    return fx_abs_u32(off) <= slack + line->width + shift_most(line, t, item, slack);
+    const uint32_t shift = line->is_doppler && t->speed_mm_s != 0 ? shift_most(line) : 0;
+    return fx_abs_u32(off) <= slack + line->width + shift;
 }
 
 /* Whether a closing speed is one of those that are shown. */
@@ -54,14 +47,21 @@ static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
            (either_way_mm_s >= line->gate_mm_s[0] && either_way_mm_s <= line->gate_mm_s[1]);
 }
 
-/* Where Doppler puts a target; false when it is not shown at all. */
-static bool displace(const struct lm_target_line *line, const struct lm_target *t,
-                     const struct lm_target_item *item, struct spot *spot)
+/* Put a target where Doppler has it, with what is left of it by the beam, which points there: the
+ * two-way pattern 2^(-8 x^2), x in beams. False when it is nowhere. */
+static bool displace(const struct lm_target_line *line, int32_t closing_mm_s, struct spot *spot)
 {
-    const int32_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, item->pose.heading, spot->back);
-    spot->azimuth +=
-        (fx_bam_t)lm_mover_shift(closing_mm_s, line->speed_mm_s, line->track - spot->azimuth);
-    return is_in_gate(line, closing_mm_s);
+    int32_t shift;
+    const fx_bam_t off = line->track - spot->azimuth;
+    if (!lm_mover_shift(closing_mm_s, line->speed_mm_s, off, &shift) ||
+        fx_abs_u32(shift) > shift_most(line)) {
+        return false;
+    }
+    /* x in Q12 is at most 5/4; 80 log10(2) dB are 6165 / 256. */
+    const uint64_t x_q12 = ((uint64_t)fx_abs_u32(shift) << 12) / fx_max_u32(line->beam, 1);
+    spot->azimuth += (fx_bam_t)shift;
+    spot->gain_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
+    return true;
 }
 
 static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
@@ -73,7 +73,10 @@ static bool find_spot(const struct lm_target_line *line, const struct lm_target 
     }
     spot->true_azimuth = spot->azimuth;
     lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
-    return !line->is_doppler || displace(line, t, item, spot);
+    spot->gain_q8 = 0;
+    const int32_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, item->pose.heading, spot->back);
+    return is_in_gate(line, closing_mm_s) &&
+           (!line->is_doppler || displace(line, closing_mm_s, spot));
 }
 
 /* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
@@ -82,7 +85,8 @@ static struct spot beside(const struct spot *target, const struct lm_return *r)
     const int32_t along_q8 = (int32_t)target->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
     const int32_t across_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
     return (struct spot){.range_q8 = fx_hypot_u32(along_q8, across_q8),
-                         .azimuth = target->azimuth + fx_atan2(across_q8, along_q8)};
+                         .azimuth = target->azimuth + fx_atan2(across_q8, along_q8),
+                         .gain_q8 = target->gain_q8};
 }
 
 static uint32_t off_line(const struct lm_target_line *line, const struct spot *s)
@@ -176,7 +180,7 @@ static void make_echo(struct echo *e, const struct lm_target_line *line,
         const struct spot s = beside(spot, &e->returns[i]);
         e->cell[i] = lit_cell(line, sight, item, &s, e->returns[i].up_mm);
         if (e->cell[i] != NO_CELL) {
-            e->returns[i].rcs_q8 += share_q8(line, &s);
+            e->returns[i].rcs_q8 += share_q8(line, &s) + s.gain_q8;
         }
     }
 }
@@ -219,7 +223,7 @@ static uint32_t add_chip(const struct lm_target_line *line, const struct lm_targ
                          const struct spot *spot, int32_t *level_q8)
 {
     const uint32_t cell = (spot->range_q8 - line->first_q8 + line->cell_q8 / 2) / line->cell_q8;
-    const int32_t clutter_q8 = area_q8(line, cell);
+    const int32_t clutter_q8 = area_q8(line, cell) - spot->gain_q8;
     const struct lm_chip_spot at = {
         .range_q8 = spot->range_q8,
         .off_bam = (int32_t)(line->azimuth - spot->azimuth),

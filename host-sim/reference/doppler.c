@@ -23,8 +23,7 @@ double ref_dbs_used(double had, double wanted, double least)
 
 double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg)
 {
-    const double shift_deg = closing_m_s / (speed_m_s * fabs(sin(off_deg * rad))) / rad;
-    return fmin(shift_deg, fabs(off_deg));
+    return fabs(off_deg) - acos(cos(off_deg * rad) + closing_m_s / speed_m_s) / rad;
 }
 
 double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m)

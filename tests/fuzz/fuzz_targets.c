@@ -89,6 +89,7 @@ static void draw_sector(const struct lm_target *t, uint32_t count, const struct 
                                             .height_q10 = 3000 * 1024,
                                             .wavelength_um = 31228,
                                             .is_doppler = i % 2,
+                                            .beam = FX_BAM_180 / 3,
                                             .speed_mm_s = look->speed_mm_s & 0x1fffff,
                                             .track = look->track,
                                             .gate_mm_s = {1500, i % 3 ? 50000 : 0}};

@@ -25,9 +25,8 @@ struct lm_sector_mode_row {
     uint8_t range_last;    /* index of the largest scale */
     uint8_t field_last;    /* enum lm_field */
     uint8_t bars;          /* swept in turn, 1..8 */
-    bool is_doppler;       /* movers are displaced */
     uint16_t clutter_q8;   /* how much of what stands still is cancelled, dB */
-    uint32_t gate_mm_s[2]; /* closing speeds, either way, of the targets that are shown */
+    uint32_t gate_mm_s[2]; /* closing speeds, either way, of what is shown; [1] is 0: all */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
@@ -41,7 +40,6 @@ struct lm_field_row {
     uint16_t sharpening;       /* azimuth cells in a beam width, a power of two; 1: real beam */
     uint16_t sharpening_least; /* real beam where there is less than this */
     uint8_t azimuths_log2;     /* traced across a sample of real beam: lm/footprint.h */
-    bool is_doppler;           /* movers are displaced */
     uint32_t pulse_ns[LM_RANGES];
 };
 

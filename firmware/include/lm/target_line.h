@@ -14,7 +14,8 @@ struct lm_target_line {
     uint32_t first;                    /* cells before this are not shown */
     int32_t height_q10, reference_q10; /* antenna; flat ground of the time gain */
     uint32_t wavelength_um;
-    bool is_doppler;     /* movers are displaced, and chosen by their closing speed */
+    bool is_doppler;     /* directions are told by Doppler: movers are displaced */
+    fx_bam_t beam;       /* the antenna's one-way half-power width, likewise */
     uint32_t speed_mm_s; /* of the antenna over the ground, and which way */
     fx_bam_t track;
     uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */

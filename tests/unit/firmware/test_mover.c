@@ -1,5 +1,5 @@
 /* Targets that move: where they are, and where a Doppler picture puts them. Places come from
- * PROJ's geodesics, displacements from theory: v_r / V R. */
+ * PROJ's geodesics, displacements from theory: V cos(o') = V cos(o) + v. */
 #include "hs/angle.h"
 #include "lm/target_line.h"
 
@@ -126,24 +126,35 @@ static void unsound_motion_is_refused(void **state)
 
 /* ---- where it appears ---- */
 
-static void the_shift_is_v_over_v_sin_o_towards_the_velocity_and_at_most_o(void **state)
+/* The definition itself: still ground where the target appears has its Doppler shift. */
+static void the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution(void **state)
 {
     (void)state;
-    double worst = 0; /* against a microradian and three parts in ten thousand */
-    for (int off_deg = -179; off_deg < 180; off_deg++) {
+    const double speed = 250000;
+    double worst = 0;
+    int without = 0;
+    for (int tenths = -1799; tenths < 1800; tenths += 7) {
         for (int closing = -30000; closing <= 30000; closing += 777) {
-            const double off = off_deg * pi / 180;
-            double expected = closing / (250000 * sin(off));
-            if (off_deg == 0 || fabs(expected) > fabs(off)) {
-                expected = off_deg == 0 ? 0 : copysign(fabs(off), expected);
+            const double off = tenths / 10.0 * pi / 180, cosine = cos(off) + closing / speed;
+            int32_t shift;
+            const bool has = lm_mover_shift(closing, 250000, hs_bam(tenths / 10.0), &shift);
+            if (fabs(fabs(cosine) - 1) < 1e-8) {
+                continue; /* a matter of rounding */
             }
-            const int32_t shift = lm_mover_shift(closing, 250000, hs_bam(off_deg));
-            const double error = fabs(shift * (2 * pi / 4294967296.0) - expected);
-            worst = fmax(worst, error / (1e-6 + 3e-4 * fabs(expected)));
+            assert_int_equal(has, fabs(cosine) < 1);
+            without += !has;
+            const double nearer = has ? fabs(off) - acos(cosine) : 0;
+            const double error =
+                hs_degrees((fx_bam_t)shift) * pi / 180 - copysign(nearer, off * nearer);
+            worst = fmax(worst, fabs(error));
         }
     }
-    assert_true(worst < 1);
-    assert_int_equal(lm_mover_shift(1000, 0, hs_bam(45)), 0);
+    print_message("# worst shift %.1e radian; %d have none\n", worst, without);
+    assert_true(worst < 1e-6);
+    assert_true(without > 500);
+    int32_t shift;
+    assert_true(lm_mover_shift(1000, 0, hs_bam(45), &shift));
+    assert_int_equal(shift, 0);
 }
 
 /* Lines of 120 degrees / 4096, half a milliradian: 19 m at 37 km. */
@@ -162,8 +173,8 @@ static struct lm_target_line sector_line(uint32_t line)
         .wavelength_um = X_BAND_UM};
 }
 
-/* Whether lines show the target, and the middle of its power, degrees. */
-static int is_shown(const struct lm_target *t, const struct lm_target_line *how, double *at_deg)
+/* The power of the target in all lines, and its middle, degrees. */
+static double power_of(const struct lm_target *t, const struct lm_target_line *how, double *at_deg)
 {
     struct lm_targets_near near;
     const struct lm_target_set set = {.items = t, .count = 1};
@@ -174,6 +185,7 @@ static int is_shown(const struct lm_target *t, const struct lm_target_line *how,
     for (uint32_t i = 0; i < LINES; i++) {
         struct lm_target_line line = sector_line(i);
         line.is_doppler = how->is_doppler;
+        line.beam = hs_bam(3.3);
         line.speed_mm_s = how->speed_mm_s;
         line.track = how->track;
         line.gate_mm_s[0] = how->gate_mm_s[0];
@@ -190,18 +202,26 @@ static int is_shown(const struct lm_target *t, const struct lm_target_line *how,
         }
     }
     *at_deg = moment / power;
-    return power > 0;
+    return power;
 }
 
-static void a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_a_cell(void **state)
+static double decibels(double ratio)
+{
+    return 10 * log10(ratio);
+}
+
+/* Where its Doppler shift is that of still ground, weakened by the two-way pattern of the beam that
+ * looks there: 24.08 dB times the square of the displacement in beams. */
+static void
+a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it(void **state)
 {
     (void)state;
     struct hs_rng rng;
+    int seen = 0, unseen = 0;
     hs_rng_seed(&rng, 12);
-    for (int i = 0; i < 60; i++) {
-        /* Places and headings anywhere in the sector, where the image falls into it as well. */
+    for (int i = 0; i < 80; i++) {
         const double azimuth = 80 * hs_rng_uniform(&rng) - 40, heading = 360 * hs_rng_uniform(&rng);
-        const double speed = 15 * hs_rng_uniform(&rng), track = i % 2 ? 75 : -75;
+        const double speed = 12 * hs_rng_uniform(&rng), track = i % 2 ? 55 : -55;
         double to[2], at_deg = 0, moved_deg;
         destination(46, 11, azimuth, 20000 + 10000 * hs_rng_uniform(&rng), to);
         const struct lm_target t = moving_point(to[0], to[1], heading, speed, 1000);
@@ -209,21 +229,29 @@ static void a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_
                                            .speed_mm_s = 250000,
                                            .track = hs_bam(track)},
                                     plain = {0};
-        assert_true(is_shown(&t, &plain, &at_deg));
-        assert_true(is_shown(&t, &how, &moved_deg));
-        const double closing = -speed * cos((heading - azimuth) * pi / 180);
-        const double expected =
-            azimuth + closing / (250 * sin((track - azimuth) * pi / 180)) * 180 / pi;
+        const double still = power_of(&t, &plain, &at_deg), moved = power_of(&t, &how, &moved_deg);
         assert_true(fabs(at_deg - azimuth) < 30.0 / LINES);
-        assert_true(fabs(moved_deg - expected) < 120.0 / LINES);
+        const double closing = -speed * cos((heading - azimuth) * pi / 180);
+        const double off = fabs(track - azimuth) * pi / 180, cosine = cos(off) + closing / 250;
+        const double nearer_deg = (off - acos(cosine)) * 180 / pi;
+        const double beams = nearer_deg / 3.3;
+        if (!(fabs(beams) < 1.25)) {
+            assert_true(moved == 0 || fabs(fabs(beams) - 1.25) < 0.01);
+            unseen++;
+            continue;
+        }
+        seen++;
+        assert_true(fabs(moved_deg - azimuth -
+                         copysign(nearer_deg, (track - azimuth) * nearer_deg)) < 120.0 / LINES);
+        assert_true(fabs(decibels(moved / still) + 80 * log10(2) * beams * beams) < 0.5);
     }
+    assert_true(seen > 40 && unseen > 5);
 }
 
 static void the_gates_show_only_closing_speeds_within_them_either_way(void **state)
 {
     (void)state;
-    const struct lm_target_line how = {
-        .is_doppler = true, .speed_mm_s = 250000, .track = hs_bam(90), .gate_mm_s = {2000, 20000}};
+    const struct lm_target_line how = {.gate_mm_s = {2000, 20000}};
     double at_deg;
     for (int speed = 0; speed <= 24; speed++) {
         for (int is_away = 0; is_away < 2; is_away++) {
@@ -232,12 +260,12 @@ static void the_gates_show_only_closing_speeds_within_them_either_way(void **sta
                 t.leg_m = 0;
                 seal_target(&t);
             }
-            assert_int_equal(is_shown(&t, &how, &at_deg), speed >= 2 && speed <= 20);
+            assert_int_equal(power_of(&t, &how, &at_deg) > 0, speed >= 2 && speed <= 20);
         }
     }
     /* Across the line of sight it has none. */
     const struct lm_target t = moving_point(46.2, 11, 90, 15, 1000);
-    assert_false(is_shown(&t, &how, &at_deg));
+    assert_true(power_of(&t, &how, &at_deg) == 0);
 }
 
 /* ---- when ---- */
@@ -315,9 +343,9 @@ int main(void)
         cmocka_unit_test(the_slowest_the_fastest_and_the_longest_stay_on_their_leg),
         cmocka_unit_test(a_target_without_speed_stays),
         cmocka_unit_test(unsound_motion_is_refused),
-        cmocka_unit_test(the_shift_is_v_over_v_sin_o_towards_the_velocity_and_at_most_o),
+        cmocka_unit_test(the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution),
         cmocka_unit_test(
-            a_doppler_sector_shows_a_mover_v_r_over_v_r_beside_its_place_within_a_cell),
+            a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it),
         cmocka_unit_test(the_gates_show_only_closing_speeds_within_them_either_way),
         cmocka_unit_test(movers_are_placed_anew_for_every_sweep_and_not_for_every_line),
         cmocka_unit_test(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone),
