@@ -27,4 +27,14 @@ void model_slicy(struct mesh *m);
  * estimated from photographs: it has the right parts at about the right places. */
 void model_tank(struct mesh *m);
 
+/* Add a fighter of an F-16's overall dimensions: 49 ft 5 in long, 32 ft 8 in wide with missiles at
+ * its wing tips, 16 ft high (armedforces.co.uk, "F-16"); two tanks below the wings, wheels down. */
+void model_aircraft(struct mesh *m);
+
+/* Add a lorry of three axles with a box body, 7.3 x 2.5 x 3.1 m. */
+void model_lorry(struct mesh *m);
+
+/* Add an arched shelter for an aircraft, shut: 30 m long, 24 m wide, 8 m high. */
+void model_shelter(struct mesh *m);
+
 #endif
