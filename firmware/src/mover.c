@@ -4,31 +4,59 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* Millimetres along the leg, 0..leg, and whether it is the way back. There and back takes at most
- * 2 * 10^8 mm / (1 mm/s) = 2^47.6 us; the way within it, below 2 * 10^8 mm, is 2^47.6 before the
- * division. */
-static uint64_t way_mm(const struct lm_target *t, uint64_t time_us, bool *is_back)
+/* Of all legs: at most 32 * 10^8 mm, below 2^32. */
+static uint32_t path_mm(const struct lm_target *t)
 {
-    const uint64_t leg_mm = (uint64_t)t->leg_m * 1000;
-    const uint64_t round_us = 2 * leg_mm * 1000000 / t->speed_mm_s;
-    const uint64_t gone_mm = time_us % round_us * t->speed_mm_s / 1000000;
-    *is_back = gone_mm > leg_mm;
-    return *is_back ? 2 * leg_mm - gone_mm : gone_mm;
+    uint32_t sum_mm = 0;
+    for (uint32_t i = 0; i < t->path_legs; i++) {
+        sum_mm += t->path[i].length_mm;
+    }
+    return sum_mm;
+}
+
+/* Millimetres along a way of `whole_mm`, 0..whole, and whether it is the way back. There and back
+ * takes at most 6.4 * 10^9 mm / (1 mm/s) = 2^52.6 us and at least 1 m / (2^20 mm/s) = 953 us; the
+ * way within it, below 6.4 * 10^9 mm, is 2^52.6 before the division. */
+static uint32_t gone_mm(const struct lm_target *t, uint64_t time_us, uint32_t whole_mm,
+                        bool *is_back)
+{
+    const uint64_t round_mm = t->path_is_round ? whole_mm : (uint64_t)whole_mm * 2;
+    const uint64_t round_us = round_mm * 1000000 / t->speed_mm_s;
+    const uint64_t mm = time_us % round_us * t->speed_mm_s / 1000000;
+    *is_back = mm > whole_mm;
+    return (uint32_t)(*is_back ? round_mm - mm : mm);
+}
+
+/* So far along a leg. */
+static struct lm_place place_on(const struct lm_path_leg *leg, uint32_t mm)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, (struct lm_place){leg->latitude, leg->longitude});
+    return lm_geo_direct(&origin, leg->heading, (uint32_t)((uint64_t)mm * 32 / 125));
+}
+
+/* The leg on which a mover is so far along its path, and how far it is from the leg's beginning. */
+static const struct lm_path_leg *find_leg(const struct lm_target *t, uint32_t *mm)
+{
+    const struct lm_path_leg *leg = t->path;
+    while (*mm > leg->length_mm && leg + 1 < t->path + t->path_legs) {
+        *mm -= leg->length_mm;
+        leg++;
+    }
+    return leg;
 }
 
 struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us)
 {
-    struct lm_pose pose = {{t->latitude, t->longitude}, t->heading};
+    struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, t->leg_m * 1000};
     if (t->speed_mm_s == 0) {
-        return pose;
+        return (struct lm_pose){{t->latitude, t->longitude}, t->heading};
     }
-    struct lm_geo_origin origin;
+    const bool has_path = (t->flags & LM_TARGET_HAS_PATH) != 0;
     bool is_back;
-    const uint64_t mm = way_mm(t, time_us, &is_back);
-    lm_geo_set_origin(&origin, pose.place);
-    pose.place = lm_geo_direct(&origin, t->heading, (uint32_t)(mm * 32 / 125));
-    pose.heading += is_back ? FX_BAM_180 : 0;
-    return pose;
+    uint32_t mm = gone_mm(t, time_us, has_path ? path_mm(t) : straight.length_mm, &is_back);
+    const struct lm_path_leg *leg = has_path ? find_leg(t, &mm) : &straight;
+    return (struct lm_pose){place_on(leg, mm), leg->heading + (is_back ? FX_BAM_180 : 0)};
 }
 
 int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)

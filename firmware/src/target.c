@@ -32,11 +32,28 @@ static bool scatterer_is_sound(const struct lm_scatterer *s)
     return is_sound;
 }
 
+static bool path_is_sound(const struct lm_target *t)
+{
+    bool is_sound = t->scatterer_count == 0 && t->leg_m == 0 && t->path_legs >= 1 &&
+                    t->path_legs <= LM_TARGET_LEGS_MAX && t->path_is_round <= 1;
+    for (uint32_t i = 0; is_sound && i < t->path_legs; i++) {
+        const struct lm_path_leg *leg = &t->path[i];
+        is_sound = fx_abs_u32((int32_t)leg->latitude) <= FX_BAM_90 && leg->length_mm >= 1000 &&
+                   leg->length_mm <= LM_TARGET_LEG_MAX_M * 1000u;
+    }
+    return is_sound;
+}
+
 static bool motion_is_sound(const struct lm_target *t)
 {
-    return t->speed_mm_s == 0 ? t->leg_m == 0
-                              : t->speed_mm_s <= LM_TARGET_SPEED_MAX_MM_S && t->leg_m >= 1 &&
-                                    t->leg_m <= LM_TARGET_LEG_MAX_M;
+    if (t->flags & LM_TARGET_HAS_PATH) {
+        return t->speed_mm_s >= 1 && t->speed_mm_s <= LM_TARGET_SPEED_MAX_MM_S && path_is_sound(t);
+    }
+    const bool is_leg_sound = t->speed_mm_s == 0
+                                  ? t->leg_m == 0
+                                  : t->speed_mm_s <= LM_TARGET_SPEED_MAX_MM_S && t->leg_m >= 1 &&
+                                        t->leg_m <= LM_TARGET_LEG_MAX_M;
+    return is_leg_sound && t->path_legs == 0 && t->path_is_round == 0;
 }
 
 /* What gives the target its return: bodies, a signature, or neither. */

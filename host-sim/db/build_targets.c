@@ -1,5 +1,6 @@
 #include "build_targets.h"
 
+#include "build_path.h"
 #include "image_grid.h"
 #include "text_file.h"
 #include "zero_bytes.h"
@@ -36,7 +37,10 @@ static const struct body {
 
 static const char target_form[] =
     "target NAME LATITUDE LONGITUDE ELEVATION|ground[+HEIGHT] HEADING, then `scatterers`, "
-    "`swerling CASE DBSM` or `signature NAME`, then perhaps `moving SPEED LEG`";
+    "`swerling CASE DBSM` or `signature NAME`, then perhaps `moving SPEED LEG`, or `moving SPEED` "
+    "and lines `via LATITUDE LONGITUDE`";
+static const char via_form[] =
+    "via LATITUDE LONGITUDE, behind a target without bodies that is `moving SPEED`";
 
 /* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
 static int split_words(char *line, char *words[WORDS_MAX])
@@ -87,21 +91,28 @@ static bool set_elevation(struct lm_target *t, char *word)
     return true;
 }
 
-/* Perhaps `moving SPEED LEG` at the end of `count` words; returns how many are before it, 0 when
- * it is wrong. */
+/* Perhaps `moving SPEED LEG`, or `moving SPEED` of a path, at the end of `count` words; returns how
+ * many are before it, 0 when it is wrong. */
 static int set_motion(struct lm_target *t, char *const *words, int count)
 {
-    double number[2];
-    if (count < 4 || strcmp(words[count - 3], "moving") != 0) {
+    double speed, leg = 0;
+    int before = 1;
+    while (before < count && strcmp(words[before], "moving") != 0) {
+        before++;
+    }
+    if (before == count) {
         return count;
     }
-    if (!read_numbers(&words[count - 2], 1, &number[0], 0.001, LM_TARGET_SPEED_MAX_MM_S / 1000.0) ||
-        !read_numbers(&words[count - 1], 1, &number[1], 1, LM_TARGET_LEG_MAX_M)) {
+    const int numbers = count - before - 1;
+    if (numbers < 1 || numbers > 2 ||
+        !read_numbers(&words[before + 1], 1, &speed, 0.001, LM_TARGET_SPEED_MAX_MM_S / 1000.0) ||
+        (numbers == 2 && !read_numbers(&words[before + 2], 1, &leg, 1, LM_TARGET_LEG_MAX_M))) {
         return 0;
     }
-    t->speed_mm_s = (uint32_t)lround(number[0] * 1000);
-    t->leg_m = (uint32_t)lround(number[1]);
-    return count - 3;
+    t->speed_mm_s = (uint32_t)lround(speed * 1000);
+    t->leg_m = (uint32_t)lround(leg);
+    t->flags |= numbers == 1 ? LM_TARGET_HAS_PATH : 0;
+    return before;
 }
 
 static bool set_signature(struct lm_target *t, const struct build_signatures *signatures,
@@ -228,6 +239,40 @@ static int read_body(const struct db_text_file *f, struct lm_target *t, int kind
                : db_text_error(f, bodies[kind].form, "a number is missing or out of its range");
 }
 
+/* One more place of the last target's path. The way ends where it began when that is named again.
+ */
+static int read_via(const struct db_text_file *f, struct lm_target *t, char *const *words,
+                    int count)
+{
+    double latitude, longitude;
+    if (!t || !(t->flags & LM_TARGET_HAS_PATH) || t->path_is_round) {
+        return db_text_error(f, via_form, "this place belongs to no path");
+    }
+    if (count != 3 || !read_numbers(words + 1, 1, &latitude, -90, 90) ||
+        !read_numbers(words + 2, 1, &longitude, -180, 360)) {
+        return db_text_error(f, via_form, "a place is no number of its range");
+    }
+    if (t->path_legs == LM_TARGET_LEGS_MAX) {
+        return db_text_error(f, "leave some places out", "the path has more than %d legs",
+                             LM_TARGET_LEGS_MAX);
+    }
+    const struct lm_place begin = {t->latitude, t->longitude};
+    const struct lm_place to = {hs_bam(latitude), hs_bam(longitude)};
+    const struct lm_place from =
+        t->path_legs > 0 ? build_path_end(&t->path[t->path_legs - 1]) : begin;
+    if (build_path_leg(from, to, &t->path[t->path_legs]) != 0) {
+        return db_text_error(
+            f, "name places between, or leave one out",
+            "the leg to this place is shorter than 1 m, longer than %d km, or goes "
+            "over a pole",
+            LM_TARGET_LEG_MAX_M / 1000);
+    }
+    t->path_legs++;
+    t->path_is_round = to.latitude == begin.latitude && to.longitude == begin.longitude;
+    t->heading = t->path[0].heading;
+    return 0;
+}
+
 /* What is being read: the last target, and whether it said `scatterers`. */
 struct reading {
     struct db_text_file file;
@@ -235,10 +280,16 @@ struct reading {
     bool wants_bodies;
 };
 
-/* A target that said `scatterers` must have had some when the next one begins. */
+/* A target that said `scatterers`, or `moving` without a leg, must have had what it needs when the
+ * next one begins. */
 static int end_target(const struct reading *r)
 {
     const uint32_t count = r->targets->count;
+    const struct lm_target *last = count > 0 ? &r->targets->items[count - 1] : NULL;
+    if (last && (last->flags & LM_TARGET_HAS_PATH) && (last->path_legs == 0 || r->wants_bodies)) {
+        return db_text_error(&r->file, via_form, "the path of target %.16s %s", last->name,
+                             r->wants_bodies ? "cannot be, for it has bodies" : "has no places");
+    }
     if (r->wants_bodies && r->targets->items[count - 1].scatterer_count == 0) {
         return db_text_error(&r->file, "add a sphere, plate, dihedral or trihedral",
                              "target %.16s has no bodies", r->targets->items[count - 1].name);
@@ -309,15 +360,18 @@ static int read_line(struct reading *r)
     if (strcmp(words[0], "library") == 0) {
         return read_library(r, words, count);
     }
+    struct build_targets *t = r->targets;
+    struct lm_target *last = t->count > 0 ? &t->items[t->count - 1] : NULL;
+    if (strcmp(words[0], "via") == 0) {
+        return read_via(&r->file, r->wants_bodies ? NULL : last, words, count);
+    }
     const int kind = find_body(words[0]);
     if (!kind) {
-        return db_text_error(&r->file,
-                             "begin with library, target, sphere, plate, dihedral or trihedral",
-                             "\"%s\" is none of these", words[0]);
+        return db_text_error(
+            &r->file, "begin with library, target, via, sphere, plate, dihedral or trihedral",
+            "\"%s\" is none of these", words[0]);
     }
-    struct build_targets *t = r->targets;
-    return read_body(&r->file, r->wants_bodies ? &t->items[t->count - 1] : NULL, kind, words,
-                     count);
+    return read_body(&r->file, r->wants_bodies ? last : NULL, kind, words, count);
 }
 
 static void seal(struct build_targets *t)
@@ -393,6 +447,14 @@ static void print_body(const struct lm_scatterer *s)
     puts(s->is_two_sided ? ", both sides" : "");
 }
 
+static void print_leg(const struct lm_path_leg *leg)
+{
+    const struct lm_place to = build_path_end(leg);
+    printf("        via %.6f %.6f: %.1f m on %.2f\n", image_degrees((int32_t)to.latitude),
+           image_longitude_degrees(to.longitude), leg->length_mm / 1000.0,
+           image_degrees((int64_t)leg->heading));
+}
+
 void build_targets_print(const struct image *image)
 {
     if (image->db.target_count == 0) {
@@ -413,10 +475,16 @@ void build_targets_print(const struct image *image)
         } else if (t->scatterer_count == 0) {
             printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
         }
-        if (t->speed_mm_s != 0) {
+        if (t->flags & LM_TARGET_HAS_PATH) {
+            printf("  moving %.1f m/s%s", t->speed_mm_s / 1000.0,
+                   t->path_is_round ? ", round" : "");
+        } else if (t->speed_mm_s != 0) {
             printf("  moving %.1f m/s, leg %" PRIu32 " m", t->speed_mm_s / 1000.0, t->leg_m);
         }
         putchar('\n');
+        for (int k = 0; lm_target_check(t) == LM_OK && k < t->path_legs; k++) {
+            print_leg(&t->path[k]);
+        }
         for (int k = 0; k < t->scatterer_count && k < LM_SCATTERERS_MAX; k++) {
             print_body(&t->scatterers[k]);
         }
@@ -434,10 +502,29 @@ static bool rest_is_zero(const struct lm_target *t)
         rest = rest && s->reserved == 0 && (bodies[s->kind].sizes == 2 || s->size_mm[1] == 0) &&
                (s->kind == LM_SHAPE_PLATE || !s->is_two_sided);
     }
-    const int unused = LM_SCATTERERS_MAX - t->scatterer_count;
+    const size_t used_bytes = t->path_legs * sizeof t->path[0] +
+                              t->scatterer_count * sizeof t->scatterers[0]; /* one of them is 0 */
     const bool is_point = t->scatterer_count == 0 && !(t->flags & LM_TARGET_HAS_SIGNATURE);
     return rest && (is_point || (t->swerling == 0 && t->mean_rcs_q8 == 0)) &&
-           db_is_zero(&t->scatterers[t->scatterer_count], (size_t)unused * sizeof t->scatterers[0]);
+           db_is_zero((const uint8_t *)t->scatterers + used_bytes,
+                      sizeof t->scatterers - used_bytes);
+}
+
+/* Does a sound path begin at the target, go from leg to leg without a step, and come back when it
+ * is round? */
+static bool path_hangs_together(const struct lm_target *t)
+{
+    const struct lm_place begin = {t->latitude, t->longitude};
+    struct lm_place at = begin;
+    for (int i = 0; i < t->path_legs; i++) {
+        if (t->path[i].latitude != at.latitude || t->path[i].longitude != at.longitude) {
+            return false;
+        }
+        at = build_path_end(&t->path[i]);
+    }
+    return t->path_legs == 0 ||
+           (t->heading == t->path[0].heading &&
+            (!t->path_is_round || build_path_apart_m(begin, at) <= BUILD_PATH_SLACK_M));
 }
 
 static bool id_is_new(const struct image *image, uint32_t index)
@@ -465,6 +552,8 @@ void build_targets_check(const struct image *image, struct image_findings *findi
                    t->signature >= image->db.signature_count) {
             image_find(findings, at, "target %" PRIu32 ": its signature %u is not in the image", i,
                        t->signature);
+        } else if (!path_hangs_together(t)) {
+            image_find(findings, at, "target %" PRIu32 ": its path has gaps", i);
         } else if (!rest_is_zero(t)) {
             image_find(findings, at, "target %" PRIu32 ": unused numbers are not zero", i);
         }

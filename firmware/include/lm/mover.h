@@ -11,10 +11,11 @@ struct lm_pose {
     fx_bam_t heading;
 };
 
-/* The target at a time of the unit's clock: from its origin along its heading, back when the leg is
- * flown, and so on; a target without speed stays. `t` is a checked record. Its heading is that of
- * the leg's beginning all along. The same time gives the same pose on every machine.
- * Cost: 800 instructions for a mover, two divisions of 64 bits among them. */
+/* The target at a time of the unit's clock: from its origin along its heading or its path, back
+ * when that is flown, or round once more, and so on; a target without speed stays. `t` is a checked
+ * record. Its heading is that of the leg's beginning all along. The same time gives the same pose
+ * on every machine. Cost: 800 instructions for a mover, two divisions of 64 bits among them, and 10
+ * for each leg of a path. */
 struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us);
 
 /* How fast a mover comes nearer, mm/s, along the ground; `back` is the direction from it to the

@@ -20,11 +20,17 @@ enum {
     LM_TARGET_SWERLING_MAX = 4,
     LM_TARGET_RCS_MAX_Q8 = 100 * 256, /* of a mean: either way */
     LM_TARGET_SPEED_MAX_MM_S = 1 << 20,
-    LM_TARGET_LEG_MAX_M = 100000
+    LM_TARGET_LEG_MAX_M = 100000,
+    LM_TARGET_LEGS_MAX = 32
 };
 
 /* Flags of a target, bits. */
-enum { LM_TARGET_ABOVE_GROUND = 1, LM_TARGET_HAS_SIGNATURE = 2, LM_TARGET_FLAGS = 3 };
+enum {
+    LM_TARGET_ABOVE_GROUND = 1,
+    LM_TARGET_HAS_SIGNATURE = 2,
+    LM_TARGET_HAS_PATH = 4,
+    LM_TARGET_FLAGS = 7
+};
 
 /* One body of a target. Its boresight points to azimuth (from forward towards right) and elevation;
  * its right axis is then level, and roll turns it towards its up axis. */
@@ -38,6 +44,14 @@ struct lm_scatterer {
 };
 _Static_assert(sizeof(struct lm_scatterer) == 36, "the record must be what FORMATS.md says");
 
+/* One leg of a way: where it begins, where it leads, and how long it is. The next one begins at its
+ * end, as lm_geo_direct finds it. */
+struct lm_path_leg {
+    fx_bam_t latitude, longitude, heading;
+    uint32_t length_mm; /* 1000..LM_TARGET_LEG_MAX_M * 1000 */
+};
+_Static_assert(sizeof(struct lm_path_leg) == 16, "the record must be what FORMATS.md says");
+
 /* A record of the image's section TARGETS. */
 struct lm_target {
     uint32_t crc; /* CRC-32C of all bytes after this field */
@@ -50,11 +64,17 @@ struct lm_target {
     uint16_t flags;          /* LM_TARGET_...; others make it unsound */
     int32_t mean_rcs_q8;     /* of such a point, dBsm * 256 */
     char name[16];           /* zero-padded; may fill all 16 */
-    struct lm_scatterer scatterers[LM_SCATTERERS_MAX];
-    uint32_t speed_mm_s; /* along the heading and back again; 0: stands still */
-    uint32_t leg_m;      /* of that way, 1..LM_TARGET_LEG_MAX_M; 0 when it stands still */
-    uint8_t signature;   /* which one of the image's, when flagged; the target then has no bodies */
-    uint8_t reserved[7];
+    union {
+        struct lm_scatterer scatterers[LM_SCATTERERS_MAX];
+        struct lm_path_leg path[LM_TARGET_LEGS_MAX]; /* when flagged; the first begins here */
+    };
+    uint32_t speed_mm_s; /* along the heading, or the path, and back again; 0: stands still */
+    uint32_t leg_m; /* along the heading, 1..LM_TARGET_LEG_MAX_M; 0 with a path or without speed */
+    uint8_t signature; /* which one of the image's, when flagged; the target then has no bodies */
+    uint8_t
+        path_legs; /* 1..LM_TARGET_LEGS_MAX with a path, which needs speed and no bodies, else 0 */
+    uint8_t path_is_round; /* 0 or 1: the path ends where it began, and begins anew */
+    uint8_t reserved[5];
 };
 _Static_assert(sizeof(struct lm_target) == LM_TARGET_BYTES,
                "the record must be what FORMATS.md says");

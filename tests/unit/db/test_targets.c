@@ -34,7 +34,14 @@ static const char text[] =
     "target sixteen_letters_ 0 360 0 -45 swerling 0 -20\n"
     "target ferry 47 8 ground+2.5 90 swerling 1 30 moving 7.5 4000\n"
     "target convoy 47 8 ground 45 scatterers moving 16 100000\n"
-    "  sphere 0.5  0 0 -1.5\n";
+    "  sphere 0.5  0 0 -1.5\n"
+    "target bus 47 8 ground 0 swerling 1 30 moving 12\n"
+    "  via 47.01 8.01\n"
+    "  via 47.01 8.03\n"
+    "target patrol 47 8 ground 77 swerling 0 30 moving 12.5\n"
+    "  via 47.01 8\n"
+    "  via 47 8.02\n"
+    "  via 47 8\n";
 
 static void a_file_says_all_that_a_record_holds(void **state)
 {
@@ -42,7 +49,7 @@ static void a_file_says_all_that_a_record_holds(void **state)
     struct build_targets t;
     scene_text("all.targets", text);
     assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
-    assert_int_equal(t.count, 5);
+    assert_int_equal(t.count, 7);
     const struct lm_target *c = &t.items[0];
     assert_string_equal(c->name, "corners");
     assert_true(fabs(hs_degrees(c->latitude) - 47.01) < 1e-7);
@@ -75,6 +82,13 @@ static void a_file_says_all_that_a_record_holds(void **state)
     assert_int_equal(t.items[4].speed_mm_s, 16000);
     assert_int_equal(t.items[4].leg_m, LM_TARGET_LEG_MAX_M);
     assert_int_equal(t.items[4].scatterer_count, 1);
+    assert_int_equal(t.items[5].flags, LM_TARGET_ABOVE_GROUND | LM_TARGET_HAS_PATH);
+    assert_int_equal(t.items[5].leg_m, 0);
+    assert_int_equal(t.items[5].path_legs, 2);
+    assert_int_equal(t.items[5].path_is_round, 0);
+    assert_int_equal(t.items[6].path_legs, 3);
+    assert_int_equal(t.items[6].path_is_round, 1);
+    assert_int_equal(t.items[6].heading, t.items[6].path[0].heading);
     for (uint32_t i = 0; i < t.count; i++) {
         assert_int_equal(t.items[i].id, i);
         assert_int_equal(lm_target_check(&t.items[i]), LM_OK);
@@ -119,6 +133,17 @@ static void a_line_that_makes_no_sense_is_refused(void **state)
         "target t 0 0 0 0 swerling 1 1 20 100\n",
         "target t 0 0 0 0 moving 20 100\n",
         "target a b c d e f g h i j k l m n o p q r s\n",
+        "via 1 1\n",
+        "target t 0 0 0 0 swerling 1 1\nvia 0 0.1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20 100\nvia 0 0.1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20\nvia 0 0.1 1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20\nvia 0 0\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20\nvia 0 1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20\nvia 0 0.1\nvia 0 0\nvia 0 0.2\n",
+        "target t 89.9 0 0 0 swerling 1 1 moving 20\nvia 89.9 180\n",
+        "target t 0 0 0 0 scatterers moving 20\nsphere 1 0 0 0\n",
+        "target t 0 0 0 0 scatterers moving 20\nvia 0 0.1\n",
+        "target t 0 0 0 0 swerling 1 1 moving 20 target u 0 0 0 0 swerling 1 1\n",
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct build_targets t;
@@ -223,7 +248,7 @@ static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state
     struct memory_flash flash;
     struct lm_db db;
     build_with_targets("with.lmdb");
-    assert_true(scene_log_holds("targets 5"));
+    assert_true(scene_log_holds("targets 7"));
     assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
     assert_int_equal(image_open(&image, scene_path("with.lmdb")), 0);
     memory_flash_open(&flash, image.bytes, image.size_bytes);
@@ -253,6 +278,8 @@ static void verify_and_inspect_know_targets(void **state)
     assert_true(scene_log_holds("swerling 3, mean 12.5 dBsm"));
     assert_true(scene_log_holds("ground   2.5"));
     assert_true(scene_log_holds("moving 7.5 m/s, leg 4000 m"));
+    assert_true(scene_log_holds("moving 12.5 m/s, round\n"));
+    assert_true(scene_log_holds("via 47.010000 8.010000: 1346"));
     assert_true(scene_log_holds("input: targets all.targets"));
     assert_true(scene_log_holds("section-sha256: TARGETS"));
 }
@@ -319,7 +346,7 @@ static void seal(struct copy *c)
     struct lm_image_header h;
     memcpy(&h, c->bytes, sizeof h);
     uint8_t *head = c->bytes + c->head_at;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 7; i++) {
         uint8_t *record = head + 64 + i * LM_TARGET_BYTES;
         const uint32_t crc = fx_crc32c(0, record + 4, LM_TARGET_BYTES - 4);
         memcpy(record, &crc, 4);
@@ -338,11 +365,11 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
     struct copy c;
     copy_image(&c);
     struct lm_target *t = (void *)(c.bytes + c.head_at + 64);
-    struct lm_target kept[3];
+    struct lm_target kept[7];
     memcpy(kept, t, sizeof kept);
     seal(&c);
     assert_int_equal(faults(c.bytes, c.size), 0);
-    for (int lie = 0; lie < 12; lie++) {
+    for (int lie = 0; lie < 20; lie++) {
         memcpy(t, kept, sizeof kept);
         switch (lie) {
         case 0:
@@ -376,8 +403,32 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
             t[0].swerling = 1;
             break; /* it has bodies */
         case 10:
-            t[2].reserved[6] = 1;
+            t[2].reserved[4] = 1;
             break;
+        case 11:
+            t[5].path[1].latitude += 100;
+            break; /* a gap */
+        case 12:
+            t[5].path[0].length_mm += 500;
+            break;
+        case 13:
+            t[5].path_legs = 1;
+            break; /* another one lies behind it */
+        case 14:
+            t[5].path_is_round = 1;
+            break; /* it does not end where it began */
+        case 15:
+            t[6].heading += 1;
+            break;
+        case 16:
+            t[6].path_legs = 33;
+            break;
+        case 17:
+            t[6].flags = 0;
+            break;
+        case 18:
+            t[1].path_legs = 1;
+            break; /* it has no path */
         default:
             c.bytes[c.head_at + 40] = 1;
             break;

@@ -99,6 +99,129 @@ static void a_target_without_speed_stays(void **state)
     assert_int_equal(pose.heading, t.heading);
 }
 
+/* A way by places: legs of 3, 20 and 0.5 km. */
+static const double places[4][2] = {{46, 11}, {46.02, 11.026}, {46.19, 11.1}, {46.186, 11.104}};
+
+/* The first `legs` legs, by PROJ. */
+static struct lm_target path_target(uint8_t legs, double speed_m_s, double length_m[])
+{
+    struct geod_geodesic earth;
+    struct lm_target t = point_at(places[0][0], places[0][1], 0, 40);
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    for (uint8_t i = 0; i < legs; i++) {
+        const double *from = places[i], *to = places[i + 1];
+        double heading;
+        geod_inverse(&earth, from[0], from[1], to[0], to[1], &length_m[i], &heading, NULL);
+        t.path[i] = (struct lm_path_leg){hs_bam(from[0]), hs_bam(from[1]), hs_bam(heading),
+                                         (uint32_t)lround(length_m[i] * 1000)};
+    }
+    t.flags = LM_TARGET_HAS_PATH;
+    t.path_legs = legs;
+    t.heading = t.path[0].heading;
+    t.speed_mm_s = (uint32_t)lround(speed_m_s * 1000);
+    seal_target(&t);
+    return t;
+}
+
+static void a_mover_on_a_path_goes_through_its_places_and_back_or_round(void **state)
+{
+    (void)state;
+    double length_m[3];
+    struct lm_target t = path_target(3, 20, length_m);
+    const double whole_m = length_m[0] + length_m[1] + length_m[2];
+    for (int is_round = 0; is_round < 2; is_round++) {
+        t.path_is_round = is_round != 0;
+        seal_target(&t);
+        assert_int_equal(lm_target_check(&t), LM_OK);
+        for (double seconds = 0; seconds < 20000; seconds += 37.5) {
+            const double gone = fmod(seconds * 20, is_round ? whole_m : 2 * whole_m);
+            const bool is_back = gone > whole_m;
+            double way = is_back ? 2 * whole_m - gone : gone, to[2];
+            int leg = 0;
+            while (leg < 2 && way > length_m[leg]) {
+                way -= length_m[leg++];
+            }
+            const fx_bam_t heading = t.path[leg].heading;
+            destination(places[leg][0], places[leg][1], hs_degrees(heading), way, to);
+            const struct lm_pose pose = lm_target_pose(&t, (uint64_t)(seconds * 1e6));
+            assert_true(metres_apart(to, pose.place) < 0.05);
+            assert_int_equal(pose.heading, heading + (is_back ? FX_BAM_180 : 0));
+        }
+    }
+}
+
+static void the_longest_path_and_the_shortest_are_gone_at_any_time(void **state)
+{
+    (void)state;
+    double length_m[1];
+    for (int i = 0; i < 4; i++) {
+        struct lm_target t = path_target(1, 20, length_m);
+        t.path_is_round = i % 2 != 0;
+        t.path_legs = i < 2 ? 1 : LM_TARGET_LEGS_MAX;
+        t.speed_mm_s = i < 2 ? LM_TARGET_SPEED_MAX_MM_S : 1;
+        for (int k = 0; k < t.path_legs; k++) {
+            t.path[k] = t.path[0];
+            t.path[k].length_mm = i < 2 ? 1000 : LM_TARGET_LEG_MAX_M * 1000u;
+        }
+        seal_target(&t);
+        assert_int_equal(lm_target_check(&t), LM_OK);
+        for (uint64_t time = 1; time != 0; time <<= 1) {
+            const struct lm_pose pose = lm_target_pose(&t, time - 1);
+            assert_true(metres_apart(places[0], pose.place) < t.path[0].length_mm / 1000.0 + 0.1);
+        }
+    }
+}
+
+static void an_unsound_path_is_refused(void **state)
+{
+    (void)state;
+    double length_m[3];
+    for (int lie = 0; lie < 11; lie++) {
+        struct lm_target t = path_target(3, 20, length_m);
+        switch (lie) {
+        case 0:
+            break;
+        case 1:
+            t.path_legs = 0;
+            break;
+        case 2:
+            t.path_legs = LM_TARGET_LEGS_MAX + 1;
+            break;
+        case 3:
+            t.path_is_round = 2;
+            break;
+        case 4:
+            t.leg_m = 1;
+            break;
+        case 5:
+            t.speed_mm_s = 0;
+            break;
+        case 6:
+            t.speed_mm_s = LM_TARGET_SPEED_MAX_MM_S + 1;
+            break;
+        case 7:
+            t.path[2].length_mm = 999;
+            break;
+        case 8:
+            t.path[1].length_mm = LM_TARGET_LEG_MAX_M * 1000u + 1;
+            break;
+        case 9:
+            t.path[2].latitude = FX_BAM_90 + 1;
+            break;
+        default:
+            t.flags = 0;
+            break;
+        }
+        seal_target(&t);
+        assert_int_equal(lm_target_check(&t), lie == 0 ? LM_OK : LM_ERR_CORRUPT);
+    }
+    struct lm_target bodies = path_target(1, 20, length_m);
+    bodies.scatterer_count = 1;
+    bodies.scatterers[0] = (struct lm_scatterer){.kind = LM_SHAPE_SPHERE, .size_mm = {1000, 0}};
+    seal_target(&bodies);
+    assert_int_equal(lm_target_check(&bodies), LM_ERR_CORRUPT);
+}
+
 static void unsound_motion_is_refused(void **state)
 {
     (void)state;
@@ -342,6 +465,9 @@ int main(void)
         cmocka_unit_test(a_mover_goes_to_the_end_of_its_leg_and_back),
         cmocka_unit_test(the_slowest_the_fastest_and_the_longest_stay_on_their_leg),
         cmocka_unit_test(a_target_without_speed_stays),
+        cmocka_unit_test(a_mover_on_a_path_goes_through_its_places_and_back_or_round),
+        cmocka_unit_test(the_longest_path_and_the_shortest_are_gone_at_any_time),
+        cmocka_unit_test(an_unsound_path_is_refused),
         cmocka_unit_test(unsound_motion_is_refused),
         cmocka_unit_test(the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution),
         cmocka_unit_test(
