@@ -4,6 +4,9 @@
 #ifndef ASPECT_NEON_H
 #define ASPECT_NEON_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "aspect_line.h"
 #include "fx/log.h"
 #include "fx/neon.h"

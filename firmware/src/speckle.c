@@ -2,6 +2,7 @@
 
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "speckle_neon.h"
 
 enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
@@ -33,6 +34,10 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
 void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
                     int32_t *restrict level_q8, uint32_t cells)
 {
+    if (FX_HAS_NEON) {
+        texture_neon(t, cell, noise, level_q8, cells);
+        return;
+    }
     /* The rows as one, and signed indices: so that it becomes gathers. */
     const int32_t *const table_q8 = lm_speckle_q8[0];
     for (uint32_t i = 0; i < cells; i++) {
