@@ -83,48 +83,29 @@ uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
     return b->power_q24[slot];
 }
 
-enum { BLOCK = 64 }; /* cells that are added up together: half a kilobyte of the stack */
-
-/* Powers are cut into halves so that the products fit 32 bits, which vectors multiply: weights add
- * up to 2^16, so that both sums stay below 2^32, and together they are exact. */
-struct halves {
-    uint32_t high[BLOCK], low[BLOCK];
-};
-
-/* Four samples at a time, so that sums are fetched and put back half as often. */
-static inline void add_four(struct halves *restrict sum, const uint32_t *const power[4],
-                            const uint32_t weight_q16[4])
+/* Weights add up to 2^16, so that a sum stays below 2^48. */
+static void add_samples(const uint32_t *const power[LM_BEAM_TAPS],
+                        const uint32_t weight_q16[LM_BEAM_TAPS], uint32_t *restrict sum,
+                        uint32_t cells)
 {
-    const uint32_t *restrict a = power[0], *restrict b = power[1];
-    const uint32_t *restrict c = power[2], *restrict d = power[3];
-    const uint32_t wa = weight_q16[0], wb = weight_q16[1], wc = weight_q16[2], wd = weight_q16[3];
-    for (uint32_t i = 0; i < BLOCK; i++) {
-        sum->high[i] +=
-            (a[i] >> 16) * wa + (b[i] >> 16) * wb + (c[i] >> 16) * wc + (d[i] >> 16) * wd;
-        sum->low[i] += (a[i] & 0xFFFF) * wa + (b[i] & 0xFFFF) * wb + (c[i] & 0xFFFF) * wc +
-                       (d[i] & 0xFFFF) * wd;
-    }
-}
-
-static void put_together(const struct halves *restrict sum, uint32_t *restrict power)
-{
-    for (uint32_t i = 0; i < BLOCK; i++) {
-        power[i] = sum->high[i] + (sum->low[i] >> 16);
+    const uint32_t *restrict a = power[0], *restrict b = power[1], *restrict c = power[2];
+    const uint32_t *restrict d = power[3], *restrict e = power[4], *restrict f = power[5];
+    const uint32_t *restrict g = power[6], *restrict h = power[7];
+    const uint64_t wa = weight_q16[0], wb = weight_q16[1], wc = weight_q16[2], wd = weight_q16[3];
+    const uint64_t we = weight_q16[4], wf = weight_q16[5], wg = weight_q16[6], wh = weight_q16[7];
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint64_t sum_q40 = a[i] * wa + b[i] * wb + c[i] * wc + d[i] * wd + e[i] * we +
+                                 f[i] * wf + g[i] * wg + h[i] * wh;
+        sum[i] = (uint32_t)(sum_q40 >> 16);
     }
 }
 
 void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
                  uint32_t cells)
 {
-    for (uint32_t begin = 0; begin < cells; begin += BLOCK) {
-        struct halves sum = {{0}, {0}};
-        for (int32_t j = 0; j < LM_BEAM_TAPS; j += 4) {
-            const uint32_t *power[4];
-            for (int32_t k = 0; k < 4; k++) {
-                power[k] = b->power_q24[slot_of(look->first + j + k)] + begin;
-            }
-            add_four(&sum, power, look->weight_q16 + j);
-        }
-        put_together(&sum, power_q24 + begin);
+    const uint32_t *power[LM_BEAM_TAPS];
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        power[j] = b->power_q24[slot_of(look->first + j)];
     }
+    add_samples(power, look->weight_q16, power_q24, cells);
 }

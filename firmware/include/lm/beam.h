@@ -12,8 +12,7 @@
 
 enum {
     LM_BEAM_TAPS = 8,
-    LM_BEAM_FINEST = 8,                           /* largest k of D = D0 / 2^k */
-    LM_BEAM_ROOM = (LM_CELLS_ROOM + 63) / 64 * 64 /* cells are added up in blocks of 64 */
+    LM_BEAM_FINEST = 8 /* largest k of D = D0 / 2^k */
 };
 
 /* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 8. */
@@ -21,7 +20,7 @@ struct lm_beam {
     uint8_t fineness; /* k */
     uint16_t held;    /* bit s: slot s holds sample number[s] */
     int32_t number[LM_BEAM_TAPS];
-    uint32_t power_q24[LM_BEAM_TAPS][LM_BEAM_ROOM];
+    uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
 };
 
 /* What one line of the display is made of: samples first .. first + 7, each with its weight. */
@@ -50,8 +49,7 @@ bool lm_beam_has(const struct lm_beam *b, int32_t sample);
 /* The room of a sample, which counts as held from now on. */
 uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample);
 
-/* The line: all of the look's samples are held. Whole blocks are written: power_q24 has
- * LM_BEAM_ROOM. Cost: see docs/benchmarks.md. */
+/* The line: all of the look's samples are held. Cost: see docs/benchmarks.md. */
 void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
                  uint32_t cells);
 

@@ -88,7 +88,7 @@ struct lm_sector {
     bool has_runup;                  /* once it was traced */
 
     uint32_t samples;                 /* taken so far: only grows */
-    uint32_t power_q24[LM_BEAM_ROOM]; /* of the line drawn last, behind beam and pulse */
+    uint32_t power_q24[LM_CELLS_ROOM]; /* of the line drawn last, behind beam and pulse */
     int32_t level_q8[LM_CELLS_ROOM];  /* and behind the receiver: what the tone is made of */
 };
 

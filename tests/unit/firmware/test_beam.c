@@ -72,7 +72,7 @@ static void a_line_is_the_weighted_sum_of_its_samples(void **state)
     struct hs_rng rng;
     hs_rng_seed(&rng, 32);
     static double power[LM_BEAM_TAPS][CELLS], wanted[CELLS];
-    static uint32_t sum[LM_BEAM_ROOM];
+    static uint32_t sum[LM_CELLS_ROOM];
     const double *lines[LM_BEAM_TAPS];
     for (int n = 0; n < 50; n++) {
         struct lm_beam_look look;

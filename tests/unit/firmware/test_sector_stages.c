@@ -276,7 +276,7 @@ static void judge_line(struct trial *t)
 {
     struct lm_sector *s = &t->w->sector;
     const uint32_t samples = s->samples, sweep = s->sweep, line = draw_line(t->w);
-    uint32_t drawn_q24[LM_BEAM_ROOM];
+    uint32_t drawn_q24[LM_CELLS_ROOM];
     /* To the right, the sample taken last is the outermost. */
     const double azimuth_deg = line_azimuth_deg(s, line);
     const struct ref_beam beam = beam_of(s, azimuth_deg);
