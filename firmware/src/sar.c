@@ -95,8 +95,9 @@ static void set_layover(struct lm_sar *s)
     };
 }
 
-static void set_geometry(struct lm_sar *s)
+static void set_geometry(struct lm_sar *s, uint64_t patch_us)
 {
+    const uint64_t dwell_ms = patch_us / 1000;
     s->geometry = (struct lm_patch_geometry){
         .centre = s->command.centre,
         .look = s->command.look_azimuth,
@@ -110,6 +111,7 @@ static void set_geometry(struct lm_sar *s)
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
         .lean_q16 = s->layover.lean_q16,
+        .dwell_ms = dwell_ms < (1u << 17) - 1 ? (uint32_t)dwell_ms : (1u << 17) - 1,
         .epoch = s->epoch,
     };
 }
@@ -145,7 +147,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state);
     set_grids(s, db, scene->reference_q10);
     set_layover(s);
-    set_geometry(s);
+    set_geometry(s, patch_us);
     lm_sar_restart(s);
     return LM_OK;
 }

@@ -12,7 +12,25 @@
  * the centre, metres * 256, and how far Doppler displaces it. */
 struct spot {
     int32_t range_q8, across_q8, shift_q8;
+    int64_t smear_across_q8, walk_q8; /* over the dwell: where it appears, and along */
 };
+
+/* Doppler displaces a mover by s v / V across, v the speed with which it comes nearer. While the
+ * radar flies on, V' = V - v' is what it flies by a target that goes v' to the right: the place
+ * moves by 2 v' - v'^2 / V, and the target itself nearer by v. */
+static void put_mover(const struct lm_patch_geometry *g, const struct lm_target *t,
+                      fx_bam_t heading, struct spot *spot)
+{
+    /* Speeds below 2^20, ranges below 2^27, the dwell below 2^17; displaced beyond 2^28 it is
+     * nowhere near. */
+    const int64_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
+    const int64_t right_mm_s = lm_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
+    const int64_t shift_q8 = spot->range_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 28;
+    const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
+    spot->shift_q8 = (int32_t)(shift_q8 > limit ? limit : shift_q8 < -limit ? -limit : shift_q8);
+    spot->smear_across_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
+    spot->walk_q8 = -closing_mm_s * g->dwell_ms / 3906;
+}
 
 static bool find_spot(const struct lm_patch_geometry *g, const struct lm_target *t,
                       const struct lm_target_item *item, struct spot *spot)
@@ -27,15 +45,9 @@ static bool find_spot(const struct lm_patch_geometry *g, const struct lm_target 
     spot->range_q8 = fx_max_i32((int32_t)(g->centre_q8 + along_q8), 0);
     spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30);
     spot->shift_q8 = 0;
+    spot->smear_across_q8 = spot->walk_q8 = 0;
     if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
-        /* Below 2^27 * 2^20; displaced beyond 2^28 it is nowhere near. */
-        const int64_t closing_mm_s =
-            lm_closing_mm_s(t->speed_mm_s, item->pose.heading, g->look + FX_BAM_180);
-        const int64_t shift_q8 = spot->range_q8 * closing_mm_s / g->across_mm_s;
-        const int64_t limit = 1 << 28;
-        spot->shift_q8 = (int32_t)(shift_q8 > limit    ? limit
-                                   : shift_q8 < -limit ? -limit
-                                                       : shift_q8);
+        put_mover(g, t, item->pose.heading, spot);
     }
     return true;
 }
@@ -133,6 +145,8 @@ void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near
         const struct lm_chip_slot *slot = lm_chip_of(item);
         struct spot spot;
         if (find_spot(g, &near->set.items[item->index], item, &spot)) {
+            p->smear[i] = lm_smear_of(spot.smear_across_q8 * 256 / (int64_t)g->cell_q8,
+                                      spot.walk_q8 * 256 / (int64_t)g->cell_q8);
             add_points(p, &near->set, item, g, &spot, (uint8_t)i);
             if (slot) {
                 add_chip(p, slot, item->chip_turn, g, &spot);
@@ -156,14 +170,40 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
 
 /* ---- one line of them ---- */
 
-/* Cells each way that a point reaches on a line `dx_q8` beside it; -1: not even the line. */
-static int32_t reach_of(const struct lm_patch_point *p, int32_t dx_q8, int32_t least_q8)
+/* One slice of the dwell: how far it lies from its point, cells * 256, what of the point's power it
+ * has, and its stretch, inverted. */
+struct slice {
+    int32_t across_q8, along_q8, share_q8;
+    int32_t thin_q16, flat_q16;
+    uint32_t deep_q8;
+};
+
+static struct slice slice_of(const struct lm_smear *s, uint32_t number)
+{
+    const int32_t from_middle = 2 * (int32_t)number + 1 - (int32_t)s->slices;
+    return (struct slice){.across_q8 = from_middle * s->across_q8 / 2,
+                          .along_q8 = from_middle * s->along_q8 / 2,
+                          .share_q8 = lm_smear_share_q8(s, number),
+                          .thin_q16 = (int32_t)((256u << 16) / s->wide_q8),
+                          .flat_q16 = (int32_t)((256u << 16) / s->deep_q8),
+                          .deep_q8 = s->deep_q8};
+}
+
+/* A distance in units of the stretched response. */
+static int32_t squeezed(int32_t x_q8, int32_t inverse_q16)
+{
+    return (int32_t)((int64_t)x_q8 * inverse_q16 >> 16);
+}
+
+/* Cells of the response each way that a point of this level reaches on a line `dx_q8` beside it;
+ * -1: not even the line. */
+static int32_t reach_of(int32_t level_q8, int32_t dx_q8, int32_t least_q8)
 {
     const uint32_t away_q8 = fx_abs_u32(dx_q8);
-    if (p->is_hidden || p->is_chip || away_q8 >= LM_RESPONSE_REACH * 256u) {
+    if (away_q8 >= LM_RESPONSE_REACH * 256u) {
         return -1;
     }
-    const int32_t most_q8 = p->level_q8 + lm_response_envelope_q8[away_q8 / 256];
+    const int32_t most_q8 = level_q8 + lm_response_envelope_q8[away_q8 / 256];
     int32_t reach = LM_RESPONSE_REACH - 1;
     /* The cell `reach` cells on is at least half a cell nearer than that. */
     while (reach > 0 && most_q8 + lm_response_envelope_q8[reach - 1] < least_q8) {
@@ -177,21 +217,31 @@ struct span {
     int32_t first, end;
 };
 
-/* Add a point's amplitude, against `reference_q8`, to the cells of a line. Amplitudes are at most
- * 2^24, and a target has 16: sums below 2^28. */
-static void spread(struct lm_patch_points *work, const struct lm_patch_point *p, int32_t dx_q8,
-                   int32_t reach, int32_t reference_q8, struct span within, struct span *touched)
+/* Add a slice of a point, its amplitude against `reference_q8`, to the cells of line `line`.
+ * Amplitudes are at most 2^24, and a target has 16: sums below 2^28. What stays below `least_q8` is
+ * left out. */
+static void spread(struct lm_patch_points *work, const struct lm_patch_point *p,
+                   const struct slice *slice, uint32_t line, int32_t least_q8, int32_t reference_q8,
+                   struct span within, struct span *touched)
 {
-    const int64_t amplitude_q24 = (int64_t)fx_power_q16_from_db_q8((p->level_q8 - reference_q8) / 2)
+    const int32_t dx_q8 =
+        squeezed((int32_t)line * 256 - p->across_q8 - slice->across_q8, slice->thin_q16);
+    const int32_t level_q8 = p->level_q8 + slice->share_q8;
+    const int32_t reach = reach_of(level_q8, dx_q8, least_q8);
+    if (reach < 0) {
+        return;
+    }
+    const int64_t amplitude_q24 = (int64_t)fx_power_q16_from_db_q8((level_q8 - reference_q8) / 2)
                                   << 8;
     const int64_t line_q24 = amplitude_q24 * lm_response(dx_q8) >> 15;
     const int64_t re_q24 = line_q24 * fx_cos_q30(p->phase) >> 30;
     const int64_t im_q24 = line_q24 * fx_sin_q30(p->phase) >> 30;
-    const int32_t middle = cell_at(p->along_q8);
-    const int32_t first = fx_max_i32(middle - reach, within.first);
-    const int32_t end = fx_min_i32(middle + reach + 1, within.end);
+    const int32_t along_q8 = p->along_q8 + slice->along_q8, middle = cell_at(along_q8);
+    const int32_t cells = (int32_t)((uint32_t)reach * slice->deep_q8 / 256);
+    const int32_t first = fx_max_i32(middle - cells, within.first);
+    const int32_t end = fx_min_i32(middle + cells + 1, within.end);
     for (int32_t i = first; i < end; i++) {
-        const int32_t response_q15 = lm_response(i * 256 - p->along_q8);
+        const int32_t response_q15 = lm_response(squeezed(i * 256 - along_q8, slice->flat_q16));
         work->re_q24[i] += (int32_t)(re_q24 * response_q15 >> 15);
         work->im_q24[i] += (int32_t)(im_q24 * response_q15 >> 15);
     }
@@ -217,25 +267,38 @@ static void collect(struct lm_patch_points *work, struct span touched, int32_t r
     }
 }
 
+/* The points begin..end - 1, of one target. Its bodies add as phasors, the slices of its dwell,
+ * whose phases run away from each other, as powers. */
+static void add_target(struct lm_patch_points *p, uint32_t begin, uint32_t end, uint32_t line,
+                       int32_t least_q8, struct span within, int32_t *level_q8)
+{
+    const struct lm_smear *smear = &p->smear[p->item[begin].target];
+    for (uint32_t number = 0; number < smear->slices; number++) {
+        const struct slice slice = slice_of(smear, number);
+        struct span touched = {within.end, within.first};
+        int32_t reference_q8 = p->item[begin].level_q8;
+        for (uint32_t i = begin + 1; i < end; i++) {
+            reference_q8 = fx_max_i32(reference_q8, p->item[i].level_q8);
+        }
+        reference_q8 += slice.share_q8;
+        for (uint32_t i = begin; i < end; i++) {
+            if (!p->item[i].is_hidden && !p->item[i].is_chip) {
+                spread(p, &p->item[i], &slice, line, least_q8, reference_q8, within, &touched);
+            }
+        }
+        collect(p, touched, reference_q8, level_q8);
+    }
+}
+
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
     uint32_t end = 0;
     for (uint32_t begin = 0; begin < p->count; begin = end) {
-        int32_t reference_q8 = p->item[begin].level_q8;
         for (end = begin; end < p->count && p->item[end].target == p->item[begin].target; end++) {
-            reference_q8 = fx_max_i32(reference_q8, p->item[end].level_q8);
         }
-        struct span touched = {within.end, within.first};
-        for (uint32_t i = begin; i < end; i++) {
-            const int32_t dx_q8 = (int32_t)line * 256 - p->item[i].across_q8;
-            const int32_t reach = reach_of(&p->item[i], dx_q8, least_q8);
-            if (reach >= 0) {
-                spread(p, &p->item[i], dx_q8, reach, reference_q8, within, &touched);
-            }
-        }
-        collect(p, touched, reference_q8, level_q8);
+        add_target(p, begin, end, line, least_q8, within, level_q8);
     }
 }
 

@@ -114,6 +114,7 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
                                         .heights = {3000 * 1024, 100 * 1024},
                                         .wavelength_um = 31228,
                                         .across_mm_s = (int32_t)look->speed_mm_s,
+                                        .dwell_ms = look->time_s & 0x1ffff,
                                         .lean_q16 = (int32_t)(look->track & 0x1ffff)};
     int32_t horizon[LM_CELLS_ROOM] = {0};
     int32_t level_q8[LM_CELLS_ROOM] = {0};

@@ -7,6 +7,7 @@
 #include "lm/chip_lay.h"
 #include "lm/response.h"
 #include "lm/scan_line.h"
+#include "lm/smear.h"
 #include "lm/target_view.h"
 
 enum { LM_PATCH_POINTS_MAX = LM_TARGETS_NEAR * LM_SCATTERERS_MAX };
@@ -25,6 +26,7 @@ struct lm_patch_geometry {
                             nothing */
     int32_t lean_q16;    /* layover: cells nearer for each metre of height above the reference, by
                             the metre; 0: none */
+    uint32_t dwell_ms;   /* below 2^17: how long movers smear */
     uint32_t epoch;      /* for what fluctuates */
 };
 
@@ -55,6 +57,7 @@ enum { LM_CHIP_CELLS_A_LINE = 1024 };
 struct lm_patch_points {
     uint32_t count;
     struct lm_patch_point item[LM_PATCH_POINTS_MAX];
+    struct lm_smear smear[LM_TARGETS_NEAR]; /* of each target's points */
     uint32_t chip_count;
     struct lm_patch_chip chip[LM_TARGETS_NEAR];
     uint32_t cells_left_out;                              /* of chips, for the bound */
@@ -73,7 +76,8 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`
  * is left out. Cost: 20 instructions a point, 200 for one that reaches the line and 25 for each
- * cell that it reaches, at most 17. */
+ * cell that it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves, and for
+ * as many more cells as its response is stretched. */
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 

@@ -341,6 +341,115 @@ static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
     }
 }
 
+/* Where the power of a picture lies: cells between which its middle 80 % are, across and along, the
+ * correlation of both, and all of it. */
+struct extent {
+    double across, along, correlation, sum;
+};
+
+static double middle_80(const double *power, int count)
+{
+    double all = 0, sum = 0, from = 0, to = 0;
+    for (int i = 0; i < count; i++) {
+        all += power[i];
+    }
+    for (int i = 0; i < count; i++) {
+        const double before = sum;
+        sum += power[i];
+        if (before < 0.1 * all && sum >= 0.1 * all) {
+            from = i + (0.1 * all - before) / power[i];
+        }
+        if (before < 0.9 * all && sum >= 0.9 * all) {
+            to = i + (0.9 * all - before) / power[i];
+        }
+    }
+    return to - from;
+}
+
+static struct extent extent_of(double power[LINES][CELLS])
+{
+    double lines[LINES] = {0}, cells[CELLS] = {0}, sum = 0;
+    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+    for (int k = 0; k < LINES; k++) {
+        for (int i = 0; i < CELLS; i++) {
+            const double p = power[k][i];
+            lines[k] += p, cells[i] += p, sum += p;
+            x += p * k, y += p * i, xx += p * k * k, yy += p * i * i, xy += p * k * i;
+        }
+    }
+    x /= sum, y /= sum;
+    return (struct extent){middle_80(lines, LINES), middle_80(cells, CELLS),
+                           (xy / sum - x * y) / sqrt((xx / sum - x * x) * (yy / sum - y * y)), sum};
+}
+
+/* The picture that the aperture makes of a point in line 64 and cell 70 whose place moves `across`
+ * cells and which itself goes `along` cells during the dwell: its echoes, weighed and summed with
+ * the phase of each line. */
+static void focus(double across, double along, double power[LINES][CELLS])
+{
+    enum { PULSES = 400 };
+    const struct ref_taylor weighting = {35, 4};
+    for (int i = 0; i < CELLS; i++) {
+        double echo[PULSES];
+        for (int n = 0; n < PULSES; n++) {
+            const double u = (n + 0.5) / PULSES - 0.5;
+            echo[n] = ref_taylor_weight(&weighting, u) *
+                      ref_point_response(i - (GUARD + 70) - along * u) / PULSES;
+        }
+        for (int k = 0; k < LINES; k++) {
+            double complex sum = 0;
+            for (int n = 0; n < PULSES; n++) {
+                const double u = (n + 0.5) / PULSES - 0.5;
+                sum += echo[n] * cexp(2 * pi * I * (across * u * u / 2 - (k - 64) * u));
+            }
+            power[k][i] = creal(sum * conj(sum));
+        }
+    }
+}
+
+static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **state)
+{
+    (void)state;
+    static double wanted[LINES][CELLS], found[LINES][CELLS];
+    const double flies_m_s = 200;
+    const struct {
+        double right_m_s, closing_m_s; /* a cell of 2 m for each, and two across */
+    } cases[] = {{0.2, 0}, {1.5, 0}, {5, 0}, {-16, 0}, {0, 5}, {4, -4}, {-8, 7}, {12, 12}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const double right = cases[n].right_m_s, closing = cases[n].closing_m_s;
+        struct lm_patch_geometry g = geometry(46, 11, 0);
+        g.across_mm_s = (int32_t)lround(flies_m_s * 1000);
+        g.dwell_ms = 2000;
+        /* From where Doppler puts it onto line 64. */
+        const double shift_m = (range_m + middle_of(70)) * closing / flies_m_s;
+        struct lm_target t = point_in(64 - shift_m / cell_m, 70, 35);
+        t.heading = hs_bam(atan2(right, -closing) * 180 / pi);
+        t.speed_mm_s = (uint32_t)lround(hypot(right, closing) * 1000);
+        t.leg_m = 100;
+        seal_target(&t);
+        find_points(&t, 1, &g, 0);
+        draw(&g, -60 * 256);
+        for (int k = 0; k < LINES; k++) {
+            for (int i = 0; i < CELLS; i++) {
+                found[k][i] = picture[k][i] > NOTHING_Q8 ? pow(10, picture[k][i] / 2560.0) : 0;
+            }
+        }
+        const double drift = (2 * right - right * right / flies_m_s) * 2 / cell_m;
+        focus(drift, -closing * 2 / cell_m, wanted);
+        const struct extent is = extent_of(found), should = extent_of(wanted);
+        const double lost_db = 10 * log10(is.sum) - level_db(35, 70);
+        print_message(
+            "# smeared %.1f and %.1f cells: %.1f x %.1f, %.2f; wanted %.1f x %.1f, %.2f; "
+            "power %.2f dB\n",
+            drift, -closing * 2 / cell_m, is.across, is.along, is.correlation, should.across,
+            should.along, should.correlation, lost_db);
+        assert_true(fabs(is.across - should.across) < 0.3 + 0.15 * should.across);
+        assert_true(fabs(is.along - should.along) < 0.3 + 0.15 * should.along);
+        assert_true(fabs(is.correlation - should.correlation) < 0.25);
+        assert_true(fabs(lost_db) < 0.3);
+    }
+}
+
 /* ---- hidden and leaning ---- */
 
 enum { BITS = 30, WALL = 20 };
@@ -428,6 +537,7 @@ static void a_record_that_passes_the_check_can_be_used_in_a_patch(void **state)
         g.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         g.cell_q8 = i % 2 ? 128 : 10240;
         g.across_mm_s = (int32_t)hs_rng_below(&rng, 9) - 4;
+        g.dwell_ms = hs_rng_below(&rng, 1 << 17);
         g.lean_q16 = (int32_t)hs_rng_below(&rng, 1 << 22);
         find_points(&t, 1, &g, (uint64_t)i << 30);
         draw(&g, -56 * 256);
@@ -451,6 +561,7 @@ int main(void)
         cmocka_unit_test(bodies_add_as_phasors_and_targets_as_powers_everywhere),
         cmocka_unit_test(a_fluctuating_point_has_one_strength_in_a_patch),
         cmocka_unit_test(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell),
+        cmocka_unit_test(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it),
         cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines),
         cmocka_unit_test(layover_brings_a_body_nearer_by_its_height_times_the_lean),
         cmocka_unit_test(a_record_that_passes_the_check_can_be_used_in_a_patch),
