@@ -6,6 +6,8 @@
 #include <string.h>
 
 enum { STEP_US = 2000, FIX_US = 100000, START_US = 200000, POLLS = 1000 };
+/* A place on the runway of golden_scene.c, from the middle. */
+enum { RUNWAY_NORTH_M = -870, RUNWAY_EAST_M = 800 };
 
 #define GLASS .width_px = 384, .height_px = 384
 /* From the south, over the plain towards town and mountain. */
@@ -156,6 +158,29 @@ const struct golden_picture golden_pictures[] = {
      .heading_deg = 10,
      .cell_mm = 5000,
      .range_m = 12000},
+    {.name = "parked-sar-1m-looking-north",
+     GLASS,
+     .height_m = 3000,
+     .has_parked = true,
+     .cell_mm = 1000,
+     .range_m = 12000},
+    {.name = "parked-sar-1m-looking-east",
+     GLASS,
+     .height_m = 3000,
+     .heading_deg = 83,
+     .has_parked = true,
+     .cell_mm = 1000,
+     .range_m = 12000,
+     .has_layover = true},
+    {.name = "parked-dbs2",
+     GLASS,
+     .north_m = -9260,
+     .height_m = 2500,
+     .speed_m_s = 200,
+     .drift_deg = -40,
+     .keys = {CURSOR_ZERO},
+     .has_parked = true,
+     .field = LM_FIELD_DBS2},
     {.name = "page-nav-stale", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_ENDS},
     {.name = "page-bus-dead", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_DEAD},
     {.name = "page-db-fail", FROM_SOUTH, GLASS, .fault = GOLDEN_BAD_HEADER},
@@ -314,8 +339,9 @@ static void prepare(struct golden_rig *r, const struct golden_picture *p, struct
 {
     memset(r, 0, sizeof *r);
     r->picture = p;
-    r->centre = centre;
-    r->aircraft = moved(moved(centre, 0, p->north_m), FX_BAM_90, p->east_m);
+    r->centre =
+        p->has_parked ? moved(moved(centre, 0, RUNWAY_NORTH_M), FX_BAM_90, RUNWAY_EAST_M) : centre;
+    r->aircraft = moved(moved(r->centre, 0, p->north_m), FX_BAM_90, p->east_m);
     memory_flash_open(&r->flash, image, p->fault == GOLDEN_BAD_HEADER ? 511 : image_bytes);
     r->can = (struct lm_can){.ctx = r, .receive = receive};
     r->controls = (struct lm_controls){r, next_control};
@@ -349,10 +375,27 @@ static struct lm_target mover(uint32_t id, struct lm_place place, int32_t headin
 
 static void put_movers(struct golden_rig *r)
 {
-    r->movers[0] = mover(1, moved(r->centre, 0, 1000), 180, 15000);
-    r->movers[1] = mover(2, moved(moved(r->centre, 0, 2200), FX_BAM_90, 1100), 30, 25000);
-    r->movers[2] = mover(3, moved(moved(r->centre, 0, 1500), FX_BAM_90, -3300), 25, 8000);
-    r->unit.target_set = (struct lm_target_set){.items = r->movers, .count = GOLDEN_MOVERS};
+    r->targets[0] = mover(1, moved(r->centre, 0, 1000), 180, 15000);
+    r->targets[1] = mover(2, moved(moved(r->centre, 0, 2200), FX_BAM_90, 1100), 30, 25000);
+    r->targets[2] = mover(3, moved(moved(r->centre, 0, 1500), FX_BAM_90, -3300), 25, 8000);
+    r->unit.target_set.count = 3;
+}
+
+/* Side by side on the runway, each turned another way. */
+static void put_parked(struct golden_rig *r)
+{
+    static const int32_t heading_deg[GOLDEN_TARGETS_MAX] = {0, 100, 190, 325};
+    for (uint32_t i = 0; i < GOLDEN_TARGETS_MAX; i++) {
+        const struct lm_place place = moved(r->centre, FX_BAM_90, (int32_t)i * 45 - 70);
+        r->targets[i] = (struct lm_target){
+            .id = i,
+            .latitude = place.latitude,
+            .longitude = place.longitude,
+            .heading = FX_BAM_DEG(heading_deg[i]),
+            .flags = LM_TARGET_ABOVE_GROUND | LM_TARGET_HAS_SIGNATURE,
+        };
+    }
+    r->unit.target_set.count = GOLDEN_TARGETS_MAX;
 }
 
 int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
@@ -360,8 +403,9 @@ int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_p
 {
     prepare(r, p, centre, image, image_bytes);
     const int status = lm_unit_init(&r->unit, &r->board);
-    if (p->has_movers) {
-        put_movers(r);
+    if (p->has_movers || p->has_parked) {
+        r->unit.target_set.items = r->targets;
+        (p->has_movers ? put_movers : put_parked)(r);
     }
     r->flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */
     for (; status == LM_OK && r->now_us <= duration_us(p); r->now_us += STEP_US) {

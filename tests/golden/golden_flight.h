@@ -33,6 +33,7 @@ struct golden_picture {
     /* Rain over 2 km around the middle, a jammer 2 km east of it, the sea (0: as in the image). */
     uint8_t rain_mm_h, jam_db, sea_state;
     bool has_movers; /* two of GOLDEN_MOVERS on land, one at sea */
+    bool has_parked; /* four with the image's signature, on the runway, which is the middle then */
     uint8_t keys[6]; /* option select buttons pressed later, 0 behind the last */
     /* SAR when cell_mm is not 0: a patch at the middle, seen from the aircraft, or when range_m is
      * not 0 from so far in the direction of the heading. */
@@ -43,7 +44,7 @@ struct golden_picture {
 extern const struct golden_picture golden_pictures[];
 extern const uint32_t golden_picture_count;
 
-enum { GOLDEN_POOL_TILES = 256, GOLDEN_PIXELS_MAX = 1024 * 768, GOLDEN_MOVERS = 3 };
+enum { GOLDEN_POOL_TILES = 256, GOLDEN_PIXELS_MAX = 1024 * 768, GOLDEN_TARGETS_MAX = 4 };
 
 /* Everything a flight needs; the caller owns it, 15 MB. */
 struct golden_rig {
@@ -55,8 +56,8 @@ struct golden_rig {
     struct lm_display display;
     const struct golden_picture *picture;
     struct lm_place centre, aircraft;
-    struct lm_target movers[GOLDEN_MOVERS]; /* in place of the image's targets */
-    uint64_t now_us, bus_us;                /* bus_us: when the next set of values is due */
+    struct lm_target targets[GOLDEN_TARGETS_MAX]; /* in place of the image's */
+    uint64_t now_us, bus_us;                      /* bus_us: when the next set of values is due */
     uint32_t bus_item, control_item;
     uint8_t message_code;
     uint8_t plane[GOLDEN_PIXELS_MAX];

@@ -1,4 +1,5 @@
 #include "golden_scene.h"
+#include "golden_signature.h"
 
 #include "fx/root.h"
 
@@ -163,5 +164,5 @@ int golden_image(enum golden_place place, struct tiny_image *image)
     spec.cell = cell_at;
     spec.elevation_m = elevation_at;
     spec.ctx = &country;
-    return tiny_image_build(image, &spec);
+    return tiny_image_build(image, &spec) == 0 ? golden_add_signature(image) : -1;
 }
