@@ -45,13 +45,17 @@ struct edge {
     int64_t x_q17, step_q17;
 };
 
-static struct edge edge_at(fx_bam_t azimuth, int32_t row)
+static struct edge edge_at(fx_bam_t azimuth)
 {
     /* Centre of column c is c + 1/2: c >= (row + 1/2) tan - 1/2, in Q17 (2 row + 1) tan - 2^16,
      * rounded up. */
     const int64_t tangent_q16 = tangent_q16_of(azimuth);
-    return (struct edge){.x_q17 = (2 * row + 1) * tangent_q16 - 65536 + 131071,
-                         .step_q17 = 2 * tangent_q16};
+    return (struct edge){.x_q17 = tangent_q16 - 65536 + 131071, .step_q17 = 2 * tangent_q16};
+}
+
+static void skip_rows(struct edge *e, int32_t rows)
+{
+    e->x_q17 += rows * e->step_q17;
 }
 
 static inline int32_t next_column(struct edge *e)
@@ -100,36 +104,71 @@ static struct rows rows_in_range(const struct lm_ppi *ppi, const struct directio
                          end < all.end ? (int32_t)end : all.end};
 }
 
+/* Columns from the apex, first and end, of what may be painted of a row. */
+struct columns {
+    int32_t first, end;
+};
+
+/* Whether no row of a wedge reaches beyond the columns: edges are straight. */
+static bool are_inside(const struct edge *left, const struct edge *right, const struct rows *rows,
+                       const struct columns *columns)
+{
+    const int64_t last = rows->end - 1 - rows->first;
+    const int64_t left_q17 = left->x_q17 + last * left->step_q17;
+    const int64_t right_q17 = right->x_q17 + last * right->step_q17;
+    return left->x_q17 >> 17 >= columns->first && left_q17 >> 17 >= columns->first &&
+           right->x_q17 >> 17 <= columns->end && right_q17 >> 17 <= columns->end;
+}
+
+/* Where a row begins in the plane, and the ranges of its pixels in cells. Centres lie at odd halves
+ * of a pixel: Q33 of two halves. |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52.
+ */
+struct row {
+    uint8_t *apex;
+    int64_t range_q33;
+};
+
+static inline void paint_row(const struct row *row, int32_t from, int32_t to, int64_t right_q32,
+                             const uint8_t *grey, uint32_t cells)
+{
+    int32_t cell_q17 = (int32_t)((row->range_q33 + 2 * from * right_q32) >> 16);
+    for (int32_t column = from; column < to; column++) {
+        const uint32_t cell = (uint32_t)(cell_q17 >> 17);
+        if (cell < cells) {
+            row->apex[column] = grey[cell];
+        }
+        cell_q17 += (int32_t)(right_q32 >> 15);
+    }
+}
+
 void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                   fx_bam_t right, const uint8_t *grey, uint32_t cells)
 {
     const struct lm_frame *clip = &ppi->clip;
     const struct direction d = direction_of(left + (right - left) / 2, ppi->cells_per_px_q16);
-    const struct edge left_edge = edge_at(left, 0), right_edge = edge_at(right, 0);
-    const struct rows rows = rows_in_range(ppi, &d, &left_edge, &right_edge, cells);
-    struct edge from_edge = edge_at(left, rows.first), to_edge = edge_at(right, rows.first);
+    struct edge from_edge = edge_at(left), to_edge = edge_at(right);
+    const struct rows rows = rows_in_range(ppi, &d, &from_edge, &to_edge, cells);
+    skip_rows(&from_edge, rows.first);
+    skip_rows(&to_edge, rows.first);
     const int32_t leftmost = clip->left_px - ppi->apex_x_px;
-    const int32_t beyond_right = leftmost + clip->width_px;
-    const int32_t right_q17 = (int32_t)(d.right_q32 >> 15); /* a pixel */
-    uint8_t *apex = plane->pixels + ppi->apex_x_px +
-                    (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * plane->width_px;
-    /* Ranges in cells of pixel centres, which lie at odd halves of a pixel: Q33 of two halves.
-     * |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52. */
-    int64_t row_q33 =
-        (2 * rows.first + 1) * d.up_q32 + d.right_q32 - (int64_t)ppi->near_cell_q8 * (1 << 25);
-    for (int32_t row = rows.first; row < rows.end; row++) {
-        const int32_t from = fx_max_i32(next_column(&from_edge), leftmost);
-        const int32_t to = fx_min_i32(next_column(&to_edge), beyond_right);
-        int32_t cell_q17 = (int32_t)((row_q33 + 2 * from * d.right_q32) >> 16);
-        for (int32_t column = from; column < to; column++) {
-            const uint32_t cell = (uint32_t)(cell_q17 >> 17);
-            if (cell < cells) {
-                apex[column] = grey[cell];
-            }
-            cell_q17 += right_q17;
+    const struct columns columns = {leftmost, leftmost + clip->width_px};
+    const ptrdiff_t up = plane->width_px;
+    struct row row = {
+        .apex = plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * up,
+        .range_q33 =
+            (2 * rows.first + 1) * d.up_q32 + d.right_q32 - (int64_t)ppi->near_cell_q8 * (1 << 25)};
+    const uint8_t *const end = row.apex - fx_max_i32(rows.end - rows.first, 0) * up;
+    if (are_inside(&from_edge, &to_edge, &rows, &columns)) {
+        for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
+            const int32_t from = next_column(&from_edge);
+            paint_row(&row, from, next_column(&to_edge), d.right_q32, grey, cells);
         }
-        apex -= plane->width_px;
-        row_q33 += 2 * d.up_q32;
+        return;
+    }
+    for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
+        const int32_t from = fx_max_i32(next_column(&from_edge), columns.first);
+        const int32_t to = fx_min_i32(next_column(&to_edge), columns.end);
+        paint_row(&row, from, to, d.right_q32, grey, cells);
     }
 }
 
@@ -184,12 +223,33 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
 }
 
 /* One cell as a square of side_px pixels, upwards from its lower left corner. */
-static void paint_cell(uint8_t *corner, uint32_t width_px, uint32_t side_px, uint8_t grey)
+static void paint_cell(uint8_t *corner, size_t width_px, uint32_t side_px, uint8_t grey)
 {
     for (uint32_t row = 0; row < side_px; row++, corner -= width_px) {
         for (uint32_t column = 0; column < side_px; column++) {
             corner[column] = grey;
         }
+    }
+}
+
+/* Cells of a pixel each, upwards: eight at a time, for there is little more to each than counting.
+ */
+static void paint_pixels(uint8_t *pixel, ptrdiff_t width_px, const uint8_t *grey, size_t count)
+{
+    const uint8_t *const end = grey + count;
+    for (; end - grey >= 8; grey += 8, pixel -= 8 * width_px) {
+        uint8_t *const middle = pixel - 4 * width_px;
+        pixel[0] = grey[0];
+        pixel[-width_px] = grey[1];
+        pixel[-2 * width_px] = grey[2];
+        pixel[-3 * width_px] = grey[3];
+        middle[0] = grey[4];
+        middle[-width_px] = grey[5];
+        middle[-2 * width_px] = grey[6];
+        middle[-3 * width_px] = grey[7];
+    }
+    for (; grey != end; grey++, pixel -= width_px) {
+        *pixel = *grey;
     }
 }
 
@@ -205,13 +265,11 @@ void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, 
     }
     const uint32_t first = (uint32_t)fx_max_i32(bottom + 1 - frame->height_px, 0);
     const uint32_t end = fx_min_u32(cells, (uint32_t)bottom + 1);
-    const uint32_t width_px = plane->width_px, up = (uint32_t)cell_px * width_px;
+    const size_t width_px = plane->width_px, up = (uint32_t)cell_px * width_px;
     uint8_t *pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
                      frame->left_px + left;
-    if (cell_px == 1) { /* the common case without a loop around each cell */
-        for (uint32_t i = first; i < end; i++, pixel -= width_px) {
-            *pixel = grey[i];
-        }
+    if (cell_px == 1) {
+        paint_pixels(pixel, (ptrdiff_t)width_px, grey + first, end > first ? end - first : 0);
         return;
     }
     for (uint32_t i = first; i < end; i++, pixel -= up) {
