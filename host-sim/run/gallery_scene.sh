@@ -1,6 +1,6 @@
 #!/bin/sh
 # One real scene, from its data to pictures of it.
-# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|modes|island_modes
+# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|modes|island_modes|airfield
 # The tests of tests/system run the same scenes through the same script.
 set -eu
 bin=$1
@@ -190,6 +190,27 @@ riviera() {
     # An aircraft that calibrates the airport's instruments: up the coast and down to the runway, 1,230 m to 200 m. Its heights are
     # above the sea; the bus carries heights above the ellipsoid.
     fly riviera --start 9500 --seconds 345 --height-offset 49 "$data/nav_tracks/nice.csv.gz"
+}
+
+airfield() { # a field of our own, on level ground at 42 N 27 W, with what landmass-target bakes parked on it
+    classes=host-sim/db/classes/heaton6.classes
+    extent="499000 4649200 501000 4650800" # UTM zone 26 N; the apron is around 500000, 4650000
+    for model in aircraft tank lorry shelter; do
+        say "bake the signature of the $model"
+        "$bin"/landmass-target bake --model $model --aspects 36 --depressions 8,15,30 --rays 1 \
+            --out "$out/$model.sig" --sheet "$out/signature-$model.png"
+        "$bin"/landmass-target model --model $model --view "$out/model-$model.png"
+    done
+    gdal_rasterize -q -a class -init 4 -ot Byte -te $extent -tr 1 1 $in/airfield.geojson "$out/classes.tif"
+    gdal_rasterize -q -a height -init 0 -ot Float32 -te $extent -tr 1 1 $in/airfield.geojson "$out/heights.tif"
+    gdal_create -q -ot Float32 -outsize 40 40 -burn 30 -a_srs EPSG:32626 \
+        -a_ullr 480000 4670000 520000 4630000 "$out/terrain.tif"
+    "$bin"/landmass-db reflect --class-raster "$out/classes.tif" --classes $classes --out "$out/reflectivity.tif"
+    cp $in/airfield.targets "$out"
+    build airfield --classes $classes --class-raster "$out/classes.tif" --reflectivity "$out/reflectivity.tif" \
+        --heights "$out/heights.tif" --terrain "$out/terrain.tif" --targets "$out/airfield.targets"
+    fly airfield --straight 41.95,-27.02,10,1500,150 --seconds 26
+    fly airfield-modes --straight 41.9319,-27.0543,0,1500,180 --seconds 24
 }
 
 mkdir -p "$out"

@@ -133,7 +133,7 @@ void model_lorry(struct mesh *m)
 
 void model_shelter(struct mesh *m)
 {
-    enum { ARC = 48 };
+    enum { ARC = 180 };
     const uint32_t metal = mesh_material(m, "metal");
     const double half_width = 12, height = 8, half_length = 15;
     const double radius = (half_width * half_width + height * height) / (2 * height);
