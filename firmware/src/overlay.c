@@ -145,7 +145,7 @@ void lm_overlay_alive(const struct lm_glass *g, uint32_t picture)
     const struct lm_pen pen = lm_symbol_pen(g);
     const int32_t size = 4 * pen.dot_px;
     const struct lm_point hub = {g->surface.width_px - 2 * size, g->surface.height_px - 2 * size};
-    lm_draw_line(&pen, hub, lm_ray_end(hub, (fx_bam_t)(picture % 8) << 29, size));
+    lm_draw_line(&pen, hub, lm_ray_end(lm_pixel_middle(hub), (fx_bam_t)(picture % 8) << 29, size));
 }
 
 void lm_overlay_row(const struct lm_glass *g, uint32_t row, const char *words)

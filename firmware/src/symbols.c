@@ -26,15 +26,17 @@ static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, i
 static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
 {
     struct lm_pen pen = lm_symbol_pen(g);
-    const struct lm_point apex = s->view.at;
+    const struct lm_spot apex = {s->view.at.x * 256, s->view.at.y * 256};
     const int32_t radius = s->view.radius_px;
     const fx_bam_t half = s->azimuth_half;
     const int32_t first = s->range_nm > 10 ? 1 : 2;
     for (int32_t quarter = first; quarter <= 4 - first; quarter++) {
         lm_draw_arc(&pen, apex, radius * quarter / 4, 0u - half, 2 * half);
     }
-    lm_draw_line(&pen, apex, lm_ray_end(apex, half, radius));
-    lm_draw_line(&pen, apex, lm_ray_end(apex, 0u - half, radius));
+    for (int32_t side = -1; side <= 1; side += 2) {
+        const fx_bam_t edge = (fx_bam_t)side * half;
+        lm_draw_line(&pen, lm_ray_end(apex, edge, 1), lm_ray_end(apex, edge, radius));
+    }
     if (s->is_sweeping) {
         pen.colour = g->palette->faint;
         const fx_bam_t beam = (fx_bam_t)s->antenna_azimuth;
@@ -140,9 +142,10 @@ static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
     const struct lm_pen pen = lm_symbol_pen(g);
     const struct lm_point at = lm_view_point(&s->view, s->ownship);
     const int32_t radius = part_of_half(g, 50);
-    lm_draw_arc(&pen, at, radius, 0, FX_BAM_180);
-    lm_draw_arc(&pen, at, radius, FX_BAM_180, FX_BAM_180);
-    lm_draw_line(&pen, at, lm_ray_end(at, s->ownship_heading, 2 * radius));
+    const struct lm_spot centre = lm_pixel_middle(at);
+    lm_draw_arc(&pen, centre, radius, 0, FX_BAM_180);
+    lm_draw_arc(&pen, centre, radius, FX_BAM_180, FX_BAM_180);
+    lm_draw_line(&pen, at, lm_ray_end(centre, s->ownship_heading, 2 * radius));
 }
 
 /* ---- numbers ---- */

@@ -43,7 +43,7 @@ static void draw_geometry(const struct lm_glass *g)
         lm_draw_box(&pen, 0, y, right + 1, 1);
     }
     pen.colour = g->palette->symbol;
-    const struct lm_point centre = {right / 2, bottom / 2};
+    const struct lm_spot centre = lm_pixel_middle((struct lm_point){right / 2, bottom / 2});
     const int32_t radius = fx_min_i32(right, bottom) / 2;
     for (int32_t i = 1; i <= 3; i++) {
         lm_draw_arc(&pen, centre, radius * i / 3, 0, FX_BAM_180);

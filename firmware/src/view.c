@@ -12,7 +12,7 @@ struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_v
 {
     const uint16_t radius_px = lm_ppi_radius_px(frame);
     const struct lm_point apex = {frame->left_px + frame->width_px / 2,
-                                  frame->top_px + frame->height_px - 1};
+                                  frame->top_px + frame->height_px};
     return (struct lm_view){
         .shape = LM_VIEW_SECTOR,
         .origin = from->place,
@@ -133,7 +133,7 @@ struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame,
     return (struct lm_ppi){
         .clip = v->shape == LM_VIEW_WINDOW ? lm_frame_square(frame) : *frame,
         .apex_x_px = v->at.x,
-        .apex_y_px = v->at.y + 1,
+        .apex_y_px = v->at.y,
         .cells_per_px_q16 = (uint32_t)(((uint64_t)v->mm_q8_per_px << 16) / (cell_q8 * 1000ull)),
         .near_cell_q8 = (int32_t)((uint64_t)edge_q8 * 256 / cell_q8),
     };
@@ -141,6 +141,5 @@ struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame,
 
 struct lm_point lm_view_point(const struct lm_view *v, struct lm_offset offset)
 {
-    return (struct lm_point){v->at.x + ((offset.x_q8 + 128) >> 8),
-                             v->at.y - ((offset.y_q8 + 128) >> 8)};
+    return (struct lm_point){v->at.x + (offset.x_q8 >> 8), v->at.y - 1 - (offset.y_q8 >> 8)};
 }

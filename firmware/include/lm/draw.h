@@ -14,6 +14,17 @@ struct lm_point {
     int32_t x, y; /* pixels; y grows downwards */
 };
 
+/* A place between the surface's edges, pixels * 256 from its upper left corner: the middle of pixel
+ * (x, y) is at (256 x + 128, 256 y + 128). */
+struct lm_spot {
+    int32_t x_q8, y_q8;
+};
+
+static inline struct lm_spot lm_pixel_middle(struct lm_point p)
+{
+    return (struct lm_spot){p.x * 256 + 128, p.y * 256 + 128};
+}
+
 /* With what is drawn, and on what. */
 struct lm_pen {
     struct lm_surface surface;
@@ -29,11 +40,12 @@ struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour);
 void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, int32_t height);
 void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_point to);
 
-/* The point at `length` pixels and `azimuth` (from straight up, clockwise) from `from`. */
-struct lm_point lm_ray_end(struct lm_point from, fx_bam_t azimuth, int32_t length);
+/* The pixel at `length` pixels (up to LM_DRAW_FAR) and `azimuth` (from straight up, clockwise) from
+ * `from`. */
+struct lm_point lm_ray_end(struct lm_spot from, fx_bam_t azimuth, int32_t length);
 
 /* The arc round `centre` from `left` clockwise over `span`, as a chain of chords. */
-void lm_draw_arc(const struct lm_pen *pen, struct lm_point centre, int32_t radius, fx_bam_t left,
+void lm_draw_arc(const struct lm_pen *pen, struct lm_spot centre, int32_t radius, fx_bam_t left,
                  fx_bam_t span);
 
 /* One line of text; x, y is the upper left corner of its first character. */

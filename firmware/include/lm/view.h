@@ -28,8 +28,9 @@ struct lm_view {
     fx_bam_t up;            /* azimuth from north that points up */
     int32_t height_q10;     /* of the antenna above flat ground, metres * 1024: lengths are slant
                                ranges; 0 in a patch */
-    struct lm_point at;     /* the origin on the glass, or far below it */
-    struct lm_point middle; /* of the window or patch on the glass; the origin in a sector */
+    struct lm_point at;     /* the origin on the glass, or far below it: the upper left corner of
+                               this pixel */
+    struct lm_point middle; /* of the window or patch, likewise; the origin in a sector */
     uint32_t mm_q8_per_px;  /* scale, millimetres * 256 a pixel; below 2^30 */
     int32_t radius_px;      /* of the sector; half a side of the window or patch */
 };
@@ -71,7 +72,7 @@ struct lm_place lm_view_place(const struct lm_view *v, struct lm_offset offset);
 struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame, uint32_t cell_q8,
                           uint32_t edge_q8);
 
-/* The pixel of an offset. */
+/* The pixel that holds an offset; of two, the upper one on the right. */
 struct lm_point lm_view_point(const struct lm_view *v, struct lm_offset offset);
 
 #endif

@@ -169,7 +169,7 @@ static void nothing_is_drawn_beyond_the_surface(void **state)
         lm_draw_box(&pen, 50, 50, -10, -10);
         lm_draw_text(&pen, -8, -9, "WMW");
         lm_draw_text(&pen, s.width_px - 9, s.height_px - 9, "WMW");
-        lm_draw_arc(&pen, (struct lm_point){3, 3}, 100, 0, FX_BAM_180);
+        lm_draw_arc(&pen, (struct lm_spot){800, 800}, 100, 0, FX_BAM_180);
         struct lm_palette palette;
         lm_palette_set(&palette, &(struct lm_palette_config){0});
         const struct lm_frame frame = lm_frame_of_display(s.width_px, s.height_px);

@@ -584,7 +584,7 @@ static double widest_degrees(const struct rig *r)
     double widest = 0;
     for (int32_t y = 0; y < HEIGHT; y++) {
         for (int32_t x = 0; x < WIDTH; x++) {
-            const double right = x - apex.x, up = apex.y - y;
+            const double right = x + 0.5 - apex.x, up = apex.y - (y + 0.5);
             if (r->plane[y * WIDTH + x] > 0 && hypot(right, up) > r->unit.view.radius_px / 2.0) {
                 widest = fmax(widest, fabs(atan2(right, up)) * 57.29578);
             }

@@ -320,7 +320,7 @@ static bool is_swept(const struct rig *r, int x, int y)
     const struct lm_view *v = &r->unit.view;
     const bool is_window = s->half_m != 0;
     const struct lm_frame f = is_window ? lm_frame_square(&r->unit.frame) : r->unit.frame;
-    const double right = x + 0.5 - v->at.x, up = v->at.y + 1 - (y + 0.5);
+    const double right = x + 0.5 - v->at.x, up = v->at.y - (y + 0.5);
     const double azimuth_deg = atan2(right, up) * 57.29578, length_px = hypot(right, up);
     const double edge_deg = hs_degrees((fx_bam_t)s->left), slack_deg = hs_degrees(s->width);
     const double width_deg = hs_degrees(s->width) * s->lines;
