@@ -59,7 +59,8 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
         break;
     case 8:
-        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", u->tiles.count.corrupt);
+        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR",
+                 u->tiles.count.corrupt + u->chips.count.corrupt);
         break;
     case 9:
         add_pair(t, "DROPPED", u->tiles.count.requests_dropped, "DISP ERR",

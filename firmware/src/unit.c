@@ -138,7 +138,8 @@ static void remember_faults(struct lm_unit *u, uint32_t risen, uint64_t now_us)
 /* What is wrong, in one word for each. */
 static void judge(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t faults = u->tiles.count.io_errors + u->tiles.count.corrupt;
+    const uint32_t faults =
+        u->tiles.count.io_errors + u->tiles.count.corrupt + u->chips.count.corrupt;
     if (faults != u->tile_faults_seen) {
         u->tile_faults_seen = faults;
         u->tile_fault_us = now_us;

@@ -200,6 +200,12 @@ static void print_summary(const struct sim *s)
         printf("database: not usable, nothing was drawn\n");
         return;
     }
+    if (u->db.target_count != 0) {
+        printf(
+            "targets: %u held, %u of the image not; chips: %u read, %u damaged, %u without room\n",
+            u->target_set.count, u->count.targets_lost, u->chips.count.read, u->chips.count.corrupt,
+            u->chips.count.left_out);
+    }
     const struct lm_tile_cache *t = &u->tiles;
     const double looked = (double)t->count.hits + t->count.misses;
     printf(
@@ -210,7 +216,8 @@ static void print_summary(const struct sim *s)
     printf(
         "faults: %u flash reads failed, %u records corrupt, %u requests dropped, %u display "
         "errors\n",
-        t->count.io_errors, t->count.corrupt, t->count.requests_dropped, u->count.display_errors);
+        t->count.io_errors, t->count.corrupt + u->chips.count.corrupt, t->count.requests_dropped,
+        u->count.display_errors);
 }
 
 static int open_bezel(struct sim *s)

@@ -1,6 +1,6 @@
 # Everything that is parsed from wire, file or flash, under the sanitizers: as tests of `make check` (the committed corpus and
 # mutations of it), and, built by fuzz.sh with clang and FUZZER=1, as libFuzzer programs.
-FUZZ_TARGETS  := image targets signature unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
+FUZZ_TARGETS  := image targets chips signature unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
     panel_config obj traced
 FUZZ_PARTS    := address,undefined,float-cast-overflow
 FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
@@ -9,6 +9,7 @@ FUZZ_TEXT     := host-sim/db/text_file.c host-sim/common/src/atomic_file.c tests
 
 FUZZ_SRC_image       := $(FUZZ_CORE)
 FUZZ_SRC_targets     := $(FUZZ_CORE)
+FUZZ_SRC_chips       := $(FUZZ_CORE)
 FUZZ_SRC_unit        := $(FUZZ_CORE)
 FUZZ_SRC_signature   := $(wildcard firmware/src/*.c fixed/src/*.c) host-sim/db/signature_file.c host-sim/common/src/atomic_file.c tests/fuzz/file.c
 FUZZ_SRC_bus         := $(addprefix firmware/src/,canas.c bus.c bus_profiles.c bus_generic.c packed.c canas_service.c nav.c geo.c) $(wildcard fixed/src/*.c)
