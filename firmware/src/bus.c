@@ -30,6 +30,8 @@ const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
     [LM_BUS_UP_VELOCITY] = {"up-velocity", LM_BUS_MM_S},
     [LM_BUS_PITCH_RATE] = {"pitch-rate", LM_BUS_BAM_A_SECOND},
     [LM_BUS_YAW_RATE] = {"yaw-rate", LM_BUS_BAM_A_SECOND},
+    [LM_BUS_WAYPOINT_LATITUDE] = {"waypoint-latitude", LM_BUS_BAM},
+    [LM_BUS_WAYPOINT_LONGITUDE] = {"waypoint-longitude", LM_BUS_BAM},
     [LM_BUS_UTC] = {"utc", LM_BUS_SECONDS},
 };
 

@@ -27,7 +27,7 @@ enum { TEN_MILLIONTHS = 10000000 };
  * Ranges. Wide enough for any aircraft, narrow enough that a wrong unit or a damaged exponent
  * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same.
  *
- * The specification gives longitudes of INS and auxiliary the type SHORT; that is a misprint for
+ * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a misprint for
  * the SHORT2 of the latitudes. */
 /* clang-format off */
 static const struct lm_bus_row canas17_rows[] = {
@@ -48,6 +48,8 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("true up velocity",                     1132, UP_VELOCITY,      0, ANALOGUE,  -500,   500,  100000,  300,  2000),
     ROW("body pitch rate",                       303, PITCH_RATE,       0, ANALOGUE,  -170,   170,   12500,  100,  1000),
     ROW("body yaw rate",                         305, YAW_RATE,         0, ANALOGUE,  -170,   170,   12500,  100,  1000),
+    ROW("active nav wp latitude",               1000, WAYPOINT_LATITUDE, 0, ANALOGUE,  -90,    90, 1000000, 3000, 10000),
+    ROW("active nav wp longitude",              1001, WAYPOINT_LONGITUDE, 0, ANALOGUE, -180,  180, 1000000, 3000, 10000),
     ROW("UTC",                                  1200, UTC,              0, CLOCK,        0, 86400, 1000000, 3000, 10000),
     ROW("INS latitude",                         1049, LATITUDE,         1, ANALOGUE,   -90,    90,  100000,  300,  2000),
     ROW("INS longitude",                        1050, LONGITUDE,        1, ANALOGUE,  -180,   180,  100000,  300,  2000),

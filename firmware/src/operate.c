@@ -235,6 +235,17 @@ static bool obey_environment(struct lm_unit *u, const struct lm_control *control
     return true;
 }
 
+static bool obey_steerpoint(struct lm_unit *u, const struct lm_control *control)
+{
+    if (!is_within(control->value, 0, 1) ||
+        fx_abs_u32((int32_t)control->place.latitude) > FX_BAM_90) {
+        return false;
+    }
+    u->has_own_steerpoint = control->value != 0;
+    u->own_steerpoint = control->place;
+    return true;
+}
+
 static bool obey_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     if (!is_within(control->value, 1, LM_BUTTONS)) {
@@ -274,6 +285,8 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
         return obey_sector(u, control, now_us);
     case LM_CONTROL_ENVIRONMENT:
         return obey_environment(u, control);
+    case LM_CONTROL_STEERPOINT:
+        return obey_steerpoint(u, control);
     case LM_CONTROL_DROP:
         start_sector(u, now_us);
         return true;

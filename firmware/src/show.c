@@ -14,6 +14,46 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_elevation_m = u->cursor_elevation_q10 / 1024;
 }
 
+/* Where it is to go: as commanded, or else the bus's waypoint, while that is not stale. */
+static bool find_steerpoint(const struct lm_unit *u, struct lm_place *place)
+{
+    *place = u->has_own_steerpoint ? u->own_steerpoint : u->ownship.waypoint;
+    return lm_has_ownship(u) &&
+           (u->has_own_steerpoint || u->ownship.waypoint_quality == LM_NAV_GOOD);
+}
+
+static uint32_t to_go_s(const struct lm_unit *u, struct lm_place place)
+{
+    uint32_t distance_q8;
+    fx_bam_t bearing;
+    lm_geo_inverse(lm_ownship_place(u), place, &distance_q8, &bearing);
+    const uint64_t distance_mm = (uint64_t)distance_q8 * 1000 / 256;
+    const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
+    if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
+        return LM_TO_GO_NONE;
+    }
+    const uint64_t seconds = (distance_mm + speed_mm_s / 2) / speed_mm_s;
+    return seconds < LM_TO_GO_NONE ? (uint32_t)seconds : LM_TO_GO_NONE;
+}
+
+static void describe_steerpoint(const struct lm_unit *u, struct lm_symbols *s)
+{
+    struct lm_place place;
+    struct lm_offset at;
+    s->has_steerpoint = find_steerpoint(u, &place);
+    if (!s->has_steerpoint) {
+        return;
+    }
+    s->to_go_s = to_go_s(u, place);
+    if (lm_view_find(&u->view, place, &at)) {
+        const struct lm_frame *f = &u->frame;
+        const struct lm_point p = lm_view_point(&u->view, at);
+        s->steerpoint = p;
+        s->is_steerpoint_on_glass = p.x >= f->left_px && p.x < f->left_px + f->width_px &&
+                                    p.y >= f->top_px && p.y < f->top_px + f->height_px;
+    }
+}
+
 /* Where the cursor would be if the whole sector were shown. */
 static void describe_window(const struct lm_unit *u, struct lm_symbols *s)
 {
@@ -47,6 +87,7 @@ static struct lm_symbols describe(const struct lm_unit *u)
         describe_window(u, &s);
     }
     describe_cursor(u, &s);
+    describe_steerpoint(u, &s);
     if (u->is_view_held && lm_has_ownship(u)) {
         /* It flies over the map and does not stand on the ground that slant ranges are for. */
         struct lm_view level = u->view;

@@ -137,6 +137,17 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
+/* A diamond. */
+static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t reach = part_of_half(g, 65) / 2;
+    for (int32_t side = -1; side <= 1; side += 2) {
+        line(&pen, at.x - reach, at.y, at.x, at.y + side * reach);
+        line(&pen, at.x, at.y + side * reach, at.x + reach, at.y);
+    }
+}
+
 static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -217,6 +228,21 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     write_place(g, s->cursor_place);
 }
 
+/* Time to go to the steerpoint, minutes and seconds. */
+static void write_to_go(const struct lm_glass *g, uint32_t to_go_s)
+{
+    struct lm_text t = {0};
+    lm_text_add(&t, "TTG ");
+    if (to_go_s < LM_TO_GO_NONE) {
+        lm_text_number(&t, to_go_s / 60, 2);
+        lm_text_add(&t, ":");
+        lm_text_number(&t, to_go_s % 60, 2);
+    } else {
+        lm_text_add(&t, "--:--");
+    }
+    write_row(g, 1, ALIGN_MIDDLE, t.words);
+}
+
 static void write_patch(const struct lm_glass *g, const struct lm_symbols *s)
 {
     struct lm_text t = {0};
@@ -267,6 +293,12 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
         }
     }
     draw_gain(g, s->gain_db);
+    if (s->has_steerpoint) {
+        write_to_go(g, s->to_go_s);
+    }
+    if (s->is_steerpoint_on_glass) {
+        draw_steerpoint(g, s->steerpoint);
+    }
     if (s->is_cursor_on_glass) {
         draw_cursor(g, s);
     }

@@ -181,6 +181,14 @@ static bool parse_sector(char **words, int count, struct lm_control *c)
            (count == 2 || (count == 3 && choice(words[2], fields, LM_FIELDS, &c->value_y)));
 }
 
+/* "steer LAT LON", or "steer off": as the bus says. */
+static bool parse_steer(char **words, int count, struct lm_control *c)
+{
+    c->kind = LM_CONTROL_STEERPOINT;
+    c->value = count == 4;
+    return count == 4 ? place(words + 2, &c->place) : count == 3 && strcmp(words[2], "off") == 0;
+}
+
 /* Commands of one word. */
 static bool parse_plain(const char *word, struct lm_control *c)
 {
@@ -275,6 +283,9 @@ static bool parse_line(char **words, int count, struct lm_environment *environme
     }
     if (strcmp(words[1], "slew") == 0 || strcmp(words[1], "knob") == 0) {
         return parse_deflection(words, count, line);
+    }
+    if (strcmp(words[1], "steer") == 0) {
+        return parse_steer(words, count, &e->control);
     }
     if (strncmp(words[1], "sar", 3) == 0) {
         return parse_sar(words, count, &e->control);

@@ -181,6 +181,13 @@ const struct golden_picture golden_pictures[] = {
      .keys = {CURSOR_ZERO},
      .has_parked = true,
      .field = LM_FIELD_DBS2},
+    {.name = "page-steerpoint", FROM_SOUTH, GLASS, .speed_m_s = 200, .has_steerpoint = true},
+    {.name = "page-steerpoint-smallest-glass",
+     FROM_SOUTH,
+     .width_px = 256,
+     .height_px = 256,
+     .speed_m_s = 200,
+     .has_steerpoint = true},
     {.name = "page-nav-stale", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_ENDS},
     {.name = "page-bus-dead", FROM_SOUTH, GLASS, .fault = GOLDEN_BUS_DEAD},
     {.name = "page-db-fail", FROM_SOUTH, GLASS, .fault = GOLDEN_BAD_HEADER},
@@ -294,7 +301,7 @@ static int next_key(const struct golden_picture *p, uint32_t item, struct lm_con
  * and presses keys late. */
 static int next_control(void *ctx, struct lm_control *control)
 {
-    enum { EARLY = 5, ITEMS };
+    enum { EARLY = 6, ITEMS };
     struct golden_rig *r = ctx;
     const struct golden_picture *p = r->picture;
     const struct lm_control script[ITEMS] = {
@@ -302,6 +309,9 @@ static int next_control(void *ctx, struct lm_control *control)
         {.kind = LM_CONTROL_RANGE, .value = p->range},
         {.kind = LM_CONTROL_AZIMUTH, .value = p->azimuth},
         {.kind = LM_CONTROL_GAIN, .value = p->gain_db},
+        {.kind = LM_CONTROL_STEERPOINT,
+         .value = p->has_steerpoint,
+         .place = moved(r->centre, 0, 1852)},
         {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_SECTOR,
          .value = p->mode,
          .value_y = p->field,

@@ -32,7 +32,8 @@ struct golden_picture {
     int8_t gain_db;
     /* Rain over 2 km around the middle, a jammer 2 km east of it, the sea (0: as in the image). */
     uint8_t rain_mm_h, jam_db, sea_state;
-    bool has_movers; /* two of GOLDEN_MOVERS on land, one at sea */
+    bool has_steerpoint; /* a mile north of the middle */
+    bool has_movers;     /* two of GOLDEN_MOVERS on land, one at sea */
     bool has_parked; /* four with the image's signature, on the runway, which is the middle then */
     uint8_t keys[6]; /* option select buttons pressed later, 0 behind the last */
     /* SAR when cell_mm is not 0: a patch at the middle, seen from the aircraft, or when range_m is

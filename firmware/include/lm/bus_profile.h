@@ -29,6 +29,8 @@ enum lm_bus_field {
     LM_BUS_UP_VELOCITY,
     LM_BUS_PITCH_RATE,
     LM_BUS_YAW_RATE,
+    LM_BUS_WAYPOINT_LATITUDE, /* of the active waypoint: where it is to go */
+    LM_BUS_WAYPOINT_LONGITUDE,
     LM_BUS_UTC,
     LM_BUS_FIELDS
 };

@@ -28,6 +28,8 @@ enum lm_control_kind {
     LM_CONTROL_SECTOR,      /* value: enum lm_sector_mode; value_y: enum lm_field */
     LM_CONTROL_SAR,         /* a patch: see `sar` */
     LM_CONTROL_ENVIRONMENT, /* rain, jammers, sea: see `environment` */
+    LM_CONTROL_STEERPOINT,  /* value: 1 steer to `place`, whatever the bus says; 0: as the bus says
+                             */
     LM_CONTROL_RANGE,       /* value: 0..LM_RANGES - 1 */
     LM_CONTROL_AZIMUTH,     /* value: 0..LM_AZIMUTHS - 1 */
     LM_CONTROL_GAIN,        /* value: decibels brighter than the table says, -30..30 */
@@ -61,6 +63,7 @@ struct lm_control {
     int32_t value, value_y;
     struct lm_sar_command sar;
     struct lm_environment environment;
+    struct lm_place place;
 };
 
 #endif

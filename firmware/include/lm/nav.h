@@ -7,6 +7,7 @@
 
 #include "fx/types.h"
 #include "lm/bus.h"
+#include "lm/geo.h"
 
 /* How far a number may be trusted. The ages that part the three are columns of the profile: a
  * number is stale when it is older than `stale_ms`, dead when it is older than `dead_ms` or was
@@ -90,6 +91,9 @@ struct lm_ownship {
     fx_bam_t track; /* of the ground velocity; 0 at rest */
     enum lm_nav_quality velocity_quality;
     struct lm_nav_origin velocity_origin;
+
+    struct lm_place waypoint; /* the active one */
+    enum lm_nav_quality waypoint_quality;
 
     int32_t utc_s; /* since midnight */
     enum lm_nav_quality utc_quality;

@@ -29,6 +29,9 @@ enum { LM_FLAGS = 9 };
 /* The word of flag number 0..LM_FLAGS - 1, at most eight characters. */
 const char *lm_flag_word(uint32_t number);
 
+/* Longer than the read-out has room for: 100 minutes. */
+enum { LM_TO_GO_NONE = 6000 };
+
 /* The symbols of the radar picture. */
 struct lm_symbols {
     struct lm_view view;
@@ -49,6 +52,10 @@ struct lm_symbols {
     fx_bam_t cursor_bearing;
     int32_t cursor_elevation_m;
     bool has_cursor_elevation;
+
+    bool has_steerpoint, is_steerpoint_on_glass;
+    struct lm_point steerpoint;
+    uint32_t to_go_s; /* to it; LM_TO_GO_NONE: not to be had */
 
     bool is_cue_shown; /* window: where the cursor would be in the whole sector */
     struct lm_point cue;

@@ -54,6 +54,8 @@ struct lm_unit {
     struct lm_target_set target_set; /* the part of them that was read */
     struct lm_chips chips;
     struct lm_environment environment;
+    struct lm_place own_steerpoint; /* commanded: before the bus's waypoint */
+    bool has_own_steerpoint;
     struct lm_nav nav;
     struct lm_canas_service service;
     struct lm_ownship ownship; /* extrapolated to the last step */

@@ -341,7 +341,7 @@ static struct lm_can_frame on_channel(struct lm_can_frame frame, uint32_t channe
     return frame;
 }
 
-/* A position of one place from row `row` (0 GPS latitude; 18 INS latitude; 23 auxiliary) and
+/* A position of one place from row `row` (0 GPS latitude; 20 INS latitude; 25 auxiliary) and
  * channel, as FLOAT, and a velocity of 0. */
 static void hear_place(struct lm_nav *nav, uint32_t row, uint32_t channel, double degrees,
                        uint64_t time_us)
@@ -354,7 +354,7 @@ static void hear_place(struct lm_nav *nav, uint32_t row, uint32_t channel, doubl
     hear_float(nav, LM_BUS_EAST_VELOCITY, 0, time_us);
 }
 
-enum { GPS = 0, INS = 18, AUXILIARY = 23 };
+enum { GPS = 0, INS = 20, AUXILIARY = 25 };
 
 static void assert_place(const struct lm_nav *nav, uint64_t now_us, int degrees,
                          enum lm_nav_quality quality)

@@ -173,6 +173,22 @@ static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void
     }
 }
 
+static void a_steerpoint_is_a_place_or_off(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 steer 45 -90.5\n2 steer off\n"), 0);
+    struct lm_control c = at(&s, 1);
+    assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
+    assert_int_equal(c.value, 1);
+    assert_int_equal(c.place.latitude, hs_bam(45));
+    assert_int_equal(c.place.longitude, hs_bam(-90.5));
+    c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
+    assert_int_equal(c.value, 0);
+    script_free(&s);
+}
+
 static void rain_and_jammers_add_up_until_the_weather_is_fair(void **state)
 {
     (void)state;
@@ -279,6 +295,11 @@ static void commands_that_are_none_are_refused(void **state)
                                "0 jam -91 0 1\n",
                                "0 jam 0 0 1 1\n",
                                "0 jam 0 0 x\n",
+                               "0 steer\n",
+                               "0 steer on\n",
+                               "0 steer 91 0\n",
+                               "0 steer 45\n",
+                               "0 steer 45 9 1\n",
                                "0 weather\n",
                                "0 weather foul\n",
                                "0 weather fair 1\n",
@@ -306,6 +327,7 @@ int main(void)
         cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
         cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
         cmocka_unit_test(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector),
+        cmocka_unit_test(a_steerpoint_is_a_place_or_off),
         cmocka_unit_test(rain_and_jammers_add_up_until_the_weather_is_fair),
         cmocka_unit_test(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for),
         cmocka_unit_test(commands_that_are_none_are_refused),
