@@ -7,8 +7,8 @@
 /* Of all legs: at most 32 * 10^8 mm, below 2^32. */
 static uint32_t path_mm(const struct lm_target *t)
 {
-    uint32_t sum_mm = 0;
-    for (uint32_t i = 0; i < t->path_legs; i++) {
+    uint32_t sum_mm = t->path[0].length_mm;
+    for (uint32_t i = 1; i < t->path_legs; i++) {
         sum_mm += t->path[i].length_mm;
     }
     return sum_mm;

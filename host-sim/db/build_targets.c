@@ -284,15 +284,17 @@ struct reading {
  * next one begins. */
 static int end_target(const struct reading *r)
 {
-    const uint32_t count = r->targets->count;
-    const struct lm_target *last = count > 0 ? &r->targets->items[count - 1] : NULL;
-    if (last && (last->flags & LM_TARGET_HAS_PATH) && (last->path_legs == 0 || r->wants_bodies)) {
+    if (r->targets->count == 0) {
+        return 0;
+    }
+    const struct lm_target *last = &r->targets->items[r->targets->count - 1];
+    if ((last->flags & LM_TARGET_HAS_PATH) && (last->path_legs == 0 || r->wants_bodies)) {
         return db_text_error(&r->file, via_form, "the path of target %.16s %s", last->name,
                              r->wants_bodies ? "cannot be, for it has bodies" : "has no places");
     }
-    if (r->wants_bodies && r->targets->items[count - 1].scatterer_count == 0) {
+    if (r->wants_bodies && last->scatterer_count == 0) {
         return db_text_error(&r->file, "add a sphere, plate, dihedral or trihedral",
-                             "target %.16s has no bodies", r->targets->items[count - 1].name);
+                             "target %.16s has no bodies", last->name);
     }
     return 0;
 }

@@ -110,6 +110,20 @@ static struct trace_order trace_order_of(const struct bake_order *o, long aspect
     };
 }
 
+static int draw_cells(struct baking *b, const struct trace_records *r, float *chip)
+{
+    float *cells = malloc((size_t)r->grid.cells_across * r->grid.cells_range * sizeof *cells);
+    if (!cells) {
+        return hs_error("chip", "bake with larger pixels", "out of memory");
+    }
+    const int result = b->order->maker.draw(b->order->maker.ctx, r, cells);
+    if (result == 0) {
+        lay_down(b, r, cells, chip);
+    }
+    free(cells);
+    return result;
+}
+
 static int draw_look(struct baking *b, const struct trace_order *order, float *chip)
 {
     struct trace_records r;
@@ -117,13 +131,7 @@ static int draw_look(struct baking *b, const struct trace_order *order, float *c
         return -1;
     }
     mute_ground(&r);
-    float *cells = malloc((size_t)r.grid.cells_across * r.grid.cells_range * sizeof *cells);
-    int result = cells ? b->order->maker.draw(b->order->maker.ctx, &r, cells)
-                       : hs_error("chip", "bake with larger pixels", "out of memory");
-    if (result == 0) {
-        lay_down(b, &r, cells, chip);
-    }
-    free(cells);
+    const int result = draw_cells(b, &r, chip);
     trace_records_free(&r);
     return result;
 }
@@ -184,13 +192,20 @@ static int draw_all(struct baking *b, struct db_signature *s)
 
 /* ---- codes ---- */
 
+static double dbsm_of(double rcs_m2)
+{
+    return rcs_m2 > 0 ? 10 * log10(rcs_m2) : -INFINITY;
+}
+
+/* Before rounding and the ends of the scale. */
+static double half_decibels(double rcs_m2)
+{
+    return 2 * (dbsm_of(rcs_m2) + 80);
+}
+
 uint8_t bake_code(double rcs_m2)
 {
-    if (!(rcs_m2 > 0)) {
-        return 0;
-    }
-    const double half_db = 2 * (10 * log10(rcs_m2) + 80);
-    return (uint8_t)lround(fmin(fmax(half_db, 0), CODE_MAX));
+    return (uint8_t)lround(fmin(fmax(half_decibels(rcs_m2), 0), CODE_MAX));
 }
 
 static double find_gain(const struct baking *b, uint32_t chips)
@@ -212,16 +227,16 @@ static void write_codes(const struct baking *b, double gain, struct db_signature
         for (int k = 0; k < PIXELS; k++) {
             const double rcs_m2 = gain * (double)power[k];
             s->chips[i].level[k / LM_CHIP_SIDE][k % LM_CHIP_SIDE] = bake_code(rcs_m2);
-            report->saturated += 2 * (10 * log10(rcs_m2) + 80) > CODE_MAX + 0.5;
+            report->saturated += half_decibels(rcs_m2) > CODE_MAX + 0.5;
         }
         sum += whole_m2;
         least = fmin(least, whole_m2);
         most = fmax(most, whole_m2);
     }
     report->gain_db = 10 * log10(gain);
-    report->mean_dbsm = 10 * log10(sum / chips);
-    report->least_dbsm = 10 * log10(least);
-    report->most_dbsm = 10 * log10(most);
+    report->mean_dbsm = dbsm_of(sum / chips);
+    report->least_dbsm = dbsm_of(least);
+    report->most_dbsm = dbsm_of(most);
     report->lost_share = b->total_m2 > 0 ? b->lost_m2 / b->total_m2 : 0;
 }
 

@@ -154,7 +154,7 @@ static void seal_parts(const struct parts *p, uint32_t count, uint32_t chips)
     }
 }
 
-enum { LIES = 19 };
+enum { LIES = 21 };
 
 /* Lie number `lie` about the last signature, which has 6 chips. */
 static void tell(const struct parts *p, uint32_t count, uint32_t chips, int lie)
@@ -206,6 +206,15 @@ static void tell(const struct parts *p, uint32_t count, uint32_t chips, int lie)
         break;
     case 17:
         last->reserved[54] = 1;
+        break;
+    case 18:
+        s->rcs[7][0] = 1;
+        break; /* of no depression */
+    case 19:   /* fewer chips than there are */
+        s->aspects--;
+        s->depressions = 1;
+        s->depression[1] = 0;
+        memset(&s->rcs[0][s->aspects], 0, sizeof s->rcs - s->aspects);
         break;
     default:
         p->head->reserved[0] = 1;

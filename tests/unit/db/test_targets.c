@@ -1,5 +1,6 @@
 /* Specific targets from their text file into an image and back: by the builder, the checker and the
  * firmware. */
+#include "build_path.h"
 #include "build_targets.h"
 #include "image_reader.h"
 #include "image_verify.h"
@@ -92,6 +93,28 @@ static void a_file_says_all_that_a_record_holds(void **state)
     for (uint32_t i = 0; i < t.count; i++) {
         assert_int_equal(t.items[i].id, i);
         assert_int_equal(lm_target_check(&t.items[i]), LM_OK);
+    }
+    build_targets_free(&t);
+}
+
+/* Legs of up to 100 km end within a decimetre of their places, as the firmware goes them. */
+static void a_path_leads_to_its_places(void **state)
+{
+    (void)state;
+    static const double places[5][2] = {
+        {60, 179.5}, {60.7, -179.6}, {60.1, -179.2}, {60.1001, -179.2}, {59.7, 179.9}};
+    struct build_targets t;
+    char list[400] = "target t 60 179.5 0 0 swerling 1 1 moving 20\n";
+    for (int i = 1; i < 5; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "via %.4f %.4f\n", places[i][0], places[i][1]);
+        strcat(list, line);
+    }
+    scene_text("path.targets", list);
+    assert_int_equal(build_targets_read(&t, scene_path("path.targets")), 0);
+    for (int i = 0; i < 4; i++) {
+        const struct lm_place to = {hs_bam(places[i + 1][0]), hs_bam(places[i + 1][1])};
+        assert_true(build_path_apart_m(build_path_end(&t.items[0].path[i]), to) <= 0.1);
     }
     build_targets_free(&t);
 }
@@ -461,6 +484,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_says_all_that_a_record_holds),
+        cmocka_unit_test(a_path_leads_to_its_places),
         cmocka_unit_test(a_line_that_makes_no_sense_is_refused),
         cmocka_unit_test(whatever_is_read_the_firmware_takes),
         cmocka_unit_test(the_targets_of_a_file_are_those_that_the_firmware_reads),
