@@ -7,17 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool has_ground(double ground_half_m)
-{
-    return ground_half_m > 0;
-}
-
-/* Corner i of the ground: counter-clockwise from above. */
-static struct vec ground_corner(uint32_t i, double half_m)
-{
-    return (struct vec){i == 1 || i == 2 ? half_m : -half_m, i >= 2 ? half_m : -half_m, 0};
-}
-
 static void set_facet(struct scene *s, uint32_t i, const struct vec corners[3], uint8_t material)
 {
     const struct vec w =
@@ -28,12 +17,12 @@ static void set_facet(struct scene *s, uint32_t i, const struct vec corners[3], 
     s->facet_materials[i] = material;
 }
 
-static int take_materials(struct scene *s, const struct mesh *m, double ground_half_m,
-                          uint32_t *ground, const char *place)
+static int take_materials(struct scene *s, const struct mesh *m, uint32_t *ground,
+                          const char *place)
 {
     s->material_count = m->material_count;
     memcpy(s->materials, m->materials, sizeof s->materials);
-    if (!has_ground(ground_half_m)) {
+    if (s->ground_half_m <= 0) {
         return 0;
     }
     struct mesh names = {.material_count = m->material_count};
@@ -47,14 +36,13 @@ static int take_materials(struct scene *s, const struct mesh *m, double ground_h
     return 0;
 }
 
-static int take_facets(struct scene *s, const struct mesh *m, double ground_half_m,
-                       const char *place)
+static int take_facets(struct scene *s, const struct mesh *m, const char *place)
 {
     uint32_t ground = 0;
-    if (take_materials(s, m, ground_half_m, &ground, place) != 0) {
+    if (take_materials(s, m, &ground, place) != 0) {
         return -1;
     }
-    s->facet_count = m->triangle_count + (has_ground(ground_half_m) ? 2 : 0);
+    s->facet_count = m->triangle_count + (s->ground_half_m > 0);
     s->facets = malloc(s->facet_count * sizeof *s->facets);
     s->facet_materials = malloc(s->facet_count);
     if (!s->facets || !s->facet_materials) {
@@ -65,12 +53,9 @@ static int take_facets(struct scene *s, const struct mesh *m, double ground_half
         const struct vec corners[3] = {m->vertices[c[0]], m->vertices[c[1]], m->vertices[c[2]]};
         set_facet(s, i, corners, (uint8_t)m->triangles[i].material);
     }
-    for (uint32_t i = m->triangle_count; i < s->facet_count; i++) {
-        const uint32_t half = i - m->triangle_count;
-        const struct vec corners[3] = {ground_corner(0, ground_half_m),
-                                       ground_corner(half + 1, ground_half_m),
-                                       ground_corner(half + 2, ground_half_m)};
-        set_facet(s, i, corners, (uint8_t)ground);
+    if (s->ground_half_m > 0) {
+        s->facets[m->triangle_count] = (struct scene_facet){{0, 0, 1}, 0};
+        s->facet_materials[m->triangle_count] = (uint8_t)ground;
     }
     return 0;
 }
@@ -83,37 +68,25 @@ static void put_float3(float *to, struct vec v)
 }
 
 /* Embree's own copy of the triangles, in single precision. Embree's memory is zeroed by nobody. */
-static bool fill_geometry(RTCGeometry geometry, const struct scene *s, const struct mesh *m,
-                          double ground_half_m)
+static bool fill_geometry(RTCGeometry geometry, const struct mesh *m)
 {
-    const uint32_t extra = has_ground(ground_half_m) ? 4 : 0;
     float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                              RTC_FORMAT_FLOAT3, 12, m->vertex_count + extra);
+                                              RTC_FORMAT_FLOAT3, 12, m->vertex_count);
     uint32_t *indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                RTC_FORMAT_UINT3, 12, s->facet_count);
+                                                RTC_FORMAT_UINT3, 12, m->triangle_count);
     if (!vertices || !indices) {
         return false;
     }
     for (uint32_t i = 0; i < m->vertex_count; i++) {
         put_float3(vertices + (size_t)i * 3, m->vertices[i]);
     }
-    for (uint32_t i = 0; i < extra; i++) {
-        put_float3(vertices + ((size_t)m->vertex_count + i) * 3, ground_corner(i, ground_half_m));
-    }
     for (uint32_t i = 0; i < m->triangle_count; i++) {
         memcpy(indices + (size_t)i * 3, m->triangles[i].corner, 12);
-    }
-    for (uint32_t i = m->triangle_count; i < s->facet_count; i++) {
-        const uint32_t half = i - m->triangle_count;
-        const uint32_t corners[3] = {m->vertex_count, m->vertex_count + half + 1,
-                                     m->vertex_count + half + 2};
-        memcpy(indices + (size_t)i * 3, corners, 12);
     }
     return true;
 }
 
-static int build_tree(struct scene *s, const struct mesh *m, double ground_half_m,
-                      const char *place)
+static int build_tree(struct scene *s, const struct mesh *m, const char *place)
 {
     RTCDevice device = s->device = rtcNewDevice(NULL);
     if (!device) {
@@ -122,7 +95,7 @@ static int build_tree(struct scene *s, const struct mesh *m, double ground_half_
     }
     RTCScene tree = s->tree = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const bool is_filled = tree && geometry && fill_geometry(geometry, s, m, ground_half_m);
+    const bool is_filled = tree && geometry && fill_geometry(geometry, m);
     if (is_filled) {
         rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST); /* no ray slips through an edge */
         rtcCommitGeometry(geometry);
@@ -138,13 +111,12 @@ static int build_tree(struct scene *s, const struct mesh *m, double ground_half_
 
 int scene_open(struct scene *s, const struct mesh *m, double ground_half_m, const char *place)
 {
-    *s = (struct scene){0};
+    *s = (struct scene){.ground_half_m = fmax(ground_half_m, 0)};
     if (m->is_full) {
         return hs_error(place, "reduce the model", "out of memory");
     }
     mesh_bounds(m, &s->low, &s->high);
-    if (take_facets(s, m, ground_half_m, place) != 0 ||
-        build_tree(s, m, ground_half_m, place) != 0) {
+    if (take_facets(s, m, place) != 0 || build_tree(s, m, place) != 0) {
         scene_close(s);
         return -1;
     }
@@ -182,16 +154,31 @@ void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int v
     }
 }
 
+/* How far a ray goes until it meets the ground; INFINITY when it does not. A level ray divides by
+ * zero: no comparison with what comes of it is true. */
+static double way_to_ground_m(const struct scene *s, struct vec from, struct vec along)
+{
+    const double way_m = -from.z / along.z;
+    const bool is_met = way_m > 0 && fabs(from.x + way_m * along.x) <= s->ground_half_m &&
+                        fabs(from.y + way_m * along.y) <= s->ground_half_m;
+    return is_met ? way_m : (double)INFINITY;
+}
+
 void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t facets[SCENE_PACKET])
 {
     struct RTCIntersectContext context = embree_context();
     _Alignas(32) int valid[SCENE_PACKET];
     struct RTCRayHit8 packet;
     embree_pack(rays, &packet, valid);
+    for (uint32_t i = 0; i < rays->count; i++) {
+        packet.ray.tfar[i] = (float)way_to_ground_m(s, rays->from[i], rays->along[i]);
+        facets[i] = isfinite(packet.ray.tfar[i]) ? s->facet_count - 1 : SCENE_MISS;
+    }
     rtcIntersect8(valid, s->tree, &context, &packet);
     for (uint32_t i = 0; i < rays->count; i++) {
-        facets[i] =
-            packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? SCENE_MISS : packet.hit.primID[i];
+        if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+            facets[i] = packet.hit.primID[i];
+        }
     }
 }
 
@@ -204,7 +191,9 @@ uint32_t scene_is_blocked(const struct scene *s, const struct scene_rays *rays)
     rtcOccluded8(valid, s->tree, &context, &packet.ray);
     uint32_t blocked = 0;
     for (uint32_t i = 0; i < rays->count; i++) {
-        blocked |= (uint32_t)(packet.ray.tfar[i] < 0) << i; /* Embree sets it to -infinity */
+        const bool is_hit = packet.ray.tfar[i] < 0; /* Embree sets it to -infinity */
+        const bool is_under = isfinite(way_to_ground_m(s, rays->from[i], rays->along[i]));
+        blocked |= (uint32_t)(is_hit || is_under) << i;
     }
     return blocked;
 }

@@ -1,4 +1,5 @@
-/* A model standing on its ground, ready to be met by rays. Intersections are Embree's. */
+/* A model standing on its ground, ready to be met by rays. Where they meet the model is Embree's
+ * answer; where they meet the ground, a plane, is computed here. */
 #ifndef TARGET_SCENE_H
 #define TARGET_SCENE_H
 
@@ -15,9 +16,10 @@ struct scene_facet {
 
 struct scene {
     void *device, *tree;        /* Embree's; owned */
-    struct scene_facet *facets; /* owned; by triangle */
+    struct scene_facet *facets; /* owned; by triangle, that of the ground last */
     uint8_t *facet_materials;   /* owned; likewise */
     uint32_t facet_count, material_count;
+    double ground_half_m; /* half the side of the ground, a square at z = 0; 0: there is none */
     char materials[TRACE_MATERIALS_MAX][TRACE_NAME_SIZE];
     struct vec low, high; /* bounds of the model, without the ground */
 };
@@ -31,9 +33,9 @@ struct scene_rays {
     uint32_t count;
 };
 
-/* Build the tree over the model and, when ground_half_m > 0, a square of ground of that half side
- * at z = 0, of the material "ground". The mesh is not needed afterwards. Returns 0, or -1 with the
- * error reported with `place` and *s empty. */
+/* Build the tree over the model. When ground_half_m > 0 it stands on a square of ground of that
+ * half side at z = 0, of the material "ground". The mesh is not needed afterwards. Returns 0, or -1
+ * with the error reported with `place` and *s empty. */
 int scene_open(struct scene *s, const struct mesh *m, double ground_half_m, const char *place);
 
 /* The facet that each ray meets first, or SCENE_MISS. Any number of threads may ask at once. */
