@@ -142,16 +142,16 @@ static bool is_in_shadow(const struct baking *b, const struct trace_axes *axes, 
     const double pixel_m = b->order->layout.pixel_mm / 1000.0;
     int hidden = 0;
     for (int first = 0; first < SHADOW_RAYS * SHADOW_RAYS; first += SCENE_PACKET) {
-        struct scene_rays rays = {.count = SCENE_PACKET};
+        struct scene_rays rays = {.count = 0};
         for (int k = 0; k < SCENE_PACKET; k++) {
             const int ray = first + k;
             const double down = row + (ray / SHADOW_RAYS + 0.5) / SHADOW_RAYS;
             const double aside = column + (ray % SHADOW_RAYS + 0.5) / SHADOW_RAYS;
             const double away_m = (down - b->order->layout.origin_row) * pixel_m;
-            rays.from[k] = vec_mad(vec_scale(axes->away, away_m), axes->across,
-                                   (aside - LM_CHIP_SIDE / 2) * pixel_m);
-            rays.from[k].z = ground_lift_m;
-            rays.along[k] = vec_scale(axes->sight, -1);
+            struct vec from = vec_mad(vec_scale(axes->away, away_m), axes->across,
+                                      (aside - LM_CHIP_SIDE / 2) * pixel_m);
+            from.z = ground_lift_m;
+            scene_rays_add(&rays, from, vec_scale(axes->sight, -1));
         }
         hidden += __builtin_popcount(scene_is_blocked(&b->scene, &rays));
     }

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 struct bare_packet {
-    struct RTCRayHit8 rays;
-    _Alignas(32) int valid[SCENE_PACKET];
+    struct RTCRayHit16 rays;
+    _Alignas(64) int valid[SCENE_PACKET];
     bool is_shadow;
 };
 
-void bare_keep(struct bare_rays *b, const struct scene_rays *rays, bool is_shadow)
+static void keep_packet(struct bare_rays *b, const struct scene_rays *rays, bool is_shadow)
 {
     if (b->count == b->room) {
         const size_t room = b->room > 0 ? 2 * b->room : 4096;
@@ -31,18 +31,38 @@ void bare_keep(struct bare_rays *b, const struct scene_rays *rays, bool is_shado
     p->is_shadow = is_shadow;
 }
 
+void bare_keep(struct bare_rays *b, struct vec from, struct vec along, bool is_shadow)
+{
+    struct scene_rays *pending = &b->pending[is_shadow];
+    scene_rays_add(pending, from, along);
+    if (pending->count == SCENE_PACKET) {
+        keep_packet(b, pending, is_shadow);
+        pending->count = 0;
+    }
+}
+
+void bare_flush(struct bare_rays *b)
+{
+    for (int is_shadow = 0; is_shadow < 2; is_shadow++) {
+        if (b->pending[is_shadow].count > 0) {
+            keep_packet(b, &b->pending[is_shadow], is_shadow);
+        }
+        b->pending[is_shadow].count = 0;
+    }
+}
+
 size_t bare_cast(const struct scene *s, const struct bare_rays *b, size_t first, size_t end)
 {
     size_t met = 0;
     for (size_t i = first; i < end; i++) {
         const struct bare_packet *p = &b->packets[i];
         struct RTCIntersectContext context = embree_context();
-        struct RTCRayHit8 rays = p->rays; /* Embree writes into it */
+        struct RTCRayHit16 rays = p->rays; /* Embree writes into it */
         if (p->is_shadow) {
-            rtcOccluded8(p->valid, s->tree, &context, &rays.ray);
+            rtcOccluded16(p->valid, s->tree, &context, &rays.ray);
             met += rays.ray.tfar[0] < 0;
         } else {
-            rtcIntersect8(p->valid, s->tree, &context, &rays);
+            rtcIntersect16(p->valid, s->tree, &context, &rays);
             met += rays.hit.geomID[0] != RTC_INVALID_GEOMETRY_ID;
         }
     }

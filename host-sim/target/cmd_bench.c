@@ -19,9 +19,9 @@ static const struct db_usage usage = {
     "  primary_rays, rays     of one picture; rays are primary, specular and backward ones\n"
     "  trace_cpu_ms           tracing the picture: processor time of all threads, least of all "
     "runs\n"
-    "  embree_cpu_ms          likewise of the same rays in the same packets, given to Embree with\n"
-    "                         nothing done before or after\n"
-    "  share_of_embree        embree_cpu_ms / trace_cpu_ms\n"
+    "  embree_cpu_ms          likewise of all these rays when Embree meets them, primary ones and\n"
+    "                         the ground too, in ready packets and with nothing done to its "
+    "answers\n"
     "  rays_per_cpu_s         of the tracer\n"
     "  chip_ms                by the clock: tracing, law, sum over cells, response and pixels\n"
     "  memory_mb              of the whole process, at most"};
@@ -33,7 +33,7 @@ static double seconds_of(clockid_t clock)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Packets of the same picture, cast by several threads in blocks as large as the tracer's tiles. */
+/* Packets of the same picture, cast by several threads in blocks. */
 struct caster {
     const struct scene *scene;
     const struct bare_rays *rays;
@@ -42,7 +42,7 @@ struct caster {
 
 static void *cast(void *argument)
 {
-    enum { BLOCK = TILE_RAYS / SCENE_PACKET };
+    enum { BLOCK = 128 };
     struct caster *c = argument;
     size_t first;
     while ((first = atomic_fetch_add(&c->next, BLOCK)) < c->rays->count) {
@@ -92,20 +92,23 @@ static int open_whole(const struct setup *s, double ground_half_m, struct scene 
 static int keep_rays(const struct scene *scene, const struct trace_order *order,
                      struct bare_rays *rays)
 {
-    const struct trace_sensor sensor = trace_sensor_for(scene, order);
-    const struct trace_tiles tiles = {scene, trace_axes_of(&order->look), sensor,
-                                      -2 / order->look.wavelength_m, order->bounces};
-    const uint32_t count = (sensor.columns * sensor.rows + TILE_RAYS - 1) / TILE_RAYS;
-    struct trace_record *scratch = malloc(TRACE_BOUNCES_MAX * TILE_RAYS * sizeof *scratch);
-    for (uint32_t i = 0; scratch && i < count; i++) {
+    struct trace_tiles tiles;
+    const bool is_open = trace_tiles_open(&tiles, scene, order) == 0;
+    const size_t room = is_open ? tiles.tile_rays : 1;
+    struct tile_work *work = is_open ? tile_work_new(&tiles) : NULL;
+    struct trace_record *scratch = malloc(TRACE_BOUNCES_MAX * room * sizeof *scratch);
+    for (uint32_t i = 0; work && scratch && i < tiles.tile_count; i++) {
         struct tile_result result = {.bare = rays};
         for (uint32_t b = 0; b < TRACE_BOUNCES_MAX; b++) {
-            result.bounces[b].records = scratch + (size_t)b * TILE_RAYS;
+            result.bounces[b].records = scratch + b * room;
         }
-        trace_tile(&tiles, i, &result);
+        trace_tile(&tiles, i, work, &result);
     }
-    const bool is_whole = scratch && !rays->is_out_of_memory;
+    bare_flush(rays);
+    const bool is_whole = work && scratch && !rays->is_out_of_memory;
     free(scratch);
+    tile_work_free(work);
+    trace_tiles_close(&tiles);
     return is_whole ? 0 : hs_error("bench", NULL, "out of memory");
 }
 
@@ -156,8 +159,7 @@ static void print(const struct times *t)
     printf("plane_m %.9g %.9g %.9g\n", p->columns * p->step_across_m, height_m,
            p->low_up_m + height_m / 2);
     printf("primary_rays %u\nrays %llu\n", p->columns * p->rows, (unsigned long long)t->rays);
-    printf("trace_cpu_ms %.2f\nembree_cpu_ms %.2f\nshare_of_embree %.3f\n", 1e3 * t->trace_cpu_s,
-           1e3 * t->embree_cpu_s, t->embree_cpu_s / t->trace_cpu_s);
+    printf("trace_cpu_ms %.2f\nembree_cpu_ms %.2f\n", 1e3 * t->trace_cpu_s, 1e3 * t->embree_cpu_s);
     printf("rays_per_cpu_s %.4g\n", (double)t->rays / t->trace_cpu_s);
     printf("chip_ms %.2f\nmemory_mb %ld\n", 1e3 * t->chip_s, use.ru_maxrss / 1024);
 }

@@ -1,4 +1,4 @@
-/* Rays in the form that Embree takes eight of them at once. */
+/* Rays in the form that Embree takes sixteen of them at once. */
 #ifndef TARGET_EMBREE_PACKET_H
 #define TARGET_EMBREE_PACKET_H
 
@@ -10,7 +10,8 @@
  * tank, whose rays scatter, this is a fifth faster than taking them one by one (measured). */
 struct RTCIntersectContext embree_context(void);
 
-/* Fill a packet; unused lanes repeat the first ray and are masked out by `valid`. */
-void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int valid[SCENE_PACKET]);
+/* Fill a packet; lanes without a ray are masked out by `valid`. */
+void embree_pack(const struct scene_rays *rays, struct RTCRayHit16 *packet,
+                 int valid[SCENE_PACKET]);
 
 #endif

@@ -42,6 +42,7 @@ static int take_facets(struct scene *s, const struct mesh *m, const char *place)
     if (take_materials(s, m, &ground, place) != 0) {
         return -1;
     }
+    s->triangle_count = m->triangle_count;
     s->facet_count = m->triangle_count + (s->ground_half_m > 0);
     s->facets = malloc(s->facet_count * sizeof *s->facets);
     s->facet_materials = malloc(s->facet_count);
@@ -68,7 +69,7 @@ static void put_float3(float *to, struct vec v)
 }
 
 /* Embree's own copy of the triangles, in single precision. Embree's memory is zeroed by nobody. */
-static bool fill_geometry(RTCGeometry geometry, const struct mesh *m)
+static bool fill_geometry(struct scene *s, RTCGeometry geometry, const struct mesh *m)
 {
     float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                               RTC_FORMAT_FLOAT3, 12, m->vertex_count);
@@ -83,6 +84,8 @@ static bool fill_geometry(RTCGeometry geometry, const struct mesh *m)
     for (uint32_t i = 0; i < m->triangle_count; i++) {
         memcpy(indices + (size_t)i * 3, m->triangles[i].corner, 12);
     }
+    s->vertices = vertices;
+    s->corners = indices;
     return true;
 }
 
@@ -95,7 +98,7 @@ static int build_tree(struct scene *s, const struct mesh *m, const char *place)
     }
     RTCScene tree = s->tree = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const bool is_filled = tree && geometry && fill_geometry(geometry, m);
+    const bool is_filled = tree && geometry && fill_geometry(s, geometry, m);
     if (is_filled) {
         rtcSetSceneFlags(tree, RTC_SCENE_FLAG_ROBUST); /* no ray slips through an edge */
         rtcCommitGeometry(geometry);
@@ -131,18 +134,17 @@ struct RTCIntersectContext embree_context(void)
     return context;
 }
 
-void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int valid[SCENE_PACKET])
+void embree_pack(const struct scene_rays *rays, struct RTCRayHit16 *packet, int valid[SCENE_PACKET])
 {
-    struct RTCRay8 *r = &packet->ray;
+    struct RTCRay16 *r = &packet->ray;
+    memcpy(r->org_x, rays->from[0], sizeof r->org_x);
+    memcpy(r->org_y, rays->from[1], sizeof r->org_y);
+    memcpy(r->org_z, rays->from[2], sizeof r->org_z);
+    memcpy(r->dir_x, rays->along[0], sizeof r->dir_x);
+    memcpy(r->dir_y, rays->along[1], sizeof r->dir_y);
+    memcpy(r->dir_z, rays->along[2], sizeof r->dir_z);
     for (uint32_t i = 0; i < SCENE_PACKET; i++) {
-        const uint32_t k = i < rays->count ? i : 0;
         valid[i] = i < rays->count ? -1 : 0;
-        r->org_x[i] = (float)rays->from[k].x;
-        r->org_y[i] = (float)rays->from[k].y;
-        r->org_z[i] = (float)rays->from[k].z;
-        r->dir_x[i] = (float)rays->along[k].x;
-        r->dir_y[i] = (float)rays->along[k].y;
-        r->dir_z[i] = (float)rays->along[k].z;
         r->tnear[i] = 0;
         r->tfar[i] = INFINITY;
         r->time[i] = 0;
@@ -154,27 +156,38 @@ void embree_pack(const struct scene_rays *rays, struct RTCRayHit8 *packet, int v
     }
 }
 
-/* How far a ray goes until it meets the ground; INFINITY when it does not. A level ray divides by
- * zero: no comparison with what comes of it is true. */
-static double way_to_ground_m(const struct scene *s, struct vec from, struct vec along)
+/* How far ray i goes until it meets the ground; INFINITY when it does not. */
+static float way_to_ground_m(const struct scene *s, const struct scene_rays *rays, uint32_t i)
 {
-    const double way_m = -from.z / along.z;
-    const bool is_met = way_m > 0 && fabs(from.x + way_m * along.x) <= s->ground_half_m &&
-                        fabs(from.y + way_m * along.y) <= s->ground_half_m;
-    return is_met ? way_m : (double)INFINITY;
+    const double height_m = (double)rays->from[2][i], climb = (double)rays->along[2][i];
+    if (!(height_m * climb < 0)) {
+        return INFINITY; /* level, or going away from it */
+    }
+    const double way_m = -height_m / climb;
+    const double x = (double)rays->from[0][i] + way_m * (double)rays->along[0][i];
+    const double y = (double)rays->from[1][i] + way_m * (double)rays->along[1][i];
+    return fabs(x) <= s->ground_half_m && fabs(y) <= s->ground_half_m ? (float)way_m : INFINITY;
+}
+
+void scene_corners(const struct scene *s, uint32_t triangle, struct vec corners[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const float *v = s->vertices + 3 * (size_t)s->corners[3 * (size_t)triangle + (size_t)i];
+        corners[i] = (struct vec){(double)v[0], (double)v[1], (double)v[2]};
+    }
 }
 
 void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t facets[SCENE_PACKET])
 {
     struct RTCIntersectContext context = embree_context();
-    _Alignas(32) int valid[SCENE_PACKET];
-    struct RTCRayHit8 packet;
+    _Alignas(64) int valid[SCENE_PACKET];
+    struct RTCRayHit16 packet;
     embree_pack(rays, &packet, valid);
     for (uint32_t i = 0; i < rays->count; i++) {
-        packet.ray.tfar[i] = (float)way_to_ground_m(s, rays->from[i], rays->along[i]);
+        packet.ray.tfar[i] = way_to_ground_m(s, rays, i);
         facets[i] = isfinite(packet.ray.tfar[i]) ? s->facet_count - 1 : SCENE_MISS;
     }
-    rtcIntersect8(valid, s->tree, &context, &packet);
+    rtcIntersect16(valid, s->tree, &context, &packet);
     for (uint32_t i = 0; i < rays->count; i++) {
         if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
             facets[i] = packet.hit.primID[i];
@@ -185,14 +198,14 @@ void scene_meet(const struct scene *s, const struct scene_rays *rays, uint32_t f
 uint32_t scene_is_blocked(const struct scene *s, const struct scene_rays *rays)
 {
     struct RTCIntersectContext context = embree_context();
-    _Alignas(32) int valid[SCENE_PACKET];
-    struct RTCRayHit8 packet;
+    _Alignas(64) int valid[SCENE_PACKET];
+    struct RTCRayHit16 packet;
     embree_pack(rays, &packet, valid);
-    rtcOccluded8(valid, s->tree, &context, &packet.ray);
+    rtcOccluded16(valid, s->tree, &context, &packet.ray);
     uint32_t blocked = 0;
     for (uint32_t i = 0; i < rays->count; i++) {
         const bool is_hit = packet.ray.tfar[i] < 0; /* Embree sets it to -infinity */
-        const bool is_under = isfinite(way_to_ground_m(s, rays->from[i], rays->along[i]));
+        const bool is_under = isfinite(way_to_ground_m(s, rays, i));
         blocked |= (uint32_t)(is_hit || is_under) << i;
     }
     return blocked;

@@ -61,22 +61,23 @@ struct trace_axes trace_axes_of(const struct trace_look *look)
 struct team {
     const struct trace_tiles *tiles;
     struct tile_result *results;
-    uint32_t tile_count;
     atomic_uint next;
 };
 
 static void *take_tiles(void *argument)
 {
     struct team *team = argument;
+    struct tile_work *work = tile_work_new(team->tiles);
     uint32_t i;
-    while ((i = atomic_fetch_add(&team->next, 1)) < team->tile_count) {
-        trace_tile(team->tiles, i, &team->results[i]);
+    while (work && (i = atomic_fetch_add(&team->next, 1)) < team->tiles->tile_count) {
+        trace_tile(team->tiles, i, work, &team->results[i]);
     }
+    tile_work_free(work);
     return NULL;
 }
 
-/* A thread may be refused: the others, this one among them, do its share. */
-static void work_together(struct team *team, uint32_t threads)
+/* A thread, or its memory, may be refused: the others do its share. Returns false when all were. */
+static bool work_together(struct team *team, uint32_t threads)
 {
     pthread_t others[64];
     uint32_t started = 0;
@@ -87,19 +88,22 @@ static void work_together(struct team *team, uint32_t threads)
     for (uint32_t i = 0; i < started; i++) {
         pthread_join(others[i], NULL);
     }
+    return atomic_load(&team->next) >= team->tiles->tile_count;
 }
 
 /* Give each tile its own room in the lists. Most of it is never touched, and so costs nothing. */
-static bool lend_room(struct tile_result *results, uint32_t tile_count, struct trace_records *r)
+static bool lend_room(struct tile_result *results, const struct trace_tiles *t,
+                      struct trace_records *r)
 {
     for (uint32_t b = 0; b < r->bounce_count; b++) {
-        struct trace_record *records = malloc((size_t)tile_count * TILE_RAYS * sizeof *records);
+        struct trace_record *records =
+            malloc((size_t)t->tile_count * t->tile_rays * sizeof *records);
         if (!records) {
             return false;
         }
         r->bounces[b].records = records;
-        for (uint32_t i = 0; i < tile_count; i++) {
-            results[i].bounces[b].records = records + (size_t)i * TILE_RAYS;
+        for (uint32_t i = 0; i < t->tile_count; i++) {
+            results[i].bounces[b].records = records + (size_t)i * t->tile_rays;
         }
     }
     return true;
@@ -130,23 +134,20 @@ static void close_gaps(const struct tile_result *results, uint32_t tile_count, u
 static int run_tiles(const struct trace_tiles *tiles, uint32_t threads, struct trace_records *r,
                      uint64_t *rays_cast)
 {
-    const uint32_t rays = r->sensor.columns * r->sensor.rows;
-    struct team team = {.tiles = tiles, .tile_count = (rays + TILE_RAYS - 1) / TILE_RAYS};
-    uint32_t *before = calloc(team.tile_count, sizeof *before);
-    team.results = calloc(team.tile_count, sizeof *team.results);
-    const bool has_room = before && team.results && lend_room(team.results, team.tile_count, r);
-    if (has_room) {
-        work_together(&team, threads);
-        for (uint32_t b = 0; b < r->bounce_count; b++) {
-            close_gaps(team.results, team.tile_count, b, before, &r->bounces[b]);
-        }
-        for (uint32_t i = 0; rays_cast && i < team.tile_count; i++) {
-            *rays_cast += team.results[i].rays_cast;
-        }
+    const uint32_t count = tiles->tile_count;
+    struct team team = {.tiles = tiles, .results = calloc(count, sizeof *team.results)};
+    uint32_t *before = calloc(count, sizeof *before);
+    const bool is_done = before && team.results && lend_room(team.results, tiles, r) &&
+                         work_together(&team, threads);
+    for (uint32_t b = 0; is_done && b < r->bounce_count; b++) {
+        close_gaps(team.results, count, b, before, &r->bounces[b]);
+    }
+    for (uint32_t i = 0; is_done && rays_cast && i < count; i++) {
+        *rays_cast += team.results[i].rays_cast;
     }
     free(before);
     free(team.results);
-    return has_room ? 0 : -1;
+    return is_done ? 0 : -1;
 }
 
 int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
@@ -164,10 +165,12 @@ int trace_run(const struct scene *s, const struct trace_order *o, const char *pl
         *rays_cast = 0;
     }
     const struct trace_sensor *sensor = &r->sensor;
-    const struct trace_tiles tiles = {s, trace_axes_of(&o->look), *sensor,
-                                      -2 / o->look.wavelength_m, o->bounces};
-    if (sensor->rows > TRACE_RAYS_MAX / sensor->columns ||
-        run_tiles(&tiles, o->threads, r, rays_cast) != 0) {
+    struct trace_tiles tiles = {0};
+    const bool is_done = sensor->rows <= TRACE_RAYS_MAX / sensor->columns &&
+                         trace_tiles_open(&tiles, s, o) == 0 &&
+                         run_tiles(&tiles, o->threads, r, rays_cast) == 0;
+    trace_tiles_close(&tiles);
+    if (!is_done) {
         hs_error(place, "trace fewer rays a cell, or fewer cells",
                  "%u x %u rays are too many for the memory here", sensor->columns, sensor->rows);
         trace_records_free(r);

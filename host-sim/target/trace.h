@@ -41,7 +41,7 @@ double trace_ground_half_m(const struct trace_grid *grid, double depression_deg)
  * Eq. (4) as printed halves the range once more; a point target then lies at half its distance
  * from the centre, so it is not done here (tested with points of known places).
  * Returns 0, or -1 with the error reported with `place` and *r empty. `rays_cast`, when not NULL,
- * gets the number of rays given to Embree: primary, specular and backward. */
+ * gets the number of rays followed, drawn or cast: primary, specular and backward. */
 int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
               struct trace_records *r, uint64_t *rays_cast);
 

@@ -1,190 +1,250 @@
-#include "trace_tile.h"
+#include "tile_work.h"
 
-static const double pi = 3.14159265358979323846;
+#include <stdlib.h>
+#include <string.h>
 
-/* New rays start this far off the surface, so that they do not meet it again. It is a hundred times
- * the rounding of Embree's single precision 10 m from the centre. */
-static const double lift_m = 1e-4;
-
-/* A surface seen more edge-on than this is taken for missed: where single precision says that the
- * ray meets it and where its plane is met could differ by centimetres. */
-static const double grazing_cos_min = 2e-4;
-
-/* A ray under way. */
-struct flight {
-    struct vec from, along;
-    struct vec start; /* `from`, lifted off its surface: where Embree's ray begins */
-    double across_m;  /* where its primary ray left the plane */
-    double way_m;     /* from the plane through the origin to `from` */
-    uint32_t ray, parent;
+/* Rays that are asked together, and for whom. */
+struct packet {
+    struct scene_rays rays;
+    uint32_t asker[SCENE_PACKET];
 };
 
-/* What one bounce of the tile leaves behind. */
-struct wave {
-    struct flight flights[TILE_RAYS];
-    uint32_t facets[TILE_RAYS];
-    uint32_t count;
-};
-
-static double clear_of_model_m(const struct scene *s)
+/* Returns true when the packet is full. */
+static bool packet_add(struct packet *p, struct vec from, struct vec along, uint32_t asker)
 {
-    return fmax(vec_length(s->low), vec_length(s->high)) + 1;
+    p->asker[p->rays.count] = asker;
+    scene_rays_add(&p->rays, from, along);
+    return p->rays.count == SCENE_PACKET;
 }
 
-static void start_wave(const struct trace_tiles *t, uint32_t first, struct wave *w)
+static void packet_meet(const struct trace_tiles *t, struct packet *p, struct flight *flights)
 {
-    const struct trace_sensor *sensor = &t->sensor;
-    const uint32_t rays = sensor->columns * sensor->rows;
-    const double clear_m = clear_of_model_m(t->scene), sink = t->axes.rise.z / t->axes.sight.z;
-    w->count = rays - first < TILE_RAYS ? rays - first : TILE_RAYS;
-    for (uint32_t i = 0; i < w->count; i++) {
-        const uint32_t ray = first + i;
-        const double across_m =
-            sensor->low_across_m + (ray % sensor->columns + 0.5) * sensor->step_across_m;
-        const double up_m = sensor->low_up_m + (ray / sensor->columns + 0.5) * sensor->step_up_m;
-        /* Outside the model, and above the ground where the plane dips below it. */
-        const double back_m = clear_m + (up_m < 0 ? up_m * sink : 0);
-        const struct vec on_plane =
-            vec_mad(vec_scale(t->axes.across, across_m), t->axes.rise, up_m);
-        const struct vec from = vec_mad(on_plane, t->axes.sight, -back_m);
-        w->flights[i] = (struct flight){from, t->axes.sight, from, across_m, -back_m, ray, 0};
+    uint32_t met[SCENE_PACKET];
+    if (p->rays.count > 0) {
+        scene_meet(t->scene, &p->rays, met);
+    }
+    for (uint32_t i = 0; i < p->rays.count; i++) {
+        flights[p->asker[i]].facet = met[i];
+    }
+    p->rays.count = 0;
+}
+
+/* Rays that look back at the radar: their askers are records. */
+static void packet_look(const struct trace_tiles *t, struct packet *p, struct trace_bounce *bounce)
+{
+    const uint32_t blocked = p->rays.count > 0 ? scene_is_blocked(t->scene, &p->rays) : 0;
+    for (uint32_t i = 0; i < p->rays.count; i++) {
+        bounce->records[p->asker[i]].flags |= blocked >> i & 1 ? TRACE_BLOCKED : 0;
+    }
+    p->rays.count = 0;
+}
+
+/* Flights are asked for column by column: what shares a packet then starts close together, which
+ * row by row, across a whole tile, it does not. Embree needs half the time (measured). */
+static void put_in_order(const struct trace_tiles *t, struct tile_work *w)
+{
+    const uint32_t columns = t->sensor.columns;
+    memset(w->begins, 0, (columns + 1) * sizeof *w->begins);
+    for (uint32_t i = 0; i < w->flight_count; i++) {
+        w->begins[w->flights[i].column + 1]++;
+    }
+    for (uint32_t c = 0; c < columns; c++) {
+        w->begins[c + 1] += w->begins[c];
+    }
+    for (uint32_t i = 0; i < w->flight_count; i++) {
+        w->order[w->begins[w->flights[i].column]++] = i;
     }
 }
 
-static void meet_wave(const struct trace_tiles *t, struct wave *w, struct bare_rays *bare)
+static void meet_flights(const struct trace_tiles *t, struct tile_work *w)
 {
-    for (uint32_t i = 0; i < w->count; i += SCENE_PACKET) {
-        struct scene_rays rays;
-        rays.count = w->count - i < SCENE_PACKET ? w->count - i : SCENE_PACKET;
-        for (uint32_t k = 0; k < rays.count; k++) {
-            rays.from[k] = w->flights[i + k].start;
-            rays.along[k] = w->flights[i + k].along;
-        }
-        scene_meet(t->scene, &rays, &w->facets[i]);
-        if (bare) {
-            bare_keep(bare, &rays, false);
+    struct packet p = {.rays.count = 0};
+    for (uint32_t k = 0; k < w->flight_count; k++) {
+        const uint32_t i = w->order[k];
+        const struct flight *f = &w->flights[i];
+        if (f->facet == TILE_NOT_ASKED && packet_add(&p, f->start, f->along, i)) {
+            packet_meet(t, &p, w->flights);
         }
     }
+    packet_meet(t, &p, w->flights);
 }
 
-/* Inverse cosine, to 3e-7: Abramowitz and Stegun, 4.4.46. A call of acos() would take a sixth of
- * the tracer's time. What is passed on is 1 - |cosine|, of which single precision loses nothing. */
-static float angle_of(double cosine)
-{
-    static const float a[8] = {1.5707963050f, -0.2145988016f, 0.0889789874f, -0.0501743046f,
-                               0.0308918810f, -0.0170881256f, 0.0066700901f, -0.0012624911f};
-    const double short_of_one = 1 - fabs(cosine);
-    const float y = short_of_one > 0 ? (float)short_of_one : 0, x = 1 - y;
-    const float high = ((a[7] * x + a[6]) * x + a[5]) * x + a[4];
-    const float low = ((a[3] * x + a[2]) * x + a[1]) * x + a[0];
-    const float angle = sqrtf(y) * (high * (x * x) * (x * x) + low);
-    return cosine < 0 ? (float)pi - angle : angle;
-}
-
-/* An angle of so many turns, without the whole ones. */
-static float angle_of_turns(double turns)
-{
-    return (float)(2 * pi * (turns - (double)lrint(turns)));
-}
-
-/* Record the reflection of flight `f`, number `bounce` of its ray, at a plane, and turn the flight
- * into its specular ray. */
-static struct trace_record reflect(const struct trace_tiles *t, struct flight *f, uint32_t bounce,
-                                   const struct scene_facet *plane)
-{
-    const struct trace_axes *axes = &t->axes;
-    const double slope = vec_dot(plane->normal, f->along);
-    const struct vec normal = slope > 0 ? vec_scale(plane->normal, -1) : plane->normal;
-    const double hop_m = (plane->offset_m - vec_dot(plane->normal, f->from)) / slope;
-    const struct vec at = vec_mad(f->from, f->along, hop_m);
-    const double echo_cos = -vec_dot(normal, axes->sight);
-    const float incidence_rad = angle_of(fabs(slope));
-    f->way_m += hop_m;
-    const double range_m = (f->way_m + vec_dot(at, axes->sight)) / 2;
-    const struct trace_record record = {
-        .ray = f->ray,
-        .parent = f->parent,
-        .across_m = (float)((f->across_m + vec_dot(at, axes->across)) / 2),
-        .range_m = (float)range_m,
-        .phase_rad = angle_of_turns(range_m * t->turns_per_m),
-        .hop_m = (float)(bounce == 0 ? f->way_m : hop_m),
-        .incidence_rad = incidence_rad,
-        .echo_rad = bounce == 0 ? incidence_rad : angle_of(echo_cos),
-        .turn_rad = bounce == 0 ? 0 : angle_of(vec_dot(f->along, axes->sight)),
-        .normal = {(float)vec_dot(normal, axes->across), (float)vec_dot(normal, axes->away),
-                   (float)normal.z},
-        .flags = (uint8_t)(echo_cos > 0 ? 0 : TRACE_BLOCKED),
-    };
-    f->from = at;
-    f->start = vec_mad(at, normal, lift_m);
-    f->along = vec_mad(f->along, normal, 2 * fabs(slope));
-    return record;
-}
-
-/* Make records of the flights that met something, mark their parents, and keep those flights only.
+/* Record the reflection of flight `f`, and make its specular ray, which may be at the same place.
  */
-static void reflect_wave(const struct trace_tiles *t, struct wave *w, uint32_t b,
-                         struct tile_result *result)
+static void reflect(const struct trace_tiles *t, const struct flight *f, const struct glance *g,
+                    struct trace_bounce *bounce, struct flight *on)
 {
+    const double hop_m = (g->plane->offset_m - vec_dot(g->plane->normal, f->from)) / g->pace;
+    const double across_m = f->across_m, way_m = f->way_m + hop_m;
+    const struct vec at = vec_mad(f->from, f->along, hop_m);
+    const double range_m = (way_m + vec_dot(at, t->axes.sight)) / 2;
+    struct trace_record *record = &bounce->records[bounce->count];
+    *record = g->record;
+    record->ray = f->ray;
+    record->parent = f->parent;
+    record->across_m = (float)((across_m + vec_dot(at, t->axes.across)) / 2);
+    record->range_m = (float)range_m;
+    record->phase_rad = angle_of_turns(range_m * t->turns_per_m);
+    record->hop_m = (float)hop_m;
+    on->across_m = across_m;
+    on->way_m = way_m;
+    on->ray = record->ray;
+    on->column = f->column;
+    on->parent = bounce->count++;
+    on->facet = TILE_NOT_ASKED;
+    flight_turn(on, at, g);
+}
+
+/* Make records of the flights that met something, and mark their parents. As each goes on, a
+ * record and its flight have the same number. */
+static void reflect_flights(const struct trace_tiles *t, struct tile_work *w, uint32_t b,
+                            struct tile_result *result)
+{
+    const uint32_t count = w->flight_count;
     struct trace_bounce *bounce = &result->bounces[b];
-    for (uint32_t i = 0; i < w->count; i++) {
-        const uint32_t facet = w->facets[i];
-        struct flight f = w->flights[i];
-        if (facet == SCENE_MISS ||
-            fabs(vec_dot(t->scene->facets[facet].normal, f.along)) < grazing_cos_min) {
+    w->flight_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct flight *f = &w->flights[i];
+        struct glance g;
+        if (f->facet == SCENE_MISS || !glance_at(t, f->facet, f->along, b, &g)) {
             continue;
         }
-        if (b > 0) {
-            bounce[-1].records[f.parent].flags |= TRACE_GOES_ON;
-        }
-        struct trace_record *record = &bounce->records[bounce->count];
-        *record = reflect(t, &f, b, &t->scene->facets[facet]);
-        record->material = t->scene->facet_materials[facet];
-        f.parent = bounce->count;
-        w->flights[bounce->count++] = f;
+        bounce[-1].records[f->parent].flags |= TRACE_GOES_ON;
+        reflect(t, f, &g, bounce, &w->flights[w->flight_count++]);
     }
-    w->count = bounce->count;
 }
 
-/* Look back at the radar from where each flight starts. Returns the number of rays. */
-static uint32_t look_back(const struct trace_tiles *t, const struct wave *w,
-                          struct trace_bounce *bounce, struct bare_rays *bare)
+/* Look back at the radar from where each flight starts, as far as its surface faces it. */
+static void look_back(const struct trace_tiles *t, const struct tile_work *w,
+                      struct trace_bounce *bounce, struct tile_result *result)
 {
-    struct scene_rays rays;
-    uint32_t asker[SCENE_PACKET], cast = 0;
-    rays.count = 0;
-    for (uint32_t i = 0; i < w->count; i++) {
-        if (!(bounce->records[i].flags & TRACE_BLOCKED)) {
-            asker[rays.count] = i;
-            rays.from[rays.count] = w->flights[i].start;
-            rays.along[rays.count++] = vec_scale(t->axes.sight, -1);
+    const struct vec back = vec_scale(t->axes.sight, -1);
+    struct packet p = {.rays.count = 0};
+    for (uint32_t k = 0; k < w->flight_count; k++) {
+        const uint32_t i = w->order[k];
+        if (bounce->records[i].flags & TRACE_BLOCKED) {
+            continue;
         }
-        if (rays.count == SCENE_PACKET || (i + 1 == w->count && rays.count > 0)) {
-            const uint32_t blocked = scene_is_blocked(t->scene, &rays);
-            for (uint32_t k = 0; k < rays.count; k++) {
-                bounce->records[asker[k]].flags |= blocked >> k & 1 ? TRACE_BLOCKED : 0;
-            }
-            if (bare) {
-                bare_keep(bare, &rays, true);
-            }
-            cast += rays.count;
-            rays.count = 0;
+        result->rays_cast++;
+        if (result->bare) {
+            bare_keep(result->bare, w->flights[i].start, back, true);
+        }
+        if (packet_add(&p, w->flights[i].start, back, i)) {
+            packet_look(t, &p, bounce);
         }
     }
-    return cast;
+    packet_look(t, &p, bounce);
 }
 
-void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_result *result)
+/* For measurements: the rays that a tracer without a raster would have to cast. */
+static void keep_primaries(const struct trace_tiles *t, uint32_t index, struct bare_rays *bare)
 {
-    struct wave w;
-    start_wave(t, index * TILE_RAYS, &w);
-    for (uint32_t b = 0; b < t->bounces && w.count > 0; b++) {
-        result->rays_cast += w.count;
-        meet_wave(t, &w, result->bare);
-        reflect_wave(t, &w, b, result);
-        if (b == 0) {
-            continue; /* the way back is the way the primary ray came */
+    const struct rows rows = rows_of(t, index);
+    const double clear_m = fmax(vec_length(t->scene->low), vec_length(t->scene->high)) + 1;
+    for (uint32_t column = 0; column < t->sensor.columns; column++) {
+        for (uint32_t row = rows.first; row < rows.end; row++) {
+            const struct vec on_plane = vec_mad(vec_scale(t->axes.rise, up_of(t, row)),
+                                                t->axes.across, across_of(t, column));
+            const double back_m = clear_m - fmin(ground_depth_m(t, row), 0);
+            bare_keep(bare, vec_mad(on_plane, t->axes.sight, -back_m), t->axes.sight, false);
         }
-        result->rays_cast += look_back(t, &w, &result->bounces[b], result->bare);
     }
+}
+
+static void keep_flights(const struct tile_work *w, struct bare_rays *bare)
+{
+    for (uint32_t k = 0; k < w->flight_count; k++) {
+        const struct flight *f = &w->flights[w->order[k]];
+        bare_keep(bare, f->start, f->along, false);
+    }
+}
+
+void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_work *work,
+                struct tile_result *result)
+{
+    const struct rows rows = rows_of(t, index);
+    first_bounce(t, index, work, result);
+    put_in_order(t, work);
+    if (result->bare) {
+        keep_primaries(t, index, result->bare);
+    }
+    for (uint32_t b = 1; b < t->bounces && work->flight_count > 0; b++) {
+        if (result->bare) {
+            keep_flights(work, result->bare);
+        }
+        meet_flights(t, work);
+        reflect_flights(t, work, b, result);
+        put_in_order(t, work);
+        look_back(t, work, &result->bounces[b], result);
+    }
+    result->rays_cast += (rows.end - rows.first) * t->sensor.columns;
+    for (uint32_t b = 1; b < t->bounces; b++) {
+        result->rays_cast += result->bounces[b - 1].count;
+    }
+}
+
+int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
+                     const struct trace_order *order)
+{
+    *t = (struct trace_tiles){
+        .scene = scene,
+        .axes = trace_axes_of(&order->look),
+        .sensor = trace_sensor_for(scene, order),
+        .turns_per_m = -2 / order->look.wavelength_m,
+        .bounces = order->bounces,
+    };
+    const uint32_t columns = t->sensor.columns;
+    const uint32_t strip_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
+    const bool has_ground = scene->ground_half_m > 0;
+    if (raster_open(&t->model, scene, &t->axes, &t->sensor, strip_rows, TILE_GRAZING_COS, false) ||
+        (has_ground && raster_open(&t->mirror, scene, &t->axes, &t->sensor, strip_rows,
+                                   TILE_GRAZING_COS, true))) {
+        trace_tiles_close(t);
+        return -1;
+    }
+    t->tile_rays = strip_rows * columns;
+    t->tile_count = t->model.strip_count;
+    return 0;
+}
+
+void trace_tiles_close(struct trace_tiles *t)
+{
+    raster_close(&t->model);
+    raster_close(&t->mirror);
+    *t = (struct trace_tiles){0};
+}
+
+struct tile_work *tile_work_new(const struct trace_tiles *t)
+{
+    struct tile_work *w = calloc(1, sizeof *w);
+    if (!w) {
+        return NULL;
+    }
+    w->facets = malloc(t->tile_rays * sizeof *w->facets);
+    w->mirrored = malloc(t->tile_rays * sizeof *w->mirrored);
+    w->depths_m = malloc(t->tile_rays * sizeof *w->depths_m);
+    w->near_m = malloc(t->model.strip_rows * sizeof *w->near_m);
+    w->flights = malloc(t->tile_rays * sizeof *w->flights);
+    w->order = malloc(t->tile_rays * sizeof *w->order);
+    w->begins = malloc((t->sensor.columns + 1) * sizeof *w->begins);
+    if (!w->facets || !w->mirrored || !w->depths_m || !w->near_m || !w->flights || !w->order ||
+        !w->begins) {
+        tile_work_free(w);
+        return NULL;
+    }
+    return w;
+}
+
+void tile_work_free(struct tile_work *w)
+{
+    if (w) {
+        free(w->facets);
+        free(w->mirrored);
+        free(w->depths_m);
+        free(w->near_m);
+        free(w->flights);
+        free(w->order);
+        free(w->begins);
+    }
+    free(w);
 }

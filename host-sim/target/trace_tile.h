@@ -3,29 +3,42 @@
 #define TARGET_TRACE_TILE_H
 
 #include "bare.h"
+#include "raster.h"
 #include "records.h"
 #include "scene.h"
 #include "trace.h"
 
-enum { TILE_RAYS = 1024 };
+/* A tile is as many whole rows of the sensor as have about so many rays, at least one. */
+enum { TILE_RAYS = 4096 };
 
 struct trace_tiles {
-    const struct scene *scene;
+    const struct scene *scene; /* borrowed */
     struct trace_axes axes;
     struct trace_sensor sensor;
-    double turns_per_m; /* of the echo's phase, by range: -2 / wavelength */
-    uint32_t bounces;
+    struct raster model, mirror; /* owned; a strip of each is a tile */
+    double turns_per_m;          /* of the echo's phase, by range: -2 / wavelength */
+    uint32_t bounces, tile_rays, tile_count;
 };
 
-/* What becomes of a tile. The caller lends room for TILE_RAYS records of each bounce; `parent`
+/* What becomes of a tile. The caller lends room for tile_rays records of each bounce; `parent`
  * counts from the tile's first record of the bounce before. */
 struct tile_result {
     struct trace_bounce bounces[TRACE_BOUNCES_MAX]; /* records: borrowed */
     uint64_t rays_cast;
-    struct bare_rays *bare; /* borrowed, NULL but for measurements: keeps every ray cast */
+    struct bare_rays *bare; /* borrowed, NULL but for measurements: keeps every ray */
 };
 
-/* Trace rays index * TILE_RAYS and the next TILE_RAYS - 1, as far as there are any. */
-void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_result *result);
+/* Returns 0, or -1 out of memory with *t empty. */
+int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
+                     const struct trace_order *order);
+void trace_tiles_close(struct trace_tiles *t);
+
+/* Scratch of one thread, for any number of tiles. NULL out of memory. */
+struct tile_work *tile_work_new(const struct trace_tiles *t);
+void tile_work_free(struct tile_work *work);
+
+/* Trace the rays from index * tile_rays on: tile_rays of them, or those that are left. */
+void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_work *work,
+                struct tile_result *result);
 
 #endif

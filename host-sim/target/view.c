@@ -46,8 +46,7 @@ static uint32_t pixel_at(const struct scene *s, const struct trace_axes *axes, s
             const double right = across_m + (k % SAMPLES + 0.5) / SAMPLES * pixel_m;
             const double rise = up_m - ((double)(k / SAMPLES) + 0.5) / SAMPLES * pixel_m;
             const struct vec at = vec_mad(vec_scale(axes->across, right), axes->rise, rise);
-            rays.along[rays.count] = axes->sight;
-            rays.from[rays.count++] = vec_mad(at, axes->sight, -back_m);
+            scene_rays_add(&rays, vec_mad(at, axes->sight, -back_m), axes->sight);
         }
         scene_meet(s, &rays, facets);
         for (uint32_t k = 0; k < rays.count; k++) {

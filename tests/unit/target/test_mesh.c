@@ -267,15 +267,17 @@ static void the_models_have_their_dimensions(void **state)
 }
 
 /* How far a ray goes before it meets the scene; 100 when it does not. */
-static double reach_m(const struct scene *s, const struct scene_rays *ray)
+static double reach_m(const struct scene *s, struct vec from, struct vec along)
 {
+    struct scene_rays ray = {.count = 0};
     uint32_t facet[SCENE_PACKET];
-    scene_meet(s, ray, facet);
+    scene_rays_add(&ray, from, along);
+    scene_meet(s, &ray, facet);
     if (facet[0] == SCENE_MISS) {
         return 100;
     }
     const struct scene_facet *f = &s->facets[facet[0]];
-    return (f->offset_m - vec_dot(f->normal, ray->from[0])) / vec_dot(f->normal, ray->along[0]);
+    return (f->offset_m - vec_dot(f->normal, from)) / vec_dot(f->normal, along);
 }
 
 /* Rays from all sides meet ours where they meet the published one: all parts are in their places.
@@ -297,14 +299,14 @@ static void slicy_is_met_where_the_published_mesh_is(void **state)
     hs_rng_seed(&rng, 1);
     int met = 0, apart = 0;
     for (int i = 0; i < 20000; i++) {
-        struct scene_rays ray = {.count = 1};
         const struct vec side = {hs_rng_normal(&rng), hs_rng_normal(&rng),
                                  fabs(hs_rng_normal(&rng))};
         const struct vec aim = {2.5 * hs_rng_uniform(&rng) - 1.1, 2.8 * hs_rng_uniform(&rng) - 1.4,
                                 1.7 * hs_rng_uniform(&rng)};
-        ray.along[0] = vec_scale(side, -1 / vec_length(side));
-        ray.from[0] = vec_mad(aim, ray.along[0], -6);
-        const double our_m = reach_m(&our_scene, &ray), their_m = reach_m(&their_scene, &ray);
+        const struct vec along = vec_scale(side, -1 / vec_length(side));
+        const struct vec from = vec_mad(aim, along, -6);
+        const double our_m = reach_m(&our_scene, from, along);
+        const double their_m = reach_m(&their_scene, from, along);
         met += their_m < 100;
         apart += fabs(our_m - their_m) > 0.005;
     }

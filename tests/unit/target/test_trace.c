@@ -306,18 +306,18 @@ static void embree_meets_what_brute_force_meets(void **state)
     hs_rng_seed(&rng, 1);
     uint32_t met = 0, unsure = 0;
     for (int i = 0; i < 4000; i++) {
-        struct scene_rays rays = {.count = 1};
+        struct scene_rays rays = {.count = 0};
         const struct vec at = {hs_rng_normal(&rng), hs_rng_normal(&rng), hs_rng_normal(&rng)};
         const struct vec from = vec_scale(at, 12 / vec_length(at));
         const struct vec aim = {7 * hs_rng_uniform(&rng) - 3.5, 3 * hs_rng_uniform(&rng) - 1.5,
                                 2 * hs_rng_uniform(&rng)};
         const struct vec way = vec_sub(aim, from);
-        rays.from[0] = from;
-        rays.along[0] = vec_scale(way, 1 / vec_length(way));
+        const struct vec along = vec_scale(way, 1 / vec_length(way));
+        scene_rays_add(&rays, from, along);
         uint32_t facet[SCENE_PACKET];
         scene_meet(&s, &rays, facet);
         double distance, edge;
-        const uint32_t expected = brute_force(&m, from, rays.along[0], &distance, &edge);
+        const uint32_t expected = brute_force(&m, from, along, &distance, &edge);
         assert_int_equal(scene_is_blocked(&s, &rays) & 1, facet[0] != SCENE_MISS);
         if (edge < 1e-4) { /* within single precision of an edge either answer is right */
             unsure++;
@@ -327,7 +327,7 @@ static void embree_meets_what_brute_force_meets(void **state)
             assert_true(expected != SCENE_MISS && facet[0] != SCENE_MISS);
             const struct scene_facet *f = &s.facets[facet[0]];
             const double other =
-                (f->offset_m - vec_dot(f->normal, from)) / vec_dot(f->normal, rays.along[0]);
+                (f->offset_m - vec_dot(f->normal, from)) / vec_dot(f->normal, along);
             assert_true(fabs(other - distance) < 1e-5);
         }
         met += expected != SCENE_MISS;
