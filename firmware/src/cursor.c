@@ -8,12 +8,12 @@ void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, scene->ownship);
     c->place = lm_geo_direct(&origin, scene->heading, scene->scale_m / 2 * 256);
-    c->is_placed = true;
+    c->is_placed = c->is_home = true;
 }
 
 void lm_cursor_stabilise(struct lm_cursor *c)
 {
-    c->is_snowplow = false;
+    c->is_snowplow = c->is_home = false;
 }
 
 /* The nearest offset within the circle, ahead of the aircraft. */
@@ -61,6 +61,7 @@ static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     o.x_q8 += way_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
     o.y_q8 += way_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
     c->place = lm_view_place(scene->view, within(o, scene->view));
+    c->is_home = false;
 }
 
 bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us)

@@ -26,10 +26,36 @@ static struct lm_beam_setting beam_of(const struct lm_page *p)
     };
 }
 
+static struct lm_cursor_scene scene_of(const struct lm_unit *u)
+{
+    const struct lm_radar *radar = u->board->radar;
+    return (struct lm_cursor_scene){
+        .view = &u->view,
+        .ownship = lm_ownship_place(u),
+        .heading = u->ownship.heading,
+        .scale_m = radar->range_m[u->page.range],
+        .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
+        .slew_percent = u->page.is_patch ? 100 : radar->field[u->sector.command.field].slew_percent,
+    };
+}
+
+/* A cursor that nobody has moved belongs to the scale: when the operator changes that, the cursor
+ * goes where it would have been put. One that the range follows stays. */
+static void follow_scale(struct lm_unit *u)
+{
+    const bool is_other_scale = u->page.range != u->sector.command.range;
+    if (u->cursor.is_placed && u->cursor.is_home && is_other_scale && !u->page.is_auto_range &&
+        lm_has_ownship(u)) {
+        const struct lm_cursor_scene scene = scene_of(u);
+        lm_cursor_zero(&u->cursor, &scene);
+    }
+}
+
 /* A window needs a cursor: until there is one, the whole sector. */
 static void start_sector(struct lm_unit *u, uint64_t now_us)
 {
     const struct lm_page *p = &u->page;
+    follow_scale(u);
     const struct lm_sector_command command = {
         .mode = p->mode,
         .field = u->cursor.is_placed ? p->field : (uint8_t)LM_FIELD_NORM,
@@ -187,6 +213,7 @@ static bool designate(struct lm_unit *u, uint64_t now_us)
         u->unable_until_us = now_us + UNABLE_SHOWN_US;
         return false;
     }
+    u->cursor.is_home = false; /* its place is of interest */
     return try_patch(u, &command, now_us);
 }
 
@@ -341,19 +368,6 @@ static struct lm_view view_of_sector(const struct lm_unit *u)
     };
     return is_window ? lm_view_of_window(&u->frame, &from, s->command.centre, s->half_m)
                      : lm_view_of_sector(&u->frame, &from, u->board->radar->range_m[u->page.range]);
-}
-
-static struct lm_cursor_scene scene_of(const struct lm_unit *u)
-{
-    const struct lm_radar *radar = u->board->radar;
-    return (struct lm_cursor_scene){
-        .view = &u->view,
-        .ownship = lm_ownship_place(u),
-        .heading = u->ownship.heading,
-        .scale_m = radar->range_m[u->page.range],
-        .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
-        .slew_percent = u->page.is_patch ? 100 : radar->field[u->sector.command.field].slew_percent,
-    };
 }
 
 static struct lm_view view_of_picture(const struct lm_unit *u)

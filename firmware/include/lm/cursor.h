@@ -1,7 +1,8 @@
 /* The cursor: a place on the ground that the operator moves over the glass.
  *
  * It holds its place while the aircraft flies. In snowplow it stands half the range straight ahead,
- * moves with the aircraft and cannot be slewed until it is stabilised (lm_cursor_stabilise). */
+ * moves with the aircraft and cannot be slewed until it is stabilised (lm_cursor_stabilise). At
+ * home, it goes with the scale: whoever changes that puts it there anew. */
 #ifndef LM_CURSOR_H
 #define LM_CURSOR_H
 
@@ -17,6 +18,7 @@ enum { LM_CURSOR_HALVES_PER_S = 1, LM_CURSOR_STEP_US = 20000 };
 struct lm_cursor {
     struct lm_place place;
     bool is_placed;         /* false until the aircraft's position is known */
+    bool is_home;           /* where lm_cursor_zero put it: nobody has moved it since */
     bool is_snowplow;       /* and not yet stabilised */
     int32_t slew_x, slew_y; /* deflection, thousandths */
     uint64_t stepped_us;

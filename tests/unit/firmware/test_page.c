@@ -728,7 +728,10 @@ static void the_cursor_stays_over_its_place_through_turns_of_the_page(void **sta
 {
     (void)state;
     struct rig *r = fly();
-    run(r, 1);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 300});
+    run(r, 0.2);
+    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    run(r, 0.8);
     const struct lm_place held = r->unit.cursor.place;
     const int keys[] = {20, 18, 7, 7, 5, 5, 12, 13, 19, 4, 4};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
@@ -917,6 +920,81 @@ static void buttons_and_deflections_that_do_not_exist_are_refused(void **state)
     free_rig(r);
 }
 
+/* ---- home ---- */
+
+static double cursor_nm(const struct rig *r)
+{
+    return r->unit.cursor.range_m / 1852.0;
+}
+
+static void a_cursor_that_nobody_moved_goes_with_the_scale(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    run(r, 0.5);
+    assert_true(fabs(cursor_nm(r) - 20) < 0.3); /* 40 nm at switch-on */
+    command(r, range_10);
+    run(r, 0.3);
+    assert_true(fabs(cursor_nm(r) - 5) < 0.1);
+    assert_true(r->unit.cursor.is_on_glass);
+    press(r, 20); /* up */
+    run(r, 0.3);
+    assert_int_equal(r->unit.page.range, 1);
+    assert_true(fabs(cursor_nm(r) - 10) < 0.1);
+    /* A window opens about the new place. */
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .value_y = LM_FIELD_EXP});
+    command(r, range_10);
+    run(r, 0.3);
+    assert_true(fabs(cursor_nm(r) - 5) < 0.1);
+    assert_memory_equal(&r->unit.sector.command.centre, &r->unit.cursor.place,
+                        sizeof r->unit.cursor.place);
+    free_rig(r);
+}
+
+static void a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes(void **state)
+{
+    (void)state;
+    for (int is_designated = 0; is_designated < 2; is_designated++) {
+        struct rig *r = fly();
+        if (is_designated) {
+            /* At 40 nm the cursor is 36 degrees off the nose, where a patch can be made. */
+            r->bus.nose_deg = 50;
+            run(r, 0.3);
+            press(r, 9);
+            command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+            run(r, 0.1);
+            assert_true(r->unit.page.is_patch);
+            command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+        } else {
+            command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 500});
+            run(r, 0.2);
+            command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+        }
+        run(r, 0.1);
+        const struct lm_place before = r->unit.cursor.place;
+        press(r, 20);
+        run(r, 0.3);
+        assert_int_equal(r->unit.page.range, 1);
+        assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
+        free_rig(r);
+    }
+}
+
+static void a_cursor_that_the_range_follows_is_left_where_it_is(void **state)
+{
+    (void)state;
+    struct rig *r = fly();
+    press(r, 20);
+    run(r, 0.3);
+    press(r, 2); /* AUTO at 20 nm, the cursor 10 nm away: 8.5 nm are 18 s on */
+    const struct lm_place before = r->unit.cursor.place;
+    assert_true(r->unit.cursor.is_home);
+    run(r, 20);
+    assert_int_equal(r->unit.page.range, 0);
+    assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
+    free_rig(r);
+}
+
 /* ---- steerpoint ---- */
 
 /* Whether the glass says how long it is from the aircraft to a place on its meridian, within a
@@ -1059,6 +1137,9 @@ int main(void)
         cmocka_unit_test(the_bit_page_says_why_the_board_restarted),
         cmocka_unit_test(a_broken_database_leaves_a_bit_page_that_says_so),
         cmocka_unit_test(buttons_and_deflections_that_do_not_exist_are_refused),
+        cmocka_unit_test(a_cursor_that_nobody_moved_goes_with_the_scale),
+        cmocka_unit_test(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes),
+        cmocka_unit_test(a_cursor_that_the_range_follows_is_left_where_it_is),
         cmocka_unit_test(the_waypoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale),
         cmocka_unit_test(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped),
     };
