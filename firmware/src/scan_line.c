@@ -2,7 +2,7 @@
 
 #include "fx/bits.h"
 #include "fx/hash.h"
-#include "fx/lanes.h"
+#include "noise_neon.h"
 
 enum { RUN_CELLS = 64 }; /* longest run */
 
@@ -12,6 +12,9 @@ enum { RUN_CELLS = 64 }; /* longest run */
  * cell of the longest line by 2^-10 of a cell. */
 struct track {
     int64_t at, step, bend;
+    uint64_t fastest;   /* no step of the line is longer */
+    uint32_t direction; /* all ones where none goes back */
+    bool turns;         /* some go back and some do not */
 };
 
 /* The way of a line through the tiles of one level. */
@@ -40,33 +43,46 @@ struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uin
     return s;
 }
 
-/* From the path's 2^-32 BAM. The angle itself is unsigned, its differences are not. Everything is
- * modulo 2^64, so that no path can do more harm than lead astray. */
-static struct track track_of(uint64_t value, uint64_t step, uint64_t bend, uint32_t side_log2)
+static uint64_t magnitude(int64_t x)
 {
-    const uint64_t half = (uint64_t)1 << side_log2 >> 1;
-    return (struct track){.at = (int64_t)(value >> side_log2),
-                          .step = (int64_t)(step + half) >> side_log2,
-                          .bend = (int64_t)(bend + half) >> side_log2};
+    return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
 }
 
-static struct walk walk_of(const struct lm_ground_path *p, uint32_t shift)
+/* From the path's 2^-32 BAM, for so many cells. The angle itself is unsigned, its differences are
+ * not. Everything is modulo 2^64, so that no path can do more harm than lead astray. Steps grow or
+ * shrink all the way: the first and the last tell how fast they are and where they go. */
+static struct track track_of(uint64_t value, uint64_t step, uint64_t bend, uint32_t side_log2,
+                             uint32_t cells)
 {
-    const uint32_t side_log2 = shift + LM_TILE_CELLS_LOG2;
+    const uint64_t half = (uint64_t)1 << side_log2 >> 1;
+    struct track t = {.at = (int64_t)(value >> side_log2),
+                      .step = (int64_t)(step + half) >> side_log2,
+                      .bend = (int64_t)(bend + half) >> side_log2};
+    const int64_t last = (int64_t)((uint64_t)t.step + (uint64_t)t.bend * cells);
+    const uint64_t fast = magnitude(t.step), fast_at_last = magnitude(last);
+    t.fastest = fast > fast_at_last ? fast : fast_at_last;
+    t.direction = t.step < 0 ? 0 : UINT32_MAX;
+    t.turns = (t.step < 0) != (last < 0);
+    return t;
+}
+
+static struct walk walk_of(const struct lm_ground_path *p, uint32_t shift, uint32_t cells)
+{
+    const uint32_t side = shift + LM_TILE_CELLS_LOG2;
     const uint64_t from_pole = p->latitude + ((uint64_t)FX_BAM_90 << 32);
     return (struct walk){
-        .north = track_of(from_pole, p->latitude_step, p->latitude_bend, side_log2),
-        .east = track_of(p->longitude, p->longitude_step, p->longitude_bend, side_log2),
-        .side_log2 = side_log2};
+        .north = track_of(from_pole, p->latitude_step, p->latitude_bend, side, cells),
+        .east = track_of(p->longitude, p->longitude_step, p->longitude_bend, side, cells),
+        .side_log2 = side};
 }
 
 /* The same in a tile so many generations up, or of a zone so much wider. */
-static struct lm_tile_track tile_track(const struct track *t, uint32_t shift)
+static struct lm_track tile_track(const struct track *t, uint32_t shift)
 {
     const uint32_t half_bend = (uint32_t)(t->bend >> shift >> 1);
-    return (struct lm_tile_track){.at = (uint32_t)(t->at >> shift),
-                                  .step = (uint32_t)(t->step >> shift) - half_bend,
-                                  .half_bend = half_bend};
+    return (struct lm_track){.at = (uint32_t)(t->at >> shift),
+                             .step = (uint32_t)(t->step >> shift) - half_bend,
+                             .half_bend = half_bend};
 }
 
 static void advance(struct track *t, uint32_t cells)
@@ -76,26 +92,17 @@ static void advance(struct track *t, uint32_t cells)
     t->step = (int64_t)(step + n * bend);
 }
 
-/* |x|. Bends are below 2^53, as track_of cuts ten bits off or more, and steps below 2^63 after
- * LM_CELLS_MAX of them: a step and RUN_CELLS bends add up without overflow. */
-static uint64_t magnitude(int64_t x)
-{
-    return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
-}
-
 /* Cells from this one on that surely lie in its tile, itself included: the way to the border that
- * the track heads for, or to the nearer one if it may turn round, at the fastest that it can go.
- * The border may turn out to be one cell farther, which then is a run of its own. */
-static uint32_t cells_inside(const struct track *t, uint32_t zone)
+ * the track heads for, or to the nearer one if it turns round, at the fastest that it goes. The
+ * border may turn out to be one cell farther, which then is a run of its own. */
+static inline uint32_t cells_inside(const struct track *t, uint32_t zone)
 {
-    const uint32_t back = (uint32_t)(t->at >> zone), ahead = ~back;
-    const uint64_t pace = magnitude(t->step), change = magnitude(t->bend) * RUN_CELLS;
-    uint32_t room = t->step < 0 ? back : ahead;
-    if (pace < change) {
-        room = back < ahead ? back : ahead;
+    uint32_t room = (uint32_t)(t->at >> zone) ^ t->direction;
+    if (t->turns && ~room < room) {
+        room = ~room;
     }
     /* RUN_CELLS more for what cutting off the bits below the zone may add to each step. */
-    const uint64_t fastest = ((pace + change) >> zone) + RUN_CELLS;
+    const uint64_t fastest = (t->fastest >> zone) + RUN_CELLS;
     return fastest > room ? 1 : room / (uint32_t)fastest + 1;
 }
 
@@ -131,53 +138,28 @@ static void read_run(const struct run *run, const struct lm_tile *tile, uint8_t 
                      uint32_t *cell, int32_t *elevation_q14)
 {
     const uint32_t generations = tile->level - (uint32_t)level;
-    const struct lm_tile_track north = tile_track(&run->north, generations);
-    const struct lm_tile_track east = tile_track(&run->east, run->zone + generations);
+    const struct lm_track north = tile_track(&run->north, generations);
+    const struct lm_track east = tile_track(&run->east, run->zone + generations);
     lm_tile_read(tile, &north, &east, run->cells, cell, elevation_q14);
 }
-
-/* One coordinate of a line, in noise cells from that of the line's middle: cell k behind the middle
- * is at `at + k (step + k half_bend)`. */
-struct noise_track {
-    uint32_t at, step, half_bend;
-};
 
 /* Noise cells have a fraction of so many bits; a sign and those of LM_NOISE_REACH are the rest. The
  * bend's rounding, to half a unit, moves the ends of the longest line by 528^2 / 4 units, which is
  * 2^-4 of a noise cell. */
-enum { NOISE_BITS = 19 };
 _Static_assert(LM_NOISE_REACH == 1 << (31 - NOISE_BITS), "the reach is what the fraction leaves");
 
-static struct noise_track noise_track_of(uint64_t value, uint64_t step, uint64_t bend,
-                                         uint32_t noise_shift)
+/* One coordinate of a line, in noise cells from that of cell `before`, where value and step are
+ * those of the path. */
+static struct lm_track noise_track_of(uint64_t value, uint64_t step, uint64_t bend,
+                                      uint32_t noise_shift, uint32_t before)
 {
     const uint32_t shift = 32 - NOISE_BITS + noise_shift;
-    return (struct noise_track){
-        .at = (uint32_t)(value >> shift) & ((1u << NOISE_BITS) - 1),
-        .step = (uint32_t)((int64_t)(step - bend / 2) >> shift),
-        .half_bend = (uint32_t)((int64_t)(bend + ((uint64_t)1 << shift)) >> shift >> 1),
-    };
-}
-
-/* Such a coordinate of eight cells, and how far it is to that of the next eight. */
-struct noise_lanes {
-    fx_lanes_u32 at, step;
-};
-
-static inline void start_lanes(struct noise_lanes *l, const struct noise_track *t, uint32_t before)
-{
-    const fx_lanes_u32 k = (fx_lanes_u32){0, 1, 2, 3, 4, 5, 6, 7} - before;
-    l->at = t->at + k * (t->step + k * t->half_bend);
-    l->step = FX_LANES * t->step + (2 * FX_LANES * k + FX_LANES * FX_LANES) * t->half_bend;
-}
-
-/* Add what so many noise cells add to a hash's sum, and move on. */
-static inline void add_lanes(struct noise_lanes *l, const struct noise_track *t, uint32_t each,
-                             fx_lanes_u32 *sums)
-{
-    *sums += (fx_lanes_u32)((fx_lanes_i32)l->at >> NOISE_BITS) * each;
-    l->at += l->step;
-    l->step += 2 * FX_LANES * FX_LANES * t->half_bend;
+    const uint32_t at = (uint32_t)(value >> shift) & ((1u << NOISE_BITS) - 1);
+    const uint32_t slope = (uint32_t)((int64_t)(step - bend / 2) >> shift);
+    const uint32_t half_bend = (uint32_t)((int64_t)(bend + ((uint64_t)1 << shift)) >> shift >> 1);
+    return (struct lm_track){.at = at - before * (slope - before * half_bend),
+                             .step = slope - 2 * before * half_bend,
+                             .half_bend = half_bend};
 }
 
 /* The number of a noise cell, with a sign. */
@@ -186,29 +168,40 @@ static uint32_t noise_cell(uint64_t value, uint32_t noise_shift)
     return (uint32_t)((int32_t)(value >> 32) >> noise_shift);
 }
 
-/* Noise that belongs to the ground: a hash of the noise cell's latitude and longitude. */
+static inline uint32_t whole_noise_cells(uint32_t from_middle)
+{
+    return (uint32_t)((int32_t)from_middle >> NOISE_BITS);
+}
+
+static void hash_line(const struct noise *n, uint32_t cells, uint32_t *restrict noise)
+{
+    for (uint32_t k = 0; k < cells; k++) {
+        const uint32_t rows = whole_noise_cells(lm_track_at(&n->north, k));
+        const uint32_t columns = whole_noise_cells(lm_track_at(&n->east, k));
+        noise[k] = fx_hash3_of_sum(n->sum + rows * n->row + columns * n->column);
+    }
+}
+
+/* Noise that belongs to the ground: a hash of the noise cell's latitude and longitude, counted from
+ * the line's middle. */
 static void make_noise(const struct lm_sampling *s, const struct lm_ground_path *path,
                        uint32_t cells, uint32_t *noise)
 {
+    const uint32_t shift = s->noise_shift, middle = cells / 2;
     struct lm_ground_path p = *path;
-    lm_ground_path_skip(&p, (int32_t)(cells / 2));
-    const uint32_t shift = s->noise_shift;
-    const struct noise_track n =
-        noise_track_of(p.latitude, p.latitude_step, p.latitude_bend, shift);
-    const struct noise_track e =
-        noise_track_of(p.longitude, p.longitude_step, p.longitude_bend, shift);
-    const uint32_t middle =
-        fx_hash3_sum(noise_cell(p.latitude, shift), noise_cell(p.longitude, shift), s->epoch);
-    const uint32_t row = fx_hash3_sum(1, 0, 0), column = fx_hash3_sum(0, 1, 0);
-    struct noise_lanes north, east;
-    start_lanes(&north, &n, cells / 2);
-    start_lanes(&east, &e, cells / 2);
-    for (uint32_t i = 0; i < cells; i += FX_LANES) {
-        fx_lanes_u32 x = (fx_lanes_u32){0} + middle;
-        add_lanes(&north, &n, row, &x);
-        add_lanes(&east, &e, column, &x);
-        fx_hash3_of_sums(&x);
-        *(fx_lanes_in_memory *)(noise + i) = x;
+    lm_ground_path_skip(&p, (int32_t)middle);
+    const struct noise n = {
+        .north = noise_track_of(p.latitude, p.latitude_step, p.latitude_bend, shift, middle),
+        .east = noise_track_of(p.longitude, p.longitude_step, p.longitude_bend, shift, middle),
+        .sum =
+            fx_hash3_sum(noise_cell(p.latitude, shift), noise_cell(p.longitude, shift), s->epoch),
+        .row = fx_hash3_sum(1, 0, 0),
+        .column = fx_hash3_sum(0, 1, 0),
+    };
+    if (FX_HAS_NEON) {
+        hash_line_neon(&n, cells, noise);
+    } else {
+        hash_line(&n, cells, noise);
     }
 }
 
@@ -217,7 +210,7 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
                       uint32_t cells)
 {
     const uint8_t level = sampling->level;
-    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + level);
+    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + level, cells);
     struct run run;
     for (uint32_t i = 0; i < cells; i += run.cells) {
         run = next_run(&walk, cells - i);
@@ -234,7 +227,7 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, const struct lm_sampling *sampling,
                            const struct lm_ground_path *path, uint32_t cells)
 {
-    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + sampling->level);
+    struct walk walk = walk_of(path, (uint32_t)tiles->db->shift0 + sampling->level, cells);
     struct run run;
     for (uint32_t i = 0; i < cells; i += run.cells) {
         run = next_run(&walk, cells - i);
@@ -247,7 +240,7 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_
 {
     const struct lm_ground_path path = {.latitude = (uint64_t)place.latitude << 32,
                                         .longitude = (uint64_t)place.longitude << 32};
-    struct walk walk = walk_of(&path, (uint32_t)tiles->db->shift0 + level);
+    struct walk walk = walk_of(&path, (uint32_t)tiles->db->shift0 + level, 1);
     const struct run run = next_run(&walk, 1);
     const struct lm_tile *tile = lm_tile_cache_get(tiles, level, run.row, run.column);
     if (!tile) {

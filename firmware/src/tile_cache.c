@@ -289,25 +289,44 @@ static void note_miss(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint
     lm_tile_cache_want(c, level, row, column);
 }
 
-const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
-                                        uint32_t column)
+static bool is_resident(const struct lm_tile_cache *c, uint16_t i)
 {
-    c->clock++;
-    for (uint32_t up = 0; level + up < c->db->level_count; up++) {
+    return i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_RESIDENT;
+}
+
+static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
+{
+    c->slots[i].last_use = c->clock;
+    return &c->pool[i];
+}
+
+/* The nearest ancestor that is resident, for a tile that is not. Not inline: what is rare would
+ * cost the look-ups that hit. */
+static __attribute__((noinline)) const struct lm_tile *
+answer_otherwise(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+{
+    for (uint32_t up = 1; level + up < c->db->level_count; up++) {
         const uint16_t i = find(c, (uint8_t)(level + up), row >> up, column >> up);
-        if (i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_RESIDENT) {
-            c->slots[i].last_use = c->clock;
-            if (up == 0) {
-                c->count.hits++;
-            } else {
-                note_miss(c, level, row, column, true);
-            }
-            return &c->pool[i];
+        if (is_resident(c, i)) {
+            note_miss(c, level, row, column, true);
+            return answer(c, i);
         }
     }
     c->count.off_map++;
     note_miss(c, level, row, column, false);
     return NULL;
+}
+
+const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
+                                        uint32_t column)
+{
+    c->clock++;
+    const uint16_t i = find(c, level, row, column);
+    if (!is_resident(c, i)) {
+        return answer_otherwise(c, level, row, column);
+    }
+    c->count.hits++;
+    return answer(c, i);
 }
 
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)

@@ -2,6 +2,7 @@
 
 #include "fx/lerp.h"
 #include "fx/mem.h"
+#include "tile_read_neon.h"
 
 /* What a place in a tile gives. Words hold two numbers of the tile side by side, the western one in
  * the low half: lm/db.h on the order of bytes. */
@@ -29,22 +30,20 @@ static inline struct ground read_ground(const struct lm_tile *tile, uint32_t nor
                                                       (post_q16 >> (8 - tile->post_shift)))};
 }
 
-/* No store touches the tile, and groups are whole: a vector of cells may gather and has no rest. */
-static void read_groups(const struct lm_tile *restrict tile, struct lm_tile_track n,
-                        struct lm_tile_track e, uint32_t groups, uint32_t *restrict cell,
-                        int32_t *restrict elevation_q14)
+/* Whole groups: a vector of cells has no rest. No store touches the tile: it may gather. */
+void lm_tile_read(const struct lm_tile *restrict tile, const struct lm_track *north,
+                  const struct lm_track *east, uint32_t count, uint32_t *restrict cell,
+                  int32_t *restrict elevation_q14)
 {
+    const uint32_t groups = (count + LM_LANES - 1) / LM_LANES;
+    const struct lm_track n = *north, e = *east;
+    if (FX_HAS_NEON) {
+        read_groups_neon(tile, &n, &e, groups, cell, elevation_q14);
+        return;
+    }
     for (uint32_t k = 0; k < groups * LM_LANES; k++) {
-        const struct ground g = read_ground(tile, n.at + k * (n.step + k * n.half_bend),
-                                            e.at + k * (e.step + k * e.half_bend));
+        const struct ground g = read_ground(tile, lm_track_at(&n, k), lm_track_at(&e, k));
         cell[k] = g.cell;
         elevation_q14[k] = g.elevation_q14;
     }
-}
-
-void lm_tile_read(const struct lm_tile *tile, const struct lm_tile_track *north,
-                  const struct lm_tile_track *east, uint32_t count, uint32_t *cell,
-                  int32_t *elevation_q14)
-{
-    read_groups(tile, *north, *east, (count + LM_LANES - 1) / LM_LANES, cell, elevation_q14);
 }

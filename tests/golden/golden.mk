@@ -7,6 +7,7 @@ GOLDEN := $(O)/bin/tests/golden
 TESTS += $(GOLDEN)/test_golden
 
 $(GOLDEN)/golden: $(call objs,$(GOLDEN_SRC))
+$(GOLDEN)/twins: $(call objs,tests/golden/twins.c host-sim/common/src/rng.c) $(LIB_firmware) $(LIB_fixed)
 $(GOLDEN)/golden-clang: $(GOLDEN_SRC:%.c=$(O)/golden-clang/%.o)
 $(GOLDEN)/golden-sanitized: $(GOLDEN_SRC:%.c=$(O)/golden-sanitized/%.o)
 $(GOLDEN)/golden-clang: CC := clang
@@ -29,7 +30,7 @@ $(foreach variant,golden-clang golden-sanitized,$(eval $(call golden_variant,$(v
 ifeq ($(BOARD),bench-linux)
 ARM64 := build/panel-linux-arm64
 TESTS += $(GOLDEN)/test_golden_arm64
-$(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh golden-arm64
+$(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh $(GOLDEN)/twins golden-arm64
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
@@ -37,7 +38,7 @@ $(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh golden-arm64
 .PHONY: golden-arm64
 golden-arm64:
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 \
-	    CC=aarch64-linux-gnu-gcc O=$(ARM64) $(ARM64)/bin/tests/golden/golden
+	    CC=aarch64-linux-gnu-gcc O=$(ARM64) $(addprefix $(ARM64)/bin/tests/golden/,golden twins)
 endif
 
 .PHONY: golden-update

@@ -1,0 +1,36 @@
+/* The cells of a track, four at a time, by the vectors of 64-bit Arm. */
+#ifndef TRACK_NEON_H
+#define TRACK_NEON_H
+
+#include "fx/neon.h"
+#include "lm/track.h"
+
+#if FX_HAS_NEON
+
+/* Four cells, how far it is to the next four, and by how much that grows. */
+struct neon_track {
+    uint32x4_t at, step, bend;
+};
+
+static inline struct neon_track neon_track_of(const struct lm_track *t)
+{
+    const uint32x4_t k = {0, 1, 2, 3}, eight_k_16 = {16, 24, 32, 40};
+    const uint32x4_t slope = vmlaq_n_u32(vdupq_n_u32(t->step), k, t->half_bend);
+    return (struct neon_track){
+        vmlaq_u32(vdupq_n_u32(t->at), k, slope),
+        vmlaq_n_u32(vdupq_n_u32(4 * t->step), eight_k_16, t->half_bend),
+        vdupq_n_u32(32 * t->half_bend),
+    };
+}
+
+/* The four cells, and on to the next. */
+static inline uint32x4_t neon_next(struct neon_track *t)
+{
+    const uint32x4_t at = t->at;
+    t->at = vaddq_u32(t->at, t->step);
+    t->step = vaddq_u32(t->step, t->bend);
+    return at;
+}
+
+#endif
+#endif
