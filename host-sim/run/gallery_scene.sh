@@ -194,10 +194,10 @@ riviera() {
 
 airfield() { # a field of our own, on level ground at 42 N 27 W, with what landmass-target bakes parked on it
     classes=host-sim/db/classes/heaton6.classes
-    extent="499000 4649200 501000 4650800" # UTM zone 26 N; the apron is around 500000, 4650000
+    extent="499400 4649400 500600 4650600" # UTM zone 26 N; the apron is around 500000, 4650000
     for model in aircraft tank lorry shelter; do
         say "bake the signature of the $model"
-        "$bin"/landmass-target bake --model $model --aspects 36 --depressions 8,15,30 --rays 1 \
+        "$bin"/landmass-target bake --model $model --aspects 24 --depressions 8,15,30 --rays 1 \
             --out "$out/$model.sig" --sheet "$out/signature-$model.png"
         "$bin"/landmass-target model --model $model --view "$out/model-$model.png"
     done

@@ -19,9 +19,10 @@ static const double pi = 3.14159265358979323846;
 int real_scene_make(struct real_scene *scene, const char *name, const char *needed)
 {
     char path[1024];
-    scene->is_here = support_data_path(needed, path, sizeof path);
-    if (!scene->is_here || !support_data_path("", scene->data, sizeof scene->data)) {
-        scene->is_here = 0;
+    strcpy(scene->data, "none");
+    scene->is_here = !needed || (support_data_path(needed, path, sizeof path) &&
+                                 support_data_path("", scene->data, sizeof scene->data));
+    if (!scene->is_here) {
         return 0;
     }
     snprintf(scene->folder, sizeof scene->folder, "%s/tmp/real/%s", support_build_dir(), name);

@@ -17,7 +17,8 @@ struct real_scene {
     int is_here;
 };
 
-/* Run host-sim/run/gallery_scene.sh for `name` when `needed` (below the real data) is there. The
+/* Run host-sim/run/gallery_scene.sh for `name` when `needed` (below the real data) is there, or is
+ * NULL, for a scene that needs none. The
  * files go into the build's tmp folder. Returns 0, also when the data are absent; -1 when the
  * script failed. */
 int real_scene_make(struct real_scene *scene, const char *name, const char *needed);
