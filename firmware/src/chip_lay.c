@@ -10,10 +10,47 @@ static int32_t part(int64_t a, int32_t b_q30)
     return (int32_t)(a * b_q30 >> 30);
 }
 
-/* Cells, rounded up, over which `pixels` of the chip may reach: Q16 of pixels, both axes turned. */
-static int32_t reach_of(int64_t pixels_q16, uint32_t pixels_a_cell_q16)
+/* Where a corner of a box lies, in pixels * 65536 from the origin, turned back: to the right and
+ * beyond. */
+struct corner_place {
+    int32_t right_q16, beyond_q16;
+};
+
+static struct corner_place turned(const struct lm_chip_lay *lay, fx_bam_t turn, int32_t column_q16,
+                                  int32_t row_q16)
 {
-    return (int32_t)(pixels_q16 / fx_max_u32(pixels_a_cell_q16, 1)) + 2;
+    const int32_t cos_q30 = fx_cos_q30(turn), sin_q30 = fx_sin_q30(turn);
+    const int32_t x = column_q16 - lay->origin_q16[0], y = row_q16 - lay->origin_q16[1];
+    return (struct corner_place){part(x, cos_q30) - part(y, sin_q30),
+                                 part(x, sin_q30) + part(y, cos_q30)};
+}
+
+/* Whole cells from a place on, or up to it: one more either way for the places within a cell. */
+static int32_t cells_of(int32_t pixels_q16, uint32_t pixels_a_cell_q16, int32_t more)
+{
+    return pixels_q16 / (int32_t)fx_max_u32(pixels_a_cell_q16, 1) + more;
+}
+
+/* The cells over a box, which interpolation makes half a pixel wider all around. */
+static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct lm_chip_box *box,
+                                     fx_bam_t turn, uint32_t scale_q16)
+{
+    struct lm_chip_reach r = {INT32_MAX, 0, INT32_MAX, 0};
+    if (box->row_end == 0) {
+        return (struct lm_chip_reach){0, 0, 0, 0};
+    }
+    r.right_end = r.beyond_end = INT32_MIN;
+    for (int i = 0; i < 4; i++) {
+        const int32_t column_q16 =
+            i % 2 ? box->column_end * 65536 + 32768 : box->column * 65536 - 32768;
+        const int32_t row_q16 = i / 2 ? box->row_end * 65536 + 32768 : box->row * 65536 - 32768;
+        const struct corner_place c = turned(lay, turn, column_q16, row_q16);
+        r.right = fx_min_i32(r.right, cells_of(c.right_q16, scale_q16, -1));
+        r.right_end = fx_max_i32(r.right_end, cells_of(c.right_q16, scale_q16, 2));
+        r.beyond = fx_min_i32(r.beyond, cells_of(c.beyond_q16, scale_q16, -1));
+        r.beyond_end = fx_max_i32(r.beyond_end, cells_of(c.beyond_q16, scale_q16, 2));
+    }
+    return r;
 }
 
 void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, fx_bam_t turn,
@@ -24,16 +61,14 @@ void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, f
     const int32_t cos_q30 = fx_cos_q30(turn), sin_q30 = fx_sin_q30(turn);
     const int32_t half_q16 = (int32_t)slot->side << 15;
     const int32_t before_q16 = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
-    const int32_t deep_q16 = fx_max_i32(before_q16, 2 * half_q16 - before_q16);
-    const int32_t cos_abs = (int32_t)fx_abs_u32(cos_q30), sin_abs = (int32_t)fx_abs_u32(sin_q30);
     lay->slot = slot;
     lay->right_q16[0] = lay->beyond_q16[1] = part(scale_q16, cos_q30);
     lay->beyond_q16[0] = part(scale_q16, sin_q30);
     lay->right_q16[1] = -lay->beyond_q16[0];
     lay->origin_q16[0] = half_q16;
     lay->origin_q16[1] = before_q16;
-    lay->reach_right = reach_of(part(half_q16, cos_abs) + part(deep_q16, sin_abs), scale_q16);
-    lay->reach_beyond = reach_of(part(deep_q16, cos_abs) + part(half_q16, sin_abs), scale_q16);
+    lay->lit = reach_of(lay, &slot->lit, turn, scale_q16);
+    lay->dark = reach_of(lay, &slot->dark, turn, scale_q16);
     lay->gain_q8 = 2 * (fx_db_q8_u64(scale_q16) - fx_db_q8_u64(65536));
 }
 

@@ -206,6 +206,15 @@ static int32_t total_q8(const struct lm_chip *chip)
     return level_q8(sum_q32);
 }
 
+static void widen(struct lm_chip_box *box, uint32_t row, uint32_t column)
+{
+    const bool is_empty = box->row_end == 0;
+    box->row = (uint8_t)(is_empty ? row : fx_min_u32(box->row, row));
+    box->column = (uint8_t)(is_empty ? column : fx_min_u32(box->column, column));
+    box->row_end = (uint8_t)fx_max_u32(box->row_end, row + 1);
+    box->column_end = (uint8_t)fx_max_u32(box->column_end, column + 1);
+}
+
 /* One pixel of the reduced chip from those of the chip that it takes the place of. */
 static void reduce_pixel(struct lm_chip_slot *slot, const struct lm_chip *chip, uint32_t row,
                          uint32_t column)
@@ -221,8 +230,14 @@ static void reduce_pixel(struct lm_chip_slot *slot, const struct lm_chip *chip, 
     }
     const int32_t below_q8 = level_q8(sum_q32) - slot->total_q8;
     const uint32_t amplitude_q16 = sum_q32 == 0 ? 0 : fx_power_q16_from_db_q8(below_q8 / 2);
-    slot->amplitude_q16[row + 1][column + 1] = (uint16_t)fx_min_u32(amplitude_q16, UINT16_MAX);
-    slot->shadow[row + 1][column + 1] = (uint8_t)(dark * 255 >> 2 * shift);
+    if (amplitude_q16 != 0) {
+        slot->amplitude_q16[row + 1][column + 1] = (uint16_t)fx_min_u32(amplitude_q16, UINT16_MAX);
+        widen(&slot->lit, row, column);
+    }
+    if (dark != 0) {
+        slot->shadow[row + 1][column + 1] = (uint8_t)(dark * 255 >> 2 * shift);
+        widen(&slot->dark, row, column);
+    }
 }
 
 /* Some rows of the chip that has come; it is there when all are done. */

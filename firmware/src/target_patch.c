@@ -304,18 +304,16 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
 
 /* ---- chips ---- */
 
-/* The cells of a line that a chip may lie over, its origin at `across_q8`. */
-static struct span cells_under(const struct lm_patch_chip *chip, const struct lm_patch_point *at,
+/* The cells of a line that a chip may reach, its origin at `across_q8` and where the point is. */
+static struct span cells_under(const struct lm_chip_reach *reach, const struct lm_patch_point *at,
                                int32_t across_q8, uint32_t line, const struct lm_patch_geometry *g)
 {
-    const int32_t middle = cell_at(at->along_q8), reach = chip->lay.reach_beyond;
-    const int32_t aside = (int32_t)line - cell_at(across_q8);
-    const bool is_beside = aside < -chip->lay.reach_right || aside > chip->lay.reach_right;
-    if (at->is_hidden || is_beside) {
+    const int32_t middle = cell_at(at->along_q8), aside = (int32_t)line - cell_at(across_q8);
+    if (at->is_hidden || aside < reach->right || aside >= reach->right_end) {
         return (struct span){0, 0};
     }
-    return (struct span){fx_max_i32(middle - reach, (int32_t)g->first),
-                         fx_min_i32(middle + reach + 1, (int32_t)g->cells)};
+    return (struct span){fx_max_i32(middle + reach->beyond, (int32_t)g->first),
+                         fx_min_i32(middle + reach->beyond_end, (int32_t)g->cells)};
 }
 
 void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
@@ -326,7 +324,7 @@ void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
         const int32_t right_q8 = (int32_t)line * 256 - chip->shadow_across_q8;
-        const struct span under = cells_under(chip, at, chip->shadow_across_q8, line, g);
+        const struct span under = cells_under(&chip->lay.dark, at, chip->shadow_across_q8, line, g);
         for (int32_t i = under.first; i < under.end; i++) {
             const uint32_t dark = lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - at->along_q8);
             level_q8[i] = dark == LM_CHIP_SHADOW_ALL
@@ -343,7 +341,7 @@ void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct l
     for (uint32_t k = 0; k < p->chip_count; k++) {
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
-        const struct span under = cells_under(chip, at, at->across_q8, line, g);
+        const struct span under = cells_under(&chip->lay.lit, at, at->across_q8, line, g);
         const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
         if (cells > room) {
             p->cells_left_out += cells;

@@ -50,6 +50,14 @@ if command -v valgrind > /dev/null; then
     count sar > "$work/sar"
     table 65536 '%7.1f' < "$work/sar"
     awk '$1 == "lm_sar_prefetch" { printf "  %-44s %7.1f\n", "and, before it: asking for its tiles", $2 / 65536 }' "$work/sar"
+    count chips > "$work/chips"
+    echo
+    echo "Sixteen targets with a signature, 60 x 60 cells of 0.5 m each: instructions a target and patch"
+    awk '{ n[$1] = $2 } END {
+        printf "  %-44s %9.0f\n", "reading and reducing its chip", n["lm_chips_service"] / 16
+        printf "  %-44s %9.0f\n", "shadow", n["lm_patch_chips_shade"] / 16
+        printf "  %-44s %9.0f\n", "power", n["lm_patch_chips_add"] / 16
+    }' "$work/chips"
     for mode in gm exp dbs1 dbs2 gmt sea; do
         count $mode > "$work/$mode"
         read -r _ lines _ samples < "$work/said"

@@ -3,10 +3,12 @@
  *
  *   stage_bench sar N         draw N patches and print nothing: callgrind counts the instructions
  *                             of the functions called here (tests/bench/bench.sh)
+ *   stage_bench chips N       the same with 16 targets that have a signature, cells of 0.5 m
  *   stage_bench gm|exp|dbs1|dbs2|gmt|sea N
  *                             N sweeps; prints the lines drawn and sampled
  *   stage_bench compare N     N times: processor time a pixel of a patch, by the firmware and by
  * the reference in double precision, both without the image's checks */
+#include "golden_signature.h"
 #include "lm/sar.h"
 #include "lm/scan_conv.h"
 #include "lm/sector.h"
@@ -44,11 +46,16 @@ static double scene_elevation(void *ctx, const struct tiny_place *p)
     return 60 + 40 * sin(p->east_m / 400) * cos(p->north_m / 300);
 }
 
+enum { TARGETS = 16 };
+
 struct world {
     struct tiny_image image;
     struct memory_flash flash;
     struct lm_db db;
     struct lm_tile_cache tiles;
+    struct lm_signature signature;
+    struct lm_chips chips;
+    struct lm_target targets[TARGETS];
     void *pool;
     struct lm_tone tone;
     struct lm_line line;
@@ -57,7 +64,7 @@ struct world {
 };
 
 /* The glass: a display of 512 x 512, where a patch of 256 cells shows a cell as one pixel. */
-enum { DISPLAY_PX = 512 };
+enum { DISPLAY_PX = 512, CELL_MM = 5000 };
 
 static int open_world(struct world *w, uint8_t shift0)
 {
@@ -67,7 +74,7 @@ static int open_world(struct world *w, uint8_t shift0)
     spec.shift0 = shift0;
     spec.rows = 10;
     spec.columns = 20; /* wide enough for a sector of the shortest range */
-    if (tiny_image_build(&w->image, &spec) != 0) {
+    if (tiny_image_build(&w->image, &spec) != 0 || golden_add_signature(&w->image) != 0) {
         return -1;
     }
     memory_flash_open(&w->flash, w->image.bytes, w->image.size);
@@ -77,6 +84,7 @@ static int open_world(struct world *w, uint8_t shift0)
     w->frame = lm_frame_of_display(DISPLAY_PX, DISPLAY_PX);
     return w->pool && w->plane.pixels && lm_db_open(&w->db, &w->flash.port, 10) == LM_OK &&
                    lm_tile_cache_init(&w->tiles, &w->db, w->pool, bytes, 10) == LM_OK &&
+                   lm_signature_read(&w->db, 0, &w->signature, 10) == LM_OK &&
                    lm_tone_set(&w->tone, &lm_radar_default.sar.tone) == LM_OK
                ? 0
                : -1;
@@ -84,19 +92,42 @@ static int open_world(struct world *w, uint8_t shift0)
 
 static void make_resident(struct world *w)
 {
-    for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&w->tiles); i++) {
+    bool is_idle = false;
+    for (int i = 0; i < 100000 && !is_idle; i++) {
+        lm_chips_service(&w->chips, &w->tiles);
         lm_tile_cache_service(&w->tiles, 0, 1);
+        is_idle = lm_tile_cache_is_idle(&w->tiles) && lm_chips_are_settled(&w->chips);
     }
 }
 
-static int draw_patches(struct world *w, int count)
+/* Four rows of four, 25 m apart, each turned another way. */
+static struct lm_target_set parked(struct world *w)
+{
+    const fx_bam_t apart = (fx_bam_t)(25 / 9.3e-3);
+    for (uint32_t i = 0; i < TARGETS; i++) {
+        w->targets[i] = (struct lm_target){
+            .latitude = w->db.centre_latitude + (i / 4 - 2) * apart,
+            .longitude = w->db.centre_longitude + (i % 4 - 2) * apart * 3 / 2,
+            .heading = i * FX_BAM_DEG(23),
+            .flags = LM_TARGET_ABOVE_GROUND | LM_TARGET_HAS_SIGNATURE,
+        };
+    }
+    lm_chips_init(&w->chips, &w->db, &w->signature);
+    return (struct lm_target_set){w->targets, TARGETS, &w->signature, 1};
+}
+
+/* `targets` may be NULL. */
+static int draw_patches(struct world *w, const struct lm_target_set *targets, uint32_t cell_mm,
+                        int count)
 {
     struct lm_sar sar;
-    const struct lm_sar_scene scene = {.reference_q10 = 60 * 1024,
+    const struct lm_sar_scene scene = {.targets = targets,
+                                       .chips = &w->chips,
+                                       .reference_q10 = 60 * 1024,
                                        .sea_state = LM_SEA_STATE_OF_IMAGE};
     const struct lm_sar_command command = {
         .centre = {w->db.centre_latitude, w->db.centre_longitude},
-        .cell_mm = 5000,
+        .cell_mm = cell_mm,
         .look_azimuth = FX_BAM_DEG(37),
         .range_m = 20000,
         .height_q6 = 3000 * 64,
@@ -109,6 +140,8 @@ static int draw_patches(struct world *w, int count)
             lm_sar_prefetch(&sar, &w->tiles, line);
             make_resident(w);
         }
+        lm_sar_prefetch_targets(&sar, &w->tiles);
+        make_resident(w);
         while (sar.line < lm_radar_default.sar.cells) {
             lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
             lm_patch_paint(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
@@ -212,12 +245,12 @@ static int compare(struct world *w, int runs)
     struct ref_db db;
     /* The first patches read and check the tiles. */
     if (ref_db_open_memory(&db, w->image.bytes, w->image.size, "scene") != 0 ||
-        draw_patches(w, 1) != 0 || draw_reference(w, &db) != 0) {
+        draw_patches(w, NULL, CELL_MM, 1) != 0 || draw_reference(w, &db) != 0) {
         return -1;
     }
     for (int n = 0; n < runs; n++) {
         const double start = processor_ns();
-        int status = draw_patches(w, PATCHES);
+        int status = draw_patches(w, NULL, CELL_MM, PATCHES);
         const double middle = processor_ns();
         status |= draw_reference(w, &db);
         const double end = processor_ns();
@@ -237,10 +270,12 @@ int main(int argc, char **argv)
     static struct world world; /* large, and this is a program, not the firmware */
     const char *what = argc == 3 ? argv[1] : "";
     const int count = argc == 3 ? atoi(argv[2]) : 0;
-    const int is_patch = strcmp(what, "sar") == 0, is_comparison = strcmp(what, "compare") == 0;
+    const bool has_chips = strcmp(what, "chips") == 0;
+    const int is_patch = has_chips || strcmp(what, "sar") == 0,
+              is_comparison = strcmp(what, "compare") == 0;
     const struct sector_case *sector = find_case(what);
     if (count < 1 || (!is_patch && !is_comparison && !sector)) {
-        fputs("usage: stage_bench sar|gm|exp|dbs1|dbs2|gmt|sea|compare N\n", stderr);
+        fputs("usage: stage_bench sar|chips|gm|exp|dbs1|dbs2|gmt|sea|compare N\n", stderr);
         return 2;
     }
     if (open_world(&world, sector ? 12 : 9) != 0) {
@@ -254,5 +289,6 @@ int main(int argc, char **argv)
         draw_sweeps(&world, sector, count);
         return 0;
     }
-    return draw_patches(&world, count) != 0;
+    const struct lm_target_set targets = parked(&world);
+    return draw_patches(&world, has_chips ? &targets : NULL, has_chips ? 500 : CELL_MM, count) != 0;
 }

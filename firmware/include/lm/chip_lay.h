@@ -6,13 +6,17 @@
 #include "lm/chips.h"
 
 /* Places are cells * 256 to the right of the target's origin, as the radar looks, and beyond it. */
+struct lm_chip_reach {
+    int32_t right, right_end, beyond, beyond_end; /* whole cells, the ends left out */
+};
+
 struct lm_chip_lay {
     const struct lm_chip_slot *slot; /* borrowed: as long as it is in use */
     int32_t right_q16[2];            /* a cell to the right, in columns and rows of the chip */
     int32_t beyond_q16[2];
-    int32_t origin_q16[2];             /* column and row of the origin */
-    int32_t reach_right, reach_beyond; /* cells, either way, that the chip may lie over */
-    int32_t gain_q8;                   /* of a cell's area over that of a pixel, dB * 256 */
+    int32_t origin_q16[2];          /* column and row of the origin */
+    struct lm_chip_reach lit, dark; /* cells that may have power, and shadow */
+    int32_t gain_q8;                /* of a cell's area over that of a pixel, dB * 256 */
 };
 
 void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, fx_bam_t turn,

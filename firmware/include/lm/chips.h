@@ -14,6 +14,12 @@ enum { LM_CHIP_ROOM = LM_CHIP_SIDE + 2 }; /* a border of nothing all around */
 
 enum lm_chip_state { LM_CHIP_FREE = 0, LM_CHIP_WANTED, LM_CHIP_RESIDENT, LM_CHIP_BAD };
 
+/* The rows and columns of a chip that hold something: up to, and without, the ends; all 0 when
+ * nothing does. */
+struct lm_chip_box {
+    uint8_t row, row_end, column, column_end;
+};
+
 /* A chip with 2^shift pixels made one, either way. */
 struct lm_chip_slot {
     uint8_t state; /* enum lm_chip_state */
@@ -22,11 +28,12 @@ struct lm_chip_slot {
         uint8_t signature, aspect, depression;
         uint8_t shift; /* the reduction's */
     } key;
-    uint8_t side;       /* pixels: LM_CHIP_SIDE >> shift */
-    uint8_t origin_row; /* as in the signature, before the reduction */
-    uint8_t rows_ready; /* reduced so far */
-    uint32_t pixel_mm;  /* after the reduction */
-    int32_t total_q8;   /* cross section of it all, dBsm * 256 */
+    uint8_t side;                 /* pixels: LM_CHIP_SIDE >> shift */
+    uint8_t origin_row;           /* as in the signature, before the reduction */
+    uint8_t rows_ready;           /* reduced so far */
+    uint32_t pixel_mm;            /* after the reduction */
+    int32_t total_q8;             /* cross section of it all, dBsm * 256 */
+    struct lm_chip_box lit, dark; /* pixels with power, and with shadow */
     /* Root of a pixel's share of the total, 65535 / 65536 at the most, and the share of its ground
      * that lies in shadow, 255 for all; pixel (row, column) is [row + 1][column + 1]. */
     uint16_t amplitude_q16[LM_CHIP_ROOM][LM_CHIP_ROOM];

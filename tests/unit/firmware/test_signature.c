@@ -265,24 +265,35 @@ struct score {
     double worst_power_db, shadow, cross, squares[2];
 };
 
-/* Every cell around the origin against the reference, the grid shifted by parts of a cell. */
+static bool is_in(const struct lm_chip_reach *r, int32_t right, int32_t beyond)
+{
+    return right >= r->right && right < r->right_end && beyond >= r->beyond &&
+           beyond < r->beyond_end;
+}
+
+/* Every cell around the origin against the reference, the grid shifted by up to half a cell. Beyond
+ * the lay's reach, nothing is taken from it. */
 static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref, int block,
                       double cell_m, int32_t shift_q8, struct score *s)
 {
     double fixed = 0, exact = 0, dark = 0, exact_dark = 0;
-    for (int32_t i = -lay->reach_beyond; i <= lay->reach_beyond; i++) {
-        for (int32_t k = -lay->reach_right; k <= lay->reach_right; k++) {
+    const int32_t around = (int32_t)(30 / cell_m) + 4; /* all of the chip */
+    for (int32_t i = -around; i <= around; i++) {
+        for (int32_t k = -around; k <= around; k++) {
             const int32_t right_q8 = k * 256 + shift_q8, beyond_q8 = i * 256 - shift_q8;
             const double right_m = right_q8 * cell_m / 256, beyond_m = beyond_q8 * cell_m / 256;
             const double truth = ref_chip_cell_m2(ref, block, right_m, beyond_m, cell_m);
-            const int32_t q8 = lm_chip_cell_q8(lay, right_q8, beyond_q8);
+            const int32_t q8 =
+                is_in(&lay->lit, k, i) ? lm_chip_cell_q8(lay, right_q8, beyond_q8) : LM_RCS_NONE_Q8;
             const double got = q8 <= LM_RCS_NONE_Q8 ? 0 : pow(10, q8 / 2560.0);
             fixed += got;
             exact += truth;
             s->cross += got * truth;
             s->squares[0] += got * got;
             s->squares[1] += truth * truth;
-            dark += lm_chip_cell_shadow(lay, right_q8, beyond_q8) / (double)LM_CHIP_SHADOW_ALL;
+            if (is_in(&lay->dark, k, i)) {
+                dark += lm_chip_cell_shadow(lay, right_q8, beyond_q8) / (double)LM_CHIP_SHADOW_ALL;
+            }
             exact_dark += ref_chip_cell_shadow(ref, right_m, beyond_m, cell_m);
         }
     }
@@ -311,7 +322,8 @@ static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_referenc
         const struct ref_chip ref = {&chip, PIXEL_MM / 1000.0, ORIGIN_ROW,
                                      (int32_t)near.item[0].chip_turn * 360.0 / 4294967296.0 *
                                          degree};
-        score_lay(&lay, &ref, 1 << slot->key.shift, cell_m, (int32_t)hs_rng_below(&r, 256), &s);
+        score_lay(&lay, &ref, 1 << slot->key.shift, cell_m, (int32_t)hs_rng_below(&r, 256) - 128,
+                  &s);
     }
     const double likeness = s.cross / sqrt(s.squares[0] * s.squares[1]);
     print_message("# all of it within %.3f dB, cells alike to %.3f, shadow within %.1f %%\n",
