@@ -33,7 +33,7 @@ static void meet_primaries(const struct trace_tiles *t, uint32_t index, struct t
         w->near_m[row - rows.first] = -INFINITY;
         lay_ground(t, row, w->depths_m + at, w->facets + at);
     }
-    raster_draw(&t->model, index, w->near_m, w->depths_m, w->facets);
+    projection_draw(&t->model, index, w->near_m, w->depths_m, w->facets);
     for (uint32_t row = rows.first; row < rows.end; row++) {
         w->near_m[row - rows.first] =
             (float)(ground_depth_m(t, row) - TILE_LIFT_M / t->axes.sight.z);
@@ -43,7 +43,7 @@ static void meet_primaries(const struct trace_tiles *t, uint32_t index, struct t
         w->mirrored[i] = SCENE_MISS;
     }
     if (t->scene->ground_half_m > 0) {
-        raster_draw(&t->mirror, index, w->near_m, w->depths_m, w->mirrored);
+        projection_draw(&t->mirror, index, w->near_m, w->depths_m, w->mirrored);
     }
 }
 

@@ -11,4 +11,4 @@ $(LIB_target): $(call objs,$(filter-out %/main.c,$(wildcard host-sim/target/*.c)
 $(T): $(O)/host-sim/target/main.o $(LIB_target) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(T): LDLIBS := $(LIBS_target)
 # The tracer's own share of the time: loops over rays.
-$(addprefix $(O)/host-sim/target/,first_bounce.o glance.o raster.o scene.o trace_tile.o): EXTRA_CFLAGS += -O3 -fno-math-errno -fno-trapping-math
+$(addprefix $(O)/host-sim/target/,first_bounce.o glance.o projection.o scene.o trace_tile.o): EXTRA_CFLAGS += -O3 -fno-math-errno -fno-trapping-math

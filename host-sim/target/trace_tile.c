@@ -136,7 +136,7 @@ static void look_back(const struct trace_tiles *t, const struct tile_work *w,
     packet_look(t, &p, bounce);
 }
 
-/* For measurements: the rays that a tracer without a raster would have to cast. */
+/* For measurements: the rays that a tracer that drew nothing would have to cast. */
 static void keep_primaries(const struct trace_tiles *t, uint32_t index, struct bare_rays *bare)
 {
     const struct rows rows = rows_of(t, index);
@@ -196,9 +196,10 @@ int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
     const uint32_t columns = t->sensor.columns;
     const uint32_t strip_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
     const bool has_ground = scene->ground_half_m > 0;
-    if (raster_open(&t->model, scene, &t->axes, &t->sensor, strip_rows, TILE_GRAZING_COS, false) ||
-        (has_ground && raster_open(&t->mirror, scene, &t->axes, &t->sensor, strip_rows,
-                                   TILE_GRAZING_COS, true))) {
+    if (projection_open(&t->model, scene, &t->axes, &t->sensor, strip_rows, TILE_GRAZING_COS,
+                        false) ||
+        (has_ground && projection_open(&t->mirror, scene, &t->axes, &t->sensor, strip_rows,
+                                       TILE_GRAZING_COS, true))) {
         trace_tiles_close(t);
         return -1;
     }
@@ -209,8 +210,8 @@ int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
 
 void trace_tiles_close(struct trace_tiles *t)
 {
-    raster_close(&t->model);
-    raster_close(&t->mirror);
+    projection_close(&t->model);
+    projection_close(&t->mirror);
     *t = (struct trace_tiles){0};
 }
 

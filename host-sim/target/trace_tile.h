@@ -3,7 +3,7 @@
 #define TARGET_TRACE_TILE_H
 
 #include "bare.h"
-#include "raster.h"
+#include "projection.h"
 #include "records.h"
 #include "scene.h"
 #include "trace.h"
@@ -15,8 +15,8 @@ struct trace_tiles {
     const struct scene *scene; /* borrowed */
     struct trace_axes axes;
     struct trace_sensor sensor;
-    struct raster model, mirror; /* owned; a strip of each is a tile */
-    double turns_per_m;          /* of the echo's phase, by range: -2 / wavelength */
+    struct projection model, mirror; /* owned; a strip of each is a tile */
+    double turns_per_m;              /* of the echo's phase, by range: -2 / wavelength */
     uint32_t bounces, tile_rays, tile_count;
 };
 

@@ -1,4 +1,4 @@
-#include "raster.h"
+#include "projection.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +12,10 @@ struct corner {
     double x, y;
 };
 
-static struct raster_side side_between(const struct corner *low, const struct corner *high)
+static struct projection_side side_between(const struct corner *low, const struct corner *high)
 {
     const double rise = high->y - low->y;
-    return (struct raster_side){low->x, low->y, rise > 0 ? (high->x - low->x) / rise : 0};
+    return (struct projection_side){low->x, low->y, rise > 0 ? (high->x - low->x) / rise : 0};
 }
 
 static struct corner corner_at(const struct trace_axes *axes, const struct trace_sensor *sensor,
@@ -38,7 +38,7 @@ static void swap_if_lower(struct corner *a, struct corner *b)
 /* Returns false when no ray can meet the triangle. */
 static bool make_shape(const struct trace_axes *axes, const struct trace_sensor *sensor,
                        const struct vec corners[3], const struct scene_facet *plane,
-                       double grazing_cos, struct raster_shape *shape)
+                       double grazing_cos, struct projection_shape *shape)
 {
     const double pace = vec_dot(plane->normal, axes->sight);
     struct corner a = corner_at(axes, sensor, corners[0]);
@@ -69,26 +69,27 @@ static bool make_shape(const struct trace_axes *axes, const struct trace_sensor 
     return true;
 }
 
-static bool add_shape(struct raster *r, const struct raster_shape *shape)
+static bool add_shape(struct projection *p, const struct projection_shape *shape)
 {
-    if (r->shape_count == r->shape_room) {
-        const uint32_t room = r->shape_room > 0 ? 2 * r->shape_room : 1024;
-        struct raster_shape *larger = realloc(r->shapes, room * sizeof *larger);
+    if (p->shape_count == p->shape_room) {
+        const uint32_t room = p->shape_room > 0 ? 2 * p->shape_room : 1024;
+        struct projection_shape *larger = realloc(p->shapes, room * sizeof *larger);
         if (!larger) {
             return false;
         }
-        r->shapes = larger;
-        r->shape_room = room;
+        p->shapes = larger;
+        p->shape_room = room;
     }
-    r->shapes[r->shape_count++] = *shape;
+    p->shapes[p->shape_count++] = *shape;
     return true;
 }
 
-static bool add_shapes(struct raster *r, const struct scene *scene, const struct trace_axes *axes,
-                       const struct trace_sensor *sensor, double grazing_cos, bool is_mirror)
+static bool add_shapes(struct projection *p, const struct scene *scene,
+                       const struct trace_axes *axes, const struct trace_sensor *sensor,
+                       double grazing_cos, bool is_mirror)
 {
     for (uint32_t i = 0; i < scene->triangle_count; i++) {
-        struct raster_shape shape = {.facet = i};
+        struct projection_shape shape = {.facet = i};
         struct vec corners[3];
         struct scene_facet plane = scene->facets[i];
         scene_corners(scene, i, corners);
@@ -99,7 +100,7 @@ static bool add_shapes(struct raster *r, const struct scene *scene, const struct
             }
         }
         if (make_shape(axes, sensor, corners, &plane, grazing_cos, &shape) &&
-            !add_shape(r, &shape)) {
+            !add_shape(p, &shape)) {
             return false;
         }
     }
@@ -107,82 +108,82 @@ static bool add_shapes(struct raster *r, const struct scene *scene, const struct
 }
 
 /* Count the shapes of each strip, let each strip's list begin behind the last, and fill them. */
-static bool make_lists(struct raster *r)
+static bool make_lists(struct projection *p)
 {
-    r->begins = calloc((size_t)r->strip_count + 1, sizeof *r->begins);
-    if (!r->begins) {
+    p->begins = calloc((size_t)p->strip_count + 1, sizeof *p->begins);
+    if (!p->begins) {
         return false;
     }
     size_t total = 0;
-    for (uint32_t i = 0; i < r->shape_count; i++) {
-        const struct raster_shape *shape = &r->shapes[i];
-        const uint32_t last = shape->last_row / r->strip_rows;
-        for (uint32_t strip = shape->first_row / r->strip_rows; strip <= last; strip++) {
-            r->begins[strip + 1]++;
+    for (uint32_t i = 0; i < p->shape_count; i++) {
+        const struct projection_shape *shape = &p->shapes[i];
+        const uint32_t last = shape->last_row / p->strip_rows;
+        for (uint32_t strip = shape->first_row / p->strip_rows; strip <= last; strip++) {
+            p->begins[strip + 1]++;
             total++;
         }
     }
-    r->lists = total < UINT32_MAX ? malloc((total + 1) * sizeof *r->lists) : NULL;
-    if (!r->lists) {
+    p->lists = total < UINT32_MAX ? malloc((total + 1) * sizeof *p->lists) : NULL;
+    if (!p->lists) {
         return false;
     }
-    for (uint32_t strip = 0; strip < r->strip_count; strip++) {
-        r->begins[strip + 1] += r->begins[strip];
+    for (uint32_t strip = 0; strip < p->strip_count; strip++) {
+        p->begins[strip + 1] += p->begins[strip];
     }
     /* Backwards, from each strip's end: afterwards begins[i + 1] is where strip i begins. */
-    for (uint32_t i = r->shape_count; i-- > 0;) {
-        const struct raster_shape *shape = &r->shapes[i];
-        const uint32_t last = shape->last_row / r->strip_rows;
-        for (uint32_t strip = shape->first_row / r->strip_rows; strip <= last; strip++) {
-            r->lists[--r->begins[strip + 1]] = i;
+    for (uint32_t i = p->shape_count; i-- > 0;) {
+        const struct projection_shape *shape = &p->shapes[i];
+        const uint32_t last = shape->last_row / p->strip_rows;
+        for (uint32_t strip = shape->first_row / p->strip_rows; strip <= last; strip++) {
+            p->lists[--p->begins[strip + 1]] = i;
         }
     }
-    memmove(r->begins, r->begins + 1, r->strip_count * sizeof *r->begins);
-    r->begins[r->strip_count] = (uint32_t)total;
+    memmove(p->begins, p->begins + 1, p->strip_count * sizeof *p->begins);
+    p->begins[p->strip_count] = (uint32_t)total;
     return true;
 }
 
-int raster_open(struct raster *r, const struct scene *scene, const struct trace_axes *axes,
-                const struct trace_sensor *sensor, uint32_t strip_rows, double grazing_cos,
-                bool is_mirror)
+int projection_open(struct projection *p, const struct scene *scene, const struct trace_axes *axes,
+                    const struct trace_sensor *sensor, uint32_t strip_rows, double grazing_cos,
+                    bool is_mirror)
 {
-    *r = (struct raster){
+    *p = (struct projection){
         .columns = sensor->columns,
         .rows = sensor->rows,
         .strip_rows = strip_rows,
         .strip_count = (sensor->rows + strip_rows - 1) / strip_rows,
     };
-    if (!add_shapes(r, scene, axes, sensor, grazing_cos, is_mirror) || !make_lists(r)) {
-        raster_close(r);
+    if (!add_shapes(p, scene, axes, sensor, grazing_cos, is_mirror) || !make_lists(p)) {
+        projection_close(p);
         return -1;
     }
     return 0;
 }
 
-void raster_close(struct raster *r)
+void projection_close(struct projection *p)
 {
-    free(r->shapes);
-    free(r->begins);
-    free(r->lists);
-    *r = (struct raster){0};
+    free(p->shapes);
+    free(p->begins);
+    free(p->lists);
+    *p = (struct projection){0};
 }
 
-static double x_at(const struct raster_side *side, uint32_t row)
+static double x_at(const struct projection_side *side, uint32_t row)
 {
     return side->x + (row - side->y) * side->x_per_row;
 }
 
 /* The columns of a row that lie inside: none when *first >= *end. */
-static void span_of(const struct raster *r, const struct raster_shape *shape, uint32_t row,
+static void span_of(const struct projection *p, const struct projection_shape *shape, uint32_t row,
                     uint32_t *first, uint32_t *end)
 {
     const double one = x_at(&shape->whole, row);
     const double other = x_at(row < shape->upper.y ? &shape->lower : &shape->upper, row);
     const double left = (one < other ? one : other) - edge_share;
     const double right = (one < other ? other : one) + edge_share;
-    const double columns = r->columns;
-    *first = left <= 0 ? 0 : left < columns ? (uint32_t)(int32_t)left + 1 : r->columns;
-    *end = right < 0 ? 0 : right < columns ? (uint32_t)(int32_t)right + 1 : r->columns;
+    const double columns = p->columns;
+    *first = left <= 0 ? 0 : left < columns ? (uint32_t)(int32_t)left + 1 : p->columns;
+    *end = right < 0 ? 0 : right < columns ? (uint32_t)(int32_t)right + 1 : p->columns;
 }
 
 static void draw_span(uint32_t count, float depth_m, float per_column_m, float near_m,
@@ -196,20 +197,20 @@ static void draw_span(uint32_t count, float depth_m, float per_column_m, float n
     }
 }
 
-void raster_draw(const struct raster *r, uint32_t strip, const float *near_m, float *depths_m,
-                 uint32_t *facets)
+void projection_draw(const struct projection *p, uint32_t strip, const float *near_m,
+                     float *depths_m, uint32_t *facets)
 {
-    const uint32_t low = strip * r->strip_rows;
-    const uint32_t high = low + r->strip_rows < r->rows ? low + r->strip_rows - 1 : r->rows - 1;
-    for (uint32_t i = r->begins[strip]; i < r->begins[strip + 1]; i++) {
-        const struct raster_shape *shape = &r->shapes[r->lists[i]];
+    const uint32_t low = strip * p->strip_rows;
+    const uint32_t high = low + p->strip_rows < p->rows ? low + p->strip_rows - 1 : p->rows - 1;
+    for (uint32_t i = p->begins[strip]; i < p->begins[strip + 1]; i++) {
+        const struct projection_shape *shape = &p->shapes[p->lists[i]];
         const uint32_t from = shape->first_row > low ? shape->first_row : low;
         const uint32_t to = shape->last_row < high ? shape->last_row : high;
         for (uint32_t row = from; row <= to; row++) {
             uint32_t first, end;
-            span_of(r, shape, row, &first, &end);
+            span_of(p, shape, row, &first, &end);
             if (first < end) {
-                const size_t at = (size_t)(row - low) * r->columns + first;
+                const size_t at = (size_t)(row - low) * p->columns + first;
                 const double depth_m = shape->depth_m + first * shape->depth_per_column_m +
                                        row * shape->depth_per_row_m;
                 draw_span(end - first, (float)depth_m, (float)shape->depth_per_column_m,

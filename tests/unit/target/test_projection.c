@@ -1,6 +1,6 @@
 /* What is drawn against what is cast: Embree, and a surface without gaps. */
 #include "models.h"
-#include "raster.h"
+#include "projection.h"
 #include "shapes.h"
 
 #include "hs/rng.h"
@@ -30,7 +30,7 @@ struct drawing {
 static void draw(struct drawing *d, const struct scene *s, const struct trace_order *o,
                  uint32_t strip_rows, const float *near_m, bool is_mirror)
 {
-    struct raster r;
+    struct projection p;
     d->axes = trace_axes_of(&o->look);
     d->sensor = trace_sensor_for(s, o);
     d->rays = d->sensor.columns * d->sensor.rows;
@@ -41,13 +41,13 @@ static void draw(struct drawing *d, const struct scene *s, const struct trace_or
         d->facets[i] = SCENE_MISS;
         d->depths_m[i] = INFINITY;
     }
-    assert_int_equal(raster_open(&r, s, &d->axes, &d->sensor, strip_rows, grazing_cos, is_mirror),
-                     0);
-    for (uint32_t strip = 0; strip < r.strip_count; strip++) {
+    assert_int_equal(
+        projection_open(&p, s, &d->axes, &d->sensor, strip_rows, grazing_cos, is_mirror), 0);
+    for (uint32_t strip = 0; strip < p.strip_count; strip++) {
         const size_t at = (size_t)strip * strip_rows * d->sensor.columns;
-        raster_draw(&r, strip, near_m + strip * strip_rows, d->depths_m + at, d->facets + at);
+        projection_draw(&p, strip, near_m + strip * strip_rows, d->depths_m + at, d->facets + at);
     }
-    raster_close(&r);
+    projection_close(&p);
 }
 
 static void drop(struct drawing *d)
@@ -249,5 +249,5 @@ int main(void)
         cmocka_unit_test(no_ray_slips_between_triangles_that_share_a_side),
         cmocka_unit_test(strips_of_any_height_give_the_same_drawing),
     };
-    return cmocka_run_group_tests_name("raster", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("projection", tests, NULL, NULL);
 }
