@@ -24,7 +24,7 @@ FUZZ_SRC_net         := $(addprefix host-sim/db/,net_file.c mlp.c samples.c rast
 FUZZ_SRC_mstar       := host-sim/netem/chip_mstar.c host-sim/netem/picture.c
 FUZZ_SRC_chip_csv    := host-sim/netem/chip_csv.c host-sim/netem/picture.c
 FUZZ_SRC_netem_model := $(patsubst %,host-sim/netem/%.c,model_file train simulator netem paths network architecture netpix \
-                       convolve picture loss registration optimizer) host-sim/target/records.c $(FUZZ_TEXT)
+                       convolve fft picture loss registration optimizer) host-sim/target/records.c $(FUZZ_TEXT)
 FUZZ_SRC_obj         := $(addprefix host-sim/target/,obj_file.c mesh.c mesh_audit.c) host-sim/common/src/atomic_file.c tests/fuzz/file.c
 FUZZ_SRC_traced      := $(addprefix host-sim/target/,records.c records_file.c) $(wildcard fixed/src/*.c) host-sim/common/src/atomic_file.c tests/fuzz/file.c
 FUZZ_SRC_label_map   := host-sim/db/label_map.c host-sim/db/class_table.c $(FUZZ_TEXT)
