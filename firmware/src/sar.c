@@ -273,10 +273,11 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         trace_runup(s, tiles, number, line);
     }
     trace_line(s, tiles, number, line);
-    lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
     }
+    lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
+    lm_patch_chips_add(&s->points, number, &s->geometry, level_q8);
     lm_floor_run(s->radar->sar.noise_floor_q8, level_q8, s->grid.cells);
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
 }
@@ -333,7 +334,6 @@ static void add_points(struct lm_sar *s, uint32_t end)
     const int32_t least_q8 = s->radar->sar.noise_floor_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
     for (; s->summed < end; s->summed++) {
         lm_patch_points_add(&s->points, s->summed, least_q8, &s->geometry, ring_line(s, s->summed));
-        lm_patch_chips_add(&s->points, s->summed, &s->geometry, ring_line(s, s->summed));
     }
 }
 

@@ -81,12 +81,14 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 
-/* Put the ground of line `line` that lies in the chips' shadows into the dark: before speckle and
- * noise. A hidden target throws none. Cost: 100 instructions for each cell under a chip. */
+/* Put the ground of line `line` that lies in the chips' shadows into the dark: behind layover,
+ * before speckle and noise. A hidden target throws none. Cost: 100 instructions for each cell under
+ * a chip. */
 void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
                           const struct lm_patch_geometry *g, int32_t *level_q8);
 
-/* Add the chips to the levels of line `line`: behind speckle and noise, as the points. Cost: 250
+/* Add the chips to the levels of line `line`, whose shadows are in. A chip is the mean of many
+ * scatterers in every pixel, unlike a point: speckle and noise come behind it. Cost: 250
  * instructions for each cell under a chip, of LM_CHIP_CELLS_A_LINE at most. */
 void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct lm_patch_geometry *g,
                         int32_t *level_q8);

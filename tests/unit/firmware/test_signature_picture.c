@@ -97,7 +97,9 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
     }
 }
 
-/* Power that a target adds within `reach` cells of a place, and its middle. */
+/* Power that a target adds within `reach` cells of a place, and its middle. Both pictures have the
+ * same speckle, which is the last thing to be put on them: so what the target adds, against the
+ * soil's own power, is the ratio of the two. */
 struct found {
     double power, line, cell;
 };
@@ -105,10 +107,13 @@ struct found {
 static struct found find(const struct fixture *f, double line, double cell, int reach)
 {
     struct found found = {0, 0, 0};
+    double soil = 0;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        soil += pow(10, f->bare[k / SIDE][k % SIDE] / 2560.0) / (SIDE * SIDE);
+    }
     for (int l = (int)line - reach; l <= (int)line + reach + 1; l++) {
         for (int c = (int)cell - reach; c <= (int)cell + reach + 1; c++) {
-            const double more =
-                pow(10, f->picture[l][c] / 2560.0) - pow(10, f->bare[l][c] / 2560.0);
+            const double more = soil * (pow(10, (f->picture[l][c] - f->bare[l][c]) / 2560.0) - 1);
             found.power += more;
             found.line += l * more;
             found.cell += c * more;
