@@ -106,6 +106,13 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
     return true;
 }
 
+int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command)
+{
+    const struct lm_sampling sampling = lm_sampling_for(&u->db, command->cell_mm, 0);
+    return lm_scan_elevation(&u->tiles, sampling.level, command->centre,
+                             u->db.mean_elevation_q6 * 16);
+}
+
 static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64_t now_us)
 {
     struct lm_sar_flight flight;
@@ -113,13 +120,10 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
     if (!u->has_db || (is_in_flight && !resolve_command(u, &command, &flight))) {
         return false;
     }
-    const struct lm_sampling sampling = lm_sampling_for(&u->db, command.cell_mm, 0);
-    const int32_t ground_q10 =
-        lm_scan_elevation(&u->tiles, sampling.level, command.centre, u->db.mean_elevation_q6 * 16);
     const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &u->target_set,
                                        .chips = &u->chips,
-                                       .reference_q10 = ground_q10,
+                                       .reference_q10 = lm_patch_elevation_q10(u, &command),
                                        .epoch = u->board->noise_seed,
                                        .sea_state = u->environment.sea_state,
                                        .time_us = now_us};

@@ -15,6 +15,10 @@ enum {
 /* Begin the picture that u->page asks for: nothing of the last one stays. */
 void lm_begin_picture(struct lm_unit *u, uint64_t now_us);
 
+/* Elevation of the map where a patch lies, metres * 1024, from the tiles that are there; asks for
+ * the one that knows best. */
+int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command);
+
 /* Do what a press asked for (enum lm_effect). */
 void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us);
 

@@ -5,7 +5,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256 };
+enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
 
 static uint32_t metres_q8_of_mm(uint32_t mm)
 {
@@ -95,9 +95,8 @@ static void set_layover(struct lm_sar *s)
     };
 }
 
-static void set_geometry(struct lm_sar *s, uint64_t patch_us)
+static void set_geometry(struct lm_sar *s)
 {
-    const uint64_t dwell_ms = patch_us / 1000;
     s->geometry = (struct lm_patch_geometry){
         .centre = s->command.centre,
         .look = s->command.look_azimuth,
@@ -111,7 +110,7 @@ static void set_geometry(struct lm_sar *s, uint64_t patch_us)
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
         .lean_q16 = s->layover.lean_q16,
-        .dwell_ms = dwell_ms < (1u << 17) - 1 ? (uint32_t)dwell_ms : (1u << 17) - 1,
+        .dwell_ms = s->dwell_ms,
         .epoch = s->epoch,
     };
 }
@@ -145,11 +144,17 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                                         radar->wavelength_um, patch_us)
                         : 256;
     lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state);
-    set_grids(s, db, scene->reference_q10);
-    set_layover(s);
-    set_geometry(s, patch_us);
-    lm_sar_restart(s);
+    s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
+    lm_sar_set_reference(s, db, scene->reference_q10);
     return LM_OK;
+}
+
+void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
+{
+    set_grids(s, db, reference_q10);
+    set_layover(s);
+    set_geometry(s);
+    lm_sar_restart(s);
 }
 
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)

@@ -99,6 +99,19 @@ static bool draw_patch_line(struct lm_unit *u)
     return true;
 }
 
+/* What was known of the patch's elevation when it was asked for may have come from a coarse tile:
+ * look again when all have been read. Whether it is another one, which targets wait for. */
+static bool refer_anew(struct lm_unit *u)
+{
+    const int32_t reference_q10 = lm_patch_elevation_q10(u, &u->sar.command);
+    if (reference_q10 == u->sar.grid.reference_q10) {
+        return false;
+    }
+    lm_sar_set_reference(&u->sar, &u->db, reference_q10);
+    lm_sar_prefetch_targets(&u->sar, &u->tiles);
+    return true;
+}
+
 /* Whether lines may be drawn now; while they may not, time does not owe any. */
 static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 {
@@ -110,7 +123,8 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
     }
     if (u->is_acquiring) {
         const bool has_all = lm_tile_cache_is_idle(&u->tiles) && lm_chips_are_settled(&u->chips);
-        u->is_acquiring = !has_all && now_us < u->acquire_until_us;
+        const bool is_over = has_all || now_us >= u->acquire_until_us;
+        u->is_acquiring = !is_over || refer_anew(u);
         u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
     }
     return !u->is_acquiring && u->sar.line < u->sar.radar->sar.cells;

@@ -51,7 +51,8 @@ struct lm_sar_scene {
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
-    uint64_t line_us; /* from line to line: the dwell's share */
+    uint64_t line_us;  /* from line to line: the dwell's share */
+    uint32_t dwell_ms; /* below 2^17 */
     struct lm_ground_patch ground;
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
@@ -84,6 +85,10 @@ struct lm_sar {
  * the caller). */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene);
+
+/* Take another elevation for that of the patch, which begins anew: when the tile that knows it came
+ * after the start. Dwell and limits stay as they were. Cost: about 60 k instructions. */
+void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10);
 
 /* Dwell that is left, microseconds. */
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);

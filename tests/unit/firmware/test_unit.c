@@ -195,6 +195,38 @@ static void a_patch_completes_and_stays(void **state)
 }
 
 /* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
+/* A patch from a commanded place in the air, so that it is the same whenever it is asked for. */
+static const struct lm_control patch_from_afar = {
+    .kind = LM_CONTROL_SAR,
+    .sar = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(342) / 31},
+            .cell_mm = 5000,
+            .look_azimuth = FX_BAM_DEG(30),
+            .range_m = 12000,
+            .height_q6 = 2000 * 64,
+            .has_layover = true}};
+
+static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read(void **state)
+{
+    (void)state;
+    struct rig *cold = start_rig(), *warm = start_rig();
+    command(cold, patch_from_afar);
+    run(cold, 1.0 * STEP_US / 1e6);
+    assert_true(cold->unit.page.is_patch && cold->unit.is_acquiring);
+    const int32_t guessed_q10 = cold->unit.sar.grid.reference_q10;
+    run(cold, 4);
+    command(warm, patch_from_afar);
+    run(warm, 4);
+    command(warm, patch_from_afar); /* all its tiles have been read */
+    run(warm, 1.0 * STEP_US / 1e6);
+    assert_int_equal(warm->unit.sar.grid.reference_q10, cold->unit.sar.grid.reference_q10);
+    assert_int_not_equal(guessed_q10, cold->unit.sar.grid.reference_q10);
+    run(warm, 4);
+    assert_int_equal(cold->unit.sar.line, 256);
+    assert_int_equal(plane_sum(warm), plane_sum(cold));
+    free_rig(cold);
+    free_rig(warm);
+}
+
 static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
 {
     (void)state;
@@ -353,6 +385,7 @@ int main(void)
         cmocka_unit_test(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser),
         cmocka_unit_test(late_flash_never_holds_the_sweep),
         cmocka_unit_test(a_patch_completes_and_stays),
+        cmocka_unit_test(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read),
         cmocka_unit_test(a_patch_on_the_smallest_glass_stays_within_its_frame),
         cmocka_unit_test(the_line_of_sight_is_shown_to_the_nearest_degree),
         cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
