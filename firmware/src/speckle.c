@@ -34,13 +34,9 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
 void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
                     int32_t *restrict level_q8, uint32_t cells)
 {
-    if (FX_HAS_NEON) {
-        texture_neon(t, cell, noise, level_q8, cells);
-        return;
-    }
     /* The rows as one, and signed indices: so that it becomes gathers. */
     const int32_t *const table_q8 = lm_speckle_q8[0];
-    for (uint32_t i = 0; i < cells; i++) {
+    for (uint32_t i = texture_neon(t, cell, noise, level_q8, cells); i < cells; i++) {
         const int32_t class_index = (int32_t)cell[i] >> 4 & 15;
         const int32_t slice = (int32_t)noise[i] >> 12 & t->among[class_index];
         level_q8[i] += t->gain_q8[class_index] + table_q8[t->entry[class_index] + slice];
@@ -49,7 +45,7 @@ void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint
 
 void lm_floor_run(int32_t floor_q8, int32_t *restrict level_q8, uint32_t cells)
 {
-    for (uint32_t i = 0; i < cells; i++) {
+    for (uint32_t i = floor_neon(floor_q8, level_q8, cells); i < cells; i++) {
         level_q8[i] = fx_db_q8_sum_of_many(level_q8[i], floor_q8);
     }
 }

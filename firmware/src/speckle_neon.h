@@ -1,6 +1,7 @@
-/* Texture by the vectors of 64-bit Arm: cells of classes that have none are passed over eight at a
- * time. The results are those of speckle.c to the bit. Not for other machines, where it is never
- * called. */
+/* Texture and noise floor by the vectors of 64-bit Arm, to the bit as in speckle.c: cells of
+ * classes without texture are passed over eight at a time, and what the floor adds is worked out
+ * instead of looked up. Each function does whole groups of eight and returns how many cells these
+ * are: none on other machines. */
 #ifndef SPECKLE_NEON_H
 #define SPECKLE_NEON_H
 
@@ -48,9 +49,11 @@ static inline int32x4_t neon_texture(uint8x16x4_t choice, uint8x16x4_t gain_q8, 
                      fx_neon_lookup(lm_speckle_q8[0], entry));
 }
 
-static inline void texture_neon(const struct lm_texture *t, const uint32_t *cell,
-                                const uint32_t *noise, int32_t *restrict level_q8, size_t cells)
+static inline uint32_t texture_neon(const struct lm_texture *t, const uint32_t *cell,
+                                    const uint32_t *noise, int32_t *restrict level_q8,
+                                    uint32_t cells)
 {
+    const uint32_t whole = cells & ~7u;
     /* The first entry of a class's row, and below it the mask of those among which is chosen. */
     int32_t choice[LM_DB_CLASSES];
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
@@ -58,7 +61,7 @@ static inline void texture_neon(const struct lm_texture *t, const uint32_t *cell
     }
     const uint8x16x4_t choices = neon_by_class(choice), gain_q8 = neon_by_class(t->gain_q8);
     const uint8x16_t changes = neon_changes(t);
-    for (size_t i = 0; i < cells; i += 8) {
+    for (size_t i = 0; i < whole; i += 8) {
         const uint32x4_t group[2] = {vld1q_u32(cell + i), vld1q_u32(cell + i + 4)};
         const uint16x8_t low =
             vuzp1q_u16(vreinterpretq_u16_u32(group[0]), vreinterpretq_u16_u32(group[1]));
@@ -73,14 +76,37 @@ static inline void texture_neon(const struct lm_texture *t, const uint32_t *cell
             }
         }
     }
+    return whole;
+}
+
+static inline uint32_t floor_neon(int32_t floor_q8, int32_t *level_q8, uint32_t cells)
+{
+    const uint32_t whole = cells & ~7u;
+    const int32x4_t floor = vdupq_n_s32(floor_q8);
+    for (size_t i = 0; i < whole; i += 8) {
+        const int32x4_t low = vld1q_s32(level_q8 + i), high = vld1q_s32(level_q8 + i + 4);
+        const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(low, floor)),
+                                     vreinterpretq_u32_s32(vabdq_s32(high, floor))};
+        const uint16x8_t apart_q8 = vqmovn_high_u32(vqmovn_u32(apart[0]), apart[1]);
+        const uint16x8_t step = vminq_u16(vshrq_n_u16(apart_q8, 4), vdupq_n_u16(511));
+        const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(step));
+        vst1q_s32(level_q8 + i, vaddw_s16(vmaxq_s32(low, floor), vget_low_s16(more_q8)));
+        vst1q_s32(level_q8 + i + 4, vaddw_high_s16(vmaxq_s32(high, floor), more_q8));
+    }
+    return whole;
 }
 
 #else
 
-static inline void texture_neon(const struct lm_texture *t, const uint32_t *cell,
-                                const uint32_t *noise, int32_t *restrict level_q8, size_t cells)
+static inline uint32_t texture_neon(const struct lm_texture *t, const uint32_t *cell,
+                                    const uint32_t *noise, int32_t *level_q8, uint32_t cells)
 {
-    (void)t, (void)cell, (void)noise, (void)level_q8, (void)cells;
+    return (void)t, (void)cell, (void)noise, (void)level_q8, (void)cells, 0;
+}
+
+static inline uint32_t floor_neon(int32_t floor_q8, int32_t *level_q8, uint32_t cells)
+{
+    return (void)floor_q8, (void)level_q8, (void)cells, 0;
 }
 
 #endif

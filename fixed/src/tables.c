@@ -586,6 +586,34 @@ const int32_t fx_table_db_sum_q8[512] = {
     1, 1, 1, 1, 1, 1, 1, 1,
 };
 
+/* lines through fx_table_db_sum_q8: base, base, half the fall */
+const uint8_t fx_table_db_sum_lines[3][64] = {
+{
+    192u, 64u, 168u, 0u, 64u, 66u, 72u, 22u, 150u, 0u, 0u, 150u,
+    0u, 214u, 66u, 64u, 128u, 128u, 192u, 96u, 86u, 146u, 0u, 0u,
+    0u, 54u, 128u, 46u, 194u, 160u, 158u, 192u, 238u, 46u, 150u, 216u,
+    88u, 228u, 146u, 36u, 216u, 146u, 72u, 18u, 228u, 140u, 128u, 118u,
+    12u, 12u, 204u, 204u, 204u, 140u, 140u, 140u, 140u, 146u, 76u, 76u,
+    76u, 76u, 76u, 76u,
+},
+{
+    191u, 176u, 161u, 148u, 135u, 123u, 112u, 102u, 92u, 84u, 76u, 68u,
+    62u, 55u, 50u, 45u, 40u, 36u, 32u, 29u, 26u, 23u, 21u, 19u,
+    17u, 15u, 13u, 12u, 10u, 9u, 8u, 7u, 6u, 6u, 5u, 4u,
+    4u, 3u, 3u, 3u, 2u, 2u, 2u, 2u, 1u, 1u, 1u, 1u,
+    1u, 1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u,
+    0u, 0u, 0u, 0u,
+},
+{
+    247u, 233u, 218u, 204u, 188u, 174u, 161u, 151u, 136u, 129u, 117u, 104u,
+    97u, 87u, 78u, 71u, 60u, 57u, 51u, 45u, 40u, 34u, 28u, 32u,
+    28u, 24u, 19u, 20u, 14u, 13u, 12u, 11u, 9u, 9u, 8u, 2u,
+    2u, 3u, 6u, 3u, 2u, 2u, 1u, 2u, 3u, 0u, 1u, 4u,
+    0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 2u, 0u, 0u,
+    0u, 0u, 0u, 0u,
+},
+};
+
 /* CRC-32C of byte i and the row's number of zero bytes */
 const uint32_t fx_table_crc32c[4][256] = {
 {

@@ -78,6 +78,26 @@ static int64_t decibel_sum(int row, int i)
     return rounded(10 * log10l(1 + powl(10, -(i + 0.5L) / 160)), 8);
 }
 
+/* Straight lines that give decibel_sum again, for machines that look up 64 bytes at once: entry 8 n
+ * + k is (base[n] - 2 k half_fall[n] - k (7 - k)) >> 6. Rows: the two bytes of the base, half the
+ * fall. The first line that fits is taken. */
+static int64_t decibel_sum_line(int row, int n)
+{
+    for (int half_fall = 0; half_fall < 256; half_fall++) {
+        int64_t least = 0, most = 65535;
+        for (int k = 0; k < 8; k++) {
+            const int64_t entry = decibel_sum(0, 8 * n + k),
+                          below = 2 * k * half_fall + k * (7 - k);
+            least = entry * 64 + below > least ? entry * 64 + below : least;
+            most = entry * 64 + 63 + below < most ? entry * 64 + 63 + below : most;
+        }
+        if (least <= most) {
+            return row == 0 ? least & 255 : row == 1 ? least >> 8 : half_fall;
+        }
+    }
+    return -1; /* a test would see it */
+}
+
 /* The byte, then `zeros` zero bytes, shifted through the reflected polynomial. */
 static int64_t crc32c(int zeros, int byte)
 {
@@ -102,6 +122,8 @@ static const struct table fixed_tables[] = {
      decibel_steps},
     {"fx_table_db_sum_q8", "int32_t",
      "decibels that a power (i + 0.5) / 16 dB below another adds to it", 0, 512, decibel_sum},
+    {"fx_table_db_sum_lines", "uint8_t",
+     "lines through fx_table_db_sum_q8: base, base, half the fall", 3, 64, decibel_sum_line},
     {"fx_table_crc32c", "uint32_t", "CRC-32C of byte i and the row's number of zero bytes", 4, 256,
      crc32c},
 };

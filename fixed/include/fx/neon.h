@@ -30,6 +30,22 @@ static inline int32x4_t fx_neon_add_db_q8(int32x4_t level_q8, uint32x4_t power)
     return vsraq_n_s32(level_q8, db_q14, 6);
 }
 
+/* What fx_table_db_sum_q8 has at eight steps, each 0..511. It is not looked up but worked out, from
+ * lines that stay in registers: the step's upper bits choose the line, the lower ones the place. */
+static inline uint16x8_t fx_neon_db_sum_q8(uint16x8_t step)
+{
+    static const uint8_t bend[16] = {0, 6, 10, 12, 12, 10, 6, 0};
+    const uint8x8_t line = vshrn_n_u16(step, 3);
+    const uint8x8_t place = vand_u8(vmovn_u16(step), vdup_n_u8(7));
+    const uint8x16_t all = vcombine_u8(line, vdup_n_u8(0));
+    const uint8x16_t low = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[0]), all);
+    const uint8x16_t high = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[1]), all);
+    const uint8x8_t half_fall = vqtbl4_u8(vld1q_u8_x4(fx_table_db_sum_lines[2]), line);
+    const uint16x8_t base = vreinterpretq_u16_u8(vzip1q_u8(low, high));
+    const uint16x8_t straight = vmlsl_u8(base, half_fall, vadd_u8(place, place));
+    return vshrq_n_u16(vsubw_u8(straight, vqtbl1_u8(vld1q_u8(bend), place)), 6);
+}
+
 #else
 #define FX_HAS_NEON 0
 #endif
