@@ -8,7 +8,7 @@ if ! [ -r $run/scene.lmdb ] || ! [ -r $run/flight.log ]; then
     echo "There is no database of the built-in scene yet: making it (make run)"
     sh host-sim/run/run.sh "$1"
 fi
-flight="--db $run/scene.lmdb --bus $run/flight.log --seconds 50"
+flight="--db $run/scene.lmdb --bus $run/flight.log --seconds 53"
 export BUILD="$1"
 if [ "${2:-}" = count ]; then
     # Every mode, and the patch of the town as make run has it.

@@ -85,10 +85,11 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
     return true;
 }
 
-static bool draw_patch_line(struct lm_unit *u)
+static bool draw_patch_line(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
     if (!lm_sar_sample_ahead(&u->sar, &u->tiles, SAMPLES_A_STEP, &u->line)) {
+        u->next_line_us = drawn == 0 ? now_us : u->next_line_us; /* nothing is owed yet */
         return false;
     }
     lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
@@ -133,7 +134,7 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 /* Draw a line of what is shown. False when it needs more than one step. */
 static bool draw_line(struct lm_unit *u, uint64_t now_us)
 {
-    return u->page.is_patch ? draw_patch_line(u) : draw_sector_line(u, now_us);
+    return u->page.is_patch ? draw_patch_line(u, now_us) : draw_sector_line(u, now_us);
 }
 
 void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)

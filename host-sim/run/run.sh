@@ -30,8 +30,25 @@ say "Assign reflectivity"
 "$bin"/landmass-db reflect --class-raster $out/classes.tif --classes $classes --method assign \
     --out $out/reflectivity.tif
 
-# What moves: four vehicles on land and a ferry (docs/targets.md).
+say "Trace what is parked on the airfield from 24 sides (docs/target-tracer.md)"
+for model in aircraft tank; do
+    "$bin"/landmass-target bake --model $model --aspects 24 --depressions 8,15 --rays 1 --out $out/$model.sig
+done
+
+place() { # latitude and longitude of a place of the scene
+    awk -v name="$1" '/^# place/ { is_list = 1 } is_list && $1 == name { print $2, $3 }' $out/scene/scene.txt
+}
+
+# What moves, four vehicles on land and a ferry, and what is parked in a row beside the runway (docs/targets.md).
 cat >$out/targets.txt <<EOF
+library aircraft aircraft.sig
+library tank tank.sig
+$(place airfield | awk '{
+    for (i = -3; i <= 3; i++) {
+        printf "target parked-%d %.6f %.6f ground %d signature %s\n", i + 4, $1 + i * 0.00024, $2 + i * 0.00037,
+               i % 2 ? 140 : 320, i < 2 ? "aircraft" : "tank"
+    }
+}')
 target road-train 42.0120 -29.0330 ground+3 30 swerling 1 35 moving 22 3000
 target lorry-1 41.9700 -28.9900 ground+3 40 swerling 1 35 moving 20 3000
 target lorry-2 42.0350 -29.0100 ground+3 15 swerling 1 35 moving 18 3000
@@ -44,10 +61,6 @@ say "Build the flash image and check every byte of it"
     --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif --terrain $out/surroundings/terrain.tif \
     --heights $out/scene/heights.tif --targets $out/targets.txt --title "built-in scene" --out $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
-
-place() { # latitude and longitude of a place of the scene
-    awk -v name="$1" '/^# place/ { is_list = 1 } is_list && $1 == name { print $2, $3 }' $out/scene/scene.txt
-}
 
 say "Fly in from the sea at 3,000 m: ground map, then patches of places to the right of the way"
 "$bin"/landmass-nav --straight 42.045,-29.18,90,3000,180 --seconds 60 --out $out/flight.log
@@ -62,17 +75,19 @@ cat >$out/flight.script <<EOF
 23  picture sar-harbour
 24  sar $(place airfield) 5
 30  picture sar-airfield
-31  sar $(place lake) 8
-37  picture sar-lake
-38  sar $(place river-valley) 12
-44  picture sar-river-valley
-45  range 10
-49  picture ground-map-coast
+30  sar $(place airfield) 1
+36  picture sar-parked
+36  sar $(place lake) 8
+42  picture sar-lake
+42  sar $(place river-valley) 12
+48  picture sar-river-valley
+48  range 10
+52  picture ground-map-coast
 EOF
 window=
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then window=--window; fi
 "$bin"/landmass-sim --db $out/scene.lmdb --bus $out/flight.log --script $out/flight.script \
-    --png $out/pictures --every 150 --seconds 50 $window
+    --png $out/pictures --every 150 --seconds 53 $window
 
 say "Fly past the town once more: sea, moving targets, and the ground map through every field of view"
 "$bin"/landmass-nav --straight 42.05,-29.16,90,3000,180 --seconds 25 --out $out/modes.log
