@@ -126,6 +126,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
                                        .reference_q10 = lm_patch_elevation_q10(u, &command),
                                        .epoch = u->board->noise_seed,
                                        .sea_state = u->environment.sea_state,
+                                       .environment = &u->environment,
                                        .time_us = now_us};
     if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
         return false;

@@ -4,6 +4,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/weather.h"
 
 enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
 
@@ -115,6 +116,24 @@ static void set_geometry(struct lm_sar *s)
     };
 }
 
+/* The noise of a patch: that of an antenna that points at its centre all along, so that a jammer
+ * raises it everywhere alike. */
+static int32_t floor_q8(const struct lm_radar *radar, const struct lm_sar_command *c,
+                        const struct lm_environment *environment)
+{
+    struct lm_geo_origin centre;
+    uint32_t distance_q8;
+    fx_bam_t azimuth;
+    if (!environment) {
+        return radar->sar.noise_floor_q8;
+    }
+    lm_geo_set_origin(&centre, c->centre);
+    const struct lm_place antenna =
+        lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, c->range_m * 256);
+    lm_geo_inverse(antenna, c->centre, &distance_q8, &azimuth);
+    return radar->sar.noise_floor_q8 + lm_noise_rise_q8(environment, radar, antenna, azimuth);
+}
+
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene)
 {
@@ -139,6 +158,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->epoch = scene->epoch;
     s->horizon = LM_HORIZON_OPEN;
     s->across_mm_s = across_mm_s;
+    s->floor_q8 = floor_q8(radar, command, scene->environment);
     s->defocus_q8 = flight && !command->is_steady
                         ? lm_defocus_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
                                         radar->wavelength_um, patch_us)
@@ -283,7 +303,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     }
     lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
     lm_patch_chips_add(&s->points, number, &s->geometry, level_q8);
-    lm_floor_run(s->radar->sar.noise_floor_q8, level_q8, s->grid.cells);
+    lm_floor_run(s->floor_q8, level_q8, s->grid.cells);
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
 }
 

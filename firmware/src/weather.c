@@ -41,9 +41,8 @@ static int32_t jammer_q8(const struct lm_jammer *j, const struct bearing *b, fx_
     return j->ratio_q8 - spread_q8 - (int32_t)((x * x >> 12) * 3083 >> 12);
 }
 
-/* 10 log10(1 + sum of the jammers). */
-static int32_t noise_rise_q8(const struct lm_environment *e, const struct lm_radar *radar,
-                             struct lm_place antenna, fx_bam_t azimuth)
+int32_t lm_noise_rise_q8(const struct lm_environment *e, const struct lm_radar *radar,
+                         struct lm_place antenna, fx_bam_t azimuth)
 {
     int32_t rise_q8 = 0;
     struct bearing b;
@@ -152,7 +151,7 @@ void lm_weather_line(struct lm_weather *w, const struct lm_environment *environm
                      struct lm_place antenna, fx_bam_t azimuth)
 {
     struct shower showers[LM_RAINS_MAX];
-    w->noise_rise_q8 = noise_rise_q8(environment, radar, antenna, azimuth);
+    w->noise_rise_q8 = lm_noise_rise_q8(environment, radar, antenna, azimuth);
     const uint32_t count = find_showers(showers, environment, radar, antenna, azimuth);
     w->has_rain = count != 0;
     if (!w->has_rain) {

@@ -44,7 +44,8 @@ struct lm_sar_scene {
     int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     uint8_t sea_state;
-    uint64_t time_us; /* movers are where they are then */
+    const struct lm_environment *environment; /* whose jammers; NULL: none; read at once */
+    uint64_t time_us;                         /* movers are where they are then */
 };
 
 /* A patch that is being drawn. Set up by lm_sar_start. */
@@ -62,6 +63,7 @@ struct lm_sar {
     uint64_t time_us;                    /* of the targets' places */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     int32_t across_mm_s;                 /* velocity to the right of the line of sight */
+    int32_t floor_q8;                    /* of noise, jammers' included; dB of gamma */
     struct lm_layover layover;
     uint32_t defocus_q8; /* width of the smear, lines * 256; 256: none */
     struct lm_patch_geometry geometry;

@@ -18,6 +18,11 @@ struct lm_weather {
     int32_t rain_q8[LM_CELLS_ROOM]; /* what its own rain returns, so weakened, dB of gamma */
 };
 
+/* How far jammers raise the receiver's noise where the antenna points along `azimuth` (from north):
+ * 10 log10(1 + sum of them), dB * 256; 0: none. Cost: 600 instructions for each. */
+int32_t lm_noise_rise_q8(const struct lm_environment *environment, const struct lm_radar *radar,
+                         struct lm_place antenna, fx_bam_t azimuth);
+
 /* The weather along `azimuth` (from north) as seen by `receiver` from `antenna`. The environment
  * has been checked (lm_environment_check). Rain and jammers more than 11.25 degrees of latitude or
  * longitude away are not there. Cost: 40 instructions in fair weather; 600 for each jammer and each

@@ -3,6 +3,7 @@
 #include "unit_rig.h"
 
 #include "fx/log.h"
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "target_support.h"
 
@@ -347,6 +348,77 @@ static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(vo
     }
 }
 
+/* ---- jammers ---- */
+
+static struct lm_place place_from(struct lm_place from, double azimuth_deg, double metres)
+{
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, from);
+    return lm_geo_direct(&origin, hs_bam(azimuth_deg), (uint32_t)lround(metres * 256));
+}
+
+/* DESIGN.md, "Noise": on the axis at ten nautical miles it is what it is said to be; it falls with
+ * the square of the distance and by the one-way pattern off the axis, and adds to the noise. */
+static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(void **state)
+{
+    (void)state;
+    const struct {
+        double ratio_db, distance_m, off_deg;
+    } cases[] = {{20, 18520, 0}, {20, 37040, 0},  {20, 18520, 1.65},
+                 {30, 9000, -3}, {-10, 50000, 0}, {60, 60000, 20}};
+    struct rig *r = start_rig();
+    const struct lm_radar *radar = &lm_radar_default;
+    struct lm_sar_command command = patch_here.sar;
+    command.is_from_ownship = false;
+    command.look_azimuth = hs_bam(30);
+    command.range_m = 12000;
+    command.height_q6 = 2000 * 64;
+    const struct lm_place antenna = place_from(command.centre, 210, 12000);
+    uint32_t distance_q8;
+    fx_bam_t bearing;
+    lm_geo_inverse(antenna, command.centre, &distance_q8, &bearing);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct lm_environment e = {
+            .jammer = {{place_from(antenna, hs_degrees(bearing) + cases[i].off_deg,
+                                   cases[i].distance_m),
+                        (int16_t)(cases[i].ratio_db * 256)}},
+            .jammer_count = 1};
+        const struct lm_sar_scene scene = {.environment = &e};
+        assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.db, &command, &scene), LM_OK);
+        const double beams = cases[i].off_deg / hs_degrees(radar->antenna.azimuth_beam);
+        const double jam_db = cases[i].ratio_db - 20 * log10(cases[i].distance_m / 18520) -
+                              40 * log10(2) * beams * beams;
+        const double rise_db = (r->unit.sar.floor_q8 - radar->sar.noise_floor_q8) / 256.0;
+        assert_true(fabs(rise_db - 10 * log10(1 + pow(10, jam_db / 10))) < 0.1);
+    }
+    const struct lm_sar_scene fair = {.environment = NULL};
+    assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.db, &command, &fair), LM_OK);
+    assert_int_equal(r->unit.sar.floor_q8, radar->sar.noise_floor_q8);
+    free_rig(r);
+}
+
+/* Seen through the unit: what was dark is as bright as the noise. */
+static void a_jammed_patch_has_no_dark_left(void **state)
+{
+    (void)state;
+    uint32_t lit[2];
+    for (int is_jammed = 0; is_jammed < 2; is_jammed++) {
+        struct rig *r = start_rig();
+        struct lm_control jam = {.kind = LM_CONTROL_ENVIRONMENT};
+        jam.environment.sea_state = LM_SEA_STATE_OF_IMAGE;
+        jam.environment.jammer_count = (uint8_t)is_jammed;
+        jam.environment.jammer[0] = (struct lm_jammer){patch_here.sar.centre, 30 * 256};
+        command(r, jam);
+        command(r, patch_here);
+        run(r, 4);
+        assert_true(r->unit.page.is_patch);
+        lit[is_jammed] = lit_pixels(r);
+        free_rig(r);
+    }
+    print_message("# lit pixels: %u, jammed %u of 65536\n", lit[0], lit[1]);
+    assert_true(lit[1] > 65500 && lit[0] < 64000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -358,6 +430,8 @@ int main(void)
         cmocka_unit_test(smeared_lines_hold_the_mean_power),
         cmocka_unit_test(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power),
         cmocka_unit_test(a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not),
+        cmocka_unit_test(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing),
+        cmocka_unit_test(a_jammed_patch_has_no_dark_left),
     };
     return cmocka_run_group_tests_name("sar_effects", tests, NULL, NULL);
 }
