@@ -23,8 +23,27 @@ static void lay_ground(const struct trace_tiles *t, uint32_t row, float *depths_
     }
 }
 
-/* What each primary ray of the tile meets, and what it would meet after the ground. */
-static void meet_primaries(const struct trace_tiles *t, uint32_t index, struct tile_work *w)
+/* What each primary ray of the tile meets, asked of Embree. */
+static void cast_primaries(const struct trace_tiles *t, uint32_t index, struct tile_work *w)
+{
+    const struct rows rows = rows_of(t, index);
+    const uint32_t columns = t->sensor.columns;
+    struct packet p = {.rays.count = 0};
+    for (uint32_t column = 0; column < columns; column++) {
+        for (uint32_t row = rows.first; row < rows.end; row++) {
+            const uint32_t at = (row - rows.first) * columns + column;
+            w->mirrored[at] = TILE_NOT_ASKED;
+            if (packet_add(&p, primary_start(t, column, row), t->axes.sight, at)) {
+                packet_meet(t->scene, &p, w->facets);
+            }
+        }
+    }
+    packet_meet(t->scene, &p, w->facets);
+}
+
+/* What each primary ray of the tile meets, and what it would meet after the ground, without Embree.
+ */
+static void draw_primaries(const struct trace_tiles *t, uint32_t index, struct tile_work *w)
 {
     const struct rows rows = rows_of(t, index);
     const uint32_t columns = t->sensor.columns, rays = (rows.end - rows.first) * columns;
@@ -102,13 +121,13 @@ static void reflect_row(const struct trace_tiles *t, uint32_t row, const uint32_
         const uint32_t next = facet < t->scene->triangle_count ? TILE_NOT_ASKED : mirrored[column];
         if (next != SCENE_MISS || result->bare) {
             const struct vec on_plane = vec_mad(middle, t->axes.across, across_m);
+            w->next[w->flight_count] = next;
             struct flight *f = &w->flights[w->flight_count++];
             f->across_m = across_m;
             f->way_m = depth_m;
             f->ray = record->ray;
             f->column = column;
             f->parent = bounce->count;
-            f->facet = next;
             flight_turn(f, vec_mad(on_plane, t->axes.sight, depth_m), &g);
         }
         bounce->count++;
@@ -120,7 +139,11 @@ void first_bounce(const struct trace_tiles *t, uint32_t index, struct tile_work 
 {
     const struct rows rows = rows_of(t, index);
     w->flight_count = 0;
-    meet_primaries(t, index, w);
+    if (t->is_drawn) {
+        draw_primaries(t, index, w);
+    } else {
+        cast_primaries(t, index, w);
+    }
     for (uint32_t row = rows.first; row < rows.end; row++) {
         const size_t at = (size_t)(row - rows.first) * t->sensor.columns;
         reflect_row(t, row, w->facets + at, w->mirrored + at, w, result);

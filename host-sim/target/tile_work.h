@@ -23,7 +23,6 @@ struct flight {
     double across_m;  /* where its primary ray left the plane */
     double way_m;     /* from the plane through the origin to `from` */
     uint32_t ray, column, parent;
-    uint32_t facet; /* what it meets, SCENE_MISS or TILE_NOT_ASKED */
 };
 
 /* By ray: what it meets, how far away; and what it meets when the ground has reflected it. Then the
@@ -32,9 +31,37 @@ struct tile_work {
     uint32_t *facets, *mirrored; /* owned */
     float *depths_m, *near_m;    /* owned; the latter by row */
     struct flight *flights;      /* owned */
+    uint32_t *next;              /* owned: what each flight meets, SCENE_MISS or TILE_NOT_ASKED */
     uint32_t *order, *begins;    /* owned: flights column by column, and where each begins */
     uint32_t flight_count;
 };
+
+/* Rays that are asked together, and for whom. */
+struct packet {
+    struct scene_rays rays;
+    uint32_t asker[SCENE_PACKET];
+};
+
+/* Returns true when the packet is full. */
+static inline bool packet_add(struct packet *p, struct vec from, struct vec along, uint32_t asker)
+{
+    p->asker[p->rays.count] = asker;
+    scene_rays_add(&p->rays, from, along);
+    return p->rays.count == SCENE_PACKET;
+}
+
+/* Ask what each ray meets: facets[asker]. Leaves the packet empty. */
+static inline void packet_meet(const struct scene *s, struct packet *p, uint32_t *facets)
+{
+    uint32_t met[SCENE_PACKET];
+    if (p->rays.count > 0) {
+        scene_meet(s, &p->rays, met);
+    }
+    for (uint32_t i = 0; i < p->rays.count; i++) {
+        facets[p->asker[i]] = met[i];
+    }
+    p->rays.count = 0;
+}
 
 /* An angle of so many turns, without the whole ones. */
 static inline float angle_of_turns(double turns)
@@ -69,7 +96,7 @@ struct rows {
 
 static inline struct rows rows_of(const struct trace_tiles *t, uint32_t index)
 {
-    const uint32_t first = index * t->model.strip_rows, end = first + t->model.strip_rows;
+    const uint32_t first = index * t->tile_rows, end = first + t->tile_rows;
     return (struct rows){first, end < t->sensor.rows ? end : t->sensor.rows};
 }
 
@@ -89,7 +116,17 @@ static inline double ground_depth_m(const struct trace_tiles *t, uint32_t row)
     return -up_of(t, row) * t->axes.rise.z / t->axes.sight.z;
 }
 
-/* Draw what the tile's primary rays meet, make the records of their reflections, and flights of the
+/* Where a primary ray begins: outside the model, and above the ground where the plane dips below
+ * it. */
+static inline struct vec primary_start(const struct trace_tiles *t, uint32_t column, uint32_t row)
+{
+    const struct vec on_plane =
+        vec_mad(vec_scale(t->axes.rise, up_of(t, row)), t->axes.across, across_of(t, column));
+    const double below_m = ground_depth_m(t, row) < 0 ? -ground_depth_m(t, row) : 0;
+    return vec_mad(on_plane, t->axes.sight, -t->clear_m - below_m);
+}
+
+/* Find what the tile's primary rays meet, make the records of their reflections, and flights of the
  * rays that may meet something else; for measurements, of all. */
 void first_bounce(const struct trace_tiles *t, uint32_t index, struct tile_work *w,
                   struct tile_result *result);

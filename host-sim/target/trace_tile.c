@@ -3,32 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rays that are asked together, and for whom. */
-struct packet {
-    struct scene_rays rays;
-    uint32_t asker[SCENE_PACKET];
-};
-
-/* Returns true when the packet is full. */
-static bool packet_add(struct packet *p, struct vec from, struct vec along, uint32_t asker)
-{
-    p->asker[p->rays.count] = asker;
-    scene_rays_add(&p->rays, from, along);
-    return p->rays.count == SCENE_PACKET;
-}
-
-static void packet_meet(const struct trace_tiles *t, struct packet *p, struct flight *flights)
-{
-    uint32_t met[SCENE_PACKET];
-    if (p->rays.count > 0) {
-        scene_meet(t->scene, &p->rays, met);
-    }
-    for (uint32_t i = 0; i < p->rays.count; i++) {
-        flights[p->asker[i]].facet = met[i];
-    }
-    p->rays.count = 0;
-}
-
 /* Rays that look back at the radar: their askers are records. */
 static void packet_look(const struct trace_tiles *t, struct packet *p, struct trace_bounce *bounce)
 {
@@ -62,11 +36,11 @@ static void meet_flights(const struct trace_tiles *t, struct tile_work *w)
     for (uint32_t k = 0; k < w->flight_count; k++) {
         const uint32_t i = w->order[k];
         const struct flight *f = &w->flights[i];
-        if (f->facet == TILE_NOT_ASKED && packet_add(&p, f->start, f->along, i)) {
-            packet_meet(t, &p, w->flights);
+        if (w->next[i] == TILE_NOT_ASKED && packet_add(&p, f->start, f->along, i)) {
+            packet_meet(t->scene, &p, w->next);
         }
     }
-    packet_meet(t, &p, w->flights);
+    packet_meet(t->scene, &p, w->next);
 }
 
 /* Record the reflection of flight `f`, and make its specular ray, which may be at the same place.
@@ -91,7 +65,6 @@ static void reflect(const struct trace_tiles *t, const struct flight *f, const s
     on->ray = record->ray;
     on->column = f->column;
     on->parent = bounce->count++;
-    on->facet = TILE_NOT_ASKED;
     flight_turn(on, at, g);
 }
 
@@ -106,10 +79,11 @@ static void reflect_flights(const struct trace_tiles *t, struct tile_work *w, ui
     for (uint32_t i = 0; i < count; i++) {
         const struct flight *f = &w->flights[i];
         struct glance g;
-        if (f->facet == SCENE_MISS || !glance_at(t, f->facet, f->along, b, &g)) {
+        if (w->next[i] == SCENE_MISS || !glance_at(t, w->next[i], f->along, b, &g)) {
             continue;
         }
         bounce[-1].records[f->parent].flags |= TRACE_GOES_ON;
+        w->next[w->flight_count] = TILE_NOT_ASKED;
         reflect(t, f, &g, bounce, &w->flights[w->flight_count++]);
     }
 }
@@ -140,13 +114,9 @@ static void look_back(const struct trace_tiles *t, const struct tile_work *w,
 static void keep_primaries(const struct trace_tiles *t, uint32_t index, struct bare_rays *bare)
 {
     const struct rows rows = rows_of(t, index);
-    const double clear_m = fmax(vec_length(t->scene->low), vec_length(t->scene->high)) + 1;
     for (uint32_t column = 0; column < t->sensor.columns; column++) {
         for (uint32_t row = rows.first; row < rows.end; row++) {
-            const struct vec on_plane = vec_mad(vec_scale(t->axes.rise, up_of(t, row)),
-                                                t->axes.across, across_of(t, column));
-            const double back_m = clear_m - fmin(ground_depth_m(t, row), 0);
-            bare_keep(bare, vec_mad(on_plane, t->axes.sight, -back_m), t->axes.sight, false);
+            bare_keep(bare, primary_start(t, column, row), t->axes.sight, false);
         }
     }
 }
@@ -183,6 +153,18 @@ void trace_tile(const struct trace_tiles *t, uint32_t index, struct tile_work *w
     }
 }
 
+static int open_projections(struct trace_tiles *t)
+{
+    const struct scene *s = t->scene;
+    return projection_open(&t->model, s, &t->axes, &t->sensor, t->tile_rows, TILE_GRAZING_COS,
+                           false) == 0 &&
+                   (s->ground_half_m <= 0 ||
+                    projection_open(&t->mirror, s, &t->axes, &t->sensor, t->tile_rows,
+                                    TILE_GRAZING_COS, true) == 0)
+               ? 0
+               : -1;
+}
+
 int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
                      const struct trace_order *order)
 {
@@ -190,21 +172,19 @@ int trace_tiles_open(struct trace_tiles *t, const struct scene *scene,
         .scene = scene,
         .axes = trace_axes_of(&order->look),
         .sensor = trace_sensor_for(scene, order),
+        .clear_m = fmax(vec_length(scene->low), vec_length(scene->high)) + 1,
         .turns_per_m = -2 / order->look.wavelength_m,
         .bounces = order->bounces,
     };
-    const uint32_t columns = t->sensor.columns;
-    const uint32_t strip_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
-    const bool has_ground = scene->ground_half_m > 0;
-    if (projection_open(&t->model, scene, &t->axes, &t->sensor, strip_rows, TILE_GRAZING_COS,
-                        false) ||
-        (has_ground && projection_open(&t->mirror, scene, &t->axes, &t->sensor, strip_rows,
-                                       TILE_GRAZING_COS, true))) {
+    const uint32_t columns = t->sensor.columns, rows = t->sensor.rows;
+    t->tile_rows = columns < TILE_RAYS ? TILE_RAYS / columns : 1;
+    t->tile_rays = t->tile_rows * columns;
+    t->tile_count = (rows + t->tile_rows - 1) / t->tile_rows;
+    t->is_drawn = scene->triangle_count < columns * rows;
+    if (t->is_drawn && open_projections(t) != 0) {
         trace_tiles_close(t);
         return -1;
     }
-    t->tile_rays = strip_rows * columns;
-    t->tile_count = t->model.strip_count;
     return 0;
 }
 
@@ -224,12 +204,13 @@ struct tile_work *tile_work_new(const struct trace_tiles *t)
     w->facets = malloc(t->tile_rays * sizeof *w->facets);
     w->mirrored = malloc(t->tile_rays * sizeof *w->mirrored);
     w->depths_m = malloc(t->tile_rays * sizeof *w->depths_m);
-    w->near_m = malloc(t->model.strip_rows * sizeof *w->near_m);
+    w->near_m = malloc(t->tile_rows * sizeof *w->near_m);
     w->flights = malloc(t->tile_rays * sizeof *w->flights);
+    w->next = malloc(t->tile_rays * sizeof *w->next);
     w->order = malloc(t->tile_rays * sizeof *w->order);
     w->begins = malloc((t->sensor.columns + 1) * sizeof *w->begins);
-    if (!w->facets || !w->mirrored || !w->depths_m || !w->near_m || !w->flights || !w->order ||
-        !w->begins) {
+    if (!w->facets || !w->mirrored || !w->depths_m || !w->near_m || !w->flights || !w->next ||
+        !w->order || !w->begins) {
         tile_work_free(w);
         return NULL;
     }
@@ -244,6 +225,7 @@ void tile_work_free(struct tile_work *w)
         free(w->depths_m);
         free(w->near_m);
         free(w->flights);
+        free(w->next);
         free(w->order);
         free(w->begins);
     }

@@ -15,9 +15,12 @@ struct trace_tiles {
     const struct scene *scene; /* borrowed */
     struct trace_axes axes;
     struct trace_sensor sensor;
+    /* Primary rays are drawn, not cast, unless the model has more triangles than there are rays. */
+    bool is_drawn;
     struct projection model, mirror; /* owned; a strip of each is a tile */
+    double clear_m;                  /* nothing of the model is further from the origin */
     double turns_per_m;              /* of the echo's phase, by range: -2 / wavelength */
-    uint32_t bounces, tile_rays, tile_count;
+    uint32_t bounces, tile_rows, tile_rays, tile_count;
 };
 
 /* What becomes of a tile. The caller lends room for tile_rays records of each bounce; `parent`

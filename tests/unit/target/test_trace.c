@@ -365,6 +365,52 @@ static void the_records_do_not_depend_on_the_number_of_threads(void **state)
     mesh_free(&m);
 }
 
+/* How many records of one have no equal in the other, by ray. */
+static uint32_t apart(const struct trace_bounce *one, const struct trace_bounce *other)
+{
+    uint32_t alike = 0;
+    for (uint32_t i = 0, j = 0; i < one->count && j < other->count;) {
+        const struct trace_record *a = &one->records[i], *b = &other->records[j];
+        alike += a->ray == b->ray && fabsf(a->range_m - b->range_m) < 1e-4f &&
+                 fabsf(a->across_m - b->across_m) < 1e-4f && a->flags == b->flags;
+        i += a->ray <= b->ray;
+        j += b->ray <= a->ray;
+    }
+    return one->count + other->count - 2 * alike;
+}
+
+/* The same tank, but full of small triangles that no ray sees: more of them than there are rays,
+ * which are cast then. */
+static void primary_rays_meet_the_same_drawn_or_cast(void **state)
+{
+    (void)state;
+    const struct trace_order o = order_of(33, 20, TRACE_CHIP_CELLS, TRACE_CHIP_CELL_M, 1);
+    struct trace_records drawn, cast;
+    for (int is_cast = 0; is_cast < 2; is_cast++) {
+        struct mesh m = {0};
+        struct scene s;
+        model_tank(&m);
+        const uint32_t first = mesh_add_vertex(&m, (struct vec){0, 0, 0.9});
+        mesh_add_vertex(&m, (struct vec){0.01, 0, 0.9});
+        mesh_add_vertex(&m, (struct vec){0, 0.01, 0.9});
+        for (int i = 0; is_cast && i < 40000; i++) {
+            mesh_add_triangle(&m, first, first + 1, first + 2, 0);
+        }
+        assert_int_equal(scene_open(&s, &m, trace_ground_half_m(&o.grid, 20), "test"), 0);
+        assert_int_equal(trace_run(&s, &o, "test", is_cast ? &cast : &drawn, NULL), 0);
+        scene_close(&s);
+        mesh_free(&m);
+    }
+    assert_true(drawn.sensor.columns * drawn.sensor.rows < 40000);
+    for (uint32_t b = 0; b < o.bounces; b++) {
+        const uint32_t count = drawn.bounces[b].count;
+        assert_true(count > 1000);
+        assert_true(apart(&drawn.bounces[b], &cast.bounces[b]) <= count / 200);
+    }
+    trace_records_free(&drawn);
+    trace_records_free(&cast);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +421,7 @@ int main(void)
         cmocka_unit_test(nothing_echoes_from_the_shadow),
         cmocka_unit_test(an_echo_under_a_roof_is_blocked),
         cmocka_unit_test(embree_meets_what_brute_force_meets),
+        cmocka_unit_test(primary_rays_meet_the_same_drawn_or_cast),
         cmocka_unit_test(the_records_do_not_depend_on_the_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
