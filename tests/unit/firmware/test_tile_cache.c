@@ -284,6 +284,42 @@ static void a_full_queue_drops_requests_and_counts_them(void **state)
     free_fixture(f);
 }
 
+static void a_guest_reads_between_two_tiles_and_one_at_a_time(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    uint8_t header[512];
+    struct lm_guest_read guest = {.destination = header, .length = sizeof header}, second = guest;
+    for (uint32_t i = 0; i < SIDE; i++) {
+        get(f, i, i);
+    }
+    lm_tile_cache_service(&f->cache, 0, 1); /* a tile is being read */
+    assert_true(lm_tile_cache_read(&f->cache, &guest));
+    assert_false(lm_tile_cache_read(&f->cache, &second));
+    assert_false(lm_tile_cache_is_idle(&f->cache));
+    int polls = 0;
+    for (; guest.status == LM_BUSY && polls < 100; polls++) {
+        lm_tile_cache_service(&f->cache, 0, 1);
+    }
+    assert_true(polls < 8); /* before the other tiles */
+    assert_int_equal(guest.status, LM_OK);
+    assert_memory_equal(header, f->image.bytes, sizeof header);
+    assert_true(lm_tile_cache_read(&f->cache, &second));
+    f->flash.fail_read = f->flash.reads + 1;
+    serve(f, 0);
+    assert_int_equal(second.status, LM_ERR_IO);
+    assert_int_equal(f->cache.count.io_errors, 1);
+    for (uint32_t i = 0; i < SIDE; i++) {
+        assert_int_equal(get(f, i, i)->level, 0);
+    }
+    struct lm_guest_read beyond = {
+        .offset = f->image.size, .destination = header, .length = sizeof header};
+    assert_true(lm_tile_cache_read(&f->cache, &beyond));
+    serve(f, 0);
+    assert_int_equal(beyond.status, LM_ERR_IO);
+    free_fixture(f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +334,7 @@ int main(void)
         cmocka_unit_test(off_the_map_there_is_nothing),
         cmocka_unit_test(a_pool_too_small_for_the_coarsest_level_is_refused),
         cmocka_unit_test(a_full_queue_drops_requests_and_counts_them),
+        cmocka_unit_test(a_guest_reads_between_two_tiles_and_one_at_a_time),
     };
     return cmocka_run_group_tests_name("tile_cache", tests, NULL, NULL);
 }
