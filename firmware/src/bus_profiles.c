@@ -27,8 +27,8 @@ enum { TEN_MILLIONTHS = 10000000 };
  * Ranges. Wide enough for any aircraft, narrow enough that a wrong unit or a damaged exponent
  * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same.
  *
- * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a misprint for
- * the SHORT2 of the latitudes. */
+ * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a
+ * misprint for the SHORT2 of the latitudes. */
 /* clang-format off */
 static const struct lm_bus_row canas17_rows[] = {
     ROW("GPS latitude",                         1036, LATITUDE,         0, POSITION,   -90,    90,  100000,  300,  2000),

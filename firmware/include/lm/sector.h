@@ -87,9 +87,9 @@ struct lm_sector {
     fx_bam_t runup_azimuth;          /* at this azimuth from north, */
     bool has_runup;                  /* once it was traced */
 
-    uint32_t samples;                 /* taken so far: only grows */
+    uint32_t samples;                  /* taken so far: only grows */
     uint32_t power_q24[LM_CELLS_ROOM]; /* of the line drawn last, behind beam and pulse */
-    int32_t level_q8[LM_CELLS_ROOM];  /* and behind the receiver: what the tone is made of */
+    int32_t level_q8[LM_CELLS_ROOM];   /* and behind the receiver: what the tone is made of */
 };
 
 /* Begin with these scales, all valid; `epoch` is that of the first sweep's noise. Environment,
