@@ -215,8 +215,8 @@ static void the_table_brings_samples_near_to_what_the_beam_sees(void **state)
             w->radar.texture.shape_log2[kind] = LM_TEXTURE_NONE;
         }
         double rms_db[LM_FOOTPRINT_LOG2_MAX + 1];
-        for (uint8_t log2 = 0; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
-            rms_db[log2] = rms_of_sweep(w, command, log2, seen);
+        for (int log2 = 0; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
+            rms_db[log2] = rms_of_sweep(w, command, (uint8_t)log2, seen);
         }
         print_message("# field %d: rms %.2f, %.2f, %.2f, %.2f dB by 1, 2, 4, 8 azimuths a sample\n",
                       command->field, rms_db[0], rms_db[1], rms_db[2], rms_db[3]);
