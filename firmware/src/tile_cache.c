@@ -1,14 +1,19 @@
 #include "lm/tile_cache.h"
 
-#include "fx/hash.h"
 #include "fx/mem.h"
 
 /* Requests looked through for one that is the same. */
 enum { REMEMBERED = 32 };
 
+enum { BUCKET_BITS = 10 };
+_Static_assert(LM_TILE_HASH == 1 << BUCKET_BITS, "a bucket is so many bits");
+
+/* The upper bits of a sum whose factors, powers of the plastic number (M. Roberts, "The
+ * Unreasonable Effectiveness of Quasirandom Sequences", 2018), keep the tiles of a neighbourhood
+ * apart: fewer meet than by chance. */
 static uint32_t bucket_of(uint8_t level, uint32_t row, uint32_t column)
 {
-    return fx_hash_u32(row * 0x9E3779B1u ^ column ^ (uint32_t)level << 27) & (LM_TILE_HASH - 1);
+    return (row * 0xC13FA9A9u + column * 0x91E10DA5u + level * 0x9E3779B1u) >> (32 - BUCKET_BITS);
 }
 
 static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)

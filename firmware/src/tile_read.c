@@ -22,7 +22,7 @@ static inline struct ground read_ground(const struct lm_tile *tile, uint32_t nor
     const uint32_t north = fx_load_u32(posts + post + LM_TILE_POSTS);
     const uint32_t post_q16 =
         fx_bilerp_u16_q16((uint16_t)south, (uint16_t)(south >> 16), (uint16_t)north,
-                          (uint16_t)(north >> 16), east_q26 >> 18 & 255, north_q26 >> 18 & 255);
+                          (uint16_t)(north >> 16), east_q26 << 6 >> 24, north_q26 << 6 >> 24);
     /* A post step is 2^post_shift / 64 m, so the interpolated code's Q16 is Q22 of 2^post_shift m.
      * lm_tile_check holds |base| to 2^20 and post_shift to 4: below 2^29. */
     return (struct ground){.cell = fx_load_u32(cells + (post - row)) & 0xFFFF,
