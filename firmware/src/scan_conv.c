@@ -181,11 +181,11 @@ struct lm_frame lm_frame_square(const struct lm_frame *frame)
                              .height_px = side};
 }
 
-/* One row of the picture from another, shifted; `from` NULL is an empty one. */
+/* One row of the picture from another, shifted. */
 static void shift_row(uint8_t *to, const uint8_t *from, int32_t width_px, int32_t right_px)
 {
     const int32_t kept = width_px - (int32_t)fx_abs_u32(right_px);
-    if (from == NULL || kept <= 0) {
+    if (kept <= 0) {
         memset(to, 0, (size_t)width_px);
         return;
     }
@@ -210,9 +210,12 @@ void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, 
     /* Rows in the order in which none is overwritten before it is read. */
     for (int32_t n = 0; n < height; n++) {
         const int32_t to = down_px > 0 ? height - 1 - n : n, from = to - down_px;
-        const bool has_source = from >= 0 && from < height;
-        shift_row(top + to * plane->width_px, has_source ? top + from * plane->width_px : NULL,
-                  frame->width_px, right_px);
+        uint8_t *const row = top + to * plane->width_px;
+        if (from >= 0 && from < height) {
+            shift_row(row, top + from * plane->width_px, frame->width_px, right_px);
+        } else {
+            memset(row, 0, frame->width_px);
+        }
     }
 }
 

@@ -36,7 +36,8 @@ static double real_at(const struct rr_cut *cut, double cells)
 
 static void print_cut(const char *name, const char *direction, const struct rr_cut *cut)
 {
-    double response[PIX_KERNEL_SIDE], square = 0, side = 0, real_side = 0;
+    const double nothing = 1e-9; /* -180 dB */
+    double response[PIX_KERNEL_SIDE], square = 0, side = nothing, real_side = nothing;
     int count = 0;
     pix_taylor(APERTURE, response);
     for (int i = 0; i < PIX_KERNEL_SIDE; i++) {

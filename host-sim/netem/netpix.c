@@ -91,12 +91,22 @@ static void unsample(const struct nm_netpix *pix, const double *pixels, const do
     }
 }
 
-/* The spectrum of the fixed kernel, which is mostly the one of the last call. */
+static bool is_same(const double *a, const double *b, size_t count)
+{
+    size_t i = 0;
+    while (i < count && a[i] == b[i]) {
+        i++;
+    }
+    return i == count;
+}
+
+/* The spectrum of the fixed kernel, which is mostly the one of the last call; not a number before
+ * the first. */
 static fftw_complex *fixed_spectrum(struct nm_netpix *pix, const double *kernel)
 {
-    const size_t bytes = NM_LARGE * NM_LARGE * sizeof *kernel;
-    if (isnan(pix->fixed_kernel[0]) || memcmp(pix->fixed_kernel, kernel, bytes) != 0) {
-        memcpy(pix->fixed_kernel, kernel, bytes);
+    const size_t count = NM_LARGE * NM_LARGE;
+    if (!is_same(pix->fixed_kernel, kernel, count)) {
+        memcpy(pix->fixed_kernel, kernel, count * sizeof *kernel);
         nm_spectrum_of_kernel(&pix->convolver, kernel, NM_LARGE, pix->fixed);
     }
     return pix->fixed;

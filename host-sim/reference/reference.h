@@ -396,9 +396,9 @@ double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio);
 /* The ratio that is used where `had` is to be had: 1 in the notch. */
 double ref_dbs_used(double had, double wanted, double least);
 
-/* How far a target that closes seems to lie nearer to the velocity vector: as an angle, NAN where no
- * still ground has its Doppler shift; and, to the first order, on the ground of a patch at ground
- * range `range_m`. */
+/* How far a target that closes seems to lie nearer to the velocity vector: as an angle, NAN where
+ * no still ground has its Doppler shift; and, to the first order, on the ground of a patch at
+ * ground range `range_m`. */
 double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg);
 double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m);
 

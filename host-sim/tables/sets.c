@@ -215,9 +215,9 @@ static int64_t response(int row, int i)
 static int64_t response_envelope(int row, int cell)
 {
     const int finer = 1000;
-    long double most = 0;
+    long double most = fabsl(response_at(cell));
     (void)row;
-    for (int i = cell * finer; i <= 20 * finer; i++) {
+    for (int i = cell * finer + 1; i <= 20 * finer; i++) {
         most = fmaxl(most, fabsl(response_at((long double)i / finer)));
     }
     return (int64_t)ceill(20 * log10l(most) * 256);

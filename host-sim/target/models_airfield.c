@@ -45,12 +45,12 @@ static void fin(struct mesh *m, const struct edge *root, const struct edge *tip,
 static void fuselage(struct mesh *m, uint32_t metal)
 {
     const struct shape_round parts[] = {
-        {{7.0, 0, 2.1}, {7.53, 0, 2.1}, 0.03, 0.02, 12, true},  /* probe */
-        {{4.6, 0, 2.05}, {7.1, 0, 2.1}, 0.48, 0.06, 72, true},  /* radome */
-        {{1.2, 0, 2.0}, {4.6, 0, 2.05}, 0.72, 0.48, 72, true},  /* forebody */
-        {{-4.6, 0, 2.0}, {1.2, 0, 2.0}, 0.78, 0.72, 72, true},  /* body */
+        {{7.0, 0, 2.1}, {7.53, 0, 2.1}, 0.03, 0.02, 12, true},   /* probe */
+        {{4.6, 0, 2.05}, {7.1, 0, 2.1}, 0.48, 0.06, 72, true},   /* radome */
+        {{1.2, 0, 2.0}, {4.6, 0, 2.05}, 0.72, 0.48, 72, true},   /* forebody */
+        {{-4.6, 0, 2.0}, {1.2, 0, 2.0}, 0.78, 0.72, 72, true},   /* body */
         {{-7.53, 0, 2.05}, {-4.6, 0, 2.0}, 0.5, 0.78, 72, true}, /* engine */
-        {{3.4, 0, 2.6}, {4.6, 0, 2.4}, 0.38, 0.08, 48, true},   /* canopy */
+        {{3.4, 0, 2.6}, {4.6, 0, 2.4}, 0.38, 0.08, 48, true},    /* canopy */
         {{1.4, 0, 2.6}, {3.4, 0, 2.6}, 0.3, 0.38, 48, true},
     };
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
