@@ -5,7 +5,8 @@
 
 #include "target_image.h"
 
-#include "lm/signature.h"
+#include "lm/chips.h"
+#include "memory_flash.h"
 
 enum {
     ASPECTS = 24,
@@ -117,6 +118,58 @@ static inline void add_signatures(struct with_signatures *w, const struct tiny_i
     put(w->bytes + 16, w->size, 8);
     put(w->bytes + SECTION_COUNT_AT, 6, 4);
     seal_image(w);
+}
+
+/* The image in a flash, opened as the unit opens it. */
+struct signature_world {
+    struct tiny_image image;
+    struct with_signatures with;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_signature signature;
+    struct lm_tile_cache tiles;
+    struct lm_chips chips;
+    uint8_t pool[32 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
+};
+
+/* 0, or -1: then nothing of it holds. */
+static inline int open_signature_world(struct signature_world *w, const struct tiny_spec *spec)
+{
+    enum { POLLS = 16 };
+    if (tiny_image_build(&w->image, spec) != 0) {
+        return -1;
+    }
+    add_signatures(&w->with, &w->image);
+    memory_flash_open(&w->flash, w->with.bytes, w->with.size);
+    const bool is_open =
+        lm_db_open(&w->db, &w->flash.port, POLLS) == LM_OK &&
+        lm_signature_read(&w->db, 0, &w->signature, POLLS) == LM_OK &&
+        lm_tile_cache_init(&w->tiles, &w->db, w->pool, sizeof w->pool, POLLS) == LM_OK;
+    lm_chips_init(&w->chips, &w->db, &w->signature);
+    return is_open ? 0 : -1;
+}
+
+static inline void close_signature_world(struct signature_world *w)
+{
+    tiny_image_free(&w->image);
+    free(w->with.bytes);
+}
+
+/* Steps until every chip is there or will not come; false when they do not end. */
+static inline bool serve_chips(struct signature_world *w)
+{
+    for (int k = 0; k < 1000 && !lm_chips_are_settled(&w->chips); k++) {
+        lm_chips_service(&w->chips, &w->tiles);
+        lm_tile_cache_service(&w->tiles, 0, 2);
+    }
+    return lm_chips_are_settled(&w->chips);
+}
+
+static inline struct lm_target_set set_with_signature(const struct signature_world *w,
+                                                      const struct lm_target *t, uint32_t count)
+{
+    return (struct lm_target_set){
+        .items = t, .count = count, .signatures = &w->signature, .signature_count = 1};
 }
 
 /* A target that is shown by the signature. */

@@ -1,11 +1,9 @@
 /* Signatures: which chip is chosen, how it is read and reduced, and how it is laid over cells,
  * against the double-precision reference. */
 #include "chip.h"
-#include "memory_flash.h"
 #include "signature_image.h"
 
 #include "lm/chip_lay.h"
-#include "lm/chips.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,48 +13,30 @@
 
 #include <cmocka.h>
 
-enum { POLLS = 16, SLOTS = 32 };
+enum { POLLS = 16 };
 
 static const double degree = 3.14159265358979323846 / 180;
 
-struct fixture {
-    struct tiny_image image;
-    struct with_signatures with;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_signature signature;
-    struct lm_tile_cache tiles;
-    struct lm_chips chips;
-    uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
-};
-
 static int set_up(void **state)
 {
-    struct fixture *f = calloc(1, sizeof *f);
+    struct signature_world *f = calloc(1, sizeof *f);
     struct tiny_spec spec = tiny_spec_at(46, 11);
-    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
-    add_signatures(&f->with, &f->image);
-    memory_flash_open(&f->flash, f->with.bytes, f->with.size);
-    assert_int_equal(lm_db_open(&f->db, &f->flash.port, POLLS), LM_OK);
-    assert_int_equal(lm_signature_read(&f->db, 0, &f->signature, POLLS), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&f->tiles, &f->db, f->pool, sizeof f->pool, POLLS), LM_OK);
-    lm_chips_init(&f->chips, &f->db, &f->signature);
+    assert_int_equal(open_signature_world(f, &spec), 0);
     *state = f;
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    struct fixture *f = *state;
-    tiny_image_free(&f->image);
-    free(f->with.bytes);
+    struct signature_world *f = *state;
+    close_signature_world(f);
     free(f);
     return 0;
 }
 
 static void the_chip_nearest_to_the_bearing_and_the_depression_is_chosen(void **state)
 {
-    const struct fixture *f = *state;
+    const struct signature_world *f = *state;
     struct hs_rng r;
     hs_rng_seed(&r, 1);
     for (int k = 0; k < 20000; k++) {
@@ -76,7 +56,7 @@ static void the_chip_nearest_to_the_bearing_and_the_depression_is_chosen(void **
 
 static void records_with_a_number_out_of_bounds_are_refused(void **state)
 {
-    const struct fixture *f = *state;
+    const struct signature_world *f = *state;
     assert_int_equal(lm_signature_check(&f->signature, CHIPS), LM_OK);
     assert_int_equal(lm_signature_check(&f->signature, CHIPS - 1), LM_ERR_CORRUPT);
     for (int k = 0; k < 10; k++) {
@@ -127,7 +107,7 @@ static void records_with_a_number_out_of_bounds_are_refused(void **state)
 
 static void a_head_that_does_not_hold_makes_the_image_unsound(void **state)
 {
-    struct fixture *f = *state;
+    struct signature_world *f = *state;
     static const struct {
         size_t at;
         uint32_t value;
@@ -152,11 +132,10 @@ static void a_head_that_does_not_hold_makes_the_image_unsound(void **state)
 
 /* Targets with the signature near the centre, each turned another way, and the scene of a patch
  * seen from the west. */
-static void choose(struct fixture *f, const struct lm_target *targets, uint32_t count,
+static void choose(struct signature_world *f, const struct lm_target *targets, uint32_t count,
                    uint32_t cell_mm, struct lm_targets_near *near)
 {
-    const struct lm_target_set set = {
-        .items = targets, .count = count, .signatures = &f->signature, .signature_count = 1};
+    const struct lm_target_set set = set_with_signature(f, targets, count);
     const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
     const struct lm_chip_scene chips = {.centre = scene.place,
                                         .reach_m = scene.reach_m,
@@ -170,18 +149,9 @@ static void choose(struct fixture *f, const struct lm_target *targets, uint32_t 
     lm_chips_choose(&f->chips, near, &chips);
 }
 
-static void serve(struct fixture *f)
-{
-    for (int k = 0; k < 400 && !lm_chips_are_settled(&f->chips); k++) {
-        lm_chips_service(&f->chips, &f->tiles);
-        lm_tile_cache_service(&f->tiles, 0, 2);
-    }
-    assert_true(lm_chips_are_settled(&f->chips));
-}
-
 static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void **state)
 {
-    struct fixture *f = *state;
+    struct signature_world *f = *state;
     const struct lm_target t = target_with_signature(46, 11, 30);
     static const uint32_t cells_mm[] = {500, 999, 1000, 2000, 4000, 7999};
     for (int k = 0; k < 6; k++) {
@@ -189,7 +159,7 @@ static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void
         lm_chips_init(&f->chips, &f->db, &f->signature);
         choose(f, &t, 1, cells_mm[k], &near);
         assert_null(lm_chip_of(&near.item[0]));
-        serve(f);
+        assert_true(serve_chips(f));
         const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
         assert_non_null(slot);
         /* The radar stands to the west, 240 degrees from its nose; 16.7 degrees up. */
@@ -212,44 +182,44 @@ static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void
 
 static void damage_and_failure_leave_a_target_without_chip_and_are_counted(void **state)
 {
-    struct fixture *f = *state;
+    struct signature_world *f = *state;
     const struct lm_target t = target_with_signature(46, 11, 30);
     struct lm_targets_near near;
     uint8_t *chip = f->with.bytes + f->with.chips_at + 16 * LM_CHIP_BYTES;
     chip[100] ^= 1;
     choose(f, &t, 1, 1000, &near);
-    serve(f);
+    assert_true(serve_chips(f));
     assert_null(lm_chip_of(&near.item[0]));
     assert_int_equal(f->chips.count.corrupt, 1);
     chip[100] ^= 1;
     f->flash.fail_read = f->flash.reads + 1;
     choose(f, &t, 1, 1000, &near); /* tried again */
-    serve(f);
+    assert_true(serve_chips(f));
     assert_null(lm_chip_of(&near.item[0]));
     assert_int_equal(f->chips.count.io_errors, 1);
     choose(f, &t, 1, 1000, &near);
-    serve(f);
+    assert_true(serve_chips(f));
     assert_non_null(lm_chip_of(&near.item[0]));
 }
 
 static void chips_are_shared_kept_and_bounded(void **state)
 {
-    struct fixture *f = *state;
+    struct signature_world *f = *state;
     struct lm_target t[ASPECTS + 1];
     struct lm_targets_near near;
     for (int k = 0; k <= ASPECTS; k++) {
         t[k] = target_with_signature(46, 11, k * 360.0 / ASPECTS);
     }
     choose(f, t, 8, 1000, &near);
-    serve(f);
+    assert_true(serve_chips(f));
     assert_int_equal(f->chips.count.read, 8);
     t[1] = t[0];
     choose(f, t, 8, 1000, &near);
-    serve(f);
+    assert_true(serve_chips(f));
     assert_int_equal(f->chips.count.read, 8);
     assert_ptr_equal(near.item[0].chip, near.item[1].chip);
     choose(f, t + 1, ASPECTS, 1000, &near);
-    serve(f);
+    assert_true(serve_chips(f));
     uint32_t with_chip = 0;
     for (uint32_t i = 0; i < near.count; i++) {
         with_chip += lm_chip_of(&near.item[i]) != NULL;
@@ -304,7 +274,7 @@ static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref,
 
 static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference(void **state)
 {
-    struct fixture *f = *state;
+    struct signature_world *f = *state;
     struct hs_rng r;
     hs_rng_seed(&r, 3);
     struct score s = {0};
@@ -314,7 +284,7 @@ static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_referenc
         const double cell_m = 0.25 + (k % 12) * 0.34;
         const struct lm_target t = target_with_signature(46, 11, heading);
         choose(f, &t, 1, (uint32_t)lround(cell_m * 1000), &near);
-        serve(f);
+        assert_true(serve_chips(f));
         const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
         struct lm_chip_lay lay;
         lm_chip_lay_set(&lay, slot, near.item[0].chip_turn, (uint32_t)lround(cell_m * 1000));

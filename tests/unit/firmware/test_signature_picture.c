@@ -1,9 +1,7 @@
 /* Targets with a signature in the pictures: a patch, the lines of a window, a sweep. */
-#include "memory_flash.h"
 #include "reference.h"
 #include "signature_image.h"
 
-#include "lm/chips.h"
 #include "lm/sar.h"
 #include "lm/target_line.h"
 
@@ -15,24 +13,17 @@
 
 #include <cmocka.h>
 
-enum { POLLS = 16, SLOTS = 32, SIDE = 256, CELL_MM = 1000 };
+enum { SIDE = 256, CELL_MM = 1000 };
 
 static const double degree = 3.14159265358979323846 / 180;
 static const double range_m = 20000, height_m = 6000; /* 16.7 degrees: the first depression */
 
 struct fixture {
-    struct tiny_image image;
-    struct with_signatures with;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_signature signature;
-    struct lm_tile_cache tiles;
-    struct lm_chips chips;
+    struct signature_world world;
     struct lm_sar sar;
     struct lm_line line;
     struct lm_tone tone;
     int32_t bare[SIDE][SIDE], picture[SIDE][SIDE];
-    uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
 };
 
 static int set_up(void **state)
@@ -41,13 +32,7 @@ static int set_up(void **state)
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 12;
     spec.rows = spec.columns = 4;
-    assert_int_equal(tiny_image_build(&f->image, &spec), 0);
-    add_signatures(&f->with, &f->image);
-    memory_flash_open(&f->flash, f->with.bytes, f->with.size);
-    assert_int_equal(lm_db_open(&f->db, &f->flash.port, POLLS), LM_OK);
-    assert_int_equal(lm_signature_read(&f->db, 0, &f->signature, POLLS), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&f->tiles, &f->db, f->pool, sizeof f->pool, POLLS), LM_OK);
-    lm_chips_init(&f->chips, &f->db, &f->signature);
+    assert_int_equal(open_signature_world(&f->world, &spec), 0);
     assert_int_equal(lm_tone_set(&f->tone, &lm_radar_default.sar.tone), LM_OK);
     *state = f;
     return 0;
@@ -56,25 +41,9 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     struct fixture *f = *state;
-    tiny_image_free(&f->image);
-    free(f->with.bytes);
+    close_signature_world(&f->world);
     free(f);
     return 0;
-}
-
-static struct lm_target_set set_of(const struct fixture *f, const struct lm_target *t,
-                                   uint32_t count)
-{
-    return (struct lm_target_set){
-        .items = t, .count = count, .signatures = &f->signature, .signature_count = 1};
-}
-
-static void serve(struct fixture *f)
-{
-    for (int k = 0; k < 1000 && !lm_chips_are_settled(&f->chips); k++) {
-        lm_chips_service(&f->chips, &f->tiles);
-        lm_tile_cache_service(&f->tiles, 0, 2);
-    }
 }
 
 /* Levels of a patch around 46 N 11 E, seen from the west. */
@@ -87,12 +56,13 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
                                            .look_azimuth = hs_bam(90),
                                            .cell_mm = CELL_MM};
     const struct lm_sar_scene scene = {
-        .targets = set, .chips = &f->chips, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
-    assert_int_equal(lm_sar_start(&f->sar, &lm_radar_default, &f->db, &command, &scene), LM_OK);
-    lm_sar_prefetch_targets(&f->sar, &f->tiles);
-    serve(f);
+        .targets = set, .chips = &f->world.chips, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&f->sar, &lm_radar_default, &f->world.db, &command, &scene),
+                     LM_OK);
+    lm_sar_prefetch_targets(&f->sar, &f->world.tiles);
+    assert_true(serve_chips(&f->world));
     for (int k = 0; k < SIDE; k++) {
-        lm_sar_draw_line(&f->sar, &f->tiles, &f->tone, &f->line);
+        lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         memcpy(picture[k], f->line.sight.level_q8 + LM_SAR_GUARD, sizeof picture[k]);
     }
 }
@@ -140,7 +110,7 @@ static void corners_are_where_they_stand_and_as_bright_from_every_side(void **st
     for (int k = 0; k < 24; k++) {
         const double heading = k * 37;
         const struct lm_target t = target_with_signature(46, 11, heading);
-        const struct lm_target_set set = set_of(f, &t, 1);
+        const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
         draw_patch(f, &set, f->picture);
         for (int i = 0; i < CORNERS; i++) {
             double right_m, beyond_m;
@@ -165,7 +135,7 @@ static void its_shadow_lies_behind_it_and_nowhere_else(void **state)
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
     const struct lm_target t = target_with_signature(46, 11, 270);
-    const struct lm_target_set set = set_of(f, &t, 1);
+    const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     draw_patch(f, &none, f->bare);
     draw_patch(f, &set, f->picture);
     double dark = 0;
@@ -191,7 +161,7 @@ static void a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow(void
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
     struct lm_target t = target_with_signature(46, 11, 45);
-    const struct lm_target_set set = set_of(f, &t, 1);
+    const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     draw_patch(f, &none, f->bare);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
         t.elevation_q6 = is_hidden ? -4 * 64 : -2 * 64; /* it is 3 m high */
@@ -209,7 +179,7 @@ static void a_mover_is_displaced_and_its_shadow_stays(void **state)
     t.speed_mm_s = 500; /* towards the radar: 20,000 m * 0.5 / 250 are 40 m to the left */
     t.leg_m = 1;
     seal_target(&t);
-    const struct lm_target_set set = set_of(f, &t, 1);
+    const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     draw_patch(f, &none, f->bare);
     draw_patch(f, &set, f->picture);
     const struct found found = find(f, 127.5 - 40, 127.5, 12);
@@ -240,7 +210,7 @@ static struct lm_target_line line_of(int k)
 static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips,
                     struct lm_targets_near *near)
 {
-    const struct lm_target_set set = set_of(f, t, 1);
+    const struct lm_target_set set = set_with_signature(&f->world, t, 1);
     const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
     const struct lm_chip_scene chips = {.centre = {t->latitude, t->longitude},
                                         .reach_m = 500,
@@ -250,8 +220,8 @@ static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips
                                         .side_most = LM_CHIP_SIDE};
     lm_targets_select(near, &set, &scene);
     if (has_chips) {
-        lm_chips_choose(&f->chips, near, &chips);
-        serve(f);
+        lm_chips_choose(&f->world.chips, near, &chips);
+        assert_true(serve_chips(&f->world));
         assert_non_null(lm_chip_of(&near->item[0]));
     }
 }
