@@ -62,7 +62,7 @@ compare() { # model
     "$target" model --model "$1" --obj "$work/model.obj" > "$work/log"
     "$target" bench --model "$1" --azimuth $azimuth --depression $depression --rays $rays --seconds 4 > "$work/ours"
     pov_scene
-    pov_s=$(for run in 1 2 3 4 5 6 7; do trace_with_pov; done | sort -n | head -n 1)
+    pov_s=$(for _ in 1 2 3 4 5 6 7; do trace_with_pov; done | sort -n | head -n 1)
     awk -v model="$1" -v primary="$(value primary_rays)" -v rays="$(value rays)" -v ms="$(value trace_cpu_ms)" \
         -v embree="$(value embree_cpu_ms)" -v pov="$pov_s" 'BEGIN {
         printf "  %-6s %8d %9d %9.1f %8.0f %9.1f %8.1f %8.1f\n", model, primary, rays, ms, pov * 1e3, embree,
