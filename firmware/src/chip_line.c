@@ -79,17 +79,18 @@ static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t
     return slot->shadow[row + 1][column + 1] * 4112u;
 }
 
-/* Add up, for each cell, what the pixels count, by their nearness to the line: `off` is the line's
- * azimuth less that of the origin. */
-static void gather(const struct lm_chip_slot *slot, const struct raster *r,
+/* Add up, for each cell, what the pixels of a box count, by their nearness to the line: `off` is
+ * the line's azimuth less that of the origin. */
+static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *box,
+                   const struct raster *r,
                    uint32_t (*count)(const struct lm_chip_slot *, uint32_t, uint32_t), int32_t off,
                    uint32_t width, uint32_t cell[LM_CHIP_SPAN + 1])
 {
     memset(cell, 0, (LM_CHIP_SPAN + 1) * sizeof *cell);
-    for (uint32_t row = 0; row < slot->side; row++) {
-        int64_t across = r->across[0] + row * r->across[2] - off;
-        int64_t along_q16 = r->along_q16[0] + row * r->along_q16[2];
-        for (uint32_t column = 0; column < slot->side; column++) {
+    for (uint32_t row = box->row; row < box->row_end; row++) {
+        int64_t across = r->across[0] + row * r->across[2] + box->column * r->across[1] - off;
+        int64_t along_q16 = r->along_q16[0] + row * r->along_q16[2] + box->column * r->along_q16[1];
+        for (uint32_t column = box->column; column < box->column_end; column++) {
             const int64_t aside = across < 0 ? -across : across;
             const uint32_t amount = aside < (int64_t)width ? count(slot, row, column) : 0;
             if (amount != 0) {
@@ -103,12 +104,12 @@ static void gather(const struct lm_chip_slot *slot, const struct raster *r,
 }
 
 /* Area of a pixel of the chip over that of a cell of the line, Q16, and 2^24 when it is larger: a
- * pixel of at most 256 m, whose square is 2^32 in Q16. The arc is as in target_line.c. */
+ * pixel of at most 256 m, whose square is 2^32 in Q16. */
 static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot, const struct lm_chip_spot *spot,
                                   const struct lm_target_line *line)
 {
     const uint64_t pixel_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
-    const uint64_t arc_q8 = ((uint64_t)spot->range_q8 * line->width >> 29) * 421657428u >> 29;
+    const uint64_t arc_q8 = lm_arc_q8(spot->range_q8, line->width);
     const uint64_t ratio_q16 = (pixel_q8 * pixel_q8 << 16) / ((arc_q8 + 1) * line->cell_q8);
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
 }
@@ -150,8 +151,8 @@ uint32_t lm_chip_line_add(const struct lm_target_item *item, const struct lm_chi
     uint32_t cell[LM_CHIP_SPAN + 1];
     const struct lm_chip_slot *slot = item->chip;
     const struct raster r = raster_of(slot, item->chip_turn, spot, line);
-    gather(slot, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
+    gather(slot, &slot->dark, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
     darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_q8);
-    gather(slot, &r, power_q31, spot->off_bam, line->width, cell);
+    gather(slot, &slot->lit, &r, power_q31, spot->off_bam, line->width, cell);
     return brighten(slot, &r, cell, clutter_q8, level_q8);
 }

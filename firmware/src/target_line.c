@@ -7,7 +7,7 @@
 #include "lm/aspect.h"
 #include "lm/chip_line.h"
 
-enum { TWO_PI_Q28 = 1686629713, NO_CELL = -1 };
+enum { NO_CELL = -1 };
 
 /* ---- where a target is from the line ---- */
 
@@ -121,16 +121,14 @@ static struct lm_target_heights heights_of(const struct lm_target_line *line)
     return (struct lm_target_heights){line->height_q10, line->reference_q10};
 }
 
-/* 10 log10 of the cell's area; the line is as wide as its arc: 2^26.6 * 2^32 turns, to Q16, times
- * 2 pi in Q26. */
+/* 10 log10 of the cell's area; the line is as wide as its arc. */
 static int32_t area_q8(const struct lm_target_line *line, uint32_t cell)
 {
     const struct lm_target_heights h = heights_of(line);
     const uint32_t range_q8 = line->first_q8 + cell * line->cell_q8;
-    const uint64_t turns_q16 = (uint64_t)range_q8 * line->width >> 24;
-    const uint64_t arc_q8 = turns_q16 * (TWO_PI_Q28 / 4) >> 34;
     const uint32_t before_q8 = cell == line->first ? range_q8 : range_q8 - line->cell_q8;
-    return lm_clutter_area_q8(arc_q8, line->cell_q8, range_q8, before_q8, &h);
+    return lm_clutter_area_q8(lm_arc_q8(range_q8, line->width), line->cell_q8, range_q8, before_q8,
+                              &h);
 }
 
 /* What becomes of the scatterers of one target in one line. */

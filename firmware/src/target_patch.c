@@ -273,14 +273,14 @@ static void add_target(struct lm_patch_points *p, uint32_t begin, uint32_t end, 
                        int32_t least_q8, struct span within, int32_t *level_q8)
 {
     const struct lm_smear *smear = &p->smear[p->item[begin].target];
+    int32_t strongest_q8 = p->item[begin].level_q8;
+    for (uint32_t i = begin + 1; i < end; i++) {
+        strongest_q8 = fx_max_i32(strongest_q8, p->item[i].level_q8);
+    }
     for (uint32_t number = 0; number < smear->slices; number++) {
         const struct slice slice = slice_of(smear, number);
         struct span touched = {within.end, within.first};
-        int32_t reference_q8 = p->item[begin].level_q8;
-        for (uint32_t i = begin + 1; i < end; i++) {
-            reference_q8 = fx_max_i32(reference_q8, p->item[i].level_q8);
-        }
-        reference_q8 += slice.share_q8;
+        const int32_t reference_q8 = strongest_q8 + slice.share_q8;
         for (uint32_t i = begin; i < end; i++) {
             if (!p->item[i].is_hidden && !p->item[i].is_chip) {
                 spread(p, &p->item[i], &slice, line, least_q8, reference_q8, within, &touched);

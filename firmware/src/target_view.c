@@ -6,7 +6,7 @@
 #include "fx/trig.h"
 #include "lm/aspect.h"
 
-enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */ };
+enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */, TWO_PI_Q26 = 421657428 };
 
 /* The place of a target from an origin, the inverse problem put right by the direct one: the first
  * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
@@ -71,6 +71,13 @@ int64_t lm_target_tangent_q38(int32_t top_q10, uint32_t range_q8, const struct l
 {
     const int64_t apparent_q10 = (int64_t)top_q10 - h->antenna_q10 - drop_q10(range_q8);
     return apparent_q10 * ((int64_t)1 << 36) / (int64_t)fx_max_u32(range_q8, LM_RANGE_MIN_M * 256u);
+}
+
+/* 2^26.6 * 2^32 turns, to Q16, times 2 pi in Q26. */
+uint64_t lm_arc_q8(uint32_t range_q8, fx_bam_t width)
+{
+    const uint64_t turns_q16 = (uint64_t)range_q8 * width >> 24;
+    return turns_q16 * TWO_PI_Q26 >> 34;
 }
 
 int32_t lm_clutter_area_q8(uint64_t width_q8, uint32_t cell_q8, uint32_t range_q8,

@@ -29,6 +29,9 @@ int32_t lm_target_whole_q8(const struct lm_target_set *set, const struct lm_targ
 int64_t lm_target_tangent_q38(int32_t top_q10, uint32_t range_q8,
                               const struct lm_target_heights *h);
 
+/* Metres * 256 of an arc of `width` at a range of 2^26.6 at most. */
+uint64_t lm_arc_q8(uint32_t range_q8, fx_bam_t width);
+
 /* 10 log10 of a cell's area as flat ground shows it, w ds g, in 1/256 dB of a square metre.
  * `before_q8` is the range of the cell before, or that of the cell itself when it is the first. */
 int32_t lm_clutter_area_q8(uint64_t width_q8, uint32_t cell_q8, uint32_t range_q8,
