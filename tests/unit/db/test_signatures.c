@@ -2,8 +2,7 @@
  * firmware; and files and sections that lie. */
 #include "build_signatures.h"
 #include "build_targets.h"
-#include "image_reader.h"
-#include "image_verify.h"
+#include "image_damage.h"
 #include "scene.h"
 
 #include "fx/crc32c.h"
@@ -335,16 +334,6 @@ static void build(const char *out)
                      0);
 }
 
-static uint64_t faults(const void *bytes, size_t size)
-{
-    struct image image;
-    struct image_findings findings = {NULL, 0, 0};
-    struct image_verify_counts counts;
-    image_lend(&image, bytes, size);
-    const int is_complete = image_verify(&image, &findings, &counts);
-    return findings.count + (is_complete != 0);
-}
-
 static void the_firmware_reads_the_chips_that_were_baked(void **state)
 {
     (void)state;
@@ -357,7 +346,7 @@ static void the_firmware_reads_the_chips_that_were_baked(void **state)
     build("sig.lmdb");
     assert_true(scene_log_holds("targets 3, signatures 2"));
     assert_int_equal(image_open(&image, scene_path("sig.lmdb")), 0);
-    assert_int_equal(faults(image.bytes, image.size_bytes), 0);
+    assert_int_equal(damage_faults(image.bytes, image.size_bytes), 0);
     memory_flash_open(&flash, image.bytes, image.size_bytes);
     assert_int_equal(lm_db_open(&db, &flash.port, 4), LM_OK);
     assert_int_equal(db.signature_count, 2);
@@ -409,8 +398,7 @@ static void copy_image(struct copy *c)
     build("sig.lmdb");
     assert_int_equal(image_open(&image, scene_path("sig.lmdb")), 0);
     c->size = image.size_bytes;
-    c->bytes = malloc(c->size);
-    memcpy(c->bytes, image.bytes, c->size);
+    c->bytes = damage_copy(&image);
     c->signatures_at = image.sections[LM_IMAGE_SIGNATURES]->offset;
     c->targets_at = image.db.targets_offset;
     image_close(&image);
@@ -421,18 +409,11 @@ static void seal_image(struct copy *c)
 {
     const struct parts p = parts_of(c->bytes + c->signatures_at, 2);
     struct lm_target *t = (void *)(c->bytes + c->targets_at);
-    struct lm_image_header h;
-    memcpy(&h, c->bytes, sizeof h);
     seal_parts(&p, 2, 16);
     for (int i = 0; i < 3; i++) {
         t[i].crc = fx_crc32c(0, (uint8_t *)&t[i] + 4, LM_TARGET_BYTES - 4);
     }
-    for (int type = LM_IMAGE_TARGETS; type <= LM_IMAGE_SIGNATURES; type++) {
-        struct lm_image_section *s = &h.sections[type - 1];
-        s->crc = fx_crc32c(0, c->bytes + s->offset, s->bytes);
-    }
-    h.crc = fx_crc32c(0, &h, offsetof(struct lm_image_header, crc));
-    memcpy(c->bytes, &h, sizeof h);
+    damage_seal(c->bytes, LM_IMAGE_TARGETS, LM_IMAGE_SIGNATURES);
 }
 
 static void a_lie_in_an_image_under_right_checksums_is_found(void **state)
@@ -459,11 +440,11 @@ static void a_lie_in_an_image_under_right_checksums_is_found(void **state)
             p.signatures[1].chip0 = 0; /* the chips of the other one */
         }
         seal_image(&c);
-        assert_true(faults(c.bytes, c.size) > 0);
+        assert_true(damage_faults(c.bytes, c.size) > 0);
     }
     memcpy(c.bytes, kept, c.size);
     seal_image(&c);
-    assert_int_equal(faults(c.bytes, c.size), 0);
+    assert_int_equal(damage_faults(c.bytes, c.size), 0);
     free(kept);
     free(c.bytes);
 }
@@ -473,14 +454,8 @@ static void every_flipped_bit_of_the_section_is_found(void **state)
     (void)state;
     struct copy c;
     copy_image(&c);
-    const size_t bytes = 64 + 2 * LM_SIGNATURE_BYTES + 16 * LM_CHIP_BYTES;
-    for (size_t i = 0; i < bytes; i += i < 64 ? 1 : 331) {
-        uint8_t *byte = c.bytes + c.signatures_at + i;
-        *byte = (uint8_t)(*byte ^ 1u << i % 8);
-        assert_true(faults(c.bytes, c.size) > 0);
-        *byte = (uint8_t)(*byte ^ 1u << i % 8);
-    }
-    assert_int_equal(faults(c.bytes, c.size), 0);
+    damage_flip(c.bytes, c.size, c.signatures_at, 64 + 2 * LM_SIGNATURE_BYTES + 16 * LM_CHIP_BYTES,
+                331);
     free(c.bytes);
 }
 

@@ -2,8 +2,7 @@
  * firmware. */
 #include "build_path.h"
 #include "build_targets.h"
-#include "image_reader.h"
-#include "image_verify.h"
+#include "image_damage.h"
 
 #include "hs/angle.h"
 #include "hs/rng.h"
@@ -253,16 +252,6 @@ static void build_with_targets(const char *out)
     build(out, more);
 }
 
-static uint64_t faults(const void *bytes, size_t size)
-{
-    struct image image;
-    struct image_findings findings = {NULL, 0, 0};
-    struct image_verify_counts counts;
-    image_lend(&image, bytes, size);
-    const int is_complete = image_verify(&image, &findings, &counts);
-    return findings.count + (is_complete != 0);
-}
-
 static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state)
 {
     (void)state;
@@ -282,7 +271,7 @@ static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state
         assert_int_equal(lm_target_read(&db, i, &read_back, 4), LM_OK);
         assert_memory_equal(&read_back, &t.items[i], sizeof read_back);
     }
-    assert_int_equal(faults(image.bytes, image.size_bytes), 0);
+    assert_int_equal(damage_faults(image.bytes, image.size_bytes), 0);
     image_close(&image);
     build_targets_free(&t);
 }
@@ -332,7 +321,7 @@ static void an_image_without_targets_is_what_it_was(void **state)
     assert_int_equal(image_open(&without, scene_path("without.lmdb")), 0);
     assert_int_equal(without.header.section_count, 5);
     assert_int_equal(without.db.target_count, 0);
-    assert_int_equal(faults(without.bytes, without.size_bytes), 0);
+    assert_int_equal(damage_faults(without.bytes, without.size_bytes), 0);
     for (int type = LM_IMAGE_CLASSES; type <= LM_IMAGE_TILES; type++) {
         const struct lm_image_section *a = with.sections[type], *b = without.sections[type];
         assert_int_equal(a->offset, b->offset);
@@ -357,8 +346,7 @@ static void copy_image(struct copy *c)
     build_with_targets("with.lmdb");
     assert_int_equal(image_open(&image, scene_path("with.lmdb")), 0);
     c->size = image.size_bytes;
-    c->bytes = malloc(c->size);
-    memcpy(c->bytes, image.bytes, c->size);
+    c->bytes = damage_copy(&image);
     c->head_at = image.sections[LM_IMAGE_TARGETS]->offset;
     image_close(&image);
 }
@@ -366,8 +354,6 @@ static void copy_image(struct copy *c)
 /* Put every checksum right again: records, head, section and header. */
 static void seal(struct copy *c)
 {
-    struct lm_image_header h;
-    memcpy(&h, c->bytes, sizeof h);
     uint8_t *head = c->bytes + c->head_at;
     for (int i = 0; i < 7; i++) {
         uint8_t *record = head + 64 + i * LM_TARGET_BYTES;
@@ -376,10 +362,7 @@ static void seal(struct copy *c)
     }
     const uint32_t head_crc = fx_crc32c(0, head, 60);
     memcpy(head + 60, &head_crc, 4);
-    struct lm_image_section *s = &h.sections[LM_IMAGE_TARGETS - 1];
-    s->crc = fx_crc32c(0, head, s->bytes);
-    h.crc = fx_crc32c(0, &h, offsetof(struct lm_image_header, crc));
-    memcpy(c->bytes, &h, sizeof h);
+    damage_seal(c->bytes, LM_IMAGE_TARGETS, LM_IMAGE_TARGETS);
 }
 
 static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
@@ -391,7 +374,7 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
     struct lm_target kept[7];
     memcpy(kept, t, sizeof kept);
     seal(&c);
-    assert_int_equal(faults(c.bytes, c.size), 0);
+    assert_int_equal(damage_faults(c.bytes, c.size), 0);
     for (int lie = 0; lie < 20; lie++) {
         memcpy(t, kept, sizeof kept);
         switch (lie) {
@@ -457,7 +440,7 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
             break;
         }
         seal(&c);
-        assert_true(faults(c.bytes, c.size) > 0);
+        assert_true(damage_faults(c.bytes, c.size) > 0);
         c.bytes[c.head_at + 40] = 0;
     }
     free(c.bytes);
@@ -468,15 +451,7 @@ static void every_flipped_bit_of_the_section_is_found(void **state)
     (void)state;
     struct copy c;
     copy_image(&c);
-    /* The head whole and a bit of each further byte. */
-    const size_t bytes = 64 + 3 * LM_TARGET_BYTES;
-    for (size_t i = 0; i < bytes; i += i < 64 ? 1 : 7) {
-        uint8_t *byte = c.bytes + c.head_at + i;
-        *byte = (uint8_t)(*byte ^ 1u << i % 8);
-        assert_true(faults(c.bytes, c.size) > 0);
-        *byte = (uint8_t)(*byte ^ 1u << i % 8);
-    }
-    assert_int_equal(faults(c.bytes, c.size), 0);
+    damage_flip(c.bytes, c.size, c.head_at, 64 + 3 * LM_TARGET_BYTES, 7);
     free(c.bytes);
 }
 
