@@ -63,7 +63,7 @@ static void tell_counters(const struct panel *p)
     report(REPORT_INFO, "flash: %u tiles, %u bytes, %u read again, %u failed, %u corrupt",
            u->tiles.count.tiles_read, (unsigned)u->tiles.count.bytes_read,
            atomic_load(&p->flash.count.again), atomic_load(&p->flash.count.failed),
-           u->tiles.count.corrupt);
+           lm_unit_corrupt_records(u));
     report(REPORT_INFO, "glass: %u pictures, %u seen; DRM busy %u, lost %u, late %u, errors %u",
            p->glass.count.pictures, glass_renders(&p->glass), p->glass.drm.count.busy,
            p->glass.drm.count.lost, p->glass.drm.count.late, p->glass.drm.count.errors);

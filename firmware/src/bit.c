@@ -2,7 +2,7 @@
 
 #include "lm/version.h"
 
-enum { ROW_COUNTERS = 3, COUNTER_ROWS = 11, ROW_NOW = 14, ROW_FAULTS = 15, ROW_RESTART = 19 };
+enum { ROW_COUNTERS = 3, COUNTER_ROWS = 12, ROW_NOW = 15, ROW_FAULTS = 16, ROW_RESTART = 20 };
 enum { COLUMN_NUMBER = 9, COLUMN_SECOND = 18, COLUMN_SECOND_NUMBER = 27 };
 
 static void add_counter(struct lm_text *t, const char *name, uint32_t value, uint32_t column)
@@ -59,12 +59,14 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
         break;
     case 8:
-        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR",
-                 u->tiles.count.corrupt + u->chips.count.corrupt);
+        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", lm_unit_corrupt_records(u));
         break;
     case 9:
         add_pair(t, "DROPPED", u->tiles.count.requests_dropped, "DISP ERR",
                  u->count.display_errors);
+        break;
+    case 10:
+        add_pair(t, "TGT LOST", u->count.targets_lost, "SIG LOST", u->count.signatures_lost);
         break;
     default:
         add_pair(t, "STUCK", u->keys.count.stuck, "SWAPS", u->count.swaps);

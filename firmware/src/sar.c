@@ -301,8 +301,11 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
     }
-    lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
-    lm_patch_chips_add(&s->points, number, &s->geometry, level_q8);
+    if (s->chips) {
+        lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
+        s->chips->count.cells_left_out +=
+            lm_patch_chips_add(&s->points, number, &s->geometry, level_q8);
+    }
     lm_floor_run(s->floor_q8, level_q8, s->grid.cells);
     lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
 }

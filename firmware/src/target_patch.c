@@ -334,17 +334,17 @@ void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
     }
 }
 
-void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct lm_patch_geometry *g,
-                        int32_t *level_q8)
+uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
+                            const struct lm_patch_geometry *g, int32_t *level_q8)
 {
-    uint32_t room = LM_CHIP_CELLS_A_LINE;
+    uint32_t room = LM_CHIP_CELLS_A_LINE, left_out = 0;
     for (uint32_t k = 0; k < p->chip_count; k++) {
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
         const struct span under = cells_under(&chip->lay.lit, at, at->across_q8, line, g);
         const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
         if (cells > room) {
-            p->cells_left_out += cells;
+            left_out += cells;
             continue;
         }
         room -= cells;
@@ -356,4 +356,5 @@ void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct l
             }
         }
     }
+    return left_out;
 }

@@ -135,11 +135,15 @@ static void remember_faults(struct lm_unit *u, uint32_t risen, uint64_t now_us)
     }
 }
 
+uint32_t lm_unit_corrupt_records(const struct lm_unit *u)
+{
+    return u->tiles.count.corrupt + u->chips.count.corrupt;
+}
+
 /* What is wrong, in one word for each. */
 static void judge(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t faults =
-        u->tiles.count.io_errors + u->tiles.count.corrupt + u->chips.count.corrupt;
+    const uint32_t faults = u->tiles.count.io_errors + lm_unit_corrupt_records(u);
     if (faults != u->tile_faults_seen) {
         u->tile_faults_seen = faults;
         u->tile_fault_us = now_us;

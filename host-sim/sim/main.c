@@ -180,6 +180,16 @@ static int fly(struct sim *s)
     return status < 0 ? -1 : 0;
 }
 
+static void print_targets(const struct lm_unit *u)
+{
+    printf("targets: %u held, %u of the image not; signatures: %u held, %u not\n",
+           u->target_set.count, u->count.targets_lost,
+           u->db.signature_count - u->count.signatures_lost, u->count.signatures_lost);
+    printf("chips: %u read, %u damaged, %u without room, %u cells of lines left out\n",
+           u->chips.count.read, u->chips.count.corrupt, u->chips.count.left_out,
+           u->chips.count.cells_left_out);
+}
+
 static void print_summary(const struct sim *s)
 {
     const struct lm_unit *u = s->bench.unit;
@@ -201,10 +211,7 @@ static void print_summary(const struct sim *s)
         return;
     }
     if (u->db.target_count != 0) {
-        printf(
-            "targets: %u held, %u of the image not; chips: %u read, %u damaged, %u without room\n",
-            u->target_set.count, u->count.targets_lost, u->chips.count.read, u->chips.count.corrupt,
-            u->chips.count.left_out);
+        print_targets(u);
     }
     const struct lm_tile_cache *t = &u->tiles;
     const double looked = (double)t->count.hits + t->count.misses;
@@ -216,7 +223,7 @@ static void print_summary(const struct sim *s)
     printf(
         "faults: %u flash reads failed, %u records corrupt, %u requests dropped, %u display "
         "errors\n",
-        t->count.io_errors, t->count.corrupt + u->chips.count.corrupt, t->count.requests_dropped,
+        t->count.io_errors, lm_unit_corrupt_records(u), t->count.requests_dropped,
         u->count.display_errors);
 }
 

@@ -5,7 +5,7 @@
 #include "lm/text.h"
 #include "lm/unit.h"
 
-enum { LM_BIT_ROWS = 20 };
+enum { LM_BIT_ROWS = 21 };
 
 /* Row 0..LM_BIT_ROWS - 1. A number of the unit's counters stands behind each name. */
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row);

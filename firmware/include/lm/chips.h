@@ -50,8 +50,9 @@ struct lm_chips {
     bool is_reading;
     struct {
         uint32_t read, io_errors, corrupt;
-        uint32_t left_out; /* wanted, but there was no room */
-    } count;               /* only ever grow */
+        uint32_t left_out;       /* wanted, but there was no room */
+        uint32_t cells_left_out; /* of a patch's lines that had enough of chips */
+    } count;                     /* only ever grow */
 };
 
 /* Where the chips of a picture are seen from. */

@@ -60,7 +60,6 @@ struct lm_patch_points {
     struct lm_smear smear[LM_TARGETS_NEAR]; /* of each target's points */
     uint32_t chip_count;
     struct lm_patch_chip chip[LM_TARGETS_NEAR];
-    uint32_t cells_left_out;                              /* of chips, for the bound */
     int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* zero between calls */
 };
 
@@ -88,9 +87,10 @@ void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
                           const struct lm_patch_geometry *g, int32_t *level_q8);
 
 /* Add the chips to the levels of line `line`, whose shadows are in. A chip is the mean of many
- * scatterers in every pixel, unlike a point: speckle and noise come behind it. Cost: 250
- * instructions for each cell under a chip, of LM_CHIP_CELLS_A_LINE at most. */
-void lm_patch_chips_add(struct lm_patch_points *p, uint32_t line, const struct lm_patch_geometry *g,
-                        int32_t *level_q8);
+ * scatterers in every pixel, unlike a point: speckle and noise come behind it. Returns how many
+ * cells were left out to bound the cost: 250 instructions for each cell under a chip, of
+ * LM_CHIP_CELLS_A_LINE at most. */
+uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
+                            const struct lm_patch_geometry *g, int32_t *level_q8);
 
 #endif

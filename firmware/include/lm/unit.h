@@ -89,8 +89,8 @@ struct lm_unit {
     bool is_off_map;
 
     struct {
-        uint32_t targets_lost; /* of the image: damaged, or no room for them */
-        uint32_t signatures_lost;
+        uint32_t targets_lost;    /* of the image: damaged, or no room for them */
+        uint32_t signatures_lost; /* likewise; their targets return nothing */
         uint32_t frames, lines, bus_frames;
         uint32_t lines_dropped; /* due, but the step had its fill */
         uint32_t bus_errors;    /* the driver reported the bus down */
@@ -111,5 +111,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
  * bus and 8 controls, move the reading of tiles on, draw at most LM_STEP_LINES lines, and show a
  * picture when one is due. Call at least every 4 ms for a smooth sweep. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
+
+/* Records of the image, tiles and chips alike, that were read and did not check. */
+uint32_t lm_unit_corrupt_records(const struct lm_unit *u);
 
 #endif

@@ -822,6 +822,10 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
     lm_nav_take(&r->unit.nav, &bad);
     lm_nav_take(&r->unit.nav, &half);
+    r->unit.tiles.count.corrupt = 5;
+    r->unit.chips.count.corrupt = 7;
+    r->unit.count.targets_lost = 21;
+    r->unit.count.signatures_lost = 34;
     run(r, 1);
     press(r, 12);
     /* Stop the clock: the numbers of the picture on the glass. */
@@ -839,11 +843,13 @@ static void the_bit_page_says_what_the_counters_say(void **state)
                     {"EVICTED  %u", u->tiles.count.evicted},
                     {"COARSER  %u", u->tiles.count.substituted},
                     {"READ ERR %u", u->tiles.count.io_errors},
-                    {"CRC ERR  %u", u->tiles.count.corrupt},
+                    {"CRC ERR  %u", 5 + 7},
                     {"DROPPED  %u", u->tiles.count.requests_dropped},
                     {"DISP ERR %u", u->count.display_errors},
                     {"BUS BAD  %u", 1},
                     {"TORN     %u", 1},
+                    {"TGT LOST %u", 21},
+                    {"SIG LOST %u", 34},
                     {"STUCK    %u", u->keys.count.stuck},
                     {"SWAPS    %u", u->count.swaps},
                     {"LEVELS   %u", u->db.level_count},

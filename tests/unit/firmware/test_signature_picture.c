@@ -20,9 +20,11 @@ static const double range_m = 20000, height_m = 6000; /* 16.7 degrees: the first
 
 struct fixture {
     struct signature_world world;
+    struct lm_radar radar;
     struct lm_sar sar;
     struct lm_line line;
     struct lm_tone tone;
+    uint32_t cell_mm; /* of the patch: CELL_MM unless a test wants others */
     int32_t bare[SIDE][SIDE], picture[SIDE][SIDE];
 };
 
@@ -30,6 +32,8 @@ static int set_up(void **state)
 {
     struct fixture *f = calloc(1, sizeof *f);
     struct tiny_spec spec = tiny_spec_at(46, 11);
+    f->radar = lm_radar_default;
+    f->cell_mm = CELL_MM;
     spec.shift0 = 12;
     spec.rows = spec.columns = 4;
     assert_int_equal(open_signature_world(&f->world, &spec), 0);
@@ -54,11 +58,10 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
                                            .range_m = (uint32_t)range_m,
                                            .height_q6 = (int32_t)(height_m * 64),
                                            .look_azimuth = hs_bam(90),
-                                           .cell_mm = CELL_MM};
+                                           .cell_mm = f->cell_mm};
     const struct lm_sar_scene scene = {
         .targets = set, .chips = &f->world.chips, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
-    assert_int_equal(lm_sar_start(&f->sar, &lm_radar_default, &f->world.db, &command, &scene),
-                     LM_OK);
+    assert_int_equal(lm_sar_start(&f->sar, &f->radar, &f->world.db, &command, &scene), LM_OK);
     lm_sar_prefetch_targets(&f->sar, &f->world.tiles);
     assert_true(serve_chips(&f->world));
     for (int k = 0; k < SIDE; k++) {
@@ -186,6 +189,26 @@ static void a_mover_is_displaced_and_its_shadow_stays(void **state)
     assert_true(fabs(found.line - (127.5 - 40)) < 1.5);
     assert_true(f->picture[127][137] < f->bare[127][137] - 10 * 256);
     assert_true(f->picture[87][141] == f->bare[87][141]);
+}
+
+static void a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells(void **state)
+{
+    struct fixture *f = *state;
+    struct lm_target crowd[LM_TARGETS_NEAR];
+    f->radar.sar.cell_min_mm = f->cell_mm = 300; /* finer than the table: the chip spans more */
+    for (uint32_t i = 0; i < LM_TARGETS_NEAR; i++) {
+        crowd[i] = target_with_signature(46, 11, 270);
+    }
+    const struct lm_target_set few = set_with_signature(&f->world, crowd, 2);
+    draw_patch(f, &few, f->bare);
+    assert_int_equal(f->world.chips.count.cells_left_out, 0);
+    const struct lm_target_set all = set_with_signature(&f->world, crowd, LM_TARGETS_NEAR);
+    draw_patch(f, &all, f->picture);
+    const uint32_t once = f->world.chips.count.cells_left_out;
+    print_message("# %u cells of %d targets left out\n", once, LM_TARGETS_NEAR);
+    assert_true(once > 0);
+    draw_patch(f, &all, f->picture);
+    assert_int_equal(f->world.chips.count.cells_left_out, 2 * once);
 }
 
 /* ---- lines ---- */
@@ -322,6 +345,9 @@ int main(void)
             a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_mover_is_displaced_and_its_shadow_stays, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(
+            a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells, set_up,
+            tear_down),
         cmocka_unit_test_setup_teardown(the_lines_of_a_window_share_a_chip_without_loss, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(without_its_chip_a_target_is_a_point_of_its_cross_section,
