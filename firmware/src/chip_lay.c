@@ -4,11 +4,16 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* a b / 2^30 for a below 2^21 and b a sine or cosine. */
+/* a b / 2^30 for a below 2^23 (a place on the chip) and b a sine or cosine. */
 static int32_t part(int64_t a, int32_t b_q30)
 {
     return (int32_t)(a * b_q30 >> 30);
 }
+
+/* How far the chip is turned from the line of sight. */
+struct rotation {
+    int32_t cos_q30, sin_q30;
+};
 
 /* Where a corner of a box lies, in pixels * 65536 from the origin, turned back: to the right and
  * beyond. */
@@ -16,13 +21,12 @@ struct corner_place {
     int32_t right_q16, beyond_q16;
 };
 
-static struct corner_place turned(const struct lm_chip_lay *lay, fx_bam_t turn, int32_t column_q16,
-                                  int32_t row_q16)
+static struct corner_place turned(const struct lm_chip_lay *lay, const struct rotation *r,
+                                  int32_t column_q16, int32_t row_q16)
 {
-    const int32_t cos_q30 = fx_cos_q30(turn), sin_q30 = fx_sin_q30(turn);
     const int32_t x = column_q16 - lay->origin_q16[0], y = row_q16 - lay->origin_q16[1];
-    return (struct corner_place){part(x, cos_q30) - part(y, sin_q30),
-                                 part(x, sin_q30) + part(y, cos_q30)};
+    return (struct corner_place){part(x, r->cos_q30) - part(y, r->sin_q30),
+                                 part(x, r->sin_q30) + part(y, r->cos_q30)};
 }
 
 /* Whole cells from a place on, or up to it: one more either way for the places within a cell. */
@@ -33,7 +37,7 @@ static int32_t cells_of(int32_t pixels_q16, uint32_t pixels_a_cell_q16, int32_t 
 
 /* The cells over a box, which interpolation makes half a pixel wider all around. */
 static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct lm_chip_box *box,
-                                     fx_bam_t turn, uint32_t scale_q16)
+                                     const struct rotation *turn, uint32_t scale_q16)
 {
     struct lm_chip_reach r = {INT32_MAX, 0, INT32_MAX, 0};
     if (box->row_end == 0) {
@@ -58,17 +62,17 @@ void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, f
 {
     /* A chip is reduced to pixels of half a cell or more: below 2^18. */
     const uint32_t scale_q16 = (uint32_t)(((uint64_t)cell_mm << 16) / slot->pixel_mm);
-    const int32_t cos_q30 = fx_cos_q30(turn), sin_q30 = fx_sin_q30(turn);
+    const struct rotation r = {fx_cos_q30(turn), fx_sin_q30(turn)};
     const int32_t half_q16 = (int32_t)slot->side << 15;
     const int32_t before_q16 = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
     lay->slot = slot;
-    lay->right_q16[0] = lay->beyond_q16[1] = part(scale_q16, cos_q30);
-    lay->beyond_q16[0] = part(scale_q16, sin_q30);
+    lay->right_q16[0] = lay->beyond_q16[1] = part(scale_q16, r.cos_q30);
+    lay->beyond_q16[0] = part(scale_q16, r.sin_q30);
     lay->right_q16[1] = -lay->beyond_q16[0];
     lay->origin_q16[0] = half_q16;
     lay->origin_q16[1] = before_q16;
-    lay->lit = reach_of(lay, &slot->lit, turn, scale_q16);
-    lay->dark = reach_of(lay, &slot->dark, turn, scale_q16);
+    lay->lit = reach_of(lay, &slot->lit, &r, scale_q16);
+    lay->dark = reach_of(lay, &slot->dark, &r, scale_q16);
     lay->gain_q8 = 2 * (fx_db_q8_u64(scale_q16) - fx_db_q8_u64(65536));
 }
 
