@@ -225,12 +225,17 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
     return (uint16_t)(side >= cells ? side / cells : 1);
 }
 
-/* One cell as a square of side_px pixels, upwards from its lower left corner. */
-static void paint_cell(uint8_t *corner, size_t width_px, uint32_t side_px, uint8_t grey)
+/* Cells as squares of side_px pixels, upwards from the first one's lower left corner. Where the
+ * side is a constant, a compiler leaves nothing of the inner loops. */
+static inline void paint_cells(uint8_t *corner, size_t width_px, uint32_t side_px,
+                               const uint8_t *grey, size_t count)
 {
-    for (uint32_t row = 0; row < side_px; row++, corner -= width_px) {
-        for (uint32_t column = 0; column < side_px; column++) {
-            corner[column] = grey;
+    for (const uint8_t *const end = grey + count; grey != end; grey++) {
+        const uint8_t cell = *grey;
+        for (uint32_t row = 0; row < side_px; row++, corner -= width_px) {
+            for (uint32_t column = 0; column < side_px; column++) {
+                corner[column] = cell;
+            }
         }
     }
 }
@@ -268,14 +273,14 @@ void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, 
     }
     const uint32_t first = (uint32_t)fx_max_i32(bottom + 1 - frame->height_px, 0);
     const uint32_t end = fx_min_u32(cells, (uint32_t)bottom + 1);
-    const size_t width_px = plane->width_px, up = (uint32_t)cell_px * width_px;
-    uint8_t *pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
-                     frame->left_px + left;
+    const size_t width_px = plane->width_px, count = end > first ? end - first : 0;
+    uint8_t *const pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
+                           frame->left_px + left;
     if (cell_px == 1) {
-        paint_pixels(pixel, (ptrdiff_t)width_px, grey + first, end > first ? end - first : 0);
-        return;
-    }
-    for (uint32_t i = first; i < end; i++, pixel -= up) {
-        paint_cell(pixel, width_px, (uint32_t)cell_px, grey[i]);
+        paint_pixels(pixel, (ptrdiff_t)width_px, grey + first, count);
+    } else if (cell_px == 2) {
+        paint_cells(pixel, width_px, 2, grey + first, count);
+    } else {
+        paint_cells(pixel, width_px, (uint32_t)cell_px, grey + first, count);
     }
 }
