@@ -128,17 +128,21 @@ static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1]
     }
 }
 
+/* A chip is the mean of what looks would show, as clutter's level is before its speckle. The ground
+ * has its own already, so the chip takes the same factor by itself. */
 static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r,
-                         const uint32_t cell[LM_CHIP_SPAN + 1], int32_t clutter_q8,
-                         int32_t *level_q8)
+                         const uint32_t cell[LM_CHIP_SPAN + 1], const struct lm_target_line *line,
+                         int32_t clutter_q8, int32_t *level_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
     for (uint32_t i = 0; i < r->cells; i++) {
         if (cell[i] != 0) {
-            int32_t *level = &level_q8[r->first + (int32_t)i];
-            *level = fx_db_q8_sum_of_many(*level, slot->total_q8 + fx_db_q8(cell[i]) - unit_q8 -
-                                                      clutter_q8);
+            const uint32_t at = (uint32_t)r->first + i;
+            const int32_t speckle_q8 =
+                line->noise ? lm_speckle_of_q8(&line->speckle, line->noise[at]) : 0;
+            const int32_t chip_q8 = slot->total_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_q8;
+            level_q8[at] = fx_db_q8_sum_of_many(level_q8[at], chip_q8 + speckle_q8);
             given++;
         }
     }
@@ -154,5 +158,5 @@ uint32_t lm_chip_line_add(const struct lm_target_item *item, const struct lm_chi
     gather(slot, &slot->dark, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
     darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_q8);
     gather(slot, &slot->lit, &r, power_q31, spot->off_bam, line->width, cell);
-    return brighten(slot, &r, cell, clutter_q8, level_q8);
+    return brighten(slot, &r, cell, line, clutter_q8, level_q8);
 }

@@ -367,7 +367,9 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .track = s->platform.track,
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
                   .scan = s->sweep,
-                  .pulse = s->samples},
+                  .pulse = s->samples,
+                  .noise = line->ground.noise,
+                  .speckle = mode->speckle},
     };
     lm_line_add_targets(line, setup, &targets);
 }

@@ -9,10 +9,9 @@ enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in
 void lm_speckle_run(const struct lm_speckle_config *config, const uint32_t *noise,
                     int32_t *restrict level_q8, uint32_t cells)
 {
-    const uint32_t looks_log2 = config->looks_log2;
+    const struct lm_speckle_config looks = *config;
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t slice = (int32_t)(noise[i] >> 22); /* signed: so that it becomes gathers */
-        level_q8[i] += lm_speckle_q8[looks_log2][slice];
+        level_q8[i] += lm_speckle_of_q8(&looks, noise[i]);
     }
 }
 

@@ -15,10 +15,10 @@ struct lm_chip_spot {
     int32_t shadow_off_bam; /* and at which it is: Doppler does not displace a shadow */
 };
 
-/* Put the line's ground into the target's shadow, then add the target. clutter_q8 is
- * lm_clutter_area_q8 of a cell there. Returns how many cells were
- * given something. Cost: 25 instructions a pixel of the chip, of which there are at most 32 x 32,
- * and 60 more for each that lies between this line and the next. */
+/* Put the line's ground into the target's shadow, then add the target with the line's speckle,
+ * which the ground has already. clutter_q8 is lm_clutter_area_q8 of a cell there. Returns how many
+ * cells were given something. Cost: 25 instructions a pixel of the chip, of which there are at most
+ * 32 x 32, and 60 more for each that lies between this line and the next. */
 uint32_t lm_chip_line_add(const struct lm_target_item *item, const struct lm_chip_spot *spot,
                           const struct lm_target_line *line, int32_t clutter_q8, int32_t *level_q8);
 

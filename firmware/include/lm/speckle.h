@@ -51,6 +51,13 @@ void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint
  * 10^(floor/10)). Levels and floor within 2^30 of 0. Worst error 0.018 dB. */
 void lm_floor_run(int32_t floor_q8, int32_t *level_q8, uint32_t cells);
 
+/* What speckle adds to the level of a cell: `noise` is the place's 32-bit hash. */
+static inline int32_t lm_speckle_of_q8(const struct lm_speckle_config *config, uint32_t noise)
+{
+    const int32_t slice = (int32_t)(noise >> 22); /* signed: so that loops become gathers */
+    return lm_speckle_q8[config->looks_log2][slice];
+}
+
 /* Multiply each cell's power by its speckle, in place. Cost: see docs/benchmarks.md. */
 void lm_speckle_run(const struct lm_speckle_config *config, const uint32_t *noise,
                     int32_t *level_q8, uint32_t cells);

@@ -3,6 +3,7 @@
 #ifndef LM_TARGET_LINE_H
 #define LM_TARGET_LINE_H
 
+#include "lm/speckle.h"
 #include "lm/target_view.h"
 
 /* A line of the sector as targets need to know it. Lengths in metres * 256, heights * 1024. */
@@ -20,6 +21,8 @@ struct lm_target_line {
     fx_bam_t track;
     uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */
     uint32_t scan, pulse;  /* for what fluctuates: number of the sweep, and of the line */
+    const uint32_t *noise; /* borrowed: of the cells, for the speckle of chips; NULL: none */
+    struct lm_speckle_config speckle;
 };
 
 /* What hides a target: the horizon before each cell of the line, the largest tangent at which a

@@ -3,6 +3,7 @@
 #include "signature_image.h"
 
 #include "lm/sar.h"
+#include "lm/sector.h"
 #include "lm/target_line.h"
 
 #include <setjmp.h>
@@ -312,6 +313,121 @@ static void the_lines_of_a_window_share_a_chip_without_loss(void **state)
     assert_true(worst_dark < 0.06);
 }
 
+enum { DRAWS = 3000 };
+
+/* Power that the target adds to a line without echo, with each cell's speckle. */
+static void draw_line(const struct lm_targets_near *near, struct lm_target_line line,
+                      uint32_t looks_log2, const uint32_t *noise, int32_t level_q8[CELLS])
+{
+    for (int c = 0; c < CELLS; c++) {
+        level_q8[c] = -100 * 256;
+    }
+    line.noise = noise;
+    line.speckle.looks_log2 = (uint8_t)looks_log2;
+    (void)lm_target_add(near, &line, NULL, level_q8);
+}
+
+/* Gamma(L): the mean is that without speckle and the variance an L-th of its square, in each cell
+ * by itself. */
+static void the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_beyond(range_m, 0, 77);
+    const struct lm_target_line line = line_of(LINES / 2);
+    struct lm_targets_near near;
+    struct hs_rng r;
+    hs_rng_seed(&r, 11);
+    near_of(f, &t, true, &near);
+    for (uint32_t looks_log2 = 0; looks_log2 <= 4; looks_log2 += 2) {
+        uint32_t noise[CELLS];
+        int32_t bare_q8[CELLS], level_q8[CELLS];
+        double sum = 0, squares = 0, products = 0;
+        int cells = 0, pairs = 0;
+        draw_line(&near, line, looks_log2, NULL, bare_q8);
+        for (int k = 0; k < DRAWS; k++) {
+            double before = -1;
+            for (int c = 0; c < CELLS; c++) {
+                noise[c] = (uint32_t)hs_rng_u64(&r);
+            }
+            draw_line(&near, line, looks_log2, noise, level_q8);
+            for (int c = 0; c < CELLS; c++) {
+                const double x = pow(10, (level_q8[c] - bare_q8[c]) / 2560.0);
+                if (bare_q8[c] < -40 * 256) { /* nothing of the chip */
+                    before = -1;
+                    continue;
+                }
+                sum += x;
+                squares += x * x;
+                products += before < 0 ? 0 : before * x;
+                pairs += before >= 0;
+                cells++;
+                before = x;
+            }
+        }
+        const double mean = sum / cells, looks = 1 << looks_log2;
+        const double spread = (squares / cells - mean * mean) / (mean * mean) * looks;
+        const double likeness = (products / pairs - mean * mean) * looks;
+        print_message("# %.0f looks: mean %.3f, variance %.3f of its due, neighbours alike %.3f\n",
+                      looks, mean, spread, likeness);
+        assert_true(cells >= 4 * DRAWS && pairs >= 2 * DRAWS);
+        assert_true(fabs(mean - 1) < 0.02 && fabs(spread - 1) < 0.08 && fabs(likeness) < 0.04);
+    }
+}
+
+/* Relative variance, over the sweeps of a window, of its strongest bin of the first. */
+static double boiling(struct fixture *f, struct lm_chips *chips)
+{
+    enum { SWEEPS = 100, BINS = 600 };
+    const struct lm_target t = target_with_signature(46, 11, 77);
+    const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
+    const struct lm_sector_command command = {.field = LM_FIELD_DBS2,
+                                              .centre = {t.latitude, t.longitude}};
+    struct lm_geo_origin o;
+    lm_geo_set_origin(&o, command.centre);
+    const struct lm_platform platform = {.place = lm_geo_direct(&o, hs_bam(270), 15000 * 256),
+                                         .height_q10 = (int32_t)(height_m * 1024),
+                                         .heading = hs_bam(50),
+                                         .track = hs_bam(50),
+                                         .speed_mm_s = 250000};
+    struct lm_sector *s = calloc(1, sizeof *s);
+    uint32_t best = 0, line = 0, bin = 0;
+    double sum = 0, squares = 0;
+    lm_sector_start(s, &f->radar, &command, 1);
+    s->targets = &set;
+    s->chips = chips;
+    for (int sweep = -1; sweep < SWEEPS;) { /* in the first, tiles and chip come */
+        const uint32_t drawn =
+            lm_sector_draw_line(s, &f->world.tiles, &platform, &f->tone, &f->line);
+        for (uint32_t i = 0; sweep == 0 && i < s->slant.cells; i++) {
+            if (s->power_q24[i] > best) {
+                best = s->power_q24[i];
+                line = drawn;
+                bin = i;
+            }
+        }
+        if (sweep > 0 && drawn == line) {
+            sum += s->power_q24[bin];
+            squares += (double)s->power_q24[bin] * s->power_q24[bin];
+        }
+        lm_chips_service(&f->world.chips, &f->world.tiles);
+        lm_tile_cache_service(&f->world.tiles, 0, 64);
+        sweep += lm_sector_is_at_edge(s);
+    }
+    free(s);
+    const double mean = sum / (SWEEPS - 1);
+    return squares / (SWEEPS - 1) / (mean * mean) - 1;
+}
+
+/* Four looks, of which neighbouring samples and cells have their own: a sixteenth to a quarter. */
+static void in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands(void **state)
+{
+    struct fixture *f = *state;
+    const double chip = boiling(f, &f->world.chips), point = boiling(f, NULL);
+    print_message("# relative variance of a chip %.4f, of a point %.4f\n", chip, point);
+    assert_true(chip > 0.04 && chip < 0.3);
+    assert_true(point < 0.01);
+}
+
 static void without_its_chip_a_target_is_a_point_of_its_cross_section(void **state)
 {
     struct fixture *f = *state;
@@ -350,6 +466,10 @@ int main(void)
             tear_down),
         cmocka_unit_test_setup_teardown(the_lines_of_a_window_share_a_chip_without_loss, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(
+            the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands,
+                                        set_up, tear_down),
         cmocka_unit_test_setup_teardown(without_its_chip_a_target_is_a_point_of_its_cross_section,
                                         set_up, tear_down),
     };
