@@ -1,14 +1,37 @@
 #include "lm/overlay.h"
 
+#include "fx/mem.h"
 #include "lm/font.h"
 #include "marks.h"
 
-/* A table look-up a pixel; the compiler is told that table and picture do not overlap. */
+enum { GROUP_PX = 16 };
+
+static bool is_black(const uint8_t grey[GROUP_PX])
+{
+    return (fx_load_u32(grey) | fx_load_u32(grey + 4) | fx_load_u32(grey + 8) |
+            fx_load_u32(grey + 12)) == 0;
+}
+
+/* A table look-up a pixel, but for black: more than half of a picture lies beside the sector or
+ * patch. The compiler is told that table and picture do not overlap. */
 static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
                         const uint32_t *restrict colours, uint32_t pixels)
 {
-    for (uint32_t x = 0; x < pixels; x++) {
-        out[x] = colours[grey[x]];
+    const uint32_t black = colours[0];
+    const uint32_t *const end = out + pixels;
+    for (; end - out >= GROUP_PX; out += GROUP_PX, grey += GROUP_PX) {
+        if (is_black(grey)) {
+            for (size_t k = 0; k < GROUP_PX; k++) {
+                out[k] = black;
+            }
+        } else {
+            for (size_t k = 0; k < GROUP_PX; k++) {
+                out[k] = colours[grey[k]];
+            }
+        }
+    }
+    while (out < end) {
+        *out++ = colours[*grey++];
     }
 }
 

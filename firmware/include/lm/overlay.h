@@ -79,7 +79,7 @@ struct lm_glass {
 };
 
 /* Fill the whole surface: the plane, which is as large, through the palette; or nothing.
- * Cost: about 4 instructions a pixel. */
+ * Cost: 3 instructions a pixel, and one where it is black. */
 void lm_overlay_picture(const struct lm_glass *g, const struct lm_plane *plane);
 void lm_overlay_blank(const struct lm_glass *g);
 

@@ -136,7 +136,10 @@ static void the_picture_goes_through_the_palette_pixel_by_pixel(void **state)
     struct lm_surface s = make_surface(300, 256);
     static uint8_t grey[300 * 256];
     for (size_t i = 0; i < sizeof grey; i++) {
-        grey[i] = (uint8_t)(i * 7 + i / 300);
+        /* Rows black but for a pixel or two, and others with a black stretch of any length. */
+        const size_t y = i / 300, x = i % 300;
+        const bool is_black = y % 2 ? x % 257 != y : x > y && x < 250;
+        grey[i] = is_black ? 0 : (uint8_t)(i * 7 + y);
     }
     struct lm_palette p;
     const struct lm_palette_config amber = {.tint = LM_TINT_AMBER, .contrast = 2};
