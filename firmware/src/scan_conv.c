@@ -58,9 +58,9 @@ static void skip_rows(struct edge *e, int32_t rows)
     e->x_q17 += rows * e->step_q17;
 }
 
-static inline int32_t next_column(struct edge *e)
+static inline int64_t next_column(struct edge *e)
 {
-    const int32_t column = (int32_t)(e->x_q17 >> 17);
+    const int64_t column = e->x_q17 >> 17;
     e->x_q17 += e->step_q17;
     return column;
 }
@@ -109,6 +109,25 @@ struct columns {
     int32_t first, end;
 };
 
+/* Leave out rows where a + row b is below 0 for sure. */
+static void keep_above(struct rows *rows, int64_t a, int64_t b)
+{
+    const int64_t crossing = b == 0 ? 0 : -a / b; /* rounded towards row 0 */
+    if (b > 0 && crossing > rows->first) {
+        rows->first = crossing < rows->end ? (int32_t)crossing : rows->end;
+    } else if (b < 0 && crossing + 1 < rows->end) {
+        rows->end = crossing >= rows->first ? (int32_t)crossing + 1 : rows->first;
+    }
+}
+
+/* Leave out rows where the wedge lies beside the columns: in a window these are many. */
+static void keep_meeting(struct rows *rows, const struct edge *left, const struct edge *right,
+                         const struct columns *columns)
+{
+    keep_above(rows, columns->end * (1LL << 17) - left->x_q17, -left->step_q17);
+    keep_above(rows, right->x_q17 - columns->first * (1LL << 17), right->step_q17);
+}
+
 /* Whether no row of a wedge reaches beyond the columns: edges are straight. */
 static bool are_inside(const struct edge *left, const struct edge *right, const struct rows *rows,
                        const struct columns *columns)
@@ -128,17 +147,22 @@ struct row {
     int64_t range_q33;
 };
 
-static inline void paint_row(const struct row *row, int32_t from, int32_t to, int64_t right_q32,
+static inline void paint_row(const struct row *row, int64_t from, int64_t to, int64_t right_q32,
                              const uint8_t *grey, uint32_t cells)
 {
+    if (from >= to) {
+        return;
+    }
     int32_t cell_q17 = (int32_t)((row->range_q33 + 2 * from * right_q32) >> 16);
-    for (int32_t column = from; column < to; column++) {
+    uint8_t *pixel = row->apex + from;
+    const uint8_t *const end = row->apex + to;
+    do {
         const uint32_t cell = (uint32_t)(cell_q17 >> 17);
         if (cell < cells) {
-            row->apex[column] = grey[cell];
+            *pixel = grey[cell];
         }
         cell_q17 += (int32_t)(right_q32 >> 15);
-    }
+    } while (++pixel != end);
 }
 
 void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
@@ -147,11 +171,12 @@ void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam
     const struct lm_frame *clip = &ppi->clip;
     const struct direction d = direction_of(left + (right - left) / 2, ppi->cells_per_px_q16);
     struct edge from_edge = edge_at(left), to_edge = edge_at(right);
-    const struct rows rows = rows_in_range(ppi, &d, &from_edge, &to_edge, cells);
-    skip_rows(&from_edge, rows.first);
-    skip_rows(&to_edge, rows.first);
     const int32_t leftmost = clip->left_px - ppi->apex_x_px;
     const struct columns columns = {leftmost, leftmost + clip->width_px};
+    struct rows rows = rows_in_range(ppi, &d, &from_edge, &to_edge, cells);
+    keep_meeting(&rows, &from_edge, &to_edge, &columns);
+    skip_rows(&from_edge, rows.first);
+    skip_rows(&to_edge, rows.first);
     const ptrdiff_t up = plane->width_px;
     struct row row = {
         .apex = plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * up,
@@ -160,14 +185,15 @@ void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam
     const uint8_t *const end = row.apex - fx_max_i32(rows.end - rows.first, 0) * up;
     if (are_inside(&from_edge, &to_edge, &rows, &columns)) {
         for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
-            const int32_t from = next_column(&from_edge);
+            const int64_t from = next_column(&from_edge);
             paint_row(&row, from, next_column(&to_edge), d.right_q32, grey, cells);
         }
         return;
     }
     for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
-        const int32_t from = fx_max_i32(next_column(&from_edge), columns.first);
-        const int32_t to = fx_min_i32(next_column(&to_edge), columns.end);
+        const int64_t left_most = next_column(&from_edge), right_most = next_column(&to_edge);
+        const int64_t from = left_most > columns.first ? left_most : columns.first;
+        const int64_t to = right_most < columns.end ? right_most : columns.end;
         paint_row(&row, from, to, d.right_q32, grey, cells);
     }
 }

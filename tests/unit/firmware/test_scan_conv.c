@@ -179,6 +179,46 @@ static void a_pixel_shows_the_cell_at_its_range(void **state)
     }
 }
 
+/* Lines all the way across, each of another grey, cut to the clip. */
+static void paint_fan(const struct glass *g, const struct lm_ppi *ppi)
+{
+    const int32_t line_bam = (int32_t)FX_BAM_DEG(1) / 4, half = 280;
+    uint8_t line[CELLS];
+    for (int32_t n = -half; n < half; n++) {
+        for (int i = 0; i < CELLS; i++) {
+            line[i] = (uint8_t)(1 + (n + half + 3 * i) % 255);
+        }
+        lm_ppi_paint(&g->plane, ppi, (fx_bam_t)(n * line_bam), (fx_bam_t)((n + 1) * line_bam), line,
+                     CELLS);
+    }
+}
+
+static void a_window_shows_what_it_would_show_in_a_wider_one(void **state)
+{
+    (void)state;
+    static const int32_t apex[][2] = {{250, 400}, {30, 500}, {480, 430}, {-200, 700}, {700, 520}};
+    for (int n = 0; n < 5; n++) {
+        struct glass wide, narrow;
+        make_glass(&wide, 512, 512);
+        make_glass(&narrow, 512, 512);
+        struct lm_ppi ppi = {.clip = wide.frame,
+                             .apex_x_px = apex[n][0],
+                             .apex_y_px = apex[n][1],
+                             .cells_per_px_q16 = 40000,
+                             .near_cell_q8 = 20 * 256};
+        paint_fan(&wide, &ppi);
+        ppi.clip = (struct lm_frame){203, 140, 120, 97};
+        paint_fan(&narrow, &ppi);
+        for (int32_t y = ppi.clip.top_px; y < ppi.clip.top_px + ppi.clip.height_px; y++) {
+            const int32_t row = y * wide.plane.width_px + ppi.clip.left_px;
+            assert_memory_equal(narrow.plane.pixels + row, wide.plane.pixels + row,
+                                ppi.clip.width_px);
+        }
+        close_glass(&wide);
+        close_glass(&narrow);
+    }
+}
+
 static void hostile_wedges_stay_inside_the_frame(void **state)
 {
     (void)state;
@@ -286,6 +326,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pixel_of_a_sector_is_painted_by_exactly_one_line),
         cmocka_unit_test(a_pixel_shows_the_cell_at_its_range),
+        cmocka_unit_test(a_window_shows_what_it_would_show_in_a_wider_one),
         cmocka_unit_test(hostile_wedges_stay_inside_the_frame),
         cmocka_unit_test(the_frame_is_the_share_of_the_display_that_is_promised),
         cmocka_unit_test(a_sector_fits_its_frame),
