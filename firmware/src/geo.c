@@ -110,32 +110,28 @@ void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells)
     p->longitude_step += n * p->longitude_bend;
 }
 
-void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place centre, fx_bam_t azimuth,
-                         uint32_t half_side_q8)
+void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_bam_t azimuth,
+                         const struct lm_ground_extent *extent)
 {
     struct lm_geo_origin o;
-    lm_geo_set_origin(&o, centre);
-    const uint32_t diagonal_q8 =
-        (uint32_t)(((uint64_t)half_side_q8 * 1518500250u) >> 30); /* sqrt 2 */
-    for (int row = -1; row <= 1; row++) {
-        for (int column = -1; column <= 1; column++) {
-            struct lm_place *point = &p->points[row + 1][column + 1];
-            if (row == 0 && column == 0) {
-                *point = centre;
-                continue;
-            }
-            const fx_bam_t turn = fx_atan2(column, row);
-            *point = lm_geo_direct(&o, azimuth + turn, row && column ? diagonal_q8 : half_side_q8);
+    lm_geo_set_origin(&o, place);
+    for (int row = 0; row < 3; row++) {
+        const int32_t along_q8 =
+            extent->near_q8 + (int32_t)((int64_t)(extent->far_q8 - extent->near_q8) * row / 2);
+        for (int column = 0; column < 3; column++) {
+            const int32_t across_q8 = (column - 1) * extent->side_q8;
+            p->points[row][column] = lm_geo_direct(&o, azimuth + fx_atan2(across_q8, along_q8),
+                                                   fx_hypot_u32(across_q8, along_q8));
         }
     }
 }
 
-/* The parabola through three values at -1, 0, 1, at x in Q16. */
+/* The parabola through three values at -1, 0, 1, at x in Q16, |x| up to 64. */
 static uint32_t parabola(uint32_t left, uint32_t middle, uint32_t right, int32_t x_q16)
 {
     const int64_t odd = (int32_t)(right - left); /* twice the slope */
     const int64_t even = (int32_t)(right - middle) + (int64_t)(int32_t)(left - middle);
-    /* |odd|, |even| < 2^31 and |x| <= 2^16: products below 2^63 after the first shift. */
+    /* |odd| < 2^31, |even| < 2^32 and |x| <= 2^22: |bent| <= 2^38, and the last product < 2^61. */
     const int64_t bent = even * x_q16 >> 16;
     return middle + (uint32_t)(((odd + bent) * x_q16 + (1 << 16)) >> 17);
 }

@@ -51,32 +51,49 @@ static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight
            patch_us <= (uint64_t)radar->sar.dwell_max_ms * 1000;
 }
 
+/* Where the guard cells begin, if they do ahead of the antenna: metres * 256 of ground range. */
+static int64_t guard_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
+{
+    const uint32_t before_centre = radar->sar.cells / 2u + LM_SAR_GUARD;
+    return (int64_t)c->range_m * 256 - (int64_t)before_centre * metres_q8_of_mm(c->cell_mm);
+}
+
 static bool command_is_sound(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const int32_t highest_q6 = 30000 * 64;
-    const uint32_t before_centre_q8 =
-        (radar->sar.cells / 2u + LM_SAR_GUARD) * metres_q8_of_mm(c->cell_mm);
     return c->cell_mm >= radar->sar.cell_min_mm && c->cell_mm <= radar->sar.cell_max_mm &&
            c->range_m >= 1000 && c->range_m <= 250000 && c->height_q6 >= -highest_q6 &&
-           c->height_q6 <= highest_q6 &&
-           c->range_m * 256u >= before_centre_q8 + ((uint32_t)LM_RANGE_MIN_M << 12);
+           c->height_q6 <= highest_q6 && guard_q8(radar, c) >= LM_RANGE_MIN_M << 12;
 }
 
-static void set_grids(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
+static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
 {
-    const struct lm_radar *radar = s->radar;
     const struct lm_sar_command *c = &s->command;
-    const uint32_t cell_q8 = metres_q8_of_mm(c->cell_mm);
-    const uint32_t near_q8 = c->range_m * 256u - (radar->sar.cells / 2u + LM_SAR_GUARD) * cell_q8;
-    const int32_t height_q10 = c->height_q6 * 16;
-    lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, radar->sar.cells * cell_q8 / 2);
+    const uint32_t cells = s->radar->sar.cells, cell_q8 = metres_q8_of_mm(c->cell_mm);
+    const uint32_t near_q8 = (uint32_t)guard_q8(s->radar, c);
+    const int32_t half_q8 = (int32_t)(cells * cell_q8 / 2);
+    const struct lm_ground_extent extent = {-half_q8 - LM_SAR_GUARD * (int32_t)cell_q8, half_q8,
+                                            half_q8};
+    lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->sampling = lm_sampling_for(db, c->cell_mm, s->epoch);
-    lm_range_grid_set(&s->grid, &radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
-                      radar->sar.cells + LM_SAR_GUARD, height_q10, reference_q10);
-    const uint32_t runup_cell_q8 = (near_q8 - near_q8 / 16) / LM_SAR_RUNUP;
-    s->runup_sampling = lm_sampling_for(db, mm_of_metres_q8(runup_cell_q8), s->epoch);
-    lm_range_grid_set(&s->runup_grid, &radar->aspect, near_q8 / 16 + runup_cell_q8 / 2,
-                      runup_cell_q8, LM_SAR_RUNUP, height_q10, reference_q10);
+    lm_range_grid_set(&s->grid, &s->radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
+                      cells + LM_SAR_GUARD, c->height_q6 * 16, reference_q10);
+}
+
+/* The run-up, from 1/16 of the way to the patch's first guard cell up to that. */
+static void set_runup(struct lm_sar *s, const struct lm_db *db)
+{
+    const struct lm_range_grid *grid = &s->grid;
+    const struct lm_sar_command *c = &s->command;
+    const uint32_t end_q8 = (uint32_t)guard_q8(s->radar, c);
+    const uint32_t start_q8 = end_q8 / 16, cell_q8 = (end_q8 - start_q8) / LM_SAR_RUNUP;
+    const int32_t near_q8 = (int32_t)start_q8 - (int32_t)(c->range_m * 256u);
+    const struct lm_ground_extent extent = {near_q8, near_q8 + (int32_t)(LM_SAR_RUNUP * cell_q8),
+                                            (int32_t)(s->radar->sar.cells * grid->cell_q8 / 2)};
+    lm_ground_patch_set(&s->runup, c->centre, c->look_azimuth, &extent);
+    s->runup_sampling = lm_sampling_for(db, mm_of_metres_q8(cell_q8), s->epoch);
+    lm_range_grid_set(&s->runup_grid, &s->radar->aspect, start_q8 + cell_q8 / 2, cell_q8,
+                      LM_SAR_RUNUP, grid->height_q10, grid->reference_q10);
 }
 
 /* The grazing angle of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
@@ -156,7 +173,6 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->chips = scene->chips;
     s->time_us = scene->time_us;
     s->epoch = scene->epoch;
-    s->horizon = LM_HORIZON_OPEN;
     s->across_mm_s = across_mm_s;
     s->floor_q8 = floor_q8(radar, command, scene->environment);
     s->defocus_q8 = flight && !command->is_steady
@@ -171,7 +187,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
 
 void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
 {
-    set_grids(s, db, reference_q10);
+    set_grid(s, db, reference_q10);
+    set_runup(s, db);
     set_layover(s);
     set_geometry(s);
     lm_sar_restart(s);
@@ -182,41 +199,36 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)
     return (s->radar->sar.cells - s->line) * s->line_us;
 }
 
-/* The path of a line over patch and guard cells. */
-static struct lm_ground_path patch_path(const struct lm_sar *s, uint32_t line)
+/* The path of a line over the guard cells and the patch, or over the run-up before it. */
+static struct lm_ground_path path_over(const struct lm_ground_patch *ground, uint32_t line,
+                                       uint32_t lines, uint32_t cells)
 {
     struct lm_place points[3];
     struct lm_ground_path path;
-    lm_ground_patch_line(&s->ground, line, s->radar->sar.cells, points);
-    lm_ground_path_fit(&path, points, s->radar->sar.cells);
-    lm_ground_path_skip(&path, -LM_SAR_GUARD);
+    lm_ground_patch_line(ground, line, lines, points);
+    lm_ground_path_fit(&path, points, cells);
     return path;
 }
 
-/* The path of the run-up: back from the near end of the line towards the antenna, then forward
- * along it. */
-static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t line)
+static struct lm_ground_path patch_path(const struct lm_sar *s, uint32_t line)
 {
-    struct lm_place points[3];
-    struct lm_geo_origin near_end;
-    struct lm_ground_path path;
-    lm_ground_patch_line(&s->ground, line, s->radar->sar.cells, points);
-    lm_geo_set_origin(&near_end, points[0]);
-    const fx_bam_t back = s->command.look_azimuth + FX_BAM_180;
-    const uint32_t guard_q8 = LM_SAR_GUARD * s->grid.cell_q8;
-    const uint32_t length_q8 = LM_SAR_RUNUP * s->runup_grid.cell_q8;
-    for (uint32_t i = 0; i < 3; i++) {
-        points[i] = lm_geo_direct(&near_end, back, guard_q8 + length_q8 * (2 - i) / 2);
-    }
-    lm_ground_path_fit(&path, points, LM_SAR_RUNUP);
-    return path;
+    return path_over(&s->ground, line, s->radar->sar.cells, s->grid.cells);
+}
+
+static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t number)
+{
+    return path_over(&s->runup, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells, LM_SAR_RUNUP);
 }
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
 {
-    const struct lm_ground_path path = patch_path(s, line), runup = runup_path(s, line);
+    const uint32_t first = line / LM_SAR_RUNUP_LINES;
+    const struct lm_ground_path path = patch_path(s, line);
     lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
-    lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
+    for (uint32_t number = first; number <= first + 1; number++) {
+        const struct lm_ground_path runup = runup_path(s, number);
+        lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
+    }
 }
 
 /* How far Doppler may bring a target into the patch from outside: s v / (V sin o) for the fastest.
@@ -269,14 +281,34 @@ static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
     s->has_points = true;
 }
 
-/* The horizon that the lines of a run-up start with. */
-static void trace_runup(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line)
+/* The horizon behind a run-up. */
+static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache *tiles,
+                                    uint32_t number, struct lm_line *line)
 {
     const struct lm_ground_path path = runup_path(s, number);
     lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
-    s->horizon = lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes,
-                               &line->ground, LM_HORIZON_OPEN, &line->sight);
+    return lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes, &line->ground,
+                         LM_HORIZON_OPEN, &line->sight);
+}
+
+/* The horizon that a line starts with: between those behind the run-ups to its left and right. */
+static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *tiles,
+                                      uint32_t number, struct lm_line *line)
+{
+    const uint32_t second = number / LM_SAR_RUNUP_LINES + 1;
+    if (second != s->second_runup) {
+        const bool goes_on = s->second_runup != 0 && second == s->second_runup + 1;
+        s->runups[0] = goes_on ? s->runups[1] : trace_runup(s, tiles, second - 1, line);
+        s->runups[1] = trace_runup(s, tiles, second, line);
+        s->second_runup = second;
+    }
+    /* Where no cell of the run-up is shown, both are open. */
+    if (s->runups[0] == LM_HORIZON_OPEN) {
+        return LM_HORIZON_OPEN;
+    }
+    /* Tangents of 32 bits with at least 22 behind the point: below 2^49, and times 16 lines. */
+    const int64_t rise_q40 = s->runups[1] - s->runups[0];
+    return s->runups[0] + rise_q40 * (int64_t)(number % LM_SAR_RUNUP_LINES) / LM_SAR_RUNUP_LINES;
 }
 
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
@@ -287,6 +319,7 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
                                         .texture = &s->texture,
                                         .sampling = s->sampling};
     const struct lm_ground_path path = patch_path(s, number);
+    s->horizon = start_horizon(s, tiles, number, line);
     lm_line_trace(line, tiles, &setup, &path, s->horizon);
 }
 
@@ -294,9 +327,6 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
                         struct lm_line *line)
 {
     int32_t *level_q8 = line->sight.level_q8;
-    if (number % LM_SAR_RUNUP_LINES == 0) {
-        trace_runup(s, tiles, number, line);
-    }
     trace_line(s, tiles, number, line);
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
@@ -328,7 +358,6 @@ static bool judge_points(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
         const bool is_judged = s->judged != 0 && is_early(s, p - 1) && p[-1].line == p->line;
         if (is_early(s, p) && !is_judged) {
             const uint32_t number = (uint32_t)p->line;
-            trace_runup(s, tiles, number / LM_SAR_RUNUP_LINES * LM_SAR_RUNUP_LINES, line);
             trace_line(s, tiles, number, line);
             lm_patch_points_hide(&s->points, number, line->sight.horizon, s->grid.tangent_bits,
                                  s->grid.cells);
@@ -410,7 +439,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = s->judged = 0;
+    s->line = s->sampled = s->summed = s->judged = s->second_runup = 0;
     s->has_points = false;
     s->points.count = s->points.chip_count = 0;
 }

@@ -175,9 +175,7 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     struct ref_tables tables;
     ref_tables_set(&tables, params);
     for (unsigned line = 0; line < sar->cell_count; line++) {
-        picture->start_horizons[line] = line % REF_COARSE_EVERY == 0
-                                            ? ref_sar_horizon(db, sar, params, line)
-                                            : picture->start_horizons[line - 1];
+        picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
         finish(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
                picture->speckle_shift, sar->epoch, params, &tables);

@@ -21,12 +21,7 @@
 #define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
 #define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
 
-enum {
-    REF_SPECKLE_SLICES = 1024,
-    REF_GUARD_CELLS = 4,
-    REF_COARSE_CELLS = 128,
-    REF_COARSE_EVERY = 8
-};
+enum { REF_SPECKLE_SLICES = 1024, REF_GUARD_CELLS = 4, REF_COARSE_CELLS = 128 };
 
 struct ref_place {
     double latitude_deg, longitude_deg; /* longitude: any turn */

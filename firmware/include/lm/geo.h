@@ -49,18 +49,25 @@ void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3
 /* Move the path by `cells` steps (either way, |cells| <= 4096) before the first cell is read. */
 void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells);
 
-/* A square patch of ground around a centre, its `along` axis at `azimuth`: nine points that carry a
- * biquadratic surface in latitude and longitude, rows from near to far, columns from left to right
- * as seen along the azimuth. */
+/* A rectangle of ground whose `along` axis runs at an azimuth through a place: nine points that
+ * carry a biquadratic surface in latitude and longitude, rows from near to far, columns from left
+ * to right as seen along the azimuth. */
 struct lm_ground_patch {
     struct lm_place points[3][3];
 };
 
-void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place centre, fx_bam_t azimuth,
-                         uint32_t half_side_q8);
+/* How far a rectangle reaches, metres * 256: along its axis from `near_q8` to `far_q8` ahead of the
+ * place (behind it when negative), and to either side. All within 300 km. */
+struct lm_ground_extent {
+    int32_t near_q8, far_q8, side_q8;
+};
 
-/* The three points of line `line` of `lines`, whose across offset is (line + 1/2 - lines/2) / lines
- * of the side. */
+/* Cost: about 6,000 instructions. */
+void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_bam_t azimuth,
+                         const struct lm_ground_extent *extent);
+
+/* The beginning, middle and end of line `line` of `lines`, whose across offset is (line + 1/2 -
+ * lines/2) / lines of the width. The surface goes on beyond the last line: line < lines + 32. */
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
                           struct lm_place points[3]);
 

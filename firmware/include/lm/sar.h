@@ -14,9 +14,9 @@
 #include "lm/tone.h"
 
 enum {
-    LM_SAR_GUARD = 4,       /* cells before the patch that are traced and not shown */
-    LM_SAR_RUNUP = 128,     /* coarse cells between the antenna and the patch */
-    LM_SAR_RUNUP_LINES = 8, /* lines that share a run-up */
+    LM_SAR_GUARD = 4,        /* cells before the patch that are traced and not shown */
+    LM_SAR_RUNUP = 128,      /* coarse cells between the antenna and the patch */
+    LM_SAR_RUNUP_LINES = 16, /* lines from one run-up that is traced to the next */
 
     /* A point is spread over lines before its own, and those are smeared: lines are sampled so many
      * before they are drawn, and kept as long as a smear needs them. */
@@ -52,9 +52,9 @@ struct lm_sar_scene {
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
-    uint64_t line_us;  /* from line to line: the dwell's share */
-    uint32_t dwell_ms; /* below 2^17 */
-    struct lm_ground_patch ground;
+    uint64_t line_us;                     /* from line to line: the dwell's share */
+    uint32_t dwell_ms;                    /* below 2^17 */
+    struct lm_ground_patch ground, runup; /* with the guard cells; what lies before them */
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
     struct lm_texture texture;
@@ -69,7 +69,9 @@ struct lm_sar {
     struct lm_patch_geometry geometry;
     struct lm_targets_near near;
 
-    lm_horizon_q40_t horizon;      /* where the lines of the last run-up start */
+    uint32_t second_runup;         /* number of the second of two that were traced; 0: none was */
+    lm_horizon_q40_t runups[2];    /* the horizons behind them */
+    lm_horizon_q40_t horizon;      /* where the line traced last started */
     uint32_t line;                 /* next to be drawn; done when it is radar->sar.cells */
     uint32_t sampled, summed;      /* lines that are in the ring, and that have the points */
     bool has_points;               /* the targets' were found, */
@@ -89,7 +91,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene);
 
 /* Take another elevation for that of the patch, which begins anew: when the tile that knows it came
- * after the start. Dwell and limits stay as they were. Cost: about 60 k instructions. */
+ * after the start. Dwell and limits stay as they were. Cost: about 75 k instructions. */
 void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10);
 
 /* Dwell that is left, microseconds. */
@@ -113,8 +115,7 @@ void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struc
                       struct lm_line *line);
 
 /* One stage of that: line `number` from the map to noise and speckle, without targets and smear, in
- * line->ground and line->sight. s->horizon is where it started, as multiples of LM_SAR_RUNUP_LINES
- * trace the run-up for the lines behind them. */
+ * line->ground and line->sight. s->horizon is where it started. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                         struct lm_line *line);
 

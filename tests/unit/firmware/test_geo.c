@@ -113,23 +113,24 @@ static void every_cell_of_an_80_mile_line_is_within_half_a_cell(void **state)
     }
 }
 
-static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
+/* The worst cell of `cells` along every fifth of 256 lines over a rectangle, metres off. */
+static double worst_patch_cell(double lat, double lon, const struct lm_ground_extent *extent,
+                               int cells)
 {
-    (void)state;
     struct lm_ground_patch patch;
-    const double lat = 61.8, lon = 179.99, side = 2560, azimuth = 37;
+    const double azimuth = 37, side_m = extent->side_q8 / 256.0, near_m = extent->near_q8 / 256.0;
+    const double cell_m = (extent->far_q8 / 256.0 - near_m) / cells;
     const struct lm_place centre = place_of(lat, lon);
-    lm_ground_patch_set(&patch, centre, FX_BAM_DEG(37), (uint32_t)(side * 128));
+    lm_ground_patch_set(&patch, centre, FX_BAM_DEG(37), extent);
     double worst = 0;
     for (uint32_t line = 0; line < 256; line += 5) {
         struct lm_place points[3];
         struct lm_ground_path path;
         lm_ground_patch_line(&patch, line, 256, points);
-        lm_ground_path_fit(&path, points, 256);
-        lm_ground_path_skip(&path, -4);
-        for (int i = -4; i < 256; i++, lm_ground_path_skip(&path, 1)) {
-            const double across = (line + 0.5 - 128) * side / 256,
-                         along = (i + 0.5 - 128) * side / 256;
+        lm_ground_path_fit(&path, points, (uint32_t)cells);
+        for (int i = 0; i < cells; i++, lm_ground_path_skip(&path, 1)) {
+            const double across = (line + 0.5 - 128) * side_m / 128,
+                         along = near_m + (i + 0.5) * cell_m;
             double to_lat, to_lon;
             geodesic_direct(hs_degrees(centre.latitude), hs_degrees(centre.longitude),
                             azimuth + atan2(across, along) * 180 / 3.14159265358979,
@@ -140,8 +141,25 @@ static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
                                                hs_degrees(p.longitude)));
         }
     }
+    return worst;
+}
+
+static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
+{
+    (void)state;
+    const struct lm_ground_extent patch = {-132 * 2560, 128 * 2560, 128 * 2560};
+    const double worst = worst_patch_cell(61.8, 179.99, &patch, 260);
     print_message("# patch of 10 m cells: worst cell %.3f m off\n", worst);
     assert_true(worst < 0.1);
+}
+
+static void the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells(void **state)
+{
+    (void)state;
+    const struct lm_ground_extent runup = {-138600 * 256, -1320 * 256, 128 * 2560};
+    const double worst = worst_patch_cell(61.8, 179.99, &runup, 128);
+    print_message("# run-up of 1,072 m cells: worst cell %.1f m off\n", worst);
+    assert_true(worst < 107);
 }
 
 static void the_inverse_problem_finds_distance_and_azimuth(void **state)
@@ -174,6 +192,7 @@ int main(void)
         cmocka_unit_test(nearby_points_are_within_5_cm),
         cmocka_unit_test(every_cell_of_an_80_mile_line_is_within_half_a_cell),
         cmocka_unit_test(patch_lines_lie_where_across_and_along_offsets_say),
+        cmocka_unit_test(the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells),
         cmocka_unit_test(the_inverse_problem_finds_distance_and_azimuth),
         cmocka_unit_test(a_hopeless_distance_does_not_overflow),
     };

@@ -314,8 +314,7 @@ static void a_ridge_before_the_patch_throws_its_shadow_into_it(void **state)
             assert_true(bin->is_lit || bin->range_m < end_m + 100);
             assert_true(!bin->is_lit || bin->range_m > end_m - 150);
         }
-        assert_true(picture.start_horizons[line] == picture.start_horizons[line / 8 * 8]);
-        assert_true(line < 8 || picture.start_horizons[line] > picture.start_horizons[line - 8]);
+        assert_true(line == 0 || picture.start_horizons[line] > picture.start_horizons[line - 1]);
     }
     ref_picture_free(&picture);
     ref_db_close(&db);
