@@ -84,73 +84,69 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     }
 }
 
-static void set_legend(struct legend *l, const struct lm_aspect_config *config,
-                       const struct lm_classes *classes)
+void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
+                   const struct lm_classes *classes)
 {
-    const int32_t entry[LM_KINDS] = {
+    const int32_t kind[LM_KINDS] = {
         [LM_KIND_WATER] = MARK_WATER,
         [LM_KIND_STRUCTURE] = config->edge_structure_q8 * (1 << MARK_BITS) + MARK_STRUCTURE,
         [LM_KIND_TREES] = config->edge_trees_q8 * (1 << MARK_BITS) + MARK_TREES};
-    for (uint32_t n = 0; n < CODE_MIDDLE; n++) {
-        l->height_q14[n] = classes->height_dm[n + CODE_MIDDLE] * 8192 / 5;
-        l->height_q14[n + CODE_MIDDLE] = classes->height_dm[n] * 8192 / 5;
-        l->kind[n] = entry[classes->entry[n + CODE_MIDDLE].kind & (LM_KINDS - 1)];
-        l->kind[n + CODE_MIDDLE] = entry[classes->entry[n].kind & (LM_KINDS - 1)];
+    for (uint32_t n = 0; n < CODES; n++) {
+        legend->height_q14[n] = classes->height_dm[n] * 8192 / 5;
+        legend->kind[n] = kind[classes->entry[n].kind & (LM_KINDS - 1)];
+    }
+    legend->shore_q8 = config->shore_q8;
+}
+
+/* Tangent of each cell's top, and its kind behind that of the cell before it. */
+static void look(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                 const struct lm_scan_line *line, uint32_t end, int32_t *restrict tangent,
+                 int32_t *restrict kind)
+{
+    for (uint32_t i = 0; i < end; i++) {
+        tangent[i] = tangent_of(grid, legend, line, i);
+        kind[i + 1] = kind_of(legend, line->cell[i]);
     }
 }
 
-/* Tangent of each cell's top, in the horizon's place; its kind, behind that of the cell before it;
- * and its level but for the horizon's rise and the edges. */
-static void look(const struct lm_range_grid *grid, const struct lm_scan_line *line,
-                 const struct legend *legend, int32_t *restrict kind,
-                 struct lm_sight *restrict sight)
+/* The running horizon: the largest tangent up to each cell, and not below the one it starts with,
+ * of which eight stand before the tangents. Eight neighbours, each the largest of eight, wait for
+ * the eight before them, and not a cell for the one before it. */
+static void raise_horizon(const int32_t *restrict tangent, uint32_t end, int32_t start,
+                          int32_t *restrict horizon)
 {
-    for (uint32_t i = 0; i < grid->cells; i++) {
-        const uint32_t cell = line->cell[i];
-        sight->horizon[i + 1] = tangent_of(grid, line, legend, i);
-        kind[i + 1] = kind_of(legend, cell);
-        sight->level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
+    int32_t of_four[LM_LANES + LM_CELLS_ROOM];
+    for (uint32_t i = 0; i < LM_LANES; i++) {
+        of_four[i] = start;
     }
-}
-
-/* The running horizon: tangents become the largest up to them. horizon[0] is where it starts. Eight
- * neighbours, each the largest of eight, wait for the eight before them, and not a cell for the one
- * before it. */
-static void raise_horizon(uint32_t cells, int32_t *horizon)
-{
-    enum { HALF = 4, ALL = 8 };
-    int32_t of_half[HALF + LM_CELLS_ROOM];
-    for (uint32_t i = 0; i < HALF; i++) {
-        of_half[i] = horizon[0];
+    for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
+        const int32_t *t = tangent + i;
+        of_four[i] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
     }
-    for (uint32_t i = 1; i <= cells && i < HALF; i++) {
-        of_half[HALF + i - 1] = fx_max_i32(of_half[HALF + i - 2], horizon[i]);
+    const int32_t *near = of_four + LM_LANES, *far = near - 4;
+    horizon[0] = start;
+    for (uint32_t i = 0; i < LM_LANES; i++) {
+        horizon[i + 1] = fx_max_i32(fx_max_i32(near[i], far[i]), start);
     }
-    for (uint32_t i = HALF; i <= cells; i++) {
-        const int32_t *t = horizon + i;
-        of_half[i + HALF - 1] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
-    }
-    for (uint32_t i = 1; i <= cells && i < ALL; i++) {
-        horizon[i] = fx_max_i32(of_half[i - 1], of_half[i + HALF - 1]);
-    }
-    for (uint32_t i = ALL; i <= cells; i++) {
-        const int32_t of_all = fx_max_i32(of_half[i - 1], of_half[i + HALF - 1]);
-        horizon[i] = fx_max_i32(of_all, horizon[i - ALL]);
+    for (uint32_t i = LM_LANES; i < end; i++) {
+        const int32_t of_eight = fx_max_i32(near[i], far[i]);
+        horizon[i + 1] = fx_max_i32(of_eight, horizon[i + 1 - LM_LANES]);
     }
 }
 
 /* Light cells by what they show above the horizon, and leading edges by what they are: E_i of the
  * equations. 32 bits without a sign hold the rise from any tangent to any other. Returns whether
  * some cell is behind a shore. */
-static bool light(const int32_t *horizon, const int32_t *kind, uint32_t cells,
+static bool light(const struct lm_range_grid *grid, const uint32_t *restrict cell,
+                  const int32_t *restrict kind, uint32_t end, const int32_t *restrict horizon,
                   int32_t *restrict level_q8)
 {
     int32_t left = 0;
-    for (uint32_t i = 0; i < cells; i++) {
+    for (uint32_t i = 0; i < end; i++) {
         const uint32_t rise = (uint32_t)horizon[i + 1] - (uint32_t)horizon[i];
-        /* look() filled both. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         const int32_t edge_q8 = kind[i + 1] != kind[i] ? kind[i + 1] >> MARK_BITS : 0;
-        const int32_t lit_q8 = level_q8[i] + edge_q8 + fx_db_q8_of_many(rise);
+        const int32_t flat_q8 = (int32_t)(cell[i] >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
+        const int32_t lit_q8 = flat_q8 + edge_q8 + fx_db_q8_of_many(rise);
         level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
         left |= kind[i] & ~kind[i + 1];
     }
@@ -162,40 +158,33 @@ static uint32_t last_shore(const int32_t *kind, uint32_t cells)
 {
     int32_t last = 0;
     for (int32_t i = 0; i < (int32_t)cells; i++) {
-        /* As above. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         last = fx_max_i32(last, -(kind[i] & ~kind[i + 1] & MARK_WATER) & (i + 1));
     }
     return (uint32_t)last;
 }
 
-/* Far shores are rare: they are looked for where a stretch of cells has one. */
-enum { STRETCH = 64, STRETCHES = LM_CELLS_MAX / STRETCH + 1 };
-
 /* Horizon, level and edges of a line whose horizon starts with `start`. */
-static void light_line(const struct lm_range_grid *grid, int32_t shore_q8,
-                       const struct lm_scan_line *line, const struct legend *legend, int32_t start,
-                       struct lm_sight *sight)
+static void light_line(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                       const struct lm_scan_line *line, int32_t start, struct lm_sight *sight)
 {
-    const uint32_t cells = grid->cells;
-    int32_t kind[1 + LM_CELLS_ROOM];
-    bool has_shore[STRETCHES];
-    look(grid, line, legend, kind, sight);
+    enum { STRETCH = 64 };
+    const uint32_t cells = grid->cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
+    int32_t kind[1 + LM_CELLS_ROOM], tangent[LM_LANES + LM_CELLS_ROOM];
+    look(grid, legend, line, end, tangent + LM_LANES, kind);
+    for (uint32_t i = 0; i < LM_LANES + grid->first; i++) {
+        tangent[i] = start;
+    }
     for (uint32_t i = 0; i <= grid->first; i++) {
-        sight->horizon[i] = start;
+        kind[i] = kind[grid->first + 1]; /* the first cell shown enters nothing */
     }
-    /* The first cell shown enters nothing.
-     * NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): look() filled it */
-    kind[grid->first] = kind[grid->first + 1];
-    raise_horizon(cells, sight->horizon);
-    for (uint32_t i = 0; i < cells; i += STRETCH) {
-        has_shore[i / STRETCH] = light(sight->horizon + i, kind + i, fx_min_u32(cells - i, STRETCH),
-                                       sight->level_q8 + i);
-    }
-    for (uint32_t i = 0; i < cells; i += STRETCH) {
-        uint32_t left = has_shore[i / STRETCH] ? fx_min_u32(cells - i, STRETCH) : 0;
-        while ((left = last_shore(kind + i, left)) != 0) {
-            left--;
-            add_shore(grid, shore_q8, line, legend, i + left, sight);
+    raise_horizon(tangent, end, start, sight->horizon);
+    if (light(grid, line->cell, kind, end, sight->horizon, sight->level_q8)) {
+        for (uint32_t i = 0; i < cells; i += STRETCH) {
+            uint32_t left = fx_min_u32(cells - i, STRETCH);
+            while ((left = last_shore(kind + i, left)) != 0) {
+                left--;
+                add_shore(grid, legend, line, i + left, sight);
+            }
         }
     }
 }
@@ -210,18 +199,15 @@ static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
     return fx_sat_i32(start);
 }
 
-lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
-                               const struct lm_aspect_config *config,
-                               const struct lm_classes *classes, const struct lm_scan_line *line,
-                               lm_horizon_q40_t horizon, struct lm_sight *sight)
+lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                               const struct lm_scan_line *line, lm_horizon_q40_t horizon,
+                               struct lm_sight *sight)
 {
-    struct legend legend;
-    set_legend(&legend, config, classes);
-    const int32_t start = start_of(grid, tangent_of(grid, line, &legend, grid->first), horizon);
+    const int32_t start = start_of(grid, tangent_of(grid, legend, line, grid->first), horizon);
     if (FX_HAS_NEON) {
-        light_line_neon(grid, config->shore_q8, line, &legend, start, sight);
+        light_line_neon(grid, legend, line, start, sight);
     } else {
-        light_line(grid, config->shore_q8, line, &legend, start, sight);
+        light_line(grid, legend, line, start, sight);
     }
     return grid->first < grid->cells
                ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))

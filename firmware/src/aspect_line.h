@@ -6,48 +6,37 @@
 #include "lm/aspect.h"
 
 enum {
-    CODES = 16,      /* height codes, classes */
-    CODE_MIDDLE = 8, /* where code 0 stands in the tables of a legend */
+    CODES = 16, /* height codes, classes */
     MARK_WATER = 1,
     MARK_STRUCTURE = 2,
     MARK_TREES = 4,
     MARK_BITS = 3
 };
 
-/* What classes and height codes mean, by a number of four bits taken as signed, -8..7, behind the
- * eighth: a lookup becomes a vector gather where its index has a sign. */
-struct legend {
-    int32_t height_q14[CODES]; /* of the height code */
-    int32_t kind[CODES];       /* of the class: brightness of its leading edge * 8, and a mark */
-};
-
-static inline int32_t signed_code(uint32_t cell)
-{
-    return (int32_t)(cell << 28) >> 28;
-}
-
 /* Tangent of the top of cell i. */
-static inline int32_t tangent_of(const struct lm_range_grid *grid, const struct lm_scan_line *line,
-                                 const struct legend *legend, uint32_t i)
+static inline int32_t tangent_of(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                                 const struct lm_scan_line *line, uint32_t i)
 {
-    const int32_t height_q14 = legend->height_q14[CODE_MIDDLE + signed_code(line->cell[i])];
-    /* Elevation below 2^29, height below 2^27, fall below 2^30: below 2^31, times 2^30. */
-    const int32_t apparent_q14 = line->elevation_q14[i] + height_q14 - grid->fall_q14[i];
+    /* Elevation below 2^29, height below 2^27, fall below 2^30: below 2^31, times 2^30. Sums
+     * without a sign, for what stands behind the last cell may be anything. */
+    const uint32_t top_q14 = (uint32_t)line->elevation_q14[i] +
+                             (uint32_t)legend->height_q14[(int32_t)(line->cell[i] % CODES)];
+    const int32_t apparent_q14 = (int32_t)(top_q14 - (uint32_t)grid->fall_q14[i]);
     /* Without a sign, which the 32 bits kept do not see: vectors have no other shift. */
     return (int32_t)((uint64_t)((int64_t)apparent_q14 * grid->inverse_range[i]) >> 30);
 }
 
-static inline int32_t kind_of(const struct legend *legend, uint32_t cell)
+static inline int32_t kind_of(const struct lm_legend *legend, uint32_t cell)
 {
-    return legend->kind[CODE_MIDDLE + signed_code(cell >> 4)];
+    return legend->kind[(int32_t)((cell >> 4) % CODES)];
 }
 
 /* The far shore's brightness from its first cell `i` on, where there is light. */
-static inline void add_shore(const struct lm_range_grid *grid, int32_t shore_q8,
-                             const struct lm_scan_line *line, const struct legend *legend,
-                             uint32_t i, struct lm_sight *sight)
+static inline void add_shore(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                             const struct lm_scan_line *line, uint32_t i, struct lm_sight *sight)
 {
-    for (; i < grid->cells && shore_q8 > 0; i++, shore_q8 -= grid->shore_fall_q8) {
+    for (int32_t shore_q8 = legend->shore_q8; i < grid->cells && shore_q8 > 0;
+         i++, shore_q8 -= grid->shore_fall_q8) {
         if (kind_of(legend, line->cell[i]) & MARK_WATER) {
             return;
         }

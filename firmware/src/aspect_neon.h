@@ -31,13 +31,13 @@ struct neon_hidden {
     uint8x8_t has_no_edge;
 };
 
-static inline struct neon_legend neon_legend_of(const struct legend *l)
+static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
 {
     struct neon_legend n;
     int16x8_t edge[2];
     uint16x8_t mark[2];
     for (int half = 0; half < 2; half++) {
-        const int first = half ? 0 : CODE_MIDDLE;
+        const int first = half ? CODES / 2 : 0;
         const int32x4_t low = vld1q_s32(l->kind + first), high = vld1q_s32(l->kind + first + 4);
         edge[half] = vcombine_s16(vshrn_n_s32(low, MARK_BITS), vshrn_n_s32(high, MARK_BITS));
         mark[half] = vreinterpretq_u16_s16(vcombine_s16(vmovn_s32(low), vmovn_s32(high)));
@@ -144,22 +144,22 @@ static inline struct neon_hidden neon_hidden_at(size_t i, size_t first)
     return (struct neon_hidden){{vcltq_u32(low, shown), vcltq_u32(high, shown)}, vmovn_u16(upto)};
 }
 
-static inline void neon_shores(const struct lm_range_grid *grid, int32_t shore_q8,
-                               const struct lm_scan_line *line, const struct legend *legend,
-                               const uint8_t *behind_shore, struct lm_sight *sight)
+static inline void neon_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                               const struct lm_scan_line *line, const uint8_t *behind_shore,
+                               struct lm_sight *sight)
 {
     for (uint32_t i = grid->first & ~7u; i < grid->cells; i += 8) {
         const uint64_t eight = vget_lane_u64(vreinterpret_u64_u8(vld1_u8(behind_shore + i)), 0);
         for (uint64_t left = eight & 0x0101010101010101; left != 0; left &= left - 1) {
-            add_shore(grid, shore_q8, line, legend, i + (uint32_t)fx_ctz64(left) / 8, sight);
+            add_shore(grid, legend, line, i + (uint32_t)fx_ctz64(left) / 8, sight);
         }
     }
 }
 
 /* Horizon, level and edges of a line whose horizon starts with `start`. */
-static inline void light_line_neon(const struct lm_range_grid *grid, int32_t shore_q8,
-                                   const struct lm_scan_line *line, const struct legend *legend,
-                                   int32_t start, struct lm_sight *sight)
+static inline void light_line_neon(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                                   const struct lm_scan_line *line, int32_t start,
+                                   struct lm_sight *sight)
 {
     uint8_t behind_shore[LM_CELLS_ROOM];
     const struct neon_legend l = neon_legend_of(legend);
@@ -181,17 +181,17 @@ static inline void light_line_neon(const struct lm_range_grid *grid, int32_t sho
         neon_cells(grid, line, &l, &none, i, &before, sight, behind_shore);
     }
     if (vaddv_u8(vand_u8(before.shores, vdup_n_u8(MARK_WATER))) != 0) {
-        neon_shores(grid, shore_q8, line, legend, behind_shore, sight);
+        neon_shores(grid, legend, line, behind_shore, sight);
     }
 }
 
 #else
 
-static inline void light_line_neon(const struct lm_range_grid *grid, int32_t shore_q8,
-                                   const struct lm_scan_line *line, const struct legend *legend,
-                                   int32_t start, struct lm_sight *sight)
+static inline void light_line_neon(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                                   const struct lm_scan_line *line, int32_t start,
+                                   struct lm_sight *sight)
 {
-    (void)grid, (void)shore_q8, (void)line, (void)legend, (void)start, (void)sight;
+    (void)grid, (void)legend, (void)line, (void)start, (void)sight;
 }
 
 #endif

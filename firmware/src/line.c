@@ -6,8 +6,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
 {
     const uint32_t cells = setup->grid->cells;
     lm_scan_line_run(&line->ground, tiles, &setup->sampling, path, cells);
-    horizon = lm_aspect_run(setup->grid, setup->aspect, &tiles->db->classes, &line->ground, horizon,
-                            &line->sight);
+    horizon = lm_aspect_run(setup->grid, setup->legend, &line->ground, horizon, &line->sight);
     lm_texture_run(setup->texture, line->ground.cell, line->ground.noise, line->sight.level_q8,
                    cells);
     return horizon;

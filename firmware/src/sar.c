@@ -179,6 +179,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                         ? lm_defocus_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
                                         radar->wavelength_um, patch_us)
                         : 256;
+    lm_legend_set(&s->legend, &radar->aspect, &db->classes);
     lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state);
     s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, scene->reference_q10);
@@ -287,8 +288,7 @@ static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache
 {
     const struct lm_ground_path path = runup_path(s, number);
     lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
-    return lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes, &line->ground,
-                         LM_HORIZON_OPEN, &line->sight);
+    return lm_aspect_run(&s->runup_grid, &s->legend, &line->ground, LM_HORIZON_OPEN, &line->sight);
 }
 
 /* The horizon that a line starts with: between those behind the run-ups to its left and right. */
@@ -314,10 +314,8 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                        struct lm_line *line)
 {
-    const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .aspect = &s->radar->aspect,
-                                        .texture = &s->texture,
-                                        .sampling = s->sampling};
+    const struct lm_line_setup setup = {
+        .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
     const struct lm_ground_path path = patch_path(s, number);
     s->horizon = start_horizon(s, tiles, number, line);
     lm_line_trace(line, tiles, &setup, &path, s->horizon);

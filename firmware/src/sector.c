@@ -241,6 +241,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
         lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
     }
     set_tilt(s);
+    lm_legend_set(&s->legend, &s->radar->aspect, &tiles->db->classes);
     set_texture(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
@@ -313,8 +314,8 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
         const struct lm_ground_path path =
             path_of(origin, azimuth, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
         lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
-        s->runup_horizon = lm_aspect_run(&s->runup_grid, &s->radar->aspect, &tiles->db->classes,
-                                         &line->ground, LM_HORIZON_OPEN, &line->sight);
+        s->runup_horizon =
+            lm_aspect_run(&s->runup_grid, &s->legend, &line->ground, LM_HORIZON_OPEN, &line->sight);
         s->runup_azimuth = azimuth;
         s->has_runup = true;
     }
@@ -416,10 +417,8 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles,
                         const struct lm_geo_origin *origin, int32_t sample, struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
-    const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .aspect = &s->radar->aspect,
-                                        .texture = &s->texture,
-                                        .sampling = s->sampling};
+    const struct lm_line_setup setup = {
+        .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
     trace_footprint(s, tiles, origin, azimuth, &setup, line);
     lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {

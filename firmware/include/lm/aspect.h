@@ -41,6 +41,16 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
                        uint32_t first_q8, uint32_t cell_q8, uint32_t cells, int32_t height_q10,
                        int32_t reference_q10);
 
+/* What a map's classes and height codes mean here, worked out once for many lines. */
+struct lm_legend {
+    int32_t height_q14[16]; /* of the height code, metres * 16384: below 2^27 */
+    int32_t kind[16];       /* of the class: brightness of its leading edge * 8, and a mark */
+    int32_t shore_q8;       /* brightness of a far shore */
+};
+
+void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
+                   const struct lm_classes *classes);
+
 /* The running horizon: tangent of the highest look so far, Q40. */
 typedef int64_t lm_horizon_q40_t;
 
@@ -56,9 +66,8 @@ struct lm_sight {
 };
 
 /* Fill `sight` for the cells of the grid. Returns the horizon behind the last cell. */
-lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid,
-                               const struct lm_aspect_config *config,
-                               const struct lm_classes *classes, const struct lm_scan_line *line,
-                               lm_horizon_q40_t horizon, struct lm_sight *sight);
+lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                               const struct lm_scan_line *line, lm_horizon_q40_t horizon,
+                               struct lm_sight *sight);
 
 #endif

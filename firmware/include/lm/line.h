@@ -16,7 +16,7 @@ struct lm_line_targets {
 /* What the stages of a line read and do not change. All borrowed. */
 struct lm_line_setup {
     const struct lm_range_grid *grid;
-    const struct lm_aspect_config *aspect;
+    const struct lm_legend *legend;
     const struct lm_texture *texture;
     struct lm_sampling sampling;
 };

@@ -57,6 +57,7 @@ struct lm_sar {
     struct lm_ground_patch ground, runup; /* with the guard cells; what lies before them */
     struct lm_range_grid grid, runup_grid;
     struct lm_sampling sampling, runup_sampling;
+    struct lm_legend legend;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: none */

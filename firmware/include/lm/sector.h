@@ -72,6 +72,7 @@ struct lm_sector {
     struct lm_slant slant;
     struct lm_elevation elevation;
     struct lm_fan fan;
+    struct lm_legend legend;
     struct lm_texture texture;
     struct lm_footprint footprint; /* of the sample that is being taken */
     struct lm_beam beam;

@@ -59,7 +59,9 @@ static void set_grid(struct scene *s, double first_m, double cell_m, uint32_t ce
 
 static lm_horizon_q40_t run(struct scene *s, lm_horizon_q40_t horizon)
 {
-    return lm_aspect_run(&s->grid, &s->config, tiny_classes(), &s->line, horizon, &s->sight);
+    struct lm_legend legend;
+    lm_legend_set(&legend, &s->config, tiny_classes());
+    return lm_aspect_run(&s->grid, &legend, &s->line, horizon, &s->sight);
 }
 
 static double tangent(double antenna_m, double top_m, double s_m)
@@ -402,6 +404,12 @@ static void the_first_cell_enters_nothing(void **state)
     }
     set_grid(&s, 1450, 10, 20, 3000, 0);
     assert_int_equal(s.grid.first, 5);
+    run(&s, LM_HORIZON_OPEN);
+    assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
+    /* Water that is not shown has no far shore. */
+    for (uint32_t i = 0; i < 4; i++) {
+        s.line.cell[i] = cell_of(-40, TINY_WATER, 0);
+    }
     run(&s, LM_HORIZON_OPEN);
     assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
 }
