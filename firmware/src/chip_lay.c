@@ -35,7 +35,14 @@ static int32_t cells_of(int32_t pixels_q16, uint32_t pixels_a_cell_q16, int32_t 
     return pixels_q16 / (int32_t)fx_max_u32(pixels_a_cell_q16, 1) + more;
 }
 
-/* The cells over a box, which interpolation makes half a pixel wider all around. */
+/* Whole cells that a stretch of the box adds to either side. */
+static int32_t more_of(uint32_t stretch_q8)
+{
+    return (int32_t)((stretch_q8 - 256 + 511) / 512);
+}
+
+/* The cells that show something of a box of pixels: they take half a pixel more, or half a cell,
+ * all around. */
 static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct lm_chip_box *box,
                                      const struct rotation *turn, uint32_t scale_q16)
 {
@@ -57,123 +64,113 @@ static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct
     return r;
 }
 
+static void widen(struct lm_chip_reach *r, const struct lm_smear *smear)
+{
+    r->right -= more_of(smear->wide_q8);
+    r->right_end += more_of(smear->wide_q8);
+    r->beyond -= more_of(smear->deep_q8);
+    r->beyond_end += more_of(smear->deep_q8);
+}
+
+/* Half of what cells stretched so take of the chip, in pixels * 256: scale below 2^18, a stretch
+ * below 2^16. */
+static int32_t half_q8_of(uint32_t scale_q16, uint32_t stretch_q8)
+{
+    const uint32_t side_q8 = (uint32_t)((uint64_t)scale_q16 * stretch_q8 >> 16);
+    return (int32_t)(fx_max_u32(side_q8, 256) / 2);
+}
+
+/* Of a stretched cell's side over that of its box: less than 1 where a pixel is larger. */
+static int32_t side_gain_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t half_q8)
+{
+    return fx_db_q8(scale_q16) + fx_db_q8(stretch_q8) - fx_db_q8(2 * (uint32_t)half_q8) -
+           fx_db_q8(65536);
+}
+
 void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, fx_bam_t turn,
-                     uint32_t cell_mm)
+                     uint32_t cell_mm, const struct lm_smear *smear)
 {
     /* A chip is reduced to pixels of half a cell or more: below 2^18. */
     const uint32_t scale_q16 = (uint32_t)(((uint64_t)cell_mm << 16) / slot->pixel_mm);
     const struct rotation r = {fx_cos_q30(turn), fx_sin_q30(turn)};
-    const int32_t half_q16 = (int32_t)slot->side << 15;
-    const int32_t before_q16 = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
     lay->slot = slot;
     lay->right_q16[0] = lay->beyond_q16[1] = part(scale_q16, r.cos_q30);
     lay->beyond_q16[0] = part(scale_q16, r.sin_q30);
     lay->right_q16[1] = -lay->beyond_q16[0];
-    lay->origin_q16[0] = half_q16;
-    lay->origin_q16[1] = before_q16;
+    lay->origin_q16[0] = (int32_t)slot->side << 15;
+    lay->origin_q16[1] = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
     lay->lit = reach_of(lay, &slot->lit, &r, scale_q16);
     lay->dark = reach_of(lay, &slot->dark, &r, scale_q16);
-    lay->gain_q8 = 2 * (fx_db_q8_u64(scale_q16) - fx_db_q8_u64(65536));
+    widen(&lay->lit, smear);
+    lay->half_q8[0] = half_q8_of(scale_q16, smear->wide_q8);
+    lay->half_q8[1] = half_q8_of(scale_q16, smear->deep_q8);
+    lay->dark_half_q8 = half_q8_of(scale_q16, 256);
+    lay->gain_q8 = side_gain_q8(scale_q16, smear->wide_q8, lay->half_q8[0]) +
+                   side_gain_q8(scale_q16, smear->deep_q8, lay->half_q8[1]);
 }
 
-/* A place on the chip, pixels * 65536: column and row. */
-struct spot {
-    int32_t column_q16, row_q16;
+/* A box on the chip, pixels * 256: from edge [0] to edge [1]. */
+struct box {
+    uint32_t column_q8[2], row_q8[2];
 };
 
-/* Within the reach, which is some pixels more than the chip's 64 either way: below 2^24. */
-static struct spot spot_of(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8)
+/* The box around a place, as far as it lies on the chip. Within the reach, places are below 2^26 in
+ * Q16: some hundreds of pixels. */
+static struct box box_at(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8,
+                         int32_t half_columns_q8, int32_t half_rows_q8)
 {
-    int32_t at_q16[2];
+    const int32_t end_q8 = lay->slot->side * 256;
+    int32_t at_q8[2];
     for (int i = 0; i < 2; i++) {
-        at_q16[i] = lay->origin_q16[i] + (int32_t)(((int64_t)right_q8 * lay->right_q16[i] +
-                                                    (int64_t)beyond_q8 * lay->beyond_q16[i]) >>
-                                                   8);
+        const int64_t away_q24 =
+            (int64_t)right_q8 * lay->right_q16[i] + (int64_t)beyond_q8 * lay->beyond_q16[i];
+        at_q8[i] = (int32_t)((lay->origin_q16[i] + (away_q24 >> 8)) >> 8);
     }
-    return (struct spot){at_q16[0], at_q16[1]};
-}
-
-/* Four places in a cell, a quarter of it from its middle both ways: closer together than pixels
- * are, so that none is missed. */
-enum { PLACES = 4, QUARTER_Q8 = 64 };
-
-static void places_in(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8,
-                      struct spot place[PLACES])
-{
-    for (int32_t i = 0; i < PLACES; i++) {
-        place[i] = spot_of(lay, right_q8 + (i % 2 * 2 - 1) * QUARTER_Q8,
-                           beyond_q8 + (i / 2 * 2 - 1) * QUARTER_Q8);
+    struct box b;
+    for (int i = 0; i < 2; i++) {
+        const int32_t side = 2 * i - 1;
+        b.column_q8[i] = (uint32_t)fx_clamp_i32(at_q8[0] + side * half_columns_q8, 0, end_q8);
+        b.row_q8[i] = (uint32_t)fx_clamp_i32(at_q8[1] + side * half_rows_q8, 0, end_q8);
     }
+    return b;
 }
 
-/* The four pixels that a place lies between: the lower left of them, behind the border, and how
- * far on to the others it is. False beside the chip. */
-struct corner {
-    uint32_t column, row, right_q8, up_q8;
-};
-
-static bool find_corner(const struct lm_chip_slot *slot, struct spot at, struct corner *c)
+/* A row of sums at a column, times 256: up to 2^39. */
+static uint64_t at_column(const uint32_t row[LM_CHIP_ROOM], uint32_t column_q8)
 {
-    /* Pixel k has its middle at k + 1/2 and is number k + 1 of the row. */
-    const uint32_t column_q16 = (uint32_t)(at.column_q16 + 32768);
-    const uint32_t row_q16 = (uint32_t)(at.row_q16 + 32768);
-    *c = (struct corner){column_q16 >> 16, row_q16 >> 16, column_q16 >> 8 & 255u,
-                         row_q16 >> 8 & 255u};
-    return c->column <= slot->side && c->row <= slot->side;
+    const uint32_t column = column_q8 >> 8, on = column_q8 & 255;
+    return (uint64_t)row[column] * (256 - on) + (uint64_t)row[column + 1] * on;
 }
 
-/* Share of the total of two pixels side by side, weighted by nearness: Q40, below 2^40. */
-static uint64_t pair_q40(const uint16_t *amplitude_q16, uint32_t right_q8)
+/* What lies between the box's columns and before a row, times 65536: up to 2^47. */
+static uint64_t before_row(const uint32_t sum[][LM_CHIP_ROOM], const struct box *b, uint32_t row_q8)
 {
-    const uint32_t left = (uint32_t)amplitude_q16[0] * amplitude_q16[0];
-    const uint32_t right = (uint32_t)amplitude_q16[1] * amplitude_q16[1];
-    return (uint64_t)left * (256 - right_q8) + (uint64_t)right * right_q8;
+    const uint32_t row = row_q8 >> 8, on = row_q8 & 255;
+    const uint64_t near =
+        at_column(sum[row], b->column_q8[1]) - at_column(sum[row], b->column_q8[0]);
+    const uint64_t far =
+        at_column(sum[row + 1], b->column_q8[1]) - at_column(sum[row + 1], b->column_q8[0]);
+    return near * (256 - on) + far * on;
 }
 
-/* Share of the total a pixel, interpolated between the middles of four of them: Q48. */
-static uint64_t share_q48(const struct lm_chip_slot *slot, struct spot at)
+static uint64_t within(const uint32_t sum[][LM_CHIP_ROOM], const struct box *b)
 {
-    struct corner c;
-    if (!find_corner(slot, at, &c)) {
-        return 0;
-    }
-    const uint64_t near_q40 = pair_q40(&slot->amplitude_q16[c.row][c.column], c.right_q8);
-    const uint64_t far_q40 = pair_q40(&slot->amplitude_q16[c.row + 1][c.column], c.right_q8);
-    return near_q40 * (256 - c.up_q8) + far_q40 * c.up_q8;
-}
-
-/* The same of the shadow: 255 in Q16 for all of it. */
-static uint32_t shadow_q16(const struct lm_chip_slot *slot, struct spot at)
-{
-    struct corner c;
-    if (!find_corner(slot, at, &c)) {
-        return 0;
-    }
-    const uint8_t *near = &slot->shadow[c.row][c.column], *far = &slot->shadow[c.row + 1][c.column];
-    return (near[0] * (256 - c.right_q8) + near[1] * c.right_q8) * (256 - c.up_q8) +
-           (far[0] * (256 - c.right_q8) + far[1] * c.right_q8) * c.up_q8;
+    return before_row(sum, b, b->row_q8[1]) - before_row(sum, b, b->row_q8[0]);
 }
 
 int32_t lm_chip_cell_q8(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8)
 {
-    struct spot place[PLACES];
-    uint64_t sum_q50 = 0;
-    places_in(lay, right_q8, beyond_q8, place);
-    for (uint32_t i = 0; i < PLACES; i++) {
-        sum_q50 += share_q48(lay->slot, place[i]);
-    }
-    return sum_q50 == 0 ? LM_RCS_NONE_Q8
-                        : lay->slot->total_q8 + lay->gain_q8 + fx_db_q8_u64(sum_q50) -
-                              fx_db_q8_u64((uint64_t)1 << 50);
+    const struct box b = box_at(lay, right_q8, beyond_q8, lay->half_q8[0], lay->half_q8[1]);
+    const uint64_t power_q47 = within(lay->slot->power_q31, &b);
+    return power_q47 == 0 ? LM_RCS_NONE_Q8
+                          : lay->slot->total_q8 + lay->gain_q8 + fx_db_q8_u64(power_q47) -
+                                fx_db_q8_u64((uint64_t)1 << 47);
 }
 
 uint32_t lm_chip_cell_shadow(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8)
 {
-    struct spot place[PLACES];
-    uint32_t sum_q16 = 0;
-    places_in(lay, right_q8, beyond_q8, place);
-    for (uint32_t i = 0; i < PLACES; i++) {
-        sum_q16 += shadow_q16(lay->slot, place[i]);
-    }
-    return sum_q16 >> 16;
+    const int32_t half_q8 = lay->dark_half_q8;
+    const struct box b = box_at(lay, right_q8, beyond_q8, half_q8, half_q8);
+    const uint32_t area_q16 = 4 * (uint32_t)half_q8 * (uint32_t)half_q8;
+    return (uint32_t)(4 * within(lay->slot->shadow, &b) / area_q16);
 }

@@ -70,13 +70,12 @@ static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along
  * Q20: the sum of either over a chip fits 32 bits. */
 static uint32_t power_q31(const struct lm_chip_slot *slot, uint32_t row, uint32_t column)
 {
-    const uint32_t amplitude_q16 = slot->amplitude_q16[row + 1][column + 1];
-    return amplitude_q16 * amplitude_q16 >> 1;
+    return lm_chip_pixel(slot->power_q31, row, column);
 }
 
 static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t column)
 {
-    return slot->shadow[row + 1][column + 1] * 4112u;
+    return lm_chip_pixel(slot->shadow, row, column) * 4112u;
 }
 
 /* Add up, for each cell, what the pixels of a box count, by their nearness to the line: `off` is

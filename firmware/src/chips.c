@@ -195,7 +195,7 @@ static int32_t level_q8(uint64_t sum_q32)
                         : fx_db_q8_u64(sum_q32) - fx_db_q8_u64((uint64_t)1 << 32);
 }
 
-static int32_t total_q8(const struct lm_chip *chip)
+static uint64_t total_q32(const struct lm_chip *chip)
 {
     uint64_t sum_q32 = 0;
     for (uint32_t row = 0; row < LM_CHIP_SIDE; row++) {
@@ -203,7 +203,14 @@ static int32_t total_q8(const struct lm_chip *chip)
             sum_q32 += area_q32(chip->level[row][column]);
         }
     }
-    return level_q8(sum_q32);
+    return sum_q32;
+}
+
+/* A part of the total, Q31, to 2^-31 of it: both below 2^60, and cut alike until they fit. */
+static uint32_t share_q31(uint64_t part_q32, uint64_t total_q32)
+{
+    const uint32_t cut = total_q32 >> 32 == 0 ? 0 : 32 - (uint32_t)fx_clz64(total_q32);
+    return total_q32 == 0 ? 0 : (uint32_t)((part_q32 >> cut << 31) / (total_q32 >> cut));
 }
 
 static void widen(struct lm_chip_box *box, uint32_t row, uint32_t column)
@@ -215,11 +222,16 @@ static void widen(struct lm_chip_box *box, uint32_t row, uint32_t column)
     box->column_end = (uint8_t)fx_max_u32(box->column_end, column + 1);
 }
 
+/* What a pixel has, or the pixels of its row before it. */
+struct amount {
+    uint32_t power_q31, shadow;
+};
+
 /* One pixel of the reduced chip from those of the chip that it takes the place of. */
-static void reduce_pixel(struct lm_chip_slot *slot, const struct lm_chip *chip, uint32_t row,
-                         uint32_t column)
+static struct amount reduce_pixel(const struct lm_chips *c, uint32_t row, uint32_t column)
 {
-    const uint32_t shift = slot->key.shift, side = 1u << shift;
+    const struct lm_chip *chip = &c->stage;
+    const uint32_t shift = c->busy->key.shift, side = 1u << shift;
     uint64_t sum_q32 = 0;
     uint32_t dark = 0;
     for (uint32_t r = row << shift; r < (row << shift) + side; r++) {
@@ -228,15 +240,25 @@ static void reduce_pixel(struct lm_chip_slot *slot, const struct lm_chip *chip, 
             dark += (uint32_t)chip->shadow[r][k / 8] >> k % 8 & 1u;
         }
     }
-    const int32_t below_q8 = level_q8(sum_q32) - slot->total_q8;
-    const uint32_t amplitude_q16 = sum_q32 == 0 ? 0 : fx_power_q16_from_db_q8(below_q8 / 2);
-    if (amplitude_q16 != 0) {
-        slot->amplitude_q16[row + 1][column + 1] = (uint16_t)fx_min_u32(amplitude_q16, UINT16_MAX);
-        widen(&slot->lit, row, column);
-    }
-    if (dark != 0) {
-        slot->shadow[row + 1][column + 1] = (uint8_t)(dark * 255 >> 2 * shift);
-        widen(&slot->dark, row, column);
+    return (struct amount){share_q31(sum_q32, c->total_q32), dark * 255 >> 2 * shift};
+}
+
+static void reduce_row(struct lm_chips *c, uint32_t row)
+{
+    struct lm_chip_slot *slot = c->busy;
+    struct amount before = {0, 0};
+    for (uint32_t column = 0; column < slot->side; column++) {
+        const struct amount pixel = reduce_pixel(c, row, column);
+        before.power_q31 += pixel.power_q31;
+        before.shadow += pixel.shadow;
+        slot->power_q31[row + 1][column + 1] = slot->power_q31[row][column + 1] + before.power_q31;
+        slot->shadow[row + 1][column + 1] = slot->shadow[row][column + 1] + before.shadow;
+        if (pixel.power_q31 != 0) {
+            widen(&slot->lit, row, column);
+        }
+        if (pixel.shadow != 0) {
+            widen(&slot->dark, row, column);
+        }
     }
 }
 
@@ -246,9 +268,7 @@ static void reduce_rows(struct lm_chips *c)
     struct lm_chip_slot *slot = c->busy;
     const uint32_t end = slot->rows_ready + ((uint32_t)ROWS_A_STEP >> slot->key.shift);
     for (; slot->rows_ready < end; slot->rows_ready++) {
-        for (uint32_t column = 0; column < slot->side; column++) {
-            reduce_pixel(slot, &c->stage, slot->rows_ready, column);
-        }
+        reduce_row(c, slot->rows_ready);
     }
     if (slot->rows_ready == slot->side) {
         c->count.read++;
@@ -268,7 +288,8 @@ static void take_read(struct lm_chips *c)
         c->count.corrupt++;
         finish(c, LM_CHIP_BAD);
     } else {
-        slot->total_q8 = total_q8(&c->stage);
+        c->total_q32 = total_q32(&c->stage);
+        slot->total_q8 = level_q8(c->total_q32);
     }
 }
 

@@ -132,7 +132,8 @@ static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot,
     chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
     chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
                                        at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
-    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256));
+    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256),
+                    &p->smear[point->target]);
     point->is_chip = true;
 }
 
@@ -304,11 +305,18 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
 
 /* ---- chips ---- */
 
-/* The cells of a line that a chip may reach, its origin at `across_q8` and where the point is. */
+/* Where a chip's origin lies, cells * 256. */
+struct origin {
+    int32_t across_q8, along_q8;
+};
+
+/* The cells of a line that a chip may reach. */
 static struct span cells_under(const struct lm_chip_reach *reach, const struct lm_patch_point *at,
-                               int32_t across_q8, uint32_t line, const struct lm_patch_geometry *g)
+                               const struct origin *origin, uint32_t line,
+                               const struct lm_patch_geometry *g)
 {
-    const int32_t middle = cell_at(at->along_q8), aside = (int32_t)line - cell_at(across_q8);
+    const int32_t middle = cell_at(origin->along_q8);
+    const int32_t aside = (int32_t)line - cell_at(origin->across_q8);
     if (at->is_hidden || aside < reach->right || aside >= reach->right_end) {
         return (struct span){0, 0};
     }
@@ -323,15 +331,37 @@ void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
     for (uint32_t k = 0; k < p->chip_count; k++) {
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
-        const int32_t right_q8 = (int32_t)line * 256 - chip->shadow_across_q8;
-        const struct span under = cells_under(&chip->lay.dark, at, chip->shadow_across_q8, line, g);
+        const struct origin origin = {chip->shadow_across_q8, at->along_q8};
+        const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
+        const struct span under = cells_under(&chip->lay.dark, at, &origin, line, g);
         for (int32_t i = under.first; i < under.end; i++) {
-            const uint32_t dark = lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - at->along_q8);
+            const uint32_t dark =
+                lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - origin.along_q8);
             level_q8[i] = dark == LM_CHIP_SHADOW_ALL
                               ? LM_LEVEL_SHADOW
                               : level_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
         }
     }
+}
+
+/* Add one slice of a chip's smear to a line, if it is not more than `room` cells. Returns how many
+ * it is. */
+static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_point *at,
+                          const struct slice *slice, uint32_t line, uint32_t room,
+                          const struct lm_patch_geometry *g, int32_t *level_q8)
+{
+    const struct origin origin = {at->across_q8 + slice->across_q8, at->along_q8 + slice->along_q8};
+    const struct span under = cells_under(&chip->lay.lit, at, &origin, line, g);
+    const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
+    const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
+    for (int32_t i = under.first; i < under.end && cells <= room; i++) {
+        const int32_t rcs_q8 = lm_chip_cell_q8(&chip->lay, right_q8, i * 256 - origin.along_q8);
+        if (rcs_q8 > LM_RCS_NONE_Q8) {
+            level_q8[i] =
+                fx_db_q8_sum_of_many(level_q8[i], rcs_q8 + slice->share_q8 - chip->area_q8);
+        }
+    }
+    return cells;
 }
 
 uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
@@ -341,19 +371,12 @@ uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
     for (uint32_t k = 0; k < p->chip_count; k++) {
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
-        const struct span under = cells_under(&chip->lay.lit, at, at->across_q8, line, g);
-        const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
-        if (cells > room) {
-            left_out += cells;
-            continue;
-        }
-        room -= cells;
-        for (int32_t i = under.first; i < under.end; i++) {
-            const int32_t rcs_q8 = lm_chip_cell_q8(&chip->lay, (int32_t)line * 256 - at->across_q8,
-                                                   i * 256 - at->along_q8);
-            if (rcs_q8 > LM_RCS_NONE_Q8) {
-                level_q8[i] = fx_db_q8_sum_of_many(level_q8[i], rcs_q8 - chip->area_q8);
-            }
+        const struct lm_smear *smear = &p->smear[at->target];
+        for (uint32_t number = 0; number < smear->slices; number++) {
+            const struct slice slice = slice_of(smear, number);
+            const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_q8);
+            left_out += cells > room ? cells : 0;
+            room -= cells > room ? 0 : cells;
         }
     }
     return left_out;

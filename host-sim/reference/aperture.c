@@ -2,7 +2,9 @@
  * aperture". */
 #include "reference.h"
 
+#include <complex.h>
 #include <math.h>
+#include <stdlib.h>
 
 static const double pi = 3.14159265358979323846, rad = 3.14159265358979323846 / 180;
 
@@ -87,12 +89,65 @@ double ref_taylor_weight(const struct ref_taylor *t, double u)
     return sum;
 }
 
+static const struct ref_taylor patch_taylor = {35, 4};
+
+/* Of the response over all cells, the peak being 1. */
+static double patch_energy(void)
+{
+    double energy = 1;
+    for (int m = 1; m < patch_taylor.nbar; m++) {
+        energy += 2 * pow(taylor_coefficient(&patch_taylor, m), 2);
+    }
+    return energy;
+}
+
 double ref_point_response(double x)
 {
-    static const struct ref_taylor taylor = {35, 4};
-    double energy = 1;
-    for (int m = 1; m < taylor.nbar; m++) {
-        energy += 2 * pow(taylor_coefficient(&taylor, m), 2);
+    return ref_taylor_amplitude(&patch_taylor, x) / sqrt(patch_energy());
+}
+
+enum { PULSES = 400 };
+
+/* The echo of each pulse in a cell: the point's range response, as far as it has gone by then. */
+static void echoes(const struct ref_mover *m, double cell, double echo[PULSES])
+{
+    for (int n = 0; n < PULSES; n++) {
+        const double u = (n + 0.5) / PULSES - 0.5;
+        echo[n] = ref_taylor_weight(&patch_taylor, u) *
+                  ref_point_response(cell - m->cell - m->along * u) / PULSES;
     }
-    return ref_taylor_amplitude(&taylor, x) / sqrt(energy);
+}
+
+/* What the sum for a line turns each pulse by, as the point's displacement drifts. */
+static void turns(const struct ref_mover *m, double line, double complex turn[PULSES])
+{
+    for (int n = 0; n < PULSES; n++) {
+        const double u = (n + 0.5) / PULSES - 0.5;
+        turn[n] = cexp(2 * pi * I * (m->across * u * u / 2 - (line - m->line) * u));
+    }
+}
+
+int ref_add_mover(const struct ref_mover *m, size_t lines, size_t cells, double *power)
+{
+    double(*echo)[PULSES] = malloc(cells * sizeof *echo);
+    double complex turn[PULSES];
+    const double energy = patch_energy();
+    if (!echo) {
+        return -1;
+    }
+    for (size_t i = 0; i < cells; i++) {
+        echoes(m, (double)i, echo[i]);
+    }
+    for (size_t k = 0; k < lines; k++) {
+        turns(m, (double)k, turn);
+        for (size_t i = 0; i < cells; i++) {
+            double complex sum = 0;
+            for (int n = 0; n < PULSES; n++) {
+                sum += echo[i][n] * turn[n];
+            }
+            power[k * cells + i] += m->power * creal(sum * conj(sum)) / energy;
+        }
+    }
+    free(echo);
+    return 0;
 }

@@ -45,20 +45,6 @@ static void pixel_at(const struct ref_chip *c, double right_m, double beyond_m, 
     *row = c->origin_row + (beyond_m * cosine - right_m * sine) / c->pixel_m;
 }
 
-/* Square metres of cross section a block of pixels, between the middles of four of them. */
-static double interpolated_m2(const struct ref_chip *c, int block, double right_m, double beyond_m)
-{
-    double column, row;
-    pixel_at(c, right_m, beyond_m, &column, &row);
-    const double x = column / block - 0.5, y = row / block - 0.5;
-    const int left = (int)floor(x), low = (int)floor(y);
-    const double fx = x - left, fy = y - low;
-    return (1 - fy) * ((1 - fx) * block_m2(c->chip, block, low, left) +
-                       fx * block_m2(c->chip, block, low, left + 1)) +
-           fy * ((1 - fx) * block_m2(c->chip, block, low + 1, left) +
-                 fx * block_m2(c->chip, block, low + 1, left + 1));
-}
-
 static double shadow_at(const struct ref_chip *c, double right_m, double beyond_m)
 {
     double column, row;
@@ -74,16 +60,84 @@ static double step_m(int i, double cell_m)
     return ((i + 0.5) / STEPS - 0.5) * cell_m;
 }
 
+/* A polygon in columns and rows. */
+enum { CORNERS_MOST = 8 };
+struct polygon {
+    int count;
+    double at[CORNERS_MOST][2];
+};
+
+/* The part of a convex polygon where column or row (`axis`) is beyond `edge`, or, sign -1, before.
+ */
+static struct polygon cut(const struct polygon *p, int axis, double sign, double edge)
+{
+    struct polygon left = {0};
+    for (int i = 0; i < p->count; i++) {
+        const double *a = p->at[i], *b = p->at[(i + 1) % p->count];
+        const double in_a = sign * (a[axis] - edge), in_b = sign * (b[axis] - edge);
+        if (in_a >= 0) {
+            left.at[left.count][0] = a[0];
+            left.at[left.count++][1] = a[1];
+        }
+        if ((in_a >= 0) != (in_b >= 0)) {
+            const double t = in_a / (in_a - in_b);
+            left.at[left.count][0] = a[0] + t * (b[0] - a[0]);
+            left.at[left.count++][1] = a[1] + t * (b[1] - a[1]);
+        }
+    }
+    return left;
+}
+
+static double area_of(const struct polygon *p)
+{
+    double twice = 0;
+    for (int i = 0; i < p->count; i++) {
+        const double *a = p->at[i], *b = p->at[(i + 1) % p->count];
+        twice += a[0] * b[1] - a[1] * b[0];
+    }
+    return fabs(twice) / 2;
+}
+
+/* The part of a pixel that lies under a polygon. */
+static double overlap(const struct polygon *p, int column, int row)
+{
+    struct polygon part = cut(p, 0, 1, column);
+    part = cut(&part, 0, -1, column + 1);
+    part = cut(&part, 1, 1, row);
+    part = cut(&part, 1, -1, row + 1);
+    return area_of(&part);
+}
+
+static double lowest(const struct polygon *p, int axis)
+{
+    return fmin(fmin(p->at[0][axis], p->at[1][axis]), fmin(p->at[2][axis], p->at[3][axis]));
+}
+
+static double highest(const struct polygon *p, int axis)
+{
+    return fmax(fmax(p->at[0][axis], p->at[1][axis]), fmax(p->at[2][axis], p->at[3][axis]));
+}
+
 double ref_chip_cell_m2(const struct ref_chip *c, int block, double right_m, double beyond_m,
                         double cell_m)
 {
-    const double blocks_a_step = pow(cell_m / STEPS / (c->pixel_m * block), 2);
+    static const double corner[4][2] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    const double side_m = fmax(cell_m, c->pixel_m * block);
+    struct polygon box = {.count = 4};
     double sum = 0;
-    for (int i = 0; i < STEPS * STEPS; i++) {
-        sum += interpolated_m2(c, block, right_m + step_m(i % STEPS, cell_m),
-                               beyond_m + step_m(i / STEPS, cell_m));
+    for (int i = 0; i < 4; i++) {
+        pixel_at(c, right_m + corner[i][0] * side_m, beyond_m + corner[i][1] * side_m,
+                 &box.at[i][0], &box.at[i][1]);
+        box.at[i][0] /= block;
+        box.at[i][1] /= block;
     }
-    return sum * blocks_a_step;
+    for (int row = (int)floor(lowest(&box, 1)); row < highest(&box, 1); row++) {
+        for (int column = (int)floor(lowest(&box, 0)); column < highest(&box, 0); column++) {
+            const double m2 = block_m2(c->chip, block, row, column);
+            sum += m2 == 0 ? 0 : m2 * overlap(&box, column, row);
+        }
+    }
+    return sum * pow(cell_m / side_m, 2);
 }
 
 double ref_chip_cell_shadow(const struct ref_chip *c, double right_m, double beyond_m,

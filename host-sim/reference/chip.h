@@ -14,8 +14,8 @@ struct ref_chip {
 double ref_chip_total_m2(const struct lm_chip *chip);
 
 /* Cross section, m^2, of a square cell whose middle is so far to the right of the target's origin,
- * as the radar looks, and beyond it: the integral over the cell of what is interpolated between
- * the middles of `block` x `block` pixels made one. */
+ * as the radar looks, and beyond it: that of the pixels under it, `block` x `block` of them made
+ * one. A cell that is smaller than such a pixel shows the mean of a square as large. */
 double ref_chip_cell_m2(const struct ref_chip *c, int block, double right_m, double beyond_m,
                         double cell_m);
 

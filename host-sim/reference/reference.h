@@ -429,6 +429,16 @@ double ref_taylor_amplitude(const struct ref_taylor *t, double x);
  * Both ways multiply. */
 double ref_point_response(double x);
 
+/* A point of a patch that moves: where it appears in the middle of the dwell, how far, in cells,
+ * its displacement drifts across and it goes itself away from the radar until the dwell's end. */
+struct ref_mover {
+    double line, cell, across, along, power;
+};
+
+/* Add what the aperture makes of it to `power`, lines x cells: its echoes, weighed and summed with
+ * the phase of each line. 0, or -1 without memory. */
+int ref_add_mover(const struct ref_mover *m, size_t lines, size_t cells, double *power);
+
 /* ---- whole pictures (picture.c) ---- */
 
 struct ref_picture {

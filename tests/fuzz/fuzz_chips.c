@@ -47,7 +47,7 @@ static void take_look(struct world *w, struct fuzz_supply *s)
                                    .longitude = fuzz_u32(s),
                                    .heading = fuzz_u32(s),
                                    .flags = LM_TARGET_HAS_SIGNATURE,
-                                   .speed_mm_s = fuzz_u8(s),
+                                   .speed_mm_s = fuzz_u8(s) * 64u,
                                    .leg_m = 1};
     w->cell_mm = 500 + fuzz_u16(s) % 39500;
     w->look = fuzz_u32(s);
@@ -109,7 +109,8 @@ static void draw_patch(struct world *w)
                                         .guard = 4,
                                         .heights = {3000 * 1024, 0},
                                         .wavelength_um = 31228,
-                                        .across_mm_s = 200000};
+                                        .across_mm_s = 200000,
+                                        .dwell_ms = 4000};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     lm_patch_points_set(&w->points, &w->near, &g);
     for (uint32_t k = 0; k < LINES; k++) {

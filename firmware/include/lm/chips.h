@@ -10,7 +10,9 @@
 #include "lm/target_view.h"
 #include "lm/tile_cache.h"
 
-enum { LM_CHIP_ROOM = LM_CHIP_SIDE + 2 }; /* a border of nothing all around */
+/* Entries of a row and rows of the sums below: one more than pixels, and one that is read but
+ * counts nothing. */
+enum { LM_CHIP_ROOM = LM_CHIP_SIDE + 2 };
 
 enum lm_chip_state { LM_CHIP_FREE = 0, LM_CHIP_WANTED, LM_CHIP_RESIDENT, LM_CHIP_BAD };
 
@@ -34,17 +36,27 @@ struct lm_chip_slot {
     uint32_t pixel_mm;            /* after the reduction */
     int32_t total_q8;             /* cross section of it all, dBsm * 256 */
     struct lm_chip_box lit, dark; /* pixels with power, and with shadow */
-    /* Root of a pixel's share of the total, 65535 / 65536 at the most, and the share of its ground
-     * that lies in shadow, 255 for all; pixel (row, column) is [row + 1][column + 1]. */
-    uint16_t amplitude_q16[LM_CHIP_ROOM][LM_CHIP_ROOM];
-    uint8_t shadow[LM_CHIP_ROOM][LM_CHIP_ROOM];
+    /* Sums over the pixels in the rows before `row` and the columns before `column`, at
+     * [row][column]: what lies in any box is had from its four corners. Shares of the total, 2^31
+     * for all of it at the most, and ground in shadow, 255 for all of a pixel. */
+    uint32_t power_q31[LM_CHIP_ROOM][LM_CHIP_ROOM];
+    uint32_t shadow[LM_CHIP_ROOM][LM_CHIP_ROOM];
 };
+
+/* What one pixel has of either sum. */
+static inline uint32_t lm_chip_pixel(const uint32_t sum[][LM_CHIP_ROOM], uint32_t row,
+                                     uint32_t column)
+{
+    return sum[row + 1][column + 1] - sum[row][column + 1] - sum[row + 1][column] +
+           sum[row][column];
+}
 
 struct lm_chips {
     const struct lm_db *db; /* borrowed */
     struct lm_chip_slot slots[LM_CHIPS_MAX];
     const struct lm_signature *signatures; /* borrowed: those of the targets */
-    struct lm_chip stage;                  /* what was read last */
+    struct lm_chip stage;                  /* what was read last, */
+    uint64_t total_q32;                    /* and its cross section, m2 */
     struct lm_guest_read read;
     struct lm_chip_slot *busy; /* being read or reduced; NULL when idle */
     bool is_reading;

@@ -30,7 +30,7 @@ _Static_assert(LM_TILE_SLOTS_MAX >= 16 && LM_TILE_SLOTS_MAX <= 4096,
 #endif
 _Static_assert(LM_TARGETS_MAX >= 1 && LM_TARGETS_MAX <= 1024, "LM_TARGETS_MAX out of range");
 
-/* Signatures of the image that are held in memory, 1152 bytes each, and chips of them, 13 kB each,
+/* Signatures of the image that are held in memory, 1152 bytes each, and chips of them, 35 kB each,
  * that one sweep or patch may show. 1..16 and 1..64. */
 #ifndef LM_SIGNATURES_MAX
 #define LM_SIGNATURES_MAX 16

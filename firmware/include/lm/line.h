@@ -35,7 +35,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
                                lm_horizon_q40_t horizon);
 
 /* Add what targets return. Behind speckle, which belongs to the clutter: what a target
- * returns is its own. */
+ * returns is its own, and a chip brings its cells' speckle along. */
 void lm_line_add_targets(struct lm_line *line, const struct lm_line_setup *setup,
                          const struct lm_line_targets *targets);
 

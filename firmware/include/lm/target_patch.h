@@ -81,15 +81,15 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 
 /* Put the ground of line `line` that lies in the chips' shadows into the dark: behind layover,
- * before speckle and noise. A hidden target throws none. Cost: 100 instructions for each cell under
+ * before speckle and noise. A hidden target throws none. Cost: 200 instructions for each cell under
  * a chip. */
 void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
                           const struct lm_patch_geometry *g, int32_t *level_q8);
 
-/* Add the chips to the levels of line `line`, whose shadows are in. A chip is the mean of many
- * scatterers in every pixel, unlike a point: speckle and noise come behind it. Returns how many
- * cells were left out to bound the cost: 250 instructions for each cell under a chip, of
- * LM_CHIP_CELLS_A_LINE at most. */
+/* Add the chips to the levels of line `line`, whose shadows are in, each slice of a mover's smear
+ * by itself. A chip is the mean of many scatterers in every pixel, unlike a point: speckle and
+ * noise come behind it. Returns how many cells were left out to bound the cost: 250 instructions
+ * for each cell under a slice, of LM_CHIP_CELLS_A_LINE at most. */
 uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
                             const struct lm_patch_geometry *g, int32_t *level_q8);
 

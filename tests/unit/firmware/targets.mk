@@ -1,6 +1,6 @@
 # Specific targets, against their double-precision reference.
 TARGET_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_rcs test_target test_target_line test_target_picture \
-    test_mover test_target_patch test_signature test_signature_picture)
+    test_mover test_target_patch test_signature test_signature_picture test_signature_smear)
 TESTS += $(TARGET_TESTS)
 $(TARGET_TESTS:$(O)/bin/%=$(O)/%.o): EXTRA_CFLAGS := -Ihost-sim/reference
 $(TARGET_TESTS): $(O)/bin/tests/unit/firmware/%: $(O)/tests/unit/firmware/%.o $(TEST_SUPPORT) $(O)/tests/support/tiny_image.o \

@@ -4,6 +4,7 @@
 #include "hs/angle.h"
 #include "lm/target_patch.h"
 
+#include "extent.h"
 #include "lm/aspect.h"
 #include "reference.h"
 #include "target_support.h"
@@ -341,72 +342,6 @@ static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
     }
 }
 
-/* Where the power of a picture lies: cells between which its middle 80 % are, across and along, the
- * correlation of both, and all of it. */
-struct extent {
-    double across, along, correlation, sum;
-};
-
-static double middle_80(const double *power, int count)
-{
-    double all = 0, sum = 0, from = 0, to = 0;
-    for (int i = 0; i < count; i++) {
-        all += power[i];
-    }
-    for (int i = 0; i < count; i++) {
-        const double before = sum;
-        sum += power[i];
-        if (before < 0.1 * all && sum >= 0.1 * all) {
-            from = i + (0.1 * all - before) / power[i];
-        }
-        if (before < 0.9 * all && sum >= 0.9 * all) {
-            to = i + (0.9 * all - before) / power[i];
-        }
-    }
-    return to - from;
-}
-
-static struct extent extent_of(double power[LINES][CELLS])
-{
-    double lines[LINES] = {0}, cells[CELLS] = {0}, sum = 0;
-    double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-    for (int k = 0; k < LINES; k++) {
-        for (int i = 0; i < CELLS; i++) {
-            const double p = power[k][i];
-            lines[k] += p, cells[i] += p, sum += p;
-            x += p * k, y += p * i, xx += p * k * k, yy += p * i * i, xy += p * k * i;
-        }
-    }
-    x /= sum, y /= sum;
-    return (struct extent){middle_80(lines, LINES), middle_80(cells, CELLS),
-                           (xy / sum - x * y) / sqrt((xx / sum - x * x) * (yy / sum - y * y)), sum};
-}
-
-/* The picture that the aperture makes of a point in line 64 and cell 70 whose place moves `across`
- * cells and which itself goes `along` cells during the dwell: its echoes, weighed and summed with
- * the phase of each line. */
-static void focus(double across, double along, double power[LINES][CELLS])
-{
-    enum { PULSES = 400 };
-    const struct ref_taylor weighting = {35, 4};
-    for (int i = 0; i < CELLS; i++) {
-        double echo[PULSES];
-        for (int n = 0; n < PULSES; n++) {
-            const double u = (n + 0.5) / PULSES - 0.5;
-            echo[n] = ref_taylor_weight(&weighting, u) *
-                      ref_point_response(i - (GUARD + 70) - along * u) / PULSES;
-        }
-        for (int k = 0; k < LINES; k++) {
-            double complex sum = 0;
-            for (int n = 0; n < PULSES; n++) {
-                const double u = (n + 0.5) / PULSES - 0.5;
-                sum += echo[n] * cexp(2 * pi * I * (across * u * u / 2 - (k - 64) * u));
-            }
-            power[k][i] = creal(sum * conj(sum));
-        }
-    }
-}
-
 static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **state)
 {
     (void)state;
@@ -435,8 +370,11 @@ static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **s
             }
         }
         const double drift = (2 * right - right * right / flies_m_s) * 2 / cell_m;
-        focus(drift, -closing * 2 / cell_m, wanted);
-        const struct extent is = extent_of(found), should = extent_of(wanted);
+        const struct ref_mover mover = {64, GUARD + 70, drift, -closing * 2 / cell_m, 1};
+        memset(wanted, 0, sizeof wanted);
+        assert_int_equal(ref_add_mover(&mover, LINES, CELLS, wanted[0]), 0);
+        const struct extent is = extent_of(found[0], LINES, CELLS);
+        const struct extent should = extent_of(wanted[0], LINES, CELLS);
         const double lost_db = 10 * log10(is.sum) - level_db(35, 70);
         print_message(
             "# smeared %.1f and %.1f cells: %.1f x %.1f, %.2f; wanted %.1f x %.1f, %.2f; "
