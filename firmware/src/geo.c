@@ -1,5 +1,7 @@
 #include "lm/geo.h"
 
+#include <stdbool.h>
+
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -9,6 +11,11 @@
 static const int64_t semi_major_q8 = 6378137LL * 256;
 static const int64_t eccentricity2_q30 =
     7188035; /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
+
+/* 2^32 / (2 pi), rounded: 683,565,275.6. */
+enum { BAM_PER_RADIAN = 683565276, FARTHEST_Q8 = 300000 * 256 };
+
+static const int64_t one_q32 = 1LL << 32;
 
 static int64_t mul_q30(int64_t a, int64_t b_q30)
 {
@@ -39,33 +46,90 @@ void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place)
     o->z_q8 = (int32_t)mul_q30(mul_q30(n_q8, one_q30 - eccentricity2_q30), o->sin_q30);
 }
 
-struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, uint32_t distance_q8)
+void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth)
 {
-    const int64_t one_q30 = 1 << 30;
     const int64_t sin_az = fx_sin_q30(azimuth), cos_az = fx_cos_q30(azimuth);
     /* Euler: the curvature at an azimuth, from the two principal radii. */
     const int64_t n_q8 = o->prime_vertical_radius_q8, m_q8 = o->meridian_radius_q8;
     const int64_t mix_q8 =
         mul_q30(n_q8, mul_q30(cos_az, cos_az)) + mul_q30(m_q8, mul_q30(sin_az, sin_az));
     const int64_t radius_q8 = m_q8 * n_q8 / mix_q8; /* 2^31 * 2^31 */
-    /* 2^32 / (2 pi) = 683,565,275.6; the arc is below 300 km, 0.05 rad, so 2^27 * 2^30 at the most.
-     */
-    const fx_bam_t arc = (fx_bam_t)(((int64_t)distance_q8 * 683565276) / radius_q8);
-    const int64_t sin_arc = fx_sin_q30(arc);
-    const int64_t half = fx_sin_q30(arc / 2);
-    const int64_t forward_q8 = mul_q30(radius_q8, sin_arc);
-    const int64_t down_q8 = 2 * mul_q30(radius_q8, mul_q30(half, half));
-    const int64_t north_q8 = mul_q30(forward_q8, cos_az);
-    const int64_t east_q8 = mul_q30(forward_q8, sin_az);
+    r->origin = o;
+    r->sin_q30 = (int32_t)sin_az;
+    r->cos_q30 = (int32_t)cos_az;
+    r->per_radius_q62 = ((int64_t)1 << 62) / radius_q8; /* 2^31.4 */
+}
+
+/* Whether the point (x, y) is seen from the origin so close to the x axis that small_angle will do:
+ * it is, but near a pole. */
+static bool is_near_axis(int64_t x_q8, int64_t y_q8)
+{
+    return x_q8 > 0 && (y_q8 < 0 ? -y_q8 : y_q8) <= x_q8 >> 4;
+}
+
+/* The angle whose tangent is t, up to 1/16: t - t^3 / 3 + t^5 / 5, short of it by 6e-10 at most. */
+static inline fx_bam_t small_angle(int64_t t_q32)
+{
+    const int64_t third_q32 = 1431655765, fifth_q32 = 858993459;
+    const int64_t square_q32 = t_q32 * t_q32 >> 32;
+    const int64_t bend_q32 = square_q32 * (third_q32 - (square_q32 * fifth_q32 >> 32)) >> 32;
+    const int64_t radians_q32 = t_q32 - (t_q32 * bend_q32 >> 32);
+    return (fx_bam_t)(radians_q32 * BAM_PER_RADIAN >> 32);
+}
+
+/* The angle of the point (x, y) from the x axis, and how far it is from the origin. Coordinates are
+ * below 2^31. */
+static inline fx_bam_t polar_of(int64_t x_q8, int64_t y_q8, int64_t *radius_q8)
+{
+    if (!is_near_axis(x_q8, y_q8)) {
+        *radius_q8 = fx_hypot_u32((int32_t)x_q8, (int32_t)y_q8);
+        return fx_atan2((int32_t)y_q8, (int32_t)x_q8);
+    }
+    /* With t = y / x, up to 1/16, the root of x^2 + y^2 is x + y t / 2 (1 - t^2 / 4 + ...), 2 cm
+     * too short at most. */
+    const int64_t t_q32 = y_q8 * one_q32 / x_q8, square_q32 = t_q32 * t_q32 >> 32;
+    const int64_t more_q8 = y_q8 * t_q32 >> 33;
+    *radius_q8 = x_q8 + more_q8 - (more_q8 * square_q32 >> 34);
+    return small_angle(t_q32);
+}
+
+struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8)
+{
+    const struct lm_geo_origin *const o = r->origin;
+    const int64_t one_q30 = 1 << 30, sixth_q32 = 715827883, twentieth_q32 = 214748365;
+    /* The arc a = s / R, below 0.05: 2^27 * 2^31.4 before the shift, 2^28 behind it. Forward is
+     * R sin a = s - s a^2 / 6 (1 - a^2 / 20), down R (1 - cos a) = s a / 2 (1 - a^2 / 12). */
+    const int64_t s_q8 = fx_min_u32(distance_q8, FARTHEST_Q8);
+    const int64_t arc_q32 = s_q8 * r->per_radius_q62 >> 30;
+    const int64_t square_q32 = arc_q32 * arc_q32 >> 32;
+    const int64_t short_q32 = square_q32 * sixth_q32 >> 32;
+    const int64_t forward_q8 =
+        s_q8 - (s_q8 * (short_q32 - (short_q32 * (square_q32 * twentieth_q32 >> 32) >> 32)) >> 32);
+    const int64_t chord_q8 = s_q8 * arc_q32 >> 33;
+    const int64_t down_q8 = chord_q8 - (chord_q8 * (short_q32 / 2) >> 32);
+    const int64_t north_q8 = mul_q30(forward_q8, r->cos_q30);
+    const int64_t east_q8 = mul_q30(forward_q8, r->sin_q30);
 
     const int64_t x_q8 = o->x_q8 - mul_q30(north_q8, o->sin_q30) - mul_q30(down_q8, o->cos_q30);
     const int64_t z_q8 = o->z_q8 + mul_q30(north_q8, o->cos_q30) - mul_q30(down_q8, o->sin_q30);
-    const uint32_t axis_q8 = fx_hypot_u32((int32_t)x_q8, (int32_t)east_q8);
+    int64_t axis_q8, centre_q8;
+    const fx_bam_t east = polar_of(x_q8, east_q8, &axis_q8);
     const int64_t flattened_q8 = mul_q30(axis_q8, one_q30 - eccentricity2_q30);
+    /* The latitude's tangent is z / flattened. Seen from the origin's latitude it is small:
+     * products below 2^62. */
+    const int64_t along_q8 = (flattened_q8 * o->cos_q30 + z_q8 * o->sin_q30) >> 30;
+    const int64_t beside_q8 = (z_q8 * o->cos_q30 - flattened_q8 * o->sin_q30) >> 30;
     return (struct lm_place){
-        .latitude = fx_atan2((int32_t)z_q8, (int32_t)flattened_q8),
-        .longitude = o->place.longitude + fx_atan2((int32_t)east_q8, (int32_t)x_q8),
+        .latitude = o->place.latitude + polar_of(along_q8, beside_q8, &centre_q8),
+        .longitude = o->place.longitude + east,
     };
+}
+
+struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, uint32_t distance_q8)
+{
+    struct lm_geo_ray ray;
+    lm_geo_set_ray(&ray, o, azimuth);
+    return lm_geo_along(&ray, distance_q8);
 }
 
 /* difference / cells in units of 2^-32, modulo 2^64: whole part first, so that nothing overflows on
@@ -73,7 +137,7 @@ struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, u
 static int64_t per_cell(int64_t difference, int64_t cells)
 {
     const int64_t whole = difference / cells, rest = difference % cells;
-    return (int64_t)((uint64_t)whole << 32) + rest * (1LL << 32) / cells;
+    return (int64_t)((uint64_t)whole << 32) + rest * one_q32 / cells;
 }
 
 /* One coordinate of the parabola through (0, a), (1/2, b), (1, c), sampled at (i + 1/2) / cells.

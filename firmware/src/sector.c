@@ -230,6 +230,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     const int32_t reference_q10 = reference_q10_of(tiles, s->sampling.level, platform->place);
     s->up = platform->heading;
     s->platform = *platform;
+    lm_geo_set_origin(&s->origin, platform->place);
     if (s->half_m != 0) {
         set_window(s, platform, platform->height_q10 - reference_q10);
     } else {
@@ -281,30 +282,29 @@ static int32_t middle_of(const struct lm_sector *s, uint32_t line)
 /* ---- samples ---- */
 
 /* A path of `cells` equal cells outwards from `from_q8` to `to_q8`. */
-static struct lm_ground_path path_of(const struct lm_geo_origin *origin, fx_bam_t azimuth,
-                                     uint32_t from_q8, uint32_t to_q8, uint32_t cells)
+static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from_q8, uint32_t to_q8,
+                                     uint32_t cells)
 {
     struct lm_ground_path path;
     const struct lm_place points[3] = {
-        from_q8 ? lm_geo_direct(origin, azimuth, from_q8) : origin->place,
-        lm_geo_direct(origin, azimuth, from_q8 + (to_q8 - from_q8) / 2),
-        lm_geo_direct(origin, azimuth, to_q8),
+        from_q8 ? lm_geo_along(ray, from_q8) : ray->origin->place,
+        lm_geo_along(ray, from_q8 + (to_q8 - from_q8) / 2),
+        lm_geo_along(ray, to_q8),
     };
     lm_ground_path_fit(&path, points, cells);
     return path;
 }
 
-static struct lm_ground_path sample_path(const struct lm_sector *s,
-                                         const struct lm_geo_origin *origin, fx_bam_t azimuth)
+static struct lm_ground_path sample_path(const struct lm_sector *s, const struct lm_geo_ray *ray)
 {
-    return path_of(origin, azimuth, s->ground_edge_q8,
-                   s->ground_edge_q8 + s->grid.cells * s->grid.cell_q8, s->grid.cells);
+    return path_of(ray, s->ground_edge_q8, s->ground_edge_q8 + s->grid.cells * s->grid.cell_q8,
+                   s->grid.cells);
 }
 
 /* The horizon that the ground before a window makes; samples less than half a line of the table
  * apart share one. */
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
-                                   const struct lm_geo_origin *origin, fx_bam_t azimuth,
+                                   const struct lm_geo_ray *ray, fx_bam_t azimuth,
                                    struct lm_line *line)
 {
     if (s->runup_grid.cells == 0) {
@@ -312,7 +312,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
     }
     if (!s->has_runup || fx_abs_u32((int32_t)(azimuth - s->runup_azimuth)) > s->radar->line / 2) {
         const struct lm_ground_path path =
-            path_of(origin, azimuth, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
+            path_of(ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
         lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
         s->runup_horizon =
             lm_aspect_run(&s->runup_grid, &s->legend, &line->ground, LM_HORIZON_OPEN, &line->sight);
@@ -375,12 +375,13 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
     lm_line_add_targets(line, setup, &targets);
 }
 
-static void trace(struct lm_sector *s, struct lm_tile_cache *tiles,
-                  const struct lm_geo_origin *origin, fx_bam_t azimuth,
+static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                   const struct lm_line_setup *setup, struct lm_line *line)
 {
-    const lm_horizon_q40_t horizon = horizon_at(s, tiles, origin, azimuth, line);
-    const struct lm_ground_path path = sample_path(s, origin, azimuth);
+    struct lm_geo_ray ray;
+    lm_geo_set_ray(&ray, &s->origin, azimuth);
+    const lm_horizon_q40_t horizon = horizon_at(s, tiles, &ray, azimuth, line);
+    const struct lm_ground_path path = sample_path(s, &ray);
     lm_line_trace(line, tiles, setup, &path, horizon);
 }
 
@@ -393,33 +394,32 @@ static uint32_t azimuths_log2_of(const struct lm_sector *s)
 
 /* Trace the azimuths across a sample: everything in the line is that of the last one, but the
  * levels are of the mean power. */
-static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles,
-                            const struct lm_geo_origin *origin, fx_bam_t azimuth,
+static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                             const struct lm_line_setup *setup, struct lm_line *line)
 {
     const fx_bam_t spacing = lm_beam_spacing(&s->beam, s->radar);
     const uint32_t log2 = azimuths_log2_of(s);
     if (log2 == 0) {
-        trace(s, tiles, origin, azimuth, setup, line);
+        trace(s, tiles, azimuth, setup, line);
         return;
     }
     lm_footprint_clear(&s->footprint, s->grid.cells);
     for (uint32_t turn = 0; turn < 1u << log2; turn++) {
         const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
-        trace(s, tiles, origin, azimuth + off, setup, line);
+        trace(s, tiles, azimuth + off, setup, line);
         lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells, log2);
     }
     lm_footprint_levels(&s->footprint, line->sight.level_q8, s->grid.cells);
 }
 
 /* What lies about one azimuth, into its place in the beam's ring. */
-static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles,
-                        const struct lm_geo_origin *origin, int32_t sample, struct lm_line *line)
+static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
+                        struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
     const struct lm_line_setup setup = {
         .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
-    trace_footprint(s, tiles, origin, azimuth, &setup, line);
+    trace_footprint(s, tiles, azimuth, &setup, line);
     lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
         add_targets(s, tiles, azimuth, &setup, line);
@@ -444,6 +444,16 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
+/* The whole sector is seen from where the aircraft is; a window from where its sweep began. */
+static void follow(struct lm_sector *s, struct lm_place place)
+{
+    const struct lm_place old = s->platform.place;
+    if (place.latitude != old.latitude || place.longitude != old.longitude) {
+        s->platform.place = place;
+        lm_geo_set_origin(&s->origin, place);
+    }
+}
+
 /* Begin the sweep if that is due, and look, once, where the next line is. */
 static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
                 const struct lm_platform *platform)
@@ -453,7 +463,7 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     if (s->half_m == 0) {
         s->up = platform->heading;
-        s->platform.place = platform->place;
+        follow(s, platform->place);
     }
     if (!s->is_aimed) {
         const int32_t azimuth = middle_of(s, s->line);
@@ -482,21 +492,19 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
     if (n == end) {
         return true;
     }
-    struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, s->platform.place);
     for (uint32_t taken = 0; n != end && taken < at_most; taken++, n = first_missing(s)) {
-        take_sample(s, tiles, &origin, n, line);
+        take_sample(s, tiles, n, line);
     }
     return n == end;
 }
 
 static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
 {
-    struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, s->platform.place);
+    struct lm_geo_ray ray;
     const uint32_t ahead = fx_min_u32(LINES_AHEAD, s->lines - 1);
     const fx_bam_t azimuth = s->up + (fx_bam_t)middle_of(s, line_ahead(s, ahead));
-    const struct lm_ground_path path = sample_path(s, &origin, azimuth);
+    lm_geo_set_ray(&ray, &s->origin, azimuth);
+    const struct lm_ground_path path = sample_path(s, &ray);
     lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
 }
 

@@ -28,9 +28,21 @@ struct lm_geo_origin {
 /* Any latitude from pole to pole. Cost: about 150 instructions. */
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place);
 
-/* The point `distance_q8` (metres * 256, 0..300 km) away at `azimuth` (from north by east).
+/* A direction from an origin, and what all points along it have in common. */
+struct lm_geo_ray {
+    const struct lm_geo_origin *origin; /* borrowed */
+    int32_t sin_q30, cos_q30;           /* of the azimuth */
+    int64_t per_radius_q62;             /* one over the Earth's radius along it, metres * 256 */
+};
+
+/* `azimuth` from north by east. Cost: about 130 instructions. */
+void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth);
+
+/* The point `distance_q8` (metres * 256; beyond 300 km counts as 300 km) away along the ray, and
+ * the same for one point.
  * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89
- * (tests/unit/firmware/test_geo.c). Cost: about 600 instructions. */
+ * (tests/unit/firmware/test_geo.c). Cost: about 130 instructions, near a pole 300. */
+struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8);
 struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
                               uint32_t distance_q8);
 

@@ -53,7 +53,7 @@ static double worst_direct(double lat, double lon, double metres)
     return worst;
 }
 
-static const double latitudes[] = {0, 45, 70, -33, 80, -89};
+static const double latitudes[] = {0, 45, 68, 70, -33, 80, -89, 90};
 
 static void the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles(void **state)
 {
@@ -72,6 +72,16 @@ static void nearby_points_are_within_5_cm(void **state)
     for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
         assert_true(worst_direct(latitudes[i], -71, 640) < 0.05);
     }
+}
+
+static void what_is_too_far_counts_as_300_km(void **state)
+{
+    (void)state;
+    struct lm_geo_origin o;
+    lm_geo_set_origin(&o, place_of(61, -5));
+    const struct lm_place most = lm_geo_direct(&o, 7, 300000 * 256);
+    const struct lm_place farther = lm_geo_direct(&o, 7, UINT32_MAX);
+    assert_memory_equal(&most, &farther, sizeof most);
 }
 
 /* Worst distance of any cell of a GM line from where the geodesic puts it. */
@@ -190,6 +200,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles),
         cmocka_unit_test(nearby_points_are_within_5_cm),
+        cmocka_unit_test(what_is_too_far_counts_as_300_km),
         cmocka_unit_test(every_cell_of_an_80_mile_line_is_within_half_a_cell),
         cmocka_unit_test(patch_lines_lie_where_across_and_along_offsets_say),
         cmocka_unit_test(the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells),
