@@ -14,6 +14,7 @@ enum {
     LINES_APART = 4,
     CHIP_SIDE_MOST = 32, /* pixels of a target's chip: what one line may cost */
     WINDOW_LINES_MIN = 32,
+    WINDOW_LINES_ENOUGH = 256,  /* where the beam does not ask for more */
     RUNUP_LEAST_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
 };
 
@@ -82,6 +83,20 @@ static fx_bam_t half_angle_of(uint32_t half_m, uint32_t range_m)
                           : fx_atan2((int32_t)diagonal_m, (int32_t)fx_sqrt_u64(range2 - off2));
 }
 
+/* Lines over a turn of the antenna: two across the beam, as sharp as the field makes it, so that
+ * none of what it sees falls between them (two-way, it is seven tenths as wide); and not more than
+ * are drawn in that time. */
+static uint32_t window_lines(const struct lm_sector *s, uint32_t turn)
+{
+    /* Turns are below 2^31, rates and beams above 2^23 (0.7 degree), sharpening is 256 at most. */
+    const uint64_t in_beams =
+        (uint64_t)turn * 2 * field_of(s)->sharpening / s->radar->antenna.azimuth_beam;
+    const uint32_t in_time = (uint32_t)((uint64_t)turn * LM_SECTOR_LINES_PER_S / rate_of(s));
+    const uint32_t wanted = fx_max_u32((uint32_t)in_beams, WINDOW_LINES_ENOUGH);
+    return fx_max_u32(fx_min_u32(fx_min_u32(wanted, in_time), LM_SECTOR_LINES_MAX),
+                      WINDOW_LINES_MIN);
+}
+
 /* Lines over the window, as far as the antenna turns. */
 static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half_angle)
 {
@@ -96,10 +111,7 @@ static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half
                                     : wanted_right < s->left + least ? s->left + least
                                                                      : wanted_right);
     const uint32_t turn = (uint32_t)(right - s->left);
-    const uint64_t lines = (uint64_t)turn * LM_SECTOR_LINES_PER_S / rate_of(s);
-    s->lines = lines < WINDOW_LINES_MIN      ? WINDOW_LINES_MIN
-               : lines > LM_SECTOR_LINES_MAX ? LM_SECTOR_LINES_MAX
-                                             : (uint32_t)lines;
+    s->lines = window_lines(s, turn);
     s->width = turn / s->lines;
 }
 

@@ -19,7 +19,7 @@
 
 enum {
     LM_SECTOR_RUNUP = 128,      /* coarse cells between the antenna and a window */
-    LM_SECTOR_LINES_MAX = 256,  /* that a sweep over a window draws */
+    LM_SECTOR_LINES_MAX = 512,  /* that a sweep over a window draws */
     LM_SECTOR_LINES_PER_S = 512 /* at most, in a window */
 };
 
