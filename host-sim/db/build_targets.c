@@ -1,16 +1,14 @@
 #include "build_targets.h"
 
 #include "build_path.h"
-#include "image_grid.h"
+#include "target_bodies.h"
 #include "text_file.h"
-#include "zero_bytes.h"
 
 #include "fx/crc32c.h"
 
 #include "hs/angle.h"
 #include "hs/error.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -18,21 +16,12 @@
 
 enum { WORDS_MAX = 16 };
 
-/* What a body's line holds behind its name: sizes, a place, and a direction where it has one. */
-static const struct body {
-    const char *name, *form;
-    int sizes;
-    bool has_direction;
-} bodies[LM_SHAPE_KINDS] = {
-    [LM_SHAPE_SPHERE] = {"sphere", "sphere RADIUS  FORWARD RIGHT UP", 1, false},
-    [LM_SHAPE_PLATE] = {"plate",
-                        "plate WIDTH HEIGHT  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL] [both]", 2,
-                        true},
-    [LM_SHAPE_DIHEDRAL] = {"dihedral",
-                           "dihedral WIDTH LENGTH  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]", 2,
-                           true},
-    [LM_SHAPE_TRIHEDRAL] = {"trihedral",
-                            "trihedral LEG  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]", 1, true},
+/* Lines of bodies: sizes, a place, and a direction where it has one. */
+static const char *const body_forms[LM_SHAPE_KINDS] = {
+    [LM_SHAPE_SPHERE] = "sphere RADIUS  FORWARD RIGHT UP",
+    [LM_SHAPE_PLATE] = "plate WIDTH HEIGHT  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL] [both]",
+    [LM_SHAPE_DIHEDRAL] = "dihedral WIDTH LENGTH  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]",
+    [LM_SHAPE_TRIHEDRAL] = "trihedral LEG  FORWARD RIGHT UP  AZIMUTH ELEVATION [ROLL]",
 };
 
 static const char target_form[] =
@@ -71,8 +60,6 @@ static bool read_numbers(char *const *words, int count, double *numbers, double 
     }
     return true;
 }
-
-/* ---- reading ---- */
 
 /* ELEVATION above the sea, or `ground` and perhaps the height above it, with its sign. */
 static bool set_elevation(struct lm_target *t, char *word)
@@ -178,7 +165,7 @@ static int read_target(const struct db_text_file *f, const struct build_signatur
 static int find_body(const char *word)
 {
     for (int kind = LM_SHAPE_SPHERE; kind < LM_SHAPE_KINDS; kind++) {
-        if (strcmp(bodies[kind].name, word) == 0) {
+        if (strcmp(target_bodies[kind].name, word) == 0) {
             return kind;
         }
     }
@@ -204,7 +191,7 @@ static bool set_direction(struct lm_scatterer *s, char *const *words, int count)
 
 static bool set_body(struct lm_scatterer *s, char *const *words, int count)
 {
-    const struct body *b = &bodies[s->kind];
+    const struct target_body *b = &target_bodies[s->kind];
     double size_m[2] = {0}, offset_m[3];
     const int behind = 1 + b->sizes + 3;
     if (count < behind ||
@@ -236,7 +223,7 @@ static int read_body(const struct db_text_file *f, struct lm_target *t, int kind
     s->kind = (uint8_t)kind;
     return set_body(s, words, count)
                ? 0
-               : db_text_error(f, bodies[kind].form, "a number is missing or out of its range");
+               : db_text_error(f, body_forms[kind], "a number is missing or out of its range");
 }
 
 /* One more place of the last target's path. The way ends where it began when that is named again.
@@ -429,138 +416,4 @@ void *build_targets_section(const struct build_targets *t, size_t *bytes)
         memcpy(section + sizeof head, t->items, (size_t)t->count * LM_TARGET_BYTES);
     }
     return section;
-}
-
-/* ---- looking at an image's ---- */
-
-static void print_body(const struct lm_scatterer *s)
-{
-    const bool is_known = s->kind >= LM_SHAPE_SPHERE && s->kind < LM_SHAPE_KINDS;
-    printf("        %-9s", is_known ? bodies[s->kind].name : "unknown");
-    for (int i = 0; is_known && i < bodies[s->kind].sizes; i++) {
-        printf(" %g", s->size_mm[i] / 1000.0);
-    }
-    printf(" m at %g %g %g", s->offset_mm[0] / 1000.0, s->offset_mm[1] / 1000.0,
-           s->offset_mm[2] / 1000.0);
-    if (is_known && bodies[s->kind].has_direction) {
-        printf(", facing %.3f %.3f, roll %.3f", image_longitude_degrees(s->azimuth),
-               image_degrees((int32_t)s->elevation), image_degrees((int32_t)s->roll));
-    }
-    puts(s->is_two_sided ? ", both sides" : "");
-}
-
-static void print_leg(const struct lm_path_leg *leg)
-{
-    const struct lm_place to = build_path_end(leg);
-    printf("        via %.6f %.6f: %.1f m on %.2f\n", image_degrees((int32_t)to.latitude),
-           image_longitude_degrees(to.longitude), leg->length_mm / 1000.0,
-           image_degrees((int64_t)leg->heading));
-}
-
-void build_targets_print(const struct image *image)
-{
-    if (image->db.target_count == 0) {
-        return;
-    }
-    printf("\ntarget  name              latitude   longitude  elevation m  heading\n");
-    for (uint32_t i = 0; i < image->db.target_count; i++) {
-        const struct lm_target *t = &image->targets[i];
-        printf("%6" PRIu32 "  ", t->id);
-        build_name_print(t->name);
-        const bool is_above_ground = (t->flags & LM_TARGET_ABOVE_GROUND) != 0;
-        printf("%10.6f %11.6f %s%*.1f %8.2f", image_degrees((int32_t)t->latitude),
-               image_longitude_degrees(t->longitude), is_above_ground ? "ground" : "",
-               is_above_ground ? 6 : 12, t->elevation_q6 / 64.0,
-               image_degrees((int64_t)t->heading));
-        if (t->flags & LM_TARGET_HAS_SIGNATURE) {
-            printf("  signature %u", t->signature);
-        } else if (t->scatterer_count == 0) {
-            printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
-        }
-        if (t->flags & LM_TARGET_HAS_PATH) {
-            printf("  moving %.1f m/s%s", t->speed_mm_s / 1000.0,
-                   t->path_is_round ? ", round" : "");
-        } else if (t->speed_mm_s != 0) {
-            printf("  moving %.1f m/s, leg %" PRIu32 " m", t->speed_mm_s / 1000.0, t->leg_m);
-        }
-        putchar('\n');
-        for (int k = 0; lm_target_check(t) == LM_OK && k < t->path_legs; k++) {
-            print_leg(&t->path[k]);
-        }
-        for (int k = 0; k < t->scatterer_count && k < LM_SCATTERERS_MAX; k++) {
-            print_body(&t->scatterers[k]);
-        }
-    }
-}
-
-/* What the firmware does not look at: unused numbers of the record. */
-static bool rest_is_zero(const struct lm_target *t)
-{
-    const size_t used = strnlen(t->name, sizeof t->name);
-    bool rest = db_is_zero(t->reserved, sizeof t->reserved) &&
-                db_is_zero(t->name + used, sizeof t->name - used);
-    for (int i = 0; i < t->scatterer_count; i++) {
-        const struct lm_scatterer *s = &t->scatterers[i];
-        rest = rest && s->reserved == 0 && (bodies[s->kind].sizes == 2 || s->size_mm[1] == 0) &&
-               (s->kind == LM_SHAPE_PLATE || !s->is_two_sided);
-    }
-    const size_t used_bytes = t->path_legs * sizeof t->path[0] +
-                              t->scatterer_count * sizeof t->scatterers[0]; /* one of them is 0 */
-    const bool is_point = t->scatterer_count == 0 && !(t->flags & LM_TARGET_HAS_SIGNATURE);
-    return rest && (is_point || (t->swerling == 0 && t->mean_rcs_q8 == 0)) &&
-           db_is_zero((const uint8_t *)t->scatterers + used_bytes,
-                      sizeof t->scatterers - used_bytes);
-}
-
-/* Does a sound path begin at the target, go from leg to leg without a step, and come back when it
- * is round? */
-static bool path_hangs_together(const struct lm_target *t)
-{
-    const struct lm_place begin = {t->latitude, t->longitude};
-    struct lm_place at = begin;
-    for (int i = 0; i < t->path_legs; i++) {
-        if (t->path[i].latitude != at.latitude || t->path[i].longitude != at.longitude) {
-            return false;
-        }
-        at = build_path_end(&t->path[i]);
-    }
-    return t->path_legs == 0 ||
-           (t->heading == t->path[0].heading &&
-            (!t->path_is_round || build_path_apart_m(begin, at) <= BUILD_PATH_SLACK_M));
-}
-
-static bool id_is_new(const struct image *image, uint32_t index)
-{
-    for (uint32_t i = 0; i < index; i++) {
-        if (image->targets[i].id == image->targets[index].id) {
-            return false;
-        }
-    }
-    return true;
-}
-
-void build_targets_check(const struct image *image, struct image_findings *findings)
-{
-    for (uint32_t i = 0; i < image->db.target_count; i++) {
-        const struct lm_target *t = &image->targets[i];
-        const uint64_t at = image->db.targets_offset + (uint64_t)i * LM_TARGET_BYTES;
-        if (lm_target_check(t) != LM_OK) {
-            image_find(findings, at,
-                       "target %" PRIu32
-                       ": its checksum does not fit it, or a number is out of "
-                       "its range",
-                       i);
-        } else if ((t->flags & LM_TARGET_HAS_SIGNATURE) &&
-                   t->signature >= image->db.signature_count) {
-            image_find(findings, at, "target %" PRIu32 ": its signature %u is not in the image", i,
-                       t->signature);
-        } else if (!path_hangs_together(t)) {
-            image_find(findings, at, "target %" PRIu32 ": its path has gaps", i);
-        } else if (!rest_is_zero(t)) {
-            image_find(findings, at, "target %" PRIu32 ": unused numbers are not zero", i);
-        }
-        if (!id_is_new(image, i)) {
-            image_find(findings, at, "target %" PRIu32 ": its id is another one's", i);
-        }
-    }
 }

@@ -1,10 +1,9 @@
-/* Specific targets for an image: a text file (docs/targets.md) in, the section TARGETS out, and the
- * section's faults. */
+/* Specific targets for an image: a text file (docs/targets.md) in, the section TARGETS out. Those
+ * of an image: image_targets.h. */
 #ifndef BUILD_TARGETS_H
 #define BUILD_TARGETS_H
 
 #include "build_signatures.h"
-#include "image_reader.h"
 
 #include "lm/target.h"
 
@@ -24,11 +23,5 @@ void build_targets_free(struct build_targets *t);
 
 /* The bytes of the section, head and records; the caller frees them. NULL when memory ran out. */
 void *build_targets_section(const struct build_targets *t, size_t *bytes);
-
-/* Print what an image's targets are, a line each and one for every body. */
-void build_targets_print(const struct image *image);
-
-/* Note what is wrong with an image's targets; `image` has passed image_read_tables. */
-void build_targets_check(const struct image *image, struct image_findings *findings);
 
 #endif

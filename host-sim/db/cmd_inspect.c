@@ -1,11 +1,11 @@
 #include "commands.h"
 
 #include "build_signatures.h"
-#include "build_targets.h"
 #include "image_codes.h"
 #include "image_command.h"
 #include "image_grid.h"
 #include "image_reader.h"
+#include "image_targets.h"
 
 #include "hs/error.h"
 
@@ -126,7 +126,7 @@ int db_cmd_inspect(int argc, char **argv)
     print_levels(&image);
     print_bands(&image);
     print_classes(&image);
-    build_targets_print(&image);
+    image_targets_print(&image);
     build_signatures_print(&image);
     print_manifest(&image);
     image_close(&image);

@@ -1,9 +1,9 @@
 #include "image_verify.h"
 
 #include "build_signatures.h"
-#include "build_targets.h"
 #include "image_codes.h"
 #include "image_grid.h"
+#include "image_targets.h"
 
 #include "fx/crc32c.h"
 
@@ -406,7 +406,7 @@ int image_verify(struct image *image, struct image_findings *findings,
     check_section_crcs(&v);
     check_layout(&v);
     check_classes(&v);
-    build_targets_check(image, findings);
+    image_targets_check(image, findings);
     build_signatures_check(image, findings);
     if (check_bands(&v) != 0) {
         return -1;
