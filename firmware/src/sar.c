@@ -180,7 +180,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                                         radar->wavelength_um, patch_us)
                         : 256;
     lm_legend_set(&s->legend, &radar->aspect, &db->classes);
-    lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state);
+    lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state, 0);
     s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, scene->reference_q10);
     return LM_OK;
@@ -322,20 +322,20 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
 }
 
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line)
+                        struct lm_line *line, int32_t *level_q8)
 {
-    int32_t *level_q8 = line->sight.level_q8;
+    int32_t *clutter_q8 = line->sight.level_q8;
     trace_line(s, tiles, number, line);
     if (s->command.has_layover) {
-        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, level_q8, s->power_q32);
+        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_q8, s->power_q32);
     }
     if (s->chips) {
-        lm_patch_chips_shade(&s->points, number, &s->geometry, level_q8);
+        lm_patch_chips_shade(&s->points, number, &s->geometry, clutter_q8);
         s->chips->count.cells_left_out +=
-            lm_patch_chips_add(&s->points, number, &s->geometry, level_q8);
+            lm_patch_chips_add(&s->points, number, &s->geometry, clutter_q8);
     }
-    lm_floor_run(s->floor_q8, level_q8, s->grid.cells);
-    lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
+    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, line->ground.noise, clutter_q8,
+                         level_q8, s->grid.cells);
 }
 
 /* Whether a point is seen on lines before the one that it stands on. */
@@ -375,10 +375,9 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
                          struct lm_line *line)
 {
     for (; s->sampled < end; s->sampled++) {
-        lm_sar_sample_line(s, tiles, s->sampled, line);
+        lm_sar_sample_line(s, tiles, s->sampled, line, ring_line(s, s->sampled));
         lm_patch_points_hide(&s->points, s->sampled, line->sight.horizon, s->grid.tangent_bits,
                              s->grid.cells);
-        memcpy(ring_line(s, s->sampled), line->sight.level_q8, s->grid.cells * sizeof(int32_t));
     }
 }
 
@@ -392,12 +391,11 @@ static void add_points(struct lm_sar *s, uint32_t end)
     }
 }
 
-/* The levels of the line at hand, out of focus or not. */
-static void focus_line(struct lm_sar *s, int32_t *level_q8)
+/* The levels of the line at hand: as they are, or out of focus, in smeared_q8. */
+static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_q8)
 {
     if (s->defocus_q8 <= 256) {
-        memcpy(level_q8, ring_line(s, s->line), s->grid.cells * sizeof(int32_t));
-        return;
+        return ring_line(s, s->line);
     }
     const int32_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
     uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1];
@@ -407,7 +405,8 @@ static void focus_line(struct lm_sar *s, int32_t *level_q8)
         near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number);
     }
     lm_defocus_shares(s->defocus_q8, share_q16);
-    lm_defocus_run(near_lines, share_q16, level_q8, s->power_q32, s->grid.cells);
+    lm_defocus_run(near_lines, share_q16, smeared_q8, s->power_q32, s->grid.cells);
+    return smeared_q8;
 }
 
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
@@ -424,15 +423,16 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     return s->sampled >= end;
 }
 
-void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
-                      struct lm_line *line)
+const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
+                                const struct lm_tone *tone, struct lm_line *line)
 {
     const uint32_t lines = s->radar->sar.cells;
     lm_sar_sample_ahead(s, tiles, LM_PATCH_POINTS_MAX, line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
-    focus_line(s, line->sight.level_q8);
-    lm_tone_run(tone, line->sight.level_q8, line->grey, s->grid.cells);
+    const int32_t *const level_q8 = focus_line(s, line->sight.level_q8);
+    lm_tone_run(tone, level_q8, line->grey, s->grid.cells);
     s->line++;
+    return level_q8;
 }
 
 void lm_sar_restart(struct lm_sar *s)

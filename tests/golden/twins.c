@@ -4,6 +4,7 @@
 #include "fx/crc32c.h"
 #include "hs/rng.h"
 #include "lm/scan_line.h"
+#include "lm/speckle.h"
 
 #include <stdio.h>
 
@@ -75,9 +76,43 @@ static uint32_t of_noise(void)
     return crc;
 }
 
+/* Texture of classes of any kind, and speckle over a floor. */
+static uint32_t of_speckle(void)
+{
+    static uint32_t cell[LM_CELLS_ROOM], noise[LM_CELLS_ROOM];
+    static int32_t level_q8[LM_CELLS_ROOM], speckled_q8[LM_CELLS_ROOM];
+    static struct lm_classes classes;
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 3);
+    for (int i = 0; i < ROUNDS; i++) {
+        struct lm_texture texture;
+        const struct lm_texture_config shapes = {{LM_TEXTURE_NONE, LM_TEXTURE_NONE, 1, 4}};
+        const struct lm_speckle_config looks = {(uint8_t)hs_rng_below(&rng, 5)};
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        for (int k = 0; k < LM_DB_CLASSES; k++) {
+            classes.entry[k].kind = (uint8_t)hs_rng_below(&rng, LM_KINDS);
+        }
+        for (uint32_t k = 0; k < cells; k++) {
+            cell[k] = (uint32_t)hs_rng_u64(&rng) & 0xffff;
+            noise[k] = (uint32_t)hs_rng_u64(&rng);
+            level_q8[k] = (int32_t)hs_rng_below(&rng, 1 << 16) - (1 << 15);
+        }
+        lm_texture_set(&texture, &shapes, &classes, (uint8_t)hs_rng_below(&rng, 9),
+                       (uint16_t)(i % 2 * 35 * 256));
+        lm_texture_run(&texture, cell, noise, level_q8, cells);
+        lm_speckle_floor_run(&looks, (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14), noise,
+                             level_q8, speckled_q8, cells);
+        crc = fx_crc32c(crc, level_q8, cells * sizeof *level_q8);
+        crc = fx_crc32c(crc, speckled_q8, cells * sizeof *speckled_q8);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
     printf("noise %08x\n", (unsigned)of_noise());
+    printf("speckle %08x\n", (unsigned)of_speckle());
     return 0;
 }

@@ -109,16 +109,16 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles);
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line);
 
-/* Draw the next line: line->sight.level_q8 has its levels and line->grey its greys, its cells from
- * [LM_SAR_GUARD] on; line->ground is that of the line sampled last, up to LM_SAR_AHEAD lines on,
- * which the first line brings at once. Call while s->line < radar->sar.cells. */
-void lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles, const struct lm_tone *tone,
-                      struct lm_line *line);
+/* Draw the next line: line->grey has its greys, its cells from [LM_SAR_GUARD] on; line->ground is
+ * that of the line sampled last, up to LM_SAR_AHEAD lines on, which the first line brings at once.
+ * Call while s->line < radar->sar.cells. Returns its levels, good until the next call. */
+const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
+                                const struct lm_tone *tone, struct lm_line *line);
 
 /* One stage of that: line `number` from the map to noise and speckle, without targets and smear, in
- * line->ground and line->sight. s->horizon is where it started. */
+ * line->ground, and in level_q8 with room for LM_CELLS_ROOM. s->horizon is where it started. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line);
+                        struct lm_line *line, int32_t *level_q8);
 
 /* Begin the patch again from its first line. */
 void lm_sar_restart(struct lm_sar *s);

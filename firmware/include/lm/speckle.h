@@ -26,19 +26,22 @@ struct lm_texture_config {
 
 enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
 
-/* What the texture does to each class. A class without any picks always the same entry of the
- * table, and its gain takes that off again, so that the loop need not tell it apart. */
+/* What the texture does to each class, in one word, for a machine's vectors take words of a table
+ * one by one. Its upper bits are the gain in 1/256 dB, with a sign; its LM_TEXTURE_ENTRY_BITS lower
+ * ones say which entry of lm_speckle_q8 is added: the last of a row, and the hash then chooses in
+ * that row, or the very first one, which the gain takes off again: no texture. */
+enum { LM_TEXTURE_ENTRY_BITS = 13 };
 struct lm_texture {
-    int32_t entry[LM_DB_CLASSES]; /* the first of the class's row in lm_speckle_q8 */
-    int32_t among[LM_DB_CLASSES]; /* mask of the ten bits that choose in that row; 0: none */
-    int32_t gain_q8[LM_DB_CLASSES];
+    int32_t of_class[LM_DB_CLASSES];
 };
+_Static_assert((LM_SPECKLE_LOOKS_LOG2_MAX + 1) * LM_SPECKLE_SLICES <= 1 << LM_TEXTURE_ENTRY_BITS,
+               "the table's entries must fit their bits");
 
-/* Shapes by the kind of each class, and the level of water by the state of the sea; `sea_state` is
- * taken as LM_SEA_STATE_MAX when it is more, a shape beyond LM_TEXTURE_NONE as none. Cost: 100
- * instructions. */
+/* Shapes by the kind of each class, and the level of water by the state of the sea, all of them
+ * less loss_q8 (1/256 dB); `sea_state` is taken as LM_SEA_STATE_MAX when it is more, a shape beyond
+ * LM_TEXTURE_NONE as none. Cost: 100 instructions. */
 void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
-                    const struct lm_classes *classes, uint8_t sea_state);
+                    const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_q8);
 
 /* Multiply each cell's power by the texture of its class, in place. `cell` as in lm_scan_line,
  * `noise` the place's 32-bit hash, of which bits 21..12 choose here and 31..22 in the speckle. A
@@ -46,10 +49,6 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
  * speckle. Cost: see docs/benchmarks.md. */
 void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
                     int32_t *level_q8, uint32_t cells);
-
-/* Add noise of floor_q8 to the power of each cell, in place: level = 10 log10(10^(level/10) +
- * 10^(floor/10)). Levels and floor within 2^30 of 0. Worst error 0.018 dB. */
-void lm_floor_run(int32_t floor_q8, int32_t *level_q8, uint32_t cells);
 
 /* What speckle adds to the level of a cell: `noise` is the place's 32-bit hash. */
 static inline int32_t lm_speckle_of_q8(const struct lm_speckle_config *config, uint32_t noise)
@@ -61,5 +60,12 @@ static inline int32_t lm_speckle_of_q8(const struct lm_speckle_config *config, u
 /* Multiply each cell's power by its speckle, in place. Cost: see docs/benchmarks.md. */
 void lm_speckle_run(const struct lm_speckle_config *config, const uint32_t *noise,
                     int32_t *level_q8, uint32_t cells);
+
+/* The same over clutter and the receiver's noise, whose powers add: from levels to
+ * 10 log10(10^(level/10) + 10^(floor/10)) and the cell's speckle. Levels and floor within 2^30 of
+ * 0; the sum's worst error is 0.018 dB. */
+void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_q8,
+                          const uint32_t *noise, const int32_t *level_q8, int32_t *speckled_q8,
+                          uint32_t cells);
 
 #endif

@@ -28,6 +28,7 @@ struct world {
     struct ref_db ref;
     struct lm_tone tone;
     struct lm_line line;
+    int32_t level_q8[LM_CELLS_ROOM]; /* of its cells, with noise and speckle */
     struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
@@ -94,7 +95,7 @@ static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t f
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
     for (uint32_t i = from; i < cells; i++) {
-        const double error_db = fabs(decibels(w->line.sight.level_q8[i]) - bins[i].echo_db);
+        const double error_db = fabs(decibels(w->level_q8[i]) - bins[i].echo_db);
         score->pixels++;
         score->squares += error_db * error_db;
         score->worst_db = fmax(score->worst_db, error_db);
@@ -174,8 +175,8 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     const uint32_t bins_count = CELLS + REF_GUARD_CELLS;
     struct ref_bin *copy = calloc(bins_count, sizeof *copy);
     for (uint32_t k = 0; k < CELLS; k++) {
-        lm_sar_sample_line(&sar, &w->tiles, k, &w->line);
-        lm_tone_run(&w->tone, w->line.sight.level_q8, w->line.grey, bins_count);
+        lm_sar_sample_line(&sar, &w->tiles, k, &w->line, w->level_q8);
+        lm_tone_run(&w->tone, w->level_q8, w->line.grey, bins_count);
         judge_horizon(ldexp((double)sar.horizon, -40), &picture, k);
         struct ref_bin *bins = ref_picture_bin(&picture, k, -REF_GUARD_CELLS);
         for (uint32_t i = 0; i < bins_count; i++) {

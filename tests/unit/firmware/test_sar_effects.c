@@ -148,8 +148,7 @@ static void draw(const struct lm_sar_command *command, const struct lm_sar_scene
         }
     }
     for (uint32_t k = 0; k < CELLS; k++) {
-        lm_sar_draw_line(&sar, &tiles, &tone, &line);
-        memcpy(picture[k], line.sight.level_q8, sizeof picture[k]);
+        memcpy(picture[k], lm_sar_draw_line(&sar, &tiles, &tone, &line), sizeof picture[k]);
     }
 }
 

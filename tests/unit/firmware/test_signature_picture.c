@@ -66,8 +66,8 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
     lm_sar_prefetch_targets(&f->sar, &f->world.tiles);
     assert_true(serve_chips(&f->world));
     for (int k = 0; k < SIDE; k++) {
-        lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
-        memcpy(picture[k], f->line.sight.level_q8 + LM_SAR_GUARD, sizeof picture[k]);
+        const int32_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
+        memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
     }
 }
 

@@ -48,7 +48,7 @@ static void fill_powers(double *power, uint8_t shape_log2, uint8_t looks_log2)
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_STRUCTURE] = shape_log2;
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE);
+    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t row = 0; row < SIDE; row++) {
         uint32_t cell[SIDE], noise[SIDE];
         int32_t level[SIDE] = {0};
@@ -103,7 +103,7 @@ static void kinds_without_texture_keep_their_level_to_the_bit(void **state)
 {
     (void)state;
     struct lm_texture texture;
-    lm_texture_set(&texture, &lm_radar_default.texture, tiny_classes(), LM_SEA_STATE_OF_IMAGE);
+    lm_texture_set(&texture, &lm_radar_default.texture, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
         const uint8_t kind = tiny_classes()->entry[class_index].kind;
         if (lm_radar_default.texture.shape_log2[kind] != LM_TEXTURE_NONE) {
@@ -124,7 +124,7 @@ static void bits_21_to_12_of_the_hash_choose_the_slice_and_no_others(void **stat
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_STRUCTURE] = 1;
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE);
+    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t slice = 0; slice < LM_SPECKLE_SLICES; slice++) {
         const uint32_t cell[2] = {cell_of(TINY_STRUCTURE), cell_of(TINY_STRUCTURE)};
         const uint32_t noise[2] = {slice << 12, slice << 12 | 0xffc00fffu};
@@ -141,7 +141,7 @@ static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void *
     (void)state;
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_texture texture;
-        lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea);
+        lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea, 0);
         const uint32_t cell[] = {cell_of(TINY_WATER), cell_of(TINY_SOIL), cell_of(TINY_STRUCTURE),
                                  cell_of(TINY_TREES)};
         const uint32_t noise[4] = {0, 1u << 20, 5, UINT32_MAX};
@@ -151,6 +151,26 @@ static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void *
         assert_int_equal(level[1], -20 * 256);
         assert_int_equal(level[2], 0);
         assert_int_equal(level[3], -15 * 256);
+    }
+}
+
+static void a_loss_is_taken_off_every_class(void **state)
+{
+    (void)state;
+    struct lm_texture_config config = all_none;
+    config.shape_log2[LM_KIND_TREES] = 2;
+    static const uint16_t losses_q8[] = {35 * 256, UINT16_MAX};
+    for (size_t n = 0; n < 2; n++) {
+        struct lm_texture whole, less;
+        lm_texture_set(&whole, &config, tiny_classes(), 0, 0);
+        lm_texture_set(&less, &config, tiny_classes(), 0, losses_q8[n]);
+        for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+            const uint32_t cell = cell_of(i), noise = 0x00ff3000;
+            int32_t level[2] = {0};
+            lm_texture_run(&whole, &cell, &noise, &level[0], 1);
+            lm_texture_run(&less, &cell, &noise, &level[1], 1);
+            assert_int_equal(level[0] - level[1], losses_q8[n]);
+        }
     }
 }
 
@@ -165,7 +185,7 @@ static void a_shadow_stays_below_the_lowest_tone_whatever_is_added(void **state)
     }
     const struct lm_texture_config config = {{0, 0, 0, 0}};
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_MAX);
+    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_MAX, 0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
         for (uint32_t slice = 0; slice < LM_SPECKLE_SLICES; slice++) {
             const uint32_t cell = cell_of(class_index), noise = slice << 12;
@@ -185,14 +205,25 @@ static void a_hostile_table_reads_nothing_but_the_tables(void **state)
     memset(&config, 0xff, sizeof config);
     memset(&classes, 0xff, sizeof classes);
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, &classes, 255);
+    lm_texture_set(&texture, &config, &classes, 255, 0);
     for (uint32_t i = 0; i < 16; i++) {
         const uint32_t cell = 0xffffff0fu | i << 4, noise = UINT32_MAX;
         int32_t level = 0;
-        assert_in_range(texture.entry[i] + texture.among[i], 0, 5 * LM_SPECKLE_SLICES - 1);
+        assert_in_range(texture.of_class[i] & ((1 << LM_TEXTURE_ENTRY_BITS) - 1), 0,
+                        5 * LM_SPECKLE_SLICES - 1);
         lm_texture_run(&texture, &cell, &noise, &level, 1);
         assert_int_equal(level, 0);
     }
+}
+
+/* A level over a floor, without the speckle of the sum. */
+static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
+{
+    const struct lm_speckle_config config = {2};
+    const uint32_t slice = 700, noise = slice << 22;
+    int32_t speckled_q8;
+    lm_speckle_floor_run(&config, floor_q8, &noise, &level_q8, &speckled_q8, 1);
+    return speckled_q8 - lm_speckle_q8[2][slice];
 }
 
 static void the_floor_adds_as_power_to_every_level(void **state)
@@ -203,14 +234,11 @@ static void the_floor_adds_as_power_to_every_level(void **state)
     for (int n = 0; n < 20000; n++) {
         const int32_t floor_q8 = (int32_t)hs_rng_below(&rng, 40000) - 30000;
         const int32_t level_q8 = (int32_t)hs_rng_below(&rng, 60000) - 40000;
-        int32_t sum_q8 = level_q8;
-        lm_floor_run(floor_q8, &sum_q8, 1);
+        const int32_t sum_q8 = over_floor_q8(floor_q8, level_q8);
         const double expected = 10 * log10(pow(10, level_q8 / 2560.0) + pow(10, floor_q8 / 2560.0));
         assert_true(fabs(sum_q8 / 256.0 - expected) < 0.018);
     }
-    int32_t shadow = LM_LEVEL_SHADOW;
-    lm_floor_run(-46 * 256, &shadow, 1);
-    assert_in_range(shadow + 46 * 256, 0, 1);
+    assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
 }
 
 static void as_many_cells_change_as_were_asked_for(void **state)
@@ -219,18 +247,19 @@ static void as_many_cells_change_as_were_asked_for(void **state)
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_TREES] = 1;
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE);
+    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     uint32_t cell[40], noise[40] = {0};
     for (uint32_t i = 0; i < 40; i++) {
         cell[i] = cell_of(TINY_TREES);
     }
     for (uint32_t cells = 0; cells < 40; cells++) {
-        int32_t level[40] = {0}, floored[40] = {0};
+        const struct lm_speckle_config speckle = {2};
+        int32_t level[40] = {0}, speckled[40] = {0};
         lm_texture_run(&texture, cell, noise, level, cells);
-        lm_floor_run(0, floored, cells);
+        lm_speckle_floor_run(&speckle, 0, noise, level, speckled, cells);
         for (uint32_t i = 0; i < 40; i++) {
             assert_int_equal(level[i], i < cells ? lm_speckle_q8[1][0] : 0);
-            assert_int_equal(floored[i] != 0, i < cells);
+            assert_int_equal(speckled[i] != 0, i < cells);
         }
     }
 }
@@ -243,6 +272,7 @@ int main(void)
         cmocka_unit_test(kinds_without_texture_keep_their_level_to_the_bit),
         cmocka_unit_test(bits_21_to_12_of_the_hash_choose_the_slice_and_no_others),
         cmocka_unit_test(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each),
+        cmocka_unit_test(a_loss_is_taken_off_every_class),
         cmocka_unit_test(a_shadow_stays_below_the_lowest_tone_whatever_is_added),
         cmocka_unit_test(a_hostile_table_reads_nothing_but_the_tables),
         cmocka_unit_test(the_floor_adds_as_power_to_every_level),
