@@ -3,7 +3,7 @@
 #include "class_raster.h"
 #include "commands.h"
 #include "label_map.h"
-#include "options.h"
+#include "source_options.h"
 
 #include "hs/error.h"
 #include "hs/progress.h"
@@ -36,7 +36,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     const struct db_option table[] = {
         {"class-raster", DB_TEXT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment`.", true},
-        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE", "The class table.", true},
+        DB_CLASSES_OPTION(o->classes),
         {"corrections", DB_TEXT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
          true},
         {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},

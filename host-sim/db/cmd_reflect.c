@@ -52,7 +52,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     struct db_option table[] = {
         {"class-raster", DB_TEXT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`.", true},
-        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE", "The class table.", true},
+        DB_CLASSES_OPTION(o->classes),
         {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
         {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default) or adjust.", false},
         {"bands", DB_LIST, &o->bands, 0, 0, "N,N",

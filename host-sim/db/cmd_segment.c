@@ -36,7 +36,8 @@ static const struct db_usage usage = {
 
 struct options {
     struct db_image_options image;
-    const char *classes, *net, *out, *picture, *report, *exemplars, *field, *labels, *map;
+    struct db_exemplar_options known; /* for the report */
+    const char *classes, *net, *out, *picture, *report;
     struct db_list picture_bands;
     long square;
 };
@@ -59,17 +60,10 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "3,2,1 of more.",
          false},
         {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
-         "Write where exemplars came out wrong: regions.csv, squares.csv, worst.txt, "
+         "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
          "confusion.csv.",
          false},
-        {"exemplars", DB_TEXT, &o->exemplars, 0, 0, "FILE",
-         "Polygons of known class for the report; as for `train`.", false},
-        {"field", DB_TEXT, &o->field, 0, 0, "NAME",
-         "The polygons' field that holds the label; default `class`.", false},
-        {"labels", DB_TEXT, &o->labels, 0, 0, "FILE",
-         "Instead of --exemplars: a raster of label numbers, as for `train`.", false},
-        {"map", DB_TEXT, &o->map, 0, 0, "FILE", "Lines of `source-label = class`, as for `train`.",
-         false},
+        DB_EXEMPLAR_OPTIONS(&o->known),
         {"square", DB_INTEGER, &o->square, 4, 4096, "N",
          "Side in pixels of the squares of the report.", false},
     };
@@ -123,13 +117,13 @@ static int find_exemplars(struct work *w)
     if (!o->report) {
         return 0;
     }
-    if (db_label_map_read(&map, o->map, &w->table) != 0) {
+    if (db_label_map_read(&map, o->known.map, &w->table) != 0) {
         return -1;
     }
     const struct db_exemplar_source source = {
-        .polygons_path = o->exemplars,
-        .field = o->field,
-        .labels_path = o->labels,
+        .polygons_path = o->known.polygons,
+        .field = o->known.field,
+        .labels_path = o->known.labels,
         .map = &map,
         .table = &w->table,
         .per_class = 1000000,
@@ -316,11 +310,11 @@ static int run(struct work *w)
 
 static bool has_sense(const struct options *o)
 {
-    if (o->report && !o->exemplars == !o->labels) {
+    if (o->report && !o->known.polygons == !o->known.labels) {
         hs_error("--report", "give either --exemplars or --labels", "needs to know what is right");
         return false;
     }
-    if (!o->report && (o->exemplars || o->labels)) {
+    if (!o->report && (o->known.polygons || o->known.labels)) {
         hs_error("--exemplars", "say with --report where the comparison goes",
                  "is of no use here without a report");
         return false;
@@ -330,7 +324,7 @@ static bool has_sense(const struct options *o)
 
 int db_cmd_segment(int argc, char **argv)
 {
-    struct options options = {.field = "class", .square = 64};
+    struct options options = {.known = {.field = "class"}, .square = 64};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {

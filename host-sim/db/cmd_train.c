@@ -36,14 +36,15 @@ static const struct db_usage usage = {
 
 struct options {
     struct db_image_options image;
-    const char *classes, *exemplars, *field, *labels, *map, *net, *report, *split_out, *hold_out;
+    struct db_exemplar_options known;
+    const char *classes, *net, *report, *split_out, *hold_out;
     const char *loss, *unit;
     long context, hidden, per_class, members, epochs, patience, batch, seed;
     double rate, momentum, decay, noise, goal, validate, thin;
 };
 
 static const struct options defaults = {
-    .field = "class",
+    .known = {.field = "class"},
     .loss = "square",
     .unit = "tanh",
     .context = 1,
@@ -64,28 +65,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
 {
     const struct db_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
-        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE", "The class table.", true},
+        DB_CLASSES_OPTION(o->classes),
         {"net", DB_TEXT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
-        {"exemplars", DB_TEXT, &o->exemplars, 0, 0, "FILE",
-         "Polygons of known class: any vector format OGR reads, or a TSV or CSV with a column "
-         "`WKT`.\n"
-         "Reprojected when file and image name different CRS. Pixels whose centre lies inside "
-         "count.",
-         false},
-        {"field", DB_TEXT, &o->field, 0, 0, "NAME",
-         "The polygons' field that holds the label; default `class`.", false},
-        {"labels", DB_TEXT, &o->labels, 0, 0, "FILE",
-         "Instead of --exemplars: a raster of label numbers over the same extent. Where it is "
-         "finer\n"
-         "than the image a pixel takes the most frequent label in it. Connected patches of one "
-         "label\n"
-         "take the place of polygons.",
-         false},
-        {"map", DB_TEXT, &o->map, 0, 0, "FILE",
-         "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "
-         "Without it\n"
-         "labels must be the names of classes.",
-         false},
+        DB_EXEMPLAR_OPTIONS(&o->known),
         {"hold-out", DB_TEXT, &o->hold_out, 0, 0, "HOW:PART",
          "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
          "`pixels:0.3` pixels\n"
@@ -174,10 +156,10 @@ static int read_hold_out(const struct options *o, struct choices *c)
 static int choose(const struct options *o, struct choices *c)
 {
     *c = (struct choices){0};
-    if (!o->exemplars == !o->labels) {
+    if (!o->known.polygons == !o->known.labels) {
         return usage_error("--exemplars", "give either --exemplars or --labels");
     }
-    if (o->labels && !o->map) {
+    if (o->known.labels && !o->known.map) {
         return usage_error("--map", "is needed to say which class a label number stands for");
     }
     if (o->context % 2 == 0) {
@@ -211,9 +193,9 @@ static int gather(struct work *w)
 {
     const struct options *o = w->options;
     const struct db_exemplar_source source = {
-        .polygons_path = o->exemplars,
-        .field = o->field,
-        .labels_path = o->labels,
+        .polygons_path = o->known.polygons,
+        .field = o->known.field,
+        .labels_path = o->known.labels,
         .map = &w->map,
         .table = &w->table,
         .per_class = o->per_class,
@@ -433,7 +415,7 @@ static int evaluate(const struct work *w)
 static int run(struct work *w)
 {
     if (db_class_table_read(&w->table, w->options->classes) != 0 ||
-        db_label_map_read(&w->map, w->options->map, &w->table) != 0 ||
+        db_label_map_read(&w->map, w->options->known.map, &w->table) != 0 ||
         db_image_open(&w->image, &w->options->image) != 0 || gather(w) != 0) {
         return HS_EXIT_FAILED;
     }
