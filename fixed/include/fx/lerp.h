@@ -21,11 +21,4 @@ static inline uint32_t fx_bilerp_u16_q16(uint16_t c00, uint16_t c10, uint16_t c0
     return (top << 8) + (bottom - top) * ty_q8;
 }
 
-/* The same to the nearest whole number, halves up; 65535 * 65536 + 32768 still fits. */
-static inline uint16_t fx_bilerp_u16(uint16_t c00, uint16_t c10, uint16_t c01, uint16_t c11,
-                                     uint32_t tx_q8, uint32_t ty_q8)
-{
-    return (uint16_t)((fx_bilerp_u16_q16(c00, c10, c01, c11, tx_q8, ty_q8) + 32768u) >> 16);
-}
-
 #endif

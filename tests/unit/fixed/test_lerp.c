@@ -19,7 +19,6 @@ static void a_flat_field_comes_back_unchanged_for_every_pair_of_weights(void **s
         const uint16_t c = fields[i];
         for (uint32_t tx = 0; tx <= 256; tx++) {
             for (uint32_t ty = 0; ty <= 256; ty++) {
-                assert_true(fx_bilerp_u16(c, c, c, c, tx, ty) == c);
                 assert_true(fx_bilerp_u16_q16(c, c, c, c, tx, ty) == (uint32_t)c << 16);
             }
         }
@@ -42,11 +41,9 @@ static void a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights(vo
             const double want =
                 (c[0] * (1 - x) + c[1] * x) * (1 - y) + (c[2] * (1 - x) + c[3] * x) * y;
             const uint32_t fine = fx_bilerp_u16_q16(c[0], c[1], c[2], c[3], tx, ty);
-            const uint16_t whole = fx_bilerp_u16(c[0], c[1], c[2], c[3], tx, ty);
             assert_true(fine == want * 65536);
-            assert_true(whole == floor(want + 0.5));
-            assert_true(whole >= fmin(fmin(c[0], c[1]), fmin(c[2], c[3])));
-            assert_true(whole <= fmax(fmax(c[0], c[1]), fmax(c[2], c[3])));
+            assert_true(fine / 65536.0 >= fmin(fmin(c[0], c[1]), fmin(c[2], c[3])));
+            assert_true(fine / 65536.0 <= fmax(fmax(c[0], c[1]), fmax(c[2], c[3])));
         }
     }
 }
@@ -54,10 +51,10 @@ static void a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights(vo
 static void a_blend_meets_each_corner_exactly(void **state)
 {
     (void)state;
-    assert_int_equal(fx_bilerp_u16(1, 20, 300, 65535, 0, 0), 1);
-    assert_int_equal(fx_bilerp_u16(1, 20, 300, 65535, 256, 0), 20);
-    assert_int_equal(fx_bilerp_u16(1, 20, 300, 65535, 0, 256), 300);
-    assert_int_equal(fx_bilerp_u16(1, 20, 300, 65535, 256, 256), 65535);
+    assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 0, 0), 1u << 16);
+    assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 256, 0), 20u << 16);
+    assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 0, 256), 300u << 16);
+    assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 256, 256), 65535u << 16);
 }
 
 static void sixty_four_bits_saturate_to_thirty_two(void **state)
