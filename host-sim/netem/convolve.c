@@ -110,7 +110,9 @@ void nm_spectrum_add_correlation(const struct nm_convolver *c, const fftw_comple
                                  const fftw_complex *b, fftw_complex *sum)
 {
     for (size_t i = 0; i < c->fft.spectrum_size; i++) {
-        sum[i][0] += a[i][0] * b[i][0] + a[i][1] * b[i][1];
-        sum[i][1] += a[i][1] * b[i][0] - a[i][0] * b[i][1];
+        fftw_complex product;
+        nm_fft_correlate(a[i], b[i], product);
+        sum[i][0] += product[0];
+        sum[i][1] += product[1];
     }
 }

@@ -29,4 +29,11 @@ void nm_fft_to(struct nm_fft *f, fftw_complex *spectrum);
 /* From f->spectrum to the plane, rows * columns times as large. */
 void nm_fft_back(struct nm_fft *f);
 
+/* A term of the spectrum of a correlation: a times the conjugate of b. */
+static inline void nm_fft_correlate(const double a[2], const double b[2], double product[2])
+{
+    product[0] = a[0] * b[0] + a[1] * b[1];
+    product[1] = a[1] * b[0] - a[0] * b[1];
+}
+
 #endif

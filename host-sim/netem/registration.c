@@ -57,12 +57,12 @@ static void cross_phase(struct nm_registrar *r)
     const double floor = band_floor * largest_of(r->simulated_spectrum, half);
     for (int i = 0; i < half; i++) {
         const double *g = r->simulated_spectrum[i];
-        double *h = r->fft.spectrum[i];
-        const double re = h[0] * g[0] + h[1] * g[1], im = h[1] * g[0] - h[0] * g[1];
-        const double size = hypot(re, im);
+        fftw_complex product;
+        nm_fft_correlate(r->fft.spectrum[i], g, product);
+        const double size = hypot(product[0], product[1]);
         const double scale = hypot(g[0], g[1]) > floor && size > 0 ? 1 / size : 0;
-        h[0] = scale * re;
-        h[1] = scale * im;
+        r->fft.spectrum[i][0] = scale * product[0];
+        r->fft.spectrum[i][1] = scale * product[1];
     }
 }
 

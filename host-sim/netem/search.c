@@ -158,8 +158,7 @@ static void search_view(struct nm_searcher *s, int view, int reach, double *scor
     const fftw_complex *v = s->library + (size_t)view * s->fft.spectrum_size;
     fftw_complex *product = s->fft.spectrum;
     for (size_t i = 0; i < s->fft.spectrum_size; i++) {
-        product[i][0] = s->chip[i][0] * v[i][0] + s->chip[i][1] * v[i][1];
-        product[i][1] = s->chip[i][1] * v[i][0] - s->chip[i][0] * v[i][1];
+        nm_fft_correlate(s->chip[i], v[i], product[i]);
     }
     nm_fft_back(&s->fft);
     const int mx = (s->width - s->side_px) / 2, my = (s->height - s->side_px) / 2;
