@@ -1,7 +1,5 @@
 #include "lm/geo.h"
 
-#include <stdbool.h>
-
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -9,11 +7,12 @@
 /* WGS-84 (NIMA TR8350.2, table 3.1): semi-major axis 6,378,137 m, first eccentricity squared
  * 0.00669437999014. */
 static const int64_t semi_major_q8 = 6378137LL * 256;
-static const int64_t eccentricity2_q30 =
-    7188035; /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
-
-/* 2^32 / (2 pi), rounded: 683,565,275.6. */
-enum { BAM_PER_RADIAN = 683565276, FARTHEST_Q8 = 300000 * 256 };
+enum {
+    ECCENTRICITY2_Q30 = 7188035, /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
+    FLATTENING_Q30 = (1 << 30) - ECCENTRICITY2_Q30,
+    BAM_PER_RADIAN = 683565276, /* 2^32 / (2 pi) = 683,565,275.6 */
+    FARTHEST_Q8 = 300000 * 256
+};
 
 static const int64_t one_q32 = 1LL << 32;
 
@@ -31,19 +30,20 @@ static int64_t sqrt_q30(int64_t a_q30)
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place)
 {
     const int64_t one_q30 = 1 << 30;
-    o->place = place;
-    o->sin_q30 = fx_sin_q30(place.latitude);
-    o->cos_q30 = fx_cos_q30(place.latitude);
+    const int32_t pole = (int32_t)FX_BAM_90;
+    const int32_t latitude = fx_clamp_i32((int32_t)place.latitude, -pole, pole);
+    o->place = (struct lm_place){(fx_bam_t)latitude, place.longitude};
+    o->sin_q30 = fx_sin_q30(o->place.latitude);
+    o->cos_q30 = fx_cos_q30(o->place.latitude);
     const int64_t sin2_q30 = mul_q30(o->sin_q30, o->sin_q30);
-    const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, eccentricity2_q30);
+    const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, ECCENTRICITY2_Q30);
     const int64_t w_q30 = sqrt_q30(w2_q30);
     /* semi_major_q8 << 30 is below 2^31 * 2^30 = 2^61. */
     const int64_t n_q8 = (semi_major_q8 << 30) / w_q30;
-    const int64_t m_q8 = mul_q30(n_q8, one_q30 - eccentricity2_q30) * one_q30 / w2_q30;
+    const int64_t m_q8 = mul_q30(n_q8, FLATTENING_Q30) * one_q30 / w2_q30;
     o->prime_vertical_radius_q8 = (uint32_t)n_q8;
     o->meridian_radius_q8 = (uint32_t)m_q8;
-    o->x_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
-    o->z_q8 = (int32_t)mul_q30(mul_q30(n_q8, one_q30 - eccentricity2_q30), o->sin_q30);
+    o->axis_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
 }
 
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth)
@@ -60,13 +60,6 @@ void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_
     r->per_radius_q62 = ((int64_t)1 << 62) / radius_q8; /* 2^31.4 */
 }
 
-/* Whether the point (x, y) is seen from the origin so close to the x axis that small_angle will do:
- * it is, but near a pole. */
-static bool is_near_axis(int64_t x_q8, int64_t y_q8)
-{
-    return x_q8 > 0 && (y_q8 < 0 ? -y_q8 : y_q8) <= x_q8 >> 4;
-}
-
 /* The angle whose tangent is t, up to 1/16: t - t^3 / 3 + t^5 / 5, short of it by 6e-10 at most. */
 static inline fx_bam_t small_angle(int64_t t_q32)
 {
@@ -74,53 +67,60 @@ static inline fx_bam_t small_angle(int64_t t_q32)
     const int64_t square_q32 = t_q32 * t_q32 >> 32;
     const int64_t bend_q32 = square_q32 * (third_q32 - (square_q32 * fifth_q32 >> 32)) >> 32;
     const int64_t radians_q32 = t_q32 - (t_q32 * bend_q32 >> 32);
-    return (fx_bam_t)(radians_q32 * BAM_PER_RADIAN >> 32);
+    return (fx_bam_t)((radians_q32 * BAM_PER_RADIAN + one_q32 / 2) >> 32);
 }
 
-/* The angle of the point (x, y) from the x axis, and how far it is from the origin. Coordinates are
- * below 2^31. */
-static inline fx_bam_t polar_of(int64_t x_q8, int64_t y_q8, int64_t *radius_q8)
+/* The longitude of a point (x, east) in the plane of the equator, and how far it is from the
+ * Earth's axis. |x| < 2^35, |east| < 2^31. */
+static inline fx_bam_t turn_of(int64_t x_q12, int64_t east_q12, int64_t *axis_q12)
 {
-    if (!is_near_axis(x_q8, y_q8)) {
-        *radius_q8 = fx_hypot_u32((int32_t)x_q8, (int32_t)y_q8);
-        return fx_atan2((int32_t)y_q8, (int32_t)x_q8);
+    if ((east_q12 < 0 ? -east_q12 : east_q12) >= x_q12 / 16) { /* near a pole */
+        const int32_t x_q8 = (int32_t)(x_q12 >> 4), east_q8 = (int32_t)(east_q12 >> 4);
+        *axis_q12 = (int64_t)fx_hypot_u32(x_q8, east_q8) * 16;
+        return fx_atan2(east_q8, x_q8);
     }
-    /* With t = y / x, up to 1/16, the root of x^2 + y^2 is x + y t / 2 (1 - t^2 / 4 + ...), 2 cm
-     * too short at most. */
-    const int64_t t_q32 = y_q8 * one_q32 / x_q8, square_q32 = t_q32 * t_q32 >> 32;
-    const int64_t more_q8 = y_q8 * t_q32 >> 33;
-    *radius_q8 = x_q8 + more_q8 - (more_q8 * square_q32 >> 34);
+    /* With t = east / x, up to 1/16, the root of x^2 + east^2 is x + east t / 2 (1 - t^2 / 4 +
+     * ...), 2 cm too short at most. */
+    const int64_t t_q32 = east_q12 * one_q32 / x_q12, square_q32 = t_q32 * t_q32 >> 32;
+    const int64_t more_q12 = east_q12 * t_q32 >> 33;
+    *axis_q12 = x_q12 + more_q12 - (more_q12 * square_q32 >> 34);
     return small_angle(t_q32);
 }
 
+/* Lengths are counted from the origin, in metres * 4096: up to 300 km, below 2^31, so that a
+ * product with a sine in Q30 stays below 2^61, and a sum of two below 2^62. */
 struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8)
 {
     const struct lm_geo_origin *const o = r->origin;
-    const int64_t one_q30 = 1 << 30, sixth_q32 = 715827883, twentieth_q32 = 214748365;
+    const int64_t sin_q30 = o->sin_q30, cos_q30 = o->cos_q30;
+    const int64_t sixth_q32 = 715827883, twentieth_q32 = 214748365;
     /* The arc a = s / R, below 0.05: 2^27 * 2^31.4 before the shift, 2^28 behind it. Forward is
      * R sin a = s - s a^2 / 6 (1 - a^2 / 20), down R (1 - cos a) = s a / 2 (1 - a^2 / 12). */
-    const int64_t s_q8 = fx_min_u32(distance_q8, FARTHEST_Q8);
-    const int64_t arc_q32 = s_q8 * r->per_radius_q62 >> 30;
-    const int64_t square_q32 = arc_q32 * arc_q32 >> 32;
-    const int64_t short_q32 = square_q32 * sixth_q32 >> 32;
-    const int64_t forward_q8 =
-        s_q8 - (s_q8 * (short_q32 - (short_q32 * (square_q32 * twentieth_q32 >> 32) >> 32)) >> 32);
-    const int64_t chord_q8 = s_q8 * arc_q32 >> 33;
-    const int64_t down_q8 = chord_q8 - (chord_q8 * (short_q32 / 2) >> 32);
-    const int64_t north_q8 = mul_q30(forward_q8, r->cos_q30);
-    const int64_t east_q8 = mul_q30(forward_q8, r->sin_q30);
+    const int64_t s_q8 = fx_min_u32(distance_q8, FARTHEST_Q8), s_q12 = s_q8 * 16;
+    const int64_t arc_q32 = s_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
+    const int64_t sixth_square_q32 = square_q32 * sixth_q32 >> 32;
+    const int64_t bend_q32 =
+        sixth_square_q32 - (sixth_square_q32 * (square_q32 * twentieth_q32 >> 32) >> 32);
+    const int64_t forward_q12 = s_q12 - (s_q12 * bend_q32 >> 32);
+    const int64_t chord_q12 = s_q12 * arc_q32 >> 33;
+    const int64_t down_q12 = chord_q12 - (chord_q12 * sixth_square_q32 >> 33);
+    const int64_t north_q12 = mul_q30(forward_q12, r->cos_q30);
+    const int64_t east_q12 = mul_q30(forward_q12, r->sin_q30);
 
-    const int64_t x_q8 = o->x_q8 - mul_q30(north_q8, o->sin_q30) - mul_q30(down_q8, o->cos_q30);
-    const int64_t z_q8 = o->z_q8 + mul_q30(north_q8, o->cos_q30) - mul_q30(down_q8, o->sin_q30);
-    int64_t axis_q8, centre_q8;
-    const fx_bam_t east = polar_of(x_q8, east_q8, &axis_q8);
-    const int64_t flattened_q8 = mul_q30(axis_q8, one_q30 - eccentricity2_q30);
-    /* The latitude's tangent is z / flattened. Seen from the origin's latitude it is small:
-     * products below 2^62. */
-    const int64_t along_q8 = (flattened_q8 * o->cos_q30 + z_q8 * o->sin_q30) >> 30;
-    const int64_t beside_q8 = (z_q8 * o->cos_q30 - flattened_q8 * o->sin_q30) >> 30;
+    const int64_t x0_q12 = o->axis_q8 * 16LL;
+    const int64_t x_q12 = x0_q12 - ((north_q12 * sin_q30 + down_q12 * cos_q30) >> 30);
+    const int64_t up_q12 = (north_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
+    int64_t axis_q12;
+    const fx_bam_t east = turn_of(x_q12, east_q12, &axis_q12);
+    /* The latitude's tangent is z / (1 - e2) axis, and the origin's that of its own two. Seen from
+     * the origin's direction, in which (1 - e2) N is as far as the origin, the difference is small.
+     */
+    const int64_t out_q12 = mul_q30(axis_q12 - x0_q12, FLATTENING_Q30);
+    const int64_t beside_q42 = up_q12 * cos_q30 - out_q12 * sin_q30;
+    const int64_t along_q12 = 16 * mul_q30(o->prime_vertical_radius_q8, FLATTENING_Q30) +
+                              ((out_q12 * cos_q30 + up_q12 * sin_q30) >> 30);
     return (struct lm_place){
-        .latitude = o->place.latitude + polar_of(along_q8, beside_q8, &centre_q8),
+        .latitude = o->place.latitude + small_angle(beside_q42 / (along_q12 >> 2)),
         .longitude = o->place.longitude + east,
     };
 }

@@ -19,13 +19,13 @@ struct lm_place {
 /* What the direct problem needs of its starting point, worked out once. Lengths in metres * 256. */
 struct lm_geo_origin {
     struct lm_place place;
-    int32_t sin_q30, cos_q30; /* of the latitude */
-    int32_t x_q8, z_q8;       /* in the meridian plane: distance from the axis, from the equator */
+    int32_t sin_q30, cos_q30;          /* of the latitude */
+    int32_t axis_q8;                   /* from the Earth's axis */
     uint32_t meridian_radius_q8;       /* M */
     uint32_t prime_vertical_radius_q8; /* N */
 };
 
-/* Any latitude from pole to pole. Cost: about 150 instructions. */
+/* Latitudes beyond a pole count as the pole. Cost: about 150 instructions. */
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place);
 
 /* A direction from an origin, and what all points along it have in common. */

@@ -241,7 +241,8 @@ static double expected_power(uint32_t line, uint32_t cell)
         for (; i < points.count && points.item[i].target == target; i++) {
             const struct lm_patch_point *p = &points.item[i];
             const double dx = line - p->across_q8 / 256.0, dy = cell - p->along_q8 / 256.0;
-            if (fabs(dx) < 8 && fabs(dy) <= 7.5) {
+            /* Seven cells to either side of the one that holds it: of two, the farther. */
+            if (fabs(dx) < 8 && dy > -7.5 && dy <= 7.5) {
                 sum += pow(10, p->level_q8 / 5120.0) * taylor(dx) * taylor(dy) *
                        cexp(I * (double)p->phase * (2 * pi / 4294967296.0));
             }
