@@ -11,6 +11,20 @@
 struct lm_radar;
 struct lm_receiver;
 
+/* Where a place lies from the antenna. */
+struct lm_bearing {
+    uint32_t distance_q8; /* metres * 256 */
+    fx_bam_t off;         /* of the line of sight, signed */
+};
+
+/* A circle of rain as the antenna sees it. */
+struct lm_shower {
+    struct lm_bearing at; /* its centre */
+    uint32_t radius_m;
+    uint32_t loss_q32; /* dB a metre, there and back */
+    int32_t echo_q8;   /* eta, dB of a cross section of a metre squared in a metre cubed */
+};
+
 struct lm_weather {
     int32_t noise_rise_q8;          /* by jammers, dB; 0: none */
     bool has_rain;                  /* false: the arrays mean nothing */
