@@ -133,22 +133,25 @@ static void set_geometry(struct lm_sar *s)
     };
 }
 
-/* The noise of a patch: that of an antenna that points at its centre all along, so that a jammer
- * raises it everywhere alike. */
-static int32_t floor_q8(const struct lm_radar *radar, const struct lm_sar_command *c,
-                        const struct lm_environment *environment)
+/* Noise and rain of a patch as an antenna meets them that points at its centre all along, so that a
+ * jammer raises the noise everywhere alike. */
+static void find_weather(struct lm_sar *s, const struct lm_environment *environment)
 {
+    const struct lm_sar_command *c = &s->command;
     struct lm_geo_origin centre;
     uint32_t distance_q8;
     fx_bam_t azimuth;
+    s->floor_q8 = s->radar->sar.noise_floor_q8;
+    s->rain.count = 0;
     if (!environment) {
-        return radar->sar.noise_floor_q8;
+        return;
     }
     lm_geo_set_origin(&centre, c->centre);
     const struct lm_place antenna =
         lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, c->range_m * 256);
     lm_geo_inverse(antenna, c->centre, &distance_q8, &azimuth);
-    return radar->sar.noise_floor_q8 + lm_noise_rise_q8(environment, radar, antenna, azimuth);
+    s->floor_q8 += lm_noise_rise_q8(environment, s->radar, antenna, azimuth);
+    lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
 }
 
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
@@ -174,7 +177,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->time_us = scene->time_us;
     s->epoch = scene->epoch;
     s->across_mm_s = across_mm_s;
-    s->floor_q8 = floor_q8(radar, command, scene->environment);
+    find_weather(s, scene->environment);
     s->defocus_q8 = flight && !command->is_steady
                         ? lm_defocus_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
                                         radar->wavelength_um, patch_us)
@@ -192,6 +195,7 @@ void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t refe
     set_runup(s, db);
     set_layover(s);
     set_geometry(s);
+    lm_patch_rain_set(&s->rain, s->radar, &s->geometry, s->floor_q8);
     lm_sar_restart(s);
 }
 
@@ -278,6 +282,7 @@ static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
     lm_sar_prefetch_targets(s, tiles);
     if (s->near.count != 0) {
         lm_patch_points_set(&s->points, &s->near, &s->geometry);
+        lm_patch_rain_weaken(&s->rain, &s->geometry, &s->points);
     }
     s->has_points = true;
 }
@@ -333,6 +338,11 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         lm_patch_chips_shade(&s->points, number, &s->geometry, clutter_q8);
         s->chips->count.cells_left_out +=
             lm_patch_chips_add(&s->points, number, &s->geometry, clutter_q8);
+    }
+    if (s->rain.count != 0) {
+        lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_q8, level_q8);
+        lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
+        return;
     }
     lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, line->ground.noise, clutter_q8,
                          level_q8, s->grid.cells);

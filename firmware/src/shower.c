@@ -63,22 +63,3 @@ void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
         loss_q8[i] += (int32_t)((uint64_t)(uint32_t)twice_q8 * s->loss_q32 >> 33);
     }
 }
-
-/* A share is at most 1 in Q32. */
-void lm_shower_add_echo(const struct lm_shower *s, const struct lm_chord *chord,
-                        const struct lm_reach *reach, const int32_t *loss_q8,
-                        int32_t *restrict echo_q8)
-{
-    const int32_t step_q8 = (int32_t)reach->cell_q8;
-    const int32_t edge_q8 = (int32_t)reach->first_q8 - step_q8 / 2;
-    const uint32_t per_step_q32 = UINT32_MAX / fx_max_u32(reach->cell_q8, 1);
-    const struct lm_chord c = *chord;
-    for (uint32_t i = 0; i < reach->cells; i++) {
-        const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
-        const int32_t filled_q8 =
-            lm_chord_before_q8(c, near_q8 + step_q8) - lm_chord_before_q8(c, near_q8);
-        const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
-        const int32_t share_q8 = fx_db_q8_of_many(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
-        echo_q8[i] = fx_db_q8_sum_of_many(echo_q8[i], s->echo_q8 + share_q8 - loss_q8[i]);
-    }
-}

@@ -33,11 +33,6 @@ struct lm_reach {
 void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
                         const struct lm_reach *reach, int32_t *restrict loss_q8);
 
-/* Add the rain's echo, so weakened, by the share of each cell that it fills. */
-void lm_shower_add_echo(const struct lm_shower *s, const struct lm_chord *chord,
-                        const struct lm_reach *reach, const int32_t *loss_q8,
-                        int32_t *restrict echo_q8);
-
 /* How much of the chord lies before `range_q8`. */
 static inline int32_t lm_chord_before_q8(struct lm_chord c, int32_t range_q8)
 {

@@ -55,6 +55,24 @@ static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_envir
     return count;
 }
 
+/* Add the rain's echo, so weakened, by the share of each bin that it fills: at most 1 in Q32. */
+static void add_echo(const struct met *m, const struct lm_reach *reach, const int32_t *loss_q8,
+                     int32_t *restrict echo_q8)
+{
+    const int32_t step_q8 = (int32_t)reach->cell_q8;
+    const int32_t edge_q8 = (int32_t)reach->first_q8 - step_q8 / 2;
+    const uint32_t per_step_q32 = UINT32_MAX / fx_max_u32(reach->cell_q8, 1);
+    const struct lm_chord c = m->chord;
+    for (uint32_t i = 0; i < reach->cells; i++) {
+        const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
+        const int32_t filled_q8 =
+            lm_chord_before_q8(c, near_q8 + step_q8) - lm_chord_before_q8(c, near_q8);
+        const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
+        const int32_t share_q8 = fx_db_q8_of_many(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
+        echo_q8[i] = fx_db_q8_sum_of_many(echo_q8[i], m->shower.echo_q8 + share_q8 - loss_q8[i]);
+    }
+}
+
 void lm_weather_line(struct lm_weather *w, const struct lm_environment *environment,
                      const struct lm_receiver *receiver, const struct lm_radar *radar,
                      struct lm_place antenna, fx_bam_t azimuth)
@@ -75,7 +93,7 @@ void lm_weather_line(struct lm_weather *w, const struct lm_environment *environm
         lm_shower_add_loss(&met[n].shower, &met[n].chord, &reach, w->loss_q8);
     }
     for (uint32_t n = 0; n < count; n++) {
-        lm_shower_add_echo(&met[n].shower, &met[n].chord, &reach, w->loss_q8, w->rain_q8);
+        add_echo(&met[n], &reach, w->loss_q8, w->rain_q8);
     }
     for (uint32_t i = 0; i < receiver->cells; i++) {
         w->rain_q8[i] += receiver->volume_q8[i];

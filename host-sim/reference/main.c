@@ -9,6 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of the firmware's table. */
+#define WAVELENGTH_M       0.031228
+#define AZIMUTH_BEAM_DEG   3.3
+#define ELEVATION_BEAM_DEG 4.6
+
 enum { FOR_SAR = 1, FOR_GM = 2, FOR_SECTOR = 4, FOR_FANS = FOR_GM | FOR_SECTOR, FOR_ALL = 7 };
 
 /* What the command line says; NAN stands for "from the image". */
@@ -56,7 +61,7 @@ static const struct option options[] = {
      4294967295.0, 0, true},
     {"looks", "independent looks averaged", AT(looks), FOR_ALL, 1, 64, 4, true},
     {"beam", "degrees of the one-way half-power beam in azimuth", AT(beam_deg), FOR_SECTOR, 0.1, 20,
-     3.3, false},
+     AZIMUTH_BEAM_DEG, false},
     {"tilt", "degrees of the antenna upwards; AUTO by default", AT(tilt_deg), FOR_SECTOR, -60, 60,
      NAN, false},
     {"pulse", "microseconds of the pulse", AT(pulse_us), FOR_SECTOR, 0, 100, 1, false},
@@ -72,14 +77,14 @@ static const struct option options[] = {
     {"speed", "metres a second, for sharpening", AT(speed_m_s), FOR_SECTOR, 1, 2000, 250, false},
     {"track", "degrees from north of the velocity, for sharpening", AT(track_deg), FOR_SECTOR, -720,
      720, 0, false},
-    {"rain", "millimetres an hour in a circle; 0: no rain", AT(rain_mm_h), FOR_SECTOR, 0, 150, 0,
-     false},
-    {"rain-radius", "metres of the circle", AT(rain_radius_m), FOR_SECTOR, 100, 100000, 5000,
-     false},
-    {"rain-distance", "metres to its centre", AT(rain_distance_m), FOR_SECTOR, 0, 300000, 15000,
-     false},
-    {"rain-bearing", "degrees from north, likewise", AT(rain_bearing_deg), FOR_SECTOR, -720, 720, 0,
-     false},
+    {"rain", "millimetres an hour in a circle; 0: no rain", AT(rain_mm_h), FOR_SAR | FOR_SECTOR, 0,
+     150, 0, false},
+    {"rain-radius", "metres of the circle", AT(rain_radius_m), FOR_SAR | FOR_SECTOR, 100, 100000,
+     5000, false},
+    {"rain-distance", "metres from the antenna to its centre", AT(rain_distance_m),
+     FOR_SAR | FOR_SECTOR, 0, 300000, 15000, false},
+    {"rain-bearing", "degrees from north, likewise", AT(rain_bearing_deg), FOR_SAR | FOR_SECTOR,
+     -720, 720, 0, false},
     {"jam", "dB of a jammer above the noise at ten nautical miles; -200: none", AT(jam_db),
      FOR_SECTOR, -200, 80, -200, false},
     {"jam-distance", "metres to the jammer", AT(jam_distance_m), FOR_SECTOR, 100, 300000, 18520,
@@ -270,15 +275,31 @@ static int write_out(const struct request *request, const struct ref_picture *pi
     return status;
 }
 
+/* The one circle that the command line asks for. */
+static size_t set_rain(const struct request *request, struct ref_place antenna,
+                       struct ref_rain *rain, struct ref_place *centre)
+{
+    *rain = (struct ref_rain){.radius_m = request->rain_radius_m, .mm_per_h = request->rain_mm_h};
+    *centre = ref_geo_direct(antenna, request->rain_bearing_deg, request->rain_distance_m);
+    return request->rain_mm_h > 0;
+}
+
+/* Beam and wavelength are those of the firmware's table. */
 static int render_sar(const struct request *request, const struct ref_db *db)
 {
-    const struct ref_sar sar = {.centre = place_of(request, db),
-                                .azimuth_deg = request->azimuth_deg,
-                                .range_m = request->range_m,
-                                .antenna_m = request->antenna_m,
-                                .cell_m = request->cell_m,
-                                .cell_count = (unsigned)request->cells,
-                                .epoch = (uint32_t)request->epoch};
+    struct ref_sar sar = {.centre = place_of(request, db),
+                          .azimuth_deg = request->azimuth_deg,
+                          .range_m = request->range_m,
+                          .antenna_m = request->antenna_m,
+                          .cell_m = request->cell_m,
+                          .cell_count = (unsigned)request->cells,
+                          .epoch = (uint32_t)request->epoch,
+                          .rain = {.wavelength_m = WAVELENGTH_M,
+                                   .azimuth_beam_deg = AZIMUTH_BEAM_DEG,
+                                   .elevation_beam_deg = ELEVATION_BEAM_DEG}};
+    sar.rain.environment.rain_count =
+        set_rain(request, ref_patch_offset(sar.centre, sar.azimuth_deg, 0, -sar.range_m),
+                 &sar.rain.environment.rain[0], &sar.rain_centre[0]);
     const double near_m = sar.range_m - (sar.cell_count / 2.0 + REF_GUARD_CELLS) * sar.cell_m;
     if (near_m <= 0) {
         return hs_error("--range", "give a longer range or a smaller patch",
@@ -348,13 +369,8 @@ static int render_gm(const struct request *request, const struct ref_db *db)
 
 static void set_weather(const struct request *request, struct ref_sector *s)
 {
-    if (request->rain_mm_h > 0) {
-        s->environment.rain_count = 1;
-        s->environment.rain[0] =
-            (struct ref_rain){.radius_m = request->rain_radius_m, .mm_per_h = request->rain_mm_h};
-        s->rain_centre[0] =
-            ref_geo_direct(s->ground.antenna, request->rain_bearing_deg, request->rain_distance_m);
-    }
+    s->environment.rain_count =
+        set_rain(request, s->ground.antenna, &s->environment.rain[0], &s->rain_centre[0]);
     if (request->jam_db > -200) {
         s->environment.jammer_count = 1;
         s->environment.jammer[0].ratio_db = request->jam_db;
@@ -376,9 +392,9 @@ static int render_sector(const struct request *request, const struct ref_db *db)
         .azimuths = 2,
         .sharpening = request->sharpening,
         .sharpening_least = request->sharpening / 2,
-        .dbs = {request->speed_m_s, request->beam_deg, 0.031228, request->rate_deg_s},
+        .dbs = {request->speed_m_s, request->beam_deg, WAVELENGTH_M, request->rate_deg_s},
         .track_deg = request->track_deg,
-        .antenna = {4.6, 30, 2.2},
+        .antenna = {ELEVATION_BEAM_DEG, 30, 2.2},
         .receiver = {.end_m = request->range_m,
                      .noise_end_db = request->noise_db,
                      .noise_table_db = noise_table_db,

@@ -156,6 +156,58 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
                &picture->view, params, picture->start_horizons[line]);
 }
 
+/* The rain as the antenna sees it. */
+static struct ref_patch_rain find_rain(const struct ref_sar *sar, const struct ref_view *view)
+{
+    struct ref_patch_rain w = sar->rain;
+    const struct ref_place antenna =
+        ref_patch_offset(sar->centre, sar->azimuth_deg, 0, -sar->range_m);
+    double sight_deg, bearing_deg, distance_m;
+    ref_geo_inverse(antenna, sar->centre, &sight_deg, &distance_m);
+    for (size_t n = 0; n < w.environment.rain_count; n++) {
+        struct ref_rain *rain = &w.environment.rain[n];
+        ref_geo_inverse(antenna, sar->rain_centre[n], &bearing_deg, &rain->distance_m);
+        rain->off_deg = remainder(bearing_deg - sight_deg, 360);
+    }
+    w.slant = hypot(sar->range_m, view->antenna_m - view->reference_m) / sar->range_m;
+    return w;
+}
+
+/* The rain over cell `cell` of every line; `aside_deg` and `veil` have room for as many. */
+static void rain_on_cells(const struct ref_picture *picture, const struct ref_sar *sar,
+                          const struct ref_patch_rain *rain, int cell, const double *aside_deg,
+                          double *veil)
+{
+    const double range_m = sar->range_m + sar_offset_m(sar, cell);
+    ref_patch_veil(rain, &picture->view, range_m, aside_deg, veil, sar->cell_count);
+    for (unsigned line = 0; line < sar->cell_count; line++) {
+        struct ref_bin *bin = ref_picture_bin(picture, line, cell);
+        bin->loss_db = ref_patch_loss_db(rain, aside_deg[line], range_m, sar->cell_m);
+        bin->veil = veil[line];
+    }
+}
+
+/* Before the speckle of any line. Returns 0, or -1 with the error reported. */
+static int rain_on(const struct ref_picture *picture, const struct ref_sar *sar)
+{
+    const struct ref_patch_rain rain = find_rain(sar, &picture->view);
+    if (rain.environment.rain_count == 0) {
+        return 0;
+    }
+    double *aside_deg = malloc(2 * sar->cell_count * sizeof *aside_deg);
+    if (aside_deg == NULL) {
+        return hs_error("picture", "ask for fewer cells", "not enough memory for the rain");
+    }
+    for (unsigned line = 0; line < sar->cell_count; line++) {
+        aside_deg[line] = atan2(sar_offset_m(sar, (int)line), sar->range_m) * 180 / acos(-1.0);
+    }
+    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
+        rain_on_cells(picture, sar, &rain, i, aside_deg, aside_deg + sar->cell_count);
+    }
+    free(aside_deg);
+    return 0;
+}
+
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params)
 {
@@ -177,6 +229,12 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     for (unsigned line = 0; line < sar->cell_count; line++) {
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
+    }
+    if (rain_on(picture, sar) != 0) {
+        ref_picture_free(picture);
+        return -1;
+    }
+    for (unsigned line = 0; line < sar->cell_count; line++) {
         finish(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
                picture->speckle_shift, sar->epoch, params, &tables);
     }

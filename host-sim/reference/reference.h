@@ -45,6 +45,7 @@ struct ref_bin {
     /* speckle and noise */
     uint32_t hash, slice; /* slice: 0..1023 */
     double texture_db;    /* with the state of the sea */
+    double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
     /* tone */
     double brightness; /* v, before the table */
@@ -200,8 +201,8 @@ double ref_sea_db(int state);
 void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
                  const struct ref_params *params);
 
-/* Fill `speckle_db` from `slice`, and echo_db = the sum of both powers, level_db + texture_db (of a
- * lit bin) and floor, + speckle_db. */
+/* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db + texture_db -
+ * loss_db (of a lit bin), floor and veil, + speckle_db. */
 void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
                  double noise_floor_db);
 
@@ -307,6 +308,23 @@ void ref_weather_at(const struct ref_environment *e, double wavelength_m, double
 void ref_weather(const struct ref_environment *e, double wavelength_m, double azimuth_beam_deg,
                  double elevation_beam_deg, double height_m, const struct ref_bins *bins,
                  struct ref_weather_line *weather);
+
+/* Rain that a patch is seen through. */
+struct ref_patch_rain {
+    struct ref_environment environment; /* seen from the antenna, off the patch's line of sight */
+    double wavelength_m, azimuth_beam_deg, elevation_beam_deg;
+    double slant; /* metres of the way for each metre along the ground */
+};
+
+/* What rain takes of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line
+ * whose middle appears `aside_deg` to the right of the line of sight. */
+double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
+                         double cell_m);
+
+/* What rain adds to the cells at `range_m`, as gamma: veil[n] on the line `aside_deg[n]` of the
+ * line of sight. These grow with n, within 40 degrees or ten beams of their middle. */
+void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
+                    const double *aside_deg, double *veil, size_t count);
 
 /* ---- real beam: the antenna (beam.c), and a line (sector.c) ---- */
 
@@ -467,6 +485,8 @@ struct ref_sar {
     double antenna_m, cell_m;
     unsigned cell_count; /* along either side */
     uint32_t epoch;
+    struct ref_patch_rain rain; /* distances, angles and slant are filled from these places */
+    struct ref_place rain_centre[4];
 };
 
 /* The tables of a picture. */

@@ -119,8 +119,9 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 {
     for (size_t i = 0; i < count; i++) {
         bins[i].speckle_db = table_db[bins[i].slice];
-        const double level_db = bins[i].level_db + bins[i].texture_db;
+        const double level_db = bins[i].level_db + bins[i].texture_db - bins[i].loss_db;
         const double ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
-        bins[i].echo_db = 10 * log10(ground + pow(10, noise_floor_db / 10)) + bins[i].speckle_db;
+        const double floor = pow(10, noise_floor_db / 10) + bins[i].veil;
+        bins[i].echo_db = 10 * log10(ground + floor) + bins[i].speckle_db;
     }
 }

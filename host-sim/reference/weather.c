@@ -1,4 +1,4 @@
-/* Rain and jammers: DESIGN.md, "Rain" and "Noise". */
+/* Rain and jammers: DESIGN.md, "Rain", "Noise" and "Rain over a patch". */
 #include "reference.h"
 
 #include <math.h>
@@ -70,5 +70,62 @@ void ref_weather(const struct ref_environment *e, double wavelength_m, double az
     for (size_t i = 0; i < bins->count; i++) {
         ref_weather_at(e, wavelength_m, elevation_beam_deg, height_m, bins, i, &weather->pass[i],
                        &weather->rain[i]);
+    }
+}
+
+/* Loss, there and back, of a cell from `near_m` to `far_m` along the ground, on the ray `aside_deg`
+ * of the line of sight; and in *echo what its own rain scatters, by the cubic metre of the cell. */
+static double ray_loss_db(const struct ref_patch_rain *w, double aside_deg, double near_m,
+                          double far_m, double *echo)
+{
+    double loss_db = 0, from_m, to_m;
+    *echo = 0;
+    for (size_t n = 0; n < w->environment.rain_count; n++) {
+        struct ref_rain rain = w->environment.rain[n];
+        rain.off_deg -= aside_deg;
+        if (ref_rain_chord(&rain, &from_m, &to_m)) {
+            const double before_m = depth_m(from_m, to_m, near_m);
+            const double until_m = depth_m(from_m, to_m, far_m);
+            loss_db +=
+                2 * ref_rain_loss_db_km(rain.mm_per_h) * w->slant * (before_m + until_m) / 2 / 1000;
+            *echo += ref_rain_eta(rain.mm_per_h, w->wavelength_m) * (until_m - before_m) /
+                     (far_m - near_m);
+        }
+    }
+    return loss_db;
+}
+
+double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
+                         double cell_m)
+{
+    double echo;
+    return ray_loss_db(w, aside_deg, range_m - cell_m / 2, range_m + cell_m / 2, &echo);
+}
+
+void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
+                    const double *aside_deg, double *veil, size_t count)
+{
+    enum { IN_BEAM = 200, RAYS = 30 * IN_BEAM, REACH = 5 * IN_BEAM / 4 };
+    const double near_m = range_m - view->cell_m / 2, far_m = range_m + view->cell_m / 2;
+    const double spacing_deg = w->azimuth_beam_deg / IN_BEAM;
+    const double middle_deg = count > 0 ? (aside_deg[0] + aside_deg[count - 1]) / 2 : 0;
+    const double height_m = range_m * w->elevation_beam_deg * rad * sqrt(pi / (8 * log(2.0))) / 2;
+    double power[RAYS];
+    for (int k = 0; k < RAYS; k++) {
+        const double at_deg = middle_deg + (k - (RAYS - 1) / 2.0) * spacing_deg;
+        double echo;
+        const double loss_db = ray_loss_db(w, at_deg, near_m, far_m, &echo);
+        power[k] = echo * pow(10, -loss_db / 10);
+    }
+    for (size_t n = 0; n < count; n++) {
+        const double axis = (RAYS - 1) / 2.0 + (aside_deg[n] - middle_deg) / spacing_deg;
+        double sum = 0, weights = 0;
+        for (int k = (int)axis - REACH; k <= (int)axis + REACH; k++) {
+            const double x = (k - axis) * spacing_deg / w->azimuth_beam_deg;
+            const double weight = pow(2, -8 * x * x);
+            sum += weight * power[k];
+            weights += weight;
+        }
+        veil[n] = sum / weights * height_m / ref_grazing(view, range_m, range_m - view->cell_m);
     }
 }

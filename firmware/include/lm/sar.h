@@ -9,6 +9,7 @@
 #include "lm/defocus.h"
 #include "lm/layover.h"
 #include "lm/line.h"
+#include "lm/patch_rain.h"
 #include "lm/radar.h"
 #include "lm/target_patch.h"
 #include "lm/tone.h"
@@ -44,7 +45,7 @@ struct lm_sar_scene {
     int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     uint8_t sea_state;
-    const struct lm_environment *environment; /* whose jammers; NULL: none; read at once */
+    const struct lm_environment *environment; /* rain and jammers; NULL: none; read at once */
     uint64_t time_us;                         /* movers are where they are then */
 };
 
@@ -65,6 +66,7 @@ struct lm_sar {
     uint32_t epoch;                      /* of noise and of what fluctuates */
     int32_t across_mm_s;                 /* velocity to the right of the line of sight */
     int32_t floor_q8;                    /* of noise, jammers' included; dB of gamma */
+    struct lm_patch_rain rain;
     struct lm_layover layover;
     uint32_t defocus_q8; /* width of the smear, lines * 256; 256: none */
     struct lm_patch_geometry geometry;

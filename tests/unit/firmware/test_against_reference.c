@@ -1,6 +1,7 @@
 /* The fixed-point picture against the double-precision reference, stage by stage and whole. Each
  * stage is judged on what the firmware's stage before it handed on, so that no error hides behind
  * another; then the pictures as they are. */
+#include "hs/angle.h"
 #include "lm/sar.h"
 
 #include "memory_flash.h"
@@ -33,6 +34,8 @@ struct world {
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
     struct ref_texture texture;
+    struct lm_environment environment;
+    bool is_rainy;
 };
 
 /* How far apart two pictures are. */
@@ -136,13 +139,41 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .height_q6 = height_m * 64};
     set_params(w);
     const struct lm_sar_scene scene = {.reference_q10 = (int32_t)lround(reference_m * 1024),
-                                       .sea_state = LM_SEA_STATE_OF_IMAGE};
+                                       .sea_state = LM_SEA_STATE_OF_IMAGE,
+                                       .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);
     for (uint32_t line = 0; line < CELLS; line += 4) {
         lm_sar_prefetch(&sar, &w->tiles, line);
         make_resident(w);
     }
     return sar;
+}
+
+/* Rain of 30 mm/h over the right half of the world's patches, and some before them. */
+static void make_rain(struct world *w, struct ref_sar *wanted)
+{
+    const struct lm_antenna_table *antenna = &w->radar.antenna;
+    const struct lm_place centre = {w->db.centre_latitude, w->db.centre_longitude};
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, centre);
+    const fx_bam_t look = hs_bam(wanted->azimuth_deg);
+    w->environment = (struct lm_environment){
+        .rain = {{lm_geo_direct(&origin, look + FX_BAM_90, 2200 * 256), 2000, 30},
+                 {lm_geo_direct(&origin, look + FX_BAM_180, 6000 * 256), 1500, 12}},
+        .rain_count = 2,
+        .sea_state = LM_SEA_STATE_OF_IMAGE};
+    wanted->rain =
+        (struct ref_patch_rain){.environment = {.rain = {{.radius_m = 2000, .mm_per_h = 30},
+                                                         {.radius_m = 1500, .mm_per_h = 12}},
+                                                .rain_count = 2},
+                                .wavelength_m = w->radar.wavelength_um * 1e-6,
+                                .azimuth_beam_deg = hs_degrees(antenna->azimuth_beam),
+                                .elevation_beam_deg = hs_degrees(antenna->elevation_beam)};
+    for (int n = 0; n < 2; n++) {
+        const struct lm_place at = w->environment.rain[n].centre;
+        wanted->rain_centre[n] =
+            (struct ref_place){hs_degrees(at.latitude), hs_degrees(at.longitude)};
+    }
 }
 
 /* How far apart aspect to tone are on the same ground; whole pictures; and pictures of which one
@@ -182,12 +213,15 @@ static void score_patch_line(struct world *w, const struct ref_sar *wanted,
 static void score_patch(struct world *w, int look_deg, double cell_m, double range_m,
                         double height_m, struct patch_scores *scores)
 {
-    const struct ref_sar wanted = {.centre = w->ref.centre,
-                                   .azimuth_deg = look_deg,
-                                   .range_m = range_m,
-                                   .antenna_m = height_m,
-                                   .cell_m = cell_m,
-                                   .cell_count = CELLS};
+    struct ref_sar wanted = {.centre = w->ref.centre,
+                             .azimuth_deg = look_deg,
+                             .range_m = range_m,
+                             .antenna_m = height_m,
+                             .cell_m = cell_m,
+                             .cell_count = CELLS};
+    if (w->is_rainy) {
+        make_rain(w, &wanted);
+    }
     struct ref_picture picture;
     set_params(w);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
@@ -231,10 +265,30 @@ static void patches_agree_with_the_reference(void **state)
     assert_true(runups->beyond_1_grey * 125 <= runups->pixels);
 }
 
+/* The same through rain, whose edge runs through each picture. */
+static void patches_in_rain_agree_with_the_reference(void **state)
+{
+    (void)state;
+    struct patch_scores scores = {0};
+    struct world *w = make_world(9, 1, 46, 11);
+    w->is_rainy = true;
+    score_patch(w, 0, 5, 20000, 3000, &scores);
+    score_patch(w, 200, 7, 40000, 6000, &scores);
+    score_patch(w, 291, 3, 12000, 1500, &scores);
+    score_patch(w, 100, 10, 60000, 9000, &scores);
+    free_world(w);
+    report("patches in rain, aspect to tone on the same ground", &scores.stage);
+    report("patches in rain, whole", &scores.whole);
+    judge_stages(&scores.stage);
+    assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
+    assert_true(scores.whole.beyond_1_grey * 200 <= scores.whole.pixels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(patches_agree_with_the_reference),
+        cmocka_unit_test(patches_in_rain_agree_with_the_reference),
     };
     return cmocka_run_group_tests_name("against_reference", tests, NULL, NULL);
 }
