@@ -9,7 +9,7 @@ Nothing here passes or fails.
 import re
 
 import machine
-from panel import Panel, fly, is_fine
+from panel import in_flight
 from test_panel import boot, prepare
 
 SECONDS = 10
@@ -75,9 +75,7 @@ def main():
     m = boot()
     try:
         prepare(m)
-        fly(m, "flight")
-        p = Panel(m)
-        p.until(is_fine)
+        in_flight(m, "flight")
         used, now = ticks(m)
         m.sleep(SECONDS)
         used_after, now_after = ticks(m)

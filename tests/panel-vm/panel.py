@@ -18,7 +18,6 @@ BEZEL = {"key.7": "OSB7", "key.12": "OSB12", "key.13": "OSB13", "key.14": "OSB14
          "key.designate": "DESIGNATE", "led.fault": "LED-FAULT", "led.alive": "LED-ALIVE"}
 
 
-
 def land(m):
     """No more traffic."""
     m.sh("kill $(pidof canplayer); while pidof canplayer; do usleep 10000; done")
@@ -153,3 +152,11 @@ class Panel:
         self.machine.sleep(0.1)
         self.set_key(name, RELEASED)
         self.machine.sleep(0.1)
+
+
+def in_flight(m, flight="still", **settings):
+    """A panel whose glass shows the picture of a flight."""
+    fly(m, flight)
+    p = Panel(m, **settings)
+    p.until(is_fine)
+    return p

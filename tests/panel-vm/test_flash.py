@@ -26,6 +26,13 @@ def start(m):
     return Panel(m, database="/dev/mtd0", bezel=False)
 
 
+def shows_map(m):
+    """The panel, when its glass shows the picture and the ground's elevation, which it has from the chip."""
+    p = start(m)
+    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    return p
+
+
 def change_chip(m, module):
     """Take the chip that is there away, and put in another one."""
     m.sh("kill $(pidof landmass-panel); while pidof landmass-panel; do usleep 20000; done; rmmod mtdram; rmmod nandsim")
@@ -44,8 +51,7 @@ def write_nand(m, bad=()):
 def nor(m):
     change_chip(m, "mtdram total_size=16384 erase_size=128")
     m.do("dd if=/t/small.lmdb of=/dev/mtd0 bs=128k conv=notrunc 2>/dev/null")
-    p = start(m)
-    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    p = shows_map(m)
     expect("good erase blocks of 131072 bytes, 0 bad ones" in p.said(), p.said())
 
 
@@ -53,8 +59,7 @@ def nor(m):
 def nand(m):
     change_chip(m, "nandsim %s badblocks=3,9" % CHIP)
     write_nand(m, bad=(3, 9))
-    p = start(m)
-    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    p = shows_map(m)
     expect(", 2 bad ones" in p.said(), p.said())
 
 
@@ -62,8 +67,7 @@ def nand(m):
 def flipped_bits(m):
     change_chip(m, "nandsim %s bitflips=1" % CHIP)
     write_nand(m)
-    p = start(m)
-    p.until(lambda text: is_fine(text) and any("ELV" in line for line in text))
+    shows_map(m)
 
 
 @case("pages that lose their data are told on the glass, and the picture goes on")

@@ -3,8 +3,8 @@
 from cases import case, expect, main
 from fixtures import busy_log, counters, database, lines_of, log, tree
 from machine import Machine
-from panel import (GPIO, HEIGHT, PRESSED, RELEASED, Panel, bench, differences, fly, is_fine, is_flagged, is_removed, land,
-                   strangers)
+from panel import (GPIO, HEIGHT, PRESSED, RELEASED, Panel, bench, differences, fly, in_flight, is_fine, is_flagged,
+                   is_removed, land, strangers)
 
 DEVICES = ["-device", "virtio-gpu-pci,xres=640,yres=480", "-device", "qemu-xhci", "-device", "usb-tablet,id=stick",
            "-device", "i6300esb", "-action", "watchdog=none"]
@@ -50,9 +50,8 @@ def delivered(m):
 @case("in flight every pixel of the radar picture is the bench's at some moment")
 def radar_picture(m):
     film = bench("film", "still", seconds=12, every=1)
-    fly(m)
-    p = Panel(m)
-    p.until(lambda text: is_fine(text) and "ELV +981FT" in text)
+    p = in_flight(m)
+    p.until(lambda text: "ELV +981FT" in text)
     m.sleep(3)  # the tiles are there, and the second sweep is under way
     p.press("OSB7")
     p.until(lambda text: "FZ" in text[:6])
@@ -84,9 +83,7 @@ def test_pattern(m):
 
 @case("when the traffic stops the picture is flagged first and then removed, as on the bench")
 def nav_stops(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     land(m)
     flagged = p.until(lambda text: not is_fine(text))
     expect(is_flagged(flagged) and not is_removed(flagged), flagged)
@@ -101,9 +98,7 @@ def nav_stops(m):
 
 @case("an interface that goes down is told on the glass, and heard again when it is up")
 def down_and_up(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     m.do("ip link set vcan0 down")
     p.until(lambda text: "BUS" in text and is_removed(text))
     expect(p.is_alive(), "the display stands")
@@ -114,9 +109,7 @@ def down_and_up(m):
 
 @case("so it is with an interface that is removed and comes back")
 def removed_and_back(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     land(m)
     m.do("ip link del vcan0")
     p.until(lambda text: "BUS" in text and is_removed(text))
@@ -153,9 +146,7 @@ def busy_bus(m):
 
 @case("a controller that has left the bus is counted, on the page that says so")
 def bus_off(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     p.press("OSB12")
     p.until(lambda text: any("BUS ERR" in line for line in text))
     before = p.counter("BUS ERR")
@@ -186,9 +177,7 @@ def damaged_records(m):
 
 @case("a screen that is unplugged and comes back shows the picture again")
 def unplugged_screen(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     m.do("echo off >/sys/class/drm/card0-Virtual-1/status")
     code, _ = m.sh("sleep 3; grep 'glass: .* it is looked for' /tmp/panel.log")
     m.do("echo detect >/sys/class/drm/card0-Virtual-1/status")
@@ -200,17 +189,14 @@ def unplugged_screen(m):
 
 @case("through the older frame buffer device it shows the same")
 def frame_buffer(m):
-    fly(m)
-    p = Panel(m, glass="fbdev")
-    p.until(is_fine)
+    p = in_flight(m, glass="fbdev")
     expect(p.is_alive() and "frame buffer" in p.said(), p.said())
 
 
 @case("a key that bounces when it is pressed and when it is let go acts once")
 def bounce(m):
-    fly(m)
-    p = Panel(m, keys__debounce=50)
-    p.until(lambda text: is_fine(text) and "40" in text)
+    p = in_flight(m, keys__debounce=50)
+    p.until(lambda text: "40" in text)
     for last in (PRESSED, RELEASED):
         for _ in range(9):
             p.set_key("OSB19", 1 - last)
@@ -223,9 +209,8 @@ def bounce(m):
 
 @case("a glitch between two looks of the processor is no key")
 def glitch(m):
-    fly(m)
-    p = Panel(m)
-    p.until(lambda text: is_fine(text) and "40" in text)
+    p = in_flight(m)
+    p.until(lambda text: "40" in text)
     m.qmp("stop")
     p.set_key("OSB19", PRESSED)
     p.set_key("OSB19", RELEASED)
@@ -236,9 +221,7 @@ def glitch(m):
 
 @case("when the kernel's queue of edges overflows the panel still knows how the key stands")
 def edge_overflow(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     m.do("kill -STOP $(pidof landmass-panel)")
     for _ in range(40):
         p.set_key("OSB12", PRESSED)
@@ -260,9 +243,7 @@ def edge_overflow(m):
 
 @case("a key that is held down for ever is told, and lights the lamp of faults until it is let go")
 def stuck_key(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     p.set_key("OSB19", PRESSED)
     m.sleep(16)
     expect("key: OSB19 has been down for 15 s: stuck" in p.said(), p.said())
@@ -273,9 +254,7 @@ def stuck_key(m):
 
 @case("the lamps blink while pictures go to the glass, and tell a fault")
 def lamps(m):
-    fly(m)
-    p = Panel(m)
-    p.until(is_fine)
+    p = in_flight(m)
     levels = set()
     for _ in range(40):
         levels.add(m.gpio_out(GPIO.index("LED-ALIVE")))
@@ -307,9 +286,8 @@ def cursor_rests(p):
 
 @case("a hand controller slews the cursor; pulled out while it does it lets go, and works again when it is back")
 def hand_controller(m):
-    fly(m)
-    p = Panel(m, stick="0627:0001")
-    p.until(lambda text: is_fine(text) and "E011*00.00" in text)
+    p = in_flight(m, stick="0627:0001")
+    p.until(lambda text: "E011*00.00" in text)
     tilt(m, 20000)
     p.until(lambda text: "E011*00.00" not in text)
     m.qmp("device_del", id="stick")
@@ -354,9 +332,7 @@ def hostile_devices(m):
 
 @case("with everything at work the loop allocates nothing")
 def no_allocation(m):
-    fly(m, "flight")
-    p = Panel(m, environment="COUNT_MALLOC=/tmp/mallocs LD_PRELOAD=/t/count_malloc.so", stick="0627:0001")
-    p.until(is_fine)
+    p = in_flight(m, "flight", environment="COUNT_MALLOC=/tmp/mallocs LD_PRELOAD=/t/count_malloc.so", stick="0627:0001")
     counts = "od -A n -t u8 /tmp/mallocs"
     before, others_before = map(int, m.do(counts).split())
     land(m)
@@ -374,9 +350,7 @@ def no_allocation(m):
 
 @case("the watchdog is fed by a loop that goes round, and bites when it hangs")
 def watchdog(m):
-    fly(m)
-    p = Panel(m, watchdog="/dev/watchdog", watchdog__timeout="3")
-    p.until(is_fine)
+    p = in_flight(m, watchdog="/dev/watchdog", watchdog__timeout="3")
     m.sleep(7)
     m.qmp("query-status")
     expect("WATCHDOG" not in m.events, "it bit while the panel worked;", p.said())
