@@ -266,23 +266,26 @@ static inline void paint_cells(uint8_t *corner, size_t width_px, uint32_t side_p
     }
 }
 
-/* Cells of a pixel each, upwards: eight at a time, for there is little more to each than counting.
- */
-static void paint_pixels(uint8_t *pixel, ptrdiff_t width_px, const uint8_t *grey, size_t count)
+static inline void paint_four(uint8_t *pixel, ptrdiff_t up, const uint8_t *grey)
 {
-    const uint8_t *const end = grey + count;
-    for (; end - grey >= 8; grey += 8, pixel -= 8 * width_px) {
-        uint8_t *const middle = pixel - 4 * width_px;
-        pixel[0] = grey[0];
-        pixel[-width_px] = grey[1];
-        pixel[-2 * width_px] = grey[2];
-        pixel[-3 * width_px] = grey[3];
-        middle[0] = grey[4];
-        middle[-width_px] = grey[5];
-        middle[-2 * width_px] = grey[6];
-        middle[-3 * width_px] = grey[7];
+    pixel[0] = grey[0];
+    pixel[up] = grey[1];
+    pixel[2 * up] = grey[2];
+    pixel[3 * up] = grey[3];
+}
+
+/* Cells of a pixel each, upwards: 16 at a time, for there is little more to each than counting. */
+static void paint_pixels(uint8_t *pixel, size_t width_px, const uint8_t *grey, size_t count)
+{
+    const ptrdiff_t up = -(ptrdiff_t)width_px;
+    const uint8_t *const end = grey + count, *const whole = end - count % 16;
+    for (; grey != whole; grey += 16, pixel += 16 * up) {
+        paint_four(pixel, up, grey);
+        paint_four(pixel + 4 * up, up, grey + 4);
+        paint_four(pixel + 8 * up, up, grey + 8);
+        paint_four(pixel + 12 * up, up, grey + 12);
     }
-    for (; grey != end; grey++, pixel -= width_px) {
+    for (; grey != end; grey++, pixel += up) {
         *pixel = *grey;
     }
 }
@@ -303,7 +306,7 @@ void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, 
     uint8_t *const pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
                            frame->left_px + left;
     if (cell_px == 1) {
-        paint_pixels(pixel, (ptrdiff_t)width_px, grey + first, count);
+        paint_pixels(pixel, width_px, grey + first, count);
     } else if (cell_px == 2) {
         paint_cells(pixel, width_px, 2, grey + first, count);
     } else {
