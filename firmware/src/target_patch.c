@@ -190,6 +190,14 @@ static struct slice slice_of(const struct lm_smear *s, uint32_t number)
                           .deep_q8 = s->deep_q8};
 }
 
+/* Whether any slice of what stands at across_q8 and reaches so far either way may touch a line:
+ * most lines of a patch pass by most targets. */
+static bool may_touch(const struct lm_smear *s, int32_t across_q8, uint32_t reach_q8, uint32_t line)
+{
+    const uint32_t smeared_q8 = fx_abs_u32(s->across_q8) * s->slices / 2;
+    return fx_abs_u32((int32_t)line * 256 - across_q8) <= smeared_q8 + reach_q8;
+}
+
 /* A distance in units of the stretched response. */
 static int32_t squeezed(int32_t x_q8, int32_t inverse_q16)
 {
@@ -268,6 +276,21 @@ static void collect(struct lm_patch_points *work, struct span touched, int32_t r
     }
 }
 
+/* Whether any of the points begin..end - 1, of one target, is seen on a line. */
+static bool is_seen(const struct lm_patch_points *p, uint32_t begin, uint32_t end, uint32_t line)
+{
+    const struct lm_smear *smear = &p->smear[p->item[begin].target];
+    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
+    const uint32_t reach_q8 = (LM_RESPONSE_REACH + 1) * smear->wide_q8;
+    bool is_seen = false;
+    for (uint32_t i = begin; i < end; i++) {
+        const struct lm_patch_point *point = &p->item[i];
+        is_seen |= !point->is_hidden && !point->is_chip &&
+                   may_touch(smear, point->across_q8, reach_q8, line);
+    }
+    return is_seen;
+}
+
 /* The points begin..end - 1, of one target. Its bodies add as phasors, the slices of its dwell,
  * whose phases run away from each other, as powers. */
 static void add_target(struct lm_patch_points *p, uint32_t begin, uint32_t end, uint32_t line,
@@ -299,7 +322,9 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
     for (uint32_t begin = 0; begin < p->count; begin = end) {
         for (end = begin; end < p->count && p->item[end].target == p->item[begin].target; end++) {
         }
-        add_target(p, begin, end, line, least_q8, within, level_q8);
+        if (is_seen(p, begin, end, line)) {
+            add_target(p, begin, end, line, least_q8, within, level_q8);
+        }
     }
 }
 
@@ -372,6 +397,11 @@ uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
         const struct lm_smear *smear = &p->smear[at->target];
+        const struct lm_chip_reach *lit = &chip->lay.lit;
+        const uint32_t reach = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
+        if (!may_touch(smear, at->across_q8, reach * 256, line)) {
+            continue;
+        }
         for (uint32_t number = 0; number < smear->slices; number++) {
             const struct slice slice = slice_of(smear, number);
             const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_q8);
