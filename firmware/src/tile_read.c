@@ -4,46 +4,78 @@
 #include "fx/mem.h"
 #include "tile_read_neon.h"
 
-/* What a place in a tile gives. Words hold two numbers of the tile side by side, the western one in
- * the low half: lm/db.h on the order of bytes. */
-struct ground {
-    uint32_t cell;
-    int32_t elevation_q14;
-};
-
-/* Indices are signed: then a loop of this becomes vector gathers. */
-static inline struct ground read_ground(const struct lm_tile *tile, uint32_t north_q26,
-                                        uint32_t east_q26)
+/* Half-words from the first record of a pool to another one: at most 2^12 records of 2^14 bytes. */
+static uint32_t record_of(const struct lm_tile *pool, const struct lm_tile *tile)
 {
-    const uint16_t *cells = (const uint16_t *)tile->cells, *posts = (const uint16_t *)tile->posts;
-    const int32_t row = (int32_t)(north_q26 >> 26), column = (int32_t)(east_q26 >> 26);
-    const int32_t post = row * LM_TILE_POSTS + column;
-    const uint32_t south = fx_load_u32(posts + post);
-    const uint32_t north = fx_load_u32(posts + post + LM_TILE_POSTS);
-    const uint32_t post_q16 =
-        fx_bilerp_u16_q16((uint16_t)south, (uint16_t)(south >> 16), (uint16_t)north,
-                          (uint16_t)(north >> 16), east_q26 << 6 >> 24, north_q26 << 6 >> 24);
-    /* A post step is 2^post_shift / 64 m, so the interpolated code's Q16 is Q22 of 2^post_shift m.
-     * lm_tile_check holds |base| to 2^20 and post_shift to 4: below 2^29. */
-    return (struct ground){.cell = fx_load_u32(cells + (post - row)) & 0xFFFF,
-                           .elevation_q14 = (int32_t)((uint32_t)tile->base_q6 * 256u +
-                                                      (post_q16 >> (8 - tile->post_shift)))};
+    return (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool) / 2;
 }
 
-/* Whole groups: a vector of cells has no rest. No store touches the tile: it may gather. */
-void lm_tile_read(const struct lm_tile *restrict tile, const struct lm_track *north,
-                  const struct lm_track *east, uint32_t count, uint32_t *restrict cell,
-                  int32_t *restrict elevation_q14)
+/* A tile's base, metres * 16384, with the shift that brings the Q16 of a post there in its lowest
+ * byte, less than 0 as it goes to the right: a post step is 2^post_shift / 64 m, so that its Q16 is
+ * Q22 of 2^post_shift m. The byte is left in where elevations are added up: it takes half a
+ * millimetre from them. lm_tile_check holds |base| to 2^20 in Q6 and post_shift to 4. */
+static int32_t scale_of(const struct lm_tile *tile)
 {
-    const uint32_t groups = (count + LM_LANES - 1) / LM_LANES;
-    const struct lm_track n = *north, e = *east;
+    return tile->base_q6 * 256 + (tile->post_shift - 8);
+}
+
+/* Words hold two numbers of the tile side by side, the western one in the low half: lm/db.h on the
+ * order of bytes. Indices are signed: then a loop of this becomes vector gathers. */
+static inline struct lm_ground ground_at(const struct lm_tile *pool, uint32_t record, int32_t scale,
+                                         uint32_t north, uint32_t east)
+{
+    const uint16_t *cells = pool->cells[0], *posts = pool->posts[0];
+    const int32_t row = (int32_t)(north >> 26), column = (int32_t)(east >> 26);
+    const int32_t cell = (int32_t)record + row * LM_TILE_CELLS + column;
+    const uint32_t south = fx_load_u32(posts + (cell + row));
+    const uint32_t further = fx_load_u32(posts + (cell + row) + LM_TILE_POSTS);
+    const uint32_t post_q16 =
+        fx_bilerp_u16_q16((uint16_t)south, (uint16_t)(south >> 16), (uint16_t)further,
+                          (uint16_t)(further >> 16), east << 6 >> 24, north << 6 >> 24);
+    /* The post's part and the base are below 2^29. */
+    const uint32_t shift = (0u - (uint32_t)scale) & 0xFF;
+    return (struct lm_ground){.cell = fx_load_u32(cells + cell) & 0xFFFF,
+                              .elevation_q14 = scale + (int32_t)(post_q16 >> shift)};
+}
+
+struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east)
+{
+    return ground_at(tile, 0, scale_of(tile), north, east);
+}
+
+void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t noise_sum,
+                 uint32_t first, uint32_t end, struct lm_scan_line *line)
+{
+    const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
+    const uint32_t record = record_of(pool, tile);
+    const int32_t scale = scale_of(tile);
+    for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
+        line->cell[k] = record;
+        line->elevation_q14[k] = scale;
+        line->noise[k] = noise_sum;
+    }
+}
+
+/* Whole groups: a vector of cells has no rest. No store touches the pool: it may gather. */
+void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *places,
+                  uint32_t first, uint32_t end, struct lm_scan_line *restrict line)
+{
+    const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
+    const struct lm_places p = *places;
+    for (uint32_t k = end; k < end + LM_LANES; k++) {
+        line->cell[k] = 0; /* not laid, perhaps: any record will do */
+        line->elevation_q14[k] = 0;
+    }
     if (FX_HAS_NEON) {
-        read_groups_neon(tile, &n, &e, groups, cell, elevation_q14);
+        read_groups_neon(pool, &p, first, groups, line);
         return;
     }
-    for (uint32_t k = 0; k < groups * LM_LANES; k++) {
-        const struct ground g = read_ground(tile, lm_track_at(&n, k), lm_track_at(&e, k));
-        cell[k] = g.cell;
-        elevation_q14[k] = g.elevation_q14;
+    for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
+        const uint32_t north = lm_track_at(&p.north, k), east = lm_track_at(&p.east, k);
+        const struct lm_ground g =
+            ground_at(pool, line->cell[k], line->elevation_q14[k], north, east);
+        line->cell[k] = g.cell;
+        line->elevation_q14[k] = g.elevation_q14;
+        line->noise[k] = lm_place_noise(&p, line->noise[k], north, east);
     }
 }

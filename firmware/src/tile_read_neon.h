@@ -17,30 +17,27 @@ static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
     return vshrq_n_u16(vshlq_n_u16(upper, 6), 8);
 }
 
-/* Where the numbers of eight places are: south-western posts in bytes, behind them cells. */
-static inline void neon_offsets(const uint32x4_t north[2], const uint32x4_t east[2],
-                                uint32_t offset[2 * LM_LANES])
+/* Where the numbers of four places are: south-western posts in bytes, and cells. */
+static inline void neon_offsets(uint32x4_t record, uint32x4_t north, uint32x4_t east,
+                                uint32_t *post, uint32_t *which)
 {
-    uint32x4x4_t at;
-    for (int half = 0; half < 2; half++) {
-        const uint32x4_t row = vshrq_n_u32(north[half], 26), column = vshrq_n_u32(east[half], 26);
-        at.val[half] = vmlaq_n_u32(vaddq_u32(column, column), row, 2 * LM_TILE_POSTS);
-        at.val[2 + half] = vsliq_n_u32(column, row, LM_TILE_CELLS_LOG2);
-    }
-    vst1q_u32_x4(offset, at);
+    const uint32x4_t row = vshrq_n_u32(north, 26);
+    const uint32x4_t across = vsraq_n_u32(record, east, 26);
+    vst1q_u32(post, vmlaq_n_u32(vaddq_u32(across, across), row, 2 * LM_TILE_POSTS));
+    vst1q_u32(which, vmlaq_n_u32(across, row, LM_TILE_CELLS));
 }
 
 struct neon_source {
-    const uint8_t *south, *north; /* first post of the southernmost row, and of the next one */
+    const uint8_t *south, *north; /* the first record's post in the southernmost row, in the next */
     const uint16_t *cells;
 };
 
 /* The compiler must not see that the three are a constant apart: it would add it for each place
  * instead of keeping three registers. */
-static inline struct neon_source neon_source_of(const struct lm_tile *tile)
+static inline struct neon_source neon_source_of(const struct lm_tile *pool)
 {
-    struct neon_source s = {(const uint8_t *)tile->posts[0], (const uint8_t *)tile->posts[1],
-                            tile->cells[0]};
+    struct neon_source s = {(const uint8_t *)pool->posts[0], (const uint8_t *)pool->posts[1],
+                            pool->cells[0]};
     __asm__("" : "+r"(s.south), "+r"(s.north), "+r"(s.cells));
     return s;
 }
@@ -95,38 +92,62 @@ static inline uint32x4x2_t neon_bilerp(uint16x8x4_t post, uint16x8_t east, uint1
     }};
 }
 
-static inline void read_groups_neon(const struct lm_tile *tile, const struct lm_track *north,
-                                    const struct lm_track *east, uint32_t groups,
-                                    uint32_t *restrict cell, int32_t *restrict elevation_q14)
+/* lm_place_noise of four places. */
+static inline uint32x4_t neon_noise(const struct lm_places *p, uint32x4_t sum, uint32x4_t north,
+                                    uint32x4_t east)
 {
-    const int32x4_t shift = vdupq_n_s32(tile->post_shift - 8);
-    const uint32x4_t base_q14 = vdupq_n_u32((uint32_t)tile->base_q6 * 256u);
-    const struct neon_source source = neon_source_of(tile);
-    struct neon_track north_track = neon_track_of(north), east_track = neon_track_of(east);
+    const uint32x4_t row = vshlq_u32(north, vdupq_n_s32(-(int32_t)p->north_shift));
+    const uint32x4_t column = vshlq_u32(east, vdupq_n_s32(-(int32_t)p->east_shift));
+    uint32x4_t x = vmlaq_n_u32(sum, row, fx_hash3_sum(1, 0, 0));
+    x = vmlaq_n_u32(x, column, fx_hash3_sum(0, 1, 0));
+    x = vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 16)), FX_HASH_FIRST);
+    return vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 15)), FX_HASH_SECOND);
+}
+
+/* Base plus post, as ground_at takes them from a scale: Arm shifts by what the lowest byte says. */
+static inline uint32x4_t neon_elevation(uint32x4_t scale, uint32x4_t post_q16)
+{
+    return vaddq_u32(scale, vshlq_u32(post_q16, vreinterpretq_s32_u32(scale)));
+}
+
+static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,
+                                    uint32_t first, uint32_t groups, struct lm_scan_line *line)
+{
+    const struct neon_source source = neon_source_of(pool);
+    struct neon_track north_track = neon_track_from(&places->north, first);
+    struct neon_track east_track = neon_track_from(&places->east, first);
+    uint32_t *noise = line->noise + first, *cell = line->cell + first;
+    uint32_t *elevation = (uint32_t *)line->elevation_q14 + first;
     for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
-        uint32_t offset[2 * LM_LANES];
+        uint32_t post[LM_LANES], which[LM_LANES];
         neon_word corner[2 * LM_LANES];
-        const uint32x4_t n[2] = {neon_next(&north_track), neon_next(&north_track)};
-        const uint32x4_t e[2] = {neon_next(&east_track), neon_next(&east_track)};
-        neon_offsets(n, e, offset);
-        neon_fetch(&source, offset, offset + LM_LANES, corner, cell);
-        neon_fetch(&source, offset + 4, offset + LM_LANES + 4, corner + LM_LANES, cell + 4);
-        uint32x4x2_t q14 = neon_bilerp(vld4q_u16((const uint16_t *)corner),
-                                       neon_weights(e[0], e[1]), neon_weights(n[0], n[1]));
-        q14.val[0] = vaddq_u32(base_q14, vshlq_u32(q14.val[0], shift));
-        q14.val[1] = vaddq_u32(base_q14, vshlq_u32(q14.val[1], shift));
-        vst1q_u32_x2((uint32_t *)elevation_q14, q14);
-        elevation_q14 += LM_LANES;
+        uint32x4_t n[2], e[2];
+        for (int half = 0; half < 2; half++) {
+            n[half] = neon_next(&north_track);
+            e[half] = neon_next(&east_track);
+            neon_offsets(vld1q_u32(cell + 4 * half), n[half], e[half], post + 4 * half,
+                         which + 4 * half);
+        }
+        neon_fetch(&source, post, which, corner, cell);
+        neon_fetch(&source, post + 4, which + 4, corner + LM_LANES, cell + 4);
+        const uint32x4x2_t post_q16 =
+            neon_bilerp(vld4q_u16((const uint16_t *)corner), neon_weights(e[0], e[1]),
+                        neon_weights(n[0], n[1]));
+        for (int half = 0; half < 2; half++) {
+            vst1q_u32(noise, neon_noise(places, vld1q_u32(noise), n[half], e[half]));
+            vst1q_u32(elevation, neon_elevation(vld1q_u32(elevation), post_q16.val[half]));
+            noise += 4;
+            elevation += 4;
+        }
     }
 }
 
 #else
 
-static inline void read_groups_neon(const struct lm_tile *tile, const struct lm_track *north,
-                                    const struct lm_track *east, uint32_t groups,
-                                    uint32_t *restrict cell, int32_t *restrict elevation_q14)
+static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,
+                                    uint32_t first, uint32_t groups, struct lm_scan_line *line)
 {
-    (void)tile, (void)north, (void)east, (void)groups, (void)cell, (void)elevation_q14;
+    (void)pool, (void)places, (void)first, (void)groups, (void)line;
 }
 
 #endif

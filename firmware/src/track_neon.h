@@ -12,13 +12,15 @@ struct neon_track {
     uint32x4_t at, step, bend;
 };
 
-static inline struct neon_track neon_track_of(const struct lm_track *t)
+/* From cell `first` on. */
+static inline struct neon_track neon_track_from(const struct lm_track *t, uint32_t first)
 {
     const uint32x4_t k = {0, 1, 2, 3}, eight_k_16 = {16, 24, 32, 40};
-    const uint32x4_t slope = vmlaq_n_u32(vdupq_n_u32(t->step), k, t->half_bend);
+    const uint32_t step = t->step + 2 * first * t->half_bend;
+    const uint32x4_t slope = vmlaq_n_u32(vdupq_n_u32(step), k, t->half_bend);
     return (struct neon_track){
-        vmlaq_u32(vdupq_n_u32(t->at), k, slope),
-        vmlaq_n_u32(vdupq_n_u32(4 * t->step), eight_k_16, t->half_bend),
+        vmlaq_u32(vdupq_n_u32(lm_track_at(t, first)), k, slope),
+        vmlaq_n_u32(vdupq_n_u32(4 * step), eight_k_16, t->half_bend),
         vdupq_n_u32(32 * t->half_bend),
     };
 }

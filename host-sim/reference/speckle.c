@@ -71,10 +71,11 @@ unsigned ref_speckle_shift(double cell_m)
     return (unsigned)fmin(fmax(floor(log2(bam)), 0), 31);
 }
 
-/* The noise cells of a coordinate, which has a sign. */
+/* The noise cells of a coordinate, which has a sign and is less than half a turn. */
 static uint32_t noise_cell(double deg, unsigned shift)
 {
-    return (uint32_t)(int64_t)floor(ldexp(deg / 360 * 4294967296.0, -(int)shift));
+    const double turns = deg / 360 - floor(deg / 360 + 0.5);
+    return (uint32_t)(int64_t)floor(ldexp(turns * 4294967296.0, -(int)shift));
 }
 
 void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,

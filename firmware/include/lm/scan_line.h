@@ -8,13 +8,12 @@
 #include "lm/config.h"
 #include "lm/geo.h"
 #include "lm/tile_cache.h"
-#include "lm/tile_read.h"
 
 enum { LM_CELL_NONE = 0x00F0 }; /* no data: class 15, reflectivity code 0 */
 
-/* The stages work in whole groups of LM_LANES; what they write behind the last cell means nothing.
- */
-enum { LM_CELLS_ROOM = LM_CELLS_MAX + LM_LANES };
+/* The stages work in whole groups of LM_LANES, as many numbers as a wide vector holds; what they
+ * write behind the last cell means nothing. */
+enum { LM_LANES = 8, LM_CELLS_ROOM = LM_CELLS_MAX + LM_LANES };
 
 struct lm_scan_line {
     uint32_t cell[LM_CELLS_ROOM];         /* as in the tile record, or LM_CELL_NONE */
@@ -25,24 +24,18 @@ struct lm_scan_line {
 /* How a line samples the map. */
 struct lm_sampling {
     uint8_t level;       /* of the database */
-    uint8_t noise_shift; /* a noise cell is 2^noise_shift BAM */
+    uint8_t noise_shift; /* a noise cell is 2^noise_shift BAM, less than a tile of the level */
     uint32_t epoch;      /* of the look: another one gives other noise */
 };
 
-/* Noise cells from a line's middle, along a meridian or a parallel, up to which they are counted
- * on: beyond, which is beyond 84 degrees of latitude, the count starts anew. */
-enum { LM_NOISE_REACH = 4096 };
-
 /* The level whose cell is the largest not longer than cell_mm (level 0 when all are), and the noise
- * cell, the largest power of two not longer than cell_mm / sqrt 2. */
+ * cell, the largest power of two not longer than cell_mm / sqrt 2 and shorter than a tile. */
 struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uint32_t epoch);
 
 /* Fill the first `cells` (1..LM_CELLS_MAX) entries along the path. Tiles that are not resident are
  * answered by an ancestor and asked for (tile_cache.h counts them). Places differ from the path's
- * by at most 2^-10 of a cell, for noise 1/16 of a noise cell. Noise cells are counted from the
- * equator and from Greenwich, with a sign; across the antimeridian the count goes on as it is at
- * the line's middle. Cost: see docs/benchmarks.md; some 200 instructions for each tile that is
- * crossed. */
+ * by at most 2^-10 of a cell. Noise cells are counted from the equator and from Greenwich, with a
+ * sign. Cost: see docs/benchmarks.md; some 150 instructions for each tile that is crossed. */
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
                       const struct lm_sampling *sampling, const struct lm_ground_path *path,
                       uint32_t cells);

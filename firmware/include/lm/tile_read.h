@@ -1,25 +1,49 @@
-/* What a tile says at the places of a straight or slightly bent track: the innermost loop of a scan
- * line. docs/DESIGN.md, "What stands there". */
+/* What tiles say at the places of a line: the innermost loop of a scan line. docs/DESIGN.md, "What
+ * stands there". */
 #ifndef LM_TILE_READ_H
 #define LM_TILE_READ_H
 
 #include <stdint.h>
 
+#include "fx/hash.h"
 #include "lm/db.h"
+#include "lm/scan_line.h"
 #include "lm/track.h"
 
-enum {
-    LM_LANES = 8 /* cells that are worked on together: as many numbers as a wide vector holds */
+/* Where the cells of a line lie in their tiles, in fractions of a tile's side: 2^32 is the whole,
+ * so that none lies outside, and the way from one tile into the next is a sum that overflows. */
+struct lm_places {
+    struct lm_track north, east;
+    uint32_t north_shift,
+        east_shift; /* a place shifted so far is its noise cell in the tile; < 32 */
 };
 
-/* The places of cells in a tile are tracks in fractions of its side: 2^32 is the whole, so that
- * none lies outside.
- *
- * Cells (as in the record) and terrain elevations (metres * 16384) of `count` places, and of those
- * behind them up to a whole number of LM_LANES, for which there must be room. Four posts are
- * weighted by 1/256, each way, without rounding. The tile must have passed lm_tile_check. */
-void lm_tile_read(const struct lm_tile *restrict tile, const struct lm_track *north,
-                  const struct lm_track *east, uint32_t count, uint32_t *restrict cell,
-                  int32_t *restrict elevation_q14);
+struct lm_ground {
+    uint32_t cell; /* as in the record */
+    int32_t
+        elevation_q14; /* metres * 16384, up to 8 too low; four posts weighted by 1/256 each way */
+};
+
+/* What a tile that has passed lm_tile_check says at one place. */
+struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east);
+
+/* A line is read in two steps. First every run of cells, first..end - 1, is told which tile of the
+ * pool it lies in, and what that tile adds to the sum of its noise; the line's three arrays keep
+ * that until they are read, also for what is behind the run up to a whole number of LM_LANES. */
+void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t noise_sum,
+                 uint32_t first, uint32_t end, struct lm_scan_line *line);
+
+/* Then cells, elevations and noise of cells first..end - 1, all laid, come to stand there; those
+ * behind them, up to a whole number of LM_LANES, lose their meaning. None when first is end. */
+void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *places,
+                  uint32_t first, uint32_t end, struct lm_scan_line *restrict line);
+
+/* The noise of a place in a tile that adds so much. */
+static inline uint32_t lm_place_noise(const struct lm_places *p, uint32_t noise_sum, uint32_t north,
+                                      uint32_t east)
+{
+    return fx_hash3_of_sum(noise_sum +
+                           fx_hash3_sum(north >> p->north_shift, east >> p->east_shift, 0));
+}
 
 #endif
