@@ -13,9 +13,9 @@ enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
  * as tan of a grazing angle. */
 static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t before_q8)
 {
-    /* Height difference below 2^26, inverse range below 2^30 in Q(16 + bits). */
+    /* Height difference below 2^26, inverse range below 2^31 in Q(17 + bits). */
     const int64_t above_q10 = (int64_t)g->height_q10 - g->reference_q10;
-    const int64_t grazing = (above_q10 * g->inverse_range[i] >> (2 + g->tangent_bits)) -
+    const int64_t grazing = (above_q10 * g->inverse_range[i] >> (3 + g->tangent_bits)) -
                             ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
@@ -26,10 +26,10 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
      * 2^57.2. */
     const int64_t drop_q14 = ((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
     g->fall_q14[i] = (int32_t)drop_q14 + g->height_q10 * 16;
-    /* No cell that is set lies nearer than LM_RANGE_MIN_M.
+    /* No cell that is set lies nearer than LM_RANGE_MIN_M: 2^57 at most, over 2^(tangent_bits - 6).
      * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    g->inverse_range[i] =
-        (int32_t)((((uint64_t)1 << (24 + g->tangent_bits)) + range_q8 / 2) / range_q8);
+    const uint64_t inverse = (((uint64_t)1 << (25 + g->tangent_bits)) + range_q8 / 2) / range_q8;
+    g->inverse_range[i] = inverse < INT32_MAX ? (int32_t)inverse : INT32_MAX;
 
     /* K = s / (ds g) with the range of the cell before, and the rise comes times 2^bits. */
     const uint32_t before_q8 = i == g->first ? range_q8 : range_q8 - g->cell_q8;
@@ -64,7 +64,7 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     const uint32_t width_q8 = (uint32_t)config->shore_width_m << 8;
     const uint32_t shore_cells = (width_q8 + cell_q8 / 2) / cell_q8;
     g->shore_fall_q8 = config->shore_q8 / (int32_t)(shore_cells ? shore_cells : 1);
-    /* The largest inverse, that of the first cell shown, takes 30 bits. Where none is shown, any
+    /* The largest inverse, that of the first cell shown, takes 31 bits. Where none is shown, any
      * format does. */
     const uint32_t nearest_q8 = fx_max_u32(first_q8 + g->first * cell_q8, LM_RANGE_MIN_M << 8);
     g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_q8)) + 6;
@@ -75,25 +75,37 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
         set_cell(g, i, first_q8 + i * cell_q8);
     }
     if (g->first < cells) {
-        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(16 + bits) - 48. It is g ds / s, and
+        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(17 + bits) - 49. It is g ds / s, and
          * so no more than the tangent of 90 degrees less a little; beyond the format, all is lit.
          */
         const int64_t rise_q32 = grazing_q24(g, g->first, nearest_q8) * cell_q8;
-        const int64_t rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 8) >> 30;
+        const int64_t rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 9) >> 30;
         g->flat_rise = rise < INT32_MAX ? (int32_t)rise : INT32_MAX;
     }
+}
+
+static int32_t kind_with(int32_t edge_q8, int32_t mark)
+{
+    return fx_max_i32(edge_q8, 0) * (1 << MARK_BITS) + mark;
 }
 
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
                    const struct lm_classes *classes)
 {
-    const int32_t kind[LM_KINDS] = {
-        [LM_KIND_WATER] = MARK_WATER,
-        [LM_KIND_STRUCTURE] = config->edge_structure_q8 * (1 << MARK_BITS) + MARK_STRUCTURE,
-        [LM_KIND_TREES] = config->edge_trees_q8 * (1 << MARK_BITS) + MARK_TREES};
+    const int32_t kind[LM_KINDS] = {[LM_KIND_WATER] = MARK_WATER,
+                                    [LM_KIND_STRUCTURE] =
+                                        kind_with(config->edge_structure_q8, MARK_STRUCTURE),
+                                    [LM_KIND_TREES] = kind_with(config->edge_trees_q8, MARK_TREES)};
     for (uint32_t n = 0; n < CODES; n++) {
-        legend->height_q14[n] = classes->height_dm[n] * 8192 / 5;
-        legend->kind[n] = kind[classes->entry[n].kind & (LM_KINDS - 1)];
+        const uint16_t height_dm = classes->height_dm[n];
+        const int32_t k = kind[classes->entry[n].kind & (LM_KINDS - 1)];
+        legend->height_q14[n] = (int32_t)(height_dm * (uint32_t)Q19_OF_DM >> 5);
+        legend->kind[n] = k;
+        legend->bytes.mark[n] = (uint8_t)(k & ((1 << MARK_BITS) - 1));
+        for (uint32_t upper = 0; upper < 2; upper++) {
+            legend->bytes.height_dm[upper][n] = (uint8_t)(height_dm >> 8 * upper);
+            legend->bytes.edge_q8[upper][n] = (uint8_t)(k >> MARK_BITS >> 8 * upper);
+        }
     }
     legend->shore_q8 = config->shore_q8;
 }
@@ -135,18 +147,18 @@ static void raise_horizon(const int32_t *restrict tangent, uint32_t end, int32_t
 }
 
 /* Light cells by what they show above the horizon, and leading edges by what they are: E_i of the
- * equations. 32 bits without a sign hold the rise from any tangent to any other. Returns whether
- * some cell is behind a shore. */
+ * equations. Returns whether some cell is behind a shore. */
 static bool light(const struct lm_range_grid *grid, const uint32_t *restrict cell,
                   const int32_t *restrict kind, uint32_t end, const int32_t *restrict horizon,
                   int32_t *restrict level_q8)
 {
     int32_t left = 0;
     for (uint32_t i = 0; i < end; i++) {
-        const uint32_t rise = (uint32_t)horizon[i + 1] - (uint32_t)horizon[i];
+        /* See start_of. Behind the last cell it is 0. */
+        const int32_t rise = horizon[i + 1] - horizon[i];
         const int32_t edge_q8 = kind[i + 1] != kind[i] ? kind[i + 1] >> MARK_BITS : 0;
         const int32_t flat_q8 = (int32_t)(cell[i] >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
-        const int32_t lit_q8 = flat_q8 + edge_q8 + fx_db_q8_of_many(rise);
+        const int32_t lit_q8 = flat_q8 + edge_q8 + fx_db_q8_of_many_i32(rise);
         level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
         left |= kind[i] & ~kind[i + 1];
     }
@@ -174,6 +186,9 @@ static void light_line(const struct lm_range_grid *grid, const struct lm_legend 
     for (uint32_t i = 0; i < LM_LANES + grid->first; i++) {
         tangent[i] = start;
     }
+    for (uint32_t i = cells; i < end; i++) {
+        tangent[LM_LANES + i] = INT32_MIN;
+    }
     for (uint32_t i = 0; i <= grid->first; i++) {
         kind[i] = kind[grid->first + 1]; /* the first cell shown enters nothing */
     }
@@ -190,13 +205,16 @@ static void light_line(const struct lm_range_grid *grid, const struct lm_legend 
 }
 
 /* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
- * as far beyond. */
+ * as far beyond. No rise takes 31 bits: tangents are apparent heights times s_0 / s, in steps of
+ * 2^-14 m. Ground is -16..33 km high, structures 6.6 km, the antenna within 30 km, and the Earth
+ * drops by 9.4 km in 400: any two are less than 70 km apart, 2^30.1. */
 static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
                         lm_horizon_q40_t horizon)
 {
     const int64_t start = horizon == LM_HORIZON_OPEN ? (int64_t)first_tangent - grid->flat_rise
                                                      : horizon >> (40 - grid->tangent_bits);
-    return fx_sat_i32(start);
+    const int64_t lowest = (int64_t)first_tangent - (1 << 30);
+    return fx_sat_i32(start < lowest ? lowest : start);
 }
 
 lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid, const struct lm_legend *legend,

@@ -13,59 +13,52 @@
 
 #if FX_HAS_NEON
 
-/* The legend as bytes side by side, code 0 first. */
+/* The legend as bytes side by side, code 0 first: lower bytes, upper bytes. */
 struct neon_legend {
-    uint8x16x4_t height_q14; /* four bytes for each code */
-    uint8x16_t mark, edge_low, edge_high;
+    uint8x16_t height_dm[2], edge_q8[2], mark;
 };
 
 /* What a group of cells takes over from the one before it. */
 struct neon_before {
     int32x4_t tangent, of_two, horizon;
-    uint8x8_t mark, shores; /* bit 0 of `shores`: some cell was behind one */
+    uint8x16_t mark;
+    uint8x8_t shores; /* bit 0: some cell was behind one */
 };
 
 /* Which cells of a group are not shown, and which have no edge. */
 struct neon_hidden {
     uint32x4_t unseen[2];
-    uint8x8_t has_no_edge;
+    uint8x16_t has_no_edge;
 };
 
 static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
 {
-    struct neon_legend n;
-    int16x8_t edge[2];
-    uint16x8_t mark[2];
-    for (int half = 0; half < 2; half++) {
-        const int first = half ? CODES / 2 : 0;
-        const int32x4_t low = vld1q_s32(l->kind + first), high = vld1q_s32(l->kind + first + 4);
-        edge[half] = vcombine_s16(vshrn_n_s32(low, MARK_BITS), vshrn_n_s32(high, MARK_BITS));
-        mark[half] = vreinterpretq_u16_s16(vcombine_s16(vmovn_s32(low), vmovn_s32(high)));
-        n.height_q14.val[2 * half] = vreinterpretq_u8_s32(vld1q_s32(l->height_q14 + first));
-        n.height_q14.val[2 * half + 1] = vreinterpretq_u8_s32(vld1q_s32(l->height_q14 + first + 4));
-    }
-    const uint8x16_t near = vreinterpretq_u8_s16(edge[0]), far = vreinterpretq_u8_s16(edge[1]);
-    n.edge_low = vuzp1q_u8(near, far);
-    n.edge_high = vuzp2q_u8(near, far);
-    n.mark = vandq_u8(vuzp1q_u8(vreinterpretq_u8_u16(mark[0]), vreinterpretq_u8_u16(mark[1])),
-                      vdupq_n_u8((1 << MARK_BITS) - 1));
-    return n;
+    return (struct neon_legend){
+        {vld1q_u8(l->bytes.height_dm[0]), vld1q_u8(l->bytes.height_dm[1])},
+        {vld1q_u8(l->bytes.edge_q8[0]), vld1q_u8(l->bytes.edge_q8[1])},
+        vld1q_u8(l->bytes.mark),
+    };
 }
 
-/* Tangents of four cells: tangent_of. */
-static inline int32x4_t neon_tangents(const struct neon_legend *l, uint32x4_t cell,
-                                      int32x4_t elevation_q14, int32x4_t fall_q14,
-                                      int32x4_t inverse)
+/* Tangents of eight cells from cell i on: tangent_of. `code` are their height codes. */
+static inline int32x4x2_t neon_tangents(const struct neon_legend *l,
+                                        const struct lm_range_grid *grid,
+                                        const struct lm_scan_line *line, size_t i, uint8x16_t code)
 {
-    /* The four bytes of the code's entry. */
-    const uint32x4_t code = vandq_u32(cell, vdupq_n_u32(CODES - 1));
-    const uint32x4_t at = vorrq_u32(vmulq_n_u32(code, 0x04040404), vdupq_n_u32(0x03020100));
-    const int32x4_t height_q14 =
-        vreinterpretq_s32_u8(vqtbl4q_u8(l->height_q14, vreinterpretq_u8_u32(at)));
-    const int32x4_t apparent_q14 = vsubq_s32(vaddq_s32(elevation_q14, height_q14), fall_q14);
-    const int64x2_t low = vmull_s32(vget_low_s32(apparent_q14), vget_low_s32(inverse));
-    const int64x2_t high = vmull_high_s32(apparent_q14, inverse);
-    return vshrn_high_n_s64(vshrn_n_s64(low, 30), high, 30);
+    const uint16x8_t height_dm = fx_neon_words(l->height_dm[0], l->height_dm[1], code);
+    const uint32x4_t low = vld1q_u32((const uint32_t *)line->elevation_q14 + i);
+    const uint32x4_t high = vld1q_u32((const uint32_t *)line->elevation_q14 + i + 4);
+    const uint32x4_t top_q14[2] = {
+        vsraq_n_u32(low, vmull_n_u16(vget_low_u16(height_dm), Q19_OF_DM), 5),
+        vsraq_n_u32(high, vmull_high_n_u16(height_dm, Q19_OF_DM), 5)};
+    int32x4x2_t tangent;
+    for (size_t k = 0; k < 2; k++) {
+        const int32x4_t fall_q14 = vld1q_s32(grid->fall_q14 + i + 4 * k);
+        const int32x4_t apparent_q14 = vsubq_s32(vreinterpretq_s32_u32(top_q14[k]), fall_q14);
+        /* Twice the product's upper half. */
+        tangent.val[k] = vqdmulhq_s32(apparent_q14, vld1q_s32(grid->inverse_range + i + 4 * k));
+    }
+    return tangent;
 }
 
 /* The horizon behind each of four cells. */
@@ -78,30 +71,26 @@ static inline int32x4_t neon_horizon(struct neon_before *b, int32x4_t tangent)
     return vmaxq_s32(of_four, b->horizon);
 }
 
-/* Levels of four cells lit by what they show above the horizon. */
-static inline int32x4_t neon_light(struct neon_before *b, int32x4_t horizon, int32x4_t level_q8)
+/* By how much the horizon rises over each of four cells. */
+static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
 {
-    const int32x4_t rise = vsubq_s32(horizon, vextq_s32(b->horizon, horizon, 3));
-    b->horizon = horizon;
-    return vbslq_s32(vceqzq_s32(rise), vdupq_n_s32(LM_LEVEL_SHADOW),
-                     fx_neon_add_db_q8(level_q8, vreinterpretq_u32_s32(rise)));
+    const int32x4_t before = b->horizon;
+    b->horizon = neon_horizon(b, tangent);
+    return vreinterpretq_u32_s32(vsubq_s32(b->horizon, vextq_s32(before, b->horizon, 3)));
 }
 
-/* Brightness of leading edges, of eight cells; *left gets the mark of water behind a shore. */
-static inline int16x8_t neon_edges(const struct neon_legend *l, struct neon_before *b,
-                                   uint8x8_t has_no_edge, const uint32x4_t cell[2], uint8x8_t *left)
+/* Brightness of leading edges, of eight cells whose classes are given twice; *left gets the mark of
+ * water behind a shore. */
+static inline uint16x8_t neon_edges(const struct neon_legend *l, struct neon_before *b,
+                                    uint8x16_t has_no_edge, uint8x16_t class_index, uint8x8_t *left)
 {
-    const uint16x8_t low =
-        vuzp1q_u16(vreinterpretq_u16_u32(cell[0]), vreinterpretq_u16_u32(cell[1]));
-    const uint8x8_t class_index = vand_u8(vshrn_n_u16(low, 4), vdup_n_u8(CODES - 1));
-    const uint8x8_t mark = vqtbl1_u8(l->mark, class_index);
-    const uint8x8_t before = vext_u8(b->mark, mark, 7);
+    const uint8x16_t mark = vqtbl1q_u8(l->mark, class_index);
+    const uint8x16_t before = vextq_u8(b->mark, mark, 15);
     /* Beyond the table is nothing. */
-    const uint8x8_t at = vorr_u8(class_index, vorr_u8(vceq_u8(mark, before), has_no_edge));
+    const uint8x16_t at = vorrq_u8(class_index, vorrq_u8(vceqq_u8(mark, before), has_no_edge));
     b->mark = mark;
-    *left = vbic_u8(before, vorr_u8(mark, has_no_edge));
-    const uint8x8x2_t edge = vzip_u8(vqtbl1_u8(l->edge_low, at), vqtbl1_u8(l->edge_high, at));
-    return vreinterpretq_s16_u8(vcombine_u8(edge.val[0], edge.val[1]));
+    *left = vget_low_u8(vbicq_u8(before, vorrq_u8(mark, has_no_edge)));
+    return fx_neon_words(l->edge_q8[0], l->edge_q8[1], at);
 }
 
 /* Eight cells from cell i on; their horizon, level and whether they are behind a shore are stored.
@@ -111,23 +100,30 @@ static inline void neon_cells(const struct lm_range_grid *grid, const struct lm_
                               size_t i, struct neon_before *b, struct lm_sight *sight,
                               uint8_t *behind_shore)
 {
-    const uint32x4_t cells[2] = {vld1q_u32(line->cell + i), vld1q_u32(line->cell + i + 4)};
+    const uint16x8_t cells = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(line->cell + i)),
+                                        vreinterpretq_u16_u32(vld1q_u32(line->cell + i + 4)));
+    const uint8x16_t lower = vuzp1q_u8(vreinterpretq_u8_u16(cells), vreinterpretq_u8_u16(cells));
     uint8x8_t left;
-    const int16x8_t edge_q8 = neon_edges(l, b, hidden->has_no_edge, cells, &left);
+    const uint16x8_t edge_q8 = neon_edges(l, b, hidden->has_no_edge, vshrq_n_u8(lower, 4), &left);
+    const int32x4x2_t seen =
+        neon_tangents(l, grid, line, i, vandq_u8(lower, vdupq_n_u8(CODES - 1)));
+    /* The upper byte times LM_GAMMA_CODE_STEP_Q8, below 2^15, and an edge, below 2^15. */
+    const uint16x8_t bright_q8 = vsraq_n_u16(edge_q8, vandq_u16(cells, vdupq_n_u16(0xFF00)), 1);
+    const uint32x4_t gain_q8[2] = {vld1q_u32((const uint32_t *)grid->gain_q8 + i),
+                                   vld1q_u32((const uint32_t *)grid->gain_q8 + i + 4)};
+    const int32x4x2_t dark_q8 = {
+        {vreinterpretq_s32_u32(vaddw_u16(gain_q8[0], vget_low_u16(bright_q8))),
+         vreinterpretq_s32_u32(vaddw_high_u16(gain_q8[1], bright_q8))}};
+    uint32x4x2_t rise;
     for (size_t k = 0; k < 2; k++) {
-        const size_t at = i + 4 * k;
-        const int32x4_t seen =
-            neon_tangents(l, cells[k], vld1q_s32(line->elevation_q14 + at),
-                          vld1q_s32(grid->fall_q14 + at), vld1q_s32(grid->inverse_range + at));
-        const int32x4_t tangent = vbslq_s32(hidden->unseen[k], vdupq_n_s32(INT32_MIN), seen);
-        const int32x4_t code = vreinterpretq_s32_u32(vshrq_n_u32(cells[k], 8));
-        const int32x4_t flat_q8 =
-            vmlaq_n_s32(vld1q_s32(grid->gain_q8 + at), code, LM_GAMMA_CODE_STEP_Q8);
-        const int32x4_t dark_q8 =
-            k ? vaddw_high_s16(flat_q8, edge_q8) : vaddw_s16(flat_q8, vget_low_s16(edge_q8));
-        const int32x4_t horizon = neon_horizon(b, tangent);
-        vst1q_s32(sight->level_q8 + at, neon_light(b, horizon, dark_q8));
-        vst1q_s32(sight->horizon + at + 1, horizon);
+        rise.val[k] =
+            neon_rise(b, vbslq_s32(hidden->unseen[k], vdupq_n_s32(INT32_MIN), seen.val[k]));
+        vst1q_s32(sight->horizon + i + 4 * k + 1, b->horizon);
+    }
+    const int32x4x2_t lit_q8 = fx_neon_add_db_q8(dark_q8, rise);
+    for (size_t k = 0; k < 2; k++) {
+        vst1q_s32(sight->level_q8 + i + 4 * k,
+                  vbslq_s32(vceqzq_u32(rise.val[k]), vdupq_n_s32(LM_LEVEL_SHADOW), lit_q8.val[k]));
     }
     b->shores = vorr_u8(b->shores, left);
     vst1_u8(behind_shore + i, left);
@@ -141,7 +137,8 @@ static inline struct neon_hidden neon_hidden_at(size_t i, size_t first)
     const uint32x4_t low = vld1q_u32(number), high = vld1q_u32(number + 4);
     const uint16x8_t upto =
         vcombine_u16(vmovn_u32(vcleq_u32(low, shown)), vmovn_u32(vcleq_u32(high, shown)));
-    return (struct neon_hidden){{vcltq_u32(low, shown), vcltq_u32(high, shown)}, vmovn_u16(upto)};
+    return (struct neon_hidden){{vcltq_u32(low, shown), vcltq_u32(high, shown)},
+                                vcombine_u8(vmovn_u16(upto), vmovn_u16(upto))};
 }
 
 static inline void neon_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
@@ -164,7 +161,7 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
     uint8_t behind_shore[LM_CELLS_ROOM];
     const struct neon_legend l = neon_legend_of(legend);
     const int32x4_t all = vdupq_n_s32(start);
-    struct neon_before before = {all, all, all, vdup_n_u8(0), vdup_n_u8(0)};
+    struct neon_before before = {all, all, all, vdupq_n_u8(0), vdup_n_u8(0)};
     const size_t cells = grid->cells;
     size_t i = grid->first & ~7u;
     for (size_t k = 0; k < i; k++) {
@@ -176,7 +173,7 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
         const struct neon_hidden some = neon_hidden_at(i, grid->first);
         neon_cells(grid, line, &l, &some, i, &before, sight, behind_shore);
     }
-    const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdup_n_u8(0)};
+    const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdupq_n_u8(0)};
     for (i += 8; i < cells; i += 8) {
         neon_cells(grid, line, &l, &none, i, &before, sight, behind_shore);
     }

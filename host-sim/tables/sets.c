@@ -63,13 +63,39 @@ static int64_t decibel(int row, int i)
     return rounded(10 * log10l(middle) + 1 / 512.0L, 14);
 }
 
-/* The same over i * 2^21 .. (i + 1) * 2^21. No power at all is far below one: the three shifts that
- * it goes through, by 28 bits, make -150 dB of it. */
+/* Straight lines through the decibels of 1 + (m + 0.5) / 256, and the half of Q8 for rounding, for
+ * machines that look up 16 bytes at once: line n, of m = 16 n .. 16 n + 15, is base[n] + m slope[n]
+ * in Q13. It rises as from its first to its last, and is as far above as below them. Rows: the two
+ * bytes of the base, the slope. */
+static int64_t decibel_line(int row, int n)
+{
+    long double want_q13[16], most = -1e9L, least = 1e9L;
+    for (int k = 0; k < 16; k++) {
+        const long double m = 16 * n + k;
+        const long double middle = sqrtl((1 + m / 256) * (1 + (m + 1) / 256));
+        want_q13[k] = (10 * log10l(middle) + 1 / 512.0L) * 8192;
+    }
+    const int64_t slope = llroundl((want_q13[15] - want_q13[0]) / 15);
+    for (int k = 0; k < 16; k++) {
+        const long double base = want_q13[k] - (long double)(slope * (16 * n + k));
+        most = base > most ? base : most;
+        least = base < least ? base : least;
+    }
+    const int64_t base = llroundl((most + least) / 2);
+    return row == 0 ? base & 255 : row == 1 ? base >> 8 : slope;
+}
+
+/* Decibels of i .. i + 1 by these lines. No power at all is far below one. */
 static int64_t decibel_steps(int row, int i)
 {
     (void)row;
-    const long double middle = sqrtl((long double)i * (i + 1)) * 2097152;
-    return i == 0 ? -66 * 16384 : rounded(10 * log10l(middle) + 1 / 512.0L, 14);
+    int octave = 0;
+    while (i >> octave > 1) {
+        octave++;
+    }
+    const int mantissa = ((i << 12 >> octave) & 4095) >> 4, n = mantissa / 16;
+    const int64_t base = decibel_line(0, n) + decibel_line(1, n) * 256;
+    return i == 0 ? -144 * 8192 : octave * 24660 + base + mantissa * decibel_line(2, n);
 }
 
 static int64_t decibel_sum(int row, int i)
@@ -118,7 +144,9 @@ static const struct table fixed_tables[] = {
     {"fx_table_exp2_q31", "uint32_t", "2^(i / 256)", 0, 256, exp_2},
     {"fx_table_db_q14", "uint16_t", "decibels of 1 + (i + 0.5) / 256, and 1/512 dB more", 0, 256,
      decibel},
-    {"fx_table_db_steps_q14", "int32_t", "decibels of (i + 0.5) * 2^21, and 1/512 dB more", 0, 2048,
+    {"fx_table_db_lines", "uint8_t",
+     "lines through the decibels of 1 + (m + 0.5) / 256: base, base, slope", 3, 16, decibel_line},
+    {"fx_table_db_steps_q13", "int32_t", "decibels of i + 0.5 by these lines", 0, 4096,
      decibel_steps},
     {"fx_table_db_sum_q8", "int32_t",
      "decibels that a power (i + 0.5) / 16 dB below another adds to it", 0, 512, decibel_sum},

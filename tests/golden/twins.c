@@ -4,6 +4,7 @@
 #include "fx/crc32c.h"
 #include "fx/sat.h"
 #include "hs/rng.h"
+#include "lm/aspect.h"
 #include "lm/speckle.h"
 #include "lm/tile_read.h"
 
@@ -108,9 +109,71 @@ static uint32_t of_speckle(void)
     return crc;
 }
 
+static void draw_legend(struct hs_rng *rng, struct lm_legend *legend,
+                        struct lm_aspect_config *config)
+{
+    static struct lm_classes classes;
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        classes.entry[i].kind = (uint8_t)hs_rng_below(rng, LM_KINDS);
+        classes.height_dm[i] = (uint16_t)(hs_rng_u64(rng) >> (48 + hs_rng_below(rng, 16)));
+    }
+    *config = (struct lm_aspect_config){.edge_structure_q8 = (int16_t)hs_rng_below(rng, 4096),
+                                        .edge_trees_q8 = (int16_t)hs_rng_below(rng, 32768),
+                                        .shore_q8 = (int16_t)hs_rng_below(rng, 4096),
+                                        .shore_width_m = (uint16_t)hs_rng_below(rng, 2000)};
+    lm_legend_set(legend, config, &classes);
+}
+
+/* Ground as rough as a cell is long, and now and then any; classes in runs. */
+static void draw_ground(struct hs_rng *rng, struct lm_scan_line *line, uint32_t cell_q8)
+{
+    const bool is_wild = hs_rng_below(rng, 4) == 0;
+    uint32_t low_bits = (uint32_t)hs_rng_u64(rng);
+    int32_t elevation_q14 = 0;
+    for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+        const uint32_t any = (uint32_t)hs_rng_u64(rng);
+        low_bits = any % 5 == 0 ? any >> 8 : low_bits;
+        elevation_q14 = is_wild
+                            ? (int32_t)hs_rng_below(rng, 48000u << 14) - (16000 << 14)
+                            : elevation_q14 % (1 << 26) + (int32_t)hs_rng_below(rng, 32 * cell_q8) -
+                                  (int32_t)(16 * cell_q8);
+        line->cell[i] = (any >> 16 & 0xFF00) | (low_bits & 0xFF);
+        line->elevation_q14[i] = elevation_q14;
+    }
+}
+
+static uint32_t of_aspect(void)
+{
+    static struct lm_range_grid grid;
+    static struct lm_scan_line line;
+    static struct lm_sight sight;
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 3);
+    for (int i = 0; i < ROUNDS; i++) {
+        struct lm_legend legend;
+        struct lm_aspect_config config;
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        const uint32_t cell_q8 = 128u << hs_rng_below(&rng, 10);
+        const uint32_t first_q8 = cell_q8 + hs_rng_below(&rng, 60000 * 256);
+        const int32_t height_q10 = (int32_t)hs_rng_below(&rng, 60000 * 1024) - 30000 * 1024;
+        draw_legend(&rng, &legend, &config);
+        draw_ground(&rng, &line, cell_q8);
+        lm_range_grid_set(&grid, &config, first_q8, cell_q8, cells, height_q10, 0);
+        const lm_horizon_q40_t start =
+            hs_rng_below(&rng, 2) ? LM_HORIZON_OPEN : (int64_t)hs_rng_u64(&rng) >> 23;
+        const lm_horizon_q40_t end = lm_aspect_run(&grid, &legend, &line, start, &sight);
+        crc = fx_crc32c(crc, sight.horizon, (cells + 1) * sizeof *sight.horizon);
+        crc = fx_crc32c(crc, sight.level_q8, cells * sizeof *sight.level_q8);
+        crc = fx_crc32c(crc, &end, sizeof end);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
     printf("speckle %08x\n", (unsigned)of_speckle());
+    printf("aspect %08x\n", (unsigned)of_aspect());
     return 0;
 }

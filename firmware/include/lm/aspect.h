@@ -16,7 +16,7 @@ enum { LM_LEVEL_SHADOW = -0x8000 };
 enum { LM_RANGE_MIN_M = 256 };
 
 struct lm_aspect_config {
-    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB */
+    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0 or more */
     int16_t shore_q8;                         /* far shore, dB */
     uint16_t shore_width_m;
 };
@@ -30,7 +30,7 @@ struct lm_range_grid {
     int32_t shore_fall_q8;             /* a cell, see aspect.c */
     uint32_t tangent_bits; /* the tangents of this grid are times 2^tangent_bits: 22..32 */
     int32_t flat_rise;     /* of the tangent in the first cell over flat ground, so */
-    int32_t inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(16 + tangent_bits), s in metres; 0 < 2^30 */
+    int32_t inverse_range[LM_CELLS_ROOM]; /* 1 / s in Q(17 + tangent_bits), s in metres; 0..2^31 */
     int32_t fall_q14[LM_CELLS_ROOM]; /* the Earth's drop and the antenna's height, metres * 16384 */
     int32_t gain_q8[LM_CELLS_ROOM];  /* K_i, reflectivity code 0, and the scale of the tangents */
 };
@@ -46,6 +46,11 @@ struct lm_legend {
     int32_t height_q14[16]; /* of the height code, metres * 16384: below 2^27 */
     int32_t kind[16];       /* of the class: brightness of its leading edge * 8, and a mark */
     int32_t shore_q8;       /* brightness of a far shore */
+
+    /* The same as bytes side by side, for machines that look up 16 of them at once. */
+    struct {
+        uint8_t height_dm[2][16], edge_q8[2][16], mark[16]; /* lower bytes, upper bytes */
+    } bytes;
 };
 
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,

@@ -50,14 +50,25 @@ static inline uint32_t fx_leading_nibbles_of_many(uint32_t x)
 }
 
 /* The same as fx_db_q8, for loops over many: most machines that work on eight numbers at a time
- * cannot count zeros, but shift and look up they can. -38474 for power 0. Worst
- * error 0.020 dB. */
+ * cannot count zeros, but shift and look up they can. -43029 for power 0. Worst
+ * error 0.015 dB. */
 static inline int32_t fx_db_q8_of_many(uint32_t power)
 {
-    /* The power is shifted up to 2^28..2^32, where 11 bits are a mantissa of 7 bits or more. */
+    /* The power is shifted up to 2^28..2^32, where 12 bits are a mantissa of 8 bits or more. */
     const uint32_t octaves = fx_leading_nibbles_of_many(power);
-    const int32_t mantissa = (int32_t)(power << octaves >> 21);
-    return (fx_table_db_steps_q14[mantissa] - (int32_t)octaves * FX_DB_OCTAVE_Q14) >> 6;
+    const int32_t mantissa = (int32_t)(power << octaves >> 20);
+    return (fx_table_db_steps_q13[mantissa] + (20 - (int32_t)octaves) * FX_DB_OCTAVE_Q13) >> 5;
+}
+
+/* The same of a power below 2^31, for three quarters of the price: numbers with a sign are compared
+ * in one instruction. -43800 for power 0. */
+static inline int32_t fx_db_q8_of_many_i32(int32_t power)
+{
+    /* Up to 2^15..2^31, 2^23..2^31, and down to 2^8..2^12. */
+    const int32_t by_16 = power < 1 << 15 ? 16 : 0, p_16 = power << by_16;
+    const int32_t by_8 = p_16 < 1 << 23 ? 8 : 0, p_8 = p_16 << by_8;
+    const int32_t down = p_8 < 1 << 27 ? 15 : 19;
+    return (fx_table_db_steps_q13[p_8 >> down] + (down - by_16 - by_8) * FX_DB_OCTAVE_Q13) >> 5;
 }
 
 /* 10^(dB / 10) in Q24 without counting or branching, for loops over many: 1 up to -72.25 dB and

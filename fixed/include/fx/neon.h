@@ -18,16 +18,35 @@ static inline int32x4_t fx_neon_lookup(const int32_t *table, int32x4_t index)
                        table[vgetq_lane_s32(index, 2)], table[vgetq_lane_s32(index, 3)]};
 }
 
-/* level + fx_db_q8_of_many(power) of four; anything where the power is 0. */
-static inline int32x4_t fx_neon_add_db_q8(int32x4_t level_q8, uint32x4_t power)
+/* Eight entries of a table of 16 numbers, of which the lower and the upper bytes are given; the
+ * indices stand in the lower half. */
+static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)
 {
-    const uint32x4_t octaves = vandq_u32(vclzq_u32(power), vdupq_n_u32(28));
-    const uint32x4_t top = vshlq_u32(power, vreinterpretq_s32_u32(octaves));
-    const int32x4_t step = vreinterpretq_s32_u32(vshrq_n_u32(top, 21));
-    const int32x4_t db_q14 =
-        vmlsq_s32(fx_neon_lookup(fx_table_db_steps_q14, step), vreinterpretq_s32_u32(octaves),
-                  vdupq_n_s32(FX_DB_OCTAVE_Q14));
-    return vsraq_n_s32(level_q8, db_q14, 6);
+    return vreinterpretq_u16_u8(vzip1q_u8(vqtbl1q_u8(low, index), vqtbl1q_u8(high, index)));
+}
+
+/* level + fx_db_q8_of_many(power) of eight; anything where the power is 0. The table is not looked
+ * up: its lines stay in registers. */
+static inline int32x4x2_t fx_neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t power)
+{
+    const uint32x4_t zeros[2] = {vclzq_u32(power.val[0]), vclzq_u32(power.val[1])};
+    const uint16x8_t top =
+        vuzp2q_u16(vreinterpretq_u16_u32(vshlq_u32(power.val[0], vreinterpretq_s32_u32(zeros[0]))),
+                   vreinterpretq_u16_u32(vshlq_u32(power.val[1], vreinterpretq_s32_u32(zeros[1]))));
+    /* Eight bits behind the first one, four of which say which line. */
+    const uint8x16_t twice = vreinterpretq_u8_u16(vaddq_u16(top, top));
+    const uint8x16_t mantissa = vuzp2q_u8(twice, twice), line = vshrq_n_u8(mantissa, 4);
+    const uint16x8_t base =
+        fx_neon_words(vld1q_u8(fx_table_db_lines[0]), vld1q_u8(fx_table_db_lines[1]), line);
+    const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_db_lines[2]), line);
+    const uint16x8_t db_q13 = vmlal_u8(base, vget_low_u8(slope), vget_low_u8(mantissa));
+    /* Below the 32nd octave, as many as there are zeros. */
+    const uint32x4_t all = vdupq_n_u32(31 * FX_DB_OCTAVE_Q13);
+    const uint32x4_t low =
+        vmlsq_n_u32(vaddw_u16(all, vget_low_u16(db_q13)), zeros[0], FX_DB_OCTAVE_Q13);
+    const uint32x4_t high = vmlsq_n_u32(vaddw_high_u16(all, db_q13), zeros[1], FX_DB_OCTAVE_Q13);
+    return (int32x4x2_t){{vsraq_n_s32(level_q8.val[0], vreinterpretq_s32_u32(low), 5),
+                          vsraq_n_s32(level_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
 }
 
 /* What fx_table_db_sum_q8 has at eight steps, each 0..511. It is not looked up but worked out, from

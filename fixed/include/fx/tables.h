@@ -27,8 +27,11 @@ extern const uint32_t fx_table_exp2_q31[256];
 #define FX_DB_OCTAVE_Q14 49321 /* 10 * log10(2) */
 extern const uint16_t fx_table_db_q14[256];
 
-/* 10 * log10((i + 0.5) * 2^21) + 1/512 dB, and little for i = 0: see fx_db_q8_of_many. */
-extern const int32_t fx_table_db_steps_q14[2048];
+/* The same in Q13 by straight lines, and for i from those of 8 bits behind its first one; little
+ * for i = 0: see fx_db_q8_of_many. */
+#define FX_DB_OCTAVE_Q13 24660
+extern const uint8_t fx_table_db_lines[3][16];
+extern const int32_t fx_table_db_steps_q13[4096];
 
 /* 10 * log10(1 + 10^(-d / 10)) in Q8 for d = (i + 0.5) / 16 dB: see fx_db_q8_sum_of_many. */
 extern const int32_t fx_table_db_sum_q8[512];

@@ -154,7 +154,7 @@ static void decibels_of_64_bits_are_within_0_012_dB(void **state)
     assert_int_equal(fx_db_q8_u64(0), -768);
 }
 
-static void decibels_of_many_are_within_0_020_dB_and_never_fall(void **state)
+static void decibels_of_many_are_within_0_015_dB_and_never_fall(void **state)
 {
     (void)state;
     double worst = 0;
@@ -168,8 +168,21 @@ static void decibels_of_many_are_within_0_020_dB_and_never_fall(void **state)
         assert_true(fx_db_q8_of_many(p) >= fx_db_q8_of_many(p - 1021));
     }
     print_message("# decibels of many, Q8: worst %.5f dB\n", worst);
-    assert_true(worst <= 0.020);
-    assert_int_equal(fx_db_q8_of_many(0), -38474);
+    assert_true(worst <= 0.015);
+    assert_int_equal(fx_db_q8_of_many(0), -43029);
+}
+
+static void decibels_of_many_with_a_sign_are_the_same(void **state)
+{
+    (void)state;
+    for (int32_t power = 1; power < 1 << 20; power++) {
+        assert_int_equal(fx_db_q8_of_many_i32(power), fx_db_q8_of_many((uint32_t)power));
+    }
+    for (int64_t power = 1 << 20; power <= INT32_MAX; power += 1021) {
+        const int32_t p = (int32_t)power;
+        assert_int_equal(fx_db_q8_of_many_i32(p), fx_db_q8_of_many((uint32_t)p));
+    }
+    assert_int_equal(fx_db_q8_of_many_i32(0), -43800);
 }
 
 static void power_from_decibels_is_within_half_an_lsb_and_4e_9(void **state)
@@ -250,7 +263,8 @@ int main(void)
         cmocka_unit_test(decibels_are_within_0_0108_dB_for_powers_of_every_size),
         cmocka_unit_test(decibels_never_fall_and_keep_to_their_range),
         cmocka_unit_test(decibels_of_64_bits_are_within_0_012_dB),
-        cmocka_unit_test(decibels_of_many_are_within_0_020_dB_and_never_fall),
+        cmocka_unit_test(decibels_of_many_are_within_0_015_dB_and_never_fall),
+        cmocka_unit_test(decibels_of_many_with_a_sign_are_the_same),
         cmocka_unit_test(powers_of_many_are_within_0_014_dB_from_minus_45_to_24_dB_and_never_fall),
         cmocka_unit_test(sums_of_many_are_within_0_018_dB_either_way_round),
         cmocka_unit_test(power_from_decibels_is_within_half_an_lsb_and_4e_9),
