@@ -4,6 +4,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/horizon.h"
 #include "lm/weather.h"
 
 enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
@@ -293,7 +294,7 @@ static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache
 {
     const struct lm_ground_path path = runup_path(s, number);
     lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
-    return lm_aspect_run(&s->runup_grid, &s->legend, &line->ground, LM_HORIZON_OPEN, &line->sight);
+    return lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
 }
 
 /* The horizon that a line starts with: between those behind the run-ups to its left and right. */

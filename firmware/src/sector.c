@@ -6,6 +6,7 @@
 #include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
+#include "lm/horizon.h"
 
 enum {
     /* Tiles are asked for this many display lines ahead of the beam, and for every fourth line
@@ -323,8 +324,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
         const struct lm_ground_path path =
             path_of(ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
         lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
-        s->runup_horizon =
-            lm_aspect_run(&s->runup_grid, &s->legend, &line->ground, LM_HORIZON_OPEN, &line->sight);
+        s->runup_horizon = lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
         s->runup_azimuth = azimuth;
         s->has_runup = true;
     }
