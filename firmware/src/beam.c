@@ -32,14 +32,30 @@ static uint8_t fineness_of(uint32_t ratio_q8)
     return ratio ? (uint8_t)fx_min_u32((uint32_t)(31 - fx_clz32(ratio)), LM_BEAM_FINEST) : 0;
 }
 
-/* 2^(-8 x^2) in Q16, x = off * ratio / beam. */
-static uint32_t pattern_q16(int32_t off, uint32_t ratio_q8, fx_bam_t beam)
+/* 2^(-8 x^2) in Q16 for x in Q12, cut at 4, where nothing is left. */
+static uint32_t pattern_q16(uint64_t x_q12)
 {
-    /* |off| is below five spacings, so below 2^27; x in Q12, cut at 4, where nothing
-     * is left. */
-    const uint64_t x_q12 = ((uint64_t)fx_abs_u32(off) * ratio_q8 << 4) / (beam ? beam : 1);
     const int32_t x = x_q12 < 4 << 12 ? (int32_t)x_q12 : 4 << 12;
     return fx_exp2_q16(-(x * x >> 5));
+}
+
+/* x = off * ratio / beam for the samples of a look: their pattern, and what all of it is, at most
+ * 2^19. */
+static uint32_t weigh(const struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
+                      uint32_t ratio_q8, struct lm_beam_look *look)
+{
+    /* A ratio of 2^16 at the most; beams of less than 1/200 degree count as that. */
+    const fx_bam_t beam = fx_max_u32(radar->antenna.azimuth_beam, 1u << 16);
+    const uint64_t x_per_bam_q44 = ((uint64_t)ratio_q8 << 36) / beam;
+    int32_t off = azimuth - lm_beam_azimuth(b, radar, look->first);
+    uint32_t sum = 0;
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        /* |off| is below five spacings, so below 2^27, times 2^36. */
+        look->weight_q16[j] = pattern_q16(fx_abs_u32(off) * x_per_bam_q44 >> 32);
+        sum += look->weight_q16[j];
+        off -= (int32_t)lm_beam_spacing(b, radar);
+    }
+    return sum;
 }
 
 void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
@@ -54,16 +70,11 @@ void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimut
     const int64_t spacing = lm_beam_spacing(b, radar), shifted = (int64_t)azimuth + spacing / 2;
     const int64_t nearest = (shifted - (shifted < 0 ? spacing - 1 : 0)) / spacing;
     look->first = (int32_t)nearest - LM_BEAM_TAPS / 2;
-    uint32_t sum = 0;
-    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-        const int32_t off = azimuth - lm_beam_azimuth(b, radar, look->first + j);
-        look->weight_q16[j] = pattern_q16(off, ratio_q8, radar->antenna.azimuth_beam);
-        sum += look->weight_q16[j]; /* at most 2^19 */
-    }
+    const uint32_t sum = weigh(b, radar, azimuth, ratio_q8, look);
+    const uint64_t share_q48 = ((uint64_t)1 << 48) / fx_max_u32(sum, 1);
     uint32_t left = 65536;
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-        look->weight_q16[j] =
-            (uint32_t)(((uint64_t)look->weight_q16[j] << 16) / fx_max_u32(sum, 1));
+        look->weight_q16[j] = (uint32_t)(look->weight_q16[j] * share_q48 >> 32);
         left -= look->weight_q16[j];
     }
     look->weight_q16[LM_BEAM_TAPS / 2] += left; /* what rounding left goes to the middle */
@@ -71,16 +82,25 @@ void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimut
 
 bool lm_beam_has(const struct lm_beam *b, int32_t sample)
 {
-    const uint32_t slot = slot_of(sample);
-    return (b->held >> slot & 1u) && b->number[slot] == sample;
+    return sample >= b->first && sample - b->first < b->held;
+}
+
+bool lm_beam_lacks(const struct lm_beam *b, const struct lm_beam_look *look, int32_t *sample)
+{
+    const int32_t end = b->first + b->held, look_end = look->first + LM_BEAM_TAPS;
+    const bool is_apart = look->first >= end || look_end <= b->first;
+    const bool is_before = look->first < b->first;
+    *sample = is_apart ? look->first : is_before ? b->first - 1 : end;
+    return is_apart || is_before || look_end > end;
 }
 
 uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
 {
-    const uint32_t slot = slot_of(sample);
-    b->held |= (uint16_t)(1u << slot);
-    b->number[slot] = sample;
-    return b->power_q24[slot];
+    const int32_t end = b->first + b->held;
+    const bool is_next = sample == end, is_before = sample == b->first - 1;
+    b->held = is_next || is_before ? fx_min_i32(b->held + 1, LM_BEAM_TAPS) : 1;
+    b->first = is_next ? end + 1 - b->held : sample;
+    return b->power_q24[slot_of(sample)];
 }
 
 /* Weights add up to 2^16, so that a sum stays below 2^48. */

@@ -311,21 +311,24 @@ static struct lm_ground_path sample_path(const struct lm_sector *s, const struct
                    s->grid.cells);
 }
 
-/* The horizon that the ground before a window makes; samples less than half a line of the table
- * apart share one. */
+/* The horizon that the ground before a window makes: all azimuths within a line of the table share
+ * that of its middle, in whatever order they are taken. */
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
-                                   const struct lm_geo_ray *ray, fx_bam_t azimuth,
-                                   struct lm_line *line)
+                                   fx_bam_t azimuth, struct lm_line *line)
 {
     if (s->runup_grid.cells == 0) {
         return LM_HORIZON_OPEN;
     }
-    if (!s->has_runup || fx_abs_u32((int32_t)(azimuth - s->runup_azimuth)) > s->radar->line / 2) {
+    const fx_bam_t width = s->radar->line, from_left = azimuth - s->up + FX_BAM_90;
+    const uint32_t part = from_left / width;
+    if (!s->has_runup || part != s->runup_part) {
+        struct lm_geo_ray ray;
+        lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
         const struct lm_ground_path path =
-            path_of(ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
+            path_of(&ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
         lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
         s->runup_horizon = lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
-        s->runup_azimuth = azimuth;
+        s->runup_part = part;
         s->has_runup = true;
     }
     return s->runup_horizon;
@@ -389,7 +392,7 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
 {
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
-    const lm_horizon_q40_t horizon = horizon_at(s, tiles, &ray, azimuth, line);
+    const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);
     const struct lm_ground_path path = sample_path(s, &ray);
     lm_line_trace(line, tiles, setup, &path, horizon);
 }
@@ -412,13 +415,16 @@ static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx
         trace(s, tiles, azimuth, setup, line);
         return;
     }
-    lm_footprint_clear(&s->footprint, s->grid.cells);
     for (uint32_t turn = 0; turn < 1u << log2; turn++) {
         const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
         trace(s, tiles, azimuth + off, setup, line);
-        lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells, log2);
+        if (turn == 0) {
+            lm_footprint_begin(&s->footprint, line->sight.level_q8, s->grid.cells);
+        } else {
+            lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells);
+        }
     }
-    lm_footprint_levels(&s->footprint, line->sight.level_q8, s->grid.cells);
+    lm_footprint_levels(&s->footprint, log2, line->sight.level_q8, s->grid.cells);
 }
 
 /* What lies about one azimuth, into its place in the beam's ring. */
@@ -481,30 +487,19 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
 }
 
-/* The first sample that the look lacks; the one behind its last when it has all. */
-static int32_t first_missing(const struct lm_sector *s)
-{
-    int32_t n = s->look.first;
-    while (n < s->look.first + LM_BEAM_TAPS && lm_beam_has(&s->beam, n)) {
-        n++;
-    }
-    return n;
-}
-
 bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
                             const struct lm_platform *platform, uint32_t at_most,
                             struct lm_line *line)
 {
+    int32_t sample;
     aim(s, tiles, platform);
-    const int32_t end = s->look.first + LM_BEAM_TAPS;
-    int32_t n = first_missing(s);
-    if (n == end) {
-        return true;
+    for (uint32_t taken = 0; lm_beam_lacks(&s->beam, &s->look, &sample); taken++) {
+        if (taken == at_most) {
+            return false;
+        }
+        take_sample(s, tiles, sample, line);
     }
-    for (uint32_t taken = 0; n != end && taken < at_most; taken++, n = first_missing(s)) {
-        take_sample(s, tiles, n, line);
-    }
-    return n == end;
+    return true;
 }
 
 static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)

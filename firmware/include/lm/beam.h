@@ -17,9 +17,8 @@ enum {
 
 /* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 8. */
 struct lm_beam {
-    uint8_t fineness; /* k */
-    uint16_t held;    /* bit s: slot s holds sample number[s] */
-    int32_t number[LM_BEAM_TAPS];
+    uint8_t fineness;    /* k */
+    int32_t first, held; /* samples first .. first + held - 1 are held */
     uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
 };
 
@@ -35,7 +34,7 @@ void lm_beam_clear(struct lm_beam *b);
 /* Look at `azimuth` (signed BAM from the sector's middle, within +-90 degrees) with the radar's
  * beam sharpened `ratio_q8` / 256 times, a power of two (1..256). The table's `sample` is to be 2/7
  * of the beam or less, and 1/4 or more: eight samples then hold it. Samples of another fineness are
- * dropped. Cost: about 1,200 instructions. */
+ * dropped. Cost: about 450 instructions. */
 void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                  uint32_t ratio_q8, struct lm_beam_look *look);
 
@@ -43,10 +42,14 @@ void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimut
 fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar);
 int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, int32_t sample);
 
-/* Whether the look's sample first + j is held. */
+/* Whether a sample is held. */
 bool lm_beam_has(const struct lm_beam *b, int32_t sample);
 
-/* The room of a sample, which counts as held from now on. */
+/* Whether the look lacks a sample, and which is to be taken next: one beside those that are held,
+ * where these are of any use, and else the look's first. */
+bool lm_beam_lacks(const struct lm_beam *b, const struct lm_beam_look *look, int32_t *sample);
+
+/* The room of a sample, which counts as held from now on; the others only if it is beside them. */
 uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample);
 
 /* The line: all of the look's samples are held. Cost: see docs/benchmarks.md. */

@@ -86,7 +86,7 @@ struct lm_sector {
     struct lm_sampling runup_sampling;
     struct lm_range_grid runup_grid; /* no cells: the line begins at the antenna */
     lm_horizon_q40_t runup_horizon;  /* behind it, */
-    fx_bam_t runup_azimuth;          /* at this azimuth from north, */
+    uint32_t runup_part;             /* in this part of the sector, */
     bool has_runup;                  /* once it was traced */
 
     uint32_t samples;                  /* taken so far: only grows */

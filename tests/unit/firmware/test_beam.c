@@ -129,6 +129,36 @@ static void a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio(void **st
     }
 }
 
+/* Sweeps to the right and to the left, from one look to the next by steps of any length. */
+static void a_look_takes_what_it_lacks_and_no_more(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    struct lm_beam_look look = {.first = -1000};
+    hs_rng_seed(&rng, 33);
+    lm_beam_clear(&beam);
+    for (int n = 0; n < 5000; n++) {
+        const int32_t step = (int32_t)hs_rng_below(&rng, n % 7 == 0 ? 20 : 4);
+        look.first += n / 500 % 2 ? -step : step;
+        int32_t missing = 0, sample;
+        for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+            missing += !lm_beam_has(&beam, look.first + j);
+        }
+        while (lm_beam_lacks(&beam, &look, &sample)) {
+            assert_in_range(sample - look.first, 0, LM_BEAM_TAPS - 1);
+            assert_false(lm_beam_has(&beam, sample));
+            lm_beam_room(&beam, sample)[0] = (uint32_t)sample;
+            missing--;
+        }
+        assert_int_equal(missing, 0);
+        for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+            const uint32_t slot = (uint32_t)(look.first + j) % LM_BEAM_TAPS;
+            assert_true(lm_beam_has(&beam, look.first + j));
+            assert_int_equal(beam.power_q24[slot][0], (uint32_t)(look.first + j));
+        }
+    }
+}
+
 static void a_sample_of_another_fineness_is_dropped(void **state)
 {
     (void)state;
@@ -264,6 +294,7 @@ int main(void)
         cmocka_unit_test(weights_are_those_of_the_pattern),
         cmocka_unit_test(a_line_is_the_weighted_sum_of_its_samples),
         cmocka_unit_test(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio),
+        cmocka_unit_test(a_look_takes_what_it_lacks_and_no_more),
         cmocka_unit_test(a_sample_of_another_fineness_is_dropped),
         cmocka_unit_test(the_ratio_to_be_had_is_that_of_the_formula),
         cmocka_unit_test(the_notch_opens_where_the_formula_says),
