@@ -20,7 +20,8 @@ static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t b
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
 
-static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
+/* `scale_q16`: what all cells have in common of K, as a binary logarithm. */
+static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8, int32_t scale_q16)
 {
     /* range < 400 km = 2^26.6 in Q8: squared, in units of 16 m^2, 2^33.2; times the curvature
      * 2^57.2. */
@@ -33,9 +34,8 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_q8)
 
     /* K = s / (ds g) with the range of the cell before, and the rise comes times 2^bits. */
     const uint32_t before_q8 = i == g->first ? range_q8 : range_q8 - g->cell_q8;
-    const int32_t log2_q16 = fx_log2_q16(before_q8) - fx_log2_q16(g->cell_q8) -
-                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_q8)) +
-                             (24 - (int32_t)g->tangent_bits) * 65536;
+    const int32_t log2_q16 = fx_log2_q16(before_q8) + scale_q16 -
+                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_q8));
     g->gain_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_Q8;
 }
 
@@ -71,8 +71,9 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     for (uint32_t i = 0; i < g->first; i++) {
         g->fall_q14[i] = g->inverse_range[i] = g->gain_q8[i] = 0; /* read, but not shown */
     }
+    const int32_t scale_q16 = (24 - (int32_t)g->tangent_bits) * 65536 - fx_log2_q16(cell_q8);
     for (uint32_t i = g->first; i < cells; i++) {
-        set_cell(g, i, first_q8 + i * cell_q8);
+        set_cell(g, i, first_q8 + i * cell_q8, scale_q16);
     }
     if (g->first < cells) {
         /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(17 + bits) - 49. It is g ds / s, and

@@ -36,7 +36,7 @@ struct lm_range_grid {
 };
 
 /* Cell i is centred at first_q8 + i * cell_q8 (metres * 256); cell_q8 > 0, last centre below 400
- * km; height_q10 within 30 km. Cost: about 150 instructions a cell. */
+ * km; height_q10 within 30 km. Cost: about 120 instructions a cell. */
 void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *config,
                        uint32_t first_q8, uint32_t cell_q8, uint32_t cells, int32_t height_q10,
                        int32_t reference_q10);

@@ -94,7 +94,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene);
 
 /* Take another elevation for that of the patch, which begins anew: when the tile that knows it came
- * after the start. Dwell and limits stay as they were. Cost: about 75 k instructions. */
+ * after the start. Dwell and limits stay as they were. Cost: about 60 k instructions. */
 void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10);
 
 /* Dwell that is left, microseconds. */
