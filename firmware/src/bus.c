@@ -10,6 +10,9 @@ const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS] = {
     [LM_BUS_Q6] = {"m", "m x 64", 1, 1, 6},
     [LM_BUS_MM_S] = {"m/s", "mm/s", 1000, 1 << 20, 20},
     [LM_BUS_SECONDS] = {"s", "s", 1, 1, 0},
+    [LM_BUS_MM_H] = {"mm/h", "mm/h", 1, 256, 8},
+    [LM_BUS_DB_Q8] = {"dB", "dB x 256", 1, 1, 8},
+    [LM_BUS_BITS] = {"bits", "bits", 1, 1, 0},
 };
 
 const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
@@ -33,6 +36,14 @@ const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS] = {
     [LM_BUS_WAYPOINT_LATITUDE] = {"waypoint-latitude", LM_BUS_BAM},
     [LM_BUS_WAYPOINT_LONGITUDE] = {"waypoint-longitude", LM_BUS_BAM},
     [LM_BUS_UTC] = {"utc", LM_BUS_SECONDS},
+    [LM_BUS_RAIN_LATITUDE] = {"rain-latitude", LM_BUS_BAM},
+    [LM_BUS_RAIN_LONGITUDE] = {"rain-longitude", LM_BUS_BAM},
+    [LM_BUS_RAIN_RADIUS] = {"rain-radius", LM_BUS_Q6},
+    [LM_BUS_RAIN_RATE] = {"rain-rate", LM_BUS_MM_H},
+    [LM_BUS_JAMMER_LATITUDE] = {"jammer-latitude", LM_BUS_BAM},
+    [LM_BUS_JAMMER_LONGITUDE] = {"jammer-longitude", LM_BUS_BAM},
+    [LM_BUS_JAMMER_RATIO] = {"jammer-ratio", LM_BUS_DB_Q8},
+    [LM_BUS_WEATHER_CLEAR] = {"weather-clear", LM_BUS_BITS},
 };
 
 int64_t lm_bus_divide(int64_t n, int64_t divisor)
@@ -84,7 +95,7 @@ static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
         if (outcome == LM_BUS_VALUE) {
             events[count].row = (uint8_t)i;
             events[count].channel = (uint8_t)channel_of(frame->id, p->channel_mask);
-            events[count].node = 0;
+            events[count].node = events[count].service = events[count].code = 0;
             count++;
         }
     }

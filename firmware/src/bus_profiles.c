@@ -7,6 +7,7 @@
 #define ANALOGUE (TYPE(FLOAT) | TYPE(SHORT2))
 #define POSITION (ANALOGUE | TYPE(LONG) | TYPE(DOUBLEH) | TYPE(DOUBLEL))
 #define CLOCK    TYPE(CHAR4)
+#define PLACE    (TYPE(FLOAT) | TYPE(LONG))
 
 enum { TEN_MILLIONTHS = 10000000 };
 
@@ -26,6 +27,10 @@ enum { TEN_MILLIONTHS = 10000000 };
  *
  * Ranges. Wide enough for any aircraft, narrow enough that a wrong unit or a damaged exponent
  * shows; a heading or track may be written as 0..360 or as +-180, since the angle is the same.
+ *
+ * Weather is sent by whoever runs the exercise, on identifiers that the specification leaves to the
+ * user (1800..1899), once a second: three sets missed are stale, and after 10 s a storm that stands
+ * still is a wrong picture.
  *
  * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a
  * misprint for the SHORT2 of the latitudes. */
@@ -61,6 +66,14 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("aux nav height above ellipsoid",       1061, ELLIPSOID_HEIGHT, 2, ANALOGUE, -1000, 30000,  100000,  500,  5000),
     ROW("aux nav ground speed",                 1062, GROUND_SPEED,     2, ANALOGUE,     0,  1500,  100000,  300,  2000),
     ROW("aux nav true track",                   1063, TRUE_TRACK,       2, ANALOGUE,  -180,   360,  100000,  300,  2000),
+    ROW("rain latitude",                        1800, RAIN_LATITUDE,    0, PLACE,      -90,    90, 1000000, 3000, 10000),
+    ROW("rain longitude",                       1801, RAIN_LONGITUDE,   0, PLACE,     -180,   180, 1000000, 3000, 10000),
+    ROW("rain radius",                          1802, RAIN_RADIUS,      0, TYPE(FLOAT), 100, 100000, 1000000, 3000, 10000),
+    ROW("rain rate",                            1803, RAIN_RATE,        0, TYPE(FLOAT),   1,   150, 1000000, 3000, 10000),
+    ROW("jammer latitude",                      1804, JAMMER_LATITUDE,  0, PLACE,      -90,    90, 1000000, 3000, 10000),
+    ROW("jammer longitude",                     1805, JAMMER_LONGITUDE, 0, PLACE,     -180,   180, 1000000, 3000, 10000),
+    ROW("jammer to noise ratio",                1806, JAMMER_RATIO,     0, TYPE(FLOAT), -20,    80, 1000000, 3000, 10000),
+    ROW("weather clear",                        1807, WEATHER_CLEAR,    0, TYPE(UCHAR),   0,   255, 1000000, 3000, 10000),
 };
 
 /* What XCSoar's driver takes, and what is made for it therefore sends: byte 1 says nothing, each

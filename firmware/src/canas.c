@@ -370,6 +370,8 @@ enum lm_bus_outcome lm_canas_take(struct lm_canas *c, const struct lm_bus_profil
     struct lm_bus_event e = {.row = (uint8_t)row,
                              .channel = (uint8_t)channel,
                              .node = frame->data[0],
+                             .service = frame->data[2],
+                             .code = frame->data[3],
                              .time_us = frame->time_us};
     outcome = read_number(c, &a, &number, &e.time_us);
     if (outcome == LM_BUS_VALUE) {

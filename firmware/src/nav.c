@@ -419,11 +419,14 @@ static void keep(struct lm_nav *n, const struct lm_bus_event *event)
     };
 }
 
-void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame)
+uint32_t lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame,
+                     struct lm_bus_event events[LM_BUS_EVENTS])
 {
-    struct lm_bus_event events[LM_BUS_EVENTS];
     const uint32_t count = lm_bus_take(&n->bus, frame, events);
     for (uint32_t i = 0; i < count; i++) {
-        keep(n, &events[i]);
+        if (n->bus.profile->rows[events[i].row].field < LM_BUS_NAV_FIELDS) {
+            keep(n, &events[i]);
+        }
     }
+    return count;
 }

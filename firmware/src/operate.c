@@ -258,12 +258,13 @@ static bool obey_sector(struct lm_unit *u, const struct lm_control *control, uin
     return true;
 }
 
-static bool obey_environment(struct lm_unit *u, const struct lm_control *control)
+static bool obey_environment(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     if (lm_environment_check(&control->environment) != LM_OK) {
         return false;
     }
-    u->environment = control->environment; /* the next sweep or patch meets it */
+    u->commanded = control->environment;
+    lm_look_at_weather(u, now_us); /* the next line or patch meets it */
     return true;
 }
 
@@ -316,7 +317,7 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
     case LM_CONTROL_SECTOR:
         return obey_sector(u, control, now_us);
     case LM_CONTROL_ENVIRONMENT:
-        return obey_environment(u, control);
+        return obey_environment(u, control, now_us);
     case LM_CONTROL_STEERPOINT:
         return obey_steerpoint(u, control);
     case LM_CONTROL_DROP:

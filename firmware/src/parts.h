@@ -19,6 +19,10 @@ void lm_begin_picture(struct lm_unit *u, uint64_t now_us);
  * the one that knows best. */
 int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command);
 
+/* Put the environment together: what was commanded, and behind it, where there is room, what the
+ * bus tells. */
+void lm_look_at_weather(struct lm_unit *u, uint64_t now_us);
+
 /* Do what a press asked for (enum lm_effect). */
 void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us);
 

@@ -7,7 +7,7 @@ enum {
     TILE_READS_A_STEP = 16,
     TILE_FAULT_SHOWN_US = 3000000,
     FAULTS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD | LM_FLAG_DB | LM_FLAG_TILE | LM_FLAG_BUS |
-             LM_FLAG_OFF_MAP
+             LM_FLAG_OFF_MAP | LM_FLAG_WEATHER
 };
 
 /* The image's targets, while no tile is being read yet. */
@@ -57,7 +57,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     lm_nav_init(&u->nav, bus);
     lm_canas_service_init(&u->service, bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0,
                           board->hardware_revision, LM_VERSION_NUMBER);
-    u->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
+    u->commanded.sea_state = u->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
     lm_page_init(&u->page, board->radar);
     lm_apply(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 
@@ -69,6 +69,16 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     read_signatures(u);
     return lm_tile_cache_init(&u->tiles, &u->db, board->tile_pool, board->tile_pool_bytes,
                               board->flash_poll_limit);
+}
+
+static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
+{
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const uint32_t count = lm_nav_take(&u->nav, frame, events);
+    for (uint32_t i = 0; i < count; i++) {
+        lm_weather_bus_take(&u->weather_bus, u->nav.bus.profile, &events[i]);
+    }
+    lm_canas_service_take(&u->service, frame);
 }
 
 static void take_bus(struct lm_unit *u, uint64_t now_us)
@@ -85,11 +95,16 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
         if (!frame.is_error) {
             u->last_bus_us = now_us;
         }
-        lm_nav_take(&u->nav, &frame);
-        lm_canas_service_take(&u->service, &frame);
+        take_frame(u, &frame);
     }
     lm_canas_service_answer(&u->service, can, u->flags, now_us);
     lm_nav_at(&u->nav, now_us, &u->ownship);
+}
+
+void lm_look_at_weather(struct lm_unit *u, uint64_t now_us)
+{
+    u->environment = u->commanded;
+    u->is_weather_stale = lm_weather_bus_at(&u->weather_bus, now_us, &u->environment);
 }
 
 /* The aircraft is somewhere else at once: lines drawn from there and from here must not stand side
@@ -152,7 +167,7 @@ static void judge(struct lm_unit *u, uint64_t now_us)
     const uint32_t flags =
         (u->has_db ? 0u : LM_FLAG_DB) | (is_tile_fault ? LM_FLAG_TILE : 0u) |
         (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) | (u->is_off_map ? LM_FLAG_OFF_MAP : 0u) |
-        (u->page.is_override ? LM_FLAG_SILENT : 0u) |
+        (u->page.is_override ? LM_FLAG_SILENT : 0u) | (u->is_weather_stale ? LM_FLAG_WEATHER : 0u) |
         (now_us < u->unable_until_us ? LM_FLAG_UNABLE : 0u) |
         (now_us - u->last_bus_us > LM_BUS_SILENT_US ? LM_FLAG_BUS : 0u) | judge_nav(u);
     remember_faults(u, flags & ~u->flags, now_us);
@@ -163,6 +178,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
 {
     take_bus(u, now_us);
     heed_jump(u, now_us);
+    lm_look_at_weather(u, now_us);
     lm_take_controls(u, now_us);
     judge(u, now_us);
     lm_follow_cursor(u, now_us);

@@ -4,6 +4,8 @@
 #include "fuzz.h"
 #include "lm/canas_service.h"
 #include "lm/nav.h"
+#include "lm/status.h"
+#include "lm/weather_bus.h"
 
 const uint32_t fuzz_mutations = 60000;
 
@@ -15,6 +17,18 @@ static void check_ownship(const struct lm_ownship *o)
     FUZZ_ASSERT(o->height_q6 >= -3500 * 64 && o->height_q6 <= 32500 * 64);
     FUZZ_ASSERT(abs(o->velocity_north_mm_s) <= 1500000 && abs(o->velocity_east_mm_s) <= 1500000);
     FUZZ_ASSERT(o->utc_s >= 0 && o->utc_s < 86400);
+}
+
+static void check_weather(struct lm_weather_bus *w, const struct lm_bus_profile *profile,
+                          const struct lm_bus_event *events, uint32_t count, uint64_t now_us)
+{
+    struct lm_environment e = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        lm_weather_bus_take(w, profile, &events[i]);
+    }
+    lm_weather_bus_at(w, now_us, &e);
+    FUZZ_ASSERT(lm_environment_check(&e) == LM_OK);
+    FUZZ_ASSERT(w->count.sets >= (uint32_t)e.rain_count + e.jammer_count);
 }
 
 static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus_profile *profile,
@@ -35,7 +49,7 @@ static struct lm_can_frame take_frame(struct fuzz_supply *s, const struct lm_bus
     f.is_extended = is_packed ? !(flags & 1) : flags & 1;
     f.is_remote = (flags & 0x30) == 0x30;
     f.is_error = (flags & 0xC0) == 0xC0;
-    f.length = length & 0x80 ? length : 8;
+    f.length = length & 0x80 ? length & 31 : 8;
     const uint64_t data = fuzz_take(s, 8);
     memcpy(f.data, &data, sizeof f.data);
     return f;
@@ -64,6 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct lm_nav *nav = malloc(sizeof *nav);
     FUZZ_ASSERT(nav);
     lm_nav_init(nav, profile);
+    struct lm_weather_bus weather = {0};
     struct lm_canas_service service;
     lm_canas_service_init(&service, 20, 1, 0x12);
     struct sent sent = {0};
@@ -73,7 +88,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (supply.left > 0) {
         const struct lm_can_frame frame = take_frame(&supply, profile, &now_us);
         struct lm_ownship ownship;
-        lm_nav_take(nav, &frame);
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        const uint32_t count = lm_nav_take(nav, &frame, events);
+        check_weather(&weather, profile, events, count, now_us);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
         lm_canas_service_take(&service, &frame);

@@ -2,6 +2,8 @@
  * stays within its bounds for any frame, and prints. */
 #include "fuzz.h"
 #include "lm/nav.h"
+#include "lm/status.h"
+#include "lm/weather_bus.h"
 #include "print.h"
 #include "table_text.h"
 
@@ -12,6 +14,7 @@ static void try_frames(const struct lm_bus_profile *profile)
     struct lm_nav *nav = malloc(sizeof *nav);
     FUZZ_ASSERT(nav);
     lm_nav_init(nav, profile);
+    struct lm_weather_bus weather = {0};
     const bool is_packed = profile->framing == LM_BUS_PACKED;
     const uint32_t kinds = is_packed ? 4 : 4 * LM_CANAS_TYPES;
     for (uint32_t i = 0; i < kinds * profile->row_count; i++) {
@@ -27,7 +30,14 @@ static void try_frames(const struct lm_bus_profile *profile)
             f.length = (uint8_t)(4 + t->element_bytes * t->elements);
         }
         struct lm_ownship ownship;
-        lm_nav_take(nav, &f);
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        const uint32_t count = lm_nav_take(nav, &f, events);
+        for (uint32_t k = 0; k < count; k++) {
+            lm_weather_bus_take(&weather, profile, &events[k]);
+        }
+        struct lm_environment e = {0};
+        lm_weather_bus_at(&weather, f.time_us, &e);
+        FUZZ_ASSERT(lm_environment_check(&e) == LM_OK);
         lm_nav_at(nav, f.time_us + i % 7 * 1000000, &ownship);
     }
     free(nav);

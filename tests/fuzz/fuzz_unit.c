@@ -160,6 +160,20 @@ static void queue_fix(struct world *w, struct fuzz_supply *s)
     queue_float(w, 1040, heading);
 }
 
+/* A whole circle of rain or a jammer near the middle. */
+static void queue_weather(struct world *w, struct fuzz_supply *s, bool is_jammer)
+{
+    const double degrees = 360 / 4294967296.0;
+    const uint32_t id = is_jammer ? 1804 : 1800;
+    w->message_code++;
+    queue_float(w, id, fmin((int32_t)w->centre.latitude * degrees + (int8_t)fuzz_u8(s) / 1e3, 90));
+    queue_float(w, id + 1, (int32_t)w->centre.longitude * degrees + (int8_t)fuzz_u8(s) / 1e3);
+    queue_float(w, id + 2, is_jammer ? fuzz_u8(s) / 2.0 - 25 : fuzz_u16(s) * 2.0);
+    if (!is_jammer) {
+        queue_float(w, id + 3, fuzz_u8(s));
+    }
+}
+
 static void queue_any(struct world *w, struct fuzz_supply *s)
 {
     struct lm_can_frame f = {.id = fuzz_u32(s), .time_us = w->now_us + fuzz_u16(s)};
@@ -215,7 +229,7 @@ static void act(struct world *w, struct fuzz_supply *s)
         step(w, (uint64_t)fuzz_u16(s) << (op >> 4));
         break;
     case 4:
-        queue_value(w, lm_bus_canas17.rows[fuzz_u8(s) % LM_BUS_FIELDS].id, op >> 4 & 3,
+        queue_value(w, lm_bus_canas17.rows[fuzz_u8(s) % lm_bus_canas17.row_count].id, op >> 4 & 3,
                     fuzz_u32(s));
         break;
     case 5:
@@ -241,6 +255,9 @@ static void act(struct world *w, struct fuzz_supply *s)
     case 12:
         patch(&w->image, s);
         seal_image(w->image.bytes, w->image.size, op >> 4);
+        break;
+    case 13:
+        queue_weather(w, s, op >> 4 & 1);
         break;
     default:
         step(w, 2000);

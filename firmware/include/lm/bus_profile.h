@@ -32,6 +32,16 @@ enum lm_bus_field {
     LM_BUS_WAYPOINT_LATITUDE, /* of the active waypoint: where it is to go */
     LM_BUS_WAYPOINT_LONGITUDE,
     LM_BUS_UTC,
+    LM_BUS_NAV_FIELDS, /* those above are the aircraft's: lm/nav.h */
+
+    LM_BUS_RAIN_LATITUDE = LM_BUS_NAV_FIELDS, /* of a circle's centre: lm/weather_bus.h */
+    LM_BUS_RAIN_LONGITUDE,
+    LM_BUS_RAIN_RADIUS,
+    LM_BUS_RAIN_RATE,
+    LM_BUS_JAMMER_LATITUDE,
+    LM_BUS_JAMMER_LONGITUDE,
+    LM_BUS_JAMMER_RATIO,  /* to the noise, on the axis at ten nautical miles */
+    LM_BUS_WEATHER_CLEAR, /* which are taken away: bits 0..3 rain, 4..7 jammers */
     LM_BUS_FIELDS
 };
 
@@ -42,6 +52,9 @@ enum lm_bus_unit {
     LM_BUS_Q6,      /* metres * 64 */
     LM_BUS_MM_S,    /* millimetres a second */
     LM_BUS_SECONDS, /* since midnight; 86,400 is a leap second */
+    LM_BUS_MM_H,    /* millimetres an hour */
+    LM_BUS_DB_Q8,   /* dB * 256 */
+    LM_BUS_BITS,    /* each for itself */
     LM_BUS_UNITS
 };
 
@@ -154,7 +167,9 @@ struct lm_bus_event {
     uint32_t step;    /* between neighbouring values of the type it came in; 0: less than 1 */
     uint8_t row;      /* of the profile */
     uint8_t channel;  /* redundancy channel; the lower is preferred */
-    uint8_t node;     /* of the sender; 0 when the frame does not tell */
+    uint8_t node;     /* of the sender; 0 when the frame does not tell, */
+    uint8_t service;  /* service code, likewise: of weather, which circle or jammer */
+    uint8_t code;     /* message code, likewise: of weather, which set */
     uint64_t time_us; /* of arrival; for a DOUBLE that of the half that came first, when the value
                          existed already */
 };

@@ -41,7 +41,7 @@ struct lm_nav {
         uint16_t rank;      /* priority of the row * 256 + channel: the least is preferred */
         uint8_t row, node;
         bool has_value;
-    } item[LM_BUS_FIELDS][LM_NAV_SOURCES];
+    } item[LM_BUS_NAV_FIELDS][LM_NAV_SOURCES];
 
     bool is_baro_preferred; /* height: barometric altitude before the others; the operator's choice
                              */
@@ -103,7 +103,8 @@ struct lm_ownship {
 /* `profile` says what the frames mean; it must outlive *n. */
 void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
 
-/* Take a frame of the bus, whatever it is. A later call wins over an earlier one, whatever their
+/* Take a frame of the bus, whatever it is. Returns how many values it brought, in `events`, also
+ * those that are none of the aircraft's. A later call wins over an earlier one, whatever their
  * time stamps say, so that a recording that starts over is followed at once.
  *
  * An identifier has one node that sends it. Where a second one sends it as well, the first is heard
@@ -114,7 +115,8 @@ void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
  * the velocity, moved by no more than it takes to lie within that half step. So the position is
  * never worse than the type allows and does not jump by a step of up to 1.7 m ten times a second.
  * Without a velocity the value is kept as it came. */
-void lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame);
+uint32_t lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame,
+                     struct lm_bus_event events[LM_BUS_EVENTS]);
 
 /* The aircraft at `now_us`, on the clock of the frames' time stamps. A value up to its stale age in
  * the future counts as just heard; one further ahead comes from a clock that was set back, and is

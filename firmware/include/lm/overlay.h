@@ -22,9 +22,10 @@ enum lm_flag {
     LM_FLAG_FROZEN = 1 << 5,    /* by the operator */
     LM_FLAG_OFF_MAP = 1 << 6,   /* most of the picture lies outside the map */
     LM_FLAG_SILENT = 1 << 7,    /* not emitting, by the operator: the sweep stands still */
-    LM_FLAG_UNABLE = 1 << 8     /* the last patch asked for cannot be made */
+    LM_FLAG_UNABLE = 1 << 8,    /* the last patch asked for cannot be made */
+    LM_FLAG_WEATHER = 1 << 9    /* the bus's weather was not told anew: it will be removed */
 };
-enum { LM_FLAGS = 9 };
+enum { LM_FLAGS = 10 };
 
 /* The word of flag number 0..LM_FLAGS - 1, at most eight characters. */
 const char *lm_flag_word(uint32_t number);

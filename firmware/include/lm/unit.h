@@ -14,6 +14,7 @@
 #include "lm/page.h"
 #include "lm/sar.h"
 #include "lm/sector.h"
+#include "lm/weather_bus.h"
 
 /* What a board lends, for as long as the unit lives. */
 struct lm_board {
@@ -53,7 +54,10 @@ struct lm_unit {
     struct lm_signature signatures[LM_SIGNATURES_MAX];
     struct lm_target_set target_set; /* the part of them that was read */
     struct lm_chips chips;
-    struct lm_environment environment;
+    struct lm_environment commanded; /* by a script or an instructor: before the bus's */
+    struct lm_weather_bus weather_bus;
+    struct lm_environment environment; /* of both, as sweeps and patches meet it */
+    bool is_weather_stale;
     struct lm_place own_steerpoint; /* commanded: before the bus's waypoint */
     bool has_own_steerpoint;
     struct lm_nav nav;

@@ -5,6 +5,8 @@
 #include "drv/can_log.h"
 #include "hs/rng.h"
 #include "lm/nav.h"
+#include "lm/status.h"
+#include "lm/weather_bus.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,11 +28,12 @@ static struct lm_can_frame random_frame(struct hs_rng *rng, uint64_t time_us)
     frame.length = (uint8_t)hs_rng_u64(rng);
     frame.is_extended = (dice & 0x100) != 0;
     if ((dice & 7) != 0) {
-        frame.id = lm_bus_canas17.rows[hs_rng_below(rng, LM_BUS_FIELDS)].id;
+        frame.id = lm_bus_canas17.rows[hs_rng_below(rng, lm_bus_canas17.row_count)].id;
         frame.is_extended = (dice & 0xf00) == 0;
         frame.length = 8;
         frame.data[0] = (uint8_t)((dice >> 13 & 31) == 0 ? 0 : 9 + (dice >> 12 & 1));
         frame.data[1] = types[dice >> 18 & 7];
+        frame.data[2] = (uint8_t)(dice >> 40 & 7);
         frame.data[3] = (uint8_t)(dice >> 21 & 3);
     }
     if ((dice >> 24 & 3) == 0) {
@@ -39,6 +42,22 @@ static struct lm_can_frame random_frame(struct hs_rng *rng, uint64_t time_us)
     }
     frame.is_error = (dice >> 28 & 63) == 0;
     frame.is_remote = (dice >> 34 & 63) == 0;
+    return frame;
+}
+
+/* A whole set of weather, now and then with a wrong frame in it. */
+static struct lm_can_frame set_frame(struct hs_rng *rng, uint32_t set, uint32_t part,
+                                     uint64_t time_us)
+{
+    static const double values[] = {46, 11, 5000, 30, 46, 11, 20};
+    const uint32_t kind = set % 3 == 0 ? 4 : 0, at = kind + part % (kind ? 3 : 4);
+    struct lm_can_frame frame = bus_frame(1800 + at, LM_CANAS_FLOAT, (uint8_t)(set / 8),
+                                          bus_float_bits(values[at]), time_us);
+    frame.data[0] = (uint8_t)(9 + (set % 7 == 0));
+    frame.data[2] = (uint8_t)(set % 5);
+    if (hs_rng_below(rng, 30) == 0) {
+        frame.data[hs_rng_below(rng, 8)] = (uint8_t)hs_rng_u64(rng);
+    }
     return frame;
 }
 
@@ -60,13 +79,23 @@ static void every_random_frame_is_accounted_for_and_the_ownship_stays_possible(v
     hs_rng_seed(&rng, 21);
     struct lm_nav *nav =
         malloc(sizeof *nav); /* on the heap, where the sanitizer watches its ends */
+    struct lm_weather_bus *weather = calloc(1, sizeof *weather);
     lm_nav_init(nav, &lm_bus_canas17);
     uint64_t now_us = 0;
     for (int i = 0; i < 400000; i++) {
         const uint32_t kind = hs_rng_below(&rng, 1000);
         now_us = kind == 0 ? hs_rng_u64(&rng) : kind == 1 ? 0 : now_us + hs_rng_below(&rng, 3000);
-        const struct lm_can_frame frame = random_frame(&rng, now_us);
-        lm_nav_take(nav, &frame);
+        const struct lm_can_frame frame =
+            i % 3 != 0 ? random_frame(&rng, now_us)
+                       : set_frame(&rng, (uint32_t)i / 12, (uint32_t)i / 3 % 4, now_us);
+        struct lm_bus_event events[LM_BUS_EVENTS];
+        const uint32_t count = lm_nav_take(nav, &frame, events);
+        for (uint32_t k = 0; k < count; k++) {
+            lm_weather_bus_take(weather, &lm_bus_canas17, &events[k]);
+        }
+        struct lm_environment e = {0};
+        lm_weather_bus_at(weather, now_us, &e);
+        assert_int_equal(lm_environment_check(&e), LM_OK);
         struct lm_ownship ownship;
         lm_nav_at(nav, kind == 2 ? hs_rng_u64(&rng) : now_us, &ownship);
         assert_possible(&ownship);
@@ -78,6 +107,11 @@ static void every_random_frame_is_accounted_for_and_the_ownship_stays_possible(v
     }
     assert_int_equal(sum, 400000);
     assert_int_equal(nav->bus.count.frames, 400000);
+    print_message("# weather: %u sets, %u torn, %u of no slot, %u of rivals\n", weather->count.sets,
+                  weather->count.torn, weather->count.numbers, weather->count.rivals);
+    assert_true(weather->count.sets > 1000 && weather->count.torn > 1000 &&
+                weather->count.numbers > 1000 && weather->count.rivals > 1000);
+    free(weather);
     free(nav);
 }
 

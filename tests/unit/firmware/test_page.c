@@ -820,8 +820,9 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     /* A frame of a wrong type and a lone half of a double, which the next other frame tears. */
     const struct lm_can_frame bad = {.id = 321, .length = 8, .data = {9, 77}};
     const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
-    lm_nav_take(&r->unit.nav, &bad);
-    lm_nav_take(&r->unit.nav, &half);
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    lm_nav_take(&r->unit.nav, &bad, events);
+    lm_nav_take(&r->unit.nav, &half, events);
     r->unit.tiles.count.corrupt = 5;
     r->unit.chips.count.corrupt = 7;
     r->unit.count.targets_lost = 21;

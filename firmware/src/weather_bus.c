@@ -1,0 +1,158 @@
+#include "lm/weather_bus.h"
+
+#include "fx/sat.h"
+#include "lm/status.h"
+
+/* Which value of a set a field is. */
+struct part {
+    bool is_jammer;
+    uint8_t number;
+};
+
+static bool part_of(enum lm_bus_field field, struct part *part)
+{
+    static const uint8_t rain[] = {LM_BUS_RAIN_LATITUDE, LM_BUS_RAIN_LONGITUDE, LM_BUS_RAIN_RADIUS,
+                                   LM_BUS_RAIN_RATE};
+    static const uint8_t jammer[] = {LM_BUS_JAMMER_LATITUDE, LM_BUS_JAMMER_LONGITUDE,
+                                     LM_BUS_JAMMER_RATIO};
+    for (uint8_t i = 0; i < LM_WEATHER_PARTS; i++) {
+        if (rain[i] == field || (i < sizeof jammer && jammer[i] == field)) {
+            *part = (struct part){rain[i] != field, i};
+            return true;
+        }
+    }
+    return false;
+}
+
+enum age { GOOD, STALE, DEAD };
+
+/* One ahead of the clock by up to its stale age has just been heard; further ahead, the clock was
+ * set back. */
+static enum age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
+{
+    if (time_us > now_us) {
+        return time_us - now_us > w->stale_us ? DEAD : GOOD;
+    }
+    const uint64_t age_us = now_us - time_us;
+    return age_us > w->dead_us ? DEAD : age_us > w->stale_us ? STALE : GOOD;
+}
+
+/* Bit n of a mask is slot n. */
+static void clear(struct lm_weather_bus *w, uint32_t mask)
+{
+    for (uint32_t n = 0; n < LM_WEATHER_SLOTS; n++) {
+        if (mask >> n & 1) {
+            w->slot[n].is_there = false;
+            w->slot[n].set.parts = 0;
+        }
+    }
+}
+
+/* A set as what it says. Numbers are held to what their types hold, beyond every limit of
+ * lm_environment_check; radii come in 64ths of a metre. */
+static struct lm_environment meaning_of(const struct lm_weather_slot *s, bool is_jammer)
+{
+    struct lm_environment e = {.rain_count = !is_jammer, .jammer_count = is_jammer};
+    const int32_t *part = s->set.part;
+    const struct lm_place place = {(fx_bam_t)part[0], (fx_bam_t)part[1]};
+    if (is_jammer) {
+        e.jammer[0] =
+            (struct lm_jammer){place, (int16_t)fx_clamp_i32(part[2], INT16_MIN, INT16_MAX)};
+    } else {
+        e.rain[0] = (struct lm_rain){place, (uint32_t)fx_max_i32(part[2], 0) / 64,
+                                     (uint16_t)fx_clamp_i32(part[3], 0, UINT16_MAX)};
+    }
+    return e;
+}
+
+static void finish_set(struct lm_weather_bus *w, struct lm_weather_slot *s, bool is_jammer)
+{
+    const struct lm_environment e = meaning_of(s, is_jammer);
+    s->set.parts = 0;
+    if (lm_environment_check(&e) != LM_OK) {
+        w->count.refused++;
+        return;
+    }
+    if (is_jammer) {
+        s->is.jammer = e.jammer[0];
+    } else {
+        s->is.rain = e.rain[0];
+    }
+    s->is_there = true;
+    s->node = s->set.node;
+    s->time_us = s->set.begun_us;
+    w->count.sets++;
+}
+
+/* Whether the value goes on with the set that is under way. */
+static bool goes_on(const struct lm_weather_slot *s, const struct lm_bus_event *event,
+                    uint32_t number)
+{
+    return s->set.parts != 0 && (s->set.parts >> number & 1) == 0 && s->set.node == event->node &&
+           s->set.code == event->code && event->time_us >= s->set.begun_us &&
+           event->time_us - s->set.begun_us <= LM_WEATHER_SET_US;
+}
+
+static void add_part(struct lm_weather_bus *w, struct lm_weather_slot *s,
+                     const struct lm_bus_event *event, const struct part *part)
+{
+    if (!goes_on(s, event, part->number)) {
+        w->count.torn += s->set.parts != 0;
+        s->set.parts = 0;
+        s->set.node = event->node;
+        s->set.code = event->code;
+        s->set.begun_us = event->time_us;
+    }
+    s->set.part[part->number] = event->value;
+    s->set.parts |= (uint8_t)(1u << part->number);
+    if (s->set.parts == (part->is_jammer ? 7 : 15)) {
+        finish_set(w, s, part->is_jammer);
+    }
+}
+
+void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_profile *profile,
+                         const struct lm_bus_event *event)
+{
+    const struct lm_bus_row *row = &profile->rows[event->row];
+    struct part part;
+    if (event->channel != 0) {
+        return; /* frames of two channels would tear each other's sets */
+    }
+    if (row->field == LM_BUS_WEATHER_CLEAR) {
+        clear(w, (uint32_t)event->value);
+        return;
+    }
+    if (!part_of((enum lm_bus_field)row->field, &part)) {
+        return;
+    }
+    w->stale_us = row->stale_ms * 1000u;
+    w->dead_us = row->dead_ms * 1000u;
+    if (event->service >= (part.is_jammer ? LM_JAMMERS_MAX : LM_RAINS_MAX)) {
+        w->count.numbers++;
+        return;
+    }
+    struct lm_weather_slot *s =
+        &w->slot[(part.is_jammer ? (uint32_t)LM_RAINS_MAX : 0) + event->service];
+    if (s->is_there && s->node != event->node && age_of(w, s->time_us, event->time_us) == GOOD) {
+        w->count.rivals++;
+        return;
+    }
+    add_part(w, s, event, &part);
+}
+
+bool lm_weather_bus_at(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e)
+{
+    bool is_any_stale = false;
+    for (uint32_t n = 0; n < LM_WEATHER_SLOTS; n++) {
+        struct lm_weather_slot *s = &w->slot[n];
+        const enum age age = s->is_there ? age_of(w, s->time_us, now_us) : DEAD;
+        s->is_there = age != DEAD;
+        is_any_stale = is_any_stale || age == STALE;
+        if (age != DEAD && n < LM_RAINS_MAX && e->rain_count < LM_RAINS_MAX) {
+            e->rain[e->rain_count++] = s->is.rain;
+        } else if (age != DEAD && n >= LM_RAINS_MAX && e->jammer_count < LM_JAMMERS_MAX) {
+            e->jammer[e->jammer_count++] = s->is.jammer;
+        }
+    }
+    return is_any_stale;
+}
