@@ -63,15 +63,16 @@ static uint16_t encode(const struct build_context *b, int class_number, double g
 }
 
 /* The random reflectivity of a cell, or of one of the `parts` x `parts` of one: by where it lies
- * alone. */
+ * alone. Of a coarse cell it is that of all the finest ones that it stands for, as that of a cell
+ * made from below is. */
 static double assigned_gamma_db(const struct build_context *b, int class_number,
                                 const struct image_frame *f, int parts, int r, int c)
 {
     const uint64_t level_seed = b->seed + ((uint64_t)f->shift << 32);
     const uint32_t side = (uint32_t)(CELLS * parts);
-    return db_reflect_assign(&b->laws[class_number], level_seed,
-                             (int)(f->column * side + (uint32_t)c),
-                             (int)(f->row * side + (uint32_t)r));
+    return db_reflect_assign_coarse(&b->laws[class_number], level_seed,
+                                    (int)(f->column * side + (uint32_t)c),
+                                    (int)(f->row * side + (uint32_t)r), f->shift - b->plan.shift0);
 }
 
 static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s,

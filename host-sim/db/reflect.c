@@ -32,18 +32,6 @@ static double trigamma(double x)
     return sum + 1 / x + r / 2 + r / x * (1.0 / 6 - r * (1.0 / 30 - r / 42));
 }
 
-void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
-{
-    *law = (struct db_reflect_law){.c = c, .shape_mean = 0, .shape_dev = 1};
-    if (c->texture == DB_TEXTURE_RAYLEIGH) {
-        law->shape_mean = db_per_neper * digamma_1;
-        law->shape_dev = db_per_neper * sqrt(trigamma_1);
-    } else if (c->texture == DB_TEXTURE_K) {
-        law->shape_mean = db_per_neper * (digamma(c->texture_shape) - log(c->texture_shape));
-        law->shape_dev = db_per_neper * sqrt(trigamma(c->texture_shape));
-    }
-}
-
 /* A Gamma variate of the given order and mean 1 (Marsaglia and Tsang, ACM TOMS 26, 2000, p. 363;
  * orders below 1 through their remark on p. 371), as its natural logarithm. */
 static double draw_log_gamma(struct hs_rng *rng, double order)
@@ -93,6 +81,37 @@ double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, int x,
         }
     }
     return fmin(c->high_db, fmax(c->low_db, value));
+}
+
+/* Of a sample: limits leave no closed form. */
+static double mean_power_db(const struct db_reflect_law *law)
+{
+    enum { SAMPLE = 4096 };
+    double sum = 0;
+    for (int i = 0; i < SAMPLE; i++) {
+        sum += pow(10, db_reflect_assign(law, 1, i, 0) / 10);
+    }
+    return 10 * log10(sum / SAMPLE);
+}
+
+void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
+{
+    *law = (struct db_reflect_law){.c = c, .shape_mean = 0, .shape_dev = 1};
+    if (c->texture == DB_TEXTURE_RAYLEIGH) {
+        law->shape_mean = db_per_neper * digamma_1;
+        law->shape_dev = db_per_neper * sqrt(trigamma_1);
+    } else if (c->texture == DB_TEXTURE_K) {
+        law->shape_mean = db_per_neper * (digamma(c->texture_shape) - log(c->texture_shape));
+        law->shape_dev = db_per_neper * sqrt(trigamma(c->texture_shape));
+    }
+    law->mean_db = mean_power_db(law);
+}
+
+double db_reflect_assign_coarse(const struct db_reflect_law *law, uint64_t seed, int x, int y,
+                                int halvings)
+{
+    const double pixel_db = db_reflect_assign(law, seed, x, y);
+    return halvings == 0 ? pixel_db : law->mean_db + ldexp(pixel_db - law->c->gamma_db, -halvings);
 }
 
 void db_brightness_add(struct db_brightness *b, int class_index, double brightness)

@@ -22,6 +22,7 @@
 struct db_reflect_law {
     const struct db_class *c;     /* borrowed */
     double shape_mean, shape_dev; /* of the unscaled texture, dB */
+    double mean_db;               /* of the power of many pixels */
 };
 
 void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c);
@@ -29,6 +30,11 @@ void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c);
 /* The value of the pixel at column x, row y: the same for the same seed and place in whatever order
  * pixels come. */
 double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, int x, int y);
+
+/* The value of a cell as wide and high as 2^halvings pixels, about as the mean power of so many has
+ * it: with the mean of their powers, and a 2^halvings-th of their spread. */
+double db_reflect_assign_coarse(const struct db_reflect_law *law, uint64_t seed, int x, int y,
+                                int halvings);
 
 /* Brightness of the pixels of each class, gathered in a first pass over the image. */
 struct db_brightness {

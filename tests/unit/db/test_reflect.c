@@ -87,6 +87,43 @@ static void each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory(
     }
 }
 
+/* A coarse cell beside the mean of the pixels in it. */
+static void a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stands_for(void **state)
+{
+    (void)state;
+    static const struct db_class classes[] = {
+        {.gamma_db = -15, .spread_db = 3, .low_db = -24, .high_db = -6},
+        {.gamma_db = -2,
+         .spread_db = 5.57,
+         .low_db = -30,
+         .high_db = 30,
+         .texture = DB_TEXTURE_RAYLEIGH}};
+    for (size_t k = 0; k < sizeof classes / sizeof classes[0]; k++) {
+        static double means[SIDE * SIDE], coarse[SIDE * SIDE];
+        struct db_reflect_law law;
+        db_reflect_law_init(&law, &classes[k]);
+        for (int halvings = 0; halvings <= 3; halvings++) {
+            const int pixels = 1 << halvings, side = SIDE / pixels, count = side * side;
+            for (int i = 0; i < count; i++) {
+                double sum = 0;
+                for (int p = 0; p < pixels * pixels; p++) {
+                    const int x = i % side * pixels + p % pixels,
+                              y = i / side * pixels + p / pixels;
+                    sum += pow(10, db_reflect_assign(&law, 1, x, y) / 10);
+                }
+                means[i] = 10 * log10(sum / (pixels * pixels));
+                coarse[i] = db_reflect_assign_coarse(&law, 2, i % side, i / side, halvings);
+            }
+            const struct moments wanted = measure(means, (size_t)count);
+            const struct moments found = measure(coarse, (size_t)count);
+            print_message("# %d x %d pixels: mean %.2f spread %.2f; wanted %.2f and %.2f\n", pixels,
+                          pixels, found.mean, found.deviation, wanted.mean, wanted.deviation);
+            assert_true(fabs(found.mean - wanted.mean) < (pixels == 2 ? 0.7 : 0.3));
+            assert_true(fabs(found.deviation / wanted.deviation - 1) < 0.3);
+        }
+    }
+}
+
 /* RADAR.md, single look: an exponential power has a deviation of 5.57 dB; unscaled, the texture is
  * that law itself. */
 static void the_rayleigh_texture_at_its_own_spread_is_an_exponential_power(void **state)
@@ -264,6 +301,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory),
+        cmocka_unit_test(
+            a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stands_for),
         cmocka_unit_test(the_rayleigh_texture_at_its_own_spread_is_an_exponential_power),
         cmocka_unit_test(no_value_leaves_the_limits_and_cutting_narrows_as_theory_says),
         cmocka_unit_test(neighbours_are_independent_and_seeds_differ),
