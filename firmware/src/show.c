@@ -11,7 +11,7 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_range_m = c->range_m;
     s->cursor_bearing = c->bearing;
     s->has_cursor_elevation = u->has_db && u->cursor_elevation_q10 != LM_NO_ELEVATION;
-    s->cursor_elevation_m = u->cursor_elevation_q10 / 1024;
+    s->cursor_elevation_q10 = u->cursor_elevation_q10;
 }
 
 /* Where it is to go: as commanded, or else the bus's waypoint, while that is not stale. */

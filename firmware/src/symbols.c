@@ -219,9 +219,10 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     lm_text_number(&t, tenths % 10, 1);
     write_row(g, 1, ALIGN_LEFT, t.words);
     if (s->has_cursor_elevation) {
+        const int64_t feet_q22 = (int64_t)s->cursor_elevation_q10 * FEET_PER_M_Q12;
         t = (struct lm_text){0};
         lm_text_add(&t, "ELV ");
-        lm_text_signed(&t, (s->cursor_elevation_m * FEET_PER_M_Q12 + 2048) >> 12);
+        lm_text_signed(&t, (int32_t)((feet_q22 + (1 << 21)) >> 22));
         lm_text_add(&t, "FT");
         write_row(g, 2, ALIGN_LEFT, t.words);
     }

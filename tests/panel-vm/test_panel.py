@@ -51,7 +51,7 @@ def delivered(m):
 def radar_picture(m):
     film = bench("film", "still", seconds=12, every=1)
     p = in_flight(m)
-    p.until(lambda text: "ELV +981FT" in text)
+    p.until(lambda text: "ELV +984FT" in text)
     m.sleep(3)  # the tiles are there, and the second sweep is under way
     p.press("OSB7")
     p.until(lambda text: "FZ" in text[:6])

@@ -51,7 +51,7 @@ struct lm_symbols {
     struct lm_place cursor_place;
     uint32_t cursor_range_m;
     fx_bam_t cursor_bearing;
-    int32_t cursor_elevation_m;
+    int32_t cursor_elevation_q10; /* metres * 1024 */
     bool has_cursor_elevation;
 
     bool has_steerpoint, is_steerpoint_on_glass;
