@@ -251,42 +251,31 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
     return (uint16_t)(side >= cells ? side / cells : 1);
 }
 
-/* Cells as squares of side_px pixels, upwards from the first one's lower left corner. Where the
- * side is a constant, a compiler leaves nothing of the inner loops. */
-static inline void paint_cells(uint8_t *corner, size_t width_px, uint32_t side_px,
-                               const uint8_t *grey, size_t count)
+/* A cell as a square of pixels, upwards from its lower left corner. */
+static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, uint8_t grey)
 {
-    for (const uint8_t *const end = grey + count; grey != end; grey++) {
-        const uint8_t cell = *grey;
-        for (uint32_t row = 0; row < side_px; row++, corner -= width_px) {
-            for (uint32_t column = 0; column < side_px; column++) {
-                corner[column] = cell;
-            }
+    for (int32_t row = 0; row < side_px; row++) {
+        for (int32_t column = 0; column < side_px; column++) {
+            corner[row * up + column] = grey;
         }
     }
 }
 
-static inline void paint_four(uint8_t *pixel, ptrdiff_t up, const uint8_t *grey)
+/* Cells upwards, eight at a time, for there is little more to each than counting: where the side is
+ * a constant, a compiler leaves nothing of the loops in them. */
+static inline void paint_cells(uint8_t *corner, ptrdiff_t up, int32_t side_px, const uint8_t *grey,
+                               size_t count)
 {
-    pixel[0] = grey[0];
-    pixel[up] = grey[1];
-    pixel[2 * up] = grey[2];
-    pixel[3 * up] = grey[3];
-}
-
-/* Cells of a pixel each, upwards: 16 at a time, for there is little more to each than counting. */
-static void paint_pixels(uint8_t *pixel, size_t width_px, const uint8_t *grey, size_t count)
-{
-    const ptrdiff_t up = -(ptrdiff_t)width_px;
-    const uint8_t *const end = grey + count, *const whole = end - count % 16;
-    for (; grey != whole; grey += 16, pixel += 16 * up) {
-        paint_four(pixel, up, grey);
-        paint_four(pixel + 4 * up, up, grey + 4);
-        paint_four(pixel + 8 * up, up, grey + 8);
-        paint_four(pixel + 12 * up, up, grey + 12);
+    enum { AT_ONCE = 8 };
+    const ptrdiff_t next = side_px * up;
+    const uint8_t *const end = grey + count, *const whole = end - count % AT_ONCE;
+    for (; grey != whole; grey += AT_ONCE, corner += AT_ONCE * next) {
+        for (int32_t k = 0; k < AT_ONCE; k++) {
+            paint_cell(corner + k * next, up, side_px, grey[k]);
+        }
     }
-    for (; grey != end; grey++, pixel += up) {
-        *pixel = *grey;
+    for (; grey != end; grey++, corner += next) {
+        paint_cell(corner, up, side_px, *grey);
     }
 }
 
@@ -303,13 +292,16 @@ void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, 
     const uint32_t first = (uint32_t)fx_max_i32(bottom + 1 - frame->height_px, 0);
     const uint32_t end = fx_min_u32(cells, (uint32_t)bottom + 1);
     const size_t width_px = plane->width_px, count = end > first ? end - first : 0;
-    uint8_t *const pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
-                           frame->left_px + left;
+    uint8_t *pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
+                     frame->left_px + left;
+    const ptrdiff_t up = -(ptrdiff_t)width_px;
     if (cell_px == 1) {
-        paint_pixels(pixel, width_px, grey + first, count);
+        paint_cells(pixel, up, 1, grey + first, count);
     } else if (cell_px == 2) {
-        paint_cells(pixel, width_px, 2, grey + first, count);
+        paint_cells(pixel, up, 2, grey + first, count);
     } else {
-        paint_cells(pixel, width_px, (uint32_t)cell_px, grey + first, count);
+        for (uint32_t i = first; i < end; i++, pixel += cell_px * up) {
+            paint_cell(pixel, up, cell_px, grey[i]);
+        }
     }
 }
