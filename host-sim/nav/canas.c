@@ -39,6 +39,13 @@ struct canas_frame canas_long(struct canas_codes *codes, uint16_t id, uint8_t no
     return f;
 }
 
+struct canas_frame canas_uchar(struct canas_codes *codes, uint16_t id, uint8_t node, uint8_t value)
+{
+    struct canas_frame f = begin(codes, id, node, CANAS_UCHAR, 5);
+    f.data[4] = value;
+    return f;
+}
+
 struct canas_frame canas_char4(struct canas_codes *codes, uint16_t id, uint8_t node,
                                const uint8_t value[4])
 {

@@ -11,6 +11,7 @@
 enum canas_type {
     CANAS_FLOAT = 2,
     CANAS_LONG = 3,
+    CANAS_UCHAR = 10,
     CANAS_SHORT2 = 12,
     CANAS_CHAR4 = 15,
     CANAS_DOUBLEH = 30,
@@ -37,6 +38,9 @@ enum canas_id {
     CANAS_TRUE_HEADING = 1133,     /* deg, -180..180 */
     CANAS_UTC = 1200,              /* hour, minute, second, 0 */
     CANAS_DATE = 1206,             /* day, month, century, year of the century */
+    CANAS_RAIN_LATITUDE = 1800,    /* and 3 more: of the display's own, docs/bus.md, "Weather" */
+    CANAS_JAMMER_LATITUDE = 1804,  /* and 2 more */
+    CANAS_WEATHER_CLEAR = 1807,
     CANAS_ID_COUNT = 2048
 };
 
@@ -55,6 +59,7 @@ struct canas_codes {
 /* `id` below CANAS_ID_COUNT, `node` 1..255. FLOAT rounds to nearest. */
 struct canas_frame canas_float(struct canas_codes *codes, uint16_t id, uint8_t node, double value);
 struct canas_frame canas_long(struct canas_codes *codes, uint16_t id, uint8_t node, int32_t value);
+struct canas_frame canas_uchar(struct canas_codes *codes, uint16_t id, uint8_t node, uint8_t value);
 struct canas_frame canas_char4(struct canas_codes *codes, uint16_t id, uint8_t node,
                                const uint8_t value[4]);
 

@@ -38,6 +38,14 @@ static const char help_text[] =
     "  --begin TIME      move the flight so that its first fix is at TIME (ISO 8601, or\n"
     "                    seconds since 1970); --circle and --straight otherwise begin at\n"
     "                    2000-01-01T12:00:00Z\n"
+    "  --rain LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]]\n"
+    "                    tell of a circle of rain, 100..100000 m, 1..150 mm/h, once a second,\n"
+    "                    in a part of the log; up to four\n"
+    "  --jammer LAT,LON,DB[,FROM_S[,UNTIL_S]]\n"
+    "                    likewise a jammer of -20..80 dB above the radar's noise, on the axis\n"
+    "                    of its antenna at ten nautical miles\n"
+    "  --weather-clear S take all of it away S seconds after the log's beginning; what is only\n"
+    "                    not told any more is removed by the display after 10 s\n"
     "  --height-offset M add M metres to every height, for example the height of the geoid\n"
     "\n"
     "What counts as broken:\n"
@@ -87,6 +95,9 @@ enum option_code {
     OPT_HEIGHT_OFFSET,
     OPT_MAX_GAP,
     OPT_MAX_SPEED,
+    OPT_RAIN,
+    OPT_JAMMER,
+    OPT_WEATHER_CLEAR,
     OPT_QUIET
 };
 
@@ -105,6 +116,9 @@ static const struct option long_options[] = {
     {"height-offset", required_argument, NULL, OPT_HEIGHT_OFFSET},
     {"max-gap", required_argument, NULL, OPT_MAX_GAP},
     {"max-speed", required_argument, NULL, OPT_MAX_SPEED},
+    {"rain", required_argument, NULL, OPT_RAIN},
+    {"jammer", required_argument, NULL, OPT_JAMMER},
+    {"weather-clear", required_argument, NULL, OPT_WEATHER_CLEAR},
     {"quiet", no_argument, NULL, OPT_QUIET},
     {"help", no_argument, NULL, 'h'},
     {NULL, 0, NULL, 0},
@@ -189,6 +203,21 @@ static int take_straight(struct command *c, const char *text)
     return 0;
 }
 
+static int take_weather(struct command *c, int option, const char *text)
+{
+    double v[6];
+    const bool is_jammer = option == OPT_JAMMER;
+    if (nav_weather_add(&c->send.weather, is_jammer, v, take_list(text, v, 6))) {
+        return 0;
+    }
+    return is_jammer ? usage_error("--jammer",
+                                   "LAT,LON,DB[,FROM_S[,UNTIL_S]] with -20..80 dB, and up to "
+                                   "four times")
+                     : usage_error("--rain",
+                                   "LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]] with a radius of "
+                                   "100..100000 m and 1..150 mm/h, and up to four times");
+}
+
 static int take_interface(struct command *c, const char *text)
 {
     const size_t length = strlen(text);
@@ -232,6 +261,12 @@ static int take_option(struct command *c, int option, const char *text)
         return take_circle(c, text);
     case OPT_STRAIGHT:
         return take_straight(c, text);
+    case OPT_RAIN:
+    case OPT_JAMMER:
+        return take_weather(c, option, text);
+    case OPT_WEATHER_CLEAR:
+        c->send.weather.has_clear = true;
+        return take_number("--weather-clear", text, 0, 1e9, &c->send.weather.clear_s);
     case OPT_OUT:
         c->out_path = text;
         return 0;

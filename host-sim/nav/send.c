@@ -122,6 +122,19 @@ static int put_item(struct sender *s, const struct item *item, int64_t tick_us)
     return put(s, &f);
 }
 
+static int put_weather(struct sender *s, double now_s)
+{
+    struct canas_frame frames[2 * NAV_WEATHER_EACH * NAV_WEATHER_FRAMES + 1];
+    const double period_s = MINOR_US * 1e-6 / s->options->rate_scale;
+    const int count = nav_weather_frames(&s->options->weather, &s->codes, now_s, period_s, frames);
+    for (int i = 0; i < count; i++) {
+        if (put(s, &frames[i]) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
 static int put_minor_frame(struct sender *s, uint64_t number, int64_t tick_us)
 {
     s->slot_us = tick_us;
@@ -151,7 +164,9 @@ int nav_send(const struct nav_track *track, const struct nav_send_options *optio
             break;
         }
         if (nav_motion_covers(&s.motion, tick_us)) {
-            failed = put_minor_frame(&s, n, tick_us);
+            failed = put_minor_frame(&s, n, tick_us) != 0
+                         ? -1
+                         : put_weather(&s, (double)(tick_us - first_us) * 1e-6);
             active++;
         }
     }

@@ -137,6 +137,41 @@ check 'and counted' printed ', 2 malformed'
 check 'an interface that is not there fails' exits 1 "$sim" --db "$db" --can nosuch0 --seconds 1
 check 'and is named' said 'landmass-sim: nosuch0: '
 
+# Weather on the bus: told until 3 s, stale from 6 s on, removed by 13 s
+cat >"$work/weather.script" <<END
+0    range 10
+2.6  picture sector
+2.7  sar 46.02 11.03 5
+5    picture patch
+5.1  gm
+7.5  picture stale
+16   picture gone
+END
+black() { # pixels that are
+    "$tool" pixels "$work/$1.png" 000000
+}
+for weather in fair storm clear; do
+    case $weather in
+    fair) options= ;;
+    storm) options='--rain 46.02,11.03,1500,60,0,3' ;;
+    clear) options='--rain 46.02,11.03,1500,60,0,3 --weather-clear 4' ;;
+    esac
+    # shellcheck disable=SC2086 # an option and its value
+    "$build/bin/landmass-nav" --straight 45.97,11,0,2000,150 --seconds 17 --quiet $options --out "$work/$weather.log" || exit 1
+    check "a flight with $weather weather on the bus ends well" exits 0 "$sim" --db "$db" --bus "$work/$weather.log" \
+        --script "$work/weather.script" --png "$work/$weather" --size 400x384 --every 0
+done
+check 'rain on the bus is in the sector' test "$(cmp -s "$work/fair/sector.png" "$work/storm/sector.png" && echo same)" = ''
+check 'and lies over a patch, of which nothing stays dark' \
+    test "$(black storm/patch)" -lt $(($(black fair/patch) - 1000))
+check 'it is not flagged while it is told' test "$(warnings "$work/storm/sector.png")" -eq 0
+check 'when it is not told any more it stays for a while' \
+    test "$(cmp -s "$work/fair/stale.png" "$work/storm/stale.png" && echo same)" = ''
+check 'flagged' between 20 1000 "$(warnings "$work/storm/stale.png")"
+check 'then it is gone, to the last pixel' cmp "$work/fair/gone.png" "$work/storm/gone.png"
+check 'it is gone at once when the bus takes it away' cmp "$work/fair/stale.png" "$work/clear/stale.png"
+check 'having been there' cmp "$work/storm/sector.png" "$work/clear/sector.png"
+
 # The script
 bad_script() { # NUMBER LINE...: the last line is the wrong one
     line=$1

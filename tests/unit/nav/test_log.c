@@ -41,7 +41,8 @@ static void forget(struct flight *f)
     decode_free(&f->log);
 }
 
-static const struct nav_send_options usual = {"can0", NAV_POSITION_DOUBLE, 1, 0, INT64_MAX};
+static const struct nav_send_options usual = {
+    .interface = "can0", .position = NAV_POSITION_DOUBLE, .rate_scale = 1, .until_us = INT64_MAX};
 
 /* Twenty seconds of a flight that turns, climbs and rolls, a fix each second on odd milliseconds.
  */
@@ -151,6 +152,65 @@ static void a_rate_scale_changes_every_rate(void **state)
     assert_int_equal(count_id(&f.log, 311), 8 * 20);
     assert_int_equal(count_id(&f.log, 1036), 8 * 5);
     forget(&f);
+}
+
+/* Rain from 2 s to 6 s, a jammer all along, and everything cleared at 10 s. */
+static void weather_is_told_once_a_second_in_whole_sets(void **state)
+{
+    (void)state;
+    const double rain[] = {46, 11, 5000, 30, 2, 6}, jammer[] = {46.5, 11.5, 25};
+    for (double scale = 0.25; scale <= 4; scale *= 4) {
+        struct flight f;
+        make_flight(&f);
+        struct nav_send_options options = usual;
+        options.rate_scale = scale;
+        assert_true(nav_weather_add(&options.weather, false, rain, 6));
+        assert_true(nav_weather_add(&options.weather, false, rain, 6));
+        assert_true(nav_weather_add(&options.weather, true, jammer, 3));
+        options.weather.has_clear = true;
+        options.weather.clear_s = 10;
+        send_track(&f, &options);
+        assert_int_equal(count_id(&f.log, 1807), 1);
+        for (uint32_t id = 1800; id < 1807; id++) {
+            assert_int_equal(count_id(&f.log, id), id < 1804 ? 2 * 4 : 20);
+        }
+        for (int i = 0; i < f.log.count; i++) {
+            const struct decoded_frame *x = &f.log.frame[i];
+            double value;
+            assert_true(i == 0 || x->time_us > x[-1].time_us);
+            if (x->id >= 1800 && x->id < 1807) {
+                const uint32_t part = x->id < 1804 ? x->id - 1800 : x->id - 1804;
+                assert_true(decode_float(x, &value));
+                assert_int_equal(value * 10, (x->id < 1804 ? rain : jammer)[part] * 10);
+                /* Beside the others of its set. */
+                assert_int_equal(x->data[2], (x - part)->data[2]);
+                assert_int_equal(x->data[3], (x - part)->data[3]);
+                assert_int_equal((x - part)->id, x->id - part);
+            }
+        }
+        forget(&f);
+    }
+}
+
+static void weather_out_of_range_is_not_taken(void **state)
+{
+    (void)state;
+    static const double bad[][6] = {
+        {91, 0, 5000, 30, 0, 9}, {0, 181, 5000, 30, 0, 9}, {0, 0, 99, 30, 0, 9},
+        {0, 0, 5000, 0, 0, 9},   {0, 0, 5000, 151, 0, 9},  {0, 0, 5000, 30, -1, 9},
+        {0, 0, 5000, 30, 9, 9},  {0, 0, 100001, 30, 0, 9},
+    };
+    struct nav_weather w = {0};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        assert_false(nav_weather_add(&w, false, bad[i], 6));
+    }
+    const double jammer[] = {0, 0, 81}, rain[] = {0, 0, 5000, 30};
+    assert_false(nav_weather_add(&w, true, jammer, 3));
+    assert_false(nav_weather_add(&w, false, rain, 3));
+    assert_false(nav_weather_add(&w, false, rain, -1));
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(nav_weather_add(&w, false, rain, 4), i < 4);
+    }
 }
 
 /* Where the aircraft is at an instant: the fixes on both sides and PROJ's geodesic between them. */
@@ -445,6 +505,7 @@ static void the_program_writes_whole_files_or_none(void **state)
     assert_int_not_equal(access(log, F_OK), 0);
     assert_int_equal(support_run("%s/bin/landmass-nav --circle 1,2 2>/dev/null", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-nav --rate-scale 9 x.csv 2>/dev/null", b), 2);
+    assert_int_equal(support_run("%s/bin/landmass-nav --rain 46,11,50,30 x.csv 2>/dev/null", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-nav 2>/dev/null", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-nav --help >/dev/null", b), 0);
 }
@@ -455,6 +516,8 @@ int main(void)
         cmocka_unit_test(rates_are_those_of_the_specification),
         cmocka_unit_test(time_codes_and_intervals_run_without_a_break),
         cmocka_unit_test(a_rate_scale_changes_every_rate),
+        cmocka_unit_test(weather_is_told_once_a_second_in_whole_sets),
+        cmocka_unit_test(weather_out_of_range_is_not_taken),
         cmocka_unit_test(pairs_are_adjacent_and_true_to_a_tenth_of_a_millimetre),
         cmocka_unit_test(values_are_those_of_the_track_when_each_frame_is_sent),
         cmocka_unit_test(float_and_long_positions_are_true_to_their_precision),
