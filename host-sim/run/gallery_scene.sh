@@ -64,9 +64,11 @@ show() { # DATABASE NAME TRACK-LOG: fly that script for a look at small pictures
     "$bin"/landmass-sim --db "$1" --bus "$3" --script "$out/$2.script" --png "$out" --every 0 --size 480x480
 }
 
-modes_of() { # DATABASE RANGE_NM "LAT LON of weather" RADIUS_KM "LAT LON CELL of a patch", then what landmass-nav shall fly
-    database=$1 range=$2 weather=$3 radius=$4 patch=$5
-    shift 5
+# DATABASE RANGE_NM "LAT LON of weather" RADIUS_KM "LAT LON CELL of a patch" "LAT LON RADIUS_KM of rain before it", then what
+# landmass-nav shall fly
+modes_of() {
+    database=$1 range=$2 weather=$3 radius=$4 patch=$5 shower=$6
+    shift 6
     "$bin"/landmass-nav --quiet --out "$out/straight.log" "$@" --seconds 60
     { echo "0 range $range" && cat $in/modes.script; } > "$out/modes.script"
     show "$database" modes "$out/straight.log"
@@ -98,6 +100,10 @@ EOF
     printf '1 sar %s\n6 picture effect-no-layover\n6 sar %s layover\n11 picture effect-layover\n' "$patch" "$patch" \
         > "$out/layover.script"
     show "$database" layover "$out/straight.log"
+    printf '1 sar %s\n8 picture effect-patch\n' "$patch" > "$out/patch.script"
+    show "$database" patch "$out/straight.log"
+    printf '0 rain %s 60\n1 sar %s\n8 picture effect-patch-rain\n' "$shower" "$patch" > "$out/patch-rain.script"
+    show "$database" patch-rain "$out/straight.log"
 }
 
 modes() { # the built-in scene, as `make run` leaves it
@@ -105,7 +111,7 @@ modes() { # the built-in scene, as `make run` leaves it
         say "skipped, there is no build/run/scene.lmdb here: make run makes it"
         exit 0
     fi
-    modes_of build/run/scene.lmdb 10 "42.02 -29.07" 2.5 "41.9950 -29.0080 5" \
+    modes_of build/run/scene.lmdb 10 "42.02 -29.07" 2.5 "41.9950 -29.0080 5" "41.9996 -29.0211 1.2" \
         --straight 42.05,-29.16,90,3000,180
     # A turn of 8.1 m/s2, the town 10 km off and 40 degrees to the right.
     "$bin"/landmass-nav --quiet --out "$out/turn.log" --circle 41.9674,-28.9225,4000,3000,180,180 --seconds 20
@@ -120,7 +126,7 @@ EOF
 
 island_modes() { # Hilo, and Mauna Kea behind it
     island_image
-    modes_of "$out/scene.lmdb" 20 "19.73 -155.10" 5 "19.82 -155.47 30" \
+    modes_of "$out/scene.lmdb" 20 "19.73 -155.10" 5 "19.82 -155.47 30" "19.817 -155.45 2" \
         --straight 19.75,-154.9,250,3000,200
 }
 
