@@ -124,7 +124,7 @@ static void set_geometry(struct lm_sar *s)
         .lines = s->radar->sar.cells,
         .cells = s->grid.cells,
         .guard = LM_SAR_GUARD,
-        .first = s->grid.first,
+        .first = fx_max_u32(s->grid.first, LM_SAR_GUARD),
         .heights = {s->grid.height_q10, s->grid.reference_q10},
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
@@ -342,11 +342,12 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     }
     if (s->rain.count != 0) {
         lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_q8, level_q8);
-        lm_speckle_run(&s->radar->sar.speckle, line->ground.noise, level_q8, s->grid.cells);
+        lm_speckle_run(&s->radar->sar.speckle, line->ground.noise + LM_SAR_GUARD,
+                       level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
         return;
     }
-    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, line->ground.noise, clutter_q8,
-                         level_q8, s->grid.cells);
+    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, line->ground.noise + LM_SAR_GUARD,
+                         clutter_q8 + LM_SAR_GUARD, level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
 }
 
 /* Whether a point is seen on lines before the one that it stands on. */
@@ -413,10 +414,11 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_q8)
     for (int32_t m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
         const int32_t last = s->radar->sar.cells - 1;
         const int32_t number = fx_clamp_i32((int32_t)s->line + m, 0, last);
-        near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number);
+        near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number) + LM_SAR_GUARD;
     }
     lm_defocus_shares(s->defocus_q8, share_q16);
-    lm_defocus_run(near_lines, share_q16, smeared_q8, s->power_q32, s->grid.cells);
+    lm_defocus_run(near_lines, share_q16, smeared_q8 + LM_SAR_GUARD, s->power_q32,
+                   s->radar->sar.cells);
     return smeared_q8;
 }
 
@@ -441,7 +443,7 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
     lm_sar_sample_ahead(s, tiles, LM_PATCH_POINTS_MAX, line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
     const int32_t *const level_q8 = focus_line(s, line->sight.level_q8);
-    lm_tone_run(tone, level_q8, line->grey, s->grid.cells);
+    lm_tone_run(tone, level_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, lines);
     s->line++;
     return level_q8;
 }

@@ -111,14 +111,15 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles);
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line);
 
-/* Draw the next line: line->grey has its greys, its cells from [LM_SAR_GUARD] on; line->ground is
- * that of the line sampled last, up to LM_SAR_AHEAD lines on, which the first line brings at once.
- * Call while s->line < radar->sar.cells. Returns its levels, good until the next call. */
+/* Draw the next line: line->grey has its greys, its cells from [LM_SAR_GUARD] on, and so have the
+ * levels that it returns, good until the next call; line->ground is that of the line sampled last,
+ * up to LM_SAR_AHEAD lines on, which the first line brings at once. Call while s->line <
+ * radar->sar.cells. */
 const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line);
 
 /* One stage of that: line `number` from the map to noise and speckle, without targets and smear, in
- * line->ground, and in level_q8 with room for LM_CELLS_ROOM. s->horizon is where it started. */
+ * line->ground, and its levels from level_q8[LM_SAR_GUARD] on. s->horizon is where it started. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                         struct lm_line *line, int32_t *level_q8);
 
