@@ -161,6 +161,7 @@ for weather in fair storm clear; do
     check "a flight with $weather weather on the bus ends well" exits 0 "$sim" --db "$db" --bus "$work/$weather.log" \
         --script "$work/weather.script" --png "$work/$weather" --size 400x384 --every 0
 done
+check 'the summary says what was taken' printed 'weather: 3 sets taken, 0 torn'
 check 'rain on the bus is in the sector' test "$(cmp -s "$work/fair/sector.png" "$work/storm/sector.png" && echo same)" = ''
 check 'and lies over a patch, of which nothing stays dark' \
     test "$(black storm/patch)" -lt $(($(black fair/patch) - 1000))

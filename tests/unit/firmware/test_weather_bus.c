@@ -170,7 +170,11 @@ static void a_set_is_not_made_of_two(void **state)
     hear(&ear, (struct from){20, 2, 5, S}, 1800, 46);
     hear(&ear, (struct from){21, 2, 5, S}, 1801, 11);
     hear(&ear, (struct from){21, 2, 5, S}, 1802, 5000);
-    hear(&ear, (struct from){21, 3, 5, S}, 1803, 30);
+    hear(&ear, (struct from){21, 2, 5, S}, 1803, 30);
+    hear(&ear, (struct from){22, 3, 5, S}, 1800, 46);
+    hear(&ear, (struct from){22, 3, 5, S}, 1801, 11);
+    hear(&ear, (struct from){22, 3, 5, S}, 1802, 5000);
+    hear(&ear, (struct from){22, 2, 5, S}, 1803, 30);
     look(&ear, 2 * S);
     assert_int_equal(ear.e.rain_count, 1);
 }
