@@ -35,7 +35,7 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us);
 /* How the picture lies on the glass. A picture that stands keeps the view it was drawn with. */
 void lm_follow_view(struct lm_unit *u);
 
-/* Draw the lines whose time has come, at most LM_STEP_LINES. */
+/* Draw the lines whose time has come, at most LM_STEP_LINES with the azimuths traced for them. */
 void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us);
 
 /* Draw the glass and show it. */

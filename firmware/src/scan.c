@@ -2,7 +2,10 @@
 
 enum {
     NONE_SAMPLE_CELLS = 16,
-    SAMPLES_A_STEP = 3 /* taken for one line; a line that needs more waits for the next step */
+    /* A line that needs more waits for the next step: azimuths of a sector, lines of a patch. */
+    AZIMUTHS_A_STEP = 4,
+    SAMPLES_A_STEP = 3,
+    LATE_MOST_US = 50000
 };
 
 /* Count how much of the line lies outside the map, a cell in sixteen. */
@@ -59,7 +62,7 @@ static void begin_sweep(struct lm_unit *u, const struct lm_platform *platform)
 }
 
 /* Draw the next line, or take a part of the samples that it needs. Whether it was drawn. */
-static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
+static bool draw_sector_line(struct lm_unit *u, uint64_t now_us, uint32_t *azimuths)
 {
     struct lm_sector *s = &u->sector;
     const struct lm_platform platform = platform_of(u, now_us);
@@ -70,7 +73,7 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us)
         }
     }
     const uint32_t samples = s->samples;
-    const bool is_ready = lm_sector_sample_ahead(s, &u->tiles, &platform, SAMPLES_A_STEP, &u->line);
+    const bool is_ready = lm_sector_sample_ahead(s, &u->tiles, &platform, azimuths, &u->line);
     if (s->samples != samples) {
         sample_coverage(u, s->grid.cells);
     }
@@ -132,22 +135,31 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 }
 
 /* Draw a line of what is shown. False when it needs more than one step. */
-static bool draw_line(struct lm_unit *u, uint64_t now_us)
+static bool draw_line(struct lm_unit *u, uint64_t now_us, uint32_t *azimuths)
 {
-    return u->page.is_patch ? draw_patch_line(u, now_us) : draw_sector_line(u, now_us);
+    return u->page.is_patch ? draw_patch_line(u, now_us) : draw_sector_line(u, now_us, azimuths);
+}
+
+/* Lines that are due and not drawn stay so, but not for long: the sweep then goes on from now. */
+static void forgive_lines(struct lm_unit *u, uint64_t now_us)
+{
+    const bool is_late = is_drawing(u, now_us);
+    if (!is_late || u->next_line_us + LATE_MOST_US <= now_us) {
+        u->count.lines_dropped += is_late;
+        u->next_line_us = now_us;
+    }
 }
 
 void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)
 {
-    for (uint32_t i = 0; i < LM_STEP_LINES && is_drawing(u, now_us) && u->next_line_us <= now_us;
-         i++) {
-        if (!draw_line(u, now_us)) {
-            return; /* it stays due */
-        }
-        u->count.lines++;
+    /* To trace an azimuth is as much work as to draw a line. */
+    uint32_t azimuths = AZIMUTHS_A_STEP, lines = 0;
+    while (lines + AZIMUTHS_A_STEP - azimuths < LM_STEP_LINES && is_drawing(u, now_us) &&
+           u->next_line_us <= now_us && draw_line(u, now_us, &azimuths)) {
+        lines++;
     }
+    u->count.lines += lines;
     if (u->next_line_us <= now_us) {
-        u->count.lines_dropped += is_drawing(u, now_us);
-        u->next_line_us = now_us;
+        forgive_lines(u, now_us);
     }
 }

@@ -488,16 +488,17 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
 }
 
 bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
-                            const struct lm_platform *platform, uint32_t at_most,
+                            const struct lm_platform *platform, uint32_t *azimuths,
                             struct lm_line *line)
 {
     int32_t sample;
     aim(s, tiles, platform);
-    for (uint32_t taken = 0; lm_beam_lacks(&s->beam, &s->look, &sample); taken++) {
-        if (taken == at_most) {
+    while (lm_beam_lacks(&s->beam, &s->look, &sample)) {
+        if (*azimuths == 0) {
             return false;
         }
         take_sample(s, tiles, sample, line);
+        *azimuths -= fx_min_u32(1u << azimuths_log2_of(s), *azimuths);
     }
     return true;
 }
@@ -516,7 +517,8 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line)
 {
-    lm_sector_sample_ahead(s, tiles, platform, LM_BEAM_TAPS, line);
+    uint32_t azimuths = UINT32_MAX;
+    lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
     lm_beam_sum(&s->beam, &s->look, s->power_q24, cells);

@@ -59,7 +59,8 @@ _Static_assert(LM_BUS_ROWS_MAX >= 32 && LM_BUS_ROWS_MAX <= 255, "LM_BUS_ROWS_MAX
 #endif
 _Static_assert(LM_NAV_SOURCES >= 2 && LM_NAV_SOURCES <= 8, "LM_NAV_SOURCES out of range");
 
-/* Frames taken from the bus in one step, and scan lines drawn in one step. */
+/* Frames taken from the bus in one step, and scan lines drawn in one step, where an azimuth that is
+ * traced for one counts as a line, too. */
 #ifndef LM_STEP_FRAMES
 #define LM_STEP_FRAMES 64
 #endif

@@ -118,11 +118,12 @@ uint32_t lm_sector_line_us(const struct lm_sector *s);
 /* Edges of line `line` (up to `lines`) from the sector's middle, right positive. */
 int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line);
 
-/* Take samples that the next line needs, at most `at_most` of them: a window's first line needs all
- * of LM_BEAM_TAPS, which is more than the time of one line. True when it has all. At an edge,
- * begins the sweep itself. */
+/* Take samples that the next line needs, as long as `*azimuths`, the azimuths that may still be
+ * traced, is above 0; those that were are taken off. A window's first line needs all of
+ * LM_BEAM_TAPS, which is more than the time of one line. True when it has all. At an edge, begins
+ * the sweep itself. */
 bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
-                            const struct lm_platform *platform, uint32_t at_most,
+                            const struct lm_platform *platform, uint32_t *azimuths,
                             struct lm_line *line);
 
 /* Draw the next line into line->grey[0 .. slant.cells - 1], ask for the tiles of one some way
