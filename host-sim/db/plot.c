@@ -85,9 +85,10 @@ static void draw_line(struct canvas *c, double x0, double y0, double x1, double 
     }
 }
 
+/* A single epoch is in the middle. */
 static double x_of(double epoch, int epochs)
 {
-    return LEFT + (RIGHT - LEFT) * (epochs > 1 ? (epoch - 1) / (epochs - 1) : 0.0);
+    return LEFT + (RIGHT - LEFT) * (epochs > 1 ? (epoch - 1) / (epochs - 1) : 0.5);
 }
 
 static double y_of(double value)
@@ -124,6 +125,13 @@ static double value_of(const struct db_epoch *e, int curve)
     return curve == 0 ? e->rms : curve == 1 ? e->recognition : e->validation;
 }
 
+/* A mark where the curve ends: of a single epoch it is all there is to see. */
+static void draw_end(struct canvas *c, double x, double y, uint32_t colour)
+{
+    enum { HALF = 3 };
+    draw_line(c, x - HALF, y - HALF, x + HALF, y - HALF, colour, 2 * HALF + 1);
+}
+
 static void draw_curve(struct canvas *c, const struct db_train_report *r, int curve,
                        uint32_t colour)
 {
@@ -133,6 +141,9 @@ static void draw_curve(struct canvas *c, const struct db_train_report *r, int cu
         if (!isnan(a) && !isnan(b)) {
             draw_line(c, x_of(from + 1, r->epoch_count), y_of(fmin(a, 1)),
                       x_of(i + 1, r->epoch_count), y_of(fmin(b, 1)), colour, 2);
+        }
+        if (i + 1 == r->epoch_count && !isnan(b)) {
+            draw_end(c, x_of(i + 1, r->epoch_count), y_of(fmin(b, 1)), colour);
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "mlp_apply.h"
 #include "mlp_train.h"
 #include "net_file.h"
+#include "plot.h"
 #include "support.h"
 
 #include "hs/rng.h"
@@ -426,6 +427,48 @@ static void images_are_classified_as_the_trained_network_says(void **state)
     db_net_free(&net);
 }
 
+/* ---- The error curve ---- */
+
+/* Pixels of a colour in the picture's rows above its key, and their middle row. */
+static int count_colour(GDALDatasetH picture, const uint8_t colour[3], double *row)
+{
+    enum { WIDTH = 860, ABOVE_KEY = 440 };
+    static uint8_t pixels[ABOVE_KEY][WIDTH][3];
+    int count = 0;
+    assert_int_equal(GDALDatasetRasterIO(picture, GF_Read, 0, 0, WIDTH, ABOVE_KEY, pixels, WIDTH,
+                                         ABOVE_KEY, GDT_Byte, 3, NULL, 3, 3 * WIDTH, 1),
+                     CE_None);
+    *row = 0;
+    for (int i = 0; i < WIDTH * ABOVE_KEY; i++) {
+        if (memcmp(pixels[i / WIDTH][i % WIDTH], colour, 3) == 0) {
+            *row += i / WIDTH;
+            count++;
+        }
+    }
+    *row /= count;
+    return count;
+}
+
+/* Found by looking at the gallery: a network that knew its exemplars after one epoch left a chart
+ * without a curve. */
+static void a_training_of_one_epoch_can_be_seen_on_its_chart(void **state)
+{
+    (void)state;
+    static const uint8_t red[3] = {0xc0, 0x20, 0x20}, blue[3] = {0x20, 0x40, 0xc0};
+    struct db_epoch epoch = {.rms = 0.25, .recognition = 0.75, .validation = NAN};
+    const struct db_train_report report = {.epochs = &epoch, .epoch_count = 1};
+    double error_row, recognition_row;
+    assert_int_equal(db_plot_training(fixture_path("curve.png"), &report), 0);
+    GDALDatasetH picture = GDALOpen(fixture_path("curve.png"), GA_ReadOnly);
+    assert_non_null(picture);
+    assert_true(count_colour(picture, red, &error_row) > 30);
+    assert_true(count_colour(picture, blue, &recognition_row) > 30);
+    GDALClose(picture);
+    /* The axis is 400 rows high and ends in row 420. */
+    assert_true(fabs(error_row - (420 - 0.25 * 400)) < 2);
+    assert_true(fabs(recognition_row - (420 - 0.75 * 400)) < 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -440,6 +483,7 @@ int main(void)
         cmocka_unit_test(a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused),
         cmocka_unit_test(the_fast_tanh_is_within_its_stated_error),
         cmocka_unit_test(images_are_classified_as_the_trained_network_says),
+        cmocka_unit_test(a_training_of_one_epoch_can_be_seen_on_its_chart),
     };
     return cmocka_run_group_tests_name("mlp", tests, fixture_open, fixture_close);
 }
