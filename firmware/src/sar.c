@@ -452,5 +452,5 @@ void lm_sar_restart(struct lm_sar *s)
 {
     s->line = s->sampled = s->summed = s->judged = s->second_runup = 0;
     s->has_points = false;
-    s->points.count = s->points.chip_count = 0;
+    s->points.count = s->points.target_count = s->points.chip_count = 0;
 }

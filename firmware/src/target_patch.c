@@ -121,19 +121,52 @@ static void add_points(struct lm_patch_points *p, const struct lm_target_set *se
     }
 }
 
+/* Lines around a place up to `reach_q8` beyond the ends of its smear. */
+static struct lm_patch_lines lines_around(int32_t across_q8, const struct lm_smear *smear,
+                                          uint32_t reach_q8)
+{
+    const uint32_t aside_q8 = fx_abs_u32(smear->across_q8) * smear->slices / 2 + reach_q8;
+    return (struct lm_patch_lines){(across_q8 - (int32_t)aside_q8) >> 8,
+                                   ((across_q8 + (int32_t)aside_q8) >> 8) + 1};
+}
+
+static bool touch(const struct lm_patch_lines *lines, uint32_t line)
+{
+    return (int32_t)line >= lines->first && (int32_t)line < lines->end;
+}
+
+/* The lines that the points of a target may touch. */
+static void set_lines(struct lm_patch_target *t, const struct lm_patch_points *p)
+{
+    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
+    const uint32_t reach_q8 = (LM_RESPONSE_REACH + 1) * t->smear.wide_q8;
+    t->lines = (struct lm_patch_lines){INT32_MAX, INT32_MIN};
+    for (uint32_t i = t->begin; i < t->end; i++) {
+        if (!p->item[i].is_chip) {
+            const struct lm_patch_lines lines =
+                lines_around(p->item[i].across_q8, &t->smear, reach_q8);
+            t->lines.first = fx_min_i32(t->lines.first, lines.first);
+            t->lines.end = fx_max_i32(t->lines.end, lines.end);
+        }
+    }
+}
+
 /* Lay the target's chip over its point. */
 static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot, fx_bam_t turn,
                      const struct lm_patch_geometry *g, const struct spot *spot)
 {
     struct lm_patch_chip *chip = &p->chip[p->chip_count++];
     struct lm_patch_point *point = &p->item[p->count - 1];
+    const struct lm_smear *smear = &p->target[point->target].smear;
     const uint32_t at_q8 = (uint32_t)fx_max_i32(spot->range_q8, 1);
     chip->point = p->count - 1;
     chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
     chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
                                        at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
-    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256),
-                    &p->smear[point->target]);
+    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256), smear);
+    const struct lm_chip_reach *lit = &chip->lay.lit;
+    const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
+    chip->lines = lines_around(point->across_q8, smear, cells * 256);
     point->is_chip = true;
 }
 
@@ -144,14 +177,19 @@ void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
         const struct lm_chip_slot *slot = lm_chip_of(item);
+        struct lm_patch_target *t = &p->target[p->target_count];
         struct spot spot;
         if (find_spot(g, &near->set.items[item->index], item, &spot)) {
-            p->smear[i] = lm_smear_of(spot.smear_across_q8 * 256 / (int64_t)g->cell_q8,
-                                      spot.walk_q8 * 256 / (int64_t)g->cell_q8);
-            add_points(p, &near->set, item, g, &spot, (uint8_t)i);
+            t->smear = lm_smear_of(spot.smear_across_q8 * 256 / (int64_t)g->cell_q8,
+                                   spot.walk_q8 * 256 / (int64_t)g->cell_q8);
+            t->begin = p->count;
+            add_points(p, &near->set, item, g, &spot, (uint8_t)p->target_count);
             if (slot) {
                 add_chip(p, slot, item->chip_turn, g, &spot);
             }
+            t->end = p->count;
+            set_lines(t, p);
+            p->target_count++;
         }
     }
 }
@@ -188,14 +226,6 @@ static struct slice slice_of(const struct lm_smear *s, uint32_t number)
                           .thin_q16 = (int32_t)((256u << 16) / s->wide_q8),
                           .flat_q16 = (int32_t)((256u << 16) / s->deep_q8),
                           .deep_q8 = s->deep_q8};
-}
-
-/* Whether any slice of what stands at across_q8 and reaches so far either way may touch a line:
- * most lines of a patch pass by most targets. */
-static bool may_touch(const struct lm_smear *s, int32_t across_q8, uint32_t reach_q8, uint32_t line)
-{
-    const uint32_t smeared_q8 = fx_abs_u32(s->across_q8) * s->slices / 2;
-    return fx_abs_u32((int32_t)line * 256 - across_q8) <= smeared_q8 + reach_q8;
 }
 
 /* A distance in units of the stretched response. */
@@ -276,36 +306,21 @@ static void collect(struct lm_patch_points *work, struct span touched, int32_t r
     }
 }
 
-/* Whether any of the points begin..end - 1, of one target, is seen on a line. */
-static bool is_seen(const struct lm_patch_points *p, uint32_t begin, uint32_t end, uint32_t line)
-{
-    const struct lm_smear *smear = &p->smear[p->item[begin].target];
-    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
-    const uint32_t reach_q8 = (LM_RESPONSE_REACH + 1) * smear->wide_q8;
-    bool is_seen = false;
-    for (uint32_t i = begin; i < end; i++) {
-        const struct lm_patch_point *point = &p->item[i];
-        is_seen |= !point->is_hidden && !point->is_chip &&
-                   may_touch(smear, point->across_q8, reach_q8, line);
-    }
-    return is_seen;
-}
-
-/* The points begin..end - 1, of one target. Its bodies add as phasors, the slices of its dwell,
- * whose phases run away from each other, as powers. */
-static void add_target(struct lm_patch_points *p, uint32_t begin, uint32_t end, uint32_t line,
+/* Its bodies add as phasors, the slices of its dwell, whose phases run away from each other, as
+ * powers. */
+static void add_target(struct lm_patch_points *p, const struct lm_patch_target *t, uint32_t line,
                        int32_t least_q8, struct span within, int32_t *level_q8)
 {
-    const struct lm_smear *smear = &p->smear[p->item[begin].target];
-    int32_t strongest_q8 = p->item[begin].level_q8;
-    for (uint32_t i = begin + 1; i < end; i++) {
+    const struct lm_smear *smear = &t->smear;
+    int32_t strongest_q8 = p->item[t->begin].level_q8;
+    for (uint32_t i = t->begin + 1; i < t->end; i++) {
         strongest_q8 = fx_max_i32(strongest_q8, p->item[i].level_q8);
     }
     for (uint32_t number = 0; number < smear->slices; number++) {
         const struct slice slice = slice_of(smear, number);
         struct span touched = {within.end, within.first};
         const int32_t reference_q8 = strongest_q8 + slice.share_q8;
-        for (uint32_t i = begin; i < end; i++) {
+        for (uint32_t i = t->begin; i < t->end; i++) {
             if (!p->item[i].is_hidden && !p->item[i].is_chip) {
                 spread(p, &p->item[i], &slice, line, least_q8, reference_q8, within, &touched);
             }
@@ -318,12 +333,10 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
                          const struct lm_patch_geometry *g, int32_t *level_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
-    uint32_t end = 0;
-    for (uint32_t begin = 0; begin < p->count; begin = end) {
-        for (end = begin; end < p->count && p->item[end].target == p->item[begin].target; end++) {
-        }
-        if (is_seen(p, begin, end, line)) {
-            add_target(p, begin, end, line, least_q8, within, level_q8);
+    for (uint32_t n = 0; n < p->target_count; n++) {
+        const struct lm_patch_target *t = &p->target[n];
+        if (touch(&t->lines, line)) {
+            add_target(p, t, line, least_q8, within, level_q8);
         }
     }
 }
@@ -396,13 +409,9 @@ uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
     for (uint32_t k = 0; k < p->chip_count; k++) {
         const struct lm_patch_chip *chip = &p->chip[k];
         const struct lm_patch_point *at = &p->item[chip->point];
-        const struct lm_smear *smear = &p->smear[at->target];
-        const struct lm_chip_reach *lit = &chip->lay.lit;
-        const uint32_t reach = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
-        if (!may_touch(smear, at->across_q8, reach * 256, line)) {
-            continue;
-        }
-        for (uint32_t number = 0; number < smear->slices; number++) {
+        const struct lm_smear *smear = &p->target[at->target].smear;
+        const uint32_t slices = touch(&chip->lines, line) ? smear->slices : 0;
+        for (uint32_t number = 0; number < slices; number++) {
             const struct slice slice = slice_of(smear, number);
             const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_q8);
             left_out += cells > room ? cells : 0;

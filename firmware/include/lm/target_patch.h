@@ -37,18 +37,31 @@ struct lm_patch_point {
     fx_bam_t phase;
     int64_t tangent_q38; /* at which it appears */
     int32_t line, cell;  /* that hold its place on the ground */
-    uint8_t target;      /* bodies of one target add as phasors */
+    uint8_t target;      /* whose body it is: index in lm_patch_points.target */
     bool is_displaced;   /* by Doppler: it may appear on a line before its own */
     bool is_hidden;
     bool is_chip; /* the place and level of one, not to be spread itself */
 };
 
+/* Lines that something may touch: most lines of a patch pass by most targets. */
+struct lm_patch_lines {
+    int32_t first, end;
+};
+
+/* A target near the patch. Its bodies add as phasors. */
+struct lm_patch_target {
+    struct lm_smear smear;
+    uint32_t begin, end; /* its points */
+    struct lm_patch_lines lines;
+};
+
 /* A chip in the patch. */
 struct lm_patch_chip {
     struct lm_chip_lay lay;
-    uint32_t point;           /* its place, and whether it is hidden */
-    int32_t shadow_across_q8; /* where its shadow lies: Doppler does not displace that */
-    int32_t area_q8;          /* of a cell of clutter there, dB * 256 of a square metre */
+    struct lm_patch_lines lines; /* of its power */
+    uint32_t point;              /* its place, and whether it is hidden */
+    int32_t shadow_across_q8;    /* where its shadow lies: Doppler does not displace that */
+    int32_t area_q8;             /* of a cell of clutter there, dB * 256 of a square metre */
 };
 
 /* Cells of a line that are given something of chips, so that its cost is bounded. */
@@ -57,7 +70,8 @@ enum { LM_CHIP_CELLS_A_LINE = 1024 };
 struct lm_patch_points {
     uint32_t count;
     struct lm_patch_point item[LM_PATCH_POINTS_MAX];
-    struct lm_smear smear[LM_TARGETS_NEAR]; /* of each target's points */
+    uint32_t target_count;
+    struct lm_patch_target target[LM_TARGETS_NEAR];
     uint32_t chip_count;
     struct lm_patch_chip chip[LM_TARGETS_NEAR];
     int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* zero between calls */
@@ -74,9 +88,9 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
                           uint32_t bits, uint32_t cells);
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`
- * is left out. Cost: 20 instructions a point, 200 for one that reaches the line and 25 for each
- * cell that it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves, and for
- * as many more cells as its response is stretched. */
+ * is left out. Cost: 6 instructions a target and 200 for a point that reaches the line and 25 for
+ * each cell that it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves,
+ * and for as many more cells as its response is stretched. */
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 
