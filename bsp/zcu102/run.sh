@@ -4,8 +4,8 @@
 set -eu
 run=build/run
 out=build/zcu102/run
-if ! [ -r $run/scene.lmdb ] || ! [ -r $run/flight.log ]; then
-    echo "There is no database of the built-in scene yet: making it (make run)"
+if ! [ -r $run/flight.log ] || ! "$1"/bin/landmass-db inspect $run/scene.lmdb > /dev/null 2>&1; then
+    echo "There is no database of the built-in scene yet, or none of this format: making it (make run)"
     sh host-sim/run/run.sh "$1"
 fi
 flight="--db $run/scene.lmdb --bus $run/flight.log --seconds 53"

@@ -4,10 +4,11 @@
 #include "fx/mem.h"
 #include "tile_read_neon.h"
 
-/* Half-words from the first record of a pool to another one: at most 2^12 records of 2^14 bytes. */
+/* Points from the first record of a pool to another one: less than 2^12 records of 2^15 bytes. */
 static uint32_t record_of(const struct lm_tile *pool, const struct lm_tile *tile)
 {
-    return (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool) / 2;
+    return (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool) /
+           (uint32_t)sizeof(struct lm_tile_point);
 }
 
 /* A tile's base, metres * 16384, with the shift that brings the Q16 of a post there in its lowest
@@ -19,22 +20,23 @@ static int32_t scale_of(const struct lm_tile *tile)
     return tile->base_q6 * 256 + (tile->post_shift - 8);
 }
 
-/* Words hold two numbers of the tile side by side, the western one in the low half: lm/db.h on the
- * order of bytes. Indices are signed: then a loop of this becomes vector gathers. */
+/* A point is taken as one word, its cell in the low half and its post in the high one: lm/db.h on
+ * the order of bytes. Indices are signed: then a loop of this becomes vector gathers. */
 static inline struct lm_ground ground_at(const struct lm_tile *pool, uint32_t record, int32_t scale,
                                          uint32_t north, uint32_t east)
 {
-    const uint16_t *cells = pool->cells[0], *posts = pool->posts[0];
+    const struct lm_tile_point *points = pool->points[0];
     const int32_t row = (int32_t)(north >> 26), column = (int32_t)(east >> 26);
-    const int32_t cell = (int32_t)record + row * LM_TILE_CELLS + column;
-    const uint32_t south = fx_load_u32(posts + (cell + row));
-    const uint32_t further = fx_load_u32(posts + (cell + row) + LM_TILE_POSTS);
-    const uint32_t post_q16 =
-        fx_bilerp_u16_q16((uint16_t)south, (uint16_t)(south >> 16), (uint16_t)further,
-                          (uint16_t)(further >> 16), east << 6 >> 24, north << 6 >> 24);
-    /* The post's part and the base are below 2^29. */
+    const int32_t at = (int32_t)record + row * LM_TILE_POSTS + column;
+    const uint32_t south_west = fx_load_u32(points + at), south_east = fx_load_u32(points + at + 1);
+    const uint32_t north_west = fx_load_u32(points + at + LM_TILE_POSTS);
+    const uint32_t north_east = fx_load_u32(points + at + LM_TILE_POSTS + 1);
+    const uint32_t post_q16 = fx_bilerp_u16_q16(
+        (uint16_t)(south_west >> 16), (uint16_t)(south_east >> 16), (uint16_t)(north_west >> 16),
+        (uint16_t)(north_east >> 16), east << 6 >> 24, north << 6 >> 24);
     const uint32_t shift = (0u - (uint32_t)scale) & 0xFF;
-    return (struct lm_ground){.cell = fx_load_u32(cells + cell) & 0xFFFF,
+    /* The post's part and the base are below 2^29. */
+    return (struct lm_ground){.cell = south_west & 0xFFFF,
                               .elevation_q14 = scale + (int32_t)(post_q16 >> shift)};
 }
 
@@ -49,6 +51,10 @@ void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_
     const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
     const uint32_t record = record_of(pool, tile);
     const int32_t scale = scale_of(tile);
+    if (FX_HAS_NEON) {
+        lay_groups_neon(record, scale, noise_sum, first, groups, line);
+        return;
+    }
     for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
         line->cell[k] = record;
         line->elevation_q14[k] = scale;

@@ -1,14 +1,32 @@
-/* What a tile says, by the vectors of 64-bit Arm: eight places at a time. Only the numbers of the
- * tile are fetched one by one, Arm having no gather; what tile_read.c makes of them is the same to
+/* What tiles say, by the vectors of 64-bit Arm: eight places at a time. Only the points of the
+ * tiles are fetched one by one, Arm having no gather; what tile_read.c makes of them is the same to
  * the bit. Not for other machines, where it is never called. */
 #ifndef TILE_READ_NEON_H
 #define TILE_READ_NEON_H
 
-#include "fx/mem.h"
 #include "lm/tile_read.h"
 #include "track_neon.h"
 
 #if FX_HAS_NEON
+
+/* Two vectors at a time, which the compiler does not do by itself. */
+static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t sum, uint32_t first,
+                                   uint32_t groups, struct lm_scan_line *line)
+{
+    const uint32x4_t r = vdupq_n_u32(record), n = vdupq_n_u32(sum);
+    const int32x4_t z = vdupq_n_s32(scale);
+    uint32_t *cell = line->cell + first, *noise = line->noise + first;
+    int32_t *elevation = line->elevation_q14 + first;
+    for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
+        for (int half = 0; half < 2; half++) {
+            vst1q_u32(cell + 4 * half, r);
+            vst1q_s32(elevation + 4 * half, z);
+            vst1q_u32(noise + 4 * half, n);
+        }
+        elevation += LM_LANES;
+        noise += LM_LANES;
+    }
+}
 
 /* Weights of eight places: bits 25..18 of each. */
 static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
@@ -17,73 +35,73 @@ static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
     return vshrq_n_u16(vshlq_n_u16(upper, 6), 8);
 }
 
-/* Where the numbers of four places are: south-western posts in bytes, and cells. */
-static inline void neon_offsets(uint32x4_t record, uint32x4_t north, uint32x4_t east,
-                                uint32_t *post, uint32_t *which)
+/* Where the points of four places are, in bytes from those of the pool's first record. */
+static inline uint32x4_t neon_offsets(uint32x4_t record, uint32x4_t north, uint32x4_t east)
 {
-    const uint32x4_t row = vshrq_n_u32(north, 26);
     const uint32x4_t across = vsraq_n_u32(record, east, 26);
-    vst1q_u32(post, vmlaq_n_u32(vaddq_u32(across, across), row, 2 * LM_TILE_POSTS));
-    vst1q_u32(which, vmlaq_n_u32(across, row, LM_TILE_CELLS));
+    const uint32x4_t at = vmlaq_n_u32(across, vshrq_n_u32(north, 26), LM_TILE_POSTS);
+    return vshlq_n_u32(at, 2);
 }
 
 struct neon_source {
-    const uint8_t *south, *north; /* the first record's post in the southernmost row, in the next */
-    const uint16_t *cells;
+    const uint8_t *south, *north; /* the first record's points in the southernmost row, the next */
 };
 
-/* The compiler must not see that the three are a constant apart: it would add it for each place
- * instead of keeping three registers. */
+/* The compiler must not see that the two are a constant apart: it would add it for each place
+ * instead of keeping two registers. */
 static inline struct neon_source neon_source_of(const struct lm_tile *pool)
 {
-    struct neon_source s = {(const uint8_t *)pool->posts[0], (const uint8_t *)pool->posts[1],
-                            pool->cells[0]};
-    __asm__("" : "+r"(s.south), "+r"(s.north), "+r"(s.cells));
+    struct neon_source s = {(const uint8_t *)pool->points[0], (const uint8_t *)pool->points[1]};
+    __asm__("" : "+r"(s.south), "+r"(s.north));
     return s;
 }
 
-/* Words as the vectors will load them: any type may follow. */
-typedef uint32_t neon_word __attribute__((may_alias));
+/* Two points side by side, as the vectors will load them: any type may follow. */
+typedef uint64_t neon_pair __attribute__((may_alias));
 
-/* The four posts around each of four places, and their cells. All is loaded first: a store might
- * change what is loaded, for all that the compiler knows. */
-static inline void neon_fetch(const struct neon_source *s, const uint32_t *post,
-                              const uint32_t *which, neon_word *corner, uint32_t *cell)
+static inline uint64_t neon_load_pair(const uint8_t *from)
 {
-    const uint32_t p0 = post[0], p1 = post[1], p2 = post[2], p3 = post[3];
-    const uint32_t c0 = s->cells[which[0]], c1 = s->cells[which[1]];
-    const uint32_t c2 = s->cells[which[2]], c3 = s->cells[which[3]];
-    const uint32_t south0 = fx_load_u32(s->south + p0), north0 = fx_load_u32(s->north + p0);
-    const uint32_t south1 = fx_load_u32(s->south + p1), north1 = fx_load_u32(s->north + p1);
-    const uint32_t south2 = fx_load_u32(s->south + p2), north2 = fx_load_u32(s->north + p2);
-    const uint32_t south3 = fx_load_u32(s->south + p3), north3 = fx_load_u32(s->north + p3);
-    corner[0] = south0;
-    corner[1] = north0;
-    corner[2] = south1;
-    corner[3] = north1;
-    corner[4] = south2;
-    corner[5] = north2;
-    corner[6] = south3;
-    corner[7] = north3;
-    cell[0] = c0;
-    cell[1] = c1;
-    cell[2] = c2;
-    cell[3] = c3;
+    uint64_t pair;
+    __builtin_memcpy(&pair, from, sizeof pair);
+    return pair;
 }
 
-/* fx_bilerp_u16_q16 of eight places from their posts: south-west, south-east, north-west,
- * north-east. */
-static inline uint32x4x2_t neon_bilerp(uint16x8x4_t post, uint16x8_t east, uint16x8_t north)
+/* The western and eastern points of each of four places, to the south and to the north. All is
+ * loaded first: a store might change what is loaded, for all that the compiler knows. */
+static inline void neon_fetch(const struct neon_source *s, const uint32_t *offset, neon_pair *south,
+                              neon_pair *north)
+{
+    const uint32_t o0 = offset[0], o1 = offset[1], o2 = offset[2], o3 = offset[3];
+    const uint64_t s0 = neon_load_pair(s->south + o0), n0 = neon_load_pair(s->north + o0);
+    const uint64_t s1 = neon_load_pair(s->south + o1), n1 = neon_load_pair(s->north + o1);
+    const uint64_t s2 = neon_load_pair(s->south + o2), n2 = neon_load_pair(s->north + o2);
+    const uint64_t s3 = neon_load_pair(s->south + o3), n3 = neon_load_pair(s->north + o3);
+    south[0] = s0;
+    south[1] = s1;
+    south[2] = s2;
+    south[3] = s3;
+    north[0] = n0;
+    north[1] = n1;
+    north[2] = n2;
+    north[3] = n3;
+}
+
+/* Posts of eight places: south-west, south-east, north-west, north-east. */
+struct neon_posts {
+    uint16x8_t sw, se, nw, ne;
+};
+
+/* fx_bilerp_u16_q16 of eight places. */
+static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint16x8_t east,
+                                       uint16x8_t north)
 {
     const uint16x8_t west = vsubq_u16(vdupq_n_u16(256), east);
-    const uint32x4_t south_low = vmlal_u16(vmull_u16(vget_low_u16(post.val[0]), vget_low_u16(west)),
-                                           vget_low_u16(post.val[1]), vget_low_u16(east));
-    const uint32x4_t north_low = vmlal_u16(vmull_u16(vget_low_u16(post.val[2]), vget_low_u16(west)),
-                                           vget_low_u16(post.val[3]), vget_low_u16(east));
-    const uint32x4_t south_high =
-        vmlal_high_u16(vmull_high_u16(post.val[0], west), post.val[1], east);
-    const uint32x4_t north_high =
-        vmlal_high_u16(vmull_high_u16(post.val[2], west), post.val[3], east);
+    const uint32x4_t south_low = vmlal_u16(vmull_u16(vget_low_u16(p->sw), vget_low_u16(west)),
+                                           vget_low_u16(p->se), vget_low_u16(east));
+    const uint32x4_t north_low = vmlal_u16(vmull_u16(vget_low_u16(p->nw), vget_low_u16(west)),
+                                           vget_low_u16(p->ne), vget_low_u16(east));
+    const uint32x4_t south_high = vmlal_high_u16(vmull_high_u16(p->sw, west), p->se, east);
+    const uint32x4_t north_high = vmlal_high_u16(vmull_high_u16(p->nw, west), p->ne, east);
     return (uint32x4x2_t){{
         vmlaq_u32(vshlq_n_u32(south_low, 8), vsubq_u32(north_low, south_low),
                   vmovl_u16(vget_low_u16(north))),
@@ -119,20 +137,24 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
     uint32_t *noise = line->noise + first, *cell = line->cell + first;
     uint32_t *elevation = (uint32_t *)line->elevation_q14 + first;
     for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
-        uint32_t post[LM_LANES], which[LM_LANES];
-        neon_word corner[2 * LM_LANES];
-        uint32x4_t n[2], e[2];
-        for (int half = 0; half < 2; half++) {
-            n[half] = neon_next(&north_track);
-            e[half] = neon_next(&east_track);
-            neon_offsets(vld1q_u32(cell + 4 * half), n[half], e[half], post + 4 * half,
-                         which + 4 * half);
-        }
-        neon_fetch(&source, post, which, corner, cell);
-        neon_fetch(&source, post + 4, which + 4, corner + LM_LANES, cell + 4);
+        uint32_t offset[LM_LANES];
+        neon_pair south[LM_LANES], north[LM_LANES];
+        const uint32x4_t n[2] = {neon_next(&north_track), neon_next(&north_track)};
+        const uint32x4_t e[2] = {neon_next(&east_track), neon_next(&east_track)};
+        vst1q_u32(offset, neon_offsets(vld1q_u32(cell), n[0], e[0]));
+        vst1q_u32(offset + 4, neon_offsets(vld1q_u32(cell + 4), n[1], e[1]));
+        /* In memory, from where two numbers come at a time; the compiler would move one by one. */
+        __asm__("" : "+m"(offset));
+        neon_fetch(&source, offset, south, north);
+        neon_fetch(&source, offset + 4, south + 4, north + 4);
+        /* Cell and post of the western point, cell and post of the eastern one. */
+        const uint16x8x4_t s = vld4q_u16((const uint16_t *)south);
+        const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
+        const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
         const uint32x4x2_t post_q16 =
-            neon_bilerp(vld4q_u16((const uint16_t *)corner), neon_weights(e[0], e[1]),
-                        neon_weights(n[0], n[1]));
+            neon_bilerp(&posts, neon_weights(e[0], e[1]), neon_weights(n[0], n[1]));
+        vst1q_u32(cell, vmovl_u16(vget_low_u16(s.val[0])));
+        vst1q_u32(cell + 4, vmovl_high_u16(s.val[0]));
         for (int half = 0; half < 2; half++) {
             vst1q_u32(noise, neon_noise(places, vld1q_u32(noise), n[half], e[half]));
             vst1q_u32(elevation, neon_elevation(vld1q_u32(elevation), post_q16.val[half]));
@@ -143,6 +165,12 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
 }
 
 #else
+
+static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t sum, uint32_t first,
+                                   uint32_t groups, struct lm_scan_line *line)
+{
+    (void)record, (void)scale, (void)sum, (void)first, (void)groups, (void)line;
+}
 
 static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,
                                     uint32_t first, uint32_t groups, struct lm_scan_line *line)

@@ -41,9 +41,10 @@ struct build_context {
     struct build_counts counts;
 };
 
-/* A tile with its elevations not yet cut to steps. */
+/* A tile, its cells by themselves, and its elevations not yet cut to steps. */
 struct build_tile {
     struct lm_tile record;
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
     struct terrain_posts posts;
 };
 

@@ -100,6 +100,22 @@ static int32_t floor_to(int32_t value, int shift)
     return (value >> shift) * (1 << shift);
 }
 
+void image_cells_encode(uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], struct lm_tile *tile)
+{
+    for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
+        const int r = i / LM_TILE_CELLS, c = i % LM_TILE_CELLS;
+        tile->points[r][c].cell = cells[r][c];
+    }
+}
+
+void image_cells_decode(const struct lm_tile *tile, uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS])
+{
+    for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
+        const int r = i / LM_TILE_CELLS, c = i % LM_TILE_CELLS;
+        cells[r][c] = tile->points[r][c].cell;
+    }
+}
+
 void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], struct lm_tile *tile)
 {
     int32_t low = posts_q6[0][0], high = low;
@@ -118,7 +134,7 @@ void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], st
     for (int r = 0; r < LM_TILE_POSTS; r++) {
         for (int c = 0; c < LM_TILE_POSTS; c++) {
             const int32_t above = posts_q6[r][c] - tile->base_q6;
-            tile->posts[r][c] = (uint16_t)((above + (1 << shift) / 2) >> shift);
+            tile->points[r][c].post = (uint16_t)((above + (1 << shift) / 2) >> shift);
         }
     }
 }

@@ -160,7 +160,7 @@ static double spot_shade(const struct spot *s, int64_t latitude)
 static double spot_value(const struct image *image, enum image_plane plane, const struct spot *s,
                          int64_t latitude)
 {
-    const uint16_t cell = s->tile->cells[s->row][s->column];
+    const uint16_t cell = s->tile->points[s->row][s->column].cell;
     if (image_cell_class(cell) == LM_DB_CLASS_NONE) {
         return (double)NAN;
     }

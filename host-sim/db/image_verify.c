@@ -191,7 +191,7 @@ static bool posts_are_in_bounds(const struct lm_tile *t)
 {
     uint16_t highest = 0;
     for (int i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
-        const uint16_t p = t->posts[i / LM_TILE_POSTS][i % LM_TILE_POSTS];
+        const uint16_t p = t->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS].post;
         highest = p > highest ? p : highest;
     }
     return t->base_q6 + ((int64_t)highest << t->post_shift) <= IMAGE_ELEVATION_LIMIT_Q6;
@@ -201,7 +201,7 @@ static int count_bad_cells(const struct image *image, const struct lm_tile *t)
 {
     int bad = 0;
     for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
-        const uint16_t cell = t->cells[i / LM_TILE_CELLS][i % LM_TILE_CELLS];
+        const uint16_t cell = t->points[i / LM_TILE_CELLS][i % LM_TILE_CELLS].cell;
         const uint8_t k = image_cell_class(cell);
         bad += k == LM_DB_CLASS_NONE ? cell != IMAGE_CELL_NONE
                                      : is_unused(&image->db.classes.entry[k]);
@@ -212,6 +212,9 @@ static int count_bad_cells(const struct image *image, const struct lm_tile *t)
 static bool tile_reserved_is_zero(const struct lm_tile *t)
 {
     uint32_t any = t->reserved0;
+    for (int i = 0; i < LM_TILE_POSTS; i++) {
+        any |= (uint32_t)t->points[i][LM_TILE_CELLS].cell | t->points[LM_TILE_CELLS][i].cell;
+    }
     for (size_t i = 0; i < sizeof t->reserved1; i++) {
         any |= t->reserved1[i];
     }
@@ -336,12 +339,15 @@ static bool child_fits(const struct image *image, const struct lm_tile *parent,
                        const struct lm_tile *child)
 {
     enum { HALF = LM_TILE_CELLS / 2 };
-    uint16_t reduced[HALF][HALF];
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], reduced[HALF][HALF],
+        own[LM_TILE_CELLS][LM_TILE_CELLS];
     const int row = (int)(child->row & 1) * HALF, column = (int)(child->column & 1) * HALF;
-    image_reduce(&child->cells[0][0], LM_TILE_CELLS, 2, &reduced[0][0], HALF, HALF,
+    image_cells_decode(parent, own);
+    image_cells_decode(child, cells);
+    image_reduce(&cells[0][0], LM_TILE_CELLS, 2, &reduced[0][0], HALF, HALF,
                  image->db.classes.height_dm);
     for (int r = 0; r < HALF; r++) {
-        if (memcmp(reduced[r], &parent->cells[row + r][column], sizeof reduced[r]) != 0) {
+        if (memcmp(reduced[r], &own[row + r][column], sizeof reduced[r]) != 0) {
             return false;
         }
     }

@@ -301,7 +301,7 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
 {
     struct grid_place g;
     const struct lm_tile *tile = find_nearest(db, level, place, &g);
-    const uint32_t cell = tile ? tile->cells[g.r][g.c] : LM_DB_CLASS_NONE << 4;
+    const uint32_t cell = tile ? tile->points[g.r][g.c].cell : LM_DB_CLASS_NONE << 4;
     bin->class_index = (int)(cell >> 4 & 15);
     bin->has_data = bin->class_index != LM_DB_CLASS_NONE;
     bin->kind = db->classes->entry[bin->class_index].kind;
@@ -320,9 +320,9 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
     }
     const double north = is_exact ? g.north : floor(g.north * 256) / 256;
     const double east = is_exact ? g.east : floor(g.east * 256) / 256;
-    const uint16_t *low = &tile->posts[g.r][g.c], *high = &tile->posts[g.r + 1][g.c];
-    const double south_side = low[0] * (1 - east) + low[1] * east;
-    const double north_side = high[0] * (1 - east) + high[1] * east;
+    const struct lm_tile_point *low = &tile->points[g.r][g.c], *high = &tile->points[g.r + 1][g.c];
+    const double south_side = low[0].post * (1 - east) + low[1].post * east;
+    const double north_side = high[0].post * (1 - east) + high[1].post * east;
     const double code = south_side * (1 - north) + north_side * north;
     *elevation_m = (tile->base_q6 + ldexp(code, tile->post_shift)) / 64;
     return true;

@@ -15,13 +15,11 @@ enum { ROUNDS = 300 };
 /* A tile of whatever numbers lm_tile_check lets pass. */
 static void draw_tile(struct hs_rng *rng, struct lm_tile *tile)
 {
-    uint16_t *cells = tile->cells[0], *posts = tile->posts[0];
-    for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
-        cells[i] = (uint16_t)hs_rng_u64(rng);
-    }
     for (int i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
         const uint16_t any = (uint16_t)hs_rng_u64(rng);
-        posts[i] = any % 16 == 0 ? 0 : any % 16 == 1 ? UINT16_MAX : any;
+        struct lm_tile_point *point = &tile->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS];
+        point->post = any % 16 == 0 ? 0 : any % 16 == 1 ? UINT16_MAX : any;
+        point->cell = (uint16_t)hs_rng_u64(rng);
     }
     tile->base_q6 = (int32_t)hs_rng_below(rng, 1 << 21) - (1 << 20);
     tile->post_shift = (uint8_t)hs_rng_below(rng, LM_TILE_POST_SHIFT_MAX + 1);

@@ -283,8 +283,9 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
                                                 tile->row * 2 + r / 32, tile->column * 2 + c / 32);
         if (child != NULL) {
             const uint32_t y = r * 2 % TILE, x = c * 2 % TILE;
-            const uint16_t four[4] = {child->cells[y][x], child->cells[y][x + 1],
-                                      child->cells[y + 1][x], child->cells[y + 1][x + 1]};
+            const uint16_t four[4] = {child->points[y][x].cell, child->points[y][x + 1].cell,
+                                      child->points[y + 1][x].cell,
+                                      child->points[y + 1][x + 1].cell};
             return mean_of_four(b, four);
         }
     }
@@ -328,7 +329,7 @@ static int make_posts(struct builder *b, struct lm_tile *tile)
     tile->base_q6 = (int32_t)(floor(low * 64 / step) * step);
     for (uint32_t r = 0; r < LM_TILE_POSTS; r++) {
         for (uint32_t c = 0; c < LM_TILE_POSTS; c++) {
-            tile->posts[r][c] = (uint16_t)lround((posts_m[r][c] * 64 - tile->base_q6) / step);
+            tile->points[r][c].post = (uint16_t)lround((posts_m[r][c] * 64 - tile->base_q6) / step);
         }
     }
     return shift <= POST_SHIFT_MAX && abs(tile->base_q6) <= 1 << 20 ? 0 : -1;
@@ -339,11 +340,11 @@ static void count_land(struct builder *b, const struct lm_tile *tile)
 {
     for (uint32_t r = 0; r < TILE; r++) {
         for (uint32_t c = 0; c < TILE; c++) {
-            const uint8_t class_index = unpack_cell(tile->cells[r][c]).class_index;
+            const uint8_t class_index = unpack_cell(tile->points[r][c].cell).class_index;
             if (class_index != LM_DB_CLASS_NONE &&
                 b->classes->entry[class_index].kind != LM_KIND_WATER) {
                 b->land_sum_m +=
-                    (tile->base_q6 + tile->posts[r][c] * (1 << tile->post_shift)) / 64.0;
+                    (tile->base_q6 + tile->points[r][c].post * (1 << tile->post_shift)) / 64.0;
                 b->land_count++;
             }
         }
@@ -369,7 +370,7 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
     tile->row = row;
     tile->column = column;
     for (uint32_t i = 0; i < TILE * TILE; i++) {
-        tile->cells[i / TILE][i % TILE] = make_cell(b, tile, i / TILE, i % TILE);
+        tile->points[i / TILE][i % TILE].cell = make_cell(b, tile, i / TILE, i % TILE);
     }
     const int status = make_posts(b, tile);
     if (band->level == 0) {

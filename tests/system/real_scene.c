@@ -241,10 +241,9 @@ static unsigned class_at(const struct lm_db *db, struct real_place place)
         lm_tile_check(&tile, 0, row, column) != LM_OK) {
         return LM_DB_CLASS_NONE;
     }
-    return tile.cells[latitude >> down & (LM_TILE_CELLS - 1)]
-                     [longitude >> across & (LM_TILE_CELLS - 1)] >>
-               4 &
-           15u;
+    const struct lm_tile_point *point = &tile.points[latitude >> down & (LM_TILE_CELLS - 1)]
+                                                    [longitude >> across & (LM_TILE_CELLS - 1)];
+    return point->cell >> 4 & 15u;
 }
 
 const char *real_image_class(const struct real_scene *scene, struct real_place place, char name[17])

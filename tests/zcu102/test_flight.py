@@ -24,7 +24,7 @@ SCRIPT = """\
 4.9 picture sar
 """
 SECTION_TILES = 4
-RECORD_BYTES = 16704
+RECORD_BYTES = 16960
 
 
 def country():

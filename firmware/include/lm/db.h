@@ -22,7 +22,7 @@
 #include "lm/port.h"
 
 enum {
-    LM_DB_VERSION = 1,
+    LM_DB_VERSION = 2,
     LM_DB_HEADER_BYTES = 512,
     LM_DB_LEVELS_MAX = 12,
     LM_DB_BANDS_MAX = 64,
@@ -34,7 +34,7 @@ enum {
     LM_TILE_CELLS_LOG2 = 6,
     LM_TILE_POSTS = 65, /* elevation posts at the cells' corners, shared with the neighbours */
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
-    LM_TILE_BYTES = 16704,
+    LM_TILE_BYTES = 16960,
     LM_TARGET_BYTES = 640, /* a record of TARGETS: lm/target.h */
     LM_DB_TARGETS_MAX = 1024,
     LM_SIGNATURE_BYTES = 1152, /* a record of SIGNATURES, and a chip of it: lm/signature.h */
@@ -55,7 +55,14 @@ enum lm_kind {
 /* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */
 enum { LM_GAMMA_CODE_STEP_Q8 = 128, LM_GAMMA_CODE_ZERO_Q8 = -80 * 256 };
 
-/* A tile record, in flash and in the cache alike. 16,704 bytes. */
+/* A cell and the elevation post at its south-west corner: side by side, because whoever looks at
+ * one needs the other. */
+struct lm_tile_point {
+    uint16_t cell; /* bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code */
+    uint16_t post;
+};
+
+/* A tile record, in flash and in the cache alike. 16,960 bytes. */
 struct lm_tile {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint8_t level, zone;
@@ -65,13 +72,10 @@ struct lm_tile {
     int32_t base_q6;    /* elevation of post code 0, metres * 64 */
     uint8_t post_shift; /* one post step is 2^post_shift / 64 metres; 0..4 */
     uint8_t reserved1[11];
-    /* Row 0 is the southernmost, column 0 the westernmost.
-     * Bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code. */
-    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
-    /* posts[r][c] is the elevation at the south-west corner of cell (r, c); row and column 64
-     * repeat the neighbours' row and column 0. */
-    uint16_t posts[LM_TILE_POSTS][LM_TILE_POSTS];
-    uint8_t reserved2[30];
+    /* Row 0 is the southernmost, column 0 the westernmost. Row and column 64 have no cells of their
+     * own, but the posts of the neighbours' row and column 0. */
+    struct lm_tile_point points[LM_TILE_POSTS][LM_TILE_POSTS];
+    uint8_t reserved2[28];
 };
 _Static_assert(sizeof(struct lm_tile) == LM_TILE_BYTES, "the record must be what FORMATS.md says");
 
@@ -170,7 +174,7 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t byte
                       uint32_t *record);
 
 /* Check a record read from flash: checksum, identity, bounds. LM_OK or LM_ERR_CORRUPT.
- * Cost: one CRC over 16.7 kB. */
+ * Cost: one CRC over 17 kB. */
 int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column);
 
 /* Cell height of a level in millimetres along the meridian (2^shift * 9.31506 mm). */

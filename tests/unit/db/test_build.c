@@ -68,7 +68,7 @@ static uint16_t cell_at(const struct image *image, uint8_t level, double latitud
     const uint32_t record = image_record(image, level, row, east >> (east_shift + 6));
     return record == UINT32_MAX
                ? IMAGE_CELL_NONE
-               : image->tiles[record].cells[up >> shift & 63][east >> east_shift & 63];
+               : image->tiles[record].points[up >> shift & 63][east >> east_shift & 63].cell;
 }
 
 /* ---- known rasters ---- */
@@ -164,7 +164,7 @@ static long compare_cover(const struct image *image)
             if (!is_inside || edge_x < 0.01 || edge_y < 0.01) {
                 continue;
             }
-            const uint16_t cell = t->cells[k / CELLS][k % CELLS];
+            const uint16_t cell = t->points[k / CELLS][k % CELLS].cell;
             const long column = (long)floor(x), row = (long)floor(y);
             assert_int_equal(image_cell_class(cell), class_of(column, row));
             assert_true(image_gamma_db(image_cell_gamma(cell)) == gamma_of(column, row));

@@ -433,7 +433,7 @@ static void lose_a_parent(struct tiny_image *i)
 }
 static void lift_a_corner(struct tiny_image *i)
 {
-    record_of(i, 0)->posts[LM_TILE_CELLS][LM_TILE_CELLS] ^= 0x0040;
+    record_of(i, 0)->points[LM_TILE_CELLS][LM_TILE_CELLS].post ^= 0x0040;
 }
 static void raise_the_base(struct tiny_image *i)
 {
@@ -445,11 +445,11 @@ static void widen_the_step(struct tiny_image *i)
 }
 static void use_an_unknown_class(struct tiny_image *i)
 {
-    record_of(i, 0)->cells[9][9] = 0x5090;
+    record_of(i, 0)->points[9][9].cell = 0x5090;
 }
 static void brighten_a_cell(struct tiny_image *i)
 {
-    record_of(i, 0)->cells[9][9] += 0x4000;
+    record_of(i, 0)->points[9][9].cell += 0x4000;
 }
 static void fill_a_gap(struct tiny_image *i)
 {

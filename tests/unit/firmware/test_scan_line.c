@@ -121,10 +121,10 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
         const uint32_t r = row % 64, c = column % 64;
         const double v = y - floor(y), u = x - floor(x);
         const double step_m = ldexp(1, t->post_shift) / 64;
-        const double sw = t->posts[r][c], se = t->posts[r][c + 1], nw = t->posts[r + 1][c],
-                     ne = t->posts[r + 1][c + 1];
+        const double sw = t->points[r][c].post, se = t->points[r][c + 1].post,
+                     nw = t->points[r + 1][c].post, ne = t->points[r + 1][c + 1].post;
         return (struct ground){.is_known = 1,
-                               .cell = t->cells[r][c],
+                               .cell = t->points[r][c].cell,
                                .elevation_m =
                                    t->base_q6 / 64.0 + step_m * ((sw * (1 - u) + se * u) * (1 - v) +
                                                                  (nw * (1 - u) + ne * u) * v),
