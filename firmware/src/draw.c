@@ -1,5 +1,8 @@
 #include "lm/draw.h"
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/font.h"
@@ -27,6 +30,32 @@ void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, 
     }
 }
 
+/* A line's dots, from one end to the other; Q16. */
+struct dots {
+    int32_t x, y, step_x, step_y, count;
+};
+
+/* Whether the end of a line and its width lie on the surface. */
+static bool is_on_surface(const struct lm_pen *pen, struct lm_point p)
+{
+    return p.x >= 0 && p.x <= pen->surface.width_px - pen->line_px && p.y >= 0 &&
+           p.y <= pen->surface.height_px - pen->line_px;
+}
+
+/* Dots of a pixel or of two by two that all lie on the surface: most lines are made of these. */
+static void draw_dots_inside(const struct lm_pen *pen, struct dots d)
+{
+    const size_t stride = pen->surface.stride_px;
+    const uint32_t colour = pen->colour;
+    for (; d.count > 0; d.count--, d.x += d.step_x, d.y += d.step_y) {
+        uint32_t *const out = pen->surface.pixels + (size_t)(d.y >> 16) * stride + (d.x >> 16);
+        out[0] = colour;
+        if (pen->line_px == 2) {
+            out[1] = out[stride] = out[stride + 1] = colour;
+        }
+    }
+}
+
 void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_point to)
 {
     const int32_t dx = to.x - from.x, dy = to.y - from.y;
@@ -37,11 +66,15 @@ void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_poin
                     dx == 0 ? pen->line_px : wide + 1, dy == 0 ? pen->line_px : high + 1);
         return;
     }
-    /* Q16: |dx|, |dy| < 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
-    const int32_t step_x = dx * 65536 / steps, step_y = dy * 65536 / steps;
-    int32_t x = from.x * 65536 + 32768, y = from.y * 65536 + 32768;
-    for (int32_t i = 0; i <= steps; i++, x += step_x, y += step_y) {
-        lm_draw_box(pen, x >> 16, y >> 16, pen->line_px, pen->line_px);
+    /* |dx|, |dy| < 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
+    struct dots d = {from.x * 65536 + 32768, from.y * 65536 + 32768, dx * 65536 / steps,
+                     dy * 65536 / steps, steps + 1};
+    if (pen->line_px <= 2 && is_on_surface(pen, from) && is_on_surface(pen, to)) {
+        draw_dots_inside(pen, d);
+        return;
+    }
+    for (; d.count > 0; d.count--, d.x += d.step_x, d.y += d.step_y) {
+        lm_draw_box(pen, d.x >> 16, d.y >> 16, pen->line_px, pen->line_px);
     }
 }
 

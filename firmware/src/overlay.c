@@ -4,12 +4,12 @@
 #include "lm/font.h"
 #include "marks.h"
 
-enum { GROUP_PX = 16 };
+enum { BLACK_PX = 32, LIT_PX = 16 };
 
-static bool is_black(const uint8_t grey[GROUP_PX])
+static bool is_black(const uint8_t grey[BLACK_PX])
 {
-    return (fx_load_u32(grey) | fx_load_u32(grey + 4) | fx_load_u32(grey + 8) |
-            fx_load_u32(grey + 12)) == 0;
+    return (fx_load_u64(grey) | fx_load_u64(grey + 8) | fx_load_u64(grey + 16) |
+            fx_load_u64(grey + 24)) == 0;
 }
 
 /* A table look-up a pixel, but for black: more than half of a picture lies beside the sector or
@@ -19,15 +19,17 @@ static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
 {
     const uint32_t black = colours[0];
     const uint32_t *const end = out + pixels;
-    for (; end - out >= GROUP_PX; out += GROUP_PX, grey += GROUP_PX) {
+    while (end - out >= BLACK_PX) {
         if (is_black(grey)) {
-            for (size_t k = 0; k < GROUP_PX; k++) {
+            for (size_t k = 0; k < BLACK_PX; k++) {
                 out[k] = black;
             }
+            out += BLACK_PX, grey += BLACK_PX;
         } else {
-            for (size_t k = 0; k < GROUP_PX; k++) {
+            for (size_t k = 0; k < LIT_PX; k++) {
                 out[k] = colours[grey[k]];
             }
+            out += LIT_PX, grey += LIT_PX;
         }
     }
     while (out < end) {

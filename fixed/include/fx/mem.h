@@ -19,4 +19,12 @@ static inline uint32_t fx_load_u32(const void *from)
     return word;
 }
 
+/* Eight bytes likewise. */
+static inline uint64_t fx_load_u64(const void *from)
+{
+    uint64_t word;
+    __builtin_memcpy(&word, from, sizeof word);
+    return word;
+}
+
 #endif

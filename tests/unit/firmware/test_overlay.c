@@ -167,6 +167,10 @@ static void nothing_is_drawn_beyond_the_surface(void **state)
         lm_draw_line(&pen, (struct lm_point){-far, -far + 3}, (struct lm_point){far, far});
         lm_draw_line(&pen, (struct lm_point){-far, 100}, (struct lm_point){far, 100});
         lm_draw_line(&pen, (struct lm_point){100, far}, (struct lm_point){100, -far});
+        lm_draw_line(&pen, (struct lm_point){0, 0},
+                     (struct lm_point){s.width_px - 1, s.height_px - 1});
+        lm_draw_line(&pen, (struct lm_point){0, s.height_px - pen.line_px},
+                     (struct lm_point){s.width_px - pen.line_px, 0});
         lm_draw_box(&pen, -5, -5, 10, 10);
         lm_draw_box(&pen, s.width_px - 2, s.height_px - 2, 10, 10);
         lm_draw_box(&pen, 50, 50, -10, -10);
