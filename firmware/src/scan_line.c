@@ -18,6 +18,7 @@ struct axis {
     uint32_t direction; /* all ones where none goes back */
     bool turns;         /* some go back and some do not */
     uint32_t tile;      /* row or column where the walk stands */
+    uint32_t noise_sum; /* what its first noise cell adds to the sum of the hash */
     uint32_t end;       /* the first cell that may lie in the next one */
 };
 
@@ -73,35 +74,36 @@ static struct way way_of(uint32_t k, uint64_t value, uint64_t step, uint64_t ben
                        (uint64_t)((int64_t)(bend + half) >> side_log2 >> 1));
 }
 
-/* An axis that stands nowhere yet: its first tile is entered at cell k. Steps grow or shrink all
- * the way: the first and the last tell how fast they are and where they go. */
-static struct axis axis_of(struct way way, uint32_t cells, uint32_t k)
+/* Stand nowhere yet: the first tile is entered at cell k. Steps grow or shrink all the way: the
+ * first and the last tell how fast they are and where they go. */
+static void start_axis(struct axis *a, struct way way, uint32_t cells, uint32_t k)
 {
     const uint64_t first = way.step + way.half_bend;
     const uint64_t last = way.step + (2 * cells - 1) * way.half_bend;
     const uint64_t fast = magnitude(first), fast_at_last = magnitude(last);
-    return (struct axis){.way = way,
-                         .fastest = (fast > fast_at_last ? fast : fast_at_last) + 1,
-                         .direction = first >> 63 ? 0 : UINT32_MAX,
-                         .turns = (first ^ last) >> 63,
-                         .end = k};
+    a->way = way;
+    a->fastest = (fast > fast_at_last ? fast : fast_at_last) + 1;
+    a->direction = first >> 63 ? 0 : UINT32_MAX;
+    a->turns = (first ^ last) >> 63;
+    a->end = k;
 }
 
-static struct walk walk_of(const struct lm_db *db, const struct lm_sampling *s,
-                           const struct lm_ground_path *path, uint32_t cells)
+static void start_walk(struct walk *w, const struct lm_db *db, const struct lm_sampling *s,
+                       const struct lm_ground_path *path, uint32_t cells)
 {
-    struct walk w = {.middle = *path,
-                     .cells = cells,
-                     .side_log2 = (uint32_t)db->shift0 + s->level + LM_TILE_CELLS_LOG2,
-                     .noise_shift = s->noise_shift,
-                     .epoch = s->epoch,
-                     .zone = UINT32_MAX};
-    struct lm_ground_path *p = &w.middle;
+    struct lm_ground_path *p = &w->middle;
+    w->cells = cells;
+    w->side_log2 = (uint32_t)db->shift0 + s->level + LM_TILE_CELLS_LOG2;
+    w->noise_shift = s->noise_shift;
+    w->epoch = s->epoch;
+    w->zone = UINT32_MAX;
+    w->east.end = 0;
+    *p = *path;
     lm_ground_path_skip(p, (int32_t)(cells / 2));
     const uint64_t from_pole = p->latitude + ((uint64_t)FX_BAM_90 << 32);
-    w.north = axis_of(way_of(cells / 2, from_pole, p->latitude_step, p->latitude_bend, w.side_log2),
-                      cells, 0);
-    return w;
+    start_axis(&w->north,
+               way_of(cells / 2, from_pole, p->latitude_step, p->latitude_bend, w->side_log2),
+               cells, 0);
 }
 
 /* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
@@ -122,24 +124,37 @@ static inline void enter(struct axis *a, uint32_t k)
     }
 }
 
+/* The number of the noise cell that begins at an angle: counted from the equator and from
+ * Greenwich, with a sign. */
+static uint32_t noise_cell(uint32_t angle, uint32_t noise_shift)
+{
+    return (uint32_t)((int32_t)angle >> noise_shift);
+}
+
 static void enter_row(struct walk *w, uint32_t k)
 {
     enter(&w->north, k);
+    const fx_bam_t south_edge = (w->north.tile << w->side_log2) - FX_BAM_90;
+    w->north.noise_sum = fx_hash3_sum(noise_cell(south_edge, w->noise_shift), 0, w->epoch);
     /* Borders of zones are borders of tiles: the tile's own south edge tells its zone. */
-    const uint32_t zone = lm_db_zone((w->north.tile << w->side_log2) - FX_BAM_90);
+    const uint32_t zone = lm_db_zone(south_edge);
     if (zone != w->zone) {
         const struct lm_ground_path *p = &w->middle;
         w->zone = zone;
-        w->east = axis_of(way_of(w->cells / 2, p->longitude, p->longitude_step, p->longitude_bend,
-                                 w->side_log2 + zone),
-                          w->cells, k);
+        start_axis(&w->east,
+                   way_of(w->cells / 2, p->longitude, p->longitude_step, p->longitude_bend,
+                          w->side_log2 + zone),
+                   w->cells, k);
     }
 }
 
 static void enter_column(struct walk *w, uint32_t k)
 {
+    const uint32_t side_log2 = w->side_log2 + w->zone;
     enter(&w->east, k);
-    w->east.tile &= (1u << (32 - w->side_log2 - w->zone)) - 1;
+    const fx_bam_t west_edge = w->east.tile << side_log2;
+    w->east.tile = west_edge >> side_log2;
+    w->east.noise_sum = fx_hash3_sum(0, noise_cell(west_edge, w->noise_shift), 0);
 }
 
 /* The end of the run that begins with cell k, where the walk now stands. */
@@ -178,22 +193,6 @@ static struct lm_places places_of(const struct walk *w, uint32_t k, uint32_t gen
     };
 }
 
-/* The number of the noise cell that begins at an angle: counted from the equator and from
- * Greenwich, with a sign. */
-static uint32_t noise_cell(uint32_t angle, uint32_t noise_shift)
-{
-    return (uint32_t)((int32_t)angle >> noise_shift);
-}
-
-/* What the tile where the walk stands adds to the sum of the hash. */
-static inline uint32_t noise_sum(const struct walk *w)
-{
-    const uint32_t south_edge = (w->north.tile << w->side_log2) - FX_BAM_90;
-    const uint32_t west_edge = w->east.tile << (w->side_log2 + w->zone);
-    return fx_hash3_sum(noise_cell(south_edge, w->noise_shift),
-                        noise_cell(west_edge, w->noise_shift), w->epoch);
-}
-
 static void make_noise(const struct lm_places *places, uint32_t sum, uint32_t first, uint32_t end,
                        uint32_t *restrict noise)
 {
@@ -224,7 +223,7 @@ static void read_otherwise(const struct walk *w, const struct lm_tile *pool,
         no_cells(end - first, line->cell + first, line->elevation_q14 + first);
     }
     const struct lm_places places = places_of(w, first, 0);
-    make_noise(&places, noise_sum(w), first, end, line->noise);
+    make_noise(&places, w->north.noise_sum + w->east.noise_sum, first, end, line->noise);
 }
 
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
@@ -233,8 +232,9 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
 {
     const struct lm_tile *pool = tiles->pool;
     const uint8_t level = sampling->level;
-    struct walk w = walk_of(tiles->db, sampling, path, cells);
+    struct walk w;
     struct lm_places places = {0};
+    start_walk(&w, tiles->db, sampling, path, cells);
     uint32_t zone = w.zone; /* of the places */
     uint32_t waiting = 0;   /* the first cell that is laid and not read */
     for (uint32_t k = 0, end; k < cells; k = end) {
@@ -252,7 +252,7 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
             zone = w.zone;
             waiting = k;
         }
-        lm_tile_lay(pool, tile, noise_sum(&w), k, end, line);
+        lm_tile_lay(pool, tile, w.north.noise_sum + w.east.noise_sum, k, end, line);
     }
     lm_tile_read(pool, &places, waiting, cells, line);
 }
@@ -260,7 +260,8 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, const struct lm_sampling *sampling,
                            const struct lm_ground_path *path, uint32_t cells)
 {
-    struct walk w = walk_of(tiles->db, sampling, path, cells);
+    struct walk w;
+    start_walk(&w, tiles->db, sampling, path, cells);
     for (uint32_t k = 0; k < cells;) {
         k = next_run(&w, k);
         lm_tile_cache_want(tiles, sampling->level, w.north.tile, w.east.tile);
@@ -273,7 +274,8 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_
     const struct lm_ground_path path = {.latitude = (uint64_t)place.latitude << 32,
                                         .longitude = (uint64_t)place.longitude << 32};
     const struct lm_sampling here = {.level = level};
-    struct walk w = walk_of(tiles->db, &here, &path, 1);
+    struct walk w;
+    start_walk(&w, tiles->db, &here, &path, 1);
     next_run(&w, 0);
     const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w.north.tile, w.east.tile);
     if (!tile) {
