@@ -111,98 +111,120 @@ void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *conf
     legend->shore_q8 = config->shore_q8;
 }
 
-/* Tangent of each cell's top, and its kind behind that of the cell before it. */
+enum { STRETCH = 32 }; /* cells that are searched for shores at once */
+
+/* What is known of a line on the way: cell i is entry LM_LANES + i, for what a cell is compared
+ * with may stand before the line. */
+struct work {
+    int32_t kind[LM_LANES + LM_CELLS_ROOM + STRETCH];
+    int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
+    int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
+    int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
+};
+
+/* What a cell shows by itself; its level but for the horizon's rise and the edges. */
 static void look(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                 const struct lm_scan_line *line, uint32_t end, int32_t *restrict tangent,
-                 int32_t *restrict kind)
+                 const struct lm_scan_line *line, uint32_t end, struct work *restrict w,
+                 int32_t *restrict level_q8)
 {
     for (uint32_t i = 0; i < end; i++) {
-        tangent[i] = tangent_of(grid, legend, line, i);
-        kind[i + 1] = kind_of(legend, line->cell[i]);
+        const uint32_t cell = line->cell[i];
+        w->tangent[LM_LANES + i] = tangent_of(grid, legend, line, i);
+        w->kind[LM_LANES + i] = kind_of(legend, cell);
+        level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
     }
 }
 
-/* The running horizon: the largest tangent up to each cell, and not below the one it starts with,
- * of which eight stand before the tangents. Eight neighbours, each the largest of eight, wait for
- * the eight before them, and not a cell for the one before it. */
-static void raise_horizon(const int32_t *restrict tangent, uint32_t end, int32_t start,
-                          int32_t *restrict horizon)
+/* Before the first cell shown stands the horizon that the line starts with, and nothing that it
+ * could be entered from; behind the last one, nothing that rises. */
+static void set_ends(const struct lm_range_grid *grid, int32_t start, struct work *w)
 {
-    int32_t of_four[LM_LANES + LM_CELLS_ROOM];
+    int32_t *behind = w->tangent + LM_LANES + grid->cells;
     for (uint32_t i = 0; i < LM_LANES; i++) {
-        of_four[i] = start;
+        w->tangent[i] = w->of_four[i] = w->horizon[i] = start;
     }
-    for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
-        const int32_t *t = tangent + i;
-        of_four[i] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
-    }
-    const int32_t *near = of_four + LM_LANES, *far = near - 4;
-    horizon[0] = start;
     for (uint32_t i = 0; i < LM_LANES; i++) {
-        horizon[i + 1] = fx_max_i32(fx_max_i32(near[i], far[i]), start);
+        behind[i] = INT32_MIN;
     }
-    for (uint32_t i = LM_LANES; i < end; i++) {
-        const int32_t of_eight = fx_max_i32(near[i], far[i]);
-        horizon[i + 1] = fx_max_i32(of_eight, horizon[i + 1 - LM_LANES]);
+    const int32_t first_kind = w->kind[LM_LANES + grid->first];
+    w->kind[LM_LANES - 1] = first_kind;
+    for (uint32_t i = LM_LANES; i < LM_LANES + grid->first; i++) {
+        w->tangent[i] = start;
+        w->kind[i] = first_kind;
     }
 }
 
-/* Light cells by what they show above the horizon, and leading edges by what they are: E_i of the
- * equations. Returns whether some cell is behind a shore. */
-static bool light(const struct lm_range_grid *grid, const uint32_t *restrict cell,
-                  const int32_t *restrict kind, uint32_t end, const int32_t *restrict horizon,
-                  int32_t *restrict level_q8)
+static void join_fours(uint32_t end, struct work *w)
+{
+    for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
+        const int32_t *t = w->tangent + i;
+        w->of_four[i] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
+    }
+}
+
+/* The running horizon, and cells lit by what they show above it: E_i of the equations. The horizon
+ * before a cell is the largest of eight tangents and of the horizon before those: eight neighbours
+ * wait for the eight before them, and not a cell for the one before it. It rises by less than 2^31:
+ * see start_of. Returns whether some cell is behind a shore. */
+static bool light(uint32_t end, struct work *restrict w, struct lm_sight *restrict sight)
 {
     int32_t left = 0;
     for (uint32_t i = 0; i < end; i++) {
-        /* See start_of. Behind the last cell it is 0. */
-        const int32_t rise = horizon[i + 1] - horizon[i];
-        const int32_t edge_q8 = kind[i + 1] != kind[i] ? kind[i + 1] >> MARK_BITS : 0;
-        const int32_t flat_q8 = (int32_t)(cell[i] >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
-        const int32_t lit_q8 = flat_q8 + edge_q8 + fx_db_q8_of_many_i32(rise);
-        level_q8[i] = rise ? lit_q8 : LM_LEVEL_SHADOW;
-        left |= kind[i] & ~kind[i + 1];
+        const uint32_t at = LM_LANES + i;
+        const int32_t kind = w->kind[at], kind_before = w->kind[at - 1];
+        const int32_t of_eight = fx_max_i32(w->of_four[at - 1], w->of_four[at - 5]);
+        const int32_t horizon = fx_max_i32(of_eight, w->horizon[at - LM_LANES]);
+        const int32_t next = fx_max_i32(horizon, w->tangent[at]);
+        const int32_t edge_q8 = kind != kind_before ? kind >> MARK_BITS : 0;
+        const int32_t lit_q8 = sight->level_q8[i] + edge_q8 + fx_db_q8_of_many_i32(next - horizon);
+        w->horizon[at] = sight->horizon[i] = horizon;
+        sight->level_q8[i] = next != horizon ? lit_q8 : LM_LEVEL_SHADOW;
+        left |= kind_before & ~kind;
     }
     return left & MARK_WATER;
 }
 
-/* One behind the last of `cells` cells that is behind a shore; 0 when none is. */
-static uint32_t last_shore(const int32_t *kind, uint32_t cells)
+/* Shores are rare: they are looked for where a stretch, which may end behind the line, has one. */
+static void add_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                       const struct lm_scan_line *line, struct work *w, struct lm_sight *sight)
 {
-    int32_t last = 0;
-    for (int32_t i = 0; i < (int32_t)cells; i++) {
-        last = fx_max_i32(last, -(kind[i] & ~kind[i + 1] & MARK_WATER) & (i + 1));
+    const uint32_t cells = grid->cells;
+    int32_t *kind = w->kind + LM_LANES;
+    for (uint32_t i = 0; i < STRETCH; i++) {
+        kind[cells + i] = 0;
     }
-    return (uint32_t)last;
+    for (uint32_t first = 0; first < cells; first += STRETCH, kind += STRETCH) {
+        const int32_t *before = kind - 1;
+        uint64_t behind_shore[STRETCH / 8];
+        int32_t left = 0;
+        for (uint32_t i = 0; i < STRETCH; i++) {
+            left |= before[i] & ~kind[i];
+        }
+        if (left & MARK_WATER) {
+            for (uint32_t i = 0; i < STRETCH; i++) {
+                ((uint8_t *)behind_shore)[i] = (uint8_t)(before[i] & ~kind[i]);
+            }
+            for (uint32_t k = 0; k < STRETCH / 8; k++) {
+                add_shores_of(grid, legend, line, behind_shore[k], first + 8 * k, sight);
+            }
+        }
+    }
 }
 
 /* Horizon, level and edges of a line whose horizon starts with `start`. */
 static void light_line(const struct lm_range_grid *grid, const struct lm_legend *legend,
                        const struct lm_scan_line *line, int32_t start, struct lm_sight *sight)
 {
-    enum { STRETCH = 64 };
     const uint32_t cells = grid->cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
-    int32_t kind[1 + LM_CELLS_ROOM], tangent[LM_LANES + LM_CELLS_ROOM];
-    look(grid, legend, line, end, tangent + LM_LANES, kind);
-    for (uint32_t i = 0; i < LM_LANES + grid->first; i++) {
-        tangent[i] = start;
+    struct work w;
+    look(grid, legend, line, end, &w, sight->level_q8);
+    set_ends(grid, start, &w);
+    join_fours(end, &w);
+    if (light(end, &w, sight)) {
+        add_shores(grid, legend, line, &w, sight);
     }
-    for (uint32_t i = cells; i < end; i++) {
-        tangent[LM_LANES + i] = INT32_MIN;
-    }
-    for (uint32_t i = 0; i <= grid->first; i++) {
-        kind[i] = kind[grid->first + 1]; /* the first cell shown enters nothing */
-    }
-    raise_horizon(tangent, end, start, sight->horizon);
-    if (light(grid, line->cell, kind, end, sight->horizon, sight->level_q8)) {
-        for (uint32_t i = 0; i < cells; i += STRETCH) {
-            uint32_t left = fx_min_u32(cells - i, STRETCH);
-            while ((left = last_shore(kind + i, left)) != 0) {
-                left--;
-                add_shore(grid, legend, line, i + left, sight);
-            }
-        }
-    }
+    const uint32_t last = LM_LANES + cells - 1;
+    sight->horizon[cells] = fx_max_i32(w.horizon[last], w.tangent[last]);
 }
 
 /* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good

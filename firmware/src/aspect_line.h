@@ -3,6 +3,7 @@
 #ifndef ASPECT_LINE_H
 #define ASPECT_LINE_H
 
+#include "fx/bits.h"
 #include "lm/aspect.h"
 
 enum {
@@ -41,7 +42,18 @@ static inline void add_shore(const struct lm_range_grid *grid, const struct lm_l
         if (kind_of(legend, line->cell[i]) & MARK_WATER) {
             return;
         }
-        sight->level_q8[i] += sight->horizon[i + 1] != sight->horizon[i] ? shore_q8 : 0;
+        sight->level_q8[i] += sight->level_q8[i] != LM_LEVEL_SHADOW ? shore_q8 : 0;
+    }
+}
+
+/* Of eight cells from `first` on. Each has a byte of `eight`, with MARK_WATER where it is behind a
+ * shore. */
+static inline void add_shores_of(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                                 const struct lm_scan_line *line, uint64_t eight, uint32_t first,
+                                 struct lm_sight *sight)
+{
+    for (uint64_t left = eight & 0x0101010101010101; left != 0; left &= left - 1) {
+        add_shore(grid, legend, line, first + (uint32_t)fx_ctz64(left) / 8, sight);
     }
 }
 

@@ -141,44 +141,33 @@ static inline struct neon_hidden neon_hidden_at(size_t i, size_t first)
                                 vcombine_u8(vmovn_u16(upto), vmovn_u16(upto))};
 }
 
-static inline void neon_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                               const struct lm_scan_line *line, const uint8_t *behind_shore,
-                               struct lm_sight *sight)
-{
-    for (uint32_t i = grid->first & ~7u; i < grid->cells; i += 8) {
-        const uint64_t eight = vget_lane_u64(vreinterpret_u64_u8(vld1_u8(behind_shore + i)), 0);
-        for (uint64_t left = eight & 0x0101010101010101; left != 0; left &= left - 1) {
-            add_shore(grid, legend, line, i + (uint32_t)fx_ctz64(left) / 8, sight);
-        }
-    }
-}
-
 /* Horizon, level and edges of a line whose horizon starts with `start`. */
 static inline void light_line_neon(const struct lm_range_grid *grid, const struct lm_legend *legend,
                                    const struct lm_scan_line *line, int32_t start,
                                    struct lm_sight *sight)
 {
-    uint8_t behind_shore[LM_CELLS_ROOM];
+    uint64_t behind_shore[LM_CELLS_ROOM / 8];
     const struct neon_legend l = neon_legend_of(legend);
     const int32x4_t all = vdupq_n_s32(start);
     struct neon_before before = {all, all, all, vdupq_n_u8(0), vdup_n_u8(0)};
-    const size_t cells = grid->cells;
-    size_t i = grid->first & ~7u;
-    for (size_t k = 0; k < i; k++) {
+    const size_t cells = grid->cells, first = grid->first & ~7u;
+    for (size_t k = 0; k < first; k++) {
         sight->horizon[k + 1] = start;
         sight->level_q8[k] = LM_LEVEL_SHADOW;
     }
     sight->horizon[0] = start;
-    if (i < cells) {
-        const struct neon_hidden some = neon_hidden_at(i, grid->first);
-        neon_cells(grid, line, &l, &some, i, &before, sight, behind_shore);
+    if (first < cells) {
+        const struct neon_hidden some = neon_hidden_at(first, grid->first);
+        neon_cells(grid, line, &l, &some, first, &before, sight, (uint8_t *)behind_shore);
     }
     const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdupq_n_u8(0)};
-    for (i += 8; i < cells; i += 8) {
-        neon_cells(grid, line, &l, &none, i, &before, sight, behind_shore);
+    for (size_t i = first + 8; i < cells; i += 8) {
+        neon_cells(grid, line, &l, &none, i, &before, sight, (uint8_t *)behind_shore);
     }
     if (vaddv_u8(vand_u8(before.shores, vdup_n_u8(MARK_WATER))) != 0) {
-        neon_shores(grid, legend, line, behind_shore, sight);
+        for (size_t i = first; i < cells; i += 8) {
+            add_shores_of(grid, legend, line, behind_shore[i / 8], (uint32_t)i, sight);
+        }
     }
 }
 
