@@ -141,12 +141,27 @@ static inline struct neon_hidden neon_hidden_at(size_t i, size_t first)
                                 vcombine_u8(vmovn_u16(upto), vmovn_u16(upto))};
 }
 
+/* Sixteen cells at a time, of which the last eight may be behind the line. */
+static inline void neon_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                               const struct lm_scan_line *line, const uint64_t *behind_shore,
+                               struct lm_sight *sight)
+{
+    const uint32_t cells = grid->cells;
+    for (uint32_t i = grid->first & ~7u; i < cells; i += 16) {
+        const uint64_t *eight = behind_shore + i / 8;
+        if (((eight[0] | eight[1]) & 0x0101010101010101) != 0) {
+            add_shores_of(grid, legend, line, eight[0], i, sight);
+            add_shores_of(grid, legend, line, eight[1], i + 8, sight);
+        }
+    }
+}
+
 /* Horizon, level and edges of a line whose horizon starts with `start`. */
 static inline void light_line_neon(const struct lm_range_grid *grid, const struct lm_legend *legend,
                                    const struct lm_scan_line *line, int32_t start,
                                    struct lm_sight *sight)
 {
-    uint64_t behind_shore[LM_CELLS_ROOM / 8];
+    uint64_t behind_shore[LM_CELLS_ROOM / 8 + 1];
     const struct neon_legend l = neon_legend_of(legend);
     const int32x4_t all = vdupq_n_s32(start);
     struct neon_before before = {all, all, all, vdupq_n_u8(0), vdup_n_u8(0)};
@@ -160,14 +175,13 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
         const struct neon_hidden some = neon_hidden_at(first, grid->first);
         neon_cells(grid, line, &l, &some, first, &before, sight, (uint8_t *)behind_shore);
     }
+    behind_shore[(cells + 7) / 8] = 0; /* asked with the last eight */
     const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdupq_n_u8(0)};
     for (size_t i = first + 8; i < cells; i += 8) {
         neon_cells(grid, line, &l, &none, i, &before, sight, (uint8_t *)behind_shore);
     }
     if (vaddv_u8(vand_u8(before.shores, vdup_n_u8(MARK_WATER))) != 0) {
-        for (size_t i = first; i < cells; i += 8) {
-            add_shores_of(grid, legend, line, behind_shore[i / 8], (uint32_t)i, sight);
-        }
+        neon_shores(grid, legend, line, behind_shore, sight);
     }
 }
 
