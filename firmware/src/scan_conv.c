@@ -81,10 +81,20 @@ struct rows {
     int32_t first, end;
 };
 
-/* Rows of the clip that may hold a pixel in range: on neither edge does a row lie nearer or farther
- * than these. */
+/* Rows of `all` from `first` up to, not including, `end`; where there is none, its end twice. */
+static struct rows clip_rows(const struct rows *all, int64_t first, int64_t end)
+{
+    const int64_t from = first > all->first ? first : all->first;
+    const int64_t to = end < all->end ? end : all->end;
+    return from < to ? (struct rows){(int32_t)from, (int32_t)to}
+                     : (struct rows){all->end, all->end};
+}
+
+/* Rows of the clip that may hold a pixel in range, and those among them where every pixel is: on
+ * neither edge does a row lie nearer or farther than these. */
 static struct rows rows_in_range(const struct lm_ppi *ppi, const struct direction *d,
-                                 const struct edge *left, const struct edge *right, uint32_t cells)
+                                 const struct edge *left, const struct edge *right, uint32_t cells,
+                                 struct rows *sure)
 {
     const struct lm_frame *clip = &ppi->clip;
     const int32_t bottom = ppi->apex_y_px - clip->top_px - clip->height_px;
@@ -94,14 +104,18 @@ static struct rows rows_in_range(const struct lm_ppi *ppi, const struct directio
     const int64_t at_right = d->up_q32 + (d->right_q32 * right->step_q17 >> 17);
     const int64_t least = at_left < at_right ? at_left : at_right;
     const int64_t most = at_left < at_right ? at_right : at_left;
+    *sure = (struct rows){all.end, all.end};
     if (least <= 0) {
         return all;
     }
     const int64_t near_q32 = (int64_t)ppi->near_cell_q8 * (1 << 24);
     const int64_t far_q32 = near_q32 + ((int64_t)cells << 32);
-    const int64_t first = near_q32 / most - 2, end = far_q32 / least + 2;
-    return (struct rows){first > all.first ? (int32_t)first : all.first,
-                         end < all.end ? (int32_t)end : all.end};
+    const struct rows found = clip_rows(&all, near_q32 / most - 2, far_q32 / least + 2);
+    /* A pixel's range is cut by less than 2^-17 of a cell for each column before it: a cell more.
+     */
+    const int64_t cell_q32 = (int64_t)1 << 32;
+    *sure = clip_rows(&found, (near_q32 + cell_q32) / least + 2, (far_q32 - cell_q32) / most - 2);
+    return found;
 }
 
 /* Columns from the apex, first and end, of what may be painted of a row. */
@@ -139,63 +153,86 @@ static bool are_inside(const struct edge *left, const struct edge *right, const 
            right->x_q17 >> 17 <= columns->end && right_q17 >> 17 <= columns->end;
 }
 
-/* Where a row begins in the plane, and the ranges of its pixels in cells. Centres lie at odd halves
- * of a pixel: Q33 of two halves. |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52.
- */
-struct row {
+/* What is left of a wedge, from its next row on. `apex` is where that row begins in the plane, and
+ * `range_q33` the range of its first pixel in cells. Centres lie at odd halves of a pixel: Q33 of
+ * two halves. |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52. */
+struct wedge {
+    struct edge left, right;
+    struct direction along;
     uint8_t *apex;
+    ptrdiff_t width_px;
     int64_t range_q33;
 };
 
-static inline void paint_row(const struct row *row, int64_t from, int64_t to, int64_t right_q32,
+/* What is asked of a pixel before it is painted: constants where this is called. */
+struct asked {
+    bool is_in_columns, is_in_range;
+};
+
+static inline void paint_row(const struct wedge *w, int64_t from, int64_t to, bool is_range_asked,
                              const uint8_t *grey, uint32_t cells)
 {
     if (from >= to) {
         return;
     }
-    int32_t cell_q17 = (int32_t)((row->range_q33 + 2 * from * right_q32) >> 16);
-    uint8_t *pixel = row->apex + from;
-    const uint8_t *const end = row->apex + to;
+    int32_t cell_q17 = (int32_t)((w->range_q33 + 2 * from * w->along.right_q32) >> 16);
+    uint8_t *pixel = w->apex + from;
+    const uint8_t *const end = w->apex + to;
     do {
         const uint32_t cell = (uint32_t)(cell_q17 >> 17);
-        if (cell < cells) {
+        if (!is_range_asked || cell < cells) {
             *pixel = grey[cell];
         }
-        cell_q17 += (int32_t)(right_q32 >> 15);
+        cell_q17 += (int32_t)(w->along.right_q32 >> 15);
     } while (++pixel != end);
+}
+
+static inline struct wedge paint_rows(struct wedge w, int32_t rows, struct asked asked,
+                                      const struct columns *columns, const uint8_t *grey,
+                                      uint32_t cells)
+{
+    const uint8_t *const end = w.apex - rows * w.width_px;
+    for (; w.apex != end; w.apex -= w.width_px, w.range_q33 += 2 * w.along.up_q32) {
+        int64_t from = next_column(&w.left), to = next_column(&w.right);
+        if (asked.is_in_columns) {
+            from = from > columns->first ? from : columns->first;
+            to = to < columns->end ? to : columns->end;
+        }
+        paint_row(&w, from, to, asked.is_in_range, grey, cells);
+    }
+    return w;
 }
 
 void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                   fx_bam_t right, const uint8_t *grey, uint32_t cells)
 {
     const struct lm_frame *clip = &ppi->clip;
-    const struct direction d = direction_of(left + (right - left) / 2, ppi->cells_per_px_q16);
-    struct edge from_edge = edge_at(left), to_edge = edge_at(right);
     const int32_t leftmost = clip->left_px - ppi->apex_x_px;
     const struct columns columns = {leftmost, leftmost + clip->width_px};
-    struct rows rows = rows_in_range(ppi, &d, &from_edge, &to_edge, cells);
-    keep_meeting(&rows, &from_edge, &to_edge, &columns);
-    skip_rows(&from_edge, rows.first);
-    skip_rows(&to_edge, rows.first);
-    const ptrdiff_t up = plane->width_px;
-    struct row row = {
-        .apex = plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * up,
-        .range_q33 =
-            (2 * rows.first + 1) * d.up_q32 + d.right_q32 - (int64_t)ppi->near_cell_q8 * (1 << 25)};
-    const uint8_t *const end = row.apex - fx_max_i32(rows.end - rows.first, 0) * up;
-    if (are_inside(&from_edge, &to_edge, &rows, &columns)) {
-        for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
-            const int64_t from = next_column(&from_edge);
-            paint_row(&row, from, next_column(&to_edge), d.right_q32, grey, cells);
-        }
+    struct wedge w = {.left = edge_at(left),
+                      .right = edge_at(right),
+                      .along = direction_of(left + (right - left) / 2, ppi->cells_per_px_q16),
+                      .width_px = plane->width_px};
+    struct rows sure, rows = rows_in_range(ppi, &w.along, &w.left, &w.right, cells, &sure);
+    keep_meeting(&rows, &w.left, &w.right, &columns);
+    if (rows.first >= rows.end) {
         return;
     }
-    for (; row.apex != end; row.apex -= up, row.range_q33 += 2 * d.up_q32) {
-        const int64_t left_most = next_column(&from_edge), right_most = next_column(&to_edge);
-        const int64_t from = left_most > columns.first ? left_most : columns.first;
-        const int64_t to = right_most < columns.end ? right_most : columns.end;
-        paint_row(&row, from, to, d.right_q32, grey, cells);
+    skip_rows(&w.left, rows.first);
+    skip_rows(&w.right, rows.first);
+    w.apex =
+        plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * w.width_px;
+    w.range_q33 = (2 * rows.first + 1) * w.along.up_q32 + w.along.right_q32 -
+                  (int64_t)ppi->near_cell_q8 * (1 << 25);
+    if (!are_inside(&w.left, &w.right, &rows, &columns)) {
+        paint_rows(w, rows.end - rows.first, (struct asked){true, true}, &columns, grey, cells);
+        return;
     }
+    const struct rows middle = clip_rows(&rows, sure.first, sure.end);
+    const struct asked range = {false, true}, nothing = {false, false};
+    w = paint_rows(w, middle.first - rows.first, range, &columns, grey, cells);
+    w = paint_rows(w, middle.end - middle.first, nothing, &columns, grey, cells);
+    paint_rows(w, rows.end - middle.end, range, &columns, grey, cells);
 }
 
 struct lm_frame lm_frame_square(const struct lm_frame *frame)
