@@ -165,7 +165,7 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
     const struct neon_legend l = neon_legend_of(legend);
     const int32x4_t all = vdupq_n_s32(start);
     struct neon_before before = {all, all, all, vdupq_n_u8(0), vdup_n_u8(0)};
-    const size_t cells = grid->cells, first = grid->first & ~7u;
+    const size_t cells = grid->cells, first = grid->first & ~7u, end = (cells + 7) & ~(size_t)7;
     for (size_t k = 0; k < first; k++) {
         sight->horizon[k + 1] = start;
         sight->level_q8[k] = LM_LEVEL_SHADOW;
@@ -175,9 +175,9 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
         const struct neon_hidden some = neon_hidden_at(first, grid->first);
         neon_cells(grid, line, &l, &some, first, &before, sight, (uint8_t *)behind_shore);
     }
-    behind_shore[(cells + 7) / 8] = 0; /* asked with the last eight */
+    behind_shore[end / 8] = 0; /* asked with the last eight */
     const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdupq_n_u8(0)};
-    for (size_t i = first + 8; i < cells; i += 8) {
+    for (size_t i = first + 8; i < end; i += 8) {
         neon_cells(grid, line, &l, &none, i, &before, sight, (uint8_t *)behind_shore);
     }
     if (vaddv_u8(vand_u8(before.shores, vdup_n_u8(MARK_WATER))) != 0) {
