@@ -15,9 +15,9 @@ static bool part_of(enum lm_bus_field field, struct part *part)
                                    LM_BUS_RAIN_RATE};
     static const uint8_t jammer[] = {LM_BUS_JAMMER_LATITUDE, LM_BUS_JAMMER_LONGITUDE,
                                      LM_BUS_JAMMER_RATIO};
-    for (uint8_t i = 0; i < LM_WEATHER_PARTS; i++) {
+    for (uint32_t i = 0; i < LM_WEATHER_PARTS; i++) {
         if (rain[i] == field || (i < sizeof jammer && jammer[i] == field)) {
-            *part = (struct part){rain[i] != field, i};
+            *part = (struct part){rain[i] != field, (uint8_t)i};
             return true;
         }
     }

@@ -194,7 +194,7 @@ static int rain_on(const struct ref_picture *picture, const struct ref_sar *sar)
     if (rain.environment.rain_count == 0) {
         return 0;
     }
-    double *aside_deg = malloc(2 * sar->cell_count * sizeof *aside_deg);
+    double *aside_deg = calloc(2 * sar->cell_count, sizeof *aside_deg);
     if (aside_deg == NULL) {
         return hs_error("picture", "ask for fewer cells", "not enough memory for the rain");
     }
