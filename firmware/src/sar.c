@@ -144,7 +144,7 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     fx_bam_t azimuth;
     s->floor_q8 = s->radar->sar.noise_floor_q8;
     s->rain.count = 0;
-    if (!environment) {
+    if (!environment || environment->rain_count + environment->jammer_count == 0) {
         return;
     }
     lm_geo_set_origin(&centre, c->centre);

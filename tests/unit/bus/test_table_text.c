@@ -99,6 +99,12 @@ static void every_mistake_is_refused_with_its_line_and_its_word(void **state)
         {PACKED "item \"a\" field=latitude id=1 range=-90..90 period=100 stale=300 dead=5000 "
                 "bits=0+32 unit=deg\n",
          "line 3", "dead"},
+        {PACKED "item \"a\" field=rain-rate id=1 range=1..150 period=100 stale=300 dead=5000 "
+                "bits=0+16 unit=m\n",
+         "line 3", "unit"},
+        {PACKED "item \"a\" field=rain-radius id=1 range=100..9000 period=100 stale=300 dead=5000 "
+                "bits=0+16 unit=m\n",
+         "line 3", "sets"},
         {CANAS ALT "id=199 types=FLOAT\n", "line 3", "id"},
         {CANAS ALT "id=300\n", "line 3", "types"},
         {CANAS ALT "id=300 types=FLOAT,REAL\n", "line 3", "REAL"},
