@@ -42,7 +42,7 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
 
 /* Put rain and noise over the clutter of line `line`: its levels; for a patch whose count is not 0.
  * Cost: 12 instructions a cell, and 13 for each circle that the line meets. Once in a sixteenth of
- * a beam (a patch of 5 m cells 40 km away is nine of them wide), 1000 a cell for each circle. */
+ * a beam (a patch of 5 m cells 40 km away is nine of them wide), 800 a cell for each circle. */
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *geometry,
                        uint32_t line, const int32_t *clutter_q8, int32_t *level_q8);
 
