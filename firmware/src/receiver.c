@@ -89,26 +89,41 @@ static inline uint32_t share_q24(uint32_t a, uint32_t b, uint32_t weight_q16)
     return high + (low >> 16);
 }
 
+/* The mean over a pulse that reaches so many bins to either side: a constant where this is called.
+ */
+static inline void smear_by(uint32_t reach, const uint32_t weight_q16[], const uint32_t *padded,
+                            uint32_t *restrict power_q24, uint32_t cells)
+{
+    uint32_t w[LM_PULSE_REACH_MAX + 1];
+    const uint32_t *before[LM_PULSE_REACH_MAX + 1], *after[LM_PULSE_REACH_MAX + 1];
+    for (uint32_t m = 0; m <= reach; m++) {
+        w[m] = weight_q16[m];
+        before[m] = padded + LM_PULSE_REACH_MAX - m;
+        after[m] = padded + LM_PULSE_REACH_MAX + m;
+    }
+    for (uint32_t i = 0; i < cells; i++) {
+        uint32_t sum_q24 = share_q24(after[0][i], 0, w[0]);
+        for (uint32_t m = 1; m <= reach; m++) {
+            sum_q24 += share_q24(before[m][i], after[m][i], w[m]);
+        }
+        power_q24[i] = sum_q24;
+    }
+}
+
 /* Each bin's power becomes the mean over the pulse, at most 9 / 2^24 less for the halves that are
  * cut. Beyond the line's ends there is none. The weights add up to 2^16, so that the sum fits. */
 static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
 {
-    enum { REACH = LM_PULSE_REACH_MAX };
+    enum { REACH = LM_PULSE_REACH_MAX, SHORT = REACH / 2 };
     uint32_t padded[REACH + LM_CELLS_ROOM + REACH];
     const uint32_t cells = r->cells;
     memset(padded, 0, REACH * sizeof *padded);
     memcpy(padded + REACH, power_q24, cells * sizeof *padded);
     memset(padded + REACH + cells, 0, REACH * sizeof *padded);
-    const uint32_t *const w = r->weight_q16;
-    const uint32_t w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3], w4 = w[4];
-    const uint32_t *const p = padded + REACH;
-    const uint32_t *const after[] = {p, p + 1, p + 2, p + 3, p + 4};
-    const uint32_t *const before[] = {p, p - 1, p - 2, p - 3, p - 4};
-    for (uint32_t i = 0; i < cells; i++) {
-        power_q24[i] = share_q24(p[i], 0, w0) + share_q24(before[1][i], after[1][i], w1) +
-                       share_q24(before[2][i], after[2][i], w2) +
-                       share_q24(before[3][i], after[3][i], w3) +
-                       share_q24(before[4][i], after[4][i], w4);
+    if (r->weight_q16[SHORT + 1] == 0) {
+        smear_by(SHORT, r->weight_q16, padded, power_q24, cells);
+    } else {
+        smear_by(REACH, r->weight_q16, padded, power_q24, cells);
     }
 }
 
