@@ -111,20 +111,11 @@ void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *conf
     legend->shore_q8 = config->shore_q8;
 }
 
-enum { STRETCH = 32 }; /* cells that are searched for shores at once */
-
-/* What is known of a line on the way: cell i is entry LM_LANES + i, for what a cell is compared
- * with may stand before the line. */
-struct work {
-    int32_t kind[LM_LANES + LM_CELLS_ROOM + STRETCH];
-    int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
-    int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
-    int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
-};
+enum { STRETCH = LM_SHORE_STRETCH }; /* cells that are searched for shores at once */
 
 /* What a cell shows by itself; its level but for the horizon's rise and the edges. */
 static void look(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                 const struct lm_scan_line *line, uint32_t end, struct work *restrict w,
+                 const struct lm_scan_line *line, uint32_t end, struct lm_sight_work *restrict w,
                  int32_t *restrict level_q8)
 {
     for (uint32_t i = 0; i < end; i++) {
@@ -137,7 +128,7 @@ static void look(const struct lm_range_grid *grid, const struct lm_legend *legen
 
 /* Before the first cell shown stands the horizon that the line starts with, and nothing that it
  * could be entered from; behind the last one, nothing that rises. */
-static void set_ends(const struct lm_range_grid *grid, int32_t start, struct work *w)
+static void set_ends(const struct lm_range_grid *grid, int32_t start, struct lm_sight_work *w)
 {
     int32_t *behind = w->tangent + LM_LANES + grid->cells;
     for (uint32_t i = 0; i < LM_LANES; i++) {
@@ -154,7 +145,7 @@ static void set_ends(const struct lm_range_grid *grid, int32_t start, struct wor
     }
 }
 
-static void join_fours(uint32_t end, struct work *w)
+static void join_fours(uint32_t end, struct lm_sight_work *w)
 {
     for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
         const int32_t *t = w->tangent + i;
@@ -166,7 +157,7 @@ static void join_fours(uint32_t end, struct work *w)
  * before a cell is the largest of eight tangents and of the horizon before those: eight neighbours
  * wait for the eight before them, and not a cell for the one before it. It rises by less than 2^31:
  * see start_of. Returns whether some cell is behind a shore. */
-static bool light(uint32_t end, struct work *restrict w, struct lm_sight *restrict sight)
+static bool light(uint32_t end, struct lm_sight_work *restrict w, struct lm_sight *restrict sight)
 {
     int32_t left = 0;
     for (uint32_t i = 0; i < end; i++) {
@@ -186,7 +177,8 @@ static bool light(uint32_t end, struct work *restrict w, struct lm_sight *restri
 
 /* Shores are rare: they are looked for where a stretch, which may end behind the line, has one. */
 static void add_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                       const struct lm_scan_line *line, struct work *w, struct lm_sight *sight)
+                       const struct lm_scan_line *line, struct lm_sight_work *w,
+                       struct lm_sight *sight)
 {
     const uint32_t cells = grid->cells;
     int32_t *kind = w->kind + LM_LANES;
@@ -216,15 +208,15 @@ static void light_line(const struct lm_range_grid *grid, const struct lm_legend 
                        const struct lm_scan_line *line, int32_t start, struct lm_sight *sight)
 {
     const uint32_t cells = grid->cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
-    struct work w;
-    look(grid, legend, line, end, &w, sight->level_q8);
-    set_ends(grid, start, &w);
-    join_fours(end, &w);
-    if (light(end, &w, sight)) {
-        add_shores(grid, legend, line, &w, sight);
+    struct lm_sight_work *w = &sight->work;
+    look(grid, legend, line, end, w, sight->level_q8);
+    set_ends(grid, start, w);
+    join_fours(end, w);
+    if (light(end, w, sight)) {
+        add_shores(grid, legend, line, w, sight);
     }
     const uint32_t last = LM_LANES + cells - 1;
-    sight->horizon[cells] = fx_max_i32(w.horizon[last], w.tangent[last]);
+    sight->horizon[cells] = fx_max_i32(w->horizon[last], w->tangent[last]);
 }
 
 /* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good

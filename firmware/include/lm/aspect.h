@@ -62,12 +62,24 @@ typedef int64_t lm_horizon_q40_t;
 /* No terrain seen yet: the first cell that is looked at will be lit as flat ground is. */
 #define LM_HORIZON_OPEN INT64_MIN
 
+enum { LM_SHORE_STRETCH = 32 }; /* cells that are searched for shores at once */
+
+/* What is known of a line on the way; too large for a stack. Cell i is entry LM_LANES + i, for what
+ * a cell is compared with may stand before the line. */
+struct lm_sight_work {
+    int32_t kind[LM_LANES + LM_CELLS_ROOM + LM_SHORE_STRETCH];
+    int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
+    int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
+    int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
+};
+
 /* What becomes of a line's cells. */
 struct lm_sight {
     /* horizon[0] is where the line starts, horizon[i + 1] what cell i leaves: the largest tangent
      * so far, in the grid's format. Cells that are not shown leave it alone. */
     int32_t horizon[LM_CELLS_ROOM];
     int32_t level_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW where nothing is lit */
+    struct lm_sight_work work;       /* means nothing afterwards; 64-bit Arm does without */
 };
 
 /* Fill `sight` for the cells of the grid. Returns the horizon behind the last cell. */
