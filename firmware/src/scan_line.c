@@ -170,14 +170,16 @@ static inline uint32_t next_run(struct walk *w, uint32_t k)
     return end < w->cells ? end : w->cells;
 }
 
-/* A way in the tiles of an ancestor so many generations up, exact at cell k; on the longest way
- * through a tile the bits that are cut off are less than 2^-10 of a cell. */
+/* A way in the tiles of an ancestor so many generations up, exact at cell k. Elsewhere in a run
+ * about that cell, 264 cells off at the most, it is within 264^2 / 2 + 264 units of 2^-32 of the
+ * ancestor's side: 2^-10 of one of its cells. */
 static struct lm_track track_of(const struct way *w, uint32_t k, uint32_t generations)
 {
+    const uint64_t half = (uint64_t)1 << generations >> 1;
     const struct way up =
         way_through(k, way_at(w, k) >> generations,
                     (uint64_t)((int64_t)(w->step + 2 * k * w->half_bend) >> generations),
-                    (uint64_t)((int64_t)w->half_bend >> generations));
+                    (uint64_t)((int64_t)(w->half_bend + half) >> generations));
     return (struct lm_track){(uint32_t)up.at, (uint32_t)up.step, (uint32_t)up.half_bend};
 }
 
@@ -193,37 +195,29 @@ static struct lm_places places_of(const struct walk *w, uint32_t k, uint32_t gen
     };
 }
 
-static void make_noise(const struct lm_places *places, uint32_t sum, uint32_t first, uint32_t end,
-                       uint32_t *restrict noise)
+/* What the tile where the walk stands, or an ancestor of it, adds to the sum of the noise. */
+static uint32_t noise_sum(const struct walk *w, uint32_t generations)
+{
+    if (generations == 0) {
+        return w->north.noise_sum + w->east.noise_sum;
+    }
+    const uint32_t north_log2 = w->side_log2 + generations, east_log2 = north_log2 + w->zone;
+    const fx_bam_t south_edge = (w->north.tile >> generations << north_log2) - FX_BAM_90;
+    const fx_bam_t west_edge = w->east.tile >> generations << east_log2;
+    return fx_hash3_sum(noise_cell(south_edge, w->noise_shift),
+                        noise_cell(west_edge, w->noise_shift), w->epoch);
+}
+
+/* A run without data. */
+static void read_nothing(const struct lm_places *places, uint32_t sum, uint32_t first, uint32_t end,
+                         struct lm_scan_line *restrict line)
 {
     const struct lm_places p = *places;
     for (uint32_t k = first; k < end; k++) {
-        noise[k] = lm_place_noise(&p, sum, lm_track_at(&p.north, k), lm_track_at(&p.east, k));
+        line->cell[k] = LM_CELL_NONE;
+        line->elevation_q14[k] = 0;
+        line->noise[k] = lm_place_noise(&p, sum, lm_track_at(&p.north, k), lm_track_at(&p.east, k));
     }
-}
-
-static void no_cells(uint32_t count, uint32_t *restrict cell, int32_t *restrict elevation)
-{
-    for (uint32_t k = 0; k < count; k++) {
-        cell[k] = LM_CELL_NONE;
-        elevation[k] = 0;
-    }
-}
-
-/* A run whose tile is not there: by an ancestor of it, or by nothing. The noise is its own. */
-static void read_otherwise(const struct walk *w, const struct lm_tile *pool,
-                           const struct lm_tile *ancestor, uint32_t generations, uint32_t first,
-                           uint32_t end, struct lm_scan_line *line)
-{
-    if (ancestor) {
-        const struct lm_places places = places_of(w, first, generations);
-        lm_tile_lay(pool, ancestor, 0, first, end, line);
-        lm_tile_read(pool, &places, first, end, line);
-    } else {
-        no_cells(end - first, line->cell + first, line->elevation_q14 + first);
-    }
-    const struct lm_places places = places_of(w, first, 0);
-    make_noise(&places, w->north.noise_sum + w->east.noise_sum, first, end, line->noise);
 }
 
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
@@ -235,24 +229,27 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
     struct walk w;
     struct lm_places places = {0};
     start_walk(&w, tiles->db, sampling, path, cells);
-    uint32_t zone = w.zone; /* of the places */
-    uint32_t waiting = 0;   /* the first cell that is laid and not read */
+    uint32_t zone = w.zone, generations = 0; /* of the places */
+    uint32_t waiting = 0;                    /* the first cell that is laid and not read */
     for (uint32_t k = 0, end; k < cells; k = end) {
         end = next_run(&w, k);
         const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w.north.tile, w.east.tile);
-        if (!tile || tile->level != level) {
+        const uint32_t up = tile ? tile->level - (uint32_t)level : 0;
+        /* The ways in an ancestor are good for one run. */
+        if (w.zone != zone || up != generations || up != 0) {
             lm_tile_read(pool, &places, waiting, k, line);
-            read_otherwise(&w, pool, tile, tile ? tile->level - (uint32_t)level : 0, k, end, line);
-            waiting = end;
-            continue;
-        }
-        if (w.zone != zone) {
-            lm_tile_read(pool, &places, waiting, k, line);
-            places = places_of(&w, k, 0);
+            places = places_of(&w, (k + end) / 2, up);
             zone = w.zone;
+            generations = up;
             waiting = k;
         }
-        lm_tile_lay(pool, tile, w.north.noise_sum + w.east.noise_sum, k, end, line);
+        if (tile) {
+            lm_tile_lay(pool, tile, noise_sum(&w, up), k, end, line);
+        } else {
+            lm_tile_read(pool, &places, waiting, k, line);
+            read_nothing(&places, noise_sum(&w, 0), k, end, line);
+            waiting = end;
+        }
     }
     lm_tile_read(pool, &places, waiting, cells, line);
 }

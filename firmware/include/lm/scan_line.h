@@ -34,8 +34,9 @@ struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uin
 
 /* Fill the first `cells` (1..LM_CELLS_MAX) entries along the path. Tiles that are not resident are
  * answered by an ancestor and asked for (tile_cache.h counts them). Places differ from the path's
- * by at most 2^-10 of a cell. Noise cells are counted from the equator and from Greenwich, with a
- * sign. Cost: see docs/benchmarks.md; some 150 instructions for each tile that is crossed. */
+ * by at most 2^-10 of a cell of the tile that answers. Noise cells are counted from the equator and
+ * from Greenwich, with a sign. Cost: see docs/benchmarks.md; some 150 instructions for each tile
+ * that is crossed. */
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
                       const struct lm_sampling *sampling, const struct lm_ground_path *path,
                       uint32_t cells);

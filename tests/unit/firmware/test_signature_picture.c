@@ -29,28 +29,6 @@ struct fixture {
     int32_t bare[SIDE][SIDE], picture[SIDE][SIDE];
 };
 
-static int set_up(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    struct tiny_spec spec = tiny_spec_at(46, 11);
-    f->radar = lm_radar_default;
-    f->cell_mm = CELL_MM;
-    spec.shift0 = 12;
-    spec.rows = spec.columns = 4;
-    assert_int_equal(open_signature_world(&f->world, &spec), 0);
-    assert_int_equal(lm_tone_set(&f->tone, &lm_radar_default.sar.tone), LM_OK);
-    *state = f;
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    struct fixture *f = *state;
-    close_signature_world(&f->world);
-    free(f);
-    return 0;
-}
-
 /* Levels of a patch around 46 N 11 E, seen from the west. */
 static void draw_patch(struct fixture *f, const struct lm_target_set *set,
                        int32_t picture[SIDE][SIDE])
@@ -69,6 +47,34 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
         const int32_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
         memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
     }
+}
+
+static int set_up(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct tiny_spec spec = tiny_spec_at(46, 11);
+    f->radar = lm_radar_default;
+    f->cell_mm = CELL_MM;
+    spec.shift0 = 12;
+    spec.rows = spec.columns = 4;
+    assert_int_equal(open_signature_world(&f->world, &spec), 0);
+    assert_int_equal(lm_tone_set(&f->tone, &lm_radar_default.sar.tone), LM_OK);
+    /* Once for the tiles: where they are not there yet, an ancestor's noise is another one's. */
+    const struct lm_target_set none = {0};
+    draw_patch(f, &none, f->bare);
+    while (!lm_tile_cache_is_idle(&f->world.tiles)) {
+        lm_tile_cache_service(&f->world.tiles, 0, 2);
+    }
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    struct fixture *f = *state;
+    close_signature_world(&f->world);
+    free(f);
+    return 0;
 }
 
 /* Power that a target adds within `reach` cells of a place, and its middle. Both pictures have the
