@@ -5,6 +5,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/geo.h"
+#include "receiver_neon.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
 
@@ -132,7 +133,7 @@ static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_
                              uint32_t looks_log2, uint32_t hash)
 {
     const int32_t slice = (int32_t)(hash >> 22);
-    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - 24 * FX_DB_OCTAVE_Q14 / 64;
+    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - LM_UNIT_Q24_DB_Q8;
     return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + lm_speckle_q8[looks_log2][slice]);
 }
 
@@ -140,7 +141,8 @@ static void detect(const struct lm_receiver *r, int32_t rise_q8, uint32_t line, 
                    const uint32_t *restrict power_q24, int32_t *restrict level_q8)
 {
     const uint32_t looks_log2 = r->looks_log2;
-    for (uint32_t i = 0; i < r->cells; i++) {
+    const uint32_t done = detect_neon(r, rise_q8, line, epoch, power_q24, level_q8);
+    for (uint32_t i = done; i < r->cells; i++) {
         const int32_t noise_q8 = r->noise_q8[i] + rise_q8;
         const uint32_t hash = fx_hash3(line, i, epoch);
         level_q8[i] = sum_q8(power_q24[i], 0, noise_q8, looks_log2, hash) - r->fall_q8[i];

@@ -69,16 +69,6 @@ static inline uint32_t texture_neon(const struct lm_texture *t, const uint32_t *
     return whole;
 }
 
-/* What the floor adds to the stronger of level and floor, of eight cells. */
-static inline int16x8_t neon_more_q8(int32x4_t low, int32x4_t high, int32x4_t floor)
-{
-    const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(low, floor)),
-                                 vreinterpretq_u32_s32(vabdq_s32(high, floor))};
-    const uint16x8_t apart_q8 = vqmovn_high_u32(vqmovn_u32(apart[0]), apart[1]);
-    const uint16x8_t step = vminq_u16(vshrq_n_u16(apart_q8, 4), vdupq_n_u16(511));
-    return vreinterpretq_s16_u16(fx_neon_db_sum_q8(step));
-}
-
 static inline int32x4_t neon_speckle(const int32_t *table_q8, const uint32_t *noise)
 {
     return fx_neon_lookup(table_q8, vreinterpretq_s32_u32(vshrq_n_u32(vld1q_u32(noise), 22)));
@@ -89,15 +79,14 @@ static inline uint32_t speckle_floor_neon(const struct lm_speckle_config *config
                                           int32_t *restrict speckled_q8, uint32_t cells)
 {
     const uint32_t whole = cells & ~7u;
-    const int32x4_t floor = vdupq_n_s32(floor_q8);
+    const int32x4x2_t floor = {{vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8)}};
     const int32_t *const table_q8 = lm_speckle_q8[config->looks_log2];
     for (size_t i = 0; i < whole; i += 8) {
-        const int32x4_t low = vld1q_s32(level_q8 + i), high = vld1q_s32(level_q8 + i + 4);
-        const int16x8_t more_q8 = neon_more_q8(low, high, floor);
-        const int32x4_t sum[2] = {vaddw_s16(vmaxq_s32(low, floor), vget_low_s16(more_q8)),
-                                  vaddw_high_s16(vmaxq_s32(high, floor), more_q8)};
-        vst1q_s32(speckled_q8 + i, vaddq_s32(sum[0], neon_speckle(table_q8, noise + i)));
-        vst1q_s32(speckled_q8 + i + 4, vaddq_s32(sum[1], neon_speckle(table_q8, noise + i + 4)));
+        const int32x4x2_t level = {{vld1q_s32(level_q8 + i), vld1q_s32(level_q8 + i + 4)}};
+        const int32x4x2_t sum = fx_neon_db_q8_sum(level, floor);
+        vst1q_s32(speckled_q8 + i, vaddq_s32(sum.val[0], neon_speckle(table_q8, noise + i)));
+        vst1q_s32(speckled_q8 + i + 4,
+                  vaddq_s32(sum.val[1], neon_speckle(table_q8, noise + i + 4)));
     }
     return whole;
 }

@@ -116,10 +116,8 @@ static inline uint32x4_t neon_noise(const struct lm_places *p, uint32x4_t sum, u
 {
     const uint32x4_t row = vshlq_u32(north, vdupq_n_s32(-(int32_t)p->north_shift));
     const uint32x4_t column = vshlq_u32(east, vdupq_n_s32(-(int32_t)p->east_shift));
-    uint32x4_t x = vmlaq_n_u32(sum, row, fx_hash3_sum(1, 0, 0));
-    x = vmlaq_n_u32(x, column, fx_hash3_sum(0, 1, 0));
-    x = vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 16)), FX_HASH_FIRST);
-    return vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 15)), FX_HASH_SECOND);
+    const uint32x4_t rows = vmlaq_n_u32(sum, row, fx_hash3_sum(1, 0, 0));
+    return fx_neon_hash3_of_sum(vmlaq_n_u32(rows, column, fx_hash3_sum(0, 1, 0)));
 }
 
 /* Base plus post, as ground_at takes them from a scale: Arm shifts by what the lowest byte says. */

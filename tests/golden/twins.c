@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
+#include "lm/receiver.h"
 #include "lm/speckle.h"
 #include "lm/tile_read.h"
 
@@ -168,10 +169,36 @@ static uint32_t of_aspect(void)
     return crc;
 }
 
+/* Bins of a short pulse, some without any power. */
+static uint32_t of_receiver(void)
+{
+    static struct lm_receiver receiver;
+    static struct lm_weather weather;
+    static uint32_t power_q24[LM_CELLS_ROOM];
+    static int32_t level_q8[LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 5);
+    for (int i = 0; i < ROUNDS; i++) {
+        receiver.cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        receiver.looks_log2 = (uint8_t)hs_rng_below(&rng, LM_SPECKLE_LOOKS_LOG2_MAX + 1);
+        weather.noise_rise_q8 = (int32_t)hs_rng_below(&rng, 40 * 256);
+        for (uint32_t k = 0; k < receiver.cells; k++) {
+            receiver.noise_q8[k] = (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14);
+            receiver.fall_q8[k] = (int32_t)hs_rng_below(&rng, 1 << 12);
+            power_q24[k] = hs_rng_below(&rng, 8) ? draw_number(&rng, 32) : 0;
+        }
+        lm_receiver_run(&receiver, &weather, (uint32_t)i, 7, power_q24, level_q8);
+        crc = fx_crc32c(crc, level_q8, receiver.cells * sizeof *level_q8);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
     printf("speckle %08x\n", (unsigned)of_speckle());
     printf("aspect %08x\n", (unsigned)of_aspect());
+    printf("receiver %08x\n", (unsigned)of_receiver());
     return 0;
 }

@@ -4,6 +4,7 @@
 #ifndef FX_NEON_H
 #define FX_NEON_H
 
+#include "fx/hash.h"
 #include "fx/tables.h"
 
 #if defined(__aarch64__) && defined(__ARM_NEON) && !defined(FX_NO_NEON)
@@ -63,6 +64,25 @@ static inline uint16x8_t fx_neon_db_sum_q8(uint16x8_t step)
     const uint16x8_t base = vreinterpretq_u16_u8(vzip1q_u8(low, high));
     const uint16x8_t straight = vmlsl_u8(base, half_fall, vadd_u8(place, place));
     return vshrq_n_u16(vsubw_u8(straight, vqtbl1_u8(vld1q_u8(bend), place)), 6);
+}
+
+/* fx_db_q8_sum_of_many of eight. */
+static inline int32x4x2_t fx_neon_db_q8_sum(int32x4x2_t a_q8, int32x4x2_t b_q8)
+{
+    const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(a_q8.val[0], b_q8.val[0])),
+                                 vreinterpretq_u32_s32(vabdq_s32(a_q8.val[1], b_q8.val[1]))};
+    const uint16x8_t apart_q8 = vqmovn_high_u32(vqmovn_u32(apart[0]), apart[1]);
+    const uint16x8_t step = vminq_u16(vshrq_n_u16(apart_q8, 4), vdupq_n_u16(511));
+    const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(step));
+    return (int32x4x2_t){{vaddw_s16(vmaxq_s32(a_q8.val[0], b_q8.val[0]), vget_low_s16(more_q8)),
+                          vaddw_high_s16(vmaxq_s32(a_q8.val[1], b_q8.val[1]), more_q8)}};
+}
+
+/* fx_hash3_of_sum of four. */
+static inline uint32x4_t fx_neon_hash3_of_sum(uint32x4_t sum)
+{
+    const uint32x4_t x = vmulq_n_u32(veorq_u32(sum, vshrq_n_u32(sum, 16)), FX_HASH_FIRST);
+    return vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 15)), FX_HASH_SECOND);
 }
 
 #else
