@@ -6,7 +6,7 @@
 #include "drv/flash_file.h"
 #include "lm/unit.h"
 
-enum { BENCH_TILE_SLOTS = 256 };
+enum { BENCH_TILE_SLOTS = 384 };
 
 struct bench {
     struct drv_flash_file flash;

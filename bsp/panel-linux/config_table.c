@@ -32,7 +32,7 @@ const struct config_row config_table[] = {
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),
     OPTION(CONFIG_NUMBER, seed, 0, 2147483647, NULL, "seed", "0..2147483647", "0",
            "Another number gives another speckle, and nothing else."),
-    OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "256",
+    OPTION(CONFIG_NUMBER, tiles, 120, 512, NULL, "tiles", "120..512", "384",
            "Map tiles held in memory, 16.6 KiB each."),
     OPTION(CONFIG_CHOICE, glass, 0, 0, "auto drm fbdev none", "glass", "auto | drm | fbdev | none",
            "auto",

@@ -19,7 +19,7 @@ enum {
     ZCU102_WIDTH_PX = 768,
     ZCU102_HEIGHT_PX = 768,
     ZCU102_DISPLAY_LANES = 2,
-    ZCU102_TILES = 256,
+    ZCU102_TILES = 384,
     ZCU102_STEP_US = 2000,   /* as often as a line is due at the fastest scale */
     ZCU102_LATE_US = 100000, /* steps later than that are left out */
     ZCU102_BAUD = 115200,
