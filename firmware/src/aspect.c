@@ -111,8 +111,6 @@ void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *conf
     legend->shore_q8 = config->shore_q8;
 }
 
-enum { STRETCH = LM_SHORE_STRETCH }; /* cells that are searched for shores at once */
-
 /* What a cell shows by itself; its level but for the horizon's rise and the edges. */
 static void look(const struct lm_range_grid *grid, const struct lm_legend *legend,
                  const struct lm_scan_line *line, uint32_t end, struct lm_sight_work *restrict w,
@@ -182,21 +180,21 @@ static void add_shores(const struct lm_range_grid *grid, const struct lm_legend 
 {
     const uint32_t cells = grid->cells;
     int32_t *kind = w->kind + LM_LANES;
-    for (uint32_t i = 0; i < STRETCH; i++) {
+    for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
         kind[cells + i] = 0;
     }
-    for (uint32_t first = 0; first < cells; first += STRETCH, kind += STRETCH) {
+    for (uint32_t first = 0; first < cells; first += LM_SHORE_STRETCH, kind += LM_SHORE_STRETCH) {
         const int32_t *before = kind - 1;
-        uint64_t behind_shore[STRETCH / 8];
+        uint64_t behind_shore[LM_SHORE_STRETCH / 8];
         int32_t left = 0;
-        for (uint32_t i = 0; i < STRETCH; i++) {
+        for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
             left |= before[i] & ~kind[i];
         }
         if (left & MARK_WATER) {
-            for (uint32_t i = 0; i < STRETCH; i++) {
+            for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
                 ((uint8_t *)behind_shore)[i] = (uint8_t)(before[i] & ~kind[i]);
             }
-            for (uint32_t k = 0; k < STRETCH / 8; k++) {
+            for (uint32_t k = 0; k < LM_SHORE_STRETCH / 8; k++) {
                 add_shores_of(grid, legend, line, behind_shore[k], first + 8 * k, sight);
             }
         }

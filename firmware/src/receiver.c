@@ -133,7 +133,7 @@ static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_
                              uint32_t looks_log2, uint32_t hash)
 {
     const int32_t slice = (int32_t)(hash >> 22);
-    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - LM_UNIT_Q24_DB_Q8;
+    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - UNIT_Q24_DB_Q8;
     return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + lm_speckle_q8[looks_log2][slice]);
 }
 

@@ -10,14 +10,14 @@
 #include "lm/receiver.h"
 #include "lm/speckle.h"
 
-enum { LM_UNIT_Q24_DB_Q8 = 24 * FX_DB_OCTAVE_Q14 / 64 }; /* what 2^24 is to 1 */
+enum { UNIT_Q24_DB_Q8 = 24 * FX_DB_OCTAVE_Q14 / 64 }; /* what 2^24 is to 1 */
 
 #if FX_HAS_NEON
 
 static inline int32x4x2_t neon_signal_q8(const uint32_t *power_q24)
 {
-    const int32x4_t unit = vdupq_n_s32(-LM_UNIT_Q24_DB_Q8);
-    const int32x4_t nothing = vdupq_n_s32(fx_db_q8_of_many(0) - LM_UNIT_Q24_DB_Q8);
+    const int32x4_t unit = vdupq_n_s32(-UNIT_Q24_DB_Q8);
+    const int32x4_t nothing = vdupq_n_s32(fx_db_q8_of_many(0) - UNIT_Q24_DB_Q8);
     const uint32x4x2_t power = {{vld1q_u32(power_q24), vld1q_u32(power_q24 + 4)}};
     const int32x4x2_t some = fx_neon_add_db_q8((int32x4x2_t){{unit, unit}}, power);
     return (int32x4x2_t){{vbslq_s32(vceqzq_u32(power.val[0]), nothing, some.val[0]),

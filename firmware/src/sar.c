@@ -14,11 +14,6 @@ static uint32_t metres_q8_of_mm(uint32_t mm)
     return (uint32_t)(((uint64_t)mm * 256 + 500) / 1000);
 }
 
-static uint32_t mm_of_metres_q8(uint32_t metres_q8)
-{
-    return (uint32_t)((uint64_t)metres_q8 * 1000 / 256);
-}
-
 /* The part of the velocity that lies across the line of sight, to the right of it, mm/s. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
 {
@@ -92,7 +87,7 @@ static void set_runup(struct lm_sar *s, const struct lm_db *db)
     const struct lm_ground_extent extent = {near_q8, near_q8 + (int32_t)(LM_SAR_RUNUP * cell_q8),
                                             (int32_t)(s->radar->sar.cells * grid->cell_q8 / 2)};
     lm_ground_patch_set(&s->runup, c->centre, c->look_azimuth, &extent);
-    s->runup_sampling = lm_sampling_for(db, mm_of_metres_q8(cell_q8), s->epoch);
+    s->runup_sampling = lm_sampling_for(db, lm_mm_of_metres_q8(cell_q8), s->epoch);
     lm_range_grid_set(&s->runup_grid, &s->radar->aspect, start_q8 + cell_q8 / 2, cell_q8,
                       LM_SAR_RUNUP, grid->height_q10, grid->reference_q10);
 }

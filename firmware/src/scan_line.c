@@ -124,20 +124,31 @@ static inline void enter(struct axis *a, uint32_t k)
     }
 }
 
+/* The edges of the tile where the walk stands, or of an ancestor so many generations up. */
+static inline fx_bam_t south_edge(const struct walk *w, uint32_t generations)
+{
+    return (w->north.tile >> generations << (w->side_log2 + generations)) - FX_BAM_90;
+}
+
+static inline fx_bam_t west_edge(const struct walk *w, uint32_t generations)
+{
+    return w->east.tile >> generations << (w->side_log2 + w->zone + generations);
+}
+
 /* The number of the noise cell that begins at an angle: counted from the equator and from
  * Greenwich, with a sign. */
-static uint32_t noise_cell(uint32_t angle, uint32_t noise_shift)
+static uint32_t noise_cell(const struct walk *w, fx_bam_t angle)
 {
-    return (uint32_t)((int32_t)angle >> noise_shift);
+    return (uint32_t)((int32_t)angle >> w->noise_shift);
 }
 
 static void enter_row(struct walk *w, uint32_t k)
 {
     enter(&w->north, k);
-    const fx_bam_t south_edge = (w->north.tile << w->side_log2) - FX_BAM_90;
-    w->north.noise_sum = fx_hash3_sum(noise_cell(south_edge, w->noise_shift), 0, w->epoch);
+    const fx_bam_t edge = south_edge(w, 0);
+    w->north.noise_sum = fx_hash3_sum(noise_cell(w, edge), 0, w->epoch);
     /* Borders of zones are borders of tiles: the tile's own south edge tells its zone. */
-    const uint32_t zone = lm_db_zone(south_edge);
+    const uint32_t zone = lm_db_zone(edge);
     if (zone != w->zone) {
         const struct lm_ground_path *p = &w->middle;
         w->zone = zone;
@@ -150,11 +161,10 @@ static void enter_row(struct walk *w, uint32_t k)
 
 static void enter_column(struct walk *w, uint32_t k)
 {
-    const uint32_t side_log2 = w->side_log2 + w->zone;
     enter(&w->east, k);
-    const fx_bam_t west_edge = w->east.tile << side_log2;
-    w->east.tile = west_edge >> side_log2;
-    w->east.noise_sum = fx_hash3_sum(0, noise_cell(west_edge, w->noise_shift), 0);
+    const fx_bam_t edge = west_edge(w, 0);
+    w->east.tile = edge >> (w->side_log2 + w->zone); /* the whole turns are gone */
+    w->east.noise_sum = fx_hash3_sum(0, noise_cell(w, edge), 0);
 }
 
 /* The end of the run that begins with cell k, where the walk now stands. */
@@ -201,11 +211,8 @@ static uint32_t noise_sum(const struct walk *w, uint32_t generations)
     if (generations == 0) {
         return w->north.noise_sum + w->east.noise_sum;
     }
-    const uint32_t north_log2 = w->side_log2 + generations, east_log2 = north_log2 + w->zone;
-    const fx_bam_t south_edge = (w->north.tile >> generations << north_log2) - FX_BAM_90;
-    const fx_bam_t west_edge = w->east.tile >> generations << east_log2;
-    return fx_hash3_sum(noise_cell(south_edge, w->noise_shift),
-                        noise_cell(west_edge, w->noise_shift), w->epoch);
+    return fx_hash3_sum(noise_cell(w, south_edge(w, generations)),
+                        noise_cell(w, west_edge(w, generations)), w->epoch);
 }
 
 /* A run without data. */

@@ -150,7 +150,7 @@ static void set_runup(struct lm_sector *s, const struct lm_db *db)
     }
     const uint32_t begin_q8 = s->ground_edge_q8 / 16;
     const uint32_t cell_q8 = (s->ground_edge_q8 - begin_q8) / LM_SECTOR_RUNUP;
-    s->runup_sampling = lm_sampling_for(db, (uint32_t)((uint64_t)cell_q8 * 1000 / 256), s->sweep);
+    s->runup_sampling = lm_sampling_for(db, lm_mm_of_metres_q8(cell_q8), s->sweep);
     lm_range_grid_set(&s->runup_grid, &s->radar->aspect, begin_q8 + cell_q8 / 2, cell_q8,
                       LM_SECTOR_RUNUP, s->grid.height_q10, s->grid.reference_q10);
 }
@@ -350,7 +350,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
         .reach_m = s->half_m * 3 / 2,
         .radar = s->platform.place,
         .heights = {s->grid.height_q10, s->grid.reference_q10},
-        .cell_mm = (uint32_t)((uint64_t)s->grid.cell_q8 * 1000 / 256),
+        .cell_mm = lm_mm_of_metres_q8(s->grid.cell_q8),
         .side_most = CHIP_SIDE_MOST,
     };
     lm_chips_choose(s->chips, &s->near, &chips);

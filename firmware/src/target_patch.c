@@ -163,7 +163,7 @@ static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot,
     chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
     chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
                                        at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
-    lm_chip_lay_set(&chip->lay, slot, turn, (uint32_t)((uint64_t)g->cell_q8 * 1000 / 256), smear);
+    lm_chip_lay_set(&chip->lay, slot, turn, lm_mm_of_metres_q8(g->cell_q8), smear);
     const struct lm_chip_reach *lit = &chip->lay.lit;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
     chip->lines = lines_around(point->across_q8, smear, cells * 256);

@@ -4,6 +4,7 @@
 #ifndef TILE_READ_NEON_H
 #define TILE_READ_NEON_H
 
+#include "fx/mem.h"
 #include "lm/tile_read.h"
 #include "track_neon.h"
 
@@ -59,23 +60,16 @@ static inline struct neon_source neon_source_of(const struct lm_tile *pool)
 /* Two points side by side, as the vectors will load them: any type may follow. */
 typedef uint64_t neon_pair __attribute__((may_alias));
 
-static inline uint64_t neon_load_pair(const uint8_t *from)
-{
-    uint64_t pair;
-    __builtin_memcpy(&pair, from, sizeof pair);
-    return pair;
-}
-
 /* The western and eastern points of each of four places, to the south and to the north. All is
  * loaded first: a store might change what is loaded, for all that the compiler knows. */
 static inline void neon_fetch(const struct neon_source *s, const uint32_t *offset, neon_pair *south,
                               neon_pair *north)
 {
     const uint32_t o0 = offset[0], o1 = offset[1], o2 = offset[2], o3 = offset[3];
-    const uint64_t s0 = neon_load_pair(s->south + o0), n0 = neon_load_pair(s->north + o0);
-    const uint64_t s1 = neon_load_pair(s->south + o1), n1 = neon_load_pair(s->north + o1);
-    const uint64_t s2 = neon_load_pair(s->south + o2), n2 = neon_load_pair(s->north + o2);
-    const uint64_t s3 = neon_load_pair(s->south + o3), n3 = neon_load_pair(s->north + o3);
+    const uint64_t s0 = fx_load_u64(s->south + o0), n0 = fx_load_u64(s->north + o0);
+    const uint64_t s1 = fx_load_u64(s->south + o1), n1 = fx_load_u64(s->north + o1);
+    const uint64_t s2 = fx_load_u64(s->south + o2), n2 = fx_load_u64(s->north + o2);
+    const uint64_t s3 = fx_load_u64(s->south + o3), n3 = fx_load_u64(s->north + o3);
     south[0] = s0;
     south[1] = s1;
     south[2] = s2;

@@ -11,6 +11,12 @@
  * 4/3 * 6,371,000 m), here in Q48. */
 #define LM_CURVATURE_Q48 16567747LL
 
+/* Lengths are metres * 256, but the sizes of cells are told in millimetres, cut to whole ones. */
+static inline uint32_t lm_mm_of_metres_q8(uint32_t metres_q8)
+{
+    return (uint32_t)((uint64_t)metres_q8 * 1000 / 256);
+}
+
 struct lm_place {
     fx_bam_t latitude; /* signed: +-FX_BAM_90 */
     fx_bam_t longitude;
