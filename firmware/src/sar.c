@@ -330,7 +330,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
     if (s->command.has_layover) {
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_q8, s->power_q32);
     }
-    if (s->points.chip_count != 0) {
+    if (s->chips && s->points.on_line[number] != 0) {
         lm_patch_chips_shade(&s->points, number, &s->geometry, clutter_q8);
         s->chips->count.cells_left_out +=
             lm_patch_chips_add(&s->points, number, &s->geometry, clutter_q8);
@@ -447,5 +447,5 @@ void lm_sar_restart(struct lm_sar *s)
 {
     s->line = s->sampled = s->summed = s->judged = s->second_runup = 0;
     s->has_points = false;
-    s->points.count = s->points.target_count = s->points.chip_count = 0;
+    lm_patch_points_clear(&s->points);
 }

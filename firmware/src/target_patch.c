@@ -1,5 +1,6 @@
 #include "lm/target_patch.h"
 
+#include "fx/bits.h"
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
@@ -121,59 +122,74 @@ static void add_points(struct lm_patch_points *p, const struct lm_target_set *se
     }
 }
 
-/* Lines around a place up to `reach_q8` beyond the ends of its smear. */
-static struct lm_patch_lines lines_around(int32_t across_q8, const struct lm_smear *smear,
-                                          uint32_t reach_q8)
+/* Note that a target has something to do on lines first..end - 1, as many of them as there are. */
+static void note_lines(struct lm_patch_points *p, uint32_t target, int32_t first, int32_t end,
+                       const struct lm_patch_geometry *g)
 {
-    const uint32_t aside_q8 = fx_abs_u32(smear->across_q8) * smear->slices / 2 + reach_q8;
-    return (struct lm_patch_lines){(across_q8 - (int32_t)aside_q8) >> 8,
-                                   ((across_q8 + (int32_t)aside_q8) >> 8) + 1};
+    const int32_t last = fx_min_i32(end, (int32_t)g->lines);
+    for (int32_t line = fx_max_i32(first, 0); line < last; line++) {
+        p->on_line[line] |= (uint32_t)1 << target;
+    }
 }
 
-static bool touch(const struct lm_patch_lines *lines, uint32_t line)
+/* Lines from one place to another and up to `reach_q8` beyond the ends of their smear. */
+static void note_around(struct lm_patch_points *p, uint32_t target, int32_t left_q8,
+                        int32_t right_q8, uint32_t reach_q8, const struct lm_patch_geometry *g)
 {
-    return (int32_t)line >= lines->first && (int32_t)line < lines->end;
+    const struct lm_smear *smear = &p->target[target].smear;
+    const int32_t aside_q8 = (int32_t)(fx_abs_u32(smear->across_q8) * smear->slices / 2 + reach_q8);
+    note_lines(p, target, (left_q8 - aside_q8) >> 8, ((right_q8 + aside_q8) >> 8) + 1, g);
 }
 
-/* The lines that the points of a target may touch. */
-static void set_lines(struct lm_patch_target *t, const struct lm_patch_points *p)
+/* Lines that the points of a target may touch, and those that they stand on. */
+static void note_points(struct lm_patch_points *p, uint32_t target,
+                        const struct lm_patch_geometry *g)
 {
-    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
-    const uint32_t reach_q8 = (LM_RESPONSE_REACH + 1) * t->smear.wide_q8;
-    t->lines = (struct lm_patch_lines){INT32_MAX, INT32_MIN};
+    struct lm_patch_target *t = &p->target[target];
+    int32_t left_q8 = INT32_MAX, right_q8 = INT32_MIN;
     for (uint32_t i = t->begin; i < t->end; i++) {
-        if (!p->item[i].is_chip) {
-            const struct lm_patch_lines lines =
-                lines_around(p->item[i].across_q8, &t->smear, reach_q8);
-            t->lines.first = fx_min_i32(t->lines.first, lines.first);
-            t->lines.end = fx_max_i32(t->lines.end, lines.end);
+        const struct lm_patch_point *point = &p->item[i];
+        note_lines(p, target, point->line, point->line + 1, g);
+        if (!point->is_chip) {
+            left_q8 = fx_min_i32(left_q8, point->across_q8);
+            right_q8 = fx_max_i32(right_q8, point->across_q8);
         }
     }
+    t->has_points = left_q8 <= right_q8;
+    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
+    note_around(p, target, left_q8, right_q8, (LM_RESPONSE_REACH + 1) * t->smear.wide_q8, g);
 }
 
 /* Lay the target's chip over its point. */
 static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot, fx_bam_t turn,
                      const struct lm_patch_geometry *g, const struct spot *spot)
 {
-    struct lm_patch_chip *chip = &p->chip[p->chip_count++];
     struct lm_patch_point *point = &p->item[p->count - 1];
-    const struct lm_smear *smear = &p->target[point->target].smear;
+    struct lm_patch_chip *chip = &p->chip[point->target];
     const uint32_t at_q8 = (uint32_t)fx_max_i32(spot->range_q8, 1);
     chip->point = p->count - 1;
     chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
     chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
                                        at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
-    lm_chip_lay_set(&chip->lay, slot, turn, lm_mm_of_metres_q8(g->cell_q8), smear);
-    const struct lm_chip_reach *lit = &chip->lay.lit;
+    lm_chip_lay_set(&chip->lay, slot, turn, lm_mm_of_metres_q8(g->cell_q8),
+                    &p->target[point->target].smear);
+    point->is_chip = p->target[point->target].has_chip = true;
+    const struct lm_chip_reach *lit = &chip->lay.lit, *dark = &chip->lay.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
-    chip->lines = lines_around(point->across_q8, smear, cells * 256);
-    point->is_chip = true;
+    const int32_t shadow = cell_at(chip->shadow_across_q8);
+    note_around(p, point->target, point->across_q8, point->across_q8, cells * 256, g);
+    note_lines(p, point->target, shadow + dark->right, shadow + dark->right_end, g);
+}
+
+void lm_patch_points_clear(struct lm_patch_points *p)
+{
+    memset(p, 0, sizeof *p);
 }
 
 void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near *near,
                          const struct lm_patch_geometry *g)
 {
-    memset(p, 0, sizeof *p);
+    lm_patch_points_clear(p);
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
         const struct lm_chip_slot *slot = lm_chip_of(item);
@@ -188,26 +204,39 @@ void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near
                 add_chip(p, slot, item->chip_turn, g, &spot);
             }
             t->end = p->count;
-            set_lines(t, p);
+            note_points(p, p->target_count, g);
             p->target_count++;
         }
     }
 }
 
+/* ---- one line of them ---- */
+
+/* The targets of a line, one after the other: a set of their numbers, the next of which is taken
+ * out of it. */
+static uint32_t take_next(uint32_t *targets)
+{
+    const uint32_t next = (uint32_t)fx_ctz64(*targets);
+    *targets &= *targets - 1;
+    return next;
+}
+
 void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_t *horizon,
                           uint32_t bits, uint32_t cells)
 {
-    for (uint32_t i = 0; i < p->count; i++) {
-        struct lm_patch_point *point = &p->item[i];
-        if (point->line == (int32_t)line && point->cell >= 0) {
-            /* Behind the last cell, everything before it may hide. */
-            const uint32_t before = fx_min_u32((uint32_t)point->cell, cells);
-            point->is_hidden = point->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
+    for (uint32_t left = p->on_line[line]; left != 0;) {
+        const struct lm_patch_target *t = &p->target[take_next(&left)];
+        for (uint32_t i = t->begin; i < t->end; i++) {
+            struct lm_patch_point *point = &p->item[i];
+            if (point->line == (int32_t)line && point->cell >= 0) {
+                /* Behind the last cell, everything before it may hide. */
+                const uint32_t before = fx_min_u32((uint32_t)point->cell, cells);
+                point->is_hidden =
+                    point->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
+            }
         }
     }
 }
-
-/* ---- one line of them ---- */
 
 /* One slice of the dwell: how far it lies from its point, cells * 256, what of the point's power it
  * has, and its stretch, inverted. */
@@ -333,9 +362,9 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
                          const struct lm_patch_geometry *g, int32_t *level_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
-    for (uint32_t n = 0; n < p->target_count; n++) {
-        const struct lm_patch_target *t = &p->target[n];
-        if (touch(&t->lines, line)) {
+    for (uint32_t left = p->on_line[line]; left != 0;) {
+        const struct lm_patch_target *t = &p->target[take_next(&left)];
+        if (t->has_points) {
             add_target(p, t, line, least_q8, within, level_q8);
         }
     }
@@ -362,22 +391,30 @@ static struct span cells_under(const struct lm_chip_reach *reach, const struct l
                          fx_min_i32(middle + reach->beyond_end, (int32_t)g->cells)};
 }
 
+/* Put the cells of a line that a chip's shadow reaches into the dark. */
+static void shade(const struct lm_patch_points *p, const struct lm_patch_chip *chip, uint32_t line,
+                  const struct lm_patch_geometry *g, int32_t *level_q8)
+{
+    const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
+    const struct lm_patch_point *at = &p->item[chip->point];
+    const struct origin origin = {chip->shadow_across_q8, at->along_q8};
+    const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
+    const struct span under = cells_under(&chip->lay.dark, at, &origin, line, g);
+    for (int32_t i = under.first; i < under.end; i++) {
+        const uint32_t dark = lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - origin.along_q8);
+        level_q8[i] = dark == LM_CHIP_SHADOW_ALL
+                          ? LM_LEVEL_SHADOW
+                          : level_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
+    }
+}
+
 void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
                           const struct lm_patch_geometry *g, int32_t *level_q8)
 {
-    const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
-    for (uint32_t k = 0; k < p->chip_count; k++) {
-        const struct lm_patch_chip *chip = &p->chip[k];
-        const struct lm_patch_point *at = &p->item[chip->point];
-        const struct origin origin = {chip->shadow_across_q8, at->along_q8};
-        const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
-        const struct span under = cells_under(&chip->lay.dark, at, &origin, line, g);
-        for (int32_t i = under.first; i < under.end; i++) {
-            const uint32_t dark =
-                lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - origin.along_q8);
-            level_q8[i] = dark == LM_CHIP_SHADOW_ALL
-                              ? LM_LEVEL_SHADOW
-                              : level_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
+    for (uint32_t left = p->on_line[line]; left != 0;) {
+        const uint32_t target = take_next(&left);
+        if (p->target[target].has_chip) {
+            shade(p, &p->chip[target], line, g, level_q8);
         }
     }
 }
@@ -406,11 +443,12 @@ uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
                             const struct lm_patch_geometry *g, int32_t *level_q8)
 {
     uint32_t room = LM_CHIP_CELLS_A_LINE, left_out = 0;
-    for (uint32_t k = 0; k < p->chip_count; k++) {
-        const struct lm_patch_chip *chip = &p->chip[k];
+    for (uint32_t targets = p->on_line[line]; targets != 0;) {
+        const uint32_t target = take_next(&targets);
+        const struct lm_patch_chip *chip = &p->chip[target];
         const struct lm_patch_point *at = &p->item[chip->point];
-        const struct lm_smear *smear = &p->target[at->target].smear;
-        const uint32_t slices = touch(&chip->lines, line) ? smear->slices : 0;
+        const struct lm_smear *smear = &p->target[target].smear;
+        const uint32_t slices = p->target[target].has_chip ? smear->slices : 0;
         for (uint32_t number = 0; number < slices; number++) {
             const struct slice slice = slice_of(smear, number);
             const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_q8);

@@ -43,25 +43,19 @@ struct lm_patch_point {
     bool is_chip; /* the place and level of one, not to be spread itself */
 };
 
-/* Lines that something may touch: most lines of a patch pass by most targets. */
-struct lm_patch_lines {
-    int32_t first, end;
-};
-
 /* A target near the patch. Its bodies add as phasors. */
 struct lm_patch_target {
     struct lm_smear smear;
     uint32_t begin, end; /* its points */
-    struct lm_patch_lines lines;
+    bool has_points, has_chip; /* to be spread; in their place or beside them */
 };
 
-/* A chip in the patch. */
+/* The chip of a target in the patch. */
 struct lm_patch_chip {
     struct lm_chip_lay lay;
-    struct lm_patch_lines lines; /* of its power */
-    uint32_t point;              /* its place, and whether it is hidden */
-    int32_t shadow_across_q8;    /* where its shadow lies: Doppler does not displace that */
-    int32_t area_q8;             /* of a cell of clutter there, dB * 256 of a square metre */
+    uint32_t point;           /* its place, and whether it is hidden */
+    int32_t shadow_across_q8; /* where its shadow lies: Doppler does not displace that */
+    int32_t area_q8;          /* of a cell of clutter there, dB * 256 of a square metre */
 };
 
 /* Cells of a line that are given something of chips, so that its cost is bounded. */
@@ -72,10 +66,17 @@ struct lm_patch_points {
     struct lm_patch_point item[LM_PATCH_POINTS_MAX];
     uint32_t target_count;
     struct lm_patch_target target[LM_TARGETS_NEAR];
-    uint32_t chip_count;
-    struct lm_patch_chip chip[LM_TARGETS_NEAR];
+    struct lm_patch_chip chip[LM_TARGETS_NEAR]; /* of the targets that have one */
+    /* Most lines of a patch pass by most targets: bit n of a line is set if target n, or a body of
+     * it, stands on the line or may touch it with its power or its chip's shadow. */
+    uint32_t on_line[LM_CELLS_MAX];
     int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* zero between calls */
 };
+
+_Static_assert(LM_TARGETS_NEAR <= 32, "a bit each");
+
+/* No targets. */
+void lm_patch_points_clear(struct lm_patch_points *p);
 
 /* Find the points of the targets near, and their chips. Cost: some 3000 instructions for each
  * target and 1200 for each of its bodies. */
@@ -88,9 +89,9 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
                           uint32_t bits, uint32_t cells);
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`
- * is left out. Cost: 6 instructions a target and 200 for a point that reaches the line and 25 for
- * each cell that it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves,
- * and for as many more cells as its response is stretched. */
+ * is left out. Cost: 200 instructions for a point that reaches the line and 25 for each cell that it
+ * reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves, and for as many more
+ * cells as its response is stretched. */
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 

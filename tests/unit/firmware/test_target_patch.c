@@ -389,6 +389,41 @@ static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **s
     }
 }
 
+/* ---- passed over ---- */
+
+static void lines_that_pass_by_a_target_would_have_nothing_of_it(void **state)
+{
+    (void)state;
+    static int32_t noted[LINES][LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t passed_by = 0, touched = 0;
+    hs_rng_seed(&rng, 8);
+    for (int i = 0; i < 40; i++) {
+        struct lm_target t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
+        const struct lm_target place = point_in(LINES * hs_rng_uniform(&rng), 70, 30);
+        t.latitude = place.latitude;
+        t.longitude = place.longitude;
+        t.speed_mm_s = i % 2 ? hs_rng_below(&rng, 8000) : 0;
+        t.leg_m = 10;
+        seal_target(&t);
+        struct lm_patch_geometry g = geometry(46, 11, 0);
+        g.across_mm_s = 200000;
+        g.dwell_ms = 2000;
+        find_points(&t, 1, &g, 0);
+        draw(&g, NOTHING_Q8);
+        memcpy(noted, picture, sizeof noted);
+        for (uint32_t k = 0; k < LINES; k++) {
+            passed_by += points.on_line[k] == 0;
+            touched += points.on_line[k] != 0;
+            points.on_line[k] = 1;
+        }
+        draw(&g, NOTHING_Q8);
+        assert_memory_equal(picture, noted, sizeof noted);
+    }
+    print_message("# %u lines touched, %u passed by\n", touched, passed_by);
+    assert_true(touched > LINES && passed_by > LINES);
+}
+
 /* ---- hidden and leaning ---- */
 
 enum { BITS = 30, WALL = 20 };
@@ -501,6 +536,7 @@ int main(void)
         cmocka_unit_test(a_fluctuating_point_has_one_strength_in_a_patch),
         cmocka_unit_test(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell),
         cmocka_unit_test(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it),
+        cmocka_unit_test(lines_that_pass_by_a_target_would_have_nothing_of_it),
         cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines),
         cmocka_unit_test(layover_brings_a_body_nearer_by_its_height_times_the_lean),
         cmocka_unit_test(a_record_that_passes_the_check_can_be_used_in_a_patch),
