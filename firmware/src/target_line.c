@@ -9,6 +9,73 @@
 
 enum { NO_CELL = -1 };
 
+/* The farthest that a mover is displaced: beyond, the beam that points where it appears leaves less
+ * than -37 dB of it. */
+static uint32_t shift_most(const struct lm_target_line *line)
+{
+    return line->beam + line->beam / 4;
+}
+
+/* ---- which targets the line may meet ---- */
+
+/* The ground between two azimuths, on a plane: the sines and cosines of the azimuths. */
+struct wedge {
+    int32_t left_sin_q15, left_cos_q15, right_sin_q15, right_cos_q15;
+};
+
+/* From `half` to the left of an azimuth to as much to the right. Nothing lies beyond the edges of
+ * one that is all zeros. */
+static struct wedge wedge_of(fx_bam_t azimuth, uint64_t half)
+{
+    const fx_bam_t left = azimuth - (fx_bam_t)half, right = azimuth + (fx_bam_t)half;
+    return half >= FX_BAM_90 ? (struct wedge){0}
+                             : (struct wedge){fx_sin_q15(left), fx_cos_q15(left), fx_sin_q15(right),
+                                              fx_cos_q15(right)};
+}
+
+/* What the line covers, on a plane around the place that the targets were chosen from. Lengths in
+ * metres * 256. */
+struct cover {
+    int32_t north_q8, east_q8; /* the antenna */
+    uint32_t begin_q8, end_q8; /* ranges of the line's cells, as they may be from that place */
+    struct wedge still, mover; /* in which targets are, or are displaced from */
+};
+
+static struct cover cover_of(const struct lm_target_line *line, struct lm_place from)
+{
+    /* 2 pi * 6,371 km / 2^32 in metres * 256, with an error of 0.6 %. */
+    const int64_t bam_q10 = 2443;
+    const int32_t far = 1 << 24; /* 156 km: far beyond LM_TARGET_DRIFT_M */
+    const struct lm_place at = line->place;
+    const int64_t dlat = fx_clamp_i32((int32_t)(at.latitude - from.latitude), -far, far);
+    const int64_t dlon = fx_clamp_i32((int32_t)(at.longitude - from.longitude), -far, far);
+    const int32_t north_q8 = (int32_t)(dlat * bam_q10 >> 10);
+    const int32_t east_q8 = (int32_t)(dlon * bam_q10 * fx_cos_q15(at.latitude) >> 25);
+    const uint32_t gone_q8 = fx_abs_u32(north_q8) + fx_abs_u32(east_q8);
+    const uint32_t begin_q8 = line->first_q8 + line->first * line->cell_q8;
+    struct cover c = {.north_q8 = north_q8, .east_q8 = east_q8};
+    c.begin_q8 = begin_q8 - fx_min_u32(begin_q8, line->cell_q8 + gone_q8);
+    c.end_q8 = line->first_q8 + line->cells * line->cell_q8 + gone_q8;
+    c.still = c.mover = wedge_of(line->azimuth, line->width);
+    if (line->is_doppler) {
+        c.mover = wedge_of(line->azimuth, (uint64_t)line->width + shift_most(line));
+    }
+    return c;
+}
+
+/* Can the line meet the target at all? Places are within 2^27, by sines of 2^15. */
+static bool may_meet(const struct cover *c, const struct lm_target *t,
+                     const struct lm_target_item *item)
+{
+    const struct wedge *w = t->speed_mm_s != 0 ? &c->mover : &c->still;
+    const int64_t north_q8 = item->north_q8 - c->north_q8, east_q8 = item->east_q8 - c->east_q8;
+    const int64_t slack_q23 = (int64_t)item->slack_q8 << 15;
+    return item->distance_q8 <= c->end_q8 + item->slack_q8 &&
+           item->distance_q8 + item->slack_q8 >= c->begin_q8 &&
+           north_q8 * w->left_sin_q15 - east_q8 * w->left_cos_q15 <= slack_q23 &&
+           east_q8 * w->right_cos_q15 - north_q8 * w->right_sin_q15 <= slack_q23;
+}
+
 /* ---- where a target is from the line ---- */
 
 struct spot {
@@ -18,26 +85,6 @@ struct spot {
     fx_bam_t true_azimuth; /* where it is */
     int32_t gain_q8;       /* of the beam, dB: 0 or less */
 };
-
-/* The farthest that a mover is displaced: beyond, the beam that points where it appears leaves less
- * than -37 dB of it. */
-static uint32_t shift_most(const struct lm_target_line *line)
-{
-    return line->beam + line->beam / 4;
-}
-
-/* Can the line meet the target at all, as far as was known when it was chosen? */
-static bool may_meet(const struct lm_target_line *line, const struct lm_target *t,
-                     const struct lm_target_item *item)
-{
-    const int32_t off = (int32_t)(item->azimuth - line->azimuth);
-    /* What target and antenna may have moved, as an angle: 2^32 / (2 pi) a radian, twice for the
-     * arc against its sine and for the antenna's way towards it. */
-    const uint64_t moved_q8 = (LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256u;
-    const uint64_t slack = moved_q8 * 2u * 683565276u / fx_max_u32(item->distance_q8, 1);
-    const uint32_t shift = line->is_doppler && t->speed_mm_s != 0 ? shift_most(line) : 0;
-    return fx_abs_u32(off) <= slack + line->width + shift;
-}
 
 /* Whether a closing speed is one of those that are shown. */
 static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
@@ -158,22 +205,33 @@ static int32_t top_mm(const struct lm_signature *s)
     return s ? (int32_t)s->height_mm : 0;
 }
 
-static void make_echo(struct echo *e, const struct lm_target_line *line,
-                      const struct lm_target_sight *sight, const struct lm_target_set *set,
-                      const struct lm_target_item *item, const struct spot *spot)
+/* A target without bodies, looked at where it can be seen only: few of those that the line may meet
+ * are in it. */
+static void make_point_echo(struct echo *e, const struct lm_target_line *line,
+                            const struct lm_target_sight *sight, const struct lm_target_set *set,
+                            const struct lm_target_item *item, const struct spot *spot)
 {
     const struct lm_target *t = &set->items[item->index];
     const struct lm_target_heights h = heights_of(line);
     struct lm_target_view v;
-    lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
-    if (t->scatterer_count == 0) {
-        e->count = 1;
-        e->returns[0] =
-            (struct lm_return){.rcs_q8 = lm_target_whole_q8(set, t, &v, line->scan, line->pulse),
-                               .up_mm = top_mm(lm_target_signature(set, t))};
-    } else {
-        e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
+    e->count = 1;
+    e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, t))};
+    e->cell[0] = lit_cell(line, sight, item, spot, e->returns[0].up_mm);
+    if (e->cell[0] != NO_CELL) {
+        lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
+        e->returns[0].rcs_q8 = lm_target_whole_q8(set, t, &v, line->scan, line->pulse) +
+                               share_q8(line, spot) + spot->gain_q8;
     }
+}
+
+static void make_bodies_echo(struct echo *e, const struct lm_target_line *line,
+                             const struct lm_target_sight *sight, const struct lm_target *t,
+                             const struct lm_target_item *item, const struct spot *spot)
+{
+    const struct lm_target_heights h = heights_of(line);
+    struct lm_target_view v;
+    lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
+    e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     for (uint32_t i = 0; i < e->count; i++) {
         const struct spot s = beside(spot, &e->returns[i]);
         e->cell[i] = lit_cell(line, sight, item, &s, e->returns[i].up_mm);
@@ -234,12 +292,17 @@ static uint32_t add_target(const struct lm_targets_near *near, const struct lm_t
                            const struct lm_target_line *line, const struct lm_target_sight *sight,
                            const struct spot *spot, int32_t *level_q8)
 {
+    const struct lm_target *t = &near->set.items[item->index];
     struct echo echo;
     if (lm_chip_of(item)) {
         return sees_top(line, sight, &near->set, item, spot) ? add_chip(line, item, spot, level_q8)
                                                              : 0;
     }
-    make_echo(&echo, line, sight, &near->set, item, spot);
+    if (t->scatterer_count == 0) {
+        make_point_echo(&echo, line, sight, &near->set, item, spot);
+    } else {
+        make_bodies_echo(&echo, line, sight, t, item, spot);
+    }
     return add_echo(&echo, line, level_q8);
 }
 
@@ -247,11 +310,12 @@ uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_targe
                        const struct lm_target_sight *sight, int32_t *level_q8)
 {
     uint32_t cells = 0;
+    const struct cover cover = cover_of(line, near->place);
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
         const struct lm_target *t = &near->set.items[item->index];
         struct spot spot;
-        if (may_meet(line, t, item) && find_spot(line, t, item, &spot)) {
+        if (may_meet(&cover, t, item) && find_spot(line, t, item, &spot)) {
             cells += add_target(near, item, line, sight, &spot, level_q8);
         }
     }

@@ -1,7 +1,13 @@
 #include "lm/target_near.h"
 
 #include "fx/sat.h"
+#include "fx/trig.h"
 #include "lm/scan_line.h"
+
+/* How well the place of a target is known to whoever looks for it: lm_geo_inverse and a plane are
+ * right within a 64th of the distance up to 88 degrees of latitude, and so is a plane within 16 m
+ * for the way that the antenna has gone since. */
+enum { ROUGH_PART = 64, ROUGH_Q8 = 16 * 256 };
 
 const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
                                                const struct lm_target *t)
@@ -26,6 +32,19 @@ static int32_t elevation_q6(const struct lm_target *t, struct lm_place place,
     return t->elevation_q6 + ground_q10 / 16;
 }
 
+/* A circle that holds the target, metres * 256: bodies by both of their axes together, below 2^19
+ * mm; a chip by its far corners, which are up to 32 columns and 64 rows away. */
+static uint32_t extent_q8(const struct lm_target_set *set, const struct lm_target *t)
+{
+    const struct lm_signature *s = lm_target_signature(set, t);
+    uint32_t most_mm = s ? s->pixel_mm * (LM_CHIP_SIDE * 9 / 8) : 0;
+    for (uint32_t i = 0; i < t->scatterer_count; i++) {
+        const int32_t *o = t->scatterers[i].offset_mm;
+        most_mm = fx_max_u32(most_mm, fx_abs_u32(o[0]) + fx_abs_u32(o[1]));
+    }
+    return most_mm / 1000 * 256 + 256;
+}
+
 void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
                        const struct lm_target_scene *scene)
 {
@@ -39,7 +58,8 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set 
         const struct lm_target *t = &set->items[i];
         struct lm_target_item item = {.index = (uint16_t)i,
                                       .pose = lm_target_pose(t, scene->time_us)};
-        lm_geo_inverse(scene->place, item.pose.place, &item.distance_q8, &item.azimuth);
+        fx_bam_t azimuth;
+        lm_geo_inverse(scene->place, item.pose.place, &item.distance_q8, &azimuth);
         if (item.distance_q8 > reach_q8) {
             continue;
         }
@@ -47,6 +67,10 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set 
             near->left_out++;
             continue;
         }
+        /* Within 2^26, by sines of 2^15. */
+        item.north_q8 = (int32_t)((int64_t)item.distance_q8 * fx_cos_q15(azimuth) >> 15);
+        item.east_q8 = (int32_t)((int64_t)item.distance_q8 * fx_sin_q15(azimuth) >> 15);
+        item.slack_q8 = extent_q8(set, t) + item.distance_q8 / ROUGH_PART + ROUGH_Q8;
         item.elevation_q6 = elevation_q6(t, item.pose.place, scene);
         near->item[near->count++] = item;
     }

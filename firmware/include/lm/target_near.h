@@ -44,9 +44,10 @@ struct lm_targets_near {
     uint32_t count;
     uint32_t left_out; /* in reach, but there was no room */
     struct lm_target_item {
-        uint16_t index;       /* in the set */
-        fx_bam_t azimuth;     /* from the place that was given */
-        uint32_t distance_q8; /* metres * 256 */
+        uint16_t index;            /* in the set */
+        uint32_t distance_q8;      /* from the place that was given, metres * 256, */
+        int32_t north_q8, east_q8; /* and which way: all of it rough, */
+        uint32_t slack_q8;         /* but all of the target is within so much of there */
         struct lm_pose pose;
         int32_t elevation_q6;            /* of the origin above mean sea level, metres * 64 */
         const struct lm_chip_slot *chip; /* of lm/chips.h; borrowed; NULL: it has none */
@@ -55,7 +56,7 @@ struct lm_targets_near {
 };
 
 /* Choose the targets not farther than reach_m + LM_TARGET_DRIFT_M: the first LM_TARGETS_NEAR of
- * them, in their order in the image. Cost: about 500 instructions a target, 800 more for a mover,
+ * them, in their order in the image. Cost: about 600 instructions a target, 800 more for a mover,
  * 300 for one above the ground. */
 void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set *set,
                        const struct lm_target_scene *scene);

@@ -1,5 +1,6 @@
 /* Targets in lines of the picture: the right cell, the right level, hidden by what stands before
  * them. Places come from PROJ's geodesics, levels from the equations in double precision. */
+#include "fx/trig.h"
 #include "hs/angle.h"
 #include "lm/target_line.h"
 
@@ -277,11 +278,66 @@ static void a_choice_holds_for_a_kilometre_of_flight(void **state)
         before = near_of(&t, 1, (struct lm_place){hs_bam(46), hs_bam(11)}, 37040);
         now = near_of(&t, 1, here, 37040);
         struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
-        l.azimuth = now.item[0].azimuth;
+        l.azimuth = fx_atan2(now.item[0].east_q8, now.item[0].north_q8);
         clear(level_q8);
         assert_int_equal(lm_target_add(&before, &l, NULL, level_q8),
                          lm_target_add(&now, &l, NULL, level_q8));
     }
+}
+
+/* A line beside a target, by no more than a few times what the target and the line are wide, of a
+ * radar that has flown on since the choice; it may begin or end beside the target. */
+static struct lm_target_line line_beside(struct hs_rng *rng, double lat, double to_azimuth,
+                                         double at_m)
+{
+    double from[2];
+    destination(lat, 11, 360 * hs_rng_uniform(rng), 1000 * hs_rng_uniform(rng), from);
+    struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
+    const double off = pow(hs_rng_uniform(rng), 3) * (hs_rng_below(rng, 2) ? 1 : -1);
+    l.azimuth = hs_bam(to_azimuth + off * (5 + 90 * fmin(1, 2500 / at_m)));
+    l.is_doppler = hs_rng_below(rng, 2) != 0;
+    l.beam = FX_BAM_DEG(3);
+    l.speed_mm_s = 100000;
+    l.track = l.azimuth + FX_BAM_DEG(50);
+    l.width *= 1 + hs_rng_below(rng, 10);
+    const uint32_t edge = (uint32_t)(fmax(at_m - 1200 + 2400 * hs_rng_uniform(rng), 0) / cell_m);
+    l.first = hs_rng_below(rng, 4) ? 0 : edge;
+    l.cells = hs_rng_below(rng, 4) ? CELLS : edge;
+    return l;
+}
+
+/* Points, bodies up to 370 m from their origin, and movers, near and far: the quick look at what a
+ * line may meet loses none. With the slack of the whole Earth, all of them are looked at. */
+static void a_target_that_is_passed_over_would_have_given_the_line_nothing(void **state)
+{
+    (void)state;
+    static const double latitudes[] = {0, 46, -75, 87};
+    struct hs_rng rng;
+    uint32_t given = 0;
+    hs_rng_seed(&rng, 9);
+    for (int i = 0; i < 40000; i++) {
+        double to[2];
+        const double lat = latitudes[i % 4], azimuth = 360 * hs_rng_uniform(&rng);
+        const double at_m = 300 + 36000 * pow(hs_rng_uniform(&rng), 2);
+        destination(lat, 11, azimuth, at_m, to);
+        struct lm_target t = i % 3 ? point_at(0, 0, 0, 10) : random_target(&rng, 1 << 18);
+        t.latitude = hs_bam(to[0]), t.longitude = hs_bam(to[1]);
+        if (i % 3 == 1) {
+            t.heading = (fx_bam_t)hs_rng_u64(&rng);
+            t.speed_mm_s = 15000, t.leg_m = 1;
+        }
+        const struct lm_target_line l = line_beside(&rng, lat, azimuth, at_m);
+        struct lm_targets_near near =
+            near_of(&t, 1, (struct lm_place){hs_bam(lat), hs_bam(11)}, (uint32_t)range_m);
+        int32_t quick_q8[LM_CELLS_MAX], all_q8[LM_CELLS_MAX];
+        clear(quick_q8), clear(all_q8);
+        lm_target_add(&near, &l, NULL, quick_q8);
+        near.item[0].slack_q8 = 1u << 31;
+        given += lm_target_add(&near, &l, NULL, all_q8) != 0;
+        assert_memory_equal(quick_q8, all_q8, sizeof all_q8);
+    }
+    print_message("# %u of 40000 lines were given something\n", given);
+    assert_true(given > 2500);
 }
 
 /* ---- hostile records ---- */
@@ -343,6 +399,7 @@ int main(void)
         cmocka_unit_test(what_lies_below_the_horizon_of_the_cells_before_is_hidden),
         cmocka_unit_test(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted),
         cmocka_unit_test(a_choice_holds_for_a_kilometre_of_flight),
+        cmocka_unit_test(a_target_that_is_passed_over_would_have_given_the_line_nothing),
         cmocka_unit_test(a_record_that_passes_the_check_can_be_used),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
