@@ -3,29 +3,87 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "lm/status.h"
+#include "tone_neon.h"
 
-/* round(255 v^gamma) for v = above / span, 0..1. */
-static uint8_t grey_of(int32_t above_q8, int32_t span_q8, int32_t gamma_q8)
+/* White lies `span_q8` above black, at step `last`. */
+struct window {
+    int32_t span_q8, last, step_log2, gamma_q8;
+};
+
+/* 255 v^gamma in Q16 at a step below white. */
+static uint32_t curve_q16(const struct window *w, int32_t step)
 {
-    if (above_q8 <= 0) {
+    if (step == 0) {
         return 0;
     }
-    /* log2 v is -16..0 in Q16; times gamma up to 4: above -2^22. */
+    /* log2 v is -11..0 in Q16, for only white's own step may lie above it, by half a step; times
+     * gamma up to 4: above -2^22. */
     const int32_t log2_q16 =
-        fx_log2_q16((uint32_t)fx_min_i32(above_q8, span_q8)) - fx_log2_q16((uint32_t)span_q8);
-    const uint32_t power_q16 = fx_exp2_q16((int32_t)((int64_t)log2_q16 * gamma_q8 / 256));
-    return (uint8_t)((255u * power_q16 + 32768u) >> 16);
+        fx_log2_q16((uint32_t)step << w->step_log2) - fx_log2_q16((uint32_t)w->span_q8);
+    return 255u * fx_exp2_q16((int32_t)((int64_t)log2_q16 * w->gamma_q8 / 256));
+}
+
+static void set_steps(struct lm_tone *t, const struct window *w)
+{
+    for (int32_t step = 0; step < w->last; step++) {
+        t->grey[step] = (int32_t)((curve_q16(w, step) + 32768u) >> 16);
+    }
+    t->grey[w->last] = 255;
+}
+
+/* Where lines meet: grey in Q8, with the half for rounding. White has as much more as its line's
+ * slope may lose by rounding down. */
+static int32_t knot_q8(const struct window *w, int32_t step)
+{
+    const int32_t white_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
+    return step < w->last ? (int32_t)(curve_q16(w, step) >> 8) + 128 : white_q8;
+}
+
+/* Chords, whose slopes are rounded down: none ends above the start of the next. */
+static void set_lines(struct lm_tone *t, const struct window *w)
+{
+    int32_t base = knot_q8(w, 0);
+    for (int32_t n = 0; n < LM_TONE_LINES; n++) {
+        const int32_t first = n * LM_TONE_PLACES, next = knot_q8(w, first + LM_TONE_PLACES);
+        const int32_t steps = fx_clamp_i32(w->last - first, 1, LM_TONE_PLACES);
+        const int32_t slope = (next - base) / steps;
+        const int32_t shifted = base - n % 8 * LM_TONE_PLACES * slope;
+        t->lines[0][n] = (uint8_t)shifted;
+        t->lines[1][n] = (uint8_t)(shifted >> 8);
+        t->lines[2][n] = (uint8_t)slope;
+        for (int32_t k = 0; k < LM_TONE_PLACES; k++) {
+            t->grey[first + k] = (base + k * slope) >> 8;
+        }
+        base = next;
+    }
+}
+
+/* At gamma 3 the last of 1024 steps is 255 * 3 / 1024 of a grey, 191 in Q8; with the 31 more of
+ * white a slope still fits a byte. Below gamma 1 the first steps are higher than that. */
+static bool is_gentle(const struct window *w)
+{
+    return w->last >= LM_TONE_STEPS / 2 && w->gamma_q8 >= 256 && w->gamma_q8 <= 3 * 256;
 }
 
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
 {
     const int32_t span_q8 = config->white_q8 - config->black_q8;
-    if (span_q8 < 256 || config->gamma_q8 < 26 || config->gamma_q8 > 1024) {
+    if (span_q8 < 256 || span_q8 > 255 * 256 || config->gamma_q8 < 26 || config->gamma_q8 > 1024) {
         return LM_ERR_RANGE;
     }
-    for (int32_t n = 0; n < LM_TONE_STEPS; n++) {
-        const int32_t middle_q8 = LM_TONE_LOWEST_Q8 + n * LM_TONE_STEP_Q8 + LM_TONE_STEP_Q8 / 2;
-        t->grey[n] = grey_of(middle_q8 - config->black_q8, span_q8, config->gamma_q8);
+    struct window w = {.span_q8 = span_q8, .last = span_q8, .gamma_q8 = config->gamma_q8};
+    while (w.last >= LM_TONE_STEPS) {
+        w.step_log2++;
+        w.last = (span_q8 + (1 << w.step_log2 >> 1)) >> w.step_log2;
+    }
+    t->black_q8 = config->black_q8;
+    t->white_q8 = config->white_q8;
+    t->step_log2 = (uint8_t)w.step_log2;
+    t->has_lines = is_gentle(&w);
+    if (t->has_lines) {
+        set_lines(t, &w);
+    } else {
+        set_steps(t, &w);
     }
     return LM_OK;
 }
@@ -33,8 +91,10 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
 void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *restrict grey,
                  uint32_t cells)
 {
-    for (uint32_t i = 0; i < cells; i++) {
-        const int32_t step = (level_q8[i] - LM_TONE_LOWEST_Q8) >> 4;
-        grey[i] = (uint8_t)t->grey[fx_clamp_i32(step, 0, LM_TONE_STEPS - 1)];
+    const int32_t black_q8 = t->black_q8, white_q8 = t->white_q8, step_log2 = t->step_log2;
+    const int32_t start_q8 = black_q8 - (1 << step_log2 >> 1); /* half a step before black */
+    for (uint32_t i = tone_neon(t, start_q8, level_q8, grey, cells); i < cells; i++) {
+        const int32_t above_q8 = fx_clamp_i32(level_q8[i], black_q8, white_q8) - start_q8;
+        grey[i] = (uint8_t)t->grey[above_q8 >> step_log2];
     }
 }

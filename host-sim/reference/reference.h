@@ -208,8 +208,7 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 
 /* ---- tone (tone.c) ---- */
 
-/* v of the middle of the level's step of 1/16 dB, clamped to 0..1, and the grey level round(255
- * v^gamma). */
+/* v, the level's place in the window, clamped to 0..1, and the grey level round(255 v^gamma). */
 double ref_brightness(double level_db, const struct ref_params *params);
 uint8_t ref_grey(double brightness, const struct ref_params *params);
 void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params);

@@ -18,10 +18,7 @@ struct ref_params ref_params_default(void)
 
 double ref_brightness(double level_db, const struct ref_params *params)
 {
-    /* The middle of the level's step of 1/16 dB. */
-    const double n = fmin(fmax(floor(16 * (level_db + 80)), 0), 2047);
-    const double middle_db = (n + 0.5) / 16 - 80;
-    const double v = (middle_db - params->black_db) / (params->white_db - params->black_db);
+    const double v = (level_db - params->black_db) / (params->white_db - params->black_db);
     return fmin(fmax(v, 0), 1);
 }
 

@@ -8,6 +8,7 @@
 #include "lm/receiver.h"
 #include "lm/speckle.h"
 #include "lm/tile_read.h"
+#include "lm/tone.h"
 
 #include <stdio.h>
 
@@ -194,11 +195,42 @@ static uint32_t of_receiver(void)
     return crc;
 }
 
+/* Windows of any width, with every gamma; levels in them, beside them, and beyond 16 bits. */
+static uint32_t of_tone(void)
+{
+    static struct lm_tone tone;
+    static int32_t level_q8[LM_CELLS_ROOM];
+    static uint8_t grey[LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 6);
+    for (int i = 0; i < ROUNDS; i++) {
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        const uint32_t widest_q8 = 255u * 256u >> hs_rng_below(&rng, 8);
+        const int32_t span_q8 = fx_max_i32((int32_t)hs_rng_below(&rng, widest_q8 + 1), 256);
+        const int32_t black_q8 = (int32_t)hs_rng_below(&rng, 65536u - (uint32_t)span_q8) - 32768;
+        const struct lm_tone_config config = {(int16_t)black_q8, (int16_t)(black_q8 + span_q8),
+                                              (uint16_t)(26 + hs_rng_below(&rng, 999))};
+        if (lm_tone_set(&tone, &config) != 0) {
+            return 0;
+        }
+        for (uint32_t k = 0; k < cells; k++) {
+            const int32_t any = (int32_t)hs_rng_u64(&rng), place_q15 = any & 0x7fff;
+            level_q8[k] =
+                k % 8 == 0 ? any >> k % 24 : black_q8 - 500 + (place_q15 * (span_q8 + 1000) >> 15);
+        }
+        lm_tone_run(&tone, level_q8, grey, cells);
+        crc = fx_crc32c(crc, grey, cells);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
     printf("speckle %08x\n", (unsigned)of_speckle());
     printf("aspect %08x\n", (unsigned)of_aspect());
     printf("receiver %08x\n", (unsigned)of_receiver());
+    printf("tone %08x\n", (unsigned)of_tone());
     return 0;
 }

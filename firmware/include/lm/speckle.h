@@ -45,7 +45,7 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
 
 /* Multiply each cell's power by the texture of its class, in place. `cell` as in lm_scan_line,
  * `noise` the place's 32-bit hash, of which bits 21..12 choose here and 31..22 in the speckle. A
- * level gains -49..34 dB, so that LM_LEVEL_SHADOW stays below the tone's lowest, -80 dB, also after
+ * level gains -49..34 dB, so that LM_LEVEL_SHADOW stays below -80 dB also after
  * speckle. Cost: see docs/benchmarks.md. */
 void lm_texture_run(const struct lm_texture *t, const uint32_t *cell, const uint32_t *noise,
                     int32_t *level_q8, uint32_t cells);

@@ -3,26 +3,45 @@
 #ifndef LM_TONE_H
 #define LM_TONE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/* The table's steps of 1/16 dB, from -80 dB to +48 dB. */
-enum { LM_TONE_STEPS = 2048, LM_TONE_STEP_Q8 = 16, LM_TONE_LOWEST_Q8 = -80 * 256 };
+/* Steps that there is room for, and how many of them a line of the curve has. */
+enum {
+    LM_TONE_LINES = 64,
+    LM_TONE_PLACES_LOG2 = 5,
+    LM_TONE_PLACES = 1 << LM_TONE_PLACES_LOG2,
+    LM_TONE_STEPS = LM_TONE_LINES * LM_TONE_PLACES
+};
 
 struct lm_tone_config {
-    int16_t black_q8, white_q8; /* levels in 1/256 dB; white at least 1 dB above black */
+    int16_t black_q8, white_q8; /* levels in 1/256 dB; white 1 to 255 dB above black */
     uint16_t gamma_q8;          /* exponent, 26..1024 (0.1..4.0) */
 };
 
-/* Grey 0..255 of each step; wide entries, because wide loads are what vector machines gather. */
+/* The window from black, step 0, to white, step 256..2047; from 1024 on where it is 4 dB or wider.
+ */
 struct lm_tone {
+    int16_t black_q8, white_q8;
+    uint8_t step_log2; /* 0..5: a step is 2^step_log2 of 1/256 dB */
+    bool has_lines;
+    /* Grey of each step up to white; wide entries, because wide loads are what vector machines
+     * gather. */
     int32_t grey[LM_TONE_STEPS];
+    /* The same by straight lines, for machines that look up 64 bytes at once: step 32 n + k has
+     * (base[n] + k slope[n]) / 256, rounded down. Rows: the two bytes of base[n] - 32 (n mod 8)
+     * slope[n], modulo 2^16; slope[n]. For windows of 4 dB and more and gammas of 1 to 3: other
+     * curves are too steep at one of their ends. */
+    uint8_t lines[3][LM_TONE_LINES];
 };
 
-/* LM_OK, or LM_ERR_RANGE with *t unchanged. Cost: below 200 k instructions; done when a knob turns,
- * not each line. */
+/* LM_OK, or LM_ERR_RANGE with *t unchanged. Cost: below 25 k instructions, without lines below 200
+ * k; done when a knob turns, not each line. */
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config);
 
-/* Grey of a line's levels. Cost: see docs/benchmarks.md. */
+/* Grey of a line's levels: 0 at black and below, 255 at white and above, never darker for more.
+ * Where gamma is 1 or more, within 1 of round(255 v^gamma), v the level's place in the window;
+ * below, within 1/2 of what the nearest step has. Cost: see docs/benchmarks.md. */
 void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *grey, uint32_t cells);
 
 #endif

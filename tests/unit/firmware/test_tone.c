@@ -1,5 +1,6 @@
 /* From level to grey: the equations of docs/DESIGN.md, "Speckle, noise, tone", in double precision.
  */
+#include "hs/rng.h"
 #include "lm/radar.h"
 #include "lm/status.h"
 #include "lm/tone.h"
@@ -9,13 +10,15 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
 static const struct lm_tone_config configs[] = {
-    {-40 * 256, 6 * 256, 384},   {-40 * 256, 8 * 256, 256},       {-60 * 256, -59 * 256, 256},
-    {-100 * 256, 60 * 256, 128}, {-20 * 256 + 7, 11 * 256, 1024}, {-70 * 256, 40 * 256, 26},
+    {-42 * 256, 6 * 256, 384},   {-40 * 256, 8 * 256, 256},       {-60 * 256, -59 * 256, 256},
+    {-100 * 256, 60 * 256, 300}, {-20 * 256 + 7, 11 * 256, 1024}, {-128 * 256, 127 * 256, 768},
+    {-100 * 256, 60 * 256, 128}, {-70 * 256, 40 * 256, 26},
 };
 enum { CONFIGS = sizeof configs / sizeof configs[0] };
 
@@ -26,22 +29,87 @@ static uint8_t grey_of(const struct lm_tone *tone, int32_t level_q8)
     return grey;
 }
 
-static double exact_grey(const struct lm_tone_config *c, int32_t level_q8)
+static double exact_grey(const struct lm_tone_config *c, double level_q8)
 {
-    const double step = fmin(fmax(floor(16 * (level_q8 / 256.0 + 80)), 0), 2047);
-    const double middle = (step + 0.5) / 16 - 80;
-    const double v = (middle * 256 - c->black_q8) / (c->white_q8 - c->black_q8);
+    const double v = (level_q8 - c->black_q8) / (c->white_q8 - c->black_q8);
     return 255 * pow(fmin(fmax(v, 0), 1), c->gamma_q8 / 256.0);
 }
 
-static void every_level_gets_the_grey_of_the_equations(void **state)
+/* Errors of the levels within a window. */
+struct errors {
+    double worst;
+    int levels, beyond_0_6, beyond_1_grey;
+};
+
+static struct errors errors_of(const struct lm_tone_config *c)
+{
+    struct lm_tone tone;
+    struct errors e = {0};
+    assert_int_equal(lm_tone_set(&tone, c), LM_OK);
+    for (int32_t level_q8 = c->black_q8; level_q8 <= c->white_q8; level_q8++) {
+        const double exact = exact_grey(c, level_q8);
+        const int grey = grey_of(&tone, level_q8);
+        e.worst = fmax(e.worst, fabs(grey - exact));
+        e.levels++;
+        e.beyond_0_6 += fabs(grey - exact) > 0.6;
+        e.beyond_1_grey += labs(grey - lround(exact)) > 1;
+    }
+    return e;
+}
+
+static void tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within_0_6(void **state)
 {
     (void)state;
-    for (int n = 0; n < CONFIGS; n++) {
+    const struct lm_radar *radar = &lm_radar_default;
+    const struct lm_tone_config *of_table[] = {&radar->sar.tone, &radar->mode[LM_SECTOR_GM].tone,
+                                               &radar->mode[LM_SECTOR_GMT].tone,
+                                               &radar->mode[LM_SECTOR_SEA].tone};
+    for (int n = 0; n < 4; n++) {
+        const struct errors e = errors_of(of_table[n]);
+        print_message("# gamma %.2f: worst %.3f, %.2f %% of %d levels beyond 0.6\n",
+                      of_table[n]->gamma_q8 / 256.0, e.worst, 100.0 * e.beyond_0_6 / e.levels,
+                      e.levels);
+        assert_true(e.worst < 0.7);
+        assert_true(e.beyond_0_6 * 200 < e.levels);
+        assert_int_equal(e.beyond_1_grey, 0);
+    }
+}
+
+/* Windows of any width: the steps of those just too wide for twice as many are the largest. */
+static void from_gamma_1_on_every_level_is_within_a_grey(void **state)
+{
+    (void)state;
+    struct hs_rng rng;
+    double worst = 0;
+    hs_rng_seed(&rng, 1);
+    for (int n = 0; n < 400; n++) {
+        const int32_t half = 65504 / 2 >> hs_rng_below(&rng, 7);
+        const int32_t more = (int32_t)hs_rng_below(&rng, n % 2 ? (uint32_t)half : 20);
+        const int32_t span_q8 = half + 1 + more < 255 * 256 ? half + 1 + more : 255 * 256;
+        const int32_t black_q8 = (int32_t)hs_rng_below(&rng, (uint32_t)(65536 - span_q8)) - 0x8000;
+        const struct lm_tone_config config = {
+            (int16_t)black_q8, (int16_t)(black_q8 + span_q8),
+            (uint16_t)(256 + (n % 3 == 0 ? 512 : hs_rng_below(&rng, 769)))};
+        const struct errors e = errors_of(&config);
+        worst = fmax(worst, e.worst);
+        assert_int_equal(e.beyond_1_grey, 0);
+    }
+    print_message("# worst %.3f\n", worst);
+    assert_true(worst < 1.3);
+}
+
+static void below_gamma_1_a_level_gets_the_grey_of_the_nearest_step(void **state)
+{
+    (void)state;
+    for (int n = CONFIGS - 2; n < CONFIGS; n++) {
+        const struct lm_tone_config *c = &configs[n];
         struct lm_tone tone;
-        assert_int_equal(lm_tone_set(&tone, &configs[n]), LM_OK);
-        for (int32_t level = -0x8000; level < 0x8000; level++) {
-            assert_true(fabs(grey_of(&tone, level) - exact_grey(&configs[n], level)) <= 0.501);
+        assert_int_equal(lm_tone_set(&tone, c), LM_OK);
+        const double step_q8 = 1 << tone.step_log2;
+        for (int32_t level = c->black_q8; level < c->white_q8 - step_q8; level++) {
+            const double step = floor((level - c->black_q8) / step_q8 + 0.5);
+            const double exact = exact_grey(c, c->black_q8 + step * step_q8);
+            assert_true(fabs(grey_of(&tone, level) - exact) <= 0.501);
         }
     }
 }
@@ -49,16 +117,18 @@ static void every_level_gets_the_grey_of_the_equations(void **state)
 static void black_and_below_is_black_white_and_above_is_white(void **state)
 {
     (void)state;
-    const struct lm_tone_config *c = &configs[0];
-    struct lm_tone tone;
-    assert_int_equal(lm_tone_set(&tone, c), LM_OK);
-    assert_int_equal(grey_of(&tone, c->black_q8), 0);
-    assert_int_equal(grey_of(&tone, c->black_q8 - 1), 0);
-    assert_int_equal(grey_of(&tone, -1000 * 256), 0);
-    assert_int_equal(grey_of(&tone, c->white_q8), 255);
-    assert_int_equal(grey_of(&tone, c->white_q8 + 1), 255);
-    assert_int_equal(grey_of(&tone, 1000 * 256), 255);
-    assert_true(grey_of(&tone, c->white_q8 - 64) < 255);
+    for (int n = 0; n < CONFIGS; n++) {
+        const struct lm_tone_config *c = &configs[n];
+        struct lm_tone tone;
+        assert_int_equal(lm_tone_set(&tone, c), LM_OK);
+        assert_int_equal(grey_of(&tone, c->black_q8), 0);
+        assert_int_equal(grey_of(&tone, c->black_q8 - 1), 0);
+        assert_int_equal(grey_of(&tone, -1000 * 256), 0);
+        assert_int_equal(grey_of(&tone, c->white_q8), 255);
+        assert_int_equal(grey_of(&tone, c->white_q8 + 1), 255);
+        assert_int_equal(grey_of(&tone, 1000 * 256), 255);
+        assert_true(grey_of(&tone, (c->black_q8 + c->white_q8) / 2) < 255);
+    }
 }
 
 static void a_higher_level_is_never_darker(void **state)
@@ -76,8 +146,9 @@ static void a_higher_level_is_never_darker(void **state)
 static void a_window_that_makes_no_sense_is_refused_and_changes_nothing(void **state)
 {
     (void)state;
-    static const struct lm_tone_config refused[] = {{0, 255, 256}, {0, 0, 256},     {256, 0, 256},
-                                                    {0, 2560, 25}, {0, 2560, 1025}, {0, 2560, 0}};
+    static const struct lm_tone_config refused[] = {
+        {0, 255, 256}, {-0x8000, 0x7f01, 256}, {0, 0, 256}, {256, 0, 256},
+        {0, 2560, 25}, {0, 2560, 1025},        {0, 2560, 0}};
     struct lm_tone tone, before;
     assert_int_equal(lm_tone_set(&tone, &configs[0]), LM_OK);
     before = tone;
@@ -87,6 +158,7 @@ static void a_window_that_makes_no_sense_is_refused_and_changes_nothing(void **s
     }
     assert_int_equal(lm_tone_set(&tone, &(struct lm_tone_config){0, 256, 26}), LM_OK);
     assert_int_equal(lm_tone_set(&tone, &(struct lm_tone_config){0, 256, 1024}), LM_OK);
+    assert_int_equal(lm_tone_set(&tone, &(struct lm_tone_config){-0x8000, 0x7f00, 256}), LM_OK);
 }
 
 static void as_many_greys_are_written_as_were_asked_for(void **state)
@@ -111,7 +183,9 @@ static void as_many_greys_are_written_as_were_asked_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_level_gets_the_grey_of_the_equations),
+        cmocka_unit_test(tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within_0_6),
+        cmocka_unit_test(from_gamma_1_on_every_level_is_within_a_grey),
+        cmocka_unit_test(below_gamma_1_a_level_gets_the_grey_of_the_nearest_step),
         cmocka_unit_test(black_and_below_is_black_white_and_above_is_white),
         cmocka_unit_test(a_higher_level_is_never_darker),
         cmocka_unit_test(a_window_that_makes_no_sense_is_refused_and_changes_nothing),

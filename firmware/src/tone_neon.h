@@ -1,0 +1,67 @@
+/* The grey of sixteen levels at a time, by the vectors of 64-bit Arm, to the bit as in tone.c: the
+ * lines of the curve stay in registers. Returns how many cells it did, which is none on other
+ * machines and where the curve has no lines. */
+#ifndef TONE_NEON_H
+#define TONE_NEON_H
+
+#include <stddef.h>
+
+#include "fx/neon.h"
+#include "lm/tone.h"
+
+#if FX_HAS_NEON
+
+/* A window, eight times, and where its step 0 begins; what makes steps of the levels above that. */
+struct tone_window {
+    int16x8_t black_q8, white_q8, start_q8, minus_step_log2;
+};
+
+/* Steps of eight levels. What does not fit 16 bits is beyond the window; above its start, 16 bits
+ * without a sign hold all of it. */
+static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *level_q8)
+{
+    const int16x8_t level_of_16 =
+        vqmovn_high_s32(vqmovn_s32(vld1q_s32(level_q8)), vld1q_s32(level_q8 + 4));
+    const int16x8_t within = vminq_s16(vmaxq_s16(level_of_16, w->black_q8), w->white_q8);
+    return vshlq_u16(vreinterpretq_u16_s16(vsubq_s16(within, w->start_q8)), w->minus_step_log2);
+}
+
+static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, const int32_t *level_q8,
+                                 uint8_t *restrict grey, uint32_t cells)
+{
+    const struct tone_window window = {vdupq_n_s16(t->black_q8), vdupq_n_s16(t->white_q8),
+                                       vdupq_n_s16((int16_t)start_q8),
+                                       vdupq_n_s16((int16_t)-t->step_log2)};
+    const uint8x16x4_t lows = vld1q_u8_x4(t->lines[0]), highs = vld1q_u8_x4(t->lines[1]);
+    const uint8x16x4_t slopes = vld1q_u8_x4(t->lines[2]);
+    const uint32_t whole = t->has_lines ? cells & ~15u : 0;
+    for (size_t i = 0; i < whole; i += 16) {
+        const uint16x8_t first = neon_step(&window, level_q8 + i);
+        const uint16x8_t second = neon_step(&window, level_q8 + i + 8);
+        const uint8x16_t line =
+            vshrn_high_n_u16(vshrn_n_u16(first, LM_TONE_PLACES_LOG2), second, LM_TONE_PLACES_LOG2);
+        const uint8x16_t place =
+            vuzp1q_u8(vreinterpretq_u8_u16(first), vreinterpretq_u8_u16(second));
+        const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
+        const uint8x16_t slope = vqtbl4q_u8(slopes, line);
+        const uint16x8_t first_q8 = vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)),
+                                             vget_low_u8(slope), vget_low_u8(place));
+        const uint16x8_t second_q8 =
+            vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), slope, place);
+        vst1q_u8(grey + i,
+                 vuzp2q_u8(vreinterpretq_u8_u16(first_q8), vreinterpretq_u8_u16(second_q8)));
+    }
+    return whole;
+}
+
+#else
+
+static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, const int32_t *level_q8,
+                                 uint8_t *grey, uint32_t cells)
+{
+    return (void)t, (void)start_q8, (void)level_q8, (void)grey, (void)cells, 0;
+}
+
+#endif
+
+#endif
