@@ -174,6 +174,15 @@ void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells)
     p->longitude_step += n * p->longitude_bend;
 }
 
+static struct lm_ground_arch arch_of(fx_bam_t left, fx_bam_t middle, fx_bam_t right)
+{
+    return (struct lm_ground_arch){
+        .middle = middle,
+        .twice_slope = (int32_t)(right - left),
+        .bend = (int32_t)(right - middle) + (int64_t)(int32_t)(left - middle),
+    };
+}
+
 void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent)
 {
@@ -182,22 +191,24 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_ba
     for (int row = 0; row < 3; row++) {
         const int32_t along_q8 =
             extent->near_q8 + (int32_t)((int64_t)(extent->far_q8 - extent->near_q8) * row / 2);
+        struct lm_place q[3];
         for (int column = 0; column < 3; column++) {
             const int32_t across_q8 = (column - 1) * extent->side_q8;
-            p->points[row][column] = lm_geo_direct(&o, azimuth + fx_atan2(across_q8, along_q8),
-                                                   fx_hypot_u32(across_q8, along_q8));
+            q[column] = lm_geo_direct(&o, azimuth + fx_atan2(across_q8, along_q8),
+                                      fx_hypot_u32(across_q8, along_q8));
         }
+        p->row[row].latitude = arch_of(q[0].latitude, q[1].latitude, q[2].latitude);
+        p->row[row].longitude = arch_of(q[0].longitude, q[1].longitude, q[2].longitude);
     }
 }
 
-/* The parabola through three values at -1, 0, 1, at x in Q16, |x| up to 64. */
-static uint32_t parabola(uint32_t left, uint32_t middle, uint32_t right, int32_t x_q16)
+/* At x in Q16 from the middle, the edges being 1 away; |x| up to 64. */
+static inline fx_bam_t arch_at(const struct lm_ground_arch *a, int32_t x_q16)
 {
-    const int64_t odd = (int32_t)(right - left); /* twice the slope */
-    const int64_t even = (int32_t)(right - middle) + (int64_t)(int32_t)(left - middle);
-    /* |odd| < 2^31, |even| < 2^32 and |x| <= 2^22: |bent| <= 2^38, and the last product < 2^61. */
-    const int64_t bent = even * x_q16 >> 16;
-    return middle + (uint32_t)(((odd + bent) * x_q16 + (1 << 16)) >> 17);
+    /* Twice the slope is below 2^31, the bend below 2^32 and |x| <= 2^22: |bent| <= 2^38, and the
+     * last product < 2^61. */
+    const int64_t bent = a->bend * x_q16 >> 16;
+    return a->middle + (uint32_t)(((a->twice_slope + bent) * x_q16 + (1 << 16)) >> 17);
 }
 
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
@@ -205,10 +216,17 @@ void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32
 {
     const int32_t x_q16 = (int32_t)(((int64_t)(2 * line + 1) << 16) / lines) - (1 << 16);
     for (int row = 0; row < 3; row++) {
-        const struct lm_place *q = p->points[row];
-        points[row].latitude = parabola(q[0].latitude, q[1].latitude, q[2].latitude, x_q16);
-        points[row].longitude = parabola(q[0].longitude, q[1].longitude, q[2].longitude, x_q16);
+        points[row].latitude = arch_at(&p->row[row].latitude, x_q16);
+        points[row].longitude = arch_at(&p->row[row].longitude, x_q16);
     }
+}
+
+void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_patch *p,
+                          uint32_t line, uint32_t lines, uint32_t cells)
+{
+    struct lm_place points[3];
+    lm_ground_patch_line(p, line, lines, points);
+    lm_ground_path_fit(path, points, cells);
 }
 
 void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance_q8,

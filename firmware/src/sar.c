@@ -200,35 +200,28 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)
     return (s->radar->sar.cells - s->line) * s->line_us;
 }
 
-/* The path of a line over the guard cells and the patch, or over the run-up before it. */
-static struct lm_ground_path path_over(const struct lm_ground_patch *ground, uint32_t line,
-                                       uint32_t lines, uint32_t cells)
+/* The path of a line over the guard cells and the patch. */
+static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t line)
 {
-    struct lm_place points[3];
-    struct lm_ground_path path;
-    lm_ground_patch_line(ground, line, lines, points);
-    lm_ground_path_fit(&path, points, cells);
-    return path;
+    lm_ground_patch_path(path, &s->ground, line, s->radar->sar.cells, s->grid.cells);
 }
 
-static struct lm_ground_path patch_path(const struct lm_sar *s, uint32_t line)
+/* The path over the run-up before them. */
+static void set_runup_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t number)
 {
-    return path_over(&s->ground, line, s->radar->sar.cells, s->grid.cells);
-}
-
-static struct lm_ground_path runup_path(const struct lm_sar *s, uint32_t number)
-{
-    return path_over(&s->runup, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells, LM_SAR_RUNUP);
+    lm_ground_patch_path(path, &s->runup, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells,
+                         LM_SAR_RUNUP);
 }
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
 {
     const uint32_t first = line / LM_SAR_RUNUP_LINES;
-    const struct lm_ground_path path = patch_path(s, line);
+    struct lm_ground_path path;
+    set_path(&path, s, line);
     lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
     for (uint32_t number = first; number <= first + 1; number++) {
-        const struct lm_ground_path runup = runup_path(s, number);
-        lm_scan_line_prefetch(tiles, &s->runup_sampling, &runup, LM_SAR_RUNUP);
+        set_runup_path(&path, s, number);
+        lm_scan_line_prefetch(tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
     }
 }
 
@@ -287,7 +280,8 @@ static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
 static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache *tiles,
                                     uint32_t number, struct lm_line *line)
 {
-    const struct lm_ground_path path = runup_path(s, number);
+    struct lm_ground_path path;
+    set_runup_path(&path, s, number);
     lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
     return lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
 }
@@ -317,7 +311,8 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
 {
     const struct lm_line_setup setup = {
         .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
-    const struct lm_ground_path path = patch_path(s, number);
+    struct lm_ground_path path;
+    set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);
     lm_line_trace(line, tiles, &setup, &path, s->horizon);
 }
@@ -417,17 +412,25 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_q8)
     return smeared_q8;
 }
 
+/* Samples up to `end`, at most so many. */
+static void sample_some(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t end,
+                        uint32_t at_most, struct lm_line *line)
+{
+    if (!s->has_points) {
+        find_points(s, tiles);
+    }
+    if (s->judged == s->points.count || judge_points(s, tiles, at_most, line)) {
+        sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
+    }
+}
+
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line)
 {
     const uint32_t end = fx_min_u32(s->line + 1 + LM_SAR_AHEAD, s->radar->sar.cells);
-    if (!s->has_points) {
-        find_points(s, tiles);
+    if (s->sampled < end) {
+        sample_some(s, tiles, end, at_most, line);
     }
-    if (!judge_points(s, tiles, at_most, line)) {
-        return false;
-    }
-    sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
     return s->sampled >= end;
 }
 
