@@ -183,13 +183,14 @@ static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot,
 
 void lm_patch_points_clear(struct lm_patch_points *p)
 {
-    memset(p, 0, sizeof *p);
+    p->count = p->target_count = 0;
+    memset(p->on_line, 0, sizeof p->on_line);
 }
 
 void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near *near,
                          const struct lm_patch_geometry *g)
 {
-    lm_patch_points_clear(p);
+    memset(p, 0, sizeof *p);
     for (uint32_t i = 0; i < near->count; i++) {
         const struct lm_target_item *item = &near->item[i];
         const struct lm_chip_slot *slot = lm_chip_of(item);
