@@ -46,7 +46,7 @@ struct lm_patch_point {
 /* A target near the patch. Its bodies add as phasors. */
 struct lm_patch_target {
     struct lm_smear smear;
-    uint32_t begin, end; /* its points */
+    uint32_t begin, end;       /* its points */
     bool has_points, has_chip; /* to be spread; in their place or beside them */
 };
 
@@ -89,9 +89,9 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
                           uint32_t bits, uint32_t cells);
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below `least_q8`
- * is left out. Cost: 200 instructions for a point that reaches the line and 25 for each cell that it
- * reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves, and for as many more
- * cells as its response is stretched. */
+ * is left out. Cost: 200 instructions for a point that reaches the line and 25 for each cell that
+ * it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves, and for as many
+ * more cells as its response is stretched. */
 void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
                          const struct lm_patch_geometry *g, int32_t *level_q8);
 
