@@ -427,6 +427,15 @@ static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx
     lm_footprint_levels(&s->footprint, log2, line->sight.level_q8, s->grid.cells);
 }
 
+/* Put the origin where the aircraft is by now. */
+static void follow(struct lm_sector *s)
+{
+    const struct lm_place place = s->platform.place, old = s->origin.place;
+    if (place.latitude != old.latitude || place.longitude != old.longitude) {
+        lm_geo_set_origin(&s->origin, place);
+    }
+}
+
 /* What lies about one azimuth, into its place in the beam's ring. */
 static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
                         struct lm_line *line)
@@ -434,6 +443,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
     const struct lm_line_setup setup = {
         .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
+    follow(s);
     trace_footprint(s, tiles, azimuth, &setup, line);
     lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
@@ -459,17 +469,8 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
-/* The whole sector is seen from where the aircraft is; a window from where its sweep began. */
-static void follow(struct lm_sector *s, struct lm_place place)
-{
-    const struct lm_place old = s->platform.place;
-    if (place.latitude != old.latitude || place.longitude != old.longitude) {
-        s->platform.place = place;
-        lm_geo_set_origin(&s->origin, place);
-    }
-}
-
-/* Begin the sweep if that is due, and look, once, where the next line is. */
+/* Begin the sweep if that is due, and look, once, where the next line is. The whole sector is seen
+ * from where the aircraft is; a window from where its sweep began. */
 static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
                 const struct lm_platform *platform)
 {
@@ -478,7 +479,7 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     if (s->half_m == 0) {
         s->up = platform->heading;
-        follow(s, platform->place);
+        s->platform.place = platform->place;
     }
     if (!s->is_aimed) {
         const int32_t azimuth = middle_of(s, s->line);

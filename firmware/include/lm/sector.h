@@ -58,7 +58,7 @@ struct lm_sector {
     uint32_t line;               /* next to be drawn, 0 at the left edge */
     uint32_t sweep;              /* sweeps begun, from the epoch given: the epoch of the noise */
     struct lm_platform platform; /* as it was when the sweep began; in NORM its place follows */
-    struct lm_geo_origin origin; /* platform.place */
+    struct lm_geo_origin origin; /* platform.place, as of the sample taken last */
     fx_bam_t up;    /* azimuth from north of the sector's middle: follows the nose in NORM */
     int32_t left;   /* the sweep's left edge from the middle, signed BAM */
     fx_bam_t width; /* of a line */
