@@ -9,10 +9,11 @@
 #include "lm/horizon.h"
 
 enum {
-    /* Tiles are asked for this many display lines ahead of the beam, and for every fourth line
-     * only: between two of those lie nine cells at the most, where a tile has 64. */
-    LINES_AHEAD = 24,
-    LINES_APART = 4,
+    /* Tiles are asked for this many display lines ahead of the beam, and for every eighth line
+     * only: between two of those lie 17 cells at the most, where a tile has 64; one of which they
+     * leave out no more than a corner is asked for when it is missed. */
+    LINES_AHEAD = 32,
+    LINES_APART = 8,
     CHIP_SIDE_MOST = 32, /* pixels of a target's chip: what one line may cost */
     WINDOW_LINES_MIN = 32,
     WINDOW_LINES_ENOUGH = 256,  /* where the beam does not ask for more */
