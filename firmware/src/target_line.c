@@ -81,7 +81,6 @@ static bool may_meet(const struct cover *c, const struct lm_target *t,
 struct spot {
     uint32_t range_q8;     /* ground range from the antenna, metres * 256 */
     fx_bam_t azimuth;      /* from the antenna, where it appears */
-    fx_bam_t back;         /* from the target to the antenna */
     fx_bam_t true_azimuth; /* where it is */
     int32_t gain_q8;       /* of the beam, dB: 0 or less */
 };
@@ -111,19 +110,36 @@ static bool displace(const struct lm_target_line *line, int32_t closing_mm_s, st
     return true;
 }
 
+/* The direction from the target to the antenna. */
+static fx_bam_t back_of(const struct lm_target_line *line, const struct lm_target_item *item)
+{
+    uint32_t distance_q8;
+    fx_bam_t back;
+    lm_geo_inverse(item->pose.place, line->place, &distance_q8, &back);
+    return back;
+}
+
+/* How fast the target comes nearer, if anything depends on that. */
+static int32_t closing_mm_s(const struct lm_target_line *line, const struct lm_target *t,
+                            const struct lm_target_item *item)
+{
+    const bool is_asked_for = line->is_doppler || line->gate_mm_s[1] != 0;
+    return is_asked_for && t->speed_mm_s != 0
+               ? lm_closing_mm_s(t->speed_mm_s, item->pose.heading, back_of(line, item))
+               : 0;
+}
+
 static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
                       const struct lm_target_item *item, struct spot *spot)
 {
-    uint32_t distance_q8;
-    if (!lm_target_locate(line->place, item->pose.place, &spot->range_q8, &spot->azimuth)) {
+    const int32_t closing = closing_mm_s(line, t, item);
+    if (!is_in_gate(line, closing) ||
+        !lm_target_locate(line->place, item->pose.place, &spot->range_q8, &spot->azimuth)) {
         return false;
     }
     spot->true_azimuth = spot->azimuth;
-    lm_geo_inverse(item->pose.place, line->place, &distance_q8, &spot->back);
     spot->gain_q8 = 0;
-    const int32_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, item->pose.heading, spot->back);
-    return is_in_gate(line, closing_mm_s) &&
-           (!line->is_doppler || displace(line, closing_mm_s, spot));
+    return !line->is_doppler || displace(line, closing, spot);
 }
 
 /* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
@@ -166,6 +182,15 @@ static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 static struct lm_target_heights heights_of(const struct lm_target_line *line)
 {
     return (struct lm_target_heights){line->height_q10, line->reference_q10};
+}
+
+static struct lm_target_view view_of(const struct lm_target_line *line,
+                                     const struct lm_target_item *item, uint32_t range_q8)
+{
+    const struct lm_target_heights h = heights_of(line);
+    struct lm_target_view v;
+    lm_target_view_of(&v, item, back_of(line, item), range_q8, &h);
+    return v;
 }
 
 /* 10 log10 of the cell's area; the line is as wide as its arc. */
@@ -212,13 +237,11 @@ static void make_point_echo(struct echo *e, const struct lm_target_line *line,
                             const struct lm_target_item *item, const struct spot *spot)
 {
     const struct lm_target *t = &set->items[item->index];
-    const struct lm_target_heights h = heights_of(line);
-    struct lm_target_view v;
     e->count = 1;
     e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, t))};
     e->cell[0] = lit_cell(line, sight, item, spot, e->returns[0].up_mm);
     if (e->cell[0] != NO_CELL) {
-        lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
+        const struct lm_target_view v = view_of(line, item, spot->range_q8);
         e->returns[0].rcs_q8 = lm_target_whole_q8(set, t, &v, line->scan, line->pulse) +
                                share_q8(line, spot) + spot->gain_q8;
     }
@@ -228,9 +251,7 @@ static void make_bodies_echo(struct echo *e, const struct lm_target_line *line,
                              const struct lm_target_sight *sight, const struct lm_target *t,
                              const struct lm_target_item *item, const struct spot *spot)
 {
-    const struct lm_target_heights h = heights_of(line);
-    struct lm_target_view v;
-    lm_target_view_of(&v, item, spot->back, spot->range_q8, &h);
+    const struct lm_target_view v = view_of(line, item, spot->range_q8);
     e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     for (uint32_t i = 0; i < e->count; i++) {
         const struct spot s = beside(spot, &e->returns[i]);

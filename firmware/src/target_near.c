@@ -4,11 +4,6 @@
 #include "fx/trig.h"
 #include "lm/scan_line.h"
 
-/* How well the place of a target is known to whoever looks for it: lm_geo_inverse and a plane are
- * right within a 64th of the distance up to 88 degrees of latitude, and so is a plane within 16 m
- * for the way that the antenna has gone since. */
-enum { ROUGH_PART = 64, ROUGH_Q8 = 16 * 256 };
-
 const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
                                                const struct lm_target *t)
 {
@@ -30,6 +25,15 @@ static int32_t elevation_q6(const struct lm_target *t, struct lm_place place,
                                                        scene->tiles->db->mean_elevation_q6 * 16)
                                    : 0;
     return t->elevation_q6 + ground_q10 / 16;
+}
+
+/* How well the place of a target is known to whoever looks for it: lm_geo_inverse and a plane are
+ * right within this part of the distance, up to 75 degrees of latitude and then up to 88; and so
+ * is a plane, within 16 m, for the way that the antenna has gone since. */
+static uint32_t rough_q8(struct lm_place from, uint32_t distance_q8)
+{
+    const bool is_polar = fx_abs_u32((int32_t)from.latitude) > FX_BAM_DEG(75);
+    return distance_q8 / (is_polar ? 64 : 256) + 16 * 256;
 }
 
 /* A circle that holds the target, metres * 256: bodies by both of their axes together, below 2^19
@@ -70,7 +74,7 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set 
         /* Within 2^26, by sines of 2^15. */
         item.north_q8 = (int32_t)((int64_t)item.distance_q8 * fx_cos_q15(azimuth) >> 15);
         item.east_q8 = (int32_t)((int64_t)item.distance_q8 * fx_sin_q15(azimuth) >> 15);
-        item.slack_q8 = extent_q8(set, t) + item.distance_q8 / ROUGH_PART + ROUGH_Q8;
+        item.slack_q8 = extent_q8(set, t) + rough_q8(scene->place, item.distance_q8);
         item.elevation_q6 = elevation_q6(t, item.pose.place, scene);
         near->item[near->count++] = item;
     }
