@@ -1,5 +1,6 @@
 #include "lm/target_line.h"
 
+#include "fx/bits.h"
 #include "fx/log.h"
 #include "fx/root.h"
 #include "fx/sat.h"
@@ -64,16 +65,29 @@ static struct cover cover_of(const struct lm_target_line *line, struct lm_place 
 }
 
 /* Can the line meet the target at all? Places are within 2^27, by sines of 2^15. */
-static bool may_meet(const struct cover *c, const struct lm_target *t,
-                     const struct lm_target_item *item)
+static inline bool may_meet(const struct cover *c, const struct lm_target_item *item)
 {
-    const struct wedge *w = t->speed_mm_s != 0 ? &c->mover : &c->still;
+    const struct wedge *w = item->is_mover ? &c->mover : &c->still;
     const int64_t north_q8 = item->north_q8 - c->north_q8, east_q8 = item->east_q8 - c->east_q8;
     const int64_t slack_q23 = (int64_t)item->slack_q8 << 15;
-    return item->distance_q8 <= c->end_q8 + item->slack_q8 &&
-           item->distance_q8 + item->slack_q8 >= c->begin_q8 &&
-           north_q8 * w->left_sin_q15 - east_q8 * w->left_cos_q15 <= slack_q23 &&
-           east_q8 * w->right_cos_q15 - north_q8 * w->right_sin_q15 <= slack_q23;
+    return north_q8 * w->left_sin_q15 - east_q8 * w->left_cos_q15 <= slack_q23 &&
+           east_q8 * w->right_cos_q15 - north_q8 * w->right_sin_q15 <= slack_q23 &&
+           item->distance_q8 <= c->end_q8 + item->slack_q8 &&
+           item->distance_q8 + item->slack_q8 >= c->begin_q8;
+}
+
+_Static_assert(LM_TARGETS_NEAR <= 32, "a bit for each");
+
+/* The targets that the line may meet: bit i for item i. It meets few, and most lines none, so that
+ * this loop is most of what they cost. */
+static uint32_t find_near(const struct lm_targets_near *near, const struct lm_target_line *line)
+{
+    const struct cover cover = cover_of(line, near->place);
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < near->count; i++) {
+        found |= (uint32_t)may_meet(&cover, &near->item[i]) << i;
+    }
+    return found;
 }
 
 /* ---- where a target is from the line ---- */
@@ -331,12 +345,11 @@ uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_targe
                        const struct lm_target_sight *sight, int32_t *level_q8)
 {
     uint32_t cells = 0;
-    const struct cover cover = cover_of(line, near->place);
-    for (uint32_t i = 0; i < near->count; i++) {
-        const struct lm_target_item *item = &near->item[i];
+    for (uint32_t left = find_near(near, line); left != 0; left &= left - 1) {
+        const struct lm_target_item *item = &near->item[fx_ctz64(left)];
         const struct lm_target *t = &near->set.items[item->index];
         struct spot spot;
-        if (may_meet(&cover, t, item) && find_spot(line, t, item, &spot)) {
+        if (find_spot(line, t, item, &spot)) {
             cells += add_target(near, item, line, sight, &spot, level_q8);
         }
     }

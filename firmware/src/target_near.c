@@ -61,6 +61,7 @@ void lm_targets_select(struct lm_targets_near *near, const struct lm_target_set 
     for (uint32_t i = 0; i < set->count; i++) {
         const struct lm_target *t = &set->items[i];
         struct lm_target_item item = {.index = (uint16_t)i,
+                                      .is_mover = t->speed_mm_s != 0,
                                       .pose = lm_target_pose(t, scene->time_us)};
         fx_bam_t azimuth;
         lm_geo_inverse(scene->place, item.pose.place, &item.distance_q8, &azimuth);

@@ -37,7 +37,7 @@ struct lm_target_sight {
  * that a scatterer lies between share its power, so that their mean stands where it is. A scatterer
  * below the horizon of the cells before its own is hidden; `sight` NULL hides nothing; a mover is
  * looked for where it appears. `targets` are checked records, `near` was chosen for this sweep or
- * patch. Returns how many times a cell was given something. Cost: 250 instructions, 27 for each
+ * patch. Returns how many times a cell was given something. Cost: 250 instructions, 20 for each
  * target near; some 2000 and 1100 a scatterer for those that the line may touch. */
 uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_target_line *line,
                        const struct lm_target_sight *sight, int32_t *level_q8);

@@ -44,7 +44,8 @@ struct lm_targets_near {
     uint32_t count;
     uint32_t left_out; /* in reach, but there was no room */
     struct lm_target_item {
-        uint16_t index;            /* in the set */
+        uint16_t index; /* in the set */
+        bool is_mover;
         uint32_t distance_q8;      /* from the place that was given, metres * 256, */
         int32_t north_q8, east_q8; /* and which way: all of it rough, */
         uint32_t slack_q8;         /* but all of the target is within so much of there */
