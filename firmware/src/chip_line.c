@@ -139,7 +139,7 @@ static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r
         if (cell[i] != 0) {
             const uint32_t at = (uint32_t)r->first + i;
             const int32_t speckle_q8 =
-                line->noise ? lm_speckle_of_q8(&line->speckle, line->noise[at]) : 0;
+                line->raster ? lm_noise_of_q8(line->speckle.looks_log2, line->raster, at) : 0;
             const int32_t chip_q8 = slot->total_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_q8;
             level_q8[at] = fx_db_q8_sum_of_many(level_q8[at], chip_q8 + speckle_q8);
             given++;

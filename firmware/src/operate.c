@@ -108,8 +108,8 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
 
 int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command)
 {
-    const struct lm_sampling sampling = lm_sampling_for(&u->db, command->cell_mm, 0);
-    return lm_scan_elevation(&u->tiles, sampling.level, command->centre,
+    const uint8_t level = lm_scan_level(&u->db, command->cell_mm);
+    return lm_scan_elevation(&u->tiles, level, command->centre,
                              u->db.mean_elevation_q6 * 16);
 }
 
@@ -400,9 +400,9 @@ void lm_follow_view(struct lm_unit *u)
 static void read_elevation(struct lm_unit *u)
 {
     if (u->has_db) {
-        const struct lm_sampling sampling = lm_sampling_for(&u->db, ELEVATION_CELL_MM, 0);
+        const uint8_t level = lm_scan_level(&u->db, ELEVATION_CELL_MM);
         u->cursor_elevation_q10 =
-            lm_scan_elevation(&u->tiles, sampling.level, u->cursor.place, LM_NO_ELEVATION);
+            lm_scan_elevation(&u->tiles, level, u->cursor.place, LM_NO_ELEVATION);
     }
 }
 

@@ -1,6 +1,5 @@
 #include "lm/receiver.h"
 
-#include "fx/hash.h"
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
@@ -73,7 +72,7 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     r->first_q8 = slant->first_q8;
     r->cell_q8 = slant->cell_q8;
     r->cells = slant->cells;
-    r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_SPECKLE_LOOKS_LOG2_MAX);
+    r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
     set_bins(r, radar, height_q10, range);
     /* Half the speed of light is 149.896 metres a microsecond: 2514841 / 2^16 metres * 256 a
      * nanosecond. 2^32 times 2^21.3. */
@@ -129,51 +128,53 @@ static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
 }
 
 /* Signal and noise of a bin, which are added in decibels; the noise fluctuates. */
-static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_q8,
-                             uint32_t looks_log2, uint32_t hash)
+static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_q8, int32_t draw_q8)
 {
-    const int32_t slice = (int32_t)(hash >> 22);
     const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - UNIT_Q24_DB_Q8;
-    return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + lm_speckle_q8[looks_log2][slice]);
+    return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + draw_q8);
 }
 
-static void detect(const struct lm_receiver *r, int32_t rise_q8, uint32_t line, uint32_t epoch,
+static void detect(const struct lm_receiver *r, int32_t rise_q8, const struct lm_noise_line *noise,
                    const uint32_t *restrict power_q24, int32_t *restrict level_q8)
 {
-    const uint32_t looks_log2 = r->looks_log2;
-    const uint32_t done = detect_neon(r, rise_q8, line, epoch, power_q24, level_q8);
-    for (uint32_t i = done; i < r->cells; i++) {
+    int32_t draw_q8[LM_CELLS_ROOM];
+    if (FX_HAS_NEON) {
+        detect_neon(r, rise_q8, noise, power_q24, level_q8);
+        return;
+    }
+    lm_noise_draw(noise, r->looks_log2, draw_q8, r->cells);
+    for (uint32_t i = 0; i < r->cells; i++) {
         const int32_t noise_q8 = r->noise_q8[i] + rise_q8;
-        const uint32_t hash = fx_hash3(line, i, epoch);
-        level_q8[i] = sum_q8(power_q24[i], 0, noise_q8, looks_log2, hash) - r->fall_q8[i];
+        level_q8[i] = sum_q8(power_q24[i], 0, noise_q8, draw_q8[i]) - r->fall_q8[i];
     }
 }
 
 /* The same in rain, whose drops move and so fluctuate as the noise does. */
-static void detect_in_rain(const struct lm_receiver *r, const struct lm_weather *w, uint32_t line,
-                           uint32_t epoch, const uint32_t *restrict power_q24,
+static void detect_in_rain(const struct lm_receiver *r, const struct lm_weather *w,
+                           const struct lm_noise_line *noise, const uint32_t *restrict power_q24,
                            int32_t *restrict level_q8)
 {
-    const uint32_t looks_log2 = r->looks_log2;
+    int32_t draw_q8[LM_CELLS_ROOM];
     const int32_t rise_q8 = w->noise_rise_q8;
+    lm_noise_draw(noise, r->looks_log2, draw_q8, r->cells);
     for (uint32_t i = 0; i < r->cells; i++) {
         const int32_t noise_q8 = fx_db_q8_sum_of_many(r->noise_q8[i] + rise_q8, w->rain_q8[i]);
-        const uint32_t hash = fx_hash3(line, i, epoch);
-        level_q8[i] =
-            sum_q8(power_q24[i], w->loss_q8[i], noise_q8, looks_log2, hash) - r->fall_q8[i];
+        level_q8[i] = sum_q8(power_q24[i], w->loss_q8[i], noise_q8, draw_q8[i]) - r->fall_q8[i];
     }
 }
 
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
                      uint32_t sweep, uint32_t *power_q24, int32_t *level_q8)
 {
-    const uint32_t epoch = sweep ^ 0x9e3779b9u; /* not that of the ground's speckle */
+    const struct lm_raster raster = lm_raster_of(LM_NOISE_RECEIVER, line, sweep);
+    struct lm_noise_line noise;
+    lm_noise_line_set(&noise, &raster, r->cells);
     if (r->weight_q16[1] != 0) {
         smear(r, power_q24);
     }
     if (weather && weather->has_rain) {
-        detect_in_rain(r, weather, line, epoch, power_q24, level_q8);
+        detect_in_rain(r, weather, &noise, power_q24, level_q8);
     } else {
-        detect(r, weather ? weather->noise_rise_q8 : 0, line, epoch, power_q24, level_q8);
+        detect(r, weather ? weather->noise_rise_q8 : 0, &noise, power_q24, level_q8);
     }
 }

@@ -1,5 +1,5 @@
 /* Signal, noise and logarithm of eight bins at a time, by the vectors of 64-bit Arm, to the bit as
- * in receiver.c. Returns how many bins it did, which is none on other machines. */
+ * in receiver.c. Not for other machines, where it is never called. */
 #ifndef RECEIVER_NEON_H
 #define RECEIVER_NEON_H
 
@@ -7,8 +7,8 @@
 
 #include "fx/log.h"
 #include "fx/neon.h"
+#include "lm/noise.h"
 #include "lm/receiver.h"
-#include "lm/speckle.h"
 
 enum { UNIT_Q24_DB_Q8 = 24 * FX_DB_OCTAVE_Q14 / 64 }; /* what 2^24 is to 1 */
 
@@ -24,42 +24,32 @@ static inline int32x4x2_t neon_signal_q8(const uint32_t *power_q24)
                           vbslq_s32(vceqzq_u32(power.val[1]), nothing, some.val[1])}};
 }
 
-/* Four bins' noise, whose hashes have such sums. */
-static inline int32x4_t neon_noise_q8(const int32_t *table_q8, const int32_t *noise_q8,
-                                      int32x4_t rise_q8, uint32x4_t sum)
+static inline void detect_neon(const struct lm_receiver *r, int32_t rise_q8,
+                               const struct lm_noise_line *noise, const uint32_t *power_q24,
+                               int32_t *restrict level_q8)
 {
-    const uint32x4_t slice = vshrq_n_u32(fx_neon_hash3_of_sum(sum), 22);
-    return vaddq_s32(vaddq_s32(vld1q_s32(noise_q8), rise_q8),
-                     fx_neon_lookup(table_q8, vreinterpretq_s32_u32(slice)));
-}
-
-static inline uint32_t detect_neon(const struct lm_receiver *r, int32_t rise_q8, uint32_t line,
-                                   uint32_t epoch, const uint32_t *power_q24,
-                                   int32_t *restrict level_q8)
-{
-    const uint32x4_t from = {0, 1, 2, 3};
-    const uint32_t of_bin = fx_hash3_sum(0, 1, 0), whole = r->cells & ~7u;
-    const int32_t *const table_q8 = lm_speckle_q8[r->looks_log2];
+    const int16_t *const row_q8 = lm_noise_q8[r->looks_log2];
+    const uint32_t cells = r->cells;
     const int32x4_t rise = vdupq_n_s32(rise_q8);
-    uint32x4_t sum = vmlaq_n_u32(vdupq_n_u32(fx_hash3_sum(line, 0, epoch)), from, of_bin);
-    for (size_t i = 0; i < whole; i += 8) {
-        const uint32x4_t next = vaddq_u32(sum, vdupq_n_u32(4 * of_bin));
-        const int32x4x2_t noise = {{neon_noise_q8(table_q8, r->noise_q8 + i, rise, sum),
-                                    neon_noise_q8(table_q8, r->noise_q8 + i + 4, rise, next)}};
-        const int32x4x2_t both = fx_neon_db_q8_sum(neon_signal_q8(power_q24 + i), noise);
+    for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
+        const int16x8_t draw_q8 = vld1q_s16(row_q8 + noise->entry[i / LM_NOISE_BLOCK]);
+        const int32x4_t low = vaddq_s32(vld1q_s32(r->noise_q8 + i), rise);
+        const int32x4_t high = vaddq_s32(vld1q_s32(r->noise_q8 + i + 4), rise);
+        const int32x4x2_t noisy = {
+            {vaddw_s16(low, vget_low_s16(draw_q8)), vaddw_high_s16(high, draw_q8)}};
+        const int32x4x2_t both = fx_neon_db_q8_sum(neon_signal_q8(power_q24 + i), noisy);
         vst1q_s32(level_q8 + i, vsubq_s32(both.val[0], vld1q_s32(r->fall_q8 + i)));
         vst1q_s32(level_q8 + i + 4, vsubq_s32(both.val[1], vld1q_s32(r->fall_q8 + i + 4)));
-        sum = vaddq_u32(next, vdupq_n_u32(4 * of_bin));
     }
-    return whole;
 }
 
 #else
 
-static inline uint32_t detect_neon(const struct lm_receiver *r, int32_t rise_q8, uint32_t line,
-                                   uint32_t epoch, const uint32_t *power_q24, int32_t *level_q8)
+static inline void detect_neon(const struct lm_receiver *r, int32_t rise_q8,
+                               const struct lm_noise_line *noise, const uint32_t *power_q24,
+                               int32_t *restrict level_q8)
 {
-    return (void)r, (void)rise_q8, (void)line, (void)epoch, (void)power_q24, (void)level_q8, 0;
+    (void)r, (void)rise_q8, (void)noise, (void)power_q24, (void)level_q8;
 }
 
 #endif

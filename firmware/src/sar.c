@@ -1,5 +1,6 @@
 #include "lm/sar.h"
 
+#include "fx/hash.h"
 #include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
@@ -71,7 +72,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
     const struct lm_ground_extent extent = {-half_q8 - LM_SAR_GUARD * (int32_t)cell_q8, half_q8,
                                             half_q8};
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
-    s->sampling = lm_sampling_for(db, c->cell_mm, s->epoch);
+    s->level = lm_scan_level(db, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
                       cells + LM_SAR_GUARD, c->height_q6 * 16, reference_q10);
 }
@@ -87,7 +88,7 @@ static void set_runup(struct lm_sar *s, const struct lm_db *db)
     const struct lm_ground_extent extent = {near_q8, near_q8 + (int32_t)(LM_SAR_RUNUP * cell_q8),
                                             (int32_t)(s->radar->sar.cells * grid->cell_q8 / 2)};
     lm_ground_patch_set(&s->runup, c->centre, c->look_azimuth, &extent);
-    s->runup_sampling = lm_sampling_for(db, lm_mm_of_metres_q8(cell_q8), s->epoch);
+    s->runup_level = lm_scan_level(db, lm_mm_of_metres_q8(cell_q8));
     lm_range_grid_set(&s->runup_grid, &s->radar->aspect, start_q8 + cell_q8 / 2, cell_q8,
                       LM_SAR_RUNUP, grid->height_q10, grid->reference_q10);
 }
@@ -150,6 +151,14 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
 }
 
+/* Another patch has another noise, so that it does not look like a dirty glass; the same one that
+ * is made again has its own. */
+static uint32_t noise_epoch_of(const struct lm_sar_command *c, uint32_t epoch)
+{
+    const uint32_t of_place = fx_hash3(c->centre.latitude, c->centre.longitude, epoch);
+    return fx_hash3(of_place, c->look_azimuth, c->cell_mm);
+}
+
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene)
 {
@@ -172,6 +181,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->chips = scene->chips;
     s->time_us = scene->time_us;
     s->epoch = scene->epoch;
+    s->noise_epoch = noise_epoch_of(command, scene->epoch);
     s->across_mm_s = across_mm_s;
     find_weather(s, scene->environment);
     s->defocus_q8 = flight && !command->is_steady
@@ -218,10 +228,10 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     const uint32_t first = line / LM_SAR_RUNUP_LINES;
     struct lm_ground_path path;
     set_path(&path, s, line);
-    lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
+    lm_scan_line_prefetch(tiles, s->level, &path, s->grid.cells);
     for (uint32_t number = first; number <= first + 1; number++) {
         set_runup_path(&path, s, number);
-        lm_scan_line_prefetch(tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
+        lm_scan_line_prefetch(tiles, s->runup_level, &path, LM_SAR_RUNUP);
     }
 }
 
@@ -250,7 +260,7 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
                                           .reach_m = half_diagonal_m + displaced_most_m(s),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
-                                          .level = s->sampling.level};
+                                          .level = s->level};
     lm_targets_select(&s->near, s->targets, &scene);
     if (s->chips) {
         const struct lm_chip_scene chips = {.centre = s->command.centre,
@@ -282,7 +292,7 @@ static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache
 {
     struct lm_ground_path path;
     set_runup_path(&path, s, number);
-    lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SAR_RUNUP);
+    lm_scan_line_run(&line->ground, tiles, s->runup_level, &path, LM_SAR_RUNUP);
     return lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
 }
 
@@ -306,11 +316,20 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
     return s->runups[0] + rise_q40 * (int64_t)(number % LM_SAR_RUNUP_LINES) / LM_SAR_RUNUP_LINES;
 }
 
+/* The cells of a line of the patch. */
+static struct lm_raster raster_of(const struct lm_sar *s, enum lm_noise_kind kind, uint32_t number)
+{
+    return lm_raster_of(kind, number, s->noise_epoch);
+}
+
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                        struct lm_line *line)
 {
-    const struct lm_line_setup setup = {
-        .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .legend = &s->legend,
+                                        .texture = &s->texture,
+                                        .raster = raster_of(s, LM_NOISE_TEXTURE, number),
+                                        .level = s->level};
     struct lm_ground_path path;
     set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);
@@ -330,14 +349,15 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         s->chips->count.cells_left_out +=
             lm_patch_chips_add(&s->points, number, &s->geometry, clutter_q8);
     }
+    const struct lm_raster raster = raster_of(s, LM_NOISE_SPECKLE, number);
     if (s->rain.count != 0) {
         lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_q8, level_q8);
-        lm_speckle_run(&s->radar->sar.speckle, line->ground.noise + LM_SAR_GUARD,
-                       level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
+        lm_speckle_run(&s->radar->sar.speckle, &raster, level_q8 + LM_SAR_GUARD,
+                       s->radar->sar.cells);
         return;
     }
-    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, line->ground.noise + LM_SAR_GUARD,
-                         clutter_q8 + LM_SAR_GUARD, level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
+    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, &raster, clutter_q8 + LM_SAR_GUARD,
+                         level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
 }
 
 /* Whether a point is seen on lines before the one that it stands on. */

@@ -1,7 +1,6 @@
 #include "lm/scan_line.h"
 
 #include "fx/bits.h"
-#include "fx/hash.h"
 #include "lm/tile_read.h"
 
 /* One coordinate of a line, cell k being at `at + k (step + k half_bend)`. The unit is 2^-32 of a
@@ -18,7 +17,6 @@ struct axis {
     uint32_t direction; /* all ones where none goes back */
     bool turns;         /* some go back and some do not */
     uint32_t tile;      /* row or column where the walk stands */
-    uint32_t noise_sum; /* what its first noise cell adds to the sum of the hash */
     uint32_t end;       /* the first cell that may lie in the next one */
 };
 
@@ -28,22 +26,16 @@ struct walk {
     struct axis north, east;
     uint32_t cells;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
-    uint32_t noise_shift, epoch;
-    uint32_t zone; /* of the row; UINT32_MAX before the first */
+    uint32_t zone;      /* of the row; UINT32_MAX before the first */
 };
 
-struct lm_sampling lm_sampling_for(const struct lm_db *db, uint32_t cell_mm, uint32_t epoch)
+uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm)
 {
-    struct lm_sampling s = {.level = 0, .noise_shift = 0, .epoch = epoch};
-    while (s.level + 1 < db->level_count && lm_db_cell_mm(db, (uint8_t)(s.level + 1)) <= cell_mm) {
-        s.level++;
+    uint8_t level = 0;
+    while (level + 1 < db->level_count && lm_db_cell_mm(db, (uint8_t)(level + 1)) <= cell_mm) {
+        level++;
     }
-    /* cell / sqrt 2 in BAM: mm * 46341 / 65536 / 9.31506, that is mm * 4975 >> 16. */
-    const uint32_t noise_bam = (uint32_t)(((uint64_t)cell_mm * 4975) >> 16);
-    const uint32_t noise_shift = noise_bam ? (uint32_t)(31 - fx_clz32(noise_bam)) : 0;
-    const uint32_t tile_log2 = (uint32_t)db->shift0 + s.level + LM_TILE_CELLS_LOG2;
-    s.noise_shift = (uint8_t)(noise_shift < tile_log2 ? noise_shift : tile_log2 - 1);
-    return s;
+    return level;
 }
 
 static uint64_t magnitude(uint64_t x)
@@ -88,14 +80,12 @@ static void start_axis(struct axis *a, struct way way, uint32_t cells, uint32_t 
     a->end = k;
 }
 
-static void start_walk(struct walk *w, const struct lm_db *db, const struct lm_sampling *s,
+static void start_walk(struct walk *w, const struct lm_db *db, uint8_t level,
                        const struct lm_ground_path *path, uint32_t cells)
 {
     struct lm_ground_path *p = &w->middle;
     w->cells = cells;
-    w->side_log2 = (uint32_t)db->shift0 + s->level + LM_TILE_CELLS_LOG2;
-    w->noise_shift = s->noise_shift;
-    w->epoch = s->epoch;
+    w->side_log2 = (uint32_t)db->shift0 + level + LM_TILE_CELLS_LOG2;
     w->zone = UINT32_MAX;
     w->east.end = 0;
     *p = *path;
@@ -124,31 +114,17 @@ static inline void enter(struct axis *a, uint32_t k)
     }
 }
 
-/* The edges of the tile where the walk stands, or of an ancestor so many generations up. */
-static inline fx_bam_t south_edge(const struct walk *w, uint32_t generations)
+/* Of the tile where the walk stands. */
+static inline fx_bam_t south_edge(const struct walk *w)
 {
-    return (w->north.tile >> generations << (w->side_log2 + generations)) - FX_BAM_90;
-}
-
-static inline fx_bam_t west_edge(const struct walk *w, uint32_t generations)
-{
-    return w->east.tile >> generations << (w->side_log2 + w->zone + generations);
-}
-
-/* The number of the noise cell that begins at an angle: counted from the equator and from
- * Greenwich, with a sign. */
-static uint32_t noise_cell(const struct walk *w, fx_bam_t angle)
-{
-    return (uint32_t)((int32_t)angle >> w->noise_shift);
+    return (w->north.tile << w->side_log2) - FX_BAM_90;
 }
 
 static void enter_row(struct walk *w, uint32_t k)
 {
     enter(&w->north, k);
-    const fx_bam_t edge = south_edge(w, 0);
-    w->north.noise_sum = fx_hash3_sum(noise_cell(w, edge), 0, w->epoch);
     /* Borders of zones are borders of tiles: the tile's own south edge tells its zone. */
-    const uint32_t zone = lm_db_zone(edge);
+    const uint32_t zone = lm_db_zone(south_edge(w));
     if (zone != w->zone) {
         const struct lm_ground_path *p = &w->middle;
         w->zone = zone;
@@ -162,9 +138,8 @@ static void enter_row(struct walk *w, uint32_t k)
 static void enter_column(struct walk *w, uint32_t k)
 {
     enter(&w->east, k);
-    const fx_bam_t edge = west_edge(w, 0);
-    w->east.tile = edge >> (w->side_log2 + w->zone); /* the whole turns are gone */
-    w->east.noise_sum = fx_hash3_sum(0, noise_cell(w, edge), 0);
+    const uint32_t side_log2 = w->side_log2 + w->zone;
+    w->east.tile = w->east.tile << side_log2 >> side_log2; /* the whole turns are gone */
 }
 
 /* The end of the run that begins with cell k, where the walk now stands. */
@@ -193,49 +168,29 @@ static struct lm_track track_of(const struct way *w, uint32_t k, uint32_t genera
     return (struct lm_track){(uint32_t)up.at, (uint32_t)up.step, (uint32_t)up.half_bend};
 }
 
-/* Noise cells are powers of two as tiles are: upper bits of the place are their number. */
 static struct lm_places places_of(const struct walk *w, uint32_t k, uint32_t generations)
 {
-    const uint32_t north_log2 = w->side_log2 + generations, east_log2 = north_log2 + w->zone;
     return (struct lm_places){
         .north = track_of(&w->north.way, k, generations),
         .east = track_of(&w->east.way, k, generations),
-        .north_shift = 32 - (north_log2 - w->noise_shift),
-        .east_shift = 32 - (east_log2 - w->noise_shift),
     };
 }
 
-/* What the tile where the walk stands, or an ancestor of it, adds to the sum of the noise. */
-static uint32_t noise_sum(const struct walk *w, uint32_t generations)
+static void read_nothing(uint32_t first, uint32_t end, struct lm_scan_line *restrict line)
 {
-    if (generations == 0) {
-        return w->north.noise_sum + w->east.noise_sum;
-    }
-    return fx_hash3_sum(noise_cell(w, south_edge(w, generations)),
-                        noise_cell(w, west_edge(w, generations)), w->epoch);
-}
-
-/* A run without data. */
-static void read_nothing(const struct lm_places *places, uint32_t sum, uint32_t first, uint32_t end,
-                         struct lm_scan_line *restrict line)
-{
-    const struct lm_places p = *places;
     for (uint32_t k = first; k < end; k++) {
         line->cell[k] = LM_CELL_NONE;
         line->elevation_q14[k] = 0;
-        line->noise[k] = lm_place_noise(&p, sum, lm_track_at(&p.north, k), lm_track_at(&p.east, k));
     }
 }
 
-void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
-                      const struct lm_sampling *sampling, const struct lm_ground_path *path,
-                      uint32_t cells)
+void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t level,
+                      const struct lm_ground_path *path, uint32_t cells)
 {
     const struct lm_tile *pool = tiles->pool;
-    const uint8_t level = sampling->level;
     struct walk w;
     struct lm_places places = {0};
-    start_walk(&w, tiles->db, sampling, path, cells);
+    start_walk(&w, tiles->db, level, path, cells);
     uint32_t zone = w.zone, generations = 0; /* of the places */
     uint32_t waiting = 0;                    /* the first cell that is laid and not read */
     for (uint32_t k = 0, end; k < cells; k = end) {
@@ -251,24 +206,24 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles,
             waiting = k;
         }
         if (tile) {
-            lm_tile_lay(pool, tile, noise_sum(&w, up), k, end, line);
+            lm_tile_lay(pool, tile, k, end, line);
         } else {
             lm_tile_read(pool, &places, waiting, k, line);
-            read_nothing(&places, noise_sum(&w, 0), k, end, line);
+            read_nothing(k, end, line);
             waiting = end;
         }
     }
     lm_tile_read(pool, &places, waiting, cells, line);
 }
 
-void lm_scan_line_prefetch(struct lm_tile_cache *tiles, const struct lm_sampling *sampling,
+void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t level,
                            const struct lm_ground_path *path, uint32_t cells)
 {
     struct walk w;
-    start_walk(&w, tiles->db, sampling, path, cells);
+    start_walk(&w, tiles->db, level, path, cells);
     for (uint32_t k = 0; k < cells;) {
         k = next_run(&w, k);
-        lm_tile_cache_want(tiles, sampling->level, w.north.tile, w.east.tile);
+        lm_tile_cache_want(tiles, level, w.north.tile, w.east.tile);
     }
 }
 
@@ -277,9 +232,8 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_
 {
     const struct lm_ground_path path = {.latitude = (uint64_t)place.latitude << 32,
                                         .longitude = (uint64_t)place.longitude << 32};
-    const struct lm_sampling here = {.level = level};
     struct walk w;
-    start_walk(&w, tiles->db, &here, &path, 1);
+    start_walk(&w, tiles->db, level, &path, 1);
     next_run(&w, 0);
     const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w.north.tile, w.east.tile);
     if (!tile) {

@@ -151,7 +151,7 @@ static void set_runup(struct lm_sector *s, const struct lm_db *db)
     }
     const uint32_t begin_q8 = s->ground_edge_q8 / 16;
     const uint32_t cell_q8 = (s->ground_edge_q8 - begin_q8) / LM_SECTOR_RUNUP;
-    s->runup_sampling = lm_sampling_for(db, lm_mm_of_metres_q8(cell_q8), s->sweep);
+    s->runup_level = lm_scan_level(db, lm_mm_of_metres_q8(cell_q8));
     lm_range_grid_set(&s->runup_grid, &s->radar->aspect, begin_q8 + cell_q8 / 2, cell_q8,
                       LM_SECTOR_RUNUP, s->grid.height_q10, s->grid.reference_q10);
 }
@@ -177,11 +177,11 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     lm_beam_clear(&s->beam);
 }
 
-/* The sampling goes by the bins of the display. */
-static struct lm_sampling sampling_of(const struct lm_sector *s, const struct lm_db *db)
+/* The database is read by the bins of the display. */
+static uint8_t level_of(const struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m = s->half_m ? 2 * s->half_m : s->radar->range_m[s->command.range];
-    return lm_sampling_for(db, side_m * 1000u / s->radar->cells, s->sweep);
+    return lm_scan_level(db, side_m * 1000u / s->radar->cells);
 }
 
 static bool differs(int32_t a_q10, int32_t b_q10)
@@ -237,8 +237,8 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
 {
     const uint32_t old_edge_q8 = s->edge_q8, old_half_m = s->half_m;
     s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
-    s->sampling = sampling_of(s, tiles->db);
-    const int32_t reference_q10 = reference_q10_of(tiles, s->sampling.level, platform->place);
+    s->level = level_of(s, tiles->db);
+    const int32_t reference_q10 = reference_q10_of(tiles, s->level, platform->place);
     s->up = platform->heading;
     s->platform = *platform;
     lm_geo_set_origin(&s->origin, platform->place);
@@ -327,7 +327,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
         lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
         const struct lm_ground_path path =
             path_of(&ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
-        lm_scan_line_run(&line->ground, tiles, &s->runup_sampling, &path, LM_SECTOR_RUNUP);
+        lm_scan_line_run(&line->ground, tiles, s->runup_level, &path, LM_SECTOR_RUNUP);
         s->runup_horizon = lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
         s->runup_part = part;
         s->has_runup = true;
@@ -342,7 +342,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
                                           .reach_m = s->radar->range_m[s->command.range],
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
-                                          .level = s->sampling.level};
+                                          .level = s->level};
     if (!lm_targets_refresh(&s->near, s->targets, &scene) || s->half_m == 0 || !s->chips) {
         return;
     }
@@ -359,7 +359,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 
 /* Add the targets that the sampled line meets. */
 static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                        const struct lm_line_setup *setup, struct lm_line *line)
+                        const struct lm_raster *speckle, struct lm_line *line)
 {
     const struct lm_sector_mode_row *mode = mode_of(s);
     find_targets(s, tiles);
@@ -382,20 +382,39 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
                   .scan = s->sweep,
                   .pulse = s->samples,
-                  .noise = line->ground.noise,
+                  .raster = speckle,
                   .speckle = mode->speckle},
     };
-    lm_line_add_targets(line, setup, &targets);
+    lm_line_add_targets(line, &s->grid, &targets);
+}
+
+/* Texture belongs to the ground: cells as wide as they are long lie side by side at each range, so
+ * that azimuths closer than that find the same. Columns are counted from north, by the middle of
+ * each block. */
+static struct lm_raster ground_raster(const struct lm_sector *s, fx_bam_t azimuth)
+{
+    const uint64_t two_pi_q28 = 1686629713;
+    const uint64_t radians_q32 = azimuth * two_pi_q28 >> 28; /* below 2^34.7 */
+    struct lm_raster r = lm_raster_of(LM_NOISE_TEXTURE, 0, s->sweep);
+    r.growth_q32 = radians_q32 * LM_NOISE_BLOCK;
+    /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+    r.column_q32 = radians_q32 * s->ground_edge_q8 / s->grid.cell_q8 + r.growth_q32 / 2;
+    return r;
 }
 
 static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                  const struct lm_line_setup *setup, struct lm_line *line)
+                  struct lm_line *line)
 {
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .legend = &s->legend,
+                                        .texture = &s->texture,
+                                        .raster = ground_raster(s, azimuth),
+                                        .level = s->level};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);
     const struct lm_ground_path path = sample_path(s, &ray);
-    lm_line_trace(line, tiles, setup, &path, horizon);
+    lm_line_trace(line, tiles, &setup, &path, horizon);
 }
 
 /* Samples that are closer for sharpness need fewer. */
@@ -408,17 +427,17 @@ static uint32_t azimuths_log2_of(const struct lm_sector *s)
 /* Trace the azimuths across a sample: everything in the line is that of the last one, but the
  * levels are of the mean power. */
 static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                            const struct lm_line_setup *setup, struct lm_line *line)
+                            struct lm_line *line)
 {
     const fx_bam_t spacing = lm_beam_spacing(&s->beam, s->radar);
     const uint32_t log2 = azimuths_log2_of(s);
     if (log2 == 0) {
-        trace(s, tiles, azimuth, setup, line);
+        trace(s, tiles, azimuth, line);
         return;
     }
     for (uint32_t turn = 0; turn < 1u << log2; turn++) {
         const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
-        trace(s, tiles, azimuth + off, setup, line);
+        trace(s, tiles, azimuth + off, line);
         if (turn == 0) {
             lm_footprint_begin(&s->footprint, line->sight.level_q8, s->grid.cells);
         } else {
@@ -442,13 +461,12 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
                         struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
-    const struct lm_line_setup setup = {
-        .grid = &s->grid, .legend = &s->legend, .texture = &s->texture, .sampling = s->sampling};
+    const struct lm_raster speckle = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)sample, s->sweep);
     follow(s);
-    trace_footprint(s, tiles, azimuth, &setup, line);
-    lm_speckle_run(&mode_of(s)->speckle, line->ground.noise, line->sight.level_q8, s->grid.cells);
+    trace_footprint(s, tiles, azimuth, line);
+    lm_speckle_run(&mode_of(s)->speckle, &speckle, line->sight.level_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
-        add_targets(s, tiles, azimuth, &setup, line);
+        add_targets(s, tiles, azimuth, &speckle, line);
     }
     lm_elevation_run(&s->elevation, &s->fan, &s->grid, &line->sight);
     lm_slant_run(&s->slant, &s->grid, line->sight.level_q8, lm_beam_room(&s->beam, sample));
@@ -512,7 +530,7 @@ static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
     const fx_bam_t azimuth = s->up + (fx_bam_t)middle_of(s, line_ahead(s, ahead));
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const struct lm_ground_path path = sample_path(s, &ray);
-    lm_scan_line_prefetch(tiles, &s->sampling, &path, s->grid.cells);
+    lm_scan_line_prefetch(tiles, s->level, &path, s->grid.cells);
 }
 
 uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,

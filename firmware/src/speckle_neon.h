@@ -1,7 +1,6 @@
 /* Texture, and speckle over a noise floor, by the vectors of 64-bit Arm, to the bit as in
- * speckle.c: cells of classes without texture are passed over eight at a time, and what the floor
- * adds is worked out instead of looked up. Each function does whole groups of eight and returns how
- * many cells these are: none on other machines. */
+ * speckle.c: eight cells at a time, or sixteen, of which those without the texture are passed over.
+ * Not for other machines, where it is never called. */
 #ifndef SPECKLE_NEON_H
 #define SPECKLE_NEON_H
 
@@ -11,100 +10,100 @@
 #include "fx/neon.h"
 #include "lm/speckle.h"
 
-/* The bits of a class's entry that choose a row. */
-enum { TEXTURE_ROWS = (1 << LM_TEXTURE_ENTRY_BITS) - LM_SPECKLE_SLICES };
-
 #if FX_HAS_NEON
 
-/* Whether each class changes the level of a cell: all bits of its byte, or none. */
-static inline uint8x16_t neon_changes(const struct lm_texture *t)
+/* Classes that have a shape: all bits of a class's byte, or none. */
+static inline uint8x16_t neon_classes_of(const struct lm_texture *t, int32_t shape)
 {
-    const int32x4_t none = vdupq_n_s32(-lm_speckle_q8[0][0] * (1 << LM_TEXTURE_ENTRY_BITS));
-    const uint32x4_t is_none[4] = {
-        vceqq_s32(vld1q_s32(t->of_class), none), vceqq_s32(vld1q_s32(t->of_class + 4), none),
-        vceqq_s32(vld1q_s32(t->of_class + 8), none), vceqq_s32(vld1q_s32(t->of_class + 12), none)};
-    const uint16x8_t low = vmovn_high_u32(vmovn_u32(is_none[0]), is_none[1]);
-    const uint16x8_t high = vmovn_high_u32(vmovn_u32(is_none[2]), is_none[3]);
-    return vmvnq_u8(vmovn_high_u16(vmovn_u16(low), high));
+    const int32x4x4_t word = vld1q_s32_x4(t->of_class);
+    const int16x8_t low = vmovn_high_s32(vmovn_s32(word.val[0]), word.val[1]);
+    const int16x8_t high = vmovn_high_s32(vmovn_s32(word.val[2]), word.val[3]);
+    const uint8x16_t of_class = vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(low), high));
+    const uint8x16_t mask = vdupq_n_u8((1 << LM_TEXTURE_SHAPE_BITS) - 1);
+    return vceqq_u8(vandq_u8(of_class, mask), vdupq_n_u8((uint8_t)shape));
 }
 
-/* Four cells of which some change. */
-static inline int32x4_t neon_texture(uint8x16x4_t of_classes, uint32x4_t cell, uint32x4_t noise,
-                                     int32x4_t level_q8)
+/* The classes of sixteen cells. */
+static inline uint8x16_t neon_class_index(const uint32_t *cell)
 {
-    /* The four bytes of the class's word. */
-    const uint32x4_t class_index = vandq_u32(vshrq_n_u32(cell, 4), vdupq_n_u32(LM_DB_CLASSES - 1));
-    const uint32x4_t at = vorrq_u32(vmulq_n_u32(class_index, 0x04040404), vdupq_n_u32(0x03020100));
-    const int32x4_t of_class =
-        vreinterpretq_s32_u8(vqtbl4q_u8(of_classes, vreinterpretq_u8_u32(at)));
-    const uint32x4_t slice = vandq_u32(vshrq_n_u32(noise, 12), vdupq_n_u32(LM_SPECKLE_SLICES - 1));
-    const uint32x4_t chosen = vorrq_u32(slice, vdupq_n_u32(TEXTURE_ROWS));
-    const int32x4_t entry = vandq_s32(of_class, vreinterpretq_s32_u32(chosen));
-    const int32x4_t gained_q8 = vsraq_n_s32(level_q8, of_class, LM_TEXTURE_ENTRY_BITS);
-    return vaddq_s32(gained_q8, fx_neon_lookup(lm_speckle_q8[0], entry));
+    const uint16x8_t low = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(cell)),
+                                      vreinterpretq_u16_u32(vld1q_u32(cell + 4)));
+    const uint16x8_t high = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(cell + 8)),
+                                       vreinterpretq_u16_u32(vld1q_u32(cell + 12)));
+    const uint8x16_t upper = vshrn_high_n_u16(vshrn_n_u16(low, 4), high, 4);
+    return vandq_u8(upper, vdupq_n_u8(LM_DB_CLASSES - 1));
 }
 
-static inline uint32_t texture_neon(const struct lm_texture *t, const uint32_t *cell,
-                                    const uint32_t *noise, int32_t *restrict level_q8,
-                                    uint32_t cells)
+static inline void neon_add(int32_t *level_q8, int16x8_t gain_q8)
 {
-    const uint32_t whole = cells & ~7u;
-    const uint8x16x4_t of_classes = vld1q_u8_x4((const uint8_t *)t->of_class);
-    const uint8x16_t changes = neon_changes(t);
-    for (size_t i = 0; i < whole; i += 8) {
-        const uint32x4_t group[2] = {vld1q_u32(cell + i), vld1q_u32(cell + i + 4)};
-        const uint16x8_t low =
-            vuzp1q_u16(vreinterpretq_u16_u32(group[0]), vreinterpretq_u16_u32(group[1]));
-        const uint8x8_t class_index = vand_u8(vshrn_n_u16(low, 4), vdup_n_u8(LM_DB_CLASSES - 1));
-        const uint8x8_t changed = vqtbl1_u8(changes, class_index);
-        const uint64_t some = vget_lane_u64(vreinterpret_u64_u8(changed), 0);
-        for (size_t k = i; k < i + 8; k += 4) {
-            if ((uint32_t)(k == i ? some : some >> 32) != 0) {
-                vst1q_s32(level_q8 + k,
-                          neon_texture(of_classes, group[(k - i) / 4], vld1q_u32(noise + k),
-                                       vld1q_s32(level_q8 + k)));
-            }
+    vst1q_s32(level_q8, vaddw_s16(vld1q_s32(level_q8), vget_low_s16(gain_q8)));
+    vst1q_s32(level_q8 + 4, vaddw_high_s16(vld1q_s32(level_q8 + 4), gain_q8));
+}
+
+/* The draws of one shape, for the cells of the classes that have it. */
+static inline void texture_neon(const struct lm_texture *t, const struct lm_noise_line *noise,
+                                int32_t shape, const uint32_t *cell, int32_t *restrict level_q8,
+                                uint32_t cells)
+{
+    const uint8x16_t has_it = neon_classes_of(t, shape);
+    const int16_t *const row_q8 = lm_noise_q8[shape];
+    const uint32_t *entry = noise->entry;
+    for (size_t i = 0; i < cells; i += 16, entry += 2) {
+        const uint8x16_t here = vqtbl1q_u8(has_it, neon_class_index(cell + i));
+        if (vmaxvq_u32(vreinterpretq_u32_u8(here)) != 0) {
+            const int16x8_t low = vmovl_s8(vget_low_s8(vreinterpretq_s8_u8(here)));
+            const int16x8_t high = vmovl_high_s8(vreinterpretq_s8_u8(here));
+            neon_add(level_q8 + i, vandq_s16(vld1q_s16(row_q8 + entry[0]), low));
+            neon_add(level_q8 + i + 8, vandq_s16(vld1q_s16(row_q8 + entry[1]), high));
         }
     }
-    return whole;
 }
 
-static inline int32x4_t neon_speckle(const int32_t *table_q8, const uint32_t *noise)
+static inline void speckle_neon(const int16_t *row_q8, const struct lm_noise_line *noise,
+                                int32_t *restrict level_q8, uint32_t cells)
 {
-    return fx_neon_lookup(table_q8, vreinterpretq_s32_u32(vshrq_n_u32(vld1q_u32(noise), 22)));
+    for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
+        neon_add(level_q8 + i, vld1q_s16(row_q8 + noise->entry[i / LM_NOISE_BLOCK]));
+    }
 }
 
-static inline uint32_t speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
-                                          const uint32_t *noise, const int32_t *level_q8,
-                                          int32_t *restrict speckled_q8, uint32_t cells)
+static inline void speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
+                                      const struct lm_raster *raster, const int32_t *level_q8,
+                                      int32_t *restrict speckled_q8, uint32_t cells)
 {
-    const uint32_t whole = cells & ~7u;
+    const int16_t *const row_q8 = lm_noise_q8[config->looks_log2];
+    struct lm_noise_line noise;
+    lm_noise_line_set(&noise, raster, cells);
     const int32x4x2_t floor = {{vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8)}};
-    const int32_t *const table_q8 = lm_speckle_q8[config->looks_log2];
-    for (size_t i = 0; i < whole; i += 8) {
+    for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
         const int32x4x2_t level = {{vld1q_s32(level_q8 + i), vld1q_s32(level_q8 + i + 4)}};
         const int32x4x2_t sum = fx_neon_db_q8_sum(level, floor);
-        vst1q_s32(speckled_q8 + i, vaddq_s32(sum.val[0], neon_speckle(table_q8, noise + i)));
-        vst1q_s32(speckled_q8 + i + 4,
-                  vaddq_s32(sum.val[1], neon_speckle(table_q8, noise + i + 4)));
+        const int16x8_t draw_q8 = vld1q_s16(row_q8 + noise.entry[i / LM_NOISE_BLOCK]);
+        vst1q_s32(speckled_q8 + i, vaddw_s16(sum.val[0], vget_low_s16(draw_q8)));
+        vst1q_s32(speckled_q8 + i + 4, vaddw_high_s16(sum.val[1], draw_q8));
     }
-    return whole;
 }
 
 #else
 
-static inline uint32_t texture_neon(const struct lm_texture *t, const uint32_t *cell,
-                                    const uint32_t *noise, int32_t *level_q8, uint32_t cells)
+static inline void texture_neon(const struct lm_texture *t, const struct lm_noise_line *noise,
+                                int32_t shape, const uint32_t *cell, int32_t *level_q8,
+                                uint32_t cells)
 {
-    return (void)t, (void)cell, (void)noise, (void)level_q8, (void)cells, 0;
+    (void)t, (void)noise, (void)shape, (void)cell, (void)level_q8, (void)cells;
 }
 
-static inline uint32_t speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
-                                          const uint32_t *noise, const int32_t *level_q8,
-                                          int32_t *speckled_q8, uint32_t cells)
+static inline void speckle_neon(const int16_t *row_q8, const struct lm_noise_line *noise,
+                                int32_t *level_q8, uint32_t cells)
 {
-    return (void)config, (void)floor_q8, (void)noise, (void)level_q8, (void)speckled_q8,
-           (void)cells, 0;
+    (void)row_q8, (void)noise, (void)level_q8, (void)cells;
+}
+
+static inline void speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
+                                      const struct lm_raster *raster, const int32_t *level_q8,
+                                      int32_t *speckled_q8, uint32_t cells)
+{
+    (void)config, (void)floor_q8, (void)raster, (void)level_q8, (void)speckled_q8, (void)cells;
 }
 
 #endif

@@ -45,20 +45,19 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
     return ground_at(tile, 0, scale_of(tile), north, east);
 }
 
-void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t noise_sum,
-                 uint32_t first, uint32_t end, struct lm_scan_line *line)
+void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t first,
+                 uint32_t end, struct lm_scan_line *line)
 {
     const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
     const uint32_t record = record_of(pool, tile);
     const int32_t scale = scale_of(tile);
     if (FX_HAS_NEON) {
-        lay_groups_neon(record, scale, noise_sum, first, groups, line);
+        lay_groups_neon(record, scale, first, groups, line);
         return;
     }
     for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
         line->cell[k] = record;
         line->elevation_q14[k] = scale;
-        line->noise[k] = noise_sum;
     }
 }
 
@@ -82,6 +81,5 @@ void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *p
             ground_at(pool, line->cell[k], line->elevation_q14[k], north, east);
         line->cell[k] = g.cell;
         line->elevation_q14[k] = g.elevation_q14;
-        line->noise[k] = lm_place_noise(&p, line->noise[k], north, east);
     }
 }

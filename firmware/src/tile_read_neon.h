@@ -11,21 +11,19 @@
 #if FX_HAS_NEON
 
 /* Two vectors at a time, which the compiler does not do by itself. */
-static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t sum, uint32_t first,
-                                   uint32_t groups, struct lm_scan_line *line)
+static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t first, uint32_t groups,
+                                   struct lm_scan_line *line)
 {
-    const uint32x4_t r = vdupq_n_u32(record), n = vdupq_n_u32(sum);
+    const uint32x4_t r = vdupq_n_u32(record);
     const int32x4_t z = vdupq_n_s32(scale);
-    uint32_t *cell = line->cell + first, *noise = line->noise + first;
+    uint32_t *cell = line->cell + first;
     int32_t *elevation = line->elevation_q14 + first;
     for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
         for (int half = 0; half < 2; half++) {
             vst1q_u32(cell + 4 * half, r);
             vst1q_s32(elevation + 4 * half, z);
-            vst1q_u32(noise + 4 * half, n);
         }
         elevation += LM_LANES;
-        noise += LM_LANES;
     }
 }
 
@@ -104,16 +102,6 @@ static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint16x8_t ea
     }};
 }
 
-/* lm_place_noise of four places. */
-static inline uint32x4_t neon_noise(const struct lm_places *p, uint32x4_t sum, uint32x4_t north,
-                                    uint32x4_t east)
-{
-    const uint32x4_t row = vshlq_u32(north, vdupq_n_s32(-(int32_t)p->north_shift));
-    const uint32x4_t column = vshlq_u32(east, vdupq_n_s32(-(int32_t)p->east_shift));
-    const uint32x4_t rows = vmlaq_n_u32(sum, row, fx_hash3_sum(1, 0, 0));
-    return fx_neon_hash3_of_sum(vmlaq_n_u32(rows, column, fx_hash3_sum(0, 1, 0)));
-}
-
 /* Base plus post, as ground_at takes them from a scale: Arm shifts by what the lowest byte says. */
 static inline uint32x4_t neon_elevation(uint32x4_t scale, uint32x4_t post_q16)
 {
@@ -126,7 +114,7 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
     const struct neon_source source = neon_source_of(pool);
     struct neon_track north_track = neon_track_from(&places->north, first);
     struct neon_track east_track = neon_track_from(&places->east, first);
-    uint32_t *noise = line->noise + first, *cell = line->cell + first;
+    uint32_t *cell = line->cell + first;
     uint32_t *elevation = (uint32_t *)line->elevation_q14 + first;
     for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
         uint32_t offset[LM_LANES];
@@ -148,9 +136,7 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
         vst1q_u32(cell, vmovl_u16(vget_low_u16(s.val[0])));
         vst1q_u32(cell + 4, vmovl_high_u16(s.val[0]));
         for (int half = 0; half < 2; half++) {
-            vst1q_u32(noise, neon_noise(places, vld1q_u32(noise), n[half], e[half]));
             vst1q_u32(elevation, neon_elevation(vld1q_u32(elevation), post_q16.val[half]));
-            noise += 4;
             elevation += 4;
         }
     }
@@ -158,10 +144,10 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
 
 #else
 
-static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t sum, uint32_t first,
-                                   uint32_t groups, struct lm_scan_line *line)
+static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t first, uint32_t groups,
+                                   struct lm_scan_line *line)
 {
-    (void)record, (void)scale, (void)sum, (void)first, (void)groups, (void)line;
+    (void)record, (void)scale, (void)first, (void)groups, (void)line;
 }
 
 static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,

@@ -1,8 +1,7 @@
 #include "speckle_statistics.h"
 
-#include "fx/hash.h"
 #include "hs/error.h"
-#include "lm/speckle.h"
+#include "lm/noise.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -176,10 +175,9 @@ void rr_window_take(const struct rr_image *image, const struct rr_window *window
 void rr_firmware_speckle(double *power, unsigned side, unsigned looks_log2, unsigned epoch)
 {
     for (uint32_t row = 0; row < side; row++) {
+        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, row, epoch);
         for (uint32_t column = 0; column < side; column++) {
-            const uint64_t hash = fx_hash3(row, column, epoch);
-            const uint32_t slice = (uint32_t)(hash * LM_SPECKLE_SLICES >> 32);
-            const double level_db = (double)lm_speckle_q8[looks_log2][slice] / 256;
+            const double level_db = lm_noise_of_q8(looks_log2, &raster, column) / 256.0;
             power[row * side + column] = pow(10, level_db / 10);
         }
     }

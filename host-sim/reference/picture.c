@@ -19,11 +19,10 @@ void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
     ref_texture_tables(&tables->texture, params);
 }
 
-/* The stages behind aspect, for a line whose levels are known. */
-static void finish(struct ref_bin *bins, size_t count, unsigned speckle_shift, uint32_t epoch,
-                   const struct ref_params *params, const struct ref_tables *tables)
+/* The stages behind aspect, for a line whose levels and draws are known. */
+static void finish(struct ref_bin *bins, size_t count, const struct ref_params *params,
+                   const struct ref_tables *tables)
 {
-    ref_speckle_slices(bins, count, speckle_shift, epoch, NULL);
     ref_texture(bins, count, &tables->texture, params);
     ref_speckle(bins, count, tables->speckle_db, params->noise_floor_db);
     ref_tone(bins, count, params);
@@ -40,7 +39,7 @@ struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
 
 double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
                    const struct ref_params *params, const struct ref_tables *tables,
-                   double azimuth_deg)
+                   double azimuth_deg, uint32_t sample_number)
 {
     const struct ref_view view = ref_gm_view(db, gm, params);
     const unsigned level = ref_db_level_for(db, gm->cell_m);
@@ -54,7 +53,12 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
     const size_t first = ref_first_shown(bins, gm->cell_count, &view);
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
     ref_aspect(bins, gm->cell_count, &view, params, horizon);
-    finish(bins, gm->cell_count, ref_speckle_shift(gm->cell_m), gm->epoch, params, tables);
+    for (uint32_t i = 0; i < gm->cell_count; i++) {
+        const uint32_t column = ref_ground_column(azimuth_deg, 0, gm->cell_m, i);
+        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, gm->epoch);
+        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, sample_number, i, gm->epoch);
+    }
+    finish(bins, gm->cell_count, params, tables);
     return horizon;
 }
 
@@ -97,16 +101,16 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
     *picture = (struct ref_picture){.line_count = gm->line_count,
                                     .cell_count = gm->cell_count,
                                     .view = ref_gm_view(db, gm, params),
-                                    .level = ref_db_level_for(db, gm->cell_m),
-                                    .speckle_shift = ref_speckle_shift(gm->cell_m)};
+                                    .level = ref_db_level_for(db, gm->cell_m)};
     if (ref_picture_allocate(picture) != 0) {
         return -1;
     }
     struct ref_tables tables;
     ref_tables_set(&tables, params);
     for (unsigned line = 0; line < gm->line_count; line++) {
-        picture->start_horizons[line] = ref_gm_line(ref_picture_bin(picture, line, 0), db, gm,
-                                                    params, &tables, ref_gm_azimuth_deg(gm, line));
+        picture->start_horizons[line] =
+            ref_gm_line(ref_picture_bin(picture, line, 0), db, gm, params, &tables,
+                        ref_gm_azimuth_deg(gm, line), line);
     }
     return 0;
 }
@@ -154,6 +158,16 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
     }
     ref_aspect(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
                &picture->view, params, picture->start_horizons[line]);
+}
+
+/* Texture is drawn for the guard cells, too; speckle for those that are shown. */
+static void draw_patch_line(struct ref_bin *bins, const struct ref_sar *sar, unsigned line)
+{
+    for (uint32_t i = 0; i < REF_GUARD_CELLS + sar->cell_count; i++) {
+        const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
+        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, line, i, sar->epoch);
+        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->epoch);
+    }
 }
 
 /* The rain as the antenna sees it. */
@@ -215,8 +229,7 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
                                     .cell_count = sar->cell_count,
                                     .guard_count = REF_GUARD_CELLS,
                                     .view = {sar->antenna_m, 0, sar->cell_m},
-                                    .level = ref_db_level_for(db, sar->cell_m),
-                                    .speckle_shift = ref_speckle_shift(sar->cell_m)};
+                                    .level = ref_db_level_for(db, sar->cell_m)};
     if (ref_picture_allocate(picture) != 0) {
         return -1;
     }
@@ -235,8 +248,9 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
         return -1;
     }
     for (unsigned line = 0; line < sar->cell_count; line++) {
-        finish(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
-               picture->speckle_shift, sar->epoch, params, &tables);
+        struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
+        draw_patch_line(bins, sar, line);
+        finish(bins, REF_GUARD_CELLS + sar->cell_count, params, &tables);
     }
     return 0;
 }

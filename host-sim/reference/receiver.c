@@ -1,8 +1,6 @@
 /* Slant range, pulse, noise and time gain: DESIGN.md, "Real beam". */
 #include "reference.h"
 
-#include "fx/hash.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -72,11 +70,6 @@ void ref_pulse(double *power, size_t count, double bins)
     }
 }
 
-unsigned ref_noise_slice(uint32_t line, uint32_t bin, uint32_t sweep)
-{
-    return fx_hash3(line, bin, sweep ^ 0x9e3779b9u) >> 22;
-}
-
 void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *weather,
                  uint32_t line, uint32_t sweep, double *power, double *level_db)
 {
@@ -85,8 +78,8 @@ void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *we
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
         const double signal = weather != NULL ? power[i] * weather->pass[i] : power[i];
         const double rain = weather != NULL ? weather->rain[i] : 0;
-        const double fluctuation =
-            pow(10, r->noise_table_db[ref_noise_slice(line, (uint32_t)i, sweep)] / 10);
+        const unsigned slice = ref_draw(LM_NOISE_RECEIVER, line, (uint32_t)i, sweep);
+        const double fluctuation = pow(10, r->noise_table_db[slice] / 10);
         const double noise =
             pow(10, ref_noise_db(r, slant_m) / 10) * (1 + (weather != NULL ? weather->jam : 0));
         level_db[i] =

@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "lm/db.h"
+#include "lm/noise.h"
 
 #define REF_EARTH_M           6371000.0 /* mean radius, DESIGN.md */
 #define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
@@ -43,8 +44,8 @@ struct ref_bin {
     double gain_db, edge_db; /* K, E */
     double level_db;         /* the noise floor where there is no echo */
     /* speckle and noise */
-    uint32_t hash, slice; /* slice: 0..1023 */
-    double texture_db;    /* with the state of the sea */
+    unsigned texture_slice, slice; /* drawn for texture and speckle, 0..1023 */
+    double texture_db;             /* with the state of the sea */
     double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
     /* tone */
@@ -176,16 +177,12 @@ void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
  * and mean 1, from the incomplete gamma function. looks 1..64. */
 void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES]);
 
-/* k: 2^k BAM of latitude is the largest power of two not longer than cell_m / sqrt 2. 0..31. */
-unsigned ref_speckle_shift(double cell_m);
+/* The slice that a cell draws which is the cell-th of its line and lies in a column of a raster. */
+unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint32_t epoch);
 
-/* The hash of a place; slice = hash >> 22. NULL stands for fx_hash3. */
-typedef uint32_t (*ref_hash_fn)(uint32_t latitude, uint32_t longitude, uint32_t epoch);
-
-/* Fill `hash` and `slice` from the places: latitude and longitude in units of 2^shift BAM, with a
- * sign, rounded down. */
-void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
-                        ref_hash_fn hash);
+/* The column of the ground's raster in which the cell-th of a line lies, along an azimuth and with
+ * its first cell's near edge edge_m away: columns are cell_m wide at the middle of each eight. */
+uint32_t ref_ground_column(double azimuth_deg, double edge_m, double cell_m, uint32_t cell);
 
 /* Tables of the texture by kind of class: those of params->texture_shape, all 0 for none. */
 struct ref_texture {
@@ -196,8 +193,8 @@ void ref_texture_tables(struct ref_texture *texture, const struct ref_params *pa
 /* What a state of the sea (0..8) adds to water. */
 double ref_sea_db(int state);
 
-/* Fill `texture_db` from `kind` and `hash`: what the roughness of the class and, over water, the
- * state of the sea add to the level. */
+/* Fill `texture_db` from `kind` and `texture_slice`: what the roughness of the class and, over
+ * water, the state of the sea add to the level. */
 void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
                  const struct ref_params *params);
 
@@ -259,9 +256,6 @@ double ref_pulse_share(double bins, int m);
 
 /* Mean of the powers over the pulse, in place. count up to REF_CELLS_MAX. */
 void ref_pulse(double *power, size_t count, double bins);
-
-/* Slice of the noise's table that a bin draws. */
-unsigned ref_noise_slice(uint32_t line, uint32_t bin, uint32_t sweep);
 
 /* Everything from the powers of a line's bins to their levels; the powers are changed. `weather`
  * may be NULL. */
@@ -464,7 +458,6 @@ struct ref_picture {
     double *start_horizons; /* owned: T before the first bin of each line */
     struct ref_view view;
     unsigned level; /* of the image */
-    unsigned speckle_shift;
 };
 
 struct ref_gm {
@@ -482,8 +475,8 @@ struct ref_sar {
     double
         range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
     double antenna_m, cell_m;
-    unsigned cell_count; /* along either side */
-    uint32_t epoch;
+    unsigned cell_count;        /* along either side */
+    uint32_t epoch;             /* of its draws: lm_sar's noise_epoch */
     struct ref_patch_rain rain; /* distances, angles and slant are filled from these places */
     struct ref_place rain_centre[4];
 };
@@ -495,10 +488,11 @@ struct ref_tables {
 };
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
 
-/* One GM line: all stages, into `bins` (gm->cell_count of them). Returns T_0. */
+/* One GM line: all stages, into `bins` (gm->cell_count of them), with the speckle of sample number
+ * `sample`. Returns T_0. */
 double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
                    const struct ref_params *params, const struct ref_tables *tables,
-                   double azimuth_deg);
+                   double azimuth_deg, uint32_t sample);
 
 /* Height of the antenna, that of the time gain's ground below it, and the cell. */
 struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,

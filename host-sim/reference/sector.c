@@ -36,19 +36,21 @@ static unsigned azimuths_of(const struct ref_sector *s, const struct ref_beam *b
     return s->azimuths > fewer ? (unsigned)(s->azimuths / fewer) : 1;
 }
 
-/* The ground about an azimuth: everything that of the last azimuth traced, but the levels those of
- * the mean power, with its speckle. */
+/* The ground about the azimuth of a sample: everything that of the last azimuth traced, but the
+ * levels those of the mean power, with its speckle. */
 static void look_across(struct ref_bin *bins, const struct ref_db *db,
                         const struct ref_sector *sector, const struct ref_params *params,
-                        const struct ref_tables *tables, const struct ref_beam *beam,
-                        double azimuth_deg)
+                        const struct ref_tables *tables, const struct ref_beam *beam, long number)
 {
+    const double azimuth_deg =
+        sector->ground.centre_azimuth_deg + ref_beam_azimuth_deg(beam, number);
     const unsigned azimuths = azimuths_of(sector, beam);
     double power[REF_CELLS_MAX] = {0};
     for (unsigned turn = 0; turn < azimuths; turn++) {
         const unsigned part = (turn + azimuths / 2 + 1) % azimuths;
         const double off_deg = ((part + 0.5) / azimuths - 0.5) * ref_beam_spacing_deg(beam);
-        ref_gm_line(bins, db, &sector->ground, params, tables, azimuth_deg + off_deg);
+        ref_gm_line(bins, db, &sector->ground, params, tables, azimuth_deg + off_deg,
+                    (uint32_t)number);
         for (unsigned i = 0; i < sector->ground.cell_count; i++) {
             const double level_db = bins[i].level_db + bins[i].texture_db;
             power[i] += bins[i].is_lit ? pow(10, level_db / 10) / azimuths : 0;
@@ -73,8 +75,7 @@ static const struct ref_bin *sample(struct samples *s, const struct ref_db *db,
     if (s->spacing_deg[slot] != spacing_deg || s->number[slot] != number) {
         s->spacing_deg[slot] = spacing_deg;
         s->number[slot] = number;
-        look_across(bins, db, sector, params, tables, beam,
-                    sector->ground.centre_azimuth_deg + ref_beam_azimuth_deg(beam, number));
+        look_across(bins, db, sector, params, tables, beam, number);
     }
     return bins;
 }
@@ -154,8 +155,7 @@ int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
     *picture = (struct ref_picture){.line_count = sector->ground.line_count,
                                     .cell_count = sector->ground.cell_count,
                                     .view = ref_gm_view(db, &sector->ground, params),
-                                    .level = ref_db_level_for(db, sector->ground.cell_m),
-                                    .speckle_shift = ref_speckle_shift(sector->ground.cell_m)};
+                                    .level = ref_db_level_for(db, sector->ground.cell_m)};
     if (ref_picture_allocate(picture) != 0) {
         return -1;
     }

@@ -65,30 +65,18 @@ void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES])
     }
 }
 
-unsigned ref_speckle_shift(double cell_m)
+unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint32_t epoch)
 {
-    const double bam = cell_m / sqrt(2) * 4294967296.0 / REF_MERIDIAN_M;
-    return (unsigned)fmin(fmax(floor(log2(bam)), 0), 31);
+    const uint32_t first =
+        fx_hash3(column, cell / LM_NOISE_BLOCK, epoch * LM_NOISE_KINDS + kind) >> 22;
+    return lm_noise_slice((first + cell % LM_NOISE_BLOCK) % REF_SPECKLE_SLICES);
 }
 
-/* The noise cells of a coordinate, which has a sign and is less than half a turn. */
-static uint32_t noise_cell(double deg, unsigned shift)
+uint32_t ref_ground_column(double azimuth_deg, double edge_m, double cell_m, uint32_t cell)
 {
-    const double turns = deg / 360 - floor(deg / 360 + 0.5);
-    return (uint32_t)(int64_t)floor(ldexp(turns * 4294967296.0, -(int)shift));
-}
-
-void ref_speckle_slices(struct ref_bin *bins, size_t count, unsigned shift, uint32_t epoch,
-                        ref_hash_fn hash)
-{
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t latitude = noise_cell(bins[i].place.latitude_deg, shift);
-        const uint32_t longitude = noise_cell(bins[i].place.longitude_deg, shift);
-        const uint32_t h =
-            hash ? hash(latitude, longitude, epoch) : fx_hash3(latitude, longitude, epoch);
-        bins[i].hash = h;
-        bins[i].slice = h >> 22;
-    }
+    const double turns = azimuth_deg / 360 - floor(azimuth_deg / 360);
+    const double middle = (cell / LM_NOISE_BLOCK + 0.5) * LM_NOISE_BLOCK;
+    return (uint32_t)(int64_t)floor(2 * acos(-1) * turns * (edge_m / cell_m + middle));
 }
 
 void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params)
@@ -111,7 +99,7 @@ void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *t
 {
     for (size_t i = 0; i < count; i++) {
         const double sea_db = bins[i].kind == LM_KIND_WATER ? params->sea_db : 0;
-        bins[i].texture_db = texture->table_db[bins[i].kind][bins[i].hash >> 12 & 1023] + sea_db;
+        bins[i].texture_db = texture->table_db[bins[i].kind][bins[i].texture_slice] + sea_db;
     }
 }
 

@@ -1,3 +1,4 @@
+#include "lm/noise.h"
 #include "tables.h"
 
 #include <math.h>
@@ -182,7 +183,7 @@ static long double gamma_quantile(int k, long double p)
 /* Mean of the n-th of 1024 equally likely slices of a Gamma(L) variable of mean 1: x times the
  * density of Gamma(L) is the density of Gamma(L + 1), so that the mean is a difference of its
  * distribution function. */
-static int64_t speckle(int looks_log2, int n)
+static int64_t slice_mean(int looks_log2, int n)
 {
     const int looks = 1 << looks_log2;
     const long double slices = 1024;
@@ -192,9 +193,16 @@ static int64_t speckle(int looks_log2, int n)
     return rounded(10 * log10l(slices * (to - from)), 8);
 }
 
-static const struct table speckle_tables[] = {
-    {"lm_speckle_q8", "int32_t", "dB of the mean of slice i of 1024 of Gamma(2^row) speckle", 5,
-     1024, speckle},
+/* Shuffled, and the first ones once more. */
+static int64_t noise(int looks_log2, int entry)
+{
+    return slice_mean(looks_log2, (int)lm_noise_slice((uint32_t)entry));
+}
+
+static const struct table noise_tables[] = {
+    {"lm_noise_q8", "int16_t",
+     "dB of the mean of slice lm_noise_slice(i) of 1024 of a Gamma(2^row) variable",
+     LM_NOISE_LOOKS_LOG2_MAX + 1, LM_NOISE_SLICES + LM_NOISE_BLOCK, noise},
 };
 
 /* The Taylor weighting of 35 dB and nbar = 4 over an aperture, w(p) = 1 + 2 sum of F_m cos(2 pi m
@@ -262,8 +270,7 @@ static const struct table response_tables[] = {
 
 const struct table_set table_sets[] = {
     {"fixed", "fixed/src/tables.c", "fx/tables.h", fixed_tables, COUNT(fixed_tables)},
-    {"speckle", "firmware/src/speckle_table.c", "lm/speckle.h", speckle_tables,
-     COUNT(speckle_tables)},
+    {"noise", "firmware/src/noise_table.c", "lm/noise.h", noise_tables, COUNT(noise_tables)},
     {"response", "firmware/src/response_table.c", "lm/response.h", response_tables,
      COUNT(response_tables)},
 };

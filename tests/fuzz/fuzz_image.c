@@ -18,13 +18,13 @@ static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struc
     lm_geo_set_origin(&origin, from);
     const struct lm_place points[3] = {from, lm_geo_direct(&origin, 0x2AAAAAAA, 2560000),
                                        lm_geo_direct(&origin, 0x2AAAAAAA, 5120000)};
-    const struct lm_sampling sampling = lm_sampling_for(cache->db, cell_mm, 0);
+    const uint8_t level = lm_scan_level(cache->db, cell_mm);
     for (int i = 0; i < 2; i++) {
         lm_ground_path_fit(&path, points, 64);
-        lm_scan_line_run(line, cache, &sampling, &path, 64); /* asks for what is missing */
+        lm_scan_line_run(line, cache, level, &path, 64); /* asks for what is missing */
         lm_tile_cache_service(cache, (uint64_t)i * 2000000, 64);
     }
-    (void)lm_scan_elevation(cache, sampling.level, from, 0);
+    (void)lm_scan_elevation(cache, level, from, 0);
 }
 
 static void look_at_bands(struct lm_tile_cache *cache)

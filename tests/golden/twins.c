@@ -56,8 +56,6 @@ static uint32_t of_tile_read(void)
         struct lm_places places;
         places.north = draw_track(&rng);
         places.east = draw_track(&rng);
-        places.north_shift = 3 + hs_rng_below(&rng, 29);
-        places.east_shift = 3 + hs_rng_below(&rng, 29);
         const uint32_t first = hs_rng_below(&rng, 20);
         uint32_t end = first;
         draw_tile(&rng, &pool[hs_rng_below(&rng, TILES)]);
@@ -65,13 +63,12 @@ static uint32_t of_tile_read(void)
             const uint32_t from = end;
             end = fx_min_u32(end + 1 + hs_rng_below(&rng, 200), LM_CELLS_MAX);
             const struct lm_tile *tile = &pool[hs_rng_below(&rng, TILES)];
-            lm_tile_lay(pool, tile, draw_number(&rng, 1), from, end, &line);
+            lm_tile_lay(pool, tile, from, end, &line);
         }
         lm_tile_read(pool, &places, first, end, &line);
         const uint32_t count = end - first;
         crc = fx_crc32c(crc, line.cell + first, count * sizeof *line.cell);
         crc = fx_crc32c(crc, line.elevation_q14 + first, count * sizeof *line.elevation_q14);
-        crc = fx_crc32c(crc, line.noise + first, count * sizeof *line.noise);
     }
     return crc;
 }
@@ -79,7 +76,7 @@ static uint32_t of_tile_read(void)
 /* Texture of classes of any kind, and speckle over a floor. */
 static uint32_t of_speckle(void)
 {
-    static uint32_t cell[LM_CELLS_ROOM], noise[LM_CELLS_ROOM];
+    static uint32_t cell[LM_CELLS_ROOM];
     static int32_t level_q8[LM_CELLS_ROOM], speckled_q8[LM_CELLS_ROOM];
     static struct lm_classes classes;
     struct hs_rng rng;
@@ -87,7 +84,7 @@ static uint32_t of_speckle(void)
     hs_rng_seed(&rng, 3);
     for (int i = 0; i < ROUNDS; i++) {
         struct lm_texture texture;
-        const struct lm_texture_config shapes = {{LM_TEXTURE_NONE, LM_TEXTURE_NONE, 1, 4}};
+        const struct lm_texture_config shapes = {{LM_TEXTURE_NONE, 0, 1, 4}};
         const struct lm_speckle_config looks = {(uint8_t)hs_rng_below(&rng, 5)};
         const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
         for (int k = 0; k < LM_DB_CLASSES; k++) {
@@ -95,14 +92,16 @@ static uint32_t of_speckle(void)
         }
         for (uint32_t k = 0; k < cells; k++) {
             cell[k] = (uint32_t)hs_rng_u64(&rng) & 0xffff;
-            noise[k] = (uint32_t)hs_rng_u64(&rng);
             level_q8[k] = (int32_t)hs_rng_below(&rng, 1 << 16) - (1 << 15);
         }
         lm_texture_set(&texture, &shapes, &classes, (uint8_t)hs_rng_below(&rng, 9),
                        (uint16_t)(i % 2 * 35 * 256));
-        lm_texture_run(&texture, cell, noise, level_q8, cells);
-        lm_speckle_floor_run(&looks, (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14), noise,
+        const struct lm_raster ground = {hs_rng_u64(&rng), draw_number(&rng, 32), (uint32_t)i};
+        const struct lm_raster samples = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)i, 1);
+        lm_texture_run(&texture, &ground, cell, level_q8, cells);
+        lm_speckle_floor_run(&looks, (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14), &samples,
                              level_q8, speckled_q8, cells);
+        lm_speckle_run(&looks, &ground, speckled_q8, cells);
         crc = fx_crc32c(crc, level_q8, cells * sizeof *level_q8);
         crc = fx_crc32c(crc, speckled_q8, cells * sizeof *speckled_q8);
     }
@@ -182,7 +181,7 @@ static uint32_t of_receiver(void)
     hs_rng_seed(&rng, 5);
     for (int i = 0; i < ROUNDS; i++) {
         receiver.cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
-        receiver.looks_log2 = (uint8_t)hs_rng_below(&rng, LM_SPECKLE_LOOKS_LOG2_MAX + 1);
+        receiver.looks_log2 = (uint8_t)hs_rng_below(&rng, LM_NOISE_LOOKS_LOG2_MAX + 1);
         weather.noise_rise_q8 = (int32_t)hs_rng_below(&rng, 40 * 256);
         for (uint32_t k = 0; k < receiver.cells; k++) {
             receiver.noise_q8[k] = (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14);

@@ -13,12 +13,13 @@ struct lm_line_targets {
     struct lm_target_line where;
 };
 
-/* What the stages of a line read and do not change. All borrowed. */
+/* What the stages of a line read and do not change. What is pointed to is borrowed. */
 struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_legend *legend;
     const struct lm_texture *texture;
-    struct lm_sampling sampling;
+    struct lm_raster raster; /* of the texture */
+    uint8_t level;           /* of the database */
 };
 
 /* What the stages hand on. Kept by the caller, so that a bench or a test can look at each. */
@@ -36,7 +37,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
 
 /* Add what targets return. Behind speckle, which belongs to the clutter: what a target
  * returns is its own, and a chip brings its cells' speckle along. */
-void lm_line_add_targets(struct lm_line *line, const struct lm_line_setup *setup,
+void lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
                          const struct lm_line_targets *targets);
 
 #endif

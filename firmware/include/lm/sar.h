@@ -57,13 +57,14 @@ struct lm_sar {
     uint32_t dwell_ms;                    /* below 2^17 */
     struct lm_ground_patch ground, runup; /* with the guard cells; what lies before them */
     struct lm_range_grid grid, runup_grid;
-    struct lm_sampling sampling, runup_sampling;
+    uint8_t level, runup_level; /* of the database */
     struct lm_legend legend;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: none */
     uint64_t time_us;                    /* of the targets' places */
-    uint32_t epoch;                      /* of noise and of what fluctuates */
+    uint32_t epoch;                      /* of what fluctuates */
+    uint32_t noise_epoch;                /* the same for this patch alone */
     int32_t across_mm_s;                 /* velocity to the right of the line of sight */
     int32_t floor_q8;                    /* of noise, jammers' included; dB of gamma */
     struct lm_patch_rain rain;

@@ -68,7 +68,7 @@ struct lm_sector {
     uint32_t ground_edge_q8; /* ground range where cell 0 begins */
     int32_t tilt;            /* of the beam's axis in this sweep, signed BAM */
 
-    struct lm_sampling sampling;
+    uint8_t level; /* of the database */
     struct lm_range_grid grid;
     struct lm_slant slant;
     struct lm_elevation elevation;
@@ -83,7 +83,7 @@ struct lm_sector {
     struct lm_weather weather;
     struct lm_targets_near near;
 
-    struct lm_sampling runup_sampling;
+    uint8_t runup_level;             /* of the database */
     struct lm_range_grid runup_grid; /* no cells: the line begins at the antenna */
     lm_horizon_q40_t runup_horizon;  /* behind it, */
     uint32_t runup_part;             /* in this part of the sector, */

@@ -21,7 +21,7 @@ struct lm_target_line {
     fx_bam_t track;
     uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */
     uint32_t scan, pulse;  /* for what fluctuates: number of the sweep, and of the line */
-    const uint32_t *noise; /* borrowed: of the cells, for the speckle of chips; NULL: none */
+    const struct lm_raster *raster; /* borrowed: of the cells' speckle, for chips; NULL: none */
     struct lm_speckle_config speckle;
 };
 

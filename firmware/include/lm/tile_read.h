@@ -5,7 +5,6 @@
 
 #include <stdint.h>
 
-#include "fx/hash.h"
 #include "lm/db.h"
 #include "lm/scan_line.h"
 #include "lm/track.h"
@@ -14,8 +13,6 @@
  * so that none lies outside, and the way from one tile into the next is a sum that overflows. */
 struct lm_places {
     struct lm_track north, east;
-    uint32_t north_shift,
-        east_shift; /* a place shifted so far is its noise cell in the tile; < 32 */
 };
 
 struct lm_ground {
@@ -28,22 +25,14 @@ struct lm_ground {
 struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east);
 
 /* A line is read in two steps. First every run of cells, first..end - 1, is told which tile of the
- * pool it lies in, and what that tile adds to the sum of its noise; the line's three arrays keep
- * that until they are read, also for what is behind the run up to a whole number of LM_LANES. */
-void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t noise_sum,
-                 uint32_t first, uint32_t end, struct lm_scan_line *line);
+ * pool it lies in; the line's arrays keep that until they are read, also for what is behind the run
+ * up to a whole number of LM_LANES. */
+void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t first,
+                 uint32_t end, struct lm_scan_line *line);
 
-/* Then cells, elevations and noise of cells first..end - 1, all laid, come to stand there; those
- * behind them, up to a whole number of LM_LANES, lose their meaning. None when first is end. */
+/* Then cell and elevation of each of first..end - 1, all laid, come to stand there; those behind
+ * them, up to a whole number of LM_LANES, lose their meaning. None when first is end. */
 void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *places,
                   uint32_t first, uint32_t end, struct lm_scan_line *restrict line);
-
-/* The noise of a place in a tile that adds so much. */
-static inline uint32_t lm_place_noise(const struct lm_places *p, uint32_t noise_sum, uint32_t north,
-                                      uint32_t east)
-{
-    return fx_hash3_of_sum(noise_sum +
-                           fx_hash3_sum(north >> p->north_shift, east >> p->east_shift, 0));
-}
 
 #endif

@@ -4,7 +4,6 @@
 #ifndef FX_NEON_H
 #define FX_NEON_H
 
-#include "fx/hash.h"
 #include "fx/tables.h"
 
 #if defined(__aarch64__) && defined(__ARM_NEON) && !defined(FX_NO_NEON)
@@ -76,13 +75,6 @@ static inline int32x4x2_t fx_neon_db_q8_sum(int32x4x2_t a_q8, int32x4x2_t b_q8)
     const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(step));
     return (int32x4x2_t){{vaddw_s16(vmaxq_s32(a_q8.val[0], b_q8.val[0]), vget_low_s16(more_q8)),
                           vaddw_high_s16(vmaxq_s32(a_q8.val[1], b_q8.val[1]), more_q8)}};
-}
-
-/* fx_hash3_of_sum of four. */
-static inline uint32x4_t fx_neon_hash3_of_sum(uint32x4_t sum)
-{
-    const uint32x4_t x = vmulq_n_u32(veorq_u32(sum, vshrq_n_u32(sum, 16)), FX_HASH_FIRST);
-    return vmulq_n_u32(veorq_u32(x, vshrq_n_u32(x, 15)), FX_HASH_SECOND);
 }
 
 #else

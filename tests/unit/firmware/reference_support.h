@@ -39,7 +39,7 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
     return params;
 }
 
-/* The reference's bins filled with what the firmware found on the ground, and with its noise. */
+/* The reference's bins filled with what the firmware found on the ground. */
 static inline void take_ground(const struct lm_scan_line *ground, const struct lm_classes *classes,
                                struct ref_bin *bins, uint32_t cells)
 {
@@ -51,15 +51,6 @@ static inline void take_ground(const struct lm_scan_line *ground, const struct l
         bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
         bins[i].height_m = classes->height_dm[cell & 15] / 10.0;
         bins[i].elevation_m = ground->elevation_q14[i] / 16384.0;
-    }
-}
-
-static inline void take_noise(const struct lm_scan_line *ground, struct ref_bin *bins,
-                              uint32_t cells)
-{
-    for (uint32_t i = 0; i < cells; i++) {
-        bins[i].hash = ground->noise[i];
-        bins[i].slice = bins[i].hash >> 22;
     }
 }
 

@@ -10,7 +10,7 @@ $(TARGET_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 # The tests of lines and patches once more under the address and undefined-behaviour sanitizers: they use records made by chance.
 TARGET_SANE     := $(addprefix $(O)/bin/tests/unit/firmware/test_,target_line_sanitized target_patch_sanitized signature_sanitized)
 TARGET_SANE_SRC := $(addprefix firmware/src/,rcs.c target.c target_near.c target_view.c mover.c target_line.c target_patch.c smear.c \
-    signature.c chips.c chip_lay.c chip_line.c speckle_table.c response_table.c db.c geo.c scan_line.c tile_cache.c tile_read.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c \
+    signature.c chips.c chip_lay.c chip_line.c noise_table.c response_table.c db.c geo.c scan_line.c tile_cache.c tile_read.c) $(wildcard fixed/src/*.c) host-sim/common/src/rng.c \
     $(addprefix host-sim/reference/,aspect.c aperture.c receiver.c speckle.c chip.c) $(addprefix tests/support/,tiny_image.c memory_flash.c)
 TESTS += $(TARGET_SANE)
 $(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.c $(TARGET_SANE_SRC) \

@@ -89,11 +89,20 @@ static void make_resident(struct world *w)
     } while (!lm_tile_cache_is_idle(&w->tiles));
 }
 
-/* Compare what came out of a line with bins whose aspect is done. */
+/* What the cells of a patch's line draw, guard cells first. */
+static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *bins)
+{
+    for (uint32_t i = 0; i < CELLS + REF_GUARD_CELLS; i++) {
+        const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
+        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, line, i, sar->noise_epoch);
+        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->noise_epoch);
+    }
+}
+
+/* Compare what came out of a line with bins whose aspect is done and whose draws are known. */
 static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t from, uint32_t cells,
                          struct score *score)
 {
-    take_noise(&w->line.ground, bins, cells);
     ref_texture(bins, cells, &w->texture, &w->params);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
@@ -194,13 +203,16 @@ static double start_horizon(const struct world *w, const struct ref_sar *sar, ui
 
 /* Compare a sampled line with one of the reference, of which copy has room for the bins. */
 static void score_patch_line(struct world *w, const struct ref_sar *wanted,
-                             const struct ref_picture *picture, uint32_t line, double horizon,
-                             struct ref_bin *copy, struct patch_scores *scores)
+                             const struct ref_picture *picture, uint32_t line,
+                             const struct lm_sar *sar, struct ref_bin *copy,
+                             struct patch_scores *scores)
 {
+    const double horizon = ldexp((double)sar->horizon, -40);
     const uint32_t cells = CELLS + REF_GUARD_CELLS;
     struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
     const double wanted_horizon = start_horizon(w, wanted, line);
     assert_true(fabs(horizon - wanted_horizon) < 1e-5); /* 9 cm at 9 km */
+    take_draws(sar, line, bins);
     memcpy(copy, bins, cells * sizeof *copy);
     ref_aspect(copy, cells, &picture->view, &w->params, wanted_horizon);
     compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->whole);
@@ -231,7 +243,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     for (uint32_t k = 0; k < CELLS; k++) {
         lm_sar_sample_line(&sar, &w->tiles, k, &w->line, w->level_q8);
         lm_tone_run(&w->tone, w->level_q8, w->line.grey, CELLS + REF_GUARD_CELLS);
-        score_patch_line(w, &wanted, &picture, k, ldexp((double)sar.horizon, -40), copy, scores);
+        score_patch_line(w, &wanted, &picture, k, &sar, copy, scores);
     }
     free(copy);
     ref_picture_free(&picture);

@@ -91,7 +91,7 @@ static struct sector_world *make_country(const struct tiny_spec *content)
         .height_q10 = 4000 * 1024,
         .speed_mm_s = 180000};
     /* As little speckle as there is. */
-    w->radar.mode[LM_SECTOR_GM].speckle.looks_log2 = LM_SPECKLE_LOOKS_LOG2_MAX;
+    w->radar.mode[LM_SECTOR_GM].speckle.looks_log2 = LM_NOISE_LOOKS_LOG2_MAX;
     return w;
 }
 
@@ -117,8 +117,8 @@ static void look_along(const struct sector_world *w, const struct ref_db *db, do
         struct ref_bin *g = &ground[i];
         g->range_m = edge_m + (i + 0.5) * cell_m;
         g->place = ref_geo_direct(from, hs_degrees(s->up) + azimuth_deg, g->range_m);
-        ref_db_cell(db, s->sampling.level, g->place, g);
-        (void)ref_db_elevation(db, s->sampling.level, g->place, true, &g->elevation_m);
+        ref_db_cell(db, s->level, g->place, g);
+        (void)ref_db_elevation(db, s->level, g->place, true, &g->elevation_m);
     }
     const size_t first = ref_first_shown(ground, cells, &view);
     ref_aspect(ground, cells, &view, params, ref_gm_horizon(&ground[first], &view));

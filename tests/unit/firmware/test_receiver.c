@@ -166,7 +166,7 @@ static void the_noise_has_its_mean_and_its_number_of_looks(void **state)
     (void)state;
     struct world *w = make_world();
     enum { LINES = 256 };
-    for (uint8_t looks_log2 = 0; looks_log2 <= LM_SPECKLE_LOOKS_LOG2_MAX; looks_log2++) {
+    for (uint8_t looks_log2 = 0; looks_log2 <= LM_NOISE_LOOKS_LOG2_MAX; looks_log2++) {
         w->radar = lm_radar_default;
         w->radar.receiver.noise_looks_log2 = looks_log2;
         w->radar.receiver.stc_m[0] = 100000;

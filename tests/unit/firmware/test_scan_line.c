@@ -142,21 +142,6 @@ static double path_at(uint64_t value, uint64_t step, uint64_t bend, uint32_t i, 
            4294967296.0;
 }
 
-static struct lm_sampling sampling(uint8_t level)
-{
-    return (struct lm_sampling){.level = level, .noise_shift = 8, .epoch = 3};
-}
-
-/* The number of the noise cell of a coordinate that has a sign; `doubt` is how close the coordinate
- * is to another one, in noise cells. */
-static uint32_t noise_cell(double bam, uint8_t noise_shift, double *doubt)
-{
-    const double turn = 4294967296.0;
-    const double at = ldexp(bam - floor(bam / turn + 0.5) * turn, -noise_shift);
-    *doubt = fmin(*doubt, fabs(at - round(at)));
-    return (uint32_t)(int64_t)floor(at);
-}
-
 struct place {
     double latitude, longitude; /* BAM with a fraction; without wrapping */
 };
@@ -169,28 +154,14 @@ static struct place place_at(const struct lm_ground_path *p, uint32_t i)
     };
 }
 
-/* Whether a cell's noise is that of the noise cell it lies in: within 1/64 of a border either side
- * is right. */
-static void check_noise(uint32_t noise, const struct lm_sampling *s, struct place at)
-{
-    double doubt = 1;
-    const uint32_t row = noise_cell(at.latitude, s->noise_shift, &doubt);
-    const uint32_t column = noise_cell(at.longitude, s->noise_shift, &doubt);
-    if (doubt > 1.0 / 64) {
-        assert_int_equal(noise, fx_hash3(row, column, s->epoch));
-    }
-}
-
 /* Compare the line with the image; returns the number of cells that were known. */
 static uint32_t compare(const struct world *w, uint32_t level, const struct lm_ground_path *p,
                         uint32_t cells)
 {
-    const struct lm_sampling s = sampling((uint8_t)level);
     uint32_t known = 0, doubtful = 0;
     for (uint32_t i = 0; i < cells; i++) {
         const struct place at = place_at(p, i);
         const struct ground g = ground_at(w, level, at.latitude, at.longitude);
-        check_noise(w->line.noise[i], &s, at);
         known += (uint32_t)g.is_known;
         /* Within a thousandth of a cell of a border either side is right; elevation has no border.
          */
@@ -227,11 +198,10 @@ static struct lm_ground_path path_from(double latitude_deg, double longitude_deg
 static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm_ground_path *p,
                                  uint32_t cells)
 {
-    const struct lm_sampling s = sampling(level);
-    lm_scan_line_prefetch(&w->tiles, &s, p, cells);
+    lm_scan_line_prefetch(&w->tiles, level, p, cells);
     read_what_is_wanted(w);
     const uint32_t misses = w->tiles.count.misses;
-    lm_scan_line_run(&w->line, &w->tiles, &s, p, cells);
+    lm_scan_line_run(&w->line, &w->tiles, level, p, cells);
     assert_int_equal(w->tiles.count.misses, misses);
     return compare(w, level, p, cells);
 }
@@ -343,7 +313,7 @@ static void lines_near_the_poles_do_no_harm(void **state)
         spec.rows = spec.columns = 4;
         open_world_with(&w, spec);
         for (int i = 0; i < 200; i++) {
-            const struct lm_sampling s = sampling((uint8_t)hs_rng_below(&rng, w.db.level_count));
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.level_count);
             const struct lm_ground_path p = {
                 .latitude = (uint64_t)(w.db.centre_latitude + hs_rng_below(&rng, 1 << 21)) << 32,
                 .longitude = hs_rng_u64(&rng),
@@ -351,7 +321,7 @@ static void lines_near_the_poles_do_no_harm(void **state)
                 .longitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
                 .latitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40)),
                 .longitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40))};
-            lm_scan_line_run(&w.line, &w.tiles, &s, &p, LM_CELLS_MAX);
+            lm_scan_line_run(&w.line, &w.tiles, level, &p, LM_CELLS_MAX);
             for (uint32_t k = 0; k < LM_CELLS_MAX; k++) {
                 assert_in_range(w.line.cell[k], 0, 0xFFFF);
             }
@@ -384,25 +354,23 @@ static void what_is_not_resident_is_answered_by_the_nearest_ancestor(void **stat
     (void)state;
     static struct world w;
     open_world(&w, 46, 11);
-    const struct lm_sampling s = sampling(0);
     const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
     const uint8_t coarsest = (uint8_t)(w.db.level_count - 1);
     /* Nothing but the coarsest level has been read. */
-    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
     assert_true(compare(&w, coarsest, &p, 150) == 150);
     assert_true(w.tiles.count.substituted > 0);
     /* It has asked for what it missed; with the parents there too, they are not used. */
     read_what_is_wanted(&w);
-    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
     assert_true(compare(&w, 0, &p, 150) == 150);
     close_world(&w);
     /* Each level in turn is the finest that is there. */
     for (uint8_t level = 1; level < coarsest; level++) {
         open_world(&w, 46, 11);
-        const struct lm_sampling coarse = sampling(level);
-        lm_scan_line_prefetch(&w.tiles, &coarse, &p, 150);
+        lm_scan_line_prefetch(&w.tiles, level, &p, 150);
         read_what_is_wanted(&w);
-        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
         assert_true(compare(&w, level, &p, 150) == 150);
         close_world(&w);
     }
@@ -422,13 +390,12 @@ static void tiles_that_the_image_leaves_out_are_answered_by_their_parents(void *
     spec.rows = spec.columns = 6;
     spec.leave_out = leave_out_odd;
     open_world_with(&w, spec);
-    const struct lm_sampling parents = sampling(1), s = sampling(0);
     for (int azimuth = 0; azimuth < 360; azimuth += 24) {
         const struct lm_ground_path p = path_from(46, 11, azimuth, 5, 0);
-        lm_scan_line_prefetch(&w.tiles, &parents, &p, 150);
-        lm_scan_line_prefetch(&w.tiles, &s, &p, 150);
+        lm_scan_line_prefetch(&w.tiles, 1, &p, 150);
+        lm_scan_line_prefetch(&w.tiles, 0, &p, 150);
         read_what_is_wanted(&w);
-        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 150);
+        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
         assert_true(compare(&w, 0, &p, 150) > 100);
     }
     close_world(&w);
@@ -439,9 +406,8 @@ static void beyond_the_map_there_is_no_data_at_sea_level(void **state)
     (void)state;
     static struct world w;
     open_world(&w, 46, 11);
-    const struct lm_sampling s = sampling(0);
     const struct lm_ground_path p = path_from(10, 50, 45, 5, 0);
-    lm_scan_line_run(&w.line, &w.tiles, &s, &p, 100);
+    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 100);
     for (int i = 0; i < 100; i++) {
         assert_int_equal(w.line.cell[i], LM_CELL_NONE);
         assert_int_equal(w.line.elevation_q14[i], 0);
@@ -454,11 +420,10 @@ static void one_elevation_is_that_of_a_line(void **state)
     (void)state;
     static struct world w;
     open_world(&w, 46, 11);
-    const struct lm_sampling s = sampling(0);
     for (int i = 0; i < 100; i++) {
         const struct lm_ground_path p = path_from(46 + i * 1e-5, 11 - i * 2e-5, 0, 1, 0);
         const struct lm_place place = {(fx_bam_t)(p.latitude >> 32), (fx_bam_t)(p.longitude >> 32)};
-        lm_scan_line_run(&w.line, &w.tiles, &s, &p, 1);
+        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 1);
         const int32_t q10 = lm_scan_elevation(&w.tiles, 0, place, -99);
         /* A place is whole BAM: a fraction of a weight's step. */
         assert_true(abs(q10 - (w.line.elevation_q14[0] >> 4)) < 64);
@@ -475,15 +440,10 @@ static void the_level_is_the_largest_cell_that_is_not_longer(void **state)
     static struct world w;
     open_world(&w, 46, 11);
     for (uint32_t cell_mm = 100; cell_mm < 3000000; cell_mm = cell_mm * 9 / 8) {
-        const struct lm_sampling s = lm_sampling_for(&w.db, cell_mm, 0);
-        assert_true(s.level == 0 || lm_db_cell_mm(&w.db, s.level) <= cell_mm);
-        assert_true(s.level + 1 == w.db.level_count ||
-                    lm_db_cell_mm(&w.db, (uint8_t)(s.level + 1)) > cell_mm);
-        const double noise_mm = ldexp(9.31506, s.noise_shift);
-        assert_true(noise_mm <= cell_mm / sqrt(2) * 1.0001);
-        /* A noise cell is always shorter than a tile. */
-        assert_true(2 * noise_mm > cell_mm / sqrt(2) * 0.9999 ||
-                    2 * noise_mm > LM_TILE_CELLS * lm_db_cell_mm(&w.db, s.level) * 0.9999);
+        const uint8_t level = lm_scan_level(&w.db, cell_mm);
+        assert_true(level == 0 || lm_db_cell_mm(&w.db, level) <= cell_mm);
+        assert_true(level + 1 == w.db.level_count ||
+                    lm_db_cell_mm(&w.db, (uint8_t)(level + 1)) > cell_mm);
     }
     close_world(&w);
 }

@@ -89,6 +89,21 @@ static struct ref_antenna antenna_of(const struct lm_radar *radar)
                                 .fan_deg = hs_degrees(radar->antenna.fan)};
 }
 
+/* What the cells of a sample draw. */
+static void take_draws(const struct sector_world *w, int32_t sample, uint32_t sweep,
+                       struct ref_bin *bins, uint32_t cells)
+{
+    const struct lm_sector *s = &w->sector;
+    const int32_t off = lm_beam_azimuth(&s->beam, s->radar, sample);
+    const double azimuth_deg = hs_degrees(s->up + (fx_bam_t)off);
+    const double edge_m = metres(s->ground_edge_q8), cell_m = metres(s->grid.cell_q8);
+    for (uint32_t i = 0; i < cells; i++) {
+        const uint32_t column = ref_ground_column(azimuth_deg, edge_m, cell_m, i);
+        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, sweep);
+        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, (uint32_t)sample, i, sweep);
+    }
+}
+
 /* The levels that the reference finds on the firmware's ground, before the antenna. */
 static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
 {
@@ -100,14 +115,13 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
         bins[i].range_m = metres(s->ground_edge_q8 + s->grid.cell_q8 / 2 + i * s->grid.cell_q8);
     }
     take_ground(&w->line.ground, &w->db.classes, bins, cells);
-    take_noise(&w->line.ground, bins, cells);
     ref_aspect(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
     ref_texture(bins, cells, &t->texture, &t->params);
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
 }
 
 /* The sample taken last, whose ground and levels are still in the line. */
-static void judge_sample(struct trial *t)
+static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
 {
     const struct sector_world *w = t->w;
     const struct lm_sector *s = &w->sector;
@@ -116,6 +130,7 @@ static void judge_sample(struct trial *t)
     struct lm_sight gain = w->line.sight;
     memset(gain.level_q8, 0, sizeof gain.level_q8);
     lm_elevation_run(&s->elevation, &s->fan, &s->grid, &gain);
+    take_draws(w, sample, sweep, bins, cells);
     see(t, bins, cells);
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
@@ -282,7 +297,7 @@ static void judge_line(struct trial *t)
     const struct ref_beam beam = beam_of(s, azimuth_deg);
     const long last = ref_beam_look(&beam, azimuth_deg).first + REF_BEAM_SAMPLES - 1;
     if (s->samples != samples) {
-        judge_sample(t);
+        judge_sample(t, (int32_t)last, sweep);
         judge_slant(t, last);
     }
     judge_beam(t, line, drawn_q24);

@@ -59,7 +59,7 @@ static int set_up(void **state)
     spec.rows = spec.columns = 4;
     assert_int_equal(open_signature_world(&f->world, &spec), 0);
     assert_int_equal(lm_tone_set(&f->tone, &lm_radar_default.sar.tone), LM_OK);
-    /* Once for the tiles: where they are not there yet, an ancestor's noise is another one's. */
+    /* Once for the tiles: where they are not there yet, an ancestor answers. */
     const struct lm_target_set none = {0};
     draw_patch(f, &none, f->bare);
     while (!lm_tile_cache_is_idle(&f->world.tiles)) {
@@ -323,12 +323,12 @@ enum { DRAWS = 3000 };
 
 /* Power that the target adds to a line without echo, with each cell's speckle. */
 static void draw_line(const struct lm_targets_near *near, struct lm_target_line line,
-                      uint32_t looks_log2, const uint32_t *noise, int32_t level_q8[CELLS])
+                      uint32_t looks_log2, const struct lm_raster *raster, int32_t level_q8[CELLS])
 {
     for (int c = 0; c < CELLS; c++) {
         level_q8[c] = -100 * 256;
     }
-    line.noise = noise;
+    line.raster = raster;
     line.speckle.looks_log2 = (uint8_t)looks_log2;
     (void)lm_target_add(near, &line, NULL, level_q8);
 }
@@ -341,21 +341,16 @@ static void the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell(void **
     const struct lm_target t = target_beyond(range_m, 0, 77);
     const struct lm_target_line line = line_of(LINES / 2);
     struct lm_targets_near near;
-    struct hs_rng r;
-    hs_rng_seed(&r, 11);
     near_of(f, &t, true, &near);
     for (uint32_t looks_log2 = 0; looks_log2 <= 4; looks_log2 += 2) {
-        uint32_t noise[CELLS];
         int32_t bare_q8[CELLS], level_q8[CELLS];
         double sum = 0, squares = 0, products = 0;
         int cells = 0, pairs = 0;
         draw_line(&near, line, looks_log2, NULL, bare_q8);
         for (int k = 0; k < DRAWS; k++) {
             double before = -1;
-            for (int c = 0; c < CELLS; c++) {
-                noise[c] = (uint32_t)hs_rng_u64(&r);
-            }
-            draw_line(&near, line, looks_log2, noise, level_q8);
+            const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)k, looks_log2);
+            draw_line(&near, line, looks_log2, &raster, level_q8);
             for (int c = 0; c < CELLS; c++) {
                 const double x = pow(10, (level_q8[c] - bare_q8[c]) / 2560.0);
                 if (bare_q8[c] < -40 * 256) { /* nothing of the chip */

@@ -1,9 +1,7 @@
-/* Speckle against the statistics of a Gamma distribution, with the noise that a scan line gives its
- * cells. */
+/* Draws and speckle against the statistics of a Gamma distribution. */
+#include "lm/noise.h"
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
-#include "memory_flash.h"
-#include "tiny_image.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -11,82 +9,33 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
-enum { SIDE = 256, FLOOR_Q8 = -46 * 256, CELL_MM = 10000 };
+enum { SIDE = 256 };
 
-struct fixture {
-    struct tiny_image image;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_tile_cache tiles;
-    void *pool;
-    struct lm_scan_line line;
-    uint32_t noise[SIDE][SIDE];
-};
-
-static struct tiny_cell soil(void *ctx, const struct tiny_place *place)
+/* Slices that the cells of SIDE lines draw, each line a column by itself. */
+static void fill_slices(uint32_t slice[SIDE][SIDE], enum lm_noise_kind kind, uint32_t epoch)
 {
-    (void)ctx;
-    (void)place;
-    return (struct tiny_cell){-20, TINY_SOIL, 0};
-}
-
-/* The noise of SIDE x SIDE cells of CELL_MM around the image, south to north, shifted by whole
- * noise cells eastward. */
-static void fill_noise(struct fixture *f, uint32_t epoch, uint32_t east_bam)
-{
-    const struct lm_sampling s = lm_sampling_for(&f->db, CELL_MM, epoch);
-    const uint64_t step = (uint64_t)(CELL_MM / 9.31506 * 4294967296.0);
-    for (uint32_t row = 0; row < SIDE; row++) {
-        const struct lm_ground_path path = {
-            .latitude = ((uint64_t)f->db.centre_latitude << 32) + row * step,
-            .longitude = (uint64_t)(f->db.centre_longitude + east_bam) << 32,
-            .longitude_step = step};
-        lm_scan_line_run(&f->line, &f->tiles, &s, &path, SIDE);
-        memcpy(f->noise[row], f->line.noise, sizeof f->noise[row]);
+    for (uint32_t line = 0; line < SIDE; line++) {
+        const struct lm_raster raster = lm_raster_of(kind, line, epoch);
+        for (uint32_t i = 0; i < SIDE; i++) {
+            const uint32_t entry = lm_noise_entry(&raster, i / LM_NOISE_BLOCK) + i % LM_NOISE_BLOCK;
+            slice[line][i] = lm_noise_slice(entry);
+        }
     }
-}
-
-static int open_fixture(void **state)
-{
-    struct fixture *f = calloc(1, sizeof *f);
-    struct tiny_spec spec = tiny_spec_at(10, 20);
-    const size_t bytes = 20 * sizeof(struct lm_tile);
-    spec.cell = soil;
-    spec.shift0 = 10;
-    if (f == NULL || tiny_image_build(&f->image, &spec) != 0) {
-        return -1;
-    }
-    f->pool = malloc(bytes);
-    memory_flash_open(&f->flash, f->image.bytes, f->image.size);
-    *state = f;
-    return lm_db_open(&f->db, &f->flash.port, 10) == 0 &&
-                   lm_tile_cache_init(&f->tiles, &f->db, f->pool, bytes, 10) == 0
-               ? 0
-               : -1;
-}
-
-static int close_fixture(void **state)
-{
-    struct fixture *f = *state;
-    tiny_image_free(&f->image);
-    free(f->pool);
-    free(f);
-    return 0;
 }
 
 /* Powers after speckle of `looks_log2` on a field of 0 dB. */
-static void powers_of(const struct fixture *f, uint8_t looks_log2, double *power)
+static void fill_powers(double *power, uint8_t looks_log2, uint32_t epoch)
 {
     const struct lm_speckle_config config = {looks_log2};
-    for (int row = 0; row < SIDE; row++) {
+    for (uint32_t line = 0; line < SIDE; line++) {
+        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, line, epoch);
         int32_t level[SIDE] = {0};
-        lm_speckle_run(&config, f->noise[row], level, SIDE);
-        for (int i = 0; i < SIDE; i++) {
-            power[row * SIDE + i] = pow(10, level[i] / 2560.0);
+        lm_speckle_run(&config, &raster, level, SIDE);
+        for (uint32_t i = 0; i < SIDE; i++) {
+            power[line * SIDE + i] = pow(10, level[i] / 2560.0);
         }
     }
 }
@@ -105,11 +54,10 @@ static void moments(const double *x, double *mean, double *variance)
 
 static void one_look_has_a_coefficient_of_variation_of_one(void **state)
 {
-    struct fixture *f = *state;
+    (void)state;
     static double power[SIDE * SIDE];
     double mean, variance;
-    fill_noise(f, 5, 0);
-    powers_of(f, 0, power);
+    fill_powers(power, 0, 5);
     moments(power, &mean, &variance);
     print_message("# one look: mean %.4f, CV %.4f\n", mean, sqrt(variance) / mean);
     assert_true(fabs(mean - 1) < 0.02);
@@ -118,12 +66,11 @@ static void one_look_has_a_coefficient_of_variation_of_one(void **state)
 
 static void the_equivalent_number_of_looks_is_the_number_of_looks(void **state)
 {
-    struct fixture *f = *state;
+    (void)state;
     static double power[SIDE * SIDE];
-    fill_noise(f, 6, 0);
-    for (uint8_t log2 = 0; log2 <= LM_SPECKLE_LOOKS_LOG2_MAX; log2++) {
+    for (uint8_t log2 = 0; log2 <= LM_NOISE_LOOKS_LOG2_MAX; log2++) {
         double mean, variance;
-        powers_of(f, log2, power);
+        fill_powers(power, log2, 6);
         moments(power, &mean, &variance);
         const double looks = mean * mean / variance;
         print_message("# %d looks: mean %.4f, ENL %.3f\n", 1 << log2, mean, looks);
@@ -132,36 +79,88 @@ static void the_equivalent_number_of_looks_is_the_number_of_looks(void **state)
     }
 }
 
-/* 65,536 draws into 1024 slices: chi-square has mean 1023 and deviation sqrt(2 * 1023) = 45. */
-static void every_slice_is_drawn_equally_often(void **state)
+/* Of the numbers of a row with those so many entries on, the first ones following the last. */
+static double correlation_along(const double x[LM_NOISE_SLICES], int apart)
 {
-    struct fixture *f = *state;
-    for (uint32_t epoch = 0; epoch < 4; epoch++) {
-        int count[LM_SPECKLE_SLICES] = {0};
-        fill_noise(f, epoch, 0);
-        for (int i = 0; i < SIDE * SIDE; i++) {
-            const uint32_t n = f->noise[i / SIDE][i % SIDE] >> 22;
-            assert_in_range(n, 0, LM_SPECKLE_SLICES - 1);
-            count[n]++;
+    double sum = 0, squares = 0, products = 0;
+    for (int n = 0; n < LM_NOISE_SLICES; n++) {
+        sum += x[n];
+        squares += x[n] * x[n];
+        products += x[n] * x[(n + apart) % LM_NOISE_SLICES];
+    }
+    const double mean = sum / LM_NOISE_SLICES;
+    return (products / LM_NOISE_SLICES - mean * mean) / (squares / LM_NOISE_SLICES - mean * mean);
+}
+
+static void every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it(void **state)
+{
+    (void)state;
+    int count[LM_NOISE_SLICES] = {0};
+    for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
+        const uint32_t slice = lm_noise_slice(entry);
+        assert_in_range(slice, 0, LM_NOISE_SLICES - 1);
+        assert_int_equal(count[slice]++, 0);
+    }
+    for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
+        int16_t sorted_q8[LM_NOISE_SLICES];
+        for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
+            sorted_q8[lm_noise_slice(entry)] = lm_noise_q8[row][entry];
         }
-        double chi_square = 0;
-        for (int n = 0; n < LM_SPECKLE_SLICES; n++) {
-            chi_square += (count[n] - 64.0) * (count[n] - 64.0) / 64;
+        for (int n = 1; n < LM_NOISE_SLICES; n++) {
+            assert_true(sorted_q8[n] >= sorted_q8[n - 1]);
         }
-        assert_true(fabs(chi_square - 1023) < 5 * 45);
+        for (int k = 0; k < LM_NOISE_BLOCK; k++) {
+            assert_int_equal(lm_noise_q8[row][LM_NOISE_SLICES + k], lm_noise_q8[row][k]);
+        }
     }
 }
 
-/* Correlation of the draws of cells (row, column) and (row + down, column + along): for independent
- * ones its deviation is 1/256. */
-static double correlation(const struct fixture *f, int down, int along)
+/* The correlation that lm_noise_slice promises, of slices and of one look's powers. */
+static void the_order_of_a_row_keeps_neighbours_independent(void **state)
+{
+    (void)state;
+    double slice[LM_NOISE_SLICES], power[LM_NOISE_SLICES];
+    for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
+        slice[entry] = lm_noise_slice(entry);
+        power[entry] = pow(10, lm_noise_q8[0][entry] / 2560.0);
+    }
+    for (int apart = 1; apart < LM_NOISE_BLOCK; apart++) {
+        assert_true(fabs(correlation_along(slice, apart)) < 0.0136);
+        assert_true(fabs(correlation_along(power, apart)) < 0.0136);
+    }
+}
+
+/* 65,536 draws into 1024 slices: chi-square has mean 1023. Its deviation is that of single draws,
+ * 45, times the root of 1 + 2 (7^2 + 6^2 + .. + 1) / 8^2, which is 2.3, since eight neighbouring
+ * entries come together. */
+static void every_slice_is_drawn_equally_often(void **state)
+{
+    (void)state;
+    static uint32_t slice[SIDE][SIDE];
+    for (uint32_t epoch = 0; epoch < 4; epoch++) {
+        int count[LM_NOISE_SLICES] = {0};
+        fill_slices(slice, LM_NOISE_SPECKLE, epoch);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            count[slice[i / SIDE][i % SIDE]]++;
+        }
+        double chi_square = 0;
+        for (int n = 0; n < LM_NOISE_SLICES; n++) {
+            chi_square += (count[n] - 64.0) * (count[n] - 64.0) / 64;
+        }
+        print_message("# chi-square %.0f of 1023\n", chi_square);
+        assert_true(fabs(chi_square - 1023) < 4 * 45 * 2.3);
+    }
+}
+
+/* Correlation of the draws of cells (line, i) of one field and (line + down, i + along) of another:
+ * for independent ones its deviation is 1/256. */
+static double correlation(uint32_t a[SIDE][SIDE], uint32_t b[SIDE][SIDE], int down, int along)
 {
     double sum = 0;
     int n = 0;
-    for (int row = 0; row + down < SIDE; row++) {
+    for (int line = 0; line + down < SIDE; line++) {
         for (int i = 0; i + along < SIDE; i++, n++) {
-            sum += ((f->noise[row][i] >> 22) - 511.5) *
-                   ((f->noise[row + down][i + along] >> 22) - 511.5);
+            sum += (a[line][i] - 511.5) * (b[line + down][i + along] - 511.5);
         }
     }
     return sum / n / (1024.0 * 1024 / 12);
@@ -169,64 +168,69 @@ static double correlation(const struct fixture *f, int down, int along)
 
 static void neighbouring_cells_are_independent(void **state)
 {
-    struct fixture *f = *state;
+    (void)state;
+    static uint32_t slice[SIDE][SIDE];
+    double worst = 0;
     for (uint32_t epoch = 0; epoch < 3; epoch++) {
-        fill_noise(f, epoch, 0);
+        fill_slices(slice, LM_NOISE_SPECKLE, epoch);
         for (int down = 0; down <= 3; down++) {
-            for (int along = down == 0; along <= 3; along++) {
-                assert_true(fabs(correlation(f, down, along)) < 5.0 / SIDE);
+            for (int along = down == 0; along <= 9; along++) {
+                worst = fmax(worst, fabs(correlation(slice, slice, down, along)));
             }
         }
     }
+    print_message("# neighbours correlate by %.4f at most\n", worst);
+    assert_true(worst < 0.0136 + 4.0 / SIDE);
 }
 
-static void ground_keeps_its_noise_while_the_line_moves_over_it(void **state)
-{
-    struct fixture *f = *state;
-    static uint32_t before[SIDE][SIDE];
-    /* Seven cells' step is no whole number of BAM, so the line starts where cell 7 lay. */
-    const double step_bam = CELL_MM / 9.31506;
-    fill_noise(f, 9, 0);
-    memcpy(before, f->noise, sizeof before);
-    fill_noise(f, 9, (uint32_t)(7 * step_bam));
-    int same = 0;
-    for (int row = 0; row < SIDE; row++) {
-        for (int i = 0; i + 7 < SIDE; i++) {
-            same += f->noise[row][i] == before[row][i + 7];
-        }
-    }
-    /* All but the few cells whose noise cell ends within that fraction of a BAM (one in 512). */
-    assert_true(same > 0.99 * SIDE * (SIDE - 7));
-    fill_noise(f, 9, 0);
-    assert_memory_equal(before, f->noise, sizeof before);
-}
-
-static void another_epoch_gives_other_noise(void **state)
-{
-    struct fixture *f = *state;
-    static uint32_t before[SIDE][SIDE];
-    fill_noise(f, 1, 0);
-    memcpy(before, f->noise, sizeof before);
-    fill_noise(f, 2, 0);
-    int same = 0;
-    for (int i = 0; i < SIDE * SIDE; i++) {
-        same += f->noise[i / SIDE][i % SIDE] >> 22 == before[i / SIDE][i % SIDE] >> 22;
-    }
-    assert_true(abs(same - 64) < 5 * 8); /* by chance, 1 in 1024 */
-}
-
-static void each_slice_of_the_hash_adds_its_entry_of_the_table(void **state)
+static void kinds_and_epochs_know_nothing_of_each_other(void **state)
 {
     (void)state;
-    const struct lm_speckle_config config = {2};
-    for (uint32_t n = 0; n < LM_SPECKLE_SLICES; n++) {
-        const uint32_t noise[4] = {n << 22, n << 22 | 0x3fffff, n << 22, n << 22};
-        int32_t level[4] = {-0x8000, FLOOR_Q8, FLOOR_Q8 + 1, 1000};
-        lm_speckle_run(&config, noise, level, 4);
-        assert_int_equal(level[0], -0x8000 + lm_speckle_q8[2][n]);
-        assert_int_equal(level[1], FLOOR_Q8 + lm_speckle_q8[2][n]);
-        assert_int_equal(level[2], FLOOR_Q8 + 1 + lm_speckle_q8[2][n]);
-        assert_int_equal(level[3], 1000 + lm_speckle_q8[2][n]);
+    static uint32_t a[SIDE][SIDE], b[SIDE][SIDE];
+    fill_slices(a, LM_NOISE_SPECKLE, 7);
+    fill_slices(b, LM_NOISE_TEXTURE, 7);
+    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
+    fill_slices(b, LM_NOISE_RECEIVER, 7);
+    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
+    fill_slices(b, LM_NOISE_SPECKLE, 8);
+    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
+    fill_slices(b, LM_NOISE_SPECKLE, 7);
+    assert_memory_equal(a, b, sizeof a);
+}
+
+static void lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line(void **state)
+{
+    (void)state;
+    const struct lm_raster grown = {.column_q32 = ((uint64_t)70 << 32) - 1, 1, 3};
+    const struct lm_raster before = {.column_q32 = (uint64_t)69 << 32, 0, 3};
+    const struct lm_raster behind = {.column_q32 = (uint64_t)70 << 32, 0, 3};
+    struct lm_noise_line line;
+    lm_noise_line_set(&line, &grown, 64);
+    assert_int_equal(line.entry[0], lm_noise_entry(&before, 0));
+    for (uint32_t block = 1; block < 8; block++) {
+        assert_int_equal(line.entry[block], lm_noise_entry(&behind, block));
+        assert_int_equal(line.entry[block], lm_noise_entry(&grown, block));
+    }
+}
+
+static void every_cell_gains_its_draw(void **state)
+{
+    (void)state;
+    for (uint32_t column = 0; column < 500; column++) {
+        const struct lm_speckle_config config = {(uint8_t)(column % 5)};
+        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, column, 1);
+        int32_t level[48], over_nothing[48], none[48];
+        for (int i = 0; i < 48; i++) {
+            level[i] = 1000 * i - 0x8000;
+            none[i] = level[i];
+        }
+        lm_speckle_run(&config, &raster, level, 48);
+        lm_speckle_floor_run(&config, -1000 * 256, &raster, none, over_nothing, 48);
+        for (uint32_t i = 0; i < 48; i++) {
+            const int32_t draw = lm_noise_of_q8(config.looks_log2, &raster, i);
+            assert_int_equal(level[i], 1000 * (int32_t)i - 0x8000 + draw);
+            assert_in_range(over_nothing[i] - level[i], 0, 1);
+        }
     }
 }
 
@@ -235,11 +239,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_look_has_a_coefficient_of_variation_of_one),
         cmocka_unit_test(the_equivalent_number_of_looks_is_the_number_of_looks),
+        cmocka_unit_test(every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it),
+        cmocka_unit_test(the_order_of_a_row_keeps_neighbours_independent),
         cmocka_unit_test(every_slice_is_drawn_equally_often),
         cmocka_unit_test(neighbouring_cells_are_independent),
-        cmocka_unit_test(ground_keeps_its_noise_while_the_line_moves_over_it),
-        cmocka_unit_test(another_epoch_gives_other_noise),
-        cmocka_unit_test(each_slice_of_the_hash_adds_its_entry_of_the_table),
+        cmocka_unit_test(kinds_and_epochs_know_nothing_of_each_other),
+        cmocka_unit_test(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line),
+        cmocka_unit_test(every_cell_gains_its_draw),
     };
-    return cmocka_run_group_tests_name("speckle", tests, open_fixture, close_fixture);
+    return cmocka_run_group_tests_name("speckle", tests, NULL, NULL);
 }

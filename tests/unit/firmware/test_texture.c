@@ -1,6 +1,5 @@
 /* Texture, the state of the sea and the noise floor, against the statistics of a K distribution and
  * the sum of powers: docs/DESIGN.md, "Speckle and texture". */
-#include "fx/hash.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "lm/radar.h"
@@ -16,7 +15,8 @@
 
 #include <cmocka.h>
 
-enum { SIDE = 384, CELLS = SIDE * SIDE, NONE = LM_TEXTURE_NONE };
+/* ROOM is what the stages take for a few cells. */
+enum { SIDE = 384, CELLS = SIDE * SIDE, ROOM = 16, NONE = LM_TEXTURE_NONE };
 
 static const struct lm_texture_config all_none = {{NONE, NONE, NONE, NONE}};
 
@@ -50,16 +50,18 @@ static void fill_powers(double *power, uint8_t shape_log2, uint8_t looks_log2)
     struct lm_texture texture;
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t row = 0; row < SIDE; row++) {
-        uint32_t cell[SIDE], noise[SIDE];
+        const struct lm_raster rough = lm_raster_of(LM_NOISE_TEXTURE, row, 77);
+        const struct lm_raster speckle = lm_raster_of(LM_NOISE_SPECKLE, row, 77);
+        const struct lm_speckle_config looks = {looks_log2};
+        uint32_t cell[SIDE];
         int32_t level[SIDE] = {0};
         for (uint32_t i = 0; i < SIDE; i++) {
             cell[i] = cell_of(TINY_STRUCTURE);
-            noise[i] = fx_hash3(row, i, 77);
         }
-        lm_texture_run(&texture, cell, noise, level, SIDE);
+        lm_texture_run(&texture, &rough, cell, level, SIDE);
+        lm_speckle_run(&looks, &speckle, level, SIDE);
         for (uint32_t i = 0; i < SIDE; i++) {
-            const int32_t speckle_q8 = lm_speckle_q8[looks_log2][noise[i] >> 22];
-            power[row * SIDE + i] = pow(10, (level[i] + speckle_q8) / 2560.0);
+            power[row * SIDE + i] = pow(10, level[i] / 2560.0);
         }
     }
 }
@@ -86,17 +88,18 @@ static void textured_speckle_has_the_variance_of_a_k_distribution(void **state)
     }
 }
 
-static void texture_and_speckle_of_a_cell_are_independent(void **state)
+/* What a cell of a class gains, for the n-th draw of any. */
+static int32_t gain_q8(const struct lm_texture *texture, uint32_t cell, uint32_t n, int32_t level)
 {
-    (void)state;
-    double both = 0;
-    for (uint32_t row = 0; row < SIDE; row++) {
-        for (uint32_t i = 0; i < SIDE; i++) {
-            const uint32_t noise = fx_hash3(row, i, 3);
-            both += ((noise >> 22) - 511.5) * ((noise >> 12 & 1023) - 511.5);
-        }
+    const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, n, 4);
+    uint32_t cells[ROOM];
+    int32_t levels[ROOM];
+    for (int i = 0; i < ROOM; i++) {
+        cells[i] = cell;
+        levels[i] = level;
     }
-    assert_true(fabs(both / CELLS / (1024.0 * 1024 / 12)) < 4.0 / SIDE);
+    lm_texture_run(texture, &raster, cells, levels, 1);
+    return levels[0] - level;
 }
 
 static void kinds_without_texture_keep_their_level_to_the_bit(void **state)
@@ -109,29 +112,40 @@ static void kinds_without_texture_keep_their_level_to_the_bit(void **state)
         if (lm_radar_default.texture.shape_log2[kind] != LM_TEXTURE_NONE) {
             continue;
         }
-        for (uint32_t slice = 0; slice < LM_SPECKLE_SLICES; slice++) {
-            const uint32_t cell = cell_of(class_index), noise = slice << 12 | 0xffc00fffu;
-            int32_t level = -1234;
-            lm_texture_run(&texture, &cell, &noise, &level, 1);
-            assert_int_equal(level, -1234);
+        for (uint32_t n = 0; n < 1000; n++) {
+            assert_int_equal(gain_q8(&texture, cell_of(class_index), n, -1234), 0);
         }
     }
 }
 
-static void bits_21_to_12_of_the_hash_choose_the_slice_and_no_others(void **state)
+/* Classes in turns, so that each of a block has neighbours of other shapes. */
+static void each_class_gains_a_draw_of_its_own_shape(void **state)
 {
     (void)state;
-    struct lm_texture_config config = all_none;
-    config.shape_log2[LM_KIND_STRUCTURE] = 1;
+    const struct lm_texture_config config = {.shape_log2 = {[LM_KIND_GROUND] = 4,
+                                                            [LM_KIND_WATER] = NONE,
+                                                            [LM_KIND_STRUCTURE] = 1,
+                                                            [LM_KIND_TREES] = 2}};
+    static const uint32_t class_index[4] = {TINY_SOIL, TINY_WATER, TINY_STRUCTURE, TINY_TREES};
+    static const int log2_of[4] = {4, -1, 1, 2};
     struct lm_texture texture;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 8);
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
-    for (uint32_t slice = 0; slice < LM_SPECKLE_SLICES; slice++) {
-        const uint32_t cell[2] = {cell_of(TINY_STRUCTURE), cell_of(TINY_STRUCTURE)};
-        const uint32_t noise[2] = {slice << 12, slice << 12 | 0xffc00fffu};
-        int32_t level[2] = {0, 0};
-        lm_texture_run(&texture, cell, noise, level, 2);
-        assert_int_equal(level[0], lm_speckle_q8[1][slice]);
-        assert_int_equal(level[1], level[0]);
+    assert_int_equal(texture.shapes, 3);
+    for (uint32_t column = 0; column < 200; column++) {
+        const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, column, 9);
+        uint32_t cell[48], which[48];
+        int32_t level[48] = {0};
+        for (int i = 0; i < 48; i++) {
+            which[i] = hs_rng_below(&rng, column % 4 + 1);
+            cell[i] = cell_of(class_index[which[i]]);
+        }
+        lm_texture_run(&texture, &raster, cell, level, 48);
+        for (uint32_t i = 0; i < 48; i++) {
+            const int log2 = log2_of[which[i]];
+            assert_int_equal(level[i], log2 < 0 ? 0 : lm_noise_of_q8((uint32_t)log2, &raster, i));
+        }
     }
 }
 
@@ -142,11 +156,11 @@ static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void *
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_texture texture;
         lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea, 0);
-        const uint32_t cell[] = {cell_of(TINY_WATER), cell_of(TINY_SOIL), cell_of(TINY_STRUCTURE),
-                                 cell_of(TINY_TREES)};
-        const uint32_t noise[4] = {0, 1u << 20, 5, UINT32_MAX};
-        int32_t level[4] = {-40 * 256, -20 * 256, 0, -15 * 256};
-        lm_texture_run(&texture, cell, noise, level, 4);
+        const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, (uint32_t)sea, 1);
+        const uint32_t cell[ROOM] = {cell_of(TINY_WATER), cell_of(TINY_SOIL),
+                                     cell_of(TINY_STRUCTURE), cell_of(TINY_TREES)};
+        int32_t level[ROOM] = {-40 * 256, -20 * 256, 0, -15 * 256};
+        lm_texture_run(&texture, &raster, cell, level, 4);
         assert_int_equal(level[0], (-40 + 5 * ((sea < 8 ? sea : 8) - 3)) * 256);
         assert_int_equal(level[1], -20 * 256);
         assert_int_equal(level[2], 0);
@@ -159,17 +173,16 @@ static void a_loss_is_taken_off_every_class(void **state)
     (void)state;
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_TREES] = 2;
-    static const uint16_t losses_q8[] = {35 * 256, UINT16_MAX};
-    for (size_t n = 0; n < 2; n++) {
+    static const uint16_t losses_q8[] = {35 * 256, LM_TEXTURE_LOSS_MAX_Q8, UINT16_MAX};
+    for (size_t n = 0; n < 3; n++) {
         struct lm_texture whole, less;
         lm_texture_set(&whole, &config, tiny_classes(), 0, 0);
         lm_texture_set(&less, &config, tiny_classes(), 0, losses_q8[n]);
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
-            const uint32_t cell = cell_of(i), noise = 0x00ff3000;
-            int32_t level[2] = {0};
-            lm_texture_run(&whole, &cell, &noise, &level[0], 1);
-            lm_texture_run(&less, &cell, &noise, &level[1], 1);
-            assert_int_equal(level[0] - level[1], losses_q8[n]);
+            const int32_t lost =
+                gain_q8(&whole, cell_of(i), i, 0) - gain_q8(&less, cell_of(i), i, 0);
+            assert_int_equal(lost, losses_q8[n] < LM_TEXTURE_LOSS_MAX_Q8 ? losses_q8[n]
+                                                                         : LM_TEXTURE_LOSS_MAX_Q8);
         }
     }
 }
@@ -178,19 +191,18 @@ static void a_shadow_stays_below_minus_80_dB_whatever_is_added(void **state)
 {
     (void)state;
     int32_t strongest = 0;
-    for (int row = 0; row <= LM_SPECKLE_LOOKS_LOG2_MAX; row++) {
-        strongest = lm_speckle_q8[row][LM_SPECKLE_SLICES - 1] > strongest
-                        ? lm_speckle_q8[row][LM_SPECKLE_SLICES - 1]
-                        : strongest;
+    for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
+        for (int n = 0; n < LM_NOISE_SLICES; n++) {
+            strongest = lm_noise_q8[row][n] > strongest ? lm_noise_q8[row][n] : strongest;
+        }
     }
     const struct lm_texture_config config = {{0, 0, 0, 0}};
     struct lm_texture texture;
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_MAX, 0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
-        for (uint32_t slice = 0; slice < LM_SPECKLE_SLICES; slice++) {
-            const uint32_t cell = cell_of(class_index), noise = slice << 12;
-            int32_t level = LM_LEVEL_SHADOW;
-            lm_texture_run(&texture, &cell, &noise, &level, 1);
+        for (uint32_t n = 0; n < 4000; n++) {
+            const int32_t level =
+                LM_LEVEL_SHADOW + gain_q8(&texture, cell_of(class_index), n, LM_LEVEL_SHADOW);
             assert_true(level + strongest < -80 * 256);
             assert_true(level > -0x10000); /* what fx_power_q24_of_many takes */
         }
@@ -206,13 +218,10 @@ static void a_hostile_table_reads_nothing_but_the_tables(void **state)
     memset(&classes, 0xff, sizeof classes);
     struct lm_texture texture;
     lm_texture_set(&texture, &config, &classes, 255, 0);
+    assert_int_equal(texture.shapes, 0);
     for (uint32_t i = 0; i < 16; i++) {
-        const uint32_t cell = 0xffffff0fu | i << 4, noise = UINT32_MAX;
-        int32_t level = 0;
-        assert_in_range(texture.of_class[i] & ((1 << LM_TEXTURE_ENTRY_BITS) - 1), 0,
-                        5 * LM_SPECKLE_SLICES - 1);
-        lm_texture_run(&texture, &cell, &noise, &level, 1);
-        assert_int_equal(level, 0);
+        assert_int_equal(lm_texture_shape(texture.of_class[i]), LM_TEXTURE_NONE);
+        assert_int_equal(gain_q8(&texture, 0xffffff0fu | i << 4, i, 0), 0);
     }
 }
 
@@ -220,10 +229,10 @@ static void a_hostile_table_reads_nothing_but_the_tables(void **state)
 static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
 {
     const struct lm_speckle_config config = {2};
-    const uint32_t slice = 700, noise = slice << 22;
-    int32_t speckled_q8;
-    lm_speckle_floor_run(&config, floor_q8, &noise, &level_q8, &speckled_q8, 1);
-    return speckled_q8 - lm_speckle_q8[2][slice];
+    const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, 700, 2);
+    int32_t level[ROOM] = {level_q8}, speckled_q8[ROOM];
+    lm_speckle_floor_run(&config, floor_q8, &raster, level, speckled_q8, 1);
+    return speckled_q8[0] - lm_noise_of_q8(2, &raster, 0);
 }
 
 static void the_floor_adds_as_power_to_every_level(void **state)
@@ -241,42 +250,17 @@ static void the_floor_adds_as_power_to_every_level(void **state)
     assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
 }
 
-static void as_many_cells_change_as_were_asked_for(void **state)
-{
-    (void)state;
-    struct lm_texture_config config = all_none;
-    config.shape_log2[LM_KIND_TREES] = 1;
-    struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
-    uint32_t cell[40], noise[40] = {0};
-    for (uint32_t i = 0; i < 40; i++) {
-        cell[i] = cell_of(TINY_TREES);
-    }
-    for (uint32_t cells = 0; cells < 40; cells++) {
-        const struct lm_speckle_config speckle = {2};
-        int32_t level[40] = {0}, speckled[40] = {0};
-        lm_texture_run(&texture, cell, noise, level, cells);
-        lm_speckle_floor_run(&speckle, 0, noise, level, speckled, cells);
-        for (uint32_t i = 0; i < 40; i++) {
-            assert_int_equal(level[i], i < cells ? lm_speckle_q8[1][0] : 0);
-            assert_int_equal(speckled[i] != 0, i < cells);
-        }
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(textured_speckle_has_the_variance_of_a_k_distribution),
-        cmocka_unit_test(texture_and_speckle_of_a_cell_are_independent),
         cmocka_unit_test(kinds_without_texture_keep_their_level_to_the_bit),
-        cmocka_unit_test(bits_21_to_12_of_the_hash_choose_the_slice_and_no_others),
+        cmocka_unit_test(each_class_gains_a_draw_of_its_own_shape),
         cmocka_unit_test(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each),
         cmocka_unit_test(a_loss_is_taken_off_every_class),
         cmocka_unit_test(a_shadow_stays_below_minus_80_dB_whatever_is_added),
         cmocka_unit_test(a_hostile_table_reads_nothing_but_the_tables),
         cmocka_unit_test(the_floor_adds_as_power_to_every_level),
-        cmocka_unit_test(as_many_cells_change_as_were_asked_for),
     };
     return cmocka_run_group_tests_name("texture", tests, NULL, NULL);
 }

@@ -76,45 +76,40 @@ static void speckle_rises_from_slice_to_slice(void **state)
     }
 }
 
-static uint32_t the_place_itself(uint32_t latitude, uint32_t longitude, uint32_t epoch)
-{
-    return (latitude << 6 ^ longitude ^ epoch) << 22;
-}
-
-static void neighbours_never_share_a_sample_and_a_place_keeps_its_own(void **state)
+/* Every cell draws by itself: of 4096 pairs, four share a slice by chance. */
+static void cells_columns_epochs_and_kinds_draw_by_themselves(void **state)
 {
     (void)state;
-    for (double cell_m = 0.3; cell_m < 700; cell_m *= 1.17) {
-        const unsigned shift = ref_speckle_shift(cell_m);
-        const double step_m = ldexp(REF_MERIDIAN_M, (int)shift - 32);
-        assert_true(step_m <= cell_m / sqrt(2) && 2 * step_m > cell_m / sqrt(2));
-        /* The four neighbours of a diagonal line lie cell_m away, at least step_m in one of the
-         * axes. */
-        const double deg = cell_m / REF_MERIDIAN_M * 360 / sqrt(2);
-        struct ref_bin bins[3] = {
-            {.place = {0.5, 0.5}}, {.place = {0.5 + deg, 0.5 + deg}}, {.place = {0.5, 0.5}}};
-        ref_speckle_slices(bins, 3, shift, 0, the_place_itself);
-        assert_int_not_equal(bins[0].slice, bins[1].slice);
-        assert_int_equal(bins[0].slice, bins[2].slice);
+    int same[4] = {0};
+    for (uint32_t n = 0; n < 4096; n++) {
+        const uint32_t column = n / 64, cell = n % 64;
+        const unsigned slice = ref_draw(LM_NOISE_SPECKLE, column, cell, 5);
+        assert_true(slice < REF_SPECKLE_SLICES);
+        assert_int_equal(slice, ref_draw(LM_NOISE_SPECKLE, column, cell, 5));
+        same[0] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell + 1, 5);
+        same[1] += slice == ref_draw(LM_NOISE_SPECKLE, column + 1, cell, 5);
+        same[2] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell, 6);
+        same[3] += slice == ref_draw(LM_NOISE_TEXTURE, column, cell, 5);
+    }
+    for (int i = 0; i < 4; i++) {
+        assert_in_range(same[i], 0, 20);
     }
 }
 
-static void another_epoch_is_another_speckle(void **state)
+/* 30 degrees are pi / 6 columns for each cell of the range: at 196 cells, the middle of cells 192
+ * to 199, 102.6, and at 200 cells 104.7. There a column is 0.286 to 0.293 degrees wide. */
+static void columns_of_the_ground_are_as_wide_as_cells_are_long(void **state)
 {
     (void)state;
-    struct ref_bin bins[2][64];
-    int same = 0;
-    for (uint32_t epoch = 0; epoch < 2; epoch++) {
-        for (int i = 0; i < 64; i++) {
-            bins[epoch][i] = (struct ref_bin){.place = {-45.0 + i * 0.001, -120}};
-        }
-        ref_speckle_slices(bins[epoch], 64, 8, epoch, NULL);
+    assert_int_equal(ref_ground_column(30, 0, 50, 192), 102);
+    assert_int_equal(ref_ground_column(30, 0, 50, 199), 102);
+    assert_int_equal(ref_ground_column(30, 9800, 50, 0), 104);
+    for (double azimuth_deg = 0.05; azimuth_deg < 360; azimuth_deg += 0.37) {
+        const uint32_t column = ref_ground_column(azimuth_deg, 0, 50, 197);
+        assert_true(ref_ground_column(azimuth_deg + 0.293, 0, 50, 198) > column ||
+                    azimuth_deg > 359.7);
+        assert_true(ref_ground_column(azimuth_deg + 0.28, 0, 50, 198) <= column + 1);
     }
-    for (int i = 0; i < 64; i++) {
-        same += bins[0][i].slice == bins[1][i].slice;
-        assert_true(bins[0][i].slice < REF_SPECKLE_SLICES);
-    }
-    assert_in_range(same, 0, 3);
 }
 
 static void noise_adds_to_the_power_before_speckle(void **state)
@@ -158,8 +153,8 @@ int main(void)
         cmocka_unit_test(speckle_in_decibels_has_the_published_spread),
         cmocka_unit_test(slices_of_one_look_are_those_of_the_exponential),
         cmocka_unit_test(speckle_rises_from_slice_to_slice),
-        cmocka_unit_test(neighbours_never_share_a_sample_and_a_place_keeps_its_own),
-        cmocka_unit_test(another_epoch_is_another_speckle),
+        cmocka_unit_test(cells_columns_epochs_and_kinds_draw_by_themselves),
+        cmocka_unit_test(columns_of_the_ground_are_as_wide_as_cells_are_long),
         cmocka_unit_test(noise_adds_to_the_power_before_speckle),
         cmocka_unit_test(tone_rises_from_black_to_white),
     };

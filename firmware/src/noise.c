@@ -1,0 +1,28 @@
+#include "lm/noise.h"
+
+#include <stddef.h>
+
+void lm_noise_line_set(struct lm_noise_line *n, const struct lm_raster *r, uint32_t cells)
+{
+    const uint32_t blocks = (cells + 4 * LM_NOISE_BLOCK - 1) / (4 * LM_NOISE_BLOCK) * 4;
+    const uint32_t epoch = r->epoch;
+    const uint64_t growth_q32 = r->growth_q32;
+    uint64_t column_q32 = r->column_q32;
+    for (uint32_t b = 0; b < blocks; b++) {
+        n->entry[b] = fx_hash3((uint32_t)(column_q32 >> 32), b, epoch) >> 22;
+        column_q32 += growth_q32;
+    }
+}
+
+void lm_noise_draw(const struct lm_noise_line *n, uint32_t looks_log2, int32_t *restrict draw_q8,
+                   uint32_t cells)
+{
+    const int16_t *const row = lm_noise_q8[looks_log2];
+    for (uint32_t b = 0; b * LM_NOISE_BLOCK < cells; b++) {
+        const int16_t *restrict from = row + n->entry[b];
+        int32_t *restrict to = draw_q8 + (size_t)b * LM_NOISE_BLOCK;
+        for (int k = 0; k < LM_NOISE_BLOCK; k++) {
+            to[k] = from[k];
+        }
+    }
+}
