@@ -6,6 +6,7 @@
 #include "aspect_neon.h"
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "shore.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
 
@@ -85,27 +86,24 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     }
 }
 
-static int32_t kind_with(int32_t edge_q8, int32_t mark)
-{
-    return fx_max_i32(edge_q8, 0) * (1 << MARK_BITS) + mark;
-}
-
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
                    const struct lm_classes *classes)
 {
-    const int32_t kind[LM_KINDS] = {[LM_KIND_WATER] = MARK_WATER,
-                                    [LM_KIND_STRUCTURE] =
-                                        kind_with(config->edge_structure_q8, MARK_STRUCTURE),
-                                    [LM_KIND_TREES] = kind_with(config->edge_trees_q8, MARK_TREES)};
+    const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = MARK_WATER,
+                                       [LM_KIND_STRUCTURE] = MARK_STRUCTURE,
+                                       [LM_KIND_TREES] = MARK_TREES};
+    const int32_t edge_q8[CODES] = {
+        [MARK_STRUCTURE] = fx_clamp_i32(config->edge_structure_q8, 0, LM_EDGE_MAX_Q8),
+        [MARK_TREES] = fx_clamp_i32(config->edge_trees_q8, 0, LM_EDGE_MAX_Q8)};
     for (uint32_t n = 0; n < CODES; n++) {
         const uint16_t height_dm = classes->height_dm[n];
-        const int32_t k = kind[classes->entry[n].kind & (LM_KINDS - 1)];
+        const uint8_t mark = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
         legend->height_q14[n] = (int32_t)(height_dm * (uint32_t)Q19_OF_DM >> 5);
-        legend->kind[n] = k;
-        legend->bytes.mark[n] = (uint8_t)(k & ((1 << MARK_BITS) - 1));
+        legend->kind[n] = edge_q8[mark] * (1 << MARK_BITS) + mark;
+        legend->bytes.mark[n] = mark;
         for (uint32_t upper = 0; upper < 2; upper++) {
             legend->bytes.height_dm[upper][n] = (uint8_t)(height_dm >> 8 * upper);
-            legend->bytes.edge_q8[upper][n] = (uint8_t)(k >> MARK_BITS >> 8 * upper);
+            legend->bytes.edge_q8[upper][n] = (uint8_t)(edge_q8[n] >> 8 * upper);
         }
     }
     legend->shore_q8 = config->shore_q8;

@@ -3,7 +3,6 @@
 #ifndef ASPECT_LINE_H
 #define ASPECT_LINE_H
 
-#include "fx/bits.h"
 #include "lm/aspect.h"
 
 enum {
@@ -31,30 +30,6 @@ static inline int32_t tangent_of(const struct lm_range_grid *grid, const struct 
 static inline int32_t kind_of(const struct lm_legend *legend, uint32_t cell)
 {
     return legend->kind[(int32_t)((cell >> 4) % CODES)];
-}
-
-/* The far shore's brightness from its first cell `i` on, where there is light. */
-static inline void add_shore(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                             const struct lm_scan_line *line, uint32_t i, struct lm_sight *sight)
-{
-    for (int32_t shore_q8 = legend->shore_q8; i < grid->cells && shore_q8 > 0;
-         i++, shore_q8 -= grid->shore_fall_q8) {
-        if (kind_of(legend, line->cell[i]) & MARK_WATER) {
-            return;
-        }
-        sight->level_q8[i] += sight->level_q8[i] != LM_LEVEL_SHADOW ? shore_q8 : 0;
-    }
-}
-
-/* Of eight cells from `first` on. Each has a byte of `eight`, with MARK_WATER where it is behind a
- * shore. */
-static inline void add_shores_of(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                                 const struct lm_scan_line *line, uint64_t eight, uint32_t first,
-                                 struct lm_sight *sight)
-{
-    for (uint64_t left = eight & 0x0101010101010101; left != 0; left &= left - 1) {
-        add_shore(grid, legend, line, first + (uint32_t)fx_ctz64(left) / 8, sight);
-    }
 }
 
 #endif

@@ -1,6 +1,7 @@
-/* A line's light by the vectors of 64-bit Arm: eight cells at a time from the map to their levels.
- * What aspect.c does in several loops is one here, and small tables are held in registers. The
- * results are the same to the bit. Not for other machines, where it is never called. */
+/* A line's light by the vectors of 64-bit Arm: sixteen cells a turn from the map to their levels,
+ * for so many bytes a vector holds. What aspect.c does in several loops is one here, and small
+ * tables are held in registers. The results are the same to the bit. Not for other machines, where
+ * it is never called. */
 #ifndef ASPECT_NEON_H
 #define ASPECT_NEON_H
 
@@ -10,25 +11,37 @@
 #include "aspect_line.h"
 #include "fx/log.h"
 #include "fx/neon.h"
+#include "shore.h"
 
 #if FX_HAS_NEON
+
+enum { NEON_CELLS = 16 }; /* that a turn takes */
+
+_Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in a line's arrays");
 
 /* The legend as bytes side by side, code 0 first: lower bytes, upper bytes. */
 struct neon_legend {
     uint8x16_t height_dm[2], edge_q8[2], mark;
 };
 
-/* What a group of cells takes over from the one before it. */
+/* What a turn takes over from the one before it. */
 struct neon_before {
     int32x4_t tangent, of_two, horizon;
     uint8x16_t mark;
-    uint8x8_t shores; /* bit 0: some cell was behind one */
 };
 
-/* Which cells of a group are not shown, and which have no edge. */
+/* Which cells of a turn are not shown: all bits of them are set. */
 struct neon_hidden {
-    uint32x4_t unseen[2];
-    uint8x16_t has_no_edge;
+    uint32x4x4_t words;
+    uint8x16_t bytes;
+};
+
+/* Where a turn's cells are. */
+struct neon_place {
+    const uint32_t *cell, *elevation_q14, *fall_q14, *gain_q8;
+    const int32_t *inverse_range;
+    int32_t *horizon, *level_q8;
+    uint8_t *behind_shore;
 };
 
 static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
@@ -40,23 +53,44 @@ static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
     };
 }
 
-/* Tangents of eight cells from cell i on: tangent_of. `code` are their height codes. */
-static inline int32x4x2_t neon_tangents(const struct neon_legend *l,
-                                        const struct lm_range_grid *grid,
-                                        const struct lm_scan_line *line, size_t i, uint8x16_t code)
+/* The lower halves of sixteen numbers, and the lower bytes of those. */
+static inline uint16x8x2_t neon_lower_halves(uint32x4x4_t v)
 {
-    const uint16x8_t height_dm = fx_neon_words(l->height_dm[0], l->height_dm[1], code);
-    const uint32x4_t low = vld1q_u32((const uint32_t *)line->elevation_q14 + i);
-    const uint32x4_t high = vld1q_u32((const uint32_t *)line->elevation_q14 + i + 4);
-    const uint32x4_t top_q14[2] = {
-        vsraq_n_u32(low, vmull_n_u16(vget_low_u16(height_dm), Q19_OF_DM), 5),
-        vsraq_n_u32(high, vmull_high_n_u16(height_dm, Q19_OF_DM), 5)};
-    int32x4x2_t tangent;
-    for (size_t k = 0; k < 2; k++) {
-        const int32x4_t fall_q14 = vld1q_s32(grid->fall_q14 + i + 4 * k);
-        const int32x4_t apparent_q14 = vsubq_s32(vreinterpretq_s32_u32(top_q14[k]), fall_q14);
+    return (uint16x8x2_t){
+        {vuzp1q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
+         vuzp1q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
+}
+
+static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)
+{
+    return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
+}
+
+/* Sixteen entries of a table of words, of which the lower and the upper bytes are given. */
+static inline uint16x8x2_t neon_words(const uint8x16_t table[2], uint8x16_t index)
+{
+    const uint8x16_t low = vqtbl1q_u8(table[0], index), high = vqtbl1q_u8(table[1], index);
+    return (uint16x8x2_t){
+        {vreinterpretq_u16_u8(vzip1q_u8(low, high)), vreinterpretq_u16_u8(vzip2q_u8(low, high))}};
+}
+
+/* tangent_of sixteen cells whose height codes are given. */
+static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struct neon_place *at,
+                                        uint8x16_t code)
+{
+    const uint16x8x2_t height_dm = neon_words(l->height_dm, code);
+    const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_q14);
+    const uint32x4x4_t fall_q14 = vld1q_u32_x4(at->fall_q14);
+    const int32x4x4_t inverse_range = vld1q_s32_x4(at->inverse_range);
+    int32x4x4_t tangent;
+    for (size_t n = 0; n < 4; n++) {
+        const uint16x8_t pair_dm = height_dm.val[n / 2];
+        const uint32x4_t height_q19 = n % 2 ? vmull_high_n_u16(pair_dm, Q19_OF_DM)
+                                            : vmull_n_u16(vget_low_u16(pair_dm), Q19_OF_DM);
+        const uint32x4_t apparent_q14 =
+            vsraq_n_u32(vsubq_u32(foot_q14.val[n], fall_q14.val[n]), height_q19, 5);
         /* Twice the product's upper half. */
-        tangent.val[k] = vqdmulhq_s32(apparent_q14, vld1q_s32(grid->inverse_range + i + 4 * k));
+        tangent.val[n] = vqdmulhq_s32(vreinterpretq_s32_u32(apparent_q14), inverse_range.val[n]);
     }
     return tangent;
 }
@@ -79,79 +113,103 @@ static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
     return vreinterpretq_u32_s32(vsubq_s32(b->horizon, vextq_s32(before, b->horizon, 3)));
 }
 
-/* Brightness of leading edges, of eight cells whose classes are given twice; *left gets the mark of
- * water behind a shore. */
-static inline uint16x8_t neon_edges(const struct neon_legend *l, struct neon_before *b,
-                                    uint8x16_t has_no_edge, uint8x16_t class_index, uint8x8_t *left)
+/* Brightness of the leading edges of cells whose classes are given, of which the hidden ones change
+ * nothing; *left gets the mark of water behind a shore. */
+static inline uint16x8x2_t neon_edges(const struct neon_legend *l, struct neon_before *b,
+                                      uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
 {
-    const uint8x16_t mark = vqtbl1q_u8(l->mark, class_index);
+    const uint8x16_t mark = vbslq_u8(hidden, b->mark, vqtbl1q_u8(l->mark, class_index));
     const uint8x16_t before = vextq_u8(b->mark, mark, 15);
-    /* Beyond the table is nothing. */
-    const uint8x16_t at = vorrq_u8(class_index, vorrq_u8(vceqq_u8(mark, before), has_no_edge));
     b->mark = mark;
-    *left = vget_low_u8(vbicq_u8(before, vorrq_u8(mark, has_no_edge)));
-    return fx_neon_words(l->edge_q8[0], l->edge_q8[1], at);
+    *left = vbicq_u8(before, mark);
+    return neon_words(l->edge_q8, vbicq_u8(mark, before));
 }
 
-/* Eight cells from cell i on; their horizon, level and whether they are behind a shore are stored.
- */
-static inline void neon_cells(const struct lm_range_grid *grid, const struct lm_scan_line *line,
-                              const struct neon_legend *l, const struct neon_hidden *hidden,
-                              size_t i, struct neon_before *b, struct lm_sight *sight,
-                              uint8_t *behind_shore)
+/* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
+static inline uint16x8x2_t neon_shown(uint16x8x2_t edge_q8, uint16x8x2_t cells, uint32x4x4_t rise)
 {
-    const uint16x8_t cells = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(line->cell + i)),
-                                        vreinterpretq_u16_u32(vld1q_u32(line->cell + i + 4)));
-    const uint8x16_t lower = vuzp1q_u8(vreinterpretq_u8_u16(cells), vreinterpretq_u8_u16(cells));
-    uint8x8_t left;
-    const uint16x8_t edge_q8 = neon_edges(l, b, hidden->has_no_edge, vshrq_n_u8(lower, 4), &left);
-    const int32x4x2_t seen =
-        neon_tangents(l, grid, line, i, vandq_u8(lower, vdupq_n_u8(CODES - 1)));
-    /* The upper byte times LM_GAMMA_CODE_STEP_Q8, below 2^15, and an edge, below 2^15. */
-    const uint16x8_t bright_q8 = vsraq_n_u16(edge_q8, vandq_u16(cells, vdupq_n_u16(0xFF00)), 1);
-    const uint32x4_t gain_q8[2] = {vld1q_u32((const uint32_t *)grid->gain_q8 + i),
-                                   vld1q_u32((const uint32_t *)grid->gain_q8 + i + 4)};
-    const int32x4x2_t dark_q8 = {
-        {vreinterpretq_s32_u32(vaddw_u16(gain_q8[0], vget_low_u16(bright_q8))),
-         vreinterpretq_s32_u32(vaddw_high_u16(gain_q8[1], bright_q8))}};
-    uint32x4x2_t rise;
-    for (size_t k = 0; k < 2; k++) {
-        rise.val[k] =
-            neon_rise(b, vbslq_s32(hidden->unseen[k], vdupq_n_s32(INT32_MIN), seen.val[k]));
-        vst1q_s32(sight->horizon + i + 4 * k + 1, b->horizon);
+    /* The upper byte times LM_GAMMA_CODE_STEP_Q8. With LM_EDGE_MAX_Q8 and the rise's decibels it
+     * takes 16 bits: 32640 + 8191 + 24659. */
+    for (size_t n = 0; n < 2; n++) {
+        edge_q8.val[n] =
+            vsraq_n_u16(edge_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
-    const int32x4x2_t lit_q8 = fx_neon_add_db_q8(dark_q8, rise);
-    for (size_t k = 0; k < 2; k++) {
-        vst1q_s32(sight->level_q8 + i + 4 * k,
-                  vbslq_s32(vceqzq_u32(rise.val[k]), vdupq_n_s32(LM_LEVEL_SHADOW), lit_q8.val[k]));
-    }
-    b->shores = vorr_u8(b->shores, left);
-    vst1_u8(behind_shore + i, left);
+    return fx_neon_add_db_q8_of_16(edge_q8, rise);
 }
 
-/* Cells of the group at `i` before the first that is shown, and up to it. */
-static inline struct neon_hidden neon_hidden_at(size_t i, size_t first)
+/* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
+static inline __attribute__((always_inline)) void neon_cells(const struct neon_legend *l,
+                                                             const struct neon_hidden *hidden,
+                                                             struct neon_before *b,
+                                                             struct neon_place *at)
 {
-    static const uint32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const uint32x4_t shown = vdupq_n_u32((uint32_t)(first - i));
-    const uint32x4_t low = vld1q_u32(number), high = vld1q_u32(number + 4);
-    const uint16x8_t upto =
-        vcombine_u16(vmovn_u32(vcleq_u32(low, shown)), vmovn_u32(vcleq_u32(high, shown)));
-    return (struct neon_hidden){{vcltq_u32(low, shown), vcltq_u32(high, shown)},
-                                vcombine_u8(vmovn_u16(upto), vmovn_u16(upto))};
+    const uint16x8x2_t cells = neon_lower_halves(vld1q_u32_x4(at->cell));
+    const uint8x16_t lower = neon_lower_bytes(cells);
+    const int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(CODES - 1)));
+    uint32x4x4_t rise;
+    for (size_t n = 0; n < 4; n++) {
+        rise.val[n] =
+            neon_rise(b, vbslq_s32(hidden->words.val[n], vdupq_n_s32(INT32_MIN), seen.val[n]));
+        vst1q_s32(at->horizon + 4 * n, b->horizon);
+    }
+    uint8x16_t left;
+    const uint16x8x2_t edge_q8 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    vst1q_u8(at->behind_shore, left);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_q8, cells, rise);
+    const uint32x4x4_t gain_q8 = vld1q_u32_x4(at->gain_q8);
+    for (size_t n = 0; n < 4; n++) {
+        const uint16x8_t pair_q8 = shown_q8.val[n / 2];
+        const uint32x4_t lit_q8 = n % 2 ? vaddw_high_u16(gain_q8.val[n], pair_q8)
+                                        : vaddw_u16(gain_q8.val[n], vget_low_u16(pair_q8));
+        vst1q_s32(at->level_q8 + 4 * n,
+                  vbslq_s32(vceqzq_u32(rise.val[n]), vdupq_n_s32(LM_LEVEL_SHADOW),
+                            vreinterpretq_s32_u32(lit_q8)));
+    }
+    at->cell += NEON_CELLS;
+    at->elevation_q14 += NEON_CELLS;
+    at->fall_q14 += NEON_CELLS;
+    at->gain_q8 += NEON_CELLS;
+    at->inverse_range += NEON_CELLS;
+    at->horizon += NEON_CELLS;
+    at->level_q8 += NEON_CELLS;
+    at->behind_shore += NEON_CELLS;
+    /* Else the compiler would add up one distance and, with it, five addresses. */
+    __asm__(""
+            : "+r"(at->cell), "+r"(at->elevation_q14), "+r"(at->fall_q14), "+r"(at->gain_q8),
+              "+r"(at->inverse_range));
 }
 
-/* Sixteen cells at a time, of which the last eight may be behind the line. */
+/* The first `count` cells of a turn. */
+static inline struct neon_hidden neon_hide(uint32_t count)
+{
+    static const uint32_t number[4] = {0, 1, 2, 3};
+    struct neon_hidden h;
+    for (uint32_t n = 0; n < 4; n++) {
+        h.words.val[n] =
+            vcltq_u32(vaddq_u32(vld1q_u32(number), vdupq_n_u32(4 * n)), vdupq_n_u32(count));
+    }
+    h.bytes = neon_lower_bytes(neon_lower_halves(h.words));
+    return h;
+}
+
+/* Shores are rare: they are looked for where a stretch, which may end behind the line, has one.
+ * Each cell has a byte, from those of `first` on. */
 static inline void neon_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                               const struct lm_scan_line *line, const uint64_t *behind_shore,
-                               struct lm_sight *sight)
+                               const struct lm_scan_line *line, const uint8_t *behind_shore,
+                               uint32_t first, struct lm_sight *sight)
 {
-    const uint32_t cells = grid->cells;
-    for (uint32_t i = grid->first & ~7u; i < cells; i += 16) {
-        const uint64_t *eight = behind_shore + i / 8;
-        if (((eight[0] | eight[1]) & 0x0101010101010101) != 0) {
-            add_shores_of(grid, legend, line, eight[0], i, sight);
-            add_shores_of(grid, legend, line, eight[1], i + 8, sight);
+    const uint8_t *const end = behind_shore + grid->cells;
+    for (const uint8_t *at = behind_shore + first; at < end;) {
+        const uint8x16x2_t left = vld1q_u8_x2(at);
+        const uint8x16_t some = vshlq_n_u8(vorrq_u8(left.val[0], left.val[1]), 7);
+        at += LM_SHORE_STRETCH;
+        if (vmaxvq_u8(some) != 0) {
+            const uint32_t behind = (uint32_t)(at - behind_shore);
+            for (uint32_t i = behind - LM_SHORE_STRETCH; i < behind; i += 8) {
+                const uint8x8_t eight = vld1_u8(behind_shore + i);
+                add_shores_of(grid, legend, line, vget_lane_u64(vreinterpret_u64_u8(eight), 0), i,
+                              sight);
+            }
         }
     }
 }
@@ -161,28 +219,37 @@ static inline void light_line_neon(const struct lm_range_grid *grid, const struc
                                    const struct lm_scan_line *line, int32_t start,
                                    struct lm_sight *sight)
 {
-    uint64_t behind_shore[LM_CELLS_ROOM / 8 + 1];
-    const struct neon_legend l = neon_legend_of(legend);
-    const int32x4_t all = vdupq_n_s32(start);
-    struct neon_before before = {all, all, all, vdupq_n_u8(0), vdup_n_u8(0)};
-    const size_t cells = grid->cells, first = grid->first & ~7u, end = (cells + 7) & ~(size_t)7;
+    uint8_t behind_shore[LM_CELLS_MAX + LM_SHORE_STRETCH];
+    const size_t hidden = grid->first % NEON_CELLS, first = grid->first - hidden;
+    sight->horizon[0] = start;
     for (size_t k = 0; k < first; k++) {
         sight->horizon[k + 1] = start;
         sight->level_q8[k] = LM_LEVEL_SHADOW;
     }
-    sight->horizon[0] = start;
-    if (first < cells) {
-        const struct neon_hidden some = neon_hidden_at(first, grid->first);
-        neon_cells(grid, line, &l, &some, first, &before, sight, (uint8_t *)behind_shore);
+    const struct neon_legend l = neon_legend_of(legend);
+    const int32x4_t all = vdupq_n_s32(start);
+    struct neon_before before = {all, all, all,
+                                 vdupq_n_u8(legend->bytes.mark[line->cell[grid->first] >> 4 & 15])};
+    struct neon_place at = {.cell = line->cell + first,
+                            .elevation_q14 = (const uint32_t *)line->elevation_q14 + first,
+                            .fall_q14 = (const uint32_t *)grid->fall_q14 + first,
+                            .gain_q8 = (const uint32_t *)grid->gain_q8 + first,
+                            .inverse_range = grid->inverse_range + first,
+                            .horizon = sight->horizon + first + 1,
+                            .level_q8 = sight->level_q8 + first,
+                            .behind_shore = behind_shore + first};
+    const uint32_t *const end = line->cell + grid->cells;
+    if (hidden != 0) {
+        const struct neon_hidden some = neon_hide((uint32_t)hidden);
+        neon_cells(&l, &some, &before, &at);
     }
-    behind_shore[end / 8] = 0; /* asked with the last eight */
-    const struct neon_hidden none = {{vdupq_n_u32(0), vdupq_n_u32(0)}, vdupq_n_u8(0)};
-    for (size_t i = first + 8; i < end; i += 8) {
-        neon_cells(grid, line, &l, &none, i, &before, sight, (uint8_t *)behind_shore);
+    const uint32x4_t zero = vdupq_n_u32(0);
+    const struct neon_hidden none = {{{zero, zero, zero, zero}}, vdupq_n_u8(0)};
+    while (at.cell < end) {
+        neon_cells(&l, &none, &before, &at);
     }
-    if (vaddv_u8(vand_u8(before.shores, vdup_n_u8(MARK_WATER))) != 0) {
-        neon_shores(grid, legend, line, behind_shore, sight);
-    }
+    vst1q_u8(at.behind_shore, vdupq_n_u8(0)); /* looked at with an odd number of turns */
+    neon_shores(grid, legend, line, behind_shore, (uint32_t)first, sight);
 }
 
 #else

@@ -11,12 +11,14 @@
 /* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
 enum { LM_LEVEL_SHADOW = -0x8000 };
 
+enum { LM_EDGE_MAX_Q8 = 8191 }; /* so that an edge, a code and a rise in decibels take 16 bits */
+
 /* Nothing nearer than this or than half the antenna's height is shown: the beam does not look down
  * more steeply than 63 degrees. */
 enum { LM_RANGE_MIN_M = 256 };
 
 struct lm_aspect_config {
-    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0 or more */
+    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0..LM_EDGE_MAX_Q8 is taken */
     int16_t shore_q8;                         /* far shore, dB */
     uint16_t shore_width_m;
 };
@@ -47,7 +49,8 @@ struct lm_legend {
     int32_t kind[16];       /* of the class: brightness of its leading edge * 8, and a mark */
     int32_t shore_q8;       /* brightness of a far shore */
 
-    /* The same as bytes side by side, for machines that look up 16 of them at once. */
+    /* The same as bytes side by side, for machines that look up 16 of them at once: heights of the
+     * height codes, marks of the classes, and edges of the marks. */
     struct {
         uint8_t height_dm[2][16], edge_q8[2][16], mark[16]; /* lower bytes, upper bytes */
     } bytes;

@@ -6,6 +6,8 @@
 
 #include "fx/tables.h"
 
+#include <stddef.h>
+
 #if defined(__aarch64__) && defined(__ARM_NEON) && !defined(FX_NO_NEON)
 
 #include <arm_neon.h>
@@ -25,14 +27,21 @@ static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16
     return vreinterpretq_u16_u8(vzip1q_u8(vqtbl1q_u8(low, index), vqtbl1q_u8(high, index)));
 }
 
+/* The upper halves of eight numbers, each shifted up by its zeros, so that it starts with a one. */
+static inline uint16x8_t fx_neon_tops(uint32x4_t low, uint32x4_t high)
+{
+    const int32x4_t zeros[2] = {vreinterpretq_s32_u32(vclzq_u32(low)),
+                                vreinterpretq_s32_u32(vclzq_u32(high))};
+    return vuzp2q_u16(vreinterpretq_u16_u32(vshlq_u32(low, zeros[0])),
+                      vreinterpretq_u16_u32(vshlq_u32(high, zeros[1])));
+}
+
 /* level + fx_db_q8_of_many(power) of eight; anything where the power is 0. The table is not looked
  * up: its lines stay in registers. */
 static inline int32x4x2_t fx_neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t power)
 {
     const uint32x4_t zeros[2] = {vclzq_u32(power.val[0]), vclzq_u32(power.val[1])};
-    const uint16x8_t top =
-        vuzp2q_u16(vreinterpretq_u16_u32(vshlq_u32(power.val[0], vreinterpretq_s32_u32(zeros[0]))),
-                   vreinterpretq_u16_u32(vshlq_u32(power.val[1], vreinterpretq_s32_u32(zeros[1]))));
+    const uint16x8_t top = fx_neon_tops(power.val[0], power.val[1]);
     /* Eight bits behind the first one, four of which say which line. */
     const uint8x16_t twice = vreinterpretq_u8_u16(vaddq_u16(top, top));
     const uint8x16_t mantissa = vuzp2q_u8(twice, twice), line = vshrq_n_u8(mantissa, 4);
@@ -47,6 +56,32 @@ static inline int32x4x2_t fx_neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t p
     const uint32x4_t high = vmlsq_n_u32(vaddw_high_u16(all, db_q13), zeros[1], FX_DB_OCTAVE_Q13);
     return (int32x4x2_t){{vsraq_n_s32(level_q8.val[0], vreinterpretq_s32_u32(low), 5),
                           vsraq_n_s32(level_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
+}
+
+/* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
+ * a step is added before it is cut off, whole steps are behind. */
+static inline uint16x8x2_t fx_neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32x4x4_t power)
+{
+    const uint16x8_t top[2] = {fx_neon_tops(power.val[0], power.val[1]),
+                               fx_neon_tops(power.val[2], power.val[3])};
+    const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(top[0], 7), top[1], 7);
+    const uint8x16_t line = vshrq_n_u8(mantissa, 4);
+    const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_db_lines[0]), line),
+                                vqtbl1q_u8(vld1q_u8(fx_table_db_lines[1]), line)};
+    const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_db_lines[2]), line);
+    const uint16x8_t db_q13[2] = {
+        vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(base[0], base[1])), vget_low_u8(slope),
+                 vget_low_u8(mantissa)),
+        vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(base[0], base[1])), slope, mantissa)};
+    for (size_t n = 0; n < 2; n++) {
+        const uint16x8_t zeros = vuzp1q_u16(vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n])),
+                                            vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n + 1])));
+        const uint16x8_t octave = veorq_u16(zeros, vdupq_n_u16(31));
+        const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_OCTAVE_Q13 % 32);
+        level_q8.val[n] =
+            vmlaq_n_u16(vsraq_n_u16(level_q8.val[n], fine_q13, 5), octave, FX_DB_OCTAVE_Q13 / 32);
+    }
+    return level_q8;
 }
 
 /* What fx_table_db_sum_q8 has at eight steps, each 0..511. It is not looked up but worked out, from

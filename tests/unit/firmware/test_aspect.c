@@ -389,6 +389,23 @@ static void entering_a_structure_or_trees_brightens_one_cell(void **state)
     assert_edges("sacsacsab", 10, (int32_t[9]){[8] = B});
 }
 
+static void an_edge_beyond_the_range_counts_as_the_last_of_it(void **state)
+{
+    (void)state;
+    static struct scene s;
+    make_flat(&s, 0);
+    s.config.edge_structure_q8 = INT16_MAX;
+    s.config.edge_trees_q8 = -1;
+    s.line.cell[3] = cell_of(-20, TINY_STRUCTURE, 0);
+    s.line.cell[7] = cell_of(-20, TINY_TREES, 0);
+    s.line.cell[9] = 0xFF00 | cell_of(-20, TINY_STRUCTURE, 0);
+    set_grid(&s, 20000, 10, 12, 3000, 0);
+    run(&s, LM_HORIZON_OPEN);
+    assert_true(abs(s.sight.level_q8[3] - (-20 * 256 + LM_EDGE_MAX_Q8)) < 64);
+    assert_true(abs(s.sight.level_q8[7] - -20 * 256) < 64);
+    assert_true(abs(s.sight.level_q8[9] - (255 * 128 - 80 * 256 + LM_EDGE_MAX_Q8)) < 64);
+}
+
 static void the_first_cell_enters_nothing(void **state)
 {
     (void)state;
@@ -513,6 +530,7 @@ int main(void)
         cmocka_unit_test(a_horizon_above_everything_leaves_all_dark),
         cmocka_unit_test(a_line_that_is_too_near_throughout_is_dark_and_keeps_its_horizon),
         cmocka_unit_test(entering_a_structure_or_trees_brightens_one_cell),
+        cmocka_unit_test(an_edge_beyond_the_range_counts_as_the_last_of_it),
         cmocka_unit_test(the_first_cell_enters_nothing),
         cmocka_unit_test(the_far_shore_fades_over_its_width),
         cmocka_unit_test(edges_are_found_wherever_they_lie),
