@@ -288,9 +288,16 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
     return (uint16_t)(side >= cells ? side / cells : 1);
 }
 
-/* A cell as a square of pixels, upwards from its lower left corner. */
+/* A cell as a square of pixels, upwards from its lower left corner; two side by side are stored as
+ * one number. */
 static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, uint8_t grey)
 {
+    if (side_px == 2) {
+        const uint32_t pair = grey | (uint32_t)grey << 8;
+        fx_store_u16(corner, pair);
+        fx_store_u16(corner + up, pair);
+        return;
+    }
     for (int32_t row = 0; row < side_px; row++) {
         for (int32_t column = 0; column < side_px; column++) {
             corner[row * up + column] = grey;

@@ -19,6 +19,13 @@ static inline uint32_t fx_load_u32(const void *from)
     return word;
 }
 
+/* The lower two bytes of a number to any address. */
+static inline void fx_store_u16(void *to, uint32_t number)
+{
+    const uint16_t half = (uint16_t)number;
+    __builtin_memcpy(to, &half, sizeof half);
+}
+
 /* Eight bytes likewise. */
 static inline uint64_t fx_load_u64(const void *from)
 {
