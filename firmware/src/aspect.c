@@ -86,24 +86,28 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
     }
 }
 
+static uint8_t eighths_of(int32_t edge_q8)
+{
+    return (uint8_t)(fx_clamp_i32(edge_q8, 0, LM_EDGE_MAX_Q8) / 32);
+}
+
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
                    const struct lm_classes *classes)
 {
     const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = MARK_WATER,
                                        [LM_KIND_STRUCTURE] = MARK_STRUCTURE,
                                        [LM_KIND_TREES] = MARK_TREES};
-    const int32_t edge_q8[CODES] = {
-        [MARK_STRUCTURE] = fx_clamp_i32(config->edge_structure_q8, 0, LM_EDGE_MAX_Q8),
-        [MARK_TREES] = fx_clamp_i32(config->edge_trees_q8, 0, LM_EDGE_MAX_Q8)};
+    const uint8_t edge_q3[CODES] = {[MARK_STRUCTURE] = eighths_of(config->edge_structure_q8),
+                                    [MARK_TREES] = eighths_of(config->edge_trees_q8)};
     for (uint32_t n = 0; n < CODES; n++) {
         const uint16_t height_dm = classes->height_dm[n];
         const uint8_t mark = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
         legend->height_q14[n] = (int32_t)(height_dm * (uint32_t)Q19_OF_DM >> 5);
-        legend->kind[n] = edge_q8[mark] * (1 << MARK_BITS) + mark;
+        legend->kind[n] = edge_q3[mark] * (32 << MARK_BITS) + mark;
         legend->bytes.mark[n] = mark;
+        legend->bytes.edge_q3[n] = edge_q3[n];
         for (uint32_t upper = 0; upper < 2; upper++) {
             legend->bytes.height_dm[upper][n] = (uint8_t)(height_dm >> 8 * upper);
-            legend->bytes.edge_q8[upper][n] = (uint8_t)(edge_q8[n] >> 8 * upper);
         }
     }
     legend->shore_q8 = config->shore_q8;

@@ -21,7 +21,7 @@ _Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in 
 
 /* The legend as bytes side by side, code 0 first: lower bytes, upper bytes. */
 struct neon_legend {
-    uint8x16_t height_dm[2], edge_q8[2], mark;
+    uint8x16_t height_dm[2], edge_q3, mark;
 };
 
 /* What a turn takes over from the one before it. */
@@ -48,7 +48,7 @@ static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
 {
     return (struct neon_legend){
         {vld1q_u8(l->bytes.height_dm[0]), vld1q_u8(l->bytes.height_dm[1])},
-        {vld1q_u8(l->bytes.edge_q8[0]), vld1q_u8(l->bytes.edge_q8[1])},
+        vld1q_u8(l->bytes.edge_q3),
         vld1q_u8(l->bytes.mark),
     };
 }
@@ -115,26 +115,26 @@ static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
 
 /* Brightness of the leading edges of cells whose classes are given, of which the hidden ones change
  * nothing; *left gets the mark of water behind a shore. */
-static inline uint16x8x2_t neon_edges(const struct neon_legend *l, struct neon_before *b,
-                                      uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
+static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_before *b,
+                                    uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
 {
     const uint8x16_t mark = vbslq_u8(hidden, b->mark, vqtbl1q_u8(l->mark, class_index));
     const uint8x16_t before = vextq_u8(b->mark, mark, 15);
     b->mark = mark;
     *left = vbicq_u8(before, mark);
-    return neon_words(l->edge_q8, vbicq_u8(mark, before));
+    return vqtbl1q_u8(l->edge_q3, vbicq_u8(mark, before));
 }
 
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
-static inline uint16x8x2_t neon_shown(uint16x8x2_t edge_q8, uint16x8x2_t cells, uint32x4x4_t rise)
+static inline uint16x8x2_t neon_shown(uint8x16_t edge_q3, uint16x8x2_t cells, uint32x4x4_t rise)
 {
+    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_q3), 5), vshll_high_n_u8(edge_q3, 5)}};
     /* The upper byte times LM_GAMMA_CODE_STEP_Q8. With LM_EDGE_MAX_Q8 and the rise's decibels it
-     * takes 16 bits: 32640 + 8191 + 24659. */
+     * takes 16 bits: 32640 + 8160 + 24659. */
     for (size_t n = 0; n < 2; n++) {
-        edge_q8.val[n] =
-            vsraq_n_u16(edge_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
+        own_q8.val[n] = vsraq_n_u16(own_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
-    return fx_neon_add_db_q8_of_16(edge_q8, rise);
+    return fx_neon_add_db_q8_of_16(own_q8, rise);
 }
 
 /* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
@@ -153,9 +153,9 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_l
         vst1q_s32(at->horizon + 4 * n, b->horizon);
     }
     uint8x16_t left;
-    const uint16x8x2_t edge_q8 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    const uint8x16_t edge_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
     vst1q_u8(at->behind_shore, left);
-    const uint16x8x2_t shown_q8 = neon_shown(edge_q8, cells, rise);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_q3, cells, rise);
     const uint32x4x4_t gain_q8 = vld1q_u32_x4(at->gain_q8);
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_q8 = shown_q8.val[n / 2];

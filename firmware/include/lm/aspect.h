@@ -11,7 +11,9 @@
 /* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
 enum { LM_LEVEL_SHADOW = -0x8000 };
 
-enum { LM_EDGE_MAX_Q8 = 8191 }; /* so that an edge, a code and a rise in decibels take 16 bits */
+/* An edge is a byte of eighths of a decibel. With a code and a rise in decibels it takes 16 bits.
+ */
+enum { LM_EDGE_MAX_Q8 = 255 * 32 };
 
 /* Nothing nearer than this or than half the antenna's height is shown: the beam does not look down
  * more steeply than 63 degrees. */
@@ -52,7 +54,7 @@ struct lm_legend {
     /* The same as bytes side by side, for machines that look up 16 of them at once: heights of the
      * height codes, marks of the classes, and edges of the marks. */
     struct {
-        uint8_t height_dm[2][16], edge_q8[2][16], mark[16]; /* lower bytes, upper bytes */
+        uint8_t height_dm[2][16], edge_q3[16], mark[16]; /* lower bytes, upper bytes */
     } bytes;
 };
 
