@@ -18,6 +18,12 @@ MIPS = 100
 SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA") for field in ("NORM", "EXP", "DBS1", "DBS2")]
 MODES = dict(enumerate(SECTORS + ["SAR patch"]))
 PATCH = len(SECTORS)
+PATCH_CELLS = 256
+
+
+def value(lines, name):
+    """The number that the board printed behind `name`."""
+    return next(int(words[1]) for words in map(str.split, lines) if len(words) == 2 and words[0] == name)
 
 
 def run(out, chips, scenario):
@@ -53,6 +59,22 @@ def print_line_budget(modes):
                       f"{worst:12,} = {worst / MIPS:8,.0f} us, {worst / (LINE_BUDGET_US * MIPS):6.0%}")
 
 
+def print_goals(modes, first_picture_us):
+    """The goals of docs/zcu102.md: a pixel or a line, from the map to its grey; painting is apart, for
+    it goes by the pixels of the glass."""
+    def a_line(mode, *stages):
+        return sum(modes[mode][stage][1] for stage in stages) / modes[mode]["line"][0]
+
+    patch = a_line(PATCH, "lm_sar_sample_ahead", "lm_sar_draw_line") / PATCH_CELLS
+    line = a_line(0, "lm_sector_sample_ahead", "lm_sector_draw_line")
+    print("\nagainst the goals")
+    print(f"  SAR patch, every effect: {patch:6.1f} instructions a pixel (goal 45), and "
+          f"{a_line(PATCH, 'lm_patch_paint') / PATCH_CELLS:.1f} for painting it on this glass")
+    print(f"  GM line of 256 cells:    {line:6,.0f} instructions (goal 20,000), and {a_line(0, 'lm_ppi_paint'):,.0f} "
+          "for painting it")
+    print(f"  reset to first picture:  {first_picture_us / 1000:6.1f} ms of the guest's time (goal 1,000)")
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("db", "bus", "script", "out"):
@@ -73,6 +95,7 @@ def main():
     for mode, stages in sorted(modes.items()):
         print_mode(MODES.get(mode, f"mode {mode}"), stages)
     print_line_budget(modes)
+    print_goals(modes, value(lines, "first-picture-us"))
     return 0
 
 

@@ -2,7 +2,8 @@
  * and no waiting, and the bus handed to it from memory. The sums go out on the console:
  *
  *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (linker/zcu102.mk)
- *   stage MODE line|step|frame-step ...          a line, a step without and with a picture */
+ *   stage MODE line|step|frame-step ...          a line, a step without and with a picture
+ *   first-picture-us N                           since the reset */
 #include "board.h"
 #include "console.h"
 #include "handed.h"
@@ -24,6 +25,7 @@ struct bench {
     struct lm_can can;
     struct lm_controls controls;
     struct instrument_sum steps[INSTRUMENT_MODES], frame_steps[INSTRUMENT_MODES];
+    uint64_t first_picture_us;
 };
 
 static void add(struct instrument_sum *sum, uint64_t spent)
@@ -50,6 +52,10 @@ static void fly(struct bench *b)
         lm_unit_step(&z->unit, z->step_us);
         add(z->unit.count.frames == frames ? &b->steps[mode] : &b->frame_steps[mode],
             instrument_now() - start);
+        if (frames == 0 && z->unit.count.frames != 0) {
+            const struct drv_timer since_reset = {.hz = z->timer.hz};
+            b->first_picture_us = drv_timer_us(&since_reset);
+        }
     }
 }
 
@@ -84,6 +90,7 @@ static void report(struct bench *b)
         print(u, mode, "step", &b->steps[mode]);
         print(u, mode, "frame-step", &b->frame_steps[mode]);
     }
+    zcu102_say_value(u, "first-picture-us", b->first_picture_us);
     zcu102_say_value(u, "stack-used", zcu102_stack_used());
 }
 
