@@ -29,9 +29,12 @@ struct wedge {
 static struct wedge wedge_of(fx_bam_t azimuth, uint64_t half)
 {
     const fx_bam_t left = azimuth - (fx_bam_t)half, right = azimuth + (fx_bam_t)half;
-    return half >= FX_BAM_90 ? (struct wedge){0}
-                             : (struct wedge){fx_sin_q15(left), fx_cos_q15(left), fx_sin_q15(right),
-                                              fx_cos_q15(right)};
+    struct wedge w = {0};
+    if (half < FX_BAM_90) {
+        w = (struct wedge){fx_sin_q15(left), fx_cos_q15(left), fx_sin_q15(right),
+                           fx_cos_q15(right)};
+    }
+    return w;
 }
 
 /* What the line covers, on a plane around the place that the targets were chosen from. Lengths in
