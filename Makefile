@@ -123,7 +123,8 @@ $(O)/fixed/%.o: fixed/%.c
 	$(if $(V),,@echo '  CC   $<')
 	$(Q)$(CC) $(CFLAGS_fixed) $(OPT_core) $(DEPGEN) -c $< -o $@
 $(O)/firmware/src/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
-$(O)/firmware/src/tile_read.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
+$(O)/firmware/src/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
+$(O)/firmware/src/tile_read.o: OPT_core += -fno-unroll-loops # and so has a run in a tile that stands in for another
 $(O)/firmware/%.o: firmware/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')

@@ -53,7 +53,7 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "TILES", u->tiles.count.tiles_read, "EVICTED", u->tiles.count.evicted);
         break;
     case 6:
-        add_pair(t, "HITS", u->tiles.count.hits, "MISSES", u->tiles.count.misses);
+        add_pair(t, "HITS", lm_tile_cache_hits(&u->tiles), "MISSES", u->tiles.count.misses);
         break;
     case 7:
         add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);

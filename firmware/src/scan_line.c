@@ -1,7 +1,7 @@
 #include "lm/scan_line.h"
 
-#include "fx/bits.h"
 #include "lm/tile_read.h"
+#include "tile_read_neon.h"
 
 /* One coordinate of a line, cell k being at `at + k (step + k half_bend)`. The unit is 2^-32 of a
  * tile's side, so that the upper half is the tile's row or column and the lower half the place in
@@ -16,17 +16,18 @@ struct axis {
     uint64_t fastest;   /* every step of the line is shorter */
     uint32_t direction; /* all ones where none goes back */
     bool turns;         /* some go back and some do not */
+    uint32_t round;     /* tiles around the Earth, a power of two, less one */
     uint32_t tile;      /* row or column where the walk stands */
-    uint32_t end;       /* the first cell that may lie in the next one */
+    uint32_t end;       /* the first cell that may lie in the next one, or is behind the line */
 };
 
 /* The way of a line through the tiles of one level. A run is a stretch of cells in one tile. */
 struct walk {
-    struct lm_ground_path middle; /* the line's, from its middle on */
+    const struct lm_ground_path *path; /* borrowed */
     struct axis north, east;
     uint32_t cells;
-    uint32_t side_log2; /* of a tile, in BAM of latitude */
-    uint32_t zone;      /* of the row; UINT32_MAX before the first */
+    uint32_t side_log2;       /* of a tile, in BAM of latitude */
+    uint32_t zone, sixteenth; /* of the row where the walk stands: lm_db_zone */
 };
 
 uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm)
@@ -54,21 +55,40 @@ static inline struct way way_through(uint32_t k, uint64_t at, uint64_t slope, ui
     return (struct way){at - k * (slope - k * half_bend), slope - 2 * k * half_bend, half_bend};
 }
 
-/* From the path's 2^-32 BAM at cell k. The angle itself is unsigned, its differences are not.
- * Everything is modulo 2^64, so that no path can do more harm than lead astray. Half a unit of the
- * bend moves the ends of the longest line by 528^2 / 8 units, which is 2^-11 of a cell. */
-static struct way way_of(uint32_t k, uint64_t value, uint64_t step, uint64_t bend,
-                         uint32_t side_log2)
+/* A coordinate of a path in units of 2^-32 BAM, and how it grows, becomes a way that is exact in
+ * the middle of the line. The angle itself is unsigned, its differences are not. Everything is
+ * modulo 2^64, so that no path can do more harm than lead astray. Half a unit of the bend moves the
+ * ends of the longest line by 528^2 / 8 units, which is 2^-11 of a cell. */
+static inline struct way way_of(uint64_t value, uint64_t step, uint64_t bend, uint32_t cells,
+                                uint32_t side_log2)
 {
+    const uint32_t k = cells / 2, pairs = k * (k - 1) / 2;
     const uint64_t half = (uint64_t)1 << side_log2;
-    return way_through(k, value >> side_log2,
-                       (uint64_t)((int64_t)(step - (uint64_t)((int64_t)bend >> 1)) >> side_log2),
+    const uint64_t slope = step + k * bend - (uint64_t)((int64_t)bend >> 1);
+    return way_through(k, (value + k * step + pairs * bend) >> side_log2,
+                       (uint64_t)((int64_t)slope >> side_log2),
                        (uint64_t)((int64_t)(bend + half) >> side_log2 >> 1));
 }
 
-/* Stand nowhere yet: the first tile is entered at cell k. Steps grow or shrink all the way: the
- * first and the last tell how fast they are and where they go. */
-static void start_axis(struct axis *a, struct way way, uint32_t cells, uint32_t k)
+/* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
+ * that the axis heads for, or to the nearer one if it turns round, at the fastest that it goes. The
+ * border may turn out to be one cell farther, which then is a run of its own. */
+static inline void enter(struct axis *a, uint32_t k, uint32_t cells)
+{
+    const uint64_t at = way_at(&a->way, k);
+    uint32_t room = (uint32_t)at ^ a->direction;
+    if (a->turns && ~room < room) {
+        room = ~room;
+    }
+    const uint64_t end = k + 1 + room / a->fastest;
+    a->tile = (uint32_t)(at >> 32) & a->round;
+    a->end = end < cells ? (uint32_t)end : cells;
+}
+
+/* Enter the first tile, at cell k. Steps grow or shrink all the way: the first and the last tell
+ * how fast they are and where they go. */
+static void start_axis(struct axis *a, struct way way, uint32_t side_log2, uint32_t k,
+                       uint32_t cells)
 {
     const uint64_t first = way.step + way.half_bend;
     const uint64_t last = way.step + (2 * cells - 1) * way.half_bend;
@@ -77,143 +97,172 @@ static void start_axis(struct axis *a, struct way way, uint32_t cells, uint32_t 
     a->fastest = (fast > fast_at_last ? fast : fast_at_last) + 1;
     a->direction = first >> 63 ? 0 : UINT32_MAX;
     a->turns = (first ^ last) >> 63;
-    a->end = k;
+    a->round = UINT32_MAX >> side_log2;
+    enter(a, k, cells);
 }
 
 static void start_walk(struct walk *w, const struct lm_db *db, uint8_t level,
                        const struct lm_ground_path *path, uint32_t cells)
 {
-    struct lm_ground_path *p = &w->middle;
+    const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
+    w->path = path;
     w->cells = cells;
     w->side_log2 = (uint32_t)db->shift0 + level + LM_TILE_CELLS_LOG2;
-    w->zone = UINT32_MAX;
-    w->east.end = 0;
-    *p = *path;
-    lm_ground_path_skip(p, (int32_t)(cells / 2));
-    const uint64_t from_pole = p->latitude + ((uint64_t)FX_BAM_90 << 32);
     start_axis(&w->north,
-               way_of(cells / 2, from_pole, p->latitude_step, p->latitude_bend, w->side_log2),
-               cells, 0);
+               way_of(from_pole, path->latitude_step, path->latitude_bend, cells, w->side_log2),
+               w->side_log2, 0, cells);
 }
 
-/* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
- * that the axis heads for, or to the nearer one if it turns round, at the fastest that it goes. The
- * border may turn out to be one cell farther, which then is a run of its own. */
-static inline void enter(struct axis *a, uint32_t k)
+/* Zones change with a sixteenth of the way from the equator to a pole, whose borders are borders of
+ * tiles. */
+static inline uint32_t sixteenth_of_row(const struct walk *w)
 {
-    const uint64_t at = way_at(&a->way, k);
-    uint32_t room = (uint32_t)at ^ a->direction;
-    if (a->turns && ~room < room) {
-        room = ~room;
-    }
-    a->tile = (uint32_t)(at >> 32);
-    a->end = k + 1;
-    if (a->fastest <= room) {
-        const uint32_t more = room / (uint32_t)a->fastest;
-        a->end += more < LM_CELLS_MAX ? more : LM_CELLS_MAX;
-    }
+    return w->north.tile >> (LM_DB_SIXTEENTH_LOG2 - w->side_log2);
 }
 
-/* Of the tile where the walk stands. */
-static inline fx_bam_t south_edge(const struct walk *w)
+/* Begin with the columns of a zone, at cell k. */
+static void enter_zone(struct walk *w, uint32_t k)
 {
-    return (w->north.tile << w->side_log2) - FX_BAM_90;
-}
-
-static void enter_row(struct walk *w, uint32_t k)
-{
-    enter(&w->north, k);
-    /* Borders of zones are borders of tiles: the tile's own south edge tells its zone. */
-    const uint32_t zone = lm_db_zone(south_edge(w));
-    if (zone != w->zone) {
-        const struct lm_ground_path *p = &w->middle;
-        w->zone = zone;
-        start_axis(&w->east,
-                   way_of(w->cells / 2, p->longitude, p->longitude_step, p->longitude_bend,
-                          w->side_log2 + zone),
-                   w->cells, k);
-    }
-}
-
-static void enter_column(struct walk *w, uint32_t k)
-{
-    enter(&w->east, k);
+    const struct lm_ground_path *p = w->path;
+    w->sixteenth = sixteenth_of_row(w);
+    w->zone = lm_db_zone((w->sixteenth << LM_DB_SIXTEENTH_LOG2) - FX_BAM_90);
     const uint32_t side_log2 = w->side_log2 + w->zone;
-    w->east.tile = w->east.tile << side_log2 >> side_log2; /* the whole turns are gone */
+    start_axis(&w->east,
+               way_of(p->longitude, p->longitude_step, p->longitude_bend, w->cells, side_log2),
+               side_log2, k, w->cells);
 }
 
-/* The end of the run that begins with cell k, where the walk now stands. */
-static inline uint32_t next_run(struct walk *w, uint32_t k)
+/* The end of the run where the walk stands. */
+static inline uint32_t end_of_run(const struct walk *w)
+{
+    return w->north.end < w->east.end ? w->north.end : w->east.end;
+}
+
+/* Go on to the run that begins with cell k. False where the zone must be entered first, or behind
+ * the last cell. */
+static inline bool go_on(struct walk *w, uint32_t k)
 {
     if (k == w->north.end) {
-        enter_row(w, k);
+        if (k == w->cells) {
+            return false;
+        }
+        enter(&w->north, k, w->cells);
+        if (sixteenth_of_row(w) != w->sixteenth) {
+            return false;
+        }
     }
     if (k == w->east.end) {
-        enter_column(w, k);
+        if (k == w->cells) {
+            return false;
+        }
+        enter(&w->east, k, w->cells);
     }
-    const uint32_t end = w->north.end < w->east.end ? w->north.end : w->east.end;
-    return end < w->cells ? end : w->cells;
+    return true;
+}
+
+static inline struct lm_track track_of(const struct way *w)
+{
+    return (struct lm_track){(uint32_t)w->at, (uint32_t)w->step, (uint32_t)w->half_bend};
 }
 
 /* A way in the tiles of an ancestor so many generations up, exact at cell k. Elsewhere in a run
  * about that cell, 264 cells off at the most, it is within 264^2 / 2 + 264 units of 2^-32 of the
  * ancestor's side: 2^-10 of one of its cells. */
-static struct lm_track track_of(const struct way *w, uint32_t k, uint32_t generations)
+static struct lm_track track_above(const struct way *w, uint32_t k, uint32_t generations)
 {
     const uint64_t half = (uint64_t)1 << generations >> 1;
     const struct way up =
         way_through(k, way_at(w, k) >> generations,
                     (uint64_t)((int64_t)(w->step + 2 * k * w->half_bend) >> generations),
                     (uint64_t)((int64_t)(w->half_bend + half) >> generations));
-    return (struct lm_track){(uint32_t)up.at, (uint32_t)up.step, (uint32_t)up.half_bend};
+    return track_of(&up);
 }
 
-static struct lm_places places_of(const struct walk *w, uint32_t k, uint32_t generations)
+/* Tell the cells of a run, and those behind it up to a whole number of LM_LANES, which tile they
+ * lie in. */
+static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
+                       struct lm_scan_line *line)
 {
-    return (struct lm_places){
-        .north = track_of(&w->north.way, k, generations),
-        .east = track_of(&w->east.way, k, generations),
-    };
-}
-
-static void read_nothing(uint32_t first, uint32_t end, struct lm_scan_line *restrict line)
-{
-    for (uint32_t k = first; k < end; k++) {
-        line->cell[k] = LM_CELL_NONE;
-        line->elevation_q14[k] = 0;
+    if (FX_HAS_NEON) {
+        lay_neon(tile, first, end, line);
+        return;
     }
+    uint32_t *cell = line->cell + first;
+    int32_t *elevation = line->elevation_q14 + first;
+    const uint32_t *const behind = line->cell + end;
+    do {
+        for (int lane = 0; lane < LM_LANES; lane++) {
+            cell[lane] = tile.record;
+        }
+        for (int lane = 0; lane < LM_LANES; lane++) {
+            elevation[lane] = tile.scale;
+        }
+        cell += LM_LANES;
+        elevation += LM_LANES;
+    } while (cell < behind);
+}
+
+/* A run in a tile that was not found at once: what answers for it is good for this run only. */
+static void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t level,
+                           uint32_t first, uint32_t end, struct lm_scan_line *line)
+{
+    const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w->north.tile, w->east.tile);
+    if (!tile) {
+        for (uint32_t k = first; k < end; k++) {
+            line->cell[k] = LM_CELL_NONE;
+            line->elevation_q14[k] = 0;
+        }
+        return;
+    }
+    const uint32_t middle = (first + end) / 2, generations = tile->level - (uint32_t)level;
+    const struct lm_places places = {track_above(&w->north.way, middle, generations),
+                                     track_above(&w->east.way, middle, generations)};
+    lay(lm_tile_base_of(tiles->pool, tile), first, end, line);
+    lm_tile_read(tiles->pool, &places, first, end, line);
+}
+
+/* Read cells of a zone that are laid. */
+static void read_waiting(const struct walk *w, const struct lm_tile *pool, uint32_t first,
+                         uint32_t end, struct lm_scan_line *line)
+{
+    if (first != end) {
+        const struct lm_places places = {track_of(&w->north.way), track_of(&w->east.way)};
+        lm_tile_read(pool, &places, first, end, line);
+    }
+}
+
+/* Read the cells of a zone, from cell k on. Returns the first one behind them. */
+static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t level, uint32_t k,
+                          struct lm_scan_line *line)
+{
+    const struct lm_tile *pool = tiles->pool;
+    uint32_t waiting = k; /* the first cell that is laid and not read */
+    enter_zone(w, k);
+    do {
+        const uint32_t end = end_of_run(w);
+        const struct lm_tile_slot *slot =
+            lm_tile_cache_look(tiles, level, w->north.tile, w->east.tile);
+        if (slot) {
+            lay(slot->base, k, end, line);
+        } else {
+            read_waiting(w, pool, waiting, k, line);
+            read_otherwise(w, tiles, level, k, end, line);
+            waiting = end;
+        }
+        k = end;
+    } while (go_on(w, k));
+    read_waiting(w, pool, waiting, k, line);
+    return k;
 }
 
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t level,
                       const struct lm_ground_path *path, uint32_t cells)
 {
-    const struct lm_tile *pool = tiles->pool;
     struct walk w;
-    struct lm_places places = {0};
     start_walk(&w, tiles->db, level, path, cells);
-    uint32_t zone = w.zone, generations = 0; /* of the places */
-    uint32_t waiting = 0;                    /* the first cell that is laid and not read */
-    for (uint32_t k = 0, end; k < cells; k = end) {
-        end = next_run(&w, k);
-        const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w.north.tile, w.east.tile);
-        const uint32_t up = tile ? tile->level - (uint32_t)level : 0;
-        /* The ways in an ancestor are good for one run. */
-        if (w.zone != zone || up != generations || up != 0) {
-            lm_tile_read(pool, &places, waiting, k, line);
-            places = places_of(&w, (k + end) / 2, up);
-            zone = w.zone;
-            generations = up;
-            waiting = k;
-        }
-        if (tile) {
-            lm_tile_lay(pool, tile, k, end, line);
-        } else {
-            lm_tile_read(pool, &places, waiting, k, line);
-            read_nothing(k, end, line);
-            waiting = end;
-        }
+    for (uint32_t k = 0; k < cells;) {
+        k = read_zone(&w, tiles, level, k, line);
     }
-    lm_tile_read(pool, &places, waiting, cells, line);
 }
 
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t level,
@@ -222,26 +271,29 @@ void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t level,
     struct walk w;
     start_walk(&w, tiles->db, level, path, cells);
     for (uint32_t k = 0; k < cells;) {
-        k = next_run(&w, k);
-        lm_tile_cache_want(tiles, level, w.north.tile, w.east.tile);
+        enter_zone(&w, k);
+        do {
+            lm_tile_cache_want(tiles, level, w.north.tile, w.east.tile);
+            k = end_of_run(&w);
+        } while (go_on(&w, k));
     }
 }
 
 int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_place place,
                           int32_t otherwise_q10)
 {
-    const struct lm_ground_path path = {.latitude = (uint64_t)place.latitude << 32,
-                                        .longitude = (uint64_t)place.longitude << 32};
-    struct walk w;
-    start_walk(&w, tiles->db, level, &path, 1);
-    next_run(&w, 0);
-    const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w.north.tile, w.east.tile);
+    const uint32_t side_log2 = (uint32_t)tiles->db->shift0 + level + LM_TILE_CELLS_LOG2;
+    const uint64_t from_pole = (uint64_t)(place.latitude + FX_BAM_90) << 32;
+    const uint64_t north = from_pole >> side_log2;
+    const uint64_t east =
+        ((uint64_t)place.longitude << 32) >> (side_log2 + lm_db_zone(place.latitude));
+    const struct lm_tile *tile =
+        lm_tile_cache_get(tiles, level, (uint32_t)(north >> 32), (uint32_t)(east >> 32));
     if (!tile) {
         return otherwise_q10;
     }
     const uint32_t generations = tile->level - (uint32_t)level;
-    return lm_tile_ground(tile, (uint32_t)(w.north.way.at >> generations),
-                          (uint32_t)(w.east.way.at >> generations))
+    return lm_tile_ground(tile, (uint32_t)(north >> generations), (uint32_t)(east >> generations))
                .elevation_q14 >>
            4;
 }

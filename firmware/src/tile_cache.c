@@ -5,24 +5,18 @@
 /* Requests looked through for one that is the same. */
 enum { REMEMBERED = 32 };
 
-enum { BUCKET_BITS = 10 };
-_Static_assert(LM_TILE_HASH == 1 << BUCKET_BITS, "a bucket is so many bits");
-
-/* The upper bits of a sum whose factors, powers of the plastic number (M. Roberts, "The
- * Unreasonable Effectiveness of Quasirandom Sequences", 2018), keep the tiles of a neighbourhood
- * apart: fewer meet than by chance. */
-static uint32_t bucket_of(uint8_t level, uint32_t row, uint32_t column)
+static uint16_t *head_of(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
 {
-    return (row * 0xC13FA9A9u + column * 0x91E10DA5u + level * 0x9E3779B1u) >> (32 - BUCKET_BITS);
+    return &c->heads[level][lm_tile_chain(row, column)];
 }
 
 static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
 {
-    uint16_t i = c->heads[bucket_of(level, row, column)];
+    uint16_t i = c->heads[level][lm_tile_chain(row, column)];
     /* A chain holds each slot at most once, so this ends. */
     while (i != LM_SLOT_NONE) {
         const struct lm_tile_slot *s = &c->slots[i];
-        if (s->row == row && s->column == column && s->level == level) {
+        if (s->row == row && s->column == column) {
             return i;
         }
         i = s->next;
@@ -33,18 +27,20 @@ static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row,
 static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
 {
     const struct lm_tile_slot *s = &c->slots[victim];
-    uint16_t *link = &c->heads[bucket_of(s->level, s->row, s->column)];
+    uint16_t *link = head_of(c, s->level, s->row, s->column);
     while (*link != victim) {
         link = &c->slots[*link].next;
     }
     *link = s->next;
 }
 
-/* A free slot, or the one that was used longest ago. Pinned slots and the one being read stay;
+/* A free slot, or the one that was used longest ago. The coarsest level and the slot being read
+ * stay;
  * lm_tile_cache_init leaves at least 16 that are neither, so LM_SLOT_NONE does not happen, but
  * nothing is written if it does. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
+    const uint8_t coarsest = (uint8_t)(c->db->level_count - 1);
     uint16_t best = LM_SLOT_NONE;
     uint32_t best_age = 0;
     for (uint32_t i = 0; i < c->slot_count; i++) {
@@ -53,8 +49,8 @@ static uint16_t take_slot(struct lm_tile_cache *c)
             return (uint16_t)i;
         }
         const uint32_t age = c->clock - s->last_use;
-        if (!s->is_pinned && s->state != LM_SLOT_READING &&
-            (best == LM_SLOT_NONE || age > best_age)) {
+        const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->level == coarsest;
+        if (!is_pinned && s->state != LM_SLOT_READING && (best == LM_SLOT_NONE || age > best_age)) {
             best = (uint16_t)i;
             best_age = age;
         }
@@ -73,8 +69,9 @@ static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *ke
     if (i == LM_SLOT_NONE) {
         return i;
     }
-    uint16_t *head = &c->heads[bucket_of(key->level, key->row, key->column)];
-    c->slots[i] = (struct lm_tile_slot){.row = key->row,
+    uint16_t *head = head_of(c, key->level, key->row, key->column);
+    c->slots[i] = (struct lm_tile_slot){.resident = LM_TILE_NO_NAME,
+                                        .row = key->row,
                                         .column = key->column,
                                         .level = key->level,
                                         .last_use = c->clock,
@@ -87,8 +84,8 @@ static void finish(struct lm_tile_cache *c, enum lm_slot_state state)
 {
     struct lm_tile_slot *s = &c->slots[c->reading_slot];
     s->state = (uint8_t)state;
+    s->resident = state == LM_SLOT_RESIDENT ? lm_tile_name(s->row, s->column) : LM_TILE_NO_NAME;
     s->failed_us = c->now_us;
-    s->is_pinned = s->level == c->db->level_count - 1 && state == LM_SLOT_RESIDENT;
     c->reading_slot = LM_SLOT_NONE;
 }
 
@@ -160,6 +157,7 @@ static void take_record(struct lm_tile_cache *c)
         return;
     }
     c->count.tiles_read++;
+    c->slots[c->reading_slot].base = lm_tile_base_of(c->pool, &c->pool[c->reading_slot]);
     finish(c, LM_SLOT_RESIDENT);
 }
 
@@ -296,7 +294,7 @@ static void note_miss(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint
 
 static bool is_resident(const struct lm_tile_cache *c, uint16_t i)
 {
-    return i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_RESIDENT;
+    return c->slots[i].state == LM_SLOT_RESIDENT;
 }
 
 static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
@@ -305,11 +303,11 @@ static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
     return &c->pool[i];
 }
 
-/* The nearest ancestor that is resident, for a tile that is not. Not inline: what is rare would
- * cost the look-ups that hit. */
-static __attribute__((noinline)) const struct lm_tile *
-answer_otherwise(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+/* The nearest ancestor that is resident, for a tile that is not. */
+static const struct lm_tile *answer_otherwise(struct lm_tile_cache *c, uint8_t level, uint32_t row,
+                                              uint32_t column)
 {
+    c->count.otherwise++;
     for (uint32_t up = 1; level + up < c->db->level_count; up++) {
         const uint16_t i = find(c, (uint8_t)(level + up), row >> up, column >> up);
         if (is_resident(c, i)) {
@@ -327,11 +325,7 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, 
 {
     c->clock++;
     const uint16_t i = find(c, level, row, column);
-    if (!is_resident(c, i)) {
-        return answer_otherwise(c, level, row, column);
-    }
-    c->count.hits++;
-    return answer(c, i);
+    return is_resident(c, i) ? answer(c, i) : answer_otherwise(c, level, row, column);
 }
 
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
@@ -376,8 +370,13 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
     const size_t slots = pool_bytes / sizeof(struct lm_tile);
     c->slot_count = slots < LM_TILE_SLOTS_MAX ? (uint32_t)slots : LM_TILE_SLOTS_MAX;
     c->reading_slot = LM_SLOT_NONE;
-    for (uint32_t i = 0; i < LM_TILE_HASH; i++) {
-        c->heads[i] = LM_SLOT_NONE;
+    for (uint32_t i = 0; i <= LM_TILE_SLOTS_MAX; i++) {
+        c->slots[i].resident = LM_TILE_NO_NAME;
+    }
+    for (uint32_t level = 0; level < LM_DB_LEVELS_MAX; level++) {
+        for (uint32_t i = 0; i < LM_TILE_CHAINS; i++) {
+            c->heads[level][i] = LM_SLOT_NONE;
+        }
     }
     return read_coarsest(c, poll_limit);
 }

@@ -4,22 +4,6 @@
 #include "fx/mem.h"
 #include "tile_read_neon.h"
 
-/* Points from the first record of a pool to another one: less than 2^12 records of 2^15 bytes. */
-static uint32_t record_of(const struct lm_tile *pool, const struct lm_tile *tile)
-{
-    return (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool) /
-           (uint32_t)sizeof(struct lm_tile_point);
-}
-
-/* A tile's base, metres * 16384, with the shift that brings the Q16 of a post there in its lowest
- * byte, less than 0 as it goes to the right: a post step is 2^post_shift / 64 m, so that its Q16 is
- * Q22 of 2^post_shift m. The byte is left in where elevations are added up: it takes half a
- * millimetre from them. lm_tile_check holds |base| to 2^20 in Q6 and post_shift to 4. */
-static int32_t scale_of(const struct lm_tile *tile)
-{
-    return tile->base_q6 * 256 + (tile->post_shift - 8);
-}
-
 /* A point is taken as one word, its cell in the low half and its post in the high one: lm/db.h on
  * the order of bytes. Indices are signed: then a loop of this becomes vector gathers. */
 static inline struct lm_ground ground_at(const struct lm_tile *pool, uint32_t record, int32_t scale,
@@ -42,23 +26,7 @@ static inline struct lm_ground ground_at(const struct lm_tile *pool, uint32_t re
 
 struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east)
 {
-    return ground_at(tile, 0, scale_of(tile), north, east);
-}
-
-void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t first,
-                 uint32_t end, struct lm_scan_line *line)
-{
-    const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
-    const uint32_t record = record_of(pool, tile);
-    const int32_t scale = scale_of(tile);
-    if (FX_HAS_NEON) {
-        lay_groups_neon(record, scale, first, groups, line);
-        return;
-    }
-    for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
-        line->cell[k] = record;
-        line->elevation_q14[k] = scale;
-    }
+    return ground_at(tile, 0, lm_tile_base_of(tile, tile).scale, north, east);
 }
 
 /* Whole groups: a vector of cells has no rest. No store touches the pool: it may gather. */

@@ -10,21 +10,24 @@
 
 #if FX_HAS_NEON
 
-/* Two vectors at a time, which the compiler does not do by itself. */
-static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t first, uint32_t groups,
-                                   struct lm_scan_line *line)
+/* Tell cells first..end - 1, and those behind them up to a whole number of LM_LANES, which tile
+ * they lie in. Two vectors at a time, which the compiler does not do by itself. */
+static inline void lay_neon(struct lm_tile_base tile, uint32_t first, uint32_t end,
+                            struct lm_scan_line *line)
 {
-    const uint32x4_t r = vdupq_n_u32(record);
-    const int32x4_t z = vdupq_n_s32(scale);
+    const uint32x4_t record = vdupq_n_u32(tile.record);
+    const int32x4_t scale = vdupq_n_s32(tile.scale);
     uint32_t *cell = line->cell + first;
     int32_t *elevation = line->elevation_q14 + first;
-    for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
-        for (int half = 0; half < 2; half++) {
-            vst1q_u32(cell + 4 * half, r);
-            vst1q_s32(elevation + 4 * half, z);
-        }
+    const uint32_t *const behind = line->cell + end;
+    do {
+        vst1q_u32(cell, record);
+        vst1q_u32(cell + 4, record);
+        vst1q_s32(elevation, scale);
+        vst1q_s32(elevation + 4, scale);
+        cell += LM_LANES;
         elevation += LM_LANES;
-    }
+    } while (cell < behind);
 }
 
 /* Weights of eight places: bits 25..18 of each. */
@@ -144,10 +147,10 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
 
 #else
 
-static inline void lay_groups_neon(uint32_t record, int32_t scale, uint32_t first, uint32_t groups,
-                                   struct lm_scan_line *line)
+static inline void lay_neon(struct lm_tile_base tile, uint32_t first, uint32_t end,
+                            struct lm_scan_line *line)
 {
-    (void)record, (void)scale, (void)first, (void)groups, (void)line;
+    (void)tile, (void)first, (void)end, (void)line;
 }
 
 static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,

@@ -221,12 +221,13 @@ static void print_summary(const struct sim *s)
         print_targets(u);
     }
     const struct lm_tile_cache *t = &u->tiles;
-    const double looked = (double)t->count.hits + t->count.misses;
+    const double looked = (double)lm_tile_cache_hits(t) + t->count.misses;
     printf(
         "tiles: %u read (%.1f MB), %u evicted; %.2f %% of look-ups hit, %u answered by a coarser "
         "tile, %u off the map\n",
         t->count.tiles_read, (double)t->count.bytes_read / 1e6, t->count.evicted,
-        looked > 0 ? 100 * t->count.hits / looked : 0, t->count.substituted, t->count.off_map);
+        looked > 0 ? 100 * lm_tile_cache_hits(t) / looked : 0, t->count.substituted,
+        t->count.off_map);
     printf(
         "faults: %u flash reads failed, %u records corrupt, %u requests dropped, %u display "
         "errors\n",

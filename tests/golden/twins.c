@@ -62,8 +62,12 @@ static uint32_t of_tile_read(void)
         while (end < LM_CELLS_MAX && hs_rng_below(&rng, 8) != 0) {
             const uint32_t from = end;
             end = fx_min_u32(end + 1 + hs_rng_below(&rng, 200), LM_CELLS_MAX);
-            const struct lm_tile *tile = &pool[hs_rng_below(&rng, TILES)];
-            lm_tile_lay(pool, tile, from, end, &line);
+            const struct lm_tile_base tile =
+                lm_tile_base_of(pool, &pool[hs_rng_below(&rng, TILES)]);
+            for (uint32_t k = from; k < end; k++) {
+                line.cell[k] = tile.record;
+                line.elevation_q14[k] = tile.scale;
+            }
         }
         lm_tile_read(pool, &places, first, end, &line);
         const uint32_t count = end - first;

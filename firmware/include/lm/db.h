@@ -26,8 +26,9 @@ enum {
     LM_DB_HEADER_BYTES = 512,
     LM_DB_LEVELS_MAX = 12,
     LM_DB_BANDS_MAX = 64,
-    LM_DB_SHIFT_MIN = 4,  /* a level-0 cell of 0.15 m */
-    LM_DB_SHIFT_MAX = 20, /* a cell of the coarsest level: 9.8 km */
+    LM_DB_SHIFT_MIN = 4,       /* a level-0 cell of 0.15 m */
+    LM_DB_SHIFT_MAX = 20,      /* a cell of the coarsest level: 9.8 km */
+    LM_DB_SIXTEENTH_LOG2 = 26, /* of a quarter turn, BAM: where zones may begin */
     LM_DB_CLASSES = 16,
     LM_DB_CLASS_NONE = 15, /* no data: drawn as nothing */
     LM_TILE_CELLS = 64,    /* along one side */
@@ -160,7 +161,7 @@ static inline uint32_t lm_db_zone(fx_bam_t latitude)
     /* Two bits for each sixteenth from pole to pole; the north pole itself, behind the last one, is
      * answered by the first. */
     const uint64_t zone_of_sixteenth = 0xE94000000000016B;
-    const uint32_t sixteenth = (latitude + FX_BAM_90) >> 26;
+    const uint32_t sixteenth = (latitude + FX_BAM_90) >> LM_DB_SIXTEENTH_LOG2;
     return (uint32_t)(zone_of_sixteenth >> (2 * sixteenth & 63)) & 3;
 }
 

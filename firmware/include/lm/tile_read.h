@@ -24,14 +24,10 @@ struct lm_ground {
 /* What a tile that has passed lm_tile_check says at one place. */
 struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east);
 
-/* A line is read in two steps. First every run of cells, first..end - 1, is told which tile of the
- * pool it lies in; the line's arrays keep that until they are read, also for what is behind the run
- * up to a whole number of LM_LANES. */
-void lm_tile_lay(const struct lm_tile *pool, const struct lm_tile *tile, uint32_t first,
-                 uint32_t end, struct lm_scan_line *line);
-
-/* Then cell and elevation of each of first..end - 1, all laid, come to stand there; those behind
- * them, up to a whole number of LM_LANES, lose their meaning. None when first is end. */
+/* A line is read in two steps. First every run of cells is told which tile of the pool it lies in:
+ * line->cell[k] is the record and line->elevation_q14[k] the scale of its lm_tile_base. Then cell
+ * and elevation of each of first..end - 1 come to stand there; those behind them, up to a whole
+ * number of LM_LANES, lose their meaning. None when first is end. */
 void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *places,
                   uint32_t first, uint32_t end, struct lm_scan_line *restrict line);
 

@@ -247,6 +247,50 @@ static void the_tile_used_longest_ago_leaves_first(void **state)
     free_fixture(f);
 }
 
+static void a_look_finds_what_a_get_would_answer_or_nothing(void **state)
+{
+    (void)state;
+    struct fixture *f = make_fixture();
+    const struct lm_band *b = finest_band(f);
+    uint32_t found = 0, late = 0;
+    for (uint32_t i = 0; i < 40 * SIDE; i++) {
+        const uint32_t n = i / 3; /* asked for, come, found */
+        const uint32_t row = b->row0 + n * 5 % SIDE, column = b->column0 + n * 4 % (SIDE + 1);
+        const uint32_t hits = lm_tile_cache_hits(&f->cache);
+        const struct lm_tile_slot *slot = lm_tile_cache_look(&f->cache, 0, row, column);
+        assert_int_equal(lm_tile_cache_hits(&f->cache), hits + (slot != NULL));
+        const struct lm_tile *tile = lm_tile_cache_get(&f->cache, 0, row, column);
+        if (slot) {
+            found++;
+            const struct lm_tile_base base = lm_tile_base_of(f->pool, tile);
+            assert_int_equal(tile->level, 0);
+            assert_ptr_equal(f->cache.slots + (tile - (const struct lm_tile *)f->pool), slot);
+            assert_memory_equal(&slot->base, &base, sizeof base);
+            assert_int_equal(slot->last_use, f->cache.clock);
+        }
+        late += !slot && tile && tile->level == 0;
+        serve(f, 0);
+    }
+    assert_null(lm_tile_cache_look(&f->cache, 0, 0, 0)); /* at the pole */
+    print_message("# %u found, %u not the first of their chain\n", found, late);
+    assert_true(found > 10 * SIDE && late == 0 && f->cache.count.evicted > 0);
+    free_fixture(f);
+}
+
+static void tiles_of_a_neighbourhood_have_a_chain_each(void **state)
+{
+    (void)state;
+    for (int32_t row = -33; row <= 33; row++) {
+        for (int32_t column = -33; column <= 33; column++) {
+            const bool is_near = row * row + column * column < 34 * 34;
+            const bool is_other = row != 0 || column != 0;
+            assert_false(is_near && is_other &&
+                         lm_tile_chain(1000u + (uint32_t)row, 70000u + (uint32_t)column) ==
+                             lm_tile_chain(1000, 70000));
+        }
+    }
+}
+
 static void off_the_map_there_is_nothing(void **state)
 {
     (void)state;
@@ -331,6 +375,8 @@ int main(void)
         cmocka_unit_test(a_record_that_answers_for_another_tile_is_refused),
         cmocka_unit_test(a_tile_the_image_leaves_out_is_no_fault),
         cmocka_unit_test(the_tile_used_longest_ago_leaves_first),
+        cmocka_unit_test(a_look_finds_what_a_get_would_answer_or_nothing),
+        cmocka_unit_test(tiles_of_a_neighbourhood_have_a_chain_each),
         cmocka_unit_test(off_the_map_there_is_nothing),
         cmocka_unit_test(a_pool_too_small_for_the_coarsest_level_is_refused),
         cmocka_unit_test(a_full_queue_drops_requests_and_counts_them),
