@@ -10,14 +10,13 @@ void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *ant
     /* b in Q20 radians: a beam is at most half a circle, 2^31 times 2^22.7. */
     const int64_t beam_q20 =
         (int64_t)((uint64_t)antenna->elevation_beam * RADIAN_Q20_OF_CIRCLE >> 32);
-    e->gain_q8[0] = 0;
     for (int32_t n = 0; n < LM_ELEVATION_STEPS; n++) {
         /* x = e / b in Q12; 80 log10(2) dB is 6165 / 256. Far beyond the beam everything is as good
          * as nothing: -96 dB. */
         const int64_t off_q20 = (int64_t)n * STEP_Q20 + STEP_Q20 / 2;
         const int64_t x_q12 = (off_q20 << 12) / (beam_q20 > 0 ? beam_q20 : 1);
         const int64_t fall_q8 = (x_q12 * x_q12 >> 12) * 6165 >> 12;
-        e->gain_q8[n + 1] = fall_q8 < 96 * 256 ? -(int32_t)fall_q8 : -96 * 256;
+        e->gain_q8[n] = fall_q8 < 96 * 256 ? -(int32_t)fall_q8 : -96 * 256;
     }
 }
 
@@ -35,20 +34,41 @@ int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m)
     return (int32_t)fx_atan2(-(height_m + drop_m), (int32_t)range_m);
 }
 
-/* Tangents come with 22 bits of fraction or more; 20 are asked for. */
+/* Weigh what is outside of the fan. Tangents come with 22 bits of fraction or more; 20 are asked
+ * for. */
 static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down, struct lm_fan fan,
                   const int32_t *restrict gain_q8, int32_t *restrict level_q8)
 {
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t t_q20 = tangent[i] >> down;
         const int32_t off_q20 = fx_max_i32(t_q20 - fan.high_q20, fan.low_q20 - t_q20);
-        level_q8[i] += gain_q8[fx_clamp_i32((off_q20 >> 9) + 1, 0, LM_ELEVATION_STEPS)];
+        level_q8[i] += gain_q8[fx_min_i32(off_q20 >> 9, LM_ELEVATION_STEPS - 1)];
     }
+}
+
+/* The first of the cells from `first` to `end` that appears at `t_q20` or above; `end` if none
+ * does. */
+static uint32_t first_at(const int32_t *tangent, uint32_t down, int32_t t_q20, uint32_t first,
+                         uint32_t end)
+{
+    while (first < end) {
+        const uint32_t middle = (first + end) / 2;
+        if (tangent[middle] >> down < t_q20) {
+            first = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
+    return first;
 }
 
 void lm_elevation_run(const struct lm_elevation *e, const struct lm_fan *fan,
                       const struct lm_range_grid *grid, struct lm_sight *sight)
 {
-    weigh(sight->horizon + 1, grid->cells, grid->tangent_bits - 20, *fan, e->gain_q8,
-          sight->level_q8);
+    const int32_t *const tangent = sight->horizon + 1;
+    const uint32_t cells = grid->cells, down = grid->tangent_bits - 20;
+    const uint32_t within = first_at(tangent, down, fan->low_q20 + 1, 0, cells);
+    const uint32_t above = first_at(tangent, down, fan->high_q20, within, cells);
+    weigh(tangent, within, down, *fan, e->gain_q8, sight->level_q8);
+    weigh(tangent + above, cells - above, down, *fan, e->gain_q8, sight->level_q8 + above);
 }

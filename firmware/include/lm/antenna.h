@@ -8,11 +8,10 @@
 #include "lm/aspect.h"
 #include "lm/radar.h"
 
-/* Two-way gain behind the fan's edge, 1/256 dB: entry n + 1 for tangents (n + 1/2) / 2048 beyond
- * it, entry 0 within the fan. */
+/* Two-way gain behind the fan's edge, 1/256 dB: entry n for tangents (n + 1/2) / 2048 beyond it. */
 enum { LM_ELEVATION_STEPS = 256 };
 struct lm_elevation {
-    int32_t gain_q8[1 + LM_ELEVATION_STEPS];
+    int32_t gain_q8[LM_ELEVATION_STEPS];
 };
 
 /* The fan between two tangents of elevation, Q20: looks between them are not weakened. */
@@ -32,7 +31,8 @@ struct lm_fan lm_fan_at(int32_t tilt, fx_bam_t fan);
 int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m);
 
 /* Weigh the levels of the grid's cells by the pattern, each at the tangent at which it appears. A
- * cell in shadow has none of its own and stays dark. Cost: see docs/benchmarks.md. */
+ * cell in shadow has none of its own and stays dark. As tangents never fall along a line, only
+ * cells below and above the fan are touched. Cost: see docs/benchmarks.md. */
 void lm_elevation_run(const struct lm_elevation *e, const struct lm_fan *fan,
                       const struct lm_range_grid *grid, struct lm_sight *sight);
 
