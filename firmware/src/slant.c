@@ -4,6 +4,8 @@
 
 #include "fx/log.h"
 #include "fx/root.h"
+#include "fx/sat.h"
+#include "slant_neon.h"
 
 /* Metres * 256 below 2^26.7 and a height below 2^22.9 of them: squares below 2^54. */
 static uint64_t square_q16(int64_t q8)
@@ -40,10 +42,12 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint3
     for (uint32_t i = cells; i < cells + LM_LANES; i++) {
         s->cell_of[i] = (int32_t)grid->cells;
     }
+    s->pairs = 0;
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t here = s->cell_of[i], next = s->cell_of[i + 1];
-        const bool has_more = next > here + 1 && next < (int32_t)grid->cells;
-        s->last_of[i] = has_more ? next - 1 : here;
+        const int32_t next = s->cell_of[i + 1];
+        if (next > s->cell_of[i] + 1 && next < (int32_t)grid->cells) {
+            s->pair[s->pairs++] = (struct lm_slant_pair){(uint16_t)i, (uint16_t)(next - 1)};
+        }
     }
 }
 
@@ -51,11 +55,17 @@ void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, in
                   uint32_t *restrict power_q24)
 {
     level_q8[grid->cells] = LM_LEVEL_SHADOW;
-    const int32_t *restrict cell_of = s->cell_of, *restrict last_of = s->last_of;
+    const int32_t *restrict cell_of = s->cell_of, *restrict level = level_q8;
+    int32_t *const bin_q8 = (int32_t *)power_q24;
     const uint32_t cells = s->cells;
-    const int32_t *restrict level = level_q8;
-    for (uint32_t i = 0; i < cells; i++) {
-        const int32_t first_q8 = level[cell_of[i]], last_q8 = level[last_of[i]];
-        power_q24[i] = fx_power_q24_of_many(first_q8 > last_q8 ? first_q8 : last_q8);
+    for (uint32_t i = fetch_neon(level, cell_of, bin_q8, cells); i < cells; i++) {
+        bin_q8[i] = level[cell_of[i]];
+    }
+    for (uint32_t k = 0; k < s->pairs; k++) {
+        const struct lm_slant_pair *pair = &s->pair[k];
+        bin_q8[pair->bin] = fx_max_i32(bin_q8[pair->bin], level[pair->last]);
+    }
+    for (uint32_t i = power_neon(power_q24, cells); i < cells; i++) {
+        power_q24[i] = fx_power_q24_of_many(bin_q8[i]);
     }
 }

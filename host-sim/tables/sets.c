@@ -64,26 +64,34 @@ static int64_t decibel(int row, int i)
     return rounded(10 * log10l(middle) + 1 / 512.0L, 14);
 }
 
-/* Straight lines through the decibels of 1 + (m + 0.5) / 256, and the half of Q8 for rounding, for
- * machines that look up 16 bytes at once: line n, of m = 16 n .. 16 n + 15, is base[n] + m slope[n]
- * in Q13. It rises as from its first to its last, and is as far above as below them. Rows: the two
- * bytes of the base, the slope. */
-static int64_t decibel_line(int row, int n)
+/* The straight line that comes nearest to `count` entries from `first` on, as machines want it that
+ * look up 16 bytes or 64 at once: entry i is base + i slope. It rises or falls by whole numbers, as
+ * from its first entry to its last, and is as far above as below them. Rows: the two bytes of the
+ * base, the slope. */
+static int64_t line_through(int row, int first, const long double *want, int count)
 {
-    long double want_q13[16], most = -1e9L, least = 1e9L;
-    for (int k = 0; k < 16; k++) {
-        const long double m = 16 * n + k;
-        const long double middle = sqrtl((1 + m / 256) * (1 + (m + 1) / 256));
-        want_q13[k] = (10 * log10l(middle) + 1 / 512.0L) * 8192;
-    }
-    const int64_t slope = llroundl((want_q13[15] - want_q13[0]) / 15);
-    for (int k = 0; k < 16; k++) {
-        const long double base = want_q13[k] - (long double)(slope * (16 * n + k));
+    long double most = -1e9L, least = 1e9L;
+    const int64_t slope = llroundl((want[count - 1] - want[0]) / (count - 1));
+    for (int k = 0; k < count; k++) {
+        const long double base = want[k] - (long double)(slope * (first + k));
         most = base > most ? base : most;
         least = base < least ? base : least;
     }
     const int64_t base = llroundl((most + least) / 2);
     return row == 0 ? base & 255 : row == 1 ? base >> 8 : slope;
+}
+
+/* Lines through the decibels of 1 + (m + 0.5) / 256, and the half of Q8 for rounding, in Q13: line
+ * n of m = 16 n .. 16 n + 15. */
+static int64_t decibel_line(int row, int n)
+{
+    long double want_q13[16];
+    for (int k = 0; k < 16; k++) {
+        const long double m = 16 * n + k;
+        const long double middle = sqrtl((1 + m / 256) * (1 + (m + 1) / 256));
+        want_q13[k] = (10 * log10l(middle) + 1 / 512.0L) * 8192;
+    }
+    return line_through(row, 16 * n, want_q13, 16);
 }
 
 /* Decibels of i .. i + 1 by these lines. No power at all is far below one. */
@@ -97,6 +105,24 @@ static int64_t decibel_steps(int row, int i)
     const int mantissa = ((i << 12 >> octave) & 4095) >> 4, n = mantissa / 16;
     const int64_t base = decibel_line(0, n) + decibel_line(1, n) * 256;
     return i == 0 ? -144 * 8192 : octave * 24660 + base + mantissa * decibel_line(2, n);
+}
+
+/* Lines through 2^(m / 256) in Q15, and the whole octave by them; a little higher, for the first
+ * entry to be 1. */
+static int64_t power_line(int row, int n)
+{
+    long double want_q15[16];
+    for (int k = 0; k < 16; k++) {
+        want_q15[k] = ldexpl(exp2l((16 * n + k) / 256.0L), 15) + 5;
+    }
+    return line_through(row, 16 * n, want_q15, 16);
+}
+
+static int64_t power(int row, int i)
+{
+    (void)row;
+    const int n = i / 16;
+    return (power_line(0, n) + power_line(1, n) * 256 + i * power_line(2, n)) * 65536;
 }
 
 static int64_t decibel_sum(int row, int i)
@@ -149,6 +175,9 @@ static const struct table fixed_tables[] = {
      "lines through the decibels of 1 + (m + 0.5) / 256: base, base, slope", 3, 16, decibel_line},
     {"fx_table_db_steps_q13", "int32_t", "decibels of i + 0.5 by these lines", 0, 4096,
      decibel_steps},
+    {"fx_table_power_lines", "uint8_t", "lines through 2^(m / 256): base, base, slope", 3, 16,
+     power_line},
+    {"fx_table_power_q31", "uint32_t", "2^(i / 256) by these lines", 0, 256, power},
     {"fx_table_db_sum_q8", "int32_t",
      "decibels that a power (i + 0.5) / 16 dB below another adds to it", 0, 512, decibel_sum},
     {"fx_table_db_sum_lines", "uint8_t",

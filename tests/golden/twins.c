@@ -6,6 +6,7 @@
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "lm/receiver.h"
+#include "lm/slant.h"
 #include "lm/speckle.h"
 #include "lm/tile_read.h"
 #include "lm/tone.h"
@@ -228,6 +229,32 @@ static uint32_t of_tone(void)
     return crc;
 }
 
+/* Bins of cells of any level, some of which cover more than one. */
+static uint32_t of_slant(void)
+{
+    static struct lm_slant slant;
+    static struct lm_range_grid grid;
+    static int32_t level_q8[LM_CELLS_ROOM];
+    static uint32_t power_q24[LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 7);
+    for (int i = 0; i < ROUNDS; i++) {
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        const uint32_t cell_q8 = 256 + hs_rng_below(&rng, 100 * 256);
+        const int32_t height_q10 = (int32_t)hs_rng_below(&rng, 12000 * 1024);
+        grid = (struct lm_range_grid){.cells = cells, .cell_q8 = cell_q8, .height_q10 = height_q10};
+        lm_slant_set(&slant, cell_q8 / 2, cell_q8, cells, &grid, cell_q8 / 2);
+        for (uint32_t k = 0; k < cells; k++) {
+            const int32_t any = (int32_t)hs_rng_u64(&rng);
+            level_q8[k] = any >> (k % 8 == 0 ? 15 : 18);
+        }
+        lm_slant_run(&slant, &grid, level_q8, power_q24);
+        crc = fx_crc32c(crc, power_q24, cells * sizeof *power_q24);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
@@ -235,5 +262,6 @@ int main(void)
     printf("aspect %08x\n", (unsigned)of_aspect());
     printf("receiver %08x\n", (unsigned)of_receiver());
     printf("tone %08x\n", (unsigned)of_tone());
+    printf("slant %08x\n", (unsigned)of_slant());
     return 0;
 }

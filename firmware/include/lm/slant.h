@@ -11,9 +11,14 @@
 struct lm_slant {
     uint32_t first_q8, cell_q8; /* of bin 0's centre, and between centres; metres * 256 */
     uint32_t cells;
-    /* The ground cell at the bin's centre, and the last one before that of the next bin's; the
-     * grid's number of cells: no ground there. Near the hole a bin covers two or three. */
-    int32_t cell_of[LM_CELLS_ROOM], last_of[LM_CELLS_ROOM];
+    /* The ground cell at the bin's centre; the grid's number of cells: no ground there. */
+    int32_t cell_of[LM_CELLS_ROOM];
+    /* Near the hole a bin covers two or three: those that cover more than the cell at the centre,
+     * and the last one before that of the next bin's. */
+    struct lm_slant_pair {
+        uint16_t bin, last;
+    } pair[LM_CELLS_ROOM];
+    uint32_t pairs;
 };
 
 /* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,

@@ -112,6 +112,45 @@ static inline int32x4x2_t fx_neon_db_q8_sum(int32x4x2_t a_q8, int32x4x2_t b_q8)
                           vaddw_high_s16(vmaxq_s32(a_q8.val[1], b_q8.val[1]), more_q8)}};
 }
 
+/* Octaves in Q8 above 2^-31 for fx_power_q24_of_many of eight: -31.0 up to just below 1.0. */
+static inline int16x8_t fx_neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
+{
+    const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
+    const int16x8_t octaves_q8 =
+        vaddq_s16(vqrdmulhq_n_s16(db_q8, 21770 / 2), vdupq_n_s16(-7 * 256));
+    return vminq_s16(vmaxq_s16(octaves_q8, vdupq_n_s16(-31 * 256)), vdupq_n_s16(255));
+}
+
+/* Q15 to Q31 and then up by as many bits, of which there are none or less. */
+static inline uint32x4x2_t fx_neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
+{
+    const uint16x8_t nothing = vdupq_n_u16(0);
+    const uint32x4_t low = vreinterpretq_u32_u16(vzip1q_u16(nothing, x_q15)),
+                     high = vreinterpretq_u32_u16(vzip2q_u16(nothing, x_q15));
+    return (uint32x4x2_t){
+        {vshlq_u32(low, vmovl_s16(vget_low_s16(up))), vshlq_u32(high, vmovl_high_s16(up))}};
+}
+
+/* fx_power_q24_of_many of sixteen. Of the lines of its table the lower byte of the octaves chooses
+ * one; the upper byte says how far down. */
+static inline uint32x4x4_t fx_neon_power_q24(int32x4x4_t db_q8)
+{
+    const int16x8_t low_q8 = fx_neon_octaves_q8(db_q8.val[0], db_q8.val[1]);
+    const int16x8_t high_q8 = fx_neon_octaves_q8(db_q8.val[2], db_q8.val[3]);
+    const uint8x16_t place = vuzp1q_u8(vreinterpretq_u8_s16(low_q8), vreinterpretq_u8_s16(high_q8));
+    const uint8x16_t line = vshrq_n_u8(place, 4);
+    const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_power_lines[0]), line),
+                                vqtbl1q_u8(vld1q_u8(fx_table_power_lines[1]), line)};
+    const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_power_lines[2]), line);
+    const uint16x8_t low_q15 = vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(base[0], base[1])),
+                                        vget_low_u8(slope), vget_low_u8(place));
+    const uint16x8_t high_q15 =
+        vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(base[0], base[1])), slope, place);
+    const uint32x4x2_t low_q24 = fx_neon_shift_q15(low_q15, vshrq_n_s16(low_q8, 8)),
+                       high_q24 = fx_neon_shift_q15(high_q15, vshrq_n_s16(high_q8, 8));
+    return (uint32x4x4_t){{low_q24.val[0], low_q24.val[1], high_q24.val[0], high_q24.val[1]}};
+}
+
 #else
 #define FX_HAS_NEON 0
 #endif

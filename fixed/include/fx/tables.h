@@ -33,6 +33,10 @@ extern const uint16_t fx_table_db_q14[256];
 extern const uint8_t fx_table_db_lines[3][16];
 extern const int32_t fx_table_db_steps_q13[4096];
 
+/* 2^(i / 256) in Q15 by straight lines, and so in Q31: see fx_power_q24_of_many. */
+extern const uint8_t fx_table_power_lines[3][16];
+extern const uint32_t fx_table_power_q31[256];
+
 /* 10 * log10(1 + 10^(-d / 10)) in Q8 for d = (i + 0.5) / 16 dB: see fx_db_q8_sum_of_many. */
 extern const int32_t fx_table_db_sum_q8[512];
 
