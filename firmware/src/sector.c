@@ -45,6 +45,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->chips = NULL;
     s->command = *command;
     s->is_begun = s->is_leftward = false;
+    s->aims[0] = s->aims[1] = (struct lm_sector_aim){.is_kept = false};
     s->line = 0;
     s->sweep = epoch;
     s->grid.cells = 0; /* none yet */
@@ -488,6 +489,23 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
+/* Look at `azimuth`. In the whole sector a line lies between its samples as the one before the last
+ * did, and has the same weights, of samples farther on. */
+static void look_at(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
+{
+    struct lm_sector_aim *aim = &s->aims[s->line % 2];
+    const int32_t spacing = (int32_t)s->radar->sample, moved = azimuth - aim->azimuth;
+    const bool is_sharpened = ratio_q8 != 256 || s->beam.fineness != 0;
+    if (aim->is_kept && !is_sharpened && moved % spacing == 0) {
+        aim->look.first += moved / spacing;
+    } else {
+        lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8, &aim->look);
+    }
+    aim->azimuth = azimuth;
+    aim->is_kept = ratio_q8 == 256;
+    s->look = aim->look;
+}
+
 /* Begin the sweep if that is due, and look, once, where the next line is. The whole sector is seen
  * from where the aircraft is; a window from where its sweep began. */
 static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
@@ -502,7 +520,7 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     if (!s->is_aimed) {
         const int32_t azimuth = middle_of(s, s->line);
-        lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8_of(s, platform, azimuth), &s->look);
+        look_at(s, azimuth, ratio_q8_of(s, platform, azimuth));
         s->is_aimed = true;
     }
 }

@@ -79,6 +79,11 @@ struct lm_sector {
     struct lm_beam beam;
     struct lm_beam_look look; /* of the next line, once `is_aimed` */
     bool is_aimed;
+    struct lm_sector_aim { /* of the even and the odd line that was aimed at last */
+        bool is_kept;      /* not sharpened, so that one like it may use it */
+        int32_t azimuth;
+        struct lm_beam_look look;
+    } aims[2];
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_targets_near near;

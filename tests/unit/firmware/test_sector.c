@@ -409,6 +409,35 @@ static void a_patch_drawn_twice_is_the_same(void **state)
     free_rig(r);
 }
 
+/* Through fields of view, there and back. */
+static void a_look_that_was_kept_is_what_the_beam_would_see_anew(void **state)
+{
+    (void)state;
+    static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_NORM, LM_FIELD_DBS1,
+                                     LM_FIELD_NORM};
+    struct rig *r = start_rig();
+    const struct lm_sector *s = &r->unit.sector;
+    uint32_t kept = 0;
+    run(r, 0.5);
+    put_cursor(r, 5, 14000);
+    for (size_t i = 0; i < sizeof fields; i++) {
+        show(r, LM_SECTOR_GM, fields[i]);
+        for (int k = 0; k < 400; k++) {
+            step(r);
+            for (int parity = 0; parity < 2; parity++) {
+                const struct lm_sector_aim *aim = &s->aims[parity];
+                struct lm_beam beam = {.fineness = 0};
+                struct lm_beam_look anew;
+                lm_beam_aim(&beam, s->radar, aim->azimuth, 256, &anew);
+                assert_true(!aim->is_kept || memcmp(&anew, &aim->look, sizeof anew) == 0);
+                kept += aim->is_kept;
+            }
+        }
+    }
+    assert_true(kept > 1500);
+    free_rig(r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -418,6 +447,7 @@ int main(void)
         cmocka_unit_test(a_point_close_below_is_drawn_in_the_middle_of_the_window_too),
         cmocka_unit_test(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep),
         cmocka_unit_test(a_patch_drawn_twice_is_the_same),
+        cmocka_unit_test(a_look_that_was_kept_is_what_the_beam_would_see_anew),
     };
     return cmocka_run_group_tests_name("sector", tests, NULL, NULL);
 }
