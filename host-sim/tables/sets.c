@@ -67,7 +67,7 @@ static int64_t decibel(int row, int i)
 /* The straight line that comes nearest to `count` entries from `first` on, as machines want it that
  * look up 16 bytes or 64 at once: entry i is base + i slope. It rises or falls by whole numbers, as
  * from its first entry to its last, and is as far above as below them. Rows: the two bytes of the
- * base, the slope. */
+ * base modulo 2^16, the slope. */
 static int64_t line_through(int row, int first, const long double *want, int count)
 {
     long double most = -1e9L, least = 1e9L;
@@ -78,7 +78,7 @@ static int64_t line_through(int row, int first, const long double *want, int cou
         least = base < least ? base : least;
     }
     const int64_t base = llroundl((most + least) / 2);
-    return row == 0 ? base & 255 : row == 1 ? base >> 8 : slope;
+    return row == 0 ? base & 255 : row == 1 ? base >> 8 & 255 : slope;
 }
 
 /* Lines through the decibels of 1 + (m + 0.5) / 256, and the half of Q8 for rounding, in Q13: line
@@ -125,30 +125,26 @@ static int64_t power(int row, int i)
     return (power_line(0, n) + power_line(1, n) * 256 + i * power_line(2, n)) * 65536;
 }
 
+/* Lines through what a power adds to another one that is (i + 0.5) / 16 dB above it, and the half
+ * of Q8 for rounding, in Q13: line n of i = 8 n .. 8 n + 7, to be told by the lower byte of i. All
+ * fall, and say by how much. */
+static int64_t decibel_sum_line(int row, int n)
+{
+    long double want_q13[8];
+    for (int k = 0; k < 8; k++) {
+        const long double below_db = (8 * n + k + 0.5L) / 16;
+        want_q13[k] = (10 * log10l(1 + powl(10, -below_db / 10)) + 1 / 512.0L) * 8192;
+    }
+    const int64_t entry = line_through(row, 8 * n % 256, want_q13, 8);
+    return row == 2 ? -entry : entry;
+}
+
 static int64_t decibel_sum(int row, int i)
 {
     (void)row;
-    return rounded(10 * log10l(1 + powl(10, -(i + 0.5L) / 160)), 8);
-}
-
-/* Straight lines that give decibel_sum again, for machines that look up 64 bytes at once: entry 8 n
- * + k is (base[n] - 2 k half_fall[n] - k (7 - k)) >> 6. Rows: the two bytes of the base, half the
- * fall. The first line that fits is taken. */
-static int64_t decibel_sum_line(int row, int n)
-{
-    for (int half_fall = 0; half_fall < 256; half_fall++) {
-        int64_t least = 0, most = 65535;
-        for (int k = 0; k < 8; k++) {
-            const int64_t entry = decibel_sum(0, 8 * n + k),
-                          below = 2 * k * half_fall + k * (7 - k);
-            least = entry * 64 + below > least ? entry * 64 + below : least;
-            most = entry * 64 + 63 + below < most ? entry * 64 + 63 + below : most;
-        }
-        if (least <= most) {
-            return row == 0 ? least & 255 : row == 1 ? least >> 8 : half_fall;
-        }
-    }
-    return -1; /* a test would see it */
+    const int n = i / 8;
+    const int64_t base = decibel_sum_line(0, n) + decibel_sum_line(1, n) * 256;
+    return ((base - i % 256 * decibel_sum_line(2, n)) & 65535) >> 5;
 }
 
 /* The byte, then `zeros` zero bytes, shifted through the reflected polynomial. */
@@ -178,10 +174,10 @@ static const struct table fixed_tables[] = {
     {"fx_table_power_lines", "uint8_t", "lines through 2^(m / 256): base, base, slope", 3, 16,
      power_line},
     {"fx_table_power_q31", "uint32_t", "2^(i / 256) by these lines", 0, 256, power},
-    {"fx_table_db_sum_q8", "int32_t",
-     "decibels that a power (i + 0.5) / 16 dB below another adds to it", 0, 512, decibel_sum},
     {"fx_table_db_sum_lines", "uint8_t",
-     "lines through fx_table_db_sum_q8: base, base, half the fall", 3, 64, decibel_sum_line},
+     "lines through what a power i / 16 dB below another adds to it: base, base, fall", 3, 64,
+     decibel_sum_line},
+    {"fx_table_db_sum_q8", "int32_t", "decibels of i + 0.5 by these lines", 0, 512, decibel_sum},
     {"fx_table_crc32c", "uint32_t", "CRC-32C of byte i and the row's number of zero bytes", 4, 256,
      crc32c},
 };

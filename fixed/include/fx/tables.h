@@ -37,11 +37,10 @@ extern const int32_t fx_table_db_steps_q13[4096];
 extern const uint8_t fx_table_power_lines[3][16];
 extern const uint32_t fx_table_power_q31[256];
 
-/* 10 * log10(1 + 10^(-d / 10)) in Q8 for d = (i + 0.5) / 16 dB: see fx_db_q8_sum_of_many. */
-extern const int32_t fx_table_db_sum_q8[512];
-
-/* The same by straight lines: see fx_neon_db_sum_q8. */
+/* 10 * log10(1 + 10^(-d / 10)) for d = (i + 0.5) / 16 dB, in Q13 by straight lines, and so in Q8:
+ * see fx_db_q8_sum_of_many. */
 extern const uint8_t fx_table_db_sum_lines[3][64];
+extern const int32_t fx_table_db_sum_q8[512];
 
 /* CRC-32C of one byte followed by k zero bytes, for k = 0..3. */
 extern const uint32_t fx_table_crc32c[4][256];
