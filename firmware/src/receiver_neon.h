@@ -31,13 +31,14 @@ static inline void detect_neon(const struct lm_receiver *r, int32_t rise_q8,
     const int16_t *const row_q8 = lm_noise_q8[r->looks_log2];
     const uint32_t cells = r->cells;
     const int32x4_t rise = vdupq_n_s32(rise_q8);
+    const struct fx_neon_db_sum lines = fx_neon_db_sum_lines();
     for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
         const int16x8_t draw_q8 = vld1q_s16(row_q8 + noise->entry[i / LM_NOISE_BLOCK]);
         const int32x4_t low = vaddq_s32(vld1q_s32(r->noise_q8 + i), rise);
         const int32x4_t high = vaddq_s32(vld1q_s32(r->noise_q8 + i + 4), rise);
         const int32x4x2_t noisy = {
             {vaddw_s16(low, vget_low_s16(draw_q8)), vaddw_high_s16(high, draw_q8)}};
-        const int32x4x2_t both = fx_neon_db_q8_sum(neon_signal_q8(power_q24 + i), noisy);
+        const int32x4x2_t both = fx_neon_db_q8_sum(&lines, neon_signal_q8(power_q24 + i), noisy);
         vst1q_s32(level_q8 + i, vsubq_s32(both.val[0], vld1q_s32(r->fall_q8 + i)));
         vst1q_s32(level_q8 + i + 4, vsubq_s32(both.val[1], vld1q_s32(r->fall_q8 + i + 4)));
     }

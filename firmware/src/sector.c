@@ -436,16 +436,17 @@ static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx
         trace(s, tiles, azimuth, line);
         return;
     }
-    for (uint32_t turn = 0; turn < 1u << log2; turn++) {
+    const uint32_t last = (1u << log2) - 1;
+    for (uint32_t turn = 0; turn <= last; turn++) {
         const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
         trace(s, tiles, azimuth + off, line);
         if (turn == 0) {
             lm_footprint_begin(&s->footprint, line->sight.level_q8, s->grid.cells);
-        } else {
+        } else if (turn < last) {
             lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells);
         }
     }
-    lm_footprint_levels(&s->footprint, log2, line->sight.level_q8, s->grid.cells);
+    lm_footprint_mean(&s->footprint, log2, line->sight.level_q8, s->grid.cells);
 }
 
 /* Put the origin where the aircraft is by now. */

@@ -74,10 +74,11 @@ static inline void speckle_floor_neon(const struct lm_speckle_config *config, in
     const int16_t *const row_q8 = lm_noise_q8[config->looks_log2];
     struct lm_noise_line noise;
     lm_noise_line_set(&noise, raster, cells);
+    const struct fx_neon_db_sum lines = fx_neon_db_sum_lines();
     const int32x4x2_t floor = {{vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8)}};
     for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
         const int32x4x2_t level = {{vld1q_s32(level_q8 + i), vld1q_s32(level_q8 + i + 4)}};
-        const int32x4x2_t sum = fx_neon_db_q8_sum(level, floor);
+        const int32x4x2_t sum = fx_neon_db_q8_sum(&lines, level, floor);
         const int16x8_t draw_q8 = vld1q_s16(row_q8 + noise.entry[i / LM_NOISE_BLOCK]);
         vst1q_s32(speckled_q8 + i, vaddw_s16(sum.val[0], vget_low_s16(draw_q8)));
         vst1q_s32(speckled_q8 + i + 4, vaddw_high_s16(sum.val[1], draw_q8));

@@ -33,7 +33,7 @@ table() { # divisor format
             part("scan_line: cells, terrain, noise", n["lm_scan_line_run"])
             part("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"] + n["lm_horizon_behind"])
             part("texture, speckle, noise of a patch", n["lm_texture_run"] + n["lm_speckle_run"] + n["lm_speckle_floor_run"])
-            part("mean over a sample of several azimuths", n["lm_footprint_begin"] + n["lm_footprint_add"] + n["lm_footprint_levels"])
+            part("mean over a sample of several azimuths", n["lm_footprint_begin"] + n["lm_footprint_add"] + n["lm_footprint_mean"])
             part("elevation pattern", n["lm_elevation_run"])
             part("slant range, levels to power", n["lm_slant_run"])
             part("beam", n["lm_beam_aim"] + n["lm_beam_sum"])

@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
+#include "lm/footprint.h"
 #include "lm/receiver.h"
 #include "lm/slant.h"
 #include "lm/speckle.h"
@@ -255,6 +256,33 @@ static uint32_t of_slant(void)
     return crc;
 }
 
+/* Azimuths of any level, shadows among them. */
+static uint32_t of_footprint(void)
+{
+    static struct lm_footprint footprint;
+    static int32_t level_q8[LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 8);
+    for (int i = 0; i < ROUNDS; i++) {
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        for (int turn = 0; turn < 4; turn++) {
+            for (uint32_t k = 0; k < cells; k++) {
+                const int32_t any = (int32_t)hs_rng_u64(&rng);
+                level_q8[k] = any % 8 == 0 ? LM_LEVEL_SHADOW : any >> (14 + k % 8);
+            }
+            if (turn == 0) {
+                lm_footprint_begin(&footprint, level_q8, cells);
+            } else if (turn < 3) {
+                lm_footprint_add(&footprint, level_q8, cells);
+            }
+        }
+        lm_footprint_mean(&footprint, 2, level_q8, cells);
+        crc = fx_crc32c(crc, level_q8, cells * sizeof *level_q8);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
@@ -263,5 +291,6 @@ int main(void)
     printf("receiver %08x\n", (unsigned)of_receiver());
     printf("tone %08x\n", (unsigned)of_tone());
     printf("slant %08x\n", (unsigned)of_slant());
+    printf("footprint %08x\n", (unsigned)of_footprint());
     return 0;
 }

@@ -27,9 +27,9 @@ void lm_footprint_begin(struct lm_footprint *f, const int32_t *level_q8, uint32_
 /* Add those of another; each is good to 0.018 dB. Cost: see docs/benchmarks.md. */
 void lm_footprint_add(struct lm_footprint *f, const int32_t *level_q8, uint32_t cells);
 
-/* The mean of all 2^azimuths_log2, 1..LM_FOOTPRINT_LOG2_MAX; LM_LEVEL_SHADOW or hardly more where
- * every one is that. */
-void lm_footprint_levels(const struct lm_footprint *f, uint32_t azimuths_log2, int32_t *level_q8,
-                         uint32_t cells);
+/* Put the mean of all 2^azimuths_log2, 1..LM_FOOTPRINT_LOG2_MAX, in the place of the last one's
+ * levels, which are not added before; LM_LEVEL_SHADOW or hardly more where every one is that. */
+void lm_footprint_mean(const struct lm_footprint *f, uint32_t azimuths_log2, int32_t *level_q8,
+                       uint32_t cells);
 
 #endif

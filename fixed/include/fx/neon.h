@@ -84,27 +84,39 @@ static inline uint16x8x2_t fx_neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32
     return level_q8;
 }
 
-/* What fx_table_db_sum_q8 has at eight steps, each 0..511. It is not looked up but worked out, from
- * lines that stay in registers: the step's upper bits choose the line. */
-static inline uint16x8_t fx_neon_db_sum_q8(uint16x8_t step)
+/* The lines of fx_table_db_sum_q8, to be loaded before a loop: its stores would else have them
+ * loaded again each time. */
+struct fx_neon_db_sum {
+    uint8x16x4_t low, high, fall;
+};
+
+static inline struct fx_neon_db_sum fx_neon_db_sum_lines(void)
+{
+    return (struct fx_neon_db_sum){vld1q_u8_x4(fx_table_db_sum_lines[0]),
+                                   vld1q_u8_x4(fx_table_db_sum_lines[1]),
+                                   vld1q_u8_x4(fx_table_db_sum_lines[2])};
+}
+
+/* What that table has at eight steps, each 0..511: the step's upper bits choose the line. */
+static inline uint16x8_t fx_neon_db_sum_q8(const struct fx_neon_db_sum *lines, uint16x8_t step)
 {
     const uint8x8_t line = vshrn_n_u16(step, 3);
     const uint8x16_t all = vcombine_u8(line, line);
-    const uint8x16_t low = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[0]), all);
-    const uint8x16_t high = vqtbl4q_u8(vld1q_u8_x4(fx_table_db_sum_lines[1]), all);
-    const uint8x8_t fall = vqtbl4_u8(vld1q_u8_x4(fx_table_db_sum_lines[2]), line);
+    const uint8x16_t low = vqtbl4q_u8(lines->low, all), high = vqtbl4q_u8(lines->high, all);
+    const uint8x8_t fall = vqtbl4_u8(lines->fall, line);
     const uint16x8_t base = vreinterpretq_u16_u8(vzip1q_u8(low, high));
     return vshrq_n_u16(vmlsl_u8(base, fall, vmovn_u16(step)), 5);
 }
 
 /* fx_db_q8_sum_of_many of eight. */
-static inline int32x4x2_t fx_neon_db_q8_sum(int32x4x2_t a_q8, int32x4x2_t b_q8)
+static inline int32x4x2_t fx_neon_db_q8_sum(const struct fx_neon_db_sum *lines, int32x4x2_t a_q8,
+                                            int32x4x2_t b_q8)
 {
     const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(a_q8.val[0], b_q8.val[0])),
                                  vreinterpretq_u32_s32(vabdq_s32(a_q8.val[1], b_q8.val[1]))};
     const uint16x8_t steps = vqshrn_high_n_u32(vqshrn_n_u32(apart[0], 4), apart[1], 4);
     const uint16x8_t step = vminq_u16(steps, vdupq_n_u16(511));
-    const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(step));
+    const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(lines, step));
     return (int32x4x2_t){{vaddw_s16(vmaxq_s32(a_q8.val[0], b_q8.val[0]), vget_low_s16(more_q8)),
                           vaddw_high_s16(vmaxq_s32(a_q8.val[1], b_q8.val[1]), more_q8)}};
 }
