@@ -242,16 +242,10 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
     }
 }
 
-/* Queue a tile of the image unless its slot `known` (or LM_SLOT_NONE) is resident or settled as
- * bad, or it is among the newest requests: neighbouring lines ask for the same tiles. */
-static void request(struct lm_tile_cache *c, const struct lm_tile_key *key, uint16_t known)
+/* Queue a tile of the image unless it is among the newest requests: neighbouring lines ask for the
+ * same tiles. */
+static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
-    if (known != LM_SLOT_NONE) {
-        c->slots[known].last_use = c->clock;
-        if (is_settled(c, known)) {
-            return;
-        }
-    }
     for (uint32_t back = 1; back <= REMEMBERED && back <= c->wanted_head - c->wanted_tail; back++) {
         if (c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS].entry == key->entry) {
             return;
@@ -270,9 +264,18 @@ void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, ui
     /* What the image leaves out is answered by the first ancestor that it has. */
     for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
         const uint16_t i = find(c, level, row, column);
+        if (i != LM_SLOT_NONE) {
+            if (c->slots[i].state == LM_SLOT_ABSENT) {
+                continue;
+            }
+            c->slots[i].last_use = c->clock;
+            if (is_settled(c, i)) {
+                return;
+            }
+        }
         const int64_t entry = lm_db_entry(c->db, level, row, column);
-        if (entry >= 0 && (i == LM_SLOT_NONE || c->slots[i].state != LM_SLOT_ABSENT)) {
-            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level}, i);
+        if (entry >= 0) {
+            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
             return;
         }
     }
