@@ -21,6 +21,10 @@ struct axis {
     uint32_t end;       /* the first cell that may lie in the next one, or is behind the line */
 };
 
+/* What is done once a line, or seldom, takes no registers from the loop of runs: on the Cortex-A53
+ * that is 140 instructions a line. */
+#define APART __attribute__((noinline))
+
 /* The way of a line through the tiles of one level. A run is a stretch of cells in one tile. */
 struct walk {
     const struct lm_ground_path *path; /* borrowed */
@@ -39,9 +43,9 @@ uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm)
     return level;
 }
 
-static uint64_t magnitude(uint64_t x)
+static inline uint64_t magnitude(int64_t x)
 {
-    return x >> 63 ? 0 - x : x;
+    return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
 }
 
 static inline uint64_t way_at(const struct way *w, uint32_t k)
@@ -53,21 +57,6 @@ static inline uint64_t way_at(const struct way *w, uint32_t k)
 static inline struct way way_through(uint32_t k, uint64_t at, uint64_t slope, uint64_t half_bend)
 {
     return (struct way){at - k * (slope - k * half_bend), slope - 2 * k * half_bend, half_bend};
-}
-
-/* A coordinate of a path in units of 2^-32 BAM, and how it grows, becomes a way that is exact in
- * the middle of the line. The angle itself is unsigned, its differences are not. Everything is
- * modulo 2^64, so that no path can do more harm than lead astray. Half a unit of the bend moves the
- * ends of the longest line by 528^2 / 8 units, which is 2^-11 of a cell. */
-static inline struct way way_of(uint64_t value, uint64_t step, uint64_t bend, uint32_t cells,
-                                uint32_t side_log2)
-{
-    const uint32_t k = cells / 2, pairs = k * (k - 1) / 2;
-    const uint64_t half = (uint64_t)1 << side_log2;
-    const uint64_t slope = step + k * bend - (uint64_t)((int64_t)bend >> 1);
-    return way_through(k, (value + k * step + pairs * bend) >> side_log2,
-                       (uint64_t)((int64_t)slope >> side_log2),
-                       (uint64_t)((int64_t)(bend + half) >> side_log2 >> 1));
 }
 
 /* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
@@ -85,31 +74,43 @@ static inline void enter(struct axis *a, uint32_t k, uint32_t cells)
     a->end = end < cells ? (uint32_t)end : cells;
 }
 
-/* Enter the first tile, at cell k. Steps grow or shrink all the way: the first and the last tell
- * how fast they are and where they go. */
-static void start_axis(struct axis *a, struct way way, uint32_t side_log2, uint32_t k,
-                       uint32_t cells)
+/* A coordinate of a path, in units of 2^-32 BAM, and how it grows. */
+struct growth {
+    uint64_t value, step, bend;
+};
+
+/* Begin to walk along a coordinate, in the tile of cell k. The angle itself is unsigned, its
+ * differences are not. Everything is modulo 2^64, so that no path can do more harm than lead
+ * astray. The way is exact in the middle of the line: half a unit of the bend moves the ends of the
+ * longest one by 528^2 / 8 units, which is 2^-11 of a cell. */
+static inline void start_axis(struct axis *a, struct growth g, uint32_t side_log2, uint32_t k,
+                              uint32_t cells)
 {
-    const uint64_t first = way.step + way.half_bend;
-    const uint64_t last = way.step + (2 * cells - 1) * way.half_bend;
-    const uint64_t fast = magnitude(first), fast_at_last = magnitude(last);
-    a->way = way;
-    a->fastest = (fast > fast_at_last ? fast : fast_at_last) + 1;
-    a->direction = first >> 63 ? 0 : UINT32_MAX;
-    a->turns = (first ^ last) >> 63;
+    const uint32_t middle = cells / 2, pairs = middle * (middle - 1) / 2;
+    const uint64_t half = (uint64_t)1 << side_log2;
+    const uint64_t at = (g.value + middle * g.step + pairs * g.bend) >> side_log2;
+    const uint64_t slope = g.step + middle * g.bend - (uint64_t)((int64_t)g.bend >> 1);
+    const int64_t slope_there = (int64_t)slope >> side_log2;
+    const int64_t half_bend = (int64_t)(g.bend + half) >> side_log2 >> 1;
+    /* No step of the line differs from the slope by more than its bend all the way. A tile is 2^10
+     * BAM high at least, so these are below 2^53 and 2^62. */
+    const uint64_t fast = magnitude(slope_there), bent = magnitude(half_bend) * cells;
+    a->way = way_through(middle, at, (uint64_t)slope_there, (uint64_t)half_bend);
+    a->fastest = fast + bent + 1;
+    a->direction = slope_there < 0 ? 0 : UINT32_MAX;
+    a->turns = fast <= bent;
     a->round = UINT32_MAX >> side_log2;
     enter(a, k, cells);
 }
 
-static void start_walk(struct walk *w, const struct lm_db *db, uint8_t level,
-                       const struct lm_ground_path *path, uint32_t cells)
+static APART void start_walk(struct walk *w, const struct lm_db *db, uint8_t level,
+                             const struct lm_ground_path *path, uint32_t cells)
 {
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
     w->side_log2 = (uint32_t)db->shift0 + level + LM_TILE_CELLS_LOG2;
-    start_axis(&w->north,
-               way_of(from_pole, path->latitude_step, path->latitude_bend, cells, w->side_log2),
+    start_axis(&w->north, (struct growth){from_pole, path->latitude_step, path->latitude_bend},
                w->side_log2, 0, cells);
 }
 
@@ -121,15 +122,13 @@ static inline uint32_t sixteenth_of_row(const struct walk *w)
 }
 
 /* Begin with the columns of a zone, at cell k. */
-static void enter_zone(struct walk *w, uint32_t k)
+static APART void enter_zone(struct walk *w, uint32_t k)
 {
     const struct lm_ground_path *p = w->path;
+    const struct growth longitude = {p->longitude, p->longitude_step, p->longitude_bend};
     w->sixteenth = sixteenth_of_row(w);
     w->zone = lm_db_zone((w->sixteenth << LM_DB_SIXTEENTH_LOG2) - FX_BAM_90);
-    const uint32_t side_log2 = w->side_log2 + w->zone;
-    start_axis(&w->east,
-               way_of(p->longitude, p->longitude_step, p->longitude_bend, w->cells, side_log2),
-               side_log2, k, w->cells);
+    start_axis(&w->east, longitude, w->side_log2 + w->zone, k, w->cells);
 }
 
 /* The end of the run where the walk stands. */
@@ -203,8 +202,8 @@ static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
 }
 
 /* A run in a tile that was not found at once: what answers for it is good for this run only. */
-static void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t level,
-                           uint32_t first, uint32_t end, struct lm_scan_line *line)
+static APART void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t level,
+                                 uint32_t first, uint32_t end, struct lm_scan_line *line)
 {
     const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w->north.tile, w->east.tile);
     if (!tile) {

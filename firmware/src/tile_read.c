@@ -35,9 +35,11 @@ void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *p
 {
     const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
     const struct lm_places p = *places;
-    for (uint32_t k = end; k < end + LM_LANES; k++) {
-        line->cell[k] = 0; /* not laid, perhaps: any record will do */
-        line->elevation_q14[k] = 0;
+    uint32_t *const cell_behind = line->cell + end;
+    int32_t *const elevation_behind = line->elevation_q14 + end;
+    for (int lane = 0; lane < LM_LANES; lane++) {
+        cell_behind[lane] = 0; /* not laid, perhaps: any record will do */
+        elevation_behind[lane] = 0;
     }
     if (FX_HAS_NEON) {
         read_groups_neon(pool, &p, first, groups, line);
