@@ -288,20 +288,31 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
     return (uint16_t)(side >= cells ? side / cells : 1);
 }
 
-/* A cell as a square of pixels, upwards from its lower left corner; two side by side are stored as
- * one number. */
+/* A cell as a square of pixels, upwards from its lower left corner. */
 static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, uint8_t grey)
 {
-    if (side_px == 2) {
-        const uint32_t pair = grey | (uint32_t)grey << 8;
-        fx_store_u16(corner, pair);
-        fx_store_u16(corner + up, pair);
-        return;
-    }
     for (int32_t row = 0; row < side_px; row++) {
         for (int32_t column = 0; column < side_px; column++) {
             corner[row * up + column] = grey;
         }
+    }
+}
+
+enum { AT_ONCE = 8 };
+
+/* Eight cells of two by two pixels, upwards. Pixels side by side are stored as one number; all
+ * eight of these are made at once and lie in memory then, for the compiler would make each by
+ * itself. */
+static inline void paint_pairs(uint8_t *corner, ptrdiff_t up, const uint8_t *grey)
+{
+    uint16_t pair[AT_ONCE];
+    for (int32_t k = 0; k < AT_ONCE; k++) {
+        pair[k] = (uint16_t)(grey[k] * 0x0101u);
+    }
+    __asm__("" : "+m"(pair));
+    for (int32_t k = 0; k < AT_ONCE; k++) {
+        fx_store_u16(corner + 2 * k * up, pair[k]);
+        fx_store_u16(corner + (2 * k + 1) * up, pair[k]);
     }
 }
 
@@ -310,10 +321,13 @@ static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, ui
 static inline void paint_cells(uint8_t *corner, ptrdiff_t up, int32_t side_px, const uint8_t *grey,
                                size_t count)
 {
-    enum { AT_ONCE = 8 };
     const ptrdiff_t next = side_px * up;
     const uint8_t *const end = grey + count, *const whole = end - count % AT_ONCE;
     for (; grey != whole; grey += AT_ONCE, corner += AT_ONCE * next) {
+        if (side_px == 2) {
+            paint_pairs(corner, up, grey);
+            continue;
+        }
         for (int32_t k = 0; k < AT_ONCE; k++) {
             paint_cell(corner + k * next, up, side_px, grey[k]);
         }
