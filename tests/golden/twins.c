@@ -6,6 +6,7 @@
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "lm/footprint.h"
+#include "lm/horizon.h"
 #include "lm/receiver.h"
 #include "lm/slant.h"
 #include "lm/speckle.h"
@@ -171,6 +172,8 @@ static uint32_t of_aspect(void)
         crc = fx_crc32c(crc, sight.horizon, (cells + 1) * sizeof *sight.horizon);
         crc = fx_crc32c(crc, sight.level_q8, cells * sizeof *sight.level_q8);
         crc = fx_crc32c(crc, &end, sizeof end);
+        const lm_horizon_q40_t behind = lm_horizon_behind(&grid, &legend, &line);
+        crc = fx_crc32c(crc, &behind, sizeof behind);
     }
     return crc;
 }
