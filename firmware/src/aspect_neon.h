@@ -66,19 +66,11 @@ static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)
     return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
 }
 
-/* Sixteen entries of a table of words, of which the lower and the upper bytes are given. */
-static inline uint16x8x2_t neon_words(const uint8x16_t table[2], uint8x16_t index)
-{
-    const uint8x16_t low = vqtbl1q_u8(table[0], index), high = vqtbl1q_u8(table[1], index);
-    return (uint16x8x2_t){
-        {vreinterpretq_u16_u8(vzip1q_u8(low, high)), vreinterpretq_u16_u8(vzip2q_u8(low, high))}};
-}
-
 /* tangent_of sixteen cells whose height codes are given. */
 static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struct neon_place *at,
                                         uint8x16_t code)
 {
-    const uint16x8x2_t height_dm = neon_words(l->height_dm, code);
+    const uint16x8x2_t height_dm = fx_neon_words_of_16(l->height_dm, code);
     const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_q14);
     const uint32x4x4_t fall_q14 = vld1q_u32_x4(at->fall_q14);
     const int32x4x4_t inverse_range = vld1q_s32_x4(at->inverse_range);

@@ -76,6 +76,18 @@ static int32_t word_of(const struct lm_texture *t, uint32_t cell)
     return t->of_class[(int32_t)cell >> 4 & (LM_DB_CLASSES - 1)]; /* signed: becomes a gather */
 }
 
+static void add_gains(const struct lm_texture *t, const uint32_t *cell, int32_t *restrict level_q8,
+                      uint32_t cells)
+{
+    if (FX_HAS_NEON) {
+        gain_neon(t, cell, level_q8, cells);
+        return;
+    }
+    for (uint32_t i = 0; i < cells; i++) {
+        level_q8[i] += word_of(t, cell[i]) >> LM_TEXTURE_SHAPE_BITS;
+    }
+}
+
 /* The draws of one shape, for the cells of the classes that have it. */
 static void add_texture(const struct lm_texture *t, const struct lm_noise_line *noise,
                         int32_t shape, const uint32_t *cell, int32_t *restrict level_q8,
@@ -96,8 +108,8 @@ void lm_texture_run(const struct lm_texture *t, const struct lm_raster *raster,
                     const uint32_t *cell, int32_t *restrict level_q8, uint32_t cells)
 {
     struct lm_noise_line noise;
-    for (uint32_t i = 0; t->has_gain && i < cells; i++) {
-        level_q8[i] += word_of(t, cell[i]) >> LM_TEXTURE_SHAPE_BITS;
+    if (t->has_gain) {
+        add_gains(t, cell, level_q8, cells);
     }
     lm_noise_line_set(&noise, raster, cells);
     for (uint32_t n = 0; n < t->shapes; n++) {

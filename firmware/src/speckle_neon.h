@@ -40,6 +40,25 @@ static inline void neon_add(int32_t *level_q8, int16x8_t gain_q8)
     vst1q_s32(level_q8 + 4, vaddw_high_s16(vld1q_s32(level_q8 + 4), gain_q8));
 }
 
+/* The gain of each cell's class, which takes 16 bits: LM_TEXTURE_LOSS_MAX_Q8. */
+static inline void gain_neon(const struct lm_texture *t, const uint32_t *cell,
+                             int32_t *restrict level_q8, uint32_t cells)
+{
+    const int32x4x4_t word = vld1q_s32_x4(t->of_class);
+    int16x4_t gain_q8[4];
+    for (size_t n = 0; n < 4; n++) {
+        gain_q8[n] = vshrn_n_s32(word.val[n], LM_TEXTURE_SHAPE_BITS);
+    }
+    const uint8x16_t first = vreinterpretq_u8_s16(vcombine_s16(gain_q8[0], gain_q8[1]));
+    const uint8x16_t second = vreinterpretq_u8_s16(vcombine_s16(gain_q8[2], gain_q8[3]));
+    const uint8x16_t bytes[2] = {vuzp1q_u8(first, second), vuzp2q_u8(first, second)};
+    for (size_t i = 0; i < cells; i += 16) {
+        const uint16x8x2_t of_cells = fx_neon_words_of_16(bytes, neon_class_index(cell + i));
+        neon_add(level_q8 + i, vreinterpretq_s16_u16(of_cells.val[0]));
+        neon_add(level_q8 + i + 8, vreinterpretq_s16_u16(of_cells.val[1]));
+    }
+}
+
 /* The draws of one shape, for the cells of the classes that have it. */
 static inline void texture_neon(const struct lm_texture *t, const struct lm_noise_line *noise,
                                 int32_t shape, const uint32_t *cell, int32_t *restrict level_q8,
@@ -86,6 +105,12 @@ static inline void speckle_floor_neon(const struct lm_speckle_config *config, in
 }
 
 #else
+
+static inline void gain_neon(const struct lm_texture *t, const uint32_t *cell, int32_t *level_q8,
+                             uint32_t cells)
+{
+    (void)t, (void)cell, (void)level_q8, (void)cells;
+}
 
 static inline void texture_neon(const struct lm_texture *t, const struct lm_noise_line *noise,
                                 int32_t shape, const uint32_t *cell, int32_t *level_q8,

@@ -27,6 +27,14 @@ static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16
     return vreinterpretq_u16_u8(vzip1q_u8(vqtbl1q_u8(low, index), vqtbl1q_u8(high, index)));
 }
 
+/* The same of sixteen: lower bytes first. */
+static inline uint16x8x2_t fx_neon_words_of_16(const uint8x16_t table[2], uint8x16_t index)
+{
+    const uint8x16_t low = vqtbl1q_u8(table[0], index), high = vqtbl1q_u8(table[1], index);
+    return (uint16x8x2_t){
+        {vreinterpretq_u16_u8(vzip1q_u8(low, high)), vreinterpretq_u16_u8(vzip2q_u8(low, high))}};
+}
+
 /* The upper halves of eight numbers, each shifted up by its zeros, so that it starts with a one. */
 static inline uint16x8_t fx_neon_tops(uint32x4_t low, uint32x4_t high)
 {
