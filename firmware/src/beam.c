@@ -1,5 +1,6 @@
 #include "lm/beam.h"
 
+#include "beam_neon.h"
 #include "fx/bits.h"
 #include "fx/log.h"
 #include "fx/sat.h"
@@ -103,29 +104,29 @@ uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
     return b->power_q24[slot_of(sample)];
 }
 
-/* Weights add up to 2^16, so that a sum stays below 2^48. */
-static void add_samples(const uint32_t *const power[LM_BEAM_TAPS],
-                        const uint32_t weight_q16[LM_BEAM_TAPS], uint32_t *restrict sum,
-                        uint32_t cells)
+/* The sum / 2^16 of the powers' halves: as weights add up to 2^16, the sum of either half fits 32
+ * bits, and the upper one's is whole. */
+static uint32_t sum_of(const uint32_t *const power[LM_BEAM_TAPS], const uint32_t *weight_q16,
+                       uint32_t i)
 {
-    const uint32_t *restrict a = power[0], *restrict b = power[1], *restrict c = power[2];
-    const uint32_t *restrict d = power[3], *restrict e = power[4], *restrict f = power[5];
-    const uint32_t *restrict g = power[6], *restrict h = power[7];
-    const uint64_t wa = weight_q16[0], wb = weight_q16[1], wc = weight_q16[2], wd = weight_q16[3];
-    const uint64_t we = weight_q16[4], wf = weight_q16[5], wg = weight_q16[6], wh = weight_q16[7];
-    for (uint32_t i = 0; i < cells; i++) {
-        const uint64_t sum_q40 = a[i] * wa + b[i] * wb + c[i] * wc + d[i] * wd + e[i] * we +
-                                 f[i] * wf + g[i] * wg + h[i] * wh;
-        sum[i] = (uint32_t)(sum_q40 >> 16);
+    uint32_t upper = 0, lower = 0;
+    for (uint32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        upper += (power[j][i] >> 16) * weight_q16[j];
+        lower += (power[j][i] & 0xffff) * weight_q16[j];
     }
+    return upper + (lower >> 16);
 }
 
-void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
-                 uint32_t cells)
+void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look,
+                 uint32_t *restrict power_q24, uint32_t cells)
 {
     const uint32_t *power[LM_BEAM_TAPS];
+    uint32_t weight_q16[LM_BEAM_TAPS];
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
         power[j] = b->power_q24[slot_of(look->first + j)];
+        weight_q16[j] = look->weight_q16[j];
     }
-    add_samples(power, look->weight_q16, power_q24, cells);
+    for (uint32_t i = beam_sum_neon(power, weight_q16, power_q24, cells); i < cells; i++) {
+        power_q24[i] = sum_of(power, weight_q16, i);
+    }
 }

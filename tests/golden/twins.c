@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
+#include "lm/beam.h"
 #include "lm/footprint.h"
 #include "lm/horizon.h"
 #include "lm/receiver.h"
@@ -286,6 +287,28 @@ static uint32_t of_footprint(void)
     return crc;
 }
 
+/* Looks wherever they may fall in the ring, at powers of any size. */
+static uint32_t of_beam(void)
+{
+    static struct lm_beam beam;
+    static uint32_t power_q24[LM_CELLS_ROOM];
+    struct hs_rng rng;
+    uint32_t crc = 0;
+    hs_rng_seed(&rng, 9);
+    for (int i = 0; i < ROUNDS; i++) {
+        struct lm_beam_look look;
+        const uint32_t cells = 1 + hs_rng_below(&rng, LM_CELLS_MAX);
+        const int32_t azimuth = (int32_t)hs_rng_u64(&rng) >> 2;
+        lm_beam_aim(&beam, &lm_radar_default, azimuth, 256u << hs_rng_below(&rng, 9), &look);
+        for (uint32_t k = 0; k < LM_BEAM_TAPS * cells; k++) {
+            beam.power_q24[k / cells][k % cells] = draw_number(&rng, 32);
+        }
+        lm_beam_sum(&beam, &look, power_q24, cells);
+        crc = fx_crc32c(crc, power_q24, cells * sizeof *power_q24);
+    }
+    return crc;
+}
+
 int main(void)
 {
     printf("tile_read %08x\n", (unsigned)of_tile_read());
@@ -295,5 +318,6 @@ int main(void)
     printf("tone %08x\n", (unsigned)of_tone());
     printf("slant %08x\n", (unsigned)of_slant());
     printf("footprint %08x\n", (unsigned)of_footprint());
+    printf("beam %08x\n", (unsigned)of_beam());
     return 0;
 }
