@@ -163,17 +163,6 @@ void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3
                    &p->longitude, &p->longitude_step, &p->longitude_bend);
 }
 
-void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells)
-{
-    /* Sum of a first difference that grows: n step + n (n - 1) / 2 bend, all modulo 2^64. */
-    const uint64_t n = (uint64_t)(int64_t)cells;
-    const uint64_t pairs = (uint64_t)((int64_t)cells * (cells - 1) / 2);
-    p->latitude += n * p->latitude_step + pairs * p->latitude_bend;
-    p->longitude += n * p->longitude_step + pairs * p->longitude_bend;
-    p->latitude_step += n * p->latitude_bend;
-    p->longitude_step += n * p->longitude_bend;
-}
-
 static struct lm_ground_arch arch_of(fx_bam_t left, fx_bam_t middle, fx_bam_t right)
 {
     return (struct lm_ground_arch){

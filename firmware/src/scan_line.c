@@ -15,7 +15,7 @@ struct axis {
     struct way way;
     uint64_t fastest;   /* every step of the line is shorter */
     uint32_t direction; /* all ones where none goes back */
-    bool turns;         /* some go back and some do not */
+    bool turns;         /* some may go back and some not */
     uint32_t round;     /* tiles around the Earth, a power of two, less one */
     uint32_t tile;      /* row or column where the walk stands */
     uint32_t end;       /* the first cell that may lie in the next one, or is behind the line */
@@ -30,8 +30,8 @@ struct walk {
     const struct lm_ground_path *path; /* borrowed */
     struct axis north, east;
     uint32_t cells;
-    uint32_t side_log2;       /* of a tile, in BAM of latitude */
-    uint32_t zone, sixteenth; /* of the row where the walk stands: lm_db_zone */
+    uint32_t side_log2; /* of a tile, in BAM of latitude */
+    uint32_t sixteenth; /* of the row where the walk stands, see below */
 };
 
 uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm)
@@ -114,6 +114,9 @@ static APART void start_walk(struct walk *w, const struct lm_db *db, uint8_t lev
                w->side_log2, 0, cells);
 }
 
+_Static_assert(LM_DB_SHIFT_MAX + LM_TILE_CELLS_LOG2 <= LM_DB_SIXTEENTH_LOG2,
+               "a tile lies in one zone");
+
 /* Zones change with a sixteenth of the way from the equator to a pole, whose borders are borders of
  * tiles. */
 static inline uint32_t sixteenth_of_row(const struct walk *w)
@@ -127,8 +130,8 @@ static APART void enter_zone(struct walk *w, uint32_t k)
     const struct lm_ground_path *p = w->path;
     const struct growth longitude = {p->longitude, p->longitude_step, p->longitude_bend};
     w->sixteenth = sixteenth_of_row(w);
-    w->zone = lm_db_zone((w->sixteenth << LM_DB_SIXTEENTH_LOG2) - FX_BAM_90);
-    start_axis(&w->east, longitude, w->side_log2 + w->zone, k, w->cells);
+    const uint32_t zone = lm_db_zone((w->sixteenth << LM_DB_SIXTEENTH_LOG2) - FX_BAM_90);
+    start_axis(&w->east, longitude, w->side_log2 + zone, k, w->cells);
 }
 
 /* The end of the run where the walk stands. */

@@ -64,9 +64,6 @@ struct lm_ground_path {
  * at the start, middle and end. cells >= 1. */
 void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3], uint32_t cells);
 
-/* Move the path by `cells` steps (either way, |cells| <= 4096) before the first cell is read. */
-void lm_ground_path_skip(struct lm_ground_path *p, int32_t cells);
-
 /* One coordinate across a rectangle: the parabola through its values at the left edge, the middle
  * and the right edge. */
 struct lm_ground_arch {
