@@ -6,6 +6,10 @@ word=$1
 library=$2
 nm=$3
 shift 3
+if [ $# -gt 31 ]; then
+    echo "stages.sh: $# functions, and the instrument has room for 31 (INSTRUMENT_STAGES_MAX)" >&2
+    exit 1
+fi
 has=$("$nm" --defined-only "$library" 2>/dev/null | awk '$2 == "T" { print $3 }')
 echo "${word}instrument_nothing"
 for name in "$@"; do
