@@ -5,7 +5,6 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/horizon.h"
 #include "lm/weather.h"
 
 enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
@@ -77,20 +76,17 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
                       cells + LM_SAR_GUARD, c->height_q6 * 16, reference_q10);
 }
 
-/* The run-up, from 1/16 of the way to the patch's first guard cell up to that. */
+/* The run-up to the patch's first guard cell. */
 static void set_runup(struct lm_sar *s, const struct lm_db *db)
 {
-    const struct lm_range_grid *grid = &s->grid;
     const struct lm_sar_command *c = &s->command;
-    const uint32_t end_q8 = (uint32_t)guard_q8(s->radar, c);
-    const uint32_t start_q8 = end_q8 / 16, cell_q8 = (end_q8 - start_q8) / LM_SAR_RUNUP;
-    const int32_t near_q8 = (int32_t)start_q8 - (int32_t)(c->range_m * 256u);
-    const struct lm_ground_extent extent = {near_q8, near_q8 + (int32_t)(LM_SAR_RUNUP * cell_q8),
-                                            (int32_t)(s->radar->sar.cells * grid->cell_q8 / 2)};
-    lm_ground_patch_set(&s->runup, c->centre, c->look_azimuth, &extent);
-    s->runup_level = lm_scan_level(db, lm_mm_of_metres_q8(cell_q8));
-    lm_range_grid_set(&s->runup_grid, &s->radar->aspect, start_q8 + cell_q8 / 2, cell_q8,
-                      LM_SAR_RUNUP, grid->height_q10, grid->reference_q10);
+    struct lm_runup *r = &s->runup;
+    lm_runup_set(r, db, &s->radar->aspect, (uint32_t)guard_q8(s->radar, c), &s->grid);
+    const int32_t near_q8 = (int32_t)r->start_q8 - (int32_t)(c->range_m * 256u);
+    const struct lm_ground_extent extent = {near_q8,
+                                            near_q8 + (int32_t)(LM_RUNUP_CELLS * r->cell_q8),
+                                            (int32_t)(s->radar->sar.cells * s->grid.cell_q8 / 2)};
+    lm_ground_patch_set(&s->runup_ground, c->centre, c->look_azimuth, &extent);
 }
 
 /* The grazing angle of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
@@ -219,8 +215,8 @@ static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32
 /* The path over the run-up before them. */
 static void set_runup_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t number)
 {
-    lm_ground_patch_path(path, &s->runup, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells,
-                         LM_SAR_RUNUP);
+    lm_ground_patch_path(path, &s->runup_ground, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells,
+                         LM_RUNUP_CELLS);
 }
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
@@ -231,7 +227,7 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     lm_scan_line_prefetch(tiles, s->level, &path, s->grid.cells);
     for (uint32_t number = first; number <= first + 1; number++) {
         set_runup_path(&path, s, number);
-        lm_scan_line_prefetch(tiles, s->runup_level, &path, LM_SAR_RUNUP);
+        lm_scan_line_prefetch(tiles, s->runup.level, &path, LM_RUNUP_CELLS);
     }
 }
 
@@ -292,8 +288,7 @@ static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache
 {
     struct lm_ground_path path;
     set_runup_path(&path, s, number);
-    lm_scan_line_run(&line->ground, tiles, s->runup_level, &path, LM_SAR_RUNUP);
-    return lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
+    return lm_runup_trace(&s->runup, &s->legend, tiles, &path, &line->ground);
 }
 
 /* The horizon that a line starts with: between those behind the run-ups to its left and right. */

@@ -6,7 +6,6 @@
 #include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
-#include "lm/horizon.h"
 
 enum {
     /* Tiles are asked for this many display lines ahead of the beam, and for every eighth line
@@ -142,19 +141,13 @@ static int32_t reference_q10_of(struct lm_tile_cache *tiles, uint8_t level, stru
     return fx_min_i32(lm_scan_elevation(tiles, level, place, 0), tiles->db->mean_elevation_q6 * 16);
 }
 
-/* Coarse cells from a sixteenth of the way up to the window, for what throws shadows into it. */
 static void set_runup(struct lm_sector *s, const struct lm_db *db)
 {
     s->has_runup = false;
-    s->runup_grid.cells = 0;
-    if (s->ground_edge_q8 < RUNUP_LEAST_Q8) {
-        return;
+    s->runup.grid.cells = 0;
+    if (s->ground_edge_q8 >= RUNUP_LEAST_Q8) {
+        lm_runup_set(&s->runup, db, &s->radar->aspect, s->ground_edge_q8, &s->grid);
     }
-    const uint32_t begin_q8 = s->ground_edge_q8 / 16;
-    const uint32_t cell_q8 = (s->ground_edge_q8 - begin_q8) / LM_SECTOR_RUNUP;
-    s->runup_level = lm_scan_level(db, lm_mm_of_metres_q8(cell_q8));
-    lm_range_grid_set(&s->runup_grid, &s->radar->aspect, begin_q8 + cell_q8 / 2, cell_q8,
-                      LM_SECTOR_RUNUP, s->grid.height_q10, s->grid.reference_q10);
 }
 
 /* Bins of slant range, the cells of ground under them, and everything that depends on both. */
@@ -318,7 +311,7 @@ static struct lm_ground_path sample_path(const struct lm_sector *s, const struct
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
                                    fx_bam_t azimuth, struct lm_line *line)
 {
-    if (s->runup_grid.cells == 0) {
+    if (s->runup.grid.cells == 0) {
         return LM_HORIZON_OPEN;
     }
     const fx_bam_t width = s->radar->line, from_left = azimuth - s->up + FX_BAM_90;
@@ -327,9 +320,8 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
         struct lm_geo_ray ray;
         lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
         const struct lm_ground_path path =
-            path_of(&ray, s->ground_edge_q8 / 16, s->ground_edge_q8, LM_SECTOR_RUNUP);
-        lm_scan_line_run(&line->ground, tiles, s->runup_level, &path, LM_SECTOR_RUNUP);
-        s->runup_horizon = lm_horizon_behind(&s->runup_grid, &s->legend, &line->ground);
+            path_of(&ray, s->runup.start_q8, s->ground_edge_q8, LM_RUNUP_CELLS);
+        s->runup_horizon = lm_runup_trace(&s->runup, &s->legend, tiles, &path, &line->ground);
         s->runup_part = part;
         s->has_runup = true;
     }

@@ -7,6 +7,7 @@
 
 #include "lm/controls.h"
 #include "lm/defocus.h"
+#include "lm/horizon.h"
 #include "lm/layover.h"
 #include "lm/line.h"
 #include "lm/patch_rain.h"
@@ -16,7 +17,6 @@
 
 enum {
     LM_SAR_GUARD = 4,        /* cells before the patch that are traced and not shown */
-    LM_SAR_RUNUP = 128,      /* coarse cells between the antenna and the patch */
     LM_SAR_RUNUP_LINES = 16, /* lines from one run-up that is traced to the next */
 
     /* A point is spread over lines before its own, and those are smeared: lines are sampled so many
@@ -53,11 +53,12 @@ struct lm_sar_scene {
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
-    uint64_t line_us;                     /* from line to line: the dwell's share */
-    uint32_t dwell_ms;                    /* below 2^17 */
-    struct lm_ground_patch ground, runup; /* with the guard cells; what lies before them */
-    struct lm_range_grid grid, runup_grid;
-    uint8_t level, runup_level; /* of the database */
+    uint64_t line_us;                            /* from line to line: the dwell's share */
+    uint32_t dwell_ms;                           /* below 2^17 */
+    struct lm_ground_patch ground, runup_ground; /* with the guard cells; what lies before them */
+    struct lm_range_grid grid;
+    struct lm_runup runup;
+    uint8_t level; /* of the database */
     struct lm_legend legend;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */

@@ -10,6 +10,7 @@
 #include "lm/antenna.h"
 #include "lm/beam.h"
 #include "lm/footprint.h"
+#include "lm/horizon.h"
 #include "lm/line.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
@@ -18,7 +19,6 @@
 #include "lm/weather.h"
 
 enum {
-    LM_SECTOR_RUNUP = 128,      /* coarse cells between the antenna and a window */
     LM_SECTOR_LINES_MAX = 512,  /* that a sweep over a window draws */
     LM_SECTOR_LINES_PER_S = 512 /* at most, in a window */
 };
@@ -88,11 +88,10 @@ struct lm_sector {
     struct lm_weather weather;
     struct lm_targets_near near;
 
-    uint8_t runup_level;             /* of the database */
-    struct lm_range_grid runup_grid; /* no cells: the line begins at the antenna */
-    lm_horizon_q40_t runup_horizon;  /* behind it, */
-    uint32_t runup_part;             /* in this part of the sector, */
-    bool has_runup;                  /* once it was traced */
+    struct lm_runup runup;          /* its grid has no cells: the line begins at the antenna */
+    lm_horizon_q40_t runup_horizon; /* behind it, */
+    uint32_t runup_part;            /* in this part of the sector, */
+    bool has_runup;                 /* once it was traced */
 
     uint32_t samples;                  /* taken so far: only grows */
     uint32_t power_q24[LM_CELLS_ROOM]; /* of the line drawn last, behind beam and pulse */

@@ -79,7 +79,7 @@ static double horizon_of(const struct lm_sector *s, const struct ref_bin *bins, 
                          const struct ref_view *view)
 {
     const size_t first = ref_first_shown(bins, cells, view);
-    const bool is_open = s->runup_grid.cells == 0 || s->runup_horizon == LM_HORIZON_OPEN;
+    const bool is_open = s->runup.grid.cells == 0 || s->runup_horizon == LM_HORIZON_OPEN;
     return is_open ? ref_gm_horizon(&bins[first], view) : ldexp((double)s->runup_horizon, -40);
 }
 
