@@ -93,14 +93,23 @@ static inline void speckle_floor_neon(const struct lm_speckle_config *config, in
     const int16_t *const row_q8 = lm_noise_q8[config->looks_log2];
     struct lm_noise_line noise;
     lm_noise_line_set(&noise, raster, cells);
-    const struct fx_neon_db_sum lines = fx_neon_db_sum_lines();
-    const int32x4x2_t floor = {{vdupq_n_s32(floor_q8), vdupq_n_s32(floor_q8)}};
-    for (size_t i = 0; i < cells; i += LM_NOISE_BLOCK) {
-        const int32x4x2_t level = {{vld1q_s32(level_q8 + i), vld1q_s32(level_q8 + i + 4)}};
-        const int32x4x2_t sum = fx_neon_db_q8_sum(&lines, level, floor);
-        const int16x8_t draw_q8 = vld1q_s16(row_q8 + noise.entry[i / LM_NOISE_BLOCK]);
-        vst1q_s32(speckled_q8 + i, vaddw_s16(sum.val[0], vget_low_s16(draw_q8)));
-        vst1q_s32(speckled_q8 + i + 4, vaddw_high_s16(sum.val[1], draw_q8));
+    const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
+    const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
+    const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
+    const int32x4_t one = vdupq_n_s32(floor_q8);
+    const int32x4x4_t floor = {{one, one, one, one}};
+    for (size_t i = 0; i < cells; i += 2 * LM_NOISE_BLOCK) {
+        /* A block that is left over is done twice at once. */
+        const size_t next = i + LM_NOISE_BLOCK < cells ? i + LM_NOISE_BLOCK : i;
+        const int32x4x4_t level = fx_neon_load_8_and_8(level_q8 + i, level_q8 + next);
+        int32x4x4_t sum = fx_neon_db_q8_sum(lows, highs, falls, level, floor);
+        const int16x8_t draw_q8[2] = {vld1q_s16(row_q8 + noise.entry[i / LM_NOISE_BLOCK]),
+                                      vld1q_s16(row_q8 + noise.entry[next / LM_NOISE_BLOCK])};
+        for (size_t n = 0; n < 2; n++) {
+            sum.val[2 * n] = vaddw_s16(sum.val[2 * n], vget_low_s16(draw_q8[n]));
+            sum.val[2 * n + 1] = vaddw_high_s16(sum.val[2 * n + 1], draw_q8[n]);
+        }
+        fx_neon_store_8_and_8(speckled_q8 + i, speckled_q8 + next, sum);
     }
 }
 

@@ -92,41 +92,57 @@ static inline uint16x8x2_t fx_neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32
     return level_q8;
 }
 
-/* The lines of fx_table_db_sum_q8, to be loaded before a loop: its stores would else have them
- * loaded again each time. */
-struct fx_neon_db_sum {
-    uint8x16x4_t low, high, fall;
-};
-
-static inline struct fx_neon_db_sum fx_neon_db_sum_lines(void)
+/* How far apart eight levels are, in steps of the table. */
+static inline uint16x8_t fx_neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int32x4_t b0_q8,
+                                             int32x4_t b1_q8)
 {
-    return (struct fx_neon_db_sum){vld1q_u8_x4(fx_table_db_sum_lines[0]),
-                                   vld1q_u8_x4(fx_table_db_sum_lines[1]),
-                                   vld1q_u8_x4(fx_table_db_sum_lines[2])};
-}
-
-/* What that table has at eight steps, each 0..511: the step's upper bits choose the line. */
-static inline uint16x8_t fx_neon_db_sum_q8(const struct fx_neon_db_sum *lines, uint16x8_t step)
-{
-    const uint8x8_t line = vshrn_n_u16(step, 3);
-    const uint8x16_t all = vcombine_u8(line, line);
-    const uint8x16_t low = vqtbl4q_u8(lines->low, all), high = vqtbl4q_u8(lines->high, all);
-    const uint8x8_t fall = vqtbl4_u8(lines->fall, line);
-    const uint16x8_t base = vreinterpretq_u16_u8(vzip1q_u8(low, high));
-    return vshrq_n_u16(vmlsl_u8(base, fall, vmovn_u16(step)), 5);
-}
-
-/* fx_db_q8_sum_of_many of eight. */
-static inline int32x4x2_t fx_neon_db_q8_sum(const struct fx_neon_db_sum *lines, int32x4x2_t a_q8,
-                                            int32x4x2_t b_q8)
-{
-    const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(a_q8.val[0], b_q8.val[0])),
-                                 vreinterpretq_u32_s32(vabdq_s32(a_q8.val[1], b_q8.val[1]))};
+    const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(a0_q8, b0_q8)),
+                                 vreinterpretq_u32_s32(vabdq_s32(a1_q8, b1_q8))};
     const uint16x8_t steps = vqshrn_high_n_u32(vqshrn_n_u32(apart[0], 4), apart[1], 4);
-    const uint16x8_t step = vminq_u16(steps, vdupq_n_u16(511));
-    const int16x8_t more_q8 = vreinterpretq_s16_u16(fx_neon_db_sum_q8(lines, step));
-    return (int32x4x2_t){{vaddw_s16(vmaxq_s32(a_q8.val[0], b_q8.val[0]), vget_low_s16(more_q8)),
-                          vaddw_high_s16(vmaxq_s32(a_q8.val[1], b_q8.val[1]), more_q8)}};
+    return vminq_u16(steps, vdupq_n_u16(511));
+}
+
+/* fx_db_q8_sum_of_many of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
+ * loop, whose stores would else have them loaded again each time. Steps' upper bits choose lines.
+ */
+static inline int32x4x4_t fx_neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs,
+                                            uint8x16x4_t falls, int32x4x4_t a_q8, int32x4x4_t b_q8)
+{
+    const uint16x8_t step[2] = {
+        fx_neon_db_sum_step(a_q8.val[0], a_q8.val[1], b_q8.val[0], b_q8.val[1]),
+        fx_neon_db_sum_step(a_q8.val[2], a_q8.val[3], b_q8.val[2], b_q8.val[3])};
+    const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(step[0], 3), step[1], 3);
+    const uint8x16_t place =
+        vuzp1q_u8(vreinterpretq_u8_u16(step[0]), vreinterpretq_u8_u16(step[1]));
+    const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
+    const uint8x16_t fall = vqtbl4q_u8(falls, line);
+    const uint16x8_t more_q13[2] = {
+        vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall), vget_low_u8(place)),
+        vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)};
+    int32x4x4_t sum;
+    for (size_t n = 0; n < 2; n++) {
+        const int16x8_t more_q8 = vreinterpretq_s16_u16(vshrq_n_u16(more_q13[n], 5));
+        const int32x4_t most[2] = {vmaxq_s32(a_q8.val[2 * n], b_q8.val[2 * n]),
+                                   vmaxq_s32(a_q8.val[2 * n + 1], b_q8.val[2 * n + 1])};
+        sum.val[2 * n] = vaddw_s16(most[0], vget_low_s16(more_q8));
+        sum.val[2 * n + 1] = vaddw_high_s16(most[1], more_q8);
+    }
+    return sum;
+}
+
+/* Eight numbers, and eight more. */
+static inline int32x4x4_t fx_neon_load_8_and_8(const int32_t *from, const int32_t *and_from)
+{
+    return (int32x4x4_t){
+        {vld1q_s32(from), vld1q_s32(from + 4), vld1q_s32(and_from), vld1q_s32(and_from + 4)}};
+}
+
+static inline void fx_neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t x)
+{
+    vst1q_s32(to, x.val[0]);
+    vst1q_s32(to + 4, x.val[1]);
+    vst1q_s32(and_to, x.val[2]);
+    vst1q_s32(and_to + 4, x.val[3]);
 }
 
 /* Octaves in Q8 above 2^-31 for fx_power_q24_of_many of eight: -31.0 up to just below 1.0. */
