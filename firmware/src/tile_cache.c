@@ -259,40 +259,36 @@ static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
     c->wanted_head++;
 }
 
+/* Ask for a tile that is not resident or, when it is, note that it is in use; `i` is its slot, or
+ * LM_SLOT_NONE. False when the image has no such tile. */
+static bool want_tile(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column,
+                      uint16_t i)
+{
+    if (i != LM_SLOT_NONE) {
+        if (c->slots[i].state == LM_SLOT_ABSENT) {
+            return false;
+        }
+        c->slots[i].last_use = c->clock;
+        if (is_settled(c, i)) {
+            return true;
+        }
+    }
+    const int64_t entry = lm_db_entry(c->db, level, row, column);
+    if (entry < 0) {
+        return false;
+    }
+    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+    return true;
+}
+
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
 {
     /* What the image leaves out is answered by the first ancestor that it has. */
     for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
-        const uint16_t i = find(c, level, row, column);
-        if (i != LM_SLOT_NONE) {
-            if (c->slots[i].state == LM_SLOT_ABSENT) {
-                continue;
-            }
-            c->slots[i].last_use = c->clock;
-            if (is_settled(c, i)) {
-                return;
-            }
-        }
-        const int64_t entry = lm_db_entry(c->db, level, row, column);
-        if (entry >= 0) {
-            request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+        if (want_tile(c, level, row, column, find(c, level, row, column))) {
             return;
         }
     }
-}
-
-/* The answer is not the tile that was asked for: ask for it or its best stand-in, and count a miss
- * if the image has it. */
-static void note_miss(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column,
-                      bool is_answered)
-{
-    const uint16_t i = find(c, level, row, column);
-    const bool is_absent = i != LM_SLOT_NONE && c->slots[i].state == LM_SLOT_ABSENT;
-    if (!is_absent && lm_db_entry(c->db, level, row, column) >= 0) {
-        c->count.misses++;
-        c->count.substituted += is_answered;
-    }
-    lm_tile_cache_want(c, level, row, column);
 }
 
 static bool is_resident(const struct lm_tile_cache *c, uint16_t i)
@@ -306,29 +302,29 @@ static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
     return &c->pool[i];
 }
 
-/* The nearest ancestor that is resident, for a tile that is not. */
-static const struct lm_tile *answer_otherwise(struct lm_tile_cache *c, uint8_t level, uint32_t row,
-                                              uint32_t column)
-{
-    c->count.otherwise++;
-    for (uint32_t up = 1; level + up < c->db->level_count; up++) {
-        const uint16_t i = find(c, (uint8_t)(level + up), row >> up, column >> up);
-        if (is_resident(c, i)) {
-            note_miss(c, level, row, column, true);
-            return answer(c, i);
-        }
-    }
-    c->count.off_map++;
-    note_miss(c, level, row, column, false);
-    return NULL;
-}
-
+/* The tile or its first ancestor that is resident answers; the first of them that the image has is
+ * wanted. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
                                         uint32_t column)
 {
+    bool is_wanted = false, is_missed = false;
     c->clock++;
-    const uint16_t i = find(c, level, row, column);
-    return is_resident(c, i) ? answer(c, i) : answer_otherwise(c, level, row, column);
+    for (uint8_t at = level; at < c->db->level_count; at++, row >>= 1, column >>= 1) {
+        const uint16_t i = find(c, at, row, column);
+        if (is_resident(c, i)) {
+            c->count.otherwise += at != level;
+            c->count.substituted += is_missed;
+            return answer(c, i);
+        }
+        if (!is_wanted) {
+            is_wanted = want_tile(c, at, row, column, i);
+            is_missed = is_wanted && at == level;
+            c->count.misses += is_missed;
+        }
+    }
+    c->count.otherwise++;
+    c->count.off_map++;
+    return NULL;
 }
 
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
