@@ -35,9 +35,8 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
 }
 
 /* A free slot, or the one that was used longest ago. The coarsest level and the slot being read
- * stay;
- * lm_tile_cache_init leaves at least 16 that are neither, so LM_SLOT_NONE does not happen, but
- * nothing is written if it does. */
+ * stay; lm_tile_cache_init leaves at least 16 that are neither, so LM_SLOT_NONE does not happen,
+ * but nothing is written if it does. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
     const uint8_t coarsest = (uint8_t)(c->db->level_count - 1);
