@@ -17,12 +17,11 @@ void lm_noise_line_set(struct lm_noise_line *n, const struct lm_raster *r, uint3
 void lm_noise_draw(const struct lm_noise_line *n, uint32_t looks_log2, int32_t *restrict draw_q8,
                    uint32_t cells)
 {
-    const int16_t *const row = lm_noise_q8[looks_log2];
-    for (uint32_t b = 0; b * LM_NOISE_BLOCK < cells; b++) {
-        const int16_t *restrict from = row + n->entry[b];
-        int32_t *restrict to = draw_q8 + (size_t)b * LM_NOISE_BLOCK;
+    const int16_t *const row_q8 = lm_noise_q8[looks_log2];
+    const uint32_t *const end = n->entry + (cells + LM_NOISE_BLOCK - 1) / LM_NOISE_BLOCK;
+    for (const uint32_t *entry = n->entry; entry != end; entry++, draw_q8 += LM_NOISE_BLOCK) {
         for (int k = 0; k < LM_NOISE_BLOCK; k++) {
-            to[k] = from[k];
+            draw_q8[k] = row_q8[*entry + (size_t)k];
         }
     }
 }
