@@ -109,8 +109,7 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
 int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command)
 {
     const uint8_t level = lm_scan_level(&u->db, command->cell_mm);
-    return lm_scan_elevation(&u->tiles, level, command->centre,
-                             u->db.mean_elevation_q6 * 16);
+    return lm_scan_elevation(&u->tiles, level, command->centre, u->db.mean_elevation_q6 * 16);
 }
 
 static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64_t now_us)

@@ -19,8 +19,8 @@ struct lm_target_line {
     fx_bam_t beam;       /* the antenna's one-way half-power width, likewise */
     uint32_t speed_mm_s; /* of the antenna over the ground, and which way */
     fx_bam_t track;
-    uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */
-    uint32_t scan, pulse;  /* for what fluctuates: number of the sweep, and of the line */
+    uint32_t gate_mm_s[2];          /* closing speeds, either way, that are shown; [1] is 0: all */
+    uint32_t scan, pulse;           /* for what fluctuates: number of the sweep, and of the line */
     const struct lm_raster *raster; /* borrowed: of the cells' speckle, for chips; NULL: none */
     struct lm_speckle_config speckle;
 };
