@@ -65,6 +65,8 @@ void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, in
         const struct lm_slant_pair *pair = &s->pair[k];
         bin_q8[pair->bin] = fx_max_i32(bin_q8[pair->bin], level[pair->last]);
     }
+    /* Within 2^17: at the lowest -195 dB of a cell hardly lit, -113 of texture, -33 of speckle, -48
+     * of a chip's shadow, -96 of the elevation pattern. */
     for (uint32_t i = power_neon(power_q24, cells); i < cells; i++) {
         power_q24[i] = fx_power_q24_of_many(bin_q8[i]);
     }

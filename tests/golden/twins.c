@@ -252,7 +252,7 @@ static uint32_t of_slant(void)
         lm_slant_set(&slant, cell_q8 / 2, cell_q8, cells, &grid, cell_q8 / 2);
         for (uint32_t k = 0; k < cells; k++) {
             const int32_t any = (int32_t)hs_rng_u64(&rng);
-            level_q8[k] = any >> (k % 8 == 0 ? 15 : 18);
+            level_q8[k] = any >> (k % 8 == 0 ? 14 : 18);
         }
         lm_slant_run(&slant, &grid, level_q8, power_q24);
         crc = fx_crc32c(crc, power_q24, cells * sizeof *power_q24);

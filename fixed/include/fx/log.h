@@ -72,20 +72,19 @@ static inline int32_t fx_db_q8_of_many_i32(int32_t power)
 }
 
 /* 10^(dB / 10) in Q24 without counting or branching, for loops over many: 1 up to -72.25 dB and
- * UINT32_MAX's octave from 24.08 dB up; |dB_q8| < 2^16. Worst error 0.012 dB where the result has
+ * UINT32_MAX's octave from 24.08 dB up; |dB_q8| < 2^17. Worst error 0.012 dB where the result has
  * more than 9 bits. */
 static inline uint32_t fx_power_q24_of_many(int32_t db_q8)
 {
-    /* Octaves above 2^-24 in Q8: log2(10) / 10 is 21770.6 / 65536, of which half is taken where 16
-     * bits are multiplied and doubled. */
-    const int32_t octaves_q8 = ((db_q8 * 21770 + 32768) >> 16) + (24 << 8);
+    /* Octaves above 2^-24 in Q8: log2(10) / 10 is 10885.3 / 2^15; the product stays below 2^31. */
+    const int32_t octaves_q8 = ((db_q8 * 10885 + 16384) >> 15) + (24 << 8);
     const int32_t low_q8 = octaves_q8 < 0 ? 0 : octaves_q8;
     const int32_t t_q8 = low_q8 > (32 << 8) - 1 ? (32 << 8) - 1 : low_q8;
     return fx_table_power_q31[t_q8 & 255] >> (31 - (t_q8 >> 8));
 }
 
-/* 10^(dB / 10) in Q32 of 64 bits, likewise: 1 up to -96.3 dB and 2^63's octave from 93.3 dB up.
- * Worst error 0.014 dB where the result has more than 9 bits. */
+/* 10^(dB / 10) in Q32 of 64 bits, likewise: 1 up to -96.3 dB and 2^63's octave from 93.3 dB up;
+ * |dB_q8| < 2^16. Worst error 0.014 dB where the result has more than 9 bits. */
 static inline uint64_t fx_power_q32_of_many(int32_t db_q8)
 {
     const int32_t octaves_q16 = (db_q8 * 21771 >> 8) + (32 << 16) + 128;

@@ -204,7 +204,7 @@ static void a_shadow_stays_below_minus_80_dB_whatever_is_added(void **state)
             const int32_t level =
                 LM_LEVEL_SHADOW + gain_q8(&texture, cell_of(class_index), n, LM_LEVEL_SHADOW);
             assert_true(level + strongest < -80 * 256);
-            assert_true(level > -0x10000); /* what fx_power_q24_of_many takes */
+            assert_true(level > -0x10000); /* what fx_power_q32_of_many takes */
         }
     }
 }

@@ -222,7 +222,9 @@ static void powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_
     print_message("worst error %.4f dB\n", worst);
     assert_true(worst < 0.012);
     assert_int_equal(fx_power_q24_of_many(-0xC000), 1);
+    assert_int_equal(fx_power_q24_of_many(1 - (1 << 17)), 1);
     assert_true(fx_power_q24_of_many(50 * 256) > UINT32_MAX - (UINT32_MAX >> 8));
+    assert_int_equal(fx_power_q24_of_many((1 << 17) - 1), fx_power_q24_of_many(50 * 256));
 }
 
 static void sums_of_many_are_within_0_018_dB_either_way_round(void **state)
