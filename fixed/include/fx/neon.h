@@ -13,13 +13,6 @@
 #include <arm_neon.h>
 #define FX_HAS_NEON 1
 
-/* Four entries of a table. */
-static inline int32x4_t fx_neon_lookup(const int32_t *table, int32x4_t index)
-{
-    return (int32x4_t){table[vgetq_lane_s32(index, 0)], table[vgetq_lane_s32(index, 1)],
-                       table[vgetq_lane_s32(index, 2)], table[vgetq_lane_s32(index, 3)]};
-}
-
 /* Eight entries of a table of 16 numbers, of which the lower and the upper bytes are given; the
  * indices stand in the lower half. */
 static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)
@@ -149,8 +142,7 @@ static inline void fx_neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4
 static inline int16x8_t fx_neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
 {
     const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
-    const int16x8_t octaves_q8 =
-        vaddq_s16(vqrdmulhq_n_s16(db_q8, 21770 / 2), vdupq_n_s16(-7 * 256));
+    const int16x8_t octaves_q8 = vaddq_s16(vqrdmulhq_n_s16(db_q8, 10885), vdupq_n_s16(-7 * 256));
     return vminq_s16(vmaxq_s16(octaves_q8, vdupq_n_s16(-31 * 256)), vdupq_n_s16(255));
 }
 

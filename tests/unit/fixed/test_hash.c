@@ -180,20 +180,6 @@ static void no_two_cells_of_a_few_looks_share_a_value(void **state)
     assert_int_equal(shared, 0);
 }
 
-static void the_hash_of_a_place_is_that_of_the_sum_of_its_parts(void **state)
-{
-    (void)state;
-    struct hs_rng rng;
-    hs_rng_seed(&rng, 2);
-    for (int i = 0; i < 1000; i++) {
-        const uint32_t a = (uint32_t)hs_rng_u64(&rng), b = (uint32_t)hs_rng_u64(&rng),
-                       c = (uint32_t)hs_rng_u64(&rng);
-        const uint32_t rows = (uint32_t)hs_rng_u64(&rng), columns = (uint32_t)hs_rng_u64(&rng);
-        const uint32_t sum = fx_hash3_sum(a, b, c) + fx_hash3_sum(rows, columns, 0);
-        assert_int_equal(fx_hash3_of_sum(sum), fx_hash3(a + rows, b + columns, c));
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,7 +188,6 @@ int main(void)
         cmocka_unit_test(neighbouring_cells_rows_and_epochs_are_uncorrelated),
         cmocka_unit_test(no_line_is_a_shifted_copy_of_another_line_or_look),
         cmocka_unit_test(no_two_cells_of_a_few_looks_share_a_value),
-        cmocka_unit_test(the_hash_of_a_place_is_that_of_the_sum_of_its_parts),
     };
     return cmocka_run_group_tests_name("hash", tests, NULL, NULL);
 }
