@@ -3,11 +3,12 @@
 #ifndef LM_CONFIG_H
 #define LM_CONFIG_H
 
-/* Range cells a scan line may have, guard cells included. 64..1024, a multiple of 8. */
+/* Range cells a scan line may have, guard cells included. 64..1024, a multiple of 16, for
+ * stages that take sixteen at a time fill whole arrays (LM_CELLS_ROOM has the rest). */
 #ifndef LM_CELLS_MAX
 #define LM_CELLS_MAX 528
 #endif
-_Static_assert(LM_CELLS_MAX >= 64 && LM_CELLS_MAX <= 1024 && LM_CELLS_MAX % 8 == 0,
+_Static_assert(LM_CELLS_MAX >= 64 && LM_CELLS_MAX <= 1024 && LM_CELLS_MAX % 16 == 0,
                "LM_CELLS_MAX out of range");
 
 /* Tile requests that may wait for the flash at one time. 16..1024, a power of two. */
