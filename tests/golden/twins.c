@@ -104,7 +104,9 @@ static uint32_t of_speckle(void)
         }
         lm_texture_set(&texture, &shapes, &classes, (uint8_t)hs_rng_below(&rng, 9),
                        (uint16_t)(i % 2 * 35 * 256));
-        const struct lm_raster ground = {hs_rng_u64(&rng), draw_number(&rng, 32), (uint32_t)i};
+        struct lm_raster ground = {.epoch = (uint32_t)i};
+        ground.column_q32 = hs_rng_u64(&rng);
+        ground.growth_q32 = draw_number(&rng, 32);
         const struct lm_raster samples = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)i, 1);
         lm_texture_run(&texture, &ground, cell, level_q8, cells);
         lm_speckle_floor_run(&looks, (int32_t)hs_rng_below(&rng, 1 << 15) - (1 << 14), &samples,
@@ -122,12 +124,12 @@ static void draw_legend(struct hs_rng *rng, struct lm_legend *legend,
     static struct lm_classes classes;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         classes.entry[i].kind = (uint8_t)hs_rng_below(rng, LM_KINDS);
-        classes.height_dm[i] = (uint16_t)(hs_rng_u64(rng) >> (48 + hs_rng_below(rng, 16)));
+        classes.height_dm[i] = (uint16_t)(draw_number(rng, 16) >> 16);
     }
-    *config = (struct lm_aspect_config){.edge_structure_q8 = (int16_t)hs_rng_below(rng, 4096),
-                                        .edge_trees_q8 = (int16_t)hs_rng_below(rng, 32768),
-                                        .shore_q8 = (int16_t)hs_rng_below(rng, 4096),
-                                        .shore_width_m = (uint16_t)hs_rng_below(rng, 2000)};
+    config->edge_structure_q8 = (int16_t)hs_rng_below(rng, 4096);
+    config->edge_trees_q8 = (int16_t)hs_rng_below(rng, 32768);
+    config->shore_q8 = (int16_t)hs_rng_below(rng, 4096);
+    config->shore_width_m = (uint16_t)hs_rng_below(rng, 2000);
     lm_legend_set(legend, config, &classes);
 }
 
