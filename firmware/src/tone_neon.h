@@ -13,7 +13,9 @@
 
 /* A window, eight times, and where its step 0 begins; what makes steps of the levels above that. */
 struct tone_window {
-    int16x8_t black_q8, white_q8, start_q8, minus_step_log2;
+    int16x8_t black_q8, white_q8;
+    uint16x8_t start_q8; /* modulo 2^16 */
+    int16x8_t minus_step_log2;
 };
 
 /* Steps of eight levels. What does not fit 16 bits is beyond the window; above its start, 16 bits
@@ -23,14 +25,14 @@ static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *l
     const int16x8_t level_of_16 =
         vqmovn_high_s32(vqmovn_s32(vld1q_s32(level_q8)), vld1q_s32(level_q8 + 4));
     const int16x8_t within = vminq_s16(vmaxq_s16(level_of_16, w->black_q8), w->white_q8);
-    return vshlq_u16(vreinterpretq_u16_s16(vsubq_s16(within, w->start_q8)), w->minus_step_log2);
+    return vshlq_u16(vsubq_u16(vreinterpretq_u16_s16(within), w->start_q8), w->minus_step_log2);
 }
 
 static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, const int32_t *level_q8,
                                  uint8_t *restrict grey, uint32_t cells)
 {
     const struct tone_window window = {vdupq_n_s16(t->black_q8), vdupq_n_s16(t->white_q8),
-                                       vdupq_n_s16((int16_t)start_q8),
+                                       vdupq_n_u16((uint16_t)start_q8),
                                        vdupq_n_s16((int16_t)-t->step_log2)};
     const uint8x16x4_t lows = vld1q_u8_x4(t->lines[0]), highs = vld1q_u8_x4(t->lines[1]);
     const uint8x16x4_t slopes = vld1q_u8_x4(t->lines[2]);
