@@ -183,6 +183,32 @@ static void neighbouring_cells_are_independent(void **state)
     assert_true(worst < 0.0136 + 4.0 / SIDE);
 }
 
+/* One look's powers, line by line: 256 spectra's mean has a deviation of 1/16 at each frequency. */
+static void no_frequency_along_the_lines_stands_out(void **state)
+{
+    (void)state;
+    static double power[SIDE * SIDE];
+    double mean, variance, most = 0, least = 2;
+    fill_powers(power, 0, 11);
+    moments(power, &mean, &variance);
+    for (int frequency = 1; frequency < SIDE / 2; frequency++) {
+        double sum = 0;
+        for (int line = 0; line < SIDE; line++) {
+            double re = 0, im = 0;
+            for (int i = 0; i < SIDE; i++) {
+                const double turn = 2 * acos(-1) * frequency * i / SIDE;
+                re += (power[line * SIDE + i] - mean) * cos(turn);
+                im += (power[line * SIDE + i] - mean) * sin(turn);
+            }
+            sum += (re * re + im * im) / (SIDE * variance) / SIDE;
+        }
+        most = fmax(most, sum);
+        least = fmin(least, sum);
+    }
+    print_message("# spectrum from %.3f to %.3f\n", least, most);
+    assert_true(least > 1 - 5.0 / 16 && most < 1 + 5.0 / 16);
+}
+
 static void kinds_and_epochs_know_nothing_of_each_other(void **state)
 {
     (void)state;
@@ -243,6 +269,7 @@ int main(void)
         cmocka_unit_test(the_order_of_a_row_keeps_neighbours_independent),
         cmocka_unit_test(every_slice_is_drawn_equally_often),
         cmocka_unit_test(neighbouring_cells_are_independent),
+        cmocka_unit_test(no_frequency_along_the_lines_stands_out),
         cmocka_unit_test(kinds_and_epochs_know_nothing_of_each_other),
         cmocka_unit_test(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line),
         cmocka_unit_test(every_cell_gains_its_draw),
