@@ -3,7 +3,6 @@
 
 enum {
     CONTROLS_A_STEP = 8,
-    PATCH_LINES_BETWEEN_PREFETCHES = 4,
     UNABLE_SHOWN_US = 2000000,
     ELEVATION_CELL_MM = 30000 /* the map's detail that the cursor's elevation comes from */
 };
@@ -133,13 +132,9 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
     u->page.is_patch = true;
     u->page.is_frozen = false;
     lm_begin_picture(u, now_us);
-    const uint32_t last = u->board->radar->sar.cells - 1u;
-    for (uint32_t line = 0; line < last; line += PATCH_LINES_BETWEEN_PREFETCHES) {
-        lm_sar_prefetch(&u->sar, &u->tiles, line);
-    }
-    lm_sar_prefetch(&u->sar, &u->tiles, last);
     lm_sar_prefetch_targets(&u->sar, &u->tiles);
     u->is_acquiring = true;
+    u->lines_asked_for = 0;
     u->acquire_until_us = now_us + LM_SAR_ACQUIRE_US;
     return true;
 }

@@ -1,3 +1,4 @@
+#include "fx/sat.h"
 #include "parts.h"
 
 enum {
@@ -5,6 +6,9 @@ enum {
     /* A line that needs more waits for the next step: azimuths of a sector, lines of a patch. */
     AZIMUTHS_A_STEP = 4,
     SAMPLES_A_STEP = 3,
+    /* Tiles of a patch are asked for by every fourth line, some in a step. */
+    LINES_APART = 4,
+    PREFETCHES_A_STEP = 8,
     LATE_MOST_US = 50000
 };
 
@@ -116,6 +120,17 @@ static bool refer_anew(struct lm_unit *u)
     return true;
 }
 
+/* Ask for the tiles of some more lines of the patch: of every fourth one, and of the last. */
+static void ask_for_patch(struct lm_unit *u)
+{
+    const uint32_t lines = u->sar.radar->sar.cells;
+    for (uint32_t n = 0; n < PREFETCHES_A_STEP && u->lines_asked_for < lines; n++) {
+        lm_sar_prefetch(&u->sar, &u->tiles, u->lines_asked_for);
+        const uint32_t next = u->lines_asked_for + LINES_APART;
+        u->lines_asked_for = u->lines_asked_for == lines - 1 ? lines : fx_min_u32(next, lines - 1);
+    }
+}
+
 /* Whether lines may be drawn now; while they may not, time does not owe any. */
 static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 {
@@ -126,7 +141,8 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
         return true;
     }
     if (u->is_acquiring) {
-        const bool has_all = lm_tile_cache_is_idle(&u->tiles) && lm_chips_are_settled(&u->chips);
+        const bool has_all = u->lines_asked_for == u->sar.radar->sar.cells &&
+                             lm_tile_cache_is_idle(&u->tiles) && lm_chips_are_settled(&u->chips);
         const bool is_over = has_all || now_us >= u->acquire_until_us;
         u->is_acquiring = !is_over || refer_anew(u);
         u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */
@@ -154,6 +170,9 @@ void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)
 {
     /* To trace an azimuth is as much work as to draw a line. */
     uint32_t azimuths = AZIMUTHS_A_STEP, lines = 0;
+    if (u->page.is_patch && u->is_acquiring) {
+        ask_for_patch(u);
+    }
     while (lines + AZIMUTHS_A_STEP - azimuths < LM_STEP_LINES && is_drawing(u, now_us) &&
            u->next_line_us <= now_us && draw_line(u, now_us, &azimuths)) {
         lines++;

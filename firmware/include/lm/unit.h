@@ -75,7 +75,8 @@ struct lm_unit {
 
     struct lm_sector sector;
     struct lm_sar sar;
-    bool is_acquiring; /* the patch's tiles are being read */
+    bool is_acquiring;        /* the patch's tiles are being read */
+    uint32_t lines_asked_for; /* lines of it whose tiles were asked for */
     uint64_t acquire_until_us;
     uint64_t next_line_us, next_frame_us;
     struct lm_tone sector_tone, sar_tone;

@@ -194,7 +194,6 @@ static void a_patch_completes_and_stays(void **state)
     free_rig(r);
 }
 
-/* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
 /* A patch from a commanded place in the air, so that it is the same whenever it is asked for. */
 static const struct lm_control patch_from_afar = {
     .kind = LM_CONTROL_SAR,
@@ -227,6 +226,30 @@ static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not
     free_rig(warm);
 }
 
+static void
+all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_step(void **state)
+{
+    (void)state;
+    struct rig *r = start_rig();
+    const struct lm_unit *u = &r->unit;
+    uint32_t before = 0;
+    int step = 0;
+    command(r, patch_from_afar);
+    do {
+        run(r, 1.0 * STEP_US / 1e6);
+        assert_in_range(u->lines_asked_for - before, 0, 32);
+        before = u->lines_asked_for;
+        assert_true(u->page.is_patch && u->sar.line == 0 && ++step < 250);
+    } while (u->is_acquiring);
+    assert_int_equal(u->lines_asked_for, 256);
+    const uint32_t substituted = u->tiles.count.substituted;
+    run(r, 4);
+    assert_int_equal(u->sar.line, 256);
+    assert_int_equal(u->tiles.count.substituted, substituted);
+    free_rig(r);
+}
+
+/* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
 static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
 {
     (void)state;
@@ -386,6 +409,8 @@ int main(void)
         cmocka_unit_test(late_flash_never_holds_the_sweep),
         cmocka_unit_test(a_patch_completes_and_stays),
         cmocka_unit_test(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read),
+        cmocka_unit_test(
+            all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_step),
         cmocka_unit_test(a_patch_on_the_smallest_glass_stays_within_its_frame),
         cmocka_unit_test(the_line_of_sight_is_shown_to_the_nearest_degree),
         cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
