@@ -26,8 +26,8 @@ uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm);
 
 /* Fill the first `cells` (1..LM_CELLS_MAX) entries along the path. Tiles that are not resident are
  * answered by an ancestor and asked for (tile_cache.h counts them). Places differ from the path's
- * by at most 2^-10 of a cell of the tile that answers. Cost: see docs/benchmarks.md; some 75
- * instructions for each tile that is crossed. */
+ * by at most 2^-10 of a cell of the tile that answers, 2^-9 in lines of 1024. Cost: see
+ * docs/benchmarks.md; some 75 instructions for each tile that is crossed. */
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t level,
                       const struct lm_ground_path *path, uint32_t cells);
 
