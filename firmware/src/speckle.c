@@ -46,13 +46,13 @@ static void summarize(struct lm_texture *t)
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         t->has_gain |= t->of_class[i] >> LM_TEXTURE_SHAPE_BITS != 0;
     }
-    for (uint8_t log2 = 0; log2 <= LM_NOISE_LOOKS_LOG2_MAX; log2++) {
+    for (int32_t log2 = 0; log2 <= LM_NOISE_LOOKS_LOG2_MAX; log2++) {
         bool is_used = false;
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
             is_used |= lm_texture_shape(t->of_class[i]) == log2;
         }
         if (is_used) {
-            t->shape_log2[t->shapes++] = log2;
+            t->shape_log2[t->shapes++] = (uint8_t)log2;
         }
     }
 }
