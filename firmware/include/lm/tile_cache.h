@@ -100,7 +100,7 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
 
 /* The tile itself when it is resident; otherwise asks for it and answers its nearest resident
  * ancestor, or NULL where the map has nothing. The pointer is good until the next
- * lm_tile_cache_service. Cost: one hash lookup a level tried. */
+ * lm_tile_cache_service. Cost: one chain a level tried. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
                                         uint32_t column);
 

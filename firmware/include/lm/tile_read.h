@@ -26,8 +26,8 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
 
 /* A line is read in two steps. First every run of cells is told which tile of the pool it lies in:
  * line->cell[k] is the record and line->elevation_q14[k] the scale of its lm_tile_base. Then cell
- * and elevation of each of first..end - 1 come to stand there; those behind them, up to a whole
- * number of LM_LANES, lose their meaning. None when first is end. */
+ * and elevation of each of first..end - 1 come to stand there; the LM_LANES behind them lose their
+ * meaning. None when first is end. */
 void lm_tile_read(const struct lm_tile *restrict pool, const struct lm_places *places,
                   uint32_t first, uint32_t end, struct lm_scan_line *restrict line);
 
