@@ -9,7 +9,6 @@
 #include <stdint.h>
 
 #include "aspect_line.h"
-#include "fx/log.h"
 #include "fx/neon.h"
 #include "shore.h"
 

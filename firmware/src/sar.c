@@ -1,7 +1,6 @@
 #include "lm/sar.h"
 
 #include "fx/hash.h"
-#include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"

@@ -2,7 +2,6 @@
 
 #include "fx/log.h"
 #include "fx/sat.h"
-#include "lm/config.h"
 #include "lm/scan_line.h"
 #include "speckle_neon.h"
 

@@ -5,7 +5,6 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/aspect.h"
 #include "lm/chip_line.h"
 
 enum { NO_CELL = -1 };

@@ -1,7 +1,5 @@
 /* What a line finds on the ground, against a direct evaluation of the image in double precision.
  * The evaluation reads the image's bytes by docs/FORMATS.md, not through the cache. */
-#include "fx/hash.h"
-#include "fx/trig.h"
 #include "hs/rng.h"
 #include "lm/scan_line.h"
 #include "memory_flash.h"

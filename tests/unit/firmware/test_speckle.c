@@ -1,6 +1,5 @@
 /* Draws and speckle against the statistics of a Gamma distribution. */
 #include "lm/noise.h"
-#include "lm/scan_line.h"
 #include "lm/speckle.h"
 
 #include <math.h>
