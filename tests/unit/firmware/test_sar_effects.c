@@ -157,6 +157,36 @@ static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), 
                                                      .range_m = 9000,
                                                      .height_q6 = 3000 * 64};
 
+static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
+{
+    const struct lm_sar_scene scene = {.epoch = epoch, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
+    return sar.noise_epoch;
+}
+
+static void a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    open_image(&image, &flash);
+    struct lm_sar_command c[5];
+    for (int i = 0; i < 5; i++) {
+        c[i] = from_the_south;
+    }
+    c[1].centre.latitude += 1;
+    c[2].centre.longitude += 1;
+    c[3].look_azimuth += 1;
+    c[4].cell_mm += 1;
+    const uint32_t grain = noise_epoch_of(c[0], 5);
+    for (int i = 1; i < 5; i++) {
+        assert_int_not_equal(noise_epoch_of(c[i], 5), grain);
+    }
+    assert_int_not_equal(noise_epoch_of(c[0], 6), grain);
+    assert_int_equal(noise_epoch_of(c[0], 5), grain);
+    tiny_image_free(&image);
+}
+
 /* Middle of what is brighter than soil ever is on the lines of the tower, cells. */
 static double middle_of_the_bright(void)
 {
@@ -423,6 +453,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power),
         cmocka_unit_test(layover_of_any_line_is_the_sum_of_shared_powers),
+        cmocka_unit_test(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again),
         cmocka_unit_test(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on),
         cmocka_unit_test(the_blur_is_as_wide_as_the_quadratic_phase_makes_it),
         cmocka_unit_test(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one),

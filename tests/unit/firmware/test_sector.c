@@ -77,6 +77,36 @@ static void put_cursor(struct rig *r, double azimuth_deg, double ground_m)
     r->unit.cursor.place = (struct lm_place){hs_bam(at.latitude_deg), hs_bam(at.longitude_deg)};
 }
 
+/* ---- from where it is seen ---- */
+
+static void
+the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place(void **state)
+{
+    (void)state;
+    static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP};
+    struct rig *r = start_over_sea(3000, 250);
+    const struct lm_sector *s = &r->unit.sector;
+    put_cursor(r, 5, 14000);
+    for (int is_window = 0; is_window < 2; is_window++) {
+        show(r, LM_SECTOR_GM, fields[is_window]);
+        finish_sweep(r);
+        uint32_t sweep = s->sweep - 1, moves = 0; /* within a sweep */
+        struct lm_place last = s->origin.place;
+        for (int k = 0; k < 400; k++) {
+            const uint32_t samples = s->samples;
+            step(r);
+            if (s->samples != samples && s->is_begun) {
+                assert_memory_equal(&s->origin.place, &s->platform.place, sizeof last);
+                moves += s->sweep == sweep && memcmp(&s->origin.place, &last, sizeof last) != 0;
+                last = s->origin.place;
+                sweep = s->sweep;
+            }
+        }
+        assert_true(is_window ? moves == 0 : moves > 20);
+    }
+    free_rig(r);
+}
+
 /* ---- timing ---- */
 
 /* Degrees a second, from the first edge on, over so many seconds and up to a sweep's end. */
@@ -447,6 +477,8 @@ int main(void)
         cmocka_unit_test(a_point_close_below_is_drawn_in_the_middle_of_the_window_too),
         cmocka_unit_test(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep),
         cmocka_unit_test(a_patch_drawn_twice_is_the_same),
+        cmocka_unit_test(
+            the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place),
         cmocka_unit_test(a_look_that_was_kept_is_what_the_beam_would_see_anew),
     };
     return cmocka_run_group_tests_name("sector", tests, NULL, NULL);

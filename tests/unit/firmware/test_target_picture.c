@@ -82,6 +82,23 @@ static void a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched(voi
     tiny_image_free(&image);
 }
 
+static void a_patch_has_nothing_of_the_targets_of_the_one_before_it(void **state)
+{
+    (void)state;
+    struct tiny_image image;
+    struct memory_flash flash;
+    static uint8_t before[SIDE][SIDE], with[SIDE][SIDE], behind[SIDE][SIDE];
+    open_soil(&image, &flash);
+    struct lm_target t = point_at(46, 11, 3, 45);
+    const struct lm_target_set set = {.items = &t, .count = 1}, none = {0};
+    draw_patch(&none, before);
+    draw_patch(&set, with);
+    draw_patch(&none, behind);
+    assert_memory_not_equal(with, before, sizeof with);
+    assert_memory_equal(behind, before, sizeof behind);
+    tiny_image_free(&image);
+}
+
 /* Forty lines to the left of where it is, so that its line comes long after it has been shown. */
 static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void **state)
 {
@@ -212,6 +229,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched),
+        cmocka_unit_test(a_patch_has_nothing_of_the_targets_of_the_one_before_it),
         cmocka_unit_test(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch),
         cmocka_unit_test(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere),
         cmocka_unit_test(the_unit_reads_the_targets_and_counts_those_it_has_not),
