@@ -319,6 +319,23 @@ static void the_lines_of_a_window_share_a_chip_without_loss(void **state)
     assert_true(worst_dark < 0.06);
 }
 
+/* Lines that pass by a target are told from its slack: of the largest pixels, a chip's corners are
+ * 1.1 km from the target. */
+static void the_slack_of_a_target_holds_the_corners_of_its_chip(void **state)
+{
+    struct fixture *f = *state;
+    const struct lm_target t = target_beyond(range_m, 0, 0);
+    const struct lm_target_scene scene = {.place = {t.latitude, t.longitude}, .reach_m = 1000};
+    struct lm_target_set set = set_with_signature(&f->world, &t, 1);
+    struct lm_signature large = set.signatures[0];
+    struct lm_targets_near near;
+    large.pixel_mm = LM_SIGNATURE_PIXEL_MAX_MM;
+    set.signatures = &large;
+    lm_targets_select(&near, &set, &scene);
+    assert_true(near.item[0].slack_q8 >
+                hypot(LM_CHIP_SIDE / 2, LM_CHIP_SIDE) * large.pixel_mm / 1000 * 256);
+}
+
 enum { DRAWS = 3000 };
 
 /* Power that the target adds to a line without echo, with each cell's speckle. */
@@ -466,6 +483,8 @@ int main(void)
             a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells, set_up,
             tear_down),
         cmocka_unit_test_setup_teardown(the_lines_of_a_window_share_a_chip_without_loss, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(
             the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell, set_up, tear_down),
