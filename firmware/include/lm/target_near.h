@@ -48,7 +48,7 @@ struct lm_targets_near {
         bool is_mover;
         uint32_t distance_q8;      /* from the place that was given, metres * 256, */
         int32_t north_q8, east_q8; /* and which way: all of it rough, */
-        uint32_t slack_q8;         /* but all of the target is within so much of there */
+        uint32_t slack_q8; /* but its whole lies within so much of there, up to 88 degrees N or S */
         struct lm_pose pose;
         int32_t elevation_q6;            /* of the origin above mean sea level, metres * 64 */
         const struct lm_chip_slot *chip; /* of lm/chips.h; borrowed; NULL: it has none */
