@@ -482,11 +482,17 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
+/* That of the next line, once it is aimed at. */
+static struct lm_sector_aim *aim_of(struct lm_sector *s)
+{
+    return &s->aims[s->line % 2];
+}
+
 /* Look at `azimuth`. In the whole sector a line lies between its samples as the one before the last
  * did, and has the same weights, of samples farther on. */
 static void look_at(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
 {
-    struct lm_sector_aim *aim = &s->aims[s->line % 2];
+    struct lm_sector_aim *aim = aim_of(s);
     const int32_t spacing = (int32_t)s->radar->sample, moved = azimuth - aim->azimuth;
     const bool is_sharpened = ratio_q8 != 256 || s->beam.fineness != 0;
     if (aim->is_kept && !is_sharpened && moved % spacing == 0) {
@@ -496,7 +502,6 @@ static void look_at(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
     }
     aim->azimuth = azimuth;
     aim->is_kept = ratio_q8 == 256;
-    s->look = aim->look;
 }
 
 /* Begin the sweep if that is due, and look, once, where the next line is. The whole sector is seen
@@ -524,7 +529,7 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
 {
     int32_t sample;
     aim(s, tiles, platform);
-    while (lm_beam_lacks(&s->beam, &s->look, &sample)) {
+    while (lm_beam_lacks(&s->beam, &aim_of(s)->look, &sample)) {
         if (*azimuths == 0) {
             return false;
         }
@@ -552,7 +557,7 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    lm_beam_sum(&s->beam, &s->look, s->power_q24, cells);
+    lm_beam_sum(&s->beam, &aim_of(s)->look, s->power_q24, cells);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
         lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.place,

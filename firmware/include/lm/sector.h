@@ -77,8 +77,7 @@ struct lm_sector {
     struct lm_texture texture;
     struct lm_footprint footprint; /* of the sample that is being taken */
     struct lm_beam beam;
-    struct lm_beam_look look; /* of the next line, once `is_aimed` */
-    bool is_aimed;
+    bool is_aimed;         /* at the next line */
     struct lm_sector_aim { /* of the even and the odd line that was aimed at last */
         bool is_kept;      /* not sharpened, so that one like it may use it */
         int32_t azimuth;
