@@ -23,7 +23,7 @@ void lm_footprint_begin(struct lm_footprint *f, const int32_t *level_q8, uint32_
 void lm_footprint_add(struct lm_footprint *f, const int32_t *restrict level_q8, uint32_t cells)
 {
     int32_t *restrict sum_q8 = f->sum_q8;
-    for (uint32_t i = add_neon(sum_q8, level_q8, cells); i < cells; i++) {
+    for (uint32_t i = sum_neon(sum_q8, level_q8, 0, INT32_MIN, sum_q8, cells); i < cells; i++) {
         sum_q8[i] = fx_db_q8_sum_of_many(sum_q8[i], level_q8[i]);
     }
 }
@@ -33,7 +33,8 @@ void lm_footprint_mean(const struct lm_footprint *f, uint32_t azimuths_log2,
 {
     const int32_t *restrict sum_q8 = f->sum_q8;
     const int32_t azimuths_q8 = ((int32_t)azimuths_log2 * FX_DB_OCTAVE_Q14 + 32) / 64;
-    for (uint32_t i = mean_neon(sum_q8, azimuths_q8, level_q8, cells); i < cells; i++) {
+    uint32_t i = sum_neon(sum_q8, level_q8, azimuths_q8, LM_LEVEL_SHADOW, level_q8, cells);
+    for (; i < cells; i++) {
         const int32_t all_q8 = fx_db_q8_sum_of_many(sum_q8[i], level_q8[i]);
         level_q8[i] = fx_max_i32(all_q8 - azimuths_q8, LM_LEVEL_SHADOW);
     }
