@@ -9,7 +9,7 @@ void lm_noise_line_set(struct lm_noise_line *n, const struct lm_raster *r, uint3
     const uint64_t growth_q32 = r->growth_q32;
     uint64_t column_q32 = r->column_q32;
     for (uint32_t b = 0; b < blocks; b++) {
-        n->entry[b] = fx_hash3((uint32_t)(column_q32 >> 32), b, epoch) >> 22;
+        n->entry[b] = lm_noise_entry_in(column_q32, b, epoch);
         column_q32 += growth_q32;
     }
 }

@@ -45,11 +45,17 @@ static inline struct lm_raster lm_raster_of(enum lm_noise_kind kind, uint32_t co
     return (struct lm_raster){(uint64_t)column << 32, 0, epoch * LM_NOISE_KINDS + kind};
 }
 
-/* The entry that the first cell of a block draws, 0..1023; those behind it draw the next ones. */
+/* The entry that the first cell of a block draws, 0..1023, in a column and an epoch; those behind
+ * it draw the next ones. */
+static inline uint32_t lm_noise_entry_in(uint64_t column_q32, uint32_t block, uint32_t epoch)
+{
+    return fx_hash3((uint32_t)(column_q32 >> 32), block, epoch) >> 22;
+}
+
+/* The same of a block of a line. */
 static inline uint32_t lm_noise_entry(const struct lm_raster *r, uint32_t block)
 {
-    const uint64_t column_q32 = r->column_q32 + block * r->growth_q32;
-    return fx_hash3((uint32_t)(column_q32 >> 32), block, r->epoch) >> 22;
+    return lm_noise_entry_in(r->column_q32 + block * r->growth_q32, block, r->epoch);
 }
 
 /* The draw of one cell. looks_log2 is 0..LM_NOISE_LOOKS_LOG2_MAX. */
