@@ -52,19 +52,6 @@ static inline struct neon_legend neon_legend_of(const struct lm_legend *l)
     };
 }
 
-/* The lower halves of sixteen numbers, and the lower bytes of those. */
-static inline uint16x8x2_t neon_lower_halves(uint32x4x4_t v)
-{
-    return (uint16x8x2_t){
-        {vuzp1q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
-         vuzp1q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
-}
-
-static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)
-{
-    return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
-}
-
 /* tangent_of sixteen cells whose height codes are given. */
 static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struct neon_place *at,
                                         uint8x16_t code)
@@ -134,8 +121,8 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_l
                                                              struct neon_before *b,
                                                              struct neon_place *at)
 {
-    const uint16x8x2_t cells = neon_lower_halves(vld1q_u32_x4(at->cell));
-    const uint8x16_t lower = neon_lower_bytes(cells);
+    const uint16x8x2_t cells = fx_neon_lower_halves(vld1q_u32_x4(at->cell));
+    const uint8x16_t lower = fx_neon_lower_bytes(cells);
     const int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(CODES - 1)));
     uint32x4x4_t rise;
     for (size_t n = 0; n < 4; n++) {
@@ -179,7 +166,7 @@ static inline struct neon_hidden neon_hide(uint32_t count)
         h.words.val[n] =
             vcltq_u32(vaddq_u32(vld1q_u32(number), vdupq_n_u32(4 * n)), vdupq_n_u32(count));
     }
-    h.bytes = neon_lower_bytes(neon_lower_halves(h.words));
+    h.bytes = fx_neon_lower_bytes(fx_neon_lower_halves(h.words));
     return h;
 }
 

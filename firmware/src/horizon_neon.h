@@ -28,7 +28,7 @@ static inline int32_t highest_neon(const struct lm_range_grid *grid, const struc
                                       .fall_q14 = (const uint32_t *)grid->fall_q14 + begin,
                                       .inverse_range = grid->inverse_range + begin};
         const uint8x16_t lower =
-            neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(line->cell + begin)));
+            fx_neon_lower_bytes(fx_neon_lower_halves(vld1q_u32_x4(line->cell + begin)));
         highest = neon_highest_of(highest,
                                   neon_tangents(&l, &at, vandq_u8(lower, vdupq_n_u8(CODES - 1))));
         end = begin + NEON_CELLS;

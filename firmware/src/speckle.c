@@ -7,34 +7,43 @@
 
 enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
-void lm_speckle_run(const struct lm_speckle_config *config, const struct lm_raster *raster,
-                    int32_t *restrict level_q8, uint32_t cells)
+static void add_draws(uint32_t looks_log2, const struct lm_noise_line *noise,
+                      int32_t *restrict level_q8, uint32_t cells)
 {
     int32_t draw_q8[LM_CELLS_ROOM];
-    struct lm_noise_line noise;
-    lm_noise_line_set(&noise, raster, cells);
     if (FX_HAS_NEON) {
-        speckle_neon(lm_noise_q8[config->looks_log2], &noise, level_q8, cells);
+        speckle_neon(lm_noise_q8[looks_log2], noise, level_q8, cells);
         return;
     }
-    lm_noise_draw(&noise, config->looks_log2, draw_q8, cells);
+    lm_noise_draw(noise, looks_log2, draw_q8, cells);
     for (uint32_t i = 0; i < cells; i++) {
         level_q8[i] += draw_q8[i];
     }
+}
+
+void lm_speckle_run(const struct lm_speckle_config *config, const struct lm_raster *raster,
+                    int32_t *restrict level_q8, uint32_t cells)
+{
+    struct lm_noise_line noise;
+    lm_noise_line_set(&noise, raster, cells);
+    add_draws(config->looks_log2, &noise, level_q8, cells);
 }
 
 void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_q8,
                           const struct lm_raster *raster, const int32_t *level_q8,
                           int32_t *restrict speckled_q8, uint32_t cells)
 {
+    struct lm_noise_line noise;
+    lm_noise_line_set(&noise, raster, cells);
     if (FX_HAS_NEON) {
-        speckle_floor_neon(config, floor_q8, raster, level_q8, speckled_q8, cells);
+        speckle_floor_neon(lm_noise_q8[config->looks_log2], &noise, floor_q8, level_q8, speckled_q8,
+                           cells);
         return;
     }
     for (uint32_t i = 0; i < cells; i++) {
         speckled_q8[i] = fx_db_q8_sum_of_many(level_q8[i], floor_q8);
     }
-    lm_speckle_run(config, raster, speckled_q8, cells);
+    add_draws(config->looks_log2, &noise, speckled_q8, cells);
 }
 
 /* Which shapes the classes have, and whether some gain. */

@@ -26,12 +26,7 @@ static inline uint8x16_t neon_classes_of(const struct lm_texture *t, int32_t sha
 /* The classes of sixteen cells. */
 static inline uint8x16_t neon_class_index(const uint32_t *cell)
 {
-    const uint16x8_t low = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(cell)),
-                                      vreinterpretq_u16_u32(vld1q_u32(cell + 4)));
-    const uint16x8_t high = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(cell + 8)),
-                                       vreinterpretq_u16_u32(vld1q_u32(cell + 12)));
-    const uint8x16_t upper = vshrn_high_n_u16(vshrn_n_u16(low, 4), high, 4);
-    return vandq_u8(upper, vdupq_n_u8(LM_DB_CLASSES - 1));
+    return vshrq_n_u8(fx_neon_lower_bytes(fx_neon_lower_halves(vld1q_u32_x4(cell))), 4);
 }
 
 static inline void neon_add(int32_t *level_q8, int16x8_t gain_q8)
@@ -86,13 +81,10 @@ static inline void speckle_neon(const int16_t *row_q8, const struct lm_noise_lin
     }
 }
 
-static inline void speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
-                                      const struct lm_raster *raster, const int32_t *level_q8,
+static inline void speckle_floor_neon(const int16_t *row_q8, const struct lm_noise_line *noise,
+                                      int32_t floor_q8, const int32_t *level_q8,
                                       int32_t *restrict speckled_q8, uint32_t cells)
 {
-    const int16_t *const row_q8 = lm_noise_q8[config->looks_log2];
-    struct lm_noise_line noise;
-    lm_noise_line_set(&noise, raster, cells);
     const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
     const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
     const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
@@ -103,8 +95,8 @@ static inline void speckle_floor_neon(const struct lm_speckle_config *config, in
         const size_t next = i + LM_NOISE_BLOCK < cells ? i + LM_NOISE_BLOCK : i;
         const int32x4x4_t level = fx_neon_load_8_and_8(level_q8 + i, level_q8 + next);
         int32x4x4_t sum = fx_neon_db_q8_sum(lows, highs, falls, level, floor);
-        const int16x8_t draw_q8[2] = {vld1q_s16(row_q8 + noise.entry[i / LM_NOISE_BLOCK]),
-                                      vld1q_s16(row_q8 + noise.entry[next / LM_NOISE_BLOCK])};
+        const int16x8_t draw_q8[2] = {vld1q_s16(row_q8 + noise->entry[i / LM_NOISE_BLOCK]),
+                                      vld1q_s16(row_q8 + noise->entry[next / LM_NOISE_BLOCK])};
         for (size_t n = 0; n < 2; n++) {
             sum.val[2 * n] = vaddw_s16(sum.val[2 * n], vget_low_s16(draw_q8[n]));
             sum.val[2 * n + 1] = vaddw_high_s16(sum.val[2 * n + 1], draw_q8[n]);
@@ -134,11 +126,11 @@ static inline void speckle_neon(const int16_t *row_q8, const struct lm_noise_lin
     (void)row_q8, (void)noise, (void)level_q8, (void)cells;
 }
 
-static inline void speckle_floor_neon(const struct lm_speckle_config *config, int32_t floor_q8,
-                                      const struct lm_raster *raster, const int32_t *level_q8,
+static inline void speckle_floor_neon(const int16_t *row_q8, const struct lm_noise_line *noise,
+                                      int32_t floor_q8, const int32_t *level_q8,
                                       int32_t *speckled_q8, uint32_t cells)
 {
-    (void)config, (void)floor_q8, (void)raster, (void)level_q8, (void)speckled_q8, (void)cells;
+    (void)row_q8, (void)noise, (void)floor_q8, (void)level_q8, (void)speckled_q8, (void)cells;
 }
 
 #endif

@@ -30,11 +30,9 @@ table() { # divisor format
         END {
             whole = n["lm_sar_draw_line"] + n["lm_sector_draw_line"] + n["lm_sar_start"]
             paint = n["lm_patch_paint"] + n["lm_ppi_paint"]
-            # That of a patch calls that of a sector.
-            speckle = n["lm_speckle_floor_run"] ? n["lm_speckle_floor_run"] : n["lm_speckle_run"]
             part("scan_line: cells, terrain", n["lm_scan_line_run"])
             part("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"] + n["lm_horizon_behind"])
-            part("texture, speckle, noise of a patch", n["lm_texture_run"] + speckle)
+            part("texture, speckle, noise of a patch", n["lm_texture_run"] + n["lm_speckle_run"] + n["lm_speckle_floor_run"])
             part("mean over a sample of several azimuths", n["lm_footprint_begin"] + n["lm_footprint_add"] + n["lm_footprint_mean"])
             part("elevation pattern", n["lm_elevation_run"])
             part("slant range, levels to power", n["lm_slant_run"])

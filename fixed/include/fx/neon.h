@@ -13,6 +13,19 @@
 #include <arm_neon.h>
 #define FX_HAS_NEON 1
 
+/* The lower halves of sixteen numbers, and the lower bytes of those. */
+static inline uint16x8x2_t fx_neon_lower_halves(uint32x4x4_t v)
+{
+    return (uint16x8x2_t){
+        {vuzp1q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
+         vuzp1q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
+}
+
+static inline uint8x16_t fx_neon_lower_bytes(uint16x8x2_t v)
+{
+    return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
+}
+
 /* Eight entries of a table of 16 numbers, of which the lower and the upper bytes are given; the
  * indices stand in the lower half. */
 static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)
