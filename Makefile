@@ -16,13 +16,15 @@ pkgs    = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
 # The two lowest layers do not even see the C library: -nostdinc leaves the compiler's own headers only.
 FREESTANDING := -ffreestanding -nostdinc -isystem $(shell $(CC) -print-file-name=include)
 INC_fixed    := -Ifixed/include
-INC_firmware := $(INC_fixed) -Ifirmware/include
-INC_drivers  := $(INC_firmware) -Idrivers/include
-INC_bsp      := $(INC_drivers) -Ibsp/$(BOARD)
+include firmware/rooms.mk
+INC_room      = $(INC_fixed) $(call ROOM_HEADERS,$(1) $(SEES_$(1)))
+INC_firmware := $(INC_fixed) $(call ROOM_HEADERS,$(ROOMS))
+INC_drivers  := $(INC_fixed) $(call ROOM_HEADERS,$(SEES_drivers)) -Idrivers/include
+INC_bsp      := $(INC_firmware) -Idrivers/include -Ibsp/$(BOARD)
 INC_host     := $(INC_bsp) -Ihost-sim/common/include
 
 CFLAGS_fixed    = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_fixed)
-CFLAGS_firmware = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_firmware)
+CFLAGS_room     = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(call INC_room,$(1))
 CFLAGS_drivers  = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_drivers)
 CFLAGS_bsp      = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_bsp)
 CFLAGS_host     = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_host)
@@ -40,7 +42,7 @@ TESTS    :=
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-.PHONY: help deps all run check check-panel panel package bench gallery fuzz lint format clean zcu102 run-zcu102 size bench-zcu102
+.PHONY: help deps all run check check-panel panel package bench gallery fuzz rooms lint format clean zcu102 run-zcu102 size bench-zcu102
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -94,6 +96,9 @@ bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and m
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
 
+rooms: $(O)/tests/discipline/flags ## Print which room of the firmware may see which, and which does
+	@python3 -B tests/discipline/rooms.py $<
+
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
 	@sh tests/discipline/lint.sh
 
@@ -108,7 +113,7 @@ check-built: $(PROGRAMS) $(TESTS)
 	@sh tests/run.sh $(O) $(TESTS)
 
 $(LIB_fixed): $(call objs,$(wildcard fixed/src/*.c))
-$(LIB_firmware): $(call objs,$(wildcard firmware/src/*.c))
+$(LIB_firmware): $(call objs,$(wildcard firmware/*/*.c))
 $(LIB_drivers): $(DRIVERS:%=$(O)/drivers/%.o)
 $(LIB_hs): $(call objs,$(wildcard host-sim/common/src/*.c))
 $(O)/%.a:
@@ -122,13 +127,14 @@ $(O)/fixed/%.o: fixed/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
 	$(Q)$(CC) $(CFLAGS_fixed) $(OPT_core) $(DEPGEN) -c $< -o $@
-$(O)/firmware/src/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
-$(O)/firmware/src/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
-$(O)/firmware/src/tile_read.o: OPT_core += -fno-unroll-loops # and so has a run in a tile that stands in for another
+$(O)/firmware/display/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
+$(O)/firmware/map/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
+$(O)/firmware/map/tile_read.o: OPT_core += -fno-unroll-loops # and so has a run in a tile that stands in for another
+$(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
 $(O)/firmware/%.o: firmware/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
-	$(Q)$(CC) $(CFLAGS_firmware) $(OPT_core) $(DEPGEN) -c $< -o $@
+	$(Q)$(CC) $(call CFLAGS_room,$(ROOM)) $(OPT_core) $(DEPGEN) -c $< -o $@
 $(O)/drivers/%.o: drivers/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')

@@ -8,5 +8,5 @@ $(O)/bin/landmass-bus: $(O)/host-sim/bus/main.o $(BUS_OBJS) $(O)/drivers/can/can
 BUS_TABLE ?= host-sim/bus/arinc825.bus
 .PHONY: bus-table
 bus-table: $(O)/bin/landmass-bus ## Build BUS_TABLE=FILE, a text table of your own bus, into the firmware
-	@$(O)/bin/landmass-bus generate --table $(BUS_TABLE) --out firmware/src/bus_generic.c
-	@echo 'firmware/src/bus_generic.c is made of $(BUS_TABLE); build again'
+	@$(O)/bin/landmass-bus generate --table $(BUS_TABLE) --out firmware/bus/bus_generic.c
+	@echo 'firmware/bus/bus_generic.c is made of $(BUS_TABLE); build again'

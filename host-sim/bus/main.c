@@ -21,7 +21,7 @@ static const char help_text[] =
     "  filters           the kernel's filters, as candump takes them: can0,40C:C00007FF\n"
     "  decode [LOG]      each frame of a log of candump -L (of standard input without LOG):\n"
     "                    what it means, or why the display does not take it\n"
-    "  generate          the profile as C, for firmware/src/bus_generic.c\n"
+    "  generate          the profile as C, for firmware/bus/bus_generic.c\n"
     "  fields            the fields that a table of your own may name, and their units\n"
     "\n"
     "Options:\n"

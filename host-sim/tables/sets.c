@@ -295,8 +295,8 @@ static const struct table response_tables[] = {
 
 const struct table_set table_sets[] = {
     {"fixed", "fixed/src/tables.c", "fx/tables.h", fixed_tables, COUNT(fixed_tables)},
-    {"noise", "firmware/src/noise_table.c", "lm/noise.h", noise_tables, COUNT(noise_tables)},
-    {"response", "firmware/src/response_table.c", "lm/response.h", response_tables,
+    {"noise", "firmware/clutter/noise_table.c", "lm/noise.h", noise_tables, COUNT(noise_tables)},
+    {"response", "firmware/clutter/response_table.c", "lm/response.h", response_tables,
      COUNT(response_tables)},
 };
 const int table_set_count = COUNT(table_sets);

@@ -30,10 +30,12 @@ clang_build() {
 # cppcheck 2.10 mistakes an array filled through a pointer for an uninitialised one, and `p = q ? q : p` for a leak;
 # clang-tidy looks for both as well.
 mistakes() {
+    rooms=$(printf -- '-I%s ' firmware/*/include)
+    # shellcheck disable=SC2086 # one word for each room
     cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 -j2 \
         --suppress=missingIncludeSystem --suppress=missingInclude \
         --suppress=uninitvar --suppress=legacyUninitvar --suppress=memleak \
-        -Ifixed/include -Ifirmware/include -Idrivers/include -Ihost-sim/common/include \
+        -Ifixed/include $rooms -Idrivers/include -Ihost-sim/common/include \
         fixed firmware drivers bsp host-sim
 }
 

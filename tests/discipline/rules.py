@@ -18,16 +18,39 @@ DEEPEST_STACK_BYTES = 8192
 
 
 class Tree:
-    """A source tree and the flags that each of its layers is compiled with."""
+    """A source tree and the flags that each of its parts is compiled with.
+
+    A part is a layer ("fixed", "drivers", "bsp") or a room of the firmware ("firmware/map").
+    """
 
     def __init__(self, root, flags, scratch):
         self.root = Path(root)
-        self.flags = flags  # "CC" and each layer's name -> list of words
+        self.flags = flags  # "CC", "ROOMS", and each part's name -> list of words
         self.scratch = Path(scratch)
         self.built = {}  # kind -> what objects() found
 
     def files(self, layer, *suffixes):
         return sorted(p.relative_to(self.root) for p in (self.root / layer).rglob("*") if p.suffix in suffixes)
+
+    def rooms(self):
+        return self.flags["ROOMS"]
+
+    def parts(self, *layers):
+        """The parts of the layers, in the order in which one may see another."""
+        rooms = [f"firmware/{room}" for room in self.rooms()]
+        return [part for layer in layers for part in (rooms if layer == "firmware" else [layer])]
+
+    def sees(self, part):
+        """The parts whose public headers a part may include, by firmware/rooms.mk and the order of the layers."""
+        layer, _, room = part.partition("/")
+        below = self.parts(*LAYERS[: LAYERS.index(layer)])
+        if layer in ("firmware", "drivers"):
+            rooms = [f"firmware/{name}" for name in self.flags[f"SEES_{room or layer}"]]
+            return [other for other in below if not other.startswith("firmware/")] + rooms
+        return below
+
+    def part_of(self, path):
+        return "/".join(Path(path).parts[:2]) if Path(path).parts[0] == "firmware" else Path(path).parts[0]
 
     def sources(self, *layers):
         return [p for layer in layers for p in self.files(layer, ".c", ".h")]
@@ -35,9 +58,9 @@ class Tree:
     def text(self, path):
         return (self.root / path).read_text()
 
-    def compile(self, layer, source, output, *more, compiler=None):
+    def compile(self, part, source, output, *more, compiler=None):
         """Compile one file as the Makefile would, with `more` flags. Returns the compiler's complaints, or ""."""
-        flags = self.flags[layer]
+        flags = self.flags[part]
         if compiler:  # for another machine: the build machine's own instruction set is not its
             flags = [flag for flag in flags if not flag.startswith(("-march=", "-mtune="))]
         command = (compiler or self.flags["CC"]) + flags + list(more)
@@ -58,7 +81,7 @@ class Tree:
             for source in self.files(layer, ".c"):
                 target = folder / source.with_suffix(".o")
                 target.parent.mkdir(parents=True, exist_ok=True)
-                jobs.append((layer, source, target))
+                jobs.append((self.part_of(source), source, target))
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             complaints = list(pool.map(lambda job: self.compile(*job, *more, compiler=compiler), jobs))
         bad = [first_error(text) for text in complaints if text]
@@ -223,9 +246,10 @@ def includes(tree, path):
             yield number, found.group(1), found.group(2)
 
 
-def resolve(tree, layer, path, name):
+def resolve(tree, path, name):
     """Where an #include "name" leads, from the root of the tree, or None."""
-    folders = [path.parent] + [Path(word[2:]) for word in tree.flags[layer] if word.startswith("-I")]
+    flags = tree.flags[tree.part_of(path)]
+    folders = [path.parent] + [Path(word[2:]) for word in flags if word.startswith("-I")]
     for folder in folders:
         target = os.path.normpath(tree.root / folder / name)
         if os.path.isfile(target):
@@ -246,7 +270,7 @@ def includes_upwards(tree):
                     if layer in LOW_LAYERS and name not in SYSTEM_HEADERS and not is_vectors:
                         bad.append(f"{place}: includes <{name}>")
                     continue
-                target = resolve(tree, layer, path, name)
+                target = resolve(tree, path, name)
                 if target is None and layer in LOW_LAYERS:
                     bad.append(f'{place}: includes "{name}", which is in no layer below')
                 elif target is not None and target.parts[0] not in LAYERS[: level + 1]:
@@ -256,34 +280,51 @@ def includes_upwards(tree):
     return bad
 
 
-def probe(tree, layer, header):
-    """Whether a file of this layer could include `header`."""
-    folder = tree.scratch / "probe"
-    folder.mkdir(parents=True, exist_ok=True)
-    source = folder / f"{layer}.c"
-    source.write_text(f"#include {header}\nextern int probe;\n")
-    return tree.compile(layer, source, folder / f"{layer}.o") == ""
+def probe(tree, part, text):
+    """What the compiler says of a file of this part."""
+    source = tree.scratch / "probe" / (part.replace("/", "_") + ".c")
+    source.parent.mkdir(parents=True, exist_ok=True)
+    source.write_text(f"{text}\nextern int probe;\n")
+    return tree.compile(part, source, source.with_suffix(".o"))
 
 
-def public_headers(tree, layer):
+def public_headers(tree, part):
     """As they are written in an #include."""
-    return [f'"{path.relative_to(Path(layer) / "include")}"' for path in tree.files(layer, ".h")
-            if path.parts[1] == "include"]
+    folder = Path(part) / "include"
+    return [f'"{path.relative_to(folder)}"' for path in tree.files(part, ".h") if folder in path.parents]
+
+
+def private_headers(tree, part):
+    folder = Path(part) / "include"
+    return [f'"{path.name}"' for path in tree.files(part, ".h") if folder not in path.parents]
+
+
+def rooms_in_order(tree):
+    """The arrows between the rooms have no circle: each room sees only rooms that come before it in the list."""
+    bad = []
+    for number, room in enumerate(tree.rooms()):
+        above = [f"firmware/{other}" for other in tree.rooms()[number + 1:]]
+        bad += [f"firmware/{room}: sees {other}, which is above it"
+                for other in tree.sees(f"firmware/{room}") if other in above]
+    folders = {path.parts[1] for path in tree.sources("firmware")}
+    return bad + [f"firmware/{name}: is no room of firmware/rooms.mk" for name in sorted(folders - set(tree.rooms()))]
 
 
 def open_doors(tree):
-    """The flags of the Makefile hide from a layer what it may not include, and show it what it may."""
+    """The flags of the Makefile hide from each part what it may not include, and its own headers stand alone."""
     bad = []
-    may_not = {"fixed": public_headers(tree, "firmware") + public_headers(tree, "drivers"),
-               "firmware": public_headers(tree, "drivers"), "drivers": [], "bsp": []}
-    for layer in LOW_LAYERS:
-        may_not[layer] += ["<stdio.h>", "<stdlib.h>", "<string.h>", "<math.h>", "<unistd.h>"]
-    for layer in LAYERS:
-        may_not[layer] += ['"hs/error.h"', '"support.h"']
-        bad += [f"{layer}: could include {header}" for header in may_not[layer] if probe(tree, layer, header)]
-        for below in LAYERS[: LAYERS.index(layer) + 1]:
-            bad += [f"{layer}: {header} does not compile by itself" for header in public_headers(tree, below)
-                    if below in (layer, "fixed") and not probe(tree, layer, header)]
+    for part in tree.parts(*LAYERS):
+        seen = [part, *tree.sees(part)]
+        hidden = ['"hs/error.h"', '"support.h"']
+        if part.split("/")[0] in LOW_LAYERS:
+            hidden += ["<stdio.h>", "<stdlib.h>", "<string.h>", "<math.h>", "<unistd.h>"]
+        for other in tree.parts(*LAYERS[:-1]):
+            hidden += public_headers(tree, other) if other not in seen else []
+            hidden += private_headers(tree, other) if other not in (part, "drivers") else []
+        conditions = "\n".join(f"#if __has_include({header})\n#error could include {header}\n#endif" for header in hidden)
+        bad += [f"{part}: {found}" for found in re.findall(r"error: (?:#error )?(could include .*)", probe(tree, part, conditions))]
+        bad += [f"{part}: {header} does not compile by itself" for header in public_headers(tree, part)
+                if probe(tree, part, f"#include {header}")]
     return bad
 
 
@@ -292,7 +333,7 @@ def conditionals(tree):
     vectors of Arm have a file of their own beside the plain code."""
     bad = []
     for path in tree.sources(*LOW_LAYERS):
-        if path == Path("firmware/include/lm/config.h") or is_neon(path):
+        if path == Path("firmware/base/include/lm/config.h") or is_neon(path):
             continue
         lines = tree.text(path).splitlines()
         for number, line in enumerate(lines, 1):

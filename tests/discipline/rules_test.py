@@ -11,10 +11,12 @@ GOOD = {
     "fixed/include/fx/one.h": "#ifndef FX_ONE_H\n#define FX_ONE_H\n#include <stdint.h>\n"
                             "int32_t fx_one(int32_t x);\n#endif\n",
     "fixed/src/one.c": '#include "fx/one.h"\n\nint32_t fx_one(int32_t x)\n{\n    return x + 1;\n}\n',
-    "firmware/include/lm/two.h": "#ifndef LM_TWO_H\n#define LM_TWO_H\nint lm_two(int x);\n#endif\n",
-    "firmware/src/two.c": '#include "lm/two.h"\n#include "fx/one.h"\n\n'
+    "firmware/base/include/lm/two.h": "#ifndef LM_TWO_H\n#define LM_TWO_H\nint lm_two(int x);\n#endif\n",
+    "firmware/base/two.c": '#include "lm/two.h"\n#include "fx/one.h"\n\n'
                           "static const char *const names[] = {\"float\", \"double\"};\n\n"
                           "int lm_two(int x)\n{\n    return fx_one(x) + names[x & 1][0];\n}\n",
+    "firmware/unit/include/lm/six.h": "extern int six;\n",
+    "firmware/clutter/seven.h": "extern int seven;\n",
     "drivers/include/drv/three.h": "extern int three;\n",
     "drivers/three.c": '#include "drv/three.h"\n#include "lm/two.h"\n#include <stdio.h>\nint three;\n',
     "bsp/here/four.c": '#include "drv/three.h"\n#include "four.h"\n',
@@ -28,29 +30,29 @@ FUNCTION = "int lm_bad(int x);\nint lm_bad(int x)\n{\n%s\n}\n"
 # (None: the flags are loosened instead).
 PLANTED = [
     ("a product of doubles is seen", rules.floating_point, "SSE|general-regs|needs __",
-     "firmware/src/bad.c", FUNCTION % "    return (int)(x * 0.5);"),
+     "firmware/map/bad.c", FUNCTION % "    return (int)(x * 0.5);"),
     ("a float hidden in a header is seen", rules.floating_point, "bad.h:1: names float",
      "fixed/include/fx/bad.h", "typedef float fx_bad;\n"),
-    ("a call of malloc is seen", rules.foreign_symbols, "needs malloc", "firmware/src/bad.c",
+    ("a call of malloc is seen", rules.foreign_symbols, "needs malloc", "firmware/map/bad.c",
      "void *malloc(unsigned long);\n" + FUNCTION % "    return malloc((unsigned long)x) == 0;"),
     ("a division of 64 bits in fixed is seen on the microcontroller", rules.cortex_m7, "needs __aeabi_uldivmod",
      "fixed/src/bad.c",
      "unsigned long long fx_bad(unsigned long long a, unsigned long long b);\n"
      "unsigned long long fx_bad(unsigned long long a, unsigned long long b)\n{\n    return a / b;\n}\n"),
     ("recursion through two functions is seen", rules.recursion_and_stack, "lm_[ab]: may call itself",
-     "firmware/src/bad.c",
+     "firmware/map/bad.c",
      "int lm_a(int x);\nint lm_b(int x);\nint lm_b(int x)\n{\n    return lm_a(x) * 3;\n}\n"
      "int lm_a(int x)\n{\n    return x < 2 ? x : lm_b(x - 1) + lm_b(x - 2);\n}\n"),
-    ("a frame of variable size is seen", rules.recursion_and_stack, "variable size", "firmware/src/bad.c",
+    ("a frame of variable size is seen", rules.recursion_and_stack, "variable size", "firmware/map/bad.c",
      FUNCTION % "    volatile char *p = __builtin_alloca((unsigned long)x);\n    p[0] = 1;\n    return p[x - 1];"),
-    ("a stack deeper than the limit is seen", rules.recursion_and_stack, "bytes of stack", "firmware/src/bad.c",
+    ("a stack deeper than the limit is seen", rules.recursion_and_stack, "bytes of stack", "firmware/map/bad.c",
      FUNCTION % "    volatile char big[9000];\n    big[x] = 1;\n    return big[x + 1];"),
     ("fixed including firmware by a path is seen", rules.includes_upwards, "bad.c:1: includes firmware/",
-     "fixed/src/bad.c", '#include "../../firmware/include/lm/two.h"\n'),
+     "fixed/src/bad.c", '#include "../../firmware/base/include/lm/two.h"\n'),
     ("firmware including a driver by a path is seen", rules.includes_upwards, "bad.c:1: includes drivers/",
-     "firmware/src/bad.c", '#include "../../drivers/include/drv/three.h"\n'),
+     "firmware/map/bad.c", '#include "../../drivers/include/drv/three.h"\n'),
     ("firmware including the C library is seen", rules.includes_upwards, "includes <string.h>",
-     "firmware/src/bad.c", "#include <string.h>\n"),
+     "firmware/map/bad.c", "#include <string.h>\n"),
     ("a driver including its board is seen", rules.includes_upwards, "includes bsp/here/four.h",
      "drivers/bad.c", '#include "../bsp/here/four.h"\n'),
     ("a board including another board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
@@ -58,12 +60,12 @@ PLANTED = [
     ("an include path too many in the Makefile is seen", rules.open_doors,
      'fixed: could include "lm/two.h"', None, None),
     ("a header that needs another one first is seen", rules.open_doors, '"lm/bad.h" does not compile by itself',
-     "firmware/include/lm/bad.h", "uint32_t lm_bad(void);\n"),
+     "firmware/map/include/lm/bad.h", "uint32_t lm_bad(void);\n"),
     ("an #ifdef for the host is seen", rules.conditionals, "bad.c:1: #ifdef HOST",
-     "firmware/src/bad.c", "#ifdef HOST\n#endif\n"),
-    ("a function of 101 lines is seen", rules.long_functions, "a function of 101 lines", "firmware/src/bad.c",
+     "firmware/map/bad.c", "#ifdef HOST\n#endif\n"),
+    ("a function of 101 lines is seen", rules.long_functions, "a function of 101 lines", "firmware/map/bad.c",
      FUNCTION % "\n".join(["    x++;"] * 98 + ["    return x;"])),
-    ("a static counter is seen", rules.mutable_data, r"calls\S* can be written to", "firmware/src/bad.c",
+    ("a static counter is seen", rules.mutable_data, r"calls\S* can be written to", "firmware/map/bad.c",
      FUNCTION % "    static int calls;\n    return calls += x;"),
     ("a global with a value is seen", rules.mutable_data, "fx_bad can be written to",
      "fixed/src/bad.c", "extern int fx_bad;\nint fx_bad = 3;\n"),
@@ -75,6 +77,7 @@ KEPT = [
     ("fixed and firmware build for a Cortex-M7, and need of a compiler's library but division", rules.cortex_m7),
     ("no function calls itself and the deepest stack is known and fits", rules.recursion_and_stack),
     ("every layer includes only itself and the layers below", rules.includes_upwards),
+    ("a room of the firmware sees only rooms below it", rules.rooms_in_order),
     ("the flags hide what a layer may not include, and its headers stand alone", rules.open_doors),
     ("there are no conditionals in fixed and firmware but in lm/config.h", rules.conditionals),
     ("no function in fixed and firmware is longer than 100 lines", rules.long_functions),
@@ -106,7 +109,7 @@ def planted_tree(folder, flags, path, text):
         (root / name).write_text(content)
     flags = dict(flags)
     if path is None:
-        flags["fixed"] = flags["fixed"] + ["-Ifirmware/include"]
+        flags["fixed"] = flags["fixed"] + ["-Ifirmware/base/include"]
     return rules.Tree(root, flags, Path(folder) / "scratch")
 
 
@@ -122,6 +125,20 @@ def judge(report, sentence, violations, wanted=None):
         report.result(sentence, [f"none of these is {wanted}:"] + violations)
 
 
+def plant_includes(report, flags):
+    """In each room, one include of a header that it may not see: of the room above it, or a private one."""
+    with tempfile.TemporaryDirectory() as folder:
+        tree = rules.Tree(".", flags, folder)
+        rooms = tree.rooms()
+        for room, above in zip(rooms, rooms[1:] + rooms[:1]):
+            stranger = (rules.public_headers(tree, f"firmware/{above}") if room != rooms[-1]
+                        else rules.private_headers(tree, "firmware/display"))[0]
+            answer = rules.probe(tree, f"firmware/{room}", f"#include {stranger}")
+            is_refused = "No such file or directory" in answer or "file not found" in answer
+            report.result(f"{stranger} planted in firmware/{room} is no such file or directory",
+                          [] if is_refused else [answer or "it compiles"])
+
+
 def print_stack(graph):
     """The figures for the record; what is called through a pointer comes on top of them."""
     size, path = graph.deepest()
@@ -132,7 +149,7 @@ def print_stack(graph):
 def main():
     build = os.environ.get("BUILD", "build/bench-linux")
     flags = rules.read_flags(f"{build}/tests/discipline/flags")
-    report = Report(len(KEPT) + len(PLANTED) + 1)
+    report = Report(len(KEPT) + len(PLANTED) + len(flags["ROOMS"]) + 1)
     with tempfile.TemporaryDirectory() as folder:
         tree = rules.Tree(".", flags, folder)
         for sentence, rule in KEPT:
@@ -142,9 +159,10 @@ def main():
     for sentence, rule, wanted, path, text in PLANTED:
         with tempfile.TemporaryDirectory() as folder:
             judge(report, sentence, rule(planted_tree(folder, flags, path, text)), wanted)
+    plant_includes(report, flags)
     with tempfile.TemporaryDirectory() as folder:
         harmless = "/* No float, no #ifdef. */\n#include <stdint.h>\n"
-        tree = planted_tree(folder, flags, "firmware/src/harmless.c", harmless)
+        tree = planted_tree(folder, flags, "firmware/map/harmless.c", harmless)
         found = [text for _, rule in KEPT for text in rule(tree) or []]
         report.result("a tree that keeps the rules is left in peace", found)
     return 1 if report.failed else 0

@@ -3,7 +3,7 @@
 FUZZ_TARGETS  := image targets chips signature unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
     panel_config obj traced
 FUZZ_PARTS    := address,undefined,float-cast-overflow
-FUZZ_CORE     := $(wildcard firmware/src/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
+FUZZ_CORE     := $(wildcard firmware/*/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
 FUZZ_TRACK    := $(filter-out %/main.c,$(wildcard host-sim/nav/*.c)) tests/fuzz/track.c
 FUZZ_TEXT     := host-sim/db/text_file.c host-sim/common/src/atomic_file.c tests/fuzz/file.c
 
@@ -11,8 +11,8 @@ FUZZ_SRC_image       := $(FUZZ_CORE)
 FUZZ_SRC_targets     := $(FUZZ_CORE)
 FUZZ_SRC_chips       := $(FUZZ_CORE)
 FUZZ_SRC_unit        := $(FUZZ_CORE)
-FUZZ_SRC_signature   := $(wildcard firmware/src/*.c fixed/src/*.c) host-sim/db/signature_file.c host-sim/common/src/atomic_file.c tests/fuzz/file.c
-FUZZ_SRC_bus         := $(addprefix firmware/src/,canas.c bus.c bus_profiles.c bus_generic.c packed.c canas_service.c nav.c weather_bus.c environment.c geo.c) $(wildcard fixed/src/*.c)
+FUZZ_SRC_signature   := $(wildcard firmware/*/*.c fixed/src/*.c) host-sim/db/signature_file.c host-sim/common/src/atomic_file.c tests/fuzz/file.c
+FUZZ_SRC_bus         := firmware/bus/canas.c firmware/bus/bus.c firmware/bus/bus_profiles.c firmware/bus/bus_generic.c firmware/bus/packed.c firmware/bus/canas_service.c firmware/bus/nav.c firmware/bus/weather_bus.c firmware/base/environment.c firmware/base/geo.c $(wildcard fixed/src/*.c)
 FUZZ_SRC_bus_table   := $(FUZZ_SRC_bus) host-sim/bus/table_text.c host-sim/bus/print.c drivers/can/can_socket.c
 FUZZ_SRC_can_log     := drivers/can/can_log.c
 FUZZ_SRC_script      := host-sim/sim/script.c tests/fuzz/file.c

@@ -277,7 +277,7 @@ def a_position_of_nmea_2000_is_read_and_all_ones_are_none():
 
 
 def the_firmware_has_the_table_that_it_was_generated_from():
-    assert bus("generate", "--table", TABLES[0]) == open("firmware/src/bus_generic.c").read(), "run make bus-table"
+    assert bus("generate", "--table", TABLES[0]) == open("firmware/bus/bus_generic.c").read(), "run make bus-table"
     assert bus("table", "--profile", "generic") == bus("table", "--table", TABLES[0])
 
 

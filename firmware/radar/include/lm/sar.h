@@ -5,13 +5,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "lm/controls.h"
 #include "lm/defocus.h"
 #include "lm/horizon.h"
 #include "lm/layover.h"
 #include "lm/line.h"
 #include "lm/patch_rain.h"
 #include "lm/radar.h"
+#include "lm/sar_command.h"
 #include "lm/target_patch.h"
 #include "lm/tone.h"
 

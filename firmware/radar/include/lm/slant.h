@@ -21,11 +21,6 @@ struct lm_slant {
     uint32_t pairs;
 };
 
-/* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,
- * either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
-uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10);
-uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10);
-
 /* Bins over the cells of `grid`, whose cell 0 is centred at `ground_first_q8`. cells up to
  * LM_CELLS_MAX; the last bin below 400 km. Cost: about 200 instructions a bin. */
 void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,

@@ -6,17 +6,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/radar.h"
+
 /* Steps that there is room for, and how many of them a line of the curve has. */
 enum {
     LM_TONE_LINES = 64,
     LM_TONE_PLACES_LOG2 = 5,
     LM_TONE_PLACES = 1 << LM_TONE_PLACES_LOG2,
     LM_TONE_STEPS = LM_TONE_LINES * LM_TONE_PLACES
-};
-
-struct lm_tone_config {
-    int16_t black_q8, white_q8; /* levels in 1/256 dB; white 1 to 255 dB above black */
-    uint16_t gamma_q8;          /* exponent, 26..1024 (0.1..4.0) */
 };
 
 /* The window from black, step 0, to white, step 256..2047; from 1024 on where it is 4 dB or wider.

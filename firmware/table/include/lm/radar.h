@@ -1,5 +1,5 @@
 /* The radar parameter table: every number that belongs to the radar and not to the display. An
- * integrator replaces the table (firmware/src/radar.c), not the code. Equations of all of it:
+ * integrator replaces the table (firmware/table/radar.c), not the code. Equations of all of it:
  * docs/DESIGN.md, "The picture, as equations". */
 #ifndef LM_RADAR_H
 #define LM_RADAR_H
@@ -8,11 +8,34 @@
 #include <stdint.h>
 
 #include "fx/types.h"
-#include "lm/aspect.h"
-#include "lm/speckle.h"
-#include "lm/tone.h"
+#include "lm/class_kind.h"
 
 enum { LM_RANGES = 4, LM_AZIMUTHS = 3 };
+
+/* An edge is a byte of eighths of a decibel. With a code and a rise in decibels it takes 16 bits.
+ */
+enum { LM_EDGE_MAX_Q8 = 255 * 32 };
+
+struct lm_aspect_config {
+    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0..LM_EDGE_MAX_Q8 is taken */
+    int16_t shore_q8;                         /* far shore, dB */
+    uint16_t shore_width_m;
+};
+
+struct lm_speckle_config {
+    uint8_t looks_log2; /* 0..4 */
+};
+
+/* Shape of the texture by kind of class (enum lm_kind), as log2 nu of 0..4, or LM_TEXTURE_NONE. */
+enum { LM_TEXTURE_NONE = 5 };
+struct lm_texture_config {
+    uint8_t shape_log2[LM_KINDS];
+};
+
+struct lm_tone_config {
+    int16_t black_q8, white_q8; /* levels in 1/256 dB; white 1 to 255 dB above black */
+    uint16_t gamma_q8;          /* exponent, 26..1024 (0.1..4.0) */
+};
 
 /* What a sector shows. */
 enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };

@@ -6,24 +6,15 @@
 #include <stdint.h>
 
 #include "lm/db.h"
+#include "lm/radar.h"
 #include "lm/scan_line.h"
 
 /* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
 enum { LM_LEVEL_SHADOW = -0x8000 };
 
-/* An edge is a byte of eighths of a decibel. With a code and a rise in decibels it takes 16 bits.
- */
-enum { LM_EDGE_MAX_Q8 = 255 * 32 };
-
 /* Nothing nearer than this or than half the antenna's height is shown: the beam does not look down
  * more steeply than 63 degrees. */
 enum { LM_RANGE_MIN_M = 256 };
-
-struct lm_aspect_config {
-    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0..LM_EDGE_MAX_Q8 is taken */
-    int16_t shore_q8;                         /* far shore, dB */
-    uint16_t shore_width_m;
-};
 
 /* What depends on range and height alone, worked out once for many lines. */
 struct lm_range_grid {

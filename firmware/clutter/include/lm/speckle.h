@@ -7,19 +7,9 @@
 #include <stdint.h>
 
 #include "lm/db.h"
+#include "lm/environment.h"
 #include "lm/noise.h"
-
-struct lm_speckle_config {
-    uint8_t looks_log2; /* 0..4 */
-};
-
-/* Shape of the texture by kind of class (enum lm_kind), as log2 nu of 0..4, or LM_TEXTURE_NONE. */
-enum { LM_TEXTURE_NONE = 5 };
-struct lm_texture_config {
-    uint8_t shape_log2[LM_KINDS];
-};
-
-enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
+#include "lm/radar.h"
 
 /* What the texture does to each class, in one word, so that a vector's machine looks up one: the
  * gain in 1/256 dB times 2^LM_TEXTURE_SHAPE_BITS, with a sign, and log2 of the shape, or

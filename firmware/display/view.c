@@ -3,7 +3,6 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/slant.h"
 
 enum { FARTHEST_Q8 = 250000 * 256 };
 

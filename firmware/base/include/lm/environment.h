@@ -8,6 +8,7 @@
 #include "lm/geo.h"
 
 enum { LM_RAINS_MAX = 4, LM_JAMMERS_MAX = 4 };
+enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
 
 struct lm_rain {
     struct lm_place centre;

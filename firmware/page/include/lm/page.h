@@ -9,7 +9,6 @@
 #include "lm/keys.h"
 #include "lm/palette.h"
 #include "lm/radar.h"
-#include "lm/tone.h"
 
 enum lm_format {
     LM_FORMAT_RADAR,

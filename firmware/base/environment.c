@@ -1,7 +1,8 @@
 #include "lm/environment.h"
 
+#include <stdbool.h>
+
 #include "fx/sat.h"
-#include "lm/speckle.h"
 #include "lm/status.h"
 
 static bool is_on_earth(struct lm_place place)

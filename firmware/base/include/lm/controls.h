@@ -8,6 +8,7 @@
 
 #include "lm/environment.h"
 #include "lm/geo.h"
+#include "lm/sar_command.h"
 
 /* Buttons are numbered from 1: the option select buttons (OSB) clockwise from the top left, then
  * the two halves of each rocker. A knob with detents is a rocker whose driver sends down and up at
@@ -43,19 +44,6 @@ enum lm_control_kind {
                              holds until the next one */
     LM_CONTROL_DESIGNATE, /* target management switch up */
     LM_CONTROL_DROP       /* target management switch down */
-};
-
-/* A patch of cells x cells around a place. Either seen from where the ownship is when the command
- * comes, or, for training and tests, from a commanded range and heading. */
-struct lm_sar_command {
-    struct lm_place centre;
-    uint32_t cell_mm;      /* within the radar table's limits */
-    bool has_layover;      /* what stands high is displayed nearer */
-    bool is_steady;        /* unsteady flight leaves no blur */
-    bool is_from_ownship;  /* then the rest is ignored */
-    fx_bam_t look_azimuth; /* from the radar to the patch */
-    uint32_t range_m;      /* along the ground, 1,000..250,000 */
-    int32_t height_q6;     /* of the antenna, metres * 64 above mean sea level, below 30 km */
 };
 
 struct lm_control {

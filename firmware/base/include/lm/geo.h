@@ -106,4 +106,9 @@ void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_pa
 void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
                     fx_bam_t *azimuth);
 
+/* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,
+ * either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
+uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10);
+uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10);
+
 #endif

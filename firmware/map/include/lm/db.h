@@ -19,6 +19,7 @@
 #include <stdint.h>
 
 #include "fx/types.h"
+#include "lm/class_kind.h"
 #include "lm/port.h"
 
 enum {
@@ -42,15 +43,6 @@ enum {
     LM_CHIP_BYTES = 4672,
     LM_DB_SIGNATURES_MAX = 16,
     LM_DB_CHIPS_MAX = LM_DB_SIGNATURES_MAX * 128 * 8
-};
-
-/* What a class is to the radar, apart from how bright. */
-enum lm_kind {
-    LM_KIND_GROUND = 0,
-    LM_KIND_WATER = 1,
-    LM_KIND_STRUCTURE = 2,
-    LM_KIND_TREES = 3,
-    LM_KINDS
 };
 
 /* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */

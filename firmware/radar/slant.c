@@ -3,26 +3,9 @@
 #include <stdbool.h>
 
 #include "fx/log.h"
-#include "fx/root.h"
 #include "fx/sat.h"
+#include "lm/geo.h"
 #include "slant_neon.h"
-
-/* Metres * 256 below 2^26.7 and a height below 2^22.9 of them: squares below 2^54. */
-static uint64_t square_q16(int64_t q8)
-{
-    return (uint64_t)(q8 * q8);
-}
-
-uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10)
-{
-    const uint64_t slant = square_q16(slant_q8), height = square_q16(height_q10 / 4);
-    return slant > height ? fx_sqrt_u64(slant - height) : 0;
-}
-
-uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10)
-{
-    return fx_sqrt_u64(square_q16(ground_q8) + square_q16(height_q10 / 4));
-}
 
 void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
                   const struct lm_range_grid *grid, uint32_t ground_first_q8)
