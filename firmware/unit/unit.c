@@ -1,7 +1,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/version.h"
-#include "parts.h"
+#include "unit_internal.h"
 
 enum {
     TILE_READS_A_STEP = 16,

@@ -1,5 +1,5 @@
 #include "fx/sat.h"
-#include "parts.h"
+#include "unit_internal.h"
 
 enum {
     NONE_SAMPLE_CELLS = 16,

@@ -1,5 +1,5 @@
 #include "fx/sat.h"
-#include "parts.h"
+#include "unit_internal.h"
 
 enum {
     CONTROLS_A_STEP = 8,

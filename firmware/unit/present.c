@@ -1,5 +1,5 @@
 #include "lm/bit.h"
-#include "parts.h"
+#include "unit_internal.h"
 
 static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
 {

@@ -1,7 +1,7 @@
-/* The unit's parts: unit.c knows the order of things, operate.c what the operator wants, scan.c
- * what the radar draws, show.c what the glass shows. */
-#ifndef LM_PARTS_H
-#define LM_PARTS_H
+/* The unit's parts: unit.c knows the order of things, commands.c what the operator wants, pacing.c
+ * when lines are drawn, present.c what the glass shows. */
+#ifndef LM_UNIT_INTERNAL_H
+#define LM_UNIT_INTERNAL_H
 
 #include "lm/unit.h"
 
