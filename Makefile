@@ -21,7 +21,7 @@ INC_room      = $(INC_fixed) $(call ROOM_HEADERS,$(1) $(SEES_$(1)))
 INC_firmware := $(INC_fixed) $(call ROOM_HEADERS,$(ROOMS))
 INC_drivers  := $(INC_fixed) $(call ROOM_HEADERS,$(SEES_drivers)) -Idrivers/include
 INC_bsp      := $(INC_firmware) -Idrivers/include -Ibsp/$(BOARD)
-INC_host     := $(INC_bsp) -Ihost-sim/common/include
+INC_host      = $(INC_bsp)
 
 CFLAGS_fixed    = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(INC_fixed)
 CFLAGS_room     = $(CSTD) $(WARN) $(OPT) $(FREESTANDING) $(call INC_room,$(1))
@@ -33,13 +33,12 @@ objs = $(patsubst %.c,$(O)/%.o,$(1))
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a
 LIB_drivers  := $(O)/libdrivers.a
-LIB_hs       := $(O)/libhs.a
 TEST_SUPPORT := $(O)/tests/support/support.o
 
 PROGRAMS :=
 TESTS    :=
 # What is built beside the firmware: a PC's programs and tests, unless the board says otherwise.
-PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/*/*.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
+PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/host-sim.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
 .PHONY: help deps all run check check-panel panel package bench gallery fuzz rooms lint format clean zcu102 run-zcu102 size bench-zcu102
@@ -115,7 +114,6 @@ check-built: $(PROGRAMS) $(TESTS)
 $(LIB_fixed): $(call objs,$(wildcard fixed/src/*.c))
 $(LIB_firmware): $(call objs,$(wildcard firmware/*/*.c))
 $(LIB_drivers): $(DRIVERS:%=$(O)/drivers/%.o)
-$(LIB_hs): $(call objs,$(wildcard host-sim/common/src/*.c))
 $(O)/%.a:
 	@mkdir -p $(@D)
 	@rm -f $@
@@ -146,7 +144,7 @@ $(O)/bsp/%.o: bsp/%.c
 $(O)/host-sim/%.o: host-sim/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
-	$(Q)$(CC) $(CFLAGS_host) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(Q)$(CC) $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(HOST_CFLAGS) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 $(O)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')

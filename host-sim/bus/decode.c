@@ -1,4 +1,4 @@
-#include "decode.h"
+#include "bus/decode.h"
 
 #include "drv/can_log.h"
 #include "hs/error.h"

@@ -1,4 +1,4 @@
-#include "print.h"
+#include "bus/print.h"
 
 #include "drv/can_socket.h"
 #include "lm/canas.h"

@@ -1,4 +1,4 @@
-#include "table_text.h"
+#include "bus/table_text.h"
 
 #include "hs/error.h"
 #include "lm/canas.h"

@@ -1,4 +1,4 @@
-#include "canas.h"
+#include "nav/canas.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "make_track.h"
+#include "nav/make_track.h"
 
 #include <math.h>
 

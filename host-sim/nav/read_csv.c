@@ -1,7 +1,7 @@
 /* CSV with a header line. Units follow the habit of ADS-B archives (feet, knots, feet a minute)
  * unless the column's name says _m or _ms. */
 #include "hs/error.h"
-#include "read_track.h"
+#include "nav/read_track.h"
 
 #include <math.h>
 #include <stddef.h>

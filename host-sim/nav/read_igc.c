@@ -1,7 +1,7 @@
 /* IGC flight recorder files (FAI, "Technical specification for GNSS flight recorders", section A4):
  * the date from the H record, the fixes from B records. */
 #include "hs/error.h"
-#include "read_track.h"
+#include "nav/read_track.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "read_track.h"
+#include "nav/read_track.h"
 
 #include "hs/error.h"
 

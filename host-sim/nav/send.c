@@ -1,6 +1,6 @@
-#include "send.h"
+#include "nav/send.h"
 
-#include "canas.h"
+#include "nav/canas.h"
 
 #include <math.h>
 #include <stddef.h>

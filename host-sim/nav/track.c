@@ -1,4 +1,4 @@
-#include "track.h"
+#include "nav/track.h"
 
 #include "hs/error.h"
 

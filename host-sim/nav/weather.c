@@ -1,4 +1,4 @@
-#include "weather.h"
+#include "nav/weather.h"
 
 #include <math.h>
 

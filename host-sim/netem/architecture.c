@@ -1,4 +1,4 @@
-#include "architecture.h"
+#include "netem/architecture.h"
 
 #include <string.h>
 

@@ -1,7 +1,6 @@
-#include "chip.h"
+#include "netem/chip.h"
 
-#include "gdal_start.h"
-
+#include "gis/gdal_start.h"
 #include "hs/error.h"
 
 #include <errno.h>

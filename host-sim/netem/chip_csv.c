@@ -1,6 +1,5 @@
-#include "chip.h"
-
 #include "hs/error.h"
+#include "netem/chip.h"
 
 #include <stdlib.h>
 #include <string.h>

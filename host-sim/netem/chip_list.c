@@ -1,10 +1,9 @@
-#include "chip_list.h"
-
-#include "chip.h"
-#include "text_file.h"
+#include "netem/chip_list.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/text_file.h"
+#include "netem/chip.h"
 
 #include <dirent.h>
 #include <errno.h>

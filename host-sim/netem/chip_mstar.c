@@ -1,6 +1,5 @@
-#include "chip.h"
-
 #include "hs/error.h"
+#include "netem/chip.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "convolve.h"
+#include "netem/convolve.h"
 
 #include <string.h>
 

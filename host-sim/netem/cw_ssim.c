@@ -1,8 +1,7 @@
 /* CW-SSIM: see score.h. Only the one level of the pyramid that counts is made, by multiplying the
  * spectrum with all its filters at once and keeping the middle of it. */
-#include "score.h"
-
 #include "hs/error.h"
+#include "netem/score.h"
 
 #include <fftw3.h>
 #include <math.h>

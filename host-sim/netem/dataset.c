@@ -1,4 +1,4 @@
-#include "dataset.h"
+#include "netem/dataset.h"
 
 #include "hs/error.h"
 #include "hs/progress.h"

@@ -1,9 +1,8 @@
-#include "experiment.h"
-
-#include "model_file.h"
-#include "report.h"
+#include "netem/experiment.h"
 
 #include "hs/error.h"
+#include "netem/model_file.h"
+#include "netem/report.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,8 @@
-#include "experiment.h"
-
-#include "report.h"
-
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/progress.h"
+#include "netem/experiment.h"
+#include "netem/report.h"
 
 #include <math.h>
 #include <stdio.h>

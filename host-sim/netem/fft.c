@@ -1,4 +1,4 @@
-#include "fft.h"
+#include "netem/fft.h"
 
 #include "hs/error.h"
 

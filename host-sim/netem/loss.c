@@ -1,4 +1,4 @@
-#include "loss.h"
+#include "netem/loss.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,9 +1,8 @@
-#include "model_file.h"
-
-#include "text_file.h"
+#include "netem/model_file.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/text_file.h"
 
 #include <inttypes.h>
 #include <math.h>

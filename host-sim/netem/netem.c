@@ -1,4 +1,4 @@
-#include "netem.h"
+#include "netem/netem.h"
 
 #include "hs/error.h"
 

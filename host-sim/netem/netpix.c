@@ -1,4 +1,4 @@
-#include "netpix.h"
+#include "netem/netpix.h"
 
 #include "hs/error.h"
 

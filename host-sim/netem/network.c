@@ -1,4 +1,4 @@
-#include "network.h"
+#include "netem/network.h"
 
 #include <cblas.h>
 #include <math.h>

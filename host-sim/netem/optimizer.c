@@ -1,4 +1,4 @@
-#include "optimizer.h"
+#include "netem/optimizer.h"
 
 #include "hs/error.h"
 

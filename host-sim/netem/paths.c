@@ -1,4 +1,4 @@
-#include "paths.h"
+#include "netem/paths.h"
 
 #include "hs/error.h"
 

@@ -1,4 +1,4 @@
-#include "picture.h"
+#include "netem/picture.h"
 
 #include "hs/error.h"
 

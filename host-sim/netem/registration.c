@@ -1,4 +1,4 @@
-#include "registration.h"
+#include "netem/registration.h"
 
 #include "hs/error.h"
 

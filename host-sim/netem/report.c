@@ -1,7 +1,6 @@
-#include "report.h"
+#include "netem/report.h"
 
-#include "chart.h"
-
+#include "hs/chart.h"
 #include "hs/error.h"
 
 #include <errno.h>

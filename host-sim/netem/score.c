@@ -1,4 +1,4 @@
-#include "score.h"
+#include "netem/score.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "search.h"
+#include "netem/search.h"
 
 #include "hs/error.h"
 

@@ -1,4 +1,4 @@
-#include "settings.h"
+#include "netem/settings.h"
 
 #include "hs/error.h"
 

@@ -1,4 +1,4 @@
-#include "simulator.h"
+#include "netem/simulator.h"
 
 #include "hs/error.h"
 

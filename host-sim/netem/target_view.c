@@ -1,8 +1,7 @@
-#include "target_view.h"
-
-#include "netpix.h"
+#include "netem/target_view.h"
 
 #include "hs/error.h"
+#include "netem/netpix.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "train.h"
+#include "netem/train.h"
 
 #include "hs/error.h"
 

@@ -1,4 +1,4 @@
-#include "backproject.h"
+#include "realradar/backproject.h"
 
 #include "hs/error.h"
 #include "hs/png.h"

@@ -1,9 +1,8 @@
-#include "class_order.h"
+#include "realradar/class_order.h"
 
-#include "class_raster.h"
-#include "speckle_statistics.h"
-
+#include "gis/class_raster.h"
 #include "hs/error.h"
+#include "realradar/speckle_statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,7 @@
-#include "class_order.h"
-
 #include "hs/error.h"
 #include "hs/png.h"
 #include "lm/font.h" /* the display's own letters */
+#include "realradar/class_order.h"
 
 #include <math.h>
 #include <stdio.h>

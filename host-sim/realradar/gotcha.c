@@ -1,8 +1,8 @@
 /* The Gotcha files: a struct `data` of arrays in a MATLAB file. */
 #include "mat_file.h"
-#include "phase_history.h"
 
 #include "hs/error.h"
+#include "realradar/phase_history.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* Arrays of numbers inside a struct of a MATLAB file of level 5 (MathWorks, "MAT-File Format",
  * chapter 1), plain or compressed. Nothing in the file is trusted: sizes are checked before they
  * are followed. */
-#ifndef RR_MAT_FILE_H
-#define RR_MAT_FILE_H
+#ifndef REALRADAR_MAT_FILE_H
+#define REALRADAR_MAT_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "phase_history.h"
+#include "realradar/phase_history.h"
 
 #include "hs/error.h"
 #include "hs/rng.h"

@@ -1,4 +1,4 @@
-#include "point_response.h"
+#include "realradar/point_response.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "speckle_statistics.h"
+#include "realradar/speckle_statistics.h"
 
 #include "hs/error.h"
 #include "lm/noise.h"

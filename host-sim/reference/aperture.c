@@ -1,6 +1,6 @@
 /* Synthetic aperture: dwell, point response, unsteady flight, layover. DESIGN.md, "Synthetic
  * aperture". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <complex.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* What the radar sees: DESIGN.md, "What the radar sees of it". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

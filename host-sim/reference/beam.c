@@ -1,6 +1,6 @@
 /* The antenna of a real-beam line: smear across lines, elevation pattern, tilt. DESIGN.md, "Real
  * beam". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "chip.h"
+#include "reference/chip.h"
 
 #include <math.h>
 #include <stdbool.h>

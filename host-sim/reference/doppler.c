@@ -1,5 +1,5 @@
 /* Doppler beam sharpening and movers: DESIGN.md, "Doppler beam sharpening" and "Movers". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

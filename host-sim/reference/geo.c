@@ -1,5 +1,5 @@
 /* Where a cell lies: DESIGN.md, "Where a cell lies". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* From lines to pixels: DESIGN.md, "On the glass". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,7 @@
 /* The flash image as docs/FORMATS.md, section 1, describes it, and what stands at a place in it. */
-#include "reference.h"
-
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "reference/reference.h"
 
 #include <errno.h>
 #include <math.h>

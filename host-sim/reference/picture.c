@@ -1,7 +1,6 @@
 /* Whole pictures: the stages in their order, line by line. */
-#include "reference.h"
-
 #include "hs/error.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <stdlib.h>

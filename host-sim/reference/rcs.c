@@ -1,4 +1,4 @@
-#include "rcs.h"
+#include "reference/rcs.h"
 
 #include <math.h>
 #include <string.h>

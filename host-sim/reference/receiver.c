@@ -1,5 +1,5 @@
 /* Slant range, pulse, noise and time gain: DESIGN.md, "Real beam". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,7 @@
 /* A sector in real beam or sharpened: sampled lines, and what the display makes of them. DESIGN.md,
  * "Real beam". */
-#include "reference.h"
-
 #include "hs/error.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 /* Speckle, texture and noise: DESIGN.md, "Speckle and texture". */
-#include "reference.h"
-
 #include "fx/hash.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <string.h>

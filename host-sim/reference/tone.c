@@ -1,5 +1,5 @@
 /* From decibels to grey: DESIGN.md, "Speckle, noise, tone". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

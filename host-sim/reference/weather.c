@@ -1,5 +1,5 @@
 /* Rain and jammers: DESIGN.md, "Rain", "Noise" and "Rain over a patch". */
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 

@@ -162,7 +162,7 @@ reservoir() {
 campus() {
     need houston2018_rgb_hs_labels
     source=$data/houston2018_rgb_hs_labels/derived
-    classes=host-sim/db/classes/heaton6.classes
+    classes=host-sim/programs/db/classes/heaton6.classes
     for image in rgb_512.ppm hs48_128.bsq; do
         name=${image%%_*}
         say "train and segment $image"
@@ -199,7 +199,7 @@ riviera() {
 }
 
 airfield() { # a field of our own, on level ground at 42 N 27 W, with what landmass-target bakes parked on it
-    classes=host-sim/db/classes/heaton6.classes
+    classes=host-sim/programs/db/classes/heaton6.classes
     extent="499400 4649400 500600 4650600" # UTM zone 26 N; the apron is around 500000, 4650000
     for model in aircraft tank lorry shelter; do
         say "bake the signature of the $model"

@@ -4,7 +4,7 @@
 set -eu
 bin=$1/bin
 out=build/run
-classes=host-sim/db/classes/heaton6.classes
+classes=host-sim/programs/db/classes/heaton6.classes
 start=$(date +%s)
 
 say() {

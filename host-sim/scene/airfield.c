@@ -1,6 +1,7 @@
 /* The airfield: x along the runway, y towards the apron. */
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 enum { SEED_AIRFIELD = 1400 };
 

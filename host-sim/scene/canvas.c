@@ -1,7 +1,7 @@
-#include "canvas.h"
+#include "scene/canvas.h"
 
 #include "hs/error.h"
-#include "land.h"
+#include "scene/land.h"
 
 #include <math.h>
 #include <stdlib.h>

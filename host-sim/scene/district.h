@@ -3,7 +3,7 @@
 #define SCENE_DISTRICT_H
 
 #include "hs/rng.h"
-#include "shape.h"
+#include "scene/shape.h"
 
 #include <stdint.h>
 

@@ -1,9 +1,10 @@
-#include "exemplars.h"
+#include "scene/exemplars.h"
+
+#include "noise.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
-#include "noise.h"
-#include "output.h"
+#include "scene/output.h"
 
 #include <math.h>
 #include <stdbool.h>

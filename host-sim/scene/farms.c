@@ -2,7 +2,8 @@
  * farm. */
 #include "district.h"
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 #include <math.h>
 

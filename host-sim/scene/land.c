@@ -1,8 +1,9 @@
-#include "land.h"
+#include "scene/land.h"
 
 #include "erosion.h"
-#include "hs/error.h"
 #include "noise.h"
+
+#include "hs/error.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "material.h"
+#include "scene/material.h"
 
 /* Reflectances in the bands blue, green, red, near infrared and two of the short-wave infrared, of
  * the order that field spectra of such surfaces have. Two likenesses are deliberate, because paper

@@ -1,6 +1,7 @@
 /* What would be there without people. */
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 #include <math.h>
 

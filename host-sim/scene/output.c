@@ -1,4 +1,4 @@
-#include "output.h"
+#include "scene/output.h"
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"

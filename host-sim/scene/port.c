@@ -1,6 +1,7 @@
 /* The port at the head of the bay: x inland, y along the quay. */
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 #include <math.h>
 

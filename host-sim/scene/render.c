@@ -1,8 +1,9 @@
-#include "render.h"
+#include "scene/render.h"
+
+#include "noise.h"
 
 #include "hs/error.h"
 #include "hs/progress.h"
-#include "noise.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* The roads that lead across the country, and their bridges. */
-#include "scene.h"
+#include "scene/scene.h"
 
 #include <math.h>
 

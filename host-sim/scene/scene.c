@@ -1,4 +1,4 @@
-#include "scene.h"
+#include "scene/scene.h"
 
 struct brush scene_ground(enum material m, uint64_t variant, material_set over)
 {

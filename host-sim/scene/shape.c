@@ -1,4 +1,4 @@
-#include "shape.h"
+#include "scene/shape.h"
 
 #include <math.h>
 

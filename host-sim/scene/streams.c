@@ -1,6 +1,7 @@
 /* Running water and what grows along it. */
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 #include <math.h>
 

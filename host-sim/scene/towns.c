@@ -1,7 +1,8 @@
 /* Streets, blocks and buildings. */
 #include "district.h"
 #include "noise.h"
-#include "scene.h"
+
+#include "scene/scene.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "bezel.h"
+#include "sim/bezel.h"
 
 #include "lm/draw.h"
 #include "lm/font.h"

@@ -1,4 +1,4 @@
-#include "hands.h"
+#include "sim/hands.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "window.h"
+#include "sim/window.h"
 
 #include "hs/error.h"
 

@@ -1,5 +1,5 @@
 #include "hs/error.h"
-#include "tables.h"
+#include "tables/tables.h"
 
 #include <stdlib.h>
 #include <string.h>

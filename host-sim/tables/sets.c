@@ -1,5 +1,5 @@
 #include "lm/noise.h"
-#include "tables.h"
+#include "tables/tables.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -37,7 +37,7 @@ image_of() { # rgb | cube
 train() { # image how seed options...
     image=$1 how=$2 seed=$3
     shift 3
-    "$program" train --image "$(image_of "$image")" --classes host-sim/db/classes/heaton6.classes \
+    "$program" train --image "$(image_of "$image")" --classes host-sim/programs/db/classes/heaton6.classes \
         --labels "$houston/labels_512.pgm" --map "$work/houston.map" --hold-out "$how:0.3" \
         --net "$work/$image.net" --seed "$seed" "$@" 2> /dev/null
 }
@@ -89,7 +89,7 @@ echo
 gdal_translate -q -outsize 4096 4096 -r nearest "$houston/rgb_512.ppm" "$work/large.tif" 2> /dev/null
 train rgb polygons 1 --hidden 18 --epochs 5 > /dev/null
 printf 'segmenting three bands, 3-18-4: ours '
-"$program" segment --image "$work/large.tif" --classes host-sim/db/classes/heaton6.classes \
+"$program" segment --image "$work/large.tif" --classes host-sim/programs/db/classes/heaton6.classes \
     --net "$work/rgb.net" --out "$work/large-classes.tif" 2> /dev/null |
     sed -n 's/.* \([0-9.]* Mpixel\/s\)$/\1 on one core, network alone/p'
 if [ $has_peer = 1 ]; then

@@ -31,11 +31,12 @@ clang_build() {
 # clang-tidy looks for both as well.
 mistakes() {
     rooms=$(printf -- '-I%s ' firmware/*/include)
+    libraries=$(printf -- '-I%s ' host-sim/*/include)
     # shellcheck disable=SC2086 # one word for each room
     cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 -j2 \
         --suppress=missingIncludeSystem --suppress=missingInclude \
         --suppress=uninitvar --suppress=legacyUninitvar --suppress=memleak \
-        -Ifixed/include $rooms -Idrivers/include -Ihost-sim/common/include \
+        -Ifixed/include $rooms -Idrivers/include $libraries \
         fixed firmware drivers bsp host-sim
 }
 

@@ -33,7 +33,7 @@ def ask(build, source, target, flags):
     stamp = Path(build) / "tidy" / (source + ".ok")
     if is_known(stamp, target):
         return ""
-    if source.startswith("host-sim/") and not source.startswith("host-sim/common/"):
+    if source.startswith("host-sim/") and not source.startswith("host-sim/lib/"):
         flags = [*flags, "-include", "tests/discipline/analyzer.h"]
     answer = subprocess.run(["clang-tidy", "--quiet", source, "--", *flags], capture_output=True, text=True)
     if answer.returncode == 0:

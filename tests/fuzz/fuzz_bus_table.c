@@ -1,11 +1,11 @@
 /* A text table of a bus: whatever it holds, it is refused, or makes a profile whose arithmetic
  * stays within its bounds for any frame, and prints. */
+#include "bus/print.h"
+#include "bus/table_text.h"
 #include "fuzz.h"
 #include "lm/nav.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
-#include "print.h"
-#include "table_text.h"
 
 const uint32_t fuzz_mutations = 8000;
 

@@ -1,6 +1,6 @@
 /* A chip as a table of numbers. */
-#include "chip.h"
 #include "fuzz.h"
+#include "netem/chip.h"
 
 const uint32_t fuzz_mutations = 40000;
 

@@ -1,6 +1,6 @@
 /* The class table of landmass-db: what is accepted keeps the limits of class_table.h. */
-#include "class_table.h"
 #include "fuzz.h"
+#include "hs/class_table.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* The map from labels to classes: what is accepted names classes that exist. */
 #include "fuzz.h"
-#include "label_map.h"
+#include "gis/label_map.h"
 
 const uint32_t fuzz_mutations = 40000;
 

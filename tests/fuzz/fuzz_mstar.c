@@ -1,6 +1,6 @@
 /* A raw MSTAR chip: what is accepted is a picture of amplitudes at a known or unknown angle. */
-#include "chip.h"
 #include "fuzz.h"
+#include "netem/chip.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* A trained network: what is accepted is finite, and its parts fit together. */
+#include "classify/net_file.h"
 #include "fuzz.h"
-#include "net_file.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* The file of a training of reflection networks. */
 #include "fuzz.h"
-#include "model_file.h"
+#include "netem/model_file.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* A model: what is accepted has finite corners, triangles between corners that are there, and can
  * be audited. */
 #include "fuzz.h"
-#include "mesh_audit.h"
-#include "obj_file.h"
+#include "tracer/mesh_audit.h"
+#include "tracer/obj_file.h"
 
 #include <math.h>
 

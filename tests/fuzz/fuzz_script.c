@@ -1,6 +1,6 @@
 /* The script of landmass-sim: what it accepts is in order and within what controls.h allows. */
 #include "fuzz.h"
-#include "script.h"
+#include "sim/script.h"
 
 const uint32_t fuzz_mutations = 40000;
 

@@ -1,7 +1,7 @@
 /* A signature file of any bytes. The first byte of the input says which checksums are put right;
  * the rest is the file. */
 #include "fuzz.h"
-#include "signature_file.h"
+#include "hs/signature_file.h"
 
 #include "fx/crc32c.h"
 

@@ -2,7 +2,7 @@
  * checksums are put right first, or nothing but the first byte would ever be looked at. */
 #include "fuzz.h"
 #include "fx/crc32c.h"
-#include "records.h"
+#include "tracer/records.h"
 
 const uint32_t fuzz_mutations = 15000;
 

@@ -1,6 +1,6 @@
 #include "track.h"
 
-#include "send.h"
+#include "nav/send.h"
 
 #include <math.h>
 

@@ -1,13 +1,13 @@
 # Golden pictures: one program, built four ways, that must give the same checksums: as the product is built, by clang, without
 # optimisation under the sanitizers, and with clang at its highest level.
 GOLDEN_SRC := $(addprefix tests/golden/,golden.c golden_flight.c golden_scene.c golden_signature.c) \
-    $(addprefix tests/support/,tiny_image.c memory_flash.c) host-sim/common/src/png.c host-sim/common/src/error.c \
-    host-sim/common/src/atomic_file.c $(wildcard firmware/*/*.c fixed/src/*.c)
+    $(addprefix tests/support/,tiny_image.c memory_flash.c) host-sim/lib/png.c host-sim/lib/error.c \
+    host-sim/lib/atomic_file.c $(wildcard firmware/*/*.c fixed/src/*.c)
 GOLDEN := $(O)/bin/tests/golden
 TESTS += $(GOLDEN)/test_golden
 
 $(GOLDEN)/golden: $(call objs,$(GOLDEN_SRC))
-$(GOLDEN)/twins: $(call objs,tests/golden/twins.c host-sim/common/src/rng.c) $(LIB_firmware) $(LIB_fixed)
+$(GOLDEN)/twins: $(call objs,tests/golden/twins.c host-sim/lib/rng.c) $(LIB_firmware) $(LIB_fixed)
 $(GOLDEN)/golden-clang: $(GOLDEN_SRC:%.c=$(O)/golden-clang/%.o)
 $(GOLDEN)/golden-sanitized: $(GOLDEN_SRC:%.c=$(O)/golden-sanitized/%.o)
 $(GOLDEN)/golden-clang: CC := clang

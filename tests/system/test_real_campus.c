@@ -13,7 +13,7 @@
 #include <cmocka.h>
 #include <gdal.h>
 
-/* As in host-sim/db/classes/heaton6.classes. */
+/* As in host-sim/programs/db/classes/heaton6.classes. */
 enum { SOIL, ASPHALT, CONCRETE, STRUCTURE, VEGETATION, WATER };
 
 enum { SIDE = 512, COARSE = 4, COARSE_SIDE = SIDE / COARSE };

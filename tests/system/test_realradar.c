@@ -1,9 +1,9 @@
 /* The comparison with real radar. Echoes of points and noise show that the measuring is right; the
  * real data are held to what physics allows, loosely. */
-#include "class_order.h"
-#include "gdal_start.h"
-#include "point_response.h"
-#include "speckle_statistics.h"
+#include "gis/gdal_start.h"
+#include "realradar/class_order.h"
+#include "realradar/point_response.h"
+#include "realradar/speckle_statistics.h"
 
 #include "hs/rng.h"
 #include "support.h"
@@ -536,7 +536,8 @@ static void compare_classes(struct rr_class_order *order, const char *folder, co
     char classes[1024], reflectivity[1024];
     snprintf(classes, sizeof classes, "%s/%s", folder, raster);
     snprintf(reflectivity, sizeof reflectivity, "%s/reflectivity.tif", folder);
-    assert_int_equal(db_class_table_read(&table, "host-sim/db/classes/heaton6.classes"), 0);
+    assert_int_equal(db_class_table_read(&table, "host-sim/programs/db/classes/heaton6.classes"),
+                     0);
     assert_int_equal(rr_class_order_compare(
                          order, &(struct rr_class_source){&table, classes, reflectivity, radar}),
                      0);
@@ -556,10 +557,11 @@ static void classes_rank_as_a_real_radar_ranks_them(void **state)
         skip();
     }
     mat_path(folder, sizeof folder, "orihuela");
-    assert_int_equal(support_run("sh host-sim/realradar/realradar.sh %s/bin %s %s orihuela >%s.log "
-                                 "2>&1 || { cat %s.log; exit 1; }",
-                                 support_build_dir(), data, folder, folder, folder),
-                     0);
+    assert_int_equal(
+        support_run("sh host-sim/programs/realradar/realradar.sh %s/bin %s %s orihuela >%s.log "
+                    "2>&1 || { cat %s.log; exit 1; }",
+                    support_build_dir(), data, folder, folder, folder),
+        0);
     db_gdal_start();
     compare_classes(&order, folder, "classes.tif", radar);
     assert_int_equal(order.count, 5);

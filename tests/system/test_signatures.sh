@@ -9,7 +9,7 @@ mkdir -p "$work"
 # shellcheck source=tests/system/test_sim_tap.sh
 . tests/system/test_sim_tap.sh
 
-classes=host-sim/db/classes/heaton6.classes
+classes=host-sim/programs/db/classes/heaton6.classes
 log=$work/flight.log
 script=$work/flight.script
 

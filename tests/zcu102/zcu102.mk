@@ -3,12 +3,12 @@ ZCU102 := $(O)/bin/tests/zcu102
 ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
 ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_memory)
 TESTS += $(ZCU102_TESTS)
-$(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden -Ihost-sim
+$(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden
 $(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c support/tiny_image.c)) \
     $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: $(O)/tests/zcu102/picture_checksum.o $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: LDLIBS := $(call pkgs,libs,libpng)
-$(ZCU102)/scenario: $(call objs,tests/zcu102/scenario.c host-sim/sim/script.c) $(LIB_drivers) $(LIB_hs)
+$(ZCU102)/scenario: $(O)/tests/zcu102/scenario.o $(call host_archives,sim drivers)
 
 # Whatever this make was told about compilers and folders is not for the board's.
 .PHONY: zcu102-images

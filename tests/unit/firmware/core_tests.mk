@@ -7,7 +7,6 @@ $(CORE_TEST_BINS): LDLIBS := -lcmocka $(call pkgs,libs,proj libpng)
 
 T := $(O)/bin/tests/unit/firmware/test_against_reference
 TESTS += $(T)
-$(O)/tests/unit/firmware/test_against_reference.o: EXTRA_CFLAGS := -Ihost-sim/reference
 $(T): $(O)/tests/unit/firmware/test_against_reference.o $(O)/tests/support/tiny_image.o \
     $(O)/tests/support/memory_flash.o $(LIB_reference) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(T): LDLIBS := -lcmocka $(call pkgs,libs,libpng)

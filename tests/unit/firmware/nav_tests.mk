@@ -8,7 +8,7 @@ $(BUS_TESTS): LDLIBS := -lcmocka -lz $(call pkgs,libs,proj libpng)
 # The same sources once more under the address and undefined-behaviour sanitizers, which stop at the first finding.
 BUS_FUZZ     := $(O)/bin/tests/unit/firmware/test_bus_fuzz
 BUS_FUZZ_SRC := tests/unit/firmware/test_bus_fuzz.c firmware/bus/canas.c firmware/bus/bus.c firmware/bus/bus_profiles.c firmware/bus/bus_generic.c firmware/bus/packed.c firmware/bus/canas_service.c firmware/bus/nav.c firmware/bus/weather_bus.c firmware/base/environment.c firmware/base/geo.c \
-    drivers/can/can_log.c $(wildcard fixed/src/*.c) host-sim/common/src/rng.c
+    drivers/can/can_log.c $(wildcard fixed/src/*.c) host-sim/lib/rng.c
 TESTS += $(BUS_FUZZ)
 $(BUS_FUZZ): $(BUS_FUZZ_SRC) $(wildcard tests/unit/firmware/bus_frames.h firmware/*/include/lm/*.h drivers/include/drv/*.h)
 	@mkdir -p $(@D)

@@ -14,6 +14,6 @@ $(GLASS_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,proj)
 T := $(O)/bin/tests/unit/firmware/test_hostile_controls
 TESTS += $(T)
 $(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_hostile_controls.o unit_rig.o) \
-    $(patsubst %.c,$(O)/sanitized/%.o,host-sim/common/src/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
+    $(patsubst %.c,$(O)/sanitized/%.o,host-sim/lib/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
     $(wildcard firmware/*/*.c fixed/src/*.c))
 $(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka

@@ -6,7 +6,7 @@
 #include "lm/line.h"
 #include "lm/radar.h"
 
-#include "reference.h"
+#include "reference/reference.h"
 #include "tiny_image.h"
 
 #include <math.h>

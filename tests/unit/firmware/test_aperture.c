@@ -3,7 +3,7 @@
 #include "hs/rng.h"
 #include "lm/defocus.h"
 #include "lm/layover.h"
-#include "reference.h"
+#include "reference/reference.h"
 #include "tiny_image.h"
 
 #include <math.h>

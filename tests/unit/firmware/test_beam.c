@@ -4,7 +4,7 @@
 #include "lm/antenna.h"
 #include "lm/beam.h"
 #include "lm/dbs.h"
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <setjmp.h>

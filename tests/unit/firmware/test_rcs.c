@@ -3,7 +3,7 @@
 #include "lm/rcs.h"
 
 #include "hs/rng.h"
-#include "rcs.h"
+#include "reference/rcs.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -2,7 +2,7 @@
  * theory: docs/DESIGN.md, "Real beam". */
 #include "hs/rng.h"
 #include "lm/receiver.h"
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,7 +3,7 @@
 #include "hs/angle.h"
 #include "lm/sar.h"
 
-#include "reference.h"
+#include "reference/reference.h"
 #include "sector_world.h"
 #include "target_support.h"
 #include "unit_rig.h"

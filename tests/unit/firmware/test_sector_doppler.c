@@ -1,6 +1,6 @@
 /* What a sweep shows of points, movers, noise and sea: how sharp it is where, and what GMT and SEA
  * make of it. Measured on the lines behind the receiver, before the tone. */
-#include "reference.h"
+#include "reference/reference.h"
 #include "sector_world.h"
 #include "target_support.h"
 

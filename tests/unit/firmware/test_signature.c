@@ -1,6 +1,6 @@
 /* Signatures: which chip is chosen, how it is read and reduced, and how it is laid over cells,
  * against the double-precision reference. */
-#include "chip.h"
+#include "reference/chip.h"
 #include "signature_image.h"
 
 #include "lm/chip_lay.h"

@@ -1,5 +1,5 @@
 /* Targets with a signature in the pictures: a patch, the lines of a window, a sweep. */
-#include "reference.h"
+#include "reference/reference.h"
 #include "signature_image.h"
 
 #include "lm/sar.h"

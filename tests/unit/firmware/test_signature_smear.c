@@ -1,7 +1,7 @@
 /* Movers that are shown by their chip in a patch, against what the aperture makes of its corners.
  */
 #include "extent.h"
-#include "reference.h"
+#include "reference/reference.h"
 #include "signature_image.h"
 
 #include "lm/target_patch.h"

@@ -3,7 +3,7 @@
 #include "lm/target.h"
 
 #include "memory_flash.h"
-#include "rcs.h"
+#include "reference/rcs.h"
 #include "target_image.h"
 #include "target_support.h"
 

@@ -5,8 +5,8 @@
 #include "lm/target_line.h"
 
 #include "lm/aspect.h"
-#include "rcs.h"
-#include "reference.h"
+#include "reference/rcs.h"
+#include "reference/reference.h"
 #include "target_support.h"
 
 #include <geodesic.h>

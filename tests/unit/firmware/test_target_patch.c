@@ -6,7 +6,7 @@
 
 #include "extent.h"
 #include "lm/aspect.h"
-#include "reference.h"
+#include "reference/reference.h"
 #include "target_support.h"
 
 #include <complex.h>

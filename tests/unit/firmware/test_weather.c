@@ -6,7 +6,7 @@
 #include "lm/speckle.h"
 #include "lm/status.h"
 #include "lm/weather.h"
-#include "reference.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,6 +3,5 @@ FIXED_TESTS := $(patsubst tests/%.c,$(O)/bin/tests/%,$(wildcard tests/unit/fixed
 TESTS += $(FIXED_TESTS)
 $(FIXED_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(TEST_SUPPORT) $(LIB_tables) $(LIB_fixed) $(LIB_hs)
 $(FIXED_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,libpng)
-$(O)/tests/unit/fixed/%.o: EXTRA_CFLAGS += -Ihost-sim/tables
 # This one also runs the program.
 $(O)/bin/tests/unit/fixed/test_tables: | $(O)/bin/landmass-tables

@@ -1,6 +1,6 @@
 /* The generated tables in the tree are those that the generator makes today. */
 #include "support.h"
-#include "tables.h"
+#include "tables/tables.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

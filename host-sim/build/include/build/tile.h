@@ -1,0 +1,56 @@
+/* One tile of the image, from the inputs or from the four tiles below it. */
+#ifndef BUILD_TILE_H
+#define BUILD_TILE_H
+
+#include "build/plan.h"
+#include "hs/class_table.h"
+#include "lm/db.h"
+#include "reflectivity/reflect.h"
+#include "resample/cover.h"
+#include "terrain/surface.h"
+
+#include <stdint.h>
+
+/* Class of a cell that the class raster does not give, from the terrain alone. */
+struct build_rule {
+    int land, water, steep; /* class numbers; steep -1: none */
+    double sea_level_m;     /* a cell whose centre is not higher is water */
+    double steep_tangent;   /* steeper than this is `steep` */
+};
+
+struct build_counts {
+    uint64_t cells[LM_DB_CLASSES]; /* as generated, each once, at whatever level */
+    double area_m2[LM_DB_CLASSES];
+    uint64_t cells_by_rule;              /* of these, by the terrain's rule */
+    uint64_t cells_beyond_terrain;       /* of these, on elevations of the terrain's edge */
+    double land_area_m2, land_metres_m2; /* for the mean elevation */
+};
+
+struct build_context {
+    struct resample_cover cover;
+    struct terrain terrain;
+    struct db_class_table table;
+    struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */
+    struct lm_classes classes;
+    struct build_rule rule;
+    struct build_plan plan;
+    uint32_t seed;
+    int parts; /* pixels of the class raster that a cell is cut into, along one side */
+    int terrain_level[DB_LIST_MAX]; /* from which level each terrain layer gives tiles of its own */
+    struct build_counts counts;
+};
+
+/* A tile, its cells by themselves, and its elevations not yet cut to steps. */
+struct build_tile {
+    struct lm_tile record;
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
+    struct terrain_posts posts;
+};
+
+/* Make tile (level, row, column); children[2 * north + east] are the tiles below it or NULL.
+ * Returns 0 and *out, which the caller frees, or NULL there when the tile holds no data; -1 with
+ * the error reported. */
+int build_tile_make(struct build_context *b, int level, uint8_t zone, uint32_t row, uint32_t column,
+                    struct build_tile *const children[4], struct build_tile **out);
+
+#endif

@@ -1,0 +1,264 @@
+#include "build/tile.h"
+
+#include "hs/error.h"
+#include "image/codes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELLS = LM_TILE_CELLS, HALF = LM_TILE_CELLS / 2 };
+
+static double cell_area_m2(const struct image_frame *f, int row)
+{
+    const double latitude = ((double)f->south + (row + 0.5) * (double)f->latitude_step) *
+                            (3.14159265358979323846 / 2147483648.0);
+    const double north = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
+    const double east = (double)f->longitude_step * IMAGE_METRES_PER_BAM * cos(latitude);
+    return north * east;
+}
+
+static bool has_terrain(const struct terrain_posts *p, int r, int c)
+{
+    return p->has[r][c] && p->has[r][c + 1] && p->has[r + 1][c] && p->has[r + 1][c + 1];
+}
+
+/* Elevation at the centre of a cell, metres. */
+static double centre_metres(const struct terrain_posts *p, int r, int c)
+{
+    return ((double)p->q6[r][c] + p->q6[r][c + 1] + p->q6[r + 1][c] + p->q6[r + 1][c + 1]) / 256.0;
+}
+
+/* Tangent of the slope of the plane nearest to the four corners of a cell. */
+static double slope_tangent(const struct terrain_posts *p, const struct image_frame *f, int r,
+                            int c)
+{
+    const double sw = p->q6[r][c], se = p->q6[r][c + 1];
+    const double nw = p->q6[r + 1][c], ne = p->q6[r + 1][c + 1];
+    const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
+    const double east_m = cell_area_m2(f, r) / north_m;
+    return hypot((ne + nw - se - sw) / (128.0 * north_m), (ne + se - nw - sw) / (128.0 * east_m));
+}
+
+static int rule_class(const struct build_context *b, const struct terrain_posts *p,
+                      const struct image_frame *f, int r, int c)
+{
+    if (centre_metres(p, r, c) <= b->rule.sea_level_m) {
+        return b->rule.water;
+    }
+    if (b->rule.steep >= 0 && slope_tangent(p, f, r, c) > b->rule.steep_tangent) {
+        return b->rule.steep;
+    }
+    return b->rule.land;
+}
+
+static uint16_t encode(const struct build_context *b, int class_number, double gamma_db,
+                       double height_m)
+{
+    const enum db_class_kind kind = b->table.items[class_number].kind;
+    const bool stands = kind == DB_KIND_STRUCTURE || kind == DB_KIND_TREES;
+    const uint8_t height = stands ? image_height_code(b->classes.height_dm, height_m * 10.0) : 0;
+    return image_cell(image_gamma_code(gamma_db), (uint8_t)class_number, height);
+}
+
+/* The random reflectivity of a cell, or of one of the `parts` x `parts` of one: by where it lies
+ * alone. Of a coarse cell it is that of all the finest ones that it stands for, as that of a cell
+ * made from below is. */
+static double assigned_gamma_db(const struct build_context *b, int class_number,
+                                const struct image_frame *f, int parts, int r, int c)
+{
+    const uint64_t level_seed = b->seed + ((uint64_t)f->shift << 32);
+    const uint32_t side = (uint32_t)(CELLS * parts);
+    return db_reflect_assign_coarse(&b->laws[class_number], level_seed,
+                                    (int)(f->column * side + (uint32_t)c),
+                                    (int)(f->row * side + (uint32_t)r), f->shift - b->plan.shift0);
+}
+
+static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s,
+                              const struct image_frame *f, int r, int c)
+{
+    const int k = s->class_number;
+    if (k == LM_DB_CLASS_NONE) {
+        return IMAGE_CELL_NONE;
+    }
+    const double gamma_db =
+        s->has_gamma ? (double)s->gamma_db : assigned_gamma_db(b, k, f, b->parts, r, c);
+    return encode(b, k, gamma_db, s->has_height ? (double)s->height_m : b->table.items[k].height_m);
+}
+
+/* Cells of the finest level that the class raster gives. Returns how many samples it had, or -1. */
+static int cover_cells(const struct build_context *b, const struct image_frame *f, uint16_t *cells)
+{
+    const size_t side = (size_t)(CELLS * b->parts);
+    struct resample_sample *samples = malloc(side * side * sizeof *samples);
+    uint16_t *fine = malloc(side * side * sizeof *fine);
+    int found = -1;
+    if (!samples || !fine) {
+        hs_error(b->cover.classes.path, "choose smaller cells", "out of memory");
+    } else {
+        found = resample_cover_tile(&b->cover, f, b->parts, samples);
+    }
+    if (found > 0) {
+        for (size_t i = 0; i < side * side; i++) {
+            fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
+        }
+        image_reduce(fine, side, b->parts, cells, CELLS, CELLS, b->classes.height_dm);
+    }
+    free(samples);
+    free(fine);
+    return found;
+}
+
+static bool terrain_begins(const struct build_context *b, int level, const struct image_area *area)
+{
+    for (int i = 0; i < b->terrain.layer_count; i++) {
+        if (b->terrain_level[i] <= level && image_areas_meet(&b->terrain.layers[i].area, area)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void fill_by_rule(struct build_context *b, const struct image_frame *f, struct build_tile *t,
+                         const bool is_below[4])
+{
+    for (int r = 0; r < CELLS; r++) {
+        for (int c = 0; c < CELLS; c++) {
+            uint16_t *cell = &t->cells[r][c];
+            const bool is_given = is_below[2 * (r / HALF) + c / HALF] || *cell != IMAGE_CELL_NONE;
+            if (!is_given && has_terrain(&t->posts, r, c)) {
+                const int k = rule_class(b, &t->posts, f, r, c);
+                *cell =
+                    encode(b, k, assigned_gamma_db(b, k, f, 1, r, c), b->table.items[k].height_m);
+                b->counts.cells_by_rule++;
+            }
+        }
+    }
+}
+
+/* Add the cells that were made here, not taken from below, to the counts. */
+static void count_cells(struct build_context *b, const struct image_frame *f,
+                        const struct build_tile *t, const bool is_below[4])
+{
+    struct build_counts *n = &b->counts;
+    for (int r = 0; r < CELLS; r++) {
+        const double area = cell_area_m2(f, r);
+        for (int c = 0; c < CELLS; c++) {
+            const uint8_t k = image_cell_class(t->cells[r][c]);
+            if (is_below[2 * (r / HALF) + c / HALF] || k == LM_DB_CLASS_NONE) {
+                continue;
+            }
+            n->cells[k]++;
+            n->area_m2[k] += area;
+            n->cells_beyond_terrain += !has_terrain(&t->posts, r, c);
+            if (b->table.items[k].kind != DB_KIND_WATER) {
+                n->land_area_m2 += area;
+                n->land_metres_m2 += area * centre_metres(&t->posts, r, c);
+            }
+        }
+    }
+}
+
+/* What the tile below gives to its quarter of this one. */
+static void take_child(const struct build_context *b, struct build_tile *t,
+                       const struct build_tile *child, int quarter)
+{
+    const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
+    image_reduce(&child->cells[0][0], CELLS, 2, &t->cells[row][column], CELLS, HALF,
+                 b->classes.height_dm);
+    for (int r = 0; r <= HALF; r++) {
+        for (int c = 0; c <= HALF; c++) {
+            t->posts.q6[row + r][column + c] = child->posts.q6[2 * r][2 * c];
+            t->posts.has[row + r][column + c] = child->posts.has[2 * r][2 * c];
+        }
+    }
+}
+
+static bool is_empty(const struct build_tile *t)
+{
+    for (int r = 0; r < CELLS; r++) {
+        for (int c = 0; c < CELLS; c++) {
+            if (image_cell_class(t->cells[r][c]) != LM_DB_CLASS_NONE) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Make what the inputs give. Returns 1 when there is anything, 0 when not, -1 on an error. */
+static int make_from_inputs(struct build_context *b, int level, const struct image_frame *f,
+                            bool has_child, struct build_tile *t)
+{
+    const struct image_area area = image_frame_area(f);
+    const int found = level == 0 ? cover_cells(b, f, &t->cells[0][0]) : 0;
+    if (found < 0) {
+        return -1;
+    }
+    if (found == 0 && !has_child && !terrain_begins(b, level, &area)) {
+        return 0;
+    }
+    const int reached = terrain_posts(&b->terrain, f, &t->posts);
+    if (reached < 0) {
+        return -1;
+    }
+    return found > 0 || reached > 0;
+}
+
+static void identify(struct lm_tile *tile, int level, const struct image_frame *f)
+{
+    tile->level = (uint8_t)level;
+    tile->zone = f->zone;
+    tile->row = f->row;
+    tile->column = f->column;
+}
+
+static int make_tile(struct build_context *b, int level, const struct image_frame *f,
+                     struct build_tile *const children[4], struct build_tile *t)
+{
+    bool is_below[4];
+    int below = 0;
+    for (int i = 0; i < 4; i++) {
+        is_below[i] = children[i] != NULL;
+        below += is_below[i];
+    }
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        t->cells[i / CELLS][i % CELLS] = IMAGE_CELL_NONE;
+    }
+    const int made = below < 4 ? make_from_inputs(b, level, f, below > 0, t) : 0;
+    if (made < 0 || (made == 0 && below == 0)) {
+        return made;
+    }
+    if (made > 0) {
+        fill_by_rule(b, f, t, is_below);
+        count_cells(b, f, t, is_below);
+    }
+    for (int i = 0; i < 4; i++) {
+        if (children[i]) {
+            take_child(b, t, children[i], i);
+        }
+    }
+    identify(&t->record, level, f);
+    image_cells_encode(t->cells, &t->record);
+    image_posts_encode(t->posts.q6, &t->record);
+    return !is_empty(t);
+}
+
+int build_tile_make(struct build_context *b, int level, uint8_t zone, uint32_t row, uint32_t column,
+                    struct build_tile *const children[4], struct build_tile **out)
+{
+    const uint8_t shift = (uint8_t)(b->plan.shift0 + level);
+    const struct image_frame frame = image_frame_of(shift, zone, row, column);
+    *out = NULL;
+    struct build_tile *t = calloc(1, sizeof *t);
+    if (!t) {
+        return hs_error("tiles", "choose larger cells", "out of memory");
+    }
+    const int made = make_tile(b, level, &frame, children, t);
+    if (made <= 0) {
+        free(t);
+        return made;
+    }
+    *out = t;
+    return 0;
+}

@@ -1,0 +1,44 @@
+/* From samples to a classifier: normalisation, the choice of outputs, a committee of trained
+ * networks, and what they say about samples. */
+#ifndef CLASSIFY_LEARN_H
+#define CLASSIFY_LEARN_H
+
+#include "classify/confusion.h"
+#include "classify/mlp_train.h"
+#include "classify/net_file.h"
+#include "classify/samples.h"
+
+struct db_learn_options {
+    struct db_train_options train;
+    int hidden; /* 0: db_mlp_default_hidden */
+    enum db_unit unit;
+    enum db_loss loss;
+    int members;
+    double validate; /* part of the training regions set aside, anew for each member, to stop by; 0:
+                        none */
+    double thin;     /* cell of db_thin; 0: none */
+    bool thin_is_loud;
+};
+
+/* Train a classifier on the training samples. Thins them and changes parts, so that `samples` holds
+ * the survivors afterwards; held-out samples stay as they are. `reports` receives `members`
+ * reports, each to be freed. Returns 0, or -1 with the error reported and nothing to free. */
+int db_learn(struct db_net *net, struct db_samples *samples, size_t region_count,
+             const struct db_class_table *table, int band_count, int context,
+             const struct db_learn_options *options, struct db_train_report *reports);
+
+/* The class, by index into `table`, that the network gives each sample. Returns 0, or -1 reported.
+ */
+int db_classify_samples(const struct db_net *net, const struct db_class_table *table,
+                        const struct db_samples *samples, uint8_t *given);
+
+/* Where each output of the network stands in the class table. Returns 0, or -1 reported when the
+ * table lacks a class; `net_path` is for the message. */
+int db_net_classes(const struct db_net *net, const struct db_class_table *table,
+                   const char *net_path, uint8_t *class_of_output);
+
+/* Count the samples of one part. */
+void db_confusion_count(struct db_confusion *c, const struct db_samples *samples,
+                        const uint8_t *given, enum db_part part);
+
+#endif

@@ -1,0 +1,32 @@
+/* The trained network on many pixels: the forward pass laid out for vector instructions. */
+#ifndef CLASSIFY_MLP_APPLY_H
+#define CLASSIFY_MLP_APPLY_H
+
+#include "classify/net_file.h"
+
+/* tanh by the seventh convergent of Lambert's continued fraction, x (135135 + 17325 x^2 + 378 x^4 +
+ * x^6) / (135135 + 62370 x^2 + 3150 x^4 + 28 x^6), held at +-1 where it would pass them. Error at
+ * most 1e-4 anywhere. */
+float db_fast_tanh(float x);
+
+/* A network with the normalisation folded into its first layer. */
+struct db_applied {
+    int input_count, hidden_count, output_count, member_count;
+    enum db_unit unit;
+    float *weights; /* owned: for each member as in db_mlp */
+    size_t member_size;
+};
+
+/* Returns 0, or -1 out of memory, reported. */
+int db_apply_init(struct db_applied *a, const struct db_net *net);
+
+void db_apply_free(struct db_applied *a);
+
+/* The output with the largest sum over the members, for each of `count` pixels. `planes` holds one
+ * plane of `stride` values an input, of which the first `count` are used. The sums that enter the
+ * output units are compared: units are monotonic, so for a single network the answer is that of its
+ * outputs. */
+void db_apply(const struct db_applied *a, const float *planes, size_t stride, size_t count,
+              uint8_t *winners);
+
+#endif

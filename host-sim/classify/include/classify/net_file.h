@@ -1,0 +1,42 @@
+/* A trained classifier: the networks of a committee with all that is needed to use them on another
+ * image.
+ *
+ * The file is text, one item a line, '#' begins a remark, in this order:
+ *
+ *     landmass-net 1
+ *     bands B                     1..1024
+ *     context C                   side of the window of samples.h, odd, 1..31
+ *     unit tanh | sigmoid
+ *     loss square | cross-entropy
+ *     hidden H                    1..1024
+ *     members M                   1..32: networks whose outputs are added before the largest is
+ * taken class NAME                  once an output, in the order of the outputs; 2..16 lines input
+ * MEAN SCALE            once an input: what is subtracted from it, then what it is divided by, > 0
+ *     unit-weights W1 .. Wn BIAS  once a hidden unit, then once an output, of the first member,
+ * then the next end
+ *
+ * Numbers are decimal with nine digits, which gives single precision back exactly. */
+#ifndef CLASSIFY_NET_FILE_H
+#define CLASSIFY_NET_FILE_H
+
+#include "classify/mlp.h"
+#include "hs/class_table.h"
+
+enum { DB_MEMBERS_MAX = 32, DB_HIDDEN_MAX = 1024 };
+
+struct db_net {
+    int band_count, context, input_count, output_count, member_count;
+    char class_names[DB_CLASS_MAX][DB_NAME_SIZE];
+    float *mean, *scale; /* owned; input_count of each */
+    struct db_mlp members[DB_MEMBERS_MAX];
+};
+
+/* Both return 0, or -1 with file, line, cause and remedy reported. Reading believes nothing:
+ * counts, names and numbers are checked, and every number must be finite and within +-1e9. */
+int db_net_write(const struct db_net *net, const char *path);
+int db_net_read(struct db_net *net, const char *path);
+
+/* Harmless on a zeroed struct. */
+void db_net_free(struct db_net *net);
+
+#endif

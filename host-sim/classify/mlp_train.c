@@ -1,0 +1,407 @@
+#include "classify/mlp_train.h"
+
+#include "hs/error.h"
+#include "hs/progress.h"
+#include "hs/rng.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CLASSES = 256,      /* as many as a target can name */
+    SCORE_BATCH = 1024, /* exemplars at a time when only looking */
+    ACTIONS_BEFORE_NEW_WEIGHTS = 3,
+};
+
+/* An exemplar's RMS error over the outputs counts as high or low beyond these. */
+static const double high_error = 0.4, low_error = 0.2;
+/* Recognition of 95 % switches between the two in up to a tenth of the presentations: more is the
+ * symptom. */
+static const double alternating = 0.1;
+/* Relative fall of the error that still counts as progress. */
+static const double error_progress = 2e-3;
+
+static int batch_alloc(struct db_mlp_batch *b, const struct db_mlp *net, int count)
+{
+    const size_t n = (size_t)count;
+    float *all = malloc(n * (size_t)(2 * net->hidden_count + 2 * net->output_count) * sizeof *all);
+    *b = (struct db_mlp_batch){.count = count, .hidden = all};
+    if (!all) {
+        return -1;
+    }
+    b->hidden_delta = b->hidden + n * (size_t)net->hidden_count;
+    b->outputs = b->hidden_delta + n * (size_t)net->hidden_count;
+    b->output_delta = b->outputs + n * (size_t)net->output_count;
+    return 0;
+}
+
+static int largest(const float *values, int count)
+{
+    int best = 0;
+    for (int i = 1; i < count; i++) {
+        best = values[i] > values[best] ? i : best;
+    }
+    return best;
+}
+
+static double square_error(const float *outputs, int count, int target)
+{
+    double sum = 0;
+    for (int k = 0; k < count; k++) {
+        const double error = (double)outputs[k] - (k == target);
+        sum += error * error;
+    }
+    return sum;
+}
+
+double db_mlp_recognition(const struct db_mlp *net, const struct db_train_data *data, double *rms)
+{
+    struct db_mlp_batch b;
+    if (data->count == 0 || batch_alloc(&b, net, SCORE_BATCH) != 0) {
+        return NAN;
+    }
+    size_t seen[CLASSES] = {0}, right[CLASSES] = {0};
+    double square = 0;
+    for (size_t at = 0; at < data->count; at += SCORE_BATCH) {
+        const size_t left = data->count - at;
+        b.count = left < SCORE_BATCH ? (int)left : SCORE_BATCH;
+        b.inputs = data->inputs + at * (size_t)net->input_count;
+        db_mlp_forward(net, &b);
+        for (int i = 0; i < b.count; i++) {
+            const float *o = b.outputs + (size_t)i * (size_t)net->output_count;
+            const uint8_t target = data->targets[at + (size_t)i];
+            seen[target]++;
+            right[target] += largest(o, net->output_count) == target;
+            square += square_error(o, net->output_count, target);
+        }
+    }
+    free(b.hidden);
+    double sum = 0;
+    int classes = 0;
+    for (int c = 0; c < CLASSES; c++) {
+        if (seen[c] > 0) {
+            sum += (double)right[c] / (double)seen[c];
+            classes++;
+        }
+    }
+    if (rms) {
+        *rms = sqrt(square / ((double)data->count * net->output_count));
+    }
+    return sum / classes;
+}
+
+/* Endless rounds through the exemplars of each class, in an order drawn anew for each round. */
+struct presenter {
+    uint32_t *order;           /* owned: exemplars sorted by class */
+    size_t begin[CLASSES + 1]; /* of each class in `order` */
+    size_t next[CLASSES];
+    uint32_t *epoch; /* owned: those of the present epoch */
+    size_t count;
+    uint8_t classes[CLASSES]; /* that have exemplars */
+    int class_count;
+};
+
+static void presenter_free(struct presenter *p)
+{
+    free(p->order);
+    free(p->epoch);
+}
+
+static int presenter_init(struct presenter *p, const struct db_train_data *data)
+{
+    *p = (struct presenter){.count = data->count};
+    p->order = malloc(data->count * sizeof *p->order);
+    p->epoch = malloc(data->count * sizeof *p->epoch);
+    if (!p->order || !p->epoch) {
+        return -1; /* trainer_free frees either. */
+    }
+    size_t used = 0;
+    for (int c = 0; c < CLASSES; c++) {
+        p->begin[c] = used;
+        for (size_t i = 0; i < data->count; i++) {
+            if (data->targets[i] == c) {
+                p->order[used++] = (uint32_t)i;
+            }
+        }
+        p->next[c] = used; /* The first draw begins a round. */
+        if (used > p->begin[c]) {
+            p->classes[p->class_count++] = (uint8_t)c;
+        }
+    }
+    p->begin[CLASSES] = used;
+    return 0;
+}
+
+static void shuffle(uint32_t *items, size_t count, struct hs_rng *rng)
+{
+    for (size_t i = count; i > 1; i--) {
+        const uint32_t j = hs_rng_below(rng, (uint32_t)i), t = items[j];
+        items[j] = items[i - 1];
+        items[i - 1] = t;
+    }
+}
+
+static void presenter_draw_epoch(struct presenter *p, struct hs_rng *rng)
+{
+    for (size_t i = 0; i < p->count; i++) {
+        const int c = p->classes[i % (size_t)p->class_count];
+        if (p->next[c] == p->begin[c + 1]) {
+            p->next[c] = p->begin[c];
+            shuffle(p->order + p->begin[c], p->begin[c + 1] - p->begin[c], rng);
+        }
+        p->epoch[i] = p->order[p->next[c]++];
+    }
+    shuffle(p->epoch, p->count, rng);
+}
+
+/* Everything training remembers from one epoch to the next. */
+struct trainer {
+    struct db_mlp *net;
+    const struct db_train_options *options;
+    const struct db_train_data *training, *validation;
+    struct db_train_report *report;
+    struct presenter presenter;
+    struct db_mlp_batch batch;
+    float *inputs;                     /* owned: the batch with its noise */
+    uint8_t *targets;                  /* owned */
+    float *gradient, *velocity, *best; /* owned; laid out as the weights */
+    struct hs_rng rng;
+    double rate, momentum, noise; /* as they are by now */
+    double best_score, best_rms;  /* of the weights in `best` */
+    double low_rms;               /* the lowest that counted as progress */
+    int progress_epoch;           /* the last that improved on anything */
+    int actions;
+    bool was_high; /* the error of the exemplar presented last */
+};
+
+static void trainer_free(struct trainer *t)
+{
+    presenter_free(&t->presenter);
+    free(t->batch.hidden);
+    free(t->inputs);
+    free(t->targets);
+    free(t->gradient);
+    free(t->velocity);
+    free(t->best);
+}
+
+static int trainer_init(struct trainer *t)
+{
+    const size_t size = db_mlp_size(t->net), batch = (size_t)t->options->batch;
+    t->rate = t->options->rate;
+    t->momentum = t->options->momentum;
+    t->noise = t->options->noise;
+    t->best_score = -1;
+    t->best_rms = t->low_rms = INFINITY;
+    hs_rng_seed(&t->rng, t->options->seed ^ 0x7261696e);
+    t->inputs = malloc(batch * (size_t)t->net->input_count * sizeof *t->inputs);
+    t->targets = malloc(batch);
+    t->gradient = calloc(size, sizeof *t->gradient);
+    t->velocity = calloc(size, sizeof *t->velocity);
+    t->best = calloc(size, sizeof *t->best);
+    t->report->epochs = calloc((size_t)t->options->epochs, sizeof *t->report->epochs);
+    if (!t->inputs || !t->targets || !t->gradient || !t->velocity || !t->best ||
+        !t->report->epochs || presenter_init(&t->presenter, t->training) != 0 ||
+        batch_alloc(&t->batch, t->net, t->options->batch) != 0) {
+        return -1;
+    }
+    memcpy(t->best, t->net->weights, size * sizeof *t->best);
+    t->batch.inputs = t->inputs;
+    t->batch.targets = t->targets;
+    return 0;
+}
+
+static void fill_batch(struct trainer *t, size_t at, int count)
+{
+    const size_t inputs = (size_t)t->net->input_count;
+    t->batch.count = count;
+    for (size_t i = 0; i < (size_t)count; i++) {
+        const uint32_t from = t->presenter.epoch[at + i];
+        t->targets[i] = t->training->targets[from];
+        for (size_t f = 0; f < inputs; f++) {
+            const double noise = t->noise > 0 ? t->noise * hs_rng_normal(&t->rng) : 0;
+            t->inputs[i * inputs + f] =
+                t->training->inputs[(size_t)from * inputs + f] + (float)noise;
+        }
+    }
+}
+
+static void change_weights(struct trainer *t)
+{
+    const size_t size = db_mlp_size(t->net);
+    const float rate = (float)t->rate, momentum = (float)t->momentum;
+    const float decay = (float)t->options->decay;
+    for (size_t i = 0; i < size; i++) {
+        t->velocity[i] =
+            momentum * t->velocity[i] - rate * (t->gradient[i] + decay * t->net->weights[i]);
+        t->net->weights[i] += t->velocity[i];
+    }
+}
+
+/* Watch for the symptom while the exemplars are presented. */
+static size_t count_alternations(struct trainer *t)
+{
+    const int outputs = t->net->output_count;
+    size_t count = 0;
+    for (int i = 0; i < t->batch.count; i++) {
+        const float *o = t->batch.outputs + (size_t)i * (size_t)outputs;
+        const double error = sqrt(square_error(o, outputs, t->targets[i]) / outputs);
+        if (t->was_high ? error < low_error : error > high_error) {
+            t->was_high = !t->was_high;
+            count++;
+        }
+    }
+    return count;
+}
+
+static void run_epoch(struct trainer *t, struct db_epoch *epoch)
+{
+    size_t alternations = 0;
+    presenter_draw_epoch(&t->presenter, &t->rng);
+    for (size_t at = 0; at < t->presenter.count; at += (size_t)t->options->batch) {
+        const size_t left = t->presenter.count - at;
+        fill_batch(t, at, left < (size_t)t->options->batch ? (int)left : t->options->batch);
+        db_mlp_forward(t->net, &t->batch);
+        alternations += count_alternations(t);
+        db_mlp_backward(t->net, &t->batch, t->gradient);
+        change_weights(t);
+    }
+    epoch->alternation = (double)alternations / (double)t->presenter.count;
+    epoch->recognition = db_mlp_recognition(t->net, t->training, &epoch->rms);
+    epoch->validation = db_mlp_recognition(t->net, t->validation, NULL);
+}
+
+static void keep_if_better(struct trainer *t, const struct db_epoch *epoch, int number)
+{
+    const double score = isnan(epoch->validation) ? epoch->recognition : epoch->validation;
+    if (score > t->best_score || (score == t->best_score && epoch->rms < t->best_rms)) {
+        t->best_score = score;
+        t->best_rms = epoch->rms;
+        t->report->best_epoch = number;
+        t->progress_epoch = number;
+        memcpy(t->best, t->net->weights, db_mlp_size(t->net) * sizeof *t->best);
+    }
+    if (epoch->rms < t->low_rms * (1 - error_progress)) {
+        t->low_rms = epoch->rms;
+        /* With validation polygons a falling training error alone is no progress. */
+        t->progress_epoch = isnan(epoch->validation) ? number : t->progress_epoch;
+    }
+}
+
+static void record(struct trainer *t, int epoch, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void record(struct trainer *t, int epoch, const char *format, ...)
+{
+    if (t->report->event_count == DB_EVENTS_MAX) {
+        return;
+    }
+    struct db_train_event *event = &t->report->events[t->report->event_count++];
+    event->epoch = epoch;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(event->text, sizeof event->text, format, arguments);
+    va_end(arguments);
+}
+
+static int draw_new_weights(struct trainer *t)
+{
+    struct db_mlp fresh = *t->net;
+    if (db_mlp_init(&fresh, hs_rng_u64(&t->rng)) != 0) {
+        return -1;
+    }
+    db_mlp_free(t->net);
+    t->net->weights = fresh.weights;
+    t->rate = t->options->rate;
+    t->momentum = t->options->momentum;
+    t->noise = t->options->noise;
+    t->low_rms = INFINITY;
+    return 0;
+}
+
+/* The next cure; returns false when there is none left. */
+static bool act_on_minimum(struct trainer *t, int epoch, double alternation)
+{
+    const char *symptom = "local minimum (%.0f %% alternating)";
+    char met[64];
+    snprintf(met, sizeof met, symptom, 100 * alternation);
+    if (t->actions > ACTIONS_BEFORE_NEW_WEIGHTS) {
+        return false;
+    }
+    memset(t->velocity, 0, db_mlp_size(t->net) * sizeof *t->velocity);
+    switch (t->actions++) {
+    case 0:
+        t->rate *= 0.5;
+        record(t, epoch, "%s: rate halved to %g", met, t->rate);
+        return true;
+    case 1:
+        t->rate *= 0.5;
+        t->momentum *= 0.8;
+        record(t, epoch, "%s: rate %g, momentum %g", met, t->rate, t->momentum);
+        return true;
+    case 2:
+        t->noise = t->noise > 0 ? 2 * t->noise : 0.05;
+        record(t, epoch, "%s: noise raised to %g", met, t->noise);
+        return true;
+    default:
+        record(t, epoch, "%s: weights drawn anew", met);
+        return draw_new_weights(t) == 0;
+    }
+}
+
+/* Returns true when training is over. */
+static bool is_over(struct trainer *t, const struct db_epoch *epoch, int number)
+{
+    if (epoch->recognition >= t->options->goal) {
+        t->report->stop = DB_STOP_GOAL;
+        return true;
+    }
+    if (number - t->progress_epoch >= t->options->patience) {
+        t->progress_epoch = number;
+        if (epoch->alternation < alternating || !act_on_minimum(t, number, epoch->alternation)) {
+            t->report->stop = DB_STOP_PLATEAU;
+            return true;
+        }
+    }
+    t->report->stop = DB_STOP_EPOCHS;
+    return false;
+}
+
+int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
+                 const struct db_train_data *training, const struct db_train_data *validation,
+                 struct db_train_report *report)
+{
+    *report = (struct db_train_report){0};
+    struct trainer t = {.net = net,
+                        .options = options,
+                        .training = training,
+                        .validation = validation,
+                        .report = report};
+    if (trainer_init(&t) != 0) {
+        trainer_free(&t);
+        return hs_error("training", "lower --per-class or --hidden", "out of memory");
+    }
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "training", (uint64_t)options->epochs);
+    for (bool over = false; !over && report->epoch_count < options->epochs;) {
+        struct db_epoch *epoch = &report->epochs[report->epoch_count++];
+        run_epoch(&t, epoch);
+        keep_if_better(&t, epoch, report->epoch_count);
+        over = is_over(&t, epoch, report->epoch_count);
+        hs_progress_update(&progress, (uint64_t)report->epoch_count);
+    }
+    hs_progress_end(&progress);
+    memcpy(net->weights, t.best, db_mlp_size(net) * sizeof *net->weights);
+    trainer_free(&t);
+    return 0;
+}
+
+void db_train_report_free(struct db_train_report *report)
+{
+    free(report->epochs);
+    *report = (struct db_train_report){0};
+}

@@ -1,0 +1,78 @@
+#include "gis/class_raster.h"
+
+#include "hs/error.h"
+
+#include <cpl_string.h>
+#include <stdio.h>
+
+int db_class_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
+                           const struct db_class_table *table)
+{
+    if (db_raster_create(out, path, grid, GDT_Byte, DB_CLASS_NODATA) != 0) {
+        return -1;
+    }
+    const GDALRasterBandH band = GDALGetRasterBand(out->dataset, 1);
+    GDALColorTableH colours = GDALCreateColorTable(GPI_RGB);
+    char **names = NULL;
+    for (int i = 0; i < table->count; i++) {
+        const uint8_t *c = table->items[i].colour;
+        const GDALColorEntry entry = {c[0], c[1], c[2], 255};
+        GDALSetColorEntry(colours, i, &entry);
+        names = CSLAddString(names, table->items[i].name);
+    }
+    GDALSetRasterColorTable(band, colours);
+    GDALSetRasterCategoryNames(band, names);
+    GDALDestroyColorTable(colours);
+    CSLDestroy(names);
+    return 0;
+}
+
+int db_class_raster_open(struct db_raster *r, const char *path)
+{
+    if (db_raster_open_one(r, path) != 0) {
+        return -1;
+    }
+    if (r->band_count != 1) {
+        hs_error(path, "give the output of `landmass-db segment`",
+                 "has %d bands and is no class raster", r->band_count);
+        db_raster_close(r);
+        return -1;
+    }
+    return 0;
+}
+
+int db_class_raster_read(const struct db_raster *r, const struct db_class_table *table, int y,
+                         int rows, float *scratch, uint8_t *valid, uint8_t *classes)
+{
+    if (db_raster_read(r, y, rows, scratch, valid) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < (size_t)rows * (size_t)r->grid.width; i++) {
+        const float v = scratch[i];
+        if (!valid[i] || v == (float)DB_CLASS_NODATA) {
+            classes[i] = DB_CLASS_NODATA;
+        } else if (v >= 0 && v < (float)table->count && v == (float)(int)v) {
+            classes[i] = (uint8_t)v;
+        } else {
+            return hs_error(r->name, "use the class table it was made with",
+                            "holds class %g at row %d, but the class table ends at %d", (double)v,
+                            y + (int)(i / (size_t)r->grid.width), table->count - 1);
+        }
+    }
+    return 0;
+}
+
+void db_class_counts_print(const struct db_class_table *table, const uint64_t counts[256])
+{
+    uint64_t total = counts[DB_CLASS_NODATA];
+    for (int i = 0; i < table->count; i++) {
+        total += counts[i];
+    }
+    for (int i = 0; i < table->count; i++) {
+        printf("%-16s %12llu pixels  %5.1f %%\n", table->items[i].name,
+               (unsigned long long)counts[i], 100.0 * (double)counts[i] / (double)total);
+    }
+    printf("%-16s %12llu pixels  %5.1f %%\n", "no data",
+           (unsigned long long)counts[DB_CLASS_NODATA],
+           100.0 * (double)counts[DB_CLASS_NODATA] / (double)total);
+}

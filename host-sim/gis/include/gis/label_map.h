@@ -1,0 +1,29 @@
+/* Which class a label of the source stands for: a text file of `source-label = class` lines. */
+#ifndef GIS_LABEL_MAP_H
+#define GIS_LABEL_MAP_H
+
+#include "gis/polygons.h"
+#include "hs/class_table.h"
+
+#include <stdbool.h>
+
+enum { DB_MAP_MAX = 256 };
+
+struct db_label_map {
+    struct {
+        char label[DB_LABEL_SIZE];
+        int class_index;
+    } items[DB_MAP_MAX];
+    int count;
+    bool is_default; /* each class stands for itself, and need not occur */
+};
+
+/* Read the map; every class must be in the table. `path` may be NULL: then each class stands for
+ * itself. Returns 0, or -1 with file, line, cause and remedy reported. */
+int db_label_map_read(struct db_label_map *map, const char *path,
+                      const struct db_class_table *table);
+
+/* The class of a label, or -1 when the map leaves it out. */
+int db_label_map_find(const struct db_label_map *map, const char *label);
+
+#endif

@@ -1,0 +1,42 @@
+/* Planes of a flash image as pictures. */
+#ifndef IMAGE_PICTURE_H
+#define IMAGE_PICTURE_H
+
+#include "image/grid.h"
+#include "image/reader.h"
+
+#include <stdbool.h>
+
+enum image_plane {
+    IMAGE_PLANE_REFLECTIVITY,
+    IMAGE_PLANE_CLASS,
+    IMAGE_PLANE_ELEVATION,
+    IMAGE_PLANE_HEIGHT,
+    IMAGE_PLANE_SHADE,
+    IMAGE_PLANES
+};
+extern const char *const image_plane_names[IMAGE_PLANES];
+
+enum { IMAGE_SHADE_FLAT = 180 }; /* grey of level ground */
+
+struct image_view {
+    enum image_plane plane;
+    struct image_area area; /* width 0: all that the level covers */
+    int level;
+    int width, height; /* pixels */
+    double pixel_m;
+    double black, white; /* dB or metres; equal: to be chosen from what is seen */
+    unsigned damaged_tiles;
+    bool has_data; /* not all of it is black */
+};
+
+/* Settle area, level (`level` -1: the finest of which `max_size` pixels show every cell) and size;
+ * the longer side has at most `max_size` pixels. Returns 0, or -1 with the error reported. */
+int image_view_fit(const struct image *image, struct image_view *view, int level, int max_size);
+
+/* Draw into width * height RGB pixels, row 0 north. Each pixel shows the cell under its centre,
+ * from the view's level or the next coarser one that has it. Settles black and white. Tiles whose
+ * checksum fails are left black and counted. Returns 0, or -1 with the error reported. */
+int image_view_draw(const struct image *image, struct image_view *view, uint8_t *pixels);
+
+#endif

@@ -1,0 +1,67 @@
+/* Reads a flash image without trusting any byte of it. */
+#ifndef IMAGE_READER_H
+#define IMAGE_READER_H
+
+#include "image/format.h"
+#include "lm/db.h"
+#include "lm/signature.h"
+#include "lm/target.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* What was found wrong, as lines "offset 0x...: cause" on a stream. */
+struct image_findings {
+    FILE *out; /* borrowed; NULL: count only */
+    uint64_t count, shown_max;
+};
+
+/* Note one more. `offset` is into the image. */
+void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
+    __attribute__((format(printf, 3, 4)));
+
+struct image {
+    const uint8_t *bytes; /* the whole file, mapped, or lent by the caller */
+    uint64_t size_bytes;
+    int is_mapped;
+    struct lm_image_header header;
+    struct lm_db db; /* as the firmware holds it, without a flash */
+    const struct lm_image_section
+        *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
+    const struct image_entry *entries;
+    const struct lm_tile *tiles;
+    /* db.target_count, signature_count and chip_count of them, their contents not yet checked */
+    const struct lm_target *targets;
+    const struct lm_signature *signatures;
+    const struct lm_chip *chips;
+};
+
+/* Map a file. Returns 0, or -1 with the error reported. */
+int image_map(struct image *image, const char *path);
+
+/* Use bytes in memory, aligned to 8, that stay the caller's. */
+void image_lend(struct image *image, const void *bytes, size_t size_bytes);
+
+/* Check header, section table, class table and bands, noting what is wrong. Returns 0 when the rest
+ * can be read: all pointers are set and every section, band and entry number lies inside the image.
+ * -1 otherwise. */
+int image_read_tables(struct image *image, struct image_findings *findings);
+
+/* image_map and image_read_tables for programs that only want to look: 0, or -1 with the error
+ * reported. */
+int image_open(struct image *image, const char *path);
+
+void image_close(struct image *image);
+
+/* The directory's record number for a tile, after checking the entry's CRC and bound; UINT32_MAX
+ * when the image has no such tile or the entry is damaged. */
+uint32_t image_record(const struct image *image, uint8_t level, uint32_t row, uint32_t column);
+
+/* Offset of a record in the image. */
+uint64_t image_record_offset(const struct image *image, uint32_t record);
+
+/* Does a band hold this tile, and which zone is it in? Returns the band or NULL. */
+const struct lm_band *image_band(const struct image *image, uint8_t level, uint32_t row);
+
+#endif

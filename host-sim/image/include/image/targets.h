@@ -1,0 +1,13 @@
+/* The targets of an image: what they are, and what is wrong with them. */
+#ifndef IMAGE_TARGETS_H
+#define IMAGE_TARGETS_H
+
+#include "image/reader.h"
+
+/* Print what they are, a line each and one for every body. */
+void image_targets_print(const struct image *image);
+
+/* Note what is wrong with them; `image` has passed image_read_tables. */
+void image_targets_check(const struct image *image, struct image_findings *findings);
+
+#endif

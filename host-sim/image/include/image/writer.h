@@ -1,0 +1,48 @@
+/* Writes a flash image (docs/FORMATS.md, section 1). Tiles may come in any order; the file appears
+ * under its final name when it is whole. */
+#ifndef IMAGE_WRITER_H
+#define IMAGE_WRITER_H
+
+#include "hs/atomic_file.h"
+#include "image/format.h"
+#include "image/sha256.h"
+
+#include <stdint.h>
+
+/* A section made elsewhere. */
+struct image_bytes {
+    const void *data; /* borrowed until the end */
+    size_t count;
+};
+
+struct image_writer {
+    struct hs_atomic_file file;
+    struct lm_image_header header;
+    struct lm_classes classes;
+    struct lm_band bands[LM_DB_BANDS_MAX];
+    uint32_t *records;                      /* record number of each directory entry; owned */
+    struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
+    uint32_t tiles_crc;
+    struct image_sha256 tiles_sha256;
+};
+
+/* Start `path`. `header` gives shift0, level_count, band_count and entry_count; the rest is filled
+ * in here. Returns 0, or -1 with the error reported and nothing left behind. */
+int image_writer_begin(struct image_writer *w, const char *path,
+                       const struct lm_image_header *header, const struct lm_classes *classes,
+                       const struct lm_band *bands);
+
+/* Append a tile and enter it as directory entry `entry`, which must not have been used. Fills in
+ * tile->crc and `w->header.record_count`. Returns 0, or -1 with the error reported. */
+int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile);
+
+/* Finish: directory, manifest and header. `manifest` is text to which the SHA-256 of the other
+ * sections is added. Title, centre, mean elevation and geoid are taken from w->header, targets and
+ * signatures from w->targets and w->signatures, where the caller has put them. Returns 0, or -1
+ * with the error reported; either way the writer is done with. */
+int image_writer_end(struct image_writer *w, const char *manifest);
+
+/* Give up: nothing is left of the file. Harmless after image_writer_end. */
+void image_writer_abort(struct image_writer *w);
+
+#endif

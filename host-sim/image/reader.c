@@ -1,0 +1,346 @@
+#include "image/reader.h"
+
+#include "fx/crc32c.h"
+#include "hs/error.h"
+#include "hs/signature_file.h"
+#include "hs/zero_bytes.h"
+#include "image/grid.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
+{
+    f->count++;
+    if (!f->out || f->count > f->shown_max) {
+        return;
+    }
+    va_list arguments;
+    va_start(arguments, cause);
+    fprintf(f->out, "offset 0x%08" PRIx64 ": ", offset);
+    vfprintf(f->out, cause, arguments);
+    fputc('\n', f->out);
+    va_end(arguments);
+}
+
+int image_map(struct image *image, const char *path)
+{
+    *image = (struct image){0};
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    struct stat status;
+    if (fd < 0 || fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+        const int cause = fd < 0 ? errno : EINVAL;
+        if (fd >= 0) {
+            close(fd);
+        }
+        return hs_error(path, "check the name", "cannot be read: %s", strerror(cause));
+    }
+    image->size_bytes = (uint64_t)status.st_size;
+    void *bytes = image->size_bytes ? mmap(NULL, image->size_bytes, PROT_READ, MAP_PRIVATE, fd, 0)
+                                    : MAP_FAILED;
+    close(fd);
+    if (bytes == MAP_FAILED) {
+        return hs_error(path, "give an image that `landmass-db build` wrote", "%s",
+                        image->size_bytes ? "cannot be mapped" : "is empty");
+    }
+    image->bytes = bytes;
+    image->is_mapped = 1;
+    return 0;
+}
+
+void image_lend(struct image *image, const void *bytes, size_t size_bytes)
+{
+    *image = (struct image){.bytes = bytes, .size_bytes = size_bytes};
+}
+
+void image_close(struct image *image)
+{
+    if (image->is_mapped) {
+        munmap((void *)image->bytes, image->size_bytes);
+    }
+    *image = (struct image){0};
+}
+
+static int check_header(const struct image *image, struct image_findings *f)
+{
+    const struct lm_image_header *h = &image->header;
+    if (memcmp(h->magic, "LANDMASS", sizeof h->magic) != 0) {
+        image_find(f, 0, "the file does not begin with LANDMASS: it is no image");
+        return -1;
+    }
+    if (h->version != LM_DB_VERSION) {
+        image_find(f, 8, "version %" PRIu32 " instead of %d", h->version, LM_DB_VERSION);
+        return -1;
+    }
+    if (fx_crc32c(0, h, offsetof(struct lm_image_header, crc)) != h->crc) {
+        image_find(f, offsetof(struct lm_image_header, crc),
+                   "the header's checksum does not fit it");
+    }
+    if (h->image_bytes != image->size_bytes) {
+        image_find(f, 16, "the header says %" PRIu64 " bytes, the file has %" PRIu64,
+                   h->image_bytes, image->size_bytes);
+    }
+    if (h->reserved0 != 0 || !db_is_zero(h->reserved1, sizeof h->reserved1)) {
+        image_find(f, 60, "unused bytes of the header are not zero");
+    }
+    const bool is_sound =
+        h->header_bytes == LM_DB_HEADER_BYTES && h->record_bytes == LM_TILE_BYTES &&
+        h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 && h->level_count <= LM_DB_LEVELS_MAX &&
+        h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
+        h->band_count <= LM_DB_BANDS_MAX && h->section_count >= LM_IMAGE_MANIFEST &&
+        h->section_count <= LM_IMAGE_SECTIONS_MAX && h->image_bytes >= LM_DB_HEADER_BYTES;
+    if (!is_sound) {
+        image_find(f, 12, "a field of the header is out of its range");
+    }
+    return is_sound ? 0 : -1;
+}
+
+static uint64_t expected_bytes(const struct lm_image_header *h, uint32_t type)
+{
+    switch (type) {
+    case LM_IMAGE_CLASSES:
+        return sizeof(struct lm_classes);
+    case LM_IMAGE_BANDS:
+        return (uint64_t)h->band_count * sizeof(struct lm_band);
+    case LM_IMAGE_DIRECTORY:
+        return (uint64_t)h->entry_count * sizeof(struct image_entry);
+    case LM_IMAGE_TILES:
+        return (uint64_t)h->record_count * LM_TILE_BYTES;
+    default:
+        return UINT64_MAX; /* as long as it says */
+    }
+}
+
+static int check_section(struct image *image, uint32_t index, struct image_findings *f)
+{
+    const struct lm_image_section *s = &image->header.sections[index];
+    const uint64_t at = offsetof(struct lm_image_header, sections) + index * sizeof *s;
+    const uint64_t expected = expected_bytes(&image->header, s->type);
+    if (s->offset % LM_IMAGE_SECTION_ALIGNMENT != 0 || s->offset < LM_DB_HEADER_BYTES ||
+        s->offset > image->size_bytes || s->bytes > image->size_bytes - s->offset) {
+        image_find(f, at, "section %s does not lie inside the image", image_section_name(s->type));
+        return -1;
+    }
+    if (expected != UINT64_MAX && s->bytes != expected) {
+        image_find(f, at, "section %s has %" PRIu64 " bytes instead of %" PRIu64,
+                   image_section_name(s->type), s->bytes, expected);
+        return -1;
+    }
+    if (s->type >= LM_IMAGE_SECTION_TYPES || s->type == 0) {
+        return 0;
+    }
+    if (image->sections[s->type]) {
+        image_find(f, at, "there are two sections %s", image_section_name(s->type));
+        return -1;
+    }
+    image->sections[s->type] = s;
+    return 0;
+}
+
+static int check_sections(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_header *h = &image->header;
+    int result = 0;
+    for (uint32_t i = 0; i < h->section_count; i++) {
+        result |= check_section(image, i, f);
+    }
+    for (uint32_t type = LM_IMAGE_CLASSES; type <= LM_IMAGE_MANIFEST; type++) {
+        if (!image->sections[type]) {
+            image_find(f, offsetof(struct lm_image_header, sections), "section %s is missing",
+                       image_section_name(type));
+            result = -1;
+        }
+    }
+    const uint32_t unused = LM_IMAGE_SECTIONS_MAX - h->section_count;
+    if (!db_is_zero(&h->sections[h->section_count], unused * sizeof h->sections[0])) {
+        image_find(f, offsetof(struct lm_image_header, sections),
+                   "unused section entries are not zero");
+    }
+    return result;
+}
+
+static int check_band(const struct image *image, uint32_t index, struct image_findings *f)
+{
+    const struct lm_band *b = &image->db.bands[index];
+    const uint64_t at = image->sections[LM_IMAGE_BANDS]->offset + index * sizeof *b;
+    if (b->reserved != 0) {
+        image_find(f, at, "band %" PRIu32 ": unused bytes are not zero", index);
+    }
+    if (b->level >= image->header.level_count || b->zone > 3) {
+        image_find(f, at, "band %" PRIu32 ": level %u or zone %u does not exist", index, b->level,
+                   b->zone);
+        return -1;
+    }
+    const uint8_t shift = (uint8_t)(image->header.shift0 + b->level);
+    const uint32_t rows_all = image_rows_all(shift), round = image_columns_round(shift, b->zone);
+    if (b->rows < 1 || b->row0 >= rows_all || b->rows > rows_all - b->row0 || b->columns < 1 ||
+        b->column0 >= round || b->columns > round) {
+        image_find(f, at, "band %" PRIu32 ": rows or columns lie outside the Earth", index);
+        return -1;
+    }
+    const uint64_t entries = (uint64_t)b->rows * b->columns;
+    if (entries > image->header.entry_count || b->entry0 > image->header.entry_count - entries) {
+        image_find(f, at, "band %" PRIu32 ": its entries lie outside the directory", index);
+        return -1;
+    }
+    if (image_row_zone(shift, b->row0) != b->zone ||
+        image_row_zone(shift, b->row0 + b->rows - 1) != b->zone) {
+        image_find(f, at, "band %" PRIu32 ": its rows are not all in zone %u", index, b->zone);
+        return -1;
+    }
+    return 0;
+}
+
+static int check_bands(const struct image *image, struct image_findings *f)
+{
+    int result = 0;
+    for (uint32_t i = 0; i < image->header.band_count; i++) {
+        result |= check_band(image, i, f);
+    }
+    return result;
+}
+
+static void fill_db(struct image *image)
+{
+    const struct lm_image_header *h = &image->header;
+    image->db = (struct lm_db){
+        .level_count = h->level_count,
+        .shift0 = h->shift0,
+        .band_count = h->band_count,
+        .entry_count = h->entry_count,
+        .record_count = h->record_count,
+        .directory_offset = image->sections[LM_IMAGE_DIRECTORY]->offset,
+        .records_offset = image->sections[LM_IMAGE_TILES]->offset,
+        .mean_elevation_q6 = h->mean_elevation_q6,
+        .geoid_q6 = h->geoid_q6,
+        .centre_latitude = h->centre_latitude,
+        .centre_longitude = h->centre_longitude,
+    };
+    memcpy(&image->db.classes, image->bytes + image->sections[LM_IMAGE_CLASSES]->offset,
+           sizeof image->db.classes);
+    memcpy(image->db.bands, image->bytes + image->sections[LM_IMAGE_BANDS]->offset,
+           h->band_count * sizeof(struct lm_band));
+    image->entries = (const void *)(image->bytes + image->db.directory_offset);
+    image->tiles = (const void *)(image->bytes + image->db.records_offset);
+}
+
+/* The head of the targets says how many there are. */
+static int read_targets_head(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_TARGETS];
+    struct lm_targets_head head;
+    if (!s) {
+        return 0;
+    }
+    if (s->bytes < sizeof head) {
+        image_find(f, s->offset, "section TARGETS is too short for its head");
+        return -1;
+    }
+    memcpy(&head, image->bytes + s->offset, sizeof head);
+    if (fx_crc32c(0, &head, offsetof(struct lm_targets_head, crc)) != head.crc ||
+        head.record_bytes != LM_TARGET_BYTES || head.count > LM_DB_TARGETS_MAX ||
+        s->bytes != sizeof head + (uint64_t)head.count * LM_TARGET_BYTES) {
+        image_find(f, s->offset, "the head of section TARGETS does not fit it or its checksum");
+        return -1;
+    }
+    if (!db_is_zero(head.reserved, sizeof head.reserved)) {
+        image_find(f, s->offset, "unused bytes of the head of section TARGETS are not zero");
+    }
+    image->db.target_count = head.count;
+    image->db.targets_offset = s->offset + sizeof head;
+    image->targets = (const void *)(image->bytes + image->db.targets_offset);
+    return 0;
+}
+
+static int read_signatures_head(struct image *image, struct image_findings *f)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_SIGNATURES];
+    struct lm_signatures_head head;
+    if (!s) {
+        return 0;
+    }
+    if (s->bytes < sizeof head) {
+        image_find(f, s->offset, "section SIGNATURES is too short for its head");
+        return -1;
+    }
+    memcpy(&head, image->bytes + s->offset, sizeof head);
+    if (!db_signatures_head_fits(&head, s->bytes)) {
+        image_find(f, s->offset, "the head of section SIGNATURES does not fit it or its checksum");
+        return -1;
+    }
+    if (!db_signatures_head_rest_is_zero(&head)) {
+        image_find(f, s->offset, "unused bytes of the head of section SIGNATURES are not zero");
+    }
+    image->db.signature_count = head.count;
+    image->db.chip_count = head.chip_count;
+    image->db.signatures_offset = s->offset + sizeof head;
+    image->db.chips_offset =
+        image->db.signatures_offset + (uint64_t)head.count * LM_SIGNATURE_BYTES;
+    image->signatures = (const void *)(image->bytes + image->db.signatures_offset);
+    image->chips = (const void *)(image->bytes + image->db.chips_offset);
+    return 0;
+}
+
+int image_read_tables(struct image *image, struct image_findings *findings)
+{
+    if (image->size_bytes < sizeof image->header) {
+        image_find(findings, 0, "%" PRIu64 " bytes are too few for a header", image->size_bytes);
+        return -1;
+    }
+    memcpy(&image->header, image->bytes, sizeof image->header);
+    if (check_header(image, findings) != 0 || check_sections(image, findings) != 0) {
+        return -1;
+    }
+    fill_db(image);
+    return read_targets_head(image, findings) == 0 && read_signatures_head(image, findings) == 0
+               ? check_bands(image, findings)
+               : -1;
+}
+
+int image_open(struct image *image, const char *path)
+{
+    if (image_map(image, path) != 0) {
+        return -1;
+    }
+    struct image_findings findings = {stderr, 0, 4};
+    if (image_read_tables(image, &findings) != 0 || findings.count > 0) {
+        image_close(image);
+        return hs_error(path, "`landmass-db verify` says more; build the image again",
+                        "is not a sound image");
+    }
+    return 0;
+}
+
+uint32_t image_record(const struct image *image, uint8_t level, uint32_t row, uint32_t column)
+{
+    const int64_t entry = lm_db_entry(&image->db, level, row, column);
+    if (entry < 0) {
+        return UINT32_MAX;
+    }
+    const struct image_entry e = image->entries[entry];
+    const bool is_sound = image_entry_crc((uint32_t)entry, e.record) == e.crc;
+    return is_sound && e.record < image->header.record_count ? e.record : UINT32_MAX;
+}
+
+uint64_t image_record_offset(const struct image *image, uint32_t record)
+{
+    return image->db.records_offset + (uint64_t)record * LM_TILE_BYTES;
+}
+
+const struct lm_band *image_band(const struct image *image, uint8_t level, uint32_t row)
+{
+    for (uint32_t i = 0; i < image->header.band_count; i++) {
+        const struct lm_band *b = &image->db.bands[i];
+        if (b->level == level && row >= b->row0 && row - b->row0 < b->rows) {
+            return b;
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,230 @@
+#include "image/writer.h"
+
+#include "fx/crc32c.h"
+#include "hs/error.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t aligned(uint64_t offset)
+{
+    const uint64_t a = LM_IMAGE_SECTION_ALIGNMENT;
+    return (offset + a - 1) / a * a;
+}
+
+static int write_failed(const struct image_writer *w)
+{
+    return hs_error(w->file.path, "free some space and run again", "cannot be written: %s",
+                    strerror(errno));
+}
+
+static int put(struct image_writer *w, const void *data, size_t bytes)
+{
+    if (bytes > 0 && fwrite(data, 1, bytes, w->file.stream) != bytes) {
+        return write_failed(w);
+    }
+    return 0;
+}
+
+/* Zeros up to `offset`, which is less than a section's alignment away. */
+static int pad_to(struct image_writer *w, uint64_t offset)
+{
+    static const uint8_t zeros[LM_IMAGE_SECTION_ALIGNMENT];
+    const off_t here = ftello(w->file.stream);
+    return here < 0 ? write_failed(w) : put(w, zeros, offset - (uint64_t)here);
+}
+
+static struct lm_image_section *section(struct image_writer *w, enum lm_image_section_type type)
+{
+    return &w->header.sections[type - 1];
+}
+
+/* Everything before the tiles has a known length; their length follows when all are written. */
+static void place_sections(struct image_writer *w)
+{
+    const uint64_t bytes[LM_IMAGE_SECTION_TYPES] = {
+        [LM_IMAGE_CLASSES] = sizeof w->classes,
+        [LM_IMAGE_BANDS] = (uint64_t)w->header.band_count * sizeof(struct lm_band),
+        [LM_IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct image_entry),
+    };
+    uint64_t offset = sizeof w->header;
+    for (uint32_t type = LM_IMAGE_CLASSES; type <= LM_IMAGE_MANIFEST; type++) {
+        struct lm_image_section *s = section(w, type);
+        *s = (struct lm_image_section){
+            .type = type, .offset = aligned(offset), .bytes = bytes[type]};
+        offset = s->offset + s->bytes;
+    }
+}
+
+static int write_zeros_before_tiles(struct image_writer *w)
+{
+    if (fseeko(w->file.stream, (off_t)section(w, LM_IMAGE_TILES)->offset, SEEK_SET) != 0) {
+        return write_failed(w);
+    }
+    return 0;
+}
+
+int image_writer_begin(struct image_writer *w, const char *path,
+                       const struct lm_image_header *header, const struct lm_classes *classes,
+                       const struct lm_band *bands)
+{
+    memset(w, 0, sizeof *w);
+    w->header = *header;
+    memcpy(w->header.magic, "LANDMASS", sizeof w->header.magic);
+    w->header.version = LM_DB_VERSION;
+    w->header.header_bytes = LM_DB_HEADER_BYTES;
+    w->header.record_bytes = LM_TILE_BYTES;
+    w->header.section_count = LM_IMAGE_MANIFEST;
+    w->classes = *classes;
+    memcpy(w->bands, bands, header->band_count * sizeof *bands);
+    place_sections(w);
+    image_sha256_begin(&w->tiles_sha256);
+    w->records = malloc((size_t)header->entry_count * sizeof *w->records);
+    if (!w->records) {
+        return hs_error(path, "choose larger cells or a smaller area", "out of memory");
+    }
+    memset(w->records, 0xff, (size_t)header->entry_count * sizeof *w->records);
+    if (hs_atomic_open(&w->file, path) != 0 || write_zeros_before_tiles(w) != 0) {
+        image_writer_abort(w);
+        return -1;
+    }
+    return 0;
+}
+
+int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile)
+{
+    tile->crc = fx_crc32c(0, &tile->level, LM_TILE_BYTES - sizeof tile->crc);
+    w->tiles_crc = fx_crc32c(w->tiles_crc, tile, LM_TILE_BYTES);
+    image_sha256_add(&w->tiles_sha256, tile, LM_TILE_BYTES);
+    w->records[entry] = w->header.record_count++;
+    return put(w, tile, LM_TILE_BYTES);
+}
+
+/* Hash a section that is in memory, write it, and add its line to the manifest. */
+static int put_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
+                       FILE *manifest)
+{
+    struct lm_image_section *s = section(w, type);
+    struct image_sha256 sha;
+    char digest[IMAGE_SHA256_TEXT];
+    image_sha256_begin(&sha);
+    image_sha256_add(&sha, data, s->bytes);
+    image_sha256_end(&sha, digest);
+    s->crc = fx_crc32c(0, data, s->bytes);
+    if (manifest) {
+        fprintf(manifest, "section-sha256: %s %s\n", image_section_name(type), digest);
+    }
+    if (fseeko(w->file.stream, (off_t)s->offset, SEEK_SET) != 0) {
+        return write_failed(w);
+    }
+    return put(w, data, s->bytes);
+}
+
+static int put_directory(struct image_writer *w, FILE *manifest)
+{
+    const uint32_t count = w->header.entry_count;
+    struct image_entry *entries = malloc(count * sizeof *entries);
+    if (!entries) {
+        return hs_error(w->file.path, "choose larger cells or a smaller area", "out of memory");
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        entries[i] =
+            (struct image_entry){.record = w->records[i], .crc = image_entry_crc(i, w->records[i])};
+    }
+    const int result = put_section(w, LM_IMAGE_DIRECTORY, entries, manifest);
+    free(entries);
+    return result;
+}
+
+static int put_tables(struct image_writer *w, FILE *manifest)
+{
+    if (put_section(w, LM_IMAGE_CLASSES, &w->classes, manifest) != 0 ||
+        put_section(w, LM_IMAGE_BANDS, w->bands, manifest) != 0 ||
+        put_directory(w, manifest) != 0) {
+        return -1;
+    }
+    struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
+    char digest[IMAGE_SHA256_TEXT];
+    image_sha256_end(&w->tiles_sha256, digest);
+    fprintf(manifest, "section-sha256: TILES %s\n", digest);
+    tiles->crc = w->tiles_crc;
+    tiles->bytes = (uint64_t)w->header.record_count * LM_TILE_BYTES;
+    return 0;
+}
+
+/* Append a section whose length was not known before to the image, which ends at `*end`. */
+static int append_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
+                          size_t bytes, FILE *manifest, uint64_t *end)
+{
+    struct lm_image_section *s = section(w, type);
+    *s = (struct lm_image_section){.type = type, .offset = aligned(*end), .bytes = bytes};
+    if (fseeko(w->file.stream, (off_t)*end, SEEK_SET) != 0) {
+        return write_failed(w);
+    }
+    *end = s->offset + s->bytes;
+    return pad_to(w, s->offset) == 0 ? put_section(w, type, data, manifest) : -1;
+}
+
+/* Sections that an image need not have. */
+static int put_extra(struct image_writer *w, enum lm_image_section_type type,
+                     const struct image_bytes *bytes, FILE *manifest, uint64_t *end)
+{
+    if (!bytes->data) {
+        return 0;
+    }
+    w->header.section_count = type;
+    return append_section(w, type, bytes->data, bytes->count, manifest, end);
+}
+
+static int put_header(struct image_writer *w)
+{
+    w->header.crc = fx_crc32c(0, &w->header, sizeof w->header - sizeof w->header.crc);
+    if (fseeko(w->file.stream, 0, SEEK_SET) != 0) {
+        return write_failed(w);
+    }
+    return put(w, &w->header, sizeof w->header);
+}
+
+static int finish(struct image_writer *w, const char *manifest)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *stream = open_memstream(&text, &bytes);
+    if (!stream) {
+        return hs_error(w->file.path, NULL, "out of memory");
+    }
+    fputs(manifest, stream);
+    int result = put_tables(w, stream);
+    const struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
+    uint64_t end = tiles->offset + tiles->bytes;
+    if (result == 0) {
+        result = put_extra(w, LM_IMAGE_TARGETS, &w->targets, stream, &end);
+    }
+    if (result == 0) {
+        result = put_extra(w, LM_IMAGE_SIGNATURES, &w->signatures, stream, &end);
+    }
+    if (fclose(stream) != 0) {
+        result = hs_error(w->file.path, NULL, "out of memory");
+    }
+    if (result == 0) {
+        result = append_section(w, LM_IMAGE_MANIFEST, text, bytes, NULL, &end);
+        w->header.image_bytes = end;
+    }
+    free(text);
+    return result == 0 ? put_header(w) : -1;
+}
+
+int image_writer_end(struct image_writer *w, const char *manifest)
+{
+    const int result = finish(w, manifest) == 0 ? hs_atomic_commit(&w->file) : -1;
+    image_writer_abort(w);
+    return result;
+}
+
+void image_writer_abort(struct image_writer *w)
+{
+    hs_atomic_abort(&w->file);
+    free(w->records);
+    w->records = NULL;
+}

@@ -1,0 +1,43 @@
+/* A sheet to draw figures on, and charts on it. */
+#ifndef HS_CHART_H
+#define HS_CHART_H
+
+#include <stdint.h>
+
+enum { INK_BLACK = 0x000000, INK_GREY = 0xd0d0d0, INK_BLUE = 0x1040c0, INK_RED = 0xc02020 };
+
+struct sheet {
+    uint32_t *pixels; /* owned: 0x00RRGGBB */
+    int width, height;
+};
+
+/* A white sheet. Returns 0, or -1 with the error reported. */
+int sheet_open(struct sheet *s, int width, int height);
+
+/* Write the sheet and free it. Returns 0, or -1 with the error reported. */
+int sheet_close(struct sheet *s, const char *path);
+
+void sheet_dot(struct sheet *s, int x, int y, uint32_t ink);
+void sheet_line(struct sheet *s, double x0, double y0, double x1, double y1, uint32_t ink);
+
+/* Text in capitals and small letters from its upper left corner, in the display's own font. */
+void sheet_text(struct sheet *s, int x, int y, const char *text, uint32_t ink);
+
+/* Axes in a rectangle of the sheet: x_low..x_high and y_low..y_high, with grid lines. */
+struct chart {
+    struct sheet *sheet; /* borrowed */
+    int left, top, width, height;
+    double x_low, x_high, x_step, y_low, y_high, y_step;
+    const char *title, *x_name;
+};
+
+void chart_axes(const struct chart *c);
+
+/* The curve y = f(x), sampled `samples` times and joined; what leaves the rectangle is cut off. */
+void chart_curve(const struct chart *c, double (*f)(void *ctx, double x), void *ctx, int samples,
+                 uint32_t ink);
+
+/* A dashed upright at x. */
+void chart_upright(const struct chart *c, double x, uint32_t ink);
+
+#endif

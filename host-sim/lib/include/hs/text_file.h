@@ -1,0 +1,32 @@
+/* Line by line through a small text file, with the file and line at hand for messages. */
+#ifndef HS_TEXT_FILE_H
+#define HS_TEXT_FILE_H
+
+#include <stdio.h>
+
+struct db_text_file {
+    FILE *stream;
+    const char *path; /* borrowed */
+    int line_number;
+    char *line; /* owned; the current line without its remark and without space around it */
+    size_t capacity;
+    char remark[120]; /* what stood after '#' */
+};
+
+/* Returns 0, or -1 with the error reported. */
+int db_text_open(struct db_text_file *f, const char *path);
+
+/* Step to the next line that holds more than a remark. Returns 1, 0 at the end of the file, or -1
+ * with a read error reported. */
+int db_text_next(struct db_text_file *f);
+
+/* Report an error at the current line; returns -1. */
+int db_text_error(const struct db_text_file *f, const char *remedy, const char *cause, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Split "key = value" in place; returns 0, or -1 when there is no '=' or either side is empty. */
+int db_text_split(char *line, char **key, char **value);
+
+void db_text_close(struct db_text_file *f);
+
+#endif

@@ -1,0 +1,20 @@
+/* Unused bytes of a record. */
+#ifndef HS_ZERO_BYTES_H
+#define HS_ZERO_BYTES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+static inline bool db_is_zero(const void *bytes, size_t count)
+{
+    const uint8_t *b = bytes;
+    for (size_t i = 0; i < count; i++) {
+        if (b[i] != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+#endif

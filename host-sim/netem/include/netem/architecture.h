@@ -1,0 +1,34 @@
+/* The reflection networks that Niu compares: EP1-EP5 of Table III and Fig. 17, EP6-EP8 of Table IV.
+ */
+#ifndef NETEM_ARCHITECTURE_H
+#define NETEM_ARCHITECTURE_H
+
+#include "netem/network.h"
+
+/* What a network is told of one reflection, each within -1..1: material, incident angle, angle of
+ * the way out to the normal, angle between the ways in and out (Table I; paths.h makes them). */
+enum { NM_INPUTS = 4 };
+
+/* Fig. 17. */
+enum nm_wiring {
+    NM_ONE_OUTPUT,  /* (a) one network, asked once with the geometry of each direction */
+    NM_TWO_OUTPUTS, /* (b) one network that gives both from the geometry of the echo */
+    NM_TWO_NETWORKS /* (c) a network for each direction */
+};
+
+struct nm_architecture {
+    const char *name; /* "EP1" to "EP8" */
+    enum nm_wiring wiring;
+    struct nm_network network; /* one of them, where there are two alike */
+};
+
+enum { NM_ARCHITECTURES = 8 };
+extern const struct nm_architecture nm_architectures[NM_ARCHITECTURES];
+
+/* NULL when there is no such name. */
+const struct nm_architecture *nm_architecture_find(const char *name);
+
+/* Weights of all its networks together; those of the echo (BK) come first. */
+size_t nm_architecture_size(const struct nm_architecture *a);
+
+#endif

@@ -1,0 +1,56 @@
+/* A whole training: chips and their aspects in, a folder of results out. */
+#ifndef NETEM_EXPERIMENT_H
+#define NETEM_EXPERIMENT_H
+
+#include "netem/score.h"
+#include "netem/settings.h"
+#include "netem/train.h"
+
+struct nm_experiment {
+    struct nm_settings settings;
+    struct nm_target_view view;   /* owned */
+    struct nm_dataset dataset;    /* owned */
+    struct nm_training *training; /* owned */
+};
+
+/* The target on its ground, without chips. `e` is zeroed by the call. Returns 0, or -1 with the
+ * error reported and nothing to close. */
+int nm_experiment_open(struct nm_experiment *e, const struct nm_settings *settings,
+                       double lowest_depression_deg);
+void nm_experiment_close(struct nm_experiment *e);
+
+/* Read and trace the chips of the list. Returns 0, or -1 reported. */
+int nm_experiment_load(struct nm_experiment *e, const struct nm_chip_list *list);
+
+/* Train from the beginning, or from FOLDER/training.netem when `is_resumed`; that file is written
+ * after each epoch, a line printed. A finished or begun training is never overwritten. Returns 0,
+ * or -1 reported. */
+int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_resumed);
+
+/* Take a training that exists. Returns 0, or -1 reported. */
+int nm_experiment_take(struct nm_experiment *e, const char *path);
+
+/* loss.png, specular.png, back.png and kernels.png; the learned laws beside `truth` unless NULL. */
+int nm_experiment_plot(const struct nm_training *t, const char *folder, int material_count,
+                       const struct reflect_law *truth);
+
+/* Means over some chips. A network that is trained for the least square error shows the mean of
+ * what it cannot foretell, which is paler than any chip; CW-SSIM minds. So each simulator is also
+ * scored with all its amplitudes brought, by one gain, to where its CW-SSIM on the training chips
+ * is best. */
+struct nm_summary {
+    struct nm_score learned, own;  /* networks as trained; own law at the gain of least squares */
+    double own_gain;               /* that gain over the kernel's */
+    double learned_best, own_best; /* CW-SSIM at each one's best gain */
+    double learned_best_gain, own_best_gain; /* those gains, over the two above */
+    int count;
+};
+
+/* Score the chips `samples` by the learned simulator and by its own law, both registered:
+ * scores.tsv, cw-ssim.png (at the best gains) and table.png in the folder. All gains are fitted on
+ * the training chips. Returns 0, or -1 reported. */
+int nm_experiment_score(struct nm_experiment *e, const struct nm_samples *samples,
+                        const char *folder, struct nm_summary *summary);
+void nm_summary_print(const struct nm_summary *summary, const char *what);
+
+#endif

@@ -1,0 +1,71 @@
+/* Traced records (records.h) as the networks want them: a table of the different reflections that
+ * occur, and the ways of the rays through that table into the cells of the picture (Niu, Figs. 8, 9
+ * and 11).
+ *
+ * Rays fall parallel on flat facets, so thousands of reflections have the same angles. Each network
+ * sees every different reflection once, and the gradients of equal ones are added: the result is
+ * that of one evaluation a ray, some hundred times faster. */
+#ifndef NETEM_PATHS_H
+#define NETEM_PATHS_H
+
+#include "netem/architecture.h"
+#include "tracer/records.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Directions of a reflection: back to the radar, and specular. */
+enum nm_direction { NM_BK, NM_SP, NM_DIRECTIONS };
+
+/* Angles closer than this count as the same reflection; 1e-3 rad is a seventeenth of the step
+ * between two chips of a collection. */
+#define NM_ANGLE_STEP_RAD 1e-3
+
+/* The geometry of one reflection in one direction. */
+struct nm_reflection {
+    double incidence_rad; /* 0..pi/2 */
+    double leaving_rad;   /* way out to the normal: 0..pi/2 (BK: up to pi, if blocked) */
+    double turn_rad;      /* between the ways in and out, 0..pi */
+    int material;
+};
+
+/* One reflection of one ray. */
+struct nm_step {
+    int32_t row[NM_DIRECTIONS]; /* of the tables; row[NM_SP] is -1 when the ray does not go on */
+    int32_t cell;               /* of the echo; -1 when blocked or outside the picture */
+};
+
+struct nm_paths {
+    int cells_across, cells_range;
+    double ray_weight;                          /* power of a ray: cell areas it stands for */
+    int rows[NM_DIRECTIONS];                    /* different reflections */
+    struct nm_reflection *table[NM_DIRECTIONS]; /* owned */
+    double *features[NM_DIRECTIONS];            /* owned: rows x NM_INPUTS, each in -1..1 */
+    int ray_count;
+    int32_t *first;        /* owned: ray_count + 1; steps of ray i */
+    struct nm_step *steps; /* owned: those of a ray follow one another */
+};
+
+/* Builds the paths of checked records. Rays that leave no echo in the picture are left out. Returns
+ * 0, or -1 with the error reported (out of memory). */
+int nm_paths_build(struct nm_paths *paths, const struct trace_records *records);
+void nm_paths_free(struct nm_paths *paths);
+
+/* The inputs of a network for one reflection, each within -1..1 for materials 0..2. */
+void nm_features_of(const struct nm_reflection *reflection, double features[NM_INPUTS]);
+
+/* Reflection coefficients for every row of the tables. Where one network gives both directions at
+ * once, `sp` goes by the rows of the BK table: sp_by says which table's. */
+struct nm_coefficients {
+    const double *bk, *sp;
+    enum nm_direction sp_by;
+};
+
+/* Step 4: adds the echoes up. `image`, cells_range rows of cells_across, is overwritten. */
+void nm_paths_render(const struct nm_paths *paths, const struct nm_coefficients *c, double *image);
+
+/* Its derivative: adds to `bk` and `sp`, by the rows of `c`, what d_image does to them. */
+void nm_paths_backward(const struct nm_paths *paths, const struct nm_coefficients *c,
+                       const double *d_image, double *bk, double *sp);
+
+#endif

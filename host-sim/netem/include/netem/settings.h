@@ -1,0 +1,42 @@
+/* What the sub-commands are told, in groups: model and tracing (setup.h), chips, training. */
+#ifndef NETEM_SETTINGS_H
+#define NETEM_SETTINGS_H
+
+#include "netem/dataset.h"
+
+struct nm_settings {
+    struct setup setup;
+    double kernel_gain; /* 0: by nm_kernel_gain */
+    /* chips */
+    const char *chips;
+    struct nm_calibration calibration;
+    double gain; /* 0: by the clutter */
+    double share;
+    /* training */
+    const char *architecture, *loss, *method;
+    double rate, pix_rate, momentum;
+    long batch, pretrain, epochs, pix_epochs, reach_px, seed;
+};
+
+enum { NM_TARGET_OPTIONS = SETUP_MODEL_OPTIONS + 9, NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 12 };
+
+struct nm_settings nm_settings_default(void);
+
+/* Fill in the options of each group; `o` has room for as many as the enum says. */
+void nm_target_options(struct nm_settings *s, struct db_option *o);
+void nm_chip_options(struct nm_settings *s, struct db_option *o);
+void nm_train_options(struct nm_settings *s, struct db_option *o);
+
+/* After reading the command line: what the words among the settings mean. Return 0, or -1 with the
+ * error reported. */
+int nm_settings_plan(const struct nm_settings *s, struct nm_plan *plan,
+                     const struct nm_architecture **architecture);
+struct nm_calibration nm_settings_calibration(const struct nm_settings *s);
+
+/* The fixed kernel of these settings, NM_LARGE wide. */
+void nm_settings_kernel(const struct nm_settings *s, double *kernel);
+
+/* The least depression of the list and the settings. */
+double nm_settings_lowest(const struct nm_settings *s, const struct nm_chip_list *list);
+
+#endif

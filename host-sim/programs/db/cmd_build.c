@@ -1,0 +1,588 @@
+#include "commands.h"
+
+#include "build/manifest.h"
+#include "build/pyramid.h"
+#include "build/targets.h"
+#include "gis/gdal_start.h"
+#include "hs/error.h"
+#include "hs/options.h"
+#include "image/codes.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct settings {
+    const char *classes, *class_raster, *reflectivity, *heights, *targets;
+    struct db_list terrain;
+    double cell_m;
+    long shift0, seed;
+    const char *centre, *title, *out;
+    uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
+    const char *land_class, *water_class, *steep_class;
+    double sea_level_m, steep_degrees, geoid_m;
+    bool voids_are_sea;
+};
+
+static const struct db_usage usage = {
+    "build", "make the database image from classes, reflectivity and terrain",
+    "The class raster (of `landmass-db segment` or `correct`) and its reflectivity (of "
+    "`landmass-db reflect`)\n"
+    "cover the detailed area; the terrain may reach further, and what lies outside the class "
+    "raster gets its\n"
+    "class from elevation. With --terrain alone the whole image is made so.\n"
+    "\n"
+    "Terrain is whatever GDAL reads (DTED, SRTM .hgt or .hgt.zip, GeoTIFF ...) in any coordinate "
+    "reference\n"
+    "system; elevations are above mean sea level. Where files overlap the first one given counts. "
+    "Voids most of\n"
+    "whose rim is at sea level become sea, others are filled from their rim, and large ones on a "
+    "coast are left without data.\n"
+    "\n"
+    "The same inputs and options always give the same bytes."};
+
+#define OPTION(name, kind, field, low, high, value, help)                                          \
+    {                                                                                              \
+        name, kind, &s->field, low, high, value, help, false                                       \
+    }
+
+/* Read the command line. Returns true when the build shall go on; see db_options_read. */
+static bool read_settings(struct settings *s, int argc, char **argv, int *exit_code)
+{
+    const struct db_option options[] = {
+        {"classes", DB_TEXT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
+        {"out", DB_TEXT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
+        {"terrain", DB_LIST, &s->terrain, 0, 0, "DEM", "elevation model; may be given again", true},
+        OPTION("class-raster", DB_TEXT, class_raster, 0, 0, "FILE",
+               "class of each pixel, 255: no data"),
+        OPTION("reflectivity", DB_TEXT, reflectivity, 0, 0, "FILE",
+               "reflectivity (gamma, dB) on the class raster's grid\nleft out: the class table's "
+               "mean"),
+        OPTION(
+            "heights", DB_TEXT, heights, 0, 0, "FILE",
+            "metres of structures and trees above the terrain\nleft out: the class table's height"),
+        OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
+               "specific targets and their signatures (docs/targets.md); left out: none"),
+        OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",
+               "about this cell size: the nearest of 0.149 m x 2^n\n"
+               "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
+               "cell"),
+        OPTION(
+            "shift0", DB_INTEGER, shift0, 0, LM_DB_SHIFT_MAX, "N",
+            "cell size as a power of two (docs/FORMATS.md, 1.2): 2^N x 9.3 mm; 0: as --cell says"),
+        OPTION("centre", DB_TEXT, centre, 0, 0, "LAT,LON",
+               "place worth looking at, degrees\nleft out: the middle of the class raster or the "
+               "terrain"),
+        OPTION("title", DB_TEXT, title, 0, 0, "TEXT", "up to 32 bytes"),
+        OPTION("land-class", DB_TEXT, land_class, 0, 0, "NAME",
+               "class of ground above sea level outside the class raster (vegetation)"),
+        OPTION("water-class", DB_TEXT, water_class, 0, 0, "NAME",
+               "class at or below sea level outside the class raster (water)"),
+        OPTION("sea-level", DB_REAL, sea_level_m, -1000, 1000, "METRES",
+               "below 0 where dry land lies below the sea"),
+        OPTION("voids-are-sea", DB_FLAG, voids_are_sea, 0, 0, NULL,
+               "every void of the terrain is sea: for models that have no data at sea"),
+        OPTION("steep-class", DB_TEXT, steep_class, 0, 0, "NAME",
+               "class of steep ground outside the class raster; left out: none"),
+        OPTION("steep-degrees", DB_REAL, steep_degrees, 1, 89, "DEGREES", "what counts as steep"),
+        OPTION("geoid", DB_REAL, geoid_m, -200, 200, "METRES",
+               "height of mean sea level above the WGS-84 ellipsoid here"),
+        OPTION("seed", DB_INTEGER, seed, 0, 4294967295.0, "N", "of the reflectivity's random part"),
+    };
+    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                           exit_code);
+}
+
+static int usage_error(const char *option, const char *cause)
+{
+    return hs_error(option, "see landmass-db build --help", "%s", cause);
+}
+
+static int parse_centre(const char *text, uint32_t centre[2])
+{
+    double degrees[2];
+    char end;
+    if (sscanf(text, "%lf,%lf%c", &degrees[0], &degrees[1], &end) != 2 ||
+        !(fabs(degrees[0]) <= 90) || !(fabs(degrees[1]) <= 360)) {
+        return usage_error("--centre", "must be LATITUDE,LONGITUDE in degrees");
+    }
+    centre[0] = (uint32_t)image_bam(degrees[0]);
+    centre[1] = (uint32_t)image_bam(degrees[1]);
+    return 0;
+}
+
+static int check_settings(struct settings *s)
+{
+    if (s->cell_m > 0 && s->shift0 > 0) {
+        return usage_error("--shift0", "cannot be given together with --cell");
+    }
+    if (s->shift0 > 0 && s->shift0 < LM_DB_SHIFT_MIN) {
+        return usage_error("--shift0", "must be 4 to 20");
+    }
+    if (s->title && strlen(s->title) > LM_IMAGE_TITLE_BYTES) {
+        return usage_error("--title", "is longer than 32 bytes");
+    }
+    if (!s->class_raster && (s->reflectivity || s->heights)) {
+        return usage_error(s->reflectivity ? "--reflectivity" : "--heights",
+                           "needs --class-raster");
+    }
+    return s->centre ? parse_centre(s->centre, s->centre_bam) : 0;
+}
+
+static int named_class(const struct db_class_table *table, const char *option, const char *name)
+{
+    const int k = db_class_find(table, name);
+    if (k < 0) {
+        char names[512];
+        db_class_names(table, names, sizeof names);
+        return hs_error(option, "name one of the class table",
+                        "there is no class \"%s\" (there are %s)", name, names);
+    }
+    return k;
+}
+
+static int make_rule(struct build_rule *rule, const struct settings *s,
+                     const struct db_class_table *table)
+{
+    *rule = (struct build_rule){
+        .land = named_class(table, "--land-class", s->land_class),
+        .water = named_class(table, "--water-class", s->water_class),
+        .steep = -1,
+        .sea_level_m = s->sea_level_m,
+        .steep_tangent = tan(s->steep_degrees * (3.14159265358979323846 / 180.0)),
+    };
+    if (s->steep_class) {
+        rule->steep = named_class(table, "--steep-class", s->steep_class);
+    }
+    const bool is_missing = s->steep_class && rule->steep < 0;
+    return rule->land < 0 || rule->water < 0 || is_missing ? -1 : 0;
+}
+
+static void fill_classes(struct lm_classes *to, const struct db_class_table *table)
+{
+    *to = (struct lm_classes){0};
+    for (int i = 0; i < table->count; i++) {
+        const struct db_class *c = &table->items[i];
+        struct lm_class *e = &to->entry[i];
+        memcpy(e->name, c->name, strnlen(c->name, sizeof e->name));
+        memcpy(e->colour, c->colour, sizeof e->colour);
+        e->kind = (uint8_t)c->kind;
+        e->gamma_q8 = (int16_t)lround(c->gamma_db * 256.0);
+        e->spread_q8 = (uint16_t)lround(c->spread_db * 256.0);
+        e->height_dm = (uint16_t)lround(c->height_m * 10.0);
+        e->looks = (uint16_t)fmax(1.0, round(c->looks));
+    }
+    memcpy(to->height_dm, image_heights_dm, sizeof to->height_dm);
+}
+
+static int read_table(struct build_context *b, const struct settings *s)
+{
+    if (db_class_table_read(&b->table, s->classes) != 0) {
+        return -1;
+    }
+    if (b->table.count > LM_DB_CLASS_NONE) {
+        return hs_error(s->classes, "join some of them", "has %d classes; an image holds up to %d",
+                        b->table.count, LM_DB_CLASS_NONE);
+    }
+    fill_classes(&b->classes, &b->table);
+    for (int i = 0; i < b->table.count; i++) {
+        db_reflect_law_init(&b->laws[i], &b->table.items[i]);
+    }
+    return make_rule(&b->rule, s, &b->table);
+}
+
+/* Pixel size that matters to the grid: latitude, or longitude as the zone widens it. */
+static double pixel_bam(const struct image_area *area, double latitude_bam, double longitude_bam)
+{
+    int64_t latitude;
+    uint32_t longitude;
+    image_area_centre(area, &latitude, &longitude);
+    return fmin(latitude_bam, longitude_bam / (1 << lm_db_zone((fx_bam_t)latitude)));
+}
+
+static double cover_pixel_bam(const struct resample_cover *c)
+{
+    return pixel_bam(&c->area, c->pixel_latitude_bam, c->pixel_longitude_bam);
+}
+
+static double terrain_pixel_bam(const struct terrain_layer *layer)
+{
+    return pixel_bam(&layer->area, layer->pixel_latitude_bam, layer->pixel_longitude_bam);
+}
+
+static int choose_shift0(const struct build_context *b, const struct settings *s)
+{
+    if (s->shift0 > 0) {
+        return (int)s->shift0;
+    }
+    if (s->cell_m > 0) {
+        return (int)lround(log2(s->cell_m / IMAGE_METRES_PER_BAM));
+    }
+    double pixel = b->cover.classes.dataset ? cover_pixel_bam(&b->cover) : HUGE_VAL;
+    for (int i = 0; !b->cover.classes.dataset && i < b->terrain.layer_count; i++) {
+        pixel = fmin(pixel, terrain_pixel_bam(&b->terrain.layers[i]));
+    }
+    const int shift = build_plan_level(0, pixel);
+    return shift < LM_DB_SHIFT_MIN   ? LM_DB_SHIFT_MIN
+           : shift > LM_DB_SHIFT_MAX ? LM_DB_SHIFT_MAX
+                                     : shift;
+}
+
+/* Cut cells that are larger than the class raster's pixels, so that none of these is passed over.
+ */
+static int choose_parts(const struct build_context *b, uint8_t shift0)
+{
+    enum { PARTS_MAX = 32 };
+    const double pixel = b->cover.classes.dataset ? cover_pixel_bam(&b->cover) : HUGE_VAL;
+    int parts = 1;
+    while (parts < PARTS_MAX && ldexp(1.0, shift0) / parts > 1.0001 * pixel) {
+        parts *= 2;
+    }
+    return parts;
+}
+
+static int make_plan(struct build_context *b, const struct settings *s)
+{
+    const int shift0 = choose_shift0(b, s);
+    if (shift0 < LM_DB_SHIFT_MIN || shift0 > LM_DB_SHIFT_MAX) {
+        return hs_error("--cell", "choose 0.15 to 9768", "there are no cells of %g m", s->cell_m);
+    }
+    struct build_extent extents[DB_LIST_MAX + 1];
+    const int layers = b->terrain.layer_count;
+    const bool has_cover = b->cover.classes.dataset != NULL;
+    int finest = LM_DB_SHIFT_MAX;
+    for (int i = 0; i < layers; i++) {
+        const struct terrain_layer *layer = &b->terrain.layers[i];
+        const int level = build_plan_level((uint8_t)shift0, terrain_pixel_bam(layer));
+        extents[i] = (struct build_extent){layer->area, level < 0 ? 0 : level};
+        finest = extents[i].level < finest ? extents[i].level : finest;
+    }
+    for (int i = 0; i < layers && !has_cover; i++) {
+        /* Cells finer than the terrain were asked for: then it fills them. */
+        extents[i].level -= finest;
+    }
+    extents[layers] = (struct build_extent){b->cover.area, 0};
+    if (build_plan_make(&b->plan, (uint8_t)shift0, extents, layers + 1) != 0) {
+        return -1;
+    }
+    for (int i = 0; i < layers; i++) {
+        b->terrain_level[i] = extents[i].level;
+    }
+    b->parts = choose_parts(b, (uint8_t)shift0);
+    terrain_set_cell(&b->terrain, (uint8_t)shift0);
+    resample_cover_set_cell(&b->cover, (uint8_t)shift0);
+    return 0;
+}
+
+static int check_overlap(const struct build_context *b, const struct settings *s)
+{
+    if (!b->cover.classes.dataset) {
+        return 0;
+    }
+    for (int i = 0; i < b->terrain.layer_count; i++) {
+        if (image_areas_meet(&b->terrain.layers[i].area, &b->cover.area)) {
+            return 0;
+        }
+    }
+    const struct image_area *a = &b->cover.area;
+    return hs_error(s->class_raster, "give a --terrain that covers this area",
+                    "lies outside all terrain (it covers %.4f to %.4f north, %.4f to %.4f east)",
+                    image_degrees(a->south), image_degrees(a->north),
+                    image_longitude_degrees(a->west),
+                    image_longitude_degrees(a->west + (uint32_t)a->width));
+}
+
+static int open_inputs(struct build_context *b, const struct settings *s)
+{
+    if (read_table(b, s) != 0 ||
+        resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
+            0 ||
+        terrain_open(&b->terrain, &s->terrain,
+                     &(struct terrain_options){s->sea_level_m, s->voids_are_sea}) != 0) {
+        return -1;
+    }
+    return check_overlap(b, s) != 0 ? -1 : make_plan(b, s);
+}
+
+static void close_inputs(struct build_context *b)
+{
+    resample_cover_close(&b->cover);
+    terrain_close(&b->terrain);
+}
+
+/* Specific targets and their signatures, with the sections made of them; all zero without any. */
+struct extras {
+    struct build_targets targets;           /* owned */
+    void *targets_bytes, *signatures_bytes; /* owned */
+    size_t targets_size, signatures_size;
+};
+
+static int read_extras(struct extras *e, const char *path)
+{
+    *e = (struct extras){.targets_bytes = NULL};
+    if (!path) {
+        return 0;
+    }
+    if (build_targets_read(&e->targets, path) != 0) {
+        return -1;
+    }
+    const bool has_signatures = e->targets.signatures.count > 0;
+    e->targets_bytes = build_targets_section(&e->targets, &e->targets_size);
+    if (has_signatures) {
+        e->signatures_bytes = build_signatures_section(&e->targets.signatures, &e->signatures_size);
+    }
+    return e->targets_bytes && (!has_signatures || e->signatures_bytes)
+               ? 0
+               : hs_error(path, NULL, "out of memory");
+}
+
+static void free_extras(struct extras *e)
+{
+    build_targets_free(&e->targets);
+    free(e->targets_bytes);
+    free(e->signatures_bytes);
+}
+
+static int write_targets_inputs(FILE *out, const char *path,
+                                const struct build_signatures *signatures)
+{
+    int result = build_manifest_file(out, "targets", path);
+    for (uint32_t i = 0; i < signatures->count && result == 0; i++) {
+        result = build_manifest_file(out, "signature", signatures->paths[i]);
+    }
+    return result;
+}
+
+static int write_inputs(FILE *out, const struct build_context *b, const struct settings *s,
+                        const struct build_signatures *signatures)
+{
+    const struct resample_plane *planes[3] = {&b->cover.classes, &b->cover.reflectivity,
+                                              &b->cover.heights};
+    const char *const roles[3] = {"class-raster", "reflectivity", "heights"};
+    int result = build_manifest_file(out, "classes", s->classes);
+    for (int i = 0; i < 3 && result == 0; i++) {
+        if (planes[i]->dataset) {
+            result = build_manifest_dataset(out, roles[i], planes[i]->dataset);
+        }
+    }
+    for (int i = 0; i < b->terrain.layer_count; i++) {
+        const struct terrain_mosaic *m = &b->terrain.layers[i].mosaic;
+        for (int k = 0; k < m->member_count && result == 0; k++) {
+            result = build_manifest_dataset(out, "terrain", m->members[k].dataset);
+        }
+    }
+    return result == 0 && s->targets ? write_targets_inputs(out, s->targets, signatures) : result;
+}
+
+/* The whole text; the caller frees it. NULL with the error reported. */
+static char *make_manifest(const struct build_context *b, const struct settings *s,
+                           const struct build_signatures *signatures)
+{
+    char *text = NULL, options[512];
+    size_t bytes = 0;
+    FILE *out = open_memstream(&text, &bytes);
+    if (!out) {
+        hs_error("manifest", NULL, "out of memory");
+        return NULL;
+    }
+    snprintf(options, sizeof options,
+             "shift0: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
+             "%d\nsteep-class: %s\n"
+             "steep-degrees: %g\n",
+             b->plan.shift0, s->land_class, s->water_class, s->sea_level_m, s->voids_are_sea,
+             s->steep_class ? s->steep_class : "none", s->steep_degrees);
+    const struct build_manifest head = {options, &b->table, b->seed};
+    build_manifest_head(out, &head);
+    const int result = write_inputs(out, b, s, signatures);
+    if (fclose(out) != 0 || result != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+static void fill_header(struct lm_image_header *h, const struct build_context *b,
+                        const struct settings *s, const uint32_t centre[2])
+{
+    const struct build_counts *n = &b->counts;
+    const double mean_m =
+        n->land_area_m2 > 0 ? n->land_metres_m2 / n->land_area_m2 : s->sea_level_m;
+    h->mean_elevation_q6 = (int32_t)lround(mean_m * 64.0);
+    h->geoid_q6 = (int32_t)lround(s->geoid_m * 64.0);
+    h->centre_latitude = centre[0];
+    h->centre_longitude = centre[1];
+    if (s->title) {
+        memcpy(h->title, s->title, strlen(s->title));
+    }
+}
+
+static void choose_centre(const struct build_context *b, const struct settings *s,
+                          uint32_t centre[2])
+{
+    if (s->centre) {
+        memcpy(centre, s->centre_bam, sizeof s->centre_bam);
+        return;
+    }
+    struct image_area area = b->cover.area;
+    for (int i = 0; area.width == 0 && i < b->terrain.layer_count; i++) {
+        area = b->terrain.layers[i].area;
+    }
+    int64_t latitude;
+    image_area_centre(&area, &latitude, &centre[1]);
+    centre[0] = (uint32_t)latitude;
+}
+
+struct report {
+    struct build_level_counts levels;
+    uint64_t image_bytes, entry_count, record_count;
+    int32_t mean_elevation_q6;
+};
+
+static int write_image(struct build_context *b, const struct settings *s, const char *manifest,
+                       const struct extras *extras, struct report *report)
+{
+    uint32_t centre[2];
+    choose_centre(b, s, centre);
+    struct image_writer w;
+    const struct lm_image_header header = {.shift0 = b->plan.shift0,
+                                           .level_count = b->plan.level_count,
+                                           .band_count = b->plan.band_count,
+                                           .entry_count = b->plan.entry_count};
+    if (image_writer_begin(&w, s->out, &header, &b->classes, b->plan.bands) != 0) {
+        return -1;
+    }
+    if (build_pyramid(b, &w, &report->levels) != 0) {
+        image_writer_abort(&w);
+        return -1;
+    }
+    if (w.header.record_count == 0) {
+        image_writer_abort(&w);
+        return hs_error(s->out, "check the inputs with gdalinfo",
+                        "no cell of the image would hold data");
+    }
+    fill_header(&w.header, b, s, centre);
+    w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
+    w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
+    if (image_writer_end(&w, manifest) != 0) {
+        return -1;
+    }
+    report->image_bytes = w.header.image_bytes;
+    report->entry_count = w.header.entry_count;
+    report->record_count = w.header.record_count;
+    report->mean_elevation_q6 = w.header.mean_elevation_q6;
+    return 0;
+}
+
+static void print_levels(const struct build_context *b, const struct report *r)
+{
+    for (int level = 0; level < b->plan.level_count; level++) {
+        const double cell_m = ldexp(IMAGE_METRES_PER_BAM, b->plan.shift0 + level);
+        printf("level %-2d cell %8.2f m  %7" PRIu32 " tiles  %12" PRIu64 " bytes\n", level, cell_m,
+               r->levels.tiles[level], (uint64_t)r->levels.tiles[level] * LM_TILE_BYTES);
+    }
+    printf("image %" PRIu64 " tiles of %" PRIu64 " entries, %" PRIu64 " bytes\n", r->record_count,
+           r->entry_count, r->image_bytes);
+}
+
+static void print_classes(const struct build_context *b)
+{
+    const struct build_counts *n = &b->counts;
+    uint64_t cells = 0;
+    for (int k = 0; k < b->table.count; k++) {
+        printf("class %-2d %-16s %12" PRIu64 " cells  %12.3f km2\n", k, b->table.items[k].name,
+               n->cells[k], n->area_m2[k] * 1e-6);
+        cells += n->cells[k];
+    }
+    printf("cells %" PRIu64 ", of them %" PRIu64 " classed from elevation, %" PRIu64
+           " beyond the terrain\n",
+           cells, n->cells_by_rule, n->cells_beyond_terrain);
+}
+
+static void print_voids(const struct terrain *t)
+{
+    uint64_t pixels[3] = {0, 0, 0};
+    for (int i = 0; i < t->layer_count; i++) {
+        const struct terrain_voids *v = &t->layers[i].mosaic.voids;
+        for (size_t k = 0; k < v->region_count; k++) {
+            pixels[v->regions[k].filling] += v->regions[k].pixels;
+        }
+    }
+    printf("voids %" PRIu64 " posts interpolated, %" PRIu64 " taken as sea, %" PRIu64
+           " left without data\n",
+           pixels[TERRAIN_INTERPOLATED], pixels[TERRAIN_SEA], pixels[TERRAIN_LEFT_VOID]);
+    if (pixels[TERRAIN_LEFT_VOID] > 0) {
+        hs_warn("--terrain",
+                "give another model of them after this one, or --voids-are-sea if they are",
+                "%" PRIu64 " posts in large voids were left without data",
+                pixels[TERRAIN_LEFT_VOID]);
+    }
+}
+
+static void print_report(const struct build_context *b, const struct report *r, double seconds)
+{
+    print_levels(b, r);
+    print_classes(b);
+    print_voids(&b->terrain);
+    printf("mean elevation of land %.1f m\n", r->mean_elevation_q6 / 64.0);
+    printf("done in %.1f s\n", seconds);
+}
+
+static double now_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* DTED keeps whole columns in a block: a row of tiles over fourteen degrees of level 2 stays in
+ * memory. */
+static const int64_t cache_bytes = (int64_t)384 << 20;
+
+static int build(const struct settings *s)
+{
+    const double start = now_seconds();
+    GDALSetCacheMax64(cache_bytes);
+    struct build_context *b = calloc(1, sizeof *b);
+    if (!b) {
+        return hs_error(s->out, NULL, "out of memory");
+    }
+    b->seed = (uint32_t)s->seed;
+    struct report report = {0};
+    struct extras extras;
+    char *manifest = NULL;
+    int result = read_extras(&extras, s->targets) == 0 ? open_inputs(b, s) : -1;
+    if (result == 0) {
+        manifest = make_manifest(b, s, &extras.targets.signatures);
+        result = manifest ? write_image(b, s, manifest, &extras, &report) : -1;
+    }
+    if (result == 0 && s->targets) {
+        printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras.targets.count,
+               extras.targets.signatures.count);
+    }
+    if (result == 0) {
+        print_report(b, &report, now_seconds() - start);
+    }
+    free_extras(&extras);
+    free(manifest);
+    close_inputs(b);
+    free(b);
+    return result;
+}
+
+int db_cmd_build(int argc, char **argv)
+{
+    struct settings s = {
+        .land_class = "vegetation", .water_class = "water", .steep_degrees = 25.0, .seed = 1};
+    int exit_code;
+    const bool goes_on = read_settings(&s, argc, argv, &exit_code);
+    if (goes_on) {
+        exit_code = check_settings(&s) != 0 ? HS_EXIT_USAGE
+                    : build(&s) != 0        ? HS_EXIT_FAILED
+                                            : HS_EXIT_OK;
+    }
+    db_list_free(&s.terrain);
+    return exit_code;
+}

@@ -1,0 +1,133 @@
+#include "commands.h"
+#include "image_command.h"
+
+#include "hs/error.h"
+#include "image/codes.h"
+#include "image/grid.h"
+#include "image/reader.h"
+#include "image/signatures.h"
+#include "image/targets.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct db_usage usage = {
+    "inspect FILE", "print what a database image holds",
+    "Prints header, sections, bands, levels, extents, classes, "
+    "targets, signatures and manifest. `verify` checks the image's every byte."};
+
+static void print_header(const struct image *image)
+{
+    const struct lm_image_header *h = &image->header;
+    printf("title           %.*s\n", LM_IMAGE_TITLE_BYTES, h->title);
+    printf("version         %" PRIu32 "\n", h->version);
+    printf("bytes           %" PRIu64 "\n", h->image_bytes);
+    printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
+           image_longitude_degrees(h->centre_longitude));
+    printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_q6 / 64.0);
+    printf("geoid           %.1f m above WGS-84\n", h->geoid_q6 / 64.0);
+    printf("finest cell     %.3f m (shift0 %u)\n", ldexp(IMAGE_METRES_PER_BAM, h->shift0),
+           h->shift0);
+    printf("\nsection     offset         bytes  crc\n");
+    for (uint32_t i = 0; i < h->section_count; i++) {
+        const struct lm_image_section *s = &h->sections[i];
+        printf("%-9s %8" PRIu64 "  %12" PRIu64 "  %08" PRIx32 "\n", image_section_name(s->type),
+               s->offset, s->bytes, s->crc);
+    }
+}
+
+static void print_bands(const struct image *image)
+{
+    printf("\nlevel zone      south       west      north       east        rows     columns\n");
+    for (uint32_t i = 0; i < image->header.band_count; i++) {
+        const struct lm_band *b = &image->db.bands[i];
+        const uint8_t shift = (uint8_t)(image->header.shift0 + b->level);
+        const struct image_frame first = image_frame_of(shift, b->zone, b->row0, b->column0);
+        const struct image_frame last = image_frame_of(shift, b->zone, b->row0 + b->rows, 0);
+        const uint32_t width =
+            (uint32_t)((uint64_t)b->columns * LM_TILE_CELLS << (shift + b->zone));
+        printf("%5u %4u %10.5f %10.5f %10.5f %10.5f  %10" PRIu32 "  %10" PRIu32 "\n", b->level,
+               b->zone, image_degrees(first.south), image_longitude_degrees(first.west),
+               image_degrees(last.south), image_longitude_degrees(first.west + width), b->rows,
+               b->columns);
+    }
+}
+
+static uint32_t count_tiles(const struct image *image, const struct lm_band *b)
+{
+    uint32_t tiles = 0;
+    const uint32_t end = b->entry0 + b->rows * b->columns;
+    for (uint32_t entry = b->entry0; entry < end; entry++) {
+        tiles += image->entries[entry].record < image->header.record_count;
+    }
+    return tiles;
+}
+
+static void print_levels(const struct image *image)
+{
+    uint32_t tiles[LM_DB_LEVELS_MAX] = {0};
+    for (uint32_t i = 0; i < image->header.band_count; i++) {
+        tiles[image->db.bands[i].level] += count_tiles(image, &image->db.bands[i]);
+    }
+    printf("\nlevel     cell m       tiles         bytes\n");
+    for (int level = 0; level < image->header.level_count; level++) {
+        printf("%5d %10.2f  %10" PRIu32 "  %12" PRIu64 "\n", level,
+               ldexp(IMAGE_METRES_PER_BAM, image->header.shift0 + level), tiles[level],
+               (uint64_t)tiles[level] * LM_TILE_BYTES);
+    }
+}
+
+static void print_classes(const struct image *image)
+{
+    static const char *const kinds[] = {"ground", "water", "structure", "trees"};
+    printf("\nclass name             kind       gamma dB  spread dB  height m  looks  colour\n");
+    for (int i = 0; i < LM_DB_CLASS_NONE; i++) {
+        const struct lm_class *c = &image->db.classes.entry[i];
+        if (c->name[0]) {
+            printf("%5d %-16.16s %-9s %9.2f  %9.2f  %8.1f  %5u  %02x%02x%02x\n", i, c->name,
+                   c->kind <= LM_KIND_TREES ? kinds[c->kind] : "unknown", c->gamma_q8 / 256.0,
+                   c->spread_q8 / 256.0, c->height_dm / 10.0, c->looks, c->colour[0], c->colour[1],
+                   c->colour[2]);
+        }
+    }
+    printf("heights m      ");
+    for (int i = 0; i < 16; i++) {
+        printf(" %g", image->db.classes.height_dm[i] / 10.0);
+    }
+    putchar('\n');
+}
+
+/* Control characters of a damaged or hostile file do not reach the terminal. */
+static void print_manifest(const struct image *image)
+{
+    const struct lm_image_section *s = image->sections[LM_IMAGE_MANIFEST];
+    putchar('\n');
+    for (uint64_t i = 0; i < s->bytes; i++) {
+        const uint8_t c = image->bytes[s->offset + i];
+        putchar(c == '\n' || (c >= ' ' && c != 127) ? c : '?');
+    }
+}
+
+int db_cmd_inspect(int argc, char **argv)
+{
+    const char *path;
+    int exit_code;
+    if (!image_command_read(&usage, NULL, 0, argc, argv, &path, &exit_code)) {
+        return exit_code;
+    }
+    struct image image;
+    if (image_open(&image, path) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    print_header(&image);
+    print_levels(&image);
+    print_bands(&image);
+    print_classes(&image);
+    image_targets_print(&image);
+    image_signatures_print(&image);
+    print_manifest(&image);
+    image_close(&image);
+    return HS_EXIT_OK;
+}

@@ -1,0 +1,367 @@
+/* landmass-db reflect: a class raster in, a reflectivity raster out. */
+#include "commands.h"
+#include "source_options.h"
+
+#include "gis/class_raster.h"
+#include "gis/preview.h"
+#include "hs/error.h"
+#include "hs/png.h"
+#include "hs/progress.h"
+#include "reflectivity/reflect.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NODATA_DB = -9999 };
+
+static const struct db_usage usage = {
+    .command = "reflect",
+    .summary = "give each pixel its radar reflectivity",
+    .description =
+        "Writes the constant-gamma reflectivity of each pixel in dB at X band (Float32 GeoTIFF, "
+        "-9999 for no\n"
+        "data) from its class, by either of Heaton's methods:\n\n"
+        "  assign  random values with the class's mean, spread, limits and texture. Predictable, "
+        "and borders\n"
+        "          between classes soften where their limits overlap. The value depends on the "
+        "seed and the\n"
+        "          pixel's place alone.\n"
+        "  adjust  the image's brightness is kept as detail: the mean and spread of each class's "
+        "brightness\n"
+        "          are moved to its gamma_db and spread_db. Water becomes uniform. More detailed, "
+        "but what is\n"
+        "          bright to the eye need not be bright to the radar. Needs --image. Pixels of a "
+        "class where\n"
+        "          the image has no data get the class's mean.\n\n"
+        "Speckle is not added: the display unit does that.\n\n"
+        "Example:\n"
+        "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
+        "      --method adjust --image scene.tif --out scene-gamma.tif",
+};
+
+struct options {
+    struct db_image_options image;
+    struct db_list bands;
+    const char *class_raster, *classes, *method, *out, *picture;
+    long seed;
+};
+
+static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
+{
+    struct db_option table[] = {
+        {"class-raster", DB_TEXT, &o->class_raster, 0, 0, "FILE",
+         "The class raster, from `segment` or `correct`.", true},
+        DB_CLASSES_OPTION(o->classes),
+        {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
+        {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default) or adjust.", false},
+        {"bands", DB_LIST, &o->bands, 0, 0, "N,N",
+         "Bands of the image whose mean is the brightness, from 1; default all.", false},
+        {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},
+        {"picture", DB_TEXT, &o->picture, 0, 0, "FILE",
+         "Also write a PNG, black at the lowest and white at the highest mean of the classes.",
+         false},
+        DB_IMAGE_OPTIONS(&o->image),
+    };
+    enum { COUNT = sizeof table / sizeof table[0] };
+    table[COUNT - 3].is_required = false; /* The image: only `adjust` looks at it. */
+    return db_options_read(&usage, table, COUNT, argc, argv, exit_code);
+}
+
+/* What came out, for each class. */
+struct outcome {
+    double sum[DB_CLASS_MAX], square[DB_CLASS_MAX], low[DB_CLASS_MAX], high[DB_CLASS_MAX];
+    double count[DB_CLASS_MAX];
+};
+
+struct block {
+    float *pixels; /* planes of the image, or one plane of scratch */
+    uint8_t *valid, *class_valid, *classes;
+    float *values; /* dB */
+    int y, rows;
+};
+
+struct work {
+    const struct options *options;
+    bool adjusts;
+    struct db_class_table table;
+    struct db_reflect_law laws[DB_CLASS_MAX];
+    struct db_raster classes, image;
+    bool uses_band[DB_LIST_MAX * 8];
+    int bands_used;
+    struct db_raster_out out;
+    struct db_preview preview;
+    struct db_brightness brightness;
+    struct outcome outcome;
+    struct block block;
+    int block_rows;
+};
+
+static int choose_bands(struct work *w)
+{
+    const struct db_list *list = &w->options->bands;
+    const int most = (int)sizeof w->uses_band;
+    if (w->image.band_count > most) {
+        return hs_error(w->image.name, "name some with --bands", "has more than %d bands", most);
+    }
+    for (int b = 0; b < w->image.band_count && list->count == 0; b++) {
+        w->uses_band[b] = true;
+    }
+    for (int i = 0; i < list->count; i++) {
+        const int b = atoi(list->items[i]) - 1;
+        if (b < 0 || b >= w->image.band_count) {
+            return hs_error("--bands", NULL, "`%s` is not a band of 1..%d", list->items[i],
+                            w->image.band_count);
+        }
+        w->uses_band[b] = true;
+    }
+    for (int b = 0; b < w->image.band_count; b++) {
+        w->bands_used += w->uses_band[b];
+    }
+    return 0;
+}
+
+static int open_image(struct work *w)
+{
+    if (!w->adjusts) {
+        return 0;
+    }
+    if (db_image_open(&w->image, &w->options->image) != 0) {
+        return -1;
+    }
+    if (!db_grid_is_same(&w->image.grid, &w->classes.grid)) {
+        return hs_error(w->image.name, "give the image the classes were made from",
+                        "lies on another grid than %s", w->options->class_raster);
+    }
+    return choose_bands(w);
+}
+
+static int alloc_block(struct work *w)
+{
+    const size_t planes = w->adjusts ? (size_t)w->image.band_count : 1;
+    const size_t pixel = (planes + 1) * sizeof(float) + 3;
+    w->block_rows = db_raster_block_rows(&w->classes.grid, pixel);
+    const size_t count = (size_t)w->block_rows * (size_t)w->classes.grid.width;
+    struct block *b = &w->block;
+    b->pixels = malloc(planes * count * sizeof *b->pixels);
+    b->values = malloc(count * sizeof *b->values);
+    b->valid = malloc(count);
+    b->class_valid = malloc(count);
+    b->classes = malloc(count);
+    if (!b->pixels || !b->values || !b->valid || !b->class_valid || !b->classes) {
+        return hs_error(w->options->out, NULL, "out of memory");
+    }
+    return 0;
+}
+
+static int prepare(struct work *w)
+{
+    const struct options *o = w->options;
+    if (db_class_table_read(&w->table, o->classes) != 0 ||
+        db_class_raster_open(&w->classes, o->class_raster) != 0 || open_image(w) != 0 ||
+        alloc_block(w) != 0) {
+        return -1;
+    }
+    for (int i = 0; i < w->table.count; i++) {
+        db_reflect_law_init(&w->laws[i], &w->table.items[i]);
+        w->outcome.low[i] = INFINITY;
+        w->outcome.high[i] = -INFINITY;
+    }
+    if (o->picture && db_preview_init(&w->preview, &w->classes.grid, 1) != 0) {
+        return -1;
+    }
+    return db_raster_create(&w->out, o->out, &w->classes.grid, GDT_Float32, NODATA_DB);
+}
+
+/* Classes of the block, and for `adjust` its brightness in `values` (NAN where the image has none).
+ */
+static int read_block(struct work *w)
+{
+    struct block *b = &w->block;
+    const size_t count = (size_t)b->rows * (size_t)w->classes.grid.width;
+    if (db_class_raster_read(&w->classes, &w->table, b->y, b->rows, b->values, b->class_valid,
+                             b->classes) != 0) {
+        return -1;
+    }
+    if (!w->adjusts) {
+        return 0;
+    }
+    if (db_raster_read(&w->image, b->y, b->rows, b->pixels, b->valid) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < count; i++) {
+        double sum = 0;
+        for (int band = 0; band < w->image.band_count; band++) {
+            sum += w->uses_band[band] ? (double)b->pixels[(size_t)band * count + i] : 0;
+        }
+        b->values[i] = b->valid[i] ? (float)(sum / w->bands_used) : (float)NAN;
+    }
+    return 0;
+}
+
+static int measure_block(struct work *w)
+{
+    const struct block *b = &w->block;
+    for (size_t i = 0; i < (size_t)b->rows * (size_t)w->classes.grid.width; i++) {
+        if (b->classes[i] != DB_CLASS_NODATA && !isnan(b->values[i])) {
+            db_brightness_add(&w->brightness, b->classes[i], (double)b->values[i]);
+        }
+    }
+    return 0;
+}
+
+static double value_of(const struct work *w, size_t i)
+{
+    const struct block *b = &w->block;
+    const int c = b->classes[i], width = w->classes.grid.width;
+    if (!w->adjusts) {
+        return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed, (int)(i % (size_t)width),
+                                 b->y + (int)(i / (size_t)width));
+    }
+    return isnan(b->values[i])
+               ? w->table.items[c].gamma_db
+               : db_reflect_adjust(&w->table.items[c], &w->brightness, c, (double)b->values[i]);
+}
+
+static void count_value(struct outcome *o, int c, double value)
+{
+    o->sum[c] += value;
+    o->square[c] += value * value;
+    o->low[c] = fmin(o->low[c], value);
+    o->high[c] = fmax(o->high[c], value);
+    o->count[c]++;
+}
+
+static int reflect_block(struct work *w)
+{
+    struct block *b = &w->block;
+    const int width = w->classes.grid.width;
+    for (size_t i = 0; i < (size_t)b->rows * (size_t)width; i++) {
+        if (b->classes[i] == DB_CLASS_NODATA) {
+            b->values[i] = NODATA_DB;
+            continue;
+        }
+        const double value = value_of(w, i);
+        count_value(&w->outcome, b->classes[i], value);
+        b->values[i] = (float)value;
+    }
+    if (w->options->picture) {
+        db_preview_add(&w->preview, 0, b->y, b->rows, width, b->values, b->class_valid);
+    }
+    return db_raster_write(&w->out, b->y, b->rows, b->values);
+}
+
+static int for_all_blocks(struct work *w, const char *label, int (*work_on)(struct work *))
+{
+    const int height = w->classes.grid.height;
+    struct block *b = &w->block;
+    struct hs_progress progress;
+    hs_progress_begin(&progress, label, (uint64_t)height);
+    int result = 0;
+    for (b->y = 0; result == 0 && b->y < height; b->y += w->block_rows) {
+        b->rows = b->y + w->block_rows < height ? w->block_rows : height - b->y;
+        result = read_block(w);
+        if (result == 0) {
+            result = work_on(w);
+        }
+        hs_progress_update(&progress, (uint64_t)(b->y + b->rows));
+    }
+    hs_progress_end(&progress);
+    return result;
+}
+
+static void print_outcome(const struct work *w)
+{
+    const struct outcome *o = &w->outcome;
+    for (int i = 0; i < w->table.count; i++) {
+        if (o->count[i] > 0) {
+            const double mean = o->sum[i] / o->count[i];
+            printf(
+                "%-16s %12.0f pixels  mean %7.2f dB (table %g)  spread %5.2f dB (%g)  %7.2f .. "
+                "%.2f "
+                "dB\n",
+                w->table.items[i].name, o->count[i], mean, w->table.items[i].gamma_db,
+                sqrt(fmax(0, o->square[i] / o->count[i] - mean * mean)),
+                w->table.items[i].spread_db, o->low[i], o->high[i]);
+        }
+    }
+}
+
+static int write_picture(const struct work *w)
+{
+    const struct db_preview *p = &w->preview;
+    double low = INFINITY, high = -INFINITY;
+    if (!w->options->picture) {
+        return 0;
+    }
+    for (int i = 0; i < w->table.count; i++) {
+        if (w->outcome.count[i] > 0) {
+            low = fmin(low, w->table.items[i].gamma_db - w->table.items[i].spread_db);
+            high = fmax(high, w->table.items[i].gamma_db + w->table.items[i].spread_db);
+        }
+    }
+    uint8_t *rgb = malloc(3 * (size_t)p->width * (size_t)p->height);
+    if (!rgb) {
+        return hs_error(w->options->picture, NULL, "out of memory");
+    }
+    db_preview_paint_grey(p, low, high, rgb, 0, 1);
+    const int result =
+        hs_png_write_rgb(w->options->picture, rgb, p->width, p->height, 3 * (size_t)p->width);
+    free(rgb);
+    return result;
+}
+
+static int run(struct work *w)
+{
+    if (prepare(w) != 0 || (w->adjusts && for_all_blocks(w, "brightness", measure_block) != 0) ||
+        for_all_blocks(w, "reflect", reflect_block) != 0 || db_raster_commit(&w->out) != 0) {
+        db_raster_abort(&w->out);
+        return HS_EXIT_FAILED;
+    }
+    print_outcome(w);
+    return write_picture(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
+}
+
+static bool has_sense(const struct options *o)
+{
+    const bool adjusts = strcmp(o->method, "adjust") == 0;
+    if (!adjusts && strcmp(o->method, "assign") != 0) {
+        hs_error("--method", "see landmass-db reflect --help", "`%s` is neither assign nor adjust",
+                 o->method);
+        return false;
+    }
+    if (adjusts && o->image.paths.count == 0) {
+        hs_error("--method adjust", "name the image with --image",
+                 "needs the image for its brightness");
+        return false;
+    }
+    return true;
+}
+
+int db_cmd_reflect(int argc, char **argv)
+{
+    struct options options = {.method = "assign", .seed = 1};
+    int exit_code;
+    struct work *w = calloc(1, sizeof *w);
+    if (!w) {
+        hs_error("reflect", NULL, "out of memory");
+        return HS_EXIT_FAILED;
+    }
+    w->options = &options;
+    if (read_options(&options, argc, argv, &exit_code)) {
+        w->adjusts = strcmp(options.method, "adjust") == 0;
+        exit_code = has_sense(&options) ? run(w) : HS_EXIT_USAGE;
+    }
+    free(w->block.pixels);
+    free(w->block.values);
+    free(w->block.valid);
+    free(w->block.class_valid);
+    free(w->block.classes);
+    db_preview_free(&w->preview);
+    db_raster_close(&w->classes);
+    db_raster_close(&w->image);
+    db_list_free(&options.image.paths);
+    db_list_free(&options.bands);
+    free(w);
+    return exit_code;
+}

@@ -1,0 +1,350 @@
+/* landmass-db segment: an image and a trained network in, a class raster out. */
+#include "commands.h"
+#include "source_options.h"
+
+#include "classify/confusion.h"
+#include "classify/error_regions.h"
+#include "classify/learn.h"
+#include "classify/mlp_apply.h"
+#include "gis/class_raster.h"
+#include "gis/preview.h"
+#include "hs/error.h"
+#include "hs/png.h"
+#include "hs/progress.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static const struct db_usage usage = {
+    .command = "segment",
+    .summary = "give each pixel of an image its class",
+    .description =
+        "Runs the trained network over the image, a block of rows at a time, and writes the class "
+        "of each\n"
+        "pixel as a compressed GeoTIFF (Byte, 255 for no data) with the image's georeferencing and "
+        "the class\n"
+        "table's colours and names.\n\n"
+        "Look at the result (--picture) before going on: scattered errors do no harm and become "
+        "background\n"
+        "clutter; systematic ones call for more exemplars or for `landmass-db correct`. With "
+        "exemplars\n"
+        "given, --report lists the polygons and the squares of the image that came out worst.\n\n"
+        "Example:\n"
+        "  landmass-db segment --image scene.tif --classes heaton6.classes --net scene.net \\\n"
+        "      --out scene-classes.tif --picture scene-classes.png",
+};
+
+struct options {
+    struct db_image_options image;
+    struct db_exemplar_options known; /* for the report */
+    const char *classes, *net, *out, *picture, *report;
+    struct db_list picture_bands;
+    long square;
+};
+
+static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
+{
+    const struct db_option table[] = {
+        DB_IMAGE_OPTIONS(&o->image),
+        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE",
+         "The class table the network was trained with.", true},
+        {"net", DB_TEXT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
+        {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
+        {"picture", DB_TEXT, &o->picture, 0, 0, "FILE",
+         "Also write a PNG: the image on the left, its classes on the right; at most 1024 "
+         "pixels each\n"
+         "way, larger images show every n-th pixel.",
+         false},
+        {"picture-bands", DB_LIST, &o->picture_bands, 0, 0, "R,G,B",
+         "Bands to show as red, green and blue, from 1; default 1,2,3 of three bands, "
+         "3,2,1 of more.",
+         false},
+        {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
+         "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
+         "confusion.csv.",
+         false},
+        DB_EXEMPLAR_OPTIONS(&o->known),
+        {"square", DB_INTEGER, &o->square, 4, 4096, "N",
+         "Side in pixels of the squares of the report.", false},
+    };
+    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+}
+
+struct work {
+    const struct options *options;
+    struct db_class_table table;
+    struct db_net net;
+    uint8_t class_of_output[DB_CLASS_MAX];
+    struct db_applied applied;
+    struct db_raster image;
+    struct db_raster_out out;
+    struct db_exemplars exemplars;
+    uint8_t *given; /* owned: class of each exemplar */
+    size_t given_count;
+    struct db_preview original, classes;
+    int shown[3]; /* bands of the picture, from 0 */
+    int shown_count;
+    uint64_t counts[256];
+    double seconds; /* of the network alone */
+};
+
+static int choose_bands(struct work *w)
+{
+    const struct db_list *list = &w->options->picture_bands;
+    const int bands = w->image.band_count;
+    w->shown_count = bands >= 3 ? 3 : 1;
+    for (int i = 0; i < 3; i++) {
+        w->shown[i] = bands == 3 ? i : bands > 3 ? 2 - i : 0;
+    }
+    if (list->count == 0) {
+        return 0;
+    }
+    w->shown_count = list->count == 3 ? 3 : 1;
+    for (int i = 0; i < list->count && i < 3; i++) {
+        w->shown[i] = atoi(list->items[i]) - 1;
+        if (w->shown[i] < 0 || w->shown[i] >= bands || (list->count != 1 && list->count != 3)) {
+            return hs_error("--picture-bands", "give one band or three",
+                            "`%s` is not a band of 1..%d", list->items[i], bands);
+        }
+    }
+    return 0;
+}
+
+static int find_exemplars(struct work *w)
+{
+    const struct options *o = w->options;
+    struct db_label_map map;
+    if (!o->report) {
+        return 0;
+    }
+    if (db_label_map_read(&map, o->known.map, &w->table) != 0) {
+        return -1;
+    }
+    const struct db_exemplar_source source = {
+        .polygons_path = o->known.polygons,
+        .field = o->known.field,
+        .labels_path = o->known.labels,
+        .map = &map,
+        .table = &w->table,
+        .per_class = 1000000,
+        .seed = 1,
+    };
+    if (db_exemplars_find(&w->exemplars, &source, &w->image.grid) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < w->exemplars.count; i++) {
+        w->exemplars.items[i].part = DB_PART_UNKNOWN;
+    }
+    w->given = malloc(w->exemplars.count + 1);
+    return w->given ? 0 : hs_error(o->report, NULL, "out of memory");
+}
+
+static int prepare(struct work *w)
+{
+    const struct options *o = w->options;
+    if (db_class_table_read(&w->table, o->classes) != 0 || db_net_read(&w->net, o->net) != 0 ||
+        db_net_classes(&w->net, &w->table, o->net, w->class_of_output) != 0 ||
+        db_apply_init(&w->applied, &w->net) != 0 || db_image_open(&w->image, &o->image) != 0) {
+        return -1;
+    }
+    if (w->image.band_count != w->net.band_count) {
+        return hs_error(w->image.name, "give the same bands in the same order",
+                        "has %d bands, but %s was trained with %d", w->image.band_count, o->net,
+                        w->net.band_count);
+    }
+    if (find_exemplars(w) != 0 || choose_bands(w) != 0) {
+        return -1;
+    }
+    if (o->picture && (db_preview_init(&w->original, &w->image.grid, w->shown_count) != 0 ||
+                       db_preview_init(&w->classes, &w->image.grid, 1) != 0)) {
+        return -1;
+    }
+    return db_class_raster_create(&w->out, o->out, &w->image.grid, &w->table);
+}
+
+struct block {
+    float *planes;
+    uint8_t *valid, *classes;
+    int y, rows;
+};
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void classify(struct work *w, const struct block *b)
+{
+    const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
+    const double begin = now_s();
+    db_apply(&w->applied, b->planes, count, count, b->classes);
+    for (size_t i = 0; i < count; i++) {
+        b->classes[i] = b->valid[i] ? w->class_of_output[b->classes[i]] : DB_CLASS_NODATA;
+    }
+    w->seconds += now_s() - begin;
+    for (size_t i = 0; i < count; i++) {
+        w->counts[b->classes[i]]++;
+    }
+}
+
+static void keep_for_report(struct work *w, const struct block *b)
+{
+    while (w->given_count < w->exemplars.count &&
+           w->exemplars.items[w->given_count].y < b->y + b->rows) {
+        const struct db_exemplar *e = &w->exemplars.items[w->given_count];
+        const size_t row = (size_t)(e->y - b->y);
+        w->given[w->given_count++] = b->classes[row * (size_t)w->image.grid.width + (size_t)e->x];
+    }
+}
+
+/* The classes pass through the planes, which are done with by then. */
+static void keep_for_picture(struct work *w, const struct block *b)
+{
+    const int width = w->image.grid.width;
+    const size_t count = (size_t)b->rows * (size_t)width;
+    if (!w->options->picture) {
+        return;
+    }
+    for (int i = 0; i < w->shown_count; i++) {
+        db_preview_add(&w->original, i, b->y, b->rows, width,
+                       b->planes + (size_t)w->shown[i] * count, b->valid);
+    }
+    for (size_t i = 0; i < count; i++) {
+        b->planes[i] = (float)b->classes[i];
+    }
+    db_preview_add(&w->classes, 0, b->y, b->rows, width, b->planes, b->valid);
+}
+
+static int segment_block(struct work *w, const struct block *b)
+{
+    if (db_features_read(&w->image, w->net.context, b->y, b->rows, b->planes, b->valid) != 0) {
+        return -1;
+    }
+    classify(w, b);
+    keep_for_report(w, b);
+    keep_for_picture(w, b);
+    return db_raster_write(&w->out, b->y, b->rows, b->classes);
+}
+
+static int segment(struct work *w)
+{
+    const struct db_grid *grid = &w->image.grid;
+    const int rows =
+        db_raster_block_rows(grid, db_feature_bytes(w->image.band_count, w->net.context) + 1);
+    const size_t count = (size_t)rows * (size_t)grid->width;
+    struct block b = {malloc((size_t)w->net.input_count * count * sizeof(float)), malloc(count),
+                      malloc(count), 0, 0};
+    struct hs_progress progress;
+    hs_progress_begin(&progress, "segment", (uint64_t)grid->height);
+    int result =
+        b.planes && b.valid && b.classes ? 0 : hs_error(w->image.name, NULL, "out of memory");
+    for (b.y = 0; result == 0 && b.y < grid->height; b.y += rows) {
+        b.rows = b.y + rows < grid->height ? rows : grid->height - b.y;
+        result = segment_block(w, &b);
+        hs_progress_update(&progress, (uint64_t)(b.y + b.rows));
+    }
+    hs_progress_end(&progress);
+    free(b.planes);
+    free(b.valid);
+    free(b.classes);
+    return result;
+}
+
+static int write_picture(const struct work *w)
+{
+    const struct db_preview *p = &w->original;
+    if (!w->options->picture) {
+        return 0;
+    }
+    uint8_t *rgb = malloc(6 * (size_t)p->width * (size_t)p->height);
+    if (!rgb) {
+        return hs_error(w->options->picture, NULL, "out of memory");
+    }
+    int result = db_preview_paint_stretched(p, rgb, 0, 2);
+    if (result == 0) {
+        db_preview_paint_classes(&w->classes, &w->table, rgb, 1, 2);
+        result = hs_png_write_rgb(w->options->picture, rgb, 2 * p->width, p->height,
+                                  6 * (size_t)p->width);
+    }
+    free(rgb);
+    return result;
+}
+
+static int write_report(const struct work *w)
+{
+    struct db_confusion confusion = {0};
+    char path[1024];
+    if (!w->options->report) {
+        return 0;
+    }
+    for (size_t i = 0; i < w->exemplars.count; i++) {
+        if (w->given[i] < DB_CLASS_MAX) {
+            confusion.counts[w->exemplars.items[i].class_index][w->given[i]]++;
+        }
+    }
+    printf("\nExemplars in the segmented image (trained on or not):\n");
+    db_confusion_print(stdout, &confusion, &w->table);
+    if (db_report_path(path, sizeof path, w->options->report, "confusion.csv") != 0 ||
+        db_confusion_write(path, &confusion, &w->table) != 0) {
+        return -1;
+    }
+    return db_error_regions_write(
+        w->options->report, w->exemplars.items, w->given, w->exemplars.count, w->exemplars.regions,
+        w->exemplars.region_count, (int)w->options->square, &w->image.grid, &w->table);
+}
+
+static int run(struct work *w)
+{
+    if (prepare(w) != 0 || segment(w) != 0 || db_raster_commit(&w->out) != 0) {
+        db_raster_abort(&w->out);
+        return HS_EXIT_FAILED;
+    }
+    db_class_counts_print(&w->table, w->counts);
+    const double megapixels = 1e-6 * (double)w->image.grid.width * (double)w->image.grid.height;
+    printf("network: %.2f Mpixel in %.3f s on one core, %.1f Mpixel/s\n", megapixels, w->seconds,
+           megapixels / w->seconds);
+    return write_picture(w) != 0 || write_report(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
+}
+
+static bool has_sense(const struct options *o)
+{
+    if (o->report && !o->known.polygons == !o->known.labels) {
+        hs_error("--report", "give either --exemplars or --labels", "needs to know what is right");
+        return false;
+    }
+    if (!o->report && (o->known.polygons || o->known.labels)) {
+        hs_error("--exemplars", "say with --report where the comparison goes",
+                 "is of no use here without a report");
+        return false;
+    }
+    return true;
+}
+
+int db_cmd_segment(int argc, char **argv)
+{
+    struct options options = {.known = {.field = "class"}, .square = 64};
+    int exit_code;
+    struct work *w = calloc(1, sizeof *w);
+    if (!w) {
+        hs_error("segment", NULL, "out of memory");
+        return HS_EXIT_FAILED;
+    }
+    w->options = &options;
+    if (read_options(&options, argc, argv, &exit_code)) {
+        exit_code = has_sense(&options) ? run(w) : HS_EXIT_USAGE;
+    }
+    db_preview_free(&w->original);
+    db_preview_free(&w->classes);
+    db_exemplars_free(&w->exemplars);
+    free(w->given);
+    db_raster_close(&w->image);
+    db_apply_free(&w->applied);
+    db_net_free(&w->net);
+    db_list_free(&options.image.paths);
+    db_list_free(&options.picture_bands);
+    free(w);
+    return exit_code;
+}

@@ -1,0 +1,458 @@
+/* landmass-db train: exemplars and an image in, a network and a report on it out. */
+#include "commands.h"
+#include "source_options.h"
+
+#include "classify/error_regions.h"
+#include "classify/learn.h"
+#include "classify/plot.h"
+#include "classify/split.h"
+#include "hs/atomic_file.h"
+#include "hs/error.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct db_usage usage = {
+    .command = "train",
+    .summary = "learn the classes of an image from exemplar pixels",
+    .description =
+        "Trains a feed-forward, back-propagation network (Heaton) to tell the class of a pixel "
+        "from its\n"
+        "bands. Exemplars are polygons with a class label, or a raster of label numbers; --map "
+        "says which\n"
+        "label stands for which class of the class table. Judge the result by held-out polygons\n"
+        "(--hold-out polygons:0.3): neighbouring pixels are nearly copies of each other, so pixels "
+        "held out\n"
+        "from polygons that were also trained on flatter the network.\n\n"
+        "Training stops at the recognition goal, at --epochs, or on a plateau; the best weights "
+        "met are\n"
+        "kept. With the same inputs, options and seed the network file comes out the same, byte "
+        "for byte.\n\n"
+        "Example:\n"
+        "  landmass-db train --image scene.tif --classes heaton6.classes --exemplars fields.gpkg "
+        "\\\n"
+        "      --hold-out polygons:0.3 --net scene.net --report scene-report",
+};
+
+struct options {
+    struct db_image_options image;
+    struct db_exemplar_options known;
+    const char *classes, *net, *report, *split_out, *hold_out;
+    const char *loss, *unit;
+    long context, hidden, per_class, members, epochs, patience, batch, seed;
+    double rate, momentum, decay, noise, goal, validate, thin;
+};
+
+static const struct options defaults = {
+    .known = {.field = "class"},
+    .loss = "square",
+    .unit = "tanh",
+    .context = 1,
+    .per_class = 4000,
+    .members = 1,
+    .epochs = 300,
+    .patience = 15,
+    .batch = 32,
+    .seed = 1,
+    .rate = 0.1,
+    .momentum = 0.9,
+    .noise = 0.02,
+    .goal = 0.95,
+    .thin = 0.002,
+};
+
+static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
+{
+    const struct db_option table[] = {
+        DB_IMAGE_OPTIONS(&o->image),
+        DB_CLASSES_OPTION(o->classes),
+        {"net", DB_TEXT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
+        DB_EXEMPLAR_OPTIONS(&o->known),
+        {"hold-out", DB_TEXT, &o->hold_out, 0, 0, "HOW:PART",
+         "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
+         "`pixels:0.3` pixels\n"
+         "at random (only for comparison with others: it flatters).",
+         false},
+        {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
+         "Write confusion matrices, recognition by polygon and by square, and the error curve "
+         "there.",
+         false},
+        {"split-out", DB_TEXT, &o->split_out, 0, 0, "FILE",
+         "Write each exemplar with its part (train or held-out) and inputs as CSV, for other "
+         "programs.",
+         false},
+        {"per-class", DB_INTEGER, &o->per_class, 10, 1e7, "N",
+         "Exemplars of each class at most, drawn evenly from all its pixels.", false},
+        {"context", DB_INTEGER, &o->context, 1, DB_CONTEXT_MAX, "N",
+         "Odd side of a window whose mean and standard deviation of each band are further "
+         "inputs;\n"
+         "1 for the pixel's own bands only, as in Heaton.",
+         false},
+        {"hidden", DB_INTEGER, &o->hidden, 0, DB_HIDDEN_MAX, "N",
+         "Hidden units; 0 for inputs x outputs, at most 128.", false},
+        {"unit", DB_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
+         false},
+        {"loss", DB_TEXT, &o->loss, 0, 0, "KIND",
+         "square (default): mean-square error, as in Heaton; or cross-entropy.", false},
+        {"committee", DB_INTEGER, &o->members, 1, DB_MEMBERS_MAX, "N",
+         "Networks trained from different seeds whose outputs are added; segmenting slows "
+         "as much.",
+         false},
+        {"goal", DB_REAL, &o->goal, 0, 1.01, "X",
+         "Stop when this part of the exemplars, as the mean over the classes, is recognised.",
+         false},
+        {"epochs", DB_INTEGER, &o->epochs, 1, DB_EPOCHS_MAX, "N", "Stop after so many rounds.",
+         false},
+        {"patience", DB_INTEGER, &o->patience, 1, DB_EPOCHS_MAX, "N",
+         "Epochs without progress that make a plateau.", false},
+        {"validate", DB_REAL, &o->validate, 0, 0.9, "X",
+         "Part of the training polygons set aside to choose the best weights by.", false},
+        {"noise", DB_REAL, &o->noise, 0, 10, "X",
+         "Standard deviation of the noise on the exemplars, in deviations of each input.", false},
+        {"rate", DB_REAL, &o->rate, 1e-6, 10, "X", "Learning rate.", false},
+        {"momentum", DB_REAL, &o->momentum, 0, 0.999, "X",
+         "Part of a change of weights that is carried on.", false},
+        {"decay", DB_REAL, &o->decay, 0, 1, "X", "Pull of the weights towards zero.", false},
+        {"batch", DB_INTEGER, &o->batch, 1, 65536, "N", "Exemplars between two changes of weights.",
+         false},
+        {"thin", DB_REAL, &o->thin, 0, 10, "X",
+         "Keep one of the exemplars of a class that share a cell of so many deviations in each "
+         "input.",
+         false},
+        {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
+    };
+    return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);
+}
+
+/* What the text options mean. */
+struct choices {
+    bool holds_out, by_regions;
+    double held_out;
+    enum db_loss loss;
+    enum db_unit unit;
+};
+
+static int usage_error(const char *option, const char *cause)
+{
+    return hs_error(option, "see landmass-db train --help", "%s", cause);
+}
+
+static int read_hold_out(const struct options *o, struct choices *c)
+{
+    char word[16];
+    if (!o->hold_out) {
+        return 0;
+    }
+    if (db_split_word_number(o->hold_out, word, sizeof word, &c->held_out) != 0 ||
+        !(c->held_out > 0 && c->held_out < 1) ||
+        (strcmp(word, "polygons") != 0 && strcmp(word, "pixels") != 0)) {
+        return usage_error("--hold-out", "needs polygons:PART or pixels:PART with PART in 0..1");
+    }
+    c->holds_out = true;
+    c->by_regions = strcmp(word, "polygons") == 0;
+    return 0;
+}
+
+static int choose(const struct options *o, struct choices *c)
+{
+    *c = (struct choices){0};
+    if (!o->known.polygons == !o->known.labels) {
+        return usage_error("--exemplars", "give either --exemplars or --labels");
+    }
+    if (o->known.labels && !o->known.map) {
+        return usage_error("--map", "is needed to say which class a label number stands for");
+    }
+    if (o->context % 2 == 0) {
+        return usage_error("--context", "needs an odd number");
+    }
+    if (strcmp(o->loss, "square") != 0 && strcmp(o->loss, "cross-entropy") != 0) {
+        return usage_error("--loss", "needs square or cross-entropy");
+    }
+    if (strcmp(o->unit, "tanh") != 0 && strcmp(o->unit, "sigmoid") != 0) {
+        return usage_error("--unit", "needs tanh or sigmoid");
+    }
+    c->loss = strcmp(o->loss, "square") == 0 ? DB_LOSS_SQUARE : DB_LOSS_CROSS_ENTROPY;
+    c->unit = strcmp(o->unit, "tanh") == 0 ? DB_UNIT_TANH : DB_UNIT_SIGMOID;
+    return read_hold_out(o, c);
+}
+
+/* Everything the command works on. */
+struct work {
+    const struct options *options;
+    struct choices choices;
+    struct db_class_table table;
+    struct db_label_map map;
+    struct db_raster image;
+    struct db_exemplars exemplars;
+    struct db_samples samples;
+    struct db_net net;
+    struct db_train_report reports[DB_MEMBERS_MAX];
+};
+
+static int gather(struct work *w)
+{
+    const struct options *o = w->options;
+    const struct db_exemplar_source source = {
+        .polygons_path = o->known.polygons,
+        .field = o->known.field,
+        .labels_path = o->known.labels,
+        .map = &w->map,
+        .table = &w->table,
+        .per_class = o->per_class,
+        .seed = (uint64_t)o->seed,
+    };
+    if (db_feature_count(w->image.band_count, (int)o->context) > DB_INPUT_MAX) {
+        return hs_error(w->image.name, "leave bands out, or --context", "gives more than %d inputs",
+                        DB_INPUT_MAX);
+    }
+    if (db_exemplars_find(&w->exemplars, &source, &w->image.grid) != 0 ||
+        db_samples_read(&w->samples, &w->image, (int)o->context, &w->exemplars) != 0) {
+        return -1;
+    }
+    if (w->samples.without_data > 0) {
+        printf("exemplar pixels without data: %llu left out\n",
+               (unsigned long long)w->samples.without_data);
+    }
+    if (!w->choices.holds_out) {
+        return 0;
+    }
+    return db_split(&w->samples, w->exemplars.region_count, &w->table, w->choices.by_regions,
+                    w->choices.held_out, (uint64_t)o->seed, DB_PART_HELD_OUT, false);
+}
+
+static void print_counts(const struct work *w)
+{
+    for (int c = 0; c < w->table.count; c++) {
+        size_t parts[3] = {0};
+        for (size_t i = 0; i < w->samples.count; i++) {
+            parts[w->samples.items[i].part] += w->samples.items[i].class_index == c;
+        }
+        if (w->exemplars.available[c] > 0) {
+            printf("%-16s %10llu pixels, %8zu to train on, %8zu held out\n", w->table.items[c].name,
+                   (unsigned long long)w->exemplars.available[c], parts[DB_PART_TRAIN],
+                   parts[DB_PART_HELD_OUT]);
+        }
+    }
+}
+
+static int write_split(const struct work *w)
+{
+    struct hs_atomic_file file;
+    if (!w->options->split_out) {
+        return 0;
+    }
+    if (hs_atomic_open(&file, w->options->split_out) != 0) {
+        return -1;
+    }
+    const struct db_samples *s = &w->samples;
+    fputs("x,y,class,region,part", file.stream);
+    for (int f = 0; f < s->input_count; f++) {
+        fprintf(file.stream, ",input%d", f + 1);
+    }
+    fputc('\n', file.stream);
+    for (size_t i = 0; i < s->count; i++) {
+        const struct db_exemplar *e = &s->items[i];
+        fprintf(file.stream, "%d,%d,%s,%ld,%s", e->x, e->y, w->table.items[e->class_index].name,
+                w->exemplars.regions[e->region].id,
+                e->part == DB_PART_HELD_OUT ? "held-out" : "train");
+        for (int f = 0; f < s->input_count; f++) {
+            fprintf(file.stream, ",%.9g",
+                    (double)s->inputs[i * (size_t)s->input_count + (size_t)f]);
+        }
+        fputc('\n', file.stream);
+    }
+    return hs_atomic_commit(&file);
+}
+
+static int learn(struct work *w)
+{
+    const struct options *o = w->options;
+    const struct db_learn_options options = {
+        .train = {.rate = o->rate,
+                  .momentum = o->momentum,
+                  .decay = o->decay,
+                  .noise = o->noise,
+                  .goal = o->goal,
+                  .batch = (int)o->batch,
+                  .epochs = (int)o->epochs,
+                  .patience = (int)o->patience,
+                  .seed = (uint64_t)o->seed},
+        .hidden = (int)o->hidden,
+        .unit = w->choices.unit,
+        .loss = w->choices.loss,
+        .members = (int)o->members,
+        .validate = o->validate,
+        .thin = o->thin,
+        .thin_is_loud = true,
+    };
+    return db_learn(&w->net, &w->samples, w->exemplars.region_count, &w->table, w->image.band_count,
+                    (int)o->context, &options, w->reports);
+}
+
+static void print_training(const struct work *w)
+{
+    static const char *const stops[] = {"the goal is reached", "all epochs are spent",
+                                        "no further progress"};
+    const struct db_mlp *mlp = &w->net.members[0];
+    printf("network: %d inputs, %d hidden, %d outputs\n", mlp->input_count, mlp->hidden_count,
+           mlp->output_count);
+    for (int m = 0; m < w->net.member_count; m++) {
+        const struct db_train_report *r = &w->reports[m];
+        const struct db_epoch *best = &r->epochs[r->best_epoch - 1];
+        for (int i = 0; i < r->event_count; i++) {
+            printf("epoch %d: %s\n", r->events[i].epoch, r->events[i].text);
+        }
+        printf("trained %d epochs, %s; kept epoch %d: RMS error %.4f, recognition %.1f %%",
+               r->epoch_count, stops[r->stop], r->best_epoch, best->rms, 100 * best->recognition);
+        if (!isnan(best->validation)) {
+            printf(", validation %.1f %%", 100 * best->validation);
+        }
+        putchar('\n');
+    }
+}
+
+/* Say plainly when the bands do not separate the classes. */
+static void print_verdict(const struct work *w, const struct db_confusion *trained)
+{
+    const double recognition = db_confusion_mean_recall(trained);
+    if (recognition >= w->options->goal) {
+        return;
+    }
+    int t_worst = 0, p_worst = 1;
+    double worst = -1;
+    for (int t = 0; t < w->table.count; t++) {
+        for (int p = 0; p < w->table.count; p++) {
+            uint64_t all = 0;
+            for (int i = 0; i < w->table.count; i++) {
+                all += trained->counts[t][i];
+            }
+            const double part = all ? (double)trained->counts[t][p] / (double)all : 0;
+            if (p != t && part > worst) {
+                worst = part;
+                t_worst = t;
+                p_worst = p;
+            }
+        }
+    }
+    printf(
+        "The goal of %.1f %% was not reached: %.1f %%. The commonest mistake is %s taken for %s "
+        "(%.1f %%).\n"
+        "Where many of their pixels have equal values no training can tell them apart: more "
+        "bands,\n"
+        "--context, or `landmass-db correct` can.\n",
+        100 * w->options->goal, 100 * recognition, w->table.items[t_worst].name,
+        w->table.items[p_worst].name, 100 * worst);
+}
+
+static int write_curve(const char *path, const struct db_train_report *r)
+{
+    struct hs_atomic_file file;
+    if (hs_atomic_open(&file, path) != 0) {
+        return -1;
+    }
+    fputs("epoch,rms_error,recognition,validation,alternation\n", file.stream);
+    for (int i = 0; i < r->epoch_count; i++) {
+        const struct db_epoch *e = &r->epochs[i];
+        fprintf(file.stream, "%d,%.6f,%.6f,%.6f,%.6f\n", i + 1, e->rms, e->recognition,
+                e->validation, e->alternation);
+    }
+    return hs_atomic_commit(&file);
+}
+
+static int write_report(const struct work *w, const uint8_t *given,
+                        const struct db_confusion *trained, const struct db_confusion *held_out)
+{
+    enum { SIDE = 64 };
+    const char *folder = w->options->report;
+    char path[1024];
+    if (!folder) {
+        return 0;
+    }
+    if (db_report_path(path, sizeof path, folder, "error_curve.png") != 0 ||
+        db_plot_training(path, &w->reports[0]) != 0 ||
+        db_report_path(path, sizeof path, folder, "error_curve.csv") != 0 ||
+        write_curve(path, &w->reports[0]) != 0 ||
+        db_report_path(path, sizeof path, folder, "confusion_train.csv") != 0 ||
+        db_confusion_write(path, trained, &w->table) != 0) {
+        return -1;
+    }
+    if (w->choices.holds_out &&
+        (db_report_path(path, sizeof path, folder, "confusion_held_out.csv") != 0 ||
+         db_confusion_write(path, held_out, &w->table) != 0)) {
+        return -1;
+    }
+    return db_error_regions_write(folder, w->samples.items, given, w->samples.count,
+                                  w->exemplars.regions, w->exemplars.region_count, SIDE,
+                                  &w->image.grid, &w->table);
+}
+
+static int evaluate(const struct work *w)
+{
+    struct db_confusion trained = {0}, held_out = {0};
+    uint8_t *given = malloc(w->samples.count + 1);
+    if (!given) {
+        return hs_error("report", NULL, "out of memory");
+    }
+    int result = db_classify_samples(&w->net, &w->table, &w->samples, given);
+    if (result == 0) {
+        db_confusion_count(&trained, &w->samples, given, DB_PART_TRAIN);
+        db_confusion_count(&held_out, &w->samples, given, DB_PART_HELD_OUT);
+        printf("\nExemplars trained on:\n");
+        db_confusion_print(stdout, &trained, &w->table);
+        if (w->choices.holds_out) {
+            printf("\nExemplars held out (%s):\n",
+                   w->choices.by_regions ? "whole polygons"
+                                         : "pixels at random: flattering, their neighbours were "
+                                           "trained on");
+            db_confusion_print(stdout, &held_out, &w->table);
+        }
+        print_verdict(w, &trained);
+        result = write_report(w, given, &trained, &held_out);
+    }
+    free(given);
+    return result;
+}
+
+static int run(struct work *w)
+{
+    if (db_class_table_read(&w->table, w->options->classes) != 0 ||
+        db_label_map_read(&w->map, w->options->known.map, &w->table) != 0 ||
+        db_image_open(&w->image, &w->options->image) != 0 || gather(w) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    print_counts(w);
+    if (write_split(w) != 0 || learn(w) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    print_training(w);
+    if (evaluate(w) != 0 || db_net_write(&w->net, w->options->net) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    return HS_EXIT_OK;
+}
+
+int db_cmd_train(int argc, char **argv)
+{
+    struct options options = defaults;
+    int exit_code;
+    struct work *w = calloc(1, sizeof *w);
+    if (!w) {
+        hs_error("train", NULL, "out of memory");
+        return HS_EXIT_FAILED;
+    }
+    w->options = &options;
+    if (read_options(&options, argc, argv, &exit_code)) {
+        exit_code = choose(&options, &w->choices) != 0 ? HS_EXIT_USAGE : run(w);
+    }
+    for (int m = 0; m < DB_MEMBERS_MAX; m++) {
+        db_train_report_free(&w->reports[m]);
+    }
+    db_net_free(&w->net);
+    db_samples_free(&w->samples);
+    db_exemplars_free(&w->exemplars);
+    db_raster_close(&w->image);
+    db_list_free(&options.image.paths);
+    free(w);
+    return exit_code;
+}

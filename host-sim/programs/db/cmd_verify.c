@@ -1,0 +1,49 @@
+#include "commands.h"
+#include "image_command.h"
+
+#include "hs/error.h"
+#include "image/verify.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct db_usage usage = {
+    "verify FILE", "check every byte of a database image",
+    "Checks header, sections and unused bytes, every directory entry and tile record with its "
+    "checksum and its place,\n"
+    "elevations along the edges that tiles share, and that each coarser level holds the mean of "
+    "the finer one.\n"
+    "What is wrong is printed with its offset; the exit code is then 1."};
+
+enum { SHOWN_MAX = 100 };
+
+int db_cmd_verify(int argc, char **argv)
+{
+    const char *path;
+    int exit_code;
+    if (!image_command_read(&usage, NULL, 0, argc, argv, &path, &exit_code)) {
+        return exit_code;
+    }
+    struct image image;
+    if (image_map(&image, path) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    struct image_findings findings = {stdout, 0, SHOWN_MAX};
+    struct image_verify_counts n = {0};
+    const int is_complete = image_verify(&image, &findings, &n) == 0;
+    if (findings.count > SHOWN_MAX) {
+        printf("and %" PRIu64 " more\n", findings.count - SHOWN_MAX);
+    }
+    printf("%s: %" PRIu64 " bytes, %" PRIu64 " entries, %" PRIu64 " tiles, %" PRIu64
+           " shared edges, %" PRIu64 " tiles against the level above\n",
+           path, image.size_bytes, n.entries, n.tiles, n.edges, n.children);
+    image_close(&image);
+    if (findings.count > 0) {
+        hs_error(path, "build it again", "%" PRIu64 " faults%s", findings.count,
+                 is_complete ? "" : "; the rest could not be checked");
+        return HS_EXIT_FAILED;
+    }
+    printf("no faults\n");
+    return HS_EXIT_OK;
+}

@@ -1,0 +1,26 @@
+/* landmass-db: from imagery, exemplars and terrain to the database image of the display unit. */
+#include "commands.h"
+
+#include "gis/gdal_start.h"
+#include "hs/menu.h"
+
+static const struct hs_command commands[] = {
+    {"train", "learn the classes of an image from exemplar pixels", db_cmd_train},
+    {"segment", "give each pixel of an image its class", db_cmd_segment},
+    {"correct", "apply manual corrections to a class raster", db_cmd_correct},
+    {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
+    {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
+    {"inspect", "print what a database image holds", db_cmd_inspect},
+    {"verify", "check every byte of a database image", db_cmd_verify},
+    {"picture", "draw a plane of a database image", db_cmd_picture},
+};
+
+int main(int argc, char **argv)
+{
+    const struct hs_menu menu = {.program = "landmass-db",
+                                 .purpose = "build the radar database of the display unit",
+                                 .commands = commands,
+                                 .count = sizeof commands / sizeof commands[0],
+                                 .start = db_gdal_start};
+    return hs_menu_main(&menu, argc, argv);
+}

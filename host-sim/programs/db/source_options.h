@@ -1,0 +1,84 @@
+/* The options that sub-commands have in common: which image, which classes, which exemplars. */
+#ifndef DB_SOURCE_OPTIONS_H
+#define DB_SOURCE_OPTIONS_H
+
+#include "gis/raster.h"
+
+struct db_image_options {
+    struct db_list paths;
+    const char *nodata; /* NULL unless given */
+    bool black_is_nodata;
+};
+
+/* Three entries for the table of a command. */
+#define DB_IMAGE_OPTIONS(o)                                                                        \
+    {.name = "image",                                                                              \
+     .kind = DB_LIST,                                                                              \
+     .target = &(o)->paths,                                                                        \
+     .value_name = "FILE",                                                                         \
+     .is_required = true,                                                                          \
+     .help =                                                                                       \
+         "The image: any raster GDAL reads. Repeat it, or separate files by commas, to stack "     \
+         "bands\n"                                                                                 \
+         "of several files; all must lie on one grid."},                                           \
+        {.name = "nodata",                                                                         \
+         .kind = DB_TEXT,                                                                          \
+         .target = &(o)->nodata,                                                                   \
+         .value_name = "V",                                                                        \
+         .help = "Value that means no data, instead of what the files declare."},                  \
+    {                                                                                              \
+        .name = "black-is-nodata", .kind = DB_FLAG, .target = &(o)->black_is_nodata,               \
+        .help = "Pixels that are 0 in all bands hold no data (holes of a mosaic)."                 \
+    }
+
+/* An entry for the table: the class table. `o` is a const char *. */
+#define DB_CLASSES_OPTION(o)                                                                       \
+    {                                                                                              \
+        .name = "classes", .kind = DB_TEXT, .target = &(o), .value_name = "FILE",                  \
+        .is_required = true, .help = "The class table."                                            \
+    }
+
+/* Where the class of pixels is known: polygons or a raster of labels, NULL unless given. `field`
+ * holds the default before. */
+struct db_exemplar_options {
+    const char *polygons, *field, *labels, *map;
+};
+
+/* Four entries. */
+#define DB_EXEMPLAR_OPTIONS(o)                                                                     \
+    {.name = "exemplars",                                                                          \
+     .kind = DB_TEXT,                                                                              \
+     .target = &(o)->polygons,                                                                     \
+     .value_name = "FILE",                                                                         \
+     .help =                                                                                       \
+         "Polygons of known class: any vector format OGR reads, or a TSV or CSV with a column "    \
+         "`WKT`.\n"                                                                                \
+         "Reprojected when file and image name different CRS. Pixels whose centre lies inside "    \
+         "count."},                                                                                \
+        {.name = "field",                                                                          \
+         .kind = DB_TEXT,                                                                          \
+         .target = &(o)->field,                                                                    \
+         .value_name = "NAME",                                                                     \
+         .help = "The polygons' field that holds the label; default `class`."},                    \
+        {.name = "labels",                                                                         \
+         .kind = DB_TEXT,                                                                          \
+         .target = &(o)->labels,                                                                   \
+         .value_name = "FILE",                                                                     \
+         .help =                                                                                   \
+             "Instead of --exemplars: a raster of label numbers over the same extent. Where it "   \
+             "is finer\n"                                                                          \
+             "than the image a pixel takes the most frequent label in it. Connected patches of "   \
+             "one label\n"                                                                         \
+             "take the place of polygons."},                                                       \
+    {                                                                                              \
+        .name = "map", .kind = DB_TEXT, .target = &(o)->map, .value_name = "FILE",                 \
+        .help =                                                                                    \
+            "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "      \
+            "Without it\n"                                                                         \
+            "labels must be the names of classes."                                                 \
+    }
+
+/* Open the image the options name. Returns 0, or -1 with the error reported. */
+int db_image_open(struct db_raster *r, const struct db_image_options *options);
+
+#endif

@@ -1,0 +1,315 @@
+/* landmass-sim: the display unit's firmware on a PC. */
+#include "bench.h"
+#include "options.h"
+
+#include "drv/can_log.h"
+#include "drv/can_socket.h"
+#include "hs/error.h"
+#include "hs/png.h"
+#include "hs/progress.h"
+#include "sim/bezel.h"
+#include "sim/hands.h"
+#include "sim/script.h"
+#include "sim/window.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+/* The unit is stepped as often as a line is due at the fastest scale. */
+enum { STEP_US = 2000, MALFORMED_SHOWN = 5 };
+
+struct sim {
+    struct options options;
+    struct script script;
+    struct bench bench;
+    FILE *log_file;
+    struct drv_can_log log;
+    struct drv_can_socket socket;
+    struct lm_can can;
+    struct hands hands;
+    struct bezel bezel;
+    uint32_t *bezel_pixels; /* owned; NULL when no bezel is asked for */
+    struct window *window;
+    uint32_t pictures_written;
+    uint32_t malformed_shown;
+};
+
+static int no_bus(void *ctx, struct lm_can_frame *frame)
+{
+    (void)ctx;
+    (void)frame;
+    return 0;
+}
+
+static void report_malformed(void *ctx, uint32_t line, const char *cause)
+{
+    struct sim *s = ctx;
+    char place[512];
+    if (s->malformed_shown++ < MALFORMED_SHOWN) {
+        snprintf(place, sizeof place, "%s line %u", s->options.bus_log, line);
+        hs_warn(place, "the line is skipped", "%s", cause);
+    }
+}
+
+static int open_bus(struct sim *s)
+{
+    const struct options *o = &s->options;
+    s->socket.fd = -1;
+    if (o->bus_log) {
+        s->log_file = fopen(o->bus_log, "r");
+        if (!s->log_file) {
+            return hs_error(o->bus_log, "landmass-nav makes one from a track",
+                            "cannot be opened: %s", strerror(errno));
+        }
+        drv_can_log_init(&s->log, s->log_file, report_malformed, s);
+        s->can = drv_can_log_port(&s->log);
+    } else if (o->can_interface) {
+        struct timespec now;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+        if (drv_can_socket_open(&s->socket, o->can_interface, o->profile, zero_us) != LM_OK) {
+            return hs_error(o->can_interface, NULL, "%s", s->socket.error);
+        }
+        s->can = drv_can_socket_port(&s->socket);
+    } else {
+        s->can = (struct lm_can){.ctx = NULL, .receive = no_bus};
+    }
+    return 0;
+}
+
+/* Buttons are lit whoever holds them down: a hand in the window or the script. */
+static void draw_bezel(struct sim *s)
+{
+    bezel_draw(&s->bezel, s->bezel_pixels, s->bench.glass, s->bench.unit->keys.down);
+}
+
+static int write_picture(struct sim *s, const char *name)
+{
+    char path[4096];
+    const struct lm_display *d = &s->bench.display;
+    if (!s->options.png_folder) {
+        return hs_error(name, "add --png DIR", "there is no folder for pictures");
+    }
+    const int length = snprintf(path, sizeof path, "%s/%s.png", s->options.png_folder, name);
+    if (length < 0 || (size_t)length >= sizeof path) {
+        return hs_error(s->options.png_folder, "use a shorter name", "the path is too long");
+    }
+    s->pictures_written++;
+    if (s->options.has_bezel) {
+        draw_bezel(s);
+        return hs_png_write_xrgb(path, s->bezel_pixels, s->bezel.width_px, s->bezel.height_px,
+                                 s->bezel.width_px);
+    }
+    return hs_png_write_xrgb(path, s->bench.glass, d->width_px, d->height_px, d->width_px);
+}
+
+/* A new picture is on the glass: show it and write it where that was asked for. Returns 0, 1 when
+ * the user wants to end, or -1. */
+static int serve_picture(struct sim *s)
+{
+    const struct options *o = &s->options;
+    if (s->window) {
+        draw_bezel(s);
+        window_show(s->window, s->bezel_pixels);
+        if (!window_poll(s->window)) {
+            return 1;
+        }
+    }
+    const uint32_t number = s->bench.pictures - 1;
+    if (o->png_folder && o->every && number % o->every == 0) {
+        char name[32];
+        snprintf(name, sizeof name, "frame-%05u", number);
+        return write_picture(s, name);
+    }
+    return 0;
+}
+
+static void wait_until(const struct timespec *start, uint64_t flight_us)
+{
+    struct timespec due = *start;
+    due.tv_sec += (time_t)(flight_us / 1000000u);
+    due.tv_nsec += (long)(flight_us % 1000000u) * 1000;
+    if (due.tv_nsec >= 1000000000) {
+        due.tv_nsec -= 1000000000;
+        due.tv_sec++;
+    }
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, NULL) == EINTR) {
+    }
+}
+
+static int step(struct sim *s, uint64_t now_us)
+{
+    const char *picture;
+    while ((picture = script_advance(&s->script, now_us)) != NULL) {
+        if (write_picture(s, picture) != 0) {
+            return -1;
+        }
+    }
+    if (s->log_file) {
+        drv_can_log_set_now(&s->log, now_us);
+    }
+    const uint32_t before = s->bench.pictures;
+    lm_unit_step(s->bench.unit, now_us);
+    return s->bench.pictures != before ? serve_picture(s) : 0;
+}
+
+static int fly(struct sim *s)
+{
+    const struct options *o = &s->options;
+    const uint64_t end_us = o->seconds > 0 ? (uint64_t)llround(o->seconds * 1e6) : UINT64_MAX;
+    const bool is_paced = s->window || o->can_interface;
+    struct timespec start;
+    struct hs_progress progress;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    hs_progress_begin(&progress, "flying", end_us);
+    int status = 0;
+    for (uint64_t now_us = 0; now_us <= end_us && status == 0; now_us += STEP_US) {
+        status = step(s, now_us);
+        if (o->seconds <= 0 && s->log_file && drv_can_log_is_over(&s->log)) {
+            break;
+        }
+        if (is_paced) {
+            wait_until(&start, now_us);
+        }
+        hs_progress_update(&progress, now_us);
+    }
+    hs_progress_end(&progress);
+    return status < 0 ? -1 : 0;
+}
+
+static void print_targets(const struct lm_unit *u)
+{
+    printf("targets: %u held, %u of the image not; signatures: %u held, %u not\n",
+           u->target_set.count, u->count.targets_lost,
+           u->db.signature_count - u->count.signatures_lost, u->count.signatures_lost);
+    printf("chips: %u read, %u damaged, %u without room, %u cells of lines left out\n",
+           u->chips.count.read, u->chips.count.corrupt, u->chips.count.left_out,
+           u->chips.count.cells_left_out);
+}
+
+static void print_summary(const struct sim *s)
+{
+    const struct lm_unit *u = s->bench.unit;
+    printf("frames %u, lines %u (%u dropped), pictures written %u\n", u->count.frames,
+           u->count.lines, u->count.lines_dropped, s->pictures_written);
+    printf("bus: %u frames, %u malformed, %u errors; position jumps %u; commands refused %u\n",
+           u->count.bus_frames, s->log_file ? s->log.count.malformed : s->socket.count.malformed,
+           u->count.bus_errors, u->nav.position_jumps, u->count.commands_refused);
+    const struct lm_bus *bus = &u->nav.bus;
+    printf(
+        "     %u values, %u frames of other use; refused: %u length, %u node, %u type, %u no "
+        "number, %u range\n",
+        bus->count.outcome[LM_BUS_VALUE], bus->count.outcome[LM_BUS_UNUSED],
+        bus->count.outcome[LM_BUS_BAD_LENGTH], bus->count.outcome[LM_BUS_BAD_NODE],
+        bus->count.outcome[LM_BUS_BAD_TYPE], bus->count.outcome[LM_BUS_NOT_A_NUMBER],
+        bus->count.outcome[LM_BUS_OUT_OF_RANGE]);
+    const struct lm_weather_bus *w = &u->weather_bus;
+    if (w->count.sets + w->count.torn + w->count.refused + w->count.numbers != 0) {
+        printf(
+            "     weather: %u sets taken, %u torn, %u out of range, %u frames of numbers above 3, "
+            "%u of a second sender\n",
+            w->count.sets, w->count.torn, w->count.refused, w->count.numbers, w->count.rivals);
+    }
+    if (!u->has_db) {
+        printf("database: not usable, nothing was drawn\n");
+        return;
+    }
+    if (u->db.target_count != 0) {
+        print_targets(u);
+    }
+    const struct lm_tile_cache *t = &u->tiles;
+    const double looked = (double)lm_tile_cache_hits(t) + t->count.misses;
+    printf(
+        "tiles: %u read (%.1f MB), %u evicted; %.2f %% of look-ups hit, %u answered by a coarser "
+        "tile, %u off the map\n",
+        t->count.tiles_read, (double)t->count.bytes_read / 1e6, t->count.evicted,
+        looked > 0 ? 100 * lm_tile_cache_hits(t) / looked : 0, t->count.substituted,
+        t->count.off_map);
+    printf(
+        "faults: %u flash reads failed, %u records corrupt, %u requests dropped, %u display "
+        "errors\n",
+        t->count.io_errors, lm_unit_corrupt_records(u), t->count.requests_dropped,
+        u->count.display_errors);
+}
+
+static int open_bezel(struct sim *s)
+{
+    const struct options *o = &s->options;
+    s->bezel = bezel_around(o->width_px, o->height_px);
+    if (!o->has_window && !o->has_bezel) {
+        return 0;
+    }
+    s->bezel_pixels = malloc(sizeof *s->bezel_pixels * s->bezel.width_px * s->bezel.height_px);
+    if (!s->bezel_pixels) {
+        return hs_error("bezel", NULL, "out of memory");
+    }
+    if (o->has_window) {
+        s->window = window_open(&s->bezel, &s->hands);
+    }
+    return 0;
+}
+
+static int run(struct sim *s)
+{
+    const struct options *o = &s->options;
+    if (o->png_folder && mkdir(o->png_folder, 0777) != 0 && errno != EEXIST) {
+        return hs_error(o->png_folder, "check the folder above it", "cannot be made: %s",
+                        strerror(errno));
+    }
+    if (script_read(&s->script, o->script) != 0 || open_bus(s) != 0) {
+        return -1;
+    }
+    hands_init(&s->hands, &s->script.port);
+    const struct bench_bus bus = {&s->can, o->profile, o->node};
+    if (bench_open(&s->bench, o->database, o->width_px, o->height_px, o->seed, &bus,
+                   &s->hands.port) != 0) {
+        return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
+    }
+    if (!s->bench.unit->has_db) {
+        hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
+    }
+    if (open_bezel(s) != 0) {
+        bench_close(&s->bench);
+        return -1;
+    }
+    const int status = fly(s);
+    if (status == 0 && !o->is_quiet) {
+        print_summary(s);
+    }
+    window_close(s->window);
+    bench_close(&s->bench);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    hs_set_program("landmass-sim");
+    struct sim *s = calloc(1, sizeof *s);
+    if (!s) {
+        hs_error("start", NULL, "out of memory");
+        return HS_EXIT_FAILED;
+    }
+    int exit_code = HS_EXIT_USAGE;
+    switch (options_read(&s->options, argc, argv)) {
+    case OPTIONS_DONE:
+        exit_code = HS_EXIT_OK;
+        break;
+    case OPTIONS_RUN:
+        exit_code = run(s) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+        break;
+    case OPTIONS_WRONG:
+        break;
+    }
+    script_free(&s->script);
+    free(s->bezel_pixels);
+    drv_can_socket_close(&s->socket);
+    if (s->log_file) {
+        fclose(s->log_file);
+    }
+    free(s);
+    return exit_code;
+}

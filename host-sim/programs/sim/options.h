@@ -1,0 +1,26 @@
+/* The command line of landmass-sim. */
+#ifndef SIM_OPTIONS_H
+#define SIM_OPTIONS_H
+
+#include "lm/bus_profile.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct options {
+    const char *database, *bus_log, *can_interface, *script, *png_folder;
+    double seconds; /* 0: to the end of the bus log, or for ever */
+    uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
+    uint32_t seed;  /* of the noise */
+    uint16_t width_px, height_px;
+    bool has_window, has_bezel, is_quiet;
+    const struct lm_bus_profile *profile; /* of the bus */
+    uint8_t node;                         /* on the bus; 0: it only listens */
+};
+
+enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };
+
+/* OPTIONS_DONE: help was asked for and printed. OPTIONS_WRONG: the error is reported. */
+enum options_result options_read(struct options *o, int argc, char **argv);
+
+#endif

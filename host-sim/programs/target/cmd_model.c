@@ -1,0 +1,94 @@
+#include "commands.h"
+#include "view.h"
+
+#include "hs/error.h"
+#include "hs/png.h"
+#include "tracer/mesh_audit.h"
+#include "tracer/models.h"
+#include "tracer/obj_file.h"
+#include "tracer/setup.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct db_usage usage = {
+    "model", "check a model, describe it, draw it, write it as OBJ",
+    "Built-in models:\n"
+    "  slicy      Sandia's test target of boxes, cylinders, dihedral and trihedral\n"
+    "  tank       a tank of a T-72's dimensions, of boxes, cylinders and plates\n"
+    "  plate, dihedral, trihedral, tophat   single reflectors, about a metre in size\n"
+    "Metres; x points ahead (the nose), y to the left, z up; the ground is z = 0."};
+
+static int describe(const struct setup *s, const struct mesh *m)
+{
+    struct vec low, high;
+    struct mesh_audit audit;
+    if (mesh_audit(m, s->model, &audit) != 0) {
+        return -1;
+    }
+    mesh_bounds(m, &low, &high);
+    printf("%u triangles in %u parts, %u materials\n", m->triangle_count, audit.part_count,
+           m->material_count);
+    printf("ahead %.3f to %.3f m, left %.3f to %.3f m, up %.3f to %.3f m\n", low.x, high.x, low.y,
+           high.y, low.z, high.z);
+    printf(
+        "%u open edges, %u edges whose sides disagree, %u parts inside out, %u triangles "
+        "without area\n",
+        audit.open_edges, audit.turned_edges, audit.inside_out, audit.degenerate);
+    return 0;
+}
+
+static int draw(const struct setup *s, const struct mesh *m, double azimuth_deg, int size_px,
+                const char *path)
+{
+    struct scene scene;
+    struct vec low, high;
+    mesh_bounds(m, &low, &high);
+    const double span_m = 2.1 * fmax(vec_length(low), vec_length(high));
+    uint32_t *pixels = malloc((size_t)size_px * (size_t)size_px * sizeof *pixels);
+    if (!pixels || scene_open(&scene, m, span_m, s->model) != 0) {
+        free(pixels);
+        return pixels ? -1 : hs_error(path, "give a smaller --size", "out of memory");
+    }
+    const struct view view = {azimuth_deg, s->depression_deg, span_m};
+    view_draw(&scene, &view, pixels, size_px, size_px);
+    const int result = hs_png_write_xrgb(path, pixels, size_px, size_px, (size_t)size_px);
+    free(pixels);
+    scene_close(&scene);
+    return result;
+}
+
+int target_cmd_model(int argc, char **argv)
+{
+    struct setup s = setup_default();
+    const char *view = NULL, *obj = NULL;
+    long size_px = 480;
+    s.depression_deg = 30;
+    s.azimuth_deg = 30;
+    struct db_option options[SETUP_MODEL_OPTIONS + 5] = {
+        {"obj", DB_TEXT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
+        {"view", DB_TEXT, &view, 0, 0, "FILE.png", "draw the model", false},
+        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+         "of the eye, from the model's nose towards its right", false},
+        {"depression", DB_REAL, &s.depression_deg, 1, 90, "DEG", "of the eye's sight", false},
+        {"size", DB_INTEGER, &size_px, 16, 4096, "PIXELS", "of the picture", false},
+    };
+    int exit_code;
+    setup_model_options(&s, options + 5);
+    if (!db_options_read(&usage, options, SETUP_MODEL_OPTIONS + 5, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    struct mesh m;
+    if (setup_load(&s, &m) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    int result = describe(&s, &m);
+    if (result == 0 && obj) {
+        result = obj_write(&m, obj);
+    }
+    if (result == 0 && view) {
+        result = draw(&s, &m, s.azimuth_deg, (int)size_px, view);
+    }
+    mesh_free(&m);
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}

@@ -1,0 +1,121 @@
+#include "chip_picture.h"
+#include "commands.h"
+
+#include "hs/atomic_file.h"
+#include "hs/error.h"
+#include "hs/png.h"
+#include "tracer/setup.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const struct db_usage usage = {
+    "render", "make the radar picture of a model, or of traced records",
+    "Give --model, or --records of `landmass-target trace`, and --out or --csv, or both.\n"
+    "In the PNG the radar looks from below upwards: near range is the lowest row, and what\n"
+    "the radar has to its right is on the right. The CSV has amplitudes, square roots of\n"
+    "power, in the same order."};
+
+struct outputs {
+    const char *png, *csv;
+    int zoom;
+};
+
+static int write_csv(const char *path, const float *power, int width, int height)
+{
+    struct hs_atomic_file file;
+    if (hs_atomic_open(&file, path) != 0) {
+        return -1;
+    }
+    for (int row = height - 1; row >= 0; row--) {
+        for (int column = 0; column < width; column++) {
+            fprintf(file.stream, "%s%.6g", column > 0 ? "," : "",
+                    sqrt((double)power[row * width + column]));
+        }
+        fputc('\n', file.stream);
+    }
+    return hs_atomic_commit(&file);
+}
+
+static int write_png(const struct setup *s, const struct outputs *o, const float *power, int width,
+                     int height)
+{
+    const int wide = width * o->zoom, high = height * o->zoom;
+    uint32_t *pixels = malloc((size_t)wide * (size_t)high * sizeof *pixels);
+    if (!pixels) {
+        return hs_error(o->png, "give a smaller --zoom", "out of memory");
+    }
+    chip_draw(power, width, height, chip_peak(power, width * height), s->range_db, o->zoom, pixels,
+              wide);
+    const int result = hs_png_write_xrgb(o->png, pixels, wide, high, (size_t)wide);
+    free(pixels);
+    return result;
+}
+
+static int render(const struct setup *s, const struct trace_records *r, const struct outputs *o)
+{
+    int width, height;
+    float *power = setup_chip(s, r, &width, &height);
+    if (!power) {
+        return -1;
+    }
+    int result = o->csv ? write_csv(o->csv, power, width, height) : 0;
+    if (result == 0 && o->png) {
+        result = write_png(s, o, power, width, height);
+    }
+    free(power);
+    return result;
+}
+
+static int trace_model(const struct setup *s, struct trace_records *r)
+{
+    struct scene scene;
+    if (setup_scene(s, &scene) != 0) {
+        return -1;
+    }
+    const struct trace_order order = setup_order(s, s->azimuth_deg);
+    const int result = trace_run(&scene, &order, s->model, r, NULL);
+    scene_close(&scene);
+    return result;
+}
+
+static int run(const struct setup *s, const char *records, const struct outputs *o)
+{
+    struct trace_records r;
+    const int loaded = records ? trace_records_read(&r, records) : trace_model(s, &r);
+    if (loaded != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const int result = render(s, &r, o);
+    trace_records_free(&r);
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+int target_cmd_render(int argc, char **argv)
+{
+    struct setup s = setup_default();
+    const char *records = NULL, *png = NULL, *csv = NULL;
+    long zoom = 6;
+    enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
+    struct db_option options[COUNT] = {
+        {"records", DB_TEXT, &records, 0, 0, "FILE.trace", "in place of a model", false},
+        {"out", DB_TEXT, &png, 0, 0, "FILE.png", "the picture", false},
+        {"csv", DB_TEXT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
+        {"zoom", DB_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
+        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+         "of the radar, from the model's nose towards its right", false},
+    };
+    int exit_code;
+    setup_options(&s, options + OWN);
+    options[OWN].is_required = false; /* the model: there may be records instead */
+    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    if (!records == !s.model || (!png && !csv)) {
+        hs_error("render", "see landmass-target render --help",
+                 "needs one of --model and --records, and --out or --csv");
+        return HS_EXIT_USAGE;
+    }
+    const struct outputs outputs = {png, csv, (int)zoom};
+    return run(&s, records, &outputs);
+}

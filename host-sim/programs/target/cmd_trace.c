@@ -1,0 +1,81 @@
+#include "commands.h"
+#include "table_picture.h"
+
+#include "hs/error.h"
+#include "tracer/setup.h"
+
+#include <stdio.h>
+
+static const struct db_usage usage = {
+    "trace", "trace a model and keep every reflection",
+    "Rays leave a plane square to the line of sight; each reflection is kept with its angles,\n"
+    "material and the place where its echo is focused (docs/FORMATS.md, Traced records), for\n"
+    "`landmass-target render` with any law of reflection, or to train a network on."};
+
+struct outputs {
+    const char *records, *picture;
+    long bounce; /* of the picture, from 1 */
+};
+
+static int write_outputs(const struct trace_records *r, const struct outputs *o)
+{
+    if (trace_records_write(r, o->records) != 0) {
+        return -1;
+    }
+    if (!o->picture) {
+        return 0;
+    }
+    return o->bounce <= r->bounce_count
+               ? table_picture(r, (uint32_t)o->bounce - 1, o->picture)
+               : hs_error("--picture-of", "give at most the number of --bounces",
+                          "reflection %ld was not traced", o->bounce);
+}
+
+static int run(const struct setup *s, const struct outputs *outputs)
+{
+    struct scene scene;
+    struct trace_records r;
+    if (setup_scene(s, &scene) != 0) {
+        return HS_EXIT_FAILED;
+    }
+    const struct trace_order order = setup_order(s, s->azimuth_deg);
+    uint64_t rays_cast = 0;
+    int result = trace_run(&scene, &order, s->model, &r, &rays_cast);
+    scene_close(&scene);
+    if (result == 0) {
+        result = write_outputs(&r, outputs);
+        printf("%u x %u primary rays, %llu rays in all; reflections by bounce:", r.sensor.columns,
+               r.sensor.rows, (unsigned long long)rays_cast);
+        for (uint32_t b = 0; b < r.bounce_count; b++) {
+            printf(" %u", r.bounces[b].count);
+        }
+        putchar('\n');
+        trace_records_free(&r);
+    }
+    return result == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+int target_cmd_trace(int argc, char **argv)
+{
+    struct setup s = setup_default();
+    struct outputs outputs = {NULL, NULL, 2};
+    enum { OWN = 4, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
+    struct db_option options[COUNT] = {
+        {"out", DB_TEXT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
+        {"picture", DB_TEXT, &outputs.picture, 0, 0, "FILE.png",
+         "what was recorded at one reflection, channel by channel, at the places where the\nrays "
+         "were sent (paper B, Table I)",
+         false},
+        {"picture-of", DB_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
+         "which reflection that is", false},
+        {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
+         "of the radar, from the model's nose towards its right", false},
+    };
+    int exit_code;
+    setup_model_options(&s, options + OWN);
+    setup_trace_options(&s, options + OWN + SETUP_MODEL_OPTIONS);
+    if (!db_options_read(&usage, options, COUNT, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    return run(&s, &outputs);
+}

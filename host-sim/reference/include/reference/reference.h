@@ -1,0 +1,559 @@
+/* The radar picture in double precision: the judge of the fixed-point firmware.
+ *
+ * Written from docs/DESIGN.md ("The picture, as equations") and docs/FORMATS.md (section 1) and
+ * from nothing else; of the firmware it uses only the record structures of lm/db.h, and of fixed/
+ * the checksum and the speckle hash, which are exact integers by definition. Where DESIGN.md leaves
+ * a choice, the choice is stated here with the word "assumed".
+ *
+ * Every stage works on an array of struct ref_bin, one element a range cell, near to far, and fills
+ * its own fields from those of the stages before: a test may fill any of them by hand instead.
+ * Angles are degrees, lengths metres, levels decibels (10 log10 of power). */
+#ifndef REFERENCE_H
+#define REFERENCE_H
+
+#include "lm/db.h"
+#include "lm/noise.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define REF_EARTH_M           6371000.0 /* mean radius, DESIGN.md */
+#define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
+#define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
+
+enum { REF_SPECKLE_SLICES = 1024, REF_GUARD_CELLS = 4, REF_COARSE_CELLS = 128 };
+
+struct ref_place {
+    double latitude_deg, longitude_deg; /* longitude: any turn */
+};
+
+/* A range cell and what every stage found for it. */
+struct ref_bin {
+    /* geo, ground_path */
+    double range_m;
+    struct ref_place place; /* of the centre */
+    /* scan_line */
+    bool has_data; /* false: class 15, or no tile */
+    int class_index;
+    int kind; /* enum lm_kind */
+    double gamma_db, height_m, elevation_m;
+    /* aspect */
+    double tangent, horizon, rise; /* t, T, d */
+    bool is_lit;
+    double gain_db, edge_db; /* K, E */
+    double level_db;         /* the noise floor where there is no echo */
+    /* speckle and noise */
+    unsigned texture_slice, slice; /* drawn for texture and speckle, 0..1023 */
+    double texture_db;             /* with the state of the sea */
+    double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
+    double speckle_db, echo_db;
+    /* tone */
+    double brightness; /* v, before the table */
+    uint8_t grey;
+};
+
+/* Every choice that is not geometry. */
+struct ref_params {
+    double edge_structure_db, edge_trees_db; /* leading edges */
+    double shore_db, shore_width_m;          /* far shore */
+    double noise_floor_db;
+    unsigned looks;                 /* 1..64 */
+    double black_db, white_db;      /* white_db > black_db */
+    double gamma_exponent;          /* > 0 */
+    double texture_shape[LM_KINDS]; /* nu by kind of class, 1..64 in whole numbers; 0: none */
+    double sea_db;                  /* ref_sea_db of the state of the sea */
+    bool has_exact_weights;         /* bilinear weights not cut to 8 bits */
+};
+
+/* 6, 3 and 8 dB of edges, 90 m of shore, floor and black -45 dB, white 5 dB, 4 looks, exponent 1.
+ * Values to look at pictures with; the firmware's come from its own parameter table. */
+struct ref_params ref_params_default(void);
+
+/* ---- the image (image.c) ---- */
+
+struct ref_db {
+    uint8_t *bytes; /* owned: the whole file */
+    size_t size;
+    const struct lm_classes *classes;
+    const struct lm_band *bands;
+    const uint8_t *directory, *records;
+    uint32_t band_count, entry_count, record_count, level_count, shift0;
+    double mean_elevation_m, geoid_m;
+    struct ref_place centre;
+    uint8_t *verdicts; /* owned: by record, whether its checksum was found good */
+};
+
+/* Read and check header, classes, bands and the bounds of everything. Records are checked when
+ * first used; a bad one counts as a missing tile. Returns 0, or -1 with the error reported. */
+int ref_db_open(struct ref_db *db, const char *path);
+
+/* The same for an image in memory, which is copied; `name` is for messages. */
+int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const char *name);
+
+void ref_db_close(struct ref_db *db);
+
+/* Height of a cell along the meridian, and the level to read for range cells of `cell_m`: the
+ * largest cell not longer than that. Assumed: level 0 when every cell is longer, and the length of
+ * a cell is its share of the meridian, whatever the latitude. */
+double ref_db_cell_m(const struct ref_db *db, unsigned level);
+unsigned ref_db_level_for(const struct ref_db *db, double cell_m);
+
+/* Fill the scan_line fields `has_data`, `class_index`, `kind`, `gamma_db`, `height_m` from the cell
+ * that holds the place, at `level` or in the nearest coarser level that has the tile. Without any:
+ * class 15. */
+void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place,
+                 struct ref_bin *bin);
+
+/* Terrain elevation, bilinear between the four posts around the place, with the weights cut to 8
+ * bits unless `is_exact`. False, with *elevation_m 0, where no level has a tile. */
+bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
+                      bool is_exact, double *elevation_m);
+
+/* ---- geometry (geo.c) ---- */
+
+/* The place at a distance and azimuth (clockwise from north) on WGS-84, by DESIGN.md's formula. */
+struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, double distance_m);
+
+/* The other way round: azimuth and distance that lead from one place to another, up to 300 km away,
+ * found by trying. */
+void ref_geo_inverse(struct ref_place from, struct ref_place to, double *azimuth_deg,
+                     double *distance_m);
+
+/* The parabola through the points at u = 0, 1/2 and 1 of a line. Longitudes do not jump. */
+struct ref_path {
+    double latitude_deg[3], longitude_deg[3];
+};
+struct ref_path ref_gm_path(struct ref_place antenna, double azimuth_deg, double length_m);
+struct ref_place ref_path_at(const struct ref_path *path, double u);
+
+/* The biquadratic surface through nine points of a patch: [across][along] at -w, 0, +w.
+ * Assumed: `azimuth_deg` is the line of sight's at the centre, pointing away from the radar; the
+ * point at across x and along y lies at azimuth + atan2(x, y) and distance hypot(x, y) from the
+ * centre; w is half the side of the patch. */
+struct ref_surface {
+    double half_side_m;
+    double latitude_deg[3][3], longitude_deg[3][3];
+};
+struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, double across_m,
+                                  double along_m);
+struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, double half_side_m);
+struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m);
+
+/* ---- aspect (aspect.c) ---- */
+
+struct ref_view {
+    double antenna_m;   /* H, above mean sea level */
+    double reference_m; /* z0, of the receiver's time gain */
+    double cell_m;      /* ds */
+};
+
+/* t: tangent of the elevation angle at which a point at height `top_m` appears. */
+double ref_tangent(double antenna_m, double range_m, double top_m);
+
+/* g and K of a cell and the range of the cell before it (the first cell: its own). */
+double ref_grazing(const struct ref_view *view, double range_m, double before_m);
+double ref_gain_db(const struct ref_view *view, double range_m, double before_m);
+
+/* Index of the first bin that is shown: those nearer than 256 m or half the antenna's height are
+ * dark and take no part. `count` when none is. */
+size_t ref_first_shown(const struct ref_bin *bins, size_t count, const struct ref_view *view);
+
+/* T_0 of a GM line, whose first cell shows flat ground's share. */
+double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
+
+/* Largest t of the bins (range, elevation and height are read), -INFINITY for none. */
+double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
+
+/* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
+ * The first bin shown enters nothing and follows no water; a bin without data is ground of -80 dB.
+ */
+void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                const struct ref_params *params, double horizon);
+
+/* ---- speckle (speckle.c) ---- */
+
+/* 10 log10 of the mean of each of 1024 equally likely slices of a Gamma variable of shape `looks`
+ * and mean 1, from the incomplete gamma function. looks 1..64. */
+void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES]);
+
+/* The slice that a cell draws which is the cell-th of its line and lies in a column of a raster. */
+unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint32_t epoch);
+
+/* The column of the ground's raster in which the cell-th of a line lies, along an azimuth and with
+ * its first cell's near edge edge_m away: columns are cell_m wide at the middle of each eight. */
+uint32_t ref_ground_column(double azimuth_deg, double edge_m, double cell_m, uint32_t cell);
+
+/* Tables of the texture by kind of class: those of params->texture_shape, all 0 for none. */
+struct ref_texture {
+    double table_db[LM_KINDS][REF_SPECKLE_SLICES];
+};
+void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params);
+
+/* What a state of the sea (0..8) adds to water. */
+double ref_sea_db(int state);
+
+/* Fill `texture_db` from `kind` and `texture_slice`: what the roughness of the class and, over
+ * water, the state of the sea add to the level. */
+void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
+                 const struct ref_params *params);
+
+/* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db + texture_db -
+ * loss_db (of a lit bin), floor and veil, + speckle_db. */
+void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
+                 double noise_floor_db);
+
+/* ---- tone (tone.c) ---- */
+
+/* v, the level's place in the window, clamped to 0..1, and the grey level round(255 v^gamma). */
+double ref_brightness(double level_db, const struct ref_params *params);
+uint8_t ref_grey(double brightness, const struct ref_params *params);
+void ref_tone(struct ref_bin *bins, size_t count, const struct ref_params *params);
+
+/* ---- real beam: the receiver (receiver.c) ---- */
+
+enum { REF_PULSE_REACH = 4, REF_CELLS_MAX = 1024 };
+
+/* Bins of a display line, equally spaced in slant range. */
+struct ref_bins {
+    double first_m, step_m; /* centre of bin 0; from centre to centre */
+    size_t count;           /* up to REF_CELLS_MAX */
+};
+
+struct ref_receiver {
+    struct ref_bins bins;
+    double height_m;              /* h = H - z0 */
+    double end_m;                 /* R, the far end of the display's range */
+    double noise_end_db;          /* there */
+    const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
+    double stc_m;                 /* r_s */
+    double pulse_s;
+};
+
+/* What the weather does to each bin of a line. */
+struct ref_weather_line {
+    double jam; /* what jammers add to the noise, in units of it */
+    double pass[REF_CELLS_MAX], rain[REF_CELLS_MAX];
+};
+
+/* s of a slant range r over flat ground `height_m` below; 0 in the altitude hole. */
+double ref_ground_of_slant(double slant_m, double height_m);
+
+/* The sampled cell of a bin, of `cells` that begin at `near_edge_m`; `cells` where there is none.
+ */
+size_t ref_slant_cell(double slant_m, double height_m, double near_edge_m, double cell_m,
+                      size_t cells);
+
+/* g of a slant range: flat ground's grazing, 1/256..2. */
+double ref_slant_grazing(double slant_m, double height_m);
+
+double ref_noise_db(const struct ref_receiver *r, double slant_m);
+double ref_stc_fall_db(const struct ref_receiver *r, double slant_m);
+
+/* q, and the share of bin i + m in bin i for a pulse `bins` bins long. */
+double ref_pulse_m(double pulse_s);
+double ref_pulse_share(double bins, int m);
+
+/* Mean of the powers over the pulse, in place. count up to REF_CELLS_MAX. */
+void ref_pulse(double *power, size_t count, double bins);
+
+/* Everything from the powers of a line's bins to their levels; the powers are changed. `weather`
+ * may be NULL. */
+void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *weather,
+                 uint32_t line, uint32_t sweep, double *power, double *level_db);
+
+/* ---- real beam: rain and jammers (weather.c) ---- */
+
+struct ref_rain {
+    double distance_m, off_deg; /* of its centre, from the antenna and off the line */
+    double radius_m, mm_per_h;
+};
+
+struct ref_jammer {
+    double distance_m, off_deg;
+    double ratio_db; /* to the noise, on the axis at ten nautical miles */
+};
+
+struct ref_environment {
+    struct ref_rain rain[4];
+    struct ref_jammer jammer[4];
+    size_t rain_count, jammer_count;
+};
+
+/* One way, ITU-R P.838-3 at 10 GHz, horizontal. */
+double ref_rain_loss_db_km(double mm_per_h);
+
+/* Cross section of a cubic metre of rain, 1 / m. */
+double ref_rain_eta(double mm_per_h, double wavelength_m);
+
+/* The jammer's noise beside the receiver's. */
+double ref_jam(const struct ref_jammer *j, double beam_deg);
+
+/* Where a line is in the rain; false: nowhere, with 0 or nonsense in both. */
+bool ref_rain_chord(const struct ref_rain *rain, double *from_m, double *to_m);
+
+/* Weather of bin i: share of the power that passes, and the rain's own as gamma, weakened. */
+void ref_weather_at(const struct ref_environment *e, double wavelength_m, double elevation_beam_deg,
+                    double height_m, const struct ref_bins *bins, size_t i, double *pass,
+                    double *rain);
+
+/* The weather of a line. */
+void ref_weather(const struct ref_environment *e, double wavelength_m, double azimuth_beam_deg,
+                 double elevation_beam_deg, double height_m, const struct ref_bins *bins,
+                 struct ref_weather_line *weather);
+
+/* Rain that a patch is seen through. */
+struct ref_patch_rain {
+    struct ref_environment environment; /* seen from the antenna, off the patch's line of sight */
+    double wavelength_m, azimuth_beam_deg, elevation_beam_deg;
+    double slant; /* metres of the way for each metre along the ground */
+};
+
+/* What rain takes of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line
+ * whose middle appears `aside_deg` to the right of the line of sight. */
+double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
+                         double cell_m);
+
+/* What rain adds to the cells at `range_m`, as gamma: veil[n] on the line `aside_deg[n]` of the
+ * line of sight. These grow with n, within 40 degrees or ten beams of their middle. */
+void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
+                    const double *aside_deg, double *veil, size_t count);
+
+/* ---- real beam: the antenna (beam.c), and a line (sector.c) ---- */
+
+enum { REF_BEAM_SAMPLES = 8 };
+
+struct ref_beam {
+    double beam_deg; /* B, one-way half-power width */
+    double line_deg; /* D0 */
+    double ratio;    /* N >= 1; 1: real beam */
+};
+
+/* A line of the display: samples first .. first + 7, whose weights add up to 1. */
+struct ref_beam_look {
+    long first;
+    double weight[REF_BEAM_SAMPLES];
+};
+
+/* D, and the azimuth of a sample from the sector's middle. */
+double ref_beam_spacing_deg(const struct ref_beam *b);
+double ref_beam_azimuth_deg(const struct ref_beam *b, long sample);
+
+/* Two-way pattern, 1 on the axis. */
+double ref_beam_pattern(const struct ref_beam *b, double off_deg);
+
+struct ref_beam_look ref_beam_look(const struct ref_beam *b, double azimuth_deg);
+
+/* The line drawn from its samples, power[j] that of sample first + j. */
+void ref_beam_sum(const struct ref_beam_look *look, const double *const power[REF_BEAM_SAMPLES],
+                  double *sum, size_t count);
+
+struct ref_antenna {
+    double elevation_beam_deg; /* b, one-way half-power width */
+    double fan_deg;            /* f */
+    double bar_spacing_deg;
+};
+
+/* What the elevation pattern leaves of a look at a tangent; 0 within the fan. Tilts are positive
+ * upwards. */
+double ref_elevation_db(const struct ref_antenna *a, double tilt_deg, double tangent);
+
+/* Tilt towards flat ground `height_m` below at `range_m`, and that of bar 0..bars-1. */
+double ref_auto_tilt_deg(double height_m, double range_m);
+double ref_bar_tilt_deg(const struct ref_antenna *a, double tilt_deg, int bar, int bars);
+
+/* Power of each cell of a sampled line, from `echo_db`, `is_lit` and `tangent`. */
+void ref_sample_power(const struct ref_bin *cells, size_t count, const struct ref_antenna *a,
+                      double tilt_deg, double *power);
+
+/* Power of each bin from the ground's `cells`, the first of which begins at `near_edge_m`. */
+void ref_slant_power(const struct ref_bins *bins, double height_m, double near_edge_m,
+                     double cell_m, const double *ground, size_t cells, double *power);
+
+/* Everything that a line of a sector is made of, but for its samples. */
+struct ref_sector_line {
+    struct ref_beam_look look;
+    struct ref_antenna antenna;
+    double tilt_deg;            /* of the bar */
+    double near_edge_m, cell_m; /* of the ground's cells */
+    struct ref_receiver receiver;
+    uint32_t line, sweep;
+};
+
+/* Levels of a line's bins from 8 sampled lines of `cells` cells each (up to REF_CELLS_MAX), whose
+ * `echo_db` is known; NULL `weather`: fair. */
+void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
+                     size_t cells, const struct ref_weather_line *weather, double *level_db);
+
+/* ---- Doppler beam sharpening and movers (doppler.c) ---- */
+
+struct ref_dbs {
+    double speed_m_s; /* V, horizontal */
+    double beam_deg, wavelength_m;
+    double rate_deg_s; /* w, of the antenna */
+};
+
+/* N(o), what is to be had at `off_deg` from the velocity. */
+double ref_dbs_ratio(const struct ref_dbs *d, double off_deg);
+
+/* Angle off the velocity from which a ratio is to be had; NAN when it is nowhere. */
+double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio);
+
+/* The ratio that is used where `had` is to be had: 1 in the notch. */
+double ref_dbs_used(double had, double wanted, double least);
+
+/* How far a target that closes seems to lie nearer to the velocity vector: as an angle, NAN where
+ * no still ground has its Doppler shift; and, to the first order, on the ground of a patch at
+ * ground range `range_m`. */
+double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg);
+double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m);
+
+/* ---- synthetic aperture (aperture.c) ---- */
+
+double ref_sar_dwell_s(double wavelength_m, double slant_m, double speed_m_s, double cell_m,
+                       double squint_deg);
+
+/* q: lines over which an uncompensated lateral acceleration spreads a point. */
+double ref_mocomp_cells(double wavelength_m, double residual_m_s2, double dwell_s);
+
+/* Line `line` of `lines` lines of `count` powers, spread over `width` lines. Beyond the edges the
+ * first and the last line are repeated. */
+void ref_mocomp(const double *const power[], size_t lines, size_t line, double width, double *mean,
+                size_t count);
+
+/* A line in slant-range presentation: each power moves nearer by shift * top_m cells and is shared
+ * between the two bins that it falls between; shift = tan(psi) / ds, top_m above the reference. */
+void ref_layover(const double *power, const double *top_m, size_t count, double shift,
+                 double *laid);
+
+struct ref_taylor {
+    double side_lobe_db; /* below the peak, > 0 */
+    int nbar;            /* 1: uniform weighting */
+};
+
+/* Weight at u = -1/2..1/2 of the aperture (mean 1), and the response to a point, x in units of the
+ * aperture's own resolution, in amplitude. */
+double ref_taylor_weight(const struct ref_taylor *t, double u);
+double ref_taylor_amplitude(const struct ref_taylor *t, double x);
+
+/* h: amplitude of a point's return in a patch, x cells from it one way, without the table's steps.
+ * Both ways multiply. */
+double ref_point_response(double x);
+
+/* A point of a patch that moves: where it appears in the middle of the dwell, how far, in cells,
+ * its displacement drifts across and it goes itself away from the radar until the dwell's end. */
+struct ref_mover {
+    double line, cell, across, along, power;
+};
+
+/* Add what the aperture makes of it to `power`, lines x cells: its echoes, weighed and summed with
+ * the phase of each line. 0, or -1 without memory. */
+int ref_add_mover(const struct ref_mover *m, size_t lines, size_t cells, double *power);
+
+/* ---- whole pictures (picture.c) ---- */
+
+struct ref_picture {
+    unsigned line_count, cell_count, guard_count; /* guard cells come before the shown ones */
+    struct ref_bin *bins;   /* owned: line_count x (guard_count + cell_count) */
+    double *start_horizons; /* owned: T before the first bin of each line */
+    struct ref_view view;
+    unsigned level; /* of the image */
+};
+
+struct ref_gm {
+    struct ref_place antenna;
+    double antenna_m, cell_m;
+    double centre_azimuth_deg,
+        half_angle_deg;              /* sector; line j is centred in wedge j of line_count */
+    unsigned cell_count, line_count; /* >= 1 */
+    uint32_t epoch;
+};
+
+struct ref_sar {
+    struct ref_place centre;
+    double azimuth_deg; /* of the line of sight at the centre, away from the radar */
+    double
+        range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
+    double antenna_m, cell_m;
+    unsigned cell_count;        /* along either side */
+    uint32_t epoch;             /* of its draws: lm_sar's noise_epoch */
+    struct ref_patch_rain rain; /* distances, angles and slant are filled from these places */
+    struct ref_place rain_centre[4];
+};
+
+/* The tables of a picture. */
+struct ref_tables {
+    double speckle_db[REF_SPECKLE_SLICES];
+    struct ref_texture texture;
+};
+void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
+
+/* One GM line: all stages, into `bins` (gm->cell_count of them), with the speckle of sample number
+ * `sample`. Returns T_0. */
+double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct ref_gm *gm,
+                   const struct ref_params *params, const struct ref_tables *tables,
+                   double azimuth_deg, uint32_t sample);
+
+/* Height of the antenna, that of the time gain's ground below it, and the cell. */
+struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
+                            const struct ref_params *params);
+
+/* Azimuth of the middle of line j. */
+double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
+
+/* T before the first guard cell of line k: the coarse line. Assumed: the coarse line is the patch's
+ * line prolonged towards the radar at the same across offset, its places on the parabola through
+ * the two ends and the middle; its cells end where the first guard cell begins. */
+double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
+                       const struct ref_params *params, unsigned line);
+
+/* Room for the picture's lines and cells, all zero. Returns 0, or -1 with the error reported. */
+int ref_picture_allocate(struct ref_picture *picture);
+
+/* Whole pictures. Return 0, or -1 with the error reported (no memory); ref_picture_free afterwards.
+ */
+int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
+                 const struct ref_params *params);
+int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
+                  const struct ref_params *params);
+void ref_picture_free(struct ref_picture *picture);
+
+/* The bin of a line and cell; cells -guard_count..-1 are the guard cells. */
+struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line, int cell);
+
+/* ---- a sector as the receiver hands it on (sector.c) ---- */
+
+/* A whole scale: the ground's cells begin at the antenna, and bins are as many and as long. */
+struct ref_sector {
+    struct ref_gm ground; /* its lines are those that are drawn, its cells those that are sampled */
+    double beam_deg, sample_deg;         /* B, D0 */
+    unsigned azimuths;                   /* traced across a sample in real beam; 0 is 1 */
+    double sharpening, sharpening_least; /* 1 and 1: real beam */
+    struct ref_dbs dbs;                  /* not used by real beam */
+    double track_deg;                    /* azimuth of the velocity, likewise */
+    struct ref_antenna antenna;
+    double tilt_deg;                    /* of the bar */
+    struct ref_receiver receiver;       /* bins and height_m are filled by the sweep */
+    struct ref_environment environment; /* distances and angles likewise, from these places */
+    struct ref_place rain_centre[4], jammer_place[4];
+};
+
+/* The sector's lines, as bins of which range_m (slant), echo_db, brightness and grey mean
+ * something. params->noise_floor_db is not used: the receiver has its own noise. Returns 0, or -1
+ * with the error reported; ref_picture_free afterwards. */
+int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
+                     const struct ref_sector *sector, const struct ref_params *params);
+
+/* ---- on the glass (glass.c) ---- */
+
+/* A patch as cell_count x cell_count pixels of scale x scale each: far on top, right of the line of
+ * sight to the right. */
+void ref_glass_sar(const struct ref_picture *picture, unsigned scale, uint8_t *pixels);
+
+/* A sweep seen from above, the sector's middle upwards: `width` x `height` pixels, the antenna in
+ * the middle of the lower edge, the last cell's far end at the top. A pixel takes the line in whose
+ * half-open wedge its centre lies and the cell of its projection on that line's middle. */
+void ref_glass_gm(const struct ref_picture *picture, const struct ref_gm *gm, unsigned width,
+                  unsigned height, uint8_t *pixels);
+
+#endif

@@ -1,0 +1,58 @@
+/* The detailed part of a database: class, reflectivity and height rasters, resampled to the cells
+ * of a tile. */
+#ifndef RESAMPLE_COVER_H
+#define RESAMPLE_COVER_H
+
+#include "hs/class_table.h"
+#include "image/grid.h"
+#include "lm/db.h"
+#include "resample/georef.h"
+#include "resample/mesh.h"
+
+#include <gdal.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* One band of one file. */
+struct resample_plane {
+    GDALDatasetH dataset; /* owned; NULL: not given */
+    GDALRasterBandH band;
+    const char *path; /* borrowed */
+    bool has_nodata;
+    double nodata;
+    struct resample_georef georef;
+    struct resample_lattice lattice; /* once the cell is set */
+};
+
+struct resample_cover {
+    struct resample_plane classes, reflectivity, heights;
+    const struct db_class_table *table; /* borrowed */
+    struct image_area area;
+    double pixel_latitude_bam, pixel_longitude_bam;
+};
+
+/* Paths may be NULL, but `reflectivity` or `heights` alone are an error. Class and reflectivity
+ * rasters must be on one grid; the heights may be on their own. All paths are borrowed until close.
+ * Returns 0, or -1 with the error reported and nothing to close. */
+int resample_cover_open(struct resample_cover *c, const struct db_class_table *table,
+                        const char *classes, const char *reflectivity, const char *heights);
+void resample_cover_close(struct resample_cover *c);
+
+/* Say how large the image's finest cells are. Call once before resample_cover_tile. */
+void resample_cover_set_cell(struct resample_cover *c, uint8_t shift0);
+
+/* One sample of a tile. */
+struct resample_sample {
+    uint8_t class_number; /* LM_DB_CLASS_NONE: no data */
+    bool has_gamma, has_height;
+    float gamma_db, height_m;
+};
+
+/* The samples of a tile, each cell cut into `parts` x `parts`, nearest pixel, row by row from the
+ * south-west: (64 parts)^2 of them. A tile that the rasters do not touch gives samples without
+ * data. Returns how many hold data, or -1 with the error reported (a file cut short, a class that
+ * the table has not). */
+int resample_cover_tile(const struct resample_cover *c, const struct image_frame *frame, int parts,
+                        struct resample_sample *samples);
+
+#endif

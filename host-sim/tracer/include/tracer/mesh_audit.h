@@ -1,0 +1,27 @@
+/* What is wrong with a model: found before rays are lost in it. */
+#ifndef TRACER_MESH_AUDIT_H
+#define TRACER_MESH_AUDIT_H
+
+#include "tracer/mesh.h"
+
+struct mesh_audit {
+    uint32_t degenerate;   /* triangles without area, among them those with a corner used twice */
+    uint32_t open_edges;   /* edges with a triangle on one side only */
+    uint32_t turned_edges; /* edges whose two triangles disagree on which side is outside */
+    uint32_t part_count;   /* bodies that hang together by edges */
+    uint32_t inside_out;   /* closed parts that enclose a negative volume */
+};
+
+/* Corners at exactly the same place count as one, however often the file lists them. Degenerate
+ * triangles are left out of the other counts. Cost: sorts of corners and edges; 40 bytes a
+ * triangle. Returns 0, or -1 for lack of memory, reported with `place`. */
+int mesh_audit(const struct mesh *m, const char *place, struct mesh_audit *audit);
+
+/* Refuse a model that is not made of closed bodies with their outer sides outwards, and tell how to
+ * mend it. Returns 0, or -1 with everything that is wrong reported as one error. */
+int mesh_require_closed(const struct mesh_audit *audit, const char *place);
+
+/* Remove triangles without area; returns how many there were. */
+uint32_t mesh_drop_degenerate(struct mesh *m);
+
+#endif

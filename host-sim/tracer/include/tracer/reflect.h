@@ -1,0 +1,83 @@
+/* Laws of reflection, paper B, step 3: what share of a ray's intensity goes on specularly (SP) and
+ * what share returns to the radar (BK). Both are 0..1; a BK of 1 is what a white matt surface
+ * returns straight back (RaySAR's F_d = 1 with N.L = 1).
+ *
+ * Angles as in records.h, radians: theta1 of the incidence, theta2 of the echo, theta4 the turn
+ * from the one to the other. */
+#ifndef TRACER_REFLECT_H
+#define TRACER_REFLECT_H
+
+#include "tracer/records.h"
+
+#include <complex.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A surface. The names of the last four are RaySAR's. */
+struct reflect_material {
+    char name[TRACE_NAME_SIZE];
+    double permittivity, loss;  /* relative permittivity: permittivity - i loss */
+    double rms_height_m;        /* roughness: standard deviation of height */
+    double correlation_m;       /* and its correlation length; Gaussian */
+    double specular, roughness; /* F_s 0..1, F_r > 0 */
+    double diffuse, brilliance; /* F_d 0..1, F_b 0..1 */
+};
+
+/* ---- the formulas ---- */
+
+/* Fresnel's coefficients, eq. (5) and (6). */
+double complex reflect_fresnel_hh(double complex permittivity, double theta1);
+double complex reflect_fresnel_vv(double complex permittivity, double theta1);
+
+/* Polarisation factors of the small perturbation method. eq. (8), and eq. (9) as the theory has it:
+ * the paper prints a product of two fractions where there is one fraction with a difference above,
+ *     beta_vv = (e - 1) (q1 q2 cos t3 - e sin t1 sin t2) / ((e cos t2 + q2) (e cos t1 + q1)),
+ * q = sqrt(e - sin^2 t); for backscatter, t1 = t2 and t3 = pi, it is Bragg's coefficient (Ulaby,
+ * Moore, Fung, Microwave Remote Sensing II, eq. 12.90). cos_theta3: azimuth of the echo, 1 ahead.
+ */
+double complex reflect_beta_hh(double complex permittivity, double theta1, double theta2,
+                               double cos_theta3);
+double complex reflect_beta_vv(double complex permittivity, double theta1, double theta2,
+                               double cos_theta3);
+
+/* cos of theta3 from the angles of a record; -1, straight back, where the azimuth means nothing. */
+double reflect_cos_theta3(double theta1, double theta2, double theta4);
+
+/* Eq. (7) as cross section of a unit area: sigma0 = 4 pi R^2 |E|^2 / a = 4/pi k^4 cos^2 t1 cos^2 t2
+ * |beta|^2 W, with W the transform of a Gaussian autocorrelation, pi s^2 l^2 exp(-(kappa l)^2 / 4).
+ * For backscatter this is Ulaby's 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
+double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m, bool is_vv,
+                          double theta1, double theta2, double theta4);
+
+/* RaySAR's specular lobe F_s (N.H)^(1 / F_r), eq. (10), and diffuse part F_d (N.L)^F_b, eq. (11).
+ */
+double reflect_raysar_specular(const struct reflect_material *m, double theta1, double theta2,
+                               double theta4);
+double reflect_raysar_diffuse(const struct reflect_material *m, double theta1);
+
+/* ---- laws to choose from ---- */
+
+enum reflect_kind {
+    REFLECT_RAYSAR,     /* SP: F_s. BK: specular lobe plus diffuse part */
+    REFLECT_FRESNEL_HH, /* SP: |R|^2. BK: |R|^2 (N.H)^(1 / F_r) plus RaySAR's diffuse part */
+    REFLECT_FRESNEL_VV,
+    REFLECT_SPM_HH, /* SP: |R|^2 less the share that roughness scatters. BK: the lobe of that, plus
+                       small perturbation: sigma0 / (4 cos t1) */
+    REFLECT_SPM_VV,
+    REFLECT_KINDS
+};
+extern const char *const reflect_kind_names[REFLECT_KINDS];
+
+struct reflect_law {
+    enum reflect_kind kind;
+    double wavelength_m;
+    struct reflect_material materials[TRACE_MATERIALS_MAX]; /* by a record's material */
+};
+
+struct reflect_shares {
+    float specular, back;
+};
+
+struct reflect_shares reflect_record(const struct reflect_law *law, const struct trace_record *t);
+
+#endif

@@ -1,0 +1,120 @@
+#include "tracer/materials.h"
+
+#include "hs/error.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* X band. None of it is measured: values to look at pictures with, to be learned or replaced.
+ * Permittivity of moist soil about 6 - i, of rubber about 3 (usual handbook values). */
+static const struct reflect_material built_in[] = {
+    {"metal", 1, 1e7, 0.0002, 0.02, 0.9, 0.005, 0.03, 1},
+    {"ground", 6, 1, 0.0015, 0.02, 0.3, 0.02, 0.03, 1},
+    {"rubber", 3, 0.1, 0.001, 0.02, 0.2, 0.02, 0.03, 1},
+};
+enum { BUILT_IN = sizeof built_in / sizeof built_in[0], FILE_MAX = 256 };
+
+struct table {
+    struct reflect_material rows[FILE_MAX];
+    int count;
+};
+
+static const struct reflect_material *find(const struct reflect_material *rows, int count,
+                                           const char *name)
+{
+    for (int i = 0; i < count; i++) {
+        if (strcmp(rows[i].name, name) == 0) {
+            return &rows[i];
+        }
+    }
+    return NULL;
+}
+
+static const char *row_fault(const struct reflect_material *m)
+{
+    if (!(m->permittivity >= 1 && m->permittivity <= 1e9 && m->loss >= 0 && m->loss <= 1e9)) {
+        return "a permittivity is at least 1 and a loss not negative";
+    }
+    if (!(m->rms_height_m >= 0 && m->rms_height_m <= 1 && m->correlation_m >= 0 &&
+          m->correlation_m <= 100)) {
+        return "heights are 0..1 m and correlation lengths 0..100 m";
+    }
+    if (!(m->specular >= 0 && m->specular <= 1 && m->diffuse >= 0 && m->diffuse <= 1 &&
+          m->brilliance >= 0 && m->brilliance <= 1 && m->roughness > 0 && m->roughness <= 1)) {
+        return "F_s, F_d and F_b are 0..1 and F_r is above 0 and at most 1";
+    }
+    return NULL;
+}
+
+static const char *read_row(const char *line, struct reflect_material *m)
+{
+    char extra;
+    const int read = sscanf(line, "%31s %lf %lf %lf %lf %lf %lf %lf %lf %c", m->name,
+                            &m->permittivity, &m->loss, &m->rms_height_m, &m->correlation_m,
+                            &m->specular, &m->roughness, &m->diffuse, &m->brilliance, &extra);
+    return read == 9 ? row_fault(m) : "expected a name and eight numbers";
+}
+
+static int read_rows(struct table *table, FILE *in, const char *path)
+{
+    char line[512];
+    for (int number = 1; fgets(line, sizeof line, in); number++) {
+        line[strcspn(line, "#\r\n")] = '\0';
+        if (line[strspn(line, " \t")] == '\0') {
+            continue;
+        }
+        const char *fault = table->count < FILE_MAX ? read_row(line, &table->rows[table->count])
+                                                    : "more than 256 surfaces";
+        if (fault) {
+            char place[512];
+            snprintf(place, sizeof place, "%s line %d", path, number);
+            return hs_error(place, "landmass-target materials prints a good file", "%s", fault);
+        }
+        table->count++;
+    }
+    return ferror(in) ? hs_error(path, NULL, "cannot be read to its end") : 0;
+}
+
+static int read_table(struct table *table, const char *path)
+{
+    FILE *in = fopen(path, "r");
+    if (!in) {
+        return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
+    }
+    const int result = read_rows(table, in, path);
+    fclose(in);
+    return result;
+}
+
+int materials_for(const struct trace_records *r, const char *path, struct reflect_law *law)
+{
+    struct table table = {.count = 0};
+    if (path && read_table(&table, path) != 0) {
+        return -1;
+    }
+    for (uint32_t i = 0; i < r->material_count; i++) {
+        const char *name = r->materials[i];
+        const struct reflect_material *m = find(table.rows, table.count, name);
+        m = m ? m : find(built_in, BUILT_IN, name);
+        if (!m) {
+            hs_warn(name, "add it to the file of --materials",
+                    "an unknown material, taken for metal");
+            m = &built_in[0];
+        }
+        law->materials[i] = *m;
+    }
+    return 0;
+}
+
+void materials_print(void)
+{
+    puts("# NAME PERMITTIVITY LOSS RMS_HEIGHT_M CORRELATION_M F_S F_R F_D F_B");
+    for (int i = 0; i < BUILT_IN; i++) {
+        const struct reflect_material *m = &built_in[i];
+        printf("%s %g %g %g %g %g %g %g %g\n", m->name, m->permittivity, m->loss, m->rms_height_m,
+               m->correlation_m, m->specular, m->roughness, m->diffuse, m->brilliance);
+    }
+}

@@ -1,0 +1,139 @@
+#include "tracer/reflect.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+const char *const reflect_kind_names[REFLECT_KINDS] = {"raysar", "fresnel-hh", "fresnel-vv",
+                                                       "spm-hh", "spm-vv"};
+
+static double square(double x)
+{
+    return x * x;
+}
+
+static double complex root_term(double complex permittivity, double theta)
+{
+    return csqrt(permittivity - square(sin(theta)));
+}
+
+double complex reflect_fresnel_hh(double complex permittivity, double theta1)
+{
+    const double complex q = root_term(permittivity, theta1);
+    return (cos(theta1) - q) / (cos(theta1) + q);
+}
+
+double complex reflect_fresnel_vv(double complex permittivity, double theta1)
+{
+    const double complex q = root_term(permittivity, theta1), p = permittivity * cos(theta1);
+    return (p - q) / (p + q);
+}
+
+double complex reflect_beta_hh(double complex permittivity, double theta1, double theta2,
+                               double cos_theta3)
+{
+    return (permittivity - 1) * cos_theta3 /
+           ((cos(theta2) + root_term(permittivity, theta2)) *
+            (cos(theta1) + root_term(permittivity, theta1)));
+}
+
+double complex reflect_beta_vv(double complex permittivity, double theta1, double theta2,
+                               double cos_theta3)
+{
+    const double complex q1 = root_term(permittivity, theta1);
+    const double complex q2 = root_term(permittivity, theta2);
+    return (permittivity - 1) *
+           (q1 * q2 * cos_theta3 - permittivity * (sin(theta1) * sin(theta2))) /
+           ((permittivity * cos(theta2) + q2) * (permittivity * cos(theta1) + q1));
+}
+
+/* sin t1 sin t2 cos t3, by the law of cosines on the sphere of directions. */
+static double sines_cos_theta3(double theta1, double theta2, double theta4)
+{
+    return cos(theta1) * cos(theta2) - cos(theta4);
+}
+
+double reflect_cos_theta3(double theta1, double theta2, double theta4)
+{
+    const double sines = sin(theta1) * sin(theta2);
+    if (sines < 1e-6) {
+        return -1;
+    }
+    return fmin(fmax(sines_cos_theta3(theta1, theta2, theta4) / sines, -1), 1);
+}
+
+double reflect_spm_sigma0(const struct reflect_material *m, double wavelength_m, bool is_vv,
+                          double theta1, double theta2, double theta4)
+{
+    const double k = 2 * pi / wavelength_m;
+    const double complex permittivity = m->permittivity - m->loss * I;
+    const double cos_theta3 = reflect_cos_theta3(theta1, theta2, theta4);
+    const double complex beta = is_vv ? reflect_beta_vv(permittivity, theta1, theta2, cos_theta3)
+                                      : reflect_beta_hh(permittivity, theta1, theta2, cos_theta3);
+    /* What the surface must add to the wave's tangential number to send it to the radar. */
+    const double kappa_squared =
+        k * k *
+        (square(sin(theta1)) + square(sin(theta2)) - 2 * sines_cos_theta3(theta1, theta2, theta4));
+    const double spectrum = pi * square(m->rms_height_m * m->correlation_m) *
+                            exp(-kappa_squared * square(m->correlation_m) / 4);
+    return 4 / pi * square(square(k) * cos(theta1) * cos(theta2) * cabs(beta)) * spectrum;
+}
+
+/* (N.H)^(1 / F_r), H halfway between source and radar. */
+static double lobe(const struct reflect_material *m, double theta1, double theta2, double theta4)
+{
+    const double half = cos(theta4 / 2);
+    if (half < 1e-9) {
+        return 0; /* straight on: no half way, and nothing comes back from behind a surface */
+    }
+    const double n_h = fmin((cos(theta1) + cos(theta2)) / (2 * half), 1);
+    return n_h > 0 ? pow(n_h, 1 / m->roughness) : 0;
+}
+
+double reflect_raysar_specular(const struct reflect_material *m, double theta1, double theta2,
+                               double theta4)
+{
+    return m->specular * lobe(m, theta1, theta2, theta4);
+}
+
+double reflect_raysar_diffuse(const struct reflect_material *m, double theta1)
+{
+    return m->diffuse * pow(fmax(cos(theta1), 0), m->brilliance);
+}
+
+static double power_reflectivity(const struct reflect_material *m, bool is_vv, double theta1)
+{
+    const double complex permittivity = m->permittivity - m->loss * I;
+    return square(cabs(is_vv ? reflect_fresnel_vv(permittivity, theta1)
+                             : reflect_fresnel_hh(permittivity, theta1)));
+}
+
+/* Share of the specular power that roughness leaves: exp(-(2 k s cos t)^2). */
+static double smooth_share(const struct reflect_material *m, double wavelength_m, double theta1)
+{
+    return exp(-square(4 * pi / wavelength_m * m->rms_height_m * cos(theta1)));
+}
+
+static struct reflect_shares shares(double specular, double back)
+{
+    return (struct reflect_shares){(float)fmin(specular, 1), (float)fmin(fmax(back, 0), 1)};
+}
+
+struct reflect_shares reflect_record(const struct reflect_law *law, const struct trace_record *t)
+{
+    const struct reflect_material *m = &law->materials[t->material];
+    const double t1 = (double)t->incidence_rad, t2 = (double)t->echo_rad, t4 = (double)t->turn_rad;
+    const bool is_vv = law->kind == REFLECT_FRESNEL_VV || law->kind == REFLECT_SPM_VV;
+    if (law->kind == REFLECT_RAYSAR) {
+        return shares(m->specular,
+                      reflect_raysar_specular(m, t1, t2, t4) + reflect_raysar_diffuse(m, t1));
+    }
+    double specular = power_reflectivity(m, is_vv, t1);
+    if (law->kind == REFLECT_FRESNEL_HH || law->kind == REFLECT_FRESNEL_VV) {
+        return shares(specular, specular * lobe(m, t1, t2, t4) + reflect_raysar_diffuse(m, t1));
+    }
+    specular *= smooth_share(m, law->wavelength_m, t1);
+    const double rough =
+        reflect_spm_sigma0(m, law->wavelength_m, is_vv, t1, t2, t4) / (4 * fmax(cos(t1), 1e-6));
+    return shares(specular, specular * lobe(m, t1, t2, t4) + rough);
+}

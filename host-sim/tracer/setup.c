@@ -1,0 +1,237 @@
+#include "tracer/setup.h"
+
+#include "hs/error.h"
+#include "tracer/accumulate.h"
+#include "tracer/materials.h"
+#include "tracer/mesh_audit.h"
+#include "tracer/models.h"
+#include "tracer/obj_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct setup setup_default(void)
+{
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return (struct setup){
+        .up = "y",
+        .scale = 1,
+        .depression_deg = 15,
+        .wavelength_m = TRACE_WAVELENGTH_M,
+        .cell_m = TRACE_CHIP_CELL_M,
+        .cells = TRACE_CHIP_CELLS,
+        .rays_per_cell = 2,
+        .bounces = TRACE_BOUNCES_MAX,
+        .threads = processors >= 1 && processors <= 64 ? processors : 1,
+        .law = reflect_kind_names[REFLECT_RAYSAR],
+        .resolution_m = 0.3,
+        .range_db = 50,
+        .ratio = 2,
+        .looks = 0,
+        .seed = 1,
+    };
+}
+
+void setup_model_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_MODEL_OPTIONS] = {
+        {"model", DB_TEXT, &s->model, 0, 0, "NAME|FILE.obj",
+         "a built-in model (see `landmass-target model --help`) or a Wavefront OBJ file", true},
+        {"up", DB_TEXT, &s->up, 0, 0, "y|z",
+         "which axis of FILE.obj points up; default y, and x ahead in either case", false},
+        {"scale", DB_REAL, &s->scale, 1e-4, 1e4, "K", "metres for a unit of FILE.obj", false},
+        {"turn", DB_REAL, &s->turn_deg, -360, 360, "DEG",
+         "turn FILE.obj to the left, so that its nose points along x", false},
+        {"as-is", DB_FLAG, &s->is_as_is, 0, 0, NULL,
+         "take a model that is open, turned or degenerate: triangles without area are\n"
+         "dropped, and both sides of all others reflect",
+         false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+void setup_ray_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_RAY_OPTIONS] = {
+        {"wavelength", DB_REAL, &s->wavelength_m, 0.001, 10, "M", "of the radar", false},
+        {"rays", DB_INTEGER, &s->rays_per_cell, 1, 16, "N",
+         "N x N of them meet a cell of level "
+         "ground",
+         false},
+        {"bounces", DB_INTEGER, &s->bounces, 1, TRACE_BOUNCES_MAX, "N", "reflections followed",
+         false},
+        {"threads", DB_INTEGER, &s->threads, 1, 64, "N", "the result does not depend on it", false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+void setup_trace_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS] = {
+        {"depression", DB_REAL, &s->depression_deg, 1, 89, "DEG",
+         "of the line of sight below the horizon", false},
+        {"cell", DB_REAL, &s->cell_m, 0.001, 1000, "M",
+         "side of the cells, slant range and across, in which echoes are added up", false},
+        {"cells", DB_INTEGER, &s->cells, 2, TRACE_CELLS_MAX, "N", "of the picture, either way",
+         false},
+        {"no-ground", DB_FLAG, &s->has_no_ground, 0, 0, NULL, "the model floats in empty space",
+         false},
+    };
+    memcpy(o, options, sizeof options);
+    setup_ray_options(s, o + SETUP_TRACE_OPTIONS - SETUP_RAY_OPTIONS);
+}
+
+void setup_law_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_LAW_OPTIONS] = {
+        {"law", DB_TEXT, &s->law, 0, 0, "NAME",
+         "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
+        {"materials", DB_TEXT, &s->materials, 0, 0, "FILE",
+         "surfaces by name, in the form that `landmass-target materials` prints", false},
+    };
+    memcpy(o, options, sizeof options);
+}
+
+void setup_chip_options(struct setup *s, struct db_option *o)
+{
+    const struct db_option options[SETUP_CHIP_OPTIONS - SETUP_LAW_OPTIONS] = {
+        {"resolution", DB_REAL, &s->resolution_m, 0.001, 1000, "M",
+         "of the radar, between -3 dB points", false},
+        {"pixel", DB_INTEGER, &s->ratio, 1, 16, "N", "cells a pixel, either way", false},
+        {"looks", DB_INTEGER, &s->looks, 0, PIX_LOOKS_MAX, "N", "of the speckle; 0: none", false},
+        {"seed", DB_INTEGER, &s->seed, 0, 1e15, "N", "of the speckle", false},
+        {"range-db", DB_REAL, &s->range_db, 1, 200, "DB", "from the brightest pixel to black",
+         false},
+    };
+    setup_law_options(s, o);
+    memcpy(o + SETUP_LAW_OPTIONS, options, sizeof options);
+}
+
+void setup_options(struct setup *s, struct db_option *o)
+{
+    setup_model_options(s, o);
+    setup_trace_options(s, o + SETUP_MODEL_OPTIONS);
+    setup_chip_options(s, o + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS);
+}
+
+/* Closed bodies only, unless the user or the built-in model says otherwise. */
+static int check_model(const struct setup *s, const struct model_kind *kind, struct mesh *m)
+{
+    struct mesh_audit audit;
+    if (kind) {
+        return m->is_full ? hs_error(s->model, NULL, "out of memory") : 0;
+    }
+    if (s->is_as_is) {
+        mesh_drop_degenerate(m);
+        return m->triangle_count > 0
+                   ? 0
+                   : hs_error(s->model, "export the model again", "no triangle has any area");
+    }
+    return mesh_audit(m, s->model, &audit) == 0 ? mesh_require_closed(&audit, s->model) : -1;
+}
+
+int setup_load(const struct setup *s, struct mesh *m)
+{
+    const struct model_kind *kind = model_find(s->model);
+    *m = (struct mesh){0};
+    if (strcmp(s->up, "y") != 0 && strcmp(s->up, "z") != 0) {
+        return hs_error("--up", NULL, "must be y or z, not %s", s->up);
+    }
+    if (kind) {
+        kind->build(m);
+    } else if (obj_read(m, s->model, s->up[0] == 'y' ? OBJ_UP_Y : OBJ_UP_Z) != 0) {
+        return -1;
+    }
+    if (check_model(s, kind, m) != 0) {
+        mesh_free(m);
+        return -1;
+    }
+    mesh_place(m, s->scale, s->turn_deg, (struct vec){0, 0, 0});
+    return 0;
+}
+
+struct trace_order setup_order(const struct setup *s, double azimuth_deg)
+{
+    const double turn_deg = fmod(azimuth_deg, 360);
+    return (struct trace_order){
+        .look = {turn_deg < 0 ? turn_deg + 360 : turn_deg, s->depression_deg, s->wavelength_m},
+        .grid = {(uint32_t)s->cells, (uint32_t)s->cells, s->cell_m},
+        .rays_per_cell = (uint32_t)s->rays_per_cell,
+        .bounces = (uint32_t)s->bounces,
+        .threads = (uint32_t)s->threads,
+    };
+}
+
+int setup_scene(const struct setup *s, struct scene *scene)
+{
+    struct mesh m;
+    if (setup_load(s, &m) != 0) {
+        return -1;
+    }
+    const struct trace_order order = setup_order(s, 0);
+    const double ground_half_m =
+        s->has_no_ground ? 0 : trace_ground_half_m(&order.grid, s->depression_deg);
+    const int result = scene_open(scene, &m, ground_half_m, s->model);
+    mesh_free(&m);
+    return result;
+}
+
+int setup_law(const struct setup *s, const struct trace_records *r, struct reflect_law *law)
+{
+    *law = (struct reflect_law){.wavelength_m = r->look.wavelength_m};
+    for (int kind = 0; kind < REFLECT_KINDS; kind++) {
+        if (strcmp(s->law, reflect_kind_names[kind]) == 0) {
+            law->kind = (enum reflect_kind)kind;
+            return materials_for(r, s->materials, law);
+        }
+    }
+    return hs_error("--law", "give raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
+                    "there is no law %s", s->law);
+}
+
+/* Spread, coarsen and speckle the power of the cells in place. */
+static int make_chip(const struct setup *s, const struct trace_grid *grid, float *power)
+{
+    const int width = (int)grid->cells_across, height = (int)grid->cells_range;
+    const int ratio = (int)s->ratio;
+    if (pix_spread(power, width, height, pix_aperture(s->resolution_m, grid->cell_m)) != 0) {
+        return -1;
+    }
+    pix_coarsen(power, width, height, ratio, power);
+    if (s->looks > 0) {
+        struct hs_rng rng;
+        hs_rng_seed(&rng, (uint64_t)s->seed);
+        pix_speckle(power, width / ratio * (height / ratio), (int)s->looks, &rng);
+    }
+    return 0;
+}
+
+float *setup_chip(const struct setup *s, const struct trace_records *r, int *width, int *height)
+{
+    struct reflect_law law;
+    const struct trace_grid *grid = &r->grid;
+    if (grid->cells_across % (uint32_t)s->ratio != 0 ||
+        grid->cells_range % (uint32_t)s->ratio != 0) {
+        hs_error("--pixel", "give a number that divides the cells",
+                 "%ld cells make no whole "
+                 "number of pixels",
+                 s->cells);
+        return NULL;
+    }
+    if (setup_law(s, r, &law) != 0) {
+        return NULL;
+    }
+    float *power = malloc((size_t)grid->cells_across * grid->cells_range * sizeof *power);
+    if (!power) {
+        hs_error("picture", "give fewer --cells", "out of memory");
+        return NULL;
+    }
+    if (accumulate(r, &law, power) != 0 || make_chip(s, grid, power) != 0) {
+        free(power);
+        return NULL;
+    }
+    *width = (int)(grid->cells_across / (uint32_t)s->ratio);
+    *height = (int)(grid->cells_range / (uint32_t)s->ratio);
+    return power;
+}

@@ -1,0 +1,179 @@
+#include "tracer/trace.h"
+
+#include "hs/error.h"
+#include "tracer/trace_tile.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Highest place on the plane where something may stand that is focused before far_m. A point at
+ * (away, up) is focused at range = away cos - up sin and seen at height = away sin + up cos. */
+static double top_of(const struct scene *s, double psi, double far_m)
+{
+    const double reach =
+        hypot(fmax(fabs(s->low.x), fabs(s->high.x)), fmax(fabs(s->low.y), fabs(s->high.y)));
+    const double up_m = fmax(s->high.z, 0);
+    return fmin(far_m * tan(psi) + up_m / cos(psi), reach * sin(psi) + up_m * cos(psi));
+}
+
+struct trace_sensor trace_sensor_for(const struct scene *s, const struct trace_order *o)
+{
+    const double psi = o->look.depression_deg * pi / 180;
+    const double width_m = o->grid.cells_across * o->grid.cell_m;
+    const double far_m = o->grid.cells_range * o->grid.cell_m / 2;
+    const double step_m = o->grid.cell_m / o->rays_per_cell, step_up_m = step_m * fmin(1, tan(psi));
+    const double low_m = -far_m * tan(psi);
+    const double high_m = fmax(far_m * tan(psi), top_of(s, psi, far_m));
+    return (struct trace_sensor){
+        .columns = o->grid.cells_across * o->rays_per_cell,
+        .rows = (uint32_t)fmin(ceil((high_m - low_m) / step_up_m - 1e-9), TRACE_RAYS_MAX),
+        .step_across_m = step_m,
+        .step_up_m = step_up_m,
+        .low_across_m = -width_m / 2,
+        .low_up_m = low_m,
+    };
+}
+
+double trace_ground_half_m(const struct trace_grid *grid, double depression_deg)
+{
+    const double across_m = grid->cells_across * grid->cell_m / 2;
+    const double away_m = grid->cells_range * grid->cell_m / 2 / cos(depression_deg * pi / 180);
+    return hypot(across_m, away_m) + grid->cell_m;
+}
+
+struct trace_axes trace_axes_of(const struct trace_look *look)
+{
+    const double azimuth = look->azimuth_deg * pi / 180, psi = look->depression_deg * pi / 180;
+    struct trace_axes a;
+    a.away = (struct vec){-cos(azimuth), sin(azimuth), 0};
+    a.across = (struct vec){sin(azimuth), cos(azimuth), 0};
+    a.sight = vec_mad(vec_scale(a.away, cos(psi)), (struct vec){0, 0, 1}, -sin(psi));
+    a.rise = vec_mad(vec_scale(a.away, sin(psi)), (struct vec){0, 0, 1}, cos(psi));
+    return a;
+}
+
+/* Threads that share the tiles among them. */
+struct team {
+    const struct trace_tiles *tiles;
+    struct tile_result *results;
+    atomic_uint next;
+};
+
+static void *take_tiles(void *argument)
+{
+    struct team *team = argument;
+    struct tile_work *work = tile_work_new(team->tiles);
+    uint32_t i;
+    while (work && (i = atomic_fetch_add(&team->next, 1)) < team->tiles->tile_count) {
+        trace_tile(team->tiles, i, work, &team->results[i]);
+    }
+    tile_work_free(work);
+    return NULL;
+}
+
+/* A thread, or its memory, may be refused: the others do its share. Returns false when all were. */
+static bool work_together(struct team *team, uint32_t threads)
+{
+    pthread_t others[64];
+    uint32_t started = 0;
+    while (started + 1 < threads && pthread_create(&others[started], NULL, take_tiles, team) == 0) {
+        started++;
+    }
+    take_tiles(team);
+    for (uint32_t i = 0; i < started; i++) {
+        pthread_join(others[i], NULL);
+    }
+    return atomic_load(&team->next) >= team->tiles->tile_count;
+}
+
+/* Give each tile its own room in the lists. Most of it is never touched, and so costs nothing. */
+static bool lend_room(struct tile_result *results, const struct trace_tiles *t,
+                      struct trace_records *r)
+{
+    for (uint32_t b = 0; b < r->bounce_count; b++) {
+        struct trace_record *records =
+            malloc((size_t)t->tile_count * t->tile_rays * sizeof *records);
+        if (!records) {
+            return false;
+        }
+        r->bounces[b].records = records;
+        for (uint32_t i = 0; i < t->tile_count; i++) {
+            results[i].bounces[b].records = records + (size_t)i * t->tile_rays;
+        }
+    }
+    return true;
+}
+
+/* Close the gaps behind the tiles of bounce `b`, and give back what is left. `before` are the
+ * places of the tiles' first records in the bounce before, and become those in this one. */
+static void close_gaps(const struct tile_result *results, uint32_t tile_count, uint32_t b,
+                       uint32_t *before, struct trace_bounce *whole)
+{
+    for (uint32_t i = 0; i < tile_count; i++) {
+        const struct trace_bounce *part = &results[i].bounces[b];
+        struct trace_record *to = whole->records + whole->count;
+        if (to != part->records) {
+            memmove(to, part->records, part->count * sizeof *to);
+        }
+        for (uint32_t k = 0; b > 0 && k < part->count; k++) {
+            to[k].parent += before[i];
+        }
+        before[i] = whole->count;
+        whole->count += part->count;
+    }
+    struct trace_record *less =
+        realloc(whole->records, (size_t)(whole->count + 1) * sizeof *whole->records);
+    whole->records = less ? less : whole->records;
+}
+
+static int run_tiles(const struct trace_tiles *tiles, uint32_t threads, struct trace_records *r,
+                     uint64_t *rays_cast)
+{
+    const uint32_t count = tiles->tile_count;
+    struct team team = {.tiles = tiles, .results = calloc(count, sizeof *team.results)};
+    uint32_t *before = calloc(count, sizeof *before);
+    const bool is_done = before && team.results && lend_room(team.results, tiles, r) &&
+                         work_together(&team, threads);
+    for (uint32_t b = 0; is_done && b < r->bounce_count; b++) {
+        close_gaps(team.results, count, b, before, &r->bounces[b]);
+    }
+    for (uint32_t i = 0; is_done && rays_cast && i < count; i++) {
+        *rays_cast += team.results[i].rays_cast;
+    }
+    free(before);
+    free(team.results);
+    return is_done ? 0 : -1;
+}
+
+int trace_run(const struct scene *s, const struct trace_order *o, const char *place,
+              struct trace_records *r, uint64_t *rays_cast)
+{
+    *r = (struct trace_records){
+        .look = o->look,
+        .grid = o->grid,
+        .sensor = trace_sensor_for(s, o),
+        .material_count = s->material_count,
+        .bounce_count = o->bounces,
+    };
+    memcpy(r->materials, s->materials, sizeof r->materials);
+    if (rays_cast) {
+        *rays_cast = 0;
+    }
+    const struct trace_sensor *sensor = &r->sensor;
+    struct trace_tiles tiles = {0};
+    const bool is_done = sensor->rows <= TRACE_RAYS_MAX / sensor->columns &&
+                         trace_tiles_open(&tiles, s, o) == 0 &&
+                         run_tiles(&tiles, o->threads, r, rays_cast) == 0;
+    trace_tiles_close(&tiles);
+    if (!is_done) {
+        hs_error(place, "trace fewer rays a cell, or fewer cells",
+                 "%u x %u rays are too many for the memory here", sensor->columns, sensor->rows);
+        trace_records_free(r);
+        return -1;
+    }
+    return 0;
+}

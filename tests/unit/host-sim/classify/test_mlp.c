@@ -1,0 +1,489 @@
+/* The network: its gradient against differences of an independent double-precision forward pass,
+ * what it can learn, that a seed fixes it, and its file. */
+#include "classify/mlp_apply.h"
+#include "classify/mlp_train.h"
+#include "classify/net_file.h"
+#include "classify/plot.h"
+#include "fixture.h"
+#include "support.h"
+
+#include "hs/rng.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* ---- The gradient ---- */
+
+/* The loss of one exemplar from the definition, in double precision, one weight replaced. */
+static double reference_loss(const struct db_mlp *net, const float *inputs, int target,
+                             size_t changed, double value)
+{
+    const size_t in = (size_t)net->input_count, hid = (size_t)net->hidden_count;
+    const size_t out = (size_t)net->output_count;
+#define WEIGHT(i) ((i) == changed ? value : (double)net->weights[i])
+    double hidden[16], sums[8], norm = 0, loss = 0;
+    for (size_t j = 0; j < hid; j++) {
+        double sum = WEIGHT(hid * in + j);
+        for (size_t i = 0; i < in; i++) {
+            sum += WEIGHT(j * in + i) * (double)inputs[i];
+        }
+        hidden[j] = net->unit == DB_UNIT_TANH ? tanh(sum) : 1 / (1 + exp(-sum));
+    }
+    for (size_t k = 0; k < out; k++) {
+        sums[k] = WEIGHT(hid * in + hid + out * hid + k);
+        for (size_t j = 0; j < hid; j++) {
+            sums[k] += WEIGHT(hid * in + hid + k * hid + j) * hidden[j];
+        }
+        norm += exp(sums[k]);
+    }
+#undef WEIGHT
+    if (net->loss == DB_LOSS_CROSS_ENTROPY) {
+        return log(norm) - sums[target];
+    }
+    for (size_t k = 0; k < out; k++) {
+        const double error = 1 / (1 + exp(-sums[k])) - ((int)k == target);
+        loss += 0.5 * error * error;
+    }
+    return loss;
+}
+
+static void check_gradient(enum db_unit unit, enum db_loss loss)
+{
+    enum { COUNT = 9, IN = 5, HID = 7, OUT = 4 };
+    struct db_mlp net = {IN, HID, OUT, unit, loss, NULL};
+    assert_int_equal(db_mlp_init(&net, 11), 0);
+    float inputs[COUNT * IN], hidden[COUNT * HID], outputs[COUNT * OUT];
+    float hidden_delta[COUNT * HID], output_delta[COUNT * OUT], gradient[256];
+    uint8_t targets[COUNT];
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 5);
+    for (int i = 0; i < COUNT * IN; i++) {
+        inputs[i] = (float)hs_rng_normal(&rng);
+    }
+    for (int i = 0; i < COUNT; i++) {
+        targets[i] = (uint8_t)hs_rng_below(&rng, OUT);
+    }
+    const struct db_mlp_batch batch = {COUNT,   inputs,       targets,     hidden,
+                                       outputs, hidden_delta, output_delta};
+    db_mlp_forward(&net, &batch);
+    db_mlp_backward(&net, &batch, gradient);
+    for (size_t w = 0; w < db_mlp_size(&net); w++) {
+        const double step = 1e-5, at = (double)net.weights[w];
+        double difference = 0, loss_here = 0;
+        for (int i = 0; i < COUNT; i++) {
+            const float *row = inputs + i * IN;
+            difference += reference_loss(&net, row, targets[i], w, at + step) -
+                          reference_loss(&net, row, targets[i], w, at - step);
+            loss_here += reference_loss(&net, row, targets[i], w, at);
+        }
+        assert_true(fabs(difference / (2 * step * COUNT) - (double)gradient[w]) < 2e-6);
+        assert_true(fabs(loss_here / COUNT - db_mlp_loss(&net, &batch)) < 1e-5);
+    }
+    db_mlp_free(&net);
+}
+
+static void the_gradient_is_that_of_finite_differences(void **state)
+{
+    (void)state;
+    check_gradient(DB_UNIT_TANH, DB_LOSS_SQUARE);
+    check_gradient(DB_UNIT_SIGMOID, DB_LOSS_SQUARE);
+    check_gradient(DB_UNIT_TANH, DB_LOSS_CROSS_ENTROPY);
+    check_gradient(DB_UNIT_SIGMOID, DB_LOSS_CROSS_ENTROPY);
+}
+
+/* ---- Learning ---- */
+
+enum { EXEMPLARS = 400 };
+
+struct problem {
+    float inputs[EXEMPLARS * 2];
+    uint8_t targets[EXEMPLARS];
+};
+
+/* Each class occupies several disconnected regions with the other between them (Heaton,
+ * "RGB-space"): a 3 x 3 chess board, of which no line separates the colours. */
+static struct problem chess_board(uint64_t seed)
+{
+    struct problem p;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, seed);
+    for (int i = 0; i < EXEMPLARS; i++) {
+        const int x = (int)hs_rng_below(&rng, 3), y = (int)hs_rng_below(&rng, 3);
+        p.inputs[2 * i] = (float)(1.4 * (x - 1) + 0.2 * hs_rng_normal(&rng));
+        p.inputs[2 * i + 1] = (float)(1.4 * (y - 1) + 0.2 * hs_rng_normal(&rng));
+        p.targets[i] = (uint8_t)((x + y) % 2);
+    }
+    return p;
+}
+
+static struct db_train_options train_options(void)
+{
+    return (struct db_train_options){.rate = 0.1,
+                                     .momentum = 0.9,
+                                     .noise = 0.02,
+                                     .goal = 0.97,
+                                     .batch = 16,
+                                     .epochs = 600,
+                                     .patience = 40,
+                                     .seed = 3};
+}
+
+static void train(struct db_mlp *net, const struct problem *p,
+                  const struct db_train_options *options, struct db_train_report *report)
+{
+    const struct db_train_data data = {p->inputs, p->targets, EXEMPLARS}, none = {0};
+    assert_int_equal(db_mlp_init(net, options->seed), 0);
+    assert_int_equal(db_mlp_train(net, options, &data, &none, report), 0);
+}
+
+static void interleaved_classes_are_learnt_to_the_goal(void **state)
+{
+    (void)state;
+    for (int loss = 0; loss < 2; loss++) {
+        const struct problem p = chess_board(1), fresh = chess_board(2);
+        struct db_mlp net = {2, 12, 2, DB_UNIT_TANH, (enum db_loss)loss, NULL};
+        const struct db_train_options options = train_options();
+        struct db_train_report report;
+        train(&net, &p, &options, &report);
+        assert_int_equal(report.stop, DB_STOP_GOAL);
+        const struct db_train_data unseen = {fresh.inputs, fresh.targets, EXEMPLARS};
+        assert_true(db_mlp_recognition(&net, &unseen, NULL) > 0.93);
+        db_train_report_free(&report);
+        db_mlp_free(&net);
+    }
+}
+
+static void the_weights_kept_are_the_best_of_the_curve(void **state)
+{
+    (void)state;
+    struct problem p = chess_board(1);
+    for (int i = 0; i < EXEMPLARS; i += 5) {
+        p.targets[i] = (uint8_t)!p.targets[i]; /* A fifth wrong: the goal is out of reach. */
+    }
+    struct db_mlp net = {2, 6, 2, DB_UNIT_TANH, DB_LOSS_SQUARE, NULL};
+    struct db_train_options options = train_options();
+    options.epochs = 80;
+    struct db_train_report report;
+    train(&net, &p, &options, &report);
+    const struct db_train_data data = {p.inputs, p.targets, EXEMPLARS};
+    const double kept = db_mlp_recognition(&net, &data, NULL);
+    for (int i = 0; i < report.epoch_count; i++) {
+        assert_true(report.epochs[i].recognition <= kept + 1e-12);
+    }
+    assert_true(fabs(report.epochs[report.best_epoch - 1].recognition - kept) < 1e-12);
+    db_train_report_free(&report);
+    db_mlp_free(&net);
+}
+
+static void alternating_errors_at_a_fixed_rms_are_met_with_every_cure(void **state)
+{
+    (void)state;
+    struct problem p = chess_board(1);
+    for (int i = 0; i < EXEMPLARS; i++) {
+        p.inputs[2 * i] = p.inputs[2 * i + 1] =
+            (float)(i % 2); /* Nothing to tell half of them by. */
+        p.targets[i] = (uint8_t)(i % 2 ? 1 : i / 2 % 4 == 0);
+    }
+    struct db_mlp net = {2, 6, 2, DB_UNIT_TANH, DB_LOSS_SQUARE, NULL};
+    struct db_train_options options = train_options();
+    options.noise = 0.05;
+    options.patience = 10;
+    options.goal = 0.999;
+    struct db_train_report report;
+    train(&net, &p, &options, &report);
+    assert_int_equal(report.stop, DB_STOP_PLATEAU);
+    assert_int_equal(report.event_count, 4);
+    assert_non_null(strstr(report.events[0].text, "rate halved to 0.05"));
+    assert_non_null(strstr(report.events[1].text, "momentum 0.72"));
+    assert_non_null(strstr(report.events[2].text, "noise raised to 0.1"));
+    assert_non_null(strstr(report.events[3].text, "drawn anew"));
+    db_train_report_free(&report);
+    db_mlp_free(&net);
+}
+
+static void a_rare_class_is_not_given_up(void **state)
+{
+    (void)state;
+    struct problem p;
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 4);
+    for (int i = 0; i < EXEMPLARS; i++) {
+        p.targets[i] = i % 40 == 0;
+        p.inputs[2 * i] = (float)(p.targets[i] + 0.4 * hs_rng_normal(&rng));
+        p.inputs[2 * i + 1] = (float)hs_rng_normal(&rng);
+    }
+    struct db_mlp net = {2, 4, 2, DB_UNIT_TANH, DB_LOSS_SQUARE, NULL};
+    const struct db_train_options options = train_options();
+    struct db_train_report report;
+    train(&net, &p, &options, &report);
+    /* The best any rule can do is about 0.89 of either; one that ignores the rare class gets 0.5.
+     */
+    const struct db_train_data data = {p.inputs, p.targets, EXEMPLARS};
+    assert_true(db_mlp_recognition(&net, &data, NULL) > 0.85);
+    db_train_report_free(&report);
+    db_mlp_free(&net);
+}
+
+/* ---- The net and its file ---- */
+
+static void make_net(struct db_net *net, uint64_t seed)
+{
+    static const char names[2][DB_NAME_SIZE] = {"black", "white"};
+    const struct problem p = chess_board(1);
+    struct db_train_options options = train_options();
+    options.seed = seed;
+    options.epochs = 5;
+    *net = (struct db_net){
+        .band_count = 2, .context = 1, .input_count = 2, .output_count = 2, .member_count = 2};
+    memcpy(net->class_names, names, sizeof names);
+    net->mean = calloc(2, sizeof *net->mean);
+    net->scale = calloc(2, sizeof *net->scale);
+    net->mean[0] = 0.125f;
+    net->mean[1] = -3;
+    net->scale[0] = 2;
+    net->scale[1] = 1.0f / 3;
+    for (int m = 0; m < 2; m++) {
+        struct db_train_report report;
+        net->members[m] = (struct db_mlp){2, 7, 2, DB_UNIT_TANH, DB_LOSS_SQUARE, NULL};
+        options.seed++;
+        train(&net->members[m], &p, &options, &report);
+        db_train_report_free(&report);
+    }
+}
+
+static void one_seed_gives_one_file_byte_for_byte_and_another_a_different_one(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct db_net net;
+        char name[16];
+        make_net(&net, i == 2 ? 77 : 7);
+        snprintf(name, sizeof name, "%d.net", i);
+        assert_int_equal(db_net_write(&net, fixture_path(name)), 0);
+        db_net_free(&net);
+    }
+    assert_int_equal(support_run("cmp %s %s", fixture_path("0.net"), fixture_path("1.net")), 0);
+    assert_int_equal(support_run("cmp -s %s %s", fixture_path("0.net"), fixture_path("2.net")), 1);
+}
+
+static void a_net_read_back_is_the_same_to_the_last_bit(void **state)
+{
+    (void)state;
+    struct db_net net, back;
+    make_net(&net, 1);
+    assert_int_equal(db_net_write(&net, fixture_path("a.net")), 0);
+    assert_int_equal(db_net_read(&back, fixture_path("a.net")), 0);
+    assert_int_equal(back.member_count, 2);
+    assert_int_equal(back.band_count, 2);
+    assert_memory_equal(back.class_names, net.class_names, sizeof net.class_names);
+    assert_memory_equal(back.mean, net.mean, 2 * sizeof *net.mean);
+    assert_memory_equal(back.scale, net.scale, 2 * sizeof *net.scale);
+    for (int m = 0; m < 2; m++) {
+        assert_memory_equal(back.members[m].weights, net.members[m].weights,
+                            db_mlp_size(&net.members[m]) * sizeof(float));
+    }
+    db_net_free(&net);
+    db_net_free(&back);
+}
+
+static char *load(const char *path, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    char *text = calloc(1, 1 << 16);
+    *size = fread(text, 1, (1 << 16) - 1, f);
+    fclose(f);
+    return text;
+}
+
+static void a_net_cut_short_anywhere_is_refused(void **state)
+{
+    (void)state;
+    struct db_net net;
+    make_net(&net, 1);
+    assert_int_equal(db_net_write(&net, fixture_path("b.net")), 0);
+    db_net_free(&net);
+    size_t size;
+    char *text = load(fixture_path("b.net"), &size);
+    /* "end" without its newline is still whole. */
+    for (size_t cut = 0; cut + 2 < size; cut += 7) {
+        const char kept = text[cut];
+        text[cut] = '\0';
+        fixture_write("cut.net", text);
+        text[cut] = kept;
+        assert_int_equal(db_net_read(&net, fixture_path("cut.net")), -1);
+    }
+    free(text);
+}
+
+static void a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[][2] = {
+        {"landmass-net 1", "landmass-net 2"},
+        {"bands 2", "bands 0"},
+        {"bands 2", "bands 3"},
+        {"context 1", "context 2"},
+        {"context 1", "context 3"},
+        {"unit tanh", "unit step"},
+        {"hidden 7", "hidden 8"},
+        {"hidden 7", "hidden -7"},
+        {"hidden 7", "hidden 999999999999"},
+        {"members 2", "members 3"},
+        {"members 2", "members 1"},
+        {"class white", "class black"},
+        {"class white\n", ""},
+        {"input 0.125 2", "input 0.125 0"},
+        {"input 0.125 2", "input nan 2"},
+        {"input 0.125 2", "input 0.125 inf"},
+        {"input 0.125 2", "input 0.125"},
+        {"input -3 ", "input nan "},
+        {"input -3 ", "input 1e10 "},
+
+        {"unit-weights ", "unit-weights 1e30 "},
+        {"unit-weights ", "unit-weights x "},
+        {"end", "end\nend"},
+    };
+    struct db_net net;
+    make_net(&net, 1);
+    assert_int_equal(db_net_write(&net, fixture_path("c.net")), 0);
+    db_net_free(&net);
+    size_t size;
+    char *text = load(fixture_path("c.net"), &size);
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        const char *at = strstr(text, wrong[i][0]);
+        assert_non_null(at);
+        FILE *f = fopen(fixture_path("wrong.net"), "w");
+        fprintf(f, "%.*s%s%s", (int)(at - text), text, wrong[i][1], at + strlen(wrong[i][0]));
+        fclose(f);
+        if (db_net_read(&net, fixture_path("wrong.net")) == 0) {
+            fail_msg("accepted `%s` for `%s`", wrong[i][1], wrong[i][0]);
+        }
+    }
+    free(text);
+}
+
+/* ---- The network on images ---- */
+
+static void the_fast_tanh_is_within_its_stated_error(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int i = -200000; i <= 200000; i++) {
+        const float x = (float)i / 10000;
+        worst = fmax(worst, fabs((double)db_fast_tanh(x) - tanh((double)x)));
+    }
+    print_message("# worst error of the fast tanh %.3g\n", worst);
+    assert_true(worst <= 1e-4);
+    assert_true(fabsf(db_fast_tanh(1e30f)) <= 1.0f);
+}
+
+static void images_are_classified_as_the_trained_network_says(void **state)
+{
+    (void)state;
+    enum { COUNT = 1000, STRIDE = 1100 };
+    struct db_net net;
+    struct db_applied applied;
+    static float planes[2 * STRIDE];
+    static uint8_t winners[COUNT];
+    make_net(&net, 9);
+    assert_int_equal(db_apply_init(&applied, &net), 0);
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 6);
+    for (int i = 0; i < COUNT; i++) {
+        planes[i] = (float)(0.125 + 2 * hs_rng_normal(&rng));
+        planes[STRIDE + i] = (float)(-3 + hs_rng_normal(&rng) / 3);
+    }
+    db_apply(&applied, planes, STRIDE, COUNT, winners);
+    int agree = 0;
+    for (int i = 0; i < COUNT; i++) {
+        double sums[2] = {0};
+        for (int m = 0; m < 2; m++) {
+            const struct db_mlp *mlp = &net.members[m];
+            const float in[2] = {(planes[i] - 0.125f) / 2, (planes[STRIDE + i] + 3) * 3};
+            for (int k = 0; k < 2; k++) {
+                const struct db_mlp_parts p = db_mlp_split(mlp, mlp->weights);
+                sums[k] += (double)p.output_bias[k];
+                for (int j = 0; j < 7; j++) {
+                    sums[k] += (double)p.output[k * 7 + j] *
+                               tanh((double)(p.hidden_bias[j] + p.hidden[2 * j] * in[0] +
+                                             p.hidden[2 * j + 1] * in[1]));
+                }
+            }
+        }
+        agree += winners[i] == (sums[1] > sums[0]);
+    }
+    /* Only pixels on the very border may differ. */
+    assert_true(agree >= COUNT - 2);
+    db_apply_free(&applied);
+    db_net_free(&net);
+}
+
+/* ---- The error curve ---- */
+
+/* Pixels of a colour in the picture's rows above its key, and their middle row. */
+static int count_colour(GDALDatasetH picture, const uint8_t colour[3], double *row)
+{
+    enum { WIDTH = 860, ABOVE_KEY = 440 };
+    static uint8_t pixels[ABOVE_KEY][WIDTH][3];
+    int count = 0;
+    assert_int_equal(GDALDatasetRasterIO(picture, GF_Read, 0, 0, WIDTH, ABOVE_KEY, pixels, WIDTH,
+                                         ABOVE_KEY, GDT_Byte, 3, NULL, 3, 3 * WIDTH, 1),
+                     CE_None);
+    *row = 0;
+    for (int i = 0; i < WIDTH * ABOVE_KEY; i++) {
+        if (memcmp(pixels[i / WIDTH][i % WIDTH], colour, 3) == 0) {
+            *row += i / WIDTH;
+            count++;
+        }
+    }
+    *row /= count;
+    return count;
+}
+
+/* Found by looking at the gallery: a network that knew its exemplars after one epoch left a chart
+ * without a curve. */
+static void a_training_of_one_epoch_can_be_seen_on_its_chart(void **state)
+{
+    (void)state;
+    static const uint8_t red[3] = {0xc0, 0x20, 0x20}, blue[3] = {0x20, 0x40, 0xc0};
+    struct db_epoch epoch = {.rms = 0.25, .recognition = 0.75, .validation = NAN};
+    const struct db_train_report report = {.epochs = &epoch, .epoch_count = 1};
+    double error_row, recognition_row;
+    assert_int_equal(db_plot_training(fixture_path("curve.png"), &report), 0);
+    GDALDatasetH picture = GDALOpen(fixture_path("curve.png"), GA_ReadOnly);
+    assert_non_null(picture);
+    assert_true(count_colour(picture, red, &error_row) > 30);
+    assert_true(count_colour(picture, blue, &recognition_row) > 30);
+    GDALClose(picture);
+    /* The axis is 400 rows high and ends in row 420. */
+    assert_true(fabs(error_row - (420 - 0.25 * 400)) < 2);
+    assert_true(fabs(recognition_row - (420 - 0.75 * 400)) < 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_gradient_is_that_of_finite_differences),
+        cmocka_unit_test(interleaved_classes_are_learnt_to_the_goal),
+        cmocka_unit_test(the_weights_kept_are_the_best_of_the_curve),
+        cmocka_unit_test(alternating_errors_at_a_fixed_rms_are_met_with_every_cure),
+        cmocka_unit_test(a_rare_class_is_not_given_up),
+        cmocka_unit_test(one_seed_gives_one_file_byte_for_byte_and_another_a_different_one),
+        cmocka_unit_test(a_net_read_back_is_the_same_to_the_last_bit),
+        cmocka_unit_test(a_net_cut_short_anywhere_is_refused),
+        cmocka_unit_test(a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused),
+        cmocka_unit_test(the_fast_tanh_is_within_its_stated_error),
+        cmocka_unit_test(images_are_classified_as_the_trained_network_says),
+        cmocka_unit_test(a_training_of_one_epoch_can_be_seen_on_its_chart),
+    };
+    return cmocka_run_group_tests_name("mlp", tests, fixture_open, fixture_close);
+}

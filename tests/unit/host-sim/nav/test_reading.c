@@ -1,0 +1,293 @@
+/* Tracks from files, good ones and bad ones. */
+#include "hs/rng.h"
+#include "nav/read_track.h"
+#include "support.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+struct result {
+    struct nav_track track;
+    struct nav_reading reading;
+    int status;
+};
+
+/* Messages of readings that are meant to fail do not belong in the test's log. */
+static int hush(void)
+{
+    fflush(stderr);
+    const int saved = dup(STDERR_FILENO), null = open("/dev/null", O_WRONLY);
+    dup2(null, STDERR_FILENO);
+    close(null);
+    return saved;
+}
+
+static void unhush(int saved)
+{
+    fflush(stderr);
+    dup2(saved, STDERR_FILENO);
+    close(saved);
+}
+
+static struct result read_as(enum nav_format format, bool is_strict, const char *text)
+{
+    struct result r = {.reading = {.name = "test", .is_strict = is_strict}};
+    char *copy = strdup(text);
+    const int saved = hush();
+    r.status = nav_read_text(copy, strlen(text), format, &r.track, &r.reading);
+    unhush(saved);
+    free(copy);
+    return r;
+}
+
+static struct result read_csv(const char *text)
+{
+    return read_as(NAV_FORMAT_CSV, false, text);
+}
+
+static void assert_near(double is, double wanted, double tolerance)
+{
+    assert_true(fabs(is - wanted) <= tolerance);
+}
+
+static void csv_columns_come_in_any_order_case_and_unit(void **state)
+{
+    (void)state;
+    struct result r = read_csv(
+        "\xEF\xBB\xBFLongitude;LAT;callsign;altitude_m;groundspeed_ms;TIME\r\n"
+        "7.5;43.5;\"A;1200;90.5;2020-06-25T08:23:06.5Z\r\n"
+        "7.6;43.6;B;;91;2020-06-25 10:23:07.5+02:00\r\n");
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 2);
+    assert_true(r.track.fix[0].time_us == INT64_C(1593073386500000));
+    assert_true(r.track.fix[1].time_us == INT64_C(1593073387500000));
+    assert_near(r.track.fix[0].height_m, 1200, 0);
+    assert_true(isnan(r.track.fix[1].height_m));
+    assert_near(r.track.fix[1].speed_ms, 91, 0);
+    assert_false(r.reading.is_barometric);
+    nav_track_free(&r.track);
+    r = read_csv(
+        "timestamp,latitude,longitude,altitude,groundspeed,vertical_rate\n"
+        "1576068400000,43.5,7.2,1000,100,600\n1576068401,43.5,7.2,1000,100,600\n");
+    assert_int_equal(r.track.count, 2);
+    assert_true(r.track.fix[1].time_us - r.track.fix[0].time_us == 1000000);
+    assert_near(r.track.fix[0].height_m, 304.8, 1e-9);
+    assert_near(r.track.fix[0].speed_ms, 51.4444444, 1e-6);
+    assert_near(r.track.fix[0].climb_ms, 3.048, 1e-9);
+    assert_true(r.reading.is_barometric);
+    nav_track_free(&r.track);
+}
+
+#define HEAD "time,lat,lon,altitude\n"
+#define GOOD "1,43,7,100\n2,43.1,7,100\n3,43.2,7,100\n4,43.3,7,100\n5,43.4,7,100\n6,43.5,7,100\n"
+
+static void a_line_that_cannot_be_used_is_counted_and_left_out(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "7,43x,7,100\n",  "7,91,7,100\n",   "7,43,400,100\n",
+        "7,43,7\n",       "7,43,7,100,5\n", "seven,43,7,100\n",
+        "7,nan,7,100\n",  "7,0x2B,7,100\n", "7,43,7,1e300\n",
+        "7,43,7,1e999\n", "-7,43,7,100\n",  "2020-06-31T00:00:00Z,43,7,1\n",
+        "7,43,7,inf\n",   "7,4 3,7,100\n",  "2020-06-25T25:00:00Z,43,7,1\n"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "%s%s%s8,43.6,7,100\n", HEAD, GOOD, bad[i]);
+        struct result r = read_csv(text);
+        assert_int_equal(r.status, 0);
+        assert_int_equal(r.reading.malformed, 1);
+        assert_int_equal(r.track.count, 7);
+        nav_track_free(&r.track);
+        r = read_as(NAV_FORMAT_CSV, true, text);
+        assert_int_equal(r.status, -1);
+        nav_track_free(&r.track);
+    }
+}
+
+static void repeated_and_backward_times_are_counted_and_left_out(void **state)
+{
+    (void)state;
+    struct result r =
+        read_csv(HEAD GOOD "6,44,7,100\n3,44,7,100\n\n7,43.6,7,100\n,43,7,1\n8,,7,1\n");
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.reading.disordered, 2);
+    assert_int_equal(r.reading.missing, 2);
+    assert_int_equal(r.track.count, 7);
+    for (size_t i = 1; i < r.track.count; i++) {
+        assert_true(r.track.fix[i].time_us > r.track.fix[i - 1].time_us);
+    }
+    nav_track_free(&r.track);
+}
+
+static void what_is_no_track_is_an_error(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"",
+                                        "\n",
+                                        "a,b,c\n1,2,3\n",
+                                        "time,lat\n1,2\n",
+                                        HEAD,
+                                        "time,lat,lon,altitude\nx\ny\nz\n1,43,7,1\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct result r = read_csv(texts[i]);
+        assert_int_equal(r.status, -1);
+        nav_track_free(&r.track);
+    }
+    struct nav_track t = {0};
+    struct nav_reading r = {0};
+    const int saved = hush();
+    assert_int_equal(nav_read_track("/nowhere/a.csv", NAV_FORMAT_BY_NAME, &t, &r), -1);
+    assert_int_equal(nav_read_track("/dev/null", NAV_FORMAT_BY_NAME, &t, &r), -1);
+    assert_int_equal(nav_read_track("/", NAV_FORMAT_CSV, &t, &r), -1);
+    unhush(saved);
+}
+
+#define GPX_POINT(lat, time)                                                                       \
+    "<trkpt lat='" lat "' lon='7.1'><ele>500</ele><time>" time "</time></trkpt>"
+#define GPX(body) "<?xml version='1.0'?><gpx version='1.1'><trk>" body "</trk></gpx>"
+
+static void gpx_segments_begin_legs(void **state)
+{
+    (void)state;
+    struct result r = read_as(
+        NAV_FORMAT_GPX, false,
+        GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
+                GPX_POINT("43.001", "2020-01-01T00:00:01Z") "</trkseg><trkseg>" GPX_POINT(
+                    "43.002",
+                    "2020-01-01T00:00:02Z") "<trkpt lat='43.003' "
+                                            "lon='7.1'><time>2020-01-01T00:00:03Z</time><speed> "
+                                            "88.5 </speed><course>12</course></trkpt></trkseg>"));
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 4);
+    assert_near(r.track.fix[0].height_m, 500, 0);
+    assert_true(r.track.fix[0].starts_leg && !r.track.fix[1].starts_leg);
+    assert_true(r.track.fix[2].starts_leg && !r.track.fix[3].starts_leg);
+    assert_near(r.track.fix[3].speed_ms, 88.5, 0);
+    assert_near(r.track.fix[3].track_deg, 12, 0);
+    assert_true(r.track.fix[0].time_us == INT64_C(1577836800000000));
+    nav_track_free(&r.track);
+}
+
+static void bad_gpx_is_refused_or_its_points_left_out(void **state)
+{
+    (void)state;
+    struct result r = read_as(
+        NAV_FORMAT_GPX, false,
+        GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
+                GPX_POINT("x", "2020-01-01T00:00:01Z")
+                    GPX_POINT("43.002", "yesterday") "<trkpt lat='43.003' lon='7.1'/>" GPX_POINT(
+                        "43.004", "2020-01-01T00:00:04Z")
+                        GPX_POINT("43.005", "2020-01-01T00:00:05Z") "</trkseg>"));
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.reading.malformed, 3);
+    assert_int_equal(r.track.count, 3);
+    nav_track_free(&r.track);
+    static const char *const refused[] = {"<gpx><trk><trkseg>", "no xml", "",
+                                          "<!DOCTYPE gpx><gpx><trk><trkseg>" GPX_POINT(
+                                              "43", "2020-01-01T00:00:00Z") "</trkseg></trk></gpx>",
+                                          GPX("<trkseg></trkseg>")};
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        r = read_as(NAV_FORMAT_GPX, false, refused[i]);
+        assert_int_equal(r.status, -1);
+        nav_track_free(&r.track);
+    }
+}
+
+/* The B record of the specification's example: 16:02:40, 54 07.121 N, 002 49.342 W, 280 m by
+ * pressure, 421 m by satellite. */
+static void igc_records_are_read_as_the_specification_says(void **state)
+{
+    (void)state;
+    struct result r = read_as(NAV_FORMAT_IGC, false,
+                              "AXXX001\r\nHFDTE150709\r\nB1602405407121N00249342WA0028000421\r\n"
+                              "LXXX remark\r\nB1602455107126S00149300EV002880042900309020\r\n"
+                              "B160250510712\r\nB1602555107126N00149300EA-012000429\r\n");
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 3);
+    assert_int_equal(r.reading.malformed, 1);
+    const struct nav_fix *f = r.track.fix;
+    assert_true(f[0].time_us == INT64_C(1247673760000000));
+    assert_near(f[0].latitude_deg, 54 + 7.121 / 60, 1e-9);
+    assert_near(f[0].longitude_deg, -(2 + 49.342 / 60), 1e-9);
+    assert_near(f[0].height_m, 421, 0);
+    assert_near(f[1].latitude_deg, -(51 + 7.126 / 60), 1e-9);
+    assert_near(f[1].height_m, 288, 0);
+    assert_true(r.reading.is_barometric);
+    nav_track_free(&r.track);
+}
+
+static void igc_goes_on_after_midnight_and_needs_a_date(void **state)
+{
+    (void)state;
+    struct result r =
+        read_as(NAV_FORMAT_IGC, false,
+                "HFDTEDATE:311219,01\nB2359585407121N00249342WA0028000421\n"
+                "B0000035407121N00249342WA0028000421\nB0000025407121N00249342WA0028000421\n");
+    assert_int_equal(r.status, 0);
+    assert_int_equal(r.track.count, 2);
+    assert_int_equal(r.reading.disordered, 1);
+    assert_true(r.track.fix[1].time_us - r.track.fix[0].time_us == 5000000);
+    assert_true(r.track.fix[1].time_us == INT64_C(1577836803000000));
+    nav_track_free(&r.track);
+    r = read_as(NAV_FORMAT_IGC, false, "B2359585407121N00249342WA0028000421\n");
+    assert_int_equal(r.status, -1);
+    nav_track_free(&r.track);
+}
+
+/* Whatever becomes of a file, the reader returns, and what it returns is in order and in range. */
+static void torn_files_give_an_error_or_a_proper_track(void **state)
+{
+    (void)state;
+    static const char *const whole[] = {
+        HEAD GOOD,
+        GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
+                GPX_POINT("43.1", "2020-01-01T00:00:09Z") "</trkseg>"),
+        "HFDTE150709\nB1602405407121N00249342WA0028000421\nB1602455407121N00249342WA0028000421\n"};
+    struct hs_rng random;
+    hs_rng_seed(&random, 20);
+    for (int i = 0; i < 9000; i++) {
+        char text[1024];
+        const int kind = i % 3;
+        strcpy(text, whole[kind]);
+        const size_t n = strlen(text);
+        for (uint32_t k = 0; k <= hs_rng_below(&random, 4); k++) {
+            text[hs_rng_below(&random, (uint32_t)n)] =
+                hs_rng_below(&random, 2) ? (char)(1 + hs_rng_below(&random, 255))
+                                         : ",;\n-+.e90N<>&\"T:Z"[hs_rng_below(&random, 18)];
+        }
+        text[hs_rng_below(&random, 3) ? n : hs_rng_below(&random, (uint32_t)n)] = '\0';
+        struct result r = read_as((enum nav_format)(NAV_FORMAT_CSV + kind), false, text);
+        for (size_t k = 0; k < r.track.count; k++) {
+            const struct nav_fix *f = &r.track.fix[k];
+            assert_true(fabs(f->latitude_deg) <= 90 && fabs(f->longitude_deg) <= 180);
+            assert_true(f->time_us >= 0 && (k == 0 || f->time_us > f[-1].time_us));
+        }
+        nav_track_free(&r.track);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(csv_columns_come_in_any_order_case_and_unit),
+        cmocka_unit_test(a_line_that_cannot_be_used_is_counted_and_left_out),
+        cmocka_unit_test(repeated_and_backward_times_are_counted_and_left_out),
+        cmocka_unit_test(what_is_no_track_is_an_error),
+        cmocka_unit_test(gpx_segments_begin_legs),
+        cmocka_unit_test(bad_gpx_is_refused_or_its_points_left_out),
+        cmocka_unit_test(igc_records_are_read_as_the_specification_says),
+        cmocka_unit_test(igc_goes_on_after_midnight_and_needs_a_date),
+        cmocka_unit_test(torn_files_give_an_error_or_a_proper_track),
+    };
+    return cmocka_run_group_tests_name("reading", tests, NULL, NULL);
+}

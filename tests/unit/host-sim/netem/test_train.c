@@ -1,0 +1,327 @@
+/* Training: a reflection law that only the pictures know is found again, on aspects never shown; a
+ * killed training goes on to the same bits. */
+#include "facets.h"
+#include "netem/model_file.h"
+#include "support.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { CELLS = 32, SIDE = 16, RAYS = 20, TRAINING = 12, CHIPS = 16 };
+
+/* Fresnel power at vertical polarisation, eq. (6) squared; the second material absorbs, the third
+ * is metal. */
+static double hidden_law(const struct nm_reflection *r)
+{
+    static const double permittivity[3] = {4, 12, 1e9};
+    const double e = permittivity[r->material], c = cos(r->incidence_rad);
+    const double s = sin(r->incidence_rad), root = sqrt(e - s * s);
+    const double amplitude = (e * c - root) / (e * c + root);
+    return amplitude * amplitude;
+}
+
+/* Echoes fall off to the sides as well. */
+static double hidden_echo(const struct nm_reflection *r)
+{
+    return hidden_law(r) * cos(r->leaving_rad);
+}
+
+static double plain_law(const struct nm_reflection *r)
+{
+    (void)r;
+    return 0.5;
+}
+
+static void coefficients_of(const struct nm_paths *p, double (*bk)(const struct nm_reflection *),
+                            double (*sp)(const struct nm_reflection *), double *values[2])
+{
+    for (int d = 0; d < NM_DIRECTIONS; d++) {
+        values[d] = malloc((size_t)(p->rows[d] + 1) * sizeof **values);
+        for (int r = 0; r < p->rows[d]; r++) {
+            values[d][r] = d == NM_BK ? bk(&p->table[d][r]) : sp(&p->table[d][r]);
+        }
+    }
+}
+
+struct world {
+    double *kernel;
+    struct nm_training *training;
+    struct nm_sample samples[CHIPS];
+};
+
+static void make_kernel(double *kernel)
+{
+    for (int i = 0; i < NM_LARGE * NM_LARGE; i++) {
+        const double y = i / NM_LARGE - NM_LARGE / 2, x = i % NM_LARGE - NM_LARGE / 2;
+        kernel[i] = 0.5 * exp(-(x * x + y * y) / 3);
+    }
+}
+
+/* The real chip: the hidden law, moved by a hidden translation, with speckle of `looks` looks. */
+static void make_chip(struct world *w, struct nm_sample *s, uint64_t aspect, int shift, int looks)
+{
+    struct trace_records records;
+    struct hs_rng rng;
+    double *values[2], far[CELLS * CELLS];
+    struct nm_simulator *simulator = &w->training->simulator;
+    facets_make(&records, 100 + aspect, RAYS, CELLS);
+    assert_int_equal(nm_paths_build(&s->paths, &records), 0);
+    trace_records_free(&records);
+    coefficients_of(&s->paths, plain_law, plain_law, values);
+    s->own = malloc(sizeof far);
+    nm_paths_render(&s->paths, &(struct nm_coefficients){values[0], values[1], NM_SP}, s->own);
+    free(values[0]);
+    free(values[1]);
+    coefficients_of(&s->paths, hidden_echo, hidden_law, values);
+    nm_simulate_with(simulator, &w->training->model, &s->paths,
+                     &(struct nm_coefficients){values[0], values[1], NM_SP});
+    free(values[0]);
+    free(values[1]);
+    hs_rng_seed(&rng, 7 + aspect);
+    const int x0 = (int)hs_rng_below(&rng, (uint32_t)(2 * shift + 1));
+    const int y0 = (int)hs_rng_below(&rng, (uint32_t)(2 * shift + 1));
+    assert_int_equal(nm_picture_open(&s->real, SIDE + 2 * shift, SIDE + 2 * shift), 0);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double power = looks > 0 ? 0 : 1;
+        for (int l = 0; l < looks; l++) {
+            power -= log(1 - hs_rng_uniform(&rng)) / looks;
+        }
+        const int at = (y0 + i / SIDE) * s->real.width + x0 + i % SIDE;
+        s->real.pixels[at] = tanh(atanh(simulator->pixels[i]) * sqrt(power));
+    }
+    s->origin = nm_picture_middle(&s->real, SIDE);
+    snprintf(s->name, sizeof s->name, "aspect %d", (int)aspect);
+}
+
+static void open_world(struct world *w, const struct nm_plan *plan, const char *name, int looks)
+{
+    w->kernel = calloc(NM_LARGE * NM_LARGE, sizeof *w->kernel);
+    w->training = malloc(sizeof *w->training);
+    make_kernel(w->kernel);
+    assert_int_equal(
+        nm_training_open(w->training, plan, nm_architecture_find(name), w->kernel, CELLS), 0);
+    for (int i = 0; i < CHIPS; i++) {
+        make_chip(w, &w->samples[i], (uint64_t)i, plan->reach_px, looks);
+    }
+}
+
+static void close_world(struct world *w)
+{
+    for (int i = 0; i < CHIPS; i++) {
+        nm_sample_free(&w->samples[i]);
+    }
+    nm_training_close(w->training);
+    free(w->training);
+    free(w->kernel);
+}
+
+static void run(struct world *w, struct nm_training *t, int epochs)
+{
+    const struct nm_samples training = {w->samples, TRAINING};
+    const struct nm_samples others = {w->samples + TRAINING, CHIPS - TRAINING};
+    for (int i = 0; i < epochs && nm_training_phase(t) != NM_PHASES; i++) {
+        assert_int_equal(nm_training_epoch(t, &training, &others), 0);
+    }
+}
+
+static const struct nm_plan short_plan = {
+    .rate = 3e-3,
+    .pix_rate = 3e-5,
+    .momentum = 0.9,
+    .batch = 2,
+    .epochs = {5, 60, 5},
+    .reach_px = 2,
+    .seed = 1,
+};
+
+/* The mean error of the law in one direction over angles and materials. */
+static double law_error(const struct nm_training *t, enum nm_direction direction)
+{
+    double sum = 0;
+    int count = 0;
+    for (int material = 0; material < 3; material++) {
+        for (double angle = 0.1; angle < 1.4; angle += 0.1, count++) {
+            const double turn = direction == NM_BK ? 0 : 2 * angle;
+            const struct nm_reflection r = {angle, angle, turn, material};
+            const double truth = direction == NM_BK ? hidden_echo(&r) : hidden_law(&r);
+            sum +=
+                fabs(nm_netem_ask(t->model.architecture, t->model.values, &r, direction) - truth);
+        }
+    }
+    return sum / count;
+}
+
+/* 0.003253 is what the paper reaches on real chips of SLICY (Fig. 23). */
+static void a_hidden_law_is_found_and_holds_on_aspects_never_shown(void **state)
+{
+    (void)state;
+    struct world w;
+    open_world(&w, &short_plan, "EP8", 0);
+    run(&w, w.training, 200);
+    const struct nm_epoch *e = w.training->epochs;
+    const double first = e[0].validation, last = e[w.training->epoch_count - 1].validation;
+    const double bk = law_error(w.training, NM_BK), sp = law_error(w.training, NM_SP);
+    print_message("# validation %g -> %g, mean error of the law %.3f back, %.3f specular\n", first,
+                  last, bk, sp);
+    assert_true(last < 0.003253 && last < 0.1 * first);
+    assert_true(bk < 0.03 && sp < 0.06);
+    close_world(&w);
+}
+
+static void the_phases_follow_the_plan_and_the_pixels_come_last(void **state)
+{
+    (void)state;
+    struct world w;
+    struct nm_plan plan = short_plan;
+    plan.epochs[NM_REAL_CHIPS] = 2;
+    plan.epochs[NM_PIXELS] = 3;
+    open_world(&w, &plan, "EP8", 0);
+    const size_t weights = nm_architecture_size(w.training->model.architecture);
+    double *kept = malloc(weights * sizeof *kept);
+    run(&w, w.training, 7);
+    memcpy(kept, w.training->model.values, weights * sizeof *kept);
+    const double before = nm_model_pix(&w.training->model, w.training->model.values)->large[0];
+    run(&w, w.training, 1);
+    assert_int_equal(w.training->optimizer.steps, TRAINING / plan.batch); /* averages begin anew */
+    run(&w, w.training, 10);
+    assert_int_equal(w.training->epoch_count, 10);
+    for (int i = 0; i < 10; i++) {
+        assert_int_equal(w.training->epochs[i].phase, i < 5 ? 0 : i < 7 ? 1 : 2);
+    }
+    assert_memory_equal(kept, w.training->model.values, weights * sizeof *kept);
+    assert_true(before != nm_model_pix(&w.training->model, w.training->model.values)->large[0]);
+    assert_true(w.training->epochs[9].validation < w.training->epochs[6].validation);
+    free(kept);
+    close_world(&w);
+}
+
+static void a_training_that_was_killed_goes_on_to_the_same_bits(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/landmass-netem-XXXXXX";
+    struct nm_plan plan = short_plan;
+    plan.epochs[NM_REAL_CHIPS] = 2;
+    plan.epochs[NM_PIXELS] = 2;
+    for (int stop = 1; stop < 9; stop += 3) {
+        struct world w;
+        struct nm_training *again = malloc(sizeof *again);
+        const int fd = mkstemp(path);
+        open_world(&w, &plan, "EP8", 4);
+        run(&w, w.training, stop);
+        assert_int_equal(nm_model_write(w.training, path), 0);
+        run(&w, w.training, 100);
+        assert_int_equal(nm_model_read(again, path, CELLS), 0);
+        assert_int_equal(again->epoch_count, stop);
+        run(&w, again, 100);
+        assert_int_equal(again->epoch_count, 9);
+        assert_memory_equal(again->epochs, w.training->epochs, 9 * sizeof *again->epochs);
+        assert_memory_equal(again->model.values, w.training->model.values,
+                            again->model.size * sizeof(double));
+        nm_training_close(again);
+        free(again);
+        close_world(&w);
+        close(fd);
+        unlink(path);
+        strcpy(path, "/tmp/landmass-netem-XXXXXX");
+    }
+}
+
+static void descent_without_adam_learns_too_and_so_does_the_absolute_error(void **state)
+{
+    (void)state;
+    struct nm_plan plan = short_plan;
+    plan.method = NM_SGD;
+    plan.loss = NM_MAE;
+    plan.rate = 0.02;
+    plan.epochs[NM_PIXELS] = 0;
+    plan.epochs[NM_REAL_CHIPS] = 30;
+    struct world w;
+    open_world(&w, &plan, "EP6", 0);
+    run(&w, w.training, 100);
+    assert_true(w.training->epochs[34].validation < 0.6 * w.training->epochs[4].validation);
+    close_world(&w);
+}
+
+static void phase_correlation_finds_every_shift_within_reach(void **state)
+{
+    (void)state;
+    enum { SQUARE = 54, REACH = 6 };
+    struct nm_registrar r;
+    struct nm_picture real;
+    struct hs_rng rng;
+    static double simulated[SQUARE * SQUARE];
+    hs_rng_seed(&rng, 2);
+    assert_int_equal(nm_registrar_open(&r, SQUARE), 0);
+    assert_int_equal(nm_picture_open(&real, SQUARE, SQUARE), 0);
+    for (int i = 0; i < 30; i++) {
+        simulated[(20 + (int)hs_rng_below(&rng, 15)) * SQUARE + 20 + (int)hs_rng_below(&rng, 15)] =
+            0.3 + 0.7 * hs_rng_uniform(&rng);
+    }
+    for (int shift = 0; shift < (2 * REACH + 1) * (2 * REACH + 1); shift++) {
+        const int dx = shift % (2 * REACH + 1) - REACH, dy = shift / (2 * REACH + 1) - REACH;
+        for (int i = 0; i < SQUARE * SQUARE; i++) {
+            const int x = i % SQUARE - dx, y = i / SQUARE - dy;
+            const int is_inside = x >= 0 && x < SQUARE && y >= 0 && y < SQUARE;
+            real.pixels[i] =
+                0.1 * hs_rng_uniform(&rng) + (is_inside ? 0.9 * simulated[y * SQUARE + x] : 0);
+        }
+        double sharpness;
+        const struct nm_origin o =
+            nm_register(&r, simulated, &real, (struct nm_origin){0, 0}, REACH, &sharpness);
+        assert_int_equal(o.x, dx);
+        assert_int_equal(o.y, dy);
+        assert_true(sharpness > 0.1);
+    }
+    nm_registrar_close(&r);
+    nm_picture_close(&real);
+}
+
+static void a_model_file_cut_short_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    char path[] = "/tmp/landmass-netem-XXXXXX";
+    const int fd = mkstemp(path);
+    struct nm_plan plan = short_plan;
+    open_world(&w, &plan, "EP7", 0);
+    assert_int_equal(nm_model_write(w.training, path), 0);
+    FILE *f = fopen(path, "rb");
+    fseek(f, 0, SEEK_END);
+    const size_t size = (size_t)ftell(f);
+    char *whole = malloc(size);
+    rewind(f);
+    assert_int_equal(fread(whole, 1, size, f), size);
+    fclose(f);
+    for (size_t cut = 0; cut < size; cut += size / 7 - 3) {
+        f = fopen(path, "wb");
+        fwrite(whole, 1, cut, f);
+        fclose(f);
+        struct nm_training *t = malloc(sizeof *t);
+        assert_int_equal(nm_model_read(t, path, CELLS), -1);
+        free(t);
+    }
+    free(whole);
+    close(fd);
+    unlink(path);
+    close_world(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_hidden_law_is_found_and_holds_on_aspects_never_shown),
+        cmocka_unit_test(the_phases_follow_the_plan_and_the_pixels_come_last),
+        cmocka_unit_test(a_training_that_was_killed_goes_on_to_the_same_bits),
+        cmocka_unit_test(descent_without_adam_learns_too_and_so_does_the_absolute_error),
+        cmocka_unit_test(phase_correlation_finds_every_shift_within_reach),
+        cmocka_unit_test(a_model_file_cut_short_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

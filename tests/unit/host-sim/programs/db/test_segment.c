@@ -1,0 +1,354 @@
+/* Train, segment and correct as programs: a small scene whose truth is known, bad input, and real
+ * imagery. */
+#include "fixture.h"
+#include "gis/raster.h"
+#include "support.h"
+
+#include "hs/error.h"
+#include "hs/rng.h"
+
+#include <math.h>
+#include <ogr_srs_api.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 96, HEIGHT = 80 };
+
+static const char classes[] =
+    "[field]\ncolour = 1 1 1\nkind = ground\ngamma_db = -20\nspread_db = 3\nlimits_db = -60 20\n"
+    "[lake]\ncolour = 2 2 2\nkind = water\ngamma_db = -40\nspread_db = 3\nlimits_db = -43 -37\n"
+    "[town]\ncolour = 3 3 3\nkind = structure\ngamma_db = 0\nspread_db = 5\nlimits_db = -6 6\n";
+
+static int truth_at(int x, int y)
+{
+    return x < 40 ? 0 : y < 36 ? 1 : 2;
+}
+
+/* Two bands that tell three classes apart; the last row holds no data. */
+static void write_scene(void)
+{
+    static const double means[3][2] = {{40, 90}, {15, 20}, {120, 100}};
+    static float bands[2][WIDTH * HEIGHT];
+    struct db_grid grid = fixture_grid(WIDTH, HEIGHT);
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        for (int b = 0; b < 2; b++) {
+            const double v = means[truth_at(i % WIDTH, i / WIDTH)][b] + 4 * hs_rng_normal(&rng);
+            bands[b][i] = i / WIDTH == HEIGHT - 1 ? 0 : (float)fmax(1, round(v));
+        }
+    }
+    fixture_raster("band1.tif", &grid, GDT_Byte, bands[0], 0);
+    fixture_raster("band2.tif", &grid, GDT_Byte, bands[1], 0);
+    OSRDestroySpatialReference(grid.crs);
+    fixture_write("scene.classes", classes);
+    fixture_write("scene.tsv",
+                  "class\tWKT\n"
+                  "field\tPOLYGON((500002 -400002,500030 -400002,500030 -400020,500002 "
+                  "-400020,500002 -400002))\n"
+                  "field\tPOLYGON((500002 -400040,500030 -400040,500030 -400070,500002 "
+                  "-400070,500002 -400040))\n"
+                  "lake\tPOLYGON((500045 -400002,500060 -400002,500060 -400030,500045 "
+                  "-400030,500045 -400002))\n"
+                  "lake\tPOLYGON((500070 -400002,500090 -400002,500090 -400030,500070 "
+                  "-400030,500070 -400002))\n"
+                  "town\tPOLYGON((500045 -400040,500060 -400040,500060 -400070,500045 "
+                  "-400070,500045 -400040))\n"
+                  "town\tPOLYGON((500070 -400040,500090 -400040,500090 -400070,500070 "
+                  "-400070,500070 -400040))\n");
+}
+
+#define SCENE "--image %s,%s --classes %s"
+#define SCENE_PATHS                                                                                \
+    fixture_path("band1.tif"), fixture_path("band2.tif"), fixture_path("scene.classes")
+
+static void train_scene(const char *net)
+{
+    write_scene();
+    assert_int_equal(fixture_run(NULL, 0,
+                                 "train " SCENE
+                                 " --exemplars %s --net %s --report %s --split-out %s "
+                                 "--hold-out polygons:0.4",
+                                 SCENE_PATHS, fixture_path("scene.tsv"), fixture_path(net),
+                                 fixture_path("report"), fixture_path("split.csv")),
+                     0);
+}
+
+static void read_classes(const char *name, uint8_t *found)
+{
+    struct db_raster r;
+    static float values[WIDTH * HEIGHT];
+    static uint8_t valid[WIDTH * HEIGHT];
+    assert_int_equal(db_raster_open_one(&r, fixture_path(name)), 0);
+    assert_int_equal(r.grid.width, WIDTH);
+    assert_true(r.grid.geotransform[3] == -400000);
+    assert_non_null(r.grid.crs);
+    assert_int_equal(db_raster_read(&r, 0, HEIGHT, values, valid), 0);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        found[i] = valid[i] ? (uint8_t)values[i] : 255;
+    }
+    db_raster_close(&r);
+}
+
+static int segment_scene(const char *out)
+{
+    return fixture_run(
+        NULL, 0, "segment " SCENE " --net %s --out %s --picture %s --report %s --exemplars %s",
+        SCENE_PATHS, fixture_path("scene.net"), fixture_path(out), fixture_path("scene.png"),
+        fixture_path("where"), fixture_path("scene.tsv"));
+}
+
+static void a_scene_comes_out_as_it_was_made_with_its_holes(void **state)
+{
+    (void)state;
+    static uint8_t found[WIDTH * HEIGHT];
+    train_scene("scene.net");
+    assert_int_equal(segment_scene("out.tif"), 0);
+    read_classes("out.tif", found);
+    int wrong = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const int hole = i / WIDTH == HEIGHT - 1;
+        wrong += found[i] != (hole ? 255 : truth_at(i % WIDTH, i / WIDTH));
+    }
+    assert_in_range(wrong, 0, WIDTH * HEIGHT / 200);
+    static const char *const files[] = {"scene.png",         "report/error_curve.png",
+                                        "report/worst.txt",  "report/confusion_held_out.csv",
+                                        "where/regions.csv", "where/squares.csv",
+                                        "out.tif.aux.xml"};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        assert_int_equal(access(fixture_path(files[i]), R_OK), 0);
+    }
+    assert_int_equal(support_run("! ls %s | grep unfinished", fixture_path("")), 0);
+}
+
+static void one_seed_gives_one_net_byte_for_byte(void **state)
+{
+    (void)state;
+    train_scene("a.net");
+    train_scene("b.net");
+    assert_int_equal(support_run("cmp %s %s", fixture_path("a.net"), fixture_path("b.net")), 0);
+}
+
+static void later_corrections_win_and_are_counted(void **state)
+{
+    (void)state;
+    static uint8_t found[WIDTH * HEIGHT];
+    char said[4096];
+    train_scene("scene.net");
+    assert_int_equal(segment_scene("out.tif"), 0);
+    fixture_write("fix.tsv",
+                  "class\tWKT\n"
+                  "town\tPOLYGON((500000 -400000,500010 -400000,500010 -400010,500000 "
+                  "-400010,500000 -400000))\n"
+                  "lake\tPOLYGON((500005 -400005,500015 -400005,500015 -400015,500005 "
+                  "-400015,500005 -400005))\n"
+                  "nodata\tPOLYGON((500090 -400000,500096 -400000,500096 -400001,500090 "
+                  "-400001,500090 -400000))\n");
+    assert_int_equal(fixture_run(said, sizeof said,
+                                 "correct --class-raster %s --classes %s --corrections %s --out %s",
+                                 fixture_path("out.tif"), fixture_path("scene.classes"),
+                                 fixture_path("fix.tsv"), fixture_path("fixed.tif")),
+                     0);
+    assert_non_null(strstr(said, "correction 1 (town): 100 of 100 pixels changed"));
+    assert_non_null(strstr(said, "correction 2 (lake): 100 of 100 pixels changed"));
+    assert_non_null(strstr(said, "correction 3 (nodata): 6 of 6 pixels changed"));
+    read_classes("fixed.tif", found);
+    assert_int_equal(found[4 * WIDTH + 4], 2);
+    assert_int_equal(found[5 * WIDTH + 5], 1);
+    assert_int_equal(found[14 * WIDTH + 14], 1);
+    assert_int_equal(found[15 * WIDTH + 15], 0);
+    assert_int_equal(found[95], 255);
+}
+
+/* ---- What can be wrong ---- */
+
+static void bad_input_to_train_is_named_with_its_remedy(void **state)
+{
+    (void)state;
+    write_scene();
+    const char *tsv = fixture_path("scene.tsv"), *net = fixture_path("never.net");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "cannot be opened as an image",
+                              "train --image nothing.tif --classes %s --exemplars %s --net %s",
+                              fixture_path("scene.classes"), tsv, net));
+    assert_true(fixture_fails(HS_EXIT_FAILED, "cannot be opened as polygons",
+                              "train " SCENE " --exemplars nothing.shp --net %s", SCENE_PATHS,
+                              net));
+    assert_true(fixture_fails(HS_EXIT_FAILED, "has no field `kind`",
+                              "train " SCENE " --exemplars %s --field kind --net %s", SCENE_PATHS,
+                              tsv, net));
+    fixture_write("no.map", "field = field\nlake = lake\nswamp = town\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "class `town` has no exemplar pixel",
+                              "train " SCENE " --exemplars %s --map %s --net %s", SCENE_PATHS, tsv,
+                              fixture_path("no.map"), net));
+    fixture_write("bad.map", "field = field\nlake = sea\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "bad.map:2: there is no class `sea`",
+                              "train " SCENE " --exemplars %s --map %s --net %s", SCENE_PATHS, tsv,
+                              fixture_path("bad.map"), net));
+    fixture_write("outside.tsv",
+                  "class\tWKT\n"
+                  "field\tPOLYGON((0 0,9 0,9 9,0 0))\nlake\tPOLYGON((0 0,9 0,9 9,0 0))\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "exemplars of 0 classes lie in the image",
+                              "train " SCENE " --exemplars %s --net %s", SCENE_PATHS,
+                              fixture_path("outside.tsv"), net));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "give either --exemplars or --labels",
+                              "train " SCENE " --net %s", SCENE_PATHS, net));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "needs polygons:PART or pixels:PART",
+                              "train " SCENE " --exemplars %s --net %s --hold-out 0.3", SCENE_PATHS,
+                              tsv, net));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "is not an option", "train --nonsense"));
+    assert_int_not_equal(access(net, F_OK), 0);
+}
+
+static void images_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    static const float zeros[20 * 20] = {0};
+    train_scene("scene.net");
+    struct db_grid other = fixture_grid(20, 20);
+    fixture_raster("small.tif", &other, GDT_Byte, zeros, 255);
+    OSRDestroySpatialReference(other.crs);
+    const char *net = fixture_path("scene.net"), *out = fixture_path("never.tif");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "lies on another grid",
+                              "segment --image %s --image %s --classes %s --net %s --out %s",
+                              fixture_path("band1.tif"), fixture_path("small.tif"),
+                              fixture_path("scene.classes"), net, out));
+    assert_true(fixture_fails(HS_EXIT_FAILED, "was trained with 2",
+                              "segment --image %s --classes %s --net %s --out %s",
+                              fixture_path("band1.tif"), fixture_path("scene.classes"), net, out));
+    fixture_write("fewer.classes",
+                  "[field]\ncolour = 1 1 1\nkind = ground\ngamma_db = -20\n"
+                  "spread_db = 3\nlimits_db = -60 20\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "that the class table lacks",
+                              "segment --image %s,%s --classes %s --net %s --out %s",
+                              fixture_path("band1.tif"), fixture_path("band2.tif"),
+                              fixture_path("fewer.classes"), net, out));
+    assert_int_not_equal(access(out, F_OK), 0);
+}
+
+static void a_raster_cut_short_is_an_error_and_leaves_no_output(void **state)
+{
+    (void)state;
+    train_scene("scene.net");
+    assert_int_equal(
+        support_run("head -c 6000 %s > %s", fixture_path("band2.tif"), fixture_path("cut.tif")), 0);
+    assert_true(fixture_fails(
+        HS_EXIT_FAILED, "cut.tif", "segment --image %s,%s --classes %s --net %s --out %s",
+        fixture_path("band1.tif"), fixture_path("cut.tif"), fixture_path("scene.classes"),
+        fixture_path("scene.net"), fixture_path("never.tif")));
+    assert_int_not_equal(access(fixture_path("never.tif"), F_OK), 0);
+    assert_int_equal(support_run("! ls %s | grep unfinished", fixture_path("")), 0);
+}
+
+static void an_unknown_class_in_a_correction_is_an_error(void **state)
+{
+    (void)state;
+    train_scene("scene.net");
+    assert_int_equal(segment_scene("out.tif"), 0);
+    fixture_write("fix.tsv",
+                  "class\tWKT\nbeach\tPOLYGON((500000 -400000,500010 -400000,500010 -400010,"
+                  "500000 -400000))\n");
+    assert_true(fixture_fails(HS_EXIT_FAILED, "polygon 1 has the unknown class `beach`",
+                              "correct --class-raster %s --classes %s --corrections %s --out %s",
+                              fixture_path("out.tif"), fixture_path("scene.classes"),
+                              fixture_path("fix.tsv"), fixture_path("never.tif")));
+}
+
+static void every_command_explains_itself(void **state)
+{
+    (void)state;
+    static const char *const commands[] = {"train", "segment", "correct", "reflect"};
+    for (size_t i = 0; i < 4; i++) {
+        char said[16384];
+        assert_int_equal(fixture_run(said, sizeof said, "%s --help", commands[i]), 0);
+        assert_non_null(strstr(said, "Example:"));
+        assert_non_null(strstr(said, "--classes FILE  (required)"));
+    }
+    assert_int_equal(fixture_run(NULL, 0, "nonsense"), HS_EXIT_USAGE);
+}
+
+/* ---- Real imagery ---- */
+
+static void write_amazon_classes(const char *name, const char *const *names)
+{
+    FILE *f = fopen(fixture_path(name), "w");
+    for (int i = 0; i < 4; i++) {
+        fprintf(f,
+                "[%s]\ncolour = %d 0 0\nkind = ground\ngamma_db = -20\nspread_db = 3\nlimits_db = "
+                "-30 -10\n",
+                names[i], i);
+    }
+    fclose(f);
+}
+
+/* The number before " %" that follows `after` the n-th "overall". */
+static double overall(const char *said, int n)
+{
+    const char *at = said;
+    for (int i = 0; i <= n; i++) {
+        at = strstr(at, "overall ");
+        assert_non_null(at);
+        at += strlen("overall ");
+    }
+    return atof(at);
+}
+
+static void train_amazon(const char *image, const char *polygons, const char *const *names)
+{
+    char said[8192], image_path[512], polygon_path[512];
+    if (!support_data_path(image, image_path, sizeof image_path) ||
+        !support_data_path(polygons, polygon_path, sizeof polygon_path)) {
+        skip();
+    }
+    write_amazon_classes("amazon.classes", names);
+    assert_int_equal(
+        fixture_run(said, sizeof said,
+                    "train --image %s --classes %s --exemplars %s --net %s --hold-out polygons:0.3",
+                    image_path, fixture_path("amazon.classes"), polygon_path,
+                    fixture_path("amazon.net")),
+        0);
+    print_message("# trained %.1f %%, held out %.1f %%\n", overall(said, 0), overall(said, 1));
+    assert_non_null(strstr(said, "the goal is reached"));
+    assert_true(overall(said, 0) >= 95);
+    assert_true(overall(said, 1) >= 85);
+}
+
+static void sentinel_exemplars_of_a_village_are_recognised_to_95_per_cent(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"forest", "village", "water", "dryout"};
+    train_amazon("sentinel2_amazon_village_srtm_labels/derived/sen2_12band_refl_x10000.bsq",
+                 "sentinel2_amazon_village_srtm_labels/derived/trainingPolygons_sen2.tsv", names);
+}
+
+static void landsat_exemplars_of_a_reservoir_are_recognised_to_95_per_cent(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"forest", "water", "cleared", "fallen_dry"};
+    train_amazon("landsat5_amazon_tucurui_srtm_labels/derived/lsat_7band.bsq",
+                 "landsat5_amazon_tucurui_srtm_labels/derived/trainingPolygons_lsat.tsv", names);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_scene_comes_out_as_it_was_made_with_its_holes),
+        cmocka_unit_test(one_seed_gives_one_net_byte_for_byte),
+        cmocka_unit_test(later_corrections_win_and_are_counted),
+        cmocka_unit_test(bad_input_to_train_is_named_with_its_remedy),
+        cmocka_unit_test(images_that_do_not_fit_are_refused),
+        cmocka_unit_test(a_raster_cut_short_is_an_error_and_leaves_no_output),
+        cmocka_unit_test(an_unknown_class_in_a_correction_is_an_error),
+        cmocka_unit_test(every_command_explains_itself),
+        cmocka_unit_test(sentinel_exemplars_of_a_village_are_recognised_to_95_per_cent),
+        cmocka_unit_test(landsat_exemplars_of_a_reservoir_are_recognised_to_95_per_cent),
+    };
+    return cmocka_run_group_tests_name("segment", tests, fixture_open, fixture_close);
+}

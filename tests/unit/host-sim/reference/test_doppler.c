@@ -1,0 +1,111 @@
+/* Doppler beam sharpening of the reference against RADAR.md 1.5, and movers against geometry. */
+#include "reference/reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/* RADAR.md 1.5: 31.3 mm, 250 m/s, a beam of 3.3 degrees. */
+static struct ref_dbs dbs_at(double rate_deg_s, double speed_m_s)
+{
+    return (struct ref_dbs){speed_m_s, 3.3, 0.0313, rate_deg_s};
+}
+
+static void the_notch_opens_as_in_the_table(void **state)
+{
+    (void)state;
+    static const double rates_deg_s[] = {120, 60, 15, 3};
+    static const struct {
+        double ratio, notch_deg[4]; /* NAN: none is to be had */
+    } rows[] = {
+        {8, {18.4, 9.1, 2.3, 0.5}}, {16, {39, 18.4, 4.5, 0.9}}, {64, {NAN, NAN, 18.4, 3.6}}};
+    for (int n = 0; n < 3; n++) {
+        for (int k = 0; k < 4; k++) {
+            const struct ref_dbs d = dbs_at(rates_deg_s[k], 250);
+            const double notch_deg = ref_dbs_notch_deg(&d, rows[n].ratio);
+            print_message("# %2.0f:1 at %3.0f deg/s: %.2f degrees\n", rows[n].ratio, rates_deg_s[k],
+                          notch_deg);
+            assert_int_equal(isnan(notch_deg) != 0, isnan(rows[n].notch_deg[k]) != 0);
+            assert_false(fabs(notch_deg - rows[n].notch_deg[k]) > 0.5);
+        }
+    }
+}
+
+static void the_notch_is_where_the_ratio_runs_out(void **state)
+{
+    (void)state;
+    for (double speed_m_s = 100; speed_m_s < 700; speed_m_s *= 1.5) {
+        const struct ref_dbs d = dbs_at(15, speed_m_s);
+        const double notch_deg = ref_dbs_notch_deg(&d, 8);
+        assert_true(fabs(ref_dbs_ratio(&d, notch_deg) - 8) < 1e-9);
+        assert_true(fabs(ref_dbs_ratio(&d, -notch_deg) - 8) < 1e-9);
+        assert_true(ref_dbs_ratio(&d, notch_deg + 0.1) > 8);
+        assert_true(ref_dbs_ratio(&d, 0) == 0);
+        /* Half the speed needs twice the sine. */
+        const struct ref_dbs slow = dbs_at(15, speed_m_s / 2);
+        const double twice =
+            sin(ref_dbs_notch_deg(&slow, 8) * acos(-1.0) / 180) / sin(notch_deg * acos(-1.0) / 180);
+        assert_true(fabs(twice - 2) < 1e-9);
+    }
+}
+
+/* The Doppler frequencies of two directions apart by a sharpened beam, over the dwell: one turn. */
+static void a_dwell_tells_two_neighbouring_cells_apart_by_one_turn(void **state)
+{
+    (void)state;
+    const double rad = acos(-1.0) / 180, wavelength_m = 0.0313;
+    for (double off_deg = 10; off_deg < 60; off_deg += 7) {
+        const struct ref_dbs d = dbs_at(15, 250);
+        const double ratio = ref_dbs_ratio(&d, off_deg), dwell_s = 3.3 / 15;
+        const double cell_deg = 3.3 / ratio;
+        const double near_hz = 2 * 250 * cos((off_deg - cell_deg / 2) * rad) / wavelength_m;
+        const double far_hz = 2 * 250 * cos((off_deg + cell_deg / 2) * rad) / wavelength_m;
+        assert_true(fabs((near_hz - far_hz) * dwell_s - 1) < 1e-4);
+    }
+}
+
+static void what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch(void **state)
+{
+    (void)state;
+    assert_true(ref_dbs_used(100, 8, 4) == 8);
+    assert_true(ref_dbs_used(5.5, 8, 4) == 4);
+    assert_true(ref_dbs_used(4, 8, 4) == 4);
+    assert_true(ref_dbs_used(3.99, 8, 4) == 1);
+}
+
+/* A target at o that closes with v has the Doppler frequency of ground at o - d. */
+static void a_mover_lies_where_still_ground_has_its_frequency(void **state)
+{
+    (void)state;
+    const double rad = acos(-1.0) / 180, speed_m_s = 250;
+    for (double off_deg = 20; off_deg < 80; off_deg += 11) {
+        for (double closing_m_s = -8; closing_m_s < 9; closing_m_s += 4) {
+            const double shift_deg = ref_mover_shift_deg(closing_m_s, speed_m_s, off_deg);
+            const double mover = speed_m_s * cos(off_deg * rad) + closing_m_s;
+            const double ground = speed_m_s * cos((off_deg - shift_deg) * rad);
+            assert_true(fabs(mover - ground) < 1e-9);
+            /* A patch takes the first term of the series: the next is cot o shift / 2 of it. */
+            const double across_m = ref_mover_shift_m(closing_m_s, speed_m_s, off_deg, 30000);
+            assert_true(fabs(across_m / 30000 - shift_deg * rad) <
+                        0.2 * fabs(shift_deg * rad) + 1e-12);
+        }
+    }
+    assert_true(isnan(ref_mover_shift_deg(100, 250, 10)));
+    assert_true(ref_mover_shift_deg(5, 250, -30) == ref_mover_shift_deg(5, 250, 30));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_notch_opens_as_in_the_table),
+        cmocka_unit_test(the_notch_is_where_the_ratio_runs_out),
+        cmocka_unit_test(a_dwell_tells_two_neighbouring_cells_apart_by_one_turn),
+        cmocka_unit_test(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch),
+        cmocka_unit_test(a_mover_lies_where_still_ground_has_its_frequency),
+    };
+    return cmocka_run_group_tests_name("reference doppler", tests, NULL, NULL);
+}

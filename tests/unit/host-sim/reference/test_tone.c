@@ -1,0 +1,162 @@
+/* Speckle and tone of the reference, against the theory of the Gamma distribution. */
+#include "reference/reference.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const unsigned looks[] = {1, 2, 4, 8, 16};
+enum { LOOKS = 5 };
+
+static void speckle_has_mean_one_and_the_spread_of_its_looks(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 0; k < REF_SPECKLE_SLICES; k++) {
+            const double power = pow(10, table_db[k] / 10);
+            sum += power / REF_SPECKLE_SLICES;
+            squares += power * power / REF_SPECKLE_SLICES;
+        }
+        assert_true(fabs(sum - 1) < 1e-9);
+        const double theory = 1 / sqrt(looks[i]);
+        assert_true(fabs(sqrt(squares - sum * sum) / theory - 1) < 0.01);
+    }
+}
+
+/* dB std of RADAR.md 2.1. */
+static void speckle_in_decibels_has_the_published_spread(void **state)
+{
+    (void)state;
+    const double published_db[LOOKS] = {5.57, 3.49, 2.31, 1.58, 1.10};
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 0; k < REF_SPECKLE_SLICES; k++) {
+            sum += table_db[k] / REF_SPECKLE_SLICES;
+            squares += table_db[k] * table_db[k] / REF_SPECKLE_SLICES;
+        }
+        assert_true(fabs(sqrt(squares - sum * sum) - published_db[i]) < 0.01 * published_db[i]);
+    }
+}
+
+/* One look is exponential: slices end at -ln(1 - p), and the share of the mean below x is
+ * 1 - (1 + x) exp(-x). */
+static void slices_of_one_look_are_those_of_the_exponential(void **state)
+{
+    (void)state;
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(1, table_db);
+    double below = 0;
+    for (int k = 0; k < REF_SPECKLE_SLICES - 1; k++) {
+        const double end = -log1p(-(k + 1.0) / REF_SPECKLE_SLICES);
+        const double share = 1 - (1 + end) * exp(-end);
+        const double mean = (share - below) * REF_SPECKLE_SLICES;
+        assert_true(fabs(table_db[k] - 10 * log10(mean)) < 1e-5);
+        below = share;
+    }
+    const double last = table_db[REF_SPECKLE_SLICES - 1];
+    assert_true(fabs(last - 10 * log10((1 - below) * REF_SPECKLE_SLICES)) < 1e-5);
+}
+
+static void speckle_rises_from_slice_to_slice(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LOOKS; i++) {
+        double table_db[REF_SPECKLE_SLICES];
+        ref_speckle_table(looks[i], table_db);
+        for (int k = 1; k < REF_SPECKLE_SLICES; k++) {
+            assert_true(table_db[k] > table_db[k - 1]);
+        }
+    }
+}
+
+/* Every cell draws by itself: of 4096 pairs, four share a slice by chance. */
+static void cells_columns_epochs_and_kinds_draw_by_themselves(void **state)
+{
+    (void)state;
+    int same[4] = {0};
+    for (uint32_t n = 0; n < 4096; n++) {
+        const uint32_t column = n / 64, cell = n % 64;
+        const unsigned slice = ref_draw(LM_NOISE_SPECKLE, column, cell, 5);
+        assert_true(slice < REF_SPECKLE_SLICES);
+        assert_int_equal(slice, ref_draw(LM_NOISE_SPECKLE, column, cell, 5));
+        same[0] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell + 1, 5);
+        same[1] += slice == ref_draw(LM_NOISE_SPECKLE, column + 1, cell, 5);
+        same[2] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell, 6);
+        same[3] += slice == ref_draw(LM_NOISE_TEXTURE, column, cell, 5);
+    }
+    for (int i = 0; i < 4; i++) {
+        assert_in_range(same[i], 0, 20);
+    }
+}
+
+/* 30 degrees are pi / 6 columns for each cell of the range: at 196 cells, the middle of cells 192
+ * to 199, 102.6, and at 200 cells 104.7. There a column is 0.286 to 0.293 degrees wide. */
+static void columns_of_the_ground_are_as_wide_as_cells_are_long(void **state)
+{
+    (void)state;
+    assert_int_equal(ref_ground_column(30, 0, 50, 192), 102);
+    assert_int_equal(ref_ground_column(30, 0, 50, 199), 102);
+    assert_int_equal(ref_ground_column(30, 9800, 50, 0), 104);
+    for (double azimuth_deg = 0.05; azimuth_deg < 360; azimuth_deg += 0.37) {
+        const uint32_t column = ref_ground_column(azimuth_deg, 0, 50, 197);
+        assert_true(ref_ground_column(azimuth_deg + 0.293, 0, 50, 198) > column ||
+                    azimuth_deg > 359.7);
+        assert_true(ref_ground_column(azimuth_deg + 0.28, 0, 50, 198) <= column + 1);
+    }
+}
+
+static void noise_adds_to_the_power_before_speckle(void **state)
+{
+    (void)state;
+    double table_db[REF_SPECKLE_SLICES];
+    ref_speckle_table(4, table_db);
+    struct ref_bin bins[2] = {{.is_lit = false, .slice = 7},
+                              {.is_lit = true, .level_db = -45, .slice = 1000}};
+    ref_speckle(bins, 2, table_db, -45);
+    assert_true(fabs(bins[0].echo_db - (-45 + table_db[7])) < 1e-12);
+    assert_true(fabs(bins[1].echo_db - (-45 + 10 * log10(2) + table_db[1000])) < 1e-12);
+}
+
+static void tone_rises_from_black_to_white(void **state)
+{
+    (void)state;
+    struct ref_params params = ref_params_default();
+    const double exponents[] = {0.4, 1, 2.2};
+    for (int i = 0; i < 3; i++) {
+        params.gamma_exponent = exponents[i];
+        uint8_t before = 0;
+        assert_int_equal(ref_grey(ref_brightness(params.black_db - 30, &params), &params), 0);
+        assert_int_equal(ref_grey(ref_brightness(params.white_db + 30, &params), &params), 255);
+        for (double db = params.black_db; db <= params.white_db; db += 1.0 / 256) {
+            const uint8_t grey = ref_grey(ref_brightness(db, &params), &params);
+            assert_true(grey >= before);
+            before = grey;
+        }
+        assert_int_equal(before, 255);
+        const double middle = (params.black_db + params.white_db) / 2;
+        assert_int_equal(ref_grey(ref_brightness(middle, &params), &params),
+                         lround(255 * pow(0.5, exponents[i])));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(speckle_has_mean_one_and_the_spread_of_its_looks),
+        cmocka_unit_test(speckle_in_decibels_has_the_published_spread),
+        cmocka_unit_test(slices_of_one_look_are_those_of_the_exponential),
+        cmocka_unit_test(speckle_rises_from_slice_to_slice),
+        cmocka_unit_test(cells_columns_epochs_and_kinds_draw_by_themselves),
+        cmocka_unit_test(columns_of_the_ground_are_as_wide_as_cells_are_long),
+        cmocka_unit_test(noise_adds_to_the_power_before_speckle),
+        cmocka_unit_test(tone_rises_from_black_to_white),
+    };
+    return cmocka_run_group_tests_name("reference tone", tests, NULL, NULL);
+}

@@ -1,0 +1,336 @@
+/* What a line of a script makes the operator do, and when. */
+#include "sim/script.h"
+
+#include "hs/angle.h"
+#include "lm/radar.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { NOTHING = 99 };
+
+/* Read `text` as a script. */
+static int read_text(struct script *s, const char *text)
+{
+    char path[] = "/tmp/test-script-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    FILE *file = fdopen(fd, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    const int status = script_read(s, path);
+    unlink(path);
+    return status;
+}
+
+/* The next control that is due at `seconds`, or one of kind NOTHING. */
+static struct lm_control at(struct script *s, double seconds)
+{
+    struct lm_control c;
+    script_advance(s, (uint64_t)(seconds * 1e6));
+    if (s->port.next(s->port.ctx, &c) != 1) {
+        c = (struct lm_control){.kind = (enum lm_control_kind)NOTHING};
+    }
+    return c;
+}
+
+static void a_press_goes_down_and_comes_up_a_tenth_of_a_second_later(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 osb 19\n"), 0);
+    assert_int_equal(at(&s, 0.999).kind, NOTHING);
+    struct lm_control c = at(&s, 1);
+    assert_int_equal(c.kind, LM_CONTROL_DOWN);
+    assert_int_equal(c.value, 19);
+    assert_int_equal(at(&s, 1.099).kind, NOTHING);
+    c = at(&s, 1.1);
+    assert_int_equal(c.kind, LM_CONTROL_UP);
+    assert_int_equal(c.value, 19);
+    assert_int_equal(at(&s, 99).kind, NOTHING);
+    script_free(&s);
+}
+
+static void a_long_press_overlaps_what_the_next_lines_do(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 osb 11 1.5\n2 gm\n2.2 picture now\n3 drop\n"), 0);
+    assert_int_equal(at(&s, 1).kind, LM_CONTROL_DOWN);
+    assert_int_equal(at(&s, 2.1).kind, LM_CONTROL_SECTOR);
+    assert_int_equal(at(&s, 2.1).kind, NOTHING);
+    assert_string_equal(script_advance(&s, 2200000), "now");
+    assert_int_equal(at(&s, 2.49).kind, NOTHING);
+    assert_int_equal(at(&s, 2.5).kind, LM_CONTROL_UP);
+    assert_int_equal(at(&s, 3).kind, LM_CONTROL_DROP);
+    script_free(&s);
+}
+
+static void a_patch_takes_the_effects_behind_it_and_no_other_word(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *words;
+        int has_layover, is_steady;
+    } cases[] = {{"", 0, 0}, {" layover", 1, 0}, {" steady", 0, 1}, {" steady layover", 1, 1}};
+    for (size_t i = 0; i < 4; i++) {
+        struct script s;
+        char text[200];
+        snprintf(text, sizeof text, "0 sar 46 11 5%s\n1 sarfrom 46 11 5 90 20000 3000%s\n",
+                 cases[i].words, cases[i].words);
+        assert_int_equal(read_text(&s, text), 0);
+        for (int seconds = 0; seconds < 2; seconds++) {
+            const struct lm_control c = at(&s, seconds);
+            assert_int_equal(c.kind, LM_CONTROL_SAR);
+            assert_int_equal(c.sar.has_layover, cases[i].has_layover);
+            assert_int_equal(c.sar.is_steady, cases[i].is_steady);
+            assert_int_equal(c.sar.is_from_ownship, seconds == 0);
+        }
+        script_free(&s);
+    }
+    struct script s;
+    assert_int_equal(read_text(&s, "0 sar 46 11 5 upright\n"), -1);
+}
+
+static void a_slew_lasts_as_long_as_it_says(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 slew 0.5 -1 2\n"), 0);
+    struct lm_control c = at(&s, 0);
+    assert_int_equal(c.kind, LM_CONTROL_SLEW);
+    assert_int_equal(c.value, 500);
+    assert_int_equal(c.value_y, -1000);
+    assert_int_equal(at(&s, 1.99).kind, NOTHING);
+    c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_SLEW);
+    assert_int_equal(c.value, 0);
+    assert_int_equal(c.value_y, 0);
+    script_free(&s);
+}
+
+static void rockers_and_knob_are_their_buttons_and_deflection(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 rocker gain +1\n1 rocker con -1\n2 knob -0.25\n"), 0);
+    assert_int_equal(at(&s, 0.5).value, lm_rocker_button(LM_ROCKER_GAIN, true));
+    assert_int_equal(at(&s, 0.5).kind, LM_CONTROL_UP);
+    assert_int_equal(at(&s, 1.5).value, lm_rocker_button(LM_ROCKER_CON, false));
+    assert_int_equal(at(&s, 1.5).kind, LM_CONTROL_UP);
+    const struct lm_control c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_KNOB);
+    assert_int_equal(c.value, -250);
+    script_free(&s);
+}
+
+static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(void **state)
+{
+    (void)state;
+    uint32_t seen = 0;
+    for (int rocker = 0; rocker < LM_ROCKERS; rocker++) {
+        for (int more = 0; more < 2; more++) {
+            const int32_t button = lm_rocker_button((enum lm_rocker)rocker, more);
+            assert_in_range(button, LM_OSBS + 1, LM_BUTTONS);
+            seen |= 1u << (button - LM_OSBS - 1);
+        }
+    }
+    assert_int_equal(seen, 0xFF);
+}
+
+static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void **state)
+{
+    (void)state;
+    static const char *const modes[] = {"gm", "gmt", "sea"};
+    static const char *const fields[] = {"norm", "exp", "dbs1", "dbs2"};
+    for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
+        struct script s;
+        char text[40];
+        snprintf(text, sizeof text, "0 %s\n", modes[mode]);
+        assert_int_equal(read_text(&s, text), 0);
+        const struct lm_control plain = at(&s, 0);
+        assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
+        assert_int_equal(plain.value, mode);
+        assert_int_equal(plain.value_y, LM_FIELD_NORM);
+        script_free(&s);
+        for (int field = 0; field < LM_FIELDS; field++) {
+            snprintf(text, sizeof text, "0 %s %s\n", modes[mode], fields[field]);
+            assert_int_equal(read_text(&s, text), 0);
+            const struct lm_control c = at(&s, 0);
+            assert_int_equal(c.value, mode);
+            assert_int_equal(c.value_y, field);
+            script_free(&s);
+        }
+    }
+}
+
+static void a_steerpoint_is_a_place_or_off(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "1 steer 45 -90.5\n2 steer off\n"), 0);
+    struct lm_control c = at(&s, 1);
+    assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
+    assert_int_equal(c.value, 1);
+    assert_int_equal(c.place.latitude, hs_bam(45));
+    assert_int_equal(c.place.longitude, hs_bam(-90.5));
+    c = at(&s, 2);
+    assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
+    assert_int_equal(c.value, 0);
+    script_free(&s);
+}
+
+static void rain_and_jammers_add_up_until_the_weather_is_fair(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s,
+                               "1 rain 45 -90 10 30\n2 jam -45 90 12.5\n3 rain 0 0 0.1 150\n"
+                               "4 seastate 6\n5 weather fair\n6 jam 0 45 -20\n"),
+                     0);
+    struct lm_environment e = at(&s, 1).environment;
+    assert_int_equal(e.rain_count, 1);
+    assert_int_equal(e.jammer_count, 0);
+    assert_int_equal(e.sea_state, LM_SEA_STATE_OF_IMAGE);
+    assert_int_equal(e.rain[0].centre.latitude, hs_bam(45));
+    assert_int_equal(e.rain[0].centre.longitude, hs_bam(-90));
+    assert_int_equal(e.rain[0].radius_m, 10000);
+    assert_int_equal(e.rain[0].mm_per_h, 30);
+    e = at(&s, 2).environment;
+    assert_int_equal(e.rain_count, 1);
+    assert_int_equal(e.jammer_count, 1);
+    assert_int_equal(e.jammer[0].place.latitude, hs_bam(-45));
+    assert_int_equal(e.jammer[0].place.longitude, hs_bam(90));
+    assert_int_equal(e.jammer[0].ratio_q8, 3200);
+    e = at(&s, 3).environment;
+    assert_int_equal(e.rain_count, 2);
+    assert_int_equal(e.rain[1].radius_m, 100);
+    e = at(&s, 4).environment;
+    assert_int_equal(e.sea_state, 6);
+    assert_int_equal(e.rain_count, 2);
+    e = at(&s, 5).environment;
+    assert_int_equal(e.rain_count + e.jammer_count, 0);
+    assert_int_equal(e.sea_state, 6); /* the sea outlasts the weather */
+    e = at(&s, 6).environment;
+    assert_int_equal(e.jammer_count, 1);
+    assert_int_equal(e.jammer[0].ratio_q8, -5120);
+    assert_int_equal(lm_environment_check(&e), LM_OK);
+    script_free(&s);
+}
+
+/* `count` times the line, and whether a script of it is accepted. */
+static bool is_accepted(const char *line, int count)
+{
+    char text[1000] = "";
+    for (int i = 0; i < count; i++) {
+        strcat(text, line);
+    }
+    struct script s;
+    const bool is_read = read_text(&s, text) == 0;
+    script_free(&s);
+    return is_read;
+}
+
+static void there_is_no_more_rain_and_jamming_than_the_unit_has_room_for(void **state)
+{
+    (void)state;
+    freopen("/dev/null", "w", stderr);
+    assert_true(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX));
+    assert_false(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX + 1));
+    assert_true(is_accepted("0 jam 1 2 3\n", LM_JAMMERS_MAX));
+    assert_false(is_accepted("0 jam 1 2 3\n", LM_JAMMERS_MAX + 1));
+    assert_true(is_accepted("0 rain 1 2 3 4\n0 weather fair\n", LM_RAINS_MAX + 1));
+}
+
+static void commands_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    const char *const bad[] = {"0 osb\n",
+                               "0 osb 0\n",
+                               "0 osb 21\n",
+                               "0 osb 1.5\n",
+                               "0 osb 1 -1\n",
+                               "0 osb 1 1 1\n",
+                               "0 rocker gain\n",
+                               "0 rocker gain 1\n",
+                               "0 rocker hue +1\n",
+                               "0 knob\n",
+                               "0 knob 1.1\n",
+                               "0 slew 1 1\n",
+                               "0 slew 2 0 1\n",
+                               "0 slew 0 0 -1\n",
+                               "0 slew nan 0 1\n",
+                               "0 designate 1\n",
+                               "0 drop it\n",
+                               "1 osb 1\n0 osb 1\n",
+                               "0 slew 0 0 1 1\n",
+                               "0 osb 1x\n",
+                               "0 gm dbs3\n",
+                               "0 gm norm exp\n",
+                               "0 sea of\n",
+                               "0 gmtx\n",
+                               "0 dbs1\n",
+                               "0 rain\n",
+                               "0 rain 91 0 1 1\n",
+                               "0 rain 0 181 1 1\n",
+                               "0 rain 0 0 0.09 1\n",
+                               "0 rain 0 0 101 1\n",
+                               "0 rain 0 0 1 0.9\n",
+                               "0 rain 0 0 1 151\n",
+                               "0 rain 0 0 1\n",
+                               "0 rain 0 0 1 1 1\n",
+                               "0 rain nan 0 1 1\n",
+                               "0 jam 0 0\n",
+                               "0 jam 0 0 81\n",
+                               "0 jam 0 0 -21\n",
+                               "0 jam -91 0 1\n",
+                               "0 jam 0 0 1 1\n",
+                               "0 jam 0 0 x\n",
+                               "0 steer\n",
+                               "0 steer on\n",
+                               "0 steer 91 0\n",
+                               "0 steer 45\n",
+                               "0 steer 45 9 1\n",
+                               "0 weather\n",
+                               "0 weather foul\n",
+                               "0 weather fair 1\n",
+                               "0 seastate\n",
+                               "0 seastate 9\n",
+                               "0 seastate -1\n",
+                               "0 seastate 2.5\n",
+                               "0 seastate 1 1\n"};
+    freopen("/dev/null", "w", stderr);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct script s;
+        if (read_text(&s, bad[i]) == 0) {
+            fail_msg("accepted: %s", bad[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_press_goes_down_and_comes_up_a_tenth_of_a_second_later),
+        cmocka_unit_test(a_long_press_overlaps_what_the_next_lines_do),
+        cmocka_unit_test(a_patch_takes_the_effects_behind_it_and_no_other_word),
+        cmocka_unit_test(a_slew_lasts_as_long_as_it_says),
+        cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
+        cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
+        cmocka_unit_test(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector),
+        cmocka_unit_test(a_steerpoint_is_a_place_or_off),
+        cmocka_unit_test(rain_and_jammers_add_up_until_the_weather_is_fair),
+        cmocka_unit_test(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for),
+        cmocka_unit_test(commands_that_are_none_are_refused),
+    };
+    return cmocka_run_group_tests_name("script", tests, NULL, NULL);
+}

@@ -1,0 +1,157 @@
+/* Laws of reflection against the textbooks. */
+#include "tracer/reflect.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+static double rad(double deg)
+{
+    return deg * pi / 180;
+}
+
+/* Air to glass of index 1.5: 4 % straight on; at 45 degrees 9.20 % across the plane of incidence
+ * and 0.85 % in it; none of the latter at Brewster's 56.31 degrees; all of both at 90 (Hecht,
+ * Optics, 4.6). */
+static void fresnel_is_that_of_glass(void **state)
+{
+    (void)state;
+    const double e = 1.5 * 1.5;
+    assert_true(fabs(cabs(reflect_fresnel_hh(e, 0)) - 0.2) < 1e-12);
+    assert_true(fabs(cabs(reflect_fresnel_vv(e, 0)) - 0.2) < 1e-12);
+    assert_true(fabs(pow(cabs(reflect_fresnel_hh(e, rad(45))), 2) - 0.0920) < 5e-5);
+    assert_true(fabs(pow(cabs(reflect_fresnel_vv(e, rad(45))), 2) - 0.0085) < 5e-5);
+    assert_true(cabs(reflect_fresnel_vv(e, atan(1.5))) < 1e-12);
+    assert_true(fabs(cabs(reflect_fresnel_hh(e, rad(90))) - 1) < 1e-12);
+    assert_true(fabs(cabs(reflect_fresnel_vv(e, rad(90))) - 1) < 1e-12);
+}
+
+/* A good conductor: -1 for hh and +1 for vv at any angle but the very flattest. */
+static void fresnel_of_metal_reflects_all(void **state)
+{
+    (void)state;
+    const double complex metal = 1 - 1e9 * I;
+    for (double t = 0; t < 85; t += 5) {
+        assert_true(cabs(reflect_fresnel_hh(metal, rad(t)) + 1) < 1e-4);
+        assert_true(cabs(reflect_fresnel_vv(metal, rad(t)) - 1) < 1e-3);
+    }
+}
+
+/* Ulaby, Moore, Fung, volume II, eq. 12.90: Bragg's coefficients of backscatter. The product that
+ * paper B prints as eq. (9) fails here. */
+static void backscatter_has_braggs_coefficients(void **state)
+{
+    (void)state;
+    const double complex e = 6 - 1 * I;
+    for (double t = 0; t < 90; t += 5) {
+        const double s2 = pow(sin(rad(t)), 2), c = cos(rad(t));
+        const double complex q = csqrt(e - s2);
+        const double complex hh = (e - 1) / cpow(c + q, 2);
+        const double complex vv = (e - 1) * (s2 - e * (1 + s2)) / cpow(e * c + q, 2);
+        assert_true(cabs(reflect_beta_hh(e, rad(t), rad(t), -1) + hh) < 1e-12);
+        assert_true(cabs(reflect_beta_vv(e, rad(t), rad(t), -1) - vv) < 1e-9 * cabs(vv));
+    }
+    assert_true(fabs(cabs(reflect_beta_vv(e, 0, 0, -1)) - cabs(reflect_beta_hh(e, 0, 0, -1))) <
+                1e-12);
+}
+
+static void way_out_and_way_back_may_be_exchanged(void **state)
+{
+    (void)state;
+    const double complex e = 4 - 0.5 * I;
+    for (double t = 5; t < 90; t += 10) {
+        assert_true(cabs(reflect_beta_vv(e, rad(t), rad(30), 0.3) -
+                         reflect_beta_vv(e, rad(30), rad(t), 0.3)) < 1e-12);
+        assert_true(cabs(reflect_beta_hh(e, rad(t), rad(30), 0.3) -
+                         reflect_beta_hh(e, rad(30), rad(t), 0.3)) < 1e-12);
+    }
+}
+
+static const struct reflect_material soil = {"soil", 6, 1, 0.001, 0.01, 0.4, 0.02, 0.3, 1};
+
+/* Ulaby's sigma0 of a Gaussian surface, 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
+static void small_perturbation_is_the_textbooks_in_backscatter(void **state)
+{
+    (void)state;
+    const double wavelength = 0.03, k = 2 * pi / wavelength;
+    const double complex e = 6 - 1 * I;
+    for (double t = 0; t < 85; t += 5) {
+        const double s = sin(rad(t)), c = cos(rad(t));
+        const double complex q = csqrt(e - s * s);
+        const double complex alpha = (e - 1) * (s * s - e * (1 + s * s)) / cpow(e * c + q, 2);
+        const double expected = 4 * pow(k, 4) * 1e-6 * 1e-4 * pow(c, 4) * pow(cabs(alpha), 2) *
+                                exp(-pow(k * 0.01 * s, 2));
+        const double found = reflect_spm_sigma0(&soil, wavelength, true, rad(t), rad(t), 0);
+        assert_true(fabs(found - expected) < 1e-9 * expected);
+    }
+}
+
+/* The azimuth is found again from the three angles of a record. */
+static void the_turn_gives_back_the_azimuth(void **state)
+{
+    (void)state;
+    for (double t1 = 5; t1 < 90; t1 += 20) {
+        for (double t3 = 0; t3 <= 180; t3 += 20) {
+            const double a = rad(t1), b = rad(35), c = rad(t3);
+            /* Source at azimuth pi from ahead, echo at t3. */
+            const double cos_turn = cos(a) * cos(b) - sin(a) * sin(b) * cos(c);
+            assert_true(fabs(reflect_cos_theta3(a, b, acos(cos_turn)) - cos(c)) < 1e-6);
+        }
+    }
+    assert_true(reflect_cos_theta3(0, 0, 0) == -1);
+}
+
+/* Figures 5 and 6: F_s in the specular direction at every incidence; diffuse alike to all sides. */
+static void raysar_is_as_paper_b_describes_it(void **state)
+{
+    (void)state;
+    for (double t = 0; t < 90; t += 10) {
+        assert_true(fabs(reflect_raysar_specular(&soil, rad(t), rad(t), rad(2 * t)) - 0.4) < 1e-9);
+        assert_true(fabs(reflect_raysar_diffuse(&soil, rad(t)) - 0.3 * cos(rad(t))) < 1e-12);
+    }
+    /* Backscatter at 30 degrees: N.H = cos 30, to the power 1 / 0.02. */
+    assert_true(fabs(reflect_raysar_specular(&soil, rad(30), rad(30), 0) -
+                     0.4 * pow(cos(rad(30)), 50)) < 1e-9);
+}
+
+static void every_law_gives_shares_between_none_and_all(void **state)
+{
+    (void)state;
+    struct reflect_law law = {.wavelength_m = 0.03, .materials = {soil}};
+    for (int kind = 0; kind < REFLECT_KINDS; kind++) {
+        law.kind = (enum reflect_kind)kind;
+        for (double t1 = 0; t1 <= 90; t1 += 7.5) {
+            for (double t2 = 0; t2 <= 180; t2 += 7.5) {
+                for (double t4 = fabs(t1 - t2); t4 <= fmin(t1 + t2, 180); t4 += 7.5) {
+                    const struct trace_record r = {.incidence_rad = (float)fmin(rad(t1), pi / 2),
+                                                   .echo_rad = (float)rad(t2),
+                                                   .turn_rad = (float)rad(t4)};
+                    const struct reflect_shares s = reflect_record(&law, &r);
+                    assert_true(s.specular >= 0 && s.specular <= 1);
+                    assert_true(s.back >= 0 && s.back <= 1);
+                }
+            }
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fresnel_is_that_of_glass),
+        cmocka_unit_test(fresnel_of_metal_reflects_all),
+        cmocka_unit_test(backscatter_has_braggs_coefficients),
+        cmocka_unit_test(way_out_and_way_back_may_be_exchanged),
+        cmocka_unit_test(small_perturbation_is_the_textbooks_in_backscatter),
+        cmocka_unit_test(the_turn_gives_back_the_azimuth),
+        cmocka_unit_test(raysar_is_as_paper_b_describes_it),
+        cmocka_unit_test(every_law_gives_shares_between_none_and_all),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
