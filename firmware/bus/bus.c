@@ -1,6 +1,6 @@
 #include "lm/bus.h"
 
-#include "lm/packed.h"
+#include "lm/bus_bitfield.h"
 
 /* A BAM is 360 / 2^32 deg, hence 2^31 / 180. No product passes 2^62: 360 deg * 2^31 is 2^40,
  * 1500 m/s * 2^20 * 1000 is 2^41. */
@@ -83,13 +83,13 @@ static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
     uint32_t count = 0;
     bool has_row = false;
     for (uint32_t i = 0; i < p->row_count && count < LM_BUS_EVENTS; i++) {
-        if (!lm_packed_is_row(&p->rows[i], frame)) {
+        if (!lm_bus_bitfield_is_row(&p->rows[i], frame)) {
             continue;
         }
         has_row = true;
         enum lm_bus_outcome outcome = LM_BUS_NO_DATA;
         if ((frame->id & p->invalid_mask) == 0) {
-            outcome = lm_packed_read(&p->rows[i], frame, &events[count]);
+            outcome = lm_bus_bitfield_read(&p->rows[i], frame, &events[count]);
         }
         b->count.outcome[outcome]++;
         if (outcome == LM_BUS_VALUE) {

@@ -121,7 +121,7 @@ struct lm_bus_row {
 
 enum lm_bus_framing {
     LM_BUS_CANAEROSPACE, /* lm/canas.h */
-    LM_BUS_PACKED        /* 29-bit identifiers, numbers somewhere in the data: lm/packed.h */
+    LM_BUS_PACKED        /* 29-bit identifiers, numbers somewhere in the data: lm/bus_bitfield.h */
 };
 
 struct lm_bus_profile {

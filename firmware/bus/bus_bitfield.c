@@ -1,4 +1,4 @@
-#include "lm/packed.h"
+#include "lm/bus_bitfield.h"
 
 #include "fx/float_bits.h"
 
@@ -71,13 +71,14 @@ static uint32_t step_of(const struct lm_bus_packing *p, uint64_t raw)
     return up > -31 ? (uint32_t)p->multiplier >> -up : 0;
 }
 
-bool lm_packed_is_row(const struct lm_bus_row *row, const struct lm_can_frame *frame)
+bool lm_bus_bitfield_is_row(const struct lm_bus_row *row, const struct lm_can_frame *frame)
 {
     return frame->is_extended && (frame->id & row->packing.mask) == row->id;
 }
 
-enum lm_bus_outcome lm_packed_read(const struct lm_bus_row *row, const struct lm_can_frame *frame,
-                                   struct lm_bus_event *event)
+enum lm_bus_outcome lm_bus_bitfield_read(const struct lm_bus_row *row,
+                                         const struct lm_can_frame *frame,
+                                         struct lm_bus_event *event)
 {
     const struct lm_bus_packing *p = &row->packing;
     const enum lm_bus_field field = (enum lm_bus_field)row->field;
