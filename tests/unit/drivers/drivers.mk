@@ -2,5 +2,5 @@
 DRIVER_TESTS := $(addprefix $(O)/bin/tests/unit/drivers/,test_can_log test_can_socket)
 TESTS += $(DRIVER_TESTS)
 $(DRIVER_TESTS): $(O)/bin/tests/unit/drivers/test_%: $(O)/tests/unit/drivers/test_%.o $(O)/drivers/can/%.o \
-    $(TEST_SUPPORT) $(O)/firmware/bus/canas.o $(O)/firmware/bus/bus.o $(O)/firmware/bus/bus_profiles.o $(O)/firmware/bus/bus_generic.o $(O)/firmware/bus/bus_bitfield.o $(LIB_fixed) $(LIB_hs)
+    $(TEST_SUPPORT) $(LIB_firmware) $(LIB_fixed) $(LIB_hs)
 $(DRIVER_TESTS): LDLIBS := -lcmocka -lz $(call pkgs,libs,libpng)

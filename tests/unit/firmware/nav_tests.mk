@@ -1,13 +1,14 @@
-# The bus and the ownship. Linked from single objects, so that they build whatever else is being changed.
+# The bus and the ownship. Linked with their rooms alone, so that they build whatever else is being changed.
+BUS_SRC   := $(wildcard firmware/bus/*.c) firmware/base/environment.c firmware/base/geo.c
 BUS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_canas test_canas_service test_nav test_weather_bus)
 TESTS += $(BUS_TESTS)
-$(BUS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(TEST_SUPPORT) $(O)/firmware/bus/canas.o $(O)/firmware/bus/bus.o $(O)/firmware/bus/bus_profiles.o $(O)/firmware/bus/bus_generic.o $(O)/firmware/bus/bus_bitfield.o $(O)/firmware/bus/canas_service.o $(O)/firmware/bus/nav.o $(O)/firmware/bus/weather_bus.o $(O)/firmware/base/environment.o $(O)/firmware/base/geo.o \
+$(BUS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(TEST_SUPPORT) $(call objs,$(BUS_SRC)) \
     $(O)/drivers/can/can_log.o $(LIB_fixed) $(LIB_hs)
 $(BUS_TESTS): LDLIBS := -lcmocka -lz $(call pkgs,libs,proj libpng)
 
 # The same sources once more under the address and undefined-behaviour sanitizers, which stop at the first finding.
 BUS_FUZZ     := $(O)/bin/tests/unit/firmware/test_bus_fuzz
-BUS_FUZZ_SRC := tests/unit/firmware/test_bus_fuzz.c firmware/bus/canas.c firmware/bus/bus.c firmware/bus/bus_profiles.c firmware/bus/bus_generic.c firmware/bus/bus_bitfield.c firmware/bus/canas_service.c firmware/bus/nav.c firmware/bus/weather_bus.c firmware/base/environment.c firmware/base/geo.c \
+BUS_FUZZ_SRC := tests/unit/firmware/test_bus_fuzz.c $(BUS_SRC) \
     drivers/can/can_log.c $(wildcard fixed/src/*.c) host-sim/lib/rng.c
 TESTS += $(BUS_FUZZ)
 $(BUS_FUZZ): $(BUS_FUZZ_SRC) $(wildcard tests/unit/firmware/bus_frames.h firmware/*/include/lm/*.h drivers/include/drv/*.h)

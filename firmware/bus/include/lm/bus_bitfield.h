@@ -3,6 +3,7 @@
 #ifndef LM_BUS_BITFIELD_H
 #define LM_BUS_BITFIELD_H
 
+#include "lm/bus_event.h"
 #include "lm/bus_profile.h"
 #include "lm/port.h"
 

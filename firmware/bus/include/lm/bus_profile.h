@@ -7,79 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/bus_fields.h"
 #include "lm/config.h"
-
-/* What the display knows about the aircraft. Signs are those of ISO 1151, as CANaerospace
- * prescribes: nose up, right wing down and nose right are positive. */
-enum lm_bus_field {
-    LM_BUS_LATITUDE,
-    LM_BUS_LONGITUDE,
-    LM_BUS_ELLIPSOID_HEIGHT,
-    LM_BUS_GROUND_SPEED,
-    LM_BUS_TRUE_TRACK,
-    LM_BUS_PITCH,
-    LM_BUS_ROLL,
-    LM_BUS_HEADING, /* true or magnetic: CANaerospace does not say */
-    LM_BUS_TRUE_HEADING,
-    LM_BUS_BARO_ALTITUDE, /* corrected by the altimeter setting, about above mean sea level */
-    LM_BUS_TRUE_ALTITUDE, /* above mean sea level */
-    LM_BUS_ALTITUDE_RATE,
-    LM_BUS_EAST_VELOCITY,
-    LM_BUS_NORTH_VELOCITY,
-    LM_BUS_UP_VELOCITY,
-    LM_BUS_PITCH_RATE,
-    LM_BUS_YAW_RATE,
-    LM_BUS_WAYPOINT_LATITUDE, /* of the active waypoint: where it is to go */
-    LM_BUS_WAYPOINT_LONGITUDE,
-    LM_BUS_UTC,
-    LM_BUS_NAV_FIELDS, /* those above are the aircraft's: lm/nav.h */
-
-    LM_BUS_RAIN_LATITUDE = LM_BUS_NAV_FIELDS, /* of a circle's centre: lm/weather_bus.h */
-    LM_BUS_RAIN_LONGITUDE,
-    LM_BUS_RAIN_RADIUS,
-    LM_BUS_RAIN_RATE,
-    LM_BUS_JAMMER_LATITUDE,
-    LM_BUS_JAMMER_LONGITUDE,
-    LM_BUS_JAMMER_RATIO,  /* to the noise, on the axis at ten nautical miles */
-    LM_BUS_WEATHER_CLEAR, /* which are taken away: bits 0..3 rain, 4..7 jammers */
-    LM_BUS_FIELDS
-};
-
-/* What the number of a value means. */
-enum lm_bus_unit {
-    LM_BUS_BAM, /* angle: cast to fx_bam_t, or keep it signed */
-    LM_BUS_BAM_A_SECOND,
-    LM_BUS_Q6,      /* metres * 64 */
-    LM_BUS_MM_S,    /* millimetres a second */
-    LM_BUS_SECONDS, /* since midnight; 86,400 is a leap second */
-    LM_BUS_MM_H,    /* millimetres an hour */
-    LM_BUS_DB_Q8,   /* dB * 256 */
-    LM_BUS_BITS,    /* each for itself */
-    LM_BUS_UNITS
-};
-
-/* Inside the decoders a number is in the unit of the bus with `frac_bits` binary places; the value
- * is that times `multiplier` / `divisor`. */
-struct lm_bus_scale {
-    const char *bus_unit; /* "deg" */
-    const char *kept_as;  /* "BAM" */
-    int32_t multiplier, divisor;
-    uint8_t frac_bits;
-};
-
-extern const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS];
-
-struct lm_bus_field_info {
-    const char *name; /* as text tables call it: "true-heading" */
-    uint8_t unit;     /* enum lm_bus_unit */
-};
-
-extern const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS];
-
-static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field)
-{
-    return &lm_bus_scales[lm_bus_fields[field].unit];
-}
 
 /* Where a number lies in a frame of a packed profile, and what it means. */
 struct lm_bus_bits {
@@ -161,27 +90,5 @@ enum lm_bus_outcome {
     LM_BUS_OUT_OF_RANGE,
     LM_BUS_OUTCOMES
 };
-
-struct lm_bus_event {
-    int32_t value;    /* in the field's unit */
-    uint32_t step;    /* between neighbouring values of the type it came in; 0: less than 1 */
-    uint8_t row;      /* of the profile */
-    uint8_t channel;  /* redundancy channel; the lower is preferred */
-    uint8_t node;     /* of the sender; 0 when the frame does not tell, */
-    uint8_t service;  /* service code, likewise: of weather, which circle or jammer */
-    uint8_t code;     /* message code, likewise: of weather, which set */
-    uint64_t time_us; /* of arrival; for a DOUBLE that of the half that came first, when the value
-                         existed already */
-};
-
-/* The most values that one frame may have: a packed frame has more than one. */
-enum { LM_BUS_EVENTS = 8 };
-
-/* `amount` of the unit of the bus as counts of the field, to the nearest; an angle is not wrapped.
- */
-int64_t lm_bus_counts(enum lm_bus_field field, int32_t amount);
-
-/* n / divisor to the nearest, halves away from zero; divisor > 0 and |n| + divisor below 2^63. */
-int64_t lm_bus_divide(int64_t n, int64_t divisor);
 
 #endif

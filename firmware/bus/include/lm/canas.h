@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/bus_event.h"
 #include "lm/bus_profile.h"
 #include "lm/port.h"
 

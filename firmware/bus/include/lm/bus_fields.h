@@ -1,0 +1,90 @@
+/* Bus fields: what the display takes from the avionics bus, and the unit in which it keeps each.
+ *
+ * A field is a quantity (latitude, roll, rain rate). How it travels is the profile's business
+ * (lm/bus_profile.h); what it is used for is that of lm/nav.h and lm/weather_bus.h. */
+#ifndef LM_BUS_FIELDS_H
+#define LM_BUS_FIELDS_H
+
+#include <stdint.h>
+
+/* Signs are those of ISO 1151, as CANaerospace prescribes: nose up, right wing down and nose right
+ * are positive. The number of a field is written nowhere outside the program, except in generated
+ * profiles, which are made again when it changes. */
+enum lm_bus_field {
+    LM_BUS_LATITUDE,
+    LM_BUS_LONGITUDE,
+    LM_BUS_ELLIPSOID_HEIGHT,
+    LM_BUS_GROUND_SPEED,
+    LM_BUS_TRUE_TRACK,
+    LM_BUS_PITCH,
+    LM_BUS_ROLL,
+    LM_BUS_HEADING, /* true or magnetic: CANaerospace does not say */
+    LM_BUS_TRUE_HEADING,
+    LM_BUS_BARO_ALTITUDE, /* corrected by the altimeter setting: about above mean sea level */
+    LM_BUS_TRUE_ALTITUDE, /* above mean sea level */
+    LM_BUS_ALTITUDE_RATE,
+    LM_BUS_EAST_VELOCITY,
+    LM_BUS_NORTH_VELOCITY,
+    LM_BUS_UP_VELOCITY,
+    LM_BUS_PITCH_RATE,
+    LM_BUS_YAW_RATE,
+    LM_BUS_WAYPOINT_LATITUDE, /* of the active waypoint: where it is to go */
+    LM_BUS_WAYPOINT_LONGITUDE,
+    LM_BUS_UTC,
+    LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h, those below to lm/weather_bus.h */
+
+    LM_BUS_RAIN_LATITUDE = LM_BUS_NAV_FIELDS, /* of the centre of a circle of rain */
+    LM_BUS_RAIN_LONGITUDE,
+    LM_BUS_RAIN_RADIUS,
+    LM_BUS_RAIN_RATE,
+    LM_BUS_JAMMER_LATITUDE,
+    LM_BUS_JAMMER_LONGITUDE,
+    LM_BUS_JAMMER_RATIO,  /* jammer to noise, on the antenna's axis at ten nautical miles */
+    LM_BUS_WEATHER_CLEAR, /* takes weather away: bits 0..3 circles of rain, bits 4..7 jammers */
+    LM_BUS_FIELDS
+};
+
+/* Units in which values are kept. */
+enum lm_bus_unit {
+    LM_BUS_BAM,          /* angle, 2^32 a turn: cast to fx_bam_t, or keep it signed */
+    LM_BUS_BAM_A_SECOND, /* rate of an angle, signed */
+    LM_BUS_Q6,           /* metres * 64 */
+    LM_BUS_MM_S,         /* millimetres a second */
+    LM_BUS_SECONDS,      /* since midnight; 86,400 is a leap second */
+    LM_BUS_MM_H,         /* millimetres an hour */
+    LM_BUS_DB_Q8,        /* dB * 256 */
+    LM_BUS_BITS,         /* a set of bits */
+    LM_BUS_UNITS
+};
+
+/* From the unit on the bus to the unit kept. A decoder holds a number in the unit of the bus with
+ * `frac_bits` binary places; the value kept is that number * multiplier / divisor. */
+struct lm_bus_scale {
+    const char *bus_unit; /* on the bus: "deg" */
+    const char *kept_as;  /* in words, for documents: "BAM" */
+    int32_t multiplier, divisor;
+    uint8_t frac_bits;
+};
+
+extern const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS];
+
+struct lm_bus_field_info {
+    const char *name; /* its word in text tables: "true-heading" */
+    uint8_t unit;     /* enum lm_bus_unit */
+};
+
+extern const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS];
+
+static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field)
+{
+    return &lm_bus_scales[lm_bus_fields[field].unit];
+}
+
+/* Convert `amount`, in the field's unit on the bus, to the unit kept, to the nearest. An angle is
+ * not wrapped: 360 degrees give 2^32. */
+int64_t lm_bus_counts(enum lm_bus_field field, int32_t amount);
+
+/* n / divisor to the nearest, halves away from zero. divisor > 0, and |n| + divisor below 2^63. */
+int64_t lm_bus_divide(int64_t n, int64_t divisor);
+
+#endif
