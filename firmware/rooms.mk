@@ -1,7 +1,7 @@
 # The rooms of the firmware, from the ground up, and which others each one may see. A room is compiled with its
 # own headers and the public headers of the rooms named here, and with no others: any other include is "No such
 # file or directory". `make rooms` prints these arrows beside those that the sources use.
-ROOMS        := base table map clutter targets radar bus page display unit
+ROOMS        := base table map clutter targets radar bus nav page display unit
 SEES_base    :=
 SEES_table   := base
 SEES_map     := base
@@ -9,9 +9,10 @@ SEES_clutter := table map base
 SEES_targets := clutter table map base
 SEES_radar   := targets clutter table map base
 SEES_bus     := base
+SEES_nav     := bus base
 SEES_page    := table base
 SEES_display := page table base
-SEES_unit    := display page bus radar targets clutter table map base
+SEES_unit    := display page nav bus radar targets clutter table map base
 SEES_drivers := base bus
 
 ROOM_HEADERS  = $(patsubst %,-Ifirmware/%/include,$(1))

@@ -19,6 +19,16 @@ static uint32_t channel_of(uint32_t id, uint32_t mask)
     return channel;
 }
 
+/* What the profile says of a value. */
+static void add_row(struct lm_bus_event *event, const struct lm_bus_row *row)
+{
+    event->field = row->field;
+    event->priority = row->priority;
+    event->period_us = row->period_us;
+    event->stale_ms = row->stale_ms;
+    event->dead_ms = row->dead_ms;
+}
+
 /* A number of each row that takes the frame. */
 static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
                             struct lm_bus_event events[LM_BUS_EVENTS])
@@ -40,6 +50,7 @@ static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
             events[count].row = (uint8_t)i;
             events[count].channel = (uint8_t)channel_of(frame->id, p->channel_mask);
             events[count].node = events[count].service = events[count].code = 0;
+            add_row(&events[count], &p->rows[i]);
             count++;
         }
     }
@@ -62,5 +73,9 @@ uint32_t lm_bus_take(struct lm_bus *b, const struct lm_can_frame *frame,
         return take_packed(b, frame, events);
     }
     b->count.outcome[outcome]++;
-    return outcome == LM_BUS_VALUE;
+    if (outcome != LM_BUS_VALUE) {
+        return 0;
+    }
+    add_row(&events[0], &b->profile->rows[events[0].row]);
+    return 1;
 }

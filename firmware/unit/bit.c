@@ -44,7 +44,7 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "BUS", u->count.bus_frames, "BUS ERR", u->count.bus_errors);
         break;
     case 3:
-        add_pair(t, "BUS BAD", bad_frames(&u->nav.bus), "TORN", u->nav.bus.canas.count.torn_pairs);
+        add_pair(t, "BUS BAD", bad_frames(&u->bus), "TORN", u->bus.canas.count.torn_pairs);
         break;
     case 4:
         add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);

@@ -54,7 +54,8 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     u->frame = lm_frame_of_display(display->width_px, display->height_px);
     memset(board->plane, 0, (size_t)display->width_px * display->height_px);
     const struct lm_bus_profile *bus = board->bus_profile ? board->bus_profile : &lm_bus_canas17;
-    lm_nav_init(&u->nav, bus);
+    lm_bus_init(&u->bus, bus);
+    lm_nav_init(&u->nav);
     lm_canas_service_init(&u->service, bus->framing == LM_BUS_CANAEROSPACE ? board->bus_node : 0,
                           board->hardware_revision, LM_VERSION_NUMBER);
     u->commanded.sea_state = u->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
@@ -74,9 +75,10 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
 static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
 {
     struct lm_bus_event events[LM_BUS_EVENTS];
-    const uint32_t count = lm_nav_take(&u->nav, frame, events);
+    const uint32_t count = lm_bus_take(&u->bus, frame, events);
     for (uint32_t i = 0; i < count; i++) {
-        lm_weather_bus_take(&u->weather_bus, u->nav.bus.profile, &events[i]);
+        lm_nav_take(&u->nav, &events[i]);
+        lm_weather_bus_take(&u->weather_bus, &events[i]);
     }
     lm_canas_service_take(&u->service, frame);
 }

@@ -2,6 +2,7 @@
  * 16 bytes: selector, flags, length, step of time, identifier, data. What is left over of the size
  * chooses the profile. */
 #include "fuzz.h"
+#include "lm/bus.h"
 #include "lm/canas_service.h"
 #include "lm/nav.h"
 #include "lm/status.h"
@@ -19,12 +20,12 @@ static void check_ownship(const struct lm_ownship *o)
     FUZZ_ASSERT(o->utc_s >= 0 && o->utc_s < 86400);
 }
 
-static void check_weather(struct lm_weather_bus *w, const struct lm_bus_profile *profile,
-                          const struct lm_bus_event *events, uint32_t count, uint64_t now_us)
+static void check_weather(struct lm_weather_bus *w, const struct lm_bus_event *events,
+                          uint32_t count, uint64_t now_us)
 {
     struct lm_environment e = {0};
     for (uint32_t i = 0; i < count; i++) {
-        lm_weather_bus_take(w, profile, &events[i]);
+        lm_weather_bus_take(w, &events[i]);
     }
     lm_weather_bus_at(w, now_us, &e);
     FUZZ_ASSERT(lm_environment_check(&e) == LM_OK);
@@ -75,9 +76,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                                             &lm_bus_generic, &lm_bus_canas17};
     const struct lm_bus_profile *profile = profiles[size % 4];
     struct fuzz_supply supply = {data, size};
+    struct lm_bus *bus = malloc(sizeof *bus);
     struct lm_nav *nav = malloc(sizeof *nav);
-    FUZZ_ASSERT(nav);
-    lm_nav_init(nav, profile);
+    FUZZ_ASSERT(bus && nav);
+    lm_bus_init(bus, profile);
+    lm_nav_init(nav);
     struct lm_weather_bus weather = {0};
     struct lm_canas_service service;
     lm_canas_service_init(&service, 20, 1, 0x12);
@@ -89,8 +92,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         const struct lm_can_frame frame = take_frame(&supply, profile, &now_us);
         struct lm_ownship ownship;
         struct lm_bus_event events[LM_BUS_EVENTS];
-        const uint32_t count = lm_nav_take(nav, &frame, events);
-        check_weather(&weather, profile, events, count, now_us);
+        const uint32_t count = lm_bus_take(bus, &frame, events);
+        for (uint32_t i = 0; i < count; i++) {
+            lm_nav_take(nav, &events[i]);
+        }
+        check_weather(&weather, events, count, now_us);
         lm_nav_at(nav, now_us + (frames & 7) * 100000u, &ownship);
         check_ownship(&ownship);
         lm_canas_service_take(&service, &frame);
@@ -99,11 +105,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         frames++;
     }
     for (int i = 0; i < LM_BUS_OUTCOMES; i++) {
-        sum += nav->bus.count.outcome[i];
+        sum += bus->count.outcome[i];
     }
-    FUZZ_ASSERT(nav->bus.count.frames == frames && sum >= frames);
+    FUZZ_ASSERT(bus->count.frames == frames && sum >= frames);
     FUZZ_ASSERT(sum == frames || profile->framing == LM_BUS_PACKED);
     FUZZ_ASSERT(sent.count == service.count.answered && sent.count <= frames);
     free(nav);
+    free(bus);
     return 0;
 }

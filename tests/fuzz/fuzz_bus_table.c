@@ -3,6 +3,7 @@
 #include "bus/print.h"
 #include "bus/table_text.h"
 #include "fuzz.h"
+#include "lm/bus.h"
 #include "lm/nav.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
@@ -11,9 +12,11 @@ const uint32_t fuzz_mutations = 8000;
 
 static void try_frames(const struct lm_bus_profile *profile)
 {
+    struct lm_bus *bus = malloc(sizeof *bus);
     struct lm_nav *nav = malloc(sizeof *nav);
-    FUZZ_ASSERT(nav);
-    lm_nav_init(nav, profile);
+    FUZZ_ASSERT(bus && nav);
+    lm_bus_init(bus, profile);
+    lm_nav_init(nav);
     struct lm_weather_bus weather = {0};
     const bool is_packed = profile->framing == LM_BUS_PACKED;
     const uint32_t kinds = is_packed ? 4 : 4 * LM_CANAS_TYPES;
@@ -31,9 +34,10 @@ static void try_frames(const struct lm_bus_profile *profile)
         }
         struct lm_ownship ownship;
         struct lm_bus_event events[LM_BUS_EVENTS];
-        const uint32_t count = lm_nav_take(nav, &f, events);
+        const uint32_t count = lm_bus_take(bus, &f, events);
         for (uint32_t k = 0; k < count; k++) {
-            lm_weather_bus_take(&weather, profile, &events[k]);
+            lm_nav_take(nav, &events[k]);
+            lm_weather_bus_take(&weather, &events[k]);
         }
         struct lm_environment e = {0};
         lm_weather_bus_at(&weather, f.time_us, &e);
@@ -41,6 +45,7 @@ static void try_frames(const struct lm_bus_profile *profile)
         lm_nav_at(nav, f.time_us + i % 7 * 1000000, &ownship);
     }
     free(nav);
+    free(bus);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -199,7 +199,7 @@ static void print_summary(const struct sim *s)
     printf("bus: %u frames, %u malformed, %u errors; position jumps %u; commands refused %u\n",
            u->count.bus_frames, s->log_file ? s->log.count.malformed : s->socket.count.malformed,
            u->count.bus_errors, u->nav.position_jumps, u->count.commands_refused);
-    const struct lm_bus *bus = &u->nav.bus;
+    const struct lm_bus *bus = &u->bus;
     printf(
         "     %u values, %u frames of other use; refused: %u length, %u node, %u type, %u no "
         "number, %u range\n",

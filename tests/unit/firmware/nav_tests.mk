@@ -1,5 +1,5 @@
 # The bus and the ownship. Linked with their rooms alone, so that they build whatever else is being changed.
-BUS_SRC   := $(wildcard firmware/bus/*.c) firmware/base/environment.c firmware/base/geo.c
+BUS_SRC   := $(wildcard firmware/bus/*.c firmware/nav/*.c) firmware/base/environment.c firmware/base/geo.c
 BUS_TESTS := $(addprefix $(O)/bin/tests/unit/firmware/,test_canas test_canas_service test_nav test_weather_bus)
 TESTS += $(BUS_TESTS)
 $(BUS_TESTS): $(O)/bin/tests/%: $(O)/tests/%.o $(TEST_SUPPORT) $(call objs,$(BUS_SRC)) \

@@ -13,31 +13,45 @@
 
 static const double semi_major = 6378137.0, flattening = 1 / 298.257223563;
 
-static void hear(struct lm_nav *nav, struct lm_can_frame frame)
+/* The ownship and the decoder that it hears. */
+struct ear {
+    struct lm_bus bus;
+    struct lm_nav nav;
+};
+
+static void open_ear(struct ear *ear)
 {
-    struct lm_bus_event events[LM_BUS_EVENTS];
-    lm_nav_take(nav, &frame, events);
+    lm_bus_init(&ear->bus, &lm_bus_canas17);
+    lm_nav_init(&ear->nav);
 }
 
-static void hear_float(struct lm_nav *nav, enum lm_bus_field field, double value, uint64_t time_us)
+static void hear(struct ear *ear, struct lm_can_frame frame)
 {
-    hear(nav, bus_float(field, value, time_us));
+    struct lm_bus_event events[LM_BUS_EVENTS];
+    const uint32_t count = lm_bus_take(&ear->bus, &frame, events);
+    for (uint32_t i = 0; i < count; i++) {
+        lm_nav_take(&ear->nav, &events[i]);
+    }
+}
+
+static void hear_float(struct ear *ear, enum lm_bus_field field, double value, uint64_t time_us)
+{
+    hear(ear, bus_float(field, value, time_us));
 }
 
 /* A coordinate as a DOUBLE, both halves at the same time. */
-static void hear_double(struct lm_nav *nav, enum lm_bus_field field, double degrees,
-                        uint64_t time_us)
+static void hear_double(struct ear *ear, enum lm_bus_field field, double degrees, uint64_t time_us)
 {
     const uint32_t id = lm_bus_canas17.rows[field].id;
     const uint64_t bits = bus_double_bits(degrees);
-    hear(nav, bus_frame(id, LM_CANAS_DOUBLEH, 0, (uint32_t)(bits >> 32), time_us));
-    hear(nav, bus_frame(id, LM_CANAS_DOUBLEL, 1, (uint32_t)bits, time_us));
+    hear(ear, bus_frame(id, LM_CANAS_DOUBLEH, 0, (uint32_t)(bits >> 32), time_us));
+    hear(ear, bus_frame(id, LM_CANAS_DOUBLEL, 1, (uint32_t)bits, time_us));
 }
 
-static struct lm_ownship at(const struct lm_nav *nav, uint64_t now_us)
+static struct lm_ownship at(const struct ear *ear, uint64_t now_us)
 {
     struct lm_ownship ownship;
-    lm_nav_at(nav, now_us, &ownship);
+    lm_nav_at(&ear->nav, now_us, &ownship);
     return ownship;
 }
 
@@ -84,15 +98,15 @@ static double metres_between(double latitude_a, double longitude_a, double latit
  * rounded. */
 static struct lm_ownship fly_in_firmware(struct course *c, uint64_t age_us)
 {
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     const uint64_t start_us = 5000000;
-    hear_double(&nav, LM_BUS_LATITUDE, c->latitude, start_us);
-    hear_double(&nav, LM_BUS_LONGITUDE, c->longitude, start_us);
-    hear_float(&nav, LM_BUS_NORTH_VELOCITY, c->north_m_s, start_us);
-    hear_float(&nav, LM_BUS_EAST_VELOCITY, c->east_m_s, start_us);
-    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, c->height_m, start_us);
-    const struct lm_ownship ownship = at(&nav, start_us + age_us);
+    hear_double(&ear, LM_BUS_LATITUDE, c->latitude, start_us);
+    hear_double(&ear, LM_BUS_LONGITUDE, c->longitude, start_us);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, c->north_m_s, start_us);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, c->east_m_s, start_us);
+    hear_float(&ear, LM_BUS_ELLIPSOID_HEIGHT, c->height_m, start_us);
+    const struct lm_ownship ownship = at(&ear, start_us + age_us);
     c->north_m_s = ownship.velocity_north_mm_s / 1000.0;
     c->east_m_s = ownship.velocity_east_mm_s / 1000.0;
     return ownship;
@@ -160,13 +174,13 @@ static void two_seconds_are_within_17_cm_of_the_geodesic(void **state)
 static void each_coordinate_moves_from_its_own_time(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 200, 0);
-    hear_float(&nav, LM_BUS_EAST_VELOCITY, 100, 0);
-    hear_double(&nav, LM_BUS_LATITUDE, 0, 100000);
-    hear_double(&nav, LM_BUS_LONGITUDE, 0, 150000);
-    const struct lm_ownship o = at(&nav, 200000);
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, 200, 0);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, 100, 0);
+    hear_double(&ear, LM_BUS_LATITUDE, 0, 100000);
+    hear_double(&ear, LM_BUS_LONGITUDE, 0, 150000);
+    const struct lm_ownship o = at(&ear, 200000);
     /* 20 m on the meridian's radius 6,335,439 m, 5 m on the equator's. */
     const double count = 6.283185307179586 / 0x1p32;
     assert_true(fabs(o.latitude - 20 / 6335439.327 / count) < 1);
@@ -189,82 +203,82 @@ static void near_a_pole_the_position_stays_one(void **state)
 static void ground_speed_and_track_serve_when_there_is_no_velocity(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_float(&nav, LM_BUS_GROUND_SPEED, 100, 0);
-    assert_int_equal(at(&nav, 0).velocity_quality, LM_NAV_DEAD);
-    hear_float(&nav, LM_BUS_TRUE_TRACK, 120, 0);
-    struct lm_ownship o = at(&nav, 0);
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_GROUND_SPEED, 100, 0);
+    assert_int_equal(at(&ear, 0).velocity_quality, LM_NAV_DEAD);
+    hear_float(&ear, LM_BUS_TRUE_TRACK, 120, 0);
+    struct lm_ownship o = at(&ear, 0);
     assert_int_equal(o.velocity_quality, LM_NAV_GOOD);
     assert_in_range(o.velocity_north_mm_s + 50000, 0, 2);
     assert_in_range(o.velocity_east_mm_s - 86602, 0, 2);
     assert_in_range(o.ground_speed_mm_s - 99998, 0, 3);
     assert_true(fabs(hs_degrees(o.track) - 120) < 0.001);
-    hear_float(&nav, LM_BUS_NORTH_VELOCITY, -30, 1000000);
-    hear_float(&nav, LM_BUS_EAST_VELOCITY, -40, 1000000);
-    o = at(&nav, 1000000);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, -30, 1000000);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, -40, 1000000);
+    o = at(&ear, 1000000);
     assert_int_equal(o.velocity_north_mm_s, -30000);
     assert_int_equal(o.ground_speed_mm_s, 50000);
     assert_true(fabs(hs_degrees(o.track) - (atan2(-40, -30) * 57.29577951308232)) < 1e-5);
     /* Stale is not yet dead. */
-    hear_float(&nav, LM_BUS_GROUND_SPEED, 100, 3000000);
-    hear_float(&nav, LM_BUS_TRUE_TRACK, 0, 3000000);
-    assert_int_equal(at(&nav, 3000000).velocity_north_mm_s, -30000);
-    assert_int_equal(at(&nav, 3000000).velocity_quality, LM_NAV_STALE);
-    assert_int_equal(at(&nav, 3000001).velocity_north_mm_s, 100000);
+    hear_float(&ear, LM_BUS_GROUND_SPEED, 100, 3000000);
+    hear_float(&ear, LM_BUS_TRUE_TRACK, 0, 3000000);
+    assert_int_equal(at(&ear, 3000000).velocity_north_mm_s, -30000);
+    assert_int_equal(at(&ear, 3000000).velocity_quality, LM_NAV_STALE);
+    assert_int_equal(at(&ear, 3000001).velocity_north_mm_s, 100000);
 }
 
 static void the_best_height_that_lives_is_used_and_moved_on(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_float(&nav, LM_BUS_BARO_ALTITUDE, 1000, 0);
-    hear_float(&nav, LM_BUS_ALTITUDE_RATE, 10, 0);
-    struct lm_ownship o = at(&nav, 500000);
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_BARO_ALTITUDE, 1000, 0);
+    hear_float(&ear, LM_BUS_ALTITUDE_RATE, 10, 0);
+    struct lm_ownship o = at(&ear, 500000);
     assert_int_equal(o.height_source, LM_BUS_BARO_ALTITUDE);
     assert_int_equal(o.height_q6, 1005 * 64);
-    hear_float(&nav, LM_BUS_TRUE_ALTITUDE, 1100, 500000);
-    assert_int_equal(at(&nav, 500000).height_source, LM_BUS_TRUE_ALTITUDE);
-    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 600000);
-    hear_float(&nav, LM_BUS_UP_VELOCITY, -20, 600000);
-    o = at(&nav, 1100000);
+    hear_float(&ear, LM_BUS_TRUE_ALTITUDE, 1100, 500000);
+    assert_int_equal(at(&ear, 500000).height_source, LM_BUS_TRUE_ALTITUDE);
+    hear_float(&ear, LM_BUS_ELLIPSOID_HEIGHT, 1150, 600000);
+    hear_float(&ear, LM_BUS_UP_VELOCITY, -20, 600000);
+    o = at(&ear, 1100000);
     assert_int_equal(o.height_source, LM_BUS_ELLIPSOID_HEIGHT);
     assert_int_equal(o.height_q6, 1140 * 64);
-    hear_float(&nav, LM_BUS_TRUE_ALTITUDE, 1100, 5600000);
-    assert_int_equal(at(&nav, 5600000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
-    assert_int_equal(at(&nav, 5600000).height_quality, LM_NAV_STALE);
-    assert_int_equal(at(&nav, 5600001).height_source, LM_BUS_TRUE_ALTITUDE);
+    hear_float(&ear, LM_BUS_TRUE_ALTITUDE, 1100, 5600000);
+    assert_int_equal(at(&ear, 5600000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    assert_int_equal(at(&ear, 5600000).height_quality, LM_NAV_STALE);
+    assert_int_equal(at(&ear, 5600001).height_source, LM_BUS_TRUE_ALTITUDE);
 }
 
 static void the_barometric_height_comes_first_when_it_is_preferred_and_lives(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    nav.is_baro_preferred = true;
-    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 0);
-    assert_int_equal(at(&nav, 0).height_source, LM_BUS_ELLIPSOID_HEIGHT);
-    hear_float(&nav, LM_BUS_BARO_ALTITUDE, 1000, 0);
-    assert_int_equal(at(&nav, 0).height_source, LM_BUS_BARO_ALTITUDE);
-    hear_float(&nav, LM_BUS_ELLIPSOID_HEIGHT, 1150, 6000000);
-    assert_int_equal(at(&nav, 6000000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    struct ear ear;
+    open_ear(&ear);
+    ear.nav.is_baro_preferred = true;
+    hear_float(&ear, LM_BUS_ELLIPSOID_HEIGHT, 1150, 0);
+    assert_int_equal(at(&ear, 0).height_source, LM_BUS_ELLIPSOID_HEIGHT);
+    hear_float(&ear, LM_BUS_BARO_ALTITUDE, 1000, 0);
+    assert_int_equal(at(&ear, 0).height_source, LM_BUS_BARO_ALTITUDE);
+    hear_float(&ear, LM_BUS_ELLIPSOID_HEIGHT, 1150, 6000000);
+    assert_int_equal(at(&ear, 6000000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
 }
 
 static void true_heading_is_preferred_while_it_lives(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_float(&nav, LM_BUS_HEADING, -90, 0);
-    struct lm_ownship o = at(&nav, 0);
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_HEADING, -90, 0);
+    struct lm_ownship o = at(&ear, 0);
     assert_int_equal(o.heading, 0xc0000000u);
     assert_int_equal(o.heading_source, LM_BUS_HEADING);
-    hear_float(&nav, LM_BUS_TRUE_HEADING, 272, 0);
-    assert_true(fabs(hs_degrees(at(&nav, 0).heading) + 88) < 1e-6);
-    hear_float(&nav, LM_BUS_HEADING, -90, 1000001);
-    assert_int_equal(at(&nav, 1000000).heading_source, LM_BUS_TRUE_HEADING);
-    assert_int_equal(at(&nav, 1000001).heading_source, LM_BUS_HEADING);
+    hear_float(&ear, LM_BUS_TRUE_HEADING, 272, 0);
+    assert_true(fabs(hs_degrees(at(&ear, 0).heading) + 88) < 1e-6);
+    hear_float(&ear, LM_BUS_HEADING, -90, 1000001);
+    assert_int_equal(at(&ear, 1000000).heading_source, LM_BUS_TRUE_HEADING);
+    assert_int_equal(at(&ear, 1000001).heading_source, LM_BUS_HEADING);
 }
 
 /* Turn the rotation matrix from body to north-east-down axes by small rotations about the body's
@@ -299,19 +313,19 @@ static void heading_turns_as_the_body_does(void **state)
     double worst = 0;
     for (int pitch = -60; pitch <= 60; pitch += 20) {
         for (int roll = -180; roll < 180; roll += 30) {
-            struct lm_nav nav;
-            lm_nav_init(&nav, &lm_bus_canas17);
-            hear_float(&nav, LM_BUS_TRUE_HEADING, 350, 0);
-            hear_float(&nav, LM_BUS_PITCH, pitch, 50000);
-            hear_float(&nav, LM_BUS_ROLL, roll, 50000);
-            hear_float(&nav, LM_BUS_PITCH_RATE, 12, 50000);
-            hear_float(&nav, LM_BUS_YAW_RATE, -7, 50000);
-            const double got = hs_degrees(at(&nav, 100000).heading) * radian;
+            struct ear ear;
+            open_ear(&ear);
+            hear_float(&ear, LM_BUS_TRUE_HEADING, 350, 0);
+            hear_float(&ear, LM_BUS_PITCH, pitch, 50000);
+            hear_float(&ear, LM_BUS_ROLL, roll, 50000);
+            hear_float(&ear, LM_BUS_PITCH_RATE, 12, 50000);
+            hear_float(&ear, LM_BUS_YAW_RATE, -7, 50000);
+            const double got = hs_degrees(at(&ear, 100000).heading) * radian;
             const double wanted = heading_by_rotation(350 * radian, pitch * radian, roll * radian,
                                                       12 * radian, -7 * radian, 0.1);
             worst = fmax(worst, fabs(remainder(got - wanted, 360 * radian)) / radian);
             /* Too old a rate is no rate. */
-            assert_true(fabs(hs_degrees(at(&nav, 150001).heading) + 10) < 1e-6);
+            assert_true(fabs(hs_degrees(at(&ear, 150001).heading) + 10) < 1e-6);
         }
     }
     /* The rates also change the attitude, which the firmware holds still for these 100 ms. */
@@ -322,14 +336,14 @@ static void heading_turns_as_the_body_does(void **state)
 static void heading_stands_still_where_it_means_nothing(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_float(&nav, LM_BUS_TRUE_HEADING, 10, 0);
-    hear_float(&nav, LM_BUS_PITCH, 85, 0);
-    hear_float(&nav, LM_BUS_ROLL, 0, 0);
-    hear_float(&nav, LM_BUS_PITCH_RATE, 0, 0);
-    hear_float(&nav, LM_BUS_YAW_RATE, 100, 0);
-    assert_true(fabs(hs_degrees(at(&nav, 100000).heading) - 10) < 1e-6);
+    struct ear ear;
+    open_ear(&ear);
+    hear_float(&ear, LM_BUS_TRUE_HEADING, 10, 0);
+    hear_float(&ear, LM_BUS_PITCH, 85, 0);
+    hear_float(&ear, LM_BUS_ROLL, 0, 0);
+    hear_float(&ear, LM_BUS_PITCH_RATE, 0, 0);
+    hear_float(&ear, LM_BUS_YAW_RATE, 100, 0);
+    assert_true(fabs(hs_degrees(at(&ear, 100000).heading) - 10) < 1e-6);
 }
 
 /* ---- several senders ---- */
@@ -344,23 +358,23 @@ static struct lm_can_frame on_channel(struct lm_can_frame frame, uint32_t channe
 
 /* A position of one place from row `row` (0 GPS latitude; 20 INS latitude; 25 auxiliary) and
  * channel, as FLOAT, and a velocity of 0. */
-static void hear_place(struct lm_nav *nav, uint32_t row, uint32_t channel, double degrees,
+static void hear_place(struct ear *ear, uint32_t row, uint32_t channel, double degrees,
                        uint64_t time_us)
 {
     const struct lm_bus_row *rows = lm_bus_canas17.rows;
     const uint32_t bits = bus_float_bits(degrees);
-    hear(nav, on_channel(bus_frame(rows[row].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
-    hear(nav, on_channel(bus_frame(rows[row + 1].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
-    hear_float(nav, LM_BUS_NORTH_VELOCITY, 0, time_us);
-    hear_float(nav, LM_BUS_EAST_VELOCITY, 0, time_us);
+    hear(ear, on_channel(bus_frame(rows[row].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
+    hear(ear, on_channel(bus_frame(rows[row + 1].id, LM_CANAS_FLOAT, 0, bits, time_us), channel));
+    hear_float(ear, LM_BUS_NORTH_VELOCITY, 0, time_us);
+    hear_float(ear, LM_BUS_EAST_VELOCITY, 0, time_us);
 }
 
 enum { GPS = 0, INS = 20, AUXILIARY = 25 };
 
-static void assert_place(const struct lm_nav *nav, uint64_t now_us, int degrees,
+static void assert_place(const struct ear *ear, uint64_t now_us, int degrees,
                          enum lm_nav_quality quality)
 {
-    const struct lm_ownship o = at(nav, now_us);
+    const struct lm_ownship o = at(ear, now_us);
     assert_int_equal(o.position_quality, quality);
     assert_true(fabs(hs_degrees(o.latitude) - degrees) < 1e-5);
     assert_true(fabs(hs_degrees(o.longitude) - degrees) < 1e-5);
@@ -369,42 +383,43 @@ static void assert_place(const struct lm_nav *nav, uint64_t now_us, int degrees,
 static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     /* GPS on channels 0 and 1 and INS, each 10 Hz, at 10, 11 and 12 degrees. Channel 0 is silent
      * from 3.0 to 3.5 s; both GPS are silent from 6 s on; INS from 8 s on. */
     for (uint64_t t = 0; t <= 11000000; t += 100000) {
         if (t < 6000000 && (t <= 3000000 || t >= 3500000)) {
-            hear_place(&nav, GPS, 0, 10, t);
+            hear_place(&ear, GPS, 0, 10, t);
         }
         if (t < 6000000) {
-            hear_place(&nav, GPS, 1, 11, t);
+            hear_place(&ear, GPS, 1, 11, t);
         }
         if (t <= 8000000) {
-            hear_place(&nav, INS, 0, 12, t);
+            hear_place(&ear, INS, 0, 12, t);
         }
-        hear_float(&nav, LM_BUS_NORTH_VELOCITY, 0, t);
-        hear_float(&nav, LM_BUS_EAST_VELOCITY, 0, t);
+        hear_float(&ear, LM_BUS_NORTH_VELOCITY, 0, t);
+        hear_float(&ear, LM_BUS_EAST_VELOCITY, 0, t);
         if (t < 3300000 || (t >= 4500000 && t < 6200000)) {
-            assert_place(&nav, t, 10, LM_NAV_GOOD);
+            assert_place(&ear, t, 10, LM_NAV_GOOD);
         } else if (t >= 3400000 && t < 4500000) {
-            assert_place(&nav, t, 11, LM_NAV_GOOD);
+            assert_place(&ear, t, 11, LM_NAV_GOOD);
         } else if (t >= 6400000 && t <= 8300000) {
-            assert_place(&nav, t, 12, LM_NAV_GOOD);
+            assert_place(&ear, t, 12, LM_NAV_GOOD);
         } else if (t >= 8400000 && t <= 10000000) {
-            assert_place(&nav, t, 12, LM_NAV_STALE);
+            assert_place(&ear, t, 12, LM_NAV_STALE);
         } else if (t >= 10100000) {
-            assert_place(&nav, t, 0, LM_NAV_DEAD);
+            assert_place(&ear, t, 0, LM_NAV_DEAD);
         }
     }
-    assert_int_equal(nav.position_jumps, 0); /* another sender's position is no jump of this one */
+    assert_int_equal(ear.nav.position_jumps,
+                     0); /* another sender's position is no jump of this one */
 }
 
 static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     for (uint64_t t = 0; t <= 3000000; t += 100000) {
         for (uint8_t node = 8; node <= 9; node++) {
             for (uint32_t row = 0; row < 2 && (node == 9 || t > 0) && (node == 8 || t < 1000000);
@@ -412,77 +427,77 @@ static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void *
                 struct lm_can_frame f =
                     bus_frame(1036 + row, LM_CANAS_FLOAT, 0, bus_float_bits(10 * node), t);
                 f.data[0] = node;
-                hear(&nav, f);
+                hear(&ear, f);
             }
         }
-        const struct lm_ownship o = at(&nav, t);
+        const struct lm_ownship o = at(&ear, t);
         assert_true(fabs(hs_degrees(o.longitude) - (t <= 1200000 ? 90 : 80)) < 1e-5);
         assert_int_equal(o.position_origin.node, t <= 1200000 ? 9 : 8);
     }
-    assert_int_equal(nav.rivals, 2 * 12);
-    assert_int_equal(nav.position_jumps, 2); /* at the change, and no other */
+    assert_int_equal(ear.nav.rivals, 2 * 12);
+    assert_int_equal(ear.nav.position_jumps, 2); /* at the change, and no other */
 }
 
 static void both_coordinates_come_from_one_sender(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_place(&nav, INS, 0, 12, 0);
-    hear(&nav, bus_frame(1036, LM_CANAS_FLOAT, 0, bus_float_bits(10), 0));
-    assert_place(&nav, 1000, 12, LM_NAV_GOOD); /* GPS has no longitude */
-    hear(&nav, bus_frame(1037, LM_CANAS_FLOAT, 0, bus_float_bits(10), 2000));
-    assert_place(&nav, 2000, 10, LM_NAV_GOOD);
+    struct ear ear;
+    open_ear(&ear);
+    hear_place(&ear, INS, 0, 12, 0);
+    hear(&ear, bus_frame(1036, LM_CANAS_FLOAT, 0, bus_float_bits(10), 0));
+    assert_place(&ear, 1000, 12, LM_NAV_GOOD); /* GPS has no longitude */
+    hear(&ear, bus_frame(1037, LM_CANAS_FLOAT, 0, bus_float_bits(10), 2000));
+    assert_place(&ear, 2000, 10, LM_NAV_GOOD);
 }
 
 static void of_too_many_senders_the_best_are_followed(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     /* The least wanted first, so that each better one has to find a place. */
     for (uint32_t channel = LM_BUS_CHANNELS; channel-- > 0;) {
-        hear_place(&nav, AUXILIARY, channel, 20 + (int)channel, 0);
+        hear_place(&ear, AUXILIARY, channel, 20 + (int)channel, 0);
     }
     for (uint32_t channel = LM_BUS_CHANNELS; channel-- > 0;) {
-        hear_place(&nav, GPS, channel, 10 + (int)channel, 1000);
+        hear_place(&ear, GPS, channel, 10 + (int)channel, 1000);
     }
-    hear_place(&nav, INS, 0, 30, 2000);
-    assert_int_equal(nav.crowded, 2);
-    assert_place(&nav, 2000, 10, LM_NAV_GOOD);
+    hear_place(&ear, INS, 0, 30, 2000);
+    assert_int_equal(ear.nav.crowded, 2);
+    assert_place(&ear, 2000, 10, LM_NAV_GOOD);
     /* Without the better three the last is still there. */
     for (uint64_t t = 100000; t <= 3000000; t += 100000) {
-        hear_place(&nav, GPS, LM_BUS_CHANNELS - 1, 13, t);
+        hear_place(&ear, GPS, LM_BUS_CHANNELS - 1, 13, t);
     }
-    assert_place(&nav, 3000000, 13, LM_NAV_GOOD);
+    assert_place(&ear, 3000000, 13, LM_NAV_GOOD);
     /* Dead ones make place for any other. */
-    hear_place(&nav, INS, 0, 30, 3000000);
-    hear_place(&nav, INS, 0, 30, 8000000);
-    assert_place(&nav, 8000000, 30, LM_NAV_GOOD);
-    assert_int_equal(nav.crowded, 2);
+    hear_place(&ear, INS, 0, 30, 3000000);
+    hear_place(&ear, INS, 0, 30, 8000000);
+    assert_place(&ear, 8000000, 30, LM_NAV_GOOD);
+    assert_int_equal(ear.nav.crowded, 2);
 }
 
 static void every_group_tells_who_said_it_and_how_long_ago(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     const struct lm_bus_row *rows = lm_bus_canas17.rows;
-    hear_place(&nav, INS, 2, 12, 1000000);
-    hear(&nav, bus_frame(rows[INS + 2].id, LM_CANAS_FLOAT, 0, bus_float_bits(900), 1010000));
+    hear_place(&ear, INS, 2, 12, 1000000);
+    hear(&ear, bus_frame(rows[INS + 2].id, LM_CANAS_FLOAT, 0, bus_float_bits(900), 1010000));
     struct lm_can_frame heading = bus_float(LM_BUS_TRUE_HEADING, 33, 1020000);
     heading.data[0] = 77;
-    hear(&nav, heading);
-    hear_float(&nav, LM_BUS_PITCH, 3, 1000000);
-    hear_float(&nav, LM_BUS_ROLL, 3, 1030000);
-    const struct lm_ownship o = at(&nav, 1050000);
+    hear(&ear, heading);
+    hear_float(&ear, LM_BUS_PITCH, 3, 1000000);
+    hear_float(&ear, LM_BUS_ROLL, 3, 1030000);
+    const struct lm_ownship o = at(&ear, 1050000);
     assert_true(o.position_origin.row == INS && o.position_origin.rank == 0x102 &&
                 o.position_origin.node == 9 && o.position_origin.age_us == 50000);
     assert_true(o.height_origin.row == INS + 2 && o.height_origin.age_us == 40000);
     assert_true(o.heading_origin.row == LM_BUS_TRUE_HEADING && o.heading_origin.node == 77);
     assert_int_equal(o.attitude_origin.age_us, 50000); /* of the older member */
     assert_int_equal(o.velocity_origin.age_us, 50000);
-    const struct lm_ownship dead = at(&nav, 9000000);
+    const struct lm_ownship dead = at(&ear, 9000000);
     assert_true(dead.position_origin.age_us == 0 && dead.position_origin.node == 0);
 }
 
@@ -500,8 +515,8 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
                                  double bias_m_s)
 {
     struct ride ride = {0};
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     const struct course c = {
         .latitude = latitude, .longitude = 179.9, .north_m_s = north_m_s, .east_m_s = east_m_s};
     double told_latitude = 0, told_longitude = 0;
@@ -509,12 +524,12 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
         double true_latitude, true_longitude;
         fly_in_doubles(&c, (double)t * 1e-6, &true_latitude, &true_longitude);
         true_longitude = remainder(true_longitude, 360);
-        hear_float(&nav, LM_BUS_NORTH_VELOCITY, north_m_s + bias_m_s, t);
-        hear_float(&nav, LM_BUS_EAST_VELOCITY, east_m_s, t);
-        const struct lm_ownship before = at(&nav, t);
-        hear_float(&nav, LM_BUS_LATITUDE, true_latitude, t);
-        hear_float(&nav, LM_BUS_LONGITUDE, true_longitude, t);
-        const struct lm_ownship now = at(&nav, t);
+        hear_float(&ear, LM_BUS_NORTH_VELOCITY, north_m_s + bias_m_s, t);
+        hear_float(&ear, LM_BUS_EAST_VELOCITY, east_m_s, t);
+        const struct lm_ownship before = at(&ear, t);
+        hear_float(&ear, LM_BUS_LATITUDE, true_latitude, t);
+        hear_float(&ear, LM_BUS_LONGITUDE, true_longitude, t);
+        const struct lm_ownship now = at(&ear, t);
         if (t >= 1000000) {
             ride.worst_hop_m =
                 fmax(ride.worst_hop_m,
@@ -541,7 +556,7 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
                  fabs(remainder(hs_degrees(now.longitude) - true_longitude, 360)) * metres *
                      cosine / (longitude_half_m + 0.02)));
     }
-    assert_int_equal(nav.position_jumps, 0);
+    assert_int_equal(ear.nav.position_jumps, 0);
     return ride;
 }
 
@@ -578,13 +593,13 @@ static void a_wrong_velocity_moves_a_float_position_no_further_than_its_step(voi
 static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     for (int i = 0; i < 20; i++) {
         const double degrees = 179.5 + i * 1e-5;
-        hear_float(&nav, LM_BUS_LATITUDE, 60, (uint64_t)i * 100000);
-        hear_float(&nav, LM_BUS_LONGITUDE, degrees, (uint64_t)i * 100000);
-        const struct lm_ownship o = at(&nav, (uint64_t)i * 100000);
+        hear_float(&ear, LM_BUS_LATITUDE, 60, (uint64_t)i * 100000);
+        hear_float(&ear, LM_BUS_LONGITUDE, degrees, (uint64_t)i * 100000);
+        const struct lm_ownship o = at(&ear, (uint64_t)i * 100000);
         assert_true(fabs(hs_degrees(o.longitude) - (double)(float)degrees) < 1e-7);
     }
 }
@@ -592,15 +607,15 @@ static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
 static void steps_of_short2_are_no_jumps(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
+    struct ear ear;
+    open_ear(&ear);
     for (uint32_t i = 0; i < 100; i++) {
         const uint64_t t = i * 100000;
         const uint32_t word = (8000 + i / 3) << 16 | 180; /* 612 m now and then */
-        hear(&nav, bus_frame(1036, LM_CANAS_SHORT2, 0, word, t));
-        hear(&nav, bus_frame(1037, LM_CANAS_SHORT2, 0, word, t));
+        hear(&ear, bus_frame(1036, LM_CANAS_SHORT2, 0, word, t));
+        hear(&ear, bus_frame(1037, LM_CANAS_SHORT2, 0, word, t));
     }
-    assert_int_equal(nav.position_jumps, 0);
+    assert_int_equal(ear.nav.position_jumps, 0);
 }
 
 /* ---- ages ---- */
@@ -609,17 +624,17 @@ struct ages {
     enum lm_nav_quality position, height, heading, attitude, velocity, utc;
 };
 
-static void hear_everything(struct lm_nav *nav, uint64_t time_us)
+static void hear_everything(struct ear *ear, uint64_t time_us)
 {
     for (int i = 0; i < LM_BUS_UTC; i++) {
-        hear_float(nav, (enum lm_bus_field)i, 1, time_us);
+        hear_float(ear, (enum lm_bus_field)i, 1, time_us);
     }
-    hear(nav, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, time_us));
+    hear(ear, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, time_us));
 }
 
-static void assert_ages(const struct lm_nav *nav, uint64_t now_us, struct ages expected)
+static void assert_ages(const struct ear *ear, uint64_t now_us, struct ages expected)
 {
-    const struct lm_ownship o = at(nav, now_us);
+    const struct lm_ownship o = at(ear, now_us);
     assert_int_equal(o.position_quality, expected.position);
     assert_int_equal(o.height_quality, expected.height);
     assert_int_equal(o.heading_quality, expected.heading);
@@ -635,27 +650,27 @@ static void assert_ages(const struct lm_nav *nav, uint64_t now_us, struct ages e
 static void every_quality_changes_at_the_microsecond_the_table_says(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    assert_ages(&nav, 0, (struct ages){D, D, D, D, D, D});
+    struct ear ear;
+    open_ear(&ear);
+    assert_ages(&ear, 0, (struct ages){D, D, D, D, D, D});
     const uint64_t t = 7000000;
-    hear_everything(&nav, t);
-    assert_ages(&nav, t, (struct ages){G, G, G, G, G, G});
-    assert_ages(&nav, t + 100000, (struct ages){G, G, G, G, G, G});
-    assert_ages(&nav, t + 100001, (struct ages){G, G, G, S, G, G});
-    assert_ages(&nav, t + 300000, (struct ages){G, G, G, S, G, G});
-    assert_ages(&nav, t + 300001, (struct ages){S, G, S, S, S, G});
-    assert_ages(&nav, t + 500000, (struct ages){S, G, S, S, S, G});
-    assert_ages(&nav, t + 500001, (struct ages){S, S, S, S, S, G});
-    assert_ages(&nav, t + 1000000, (struct ages){S, S, S, S, S, G});
-    assert_ages(&nav, t + 1000001, (struct ages){S, S, D, D, S, G});
-    assert_ages(&nav, t + 2000000, (struct ages){S, S, D, D, S, G});
-    assert_ages(&nav, t + 2000001, (struct ages){D, S, D, D, D, G});
-    assert_ages(&nav, t + 3000001, (struct ages){D, S, D, D, D, S});
-    assert_ages(&nav, t + 5000000, (struct ages){D, S, D, D, D, S});
-    assert_ages(&nav, t + 5000001, (struct ages){D, D, D, D, D, S});
-    assert_ages(&nav, t + 10000001, (struct ages){D, D, D, D, D, D});
-    const struct lm_ownship o = at(&nav, t + 10000001);
+    hear_everything(&ear, t);
+    assert_ages(&ear, t, (struct ages){G, G, G, G, G, G});
+    assert_ages(&ear, t + 100000, (struct ages){G, G, G, G, G, G});
+    assert_ages(&ear, t + 100001, (struct ages){G, G, G, S, G, G});
+    assert_ages(&ear, t + 300000, (struct ages){G, G, G, S, G, G});
+    assert_ages(&ear, t + 300001, (struct ages){S, G, S, S, S, G});
+    assert_ages(&ear, t + 500000, (struct ages){S, G, S, S, S, G});
+    assert_ages(&ear, t + 500001, (struct ages){S, S, S, S, S, G});
+    assert_ages(&ear, t + 1000000, (struct ages){S, S, S, S, S, G});
+    assert_ages(&ear, t + 1000001, (struct ages){S, S, D, D, S, G});
+    assert_ages(&ear, t + 2000000, (struct ages){S, S, D, D, S, G});
+    assert_ages(&ear, t + 2000001, (struct ages){D, S, D, D, D, G});
+    assert_ages(&ear, t + 3000001, (struct ages){D, S, D, D, D, S});
+    assert_ages(&ear, t + 5000000, (struct ages){D, S, D, D, D, S});
+    assert_ages(&ear, t + 5000001, (struct ages){D, D, D, D, D, S});
+    assert_ages(&ear, t + 10000001, (struct ages){D, D, D, D, D, D});
+    const struct lm_ownship o = at(&ear, t + 10000001);
     assert_true(o.latitude == 0 && o.longitude == 0 && o.height_q6 == 0 && o.heading == 0 &&
                 o.pitch == 0 && o.roll == 0 && o.ground_speed_mm_s == 0 && o.utc_s == 0);
 }
@@ -663,45 +678,45 @@ static void every_quality_changes_at_the_microsecond_the_table_says(void **state
 static void one_dead_coordinate_or_angle_kills_its_group(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_everything(&nav, 0);
-    hear_float(&nav, LM_BUS_LATITUDE, 1, 2000000);
-    hear_float(&nav, LM_BUS_PITCH, 1, 2000000);
-    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 1, 2000000);
-    assert_ages(&nav, 2000001, (struct ages){D, S, D, D, D, G});
+    struct ear ear;
+    open_ear(&ear);
+    hear_everything(&ear, 0);
+    hear_float(&ear, LM_BUS_LATITUDE, 1, 2000000);
+    hear_float(&ear, LM_BUS_PITCH, 1, 2000000);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, 1, 2000000);
+    assert_ages(&ear, 2000001, (struct ages){D, S, D, D, D, G});
 }
 
 static void a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_double(&nav, LM_BUS_LATITUDE, 47, 0);
-    hear_double(&nav, LM_BUS_LONGITUDE, 11, 0);
-    assert_int_equal(at(&nav, 100).position_quality, LM_NAV_STALE);
-    assert_true(fabs(hs_degrees(at(&nav, 100000).latitude) - 47) < 1e-7);
-    hear_float(&nav, LM_BUS_NORTH_VELOCITY, 0, 0);
-    hear_float(&nav, LM_BUS_EAST_VELOCITY, 0, 0);
-    assert_int_equal(at(&nav, 100).position_quality, LM_NAV_GOOD);
-    hear(&nav, bus_frame(1037, LM_CANAS_SHORT2, 0, 0x08000000u | 180, 100));
-    assert_int_equal(at(&nav, 100).position_quality, LM_NAV_STALE);
-    hear_double(&nav, LM_BUS_LONGITUDE, 11, 200);
-    assert_int_equal(at(&nav, 200).position_quality, LM_NAV_GOOD);
+    struct ear ear;
+    open_ear(&ear);
+    hear_double(&ear, LM_BUS_LATITUDE, 47, 0);
+    hear_double(&ear, LM_BUS_LONGITUDE, 11, 0);
+    assert_int_equal(at(&ear, 100).position_quality, LM_NAV_STALE);
+    assert_true(fabs(hs_degrees(at(&ear, 100000).latitude) - 47) < 1e-7);
+    hear_float(&ear, LM_BUS_NORTH_VELOCITY, 0, 0);
+    hear_float(&ear, LM_BUS_EAST_VELOCITY, 0, 0);
+    assert_int_equal(at(&ear, 100).position_quality, LM_NAV_GOOD);
+    hear(&ear, bus_frame(1037, LM_CANAS_SHORT2, 0, 0x08000000u | 180, 100));
+    assert_int_equal(at(&ear, 100).position_quality, LM_NAV_STALE);
+    hear_double(&ear, LM_BUS_LONGITUDE, 11, 200);
+    assert_int_equal(at(&ear, 200).position_quality, LM_NAV_GOOD);
 }
 
 static void a_lone_half_never_moves_the_position(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_everything(&nav, 0);
-    hear_double(&nav, LM_BUS_LATITUDE, 47, 0);
-    const struct lm_ownship before = at(&nav, 1000);
+    struct ear ear;
+    open_ear(&ear);
+    hear_everything(&ear, 0);
+    hear_double(&ear, LM_BUS_LATITUDE, 47, 0);
+    const struct lm_ownship before = at(&ear, 1000);
     for (uint8_t i = 0; i < 100; i++) {
-        hear(&nav, bus_frame(1036, i & 1 ? LM_CANAS_DOUBLEH : LM_CANAS_DOUBLEL, (uint8_t)(3 * i),
+        hear(&ear, bus_frame(1036, i & 1 ? LM_CANAS_DOUBLEH : LM_CANAS_DOUBLEL, (uint8_t)(3 * i),
                              0x40500000u + i, 500));
-        const struct lm_ownship after = at(&nav, 1000);
+        const struct lm_ownship after = at(&ear, 1000);
         assert_memory_equal(&before, &after, sizeof before);
     }
 }
@@ -709,74 +724,74 @@ static void a_lone_half_never_moves_the_position(void **state)
 static void time_going_backwards_is_survived(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_everything(&nav, 9000000);
+    struct ear ear;
+    open_ear(&ear);
+    hear_everything(&ear, 9000000);
     /* A little ahead is the order of reading two clocks; far ahead is another clock. */
-    assert_ages(&nav, 8900000, (struct ages){G, G, G, G, G, G});
-    assert_ages(&nav, 8899999, (struct ages){G, G, G, D, G, G});
-    assert_ages(&nav, 8499999, (struct ages){D, D, D, D, D, G});
-    assert_ages(&nav, 0, (struct ages){D, D, D, D, D, D});
+    assert_ages(&ear, 8900000, (struct ages){G, G, G, G, G, G});
+    assert_ages(&ear, 8899999, (struct ages){G, G, G, D, G, G});
+    assert_ages(&ear, 8499999, (struct ages){D, D, D, D, D, G});
+    assert_ages(&ear, 0, (struct ages){D, D, D, D, D, D});
     /* The recording starts over: what is heard now is believed now. */
-    hear_everything(&nav, 10);
-    assert_ages(&nav, 10, (struct ages){G, G, G, G, G, G});
-    assert_int_equal(nav.position_jumps, 0);
-    assert_ages(&nav, UINT64_MAX, (struct ages){D, D, D, D, D, D});
+    hear_everything(&ear, 10);
+    assert_ages(&ear, 10, (struct ages){G, G, G, G, G, G});
+    assert_int_equal(ear.nav.position_jumps, 0);
+    assert_ages(&ear, UINT64_MAX, (struct ages){D, D, D, D, D, D});
 }
 
 static void a_jump_is_believed_and_counted(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear_double(&nav, LM_BUS_LATITUDE, 60, 0);
-    hear_double(&nav, LM_BUS_LONGITUDE, 179.999, 0);
-    assert_int_equal(nav.position_jumps, 0);
+    struct ear ear;
+    open_ear(&ear);
+    hear_double(&ear, LM_BUS_LATITUDE, 60, 0);
+    hear_double(&ear, LM_BUS_LONGITUDE, 179.999, 0);
+    assert_int_equal(ear.nav.position_jumps, 0);
     /* 149 m of latitude and, across the antimeridian, 149 m of longitude in 100 ms. */
-    hear_double(&nav, LM_BUS_LATITUDE, 60 + 149 / 111400.0, 100000);
-    hear_double(&nav, LM_BUS_LONGITUDE, 179.999 + 149 / 55800.0 - 360, 100000);
-    assert_int_equal(nav.position_jumps, 0);
-    hear_double(&nav, LM_BUS_LATITUDE, 60 + (149 + 152) / 111400.0, 200000);
-    assert_int_equal(nav.position_jumps, 1);
-    hear_double(&nav, LM_BUS_LONGITUDE, 179.999 + (149 + 152) / 55800.0 - 360, 200000);
-    assert_int_equal(nav.position_jumps, 2);
-    hear_double(&nav, LM_BUS_LATITUDE, -45, 300000);
-    assert_int_equal(nav.position_jumps, 3);
-    hear_double(&nav, LM_BUS_LONGITUDE, -100, 300000);
-    assert_int_equal(nav.position_jumps, 4);
-    assert_true(fabs(hs_degrees(at(&nav, 300000).latitude) + 45) < 1e-7);
+    hear_double(&ear, LM_BUS_LATITUDE, 60 + 149 / 111400.0, 100000);
+    hear_double(&ear, LM_BUS_LONGITUDE, 179.999 + 149 / 55800.0 - 360, 100000);
+    assert_int_equal(ear.nav.position_jumps, 0);
+    hear_double(&ear, LM_BUS_LATITUDE, 60 + (149 + 152) / 111400.0, 200000);
+    assert_int_equal(ear.nav.position_jumps, 1);
+    hear_double(&ear, LM_BUS_LONGITUDE, 179.999 + (149 + 152) / 55800.0 - 360, 200000);
+    assert_int_equal(ear.nav.position_jumps, 2);
+    hear_double(&ear, LM_BUS_LATITUDE, -45, 300000);
+    assert_int_equal(ear.nav.position_jumps, 3);
+    hear_double(&ear, LM_BUS_LONGITUDE, -100, 300000);
+    assert_int_equal(ear.nav.position_jumps, 4);
+    assert_true(fabs(hs_degrees(at(&ear, 300000).latitude) + 45) < 1e-7);
     /* Two fixes in one millisecond: what jitters is the bus. */
-    hear_double(&nav, LM_BUS_LATITUDE, -45.001, 301000);
-    assert_int_equal(nav.position_jumps, 4);
+    hear_double(&ear, LM_BUS_LATITUDE, -45.001, 301000);
+    assert_int_equal(ear.nav.position_jumps, 4);
     /* 20 km in 14 s is an aircraft; a twin of an earlier time stamp is not. */
-    hear_double(&nav, LM_BUS_LATITUDE, -45.18, 14300000);
-    assert_int_equal(nav.position_jumps, 4);
-    hear_double(&nav, LM_BUS_LATITUDE, -45, 0);
-    assert_int_equal(nav.position_jumps, 5);
+    hear_double(&ear, LM_BUS_LATITUDE, -45.18, 14300000);
+    assert_int_equal(ear.nav.position_jumps, 4);
+    hear_double(&ear, LM_BUS_LATITUDE, -45, 0);
+    assert_int_equal(ear.nav.position_jumps, 5);
     /* A quarter round the world, but after the time that times 1500 just passes 2^64. */
-    hear_double(&nav, LM_BUS_LATITUDE, 45, 12297829382473035u);
-    assert_int_equal(nav.position_jumps, 5);
+    hear_double(&ear, LM_BUS_LATITUDE, 45, 12297829382473035u);
+    assert_int_equal(ear.nav.position_jumps, 5);
 }
 
 static void the_clock_runs_on_between_its_messages(void **state)
 {
     (void)state;
-    struct lm_nav nav;
-    lm_nav_init(&nav, &lm_bus_canas17);
-    hear(&nav, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, 0)); /* 23:59:59 */
-    assert_int_equal(at(&nav, 999999).utc_s, 86399);
-    assert_int_equal(at(&nav, 1000000).utc_s, 0);
-    assert_int_equal(at(&nav, 2500000).utc_s, 1);
+    struct ear ear;
+    open_ear(&ear);
+    hear(&ear, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, 0)); /* 23:59:59 */
+    assert_int_equal(at(&ear, 999999).utc_s, 86399);
+    assert_int_equal(at(&ear, 1000000).utc_s, 0);
+    assert_int_equal(at(&ear, 2500000).utc_s, 1);
 }
 
 static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
 {
     (void)state;
-    struct lm_nav a, b;
+    struct ear a, b;
     memset(&a, 0x55, sizeof a);
     memset(&b, 0xaa, sizeof b);
-    lm_nav_init(&a, &lm_bus_canas17);
-    lm_nav_init(&b, &lm_bus_canas17);
+    open_ear(&a);
+    open_ear(&b);
     struct hs_rng rng;
     hs_rng_seed(&rng, 31);
     for (uint64_t t = 0; t < 10000000; t += 12500) {
@@ -787,8 +802,8 @@ static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
         struct lm_ownship at_a, at_b;
         memset(&at_a, 1, sizeof at_a);
         memset(&at_b, 2, sizeof at_b);
-        lm_nav_at(&a, t + 6000, &at_a);
-        lm_nav_at(&b, t + 6000, &at_b);
+        lm_nav_at(&a.nav, t + 6000, &at_a);
+        lm_nav_at(&b.nav, t + 6000, &at_b);
         assert_memory_equal(&at_a, &at_b, sizeof at_a);
     }
 }

@@ -819,8 +819,8 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     const struct lm_can_frame bad = {.id = 321, .length = 8, .data = {9, 77}};
     const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
     struct lm_bus_event events[LM_BUS_EVENTS];
-    lm_nav_take(&r->unit.nav, &bad, events);
-    lm_nav_take(&r->unit.nav, &half, events);
+    lm_bus_take(&r->unit.bus, &bad, events);
+    lm_bus_take(&r->unit.bus, &half, events);
     r->unit.tiles.count.corrupt = 5;
     r->unit.chips.count.corrupt = 7;
     r->unit.count.targets_lost = 21;

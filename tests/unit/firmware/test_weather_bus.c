@@ -30,7 +30,7 @@ static void hear_frame(struct ear *ear, const struct lm_can_frame *frame)
     struct lm_bus_event events[LM_BUS_EVENTS];
     const uint32_t count = lm_bus_take(&ear->bus, frame, events);
     for (uint32_t i = 0; i < count; i++) {
-        lm_weather_bus_take(&ear->weather, &lm_bus_canas17, &events[i]);
+        lm_weather_bus_take(&ear->weather, &events[i]);
     }
 }
 
@@ -275,14 +275,13 @@ static void what_is_out_of_range_is_refused_and_counted(void **state)
 static void a_wider_table_is_held_to_the_displays_limits(void **state)
 {
     (void)state;
-    static const struct lm_bus_row rows[] = {{.field = LM_BUS_JAMMER_LATITUDE},
-                                             {.field = LM_BUS_JAMMER_LONGITUDE},
-                                             {.field = LM_BUS_JAMMER_RATIO}};
-    static const struct lm_bus_profile wide = {.rows = rows, .row_count = 3};
+    static const uint8_t fields[] = {LM_BUS_JAMMER_LATITUDE, LM_BUS_JAMMER_LONGITUDE,
+                                     LM_BUS_JAMMER_RATIO};
     struct lm_weather_bus w = {0};
     for (uint8_t i = 0; i < 3; i++) {
-        const struct lm_bus_event event = {.row = i, .value = i == 2 ? 65536 + 20 * 256 : 0};
-        lm_weather_bus_take(&w, &wide, &event);
+        const struct lm_bus_event event = {.field = fields[i],
+                                           .value = i == 2 ? 65536 + 20 * 256 : 0};
+        lm_weather_bus_take(&w, &event);
     }
     struct lm_environment e = {0};
     lm_weather_bus_at(&w, 0, &e);

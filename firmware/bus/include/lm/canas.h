@@ -84,8 +84,9 @@ struct lm_canas {
     } count;
 };
 
-/* Decode a frame by a profile of framing LM_BUS_CANAEROSPACE. *event is filled for LM_BUS_VALUE
- * and left alone otherwise. Any contents of *frame are safe.
+/* Decode a frame by a profile of framing LM_BUS_CANAEROSPACE. For LM_BUS_VALUE *event holds what
+ * the frame says, and row; what the profile says of that row (field, priority, period, ages) is
+ * left to lm_bus_take. For any other outcome *event is left alone. Any contents of *frame are safe.
  *
  * Halves of a DOUBLE are joined when they have the same identifier, channel and node, adjacent
  * message codes, nothing of that identifier and channel between them, and at most one nominal

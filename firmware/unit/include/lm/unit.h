@@ -4,6 +4,7 @@
 
 #include <stddef.h>
 
+#include "lm/bus.h"
 #include "lm/canas_service.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
@@ -60,6 +61,7 @@ struct lm_unit {
     bool is_weather_stale;
     struct lm_place own_steerpoint; /* commanded: before the bus's waypoint */
     bool has_own_steerpoint;
+    struct lm_bus bus;
     struct lm_nav nav;
     struct lm_canas_service service;
     struct lm_ownship ownship; /* extrapolated to the last step */

@@ -29,20 +29,14 @@ static enum lm_nav_quality worse_of(enum lm_nav_quality a, enum lm_nav_quality b
     return a < b ? a : b;
 }
 
-static uint64_t stale_us_of(const struct lm_nav *n, const struct lm_nav_item *item)
-{
-    return n->bus.profile->rows[item->row].stale_ms * 1000ull;
-}
-
-static struct reading read_item(const struct lm_nav *n, enum lm_bus_field field,
-                                const struct lm_nav_item *item, uint64_t now_us)
+static struct reading read_item(enum lm_bus_field field, const struct lm_nav_item *item,
+                                uint64_t now_us)
 {
     struct reading r = {.field = field, .quality = LM_NAV_DEAD};
     if (!item->has_value) {
         return r;
     }
-    const uint64_t stale_us = stale_us_of(n, item);
-    const uint64_t dead_us = n->bus.profile->rows[item->row].dead_ms * 1000ull;
+    const uint64_t stale_us = item->stale_ms * 1000ull, dead_us = item->dead_ms * 1000ull;
     const bool is_ahead = item->time_us > now_us;
     const uint64_t age_us = is_ahead ? 0 : now_us - item->time_us;
     if (age_us > dead_us || (is_ahead && item->time_us - now_us > stale_us)) {
@@ -94,8 +88,8 @@ static struct pair read_pair(const struct lm_nav *n, enum lm_bus_field first,
         if (mate == NULL) {
             continue;
         }
-        struct pair p = {.first = read_item(n, first, &item[i], now_us)};
-        p.second = mate == &item[i] ? p.first : read_item(n, second, mate, now_us);
+        struct pair p = {.first = read_item(first, &item[i], now_us)};
+        p.second = mate == &item[i] ? p.first : read_item(second, mate, now_us);
         const uint32_t a = merit_of(&p.first), b = merit_of(&p.second), merit = a < b ? a : b;
         if (merit > best_merit ||
             (merit == best_merit && merit > 0 && item[i].rank < best.first.origin.rank)) {
@@ -310,26 +304,25 @@ void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out)
     set_utc(out, n, now_us);
 }
 
-void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile)
+void lm_nav_init(struct lm_nav *n)
 {
     *n = (struct lm_nav){0};
-    lm_bus_init(&n->bus, profile);
 }
 
 /* Is a new fix of this coordinate further from the sender's last one than an aircraft could have
  * come? A count of latitude is 9.31 to 9.36 mm, one of longitude 9.33 mm times the cosine of
  * latitude. */
 static bool is_jump(const struct lm_nav *n, const struct lm_nav_item *last,
-                    const struct lm_bus_event *fix, const struct lm_bus_row *row)
+                    const struct lm_bus_event *fix)
 {
     const struct lm_nav_item *latitude = find_item(n, LM_BUS_LATITUDE, last->rank);
-    const bool is_longitude = row->field == LM_BUS_LONGITUDE && latitude != NULL;
+    const bool is_longitude = fix->field == LM_BUS_LONGITUDE && latitude != NULL;
     const int32_t cosine_q30 = is_longitude ? fx_cos_q30((fx_bam_t)latitude->value) : 1 << 30;
     const uint32_t apart = fx_abs_u32((int32_t)((uint32_t)fix->value - (uint32_t)last->value));
     const uint32_t way = apart > fix->step ? apart - fix->step : 0;
     const int64_t way_mm = times_q30(way, cosine_q30) * 933 / 100;
 
-    const uint64_t period_us = row->period_us, day_us = 86400000000ull;
+    const uint64_t period_us = fix->period_us, day_us = 86400000000ull;
     uint64_t time_us = fix->time_us > last->time_us ? fix->time_us - last->time_us : 0;
     time_us = time_us < period_us ? period_us : time_us > day_us ? day_us : time_us;
     return way_mm > (int64_t)(time_us * LM_NAV_JUMP_M_S / 1000);
@@ -338,9 +331,10 @@ static bool is_jump(const struct lm_nav *n, const struct lm_nav_item *last,
 /* A coordinate that is known to within half a step: the last one carried on, moved into that half
  * step. Differences of angles below half a circle survive the wrap. */
 static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
-                      const struct lm_bus_event *fix, enum lm_bus_field field)
+                      const struct lm_bus_event *fix)
 {
-    const struct reading before = read_item(n, field, last, fix->time_us);
+    const enum lm_bus_field field = (enum lm_bus_field)fix->field;
+    const struct reading before = read_item(field, last, fix->time_us);
     const struct velocity v = read_velocity(n, fix->time_us);
     const struct lm_nav_item *latitude = find_item(n, LM_BUS_LATITUDE, last->rank);
     if (before.quality == LM_NAV_DEAD || v.quality == LM_NAV_DEAD || latitude == NULL) {
@@ -363,8 +357,9 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
 /* Where a sender's value is kept: its own place, or an empty one, or that of the worst other sender
  * when that one is dead or of a higher rank. NULL when there is none. */
 static struct lm_nav_item *place_for(struct lm_nav *n, const struct lm_bus_event *event,
-                                     enum lm_bus_field field, uint16_t rank)
+                                     uint16_t rank)
 {
+    const enum lm_bus_field field = (enum lm_bus_field)event->field;
     struct lm_nav_item *worst = &n->item[field][0];
     uint32_t worst_rank = 0;
     for (uint32_t i = 0; i < LM_NAV_SOURCES; i++) {
@@ -372,7 +367,7 @@ static struct lm_nav_item *place_for(struct lm_nav *n, const struct lm_bus_event
         if (item->has_value && item->rank == rank) {
             return item;
         }
-        const struct reading r = read_item(n, field, item, event->time_us);
+        const struct reading r = read_item(field, item, event->time_us);
         const uint32_t its_rank = r.quality == LM_NAV_DEAD ? UINT32_MAX - i : item->rank;
         if (its_rank > worst_rank) {
             worst = item;
@@ -382,29 +377,30 @@ static struct lm_nav_item *place_for(struct lm_nav *n, const struct lm_bus_event
     return worst_rank > rank ? worst : NULL;
 }
 
-static void keep(struct lm_nav *n, const struct lm_bus_event *event)
+void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
 {
-    const struct lm_bus_row *row = &n->bus.profile->rows[event->row];
-    const enum lm_bus_field field = (enum lm_bus_field)row->field;
-    const uint16_t rank = (uint16_t)(row->priority << 8 | event->channel);
-    struct lm_nav_item *item = place_for(n, event, field, rank);
+    if (event->field >= LM_BUS_NAV_FIELDS) {
+        return;
+    }
+    const uint16_t rank = (uint16_t)(event->priority << 8 | event->channel);
+    struct lm_nav_item *item = place_for(n, event, rank);
     if (item == NULL) {
         n->crowded++;
         return;
     }
     const bool is_known = item->has_value && item->rank == rank;
     const bool goes_on = is_known && event->time_us >= item->time_us &&
-                         event->time_us - item->time_us <= stale_us_of(n, item);
+                         event->time_us - item->time_us <= item->stale_ms * 1000ull;
     if (goes_on && item->node != event->node) {
         n->rivals++;
         return;
     }
     int32_t value = event->value;
-    if (is_known && field <= LM_BUS_LONGITUDE) {
-        if (is_jump(n, item, event, row)) {
+    if (is_known && event->field <= LM_BUS_LONGITUDE) {
+        if (is_jump(n, item, event)) {
             n->position_jumps++;
         } else if (event->step > 0) {
-            value = smooth(n, item, event, field);
+            value = smooth(n, item, event);
         }
     }
     *item = (struct lm_nav_item){
@@ -412,21 +408,11 @@ static void keep(struct lm_nav *n, const struct lm_bus_event *event)
         .steady_us = goes_on ? item->steady_us : event->time_us,
         .value = value,
         .step = event->step,
+        .stale_ms = event->stale_ms,
+        .dead_ms = event->dead_ms,
         .rank = rank,
         .row = event->row,
         .node = event->node,
         .has_value = true,
     };
-}
-
-uint32_t lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame,
-                     struct lm_bus_event events[LM_BUS_EVENTS])
-{
-    const uint32_t count = lm_bus_take(&n->bus, frame, events);
-    for (uint32_t i = 0; i < count; i++) {
-        if (n->bus.profile->rows[events[i].row].field < LM_BUS_NAV_FIELDS) {
-            keep(n, &events[i]);
-        }
-    }
-    return count;
 }

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "lm/bus.h"
+#include "lm/bus_event.h"
 #include "lm/environment.h"
 
 enum {
@@ -36,7 +36,7 @@ struct lm_weather_slot {
 /* What the display remembers; the caller owns it. Starts as zeros. Counters only ever grow. */
 struct lm_weather_bus {
     struct lm_weather_slot slot[LM_WEATHER_SLOTS];
-    uint32_t stale_us, dead_us; /* ages of the profile's rows, of the one heard last */
+    uint32_t stale_us, dead_us; /* of the event taken last: see lm/bus_event.h */
     struct {
         uint32_t sets;    /* that took effect */
         uint32_t torn;    /* left incomplete by frames of the next */
@@ -46,9 +46,8 @@ struct lm_weather_bus {
     } count;
 };
 
-/* Take a value that the bus brought; those of other fields are left alone. */
-void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_profile *profile,
-                         const struct lm_bus_event *event);
+/* Take an event of the bus. Events of fields that are not weather change nothing. */
+void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *event);
 
 /* Append what is in force at `now_us` to *e, as far as there is room, and forget what is dead.
  * Whether any of it is stale. Ages are those of lm/nav.h. Cost: 100 instructions. */

@@ -110,23 +110,21 @@ static void add_part(struct lm_weather_bus *w, struct lm_weather_slot *s,
     }
 }
 
-void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_profile *profile,
-                         const struct lm_bus_event *event)
+void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *event)
 {
-    const struct lm_bus_row *row = &profile->rows[event->row];
     struct part part;
     if (event->channel != 0) {
         return; /* frames of two channels would tear each other's sets */
     }
-    if (row->field == LM_BUS_WEATHER_CLEAR) {
+    if (event->field == LM_BUS_WEATHER_CLEAR) {
         clear(w, (uint32_t)event->value);
         return;
     }
-    if (!part_of((enum lm_bus_field)row->field, &part)) {
+    if (!part_of((enum lm_bus_field)event->field, &part)) {
         return;
     }
-    w->stale_us = row->stale_ms * 1000u;
-    w->dead_us = row->dead_ms * 1000u;
+    w->stale_us = event->stale_ms * 1000u;
+    w->dead_us = event->dead_ms * 1000u;
     if (event->service >= (part.is_jammer ? LM_JAMMERS_MAX : LM_RAINS_MAX)) {
         w->count.numbers++;
         return;

@@ -6,10 +6,11 @@
 #include <stdint.h>
 
 #include "fx/types.h"
-#include "lm/bus.h"
+#include "lm/bus_event.h"
+#include "lm/config.h"
 #include "lm/geo.h"
 
-/* How far a number may be trusted. The ages that part the three are columns of the profile: a
+/* How far a number may be trusted. The ages that part the three come with the event: a
  * number is stale when it is older than `stale_ms`, dead when it is older than `dead_ms` or was
  * never heard. The better the larger. */
 enum lm_nav_quality {
@@ -32,13 +33,13 @@ enum lm_nav_quality {
 /* The last value of each field from each of its senders; the caller owns it. Counters only ever
  * grow. */
 struct lm_nav {
-    struct lm_bus bus;
     struct lm_nav_item {
         uint64_t time_us;
         uint64_t steady_us; /* when the run without a pause began that this value continues */
         int32_t value;      /* in the field's unit */
         uint32_t step;      /* see lm_bus_event */
-        uint16_t rank;      /* priority of the row * 256 + channel: the least is preferred */
+        uint16_t stale_ms, dead_ms;
+        uint16_t rank; /* priority of the row * 256 + channel: the least is preferred */
         uint8_t row, node;
         bool has_value;
     } item[LM_BUS_NAV_FIELDS][LM_NAV_SOURCES];
@@ -100,12 +101,12 @@ struct lm_ownship {
     struct lm_nav_origin utc_origin;
 };
 
-/* `profile` says what the frames mean; it must outlive *n. */
-void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
+/* Nothing heard yet. */
+void lm_nav_init(struct lm_nav *n);
 
-/* Take a frame of the bus, whatever it is. Returns how many values it brought, in `events`, also
- * those that are none of the aircraft's. A later call wins over an earlier one, whatever their
- * time stamps say, so that a recording that starts over is followed at once.
+/* Take an event of the bus. Events of fields that are none of the aircraft's change nothing. A
+ * later call wins over an earlier one, whatever their time stamps say, so that a recording that
+ * starts over is followed at once.
  *
  * An identifier has one node that sends it. Where a second one sends it as well, the first is heard
  * until it is stale: the picture does not jump between two aircraft.
@@ -115,8 +116,7 @@ void lm_nav_init(struct lm_nav *n, const struct lm_bus_profile *profile);
  * the velocity, moved by no more than it takes to lie within that half step. So the position is
  * never worse than the type allows and does not jump by a step of up to 1.7 m ten times a second.
  * Without a velocity the value is kept as it came. */
-uint32_t lm_nav_take(struct lm_nav *n, const struct lm_can_frame *frame,
-                     struct lm_bus_event events[LM_BUS_EVENTS]);
+void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event);
 
 /* The aircraft at `now_us`, on the clock of the frames' time stamps. A value up to its stale age in
  * the future counts as just heard; one further ahead comes from a clock that was set back, and is
