@@ -29,6 +29,8 @@ CFLAGS_drivers  = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_drivers)
 CFLAGS_bsp      = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_bsp)
 CFLAGS_host     = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(INC_host)
 
+include make/generated.mk
+
 objs = $(patsubst %.c,$(O)/%.o,$(1))
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a
@@ -111,8 +113,8 @@ clean: ## Remove everything that was built
 check-built: $(PROGRAMS) $(TESTS)
 	@sh tests/run.sh $(O) $(TESTS)
 
-$(LIB_fixed): $(call objs,$(wildcard fixed/src/*.c))
-$(LIB_firmware): $(call objs,$(wildcard firmware/*/*.c))
+$(LIB_fixed): $(call objs,$(SRC_fixed))
+$(LIB_firmware): $(call objs,$(SRC_firmware))
 $(LIB_drivers): $(DRIVERS:%=$(O)/drivers/%.o)
 $(O)/%.a:
 	@mkdir -p $(@D)

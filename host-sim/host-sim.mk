@@ -88,10 +88,3 @@ LIB_tables    := $(call host_archives,tables)
 # Loops over pixels and rays that are worth vectorising.
 VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
 $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-trapping-math
-
-# The text table that is built into the firmware as lm_bus_generic.
-BUS_TABLE ?= host-sim/bus/arinc825.bus
-.PHONY: bus-table
-bus-table: $(O)/bin/landmass-bus ## Build BUS_TABLE=FILE, a text table of your own bus, into the firmware
-	@$(O)/bin/landmass-bus generate --table $(BUS_TABLE) --out firmware/bus/bus_generic.c
-	@echo 'firmware/bus/bus_generic.c is made of $(BUS_TABLE); build again'

@@ -12,5 +12,8 @@ OPT_core := -O3 -funroll-loops
 # The drivers that the board has, each without its ending.
 DRIVERS := not_fitted/not_fitted
 
+# The text table of the avionics bus that is built in as the profile "generic" (docs/bus.md), when it is your own.
+# BUS_TABLE := bsp/template/my.bus
+
 # Instead of a PC's programs and tests: how your program is linked.
 PARTS := bsp/template/program.mk

@@ -25,7 +25,7 @@ class Tree:
 
     def __init__(self, root, flags, scratch):
         self.root = Path(root)
-        self.flags = flags  # "CC", "ROOMS", and each part's name -> list of words
+        self.flags = flags  # "CC", "GENERATED", "ROOMS", and each part's name -> list of words
         self.scratch = Path(scratch)
         self.built = {}  # kind -> what objects() found
 
@@ -76,12 +76,14 @@ class Tree:
         return objects, list(complaints)
 
     def build(self, folder, more, compiler):
+        generated = Path(self.flags["GENERATED"][0])  # has made sources under the paths that they would have here
         jobs = []
         for layer in LOW_LAYERS:
-            for source in self.files(layer, ".c"):
-                target = folder / source.with_suffix(".o")
+            made = {path.relative_to(generated): path for path in self.files(generated / layer, ".c")}
+            for path, source in [(path, path) for path in self.files(layer, ".c")] + sorted(made.items()):
+                target = folder / path.with_suffix(".o")
                 target.parent.mkdir(parents=True, exist_ok=True)
-                jobs.append((self.part_of(source), source, target))
+                jobs.append((self.part_of(path), source, target))
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             complaints = list(pool.map(lambda job: self.compile(*job, *more, compiler=compiler), jobs))
         bad = [first_error(text) for text in complaints if text]

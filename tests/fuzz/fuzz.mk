@@ -3,7 +3,7 @@
 FUZZ_TARGETS  := image targets chips signature unit bus bus_table can_log script csv gpx igc class_table net label_map mstar chip_csv netem_model hid \
     panel_config obj traced
 FUZZ_PARTS    := address,undefined,float-cast-overflow
-FUZZ_CORE     := $(wildcard firmware/*/*.c fixed/src/*.c) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
+FUZZ_CORE     := $(SRC_core) $(addprefix tests/support/,memory_flash.c tiny_image.c) tests/fuzz/seal.c
 FUZZ_TRACK    := $(wildcard host-sim/nav/*.c) tests/fuzz/track.c
 FUZZ_TEXT     := $(addprefix host-sim/lib/,text_file.c atomic_file.c) tests/fuzz/file.c
 
@@ -11,9 +11,9 @@ FUZZ_SRC_image       := $(FUZZ_CORE)
 FUZZ_SRC_targets     := $(FUZZ_CORE)
 FUZZ_SRC_chips       := $(FUZZ_CORE)
 FUZZ_SRC_unit        := $(FUZZ_CORE)
-FUZZ_SRC_signature   := $(wildcard firmware/*/*.c fixed/src/*.c) host-sim/lib/signature_file.c host-sim/lib/atomic_file.c tests/fuzz/file.c
-FUZZ_SRC_bus         := $(wildcard firmware/bus/*.c firmware/nav/*.c) firmware/base/environment.c firmware/base/geo.c $(wildcard fixed/src/*.c)
-FUZZ_SRC_bus_table   := $(FUZZ_SRC_bus) host-sim/bus/table_text.c host-sim/bus/print.c drivers/can/can_socket.c
+FUZZ_SRC_signature   := $(SRC_core) host-sim/lib/signature_file.c host-sim/lib/atomic_file.c tests/fuzz/file.c
+FUZZ_SRC_bus         := $(filter firmware/bus/% firmware/nav/%,$(SRC_firmware)) firmware/base/environment.c firmware/base/geo.c $(SRC_fixed)
+FUZZ_SRC_bus_table   := $(FUZZ_SRC_bus) host-sim/bus/table_text.c host-sim/bus/print.c host-sim/bus/print_c.c drivers/can/can_socket.c
 FUZZ_SRC_can_log     := drivers/can/can_log.c
 FUZZ_SRC_script      := host-sim/sim/script.c tests/fuzz/file.c
 FUZZ_SRC_csv         := $(FUZZ_TRACK)
@@ -26,7 +26,7 @@ FUZZ_SRC_chip_csv    := host-sim/netem/chip_csv.c host-sim/netem/picture.c
 FUZZ_SRC_netem_model := $(patsubst %,host-sim/netem/%.c,model_file train simulator netem paths network architecture netpix \
                        convolve fft picture loss registration optimizer) host-sim/tracer/records.c $(FUZZ_TEXT)
 FUZZ_SRC_obj         := $(addprefix host-sim/tracer/,obj_file.c mesh.c mesh_audit.c) host-sim/lib/atomic_file.c tests/fuzz/file.c
-FUZZ_SRC_traced      := $(addprefix host-sim/tracer/,records.c records_file.c) $(wildcard fixed/src/*.c) host-sim/lib/atomic_file.c tests/fuzz/file.c
+FUZZ_SRC_traced      := $(addprefix host-sim/tracer/,records.c records_file.c) $(SRC_fixed) host-sim/lib/atomic_file.c tests/fuzz/file.c
 FUZZ_SRC_label_map   := host-sim/gis/label_map.c host-sim/lib/class_table.c $(FUZZ_TEXT)
 FUZZ_SRC_hid         := $(addprefix drivers/usb/,hid.c stick.c)
 FUZZ_SRC_panel_config := $(addprefix bsp/panel-linux/,config.c config_table.c)

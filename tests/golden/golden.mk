@@ -2,7 +2,7 @@
 # optimisation under the sanitizers, and with clang at its highest level.
 GOLDEN_SRC := $(addprefix tests/golden/,golden.c golden_flight.c golden_scene.c golden_signature.c) \
     $(addprefix tests/support/,tiny_image.c memory_flash.c) host-sim/lib/png.c host-sim/lib/error.c \
-    host-sim/lib/atomic_file.c $(wildcard firmware/*/*.c fixed/src/*.c)
+    host-sim/lib/atomic_file.c $(SRC_core)
 GOLDEN := $(O)/bin/tests/golden
 TESTS += $(GOLDEN)/test_golden
 

@@ -1,5 +1,5 @@
-/* The constant tables of fixed/, generated into src/tables.c by landmass-tables; a test makes them
- * again and compares. Use the functions of the other headers; these names are public only because
+/* The constant tables of fixed/. The build makes src/tables.c by the formulas of host-sim/tables; a
+ * test knows its sum. Use the functions of the other headers; these names are public only because
  * inline functions reach them. 1.0 in Q31 is 2^31. */
 #ifndef FX_TABLES_H
 #define FX_TABLES_H

@@ -21,7 +21,6 @@ static const char help_text[] =
     "  filters           the kernel's filters, as candump takes them: can0,40C:C00007FF\n"
     "  decode [LOG]      each frame of a log of candump -L (of standard input without LOG):\n"
     "                    what it means, or why the display does not take it\n"
-    "  generate          the profile as C, for firmware/bus/bus_generic.c\n"
     "  fields            the fields that a table of your own may name, and their units\n"
     "\n"
     "Options:\n"
@@ -49,8 +48,6 @@ static int print_for(FILE *out, const struct command *c)
         bus_print_dbc(out, c->profile);
     } else if (strcmp(c->name, "filters") == 0) {
         bus_print_filters(out, c->profile);
-    } else if (strcmp(c->name, "generate") == 0) {
-        bus_print_c(out, c->profile);
     } else if (strcmp(c->name, "fields") == 0) {
         bus_print_fields(out);
     } else if (c->log_path == NULL || strcmp(c->log_path, "-") == 0) {
@@ -102,7 +99,7 @@ static int read_table(struct bus_table *table, const char *path)
 
 static bool is_command(const char *name)
 {
-    static const char *const names[] = {"table", "dbc", "filters", "decode", "generate", "fields"};
+    static const char *const names[] = {"table", "dbc", "filters", "decode", "fields"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         if (strcmp(names[i], name) == 0) {
             return true;

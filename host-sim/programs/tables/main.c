@@ -12,7 +12,7 @@ static void print_help(void)
         "usage: landmass-tables SET [FILE]\n\n"
         "Write the constant tables of SET as C source to FILE, or to the standard output.\n"
         "A FILE that stands already is replaced whole, or left alone if anything fails.\n\n"
-        "Sets, and where they live in the source tree:\n");
+        "Sets, and where the build puts them, below build/<board>/gen:\n");
     for (int i = 0; i < table_set_count; i++) {
         printf("  %-10s %s\n", table_sets[i].name, table_sets[i].file);
     }

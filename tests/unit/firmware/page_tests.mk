@@ -15,5 +15,5 @@ T := $(O)/bin/tests/unit/firmware/test_hostile_controls
 TESTS += $(T)
 $(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_hostile_controls.o unit_rig.o) \
     $(patsubst %.c,$(O)/sanitized/%.o,host-sim/lib/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
-    $(wildcard firmware/*/*.c fixed/src/*.c))
+    $(SRC_core))
 $(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka

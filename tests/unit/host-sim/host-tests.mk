@@ -44,7 +44,7 @@ $(call host_tests, programs/figures,   lib,                                  fig
 # The forms of a bus profile that landmass-bus prints, against the decoder.
 BUS_FORMS := $(O)/bin/tests/unit/host-sim/programs/bus/test_forms
 TESTS += $(BUS_FORMS)
-$(BUS_FORMS): tests/unit/host-sim/programs/bus/test_forms.py | $(O)/bin/landmass-bus
+$(BUS_FORMS): tests/unit/host-sim/programs/bus/test_forms.py | $(O)/bin/landmass-bus $(GEN)/bin/bus_table
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@

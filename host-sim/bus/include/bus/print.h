@@ -17,7 +17,7 @@ void bus_print_table(FILE *out, const struct lm_bus_profile *profile);
  */
 void bus_print_dbc(FILE *out, const struct lm_bus_profile *profile);
 
-/* The profile as C: firmware/bus/bus_generic.c. */
+/* The profile as a C source that defines lm_bus_generic (print_c.c). */
 void bus_print_c(FILE *out, const struct lm_bus_profile *profile);
 
 /* The names that a text table may say for a field, and their units. */

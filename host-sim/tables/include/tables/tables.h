@@ -18,7 +18,7 @@ struct table {
 /* One generated file. */
 struct table_set {
     const char *name;   /* on the command line */
-    const char *file;   /* where the set lives in the source tree */
+    const char *file;   /* where the build looks for it, below its folder gen/ */
     const char *header; /* which declares the arrays, so that the compiler compares both */
     const struct table *tables;
     int table_count;

@@ -5,6 +5,7 @@
 TAP on standard output. BUILD names the build's folder, LANDMASS_DATA the folder of the real data.
 """
 
+import glob
 import gzip
 import math
 import os
@@ -15,7 +16,9 @@ import subprocess
 import sys
 import tempfile
 
-BUS = os.path.join(os.environ.get("BUILD", "build/bench-linux"), "bin/landmass-bus")
+BUILD = os.environ.get("BUILD", "build/bench-linux")
+BUS = os.path.join(BUILD, "bin/landmass-bus")
+GENERATOR = os.path.join(BUILD, "gen/bin/bus_table")
 DATA = os.environ.get("LANDMASS_DATA", "../shared/data")
 PEER = os.path.join(DATA, "can_peer")
 TABLES = ["host-sim/bus/arinc825.bus", "host-sim/bus/nmea2000.bus"]
@@ -276,9 +279,54 @@ def a_position_of_nmea_2000_is_read_and_all_ones_are_none():
     assert field_values(text, "latitude") == [39.9089942] and not field_values(text, "longitude"), text
 
 
-def the_firmware_has_the_table_that_it_was_generated_from():
-    assert bus("generate", "--table", TABLES[0]) == open("firmware/bus/bus_generic.c").read(), "run make bus-table"
+def the_firmware_has_the_table_of_its_board():
     assert bus("table", "--profile", "generic") == bus("table", "--table", TABLES[0])
+
+
+CANAEROSPACE_TABLE = """profile my-canaerospace
+framing canaerospace
+item "body pitch" field=pitch id=311 types=FLOAT,SHORT range=-90..90 per-unit=100 period=20 stale=100 dead=1000
+item "clock" field=utc id=1200 types=CHAR4 range=0..86400 period=1000 stale=2000 dead=5000
+"""
+
+
+def linked_with(source, folder):
+    """landmass-bus with another lm_bus_generic than the board's."""
+    obj, program = os.path.join(folder, "generic.o"), os.path.join(folder, "landmass-bus")
+    headers = ["-Ifixed/include", *("-I" + path for path in glob.glob("firmware/*/include"))]
+    subprocess.run(["gcc", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror", *headers, "-c", source, "-o", obj], check=True)
+    parts = [BUILD + "/host-sim/programs/bus/main.o", obj]
+    archives = ["host-sim/bus/libbus", "host-sim/lib/liblib", "libdrivers", "libfirmware", "libfixed"]
+    subprocess.run(["gcc", *parts, *("%s/%s.a" % (BUILD, name) for name in archives), "-lpng", "-lm", "-o", program], check=True)
+    return program
+
+
+def a_table_that_is_compiled_is_the_table_that_is_read():
+    with tempfile.TemporaryDirectory() as folder:
+        mine, source = os.path.join(folder, "mine.bus"), os.path.join(folder, "generic.c")
+        with open(mine, "w") as out:
+            out.write(CANAEROSPACE_TABLE)
+        for table in [*TABLES, mine]:
+            subprocess.run([GENERATOR, table, source], check=True)
+            program = linked_with(source, folder)
+            for form in ("table", "dbc", "filters"):
+                done = subprocess.run([program, form, "--profile", "generic"], capture_output=True, text=True, check=True)
+                assert done.stdout == bus(form, "--table", table), (table, form)
+
+
+def a_table_that_is_wrong_stops_the_build_and_leaves_the_source_alone():
+    with tempfile.TemporaryDirectory() as folder:
+        wrong, source = os.path.join(folder, "wrong.bus"), os.path.join(folder, "generic.c")
+        for text in ("", "nonsense\n", CANAEROSPACE_TABLE.replace("id=311", "id=5000"), "profile x\nframing packed\n"):
+            with open(wrong, "w") as out:
+                out.write(text)
+            with open(source, "w") as out:
+                out.write("as before")
+            done = subprocess.run([GENERATOR, wrong, source], capture_output=True, text=True)
+            assert done.returncode == 1 and wrong in done.stderr, done
+            with open(source) as kept:
+                assert kept.read() == "as before"
+        assert subprocess.run([GENERATOR, wrong], capture_output=True).returncode == 2
 
 
 def the_document_has_the_tables_that_the_firmware_has():
@@ -294,7 +342,9 @@ class Skip(Exception):
 CASES = [names_are_unlike_and_signals_do_not_overlap, the_dbc_reads_what_another_library_sent,
          cantools_reads_the_dbc_and_what_another_library_sent, the_filters_are_those_of_the_messages,
          numbers_of_a_text_table_are_decoded_as_the_dbc_describes_them, whole_seconds_are_cut_off_and_not_rounded,
-         a_position_of_nmea_2000_is_read_and_all_ones_are_none, the_firmware_has_the_table_that_it_was_generated_from,
+         a_position_of_nmea_2000_is_read_and_all_ones_are_none, the_firmware_has_the_table_of_its_board,
+         a_table_that_is_compiled_is_the_table_that_is_read,
+         a_table_that_is_wrong_stops_the_build_and_leaves_the_source_alone,
          the_document_has_the_tables_that_the_firmware_has]
 
 

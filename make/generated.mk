@@ -1,0 +1,46 @@
+# Sources that are made and not written: the constant tables, by their formulas, and the bus table of the board.
+# They are named as if they stood in the tree, and lie in $(GEN) under the same path, where vpath finds them.
+# HOSTCC builds the programs that make them for the machine that builds, with libc and libm alone.
+HOSTCC    ?= gcc
+HOSTAR    ?= ar
+GEN       := $(O)/gen
+BUS_TABLE ?= host-sim/bus/arinc825.bus
+vpath %.c $(GEN)
+
+SRC_fixed    := $(sort $(wildcard fixed/src/*.c) fixed/src/tables.c)
+SRC_firmware := $(sort $(wildcard firmware/*/*.c) \
+    $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c))
+SRC_core     := $(SRC_firmware) $(SRC_fixed)
+
+$(GEN)/host/%.o: %.c
+	@mkdir -p $(@D)
+	$(if $(V),,@echo '  HOST $<')
+	$(Q)$(HOSTCC) $(CSTD) -O1 -D_GNU_SOURCE $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include) $(DEPGEN) -c $< -o $@
+$(GEN)/bin/%:
+	@mkdir -p $(@D)
+	$(Q)$(HOSTCC) $^ -lm -o $@
+
+gen_objs = $(patsubst %.c,$(GEN)/host/%.o,$(1))
+GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c))
+
+$(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_error)
+$(GEN)/fixed/src/tables.c: SET := fixed
+$(GEN)/firmware/clutter/noise_table.c: SET := noise
+$(GEN)/firmware/clutter/response_table.c: SET := response
+$(addprefix $(GEN)/,fixed/src/tables.c firmware/clutter/noise_table.c firmware/clutter/response_table.c): $(GEN)/bin/tables
+	@mkdir -p $(@D)
+	$(Q)$< $(SET) $@
+
+# Of the firmware it takes what knows the fields of the bus. Another BUS_TABLE than the last time makes the source anew.
+$(GEN)/host/libbus.a: $(call gen_objs,$(filter-out %/bus_generic.c,$(filter firmware/bus/%,$(SRC_firmware))) $(SRC_fixed))
+	@rm -f $@
+	$(Q)$(HOSTAR) rcs $@ $^
+$(GEN)/bin/bus_table: $(call gen_objs,$(addprefix host-sim/,programs/bus_table/main.c bus/print_c.c bus/table_text.c)) $(GEN_error) \
+    $(GEN)/host/libbus.a
+$(GEN)/firmware/bus/bus_generic.c: $(GEN)/bin/bus_table $(BUS_TABLE) $(GEN)/bus_table.name
+	@mkdir -p $(@D)
+	$(Q)$< $(BUS_TABLE) $@
+$(GEN)/bus_table.name: always
+	@mkdir -p $(@D)
+	@echo '$(BUS_TABLE)' | cmp -s - $@ || echo '$(BUS_TABLE)' >$@
+.PHONY: always
