@@ -58,7 +58,8 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
     case OSB_MODE:
         return say(label, lm_page_modes[p->mode], "", false);
     case OSB_FIELD:
-        return say(label, p->is_patch ? "SAR" : lm_page_fields[p->field], "", false);
+        return say(label, p->picture == LM_PICTURE_PATCH ? "SAR" : lm_page_fields[p->field], "",
+                   false);
     case OSB_OVERRIDE:
         return say(label, "OVRD", "", p->is_override);
     case OSB_BARO:
@@ -78,7 +79,7 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
     case OSB_CELL:
         return say(label, "CELL", lm_page_cells[p->cell].label, false);
     default:
-        return !p->is_patch && sector_label(p, osb, label);
+        return p->picture == LM_PICTURE_SECTOR && sector_label(p, osb, label);
     }
 }
 
@@ -196,7 +197,7 @@ static bool say_gamma(const struct lm_page *p, struct lm_label *value)
 bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value)
 {
     const bool is_range_shown = p->format == LM_FORMAT_RADAR || p->format == LM_FORMAT_DCLT;
-    if (is_range_shown && osb == OSB_RANGE_UP && !p->is_patch) {
+    if (is_range_shown && osb == OSB_RANGE_UP && p->picture == LM_PICTURE_SECTOR) {
         return say_number(value, "", p->radar->range_nm[p->range], false);
     }
     if (p->format != LM_FORMAT_CNTL) {

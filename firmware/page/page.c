@@ -79,19 +79,99 @@ uint8_t lm_page_range_last(const struct lm_page *p)
     return (uint8_t)fx_min_u32(radar->mode[p->mode].range_last, radar->field[p->field].range_last);
 }
 
+/* Begin the sector with this scale. */
+static uint32_t take_range(struct lm_page *p, uint32_t range)
+{
+    const bool is_other = range != p->range;
+    p->range = (uint8_t)range;
+    return is_other ? LM_EFFECT_SECTOR | LM_EFFECT_RANGE : LM_EFFECT_SECTOR;
+}
+
+/* Begin the sector with the largest scale, up to the one at hand, that mode and field have. */
+static uint32_t fit_range(struct lm_page *p)
+{
+    return take_range(p, fx_min_u32(p->range, lm_page_range_last(p)));
+}
+
 uint32_t lm_page_step_range(struct lm_page *p, int32_t step)
 {
     const int32_t range = fx_clamp_i32(p->range + step, 0, lm_page_range_last(p));
-    if (range == p->range) {
+    return range != p->range ? take_range(p, (uint32_t)range) : 0;
+}
+
+static bool is_within(int32_t value, int32_t low, int32_t high)
+{
+    return value >= low && value <= high;
+}
+
+uint32_t lm_page_select_range(struct lm_page *p, int32_t range)
+{
+    if (!is_within(range, 0, lm_page_range_last(p))) {
         return 0;
     }
-    p->range = (uint8_t)range;
+    p->is_auto_range = false;
+    return take_range(p, (uint32_t)range);
+}
+
+uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
+{
+    if (!is_within(azimuth, 0, LM_AZIMUTHS - 1)) {
+        return 0;
+    }
+    p->azimuth = (uint8_t)azimuth;
     return LM_EFFECT_SECTOR;
+}
+
+uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field)
+{
+    if (!is_within(mode, 0, LM_SECTOR_MODES - 1) ||
+        !is_within(field, 0, p->radar->mode[mode].field_last)) {
+        return 0;
+    }
+    p->mode = (uint8_t)mode;
+    p->field = (uint8_t)field;
+    return fit_range(p) | LM_EFFECT_TONE;
+}
+
+uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db)
+{
+    if (!is_within(gain_db, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
+        return 0;
+    }
+    p->gain_db = (int16_t)gain_db;
+    return LM_EFFECT_TONE;
+}
+
+uint32_t lm_page_set_knob(struct lm_page *p, int32_t knob)
+{
+    if (!is_within(knob, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
+        return 0;
+    }
+    p->knob = (int16_t)knob;
+    return LM_EFFECT_TONE;
+}
+
+void lm_page_set_frozen(struct lm_page *p, bool is_frozen)
+{
+    p->is_frozen = is_frozen;
+}
+
+void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind)
+{
+    p->picture = (uint8_t)kind;
+    p->is_frozen = false;
+}
+
+void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
+{
+    if (!p->is_tilt_manual) {
+        p->tilt_tenths = (int16_t)(((int64_t)tilt * 3600 + (1LL << 31)) >> 32);
+    }
 }
 
 static uint32_t press_range(struct lm_page *p, int32_t step)
 {
-    if (p->is_patch) {
+    if (p->picture != LM_PICTURE_SECTOR) {
         return 0;
     }
     p->is_auto_range = false;
@@ -101,7 +181,7 @@ static uint32_t press_range(struct lm_page *p, int32_t step)
 /* The sector's scan, which a window around the cursor does not have. */
 static uint32_t press_azimuth(struct lm_page *p)
 {
-    if (p->is_patch || p->field != LM_FIELD_NORM) {
+    if (p->picture != LM_PICTURE_SECTOR || p->field != LM_FIELD_NORM) {
         return 0;
     }
     p->azimuth = (uint8_t)((p->azimuth + 1) % LM_AZIMUTHS);
@@ -112,13 +192,12 @@ static uint32_t press_azimuth(struct lm_page *p)
  * sector. */
 static uint32_t press_mode(struct lm_page *p)
 {
-    if (!p->is_patch) {
-        p->mode = (uint8_t)((p->mode + 1u) % LM_SECTOR_MODES);
-        p->field =
-            p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
-        p->range = (uint8_t)fx_min_u32(p->range, lm_page_range_last(p));
+    if (p->picture != LM_PICTURE_SECTOR) {
+        return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
     }
-    return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
+    p->mode = (uint8_t)((p->mode + 1u) % LM_SECTOR_MODES);
+    p->field = p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
+    return fit_range(p) | LM_EFFECT_TONE;
 }
 
 /* The next field of view that this mode has at this range. In a patch: the whole sector. */
@@ -126,7 +205,7 @@ static uint32_t press_field(struct lm_page *p)
 {
     const uint8_t before = p->field;
     const struct lm_radar *radar = p->radar;
-    if (p->is_patch) {
+    if (p->picture != LM_PICTURE_SECTOR) {
         p->field = LM_FIELD_NORM;
         return LM_EFFECT_SECTOR;
     }
@@ -143,7 +222,7 @@ static uint32_t press_field(struct lm_page *p)
 static uint32_t press_cell(struct lm_page *p)
 {
     p->cell = (uint8_t)((p->cell + 1u) % LM_SAR_CELLS_OFFERED);
-    return p->is_patch ? LM_EFFECT_PATCH : 0;
+    return p->picture == LM_PICTURE_PATCH ? LM_EFFECT_PATCH : 0;
 }
 
 static uint32_t set_snowplow(struct lm_page *p, bool is_on)
@@ -237,7 +316,7 @@ static uint32_t press_on_cntl(struct lm_page *p, uint8_t osb)
         return LM_EFFECT_BEAM;
     case OSB_SLANT:
         p->is_slant = !p->is_slant;
-        return p->is_patch ? LM_EFFECT_PATCH : 0;
+        return p->picture == LM_PICTURE_PATCH ? LM_EFFECT_PATCH : 0;
     case OSB_BLACK_UP:
         return step_int8(&p->black_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
     case OSB_BLACK_DOWN:

@@ -34,7 +34,9 @@ static struct lm_cursor_scene scene_of(const struct lm_unit *u)
         .heading = u->ownship.heading,
         .scale_m = radar->range_m[u->page.range],
         .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
-        .slew_percent = u->page.is_patch ? 100 : radar->field[u->sector.command.field].slew_percent,
+        .slew_percent = u->page.picture == LM_PICTURE_PATCH
+                            ? 100
+                            : radar->field[u->sector.command.field].slew_percent,
     };
 }
 
@@ -42,9 +44,7 @@ static struct lm_cursor_scene scene_of(const struct lm_unit *u)
  * goes where it would have been put. One that the range follows stays. */
 static void follow_scale(struct lm_unit *u)
 {
-    const bool is_other_scale = u->page.range != u->sector.command.range;
-    if (u->cursor.is_placed && u->cursor.is_home && is_other_scale && !u->page.is_auto_range &&
-        lm_has_ownship(u)) {
+    if (u->cursor.is_placed && u->cursor.is_home && !u->page.is_auto_range && lm_has_ownship(u)) {
         const struct lm_cursor_scene scene = scene_of(u);
         lm_cursor_zero(&u->cursor, &scene);
     }
@@ -54,10 +54,10 @@ static void follow_scale(struct lm_unit *u)
 static void start_sector(struct lm_unit *u, uint64_t now_us)
 {
     const struct lm_page *p = &u->page;
-    follow_scale(u);
+    u->is_cursor_awaited = p->field != LM_FIELD_NORM && !u->cursor.is_placed;
     const struct lm_sector_command command = {
         .mode = p->mode,
-        .field = u->cursor.is_placed ? p->field : (uint8_t)LM_FIELD_NORM,
+        .field = u->is_cursor_awaited ? (uint8_t)LM_FIELD_NORM : p->field,
         .range = p->range,
         .azimuth = p->azimuth,
         .centre = u->cursor.place,
@@ -67,8 +67,7 @@ static void start_sector(struct lm_unit *u, uint64_t now_us)
     u->sector.targets = &u->target_set;
     u->sector.chips = &u->chips;
     u->sector.environment = &u->environment;
-    u->page.is_patch = false;
-    u->page.is_frozen = false;
+    lm_page_show_picture(&u->page, LM_PICTURE_SECTOR);
     lm_begin_picture(u, now_us);
 }
 
@@ -129,8 +128,7 @@ static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64
     if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
         return false;
     }
-    u->page.is_patch = true;
-    u->page.is_frozen = false;
+    lm_page_show_picture(&u->page, LM_PICTURE_PATCH);
     lm_begin_picture(u, now_us);
     lm_sar_prefetch_targets(&u->sar, &u->tiles);
     u->is_acquiring = true;
@@ -166,6 +164,9 @@ static void set_tones(struct lm_unit *u)
 
 void lm_apply(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
+    if (effects & LM_EFFECT_RANGE) {
+        follow_scale(u);
+    }
     if (effects & LM_EFFECT_SECTOR) {
         start_sector(u, now_us);
     }
@@ -221,35 +222,11 @@ static bool is_within(int32_t value, int32_t low, int32_t high)
     return value >= low && value <= high;
 }
 
-static bool obey_scales(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+/* A command that the page took has effects; one that it refused has none. */
+static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
-    const bool is_range = control->kind == LM_CONTROL_RANGE;
-    const int32_t last = is_range ? lm_page_range_last(&u->page) : LM_AZIMUTHS - 1;
-    if (!is_within(control->value, 0, last)) {
-        return false;
-    }
-    if (is_range) {
-        u->page.range = (uint8_t)control->value;
-        u->page.is_auto_range = false;
-    } else {
-        u->page.azimuth = (uint8_t)control->value;
-    }
-    start_sector(u, now_us);
-    return true;
-}
-
-static bool obey_sector(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
-{
-    const struct lm_radar *radar = u->board->radar;
-    if (!is_within(control->value, 0, LM_SECTOR_MODES - 1) ||
-        !is_within(control->value_y, 0, radar->mode[control->value].field_last)) {
-        return false;
-    }
-    u->page.mode = (uint8_t)control->value;
-    u->page.field = (uint8_t)control->value_y;
-    u->page.range = (uint8_t)fx_min_u32(u->page.range, lm_page_range_last(&u->page));
-    lm_apply(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE, now_us);
-    return true;
+    lm_apply(u, effects, now_us);
+    return effects != 0;
 }
 
 static bool obey_environment(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
@@ -289,7 +266,7 @@ static bool obey_button(struct lm_unit *u, const struct lm_control *control, uin
     return true;
 }
 
-static bool obey_deflection(struct lm_unit *u, const struct lm_control *control)
+static bool obey_deflection(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     if (!is_within(control->value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION) ||
         !is_within(control->value_y, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
@@ -299,8 +276,7 @@ static bool obey_deflection(struct lm_unit *u, const struct lm_control *control)
         u->cursor.slew_x = control->value;
         u->cursor.slew_y = control->value_y;
     } else {
-        u->page.knob = (int16_t)control->value;
-        set_tones(u);
+        lm_apply(u, lm_page_set_knob(&u->page, control->value), now_us);
     }
     return true;
 }
@@ -309,7 +285,8 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
 {
     switch (control->kind) {
     case LM_CONTROL_SECTOR:
-        return obey_sector(u, control, now_us);
+        return apply_any(u, lm_page_select_sector(&u->page, control->value, control->value_y),
+                         now_us);
     case LM_CONTROL_ENVIRONMENT:
         return obey_environment(u, control, now_us);
     case LM_CONTROL_STEERPOINT:
@@ -320,24 +297,20 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
     case LM_CONTROL_RANGE:
+        return apply_any(u, lm_page_select_range(&u->page, control->value), now_us);
     case LM_CONTROL_AZIMUTH:
-        return obey_scales(u, control, now_us);
+        return apply_any(u, lm_page_select_azimuth(&u->page, control->value), now_us);
     case LM_CONTROL_GAIN:
-        if (!is_within(control->value, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
-            return false;
-        }
-        u->page.gain_db = (int16_t)control->value;
-        set_tones(u);
-        return true;
+        return apply_any(u, lm_page_set_gain(&u->page, control->value), now_us);
     case LM_CONTROL_FREEZE:
-        u->page.is_frozen = control->value != 0;
+        lm_page_set_frozen(&u->page, control->value != 0);
         return true;
     case LM_CONTROL_DOWN:
     case LM_CONTROL_UP:
         return obey_button(u, control, now_us);
     case LM_CONTROL_KNOB:
     case LM_CONTROL_SLEW:
-        return obey_deflection(u, control);
+        return obey_deflection(u, control, now_us);
     case LM_CONTROL_DESIGNATE:
         return designate(u, now_us);
     }
@@ -373,18 +346,20 @@ static struct lm_view view_of_sector(const struct lm_unit *u)
 static struct lm_view view_of_picture(const struct lm_unit *u)
 {
     const struct lm_sar_command *c = &u->sar.command;
-    return u->page.is_patch ? lm_view_of_patch(&u->frame, c->centre, c->look_azimuth,
-                                               u->sar.radar->sar.cells, c->cell_mm)
-                            : view_of_sector(u);
+    return u->page.picture == LM_PICTURE_PATCH
+               ? lm_view_of_patch(&u->frame, c->centre, c->look_azimuth, u->sar.radar->sar.cells,
+                                  c->cell_mm)
+               : view_of_sector(u);
 }
 
 void lm_follow_view(struct lm_unit *u)
 {
-    const bool is_standing = !u->page.is_patch && (u->flags & LM_FLAGS_STANDING) != 0;
+    const bool is_standing =
+        u->page.picture != LM_PICTURE_PATCH && (u->flags & LM_FLAGS_STANDING) != 0;
     if (!is_standing || !u->is_view_held) {
         u->view = view_of_picture(u);
     }
-    u->is_view_held = u->page.is_patch ? u->is_view_held : is_standing;
+    u->is_view_held = u->page.picture == LM_PICTURE_PATCH ? u->is_view_held : is_standing;
     if (lm_has_ownship(u)) {
         const struct lm_cursor_scene scene = scene_of(u);
         lm_cursor_locate(&u->cursor, &scene);
@@ -404,7 +379,7 @@ static void read_elevation(struct lm_unit *u)
 static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t scale_m = u->board->radar->range_m[u->page.range];
-    if (u->page.is_patch || !u->page.is_auto_range || u->is_view_held) {
+    if (u->page.picture == LM_PICTURE_PATCH || !u->page.is_auto_range || u->is_view_held) {
         return;
     }
     const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
@@ -427,7 +402,7 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
     }
     lm_cursor_locate(&u->cursor, &scene);
     read_elevation(u);
-    if (!u->page.is_patch && u->sector.command.field != u->page.field && u->cursor.is_placed) {
+    if (u->page.picture == LM_PICTURE_SECTOR && u->is_cursor_awaited && u->cursor.is_placed) {
         lm_apply(u, LM_EFFECT_SECTOR, now_us); /* the window had no cursor to go by until now */
     }
     follow_range(u, now_us);

@@ -58,9 +58,7 @@ static void begin_sweep(struct lm_unit *u, const struct lm_platform *platform)
     recentre(u);
     lm_sector_begin(&u->sector, &u->tiles, platform);
     lm_follow_view(u);
-    if (!u->page.is_tilt_manual) {
-        u->page.tilt_tenths = (int16_t)(((int64_t)u->sector.tilt * 3600 + (1LL << 31)) >> 32);
-    }
+    lm_page_note_tilt(&u->page, u->sector.tilt);
     u->is_off_map = 2 * u->cells_none > u->cells_seen;
     u->cells_none = u->cells_seen = 0;
 }
@@ -137,7 +135,7 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
     if (u->flags & LM_FLAGS_NO_LINES) {
         return false;
     }
-    if (!u->page.is_patch) {
+    if (u->page.picture != LM_PICTURE_PATCH) {
         return true;
     }
     if (u->is_acquiring) {
@@ -153,7 +151,8 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
 /* Draw a line of what is shown. False when it needs more than one step. */
 static bool draw_line(struct lm_unit *u, uint64_t now_us, uint32_t *azimuths)
 {
-    return u->page.is_patch ? draw_patch_line(u, now_us) : draw_sector_line(u, now_us, azimuths);
+    return u->page.picture == LM_PICTURE_PATCH ? draw_patch_line(u, now_us)
+                                               : draw_sector_line(u, now_us, azimuths);
 }
 
 /* Lines that are due and not drawn stay so, but not for long: the sweep then goes on from now. */
@@ -170,7 +169,7 @@ void lm_draw_due_lines(struct lm_unit *u, uint64_t now_us)
 {
     /* To trace an azimuth is as much work as to draw a line. */
     uint32_t azimuths = AZIMUTHS_A_STEP, lines = 0;
-    if (u->page.is_patch && u->is_acquiring) {
+    if (u->page.picture == LM_PICTURE_PATCH && u->is_acquiring) {
         ask_for_patch(u);
     }
     while (lines + AZIMUTHS_A_STEP - azimuths < LM_STEP_LINES && is_drawing(u, now_us) &&

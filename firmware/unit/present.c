@@ -75,8 +75,8 @@ static struct lm_symbols describe(const struct lm_unit *u)
     struct lm_symbols s = {
         .view = u->view,
         .is_sweeping = !(u->flags & LM_FLAGS_NO_LINES),
-        .range_nm = radar->range_nm[sector->command.range],
-        .azimuth_half = radar->azimuth_half[sector->command.azimuth],
+        .range_nm = radar->range_nm[u->page.range],
+        .azimuth_half = radar->azimuth_half[u->page.azimuth],
         .antenna_azimuth = lm_sector_edge_bam(sector, sector->line),
         .antenna_elevation = sector->tilt,
         .gain_db = u->page.gain_db,

@@ -121,7 +121,7 @@ static void heed_jump(struct lm_unit *u, uint64_t now_us)
     if (is_other_source || u->nav.position_jumps != u->jumps_seen) {
         u->jumps_seen = u->nav.position_jumps;
         u->cursor.is_placed = false;
-        if (!u->page.is_patch) {
+        if (u->page.picture != LM_PICTURE_PATCH) {
             lm_apply(u, LM_EFFECT_SECTOR, now_us);
         }
     }
@@ -131,7 +131,7 @@ static void heed_jump(struct lm_unit *u, uint64_t now_us)
 static uint32_t judge_nav(const struct lm_unit *u)
 {
     const struct lm_ownship *own = &u->ownship;
-    if (u->page.is_patch && !u->sar.command.is_from_ownship) {
+    if (u->page.picture == LM_PICTURE_PATCH && !u->sar.command.is_from_ownship) {
         return 0;
     }
     if (own->position_quality == LM_NAV_DEAD || own->height_quality == LM_NAV_DEAD ||

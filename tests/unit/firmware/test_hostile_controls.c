@@ -98,7 +98,8 @@ static void a_million_hostile_controls_break_no_bound(void **state)
         assert_int_equal(r->control_next, r->control_count);
         check_bounds(r);
         formats_seen |= 1u << r->unit.page.format;
-        modes_seen |= 1u << (r->unit.page.is_patch ? LM_SECTOR_MODES : r->unit.page.mode);
+        modes_seen |=
+            1u << (r->unit.page.picture == LM_PICTURE_PATCH ? LM_SECTOR_MODES : r->unit.page.mode);
     }
     assert_int_equal(formats_seen, 31); /* the stream has been everywhere */
     assert_int_equal(modes_seen, 15);

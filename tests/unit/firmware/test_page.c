@@ -117,10 +117,10 @@ static void osb_1_goes_round_the_modes_and_leaves_the_patch(void **state)
     }
     command(r, patch_here);
     run(r, 0.1);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(labelled(r, 3, "SAR", 0));
     press(r, 1);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(labelled(r, 3, "NORM", 0));
     free_rig(r);
 }
@@ -171,7 +171,7 @@ static void osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture(v
     command(r, patch_here);
     run(r, 0.2);
     press(r, 3);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     free_rig(r);
 }
 
@@ -208,7 +208,7 @@ static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
     assert_true(warns(r, "NO RAD"));
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* a patch would need it */
     run(r, 0.1);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(warns(r, "UNABLE"));
     press(r, 4);
     run(r, 0.5);
@@ -350,7 +350,7 @@ static void osb_16_of_the_control_page_shows_patches_in_slant_range(void **state
     assert_true(labelled(r, 16, "SAR", 0));
     press(r, 16);
     assert_true(labelled(r, 16, "SAR", 1));
-    assert_true(r->unit.page.is_patch && r->unit.sar.command.has_layover);
+    assert_true(r->unit.page.picture == LM_PICTURE_PATCH && r->unit.sar.command.has_layover);
     run(r, 5);
     assert_true(lit_pixels(r) > 10000);
     press(r, 16);
@@ -450,7 +450,7 @@ static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* stabilises, and no more */
     run(r, 0.05);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     const struct lm_place held = r->unit.cursor.place;
     run(r, 10);
     assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
@@ -567,7 +567,7 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
     slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 1);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.sar.command.cell_mm, 10000);
     const struct lm_place centre = r->unit.sar.command.centre;
     press(r, 16);
@@ -747,7 +747,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     slew_right(r);
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 4);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
                         sizeof(struct lm_place));
     assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
@@ -758,7 +758,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
     command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
     run(r, 0.1);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     free_rig(r);
 }
 
@@ -772,7 +772,7 @@ static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(
     command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 0.1);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.count.commands_refused, 1);
     assert_true(warns(r, "UNABLE"));
     run(r, 2);
@@ -786,7 +786,7 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     struct rig *r = fly();
     command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
     run(r, 0.1);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(warns(r, "UNABLE"));
     /* 10 km away at 150 m/s, 30 degrees off, with cells of 1 m: about 2 s. */
     for (int i = 0; i < 3; i++) {
@@ -798,7 +798,7 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     run(r, 0.3);
     command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
     run(r, 0.1);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     char words[24];
     snprintf(words, sizeof words, "%u%% %.0fS", r->unit.sar.line * 100 / 256,
              ceil((double)lm_sar_time_to_go_us(&r->unit.sar) / 1e6));
@@ -968,7 +968,7 @@ static void a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes(v
             press(r, 9);
             command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
             run(r, 0.1);
-            assert_true(r->unit.page.is_patch);
+            assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
             command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
         } else {
             command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 500});
@@ -1103,9 +1103,35 @@ static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropp
     free_rig(r);
 }
 
+static void a_selection_out_of_range_is_refused_and_changes_nothing(void **state)
+{
+    (void)state;
+    struct lm_page page;
+    lm_page_init(&page, &lm_radar_default);
+    const struct lm_page before = page;
+    const int32_t last = lm_page_range_last(&page);
+    assert_int_equal(lm_page_select_range(&page, -1), 0);
+    assert_int_equal(lm_page_select_range(&page, last + 1), 0);
+    assert_int_equal(lm_page_select_azimuth(&page, LM_AZIMUTHS), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_MODES, LM_FIELD_NORM), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FIELD_DBS2), 0);
+    assert_int_equal(lm_page_set_gain(&page, LM_GAIN_MAX_DB + 1), 0);
+    assert_int_equal(lm_page_set_knob(&page, -LM_FULL_DEFLECTION - 1), 0);
+    assert_memory_equal(&page, &before, sizeof before);
+
+    /* The scale at hand begins the sector again; only another one is told as such. */
+    assert_int_equal(lm_page_select_range(&page, page.range), LM_EFFECT_SECTOR);
+    assert_int_equal(lm_page_select_range(&page, last), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
+    /* Sharpening has no scale so large: it is lowered. */
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1),
+                     LM_EFFECT_SECTOR | LM_EFFECT_RANGE | LM_EFFECT_TONE);
+    assert_int_equal(page.range, lm_page_range_last(&page));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_selection_out_of_range_is_refused_and_changes_nothing),
         cmocka_unit_test(the_page_after_power_up_has_the_labels_of_the_key_map),
         cmocka_unit_test(osb_1_goes_round_the_modes_and_leaves_the_patch),
         cmocka_unit_test(osb_2_lets_the_range_follow_the_cursor),

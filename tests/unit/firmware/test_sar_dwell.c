@@ -50,7 +50,7 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
         0; /* lines that stood when first_us was taken: the first waits for those ahead */
     command(r, control);
     run(r, 0.004);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     while (r->unit.sar.line < CELLS) {
         if (first_us == 0 && r->now_us >= r->unit.next_line_us - r->unit.sar.line_us &&
             r->unit.sar.line > 0) {
@@ -109,7 +109,7 @@ static bool is_refused(double speed_m_s, double nose_deg, double bearing_deg, do
     struct rig *r = fly_at(speed_m_s, nose_deg);
     command(r, patch_at(r, bearing_deg, range_m, cell_m));
     run(r, 0.01);
-    const bool is_made = r->unit.page.is_patch;
+    const bool is_made = r->unit.page.picture == LM_PICTURE_PATCH;
     assert_int_equal(r->unit.count.commands_refused, !is_made);
     assert_int_equal((r->unit.flags & LM_FLAG_UNABLE) != 0, !is_made);
     free_rig(r);

@@ -360,7 +360,7 @@ static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(vo
         control.sar.cell_mm = 1000;
         command(r, control);
         run(r, 0.1);
-        assert_true(r->unit.page.is_patch);
+        assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
         const double lateral = 6 * pi / 180 * 150;
         const double dwell_s = (double)(r->unit.sar.line_us * CELLS) / 1e6;
         const double f = pi * lateral * 0.01 * dwell_s * dwell_s / (2 * 0.031228);
@@ -440,7 +440,7 @@ static void a_jammed_patch_has_no_dark_left(void **state)
         command(r, jam);
         command(r, patch_here);
         run(r, 4);
-        assert_true(r->unit.page.is_patch);
+        assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
         lit[is_jammed] = lit_pixels(r);
         free_rig(r);
     }

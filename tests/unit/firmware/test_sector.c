@@ -403,12 +403,12 @@ static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void *
     fill_frame(r, OLD);
     command(r, patch_here);
     step(r);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(old_pixels(r), 0);
     fill_frame(r, OLD);
     command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
     step(r);
-    assert_false(r->unit.page.is_patch);
+    assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(old_pixels(r), 0);
     free_rig(r);
 }
@@ -428,7 +428,7 @@ static void a_patch_drawn_twice_is_the_same(void **state)
     for (int i = 0; i < 3; i++) {
         command(r, patch);
         step(r);
-        assert_true(r->unit.page.is_patch);
+        assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
         while (r->unit.sar.line < r->unit.sar.radar->sar.cells) {
             step(r);
         }

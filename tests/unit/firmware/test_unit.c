@@ -185,7 +185,7 @@ static void a_patch_completes_and_stays(void **state)
     command(r, patch_here);
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
-    assert_true(r->unit.page.is_patch);
+    assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
@@ -210,7 +210,7 @@ static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not
     struct rig *cold = start_rig(), *warm = start_rig();
     command(cold, patch_from_afar);
     run(cold, 1.0 * STEP_US / 1e6);
-    assert_true(cold->unit.page.is_patch && cold->unit.is_acquiring);
+    assert_true(cold->unit.page.picture == LM_PICTURE_PATCH && cold->unit.is_acquiring);
     const int32_t guessed_q10 = cold->unit.sar.grid.reference_q10;
     run(cold, 4);
     command(warm, patch_from_afar);
@@ -239,7 +239,7 @@ all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_ste
         run(r, 1.0 * STEP_US / 1e6);
         assert_in_range(u->lines_asked_for - before, 0, 32);
         before = u->lines_asked_for;
-        assert_true(u->page.is_patch && u->sar.line == 0 && ++step < 250);
+        assert_true(u->page.picture == LM_PICTURE_PATCH && u->sar.line == 0 && ++step < 250);
     } while (u->is_acquiring);
     assert_int_equal(u->lines_asked_for, 256);
     const uint32_t substituted = u->tiles.count.substituted;
@@ -289,7 +289,7 @@ static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
                                                   .look_azimuth = FX_BAM_DEG(10) + (i ? 1000 : 0),
                                                   .range_m = 20000}});
         lm_unit_step(&r[i]->unit, 0); /* the page, before the first line */
-        assert_true(r[i]->unit.page.is_patch);
+        assert_int_equal(r[i]->unit.page.picture, LM_PICTURE_PATCH);
     }
     assert_memory_equal(r[0]->glass, r[1]->glass, sizeof r[0]->glass);
     free_rig(r[0]);
@@ -345,7 +345,7 @@ static void hostile_commands_are_refused_and_counted(void **state)
         command(r, bad[i]);
         run(r, 0.01);
         assert_int_equal(r->unit.count.commands_refused, i + 1);
-        assert_false(r->unit.page.is_patch);
+        assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     }
     free_rig(r);
 }

@@ -140,7 +140,7 @@ static void look_closely(struct flight *f)
     drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_SLEW, 0, 0);
     drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_DESIGNATE, 0, 0);
     fly(f, 0.1);
-    assert_true(f->panel.unit->page.is_patch);
+    assert_int_equal(f->panel.unit->page.picture, LM_PICTURE_PATCH);
 }
 
 static void a_panel_without_any_device_draws_its_page_and_says_what_is_missing(void **state)

@@ -28,7 +28,8 @@ enum lm_effect {
     LM_EFFECT_SNOWPLOW = 1 << 5, /* switched on or off */
     LM_EFFECT_SWAP = 1 << 6,     /* exchange this display's page with the other's */
     LM_EFFECT_BEAM = 1 << 7,     /* tilt or shape of the beam */
-    LM_EFFECT_HEIGHT = 1 << 8    /* which height is flown by */
+    LM_EFFECT_HEIGHT = 1 << 8,   /* which height is flown by */
+    LM_EFFECT_RANGE = 1 << 9     /* the sector begins with another range scale */
 };
 
 enum {
@@ -39,17 +40,19 @@ enum {
     LM_SAR_CELLS_OFFERED = 6
 };
 
+/* The only home of what the operator selected: kind of picture, mode, field, scales, freeze and the
+ * settings of the control page. Everybody may read it; only the functions below change it. */
 struct lm_page {
     const struct lm_radar *radar; /* borrowed */
     uint8_t format;               /* enum lm_format */
-    bool is_patch;                /* a patch is shown, not a sector; the unit sets it */
+    uint8_t picture;              /* enum lm_picture_kind */
     uint8_t mode, field;          /* of the sector: enum lm_sector_mode, enum lm_field */
     uint8_t range, azimuth;       /* indices into the radar table */
     uint8_t cell;                 /* of the patch: index into this page's own table */
     bool is_baro;  /* the aircraft's height is the barometric one, where there is one */
     bool is_slant; /* a patch is shown in slant range: what stands high leans nearer */
     bool is_tilt_manual, is_pencil; /* the beam: its axis by hand, and not spoiled into a fan */
-    int16_t tilt_tenths;            /* of its axis, degrees up; the unit's while it is automatic */
+    int16_t tilt_tenths;            /* of its axis, tenths of a degree up */
     bool is_auto_range, is_override, is_frozen, is_snowplow, is_decluttered;
     uint32_t hidden; /* bit n - 1: declutter takes OSB n's label away */
 
@@ -73,6 +76,28 @@ uint8_t lm_page_range_last(const struct lm_page *p);
 
 /* One scale up (1) or down (-1), as an automatic range does. Returns the effects. */
 uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
+
+/* Direct commands of a script or an instructor's station. Each returns its effects, which are not
+ * 0, or 0 with the page unchanged when an argument is outside its range:
+ * - select_range: 0..lm_page_range_last; ends the automatic range;
+ * - select_azimuth: 0..LM_AZIMUTHS - 1;
+ * - select_sector: mode 0..LM_SECTOR_MODES - 1, field 0..field_last of that mode; the range scale
+ * is lowered to the largest that both have;
+ * - set_gain: -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB;
+ * - set_knob: -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION. */
+uint32_t lm_page_select_range(struct lm_page *p, int32_t range);
+uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth);
+uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field);
+uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db);
+uint32_t lm_page_set_knob(struct lm_page *p, int32_t knob);
+void lm_page_set_frozen(struct lm_page *p, bool is_frozen);
+
+/* Take note that a picture of this kind has begun, which ends a freeze. */
+void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind);
+
+/* Take note of where the radar points the beam's axis, signed BAM; ignored while the operator
+ * points it by hand. */
+void lm_page_note_tilt(struct lm_page *p, int32_t tilt);
 
 /* Text beside a key: one or two lines of at most five characters. */
 struct lm_label {

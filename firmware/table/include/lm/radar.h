@@ -37,6 +37,13 @@ struct lm_tone_config {
     uint16_t gamma_q8;          /* exponent, 26..1024 (0.1..4.0) */
 };
 
+/* Kinds of picture that the radar page can show. */
+enum lm_picture_kind {
+    LM_PICTURE_SECTOR, /* real beam and Doppler beam sharpening, swept over and over */
+    LM_PICTURE_PATCH,  /* synthetic aperture, drawn once */
+    LM_PICTURES
+};
+
 /* What a sector shows. */
 enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };
 

@@ -69,6 +69,7 @@ struct lm_unit {
     struct lm_keys keys;
     struct lm_page page;
     struct lm_cursor cursor;
+    bool is_cursor_awaited; /* by a window: the whole sector is swept until it has a place */
     struct lm_palette palette;
     struct lm_view view;          /* of the picture on the glass */
     bool is_view_held;            /* the picture stands, and the aircraft moves over it */
