@@ -64,7 +64,7 @@ int main(void)
             host_say("the unit does not start\n");
             return 1;
         }
-        host_say_checksum(p->name, golden_checksum(&rig));
+        host_say_checksums(p->name, golden_radar_checksum(&rig), golden_glass_checksum(&rig));
     }
     return 0;
 }

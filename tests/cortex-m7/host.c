@@ -23,14 +23,21 @@ void host_say(const char *words)
     call(SYS_WRITE0, words);
 }
 
-void host_say_checksum(const char *name, uint32_t checksum)
+static void say_hex(uint32_t number)
 {
-    char digits[] = " 00000000\n";
+    char digits[] = " 00000000";
     for (uint32_t i = 0; i < 8; i++) {
-        digits[8 - i] = "0123456789abcdef"[checksum >> 4 * i & 15];
+        digits[8 - i] = "0123456789abcdef"[number >> 4 * i & 15];
     }
-    host_say(name);
     host_say(digits);
+}
+
+void host_say_checksums(const char *name, uint32_t first, uint32_t second)
+{
+    host_say(name);
+    say_hex(first);
+    say_hex(second);
+    host_say("\n");
 }
 
 _Noreturn void host_exit(int status)

@@ -9,8 +9,8 @@
 
 void host_say(const char *words);
 
-/* "name 0123abcd" on a line. */
-void host_say_checksum(const char *name, uint32_t checksum);
+/* "name 0123abcd 4567cdef" on a line. */
+void host_say_checksums(const char *name, uint32_t first, uint32_t second);
 
 _Noreturn void host_exit(int status);
 

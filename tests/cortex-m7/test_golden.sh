@@ -23,10 +23,10 @@ number=1
 failed=$status
 [ $status -eq 0 ] || printf 'not '
 echo "ok 1 - the firmware flies on a Cortex-M7"
-while read -r name checksum; do
+while read -r name radar glass; do
     case $name in image-*) continue ;; esac
     number=$((number + 1))
-    if ! grep -qx "$name $checksum" "$work/pictures"; then
+    if ! grep -qx "$name $radar $glass" "$work/pictures"; then
         failed=1
         printf 'not '
     fi

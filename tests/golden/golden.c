@@ -1,5 +1,6 @@
-/* Print "name checksum" of every golden picture. Usage: golden [--png FOLDER [NAME...]]: write
- * them, or only those named, as PNG files too. */
+/* Print "name radar glass" for every golden picture, the checksums of golden_flight.h, and
+ * "image-name checksum" for every country. Usage: golden [--png FOLDER [NAME...]]: write the
+ * pictures, or only those named, as PNG files too. */
 #include "golden_flight.h"
 #include "golden_scene.h"
 
@@ -47,7 +48,8 @@ static int fly_over(enum golden_place place, struct golden_rig *rig, const char 
         if (golden_fly(rig, p, golden_centre(place), image.bytes, image.size) != LM_OK) {
             status = hs_error(p->name, NULL, "the unit does not start");
         } else {
-            printf("%s %08x\n", p->name, golden_checksum(rig));
+            printf("%s %08x %08x\n", p->name, golden_radar_checksum(rig),
+                   golden_glass_checksum(rig));
             if (folder && is_wanted(p->name, count, names)) {
                 status = write_png(rig, folder);
             }

@@ -431,8 +431,17 @@ int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_p
     return status;
 }
 
-uint32_t golden_checksum(const struct golden_rig *r)
+static size_t pixels_of(const struct golden_rig *r)
 {
-    const size_t pixels = (size_t)r->display.width_px * r->display.height_px;
-    return fx_crc32c(0, r->glass, pixels * sizeof r->glass[0]);
+    return (size_t)r->display.width_px * r->display.height_px;
+}
+
+uint32_t golden_radar_checksum(const struct golden_rig *r)
+{
+    return fx_crc32c(0, r->plane, pixels_of(r));
+}
+
+uint32_t golden_glass_checksum(const struct golden_rig *r)
+{
+    return fx_crc32c(0, r->glass, pixels_of(r) * sizeof r->glass[0]);
 }

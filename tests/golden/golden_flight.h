@@ -71,7 +71,11 @@ struct golden_rig {
 int golden_fly(struct golden_rig *rig, const struct golden_picture *picture, struct lm_place centre,
                const uint8_t *image, size_t image_bytes);
 
-/* CRC-32C of the glass, row by row, each pixel as four bytes, the lowest first. */
-uint32_t golden_checksum(const struct golden_rig *rig);
+/* CRC-32C of the radar picture alone: the plane of grey levels before symbols and labels, row by
+ * row. A label that changes leaves it as it is. */
+uint32_t golden_radar_checksum(const struct golden_rig *rig);
+
+/* CRC-32C of the whole glass, row by row, each pixel as four bytes, the lowest first. */
+uint32_t golden_glass_checksum(const struct golden_rig *rig);
 
 #endif

@@ -36,6 +36,16 @@ static void read_flash(struct zcu102 *z, uint64_t offset, void *to, uint64_t len
     }
 }
 
+/* Print "RADAR name checksum". */
+static void say_radar_checksum(struct zcu102 *z, const char *name)
+{
+    zcu102_say(&z->console, "RADAR ");
+    zcu102_say(&z->console, name);
+    zcu102_say(&z->console, " ");
+    zcu102_say_hex(&z->console, golden_radar_checksum(&rig), 8);
+    zcu102_say(&z->console, "\n");
+}
+
 static void show(struct zcu102 *z, const char *name)
 {
     const struct drv_display_config config = {.dp = (drv_registers)DP_BASE,
@@ -79,6 +89,7 @@ int main(void)
             const struct golden_picture *p = &golden_pictures[i];
             if (p->place == place &&
                 golden_fly(&rig, p, flash.places[place].centre, image, size) == LM_OK) {
+                say_radar_checksum(&z, p->name);
                 show(&z, p->name);
             }
         }

@@ -5,8 +5,8 @@
 #include "drv/display_dp.h"
 #include "drv/uart_cadence.h"
 
-/* Print "LOOK name checksum", the checksum being that of golden_checksum over what the firmware
- * drew, and wait until the host has answered with a byte. */
+/* Print "LOOK name checksum", the checksum being that of golden_glass_checksum over what the
+ * firmware drew, and wait until the host has answered with a byte. */
 void look(struct drv_uart *console, const struct drv_display *display, const char *name);
 
 /* CRC-32C of what is drawn: row by row, each pixel as four bytes, the lowest first. */
