@@ -14,4 +14,4 @@ TESTS += $(BUS_FUZZ)
 $(BUS_FUZZ): $(BUS_FUZZ_SRC) $(wildcard tests/unit/firmware/bus_frames.h firmware/*/include/lm/*.h drivers/include/drv/*.h)
 	@mkdir -p $(@D)
 	@echo "  CC   $@ (sanitizers)"
-	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all $(BUS_FUZZ_SRC) -lcmocka -lm -o $@
+	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all $(filter %.c,$^) -lcmocka -lm -o $@

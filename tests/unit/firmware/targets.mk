@@ -15,5 +15,5 @@ $(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.
     $(wildcard tests/unit/firmware/target_*.h tests/unit/firmware/signature_image.h firmware/*/include/lm/*.h)
 	@mkdir -p $(@D)
 	@echo "  CC   $@ (sanitizers)"
-	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Itests/support $< $(TARGET_SANE_SRC) \
+	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Itests/support $(filter %.c,$^) \
 	    -lcmocka $(call pkgs,libs,proj) -lm -o $@
