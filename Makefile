@@ -97,7 +97,7 @@ bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and m
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
 
-rooms: $(O)/tests/discipline/flags ## Print which room of the firmware may see which, and which does
+rooms: $(O)/tests/discipline/flags ## Print which room, library or program may see which, and which does
 	@python3 -B tests/discipline/rooms.py $<
 
 lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
@@ -146,7 +146,7 @@ $(O)/bsp/%.o: bsp/%.c
 $(O)/host-sim/%.o: host-sim/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')
-	$(Q)$(CC) $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(HOST_CFLAGS) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+	$(Q)$(CC) $(CFLAGS_part) $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
 $(O)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(if $(V),,@echo '  CC   $<')

@@ -10,8 +10,8 @@
 
 HOST_LIBS :=
 HOST_HEADERS_fixed      := $(INC_fixed)
-HOST_HEADERS_firmware   := $(INC_firmware)
-HOST_HEADERS_firmware.h := $(INC_firmware)
+HOST_HEADERS_firmware   := $(call ROOM_HEADERS,$(ROOMS))
+HOST_HEADERS_firmware.h := $(HOST_HEADERS_firmware)
 HOST_HEADERS_drivers    := -Idrivers/include
 HOST_HEADERS_bench      := -Ibsp/bench-linux
 LIB_bench := $(O)/libbench.a
@@ -25,6 +25,8 @@ host_packages = $(sort $(foreach l,$(call host_needs,$(1)),$(HOST_PACKAGES_$l)))
 host_links    = -Wl,--as-needed $(filter -%,$(call host_packages,$(1))) $(call pkgs,libs,$(filter-out -%,$(call host_packages,$(1))))
 host_headers  = $(sort $(foreach l,$(1),$(or $(HOST_HEADERS_$l),-Ihost-sim/$l/include)))
 host_cflags   = $(call host_headers,$(1)) $(call pkgs,cflags,$(filter-out -%,$(call host_packages,$(1))))
+# All flags of a library or of programs/NAME.
+CFLAGS_host_part = $(CSTD) $(WARN) $(OPT) -D_GNU_SOURCE $(call host_cflags,$(filter-out programs/%,$(1)) $(HOST_SEES_$(1)))
 
 define host_library_rules
 HOST_SEES_$(1)     := $(2)
@@ -35,7 +37,7 @@ $$(foreach l,$(2),$$(if $$(or $$(HOST_HEADERS_$$l),$$(filter $$l,$(HOST_LIBS))),
 $(O)/host-sim/$(1)/lib$(1).a: $(call objs,$(wildcard host-sim/$(1)/*.c))
 endef
 define host_library_flags
-$(O)/host-sim/$(1)/%.o: HOST_CFLAGS := $(call host_cflags,$(1) $(HOST_SEES_$(1)))
+$(O)/host-sim/$(1)/%.o: CFLAGS_part := $(call CFLAGS_host_part,$(1))
 endef
 host_library = $(eval $(call host_library_rules,$(strip $(1)),$(strip $(2)),$(strip $(3))))$(eval $(call host_library_flags,$(strip $(1))))
 
@@ -43,7 +45,7 @@ define host_program_rules
 HOST_PROGRAMS += $(1)
 HOST_SEES_programs/$(1) := $(2)
 PROGRAMS += $(O)/bin/landmass-$(1)
-$(O)/host-sim/programs/$(1)/%.o: HOST_CFLAGS := $(call host_cflags,$(2))
+$(O)/host-sim/programs/$(1)/%.o: CFLAGS_part := $$(call CFLAGS_host_part,programs/$(1))
 $(O)/bin/landmass-$(1): $(call objs,$(wildcard host-sim/programs/$(1)/*.c)) $(call host_archives,$(2))
 $(O)/bin/landmass-$(1): LDLIBS = $$(call host_links,$(2))
 endef
@@ -58,14 +60,14 @@ $(call host_library, terrain,      resample image gis lib fixed firmware)
 $(call host_library, reflectivity, lib)
 $(call host_library, build,        terrain resample reflectivity image gis lib fixed firmware)
 $(call host_library, tracer,       lib fixed firmware,                                  -lembree3 -lpthread)
-$(call host_library, realradar,    gis lib firmware,                                    fftw3 zlib)
+$(call host_library, realradar,    gis lib fixed firmware,                              fftw3 zlib)
 $(call host_library, netem,        tracer gis lib fixed firmware,                       openblas fftw3)
 $(call host_library, nav,          lib,                                                 proj expat zlib)
 $(call host_library, bus,          lib fixed firmware drivers)
 $(call host_library, scene,        lib,                                                 gdal)
 $(call host_library, reference,    lib fixed firmware.h)
 $(call host_library, sim,          lib fixed firmware,                                  sdl2)
-$(call host_library, tables,       lib firmware.h)
+$(call host_library, tables,       lib fixed firmware.h)
 
 $(call host_program, db,        build terrain resample reflectivity classify image gis lib fixed firmware)
 $(call host_program, target,    tracer lib fixed firmware)

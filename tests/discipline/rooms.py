@@ -1,4 +1,4 @@
-"""`make rooms`: which room of the firmware may see which, and which of these arrows the sources use.
+"""`make rooms`: which room, library or program may see which, and which of these arrows the sources use.
 
     rooms.py FLAGS      (the file that discipline.mk writes)
 """
@@ -23,22 +23,35 @@ def short(part):
     return part.removeprefix("firmware/")
 
 
-def main():
-    tree = rules.Tree(".", rules.read_flags(sys.argv[1]), "")
-    parts = tree.parts("fixed", "firmware", "drivers")
+def print_parts(tree, title, parts, sees, name):
+    """One line a part. Returns the number of parts, of arrows in use, and of arrows that are not allowed."""
     arrows = strange = 0
-    print(f"{'room':10} {'files':>5} {'lines':>6}  may see, and how many includes use it")
-    for part in reversed(parts):
-        used = actual(tree, part)
+    print(f"{title:20} {'files':>5} {'lines':>6}  may see, and how many includes use it")
+    for part in parts:
+        used = {}
+        for other, count in actual(tree, part).items():
+            used[name(other)] = used.get(name(other), 0) + count
         files = tree.files(part, ".c", ".h")
         lines = sum(tree.text(path).count("\n") for path in files)
-        allowed = [f"{short(other)} {used.pop(other, 0)}" for other in reversed(parts) if other in tree.sees(part)]
+        allowed = [f"{other} {used.pop(other, 0)}" for other in dict.fromkeys(map(name, sees(part)))]
         arrows += sum(not word.endswith(" 0") for word in allowed)
-        print(f"{short(part):10} {len(files):5} {lines:6}  {', '.join(allowed)}")
+        print(f"{name(part):20} {len(files):5} {lines:6}  {', '.join(allowed)}")
         strange += len(used)
         for other in used:
-            print(f"{'':24} NOT ALLOWED: {short(other)} {used[other]}")
-    print(f"{len(parts)} rooms, {arrows} arrows in use, {strange} not allowed")
+            print(f"{'':34} NOT ALLOWED: {other} {used[other]}")
+    print(f"total {len(parts):14}: {arrows} arrows in use, {strange} not allowed\n")
+    return strange
+
+
+def main():
+    tree = rules.Tree(".", rules.read_flags(sys.argv[1]), "")
+    parts = tree.parts("fixed", "firmware", "drivers")[::-1]
+    strange = print_parts(tree, "room", parts, lambda part: [p for p in parts if p in tree.sees(part)],
+                          lambda part: part.removeprefix("firmware/"))
+    for title, parts in (("program", tree.flags["PROGRAMS"]), ("library", tree.flags["LIBRARIES"])):
+        strange += print_parts(tree, title, parts, tree.host_sees,
+                               lambda part: part.split("/")[0] if part.startswith("firmware")
+                               else part.removeprefix("host-sim/"))
     return 1 if strange else 0
 
 

@@ -20,12 +20,13 @@ DEEPEST_STACK_BYTES = 8192
 class Tree:
     """A source tree and the flags that each of its parts is compiled with.
 
-    A part is a layer ("fixed", "drivers", "bsp") or a room of the firmware ("firmware/map").
+    A part is a layer ("fixed", "drivers", "bsp"), a room of the firmware ("firmware/map"), or a library or program of
+    host-sim/ ("host-sim/gis", "host-sim/programs/nav").
     """
 
     def __init__(self, root, flags, scratch):
         self.root = Path(root)
-        self.flags = flags  # "CC", "GENERATED", "ROOMS", and each part's name -> list of words
+        self.flags = flags  # "CC", "GENERATED", "ROOMS", "LIBRARIES", "PROGRAMS", and each part's name -> list of words
         self.scratch = Path(scratch)
         self.built = {}  # kind -> what objects() found
 
@@ -49,8 +50,20 @@ class Tree:
             return [other for other in below if not other.startswith("firmware/")] + rooms
         return below
 
+    def host_parts(self):
+        """Libraries and programs of host-sim/, the highest first: a library sees none that stands before it."""
+        return self.flags["PROGRAMS"] + self.flags["LIBRARIES"]
+
+    def host_sees(self, part):
+        """The parts whose public headers a library or program may include, by host-sim/host-sim.mk."""
+        inside = {"fixed": ["fixed"], "drivers": ["drivers"], "bench": ["bsp"]}
+        inside["firmware"] = inside["firmware.h"] = self.parts("firmware")
+        return [other for name in self.flags[f"SEES_{part}"] for other in inside.get(name, [f"host-sim/{name}"])]
+
     def part_of(self, path):
-        return "/".join(Path(path).parts[:2]) if Path(path).parts[0] == "firmware" else Path(path).parts[0]
+        parts = Path(path).parts
+        depth = {"firmware": 2, "host-sim": 3 if parts[1:2] == ("programs",) else 2}.get(parts[0], 1)
+        return "/".join(parts[:depth])
 
     def sources(self, *layers):
         return [p for layer in layers for p in self.files(layer, ".c", ".h")]
@@ -312,6 +325,12 @@ def rooms_in_order(tree):
     return bad + [f"firmware/{name}: is no room of firmware/rooms.mk" for name in sorted(folders - set(tree.rooms()))]
 
 
+def found_headers(tree, part, headers):
+    """Those of the headers that a file of this part could include, as "could include HEADER"."""
+    conditions = "\n".join(f"#if __has_include({header})\n#error could include {header}\n#endif" for header in headers)
+    return re.findall(r"error: (?:#error )?(could include .*)", probe(tree, part, conditions))
+
+
 def open_doors(tree):
     """The flags of the Makefile hide from each part what it may not include, and its own headers stand alone."""
     bad = []
@@ -323,8 +342,36 @@ def open_doors(tree):
         for other in tree.parts(*LAYERS[:-1]):
             hidden += public_headers(tree, other) if other not in seen else []
             hidden += private_headers(tree, other) if other not in (part, "drivers") else []
-        conditions = "\n".join(f"#if __has_include({header})\n#error could include {header}\n#endif" for header in hidden)
-        bad += [f"{part}: {found}" for found in re.findall(r"error: (?:#error )?(could include .*)", probe(tree, part, conditions))]
+        bad += [f"{part}: {found}" for found in found_headers(tree, part, hidden)]
+        bad += [f"{part}: {header} does not compile by itself" for header in public_headers(tree, part)
+                if probe(tree, part, f"#include {header}")]
+    return bad
+
+
+def host_includes(tree):
+    """A library or program of host-sim/ includes its own headers and public ones of the parts that it sees."""
+    bad = []
+    for part in tree.host_parts():
+        folders = [Path(part)] + [Path(other) if other == "bsp" else Path(other) / "include"
+                                  for other in tree.host_sees(part)]
+        for path in tree.files(part, ".c", ".h"):
+            for number, bracket, name in includes(tree, path):
+                target = resolve(tree, path, name) if bracket == '"' else None
+                if target and not any(folder in target.parents for folder in folders):
+                    bad.append(f"{path}:{number}: includes {target}")
+    return bad
+
+
+def host_doors(tree):
+    """The flags of host-sim.mk hide from each library and program what it may not include; public headers stand alone."""
+    bad = []
+    for part in tree.host_parts():
+        seen = [part, *tree.host_sees(part)]
+        hidden = ['"support.h"']
+        for other in tree.host_parts() + tree.parts(*LAYERS[:-1]):
+            hidden += public_headers(tree, other) if other not in seen else []
+            hidden += private_headers(tree, other) if other not in (part, "drivers") else []
+        bad += [f"{part}: {found}" for found in found_headers(tree, part, hidden)]
         bad += [f"{part}: {header} does not compile by itself" for header in public_headers(tree, part)
                 if probe(tree, part, f"#include {header}")]
     return bad

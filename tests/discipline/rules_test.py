@@ -22,6 +22,11 @@ GOOD = {
     "bsp/here/four.c": '#include "drv/three.h"\n#include "four.h"\n',
     "bsp/here/four.h": "extern int four;\n",
     "bsp/other/five.h": "extern int five;\n",
+    "host-sim/lib/include/hs/six.h": "extern int six;\n",
+    "host-sim/lib/six.c": '#include "hs/six.h"\n#include "fx/one.h"\n',
+    "host-sim/tracer/include/tracer/seven.h": "extern int seven;\n",
+    "host-sim/tracer/seven.c": '#include "tracer/seven.h"\n#include "eight.h"\n#include "hs/six.h"\n',
+    "host-sim/tracer/eight.h": "extern int eight;\n",
 }
 
 FUNCTION = "int lm_bad(int x);\nint lm_bad(int x)\n{\n%s\n}\n"
@@ -61,6 +66,12 @@ PLANTED = [
      'fixed: could include "lm/two.h"', None, None),
     ("a header that needs another one first is seen", rules.open_doors, '"lm/bad.h" does not compile by itself',
      "firmware/map/include/lm/bad.h", "uint32_t lm_bad(void);\n"),
+    ("a library including one above it by a path is seen", rules.host_includes, "bad.c:1: includes host-sim/tracer/",
+     "host-sim/lib/bad.c", '#include "../tracer/include/tracer/seven.h"\n'),
+    ("a program including a library's private header is seen", rules.host_includes, "includes host-sim/tracer/eight.h",
+     "host-sim/programs/target/bad.c", '#include "../../tracer/eight.h"\n'),
+    ("a library's header that needs another one first is seen", rules.host_doors,
+     '"hs/bad.h" does not compile by itself', "host-sim/lib/include/hs/bad.h", "uint32_t hs_bad(void);\n"),
     ("an #ifdef for the host is seen", rules.conditionals, "bad.c:1: #ifdef HOST",
      "firmware/map/bad.c", "#ifdef HOST\n#endif\n"),
     ("a function of 101 lines is seen", rules.long_functions, "a function of 101 lines", "firmware/map/bad.c",
@@ -79,6 +90,8 @@ KEPT = [
     ("every layer includes only itself and the layers below", rules.includes_upwards),
     ("a room of the firmware sees only rooms below it", rules.rooms_in_order),
     ("the flags hide what a layer may not include, and its headers stand alone", rules.open_doors),
+    ("libraries and programs include what host-sim.mk lets them see", rules.host_includes),
+    ("the flags hide from libraries and programs all other headers, and theirs stand alone", rules.host_doors),
     ("there are no conditionals in fixed and firmware but in lm/config.h", rules.conditionals),
     ("no function in fixed and firmware is longer than 100 lines", rules.long_functions),
     ("fixed and firmware have no data that can be written to", rules.mutable_data),
@@ -139,6 +152,19 @@ def plant_includes(report, flags):
                           [] if is_refused else [answer or "it compiles"])
 
 
+def plant_host_includes(report, flags):
+    """In each library and program, one include of a public header that it may not see, or of a private one."""
+    with tempfile.TemporaryDirectory() as folder:
+        tree = rules.Tree(".", flags, folder)
+        for part in tree.host_parts():
+            strangers = [other for other in flags["LIBRARIES"] if other != part and other not in tree.host_sees(part)]
+            stranger = rules.public_headers(tree, strangers[-1])[0]
+            answer = rules.probe(tree, part, f"#include {stranger}")
+            is_refused = "No such file or directory" in answer or "file not found" in answer
+            report.result(f"{stranger} planted in {part} is no such file or directory",
+                          [] if is_refused else [answer or "it compiles"])
+
+
 def print_stack(graph):
     """The figures for the record; what is called through a pointer comes on top of them."""
     size, path = graph.deepest()
@@ -149,7 +175,8 @@ def print_stack(graph):
 def main():
     build = os.environ.get("BUILD", "build/bench-linux")
     flags = rules.read_flags(f"{build}/tests/discipline/flags")
-    report = Report(len(KEPT) + len(PLANTED) + len(flags["ROOMS"]) + 1)
+    report = Report(len(KEPT) + len(PLANTED) + len(flags["ROOMS"])
+                    + len(flags["LIBRARIES"]) + len(flags["PROGRAMS"]) + 1)
     with tempfile.TemporaryDirectory() as folder:
         tree = rules.Tree(".", flags, folder)
         for sentence, rule in KEPT:
@@ -160,6 +187,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             judge(report, sentence, rule(planted_tree(folder, flags, path, text)), wanted)
     plant_includes(report, flags)
+    plant_host_includes(report, flags)
     with tempfile.TemporaryDirectory() as folder:
         harmless = "/* No float, no #ifdef. */\n#include <stdint.h>\n"
         tree = planted_tree(folder, flags, "firmware/map/harmless.c", harmless)
