@@ -3,8 +3,8 @@ CC      := aarch64-linux-gnu-gcc
 AR      := aarch64-linux-gnu-ar
 SIZE    := aarch64-linux-gnu-size
 NM      := aarch64-linux-gnu-nm
-DRIVERS := bezel/bezel_serial can/can_zynqmp display/display_dp display/dp_link flash/flash_gqspi irq/irq_gic400 timer/timer_generic uart/uart_cadence \
-    watchdog/watchdog_cadence
+DRIVERS := bezel/bezel_serial can/can_zynqmp display/display_dp display/dp_link flash/flash_gqspi irq/irq_gic400 \
+    timer/timer_generic uart/uart_cadence watchdog/watchdog_cadence
 
 # No operating system, no C library, nothing loaded at an address that is not known when it is linked.
 OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections \
@@ -15,4 +15,4 @@ OPT_core := -O3 -funroll-loops
 OPT_board := -mgeneral-regs-only -mstrict-align
 
 # Instead of the programs and tests of a PC.
-PARTS := linker/zcu102.mk
+PARTS := bsp/zcu102/zcu102.mk tests/zcu102/images/images.mk

@@ -1,7 +1,7 @@
 /* A flight that is counted: the unit on the board's flash and display, with one core, no interrupts
  * and no waiting, and the bus handed to it from memory. The sums go out on the console:
  *
- *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (linker/zcu102.mk)
+ *   stage MODE NAME CALLS INSTRUCTIONS MOST      of chosen functions (images.mk)
  *   stage MODE line|step|frame-step ...          a line, a step without and with a picture
  *   first-picture-us N                           since the reset */
 #include "board.h"

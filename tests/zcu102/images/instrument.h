@@ -1,6 +1,6 @@
 /* Counts the instructions of chosen functions, calls included, with the core's performance counter
  * (INST_RETIRED, DDI 0487 D7.11): under QEMU's -icount the same to the digit in each run. Which
- * functions, linker/zcu102.mk says; the instrument's own instructions are taken off. */
+ * functions, images.mk says; the instrument's own instructions are taken off. */
 #ifndef INSTRUMENT_H
 #define INSTRUMENT_H
 

@@ -1,0 +1,26 @@
+# Images of the board ZCU102: each is a main function and the board itself. The product is one; tests have more
+# (tests/zcu102/images/images.mk).
+CFLAGS_drivers += $(OPT_board)
+CFLAGS_bsp     += $(OPT_board)
+# Nothing of the display's runs in interrupts, and a picture has many pixels.
+$(O)/drivers/display/%.o: OPT_board := -O3
+LDSCRIPT       := linker/zcu102.ld
+BOARD_OBJS     := $(call objs,$(filter-out %/main.c,$(wildcard bsp/zcu102/*.c))) \
+    $(patsubst %.S,$(O)/%.o,$(wildcard bsp/zcu102/*.S))
+LIB_board      := $(O)/libboard.a
+IMAGE          := $(O)/landmass.elf
+PROGRAMS       += $(IMAGE)
+
+$(LIB_board): $(BOARD_OBJS)
+$(IMAGE): $(O)/bsp/zcu102/main.o
+
+$(O)/%.o: %.S
+	@mkdir -p $(@D)
+	$(if $(V),,@echo '  AS   $<')
+	$(Q)$(CC) $(OPT) -c $< -o $@
+
+$(O)/%.elf: $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) $(LDSCRIPT)
+	@mkdir -p $(@D)
+	$(if $(V),,@echo '  LINK $@')
+	$(Q)$(CC) $(OPT) -nostdlib -static -Wl,--gc-sections,--build-id=none,-T,$(LDSCRIPT),-u,_start,-u,fx_crc32c,-Map,$@.map \
+	    $(LDFLAGS) $(filter %.o,$^) $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) -lgcc -o $@

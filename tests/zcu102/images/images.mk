@@ -1,0 +1,27 @@
+# Images that tests run on the board ZCU102, beside the product. They are built with the board's make (bsp/zcu102/board.mk).
+ifeq ($(BOARD),zcu102)
+CFLAGS_host += -Itests/golden -Itests/zcu102 -Itests/zcu102/images
+TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf devices.elf faults.elf)
+PROGRAMS    += $(TEST_IMAGES)
+image_objs   = $(addprefix $(O)/tests/zcu102/images/,$(addsuffix .o,$(1)))
+$(TEST_IMAGES): $(call image_objs,look)
+$(O)/golden.elf: $(call image_objs,golden) $(call objs,tests/golden/golden_flight.c tests/support/memory_flash.c)
+$(O)/flight.elf: $(call image_objs,flight peer core1 handed)
+$(O)/bench.elf: $(call image_objs,bench handed instrument) $(O)/stages.o $(O)/stages.wrap
+$(O)/bench.elf: LDFLAGS := -Wl,@$(O)/stages.wrap
+$(O)/devices.elf: $(call image_objs,devices registers)
+$(O)/faults.elf: $(call image_objs,faults)
+
+# What `make bench-zcu102` counts, those of them that the firmware has. A line is what a *_draw_line and the *_paint
+# behind it take.
+STAGES := lm_sector_draw_line lm_sar_draw_line lm_sector_sample_ahead lm_sar_sample_ahead lm_ppi_paint \
+    lm_patch_paint lm_line_trace lm_line_add_targets lm_scan_line_run lm_horizon_behind lm_aspect_run \
+    lm_elevation_run lm_texture_run lm_speckle_floor_run lm_receiver_run lm_speckle_run lm_layover_run \
+    lm_defocus_run lm_beam_sum lm_tone_run lm_sar_prefetch lm_scan_line_prefetch lm_tile_cache_service lm_show_frame \
+    lm_overlay_picture lm_overlay_symbols lm_overlay_labels lm_nav_take lm_nav_at
+$(O)/stages.o: tests/zcu102/images/stages.sh tests/zcu102/images/stage.inc tests/zcu102/images/images.mk $(LIB_firmware)
+	@{ cat tests/zcu102/images/stage.inc; sh $< "stage " $(LIB_firmware) $(NM) $(STAGES); echo stages_end; } >$(@:.o=.s)
+	$(Q)$(CC) $(OPT) -c $(@:.o=.s) -o $@
+$(O)/stages.wrap: tests/zcu102/images/stages.sh tests/zcu102/images/images.mk $(LIB_firmware)
+	@sh $< --wrap= $(LIB_firmware) $(NM) $(STAGES) >$@
+endif
