@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lm/radar_check.h"
+
 static int acquire(void *ctx, struct lm_surface *surface)
 {
     const struct bench *b = ctx;
@@ -32,6 +34,21 @@ static int lend_memory(struct bench *b)
     return b->board.tile_pool && b->board.plane && b->glass && b->unit ? 0 : -1;
 }
 
+/* Why the unit refuses to start, into b->error. */
+static void say_refusal(struct bench *b, const struct lm_radar *radar, int status)
+{
+    struct lm_radar_fault fault;
+    if (status == LM_ERR_TABLE && lm_radar_check(radar, &fault) != LM_OK) {
+        snprintf(b->error, sizeof b->error, "the radar table breaks its contract: %s, element %u",
+                 fault.field, (unsigned)fault.index);
+    } else {
+        snprintf(b->error, sizeof b->error, "%s",
+                 status == LM_ERR_RANGE
+                     ? "the glass must have 256..1024 pixels each way"
+                     : "out of memory: the coarsest level of the database has too many tiles");
+    }
+}
+
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
                uint32_t noise_seed, const struct bench_bus *bus, const struct lm_controls *controls)
 {
@@ -58,11 +75,9 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
                                  .flash_poll_limit = 1000};
     const int status = lend_memory(b) == 0 ? lm_unit_init(b->unit, &b->board) : LM_ERR_NO_MEMORY;
     if (status != LM_OK) {
+        const struct lm_radar *const radar = b->board.radar;
         bench_close(b);
-        snprintf(b->error, sizeof b->error, "%s",
-                 status == LM_ERR_RANGE
-                     ? "the glass must have 256..1024 pixels each way"
-                     : "out of memory: the coarsest level of the database has too many tiles");
+        say_refusal(b, radar, status);
         return -1;
     }
     return 0;

@@ -1,6 +1,7 @@
 #include "panel.h"
 
 #include "drv/not_fitted.h"
+#include "lm/radar_check.h"
 #include "report.h"
 
 #include <errno.h>
@@ -111,6 +112,12 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
     p->unit = calloc(1, sizeof *p->unit);
     if (p->board.tile_pool == NULL || p->board.plane == NULL || p->unit == NULL) {
         report(REPORT_ERROR, "start: out of memory");
+        return -1;
+    }
+    struct lm_radar_fault fault;
+    if (lm_radar_check(p->board.radar, &fault) != LM_OK) {
+        report(REPORT_ERROR, "start: the radar table breaks its contract: %s, element %u",
+               fault.field, (unsigned)fault.index);
         return -1;
     }
     start_with_flash(p, flash);

@@ -1,15 +1,28 @@
 /* The product: the unit on the board, for ever. */
 #include "board.h"
 #include "console.h"
+#include "lm/radar_check.h"
 
 int main(void);
+
+static void say_refusal(struct zcu102 *z, int status)
+{
+    struct lm_radar_fault fault;
+    if (status == LM_ERR_TABLE && lm_radar_check(z->lent.radar, &fault) != LM_OK) {
+        zcu102_say(&z->console, "the radar table breaks its contract\n");
+        zcu102_say_value(&z->console, fault.field, fault.index);
+    } else {
+        zcu102_say(&z->console, "the database's coarsest level does not fit the tile memory\n");
+    }
+}
 
 int main(void)
 {
     static struct zcu102 board; /* large, and there is only one */
     zcu102_open(&board);
-    if (zcu102_start(&board) != LM_OK) {
-        zcu102_say(&board.console, "the database's coarsest level does not fit the tile memory\n");
+    const int status = zcu102_start(&board);
+    if (status != LM_OK) {
+        say_refusal(&board, status);
         return 1;
     }
     zcu102_say(&board.console, board.unit.has_db ? "flying\n" : "no usable database\n");

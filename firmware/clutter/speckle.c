@@ -5,6 +5,9 @@
 #include "lm/scan_line.h"
 #include "speckle_neon.h"
 
+_Static_assert((int)LM_NOISE_LOOKS_LOG2_MAX == (int)LM_LOOKS_LOG2_MAX,
+               "what the table may ask for");
+
 enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
 static void add_draws(uint32_t looks_log2, const struct lm_noise_line *noise,

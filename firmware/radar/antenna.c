@@ -20,10 +20,17 @@ void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *ant
     }
 }
 
+/* Tangents of steeper angles than 89 degrees, 57, count as that. */
+static int32_t tan_q20(int64_t angle)
+{
+    const int64_t steepest = FX_BAM_DEG(89);
+    const int64_t held = angle > steepest ? steepest : angle < -steepest ? -steepest : angle;
+    return fx_tan_q16((fx_bam_t)held) * 16;
+}
+
 struct lm_fan lm_fan_at(int32_t tilt, fx_bam_t fan)
 {
-    return (struct lm_fan){.high_q20 = fx_tan_q16((fx_bam_t)tilt) * 16,
-                           .low_q20 = fx_tan_q16((fx_bam_t)tilt - fan) * 16};
+    return (struct lm_fan){.high_q20 = tan_q20(tilt), .low_q20 = tan_q20((int64_t)tilt - fan)};
 }
 
 int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m)

@@ -5,6 +5,8 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 
+_Static_assert(1 << LM_BEAM_FINEST == LM_RADAR_SHARPENING_MAX, "what the table may ask for");
+
 static uint32_t slot_of(int32_t sample)
 {
     return (uint32_t)sample % LM_BEAM_TAPS;

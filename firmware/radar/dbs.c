@@ -11,7 +11,7 @@ uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, uint32_t bam_per_s, uint3
      * B^2 is below 2^56 for a beam of 20 degrees; over w, above 2^23 (0.7 degree a second), below
      * 2^33; times 2 V, 2^22, and the sine, 2^15: cut by 15 in between. */
     const uint64_t beam = radar->antenna.azimuth_beam;
-    const uint64_t dwell_bam = beam * beam / fx_max_u32(bam_per_s, 1u << 23);
+    const uint64_t dwell_bam = beam * beam / fx_max_u32(bam_per_s, LM_RADAR_RATE_MIN);
     const uint32_t sine_q15 = fx_abs_u32(fx_sin_q15(off));
     const uint64_t swept_mm = (dwell_bam * 2 * speed_mm_s >> 15) * sine_q15; /* < 2^55 */
     /* Times 2 pi / 2^32 for the radian, 1000 / l, and 256: 2 pi * 256 * 1000 is 1608495. */

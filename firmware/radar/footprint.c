@@ -6,6 +6,9 @@
 #include "fx/sat.h"
 #include "lm/aspect.h"
 
+_Static_assert((int)LM_FOOTPRINT_LOG2_MAX == (int)LM_RADAR_AZIMUTHS_LOG2_MAX,
+               "what the table may ask for");
+
 int32_t lm_footprint_offset(fx_bam_t spacing, uint32_t azimuths_log2, uint32_t turn)
 {
     const uint32_t azimuths = 1u << azimuths_log2, half = azimuths / 2;

@@ -6,6 +6,9 @@
 #include "fx/trig.h"
 #include "lm/weather.h"
 
+_Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
+               "the table leaves room for the guard cells");
+
 enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
 
 static uint32_t metres_q8_of_mm(uint32_t mm)

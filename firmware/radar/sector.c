@@ -7,6 +7,8 @@
 #include "lm/dbs.h"
 #include "lm/environment.h"
 
+_Static_assert(LM_RADAR_CELLS_MAX * 23 / 16 <= LM_CELLS_MAX, "the lines of a window");
+
 enum {
     /* Tiles are asked for this many display lines ahead of the beam, and for every eighth line
      * only: between two of those lie 17 cells at the most, where a tile has 64; one of which they

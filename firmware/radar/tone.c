@@ -68,7 +68,8 @@ static bool is_gentle(const struct window *w)
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
 {
     const int32_t span_q8 = config->white_q8 - config->black_q8;
-    if (span_q8 < 256 || span_q8 > 255 * 256 || config->gamma_q8 < 26 || config->gamma_q8 > 1024) {
+    if (span_q8 < 256 || span_q8 > 255 * 256 || config->gamma_q8 < LM_TONE_GAMMA_MIN_Q8 ||
+        config->gamma_q8 > LM_TONE_GAMMA_MAX_Q8) {
         return LM_ERR_RANGE;
     }
     struct window w = {.span_q8 = span_q8, .last = span_q8, .gamma_q8 = config->gamma_q8};

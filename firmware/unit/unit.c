@@ -1,5 +1,6 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
+#include "lm/radar_check.h"
 #include "lm/version.h"
 #include "unit_internal.h"
 
@@ -45,6 +46,10 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
 {
     const struct lm_display *display = board->display;
     memset(u, 0, sizeof *u);
+    const int table_status = lm_radar_check(board->radar, NULL);
+    if (table_status != LM_OK) {
+        return table_status;
+    }
     if (display->width_px < 256 || display->width_px > 1024 || display->height_px < 256 ||
         display->height_px > 1024) {
         return LM_ERR_RANGE;

@@ -22,8 +22,8 @@ struct lm_fan {
 /* Cost: about 20 k instructions; once for a radar. */
 void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *antenna);
 
-/* The fan that reaches `fan` below an axis at `tilt` (signed BAM, up positive); both edges within
- * +-80 degrees. */
+/* The fan that reaches `fan` below an axis at `tilt` (signed BAM, up positive). An edge steeper
+ * than 89 degrees up or down counts as 89 degrees. */
 struct lm_fan lm_fan_at(int32_t tilt, fx_bam_t fan);
 
 /* AUTO: the tilt, signed BAM, that points the axis at flat ground `height_m` below the antenna at

@@ -1,6 +1,21 @@
-/* The radar parameter table: every number that belongs to the radar and not to the display. An
+/* Radar parameter table: every number that belongs to the radar and not to the display. An
  * integrator replaces the table (firmware/table/radar.c), not the code. Equations of all of it:
- * docs/DESIGN.md, "The picture, as equations". */
+ * docs/DESIGN.md, "The picture, as equations".
+ *
+ * Each field has its unit and the range that the code bears. lm_radar_check (lm/radar_check.h)
+ * holds a table to the ranges and to these rules between fields:
+ *  - scales rise, in metres and in nautical miles;
+ *  - sectors are one line wide to each side or wider, and end within the antenna's limit;
+ *  - samples lie 1/4 to 2/7 of the azimuth beam apart;
+ *  - a gate's upper speed is 0 or not below its lower one;
+ *  - white lies 1 dB or more above black;
+ *  - an antenna rate of a field is 0 or LM_RADAR_RATE_MIN and more;
+ *  - cells of a window are 1/4 m long or longer on the smallest scale;
+ *  - a window may be one line wide to each side or wider;
+ *  - a sharpening is a power of two, and not below the least that is used;
+ *  - the largest cell of a patch is not smaller than the smallest.
+ *
+ * Angles and angular rates are BAM (2^32 is a circle), levels 1/256 dB. */
 #ifndef LM_RADAR_H
 #define LM_RADAR_H
 
@@ -9,32 +24,58 @@
 
 #include "fx/types.h"
 #include "lm/class_kind.h"
+#include "lm/config.h"
 
 enum { LM_RANGES = 4, LM_AZIMUTHS = 3 };
+
+/* Ends of ranges. The stages that a limit comes from assert that they bear it. */
+enum {
+    LM_RADAR_RANGE_MAX_M = 200000,               /* with a window behind it: below 400 km */
+    LM_RADAR_CELLS_MAX = LM_CELLS_MAX * 16 / 23, /* a window has 23/16 of them */
+    LM_RADAR_PATCH_GUARD = 4,                    /* cells before a patch, traced and not shown */
+    LM_RADAR_PATCH_CELLS_MAX = LM_CELLS_MAX - LM_RADAR_PATCH_GUARD,
+    LM_RADAR_BEAM_MIN = 1 << 23,       /* 0.7 degree */
+    LM_RADAR_RATE_MIN = 1 << 23,       /* 0.7 degree a second */
+    LM_RADAR_SPEED_MAX_MM_S = 2000000, /* as fast as aircraft and targets are */
+    LM_RADAR_SHARPENING_MAX = 256,
+    LM_RADAR_AZIMUTHS_LOG2_MAX = 3, /* eight in a sample */
+    LM_LOOKS_LOG2_MAX = 4,          /* 16 looks */
+    LM_WAVELENGTH_MIN_UM = 1000,    /* 300 GHz */
+    LM_WAVELENGTH_MAX_UM = 1000000
+};
+#define LM_RADAR_RATE_MAX    0x80000000u    /* 180 degrees a second */
+#define LM_RADAR_AZIMUTH_MAX FX_BAM_DEG(85) /* a turn from limit to limit is below 2^31 */
 
 /* An edge is a byte of eighths of a decibel. With a code and a rise in decibels it takes 16 bits.
  */
 enum { LM_EDGE_MAX_Q8 = 255 * 32 };
 
+/* Brightness of what stands out of the ground. */
 struct lm_aspect_config {
-    int16_t edge_structure_q8, edge_trees_q8; /* leading edges, dB; 0..LM_EDGE_MAX_Q8 is taken */
-    int16_t shore_q8;                         /* far shore, dB */
-    uint16_t shore_width_m;
+    int16_t edge_structure_q8; /* leading edge of a structure, dB; 0..LM_EDGE_MAX_Q8 */
+    int16_t edge_trees_q8;     /* leading edge of trees, dB; 0..LM_EDGE_MAX_Q8 */
+    int16_t shore_q8;          /* far shore at the water, dB; 0..LM_EDGE_MAX_Q8 */
+    uint16_t shore_width_m;    /* of the shore's fall to nothing; 0..10,000 */
 };
 
+/* Speckle of a picture. */
 struct lm_speckle_config {
-    uint8_t looks_log2; /* 0..4 */
+    uint8_t looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
 };
 
-/* Shape of the texture by kind of class (enum lm_kind), as log2 nu of 0..4, or LM_TEXTURE_NONE. */
+/* Texture of the ground: shape by kind of class (enum lm_kind), as log2 nu of 0..4, or
+ * LM_TEXTURE_NONE. */
 enum { LM_TEXTURE_NONE = 5 };
 struct lm_texture_config {
     uint8_t shape_log2[LM_KINDS];
 };
 
+/* Tone window: which level is black, which is white, and the curve between them. */
+enum { LM_TONE_GAMMA_MIN_Q8 = 26, LM_TONE_GAMMA_MAX_Q8 = 1024 };
 struct lm_tone_config {
-    int16_t black_q8, white_q8; /* levels in 1/256 dB; white 1 to 255 dB above black */
-    uint16_t gamma_q8;          /* exponent, 26..1024 (0.1..4.0) */
+    int16_t black_q8, white_q8; /* dB; white 1 to 255 dB above black; in a table -64..64 dB each */
+    uint16_t gamma_q8; /* exponent; LM_TONE_GAMMA_MIN_Q8..MAX_Q8, 0.1..4; in a table 64 and more,
+                        * for the page goes no lower */
 };
 
 /* Kinds of picture that the radar page can show. */
@@ -44,69 +85,86 @@ enum lm_picture_kind {
     LM_PICTURES
 };
 
-/* What a sector shows. */
+/* Mode of the sector: what it shows. */
 enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };
 
-/* How much of it, and how sharp: the whole sector, or a window around the cursor. */
+/* Field of view: the whole sector or a window around the cursor, and how sharp it is. */
 enum lm_field { LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_DBS1, LM_FIELD_DBS2, LM_FIELDS };
 
+/* A mode of the sector. */
 struct lm_sector_mode_row {
-    uint32_t bam_per_s;    /* antenna rate */
-    uint8_t range_last;    /* index of the largest scale */
-    uint8_t field_last;    /* enum lm_field */
-    uint8_t bars;          /* swept in turn, 1..8 */
-    uint16_t clutter_q8;   /* how much of what stands still is cancelled, dB */
-    uint32_t gate_mm_s[2]; /* closing speeds, either way, of what is shown; [1] is 0: all */
+    uint32_t bam_per_s;    /* antenna rate; LM_RADAR_RATE_MIN..MAX */
+    uint8_t range_last;    /* index of the largest scale; 0..LM_RANGES - 1 */
+    uint8_t field_last;    /* enum lm_field: the last that the mode has */
+    uint8_t bars;          /* swept in turn; 1..8 */
+    uint16_t clutter_q8;   /* how much of what stands still is cancelled, dB; 0..64 dB */
+    uint32_t gate_mm_s[2]; /* closing speeds, either way, of what is shown; 0..
+                            * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
 
+/* A field of view. */
 struct lm_field_row {
-    uint32_t bam_per_s;        /* antenna rate; 0: the mode's */
-    uint8_t range_last;        /* index of the largest scale */
-    uint8_t slew_percent;      /* pace of the cursor over the glass, of that in NORM */
-    uint16_t window_permille;  /* half the window's side, of the range scale; 0: the sector */
-    fx_bam_t azimuth_half_max; /* of a window, as swept */
-    uint16_t sharpening;       /* azimuth cells in a beam width, a power of two; 1: real beam */
-    uint16_t sharpening_least; /* real beam where there is less than this */
-    uint8_t azimuths_log2;     /* traced across a sample of real beam: lm/footprint.h */
-    uint32_t pulse_ns[LM_RANGES];
+    uint32_t bam_per_s;        /* antenna rate, LM_RADAR_RATE_MIN..MAX; 0: the mode's */
+    uint8_t range_last;        /* index of the largest scale; 0..LM_RANGES - 1 */
+    uint8_t slew_percent;      /* pace of the cursor over the glass, of that in NORM; 1..200 */
+    uint16_t window_permille;  /* half the window's side, of the range scale; 5..250, and 0 in NORM,
+                                * which shows the sector */
+    fx_bam_t azimuth_half_max; /* of a window, as swept; 0..LM_RADAR_AZIMUTH_MAX */
+    uint16_t sharpening;       /* azimuth cells in a beam width; 1 (real beam) ..
+                                * LM_RADAR_SHARPENING_MAX */
+    uint16_t sharpening_least; /* real beam where there is less than this; 1.. */
+    uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/footprint.h); 0..
+                                * LM_RADAR_AZIMUTHS_LOG2_MAX */
+    uint32_t pulse_ns[LM_RANGES]; /* 10..100,000 */
 };
 
+/* The antenna and its gimbals. */
 struct lm_antenna_table {
-    fx_bam_t azimuth_beam, elevation_beam; /* one-way half-power widths */
-    fx_bam_t fan;                          /* the beam is spoiled so far below its axis */
-    fx_bam_t bar_spacing;
-    fx_bam_t azimuth_limit; /* off the nose, either way */
-    fx_bam_t tilt_max;      /* manual, up or down */
+    fx_bam_t azimuth_beam;   /* one-way half-power width; LM_RADAR_BEAM_MIN..20 degrees */
+    fx_bam_t elevation_beam; /* likewise; LM_RADAR_BEAM_MIN..60 degrees */
+    fx_bam_t fan;            /* the beam is spoiled so far below its axis; 0..60 degrees */
+    fx_bam_t bar_spacing;    /* 0..10 degrees */
+    fx_bam_t azimuth_limit;  /* off the nose, either way; 2^20..LM_RADAR_AZIMUTH_MAX */
+    fx_bam_t tilt_max;       /* manual, up or down; 0..60 degrees */
 };
 
+/* The receiver. */
 struct lm_receiver_table {
-    int16_t noise_end_q8[LM_RANGES]; /* noise-equivalent gamma at the end of each scale, dB */
-    uint32_t stc_m[LM_RANGES];       /* slant range where the time gain ends */
-    uint8_t noise_looks_log2;
+    int16_t noise_end_q8[LM_RANGES]; /* noise-equivalent gamma at the end of each scale;
+                                      * -100..20 dB */
+    uint32_t stc_m[LM_RANGES];       /* slant range where sensitivity time control ends;
+                                      * 100..400,000 */
+    uint8_t noise_looks_log2;        /* 0..LM_LOOKS_LOG2_MAX */
 };
 
+/* SAR patches. */
 struct lm_sar_table {
-    uint16_t cells; /* of a patch, both ways */
-    uint32_t cell_min_mm, cell_max_mm;
-    fx_bam_t squint_min; /* between velocity and line of sight */
-    uint32_t dwell_max_ms;
-    uint32_t reference_speed_mm_s;     /* paces a patch that was commanded with its geometry */
-    uint16_t mocomp_residual_permille; /* of a lateral acceleration; 0: compensation is perfect */
-    int16_t noise_floor_q8;            /* dB of gamma */
+    uint16_t cells;                    /* of a patch, both ways; 32..LM_RADAR_PATCH_CELLS_MAX */
+    uint32_t cell_min_mm, cell_max_mm; /* 100..100,000 */
+    fx_bam_t squint_min;               /* between velocity and line of sight; 0..80 degrees */
+    uint32_t dwell_max_ms;             /* 1..131,071 */
+    uint32_t reference_speed_mm_s;     /* paces a patch that was commanded with its geometry;
+                                        * 1,000..LM_RADAR_SPEED_MAX_MM_S */
+    uint16_t mocomp_residual_permille; /* of a lateral acceleration that motion compensation leaves;
+                                        * 0 (none) ..1000 */
+    int16_t noise_floor_q8;            /* dB of gamma; -100..20 dB */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
 
+/* The table. */
 struct lm_radar {
-    uint32_t range_m[LM_RANGES];        /* display scales */
-    uint16_t range_nm[LM_RANGES];       /* the same, as the pilot reads them */
-    fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1 */
-    uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM (lm/rcs.h) */
-    uint16_t cells;                     /* range cells of a sector line */
-    fx_bam_t line;                      /* azimuth of a line of the whole sector */
-    fx_bam_t sample;                    /* between azimuths sampled in real beam: lm/beam.h */
+    uint32_t range_m[LM_RANGES];        /* display scales; 1,852..LM_RADAR_RANGE_MAX_M */
+    uint16_t range_nm[LM_RANGES];       /* the same, as the pilot reads them; 1..999 */
+    fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1; 2^20..LM_RADAR_AZIMUTH_MAX */
+    uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM */
+    uint16_t cells;                     /* range cells of a sector line; 64..LM_RADAR_CELLS_MAX */
+    fx_bam_t line;                      /* azimuth of a line of the whole sector; 2^20 (0.09
+                                         * degree) ..10 degrees */
+    fx_bam_t sample;                    /* between azimuths sampled in real beam (lm/beam.h); 2^21
+                                         * (0.18 degree) ..6 degrees */
     struct lm_antenna_table antenna;
     struct lm_receiver_table receiver;
     struct lm_sector_mode_row mode[LM_SECTOR_MODES];

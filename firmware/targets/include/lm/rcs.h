@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/radar.h"
+
 enum lm_shape_kind {
     LM_SHAPE_SPHERE = 1, /* size[0] is the radius */
     LM_SHAPE_PLATE = 2,  /* size[0] to the right, size[1] up; the normal points ahead */
@@ -21,8 +23,6 @@ enum lm_shape_kind {
 
 enum {
     LM_SHAPE_SIZE_MAX_MM = 100000,
-    LM_WAVELENGTH_MIN_UM = 1000, /* 300 GHz */
-    LM_WAVELENGTH_MAX_UM = 1000000,
     LM_RCS_NONE_Q8 = -100 * 256 /* returned for nothing at all, and nothing less is */
 };
 

@@ -111,8 +111,12 @@ struct lm_unit {
 
 /* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest
  * level. LM_OK also when the database cannot be used: the unit then runs and says so on the glass.
- * LM_ERR_NO_MEMORY when the pool is too small for the database, LM_ERR_RANGE when the display is.
- */
+ *
+ * Fails, and the unit must not be stepped, with
+ *  - LM_ERR_TABLE iff the board's radar table breaks its contract; lm_radar_check
+ * (lm/radar_check.h) then names the field, which the board tells whoever installs it;
+ *  - LM_ERR_RANGE iff the display has less than 256 or more than 1024 pixels either way;
+ *  - LM_ERR_NO_MEMORY iff the tile pool is too small for the database's coarsest level. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
 /* Do what is due at `now_us` (which never goes back): take at most LM_STEP_FRAMES frames from the

@@ -1,0 +1,281 @@
+#include "lm/radar_check.h"
+
+#include <stddef.h>
+
+#include "fx/mem.h"
+#include "lm/status.h"
+
+#define DB(d) ((d)*256)
+
+/* A number, an array of numbers, and the same member of all rows of an array. */
+#define SIZE_OF(member) sizeof(((const struct lm_radar *)0)->member)
+#define WHERE(member, n, apart)                                                                    \
+    .offset = offsetof(struct lm_radar, member), .size = SIZE_OF(member), .count = (n),            \
+    .stride = (apart)
+#define ONE(member)               WHERE(member, 1, 0)
+#define EACH(array, n)            WHERE(array[0], n, SIZE_OF(array[0]))
+#define OF_MODES(member)          WHERE(mode[0].member, LM_SECTOR_MODES, SIZE_OF(mode[0]))
+#define OF_FIELDS(member)         WHERE(field[0].member, LM_FIELDS, SIZE_OF(field[0]))
+#define OF_WINDOWS(member)        WHERE(field[1].member, LM_FIELDS - 1, SIZE_OF(field[0]))
+#define BETWEEN(low, high)        .min = (low), .max = (high)
+#define SIGNED_BETWEEN(low, high) .is_signed = true, .min = (low), .max = (high)
+
+static const struct lm_radar_field fields[] = {
+    {"range_m", EACH(range_m, LM_RANGES), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
+    {"range_nm", EACH(range_nm, LM_RANGES), BETWEEN(1, 999)},
+    {"azimuth_half", EACH(azimuth_half, LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
+    {"wavelength_um", ONE(wavelength_um), BETWEEN(LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM)},
+    {"cells", ONE(cells), BETWEEN(64, LM_RADAR_CELLS_MAX)},
+    {"line", ONE(line), BETWEEN(1 << 20, FX_BAM_DEG(10))},
+    {"sample", ONE(sample), BETWEEN(1 << 21, FX_BAM_DEG(6))},
+    {"antenna.azimuth_beam", ONE(antenna.azimuth_beam), BETWEEN(LM_RADAR_BEAM_MIN, FX_BAM_DEG(20))},
+    {"antenna.elevation_beam", ONE(antenna.elevation_beam),
+     BETWEEN(LM_RADAR_BEAM_MIN, FX_BAM_DEG(60))},
+    {"antenna.fan", ONE(antenna.fan), BETWEEN(0, FX_BAM_DEG(60))},
+    {"antenna.bar_spacing", ONE(antenna.bar_spacing), BETWEEN(0, FX_BAM_DEG(10))},
+    {"antenna.azimuth_limit", ONE(antenna.azimuth_limit), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
+    {"antenna.tilt_max", ONE(antenna.tilt_max), BETWEEN(0, FX_BAM_DEG(60))},
+    {"receiver.noise_end_q8", EACH(receiver.noise_end_q8, LM_RANGES),
+     SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"receiver.stc_m", EACH(receiver.stc_m, LM_RANGES), BETWEEN(100, 400000)},
+    {"receiver.noise_looks_log2", ONE(receiver.noise_looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
+    {"mode.bam_per_s", OF_MODES(bam_per_s), BETWEEN(LM_RADAR_RATE_MIN, LM_RADAR_RATE_MAX)},
+    {"mode.range_last", OF_MODES(range_last), BETWEEN(0, LM_RANGES - 1)},
+    {"mode.field_last", OF_MODES(field_last), BETWEEN(0, LM_FIELDS - 1)},
+    {"mode.bars", OF_MODES(bars), BETWEEN(1, 8)},
+    {"mode.clutter_q8", OF_MODES(clutter_q8), BETWEEN(0, DB(64))},
+    {"mode.gate_mm_s[0]", OF_MODES(gate_mm_s[0]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
+    {"mode.gate_mm_s[1]", OF_MODES(gate_mm_s[1]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
+    {"mode.speckle.looks_log2", OF_MODES(speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
+    {"mode.tone.black_q8", OF_MODES(tone.black_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"mode.tone.white_q8", OF_MODES(tone.white_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"mode.tone.gamma_q8", OF_MODES(tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
+    {"field.bam_per_s", OF_FIELDS(bam_per_s), BETWEEN(0, LM_RADAR_RATE_MAX)},
+    {"field.range_last", OF_FIELDS(range_last), BETWEEN(0, LM_RANGES - 1)},
+    {"field.slew_percent", OF_FIELDS(slew_percent), BETWEEN(1, 200)},
+    {"field[NORM].window_permille", ONE(field[LM_FIELD_NORM].window_permille), BETWEEN(0, 0)},
+    {"field[EXP..].window_permille", OF_WINDOWS(window_permille), BETWEEN(5, 250)},
+    {"field.azimuth_half_max", OF_FIELDS(azimuth_half_max), BETWEEN(0, LM_RADAR_AZIMUTH_MAX)},
+    {"field.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
+    {"field.sharpening_least", OF_FIELDS(sharpening_least), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
+    {"field.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
+    {"field[NORM].pulse_ns", EACH(field[LM_FIELD_NORM].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
+    {"field[EXP].pulse_ns", EACH(field[LM_FIELD_EXP].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
+    {"field[DBS1].pulse_ns", EACH(field[LM_FIELD_DBS1].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
+    {"field[DBS2].pulse_ns", EACH(field[LM_FIELD_DBS2].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
+    {"sar.cells", ONE(sar.cells), BETWEEN(32, LM_RADAR_PATCH_CELLS_MAX)},
+    {"sar.cell_min_mm", ONE(sar.cell_min_mm), BETWEEN(100, 100000)},
+    {"sar.cell_max_mm", ONE(sar.cell_max_mm), BETWEEN(100, 100000)},
+    {"sar.squint_min", ONE(sar.squint_min), BETWEEN(0, FX_BAM_DEG(80))},
+    {"sar.dwell_max_ms", ONE(sar.dwell_max_ms), BETWEEN(1, (1 << 17) - 1)},
+    {"sar.reference_speed_mm_s", ONE(sar.reference_speed_mm_s),
+     BETWEEN(1000, LM_RADAR_SPEED_MAX_MM_S)},
+    {"sar.mocomp_residual_permille", ONE(sar.mocomp_residual_permille), BETWEEN(0, 1000)},
+    {"sar.noise_floor_q8", ONE(sar.noise_floor_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"sar.speckle.looks_log2", ONE(sar.speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
+    {"sar.tone.black_q8", ONE(sar.tone.black_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"sar.tone.white_q8", ONE(sar.tone.white_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"sar.tone.gamma_q8", ONE(sar.tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
+    {"aspect.edge_structure_q8", ONE(aspect.edge_structure_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
+    {"aspect.edge_trees_q8", ONE(aspect.edge_trees_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
+    {"aspect.shore_q8", ONE(aspect.shore_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
+    {"aspect.shore_width_m", ONE(aspect.shore_width_m), BETWEEN(0, 10000)},
+    {"texture.shape_log2", EACH(texture.shape_log2, LM_KINDS), BETWEEN(0, LM_TEXTURE_NONE)},
+};
+enum { FIELDS = sizeof fields / sizeof *fields };
+
+const struct lm_radar_field *lm_radar_field(uint32_t number)
+{
+    return number < FIELDS ? &fields[number] : NULL;
+}
+
+int64_t lm_radar_field_value(const struct lm_radar *radar, const struct lm_radar_field *field,
+                             uint32_t index)
+{
+    const uint8_t *at = (const uint8_t *)radar + field->offset + (size_t)index * field->stride;
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    if (field->size == sizeof one) {
+        memcpy(&one, at, sizeof one);
+        return one;
+    }
+    if (field->size == sizeof two) {
+        memcpy(&two, at, sizeof two);
+        return field->is_signed ? (int16_t)two : two;
+    }
+    memcpy(&four, at, sizeof four);
+    return four;
+}
+
+static bool is_in_range(const struct lm_radar *radar, const struct lm_radar_field *field,
+                        uint32_t index)
+{
+    const int64_t value = lm_radar_field_value(radar, field, index);
+    return value >= field->min && value <= field->max;
+}
+
+/* ---- rules between fields: each returns the index of the first element that breaks it, or HOLDS.
+ * Called when every field is in its own range. ---- */
+
+enum { HOLDS = UINT8_MAX };
+
+static uint32_t check_scales(const struct lm_radar *r)
+{
+    for (uint32_t i = 1; i < LM_RANGES; i++) {
+        if (r->range_m[i] <= r->range_m[i - 1] || r->range_nm[i] <= r->range_nm[i - 1]) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_sectors(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_AZIMUTHS; i++) {
+        if (r->azimuth_half[i] < r->line || r->azimuth_half[i] > r->antenna.azimuth_limit) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+/* Eight samples hold the beam: they lie 1/4 to 2/7 of it apart (lm/beam.h). */
+static uint32_t check_sample(const struct lm_radar *r)
+{
+    const uint64_t beam = r->antenna.azimuth_beam, sample = r->sample;
+    return 4 * sample >= beam && 7 * sample <= 2 * beam ? HOLDS : 0;
+}
+
+static uint32_t check_rates(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        if (r->field[i].bam_per_s != 0 && r->field[i].bam_per_s < LM_RADAR_RATE_MIN) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_gates(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        const uint32_t *gate_mm_s = r->mode[i].gate_mm_s;
+        if (gate_mm_s[1] != 0 && gate_mm_s[1] < gate_mm_s[0]) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static bool is_window_of_tone(const struct lm_tone_config *tone)
+{
+    return tone->white_q8 - tone->black_q8 >= DB(1);
+}
+
+static uint32_t check_tones(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        if (!is_window_of_tone(&r->mode[i].tone)) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_patch_tone(const struct lm_radar *r)
+{
+    return is_window_of_tone(&r->sar.tone) ? HOLDS : 0;
+}
+
+static uint32_t check_sharpening(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        if ((r->field[i].sharpening & (r->field[i].sharpening - 1)) != 0) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_sharpening_least(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        if (r->field[i].sharpening_least > r->field[i].sharpening) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+/* Cells of the smallest window are a quarter of a metre long or longer; the scales rise. */
+static uint32_t check_windows(const struct lm_radar *r)
+{
+    for (uint32_t i = LM_FIELD_NORM + 1; i < LM_FIELDS; i++) {
+        const uint32_t half_m = r->range_m[0] * r->field[i].window_permille / 1000;
+        if (2 * half_m * 4 < r->cells) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_window_sectors(const struct lm_radar *r)
+{
+    for (uint32_t i = LM_FIELD_NORM + 1; i < LM_FIELDS; i++) {
+        if (r->field[i].azimuth_half_max < r->line) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_patch_cells(const struct lm_radar *r)
+{
+    return r->sar.cell_min_mm <= r->sar.cell_max_mm ? HOLDS : 0;
+}
+
+static const struct rule {
+    const char *field; /* that is named when it breaks */
+    uint32_t (*check)(const struct lm_radar *radar);
+} rules[] = {
+    {"range_m", check_scales},
+    {"azimuth_half", check_sectors},
+    {"sample", check_sample},
+    {"mode.gate_mm_s[1]", check_gates},
+    {"mode.tone.white_q8", check_tones},
+    {"field.bam_per_s", check_rates},
+    {"field.window_permille", check_windows},
+    {"field.azimuth_half_max", check_window_sectors},
+    {"field.sharpening", check_sharpening},
+    {"field.sharpening_least", check_sharpening_least},
+    {"sar.cell_max_mm", check_patch_cells},
+    {"sar.tone.white_q8", check_patch_tone},
+};
+enum { RULES = sizeof rules / sizeof *rules };
+
+static int refuse(struct lm_radar_fault *fault, const char *field, uint32_t index)
+{
+    if (fault) {
+        *fault = (struct lm_radar_fault){field, index};
+    }
+    return LM_ERR_TABLE;
+}
+
+int lm_radar_check(const struct lm_radar *radar, struct lm_radar_fault *fault)
+{
+    for (uint32_t n = 0; n < FIELDS; n++) {
+        for (uint32_t i = 0; i < fields[n].count; i++) {
+            if (!is_in_range(radar, &fields[n], i)) {
+                return refuse(fault, fields[n].name, i);
+            }
+        }
+    }
+    for (uint32_t n = 0; n < RULES; n++) {
+        const uint32_t index = rules[n].check(radar);
+        if (index != HOLDS) {
+            return refuse(fault, rules[n].field, index);
+        }
+    }
+    return LM_OK;
+}
