@@ -17,3 +17,16 @@ $(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_hostile_controls.o un
     $(patsubst %.c,$(O)/sanitized/%.o,host-sim/lib/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
     $(SRC_core))
 $(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka
+
+# The radar table's contract: its words, and a unit with tables at their ends.
+T := $(O)/bin/tests/unit/firmware/test_radar_check
+TESTS += $(T)
+$(T): $(O)/tests/unit/firmware/test_radar_check.o $(LIB_firmware) $(LIB_fixed)
+$(T): LDLIBS := -lcmocka
+
+T := $(O)/bin/tests/unit/firmware/test_radar_extremes
+TESTS += $(T)
+$(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_radar_extremes.o unit_rig.o) \
+    $(patsubst %.c,$(O)/sanitized/%.o,host-sim/lib/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
+    $(wildcard firmware/*/*.c fixed/src/*.c))
+$(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka

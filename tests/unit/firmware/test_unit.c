@@ -393,6 +393,17 @@ static void a_display_of_a_size_nobody_promised_is_refused(void **state)
     free_rig(r);
 }
 
+static void a_radar_table_that_breaks_its_contract_is_refused(void **state)
+{
+    (void)state;
+    struct rig *r = make_rig();
+    struct lm_radar radar = lm_radar_default;
+    radar.mode[LM_SECTOR_GM].bars = 0;
+    r->board.radar = &radar;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_TABLE);
+    free_rig(r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -418,6 +429,7 @@ int main(void)
         cmocka_unit_test(hostile_commands_are_refused_and_counted),
         cmocka_unit_test(freeze_holds_the_picture_and_says_so),
         cmocka_unit_test(a_busy_or_broken_display_is_counted_and_survived),
+        cmocka_unit_test(a_radar_table_that_breaks_its_contract_is_refused),
         cmocka_unit_test(a_display_of_a_size_nobody_promised_is_refused),
     };
     return cmocka_run_group_tests_name("unit", tests, NULL, NULL);

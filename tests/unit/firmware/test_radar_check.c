@@ -1,0 +1,215 @@
+/* The radar table's contract: a value past either end of any field is refused by its name, and so
+ * is a table that breaks a rule between fields. */
+#include "lm/radar_check.h"
+#include "lm/status.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t index,
+                int64_t value)
+{
+    uint8_t *at = (uint8_t *)radar + f->offset + (size_t)index * f->stride;
+    const uint8_t one = (uint8_t)value;
+    const uint16_t two = (uint16_t)value;
+    const uint32_t four = (uint32_t)value;
+    memcpy(at,
+           f->size == 1   ? (const void *)&one
+           : f->size == 2 ? (const void *)&two
+                          : &four,
+           f->size);
+}
+
+static void expect_refused(const struct lm_radar *radar, const char *field, uint32_t index)
+{
+    struct lm_radar_fault fault = {NULL, UINT32_MAX};
+    assert_int_equal(lm_radar_check(radar, &fault), LM_ERR_TABLE);
+    assert_string_equal(fault.field, field);
+    assert_int_equal(fault.index, index);
+    assert_int_equal(lm_radar_check(radar, NULL), LM_ERR_TABLE);
+}
+
+static void the_default_table_keeps_its_contract(void **state)
+{
+    (void)state;
+    struct lm_radar_fault fault = {"untouched", 7};
+    assert_int_equal(lm_radar_check(&lm_radar_default, &fault), LM_OK);
+    assert_string_equal(fault.field, "untouched");
+}
+
+/* What the field's type cannot hold cannot be past its end. */
+static bool can_hold(const struct lm_radar_field *f, int64_t value)
+{
+    const int64_t values = (int64_t)1 << 8 * f->size;
+    return f->is_signed ? value >= -values / 2 && value < values / 2 : value >= 0 && value < values;
+}
+
+static void a_value_past_either_end_is_refused_by_its_field_s_name(void **state)
+{
+    (void)state;
+    uint32_t tried = 0;
+    for (uint32_t n = 0; lm_radar_field(n); n++) {
+        const struct lm_radar_field *f = lm_radar_field(n);
+        assert_true(f->min <= f->max && can_hold(f, f->min) && can_hold(f, f->max));
+        for (uint32_t i = 0; i < f->count; i++) {
+            for (uint32_t end = 0; end < 2; end++) {
+                const int64_t past = end == 0 ? f->min - 1 : f->max + 1;
+                struct lm_radar radar = lm_radar_default;
+                if (can_hold(f, past)) {
+                    put(&radar, f, i, past);
+                    assert_int_equal(lm_radar_field_value(&radar, f, i), past);
+                    expect_refused(&radar, f->name, i);
+                    tried++;
+                }
+            }
+        }
+    }
+    assert_true(tried > 150);
+}
+
+/* A field that the check does not know would leave a hole: what is left is the compiler's padding.
+ */
+static void every_byte_of_the_table_belongs_to_a_field(void **state)
+{
+    (void)state;
+    bool is_known[sizeof(struct lm_radar)] = {false};
+    for (uint32_t n = 0; lm_radar_field(n); n++) {
+        const struct lm_radar_field *f = lm_radar_field(n);
+        for (uint32_t i = 0; i < f->count; i++) {
+            const size_t at = f->offset + (size_t)i * f->stride;
+            assert_true(at % f->size == 0 && at + f->size <= sizeof is_known);
+            for (size_t k = at; k < at + f->size; k++) {
+                assert_false(is_known[k]); /* nor to two */
+                is_known[k] = true;
+            }
+        }
+    }
+    /* Padding ends where a number of 16 or 32 bits begins, and is shorter than that. */
+    for (size_t k = 0, hole = 0; k < sizeof is_known; k++) {
+        hole = is_known[k] ? 0 : hole + 1;
+        assert_true(hole < 4);
+    }
+}
+
+static void scales_fall(struct lm_radar *r)
+{
+    r->range_m[2] = r->range_m[1];
+}
+
+static void names_of_scales_fall(struct lm_radar *r)
+{
+    r->range_nm[3] = 30;
+}
+
+static void a_sector_is_wider_than_the_antenna_turns(struct lm_radar *r)
+{
+    r->azimuth_half[0] = r->antenna.azimuth_limit + 1;
+}
+
+static void a_sector_is_narrower_than_a_line(struct lm_radar *r)
+{
+    r->azimuth_half[2] = r->line - 1;
+}
+
+static void samples_are_too_far_apart(struct lm_radar *r)
+{
+    r->sample = r->antenna.azimuth_beam / 7 * 2 + 7;
+}
+
+static void samples_are_too_close(struct lm_radar *r)
+{
+    r->sample = r->antenna.azimuth_beam / 4 - 1;
+}
+
+static void a_gate_is_upside_down(struct lm_radar *r)
+{
+    r->mode[LM_SECTOR_GMT].gate_mm_s[1] = 1542;
+}
+
+static void white_is_hardly_above_black(struct lm_radar *r)
+{
+    r->mode[LM_SECTOR_SEA].tone.white_q8 = (int16_t)(r->mode[LM_SECTOR_SEA].tone.black_q8 + 255);
+}
+
+static void a_patch_s_white_is_below_black(struct lm_radar *r)
+{
+    r->sar.tone.white_q8 = (int16_t)(r->sar.tone.black_q8 - 1);
+}
+
+static void a_field_s_rate_is_too_slow(struct lm_radar *r)
+{
+    r->field[LM_FIELD_DBS1].bam_per_s = LM_RADAR_RATE_MIN - 1;
+}
+
+static void a_window_s_cells_are_too_short(struct lm_radar *r)
+{
+    r->range_m[0] = 1852;
+    r->field[LM_FIELD_DBS2].window_permille = 5;
+}
+
+static void a_window_is_narrower_than_a_line(struct lm_radar *r)
+{
+    r->field[LM_FIELD_EXP].azimuth_half_max = r->line - 1;
+}
+
+static void a_sharpening_is_no_power_of_two(struct lm_radar *r)
+{
+    r->field[LM_FIELD_DBS2].sharpening = 96;
+}
+
+static void more_sharpening_is_asked_for_than_used(struct lm_radar *r)
+{
+    r->field[LM_FIELD_DBS1].sharpening_least = 9;
+}
+
+static void the_largest_cell_is_smaller_than_the_smallest(struct lm_radar *r)
+{
+    r->sar.cell_max_mm = r->sar.cell_min_mm - 1;
+}
+
+static void a_broken_rule_between_fields_is_refused_by_name(void **state)
+{
+    (void)state;
+    static const struct {
+        void (*breaks)(struct lm_radar *radar);
+        const char *field;
+        uint32_t index;
+    } rules[] = {
+        {scales_fall, "range_m", 2},
+        {names_of_scales_fall, "range_m", 3},
+        {a_sector_is_wider_than_the_antenna_turns, "azimuth_half", 0},
+        {a_sector_is_narrower_than_a_line, "azimuth_half", 2},
+        {samples_are_too_far_apart, "sample", 0},
+        {samples_are_too_close, "sample", 0},
+        {a_gate_is_upside_down, "mode.gate_mm_s[1]", LM_SECTOR_GMT},
+        {white_is_hardly_above_black, "mode.tone.white_q8", LM_SECTOR_SEA},
+        {a_patch_s_white_is_below_black, "sar.tone.white_q8", 0},
+        {a_field_s_rate_is_too_slow, "field.bam_per_s", LM_FIELD_DBS1},
+        {a_window_s_cells_are_too_short, "field.window_permille", LM_FIELD_DBS2},
+        {a_window_is_narrower_than_a_line, "field.azimuth_half_max", LM_FIELD_EXP},
+        {a_sharpening_is_no_power_of_two, "field.sharpening", LM_FIELD_DBS2},
+        {more_sharpening_is_asked_for_than_used, "field.sharpening_least", LM_FIELD_DBS1},
+        {the_largest_cell_is_smaller_than_the_smallest, "sar.cell_max_mm", 0},
+    };
+    for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {
+        struct lm_radar radar = lm_radar_default;
+        rules[i].breaks(&radar);
+        expect_refused(&radar, rules[i].field, rules[i].index);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_default_table_keeps_its_contract),
+        cmocka_unit_test(a_value_past_either_end_is_refused_by_its_field_s_name),
+        cmocka_unit_test(every_byte_of_the_table_belongs_to_a_field),
+        cmocka_unit_test(a_broken_rule_between_fields_is_refused_by_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,212 @@
+/* A unit with tables at the ends of what the contract allows, under the address and undefined-
+ * behaviour sanitizers: every field of view and a patch are drawn, and nothing overflows. */
+#include "lm/radar_check.h"
+#include "unit_rig.h"
+
+#include "hs/rng.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { RANDOM_TABLES = 24 };
+static const double FLIGHT_S = 0.06;
+
+static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t index,
+                int64_t value)
+{
+    uint8_t *at = (uint8_t *)radar + f->offset + (size_t)index * f->stride;
+    const uint8_t one = (uint8_t)value;
+    const uint16_t two = (uint16_t)value;
+    const uint32_t four = (uint32_t)value;
+    memcpy(at,
+           f->size == 1   ? (const void *)&one
+           : f->size == 2 ? (const void *)&two
+                          : &four,
+           f->size);
+}
+
+static uint32_t least(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint32_t most(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+static void repair_scales(struct lm_radar *r)
+{
+    for (uint32_t i = 1; i < LM_RANGES; i++) {
+        r->range_m[i] = most(r->range_m[i], r->range_m[i - 1] + 1);
+        r->range_nm[i] = (uint16_t)most(r->range_nm[i], r->range_nm[i - 1] + 1u);
+    }
+    for (uint32_t i = LM_RANGES - 1; i-- > 0;) {
+        r->range_m[LM_RANGES - 1] = least(r->range_m[LM_RANGES - 1], LM_RADAR_RANGE_MAX_M);
+        r->range_nm[LM_RANGES - 1] = (uint16_t)least(r->range_nm[LM_RANGES - 1], 999);
+        r->range_m[i] = least(r->range_m[i], r->range_m[i + 1] - 1);
+        r->range_nm[i] = (uint16_t)least(r->range_nm[i], r->range_nm[i + 1] - 1u);
+    }
+}
+
+static void repair_angles(struct lm_radar *r)
+{
+    const uint32_t beam = r->antenna.azimuth_beam;
+    r->sample = r->sample > beam / 4 ? beam / 7 * 2 : beam / 4 + 1;
+    for (uint32_t i = 0; i < LM_AZIMUTHS; i++) {
+        r->azimuth_half[i] = least(most(r->azimuth_half[i], r->line), r->antenna.azimuth_limit);
+        r->line = least(r->line, r->antenna.azimuth_limit);
+    }
+}
+
+static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_field_row *f)
+{
+    f->bam_per_s = f->bam_per_s ? most(f->bam_per_s, LM_RADAR_RATE_MIN) : 0;
+    while ((f->sharpening & (f->sharpening - 1)) != 0) {
+        f->sharpening--;
+    }
+    f->sharpening_least = (uint16_t)least(f->sharpening_least, f->sharpening);
+    if (number != LM_FIELD_NORM) {
+        f->azimuth_half_max = most(f->azimuth_half_max, r->line);
+        while (r->range_m[0] * f->window_permille / 1000 * 8 < r->cells) {
+            f->window_permille++;
+        }
+    }
+}
+
+static void repair_tone(struct lm_tone_config *tone)
+{
+    if (tone->white_q8 < tone->black_q8 + 256) {
+        tone->black_q8 = (int16_t)(tone->black_q8 > 63 * 256 ? 63 * 256 : tone->black_q8);
+        tone->white_q8 = (int16_t)(tone->black_q8 + 256);
+    }
+}
+
+/* Move what a rule forbids to the nearest that it allows. */
+static void repair(struct lm_radar *r)
+{
+    repair_scales(r);
+    repair_angles(r);
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        repair_field(r, i, &r->field[i]);
+    }
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        struct lm_sector_mode_row *m = &r->mode[i];
+        m->gate_mm_s[0] =
+            m->gate_mm_s[1] ? least(m->gate_mm_s[0], m->gate_mm_s[1]) : m->gate_mm_s[0];
+        repair_tone(&m->tone);
+    }
+    repair_tone(&r->sar.tone);
+    r->sar.cell_max_mm = most(r->sar.cell_max_mm, r->sar.cell_min_mm);
+}
+
+/* Every field of view that the mode has on the largest scale and on the smallest. */
+static void draw_mode(struct rig *r, uint32_t mode)
+{
+    const struct lm_radar *radar = r->board.radar;
+    const uint32_t scales[] = {0, LM_RANGES - 1};
+    for (uint32_t n = 0; n < 2 * LM_FIELDS; n++) {
+        const uint32_t field = n / 2;
+        if (field <= radar->mode[mode].field_last) {
+            command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
+                                           .value = (int32_t)mode,
+                                           .value_y = (int32_t)field});
+            command(r, (struct lm_control){
+                           .kind = LM_CONTROL_RANGE,
+                           .value = (int32_t)least(scales[n % 2], radar->mode[mode].range_last)});
+            const uint32_t lines = r->unit.count.lines;
+            run(r, FLIGHT_S);
+            assert_int_equal(r->unit.sector.command.field, field);
+            assert_true(r->unit.count.lines > lines);
+        }
+    }
+}
+
+static void draw_patch(struct rig *r, uint32_t cell_mm)
+{
+    struct lm_control control = patch_here;
+    control.sar = (struct lm_sar_command){.centre = patch_here.sar.centre,
+                                          .cell_mm = cell_mm,
+                                          .has_layover = true,
+                                          .range_m = 60000,
+                                          .height_q6 = 8000 * 64};
+    const uint32_t refused = r->unit.count.commands_refused;
+    command(r, control);
+    run(r, 0.55); /* tiles are read for half a second at most */
+    run(r, FLIGHT_S);
+    assert_int_equal(r->unit.count.commands_refused, refused);
+}
+
+/* Fly with a table, low and high. */
+static void fly(const struct lm_radar *table, double height_m)
+{
+    struct lm_radar_fault fault = {"", 0};
+    if (lm_radar_check(table, &fault) != LM_OK) {
+        fail_msg("%s, element %u", fault.field, (unsigned)fault.index);
+    }
+    struct rig *r = make_rig();
+    r->board.radar = table;
+    r->bus.height_m = height_m;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    run(r, 0.1);
+    for (uint32_t mode = 0; mode < LM_SECTOR_MODES; mode++) {
+        draw_mode(r, mode);
+    }
+    draw_patch(r, table->sar.cell_min_mm);
+    draw_patch(r, table->sar.cell_max_mm);
+    assert_true(r->unit.count.frames > 0);
+    free_rig(r);
+}
+
+static void a_table_with_one_field_at_its_end_is_drawn(void **state)
+{
+    (void)state;
+    for (uint32_t n = 0; lm_radar_field(n); n++) {
+        const struct lm_radar_field *f = lm_radar_field(n);
+        for (uint32_t end = 0; end < 2; end++) {
+            struct lm_radar table = lm_radar_default;
+            for (uint32_t i = 0; i < f->count; i++) {
+                put(&table, f, i, end == 0 ? f->min : f->max);
+            }
+            repair(&table);
+            fly(&table, n % 2 ? 2000 : 12000);
+        }
+    }
+}
+
+static void tables_with_many_fields_at_their_ends_are_drawn(void **state)
+{
+    (void)state;
+    const char *seed = getenv("SEED");
+    struct hs_rng rng;
+    hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
+    for (uint32_t turn = 0; turn < RANDOM_TABLES; turn++) {
+        struct lm_radar table = lm_radar_default;
+        for (uint32_t n = 0; lm_radar_field(n); n++) {
+            const struct lm_radar_field *f = lm_radar_field(n);
+            for (uint32_t i = 0; i < f->count; i++) {
+                const uint32_t pick = hs_rng_below(&rng, turn < 2 ? 1 : 4);
+                if (pick < 2) {
+                    put(&table, f, i, (turn < 2 ? turn : pick) ? f->max : f->min);
+                }
+            }
+        }
+        repair(&table);
+        fly(&table, 500 + 600.0 * turn);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_table_with_one_field_at_its_end_is_drawn),
+        cmocka_unit_test(tables_with_many_fields_at_their_ends_are_drawn),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
