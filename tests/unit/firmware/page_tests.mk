@@ -28,5 +28,5 @@ T := $(O)/bin/tests/unit/firmware/test_radar_extremes
 TESTS += $(T)
 $(T): $(addprefix $(O)/sanitized/tests/unit/firmware/,test_radar_extremes.o unit_rig.o) \
     $(patsubst %.c,$(O)/sanitized/%.o,host-sim/lib/rng.c tests/support/memory_flash.c tests/support/tiny_image.c \
-    $(wildcard firmware/*/*.c fixed/src/*.c))
+    $(SRC_core))
 $(T): LDLIBS := -fsanitize=address,undefined,float-cast-overflow -lcmocka
