@@ -123,11 +123,10 @@ static void put(struct bezel *b, uint32_t key, bool is_down)
 {
     bool is_put = true;
     if (key < LM_BUTTONS) {
-        is_put = drv_control_ring_put(&b->ring, is_down ? LM_CONTROL_DOWN : LM_CONTROL_UP,
-                                      (int32_t)key + 1, 0);
+        is_put = drv_control_ring_put(&b->ring, lm_control_button(is_down, (int32_t)key + 1));
     } else if (is_down) {
-        is_put = drv_control_ring_put(
-            &b->ring, key == CONFIG_KEY_DESIGNATE ? LM_CONTROL_DESIGNATE : LM_CONTROL_DROP, 0, 0);
+        is_put = drv_control_ring_put(&b->ring, key == CONFIG_KEY_DESIGNATE ? lm_control_designate()
+                                                                            : lm_control_drop());
     }
     b->missed += !is_put;
 }

@@ -25,47 +25,67 @@ static bool is_deflection(int32_t value)
     return value >= -LM_FULL_DEFLECTION && value <= LM_FULL_DEFLECTION;
 }
 
-static bool parse_values(const char *text, const char *end, struct lm_control *control)
+/* The one number that is all of the text. */
+static bool parse_one(const char *text, const char *end, int32_t *value)
 {
-    if (!parse_number(&text, end, &control->value)) {
+    return parse_number(&text, end, value) && text == end;
+}
+
+static bool parse_button(bool is_down, const char *text, const char *end,
+                         struct lm_control *control)
+{
+    int32_t button;
+    if (!parse_one(text, end, &button) || button < 1 || button > LM_BUTTONS) {
         return false;
     }
-    if (control->kind == LM_CONTROL_SLEW &&
-        (text == end || *text++ != ',' || !parse_number(&text, end, &control->value_y))) {
+    *control = lm_control_button(is_down, button);
+    return true;
+}
+
+static bool parse_knob(const char *text, const char *end, struct lm_control *control)
+{
+    int32_t deflection;
+    if (!parse_one(text, end, &deflection) || !is_deflection(deflection)) {
         return false;
     }
-    const bool is_button = control->kind == LM_CONTROL_DOWN || control->kind == LM_CONTROL_UP;
-    const bool is_in_range = is_button
-                                 ? control->value >= 1 && control->value <= LM_BUTTONS
-                                 : is_deflection(control->value) && is_deflection(control->value_y);
-    return is_in_range && text == end;
+    *control = lm_control_knob(deflection);
+    return true;
+}
+
+static bool parse_slew(const char *text, const char *end, struct lm_control *control)
+{
+    int32_t x, y;
+    if (!parse_number(&text, end, &x) || text == end || *text++ != ',' ||
+        !parse_one(text, end, &y) || !is_deflection(x) || !is_deflection(y)) {
+        return false;
+    }
+    *control = lm_control_slew(x, y);
+    return true;
 }
 
 bool drv_bezel_parse(const char *text, uint32_t length, struct lm_control *control)
 {
-    *control = (struct lm_control){.kind = LM_CONTROL_DOWN};
-    switch (length > 0 ? text[0] : '\0') {
+    if (length == 0) {
+        return false;
+    }
+    const char *const rest = text + 1, *const end = text + length;
+    switch (text[0]) {
     case 'D':
-        break;
     case 'U':
-        control->kind = LM_CONTROL_UP;
-        break;
+        return parse_button(text[0] == 'D', rest, end, control);
     case 'K':
-        control->kind = LM_CONTROL_KNOB;
-        break;
+        return parse_knob(rest, end, control);
     case 'S':
-        control->kind = LM_CONTROL_SLEW;
-        break;
+        return parse_slew(rest, end, control);
     case 'T':
-        control->kind = LM_CONTROL_DESIGNATE;
+        *control = lm_control_designate();
         return length == 1;
     case 'X':
-        control->kind = LM_CONTROL_DROP;
+        *control = lm_control_drop();
         return length == 1;
     default:
         return false;
     }
-    return parse_values(text + 1, text + length, control);
 }
 
 static int hex_value(char c)

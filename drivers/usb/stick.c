@@ -164,11 +164,11 @@ static bool tell_button(const struct drv_stick_button *b, bool is_down,
 {
     switch (b->act) {
     case DRV_STICK_PRESS:
-        return drv_control_ring_put(ring, is_down ? LM_CONTROL_DOWN : LM_CONTROL_UP, b->button, 0);
+        return drv_control_ring_put(ring, lm_control_button(is_down, b->button));
     case DRV_STICK_DESIGNATE:
-        return !is_down || drv_control_ring_put(ring, LM_CONTROL_DESIGNATE, 0, 0);
+        return !is_down || drv_control_ring_put(ring, lm_control_designate());
     case DRV_STICK_DROP:
-        return !is_down || drv_control_ring_put(ring, LM_CONTROL_DROP, 0, 0);
+        return !is_down || drv_control_ring_put(ring, lm_control_drop());
     case DRV_STICK_NOTHING:
         break;
     }
@@ -179,11 +179,11 @@ void drv_stick_tell(struct drv_stick *s, struct drv_control_ring *ring)
 {
     struct drv_stick_state *told = &s->told;
     if ((s->now.right != told->right || s->now.up != told->up) &&
-        drv_control_ring_put(ring, LM_CONTROL_SLEW, s->now.right, s->now.up)) {
+        drv_control_ring_put(ring, lm_control_slew(s->now.right, s->now.up))) {
         told->right = s->now.right;
         told->up = s->now.up;
     }
-    if (s->now.knob != told->knob && drv_control_ring_put(ring, LM_CONTROL_KNOB, s->now.knob, 0)) {
+    if (s->now.knob != told->knob && drv_control_ring_put(ring, lm_control_knob(s->now.knob))) {
         told->knob = s->now.knob;
     }
     for (uint32_t n = 0; n < DRV_STICK_BUTTONS; n++) {

@@ -241,21 +241,20 @@ static bool obey_environment(struct lm_unit *u, const struct lm_control *control
 
 static bool obey_steerpoint(struct lm_unit *u, const struct lm_control *control)
 {
-    if (!is_within(control->value, 0, 1) ||
-        fx_abs_u32((int32_t)control->place.latitude) > FX_BAM_90) {
+    if (fx_abs_u32((int32_t)control->steerpoint.place.latitude) > FX_BAM_90) {
         return false;
     }
-    u->has_own_steerpoint = control->value != 0;
-    u->own_steerpoint = control->place;
+    u->has_own_steerpoint = control->steerpoint.is_set;
+    u->own_steerpoint = control->steerpoint.place;
     return true;
 }
 
 static bool obey_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
-    if (!is_within(control->value, 1, LM_BUTTONS)) {
+    if (!is_within(control->button, 1, LM_BUTTONS)) {
         return false;
     }
-    const uint8_t button = (uint8_t)control->value;
+    const uint8_t button = (uint8_t)control->button;
     const bool acts =
         control->kind == LM_CONTROL_DOWN
             ? lm_keys_down(&u->keys, button, lm_page_key_style(&u->page, button), now_us)
@@ -266,18 +265,27 @@ static bool obey_button(struct lm_unit *u, const struct lm_control *control, uin
     return true;
 }
 
-static bool obey_deflection(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+static bool is_deflection(int32_t value)
 {
-    if (!is_within(control->value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION) ||
-        !is_within(control->value_y, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
+    return is_within(value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION);
+}
+
+static bool obey_slew(struct lm_unit *u, const struct lm_control *control)
+{
+    if (!is_deflection(control->slew.x) || !is_deflection(control->slew.y)) {
         return false;
     }
-    if (control->kind == LM_CONTROL_SLEW) {
-        u->cursor.slew_x = control->value;
-        u->cursor.slew_y = control->value_y;
-    } else {
-        lm_apply(u, lm_page_set_knob(&u->page, control->value), now_us);
+    u->cursor.slew_x = control->slew.x;
+    u->cursor.slew_y = control->slew.y;
+    return true;
+}
+
+static bool obey_knob(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    if (!is_deflection(control->knob)) {
+        return false;
     }
+    lm_apply(u, lm_page_set_knob(&u->page, control->knob), now_us);
     return true;
 }
 
@@ -285,8 +293,8 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
 {
     switch (control->kind) {
     case LM_CONTROL_SECTOR:
-        return apply_any(u, lm_page_select_sector(&u->page, control->value, control->value_y),
-                         now_us);
+        return apply_any(
+            u, lm_page_select_sector(&u->page, control->sector.mode, control->sector.fov), now_us);
     case LM_CONTROL_ENVIRONMENT:
         return obey_environment(u, control, now_us);
     case LM_CONTROL_STEERPOINT:
@@ -297,20 +305,21 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
     case LM_CONTROL_RANGE:
-        return apply_any(u, lm_page_select_range(&u->page, control->value), now_us);
+        return apply_any(u, lm_page_select_range(&u->page, control->range_index), now_us);
     case LM_CONTROL_AZIMUTH:
-        return apply_any(u, lm_page_select_azimuth(&u->page, control->value), now_us);
+        return apply_any(u, lm_page_select_azimuth(&u->page, control->azimuth_index), now_us);
     case LM_CONTROL_GAIN:
-        return apply_any(u, lm_page_set_gain(&u->page, control->value), now_us);
+        return apply_any(u, lm_page_set_gain(&u->page, control->gain_db), now_us);
     case LM_CONTROL_FREEZE:
-        lm_page_set_frozen(&u->page, control->value != 0);
+        lm_page_set_frozen(&u->page, control->is_frozen);
         return true;
     case LM_CONTROL_DOWN:
     case LM_CONTROL_UP:
         return obey_button(u, control, now_us);
     case LM_CONTROL_KNOB:
+        return obey_knob(u, control, now_us);
     case LM_CONTROL_SLEW:
-        return obey_deflection(u, control, now_us);
+        return obey_slew(u, control);
     case LM_CONTROL_DESIGNATE:
         return designate(u, now_us);
     }

@@ -2,14 +2,13 @@
 
 #include <string.h>
 
-static void put(struct hands *h, enum lm_control_kind kind, int32_t value, int32_t value_y)
+static void put(struct hands *h, struct lm_control control)
 {
     if (h->head - h->tail == HANDS_QUEUE) {
         h->lost++;
         return;
     }
-    h->queue[h->head++ % HANDS_QUEUE] =
-        (struct lm_control){.kind = kind, .value = value, .value_y = value_y};
+    h->queue[h->head++ % HANDS_QUEUE] = control;
 }
 
 static int next(void *ctx, struct lm_control *control)
@@ -39,7 +38,7 @@ void hands_button(struct hands *h, int32_t button, bool is_down)
         return; /* held by mouse and keyboard at once */
     }
     h->down ^= bit;
-    put(h, is_down ? LM_CONTROL_DOWN : LM_CONTROL_UP, button, 0);
+    put(h, lm_control_button(is_down, button));
 }
 
 void hands_arrow(struct hands *h, enum hands_arrow arrow, bool is_down)
@@ -48,8 +47,8 @@ void hands_arrow(struct hands *h, enum hands_arrow arrow, bool is_down)
         return;
     }
     h->arrows[arrow] = is_down;
-    put(h, LM_CONTROL_SLEW, LM_FULL_DEFLECTION * (h->arrows[HANDS_RIGHT] - h->arrows[HANDS_LEFT]),
-        LM_FULL_DEFLECTION * (h->arrows[HANDS_UP] - h->arrows[HANDS_DOWN]));
+    put(h, lm_control_slew(LM_FULL_DEFLECTION * (h->arrows[HANDS_RIGHT] - h->arrows[HANDS_LEFT]),
+                           LM_FULL_DEFLECTION * (h->arrows[HANDS_UP] - h->arrows[HANDS_DOWN])));
 }
 
 void hands_turn_knob(struct hands *h, int32_t thousandths)
@@ -58,17 +57,17 @@ void hands_turn_knob(struct hands *h, int32_t thousandths)
     h->knob = turned > LM_FULL_DEFLECTION    ? LM_FULL_DEFLECTION
               : turned < -LM_FULL_DEFLECTION ? -LM_FULL_DEFLECTION
                                              : turned;
-    put(h, LM_CONTROL_KNOB, h->knob, 0);
+    put(h, lm_control_knob(h->knob));
 }
 
 void hands_designate(struct hands *h)
 {
-    put(h, LM_CONTROL_DESIGNATE, 0, 0);
+    put(h, lm_control_designate());
 }
 
 void hands_drop(struct hands *h)
 {
-    put(h, LM_CONTROL_DROP, 0, 0);
+    put(h, lm_control_drop());
 }
 
 void hands_off(struct hands *h)

@@ -98,32 +98,33 @@ static bool parse_choice(char **words, int count, struct lm_control *c)
     }
     if (strcmp(words[1], "range") == 0) {
         c->kind = LM_CONTROL_RANGE;
-        return choice(words[2], ranges, 4, &c->value);
+        return choice(words[2], ranges, 4, &c->range_index);
     }
     if (strcmp(words[1], "azimuth") == 0) {
         c->kind = LM_CONTROL_AZIMUTH;
-        return choice(words[2], azimuths, 3, &c->value);
+        return choice(words[2], azimuths, 3, &c->azimuth_index);
     }
     if (strcmp(words[1], "freeze") == 0) {
-        c->kind = LM_CONTROL_FREEZE;
-        return choice(words[2], switches, 2, &c->value);
+        int32_t is_on = 0;
+        const bool is_switch = choice(words[2], switches, 2, &is_on);
+        *c = (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = is_on != 0};
+        return is_switch;
     }
     double gain;
     c->kind = LM_CONTROL_GAIN;
     if (strcmp(words[1], "gain") != 0 || !number(words[2], -30, 30, &gain)) {
         return false;
     }
-    c->value = (int32_t)lround(gain);
+    c->gain_db = (int32_t)lround(gain);
     return true;
 }
 
 /* The second event of a line, `after_s` behind the first. */
-static void add_end(struct line_events *line, enum lm_control_kind kind, int32_t value,
-                    double after_s)
+static void add_end(struct line_events *line, struct lm_control control, double after_s)
 {
     line->event[1] = (struct script_event){
         .time_us = line->event[0].time_us + (uint64_t)llround(after_s * 1e6),
-        .control = {.kind = kind, .value = value},
+        .control = control,
     };
     line->count = 2;
 }
@@ -132,41 +133,42 @@ static bool parse_button(char **words, int count, struct line_events *line)
 {
     static const char *const rockers[] = {"gain", "sym", "brt", "con"};
     static const char *const steps[] = {"-1", "+1"};
-    struct lm_control *c = &line->event[0].control;
     double held_s = PRESS_US / 1e6, osb;
-    c->kind = LM_CONTROL_DOWN;
+    int32_t button;
     if (strcmp(words[1], "osb") == 0) {
         if (count < 3 || count > 4 || !number(words[2], 1, LM_OSBS, &osb) || osb != floor(osb) ||
             (count == 4 && !number(words[3], 0, 3600, &held_s))) {
             return false;
         }
-        c->value = (int32_t)osb;
+        button = (int32_t)osb;
     } else {
         int32_t rocker, step;
         if (count != 4 || !choice(words[2], rockers, LM_ROCKERS, &rocker) ||
             !choice(words[3], steps, 2, &step)) {
             return false;
         }
-        c->value = lm_rocker_button((enum lm_rocker)rocker, step == 1);
+        button = lm_rocker_button((enum lm_rocker)rocker, step == 1);
     }
-    add_end(line, LM_CONTROL_UP, c->value, held_s);
+    line->event[0].control = lm_control_button(true, button);
+    add_end(line, lm_control_button(false, button), held_s);
     return true;
 }
 
 static bool parse_deflection(char **words, int count, struct line_events *line)
 {
-    struct lm_control *c = &line->event[0].control;
     const bool is_slew = strcmp(words[1], "slew") == 0;
     double x, y = 0, for_s = 0;
     if (count != (is_slew ? 5 : 3) || !number(words[2], -1, 1, &x) ||
         (is_slew && (!number(words[3], -1, 1, &y) || !number(words[4], 0, 3600, &for_s)))) {
         return false;
     }
-    c->kind = is_slew ? LM_CONTROL_SLEW : LM_CONTROL_KNOB;
-    c->value = (int32_t)lround(x * LM_FULL_DEFLECTION);
-    c->value_y = (int32_t)lround(y * LM_FULL_DEFLECTION);
+    const int32_t x_deflection = (int32_t)lround(x * LM_FULL_DEFLECTION);
+    const int32_t y_deflection = (int32_t)lround(y * LM_FULL_DEFLECTION);
     if (is_slew) {
-        add_end(line, LM_CONTROL_SLEW, 0, for_s);
+        line->event[0].control = lm_control_slew(x_deflection, y_deflection);
+        add_end(line, lm_control_slew(0, 0), for_s);
+    } else {
+        line->event[0].control = lm_control_knob(x_deflection);
     }
     return true;
 }
@@ -177,16 +179,17 @@ static bool parse_sector(char **words, int count, struct lm_control *c)
     static const char *const modes[LM_SECTOR_MODES] = {"gm", "gmt", "sea"};
     static const char *const fields[LM_FIELDS] = {"norm", "exp", "dbs1", "dbs2"};
     c->kind = LM_CONTROL_SECTOR;
-    return choice(words[1], modes, LM_SECTOR_MODES, &c->value) &&
-           (count == 2 || (count == 3 && choice(words[2], fields, LM_FIELDS, &c->value_y)));
+    return choice(words[1], modes, LM_SECTOR_MODES, &c->sector.mode) &&
+           (count == 2 || (count == 3 && choice(words[2], fields, LM_FIELDS, &c->sector.fov)));
 }
 
 /* "steer LAT LON", or "steer off": as the bus says. */
 static bool parse_steer(char **words, int count, struct lm_control *c)
 {
     c->kind = LM_CONTROL_STEERPOINT;
-    c->value = count == 4;
-    return count == 4 ? place(words + 2, &c->place) : count == 3 && strcmp(words[2], "off") == 0;
+    c->steerpoint.is_set = count == 4;
+    return count == 4 ? place(words + 2, &c->steerpoint.place)
+                      : count == 3 && strcmp(words[2], "off") == 0;
 }
 
 /* Commands of one word. */

@@ -19,10 +19,20 @@ static void check_map(const struct drv_hid_map *map)
 
 static void check_control(const struct lm_control *c)
 {
-    const bool is_button = c->kind == LM_CONTROL_DOWN || c->kind == LM_CONTROL_UP;
-    FUZZ_ASSERT(c->value >= (is_button ? 1 : -LM_FULL_DEFLECTION));
-    FUZZ_ASSERT(c->value <= (is_button ? LM_BUTTONS : LM_FULL_DEFLECTION));
-    FUZZ_ASSERT(c->value_y >= -LM_FULL_DEFLECTION && c->value_y <= LM_FULL_DEFLECTION);
+    switch (c->kind) {
+    case LM_CONTROL_DOWN:
+    case LM_CONTROL_UP:
+        FUZZ_ASSERT(c->button >= 1 && c->button <= LM_BUTTONS);
+        break;
+    case LM_CONTROL_KNOB:
+        FUZZ_ASSERT(abs(c->knob) <= LM_FULL_DEFLECTION);
+        break;
+    case LM_CONTROL_SLEW:
+        FUZZ_ASSERT(abs(c->slew.x) <= LM_FULL_DEFLECTION && abs(c->slew.y) <= LM_FULL_DEFLECTION);
+        break;
+    default:
+        FUZZ_ASSERT(c->kind == LM_CONTROL_DESIGNATE || c->kind == LM_CONTROL_DROP);
+    }
 }
 
 static void drain(struct drv_stick *s, struct drv_control_ring *ring)

@@ -14,8 +14,14 @@ static void check_event(const struct script_event *e)
         FUZZ_ASSERT(c->sar.range_m <= 1000000);
         const int32_t latitude = (int32_t)c->sar.centre.latitude;
         FUZZ_ASSERT(latitude <= (int32_t)FX_BAM_90 && latitude >= -(int32_t)FX_BAM_90);
-    } else {
-        FUZZ_ASSERT(c->value >= -30 && c->value <= 30);
+    } else if (c->kind == LM_CONTROL_GAIN) {
+        FUZZ_ASSERT(c->gain_db >= -30 && c->gain_db <= 30);
+    } else if (c->kind == LM_CONTROL_DOWN || c->kind == LM_CONTROL_UP) {
+        FUZZ_ASSERT(c->button >= 1 && c->button <= LM_BUTTONS);
+    } else if (c->kind == LM_CONTROL_SLEW) {
+        FUZZ_ASSERT(abs(c->slew.x) <= LM_FULL_DEFLECTION && abs(c->slew.y) <= LM_FULL_DEFLECTION);
+    } else if (c->kind == LM_CONTROL_KNOB) {
+        FUZZ_ASSERT(abs(c->knob) <= LM_FULL_DEFLECTION);
     }
 }
 

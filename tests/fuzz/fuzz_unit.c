@@ -203,6 +203,45 @@ static void command_patch(struct world *w, struct fuzz_supply *s)
     c->height_q6 = flags & 64 ? (int32_t)fuzz_u32(s) : (int16_t)fuzz_u16(s) * 59;
 }
 
+/* Any kind, one that does not exist included, with `value` wherever the kind has a number. */
+static struct lm_control any_control(enum lm_control_kind kind, int32_t value)
+{
+    struct lm_control c = {.kind = kind};
+    switch (kind) {
+    case LM_CONTROL_STEERPOINT:
+        c.steerpoint.is_set = value & 1;
+        break;
+    case LM_CONTROL_FREEZE:
+        c.is_frozen = value & 1;
+        break;
+    case LM_CONTROL_SLEW:
+        c.slew.x = value;
+        break;
+    case LM_CONTROL_SECTOR:
+        c.sector.mode = value;
+        break;
+    case LM_CONTROL_RANGE:
+        c.range_index = value;
+        break;
+    case LM_CONTROL_AZIMUTH:
+        c.azimuth_index = value;
+        break;
+    case LM_CONTROL_GAIN:
+        c.gain_db = value;
+        break;
+    case LM_CONTROL_KNOB:
+        c.knob = value;
+        break;
+    case LM_CONTROL_DOWN:
+    case LM_CONTROL_UP:
+        c.button = value;
+        break;
+    default:
+        break;
+    }
+    return c;
+}
+
 static void step(struct world *w, uint64_t by_us)
 {
     if (w->steps++ < STEPS_MAX) {
@@ -238,8 +277,8 @@ static void act(struct world *w, struct fuzz_supply *s)
     case 6:
     case 7:
         w->has_control = true;
-        w->control = (struct lm_control){.kind = (enum lm_control_kind)(op >> 4),
-                                         .value = op & 1 ? (int32_t)fuzz_u32(s) : fuzz_u8(s) & 3};
+        w->control = any_control((enum lm_control_kind)(op >> 4),
+                                 op & 1 ? (int32_t)fuzz_u32(s) : fuzz_u8(s) & 3);
         break;
     case 8:
     case 9:

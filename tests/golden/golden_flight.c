@@ -299,9 +299,16 @@ static int next_key(const struct golden_picture *p, uint32_t item, struct lm_con
     if (item / 2 == sizeof p->keys || p->keys[item / 2] == 0) {
         return 0;
     }
-    *control = (struct lm_control){.kind = item % 2 ? LM_CONTROL_UP : LM_CONTROL_DOWN,
-                                   .value = p->keys[item / 2]};
+    *control = lm_control_button(item % 2 == 0, p->keys[item / 2]);
     return 1;
+}
+
+static struct lm_control picture_control(const struct golden_picture *p, struct lm_place centre)
+{
+    if (p->cell_mm) {
+        return (struct lm_control){.kind = LM_CONTROL_SAR, .sar = patch_command(p, centre)};
+    }
+    return (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {p->mode, p->field}};
 }
 
 /* The operator: weather, scale, sector and gain when the bus is heard, then mode or patch; freezes
@@ -313,17 +320,13 @@ static int next_control(void *ctx, struct lm_control *control)
     const struct golden_picture *p = r->picture;
     const struct lm_control script[ITEMS] = {
         {.kind = LM_CONTROL_ENVIRONMENT, .environment = environment_of(r)},
-        {.kind = LM_CONTROL_RANGE, .value = p->range},
-        {.kind = LM_CONTROL_AZIMUTH, .value = p->azimuth},
-        {.kind = LM_CONTROL_GAIN, .value = p->gain_db},
+        {.kind = LM_CONTROL_RANGE, .range_index = p->range},
+        {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = p->azimuth},
+        {.kind = LM_CONTROL_GAIN, .gain_db = p->gain_db},
         {.kind = LM_CONTROL_STEERPOINT,
-         .value = p->has_steerpoint,
-         .place = moved(r->centre, 0, 1852)},
-        {.kind = p->cell_mm ? LM_CONTROL_SAR : LM_CONTROL_SECTOR,
-         .value = p->mode,
-         .value_y = p->field,
-         .sar = patch_command(p, r->centre)},
-        {.kind = LM_CONTROL_FREEZE, .value = p->fault == GOLDEN_FROZEN}};
+         .steerpoint = {p->has_steerpoint, moved(r->centre, 0, 1852)}},
+        picture_control(p, r->centre),
+        {.kind = LM_CONTROL_FREEZE, .is_frozen = p->fault == GOLDEN_FROZEN}};
     const uint64_t due_us = r->control_item < EARLY ? START_US : START_US + 700000;
     if (r->now_us < due_us) {
         return 0;

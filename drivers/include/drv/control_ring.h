@@ -16,15 +16,13 @@ struct drv_control_ring {
 };
 
 /* False when the ring is full: nothing was put in. */
-static inline bool drv_control_ring_put(struct drv_control_ring *r, enum lm_control_kind kind,
-                                        int32_t value, int32_t value_y)
+static inline bool drv_control_ring_put(struct drv_control_ring *r, struct lm_control control)
 {
     const unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
     if (head - atomic_load_explicit(&r->tail, memory_order_acquire) == DRV_CONTROL_RING) {
         return false;
     }
-    r->control[head % DRV_CONTROL_RING] =
-        (struct lm_control){.kind = kind, .value = value, .value_y = value_y};
+    r->control[head % DRV_CONTROL_RING] = control;
     atomic_store_explicit(&r->head, head + 1, memory_order_release);
     return true;
 }

@@ -11,6 +11,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 struct line {
     const char *bytes;
     size_t length, next;
@@ -48,21 +50,18 @@ static void each_sentence_means_its_control(void **state)
     (void)state;
     const struct {
         const char *text;
-        enum lm_control_kind kind;
-        int32_t value, value_y;
-    } table[] = {{"$D12*47\r\n", LM_CONTROL_DOWN, 12, 0},
-                 {"$U12*56\r\n", LM_CONTROL_UP, 12, 0},
-                 {"$K-500*53\n", LM_CONTROL_KNOB, -500, 0},
-                 {"$S100,-20*61\n", LM_CONTROL_SLEW, 100, -20},
-                 {"$S-1000,1000*52", LM_CONTROL_SLEW, -1000, 1000},
-                 {"$T*54", LM_CONTROL_DESIGNATE, 0, 0},
-                 {"$X*58", LM_CONTROL_DROP, 0, 0}};
+        struct lm_control control;
+    } table[] = {{"$D12*47\r\n", lm_control_button(true, 12)},
+                 {"$U12*56\r\n", lm_control_button(false, 12)},
+                 {"$K-500*53\n", lm_control_knob(-500)},
+                 {"$S100,-20*61\n", lm_control_slew(100, -20)},
+                 {"$S-1000,1000*52", lm_control_slew(-1000, 1000)},
+                 {"$T*54", lm_control_designate()},
+                 {"$X*58", lm_control_drop()}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         struct lm_control c;
         assert_int_equal(take(table[i].text, strlen(table[i].text), &c), 1);
-        assert_int_equal(c.kind, table[i].kind);
-        assert_int_equal(c.value, table[i].value);
-        assert_int_equal(c.value_y, table[i].value_y);
+        assert_same_control(&c, table[i].control);
     }
     assert_int_equal(bezel.count.malformed, 0);
 }
@@ -101,9 +100,22 @@ static void any_changed_byte_is_found_or_changes_nothing(void **state)
             changed[i] = (char)(changed[i] ^ 1 << bit);
             start(NULL);
             if (take(changed, strlen(bytes), &c) == 1) {
-                assert_memory_equal(&c, &meant, sizeof c);
+                assert_same_control(&c, meant);
             }
         }
+    }
+}
+
+static void assert_in_bounds(const struct lm_control *c)
+{
+    assert_true(c->kind >= LM_CONTROL_DOWN && c->kind <= LM_CONTROL_DROP);
+    if (c->kind <= LM_CONTROL_UP) {
+        assert_in_range(c->button, 1, LM_BUTTONS);
+    } else if (c->kind == LM_CONTROL_KNOB) {
+        assert_in_range(c->knob + 1000, 0, 2000);
+    } else if (c->kind == LM_CONTROL_SLEW) {
+        assert_in_range(c->slew.x + 1000, 0, 2000);
+        assert_in_range(c->slew.y + 1000, 0, 2000);
     }
 }
 
@@ -125,9 +137,7 @@ static void noise_never_makes_a_control_out_of_range(void **state)
         while (line.next < line.length) {
             if (bezel.port.next(bezel.port.ctx, &c) == 1) {
                 controls++;
-                assert_true(c.kind >= LM_CONTROL_DOWN && c.kind <= LM_CONTROL_DROP);
-                assert_in_range(c.value + 1000, 0, 2000);
-                assert_in_range(c.value_y + 1000, 0, 2000);
+                assert_in_bounds(&c);
             }
         }
     }

@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 /* X, Y -127..127, slider 0..255, a hat of eight positions, 4 buttons: five bytes. */
 static const uint8_t descriptor[] = {
     0x05, 0x01, 0x09, 0x04, 0xa1, 0x01, 0x15, 0x81, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x02,
@@ -46,14 +48,11 @@ static void feel(struct drv_stick *s, int x, int y, int slider, int hat, int but
     drv_stick_report(s, report, sizeof report);
 }
 
-static void expect(struct drv_control_ring *ring, enum lm_control_kind kind, int32_t value,
-                   int32_t value_y)
+static void expect(struct drv_control_ring *ring, struct lm_control expected)
 {
     struct lm_control c = {0};
     assert_true(drv_control_ring_take(ring, &c));
-    assert_int_equal(c.kind, kind);
-    assert_int_equal(c.value, value);
-    assert_int_equal(c.value_y, value_y);
+    assert_same_control(&c, expected);
 }
 
 static void expect_nothing(struct drv_control_ring *ring)
@@ -70,12 +69,12 @@ static void full_deflection_is_full_and_away_from_the_operator_is_up(void **stat
     struct drv_control_ring ring = {0};
     feel(&s, 127, -127, 0, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_SLEW, 1000, 1000);
-    expect(&ring, LM_CONTROL_KNOB, -1000, 0);
+    expect(&ring, lm_control_slew(1000, 1000));
+    expect(&ring, lm_control_knob(-1000));
     feel(&s, -127, 127, 255, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_SLEW, -1000, -1000);
-    expect(&ring, LM_CONTROL_KNOB, 1000, 0);
+    expect(&ring, lm_control_slew(-1000, -1000));
+    expect(&ring, lm_control_knob(1000));
     expect_nothing(&ring);
 }
 
@@ -105,7 +104,7 @@ static void what_has_not_changed_is_not_told_again(void **state)
     struct drv_control_ring ring = {0};
     feel(&s, 127, 0, 128, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_SLEW, 1000, 0);
+    expect(&ring, lm_control_slew(1000, 0));
     feel(&s, 127, 0, 128, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
     expect_nothing(&ring);
@@ -119,13 +118,13 @@ static void a_button_is_told_when_it_goes_down_and_up_as_its_meaning_needs(void 
     struct drv_control_ring ring = {0};
     feel(&s, 0, 0, 128, CENTRED_HAT, 0x0f);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_DESIGNATE, 0, 0);
-    expect(&ring, LM_CONTROL_DROP, 0, 0);
-    expect(&ring, LM_CONTROL_DOWN, 7, 0);
+    expect(&ring, lm_control_designate());
+    expect(&ring, lm_control_drop());
+    expect(&ring, lm_control_button(true, 7));
     expect_nothing(&ring); /* the fourth means nothing */
     feel(&s, 0, 0, 128, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_UP, 7, 0);
+    expect(&ring, lm_control_button(false, 7));
     expect_nothing(&ring);
 }
 
@@ -137,13 +136,13 @@ static void a_device_that_goes_lets_go_of_everything(void **state)
     struct drv_control_ring ring = {0};
     feel(&s, 127, 127, 128, CENTRED_HAT, 0x04);
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_SLEW, 1000, -1000);
-    expect(&ring, LM_CONTROL_DOWN, 7, 0);
+    expect(&ring, lm_control_slew(1000, -1000));
+    expect(&ring, lm_control_button(true, 7));
     drv_stick_detach(&s);
     feel(&s, 127, 127, 128, CENTRED_HAT, 0x04); /* a report that was on its way */
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_SLEW, 0, 0);
-    expect(&ring, LM_CONTROL_UP, 7, 0);
+    expect(&ring, lm_control_slew(0, 0));
+    expect(&ring, lm_control_button(false, 7));
     expect_nothing(&ring);
 }
 
@@ -156,7 +155,7 @@ static void a_full_ring_loses_no_release(void **state)
     struct drv_control_ring ring = {0};
     feel(&s, 0, 0, 128, CENTRED_HAT, 0x04);
     drv_stick_tell(&s, &ring);
-    while (drv_control_ring_put(&ring, LM_CONTROL_KNOB, 0, 0)) {
+    while (drv_control_ring_put(&ring, lm_control_knob(0))) {
     }
     feel(&s, 0, 0, 128, CENTRED_HAT, 0);
     drv_stick_tell(&s, &ring);
@@ -165,7 +164,7 @@ static void a_full_ring_loses_no_release(void **state)
         assert_int_not_equal(control.kind, LM_CONTROL_UP);
     }
     drv_stick_tell(&s, &ring);
-    expect(&ring, LM_CONTROL_UP, 7, 0);
+    expect(&ring, lm_control_button(false, 7));
 }
 
 static void a_hat_slews_in_eight_directions_and_stops_when_it_is_let_go(void **state)

@@ -25,18 +25,56 @@ static int32_t any_value(struct hs_rng *rng)
                        : (int32_t)hs_rng_below(rng, LM_BUTTONS) + 1;
 }
 
+/* Numbers of no bound where the kind of the control has any. */
+static void set_numbers(struct lm_control *c, int32_t value, int32_t other)
+{
+    switch (c->kind) {
+    case LM_CONTROL_SECTOR:
+        c->sector.mode = value;
+        c->sector.fov = other;
+        break;
+    case LM_CONTROL_STEERPOINT:
+        c->steerpoint.is_set = value & 1;
+        c->steerpoint.place.latitude = (fx_bam_t)other;
+        break;
+    case LM_CONTROL_RANGE:
+        c->range_index = value;
+        break;
+    case LM_CONTROL_AZIMUTH:
+        c->azimuth_index = value;
+        break;
+    case LM_CONTROL_GAIN:
+        c->gain_db = value;
+        break;
+    case LM_CONTROL_FREEZE:
+        c->is_frozen = value & 1;
+        break;
+    case LM_CONTROL_DOWN:
+    case LM_CONTROL_UP:
+        c->button = value;
+        break;
+    case LM_CONTROL_KNOB:
+        c->knob = value;
+        break;
+    case LM_CONTROL_SLEW:
+        c->slew.x = value;
+        c->slew.y = other;
+        break;
+    default:
+        break;
+    }
+}
+
 static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u)
 {
     /* Mostly buttons; now and then everything else, kinds that do not exist included. */
     const bool is_button = hs_rng_below(rng, 8) != 0;
-    struct lm_control c = {
-        .kind = is_button ? LM_CONTROL_DOWN + hs_rng_below(rng, 2) : hs_rng_below(rng, 14),
-        .value = any_value(rng),
-        .value_y = any_value(rng),
-    };
+    struct lm_control c = {.kind = is_button ? LM_CONTROL_DOWN + hs_rng_below(rng, 2)
+                                             : hs_rng_below(rng, 14)};
+    set_numbers(&c, any_value(rng), any_value(rng));
     if (c.kind == LM_CONTROL_SLEW && hs_rng_below(rng, 2)) {
-        c.value = (int32_t)hs_rng_below(rng, 2001) - 1000;
-        c.value_y = (int32_t)hs_rng_below(rng, 2001) - 1000;
+        c = lm_control_slew((int32_t)hs_rng_below(rng, 2001) - 1000,
+                            (int32_t)hs_rng_below(rng, 2001) - 1000);
     }
     if (c.kind == LM_CONTROL_SAR) {
         c.sar = (struct lm_sar_command){.centre = u->cursor.place,

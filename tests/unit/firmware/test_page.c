@@ -134,16 +134,16 @@ static void osb_2_lets_the_range_follow_the_cursor(void **state)
     assert_true(labelled(r, 2, "AUTO", 0));
     assert_int_equal(r->unit.page.range, 0);
     /* From half of 10 nm up to where 20 nm is due. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = 1000});
+    command(r, lm_control_slew(0, 1000));
     run(r, 0.55);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     assert_int_equal(r->unit.page.range, 1);
     assert_true(says(r, "20"));
     /* And back: below 0.425 of 20 nm. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = -1000});
+    command(r, lm_control_slew(0, -1000));
     run(r, 0.2);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     assert_int_equal(r->unit.page.range, 0);
     press(r, 2);
@@ -179,7 +179,7 @@ static void osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .value = 3});
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 3});
     press(r, 3);
     assert_true(labelled(r, 3, "EXP", 0));
     press(r, 3);
@@ -206,7 +206,7 @@ static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
     assert_int_equal(plane_sum(r), sum);
     assert_true(labelled(r, 4, "OVRD", 1));
     assert_true(warns(r, "NO RAD"));
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* a patch would need it */
+    command(r, lm_control_designate()); /* a patch would need it */
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(warns(r, "UNABLE"));
@@ -404,9 +404,9 @@ static void osb_7_freezes_the_map_and_the_ownship_moves_over_it(void **state)
     (void)state;
     struct rig *r = fly();
     /* Out of the way with the cursor's lines. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = -1000});
+    command(r, lm_control_slew(-1000, 0));
     run(r, 0.5);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     press(r, 7);
     assert_true(labelled(r, 7, "FZ", 1));
     assert_true(warns(r, "FZ"));
@@ -448,7 +448,7 @@ static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
     run(r, 10);
     assert_true(r->unit.cursor.place.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE}); /* stabilises, and no more */
+    command(r, lm_control_designate()); /* stabilises, and no more */
     run(r, 0.05);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     const struct lm_place held = r->unit.cursor.place;
@@ -465,9 +465,9 @@ static void osb_9_brings_the_cursor_home(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 1000, .value_y = -500});
+    command(r, lm_control_slew(1000, -500));
     run(r, 0.4);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     assert_true(r->unit.cursor.offset.x_q8 > 80 * 256);
     press(r, 9);
@@ -551,9 +551,9 @@ static void osb_15_asks_the_board_to_swap(void **state)
 /* Move the cursor off the track, where a patch can be made. */
 static void slew_right(struct rig *r)
 {
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 1000});
+    command(r, lm_control_slew(1000, 0));
     run(r, 0.3);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.1);
 }
 
@@ -565,7 +565,7 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
     press(r, 16);
     assert_true(says(r, "10M"));
     slew_right(r);
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    command(r, lm_control_designate());
     run(r, 1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.sar.command.cell_mm, 10000);
@@ -647,13 +647,13 @@ static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
     assert_int_equal(r->unit.page.gain_db, 1);
     assert_memory_not_equal(&r->unit.sector_tone, &tone, sizeof tone);
     press(r, lm_rocker_button(LM_ROCKER_GAIN, false));
-    command(r, (struct lm_control){.kind = LM_CONTROL_KNOB, .value = 1000});
+    command(r, lm_control_knob(1000));
     run(r, 0.01);
     const struct lm_tone_config table = lm_radar_default.mode[LM_SECTOR_GM].tone;
     const struct lm_tone_config config = lm_page_tone(&r->unit.page, &table);
     /* 20 % of amplitude: 20 log10 1.2 = 1.584 dB */
     assert_true(fabs((table.black_q8 - config.black_q8) / 256.0 - 1.584) < 0.01);
-    command(r, (struct lm_control){.kind = LM_CONTROL_KNOB});
+    command(r, lm_control_knob(0));
     run(r, 0.01);
     assert_memory_equal(&r->unit.sector_tone, &tone, sizeof tone);
     const struct lm_palette palette = r->unit.palette;
@@ -675,9 +675,9 @@ static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 700, .value_y = 300});
+    command(r, lm_control_slew(700, 300));
     run(r, 0.3);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     const struct lm_frame *f = &r->unit.frame;
     const struct lm_point at = lm_view_point(&r->unit.view, r->unit.cursor.offset);
@@ -726,9 +726,9 @@ static void the_cursor_stays_over_its_place_through_turns_of_the_page(void **sta
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 300});
+    command(r, lm_control_slew(300, 0));
     run(r, 0.2);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
     run(r, 0.8);
     const struct lm_place held = r->unit.cursor.place;
     const int keys[] = {20, 18, 7, 7, 5, 5, 12, 13, 19, 4, 4};
@@ -745,7 +745,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     (void)state;
     struct rig *r = fly();
     slew_right(r);
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    command(r, lm_control_designate());
     run(r, 4);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
@@ -756,7 +756,7 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
              r->unit.sar.command.look_azimuth * 360.0 / 4294967296.0);
     assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, look));
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
-    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    command(r, lm_control_drop());
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     free_rig(r);
@@ -767,10 +767,10 @@ static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(
     (void)state;
     struct rig *r = fly();
     /* Too near: under the aircraft. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value_y = -1000});
+    command(r, lm_control_slew(0, -1000));
     run(r, 2);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    command(r, lm_control_slew(0, 0));
+    command(r, lm_control_designate());
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.count.commands_refused, 1);
@@ -784,7 +784,7 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    command(r, lm_control_designate());
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(warns(r, "UNABLE"));
@@ -794,9 +794,9 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     }
     assert_true(says(r, "1M"));
     slew_right(r);
-    command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+    command(r, lm_control_designate());
     run(r, 0.3);
-    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
+    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = true});
     run(r, 0.1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     char words[24];
@@ -814,7 +814,7 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     run(r, 2.5);
     r->bus.is_down = 0;
     r->bus.sent_us = r->now_us;
-    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .value = 9});
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 9});
     /* A frame of a wrong type and a lone half of a double, which the next other frame tears. */
     const struct lm_can_frame bad = {.id = 321, .length = 8, .data = {9, 77}};
     const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
@@ -908,12 +908,12 @@ static void buttons_and_deflections_that_do_not_exist_are_refused(void **state)
     (void)state;
     struct rig *r = fly();
     const struct lm_control bad[] = {
-        {.kind = LM_CONTROL_DOWN, .value = 0},
-        {.kind = LM_CONTROL_DOWN, .value = LM_BUTTONS + 1},
-        {.kind = LM_CONTROL_UP, .value = INT32_MIN},
-        {.kind = LM_CONTROL_SLEW, .value = 1001},
-        {.kind = LM_CONTROL_SLEW, .value_y = INT32_MIN},
-        {.kind = LM_CONTROL_KNOB, .value = -1001},
+        {.kind = LM_CONTROL_DOWN, .button = 0},
+        {.kind = LM_CONTROL_DOWN, .button = LM_BUTTONS + 1},
+        {.kind = LM_CONTROL_UP, .button = INT32_MIN},
+        {.kind = LM_CONTROL_SLEW, .slew = {.x = 1001}},
+        {.kind = LM_CONTROL_SLEW, .slew = {.y = INT32_MIN}},
+        {.kind = LM_CONTROL_KNOB, .knob = -1001},
     };
     const struct lm_page before = r->unit.page;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -947,7 +947,7 @@ static void a_cursor_that_nobody_moved_goes_with_the_scale(void **state)
     assert_int_equal(r->unit.page.range, 1);
     assert_true(fabs(cursor_nm(r) - 10) < 0.1);
     /* A window opens about the new place. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .value_y = LM_FIELD_EXP});
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FIELD_EXP}});
     command(r, range_10);
     run(r, 0.3);
     assert_true(fabs(cursor_nm(r) - 5) < 0.1);
@@ -966,14 +966,14 @@ static void a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes(v
             r->bus.nose_deg = 50;
             run(r, 0.3);
             press(r, 9);
-            command(r, (struct lm_control){.kind = LM_CONTROL_DESIGNATE});
+            command(r, lm_control_designate());
             run(r, 0.1);
             assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-            command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+            command(r, lm_control_drop());
         } else {
-            command(r, (struct lm_control){.kind = LM_CONTROL_SLEW, .value = 500});
+            command(r, lm_control_slew(500, 0));
             run(r, 0.2);
-            command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+            command(r, lm_control_slew(0, 0));
         }
         run(r, 0.1);
         const struct lm_place before = r->unit.cursor.place;
@@ -1074,8 +1074,8 @@ static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropp
 {
     (void)state;
     struct rig *r = fly();
-    struct lm_control steer = {
-        .kind = LM_CONTROL_STEERPOINT, .value = 1, .place = {hs_bam(46.03), hs_bam(10.99)}};
+    struct lm_control steer = {.kind = LM_CONTROL_STEERPOINT,
+                               .steerpoint = {true, {hs_bam(46.03), hs_bam(10.99)}}};
     r->bus.has_waypoint = true;
     r->bus.waypoint_deg[0] = 46.05, r->bus.waypoint_deg[1] = 11.02;
     command(r, steer);
@@ -1088,14 +1088,14 @@ static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropp
     r->bus.speed_m_s = 1; /* 148 minutes */
     run(r, 1);
     assert_true(says(r, "TTG --:--"));
-    steer.value = 0;
+    steer.steerpoint.is_set = false;
     command(r, steer);
     r->bus.speed_m_s = 150;
     run(r, 1);
     assert_true(is_marked(r, 46.05, 11.02));
     const uint32_t refused = r->unit.count.commands_refused;
-    steer.value = 1;
-    steer.place.latitude = FX_BAM_90 + 1;
+    steer.steerpoint.is_set = true;
+    steer.steerpoint.place.latitude = FX_BAM_90 + 1;
     command(r, steer);
     run(r, 0.1);
     assert_int_equal(r->unit.count.commands_refused, refused + 1);

@@ -50,8 +50,8 @@ static void step(struct rig *r)
 
 static void show(struct rig *r, enum lm_sector_mode mode, enum lm_field field)
 {
-    command(r, (struct lm_control){
-                   .kind = LM_CONTROL_SECTOR, .value = (int32_t)mode, .value_y = (int32_t)field});
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
+                                   .sector = {(int32_t)mode, (int32_t)field}});
     step(r);
 }
 
@@ -128,7 +128,7 @@ static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lo
     const double sector_deg[LM_AZIMUTHS] = {120, 60, 20}, seconds[LM_AZIMUTHS] = {60, 10, 10};
     struct rig *r = start_rig();
     for (int azimuth = 0; azimuth < LM_AZIMUTHS; azimuth++) {
-        command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .value = azimuth});
+        command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .azimuth_index = azimuth});
         run(r, 0.2);
         const double rate = measured_rate(r, seconds[azimuth]);
         const double swept_deg = hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
@@ -256,11 +256,10 @@ static const double on_a_sample_deg = 21.5 * 15 / 16;
 static void push_cursor(struct rig *r, double azimuth_deg)
 {
     const double azimuth = azimuth_deg / 57.29577951;
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW,
-                                   .value = (int32_t)lround(900 * sin(azimuth)),
-                                   .value_y = (int32_t)lround(900 * cos(azimuth))});
+    command(r, lm_control_slew((int32_t)lround(900 * sin(azimuth)),
+                               (int32_t)lround(900 * cos(azimuth))));
     run(r, 0.2);
-    command(r, (struct lm_control){.kind = LM_CONTROL_SLEW});
+    command(r, lm_control_slew(0, 0));
 }
 
 static void judge_window(const struct view_case *c)
@@ -390,7 +389,7 @@ static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void *
                  {LM_SECTOR_GMT, LM_FIELD_EXP},  {LM_SECTOR_GMT, LM_FIELD_NORM}};
     struct rig *r = start_rig();
     command(r, range_10);
-    command(r, (struct lm_control){.kind = LM_CONTROL_GAIN, .value = 30});
+    command(r, (struct lm_control){.kind = LM_CONTROL_GAIN, .gain_db = 30});
     run(r, 1.5);
     put_cursor(r, 45, 14000);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -406,7 +405,7 @@ static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void *
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(old_pixels(r), 0);
     fill_frame(r, OLD);
-    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    command(r, lm_control_drop());
     step(r);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(old_pixels(r), 0);

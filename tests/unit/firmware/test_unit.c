@@ -329,10 +329,16 @@ static void hostile_commands_are_refused_and_counted(void **state)
     struct rig *r = start_rig();
     run(r, 1);
     const struct lm_control bad[] = {
-        {.kind = LM_CONTROL_RANGE, .value = 4},
-        {.kind = LM_CONTROL_RANGE, .value = -1},
-        {.kind = LM_CONTROL_AZIMUTH, .value = 3},
-        {.kind = LM_CONTROL_GAIN, .value = 31},
+        {.kind = LM_CONTROL_RANGE, .range_index = 4},
+        {.kind = LM_CONTROL_RANGE, .range_index = -1},
+        {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = 3},
+        {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = -1},
+        {.kind = LM_CONTROL_GAIN, .gain_db = 31},
+        {.kind = LM_CONTROL_GAIN, .gain_db = -31},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.mode = -1}},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.mode = LM_SECTOR_MODES}},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.fov = -1}},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FIELDS}},
         {.kind = (enum lm_control_kind)99},
         {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 1, .range_m = 20000}},
         {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 5000, .range_m = 0xFFFFFFFF}},
@@ -355,7 +361,7 @@ static void freeze_holds_the_picture_and_says_so(void **state)
     (void)state;
     struct rig *r = start_rig();
     run(r, 2);
-    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .value = 1});
+    command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = true});
     run(r, 0.1);
     const uint32_t frozen = plane_sum(r);
     run(r, 1);

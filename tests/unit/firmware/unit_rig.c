@@ -163,9 +163,9 @@ void command(struct rig *r, struct lm_control control)
 
 void hold(struct rig *r, int button, double seconds)
 {
-    command(r, (struct lm_control){.kind = LM_CONTROL_DOWN, .value = button});
+    command(r, lm_control_button(true, button));
     run(r, seconds);
-    command(r, (struct lm_control){.kind = LM_CONTROL_UP, .value = button});
+    command(r, lm_control_button(false, button));
     run(r, 0.1);
 }
 
@@ -194,7 +194,7 @@ uint32_t lit_pixels(const struct rig *r)
     return lit;
 }
 
-const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .value = 0};
+const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .range_index = 0};
 const struct lm_control patch_here = {.kind = LM_CONTROL_SAR,
                                       .sar = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20},
                                               .cell_mm = 5000,

@@ -16,6 +16,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 enum { STEP_US = 2000 };
 
 int __wrap_open(const char *path, int flags, ...);
@@ -81,12 +83,11 @@ static void wait_us(struct bezel *b, uint64_t *now_us, uint64_t us)
     }
 }
 
-static void expect(struct bezel *b, enum lm_control_kind kind, int32_t value)
+static void expect(struct bezel *b, struct lm_control expected)
 {
     struct lm_control c = {0};
     assert_true(drv_control_ring_take(&b->ring, &c));
-    assert_int_equal(c.kind, kind);
-    assert_int_equal(c.value, value);
+    assert_same_control(&c, expected);
 }
 
 static void expect_nothing(struct bezel *b)
@@ -104,17 +105,17 @@ static void each_key_is_the_button_that_the_configuration_says(void **state)
     set_up(&b, &c);
     fake_gpio_drive(osb2, false);
     wait_us(&b, &now, 50000);
-    expect(&b, LM_CONTROL_DOWN, 20);
+    expect(&b, lm_control_button(true, 20));
     fake_gpio_drive(osb1, false);
     fake_gpio_drive(osb2, true);
     wait_us(&b, &now, 50000);
-    expect(&b, LM_CONTROL_DOWN, 1);
-    expect(&b, LM_CONTROL_UP, 20);
+    expect(&b, lm_control_button(true, 1));
+    expect(&b, lm_control_button(false, 20));
     fake_gpio_drive(&fake_chips[0].line[0], false);
     wait_us(&b, &now, 50000);
     fake_gpio_drive(&fake_chips[0].line[0], true);
     wait_us(&b, &now, 50000);
-    expect(&b, LM_CONTROL_DESIGNATE, 0);
+    expect(&b, lm_control_designate());
     expect_nothing(&b);
     bezel_close(&b);
 }
@@ -129,7 +130,7 @@ static void a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second(v
     set_up(&b, &c);
     osb1->level = false;
     wait_us(&b, &now, 100000 + 1000 * c.debounce_ms + 2 * STEP_US);
-    expect(&b, LM_CONTROL_DOWN, 1);
+    expect(&b, lm_control_button(true, 1));
     bezel_close(&b);
 }
 
@@ -152,7 +153,7 @@ static void a_key_that_is_down_at_the_start_is_stuck_and_means_nothing(void **st
     expect_nothing(&b);
     fake_gpio_drive(osb1, false);
     wait_us(&b, &now, 500000);
-    expect(&b, LM_CONTROL_DOWN, 1);
+    expect(&b, lm_control_button(true, 1));
     bezel_close(&b);
 }
 
@@ -187,7 +188,7 @@ static void a_line_that_is_missing_does_not_stop_the_others(void **state)
     assert_int_equal(b.gpio.input_count, 3);
     fake_gpio_drive(osb2, false);
     wait_us(&b, &now, 50000);
-    expect(&b, LM_CONTROL_DOWN, 20);
+    expect(&b, lm_control_button(true, 20));
     bezel_close(&b);
 }
 

@@ -134,11 +134,12 @@ static struct tiny_cell flat_soil(void *ctx, const struct tiny_place *place)
 /* A patch around the cursor, away from the nose: it needs tiles that the sector did not. */
 static void look_closely(struct flight *f)
 {
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_RANGE, 0, 0);
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_SLEW, LM_FULL_DEFLECTION, 0);
+    drv_control_ring_put(&f->panel.hand.ring,
+                         (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 0});
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_slew(LM_FULL_DEFLECTION, 0));
     fly(f, 0.3);
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_SLEW, 0, 0);
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_DESIGNATE, 0, 0);
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_slew(0, 0));
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_designate());
     fly(f, 0.1);
     assert_int_equal(f->panel.unit->page.picture, LM_PICTURE_PATCH);
 }
@@ -228,8 +229,8 @@ static void the_hand_controllers_ring_reaches_the_page(void **state)
     (void)state;
     struct flight *f = take_off();
     fly(f, 0.5);
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_DOWN, 12, 0);
-    drv_control_ring_put(&f->panel.hand.ring, LM_CONTROL_UP, 12, 0);
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_button(true, 12));
+    drv_control_ring_put(&f->panel.hand.ring, lm_control_button(false, 12));
     fly(f, 0.5);
     assert_int_equal(f->panel.unit->page.format, LM_FORMAT_BIT);
     land(f);

@@ -163,8 +163,8 @@ static void show_restart(struct flight *f)
 {
     static const struct scenario_header nothing_but_presses = {.controls = 2};
     static const struct scenario_control presses[] = {
-        {500000, {.kind = LM_CONTROL_DOWN, .value = BIT_BUTTON}},
-        {600000, {.kind = LM_CONTROL_UP, .value = BIT_BUTTON}}};
+        {500000, {.kind = LM_CONTROL_DOWN, .button = BIT_BUTTON}},
+        {600000, {.kind = LM_CONTROL_UP, .button = BIT_BUTTON}}};
     f->handed.header = &nothing_but_presses;
     f->handed.controls = presses;
     while (f->z.step_us <= AFTER_RESTART_US) {

@@ -10,6 +10,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 static const uint16_t sizes[][2] = {{256, 256}, {480, 480}, {1024, 1024}, {256, 1024}, {1024, 400}};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
@@ -124,18 +126,12 @@ static void hands_speak_after_the_script_and_let_go_of_everything(void **state)
     hands_arrow(&h, HANDS_UP, true);
     hands_off(&h);
     const struct lm_control expected[] = {
-        {.kind = LM_CONTROL_DOWN, .value = 5},
-        {.kind = LM_CONTROL_SLEW, .value = -1000},
-        {.kind = LM_CONTROL_SLEW, .value = -1000, .value_y = 1000},
-        {.kind = LM_CONTROL_UP, .value = 5},
-        {.kind = LM_CONTROL_SLEW, .value_y = 1000},
-        {.kind = LM_CONTROL_SLEW},
+        lm_control_button(true, 5),  lm_control_slew(-1000, 0), lm_control_slew(-1000, 1000),
+        lm_control_button(false, 5), lm_control_slew(0, 1000),  lm_control_slew(0, 0),
     };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         assert_int_equal(h.port.next(h.port.ctx, &c), 1);
-        assert_int_equal(c.kind, expected[i].kind);
-        assert_int_equal(c.value, expected[i].value);
-        assert_int_equal(c.value_y, expected[i].value_y);
+        assert_same_control(&c, expected[i]);
     }
     assert_int_equal(h.port.next(h.port.ctx, &c), 0);
 }
@@ -153,7 +149,7 @@ static void the_knob_stops_at_its_ends_and_a_full_queue_is_counted(void **state)
     assert_int_equal(h.lost, 5);
     int taken = 0;
     while (h.port.next(h.port.ctx, &c) == 1) {
-        assert_in_range(c.value, 100, LM_FULL_DEFLECTION);
+        assert_in_range(c.knob, 100, LM_FULL_DEFLECTION);
         taken++;
     }
     assert_int_equal(taken, HANDS_QUEUE);

@@ -15,6 +15,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 enum { NOTHING = 99 };
 
 /* Read `text` as a script. */
@@ -51,11 +53,11 @@ static void a_press_goes_down_and_comes_up_a_tenth_of_a_second_later(void **stat
     assert_int_equal(at(&s, 0.999).kind, NOTHING);
     struct lm_control c = at(&s, 1);
     assert_int_equal(c.kind, LM_CONTROL_DOWN);
-    assert_int_equal(c.value, 19);
+    assert_int_equal(c.button, 19);
     assert_int_equal(at(&s, 1.099).kind, NOTHING);
     c = at(&s, 1.1);
     assert_int_equal(c.kind, LM_CONTROL_UP);
-    assert_int_equal(c.value, 19);
+    assert_int_equal(c.button, 19);
     assert_int_equal(at(&s, 99).kind, NOTHING);
     script_free(&s);
 }
@@ -107,14 +109,10 @@ static void a_slew_lasts_as_long_as_it_says(void **state)
     struct script s;
     assert_int_equal(read_text(&s, "0 slew 0.5 -1 2\n"), 0);
     struct lm_control c = at(&s, 0);
-    assert_int_equal(c.kind, LM_CONTROL_SLEW);
-    assert_int_equal(c.value, 500);
-    assert_int_equal(c.value_y, -1000);
+    assert_same_control(&c, lm_control_slew(500, -1000));
     assert_int_equal(at(&s, 1.99).kind, NOTHING);
     c = at(&s, 2);
-    assert_int_equal(c.kind, LM_CONTROL_SLEW);
-    assert_int_equal(c.value, 0);
-    assert_int_equal(c.value_y, 0);
+    assert_same_control(&c, lm_control_slew(0, 0));
     script_free(&s);
 }
 
@@ -123,13 +121,12 @@ static void rockers_and_knob_are_their_buttons_and_deflection(void **state)
     (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "0 rocker gain +1\n1 rocker con -1\n2 knob -0.25\n"), 0);
-    assert_int_equal(at(&s, 0.5).value, lm_rocker_button(LM_ROCKER_GAIN, true));
+    assert_int_equal(at(&s, 0.5).button, lm_rocker_button(LM_ROCKER_GAIN, true));
     assert_int_equal(at(&s, 0.5).kind, LM_CONTROL_UP);
-    assert_int_equal(at(&s, 1.5).value, lm_rocker_button(LM_ROCKER_CON, false));
+    assert_int_equal(at(&s, 1.5).button, lm_rocker_button(LM_ROCKER_CON, false));
     assert_int_equal(at(&s, 1.5).kind, LM_CONTROL_UP);
     const struct lm_control c = at(&s, 2);
-    assert_int_equal(c.kind, LM_CONTROL_KNOB);
-    assert_int_equal(c.value, -250);
+    assert_same_control(&c, lm_control_knob(-250));
     script_free(&s);
 }
 
@@ -159,15 +156,15 @@ static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void
         assert_int_equal(read_text(&s, text), 0);
         const struct lm_control plain = at(&s, 0);
         assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
-        assert_int_equal(plain.value, mode);
-        assert_int_equal(plain.value_y, LM_FIELD_NORM);
+        assert_int_equal(plain.sector.mode, mode);
+        assert_int_equal(plain.sector.fov, LM_FIELD_NORM);
         script_free(&s);
         for (int field = 0; field < LM_FIELDS; field++) {
             snprintf(text, sizeof text, "0 %s %s\n", modes[mode], fields[field]);
             assert_int_equal(read_text(&s, text), 0);
             const struct lm_control c = at(&s, 0);
-            assert_int_equal(c.value, mode);
-            assert_int_equal(c.value_y, field);
+            assert_int_equal(c.sector.mode, mode);
+            assert_int_equal(c.sector.fov, field);
             script_free(&s);
         }
     }
@@ -180,12 +177,12 @@ static void a_steerpoint_is_a_place_or_off(void **state)
     assert_int_equal(read_text(&s, "1 steer 45 -90.5\n2 steer off\n"), 0);
     struct lm_control c = at(&s, 1);
     assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
-    assert_int_equal(c.value, 1);
-    assert_int_equal(c.place.latitude, hs_bam(45));
-    assert_int_equal(c.place.longitude, hs_bam(-90.5));
+    assert_true(c.steerpoint.is_set);
+    assert_int_equal(c.steerpoint.place.latitude, hs_bam(45));
+    assert_int_equal(c.steerpoint.place.longitude, hs_bam(-90.5));
     c = at(&s, 2);
     assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
-    assert_int_equal(c.value, 0);
+    assert_false(c.steerpoint.is_set);
     script_free(&s);
 }
 

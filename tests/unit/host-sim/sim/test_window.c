@@ -11,6 +11,8 @@
 
 #include <cmocka.h>
 
+#include "control_asserts.h"
+
 struct bench {
     struct bezel bezel;
     struct hands hands;
@@ -37,13 +39,11 @@ static void key(SDL_Keycode code, bool is_down, bool is_repeat)
     SDL_PushEvent(&e);
 }
 
-static void expect(struct bench *b, enum lm_control_kind kind, int32_t value, int32_t value_y)
+static void expect(struct bench *b, struct lm_control expected)
 {
     struct lm_control c;
     assert_int_equal(b->hands.port.next(b->hands.port.ctx, &c), 1);
-    assert_int_equal(c.kind, kind);
-    assert_int_equal(c.value, value);
-    assert_int_equal(c.value_y, value_y);
+    assert_same_control(&c, expected);
 }
 
 static void expect_nothing(struct bench *b)
@@ -66,8 +66,8 @@ static void each_button_has_its_key(void **state)
         key(keys[i], true, true); /* the keyboard's own repeat is not ours */
         key(keys[i], false, false);
         assert_true(window_poll(b.window));
-        expect(&b, LM_CONTROL_DOWN, i + 1, 0);
-        expect(&b, LM_CONTROL_UP, i + 1, 0);
+        expect(&b, lm_control_button(true, i + 1));
+        expect(&b, lm_control_button(false, i + 1));
         expect_nothing(&b);
     }
     window_close(b.window);
@@ -88,14 +88,14 @@ static void arrows_return_backspace_and_page_keys_work_the_hand_controller(void 
     key(SDLK_PAGEDOWN, true, false);
     key(SDLK_z, true, false);
     assert_true(window_poll(b.window));
-    expect(&b, LM_CONTROL_SLEW, 0, 1000);
-    expect(&b, LM_CONTROL_SLEW, 1000, 1000);
-    expect(&b, LM_CONTROL_SLEW, 1000, 0);
-    expect(&b, LM_CONTROL_SLEW, 0, 0);
-    expect(&b, LM_CONTROL_DESIGNATE, 0, 0);
-    expect(&b, LM_CONTROL_DROP, 0, 0);
-    expect(&b, LM_CONTROL_KNOB, 100, 0);
-    expect(&b, LM_CONTROL_KNOB, 0, 0);
+    expect(&b, lm_control_slew(0, 1000));
+    expect(&b, lm_control_slew(1000, 1000));
+    expect(&b, lm_control_slew(1000, 0));
+    expect(&b, lm_control_slew(0, 0));
+    expect(&b, lm_control_designate());
+    expect(&b, lm_control_drop());
+    expect(&b, lm_control_knob(100));
+    expect(&b, lm_control_knob(0));
     expect_nothing(&b);
     window_close(b.window);
 }
@@ -115,11 +115,11 @@ static void a_click_holds_the_button_under_the_mouse_until_it_is_let_go_anywhere
         const struct bezel_box box = bezel_box_of(&b.bezel, button);
         mouse(SDL_MOUSEBUTTONDOWN, box.x + box.width / 2, box.y + box.height / 2);
         assert_true(window_poll(b.window));
-        expect(&b, LM_CONTROL_DOWN, button, 0);
+        expect(&b, lm_control_button(true, button));
         expect_nothing(&b);
         mouse(SDL_MOUSEBUTTONUP, 300, 300);
         assert_true(window_poll(b.window));
-        expect(&b, LM_CONTROL_UP, button, 0);
+        expect(&b, lm_control_button(false, button));
     }
     mouse(SDL_MOUSEBUTTONDOWN, 300, 300); /* on the glass */
     mouse(SDL_MOUSEBUTTONUP, 300, 300);
@@ -138,10 +138,10 @@ static void a_window_that_loses_the_keyboard_lets_go_of_everything(void **state)
     SDL_Event e = {.window = {.type = SDL_WINDOWEVENT, .event = SDL_WINDOWEVENT_FOCUS_LOST}};
     SDL_PushEvent(&e);
     assert_true(window_poll(b.window));
-    expect(&b, LM_CONTROL_DOWN, 7, 0);
-    expect(&b, LM_CONTROL_SLEW, -1000, 0);
-    expect(&b, LM_CONTROL_UP, 7, 0);
-    expect(&b, LM_CONTROL_SLEW, 0, 0);
+    expect(&b, lm_control_button(true, 7));
+    expect(&b, lm_control_slew(-1000, 0));
+    expect(&b, lm_control_button(false, 7));
+    expect(&b, lm_control_slew(0, 0));
     expect_nothing(&b);
     window_close(b.window);
 }
