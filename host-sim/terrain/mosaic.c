@@ -87,7 +87,6 @@ int terrain_mosaic_read(const struct terrain_mosaic *m, const struct resample_wi
             return -1;
         }
     }
-    terrain_voids_apply(m, window, metres, state);
     return 0;
 }
 
@@ -98,9 +97,6 @@ void terrain_mosaic_close(struct terrain_mosaic *m)
         free(m->members[i].path);
     }
     free(m->members);
-    free(m->voids.runs);
-    free(m->voids.regions);
-    free(m->voids.values);
     resample_georef_close(&m->georef);
     *m = (struct terrain_mosaic){0};
 }

@@ -146,15 +146,15 @@ static int make_mosaic(struct terrain_mosaic *m, struct source *sources, int cou
 static int finish_layer(struct terrain_layer *layer, const struct terrain_options *options)
 {
     const char *path = layer->mosaic.members[0].path;
-    layer->mosaic.sea_level_m = options->sea_level_m;
-    layer->mosaic.voids_are_sea = options->voids_are_sea;
+    layer->voids.sea_level_m = options->sea_level_m;
+    layer->voids.are_sea = options->voids_are_sea;
     if (resample_area(&layer->mosaic.georef, &layer->area) != 0 ||
         resample_pixel_bam(&layer->mosaic.georef, &layer->pixel_latitude_bam,
                            &layer->pixel_longitude_bam) != 0) {
         return hs_error(path, "check its geotransform and CRS with gdalinfo",
                         "its middle lies nowhere on Earth");
     }
-    return terrain_voids_fill(&layer->mosaic);
+    return terrain_voids_fill(&layer->voids, &layer->mosaic);
 }
 
 static int make_layers(struct terrain *t, struct source *sources, int count)
@@ -210,6 +210,7 @@ void terrain_close(struct terrain *t)
 {
     for (int i = 0; i < t->layer_count; i++) {
         terrain_mosaic_close(&t->layers[i].mosaic);
+        terrain_voids_free(&t->layers[i].voids);
     }
     free(t->layers);
     *t = (struct terrain){0};
@@ -251,7 +252,9 @@ static int read_patch(const struct terrain_layer *layer, struct patch *p)
     } else {
         result = terrain_mosaic_read(&layer->mosaic, &p->window, p->metres, p->state);
     }
-    if (result != 0) {
+    if (result == 0) {
+        terrain_voids_apply(&layer->voids, &p->window, p->metres, p->state);
+    } else {
         free_patch(p);
     }
     return result;

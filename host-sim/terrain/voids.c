@@ -1,7 +1,8 @@
+#include "terrain/voids.h"
+
 #include "fill.h"
 
 #include "hs/error.h"
-#include "terrain/mosaic.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +20,8 @@ struct strip {
 
 /* The search for voids. */
 struct search {
-    struct terrain_mosaic *m;
+    struct terrain_voids *v;
+    const struct terrain_mosaic *m;
     struct strip strip;
     size_t run_capacity;
     uint32_t *parents; /* union-find over runs */
@@ -90,7 +92,7 @@ static void join(uint32_t *parents, uint32_t a, uint32_t b)
 
 static int add_run(struct search *s, int y, int x0, int x1)
 {
-    struct terrain_voids *v = &s->m->voids;
+    struct terrain_voids *v = s->v;
     if (v->run_count == s->run_capacity) {
         const size_t capacity = s->run_capacity ? 2 * s->run_capacity : 1024;
         struct terrain_run *runs = realloc(v->runs, capacity * sizeof *runs);
@@ -131,7 +133,7 @@ static int find_runs(struct search *s, int y, const uint8_t *state)
 /* Runs first..middle-1 are those of a row, middle..end-1 those of the next. */
 static void join_rows(struct search *s, size_t first, size_t middle, size_t end)
 {
-    const struct terrain_run *runs = s->m->voids.runs;
+    const struct terrain_run *runs = s->v->runs;
     size_t i = first, j = middle;
     while (i < middle && j < end) {
         if (runs[i].x0 <= runs[j].x1 && runs[j].x0 <= runs[i].x1) {
@@ -149,12 +151,12 @@ static int search_rows(struct search *s)
 {
     size_t first = 0;
     for (int y = 0; y < s->m->georef.height; y++) {
-        const size_t middle = s->m->voids.run_count;
+        const size_t middle = s->v->run_count;
         struct row above, here;
         if (strip_rows(&s->strip, y, &above, &here) != 0 || find_runs(s, y, here.state) != 0) {
             return -1;
         }
-        join_rows(s, first, middle, s->m->voids.run_count);
+        join_rows(s, first, middle, s->v->run_count);
         first = middle;
     }
     return 0;
@@ -163,7 +165,7 @@ static int search_rows(struct search *s)
 /* Number the roots and gather each region's rectangle. */
 static int make_regions(struct search *s)
 {
-    struct terrain_voids *v = &s->m->voids;
+    struct terrain_voids *v = s->v;
     size_t count = 0;
     for (uint32_t i = 0; i < v->run_count; i++) {
         const uint32_t root = root_of(s->parents, i);
@@ -189,40 +191,40 @@ static int make_regions(struct search *s)
     return 0;
 }
 
-static void count_rim(const struct terrain_mosaic *m, struct terrain_region *r, float metres,
+static void count_rim(const struct terrain_voids *v, struct terrain_region *r, float metres,
                       uint8_t state)
 {
     if (state == TERRAIN_MEASURED) {
         r->rim++;
-        r->rim_sea += metres <= m->sea_level_m;
+        r->rim_sea += metres <= v->sea_level_m;
     }
 }
 
 /* Rim pixels left and right of a run in its own row. */
 static void count_ends(struct search *s, const struct terrain_run *run, const struct row *here)
 {
-    struct terrain_region *r = &s->m->voids.regions[run->region];
+    struct terrain_region *r = &s->v->regions[run->region];
     if (run->x0 > 0) {
-        count_rim(s->m, r, here->metres[run->x0 - 1], here->state[run->x0 - 1]);
+        count_rim(s->v, r, here->metres[run->x0 - 1], here->state[run->x0 - 1]);
     }
     if (run->x1 + 1 < s->m->georef.width) {
-        count_rim(s->m, r, here->metres[run->x1 + 1], here->state[run->x1 + 1]);
+        count_rim(s->v, r, here->metres[run->x1 + 1], here->state[run->x1 + 1]);
     }
 }
 
 /* Rim pixels that touch a run from the row above or below. */
 static void count_side(struct search *s, const struct terrain_run *run, const struct row *beside)
 {
-    struct terrain_region *r = &s->m->voids.regions[run->region];
+    struct terrain_region *r = &s->v->regions[run->region];
     for (int x = run->x0; x <= run->x1; x++) {
-        count_rim(s->m, r, beside->metres[x], beside->state[x]);
+        count_rim(s->v, r, beside->metres[x], beside->state[x]);
     }
 }
 
 /* Second pass: what borders each region. */
 static int measure_rims(struct search *s)
 {
-    const struct terrain_voids *v = &s->m->voids;
+    const struct terrain_voids *v = s->v;
     size_t first = 0, middle = 0, end = 0; /* runs of the row above, and of this row */
     for (int y = 0; y < s->m->georef.height; y++) {
         struct row above, here;
@@ -259,13 +261,13 @@ static struct resample_window window_around(const struct terrain_mosaic *m,
     return (struct resample_window){x0, y0, x1 - x0 + 1, y1 - y0 + 1};
 }
 
-static enum terrain_filling choose_filling(const struct terrain_mosaic *m,
+static enum terrain_filling choose_filling(const struct terrain_voids *v,
                                            const struct terrain_region *r)
 {
     const bool is_small = r->pixels <= TERRAIN_SMALL_REGION;
     const bool is_at_sea = is_small ? 2 * r->rim_sea > r->rim : 10 * r->rim_sea >= 9 * r->rim;
     const bool is_unknown = !is_small && 10 * r->rim_sea > r->rim;
-    if (m->voids_are_sea || (r->rim > 0 && is_at_sea)) {
+    if (v->are_sea || (r->rim > 0 && is_at_sea)) {
         return TERRAIN_SEA;
     }
     return r->rim == 0 || is_unknown || !r->has_values ? TERRAIN_LEFT_VOID : TERRAIN_INTERPOLATED;
@@ -297,9 +299,9 @@ static uint64_t keep_values(struct terrain_voids *v, uint32_t region,
     return at;
 }
 
-static int fill_region(struct terrain_mosaic *m, uint32_t region, uint64_t *value_count)
+static int fill_region(struct terrain_voids *v, const struct terrain_mosaic *m, uint32_t region,
+                       uint64_t *value_count)
 {
-    struct terrain_voids *v = &m->voids;
     const struct resample_window w = window_around(m, &v->regions[region]);
     const size_t count = (size_t)w.width * (size_t)w.height;
     float *metres = malloc(count * sizeof *metres);
@@ -327,14 +329,13 @@ static int fill_region(struct terrain_mosaic *m, uint32_t region, uint64_t *valu
     return result;
 }
 
-static int fill_regions(struct terrain_mosaic *m)
+static int fill_regions(struct terrain_voids *v, const struct terrain_mosaic *m)
 {
-    struct terrain_voids *v = &m->voids;
     uint64_t total = 1, count = 0;
     for (size_t i = 0; i < v->region_count; i++) {
         struct terrain_region *r = &v->regions[i];
         r->has_values = can_interpolate(m, r);
-        r->filling = choose_filling(m, r);
+        r->filling = choose_filling(v, r);
         r->has_values = r->has_values && r->filling != TERRAIN_SEA;
         total += r->has_values ? r->pixels : 0;
     }
@@ -343,7 +344,7 @@ static int fill_regions(struct terrain_mosaic *m)
         return hs_error(m->members[0].path, NULL, "out of memory for its voids");
     }
     for (uint32_t i = 0; i < v->region_count; i++) {
-        if (v->regions[i].has_values && fill_region(m, i, &count) != 0) {
+        if (v->regions[i].has_values && fill_region(v, m, i, &count) != 0) {
             return -1;
         }
     }
@@ -356,15 +357,15 @@ static int search_and_fill(struct search *s)
     if (search_rows(s) != 0) {
         return -1;
     }
-    if (s->m->voids.run_count == 0) {
+    if (s->v->run_count == 0) {
         return 0;
     }
-    return make_regions(s) == 0 && measure_rims(s) == 0 && fill_regions(s->m) == 0 ? 0 : -1;
+    return make_regions(s) == 0 && measure_rims(s) == 0 && fill_regions(s->v, s->m) == 0 ? 0 : -1;
 }
 
-int terrain_voids_fill(struct terrain_mosaic *m)
+int terrain_voids_fill(struct terrain_voids *v, const struct terrain_mosaic *m)
 {
-    struct search s = {.m = m};
+    struct search s = {.v = v, .m = m};
     const int result = strip_open(&s.strip, m) == 0 && search_and_fill(&s) == 0 ? 0 : -1;
     strip_close(&s.strip);
     free(s.parents);
@@ -386,10 +387,9 @@ static size_t first_run(const struct terrain_voids *v, int y)
     return low;
 }
 
-void terrain_voids_apply(const struct terrain_mosaic *m, const struct resample_window *window,
+void terrain_voids_apply(const struct terrain_voids *v, const struct resample_window *window,
                          float *metres, uint8_t *state)
 {
-    const struct terrain_voids *v = &m->voids;
     if (!v->is_filled) {
         return;
     }
@@ -405,8 +405,16 @@ void terrain_voids_apply(const struct terrain_mosaic *m, const struct resample_w
             const size_t at =
                 (size_t)(run->y - window->y) * (size_t)window->width + (size_t)(x - window->x);
             metres[at] =
-                is_sea ? (float)m->sea_level_m : v->values[run->value + (uint64_t)(x - run->x0)];
+                is_sea ? (float)v->sea_level_m : v->values[run->value + (uint64_t)(x - run->x0)];
             state[at] = r->filling == TERRAIN_LEFT_VOID ? TERRAIN_VOID : TERRAIN_FILLED;
         }
     }
+}
+
+void terrain_voids_free(struct terrain_voids *v)
+{
+    free(v->runs);
+    free(v->regions);
+    free(v->values);
+    *v = (struct terrain_voids){0};
 }

@@ -505,7 +505,7 @@ static void print_voids(const struct terrain *t)
 {
     uint64_t pixels[3] = {0, 0, 0};
     for (int i = 0; i < t->layer_count; i++) {
-        const struct terrain_voids *v = &t->layers[i].mosaic.voids;
+        const struct terrain_voids *v = &t->layers[i].voids;
         for (size_t k = 0; k < v->region_count; k++) {
             pixels[v->regions[k].filling] += v->regions[k].pixels;
         }

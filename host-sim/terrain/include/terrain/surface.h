@@ -8,11 +8,12 @@
 #include "hs/options.h"
 #include "image/grid.h"
 #include "lm/db.h"
-#include "terrain/mosaic.h"
+#include "terrain/voids.h"
 
 /* Models on one grid. */
 struct terrain_layer {
     struct terrain_mosaic mosaic;
+    struct terrain_voids voids;
     struct resample_lattice lattice; /* once the cell is set */
     struct image_area area;
     double pixel_latitude_bam, pixel_longitude_bam;

@@ -279,7 +279,7 @@ static void voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea(voi
     scene_write("holed.tif", &r);
     struct terrain t;
     open_terrain(&t, 12, 1, scene_path("holed.tif"));
-    const struct terrain_voids *v = &t.layers[0].mosaic.voids;
+    const struct terrain_voids *v = &t.layers[0].voids;
     assert_int_equal(v->region_count, 2);
     assert_int_equal(v->regions[0].filling, TERRAIN_SEA);
     assert_int_equal(v->regions[0].pixels, 100 * 100);
@@ -537,7 +537,7 @@ static void the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled(vo
     struct terrain t;
     open_terrain(&t, 11, 1, path);
     uint64_t pixels[3] = {0};
-    const struct terrain_voids *v = &t.layers[0].mosaic.voids;
+    const struct terrain_voids *v = &t.layers[0].voids;
     for (size_t i = 0; i < v->region_count; i++) {
         pixels[v->regions[i].filling] += v->regions[i].pixels;
     }
