@@ -1,7 +1,9 @@
 /* CSV with a header line. Units follow the habit of ADS-B archives (feet, knots, feet a minute)
  * unless the column's name says _m or _ms. */
+#include "read_formats.h"
+
 #include "hs/error.h"
-#include "nav/read_track.h"
+#include "nav/parse.h"
 
 #include <math.h>
 #include <stddef.h>

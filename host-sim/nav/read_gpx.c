@@ -1,7 +1,9 @@
 /* GPX 1.0 and 1.1: the points of tracks (trkpt), in the order of the file. Each segment begins a
  * leg, because GPX says that a track is broken there. */
+#include "read_formats.h"
+
 #include "hs/error.h"
-#include "nav/read_track.h"
+#include "nav/parse.h"
 
 #include <expat.h>
 #include <limits.h>

@@ -1,7 +1,9 @@
 /* IGC flight recorder files (FAI, "Technical specification for GNSS flight recorders", section A4):
  * the date from the H record, the fixes from B records. */
+#include "read_formats.h"
+
 #include "hs/error.h"
-#include "nav/read_track.h"
+#include "nav/parse.h"
 
 #include <ctype.h>
 #include <stdlib.h>

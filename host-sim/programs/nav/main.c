@@ -2,6 +2,7 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "nav/make_track.h"
+#include "nav/parse.h"
 #include "nav/read_track.h"
 #include "nav/send.h"
 
