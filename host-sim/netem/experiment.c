@@ -1,6 +1,7 @@
 #include "netem/experiment.h"
 
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "netem/model_file.h"
 #include "netem/report.h"
 
@@ -104,7 +105,7 @@ static double seconds_now(void)
 int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_resumed)
 {
     char path[4096];
-    if (nm_report_path(path, sizeof path, folder, "training.netem") != 0 ||
+    if (hs_output_path(path, sizeof path, folder, "training.netem") != 0 ||
         (is_resumed ? go_on(e, path) : begin(e, path)) != 0) {
         return -1;
     }
@@ -126,10 +127,10 @@ int nm_experiment_plot(const struct nm_training *t, const char *folder, int mate
 {
     char loss[4096], specular[4096], back[4096], kernels[4096];
     const struct nm_loss_curve curve = {t->model.architecture->name, t->epochs, t->epoch_count};
-    if (nm_report_path(loss, sizeof loss, folder, "loss.png") != 0 ||
-        nm_report_path(specular, sizeof specular, folder, "specular.png") != 0 ||
-        nm_report_path(back, sizeof back, folder, "back.png") != 0 ||
-        nm_report_path(kernels, sizeof kernels, folder, "kernels.png") != 0) {
+    if (hs_output_path(loss, sizeof loss, folder, "loss.png") != 0 ||
+        hs_output_path(specular, sizeof specular, folder, "specular.png") != 0 ||
+        hs_output_path(back, sizeof back, folder, "back.png") != 0 ||
+        hs_output_path(kernels, sizeof kernels, folder, "kernels.png") != 0) {
         return -1;
     }
     const bool is_drawn = nm_report_losses(loss, "loss by epoch", &curve, 1) == 0 &&

@@ -1,5 +1,6 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "hs/progress.h"
 #include "netem/experiment.h"
 #include "netem/report.h"
@@ -246,9 +247,9 @@ static int report(const struct shown *s, const struct scored *scored,
                   const struct nm_samples *samples, const char *folder)
 {
     char table[4096], curves[4096], scores[4096];
-    if (nm_report_path(table, sizeof table, folder, "table.png") != 0 ||
-        nm_report_path(curves, sizeof curves, folder, "cw-ssim.png") != 0 ||
-        nm_report_path(scores, sizeof scores, folder, "scores.tsv") != 0) {
+    if (hs_output_path(table, sizeof table, folder, "table.png") != 0 ||
+        hs_output_path(curves, sizeof curves, folder, "cw-ssim.png") != 0 ||
+        hs_output_path(scores, sizeof scores, folder, "scores.tsv") != 0) {
         return -1;
     }
     return draw_table(s, scored, table) == 0 && draw_curves(scored, s->count, curves) == 0 &&

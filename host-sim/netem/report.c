@@ -3,29 +3,16 @@
 #include "hs/chart.h"
 #include "hs/error.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const double pi = 3.14159265358979323846;
 
 static const uint32_t inks[] = {0x1040c0, 0xc02020, 0x208030, 0xb06000,
                                 0x7030a0, 0x107080, 0x606060, 0x000000};
 enum { INKS = sizeof inks / sizeof inks[0], LETTER = 12, SAMPLES = 721 };
-
-int nm_report_path(char *path, size_t size, const char *folder, const char *name)
-{
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return hs_error(folder, "check the folder above it", "cannot be made: %s", strerror(errno));
-    }
-    const int length = snprintf(path, size, "%s/%s", folder, name);
-    return length > 0 && (size_t)length < size
-               ? 0
-               : hs_error(folder, "use a shorter name", "the path is too long");
-}
 
 /* Names of curves in their inks, below a chart. */
 static void draw_key(struct sheet *s, int x, int y, const char *name, int curve)

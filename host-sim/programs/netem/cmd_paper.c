@@ -1,6 +1,7 @@
 #include "commands.h"
 
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "netem/experiment.h"
 #include "netem/report.h"
 
@@ -59,7 +60,7 @@ static int join_folders(const char *low, const char *high, uint64_t seed, struct
 static bool has_training(const char *folder)
 {
     char path[4096];
-    return nm_report_path(path, sizeof path, folder, "training.netem") == 0 &&
+    return hs_output_path(path, sizeof path, folder, "training.netem") == 0 &&
            access(path, F_OK) == 0;
 }
 
@@ -70,7 +71,7 @@ static int train_one(struct nm_experiment *e, const char *folder, const char *ta
     char name[64], path[4096];
     struct nm_summary summary;
     snprintf(name, sizeof name, "%s-%s", target, architecture);
-    if (nm_report_path(path, sizeof path, folder, name) != 0) {
+    if (hs_output_path(path, sizeof path, folder, name) != 0) {
         return -1;
     }
     if (e->training) {
@@ -117,7 +118,7 @@ static int run(struct nm_settings *s, const struct folders *f)
     struct nm_plan plan;
     char unused[4096];
     if (nm_settings_plan(s, &plan, &architecture) != 0 ||
-        nm_report_path(unused, sizeof unused, f->out, "") != 0) {
+        hs_output_path(unused, sizeof unused, f->out, "") != 0) {
         return -1;
     }
     s->gain = 1; /* MSTAR magnitudes are calibrated */

@@ -1,6 +1,7 @@
 #include "commands.h"
 
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "netem/experiment.h"
 #include "netem/model_file.h"
 #include "netem/report.h"
@@ -39,7 +40,7 @@ static int plot(struct nm_training **trainings, const struct db_list *files, con
                                            trainings[i]->epochs, trainings[i]->epoch_count};
     }
     return nm_experiment_plot(trainings[0], out, materials, NULL) == 0 &&
-                   nm_report_path(path, sizeof path, out, "loss.png") == 0 &&
+                   hs_output_path(path, sizeof path, out, "loss.png") == 0 &&
                    nm_report_losses(path, "loss by epoch", curves, files->count) == 0
                ? 0
                : -1;

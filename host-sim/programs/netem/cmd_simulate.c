@@ -2,6 +2,7 @@
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "hs/png.h"
 #include "hs/progress.h"
 #include "netem/experiment.h"
@@ -84,9 +85,9 @@ static int make_chip(struct nm_experiment *e, const struct order *o, double azim
         add_speckle(s->pixels, s->side_px * s->side_px, o->looks, rng);
     }
     snprintf(name, sizeof name, "%06.2f.csv", azimuth_deg);
-    result = result == 0 ? nm_report_path(csv, sizeof csv, o->out, name) : -1;
+    result = result == 0 ? hs_output_path(csv, sizeof csv, o->out, name) : -1;
     snprintf(name, sizeof name, "%06.2f.png", azimuth_deg);
-    result = result == 0 ? nm_report_path(png, sizeof png, o->out, name) : -1;
+    result = result == 0 ? hs_output_path(png, sizeof png, o->out, name) : -1;
     return result == 0 && write_csv(csv, s->pixels, s->side_px) == 0 &&
                    write_png(png, s->pixels, s->side_px) == 0
                ? 0

@@ -1,8 +1,10 @@
 /* landmass-realradar classes */
 #include "commands.h"
+#include "options.h"
 
 #include "gis/gdal_start.h"
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "realradar/class_order.h"
 
 #include <stdio.h>
@@ -111,7 +113,7 @@ int rr_cmd_classes(int argc, char **argv)
         return HS_EXIT_FAILED;
     }
     print_order(&order, &table);
-    if (values[OUT] && (rr_output_path(path, sizeof path, values[OUT], "classes.png") != 0 ||
+    if (values[OUT] && (hs_output_path(path, sizeof path, values[OUT], "classes.png") != 0 ||
                         rr_class_order_plot(&order, &table, path) != 0)) {
         return HS_EXIT_FAILED;
     }

@@ -1,7 +1,9 @@
 /* landmass-realradar focus */
 #include "commands.h"
+#include "options.h"
 
 #include "hs/error.h"
+#include "hs/output_path.h"
 #include "realradar/point_response.h"
 #include "realradar/speckle_statistics.h"
 
@@ -235,7 +237,7 @@ static int focus(struct focus *f, const char *path, const char *folder)
         return -1;
     }
     return !folder ? 0
-           : rr_output_path(picture, sizeof picture, folder, "picture.png") != 0
+           : hs_output_path(picture, sizeof picture, folder, "picture.png") != 0
                ? -1
                : rr_image_write(&f->image, picture, picture_span_db);
 }

@@ -3,10 +3,8 @@
 
 #include "hs/error.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char menu[] =
     "usage: landmass-realradar COMMAND [OPTIONS]\n"
@@ -19,37 +17,6 @@ static const char menu[] =
     "\n"
     "`landmass-realradar COMMAND --help` explains a command; docs/realradar.md the results.\n"
     "Exit status: 0 done, 1 the work failed, 2 the command line makes no sense.\n";
-
-int rr_read_options(int argc, char **argv, const struct option *options, const char *help,
-                    const char **values)
-{
-    opterr = 0;
-    optind = 1;
-    for (int c; (c = getopt_long(argc, argv, "h", options, NULL)) != -1;) {
-        if (c == 'h') {
-            fputs(help, stdout);
-            return -1;
-        }
-        if (c == '?') {
-            hs_error(argv[0], "see landmass-realradar COMMAND --help",
-                     "has an unknown option, or one without its value");
-            return HS_EXIT_USAGE;
-        }
-        values[c] = optarg;
-    }
-    return HS_EXIT_OK;
-}
-
-int rr_output_path(char *path, unsigned size, const char *folder, const char *name)
-{
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return hs_error(folder, "check the folder above it", "cannot be made: %s", strerror(errno));
-    }
-    const int length = snprintf(path, size, "%s/%s", folder, name);
-    return length > 0 && (unsigned)length < size
-               ? 0
-               : hs_error(folder, "use a shorter name", "the path is too long");
-}
 
 int main(int argc, char **argv)
 {

@@ -6,10 +6,6 @@
 #include "netem/target_view.h"
 #include "netem/train.h"
 
-/* A file in a folder, which is made when it is not there. Returns 0, or -1 with the error reported.
- */
-int nm_report_path(char *path, size_t size, const char *folder, const char *name);
-
 /* Figs. 16, 18, 19 and 23: loss by epoch, logarithmic, of one or several trainings. */
 struct nm_loss_curve {
     const char *name; /* borrowed */
