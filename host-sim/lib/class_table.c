@@ -5,6 +5,7 @@
 #include "hs/text_file.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,20 @@ enum { KEYS_REQUIRED = DB_KEY_LIMITS + 1 };
 
 static const char *const kind_names[] = {"ground", "water", "structure", "trees"};
 static const char *const texture_names[] = {"gaussian", "rayleigh", "k"};
+
+/* The keys whose value is one number: where it is kept, its range, and what a message calls it. */
+struct number_key {
+    size_t offset; /* of the double in struct db_class */
+    double low, high;
+    const char *expected; /* NULL: the key is none of these */
+};
+static const struct number_key number_keys[DB_KEY_COUNT] = {
+    [DB_KEY_GAMMA] = {offsetof(struct db_class, gamma_db), -80, 40, "a number of dB, -80..40"},
+    [DB_KEY_SPREAD] = {offsetof(struct db_class, spread_db), 0, 20, "a number of dB, 0..20"},
+    [DB_KEY_SHAPE] = {offsetof(struct db_class, texture_shape), 0.1, 1000, "a number 0.1..1000"},
+    [DB_KEY_HEIGHT] = {offsetof(struct db_class, height_m), 0, 500, "a number of metres, 0..500"},
+    [DB_KEY_LOOKS] = {offsetof(struct db_class, looks), 1, 64, "a number 1..64"},
+};
 
 /* What is known of the class whose section is being read. */
 struct section {
@@ -76,6 +91,15 @@ static bool set_limits(struct db_class *c, const char *value)
 /* Returns what the value should have been, or NULL when it was right. */
 static const char *set_key(struct db_class *c, enum db_class_key key, const char *value)
 {
+    const struct number_key *number = &number_keys[key];
+    if (number->expected) {
+        double read;
+        if (!read_numbers(value, 1, &read, number->low, number->high)) {
+            return number->expected;
+        }
+        memcpy((char *)c + number->offset, &read, sizeof read);
+        return NULL;
+    }
     int word;
     switch (key) {
     case DB_KEY_COLOUR:
@@ -84,26 +108,15 @@ static const char *set_key(struct db_class *c, enum db_class_key key, const char
         word = find_word(kind_names, 4, value);
         c->kind = word < 0 ? DB_KIND_GROUND : (enum db_class_kind)word;
         return word >= 0 ? NULL : "ground, water, structure or trees";
-    case DB_KEY_GAMMA:
-        return read_numbers(value, 1, &c->gamma_db, -80, 40) ? NULL : "a number of dB, -80..40";
-    case DB_KEY_SPREAD:
-        return read_numbers(value, 1, &c->spread_db, 0, 20) ? NULL : "a number of dB, 0..20";
     case DB_KEY_LIMITS:
         return set_limits(c, value) ? NULL : "two numbers of dB, the lower first, -100..60";
     case DB_KEY_TEXTURE:
         word = find_word(texture_names, 3, value);
         c->texture = word < 0 ? DB_TEXTURE_GAUSSIAN : (enum db_texture)word;
         return word >= 0 ? NULL : "gaussian, rayleigh or k";
-    case DB_KEY_SHAPE:
-        return read_numbers(value, 1, &c->texture_shape, 0.1, 1000) ? NULL : "a number 0.1..1000";
-    case DB_KEY_HEIGHT:
-        return read_numbers(value, 1, &c->height_m, 0, 500) ? NULL : "a number of metres, 0..500";
-    case DB_KEY_LOOKS:
-        return read_numbers(value, 1, &c->looks, 1, 64) ? NULL : "a number 1..64";
-    case DB_KEY_COUNT:
-        break;
+    default:
+        return "a known key";
     }
-    return "a known key";
 }
 
 static int finish_section(const struct db_text_file *f, const struct section *s)
@@ -224,6 +237,7 @@ int db_class_table_read(struct db_class_table *table, const char *path)
 static void write_value(FILE *out, const struct db_class *c, enum db_class_key key)
 {
     char value[80] = "";
+    double number;
     switch (key) {
     case DB_KEY_COLOUR:
         snprintf(value, sizeof value, "%d %d %d", c->colour[0], c->colour[1], c->colour[2]);
@@ -231,29 +245,16 @@ static void write_value(FILE *out, const struct db_class *c, enum db_class_key k
     case DB_KEY_KIND:
         snprintf(value, sizeof value, "%s", kind_names[c->kind]);
         break;
-    case DB_KEY_GAMMA:
-        snprintf(value, sizeof value, "%.17g", c->gamma_db);
-        break;
-    case DB_KEY_SPREAD:
-        snprintf(value, sizeof value, "%.17g", c->spread_db);
-        break;
     case DB_KEY_LIMITS:
         snprintf(value, sizeof value, "%.17g %.17g", c->low_db, c->high_db);
         break;
     case DB_KEY_TEXTURE:
         snprintf(value, sizeof value, "%s", texture_names[c->texture]);
         break;
-    case DB_KEY_SHAPE:
-        snprintf(value, sizeof value, "%.17g", c->texture_shape);
+    default:
+        memcpy(&number, (const char *)c + number_keys[key].offset, sizeof number);
+        snprintf(value, sizeof value, "%.17g", number);
         break;
-    case DB_KEY_HEIGHT:
-        snprintf(value, sizeof value, "%.17g", c->height_m);
-        break;
-    case DB_KEY_LOOKS:
-        snprintf(value, sizeof value, "%.17g", c->looks);
-        break;
-    case DB_KEY_COUNT:
-        return;
     }
     const char *source = c->source[key];
     fprintf(out, source[0] ? "%s = %s   # %s\n" : "%s = %s\n", key_names[key], value, source);
