@@ -7,6 +7,7 @@ include bsp/$(BOARD)/board.mk
 OPT    ?= -O2 -g
 Q      := $(if $(V),,@)
 WARN   := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+WARN   += -Wno-enum-float-conversion # an enumerator is how C11 names a whole number
 CSTD   := -std=c11
 DEPGEN  = -MMD -MP
 PKG_CONFIG ?= pkg-config

@@ -189,9 +189,9 @@ static const char *introduce(struct slot *s, const struct endpoint *e,
         return "its report descriptor has no sensible length";
     }
     const int got = libusb_control_transfer(
-        s->handle, LIBUSB_ENDPOINT_IN | LIBUSB_RECIPIENT_INTERFACE, LIBUSB_REQUEST_GET_DESCRIPTOR,
-        HID_REPORT_DESCRIPTOR << 8, (uint16_t)e->interface, descriptor, e->descriptor_bytes,
-        CONTROL_TIMEOUT_MS);
+        s->handle, (uint8_t)LIBUSB_ENDPOINT_IN | (uint8_t)LIBUSB_RECIPIENT_INTERFACE,
+        LIBUSB_REQUEST_GET_DESCRIPTOR, HID_REPORT_DESCRIPTOR << 8, (uint16_t)e->interface,
+        descriptor, e->descriptor_bytes, CONTROL_TIMEOUT_MS);
     if (got != e->descriptor_bytes) {
         return "it does not send its report descriptor";
     }

@@ -38,7 +38,8 @@ static void plant_border(struct scene *s, struct hs_rng *r, struct point a, stru
         if (hs_rng_uniform(r) < 0.8) {
             const struct point line[2] = {point_between(a, b, (double)i / pieces),
                                           point_between(a, b, (i + 1.0) / pieces)};
-            struct brush trees = scene_solid(BROADLEAF, hs_rng_u64(r), 6 + 5 * hs_rng_uniform(r));
+            const double height_m = 6 + 5 * hs_rng_uniform(r);
+            struct brush trees = scene_solid(BROADLEAF, hs_rng_u64(r), height_m);
             trees.over = SCENE_OPEN;
             canvas_line(&s->canvas, line, 2, 6 + 4 * hs_rng_uniform(r), &trees);
         }
@@ -68,14 +69,16 @@ static void build_farm(struct scene *s, struct hs_rng *r, struct point at)
     if (at_site == MATERIAL_COUNT || !(SCENE_OPEN & MATERIAL_BIT(at_site))) {
         return;
     }
+    const uint64_t grain = hs_rng_u64(r);
     struct brush b =
-        scene_ground(hs_rng_uniform(r) < 0.5 ? GRAVEL : CONCRETE_OLD, hs_rng_u64(r), SCENE_OPEN);
+        scene_ground(hs_rng_uniform(r) < 0.5 ? GRAVEL : CONCRETE_OLD, grain, SCENE_OPEN);
     canvas_shape(&s->canvas, &yard, &b);
     const struct shape barn[2] = {frame_rectangle(&f, -30, 10, 12, 25),
                                   frame_rectangle(&f, 17, -20, 31, 20)};
     const struct shape house = frame_rectangle(&f, -26, -22, -11, -11);
     for (int i = 0; i < 2; i++) {
-        b = scene_solid(hs_rng_uniform(r) < 0.6 ? ROOF_METAL : ROOF_TILE, hs_rng_u64(r), 8);
+        const uint64_t roof = hs_rng_u64(r);
+        b = scene_solid(hs_rng_uniform(r) < 0.6 ? ROOF_METAL : ROOF_TILE, roof, 8);
         canvas_shape(&s->canvas, &barn[i], &b);
     }
     b = scene_solid(ROOF_TILE, hs_rng_u64(r), 7);
@@ -83,8 +86,8 @@ static void build_farm(struct scene *s, struct hs_rng *r, struct point at)
     for (int i = 0; i < 9; i++) {
         b = scene_solid(BROADLEAF, hs_rng_u64(r), 9);
         b.over = SCENE_OPEN;
-        canvas_disc(&s->canvas, frame_point(&f, 42 - 90 * hs_rng_uniform(r), -36),
-                    3 + 3 * hs_rng_uniform(r), &b);
+        const double radius_m = 3 + 3 * hs_rng_uniform(r);
+        canvas_disc(&s->canvas, frame_point(&f, 42 - 90 * hs_rng_uniform(r), -36), radius_m, &b);
     }
 }
 

@@ -78,9 +78,9 @@ static void build_pier(struct scene *s, struct hs_rng *r, const struct frame *f,
     }
     const double sides[2] = {y0 - 15, y1 + 15};
     for (int i = 0; i < 2; i++) {
-        const struct frame berth =
-            frame_at(frame_point(f, quay_x - out_m / 2 - 40 * hs_rng_uniform(r), sides[i]),
-                     hs_rng_uniform(r) < 0.5 ? 180 : 0);
+        const double bow_deg = hs_rng_uniform(r) < 0.5 ? 180 : 0;
+        const double x = quay_x - out_m / 2 - 40 * hs_rng_uniform(r);
+        const struct frame berth = frame_at(frame_point(f, x, sides[i]), bow_deg);
         moor_ship(s, r, &berth, 130 + 50 * hs_rng_uniform(r));
     }
 }
@@ -93,7 +93,8 @@ static void stack_containers(struct scene *s, struct hs_rng *r, const struct fra
         for (double y = 365; y < 740; y += 78) {
             static const enum material paint[] = {CONTAINER, CONTAINER, ROOF_BLUE, ROOF_TILE};
             for (double row = 0; row < 21; row += 7) {
-                b = random_solid(r, paint[hs_rng_below(r, 4)], 2.6 * (1 + hs_rng_below(r, 4)));
+                const double height_m = 2.6 * (1 + hs_rng_below(r, 4));
+                b = random_solid(r, paint[hs_rng_below(r, 4)], height_m);
                 put(s, f, x + row, y, x + row + 6, y + 66, &b);
             }
         }
@@ -132,8 +133,8 @@ static void line_up_warehouses(struct scene *s, struct hs_rng *r, const struct f
     for (int row = 0; row < 3; row++) {
         const double x = -100 + 120 * row;
         for (double y = -385; y < 300; y += 136) {
-            const struct brush b =
-                random_solid(r, roofs[hs_rng_below(r, 5)], 8 + hs_rng_below(r, 6));
+            const double height_m = 8 + hs_rng_below(r, 6);
+            const struct brush b = random_solid(r, roofs[hs_rng_below(r, 5)], height_m);
             put(s, f, x, y, x + 48 + 20 * hs_rng_uniform(r), y + 112, &b);
         }
         const struct brush road = scene_ground(ASPHALT_OLD, 150, 0);

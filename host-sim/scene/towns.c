@@ -48,7 +48,9 @@ static enum material pick_roof(struct hs_rng *r, double tile_share)
 
 static void build_on_lot(void *context, struct hs_rng *r, const struct shape *lot)
 {
-    put(context, lot, pick_roof(r, 0.62), hs_rng_u64(r), 9 + 3 * hs_rng_below(r, 5));
+    const double height_m = 9 + 3 * hs_rng_below(r, 5);
+    const uint64_t variant = hs_rng_u64(r);
+    put(context, lot, pick_roof(r, 0.62), variant, height_m);
 }
 
 /* A closed ring of houses round a court. */
@@ -59,7 +61,8 @@ static void build_closed_block(struct builder *b, struct hs_rng *r, const struct
     put(b, block, CONCRETE_OLD, hs_rng_u64(r), 0);
     district_divide(&walls, &lots, r, build_on_lot, b);
     if (court.count > 0 && shape_area(&court) > 250) {
-        put(b, &court, hs_rng_uniform(r) < 0.6 ? GARDEN : ASPHALT_OLD, hs_rng_u64(r), 0);
+        const uint64_t variant = hs_rng_u64(r);
+        put(b, &court, hs_rng_uniform(r) < 0.6 ? GARDEN : ASPHALT_OLD, variant, 0);
         plant_trees(b, r, &court, (int)(shape_area(&court) / 150));
     }
 }
@@ -81,7 +84,9 @@ static void build_houses(struct builder *b, struct hs_rng *r, const struct shape
             const struct shape house =
                 frame_rectangle(&f, x + side, back, x + side + wide, back + deep);
             if (hs_rng_uniform(r) < 0.93 && shape_contains(block, shape_centre(&house))) {
-                put(b, &house, pick_roof(r, 0.85), hs_rng_u64(r), 5 + hs_rng_below(r, 4));
+                const double height_m = 5 + hs_rng_below(r, 4);
+                const uint64_t variant = hs_rng_u64(r);
+                put(b, &house, pick_roof(r, 0.85), variant, height_m);
             }
         }
     }
@@ -100,8 +105,9 @@ static void build_slabs(struct builder *b, struct hs_rng *r, const struct shape 
         const struct shape parking = frame_rectangle(&f, 10, y + 17, fmin(length - 10, 70), y + 32);
         if (shape_contains(block, slab.p[2]) && shape_contains(block, slab.p[3])) {
             put(b, &parking, ASPHALT_NEW, hs_rng_u64(r), 0);
-            put(b, &slab, hs_rng_uniform(r) < 0.5 ? ROOF_DARK : ROOF_WHITE, hs_rng_u64(r),
-                15 + 3 * hs_rng_below(r, 5));
+            const double height_m = 15 + 3 * hs_rng_below(r, 5);
+            const uint64_t variant = hs_rng_u64(r);
+            put(b, &slab, hs_rng_uniform(r) < 0.5 ? ROOF_DARK : ROOF_WHITE, variant, height_m);
         }
     }
 }
@@ -143,7 +149,9 @@ static void build_hall(void *context, struct hs_rng *r, const struct shape *lot)
                                           ROOF_DARK,  ROOF_DARK,  ROOF_TILE};
     const struct shape hall = shape_inset(lot, 11 + 14 * hs_rng_uniform(r));
     if (hall.count > 0 && shape_area(&hall) > 300) {
-        put(context, &hall, roofs[hs_rng_below(r, 7)], hs_rng_u64(r), 8 + hs_rng_below(r, 7));
+        const double height_m = 8 + hs_rng_below(r, 7);
+        const uint64_t variant = hs_rng_u64(r);
+        put(context, &hall, roofs[hs_rng_below(r, 7)], variant, height_m);
     }
 }
 
@@ -151,7 +159,8 @@ static void industrial_block(void *context, struct hs_rng *r, const struct shape
 {
     static const struct division lots = {9000, {0, 0, 0}, 0.2, 1};
     static const enum material yards[] = {ASPHALT_OLD, ASPHALT_OLD, CONCRETE_OLD, GRAVEL};
-    put(context, block, yards[hs_rng_below(r, 4)], hs_rng_u64(r), 0);
+    const uint64_t variant = hs_rng_u64(r);
+    put(context, block, yards[hs_rng_below(r, 4)], variant, 0);
     district_divide(block, &lots, r, build_hall, context);
 }
 

@@ -410,8 +410,8 @@ static void a_damaged_matlab_file_is_read_or_refused(void **state)
         struct bytes file;
         make_mat(&file, i % 4 ? NO_FLAW : PACKED);
         for (int k = 0; k < 1 + i % 3; k++) {
-            file.at[124 + hs_rng_below(&rng, (uint32_t)file.size - 124)] =
-                (uint8_t)hs_rng_u64(&rng);
+            const uint32_t place = 124 + hs_rng_below(&rng, (uint32_t)file.size - 124);
+            file.at[place] = (uint8_t)hs_rng_u64(&rng);
         }
         file.size = i % 5 ? file.size : hs_rng_below(&rng, (uint32_t)file.size);
         write_bytes(path, &file);

@@ -50,11 +50,14 @@ static inline struct lm_target random_target(struct hs_rng *r, int32_t extent_mm
     const uint32_t count = 1 + hs_rng_below(r, LM_SCATTERERS_MAX);
     const uint32_t span = (uint32_t)(2 * extent_mm + 1);
     for (uint32_t i = 0; i < count; i++) {
-        add_scatterer(&t, (uint8_t)(1 + hs_rng_below(r, LM_SHAPE_KINDS - 1)),
-                      50 + hs_rng_below(r, 800), (int32_t)hs_rng_below(r, span) - extent_mm,
-                      (int32_t)hs_rng_below(r, span) - extent_mm,
-                      (int32_t)hs_rng_below(r, span) - extent_mm, 360 * hs_rng_uniform(r),
-                      180 * hs_rng_uniform(r) - 90);
+        const double elevation_deg = 180 * hs_rng_uniform(r) - 90;
+        const double azimuth_deg = 360 * hs_rng_uniform(r);
+        const int32_t up_mm = (int32_t)hs_rng_below(r, span) - extent_mm;
+        const int32_t right_mm = (int32_t)hs_rng_below(r, span) - extent_mm;
+        const int32_t forward_mm = (int32_t)hs_rng_below(r, span) - extent_mm;
+        const uint32_t size_mm = 50 + hs_rng_below(r, 800);
+        const uint8_t kind = (uint8_t)(1 + hs_rng_below(r, LM_SHAPE_KINDS - 1));
+        add_scatterer(&t, kind, size_mm, forward_mm, right_mm, up_mm, azimuth_deg, elevation_deg);
         t.scatterers[i].roll = (fx_bam_t)hs_rng_u64(r);
         t.scatterers[i].is_two_sided = hs_rng_below(r, 2) != 0;
     }

@@ -57,7 +57,8 @@ static struct lm_can_frame set_frame(struct hs_rng *rng, uint32_t set, uint32_t 
     frame.data[0] = (uint8_t)(9 + (set % 7 == 0));
     frame.data[2] = (uint8_t)(set % 5);
     if (hs_rng_below(rng, 30) == 0) {
-        frame.data[hs_rng_below(rng, 8)] = (uint8_t)hs_rng_u64(rng);
+        const uint32_t place = hs_rng_below(rng, 8);
+        frame.data[place] = (uint8_t)hs_rng_u64(rng);
     }
     return frame;
 }

@@ -58,8 +58,9 @@ static void it_is_the_highest_look_over_the_cells_that_are_shown(void **state)
     hs_rng_seed(&rng, 1);
     for (uint32_t n = 0; n < 2000; n++) {
         const uint32_t first_m = 300 + hs_rng_below(&rng, 9000);
-        draw_country(&c, &rng, (int32_t)hs_rng_below(&rng, 6000), first_m,
-                     20 + hs_rng_below(&rng, LM_CELLS_MAX - 20));
+        const uint32_t cells = 20 + hs_rng_below(&rng, LM_CELLS_MAX - 20);
+        const int32_t antenna_m = (int32_t)hs_rng_below(&rng, 6000);
+        draw_country(&c, &rng, antenna_m, first_m, cells);
         const lm_horizon_q40_t horizon = lm_horizon_behind(&c.grid, &c.legend, &c.line);
         assert_true(fabs(ldexp((double)horizon, -40) - highest_tangent(&c, first_m)) < 1e-6);
         assert_true(horizon ==

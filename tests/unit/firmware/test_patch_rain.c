@@ -231,11 +231,13 @@ static void any_circles_do_to_a_patch_what_the_reference_says(void **state)
     hs_rng_seed(&rng, 5);
     for (int n = 0; n < 60; n++) {
         const double far_m = 15000 + 45000 * hs_rng_uniform(&rng);
-        struct world *w = make_world(far_m, 1000 + 8000 * hs_rng_uniform(&rng),
-                                     1 + floor(9 * hs_rng_uniform(&rng)));
+        const double cell_m = 1 + floor(9 * hs_rng_uniform(&rng));
+        struct world *w = make_world(far_m, 1000 + 8000 * hs_rng_uniform(&rng), cell_m);
         for (int k = 0; k < 1 + n % LM_RAINS_MAX; k++) {
-            add_rain(w, 1.1 * far_m * hs_rng_uniform(&rng), 20 * hs_rng_uniform(&rng) - 10,
-                     round(1000 + 12000 * hs_rng_uniform(&rng)), 1 + hs_rng_below(&rng, 30));
+            const double mm_per_h = 1 + hs_rng_below(&rng, 30);
+            const double radius_m = round(1000 + 12000 * hs_rng_uniform(&rng));
+            const double off_deg = 20 * hs_rng_uniform(&rng) - 10;
+            add_rain(w, 1.1 * far_m * hs_rng_uniform(&rng), off_deg, radius_m, mm_per_h);
         }
         look(w);
         apart.met += w->rain.count != 0;

@@ -31,6 +31,12 @@ static struct ref_vector at(double right_deg, double up_deg)
     return (struct ref_vector){cos(e) * cos(a), cos(e) * sin(a), sin(e)};
 }
 
+static struct ref_vector direction_near_axis(struct hs_rng *r, double spread_deg)
+{
+    const double up_deg = spread_deg * (2 * hs_rng_uniform(r) - 1);
+    return at(spread_deg * (2 * hs_rng_uniform(r) - 1), up_deg);
+}
+
 static double rcs_db(const struct lm_shape *s, double wavelength_m, struct ref_vector v)
 {
     return lm_rcs_q8(s, (uint32_t)lround(wavelength_m * 1e6), fixed_of(v)) / 256.0;
@@ -146,10 +152,8 @@ static double worst_db(const struct lm_shape *s, double wavelength_m, double dep
     const double peak = ref_db(s, wavelength_m, at(0, 0));
     hs_rng_seed(&rng, s->kind);
     for (int i = 0; i < 5000; i++) {
-        const struct ref_vector v = spread_deg > 90
-                                        ? random_direction(&rng)
-                                        : at(spread_deg * (2 * hs_rng_uniform(&rng) - 1),
-                                             spread_deg * (2 * hs_rng_uniform(&rng) - 1));
+        const struct ref_vector v =
+            spread_deg > 90 ? random_direction(&rng) : direction_near_axis(&rng, spread_deg);
         const double expected = ref_db(s, wavelength_m, v);
         if (expected > peak - depth_db) {
             worst = fmax(worst, fabs(rcs_db(s, wavelength_m, v) - expected));

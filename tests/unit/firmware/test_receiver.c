@@ -372,8 +372,9 @@ static void whatever_the_table_says_levels_stay_in_their_bounds(void **state)
         w->radar.antenna.elevation_beam = n % 5 ? (fx_bam_t)hs_rng_u64(&rng) : 0;
         const uint32_t cells = hs_rng_below(&rng, LM_CELLS_MAX + 1);
         const double cell_m = n % 7 ? 700 * hs_rng_uniform(&rng) + 0.01 : 0.004;
-        set_world(w, 3, n % 2 ? 0 : 20000 * hs_rng_uniform(&rng), cell_m, cells,
-                  60000 * hs_rng_uniform(&rng) - 30000, pulses_ns[n % 5]);
+        const double height_m = 60000 * hs_rng_uniform(&rng) - 30000;
+        const double near_m = n % 2 ? 0 : 20000 * hs_rng_uniform(&rng);
+        set_world(w, 3, near_m, cell_m, cells, height_m, pulses_ns[n % 5]);
         uint32_t total = w->receiver.weight_q16[0];
         for (int m = 1; m <= LM_PULSE_REACH_MAX; m++) {
             total += 2 * w->receiver.weight_q16[m];

@@ -219,9 +219,11 @@ static void lines_of_every_direction_level_and_step_agree_with_the_image(void **
             const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.level_count);
             const double step_m = 4.8 * (1 << level) * 2.5 * hs_rng_uniform(&rng);
             const double off_deg = 0.012 * (hs_rng_uniform(&rng) - 0.5);
-            const struct lm_ground_path p = path_from(
-                places[n][0] + off_deg, places[n][1] + 0.012 * (hs_rng_uniform(&rng) - 0.5),
-                360 * hs_rng_uniform(&rng), step_m, 0.001 * (hs_rng_uniform(&rng) - 0.5));
+            const double bend_m = 0.001 * (hs_rng_uniform(&rng) - 0.5);
+            const double azimuth_deg = 360 * hs_rng_uniform(&rng);
+            const double longitude_deg = places[n][1] + 0.012 * (hs_rng_uniform(&rng) - 0.5);
+            const struct lm_ground_path p =
+                path_from(places[n][0] + off_deg, longitude_deg, azimuth_deg, step_m, bend_m);
             known += scan_and_compare(&w, level, &p, 1 + hs_rng_below(&rng, LM_CELLS_MAX));
         }
         close_world(&w);

@@ -269,7 +269,8 @@ static void a_choice_holds_for_a_kilometre_of_flight(void **state)
     hs_rng_seed(&rng, 5);
     for (int i = 0; i < 3000; i++) {
         double to[2], from[2];
-        destination(46, 11, 360 * hs_rng_uniform(&rng), 300 + 36000 * hs_rng_uniform(&rng), to);
+        const double to_m = 300 + 36000 * hs_rng_uniform(&rng);
+        destination(46, 11, 360 * hs_rng_uniform(&rng), to_m, to);
         destination(46, 11, 360 * hs_rng_uniform(&rng), 1020, from);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_targets_near before, now;
@@ -291,7 +292,8 @@ static struct lm_target_line line_beside(struct hs_rng *rng, double lat, double 
                                          double at_m)
 {
     double from[2];
-    destination(lat, 11, 360 * hs_rng_uniform(rng), 1000 * hs_rng_uniform(rng), from);
+    const double away_m = 1000 * hs_rng_uniform(rng);
+    destination(lat, 11, 360 * hs_rng_uniform(rng), away_m, from);
     struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
     const double off = pow(hs_rng_uniform(rng), 3) * (hs_rng_below(rng, 2) ? 1 : -1);
     l.azimuth = hs_bam(to_azimuth + off * (5 + 90 * fmin(1, 2500 / at_m)));
@@ -357,7 +359,8 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
         }
         uint8_t *bytes = (uint8_t *)&t;
         for (uint32_t k = 1 + hs_rng_below(&rng, 6); k > 0; k--) {
-            bytes[4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4)] = (uint8_t)hs_rng_u64(&rng);
+            const uint32_t place = 4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4);
+            bytes[place] = (uint8_t)hs_rng_u64(&rng);
         }
         seal_target(&t);
         if (lm_target_check(&t) != LM_OK) {

@@ -495,7 +495,8 @@ static void a_record_that_passes_the_check_can_be_used_in_a_patch(void **state)
         }
         uint8_t *bytes = (uint8_t *)&t;
         for (uint32_t k = 1 + hs_rng_below(&rng, 6); k > 0; k--) {
-            bytes[4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4)] = (uint8_t)hs_rng_u64(&rng);
+            const uint32_t place = 4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4);
+            bytes[place] = (uint8_t)hs_rng_u64(&rng);
         }
         seal_target(&t);
         if (lm_target_check(&t) != LM_OK) {

@@ -182,8 +182,10 @@ static void any_circles_do_to_a_line_what_the_reference_says(void **state)
     for (int n = 0; n < 300; n++) {
         clear(w);
         for (int k = 0; k < 1 + n % LM_RAINS_MAX; k++) {
-            add_rain(w, 80000 * hs_rng_uniform(&rng), 360 * hs_rng_uniform(&rng),
-                     round(2000 + 25000 * hs_rng_uniform(&rng)), 1 + hs_rng_below(&rng, 40));
+            const double mm_per_h = 1 + hs_rng_below(&rng, 40);
+            const double radius_m = round(2000 + 25000 * hs_rng_uniform(&rng));
+            const double azimuth_deg = 360 * hs_rng_uniform(&rng);
+            add_rain(w, 80000 * hs_rng_uniform(&rng), azimuth_deg, radius_m, mm_per_h);
         }
         look(w);
         hits += w->weather.has_rain;

@@ -261,9 +261,10 @@ static void torn_files_give_an_error_or_a_proper_track(void **state)
         strcpy(text, whole[kind]);
         const size_t n = strlen(text);
         for (uint32_t k = 0; k <= hs_rng_below(&random, 4); k++) {
-            text[hs_rng_below(&random, (uint32_t)n)] =
-                hs_rng_below(&random, 2) ? (char)(1 + hs_rng_below(&random, 255))
-                                         : ",;\n-+.e90N<>&\"T:Z"[hs_rng_below(&random, 18)];
+            const uint32_t place = hs_rng_below(&random, (uint32_t)n);
+            text[place] = hs_rng_below(&random, 2)
+                              ? (char)(1 + hs_rng_below(&random, 255))
+                              : ",;\n-+.e90N<>&\"T:Z"[hs_rng_below(&random, 18)];
         }
         text[hs_rng_below(&random, 3) ? n : hs_rng_below(&random, (uint32_t)n)] = '\0';
         struct result r = read_as((enum nav_format)(NAV_FORMAT_CSV + kind), false, text);

@@ -261,8 +261,8 @@ static void phase_correlation_finds_every_shift_within_reach(void **state)
     assert_int_equal(nm_registrar_open(&r, SQUARE), 0);
     assert_int_equal(nm_picture_open(&real, SQUARE, SQUARE), 0);
     for (int i = 0; i < 30; i++) {
-        simulated[(20 + (int)hs_rng_below(&rng, 15)) * SQUARE + 20 + (int)hs_rng_below(&rng, 15)] =
-            0.3 + 0.7 * hs_rng_uniform(&rng);
+        const int row = 20 + (int)hs_rng_below(&rng, 15), column = 20 + (int)hs_rng_below(&rng, 15);
+        simulated[row * SQUARE + column] = 0.3 + 0.7 * hs_rng_uniform(&rng);
     }
     for (int shift = 0; shift < (2 * REACH + 1) * (2 * REACH + 1); shift++) {
         const int dx = shift % (2 * REACH + 1) - REACH, dy = shift / (2 * REACH + 1) - REACH;
