@@ -12,12 +12,12 @@ SRC_firmware := $(sort $(wildcard firmware/*/*.c) \
     $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c))
 SRC_core     := $(SRC_firmware) $(SRC_fixed)
 
-$(GEN)/host/%.o: %.c
-	@mkdir -p $(@D)
-	$(if $(V),,@echo '  HOST $<')
-	$(Q)$(HOSTCC) $(CSTD) -O1 -D_GNU_SOURCE $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include) $(DEPGEN) -c $< -o $@
+GEN_INC := $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include)
+$(GEN)/host/%.o: CC := $(HOSTCC)
+$(call compile, gen/host/,, $$(CSTD) -O1 -D_GNU_SOURCE $$(GEN_INC), build machine)
 $(GEN)/bin/%:
 	@mkdir -p $(@D)
+	$(call say,LINK,$@)
 	$(Q)$(HOSTCC) $^ -lm -o $@
 
 gen_objs = $(patsubst %.c,$(GEN)/host/%.o,$(1))
@@ -27,16 +27,18 @@ $(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/progr
 $(GEN)/fixed/src/tables.c: SET := fixed
 $(GEN)/firmware/clutter/noise_table.c: SET := noise
 $(GEN)/firmware/clutter/response_table.c: SET := response
-$(addprefix $(GEN)/,fixed/src/tables.c firmware/clutter/noise_table.c firmware/clutter/response_table.c): $(GEN)/bin/tables
+$(GEN)/fixed/src/tables.c $(addprefix $(GEN)/firmware/clutter/,noise_table.c response_table.c): $(GEN)/bin/tables
 	@mkdir -p $(@D)
 	$(Q)$< $(SET) $@
 
-# Of the firmware it takes what knows the fields of the bus. Another BUS_TABLE than the last time makes the source anew.
-$(GEN)/host/libbus.a: $(call gen_objs,$(filter-out %/bus_generic.c,$(filter firmware/bus/%,$(SRC_firmware))) $(SRC_fixed))
+# Of the firmware, bus_table takes what knows the fields of the bus. Another BUS_TABLE than the last time makes the
+# source anew.
+GEN_bus := $(call gen_objs,$(wildcard firmware/bus/*.c) $(SRC_fixed))
+$(GEN)/host/libbus.a: $(GEN_bus)
 	@rm -f $@
 	$(Q)$(HOSTAR) rcs $@ $^
-$(GEN)/bin/bus_table: $(call gen_objs,$(addprefix host-sim/,programs/bus_table/main.c bus/print_c.c bus/table_text.c)) $(GEN_error) \
-    $(GEN)/host/libbus.a
+$(GEN)/bin/bus_table: $(call gen_objs,$(addprefix host-sim/,programs/bus_table/main.c bus/print_c.c bus/table_text.c)) \
+    $(GEN_error) $(GEN)/host/libbus.a
 $(GEN)/firmware/bus/bus_generic.c: $(GEN)/bin/bus_table $(BUS_TABLE) $(GEN)/bus_table.name
 	@mkdir -p $(@D)
 	$(Q)$< $(BUS_TABLE) $@

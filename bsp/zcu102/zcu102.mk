@@ -16,11 +16,11 @@ $(IMAGE): $(O)/bsp/zcu102/main.o
 
 $(O)/%.o: %.S
 	@mkdir -p $(@D)
-	$(if $(V),,@echo '  AS   $<')
+	$(call say,AS,$<)
 	$(Q)$(CC) $(OPT) -c $< -o $@
 
 $(O)/%.elf: $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) $(LDSCRIPT)
 	@mkdir -p $(@D)
-	$(if $(V),,@echo '  LINK $@')
+	$(call say,LINK,$@)
 	$(Q)$(CC) $(OPT) -nostdlib -static -Wl,--gc-sections,--build-id=none,-T,$(LDSCRIPT),-u,_start,-u,fx_crc32c,-Map,$@.map \
 	    $(LDFLAGS) $(filter %.o,$^) $(LIB_board) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed) -lgcc -o $@

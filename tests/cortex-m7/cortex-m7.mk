@@ -4,14 +4,12 @@ CORTEX_M7_SRC := $(SRC_core) tests/golden/golden_flight.c $(addprefix tests/cort
 CORTEX_M7_FLAGS := -mcpu=cortex-m7 -mthumb -mfloat-abi=soft -O2 -g -ffreestanding -ffunction-sections -fdata-sections
 TESTS += $(CORTEX_M7)/test_golden
 
-$(O)/cortex-m7/%.o: %.c
-	@mkdir -p $(@D)
-	$(if $(V),,@echo '  CC   $< (Cortex-M7)')
-	$(Q)arm-none-eabi-gcc $(CSTD) $(WARN) $(CORTEX_M7_FLAGS) $(INC_firmware) $(addprefix -Itests/,golden support zcu102 cortex-m7) \
-	    $(DEPGEN) -c $< -o $@
+CORTEX_M7_INC := $(INC_firmware) $(addprefix -Itests/,golden support zcu102 cortex-m7)
+$(O)/cortex-m7/%.o: CC := arm-none-eabi-gcc
+$(call compile, cortex-m7/,, $$(CSTD) $$(WARN) $$(CORTEX_M7_FLAGS) $$(CORTEX_M7_INC), Cortex-M7)
 $(CORTEX_M7)/golden.elf: $(CORTEX_M7_SRC:%.c=$(O)/cortex-m7/%.o) linker/mps2-an500.ld
 	@mkdir -p $(@D)
-	$(if $(V),,@echo '  LINK $@')
+	$(call say,LINK,$@)
 	$(Q)arm-none-eabi-gcc $(CORTEX_M7_FLAGS) -nostartfiles -Wl,--gc-sections,-T,linker/mps2-an500.ld $(filter %.o,$^) -o $@
 $(CORTEX_M7)/test_golden: tests/cortex-m7/test_golden.sh $(O)/bin/tests/zcu102/golden_flash \
     $(if $(shell command -v arm-none-eabi-gcc),$(CORTEX_M7)/golden.elf)

@@ -7,7 +7,7 @@ $(T): tests/discipline/rules.py tests/discipline/rules_test.py $(O)/tests/discip
 	@printf '#!/bin/sh\nexec python3 -B tests/discipline/rules_test.py\n' >$@
 	@chmod +x $@
 
-$(O)/tests/discipline/flags: Makefile firmware/rooms.mk host-sim/host-sim.mk bsp/$(BOARD)/board.mk tests/discipline/discipline.mk | $(LIB_firmware) $(LIB_fixed)
+$(O)/tests/discipline/flags: Makefile make/layers.mk firmware/rooms.mk host-sim/host-sim.mk bsp/$(BOARD)/board.mk tests/discipline/discipline.mk | $(LIB_firmware) $(LIB_fixed)
 	@mkdir -p $(@D)
 	@printf '%s\n' 'CC $(CC)' 'GENERATED $(GEN)' 'ROOMS $(ROOMS)' $(foreach r,$(ROOMS) drivers,'SEES_$r $(SEES_$r)') 'fixed $(CFLAGS_fixed)' \
 	    $(foreach r,$(ROOMS),'firmware/$r $(call CFLAGS_room,$r)') 'drivers $(CFLAGS_drivers)' 'bsp $(CFLAGS_bsp)' \

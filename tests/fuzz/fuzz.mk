@@ -54,8 +54,6 @@ fuzz-programs: $(FUZZ_PROGRAMS)
 
 # -O1 behind OPT: findings name the lines as they are written.
 $(O)/sanitized/%.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Itests/support $(call pkgs,cflags,gdal openblas fftw3)
-$(O)/sanitized/%.o: %.c
-	@mkdir -p $(@D)
-	$(if $(V),,@echo '  CC   $< (sanitizers)')
-	$(Q)$(CC) $(CFLAGS_host) -O1 -fsanitize=$(FUZZ_PARTS)$(if $(FUZZER),$(comma)fuzzer-no-link) -fno-sanitize-recover=all \
-	    -fno-omit-frame-pointer $(EXTRA_CFLAGS) $(DEPGEN) -c $< -o $@
+FUZZ_CFLAGS := -O1 -fsanitize=$(FUZZ_PARTS)$(if $(FUZZER),$(comma)fuzzer-no-link) -fno-sanitize-recover=all \
+    -fno-omit-frame-pointer
+$(call compile, sanitized/,, $$(CFLAGS_host) $$(FUZZ_CFLAGS) $$(EXTRA_CFLAGS), sanitizers)

@@ -18,13 +18,8 @@ $(GOLDEN)/test_golden: tests/golden/test_golden.sh tests/golden/pictures.golden 
 	@cp $< $@
 	@chmod +x $@
 
-define golden_variant
-$(O)/$(1)/%.o: %.c
-	@mkdir -p $$(@D)
-	$$(if $$(V),,@echo '  CC   $$< ($(1))')
-	$$(Q)$$(CC) $$(CFLAGS_host) -Itests/support $$(DEPGEN) -c $$< -o $$@
-endef
-$(foreach variant,golden-clang golden-sanitized,$(eval $(call golden_variant,$(variant))))
+$(call compile, golden-clang/,,     $$(CFLAGS_host) -Itests/support, clang)
+$(call compile, golden-sanitized/,, $$(CFLAGS_host) -Itests/support, sanitizers)
 
 # The same once more for the panel's processor, by its own compiler where that is installed.
 ifeq ($(BOARD),bench-linux)

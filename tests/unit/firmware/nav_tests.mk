@@ -13,5 +13,5 @@ BUS_FUZZ_SRC := tests/unit/firmware/test_bus_fuzz.c $(BUS_SRC) \
 TESTS += $(BUS_FUZZ)
 $(BUS_FUZZ): $(BUS_FUZZ_SRC) $(wildcard tests/unit/firmware/bus_frames.h firmware/*/include/lm/*.h drivers/include/drv/*.h)
 	@mkdir -p $(@D)
-	@echo "  CC   $@ (sanitizers)"
+	$(call say,CC,$@ (sanitizers))
 	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all $(filter %.c,$^) -lcmocka -lm -o $@

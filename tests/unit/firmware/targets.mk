@@ -14,6 +14,6 @@ TESTS += $(TARGET_SANE)
 $(TARGET_SANE): $(O)/bin/tests/unit/firmware/%_sanitized: tests/unit/firmware/%.c $(TARGET_SANE_SRC) \
     $(wildcard tests/unit/firmware/target_*.h tests/unit/firmware/signature_image.h firmware/*/include/lm/*.h)
 	@mkdir -p $(@D)
-	@echo "  CC   $@ (sanitizers)"
+	$(call say,CC,$@ (sanitizers))
 	@$(CC) $(CFLAGS_host) -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -Itests/support $(filter %.c,$^) \
 	    -lcmocka $(call pkgs,libs,proj) -lm -o $@

@@ -1,0 +1,40 @@
+# How a source becomes an object, and objects an archive or a program.
+Q      := $(if $(V),,@)
+DEPGEN  = -MMD -MP
+say     = $(if $(V),,@printf '  %-4s %s\n' '$(1)' '$(2)')
+objs    = $(patsubst %.c,$(O)/%.o,$(1))
+
+# $(call compile, OBJECTS, SOURCES, FLAGS, REMARK): the rule that makes build/<board>/OBJECTS%.o of SOURCES%.c. FLAGS
+# come in $$, so that each object has its own.
+define compile_rule
+$(O)/$(1)%.o: $(2)%.c
+	@mkdir -p $$(@D)
+	$$(call say,CC,$$<$(if $(4), ($(4))))
+	$$(Q)$$(CC) $(3) $$(DEPGEN) -c $$< -o $$@
+endef
+compile = $(eval $(call compile_rule,$(strip $(1)),$(strip $(2)),$(strip $(3)),$(strip $(4))))
+
+# A folder's flags are those of its layer. EXTRA_CFLAGS of an object are what its part adds (see the *.mk files).
+$(foreach r,$(ROOMS),$(eval $(O)/firmware/$r/%.o: ROOM := $r))
+$(call compile, fixed/,    fixed/,    $$(CFLAGS_fixed) $$(OPT_core))
+$(call compile, firmware/, firmware/, $$(call CFLAGS_room,$$(ROOM)) $$(OPT_core))
+$(call compile, drivers/,  drivers/,  $$(CFLAGS_drivers))
+$(call compile, bsp/,      bsp/,      $$(CFLAGS_bsp) $$(EXTRA_CFLAGS))
+$(call compile, host-sim/, host-sim/, $$(CFLAGS_part) $$(EXTRA_CFLAGS))
+$(call compile, tests/,    tests/,    $$(CFLAGS_host) -Itests/support $$(EXTRA_CFLAGS))
+
+$(O)/firmware/display/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
+$(O)/firmware/map/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
+$(O)/firmware/map/tile_read.o: OPT_core += -fno-unroll-loops # and so has a run in a tile that stands in for another
+
+$(O)/%.a:
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(call say,AR,$@)
+	$(Q)$(AR) rcs $@ $^
+
+# Objects and archives in the order of the prerequisites, then what LDLIBS says for this target.
+$(O)/bin/%:
+	@mkdir -p $(@D)
+	$(call say,LINK,$@)
+	$(Q)$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
