@@ -6,6 +6,7 @@ A finding is one line, "place: what is wrong":
 - a sentence of more than LONGEST_SENTENCE words,
 - a line of more than LONGEST_LINE characters, tables and code excepted,
 - a link, or a path in code type, that leads to no file of the repository,
+- a name in code type with a prefix of ours (lm_, fx_, drv_, hs_) that no source has,
 - a comment of a source that names a document that is not there.
 Ends with 1 if there is a finding.
 """
@@ -75,6 +76,14 @@ def links(path, text, files, folders):
                 yield f"{path}:{number}: names {name}, which is not there"
 
 
+def names(path, text, known):
+    for number, line in enumerate(text.splitlines(), 1):
+        for code in re.findall(r"`([^`]+)`", line):
+            for name in re.findall(r"\b(?:lm|fx|drv|hs|LM|FX|DRV)_\w+", code):
+                if name not in known and not name.endswith("_"):
+                    yield f"{path}:{number}: names {name}, which no source has"
+
+
 def documents_named(path, text, files):
     """Comments may send the reader to a document, which must be there."""
     names = {file.name for file in files if file.suffix == ".md"}
@@ -86,11 +95,14 @@ def documents_named(path, text, files):
 
 def findings(paths, files):
     folders = {folder for file in files for folder in file.parents}
+    code = [file for file in files if file.suffix in SOURCES]
+    known = {word for file in code for word in re.findall(r"\w+", file.read_text(errors="replace"))}
     for path in paths:
         if path.suffix == ".md":
             text = path.read_text()
             yield from prose(path, text)
             yield from links(path, text, files, folders)
+            yield from names(path, text, known)
         elif path.suffix in SOURCES and path.name != "prose.py":
             yield from documents_named(path, path.read_text(), files)
 
