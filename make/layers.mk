@@ -1,4 +1,4 @@
-# What each layer is compiled with. It sees its own headers and those below it, and no more (docs/DESIGN.md, "Who may
+# What each layer is compiled with. It sees its own headers and those below it, and no more (docs/EQUATIONS.md, "Who may
 # include whom"). The two lowest layers do not even see the C library: -nostdinc leaves the compiler's own headers only.
 WARN := -Wall -Wextra -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 WARN += -Wno-enum-float-conversion # clang's -Wconversion has it: an enumerator is how C11 names a whole number

@@ -1,4 +1,4 @@
-/* The far shore's brightness along a line: docs/DESIGN.md, "What the radar sees of it". */
+/* The far shore's brightness along a line: docs/EQUATIONS.md, "Illumination". */
 #ifndef SHORE_H
 #define SHORE_H
 

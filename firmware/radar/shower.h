@@ -1,5 +1,5 @@
 /* Circles of rain as the antenna sees them: what a line of a sector and a patch have in common.
- * docs/DESIGN.md, "Rain". */
+ * docs/EQUATIONS.md, "Rain". */
 #ifndef LM_SHOWER_H
 #define LM_SHOWER_H
 

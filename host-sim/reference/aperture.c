@@ -1,4 +1,4 @@
-/* Synthetic aperture: dwell, point response, unsteady flight, layover. DESIGN.md, "Synthetic
+/* Synthetic aperture: dwell, point response, unsteady flight, layover. EQUATIONS.md, "Synthetic
  * aperture". */
 #include "reference/reference.h"
 

@@ -1,4 +1,4 @@
-/* What the radar sees: DESIGN.md, "What the radar sees of it". */
+/* What the radar sees: EQUATIONS.md, "Illumination". */
 #include "reference/reference.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ struct shore {
     bool is_after_water;
 };
 
-/* The far shore is a ramp of whole steps of 1/256 dB, as DESIGN.md defines it: that rounding is
+/* The far shore is a ramp of whole steps of 1/256 dB, as EQUATIONS.md defines it: that rounding is
  * part of the equation, not of the arithmetic. */
 static double shore_db(struct shore *shore, const struct ref_bin *bin,
                        const struct ref_params *params, double cell_m)

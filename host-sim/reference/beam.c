@@ -1,4 +1,4 @@
-/* The antenna of a real-beam line: smear across lines, elevation pattern, tilt. DESIGN.md, "Real
+/* The antenna of a real-beam line: smear across lines, elevation pattern, tilt. EQUATIONS.md, "Real
  * beam". */
 #include "reference/reference.h"
 

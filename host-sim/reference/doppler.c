@@ -1,4 +1,4 @@
-/* Doppler beam sharpening and movers: DESIGN.md, "Doppler beam sharpening" and "Movers". */
+/* Doppler beam sharpening and movers: EQUATIONS.md, "Doppler beam sharpening" and "Movers". */
 #include "reference/reference.h"
 
 #include <math.h>

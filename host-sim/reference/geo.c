@@ -1,4 +1,4 @@
-/* Where a cell lies: DESIGN.md, "Where a cell lies". */
+/* Where a cell lies: EQUATIONS.md, "Position of a cell". */
 #include "reference/reference.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* From lines to pixels: DESIGN.md, "On the glass". */
+/* From lines to pixels: EQUATIONS.md, "On the glass". */
 #include "reference/reference.h"
 
 #include <math.h>

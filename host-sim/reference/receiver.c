@@ -1,4 +1,4 @@
-/* Slant range, pulse, noise and time gain: DESIGN.md, "Real beam". */
+/* Slant range, pulse, noise and time gain: EQUATIONS.md, "Real beam". */
 #include "reference/reference.h"
 
 #include <math.h>

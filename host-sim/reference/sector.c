@@ -1,5 +1,5 @@
-/* A sector in real beam or sharpened: sampled lines, and what the display makes of them. DESIGN.md,
- * "Real beam". */
+/* A sector in real beam or sharpened: sampled lines, and what the display makes of them.
+ * EQUATIONS.md, "Real beam". */
 #include "hs/error.h"
 #include "reference/reference.h"
 

@@ -1,4 +1,4 @@
-/* Speckle, texture and noise: DESIGN.md, "Speckle and texture". */
+/* Speckle, texture and noise: EQUATIONS.md, "Speckle and texture". */
 #include "fx/hash.h"
 #include "reference/reference.h"
 

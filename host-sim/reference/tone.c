@@ -1,4 +1,4 @@
-/* From decibels to grey: DESIGN.md, "Speckle, noise, tone". */
+/* From decibels to grey: EQUATIONS.md, "Tone". */
 #include "reference/reference.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Rain and jammers: DESIGN.md, "Rain", "Noise" and "Rain over a patch". */
+/* Rain and jammers: EQUATIONS.md, "Rain", "Noise" and "Rain over a patch". */
 #include "reference/reference.h"
 
 #include <math.h>

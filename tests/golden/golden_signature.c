@@ -15,7 +15,7 @@ struct place {
     int32_t forward, right;
 };
 
-/* Of the middle of a pixel: the inverse of docs/DESIGN.md, "Signatures". */
+/* Of the middle of a pixel: the inverse of docs/EQUATIONS.md, "Signatures". */
 static struct place place_of(uint32_t aspect, int32_t row, int32_t column)
 {
     const fx_bam_t bearing = aspect * (FX_BAM_90 / 2);

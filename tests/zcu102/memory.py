@@ -101,7 +101,7 @@ def sizes(image=IMAGE):
 
 
 def budgets(rows, main):
-    """(what, bytes, most) of docs/DESIGN.md's memory budgets."""
+    """(what, bytes, most) of docs/EQUATIONS.md's memory budgets."""
     apart = ("tile cache", "framebuffer, drawn", "framebuffers, scanned out", "text", "rodata")
     return [("text + rodata", rows["text"][1] + rows["rodata"][1], 256 * KIB),
             ("static RAM beside tile cache and framebuffers",

@@ -163,7 +163,7 @@ static void print_help(int mode)
         printf(
             "usage: landmass-reference sar|gm|sector IMAGE [options]\n\n"
             "Render a picture from a flash image in double precision, by the equations of "
-            "docs/DESIGN.md.\nIt is what the firmware's picture is judged by.\n\n"
+            "docs/EQUATIONS.md.\nIt is what the firmware's picture is judged by.\n\n"
             "  sar     a patch, the line of sight upwards\n"
             "  gm      a sector as it is sampled, seen from above, the antenna in the middle of "
             "the "

@@ -191,7 +191,7 @@ struct patch_scores {
     struct score stage, whole, runups;
 };
 
-/* The horizon that a line starts with by DESIGN.md: run-ups are traced for one line in
+/* The horizon that a line starts with by EQUATIONS.md: run-ups are traced for one line in
  * LM_SAR_RUNUP_LINES, and between them the horizon changes evenly. */
 static double start_horizon(const struct world *w, const struct ref_sar *sar, uint32_t line)
 {

@@ -1,4 +1,4 @@
-/* Defocus and layover of a patch against the reference in double precision: docs/DESIGN.md,
+/* Defocus and layover of a patch against the reference in double precision: docs/EQUATIONS.md,
  * "Unsteady flight" and "Layover". */
 #include "hs/rng.h"
 #include "lm/defocus.h"

@@ -1,5 +1,5 @@
-/* What the radar sees of a line, against the geometry in double precision: docs/DESIGN.md, "What
- * the radar sees of it". Lines are made by hand; the classes are those of tests/support/tiny_image.
+/* What the radar sees of a line, against the geometry in double precision: docs/EQUATIONS.md,
+ * "Illumination". Lines are made by hand; the classes are those of tests/support/tiny_image.
  */
 #include "hs/rng.h"
 #include "lm/aspect.h"

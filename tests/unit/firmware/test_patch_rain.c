@@ -1,5 +1,5 @@
 /* Rain over a patch against the closed forms and the reference in double precision:
- * docs/DESIGN.md, "Rain over a patch". */
+ * docs/EQUATIONS.md, "Rain over a patch". */
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/patch_rain.h"

@@ -1,5 +1,5 @@
 /* Slant range and the receiver of a real-beam line, against the double-precision reference and
- * theory: docs/DESIGN.md, "Real beam". */
+ * theory: docs/EQUATIONS.md, "Real beam". */
 #include "hs/rng.h"
 #include "lm/receiver.h"
 #include "reference/reference.h"

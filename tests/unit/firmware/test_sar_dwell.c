@@ -1,4 +1,5 @@
-/* How long a patch takes and which cannot be made, in flight: DESIGN.md, "Synthetic aperture". */
+/* How long a patch takes and which cannot be made, in flight: EQUATIONS.md, "Synthetic aperture".
+ */
 #include "unit_rig.h"
 
 #include "hs/angle.h"

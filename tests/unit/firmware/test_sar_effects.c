@@ -386,8 +386,9 @@ static struct lm_place place_from(struct lm_place from, double azimuth_deg, doub
     return lm_geo_direct(&origin, hs_bam(azimuth_deg), (uint32_t)lround(metres * 256));
 }
 
-/* DESIGN.md, "Noise": on the axis at ten nautical miles it is what it is said to be; it falls with
- * the square of the distance and by the one-way pattern off the axis, and adds to the noise. */
+/* EQUATIONS.md, "Noise": on the axis at ten nautical miles it is what it is said to be; it falls
+ * with the square of the distance and by the one-way pattern off the axis, and adds to the noise.
+ */
 static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(void **state)
 {
     (void)state;

@@ -64,7 +64,7 @@ static void clear(int32_t *level_q8)
     }
 }
 
-/* The level of a cross section by DESIGN.md, "Targets". */
+/* The level of a cross section by EQUATIONS.md, "Targets". */
 static double level_db(double rcs_db, double at_m, double width_m, double length_m)
 {
     const struct ref_view view = {height_m, 0, length_m};

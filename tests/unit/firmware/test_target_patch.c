@@ -1,6 +1,6 @@
 /* Targets in a patch: the shape of a point, its place and its power, sums of points, movers, and
  * what hides them. The shape is judged by RADAR.md 2.4, places by PROJ's geodesics, sums by the
- * equations of DESIGN.md in double precision. */
+ * equations of EQUATIONS.md in double precision. */
 #include "hs/angle.h"
 #include "lm/target_patch.h"
 

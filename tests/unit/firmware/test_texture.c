@@ -1,5 +1,5 @@
 /* Texture, the state of the sea and the noise floor, against the statistics of a K distribution and
- * the sum of powers: docs/DESIGN.md, "Speckle and texture". */
+ * the sum of powers: docs/EQUATIONS.md, "Speckle and texture". */
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "lm/radar.h"

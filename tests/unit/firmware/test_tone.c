@@ -1,4 +1,4 @@
-/* From level to grey: the equations of docs/DESIGN.md, "Speckle, noise, tone", in double precision.
+/* From level to grey: the equations of docs/EQUATIONS.md, "Tone", in double precision.
  */
 #include "hs/rng.h"
 #include "lm/radar.h"

@@ -1,5 +1,5 @@
 /* Rain and jammers along a line, against the closed forms and the reference in double precision:
- * docs/DESIGN.md, "Rain" and "Noise". */
+ * docs/EQUATIONS.md, "Rain" and "Noise". */
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/receiver.h"

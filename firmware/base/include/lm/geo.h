@@ -1,5 +1,5 @@
 /* Positions on WGS-84: the point at a distance and azimuth, and the path of a scan line over the
- * ground. Equations: docs/DESIGN.md, "Where a cell lies". */
+ * ground. Equations: docs/EQUATIONS.md, "Position of a cell". */
 #ifndef LM_GEO_H
 #define LM_GEO_H
 

@@ -1,5 +1,5 @@
 /* What the radar sees of a line: horizon, shadow, slope, walls, edges, in one pass from near to
- * far. Equations: docs/DESIGN.md, "What the radar sees of it". */
+ * far. Equations: docs/EQUATIONS.md, "Illumination". */
 #ifndef LM_ASPECT_H
 #define LM_ASPECT_H
 

@@ -1,5 +1,5 @@
 /* Run-ups, lines that are not shown themselves: the highest look over one, and nothing of what
- * lm/aspect.h works out for a line that is. docs/DESIGN.md, "What the radar sees of it". */
+ * lm/aspect.h works out for a line that is. docs/EQUATIONS.md, "Illumination". */
 #ifndef LM_HORIZON_H
 #define LM_HORIZON_H
 

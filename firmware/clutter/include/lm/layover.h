@@ -1,5 +1,5 @@
 /* What stands high is displayed nearer, as a radar that measures slant ranges sees it.
- * docs/DESIGN.md, "Layover". */
+ * docs/EQUATIONS.md, "Layover". */
 #ifndef LM_LAYOVER_H
 #define LM_LAYOVER_H
 

@@ -1,5 +1,5 @@
 /* What fluctuates from one resolution cell to the next: draws of Gamma variables, eight neighbours
- * at a time. docs/DESIGN.md, "Draws". */
+ * at a time. docs/EQUATIONS.md, "Speckle and texture". */
 #ifndef LM_NOISE_H
 #define LM_NOISE_H
 

@@ -1,5 +1,5 @@
 /* What a point looks like after synthetic aperture processing: Taylor weighting of 35 dB and nbar =
- * 4, the resolution being one cell. docs/DESIGN.md, "Point response". */
+ * 4, the resolution being one cell. docs/EQUATIONS.md, "Point response". */
 #ifndef LM_RESPONSE_H
 #define LM_RESPONSE_H
 

@@ -1,5 +1,5 @@
 /* What is left of a mover's focus in a patch: while the radar dwells, it walks through range cells,
- * and its Doppler shift through azimuth. docs/DESIGN.md, "Movers". */
+ * and its Doppler shift through azimuth. docs/EQUATIONS.md, "Movers". */
 #ifndef LM_SMEAR_H
 #define LM_SMEAR_H
 

@@ -1,5 +1,5 @@
-/* Speckle, texture, the state of the sea and the noise floor, in decibels. docs/DESIGN.md, "Speckle
- * and texture". */
+/* Speckle, texture, the state of the sea and the noise floor, in decibels. docs/EQUATIONS.md,
+ * "Speckle and texture". */
 #ifndef LM_SPECKLE_H
 #define LM_SPECKLE_H
 

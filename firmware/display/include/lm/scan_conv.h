@@ -1,5 +1,5 @@
 /* From lines to the picture's plane: one byte of grey a pixel, painted line by line and kept
- * between frames. docs/DESIGN.md, "On the glass". */
+ * between frames. docs/EQUATIONS.md, "On the glass". */
 #ifndef LM_SCAN_CONV_H
 #define LM_SCAN_CONV_H
 

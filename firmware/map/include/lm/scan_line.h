@@ -1,5 +1,5 @@
 /* What stands along one azimuth line: a cell of the map and its elevation for every range cell.
- * docs/DESIGN.md, "What stands there". */
+ * docs/EQUATIONS.md, "Ground in a cell". */
 #ifndef LM_SCAN_LINE_H
 #define LM_SCAN_LINE_H
 

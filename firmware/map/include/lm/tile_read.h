@@ -1,5 +1,5 @@
-/* What tiles say at the places of a line: the innermost loop of a scan line. docs/DESIGN.md, "What
- * stands there". */
+/* What tiles say at the places of a line: the innermost loop of a scan line. docs/EQUATIONS.md,
+ * "Ground in a cell". */
 #ifndef LM_TILE_READ_H
 #define LM_TILE_READ_H
 

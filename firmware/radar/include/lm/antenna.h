@@ -1,5 +1,5 @@
 /* The antenna up and down: tilt, and what its elevation pattern leaves of a line. Across the line
- * it is lm/beam.h that smears. docs/DESIGN.md, "Real beam". */
+ * it is lm/beam.h that smears. docs/EQUATIONS.md, "Real beam". */
 #ifndef LM_ANTENNA_H
 #define LM_ANTENNA_H
 

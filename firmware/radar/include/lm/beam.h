@@ -1,5 +1,5 @@
 /* The beam across the line: a ring of azimuths sampled side by side, and the lines of the display
- * as their mean under the antenna's two-way pattern. docs/DESIGN.md, "Real beam". */
+ * as their mean under the antenna's two-way pattern. docs/EQUATIONS.md, "Real beam". */
 #ifndef LM_BEAM_H
 #define LM_BEAM_H
 

@@ -1,4 +1,4 @@
-/* Doppler beam sharpening: how sharp the picture can be where. docs/DESIGN.md, "Doppler beam
+/* Doppler beam sharpening: how sharp the picture can be where. docs/EQUATIONS.md, "Doppler beam
  * sharpening". */
 #ifndef LM_DBS_H
 #define LM_DBS_H

@@ -1,5 +1,5 @@
 /* What unsteady flight leaves of a patch's focus: every point is smeared across lines.
- * docs/DESIGN.md, "Unsteady flight". */
+ * docs/EQUATIONS.md, "Unsteady flight". */
 #ifndef LM_DEFOCUS_H
 #define LM_DEFOCUS_H
 

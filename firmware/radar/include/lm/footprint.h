@@ -1,5 +1,6 @@
 /* The ground across a sample: azimuths traced side by side, and the mean of what they show. Without
- * it, what is narrower than samples are apart would be met or missed. docs/DESIGN.md, "Real beam".
+ * it, what is narrower than samples are apart would be met or missed. docs/EQUATIONS.md, "Real
+ * beam".
  */
 #ifndef LM_FOOTPRINT_H
 #define LM_FOOTPRINT_H

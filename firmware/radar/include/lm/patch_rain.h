@@ -1,4 +1,4 @@
-/* Rain between the antenna and a SAR patch, and over it. docs/DESIGN.md, "Rain over a patch". */
+/* Rain between the antenna and a SAR patch, and over it. docs/EQUATIONS.md, "Rain over a patch". */
 #ifndef LM_PATCH_RAIN_H
 #define LM_PATCH_RAIN_H
 

@@ -1,5 +1,5 @@
 /* The receiver of a real-beam line: pulse, weather, noise, logarithm and the end of the time gain.
- * Bins are those of lm/slant.h. docs/DESIGN.md, "Real beam". */
+ * Bins are those of lm/slant.h. docs/EQUATIONS.md, "Real beam". */
 #ifndef LM_RECEIVER_H
 #define LM_RECEIVER_H
 

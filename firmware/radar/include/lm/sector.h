@@ -1,5 +1,6 @@
 /* A sector swept line by line, out and back: the whole of it, or a window around the cursor that
- * the display shows enlarged (EXP, DBS). docs/DESIGN.md, "Real beam" and "Doppler beam sharpening".
+ * the display shows enlarged (EXP, DBS). docs/EQUATIONS.md, "Real beam" and "Doppler beam
+ * sharpening".
  */
 #ifndef LM_SECTOR_H
 #define LM_SECTOR_H

@@ -1,5 +1,5 @@
 /* Slant range: what a radar measures, against the ground range at which a line is sampled.
- * docs/DESIGN.md, "Slant range". */
+ * docs/EQUATIONS.md, "Slant range". */
 #ifndef LM_SLANT_H
 #define LM_SLANT_H
 

@@ -1,5 +1,5 @@
-/* From level to grey, once, at the end: a window in decibels and gamma. docs/DESIGN.md, "Speckle,
- * noise, tone". */
+/* From level to grey, once, at the end: a window in decibels and gamma. docs/EQUATIONS.md, "Tone".
+ */
 #ifndef LM_TONE_H
 #define LM_TONE_H
 

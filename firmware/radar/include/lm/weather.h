@@ -1,4 +1,4 @@
-/* Rain and jammers as one line meets them. docs/DESIGN.md, "Rain" and "Noise". */
+/* Rain and jammers as one line meets them. docs/EQUATIONS.md, "Rain" and "Noise". */
 #ifndef LM_WEATHER_H
 #define LM_WEATHER_H
 

@@ -1,6 +1,6 @@
 /* Radar parameter table: every number that belongs to the radar and not to the display. An
  * integrator replaces the table (firmware/table/radar.c), not the code. Equations of all of it:
- * docs/DESIGN.md, "The picture, as equations".
+ * docs/EQUATIONS.md.
  *
  * Each field has its unit and the range that the code bears. lm_radar_check (lm/radar_check.h)
  * holds a table to the ranges and to these rules between fields:

@@ -1,5 +1,5 @@
 /* A chip laid over the cells of a patch: turned to the line of sight, and its power and shadow
- * brought from its pixels to the cells. docs/DESIGN.md, "Signatures". */
+ * brought from its pixels to the cells. docs/EQUATIONS.md, "Signatures". */
 #ifndef LM_CHIP_LAY_H
 #define LM_CHIP_LAY_H
 

@@ -1,5 +1,6 @@
 /* A chip in a line of a window: each of its pixels is shared by the lines and the cells that it
- * lies between, and by its shadow the ground of them loses light. docs/DESIGN.md, "Signatures". */
+ * lies between, and by its shadow the ground of them loses light. docs/EQUATIONS.md, "Signatures".
+ */
 #ifndef LM_CHIP_LINE_H
 #define LM_CHIP_LINE_H
 

@@ -1,5 +1,5 @@
 /* The chips that a patch or a window shows: read from flash in the background, reduced to the
- * picture's cell and kept as long as they are wanted. docs/DESIGN.md, "Signatures".
+ * picture's cell and kept as long as they are wanted. docs/EQUATIONS.md, "Signatures".
  *
  * A target whose chip is not there, late, damaged, or left out because all places are taken, is
  * drawn as a point of its signature's cross section: wrong in shape, not in place or strength. */

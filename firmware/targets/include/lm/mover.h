@@ -1,5 +1,5 @@
-/* Targets that move, and where a radar that tells directions by Doppler puts them. docs/DESIGN.md,
- * "Movers". */
+/* Targets that move, and where a radar that tells directions by Doppler puts them.
+ * docs/EQUATIONS.md, "Movers". */
 #ifndef LM_MOVER_H
 #define LM_MOVER_H
 

@@ -1,6 +1,6 @@
 /* Radar cross section of a few simple bodies, in the optical region: every size several wavelengths
  * or more. Sphere, flat plate and triangular corner are those of paper A (Heaton, "High resolution
- * radar targets"); docs/DESIGN.md, "Targets", has the equations and where they come from.
+ * radar targets"); docs/EQUATIONS.md, "Targets", has the equations and where they come from.
  *
  * A cross section is in decibels above one square metre (dBsm), times 256. */
 #ifndef LM_RCS_H

@@ -1,5 +1,5 @@
 /* Targets in a line of a sector: which of them a line meets, in which cells, and how bright. Those
- * of a patch: lm/target_patch.h. docs/DESIGN.md, "Targets". */
+ * of a patch: lm/target_patch.h. docs/EQUATIONS.md, "Targets". */
 #ifndef LM_TARGET_LINE_H
 #define LM_TARGET_LINE_H
 

@@ -1,5 +1,5 @@
 /* Targets in a SAR patch: every body is a point that is spread over cells and lines by the point
- * response. Found once for the patch, added line by line. docs/DESIGN.md, "Point response" and
+ * response. Found once for the patch, added line by line. docs/EQUATIONS.md, "Point response" and
  * "Targets". */
 #ifndef LM_TARGET_PATCH_H
 #define LM_TARGET_PATCH_H

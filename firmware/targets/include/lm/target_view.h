@@ -1,5 +1,6 @@
 /* How the radar sees a target: where it is from here, at which tangent it appears, and how large a
- * cell of clutter is beside it. What sector and patch have in common; docs/DESIGN.md, "Targets". */
+ * cell of clutter is beside it. What sector and patch have in common; docs/EQUATIONS.md, "Targets".
+ */
 #ifndef LM_TARGET_VIEW_H
 #define LM_TARGET_VIEW_H
 

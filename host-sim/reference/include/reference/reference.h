@@ -1,9 +1,9 @@
 /* The radar picture in double precision: the judge of the fixed-point firmware.
  *
- * Written from docs/DESIGN.md ("The picture, as equations") and docs/FORMATS.md (section 1) and
+ * Written from docs/EQUATIONS.md ("The picture, as equations") and docs/FORMATS.md (section 1) and
  * from nothing else; of the firmware it uses only the record structures of lm/db.h, and of fixed/
- * the checksum and the speckle hash, which are exact integers by definition. Where DESIGN.md leaves
- * a choice, the choice is stated here with the word "assumed".
+ * the checksum and the speckle hash, which are exact integers by definition. Where EQUATIONS.md
+ * leaves a choice, the choice is stated here with the word "assumed".
  *
  * Every stage works on an array of struct ref_bin, one element a range cell, near to far, and fills
  * its own fields from those of the stages before: a test may fill any of them by hand instead.
@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define REF_EARTH_M           6371000.0 /* mean radius, DESIGN.md */
+#define REF_EARTH_M           6371000.0 /* mean radius, EQUATIONS.md */
 #define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
 #define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
 
@@ -112,7 +112,8 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
 
 /* ---- geometry (geo.c) ---- */
 
-/* The place at a distance and azimuth (clockwise from north) on WGS-84, by DESIGN.md's formula. */
+/* The place at a distance and azimuth (clockwise from north) on WGS-84, by EQUATIONS.md's formula.
+ */
 struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, double distance_m);
 
 /* The other way round: azimuth and distance that lead from one place to another, up to 300 km away,

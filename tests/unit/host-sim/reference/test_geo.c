@@ -48,7 +48,7 @@ static double worst_direct_m(struct ref_place from, double range_m)
     return worst;
 }
 
-/* DESIGN.md promises 2 m; what is left of e2 (s/R)^3 after its small factors is centimetres. */
+/* EQUATIONS.md promises 2 m; what is left of e2 (s/R)^3 after its small factors is centimetres. */
 static void a_point_80_nm_away_is_within_5_cm_of_the_geodesic(void **state)
 {
     (void)state;
@@ -91,8 +91,8 @@ static double worst_parabola_m(double latitude_deg, double length_m)
     return worst;
 }
 
-/* DESIGN.md says 12 m at latitude 70. Half a range cell, which is what a line may err, is 290 m at
- * 80 nautical miles of 256 cells. Half the length is an eighth of the error. */
+/* EQUATIONS.md says 12 m at latitude 70. Half a range cell, which is what a line may err, is 290 m
+ * at 80 nautical miles of 256 cells. Half the length is an eighth of the error. */
 static void the_parabola_stays_near_the_curve(void **state)
 {
     (void)state;
