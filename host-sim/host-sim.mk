@@ -2,6 +2,7 @@
 #
 #   host_library NAME,SEES,PACKAGES     host-sim/NAME/*.c; public headers in host-sim/NAME/include/NAME/ (those of lib: include/hs/)
 #   host_program NAME,SEES              host-sim/programs/NAME/*.c, which become bin/landmass-NAME
+#   host_generator NAME,SEES            the same, built where make/generated.mk says and not for the user
 #
 # SEES names all libraries whose public headers a part may include, and `fixed`, `firmware`, `drivers`, `bench` (the bench
 # board). `firmware.h` stands for the headers of the firmware without its code. No other header can be found. Programs and tests link what
@@ -44,12 +45,12 @@ host_library = $(eval $(call host_library_rules,$(strip $(1)),$(strip $(2)),$(st
 define host_program_rules
 HOST_PROGRAMS += $(1)
 HOST_SEES_programs/$(1) := $(2)
-PROGRAMS += $(O)/bin/landmass-$(1)
 $(O)/host-sim/programs/$(1)/%.o: CFLAGS_part := $$(call CFLAGS_host_part,programs/$(1))
 $(O)/bin/landmass-$(1): $(call objs,$(wildcard host-sim/programs/$(1)/*.c)) $(call host_archives,$(2))
 $(O)/bin/landmass-$(1): LDLIBS = $$(call host_links,$(2))
 endef
-host_program = $(eval $(call host_program_rules,$(strip $(1)),$(strip $(2))))
+host_generator = $(eval $(call host_program_rules,$(strip $(1)),$(strip $(2))))
+host_program   = $(call host_generator,$(1),$(2))$(eval PROGRAMS += $(O)/bin/landmass-$(strip $(1)))
 
 $(call host_library, lib,          fixed firmware,                                      libpng)
 $(call host_library, gis,          lib,                                                 gdal)
@@ -80,6 +81,7 @@ $(call host_program, reference, reference lib fixed firmware.h)
 $(call host_program, sim,       sim lib fixed firmware drivers bench)
 $(call host_program, tables,    tables lib)
 $(call host_program, figures,   lib fixed firmware)
+$(call host_generator, bus_table, bus lib fixed firmware drivers)
 
 # Tests may include the public headers of every library.
 INC_host += $(foreach l,$(HOST_LIBS),-Ihost-sim/$l/include)

@@ -359,7 +359,8 @@ def host_includes(tree):
                 target = resolve(tree, path, name) if bracket == '"' else None
                 if target and not any(folder in target.parents for folder in folders):
                     bad.append(f"{path}:{number}: includes {target}")
-    return bad
+    folders = {tree.part_of(path) for path in tree.sources("host-sim")}
+    return bad + [f"{folder}: is not in host-sim/host-sim.mk" for folder in sorted(folders - set(tree.host_parts()))]
 
 
 def host_doors(tree):
