@@ -1,4 +1,4 @@
-/* Heights for pixels that have none, from those around them. */
+/* Fill of missing heights from those around them. */
 #ifndef TERRAIN_FILL_H
 #define TERRAIN_FILL_H
 

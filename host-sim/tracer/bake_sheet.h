@@ -1,4 +1,4 @@
-/* Chips of a signature, to look at. */
+/* Sheet of a signature: its chips as a picture to look at. */
 #ifndef TRACER_BAKE_SHEET_H
 #define TRACER_BAKE_SHEET_H
 

@@ -1,4 +1,4 @@
-/* Rays in the form that Embree takes sixteen of them at once. */
+/* Ray packets in the form in which Embree takes sixteen rays at once. */
 #ifndef TRACER_EMBREE_PACKET_H
 #define TRACER_EMBREE_PACKET_H
 

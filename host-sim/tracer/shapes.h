@@ -1,5 +1,5 @@
-/* Bodies to build models from: each is added to a mesh with its outer side outwards. All are closed
- * except plates and tubes. */
+/* Shapes to build models from: each is added to a mesh with its outer side outwards. All are
+ * closed except plates and tubes. */
 #ifndef TRACER_SHAPES_H
 #define TRACER_SHAPES_H
 

@@ -1,5 +1,5 @@
-/* What the parts of the tracer share: a tile's scratch, the rays under way in it, and what happens
- * at a reflection. */
+/* Tile work: what the parts of the tracer share, that is a tile's scratch memory, the rays under
+ * way in it, and the events at a reflection. */
 #ifndef TRACER_TILE_WORK_H
 #define TRACER_TILE_WORK_H
 

@@ -1,4 +1,4 @@
-/* The command line of the sub-commands that look at an image: FILE first, then options. */
+/* Command line of the sub-commands that look at an image: FILE first, then options. */
 #ifndef DB_IMAGE_COMMAND_H
 #define DB_IMAGE_COMMAND_H
 

@@ -1,4 +1,4 @@
-/* The options that sub-commands have in common: which image, which classes, which exemplars. */
+/* Source options, which several sub-commands share: the image, the classes, the exemplars. */
 #ifndef DB_SOURCE_OPTIONS_H
 #define DB_SOURCE_OPTIONS_H
 

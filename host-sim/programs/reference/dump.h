@@ -1,4 +1,4 @@
-/* Every stage of a picture in a file, for comparison with something else. */
+/* Dump of a picture: every stage of it in a file, for comparison with something else. */
 #ifndef REFERENCE_DUMP_H
 #define REFERENCE_DUMP_H
 

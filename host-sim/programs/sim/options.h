@@ -1,4 +1,4 @@
-/* The command line of landmass-sim. */
+/* Command line of landmass-sim. */
 #ifndef SIM_OPTIONS_H
 #define SIM_OPTIONS_H
 

@@ -1,4 +1,4 @@
-/* Powers as something to look at. */
+/* Chip pictures: powers as grey pixels to look at. */
 #ifndef TARGET_CHIP_PICTURE_H
 #define TARGET_CHIP_PICTURE_H
 

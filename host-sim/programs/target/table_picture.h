@@ -1,4 +1,4 @@
-/* What was traced, as paper B's Table I shows it. */
+/* Table picture: traced records as paper B's Table I shows them. */
 #ifndef TARGET_TABLE_PICTURE_H
 #define TARGET_TABLE_PICTURE_H
 

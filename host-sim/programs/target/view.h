@@ -1,4 +1,4 @@
-/* What an eye at the radar's azimuth would see of a model: to lay beside its radar picture. */
+/* View of a model as an eye at the radar's azimuth sees it, to lay beside its radar picture. */
 #ifndef TARGET_VIEW_H
 #define TARGET_VIEW_H
 

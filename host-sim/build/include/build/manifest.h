@@ -1,4 +1,5 @@
-/* The MANIFEST section: which inputs an image was made from, as `key: value` lines. */
+/* Manifest of an image: the section MANIFEST, which names the inputs that the image was made from,
+ * as `key: value` lines (docs/FORMATS.md). */
 #ifndef BUILD_MANIFEST_H
 #define BUILD_MANIFEST_H
 

@@ -1,4 +1,5 @@
-/* Which levels an image has, and the rectangles of tiles on each (docs/FORMATS.md, 1.2 and 1.4). */
+/* Plan of an image: its levels, and the rectangles of tiles on each (docs/FORMATS.md, 1.2 and
+ * 1.4). */
 #ifndef BUILD_PLAN_H
 #define BUILD_PLAN_H
 

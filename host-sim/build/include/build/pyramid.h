@@ -1,5 +1,6 @@
-/* All tiles of an image, from the finest level to the coarsest, in an order that needs little
- * memory: a tile row is made once the two rows below it are, and only then are those forgotten. */
+/* Pyramid of an image: all its tiles, from the finest level to the coarsest. Memory holds few tile
+ * rows at a time: a row is made as soon as the two rows below it are, and only then are those
+ * freed. */
 #ifndef BUILD_PYRAMID_H
 #define BUILD_PYRAMID_H
 

@@ -1,4 +1,5 @@
-/* Signatures for an image: files .sig in, the section SIGNATURES out. */
+/* Signatures for an image that is being built: files .sig in, the section SIGNATURES out. Those of
+ * a finished image: image/signatures.h. */
 #ifndef BUILD_SIGNATURES_H
 #define BUILD_SIGNATURES_H
 

@@ -1,5 +1,5 @@
-/* Specific targets for an image: a text file (docs/targets.md) in, the section TARGETS out. Those
- * of an image: image/targets.h. */
+/* Targets for an image that is being built: a text file (docs/targets.md) in, the section TARGETS
+ * out. Those of a finished image: image/targets.h. */
 #ifndef BUILD_TARGETS_H
 #define BUILD_TARGETS_H
 

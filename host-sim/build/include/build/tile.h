@@ -1,4 +1,4 @@
-/* One tile of the image, from the inputs or from the four tiles below it. */
+/* Tile of an image, made from the inputs or from the four tiles below it. */
 #ifndef BUILD_TILE_H
 #define BUILD_TILE_H
 

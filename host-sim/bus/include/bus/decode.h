@@ -1,4 +1,4 @@
-/* A recorded bus, made readable. */
+/* Decoder of a recorded bus: a log in, readable lines out. */
 #ifndef BUS_DECODE_H
 #define BUS_DECODE_H
 

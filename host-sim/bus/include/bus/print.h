@@ -1,4 +1,4 @@
-/* What else follows from a profile of the bus, as text. */
+/* Printers of a bus profile: the same profile in the forms that other tools read. */
 #ifndef BUS_PRINT_H
 #define BUS_PRINT_H
 

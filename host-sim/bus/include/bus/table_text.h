@@ -1,4 +1,5 @@
-/* A profile of the bus as text, which an integrator writes: docs/bus.md, "A table of your own". */
+/* Bus table: the profile of a bus as text, which an integrator writes (docs/bus.md, "A table of
+ * your own"). */
 #ifndef BUS_TABLE_TEXT_H
 #define BUS_TABLE_TEXT_H
 

@@ -1,5 +1,5 @@
-/* From samples to a classifier: normalisation, the choice of outputs, a committee of trained
- * networks, and what they say about samples. */
+/* Learning of a classifier from samples: normalisation, choice of outputs, training of a committee
+ * of networks, and the classes that it gives to samples. */
 #ifndef CLASSIFY_LEARN_H
 #define CLASSIFY_LEARN_H
 

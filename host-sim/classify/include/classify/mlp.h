@@ -1,6 +1,6 @@
-/* The feed-forward network of Heaton (section "Database preparation overview", figure 3): one
- * hidden layer, trained by back-propagation of the error (Rumelhart, Hinton and Williams, Nature
- * 323, 1986, p. 533).
+/* Multilayer perceptron: the feed-forward network of Heaton (section "Database preparation
+ * overview", figure 3) with one hidden layer, trained by back-propagation of the error (Rumelhart,
+ * Hinton and Williams, Nature 323, 1986, p. 533).
  *
  * All matrices are row-major; a batch holds one exemplar a row. Single precision throughout. */
 #ifndef CLASSIFY_MLP_H

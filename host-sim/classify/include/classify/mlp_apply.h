@@ -1,4 +1,4 @@
-/* The trained network on many pixels: the forward pass laid out for vector instructions. */
+/* Forward pass of a trained network over many pixels, laid out for vector instructions. */
 #ifndef CLASSIFY_MLP_APPLY_H
 #define CLASSIFY_MLP_APPLY_H
 

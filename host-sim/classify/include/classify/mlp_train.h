@@ -1,6 +1,6 @@
-/* Training one network on exemplars, as Heaton, section "Neural network application", describes it:
- * order drawn anew each epoch, exemplars corrupted by noise, until a recognition goal; with the
- * cure of its local minima. */
+/* Training of one network on exemplars as Heaton, section "Neural network application", describes
+ * it. The order is drawn again for each epoch, exemplars are corrupted by noise, and training ends
+ * at a recognition goal; local minima are detected and left. */
 #ifndef CLASSIFY_MLP_TRAIN_H
 #define CLASSIFY_MLP_TRAIN_H
 

@@ -1,19 +1,19 @@
-/* A trained classifier: the networks of a committee with all that is needed to use them on another
- * image.
+/* Network file: a trained classifier, that is the networks of a committee and all that is needed
+ * to use them on another image.
  *
  * The file is text, one item a line, '#' begins a remark, in this order:
  *
  *     landmass-net 1
  *     bands B                     1..1024
- *     context C                   side of the window of samples.h, odd, 1..31
+ *     context C                   side of the window of samples.h in pixels, odd, 1..31
  *     unit tanh | sigmoid
  *     loss square | cross-entropy
  *     hidden H                    1..1024
- *     members M                   1..32: networks whose outputs are added before the largest is
- * taken class NAME                  once an output, in the order of the outputs; 2..16 lines input
- * MEAN SCALE            once an input: what is subtracted from it, then what it is divided by, > 0
- *     unit-weights W1 .. Wn BIAS  once a hidden unit, then once an output, of the first member,
- * then the next end
+ *     members M                   1..32: networks; their outputs are added, the largest is taken
+ *     class NAME                  for each output, in order; 2..16 lines
+ *     input MEAN SCALE            for each input: what is subtracted, then the divisor, > 0
+ *     unit-weights W1 .. Wn BIAS  for each hidden unit, then each output; member after member
+ *     end
  *
  * Numbers are decimal with nine digits, which gives single precision back exactly. */
 #ifndef CLASSIFY_NET_FILE_H

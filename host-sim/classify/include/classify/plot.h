@@ -1,4 +1,4 @@
-/* The error curve of a training as a picture. */
+/* Plot of a training: its error curve as a PNG. */
 #ifndef CLASSIFY_PLOT_H
 #define CLASSIFY_PLOT_H
 

@@ -1,5 +1,5 @@
-/* What the network sees of a pixel: its bands, and with a context window also their mean and
- * standard deviation over the window around it. */
+/* Samples: the inputs of the network for a pixel. These are its bands and, with a context window,
+ * also their mean and standard deviation over the window around it. */
 #ifndef CLASSIFY_SAMPLES_H
 #define CLASSIFY_SAMPLES_H
 

@@ -1,4 +1,5 @@
-/* Which exemplars the network learns from and which are kept to judge it by. */
+/* Split of the exemplars into those that the network learns from and those that are kept to judge
+ * it by. */
 #ifndef CLASSIFY_SPLIT_H
 #define CLASSIFY_SPLIT_H
 

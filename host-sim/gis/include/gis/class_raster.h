@@ -1,4 +1,5 @@
-/* Class rasters: one byte a pixel, the index into the class table, DB_CLASS_NODATA for none. */
+/* Class rasters: one byte a pixel, the index into the class table; DB_CLASS_NODATA where there is
+ * none. */
 #ifndef GIS_CLASS_RASTER_H
 #define GIS_CLASS_RASTER_H
 

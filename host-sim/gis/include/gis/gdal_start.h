@@ -1,5 +1,5 @@
-/* GDAL as landmass-db uses it: silent, with its cache bounded; the last complaint is kept for our
- * errors. */
+/* GDAL set up for host programs: silent, its cache bounded, its last complaint kept for our own
+ * messages. */
 #ifndef GIS_GDAL_START_H
 #define GIS_GDAL_START_H
 

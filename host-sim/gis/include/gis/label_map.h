@@ -1,4 +1,5 @@
-/* Which class a label of the source stands for: a text file of `source-label = class` lines. */
+/* Label map: which class each label of a source stands for, from a text file of `source-label =
+ * class` lines. */
 #ifndef GIS_LABEL_MAP_H
 #define GIS_LABEL_MAP_H
 

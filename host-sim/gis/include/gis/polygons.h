@@ -1,4 +1,4 @@
-/* Polygons with a label from any vector format that OGR reads (a TSV or CSV with a WKT column
+/* Labelled polygons from any vector format that OGR reads (a TSV or CSV with a WKT column
  * included), in the pixel coordinates of an image. */
 #ifndef GIS_POLYGONS_H
 #define GIS_POLYGONS_H

@@ -1,4 +1,4 @@
-/* Small pictures of large rasters: every n-th pixel is kept while the blocks pass by. */
+/* Previews: small pictures of large rasters. Every n-th pixel is kept while the blocks pass by. */
 #ifndef GIS_PREVIEW_H
 #define GIS_PREVIEW_H
 

@@ -1,5 +1,5 @@
-/* Several raster files as one stack of bands on one grid, read a few rows at a time, and the
- * rasters that are written on the same grid. All pixels pass as float; the formats are GDAL's. */
+/* Rasters: several files read as one stack of bands on one grid, a few rows at a time, and files
+ * written on the same grid. All pixels are read as float; the formats are those of GDAL. */
 #ifndef GIS_RASTER_H
 #define GIS_RASTER_H
 

@@ -1,5 +1,5 @@
-/* What a cell and a post of the image hold, packed and unpacked, and how four cells become one of
- * the next coarser level (docs/FORMATS.md, 1.6). */
+/* Codes of an image's cells and posts: packing, unpacking, and the reduction of four cells to one
+ * of the next coarser level (docs/FORMATS.md, 1.6). */
 #ifndef IMAGE_CODES_H
 #define IMAGE_CODES_H
 

@@ -1,4 +1,5 @@
-/* What the programs that write and inspect a flash image know of its format beyond lm/image.h. */
+/* Format of a flash image, as far as the programs that write and check one need more than
+ * lm/image.h. */
 #ifndef IMAGE_FORMAT_H
 #define IMAGE_FORMAT_H
 

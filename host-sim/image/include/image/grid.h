@@ -1,6 +1,6 @@
-/* Where things lie in the image: angles, areas that may cross Greenwich or the antimeridian, and
- * the tiles that cover them (docs/FORMATS.md, 1.2). Latitudes are signed BAM, -2^30 (south pole) to
- * 2^30; longitudes are BAM modulo 2^32 from Greenwich eastward. */
+/* Grid of an image: angles, areas that may cross Greenwich or the antimeridian, and the tiles that
+ * cover them (docs/FORMATS.md, 1.2). Latitudes are signed BAM, -2^30 (south pole) to 2^30;
+ * longitudes are BAM modulo 2^32, from Greenwich eastward. 2^32 BAM are 360 degrees. */
 #ifndef IMAGE_GRID_H
 #define IMAGE_GRID_H
 

@@ -1,4 +1,4 @@
-/* The way of a mover through places, as the firmware goes it. */
+/* Path of a moving target: its legs between places, ending where the firmware will end them. */
 #ifndef IMAGE_PATH_H
 #define IMAGE_PATH_H
 

@@ -1,4 +1,4 @@
-/* Planes of a flash image as pictures. */
+/* Pictures of an image: each of its planes drawn as RGB pixels. */
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 

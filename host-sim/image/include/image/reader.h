@@ -1,4 +1,4 @@
-/* Reads a flash image without trusting any byte of it. */
+/* Reader of a flash image. It trusts no byte of the file. */
 #ifndef IMAGE_READER_H
 #define IMAGE_READER_H
 

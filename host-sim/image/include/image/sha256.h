@@ -1,4 +1,5 @@
-/* SHA-256 (FIPS 180-4), by which the manifest names its inputs and sections. */
+/* SHA-256 (FIPS 180-4), by which the manifest names its inputs and sections. Usage: begin, add as
+ * often as needed, end. */
 #ifndef IMAGE_SHA256_H
 #define IMAGE_SHA256_H
 

@@ -1,4 +1,5 @@
-/* The targets of an image: what they are, and what is wrong with them. */
+/* Targets of an image: print them, and find what is wrong with them. Those for an image that is
+ * being built: build/targets.h. */
 #ifndef IMAGE_TARGETS_H
 #define IMAGE_TARGETS_H
 

@@ -1,4 +1,4 @@
-/* Every byte of an image against what docs/FORMATS.md promises. */
+/* Verification of an image: every byte of it against what docs/FORMATS.md promises. */
 #ifndef IMAGE_VERIFY_H
 #define IMAGE_VERIFY_H
 

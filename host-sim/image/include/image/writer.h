@@ -1,5 +1,6 @@
-/* Writes a flash image (docs/FORMATS.md, section 1). Tiles may come in any order; the file appears
- * under its final name when it is whole. */
+/* Writer of a flash image (docs/FORMATS.md, section 1). Tiles may come in any order; the file
+ * appears under its final name when it is whole. Usage: image_writer_begin, image_writer_tile for
+ * each tile, image_writer_end; image_writer_abort to give up. */
 #ifndef IMAGE_WRITER_H
 #define IMAGE_WRITER_H
 

@@ -1,4 +1,4 @@
-/* Binary angles (fx/types.h) from the degrees that people write, and back. */
+/* Binary angles (fx/types.h) from degrees, and back. */
 #ifndef HS_ANGLE_H
 #define HS_ANGLE_H
 

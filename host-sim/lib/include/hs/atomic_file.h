@@ -1,4 +1,5 @@
-/* A file that appears under its final name whole, or not at all. */
+/* Atomic file: it appears under its final name whole, or not at all. Usage: hs_atomic_open, write
+ * to `stream`, then hs_atomic_commit, or hs_atomic_abort to give up. */
 #ifndef HS_ATOMIC_FILE_H
 #define HS_ATOMIC_FILE_H
 

@@ -1,4 +1,5 @@
-/* A sheet to draw figures on, and charts on it. */
+/* Sheets and charts: a picture to draw figures on, and axes with curves on it. Coordinates are
+ * pixels from the upper left corner; what falls outside the sheet is not drawn. */
 #ifndef HS_CHART_H
 #define HS_CHART_H
 

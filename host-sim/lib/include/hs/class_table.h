@@ -1,4 +1,4 @@
-/* The feature classes of a database: what each looks like in a picture and to the radar.
+/* Class table: the feature classes of a database, how each looks in a picture and to the radar.
  *
  * The file is text, one `[name]` line a class followed by `key = value   # unit, source` lines:
  *

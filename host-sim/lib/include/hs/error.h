@@ -1,5 +1,4 @@
-/* How every host program reports that something is wrong: what, where, why and what to do about it.
- */
+/* Error messages of all host programs: what is wrong, where, why, and what to do about it. */
 #ifndef HS_ERROR_H
 #define HS_ERROR_H
 

@@ -1,4 +1,5 @@
-/* Programs of several commands: the menu, `--help`, and the way to the command that was named. */
+/* Menu of a program with sub-commands: prints the list, answers `--help`, and runs the command
+ * that was named. */
 #ifndef HS_MENU_H
 #define HS_MENU_H
 

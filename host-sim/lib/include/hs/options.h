@@ -1,5 +1,5 @@
-/* The command lines of landmass-db and landmass-target: one table a sub-command, from which options
- * are read, checked and explained, so that --help can never disagree with what is accepted. */
+/* Command-line options: one table for each sub-command, from which they are read, checked and
+ * explained, so that --help always agrees with what is accepted. */
 #ifndef HS_OPTIONS_H
 #define HS_OPTIONS_H
 

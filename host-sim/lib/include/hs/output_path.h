@@ -1,4 +1,4 @@
-/* Paths of files that a command writes into a folder of the user's choice. */
+/* Output paths: files that a command writes into a folder of the user's choice. */
 #ifndef HS_OUTPUT_PATH_H
 #define HS_OUTPUT_PATH_H
 

@@ -1,4 +1,4 @@
-/* Pictures to look at. Rows run from the top; the file appears whole or not at all. */
+/* PNG files. Rows run from the top; the file appears whole or not at all. */
 #ifndef HS_PNG_H
 #define HS_PNG_H
 

@@ -1,4 +1,4 @@
-/* A progress bar for long work: drawn only when standard error is a terminal, silent otherwise. */
+/* Progress bar for long work: drawn only when standard error is a terminal, silent otherwise. */
 #ifndef HS_PROGRESS_H
 #define HS_PROGRESS_H
 

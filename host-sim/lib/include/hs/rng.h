@@ -1,6 +1,6 @@
-/* A seeded generator for host tools: xoshiro256** seeded by splitmix64 (Blackman and Vigna, 2018).
- * The same seed gives the same stream on every machine. The firmware uses fx_hash instead: it needs
- * no order. */
+/* Random numbers for host tools: xoshiro256** seeded by splitmix64 (Blackman and Vigna, 2018). The
+ * same seed gives the same sequence on every machine. The firmware uses fx_hash instead, which
+ * needs no order. */
 #ifndef HS_RNG_H
 #define HS_RNG_H
 

@@ -1,5 +1,5 @@
-/* One signature with its chips, as a program bakes it and the builder takes it: in memory, and in a
- * file .sig, which is a section SIGNATURES by itself (docs/FORMATS.md, 1.9 and 4). */
+/* Signature with its chips, as a program bakes it and the database builder takes it: in memory,
+ * and in a file .sig, which is a section SIGNATURES by itself (docs/FORMATS.md, 1.9 and 4). */
 #ifndef HS_SIGNATURE_FILE_H
 #define HS_SIGNATURE_FILE_H
 

@@ -1,4 +1,4 @@
-/* Taylor's weighting of an aperture or a band. */
+/* Taylor weighting of an aperture or a band. */
 #ifndef HS_TAYLOR_H
 #define HS_TAYLOR_H
 

@@ -1,4 +1,5 @@
-/* Line by line through a small text file, with the file and line at hand for messages. */
+/* Text files read line by line, with the file and line at hand for messages. Usage: db_text_open,
+ * db_text_next until it returns 0 or less, db_text_close. */
 #ifndef HS_TEXT_FILE_H
 #define HS_TEXT_FILE_H
 

@@ -1,4 +1,4 @@
-/* Unused bytes of a record. */
+/* Zero bytes: the check that the unused bytes of a record are 0. */
 #ifndef HS_ZERO_BYTES_H
 #define HS_ZERO_BYTES_H
 

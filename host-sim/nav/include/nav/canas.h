@@ -1,4 +1,4 @@
-/* Frames of CANaerospace 1.7 as a sender makes them, and the text that candump -L keeps of them.
+/* CANaerospace 1.7 frames as a sender makes them, and their text in the format of candump -L.
  * Source: Stock Flight Systems, "Interface specification for airborne CAN applications V 1.7",
  * revision of 12.1.2006: frame layout, data type codes and identifiers. */
 #ifndef NAV_CANAS_H

@@ -1,4 +1,4 @@
-/* Tracks that nobody flew: a circle and a straight line, with the attitude that flies them. */
+/* Synthetic tracks: a circle and a straight line, with the attitude that flies them. */
 #ifndef NAV_MAKE_TRACK_H
 #define NAV_MAKE_TRACK_H
 

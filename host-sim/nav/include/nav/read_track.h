@@ -1,4 +1,4 @@
-/* Tracks from files: CSV, GPX and IGC, plain or compressed by gzip. */
+/* Track files: CSV, GPX and IGC, plain or compressed by gzip. */
 #ifndef NAV_READ_TRACK_H
 #define NAV_READ_TRACK_H
 

@@ -1,4 +1,4 @@
-/* What goes on the bus when: a completed track turned into the lines of a candump log. */
+/* Sender of a track: a completed track turned into the lines of a candump log. */
 #ifndef NAV_SEND_H
 #define NAV_SEND_H
 

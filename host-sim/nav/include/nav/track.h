@@ -1,4 +1,4 @@
-/* A track: what was recorded of a flight, fix by fix, and what is known between the fixes. */
+/* Track: the recorded fixes of a flight, and its state at any instant between them. */
 #ifndef NAV_TRACK_H
 #define NAV_TRACK_H
 

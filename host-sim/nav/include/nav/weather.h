@@ -1,4 +1,4 @@
-/* Rain and jammers for the bus, as docs/bus.md, "Weather", has them. */
+/* Weather on the bus: frames of rain cells and jammers as docs/bus.md, "Weather", defines them. */
 #ifndef NAV_WEATHER_H
 #define NAV_WEATHER_H
 

@@ -1,5 +1,5 @@
-/* The reflection networks that Niu compares: EP1-EP5 of Table III and Fig. 17, EP6-EP8 of Table IV.
- */
+/* Architectures of reflection networks that Niu compares: EP1 to EP5 of Table III and Fig. 17, EP6
+ * to EP8 of Table IV. */
 #ifndef NETEM_ARCHITECTURE_H
 #define NETEM_ARCHITECTURE_H
 

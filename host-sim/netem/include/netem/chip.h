@@ -1,5 +1,5 @@
-/* Real radar chips from files: raw MSTAR, CSV, and whatever picture GDAL reads (PNG, JPEG, TIFF).
- */
+/* Chips: real radar pictures from files, raw MSTAR, CSV, and whatever GDAL reads (PNG, JPEG,
+ * TIFF). */
 #ifndef NETEM_CHIP_H
 #define NETEM_CHIP_H
 

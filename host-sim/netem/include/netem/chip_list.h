@@ -1,4 +1,4 @@
-/* Which chips there are, and what is known of each. */
+/* Chip lists: which chips there are, and what is known of each. */
 #ifndef NETEM_CHIP_LIST_H
 #define NETEM_CHIP_LIST_H
 

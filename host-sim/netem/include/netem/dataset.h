@@ -1,4 +1,4 @@
-/* Chips and their traced aspects, ready for training. */
+/* Dataset: chips and their traced aspects, ready for training. */
 #ifndef NETEM_DATASET_H
 #define NETEM_DATASET_H
 

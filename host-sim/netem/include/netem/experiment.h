@@ -1,4 +1,4 @@
-/* A whole training: chips and their aspects in, a folder of results out. */
+/* Experiment: a whole training, from chips and their aspects to a folder of results. */
 #ifndef NETEM_EXPERIMENT_H
 #define NETEM_EXPERIMENT_H
 

@@ -1,5 +1,5 @@
-/* A plane of numbers and its spectrum by FFT (FFTW, double precision). Plans are estimated, not
- * measured, so that a run gives the same bits again. */
+/* FFT of a plane of real numbers (FFTW, double precision). Plans are estimated, not measured, so
+ * that repeated runs give the same bits. */
 #ifndef NETEM_FFT_H
 #define NETEM_FFT_H
 

@@ -1,6 +1,5 @@
-/* How far a simulated picture is from a real one: Niu (13) and (14), over the pixels that both
- * have.
- */
+/* Loss: the distance between a simulated picture and a real one, Niu (13) and (14), over the
+ * pixels that both have. */
 #ifndef NETEM_LOSS_H
 #define NETEM_LOSS_H
 

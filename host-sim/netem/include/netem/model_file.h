@@ -1,5 +1,5 @@
-/* The file of a training: everything that it needs to go on as if it had never stopped, and with it
- * everything that simulating with what was learned needs. Text; docs/netem.md describes it. */
+/* Model file: a training, with everything that is needed to resume it exactly or to simulate with
+ * what it learned. Text; docs/netem.md describes it. */
 #ifndef NETEM_MODEL_FILE_H
 #define NETEM_MODEL_FILE_H
 

@@ -1,4 +1,5 @@
-/* Step 3 with networks: the reflection coefficients of every reflection of a picture (NetEM). */
+/* NetEM: step 3 with networks, that is the reflection coefficients of every reflection of a
+ * picture. */
 #ifndef NETEM_H
 #define NETEM_H
 

@@ -1,4 +1,4 @@
-/* Step 5: from the picture of step 4 to pixels as a real chip has them (NetPix). Two forms:
+/* NetPix: step 5, from the picture of step 4 to pixels as a real chip has them. Two forms:
  *
  * Fixed: one kernel of 107 x 107 cells, the impulse response under its Taylor window (Fig. 14).
  *

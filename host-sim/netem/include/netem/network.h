@@ -1,6 +1,7 @@
-/* A feed-forward network applied to each ray by itself: what a stack of 1x1 convolutions over the
- * multichannel "images" amounts to (Niu, Fig. 9). One row of a matrix is one ray; the layers are
- * matrix products. Double precision, so that gradients can be proved by finite differences. */
+/* Feed-forward network applied to each ray by itself, which is what a stack of 1x1 convolutions
+ * over the multichannel "images" amounts to (Niu, Fig. 9). One row of a matrix is one ray; the
+ * layers are matrix products. Double precision, so that gradients can be proved by finite
+ * differences. */
 #ifndef NETEM_NETWORK_H
 #define NETEM_NETWORK_H
 

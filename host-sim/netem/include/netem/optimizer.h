@@ -1,5 +1,5 @@
-/* From gradients to changes of weights: Adam (Kingma and Ba, ICLR 2015, algorithm 1) or stochastic
- * gradient descent with momentum. */
+/* Optimizer: weights changed along a gradient by Adam (Kingma and Ba, ICLR 2015, algorithm 1) or
+ * by stochastic gradient descent with momentum. */
 #ifndef NETEM_OPTIMIZER_H
 #define NETEM_OPTIMIZER_H
 

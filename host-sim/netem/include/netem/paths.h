@@ -1,6 +1,6 @@
-/* Traced records (records.h) as the networks want them: a table of the different reflections that
- * occur, and the ways of the rays through that table into the cells of the picture (Niu, Figs. 8, 9
- * and 11).
+/* Ray paths: traced records (tracer/records.h) in the form that the networks need. A table holds
+ * the different reflections that occur; the paths lead each ray through that table into the cells
+ * of the picture (Niu, Figs. 8, 9 and 11).
  *
  * Rays fall parallel on flat facets, so thousands of reflections have the same angles. Each network
  * sees every different reflection once, and the gradients of equal ones are added: the result is

@@ -1,4 +1,4 @@
-/* A picture of real numbers, rows from the top. */
+/* Picture of real numbers, rows from the top. */
 #ifndef NETEM_PICTURE_H
 #define NETEM_PICTURE_H
 

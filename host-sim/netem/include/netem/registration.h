@@ -1,6 +1,7 @@
-/* Finding the shift between a simulated and a real picture by phase correlation (Niu (15)-(17);
- * Kuglin and Hines, 1975), to the whole pixel. Only the terms count in which the simulated picture
- * has a fiftieth or more of its strongest one: on real chips, beyond that, the phase is noise. */
+/* Registration: the shift between a simulated and a real picture by phase correlation (Niu
+ * (15)-(17); Kuglin and Hines, 1975), to the whole pixel. Only those terms count in which the
+ * simulated picture has at least 1/50 of its strongest one: on real chips the phase of weaker
+ * terms is noise. */
 #ifndef NETEM_REGISTRATION_H
 #define NETEM_REGISTRATION_H
 

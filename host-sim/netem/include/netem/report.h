@@ -1,4 +1,4 @@
-/* What a training came to, as pictures and tables: the figures of the paper from 16 on. */
+/* Report of a training, as pictures and tables: the figures of the paper from 16 on. */
 #ifndef NETEM_REPORT_H
 #define NETEM_REPORT_H
 

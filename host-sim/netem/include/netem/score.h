@@ -1,4 +1,4 @@
-/* How alike two pictures are. All are of squares of `side` pixels with values in 0..1. */
+/* Scores of likeness between two pictures: squares of `side` pixels with values in 0..1. */
 #ifndef NETEM_SCORE_H
 #define NETEM_SCORE_H
 

@@ -1,5 +1,5 @@
-/* Where the radar stood when a chip was taken that does not say so: the untrained simulator's
- * pictures from all around are laid over it, and the one that fits best tells azimuth and place. */
+/* Search for the aspect of a chip that does not tell it: the untrained simulator's pictures from
+ * all around are laid over the chip, and the best fit gives azimuth and place. */
 #ifndef NETEM_SEARCH_H
 #define NETEM_SEARCH_H
 

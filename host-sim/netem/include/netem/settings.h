@@ -1,4 +1,5 @@
-/* What the sub-commands are told, in groups: model and tracing (setup.h), chips, training. */
+/* Settings of the sub-commands of landmass-netem, in groups: model and tracing (tracer/setup.h),
+ * chips, training. */
 #ifndef NETEM_SETTINGS_H
 #define NETEM_SETTINGS_H
 

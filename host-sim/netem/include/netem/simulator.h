@@ -1,5 +1,5 @@
-/* Steps 3 to 5 in one: from traced paths to the pixels of a chip, and the derivative all the way
- * back (Niu, Fig. 7). */
+/* Simulator: steps 3 to 5 in one, from traced paths to the pixels of a chip, and the derivative of
+ * it all (Niu, Fig. 7). */
 #ifndef NETEM_SIMULATOR_H
 #define NETEM_SIMULATOR_H
 

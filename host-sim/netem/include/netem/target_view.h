@@ -1,5 +1,5 @@
-/* A target seen from an aspect: traced, made into paths, and drawn by a law that is written down.
- */
+/* Target views: a target traced from one aspect, made into paths, and drawn by a written law of
+ * reflection. */
 #ifndef NETEM_TARGET_VIEW_H
 #define NETEM_TARGET_VIEW_H
 

@@ -1,6 +1,6 @@
-/* From phase history to picture: range compression by FFT, then back-projection of every pulse on
- * every point asked for (Gorham and Moore, "SAR image formation toolbox for MATLAB", SPIE 7699,
- * 2010, gives the algorithm). Double precision throughout. */
+/* Back-projection of a phase history to a picture: range compression by FFT, then every pulse
+ * summed at every point (Gorham and Moore, "SAR image formation toolbox for MATLAB", SPIE 7699,
+ * 2010). Double precision throughout. */
 #ifndef REALRADAR_BACKPROJECT_H
 #define REALRADAR_BACKPROJECT_H
 

@@ -1,5 +1,5 @@
-/* How the classes of a database rank and spread beside a real radar's picture of the same ground.
- */
+/* Class order: rank and spread of the classes of a database beside a real radar's picture of the
+ * same ground. */
 #ifndef REALRADAR_CLASS_ORDER_H
 #define REALRADAR_CLASS_ORDER_H
 

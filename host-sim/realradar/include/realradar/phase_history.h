@@ -1,5 +1,6 @@
-/* What a spotlight radar recorded: for each pulse the echo at each frequency, and where the antenna
- * was. Read from the MATLAB files of the AFRL Gotcha volumetric data set (readme SN-07-0045). */
+/* Phase history of a spotlight radar: for each pulse the echo at each frequency and the
+ * antenna's position. Read from the MATLAB files of the AFRL Gotcha volumetric data set (readme
+ * SN-07-0045). */
 #ifndef REALRADAR_PHASE_HISTORY_H
 #define REALRADAR_PHASE_HISTORY_H
 

@@ -1,4 +1,4 @@
-/* How sharp a point looks, measured on cuts through it: width of the main lobe at half power (IRW),
+/* Point response, measured on cuts through a point: width of the main lobe at half power (IRW),
  * highest sidelobe (PSLR), energy outside the main lobe (ISLR). */
 #ifndef REALRADAR_POINT_RESPONSE_H
 #define REALRADAR_POINT_RESPONSE_H

@@ -1,4 +1,4 @@
-/* The statistics of even ground: how far they are from one look's exponential law. */
+/* Speckle statistics of even ground: the distance from the exponential law of one look. */
 #ifndef REALRADAR_SPECKLE_STATISTICS_H
 #define REALRADAR_SPECKLE_STATISTICS_H
 

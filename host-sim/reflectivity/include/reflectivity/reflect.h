@@ -1,4 +1,4 @@
-/* The reflectivity of each pixel: Heaton's two ways from classes to radar (section "Database
+/* Reflectivity of each pixel: Heaton's two ways from classes to radar (section "Database
  * preparation overview").
  *
  * Values are constant-gamma reflectivities in dB. Speckle is no part of them: the display unit

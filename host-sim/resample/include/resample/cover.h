@@ -1,5 +1,5 @@
-/* The detailed part of a database: class, reflectivity and height rasters, resampled to the cells
- * of a tile. */
+/* Land cover of a database: class, reflectivity and height rasters, resampled to the cells of a
+ * tile. */
 #ifndef RESAMPLE_COVER_H
 #define RESAMPLE_COVER_H
 

@@ -1,6 +1,5 @@
-/* Where on a raster a place on the ground lies: from WGS-84 latitude and longitude to pixels, in
- * any coordinate reference system that PROJ knows, and from the raster back to the area that it
- * covers.
+/* Georeference of a raster: from WGS-84 latitude and longitude to pixels, in any coordinate
+ * reference system that PROJ knows, and from the raster back to the area that it covers.
  *
  * Pixel coordinates are GDAL's: (0, 0) is the outer corner of the first pixel, (0.5, 0.5) its
  * centre. */

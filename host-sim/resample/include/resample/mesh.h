@@ -1,4 +1,4 @@
-/* The pixels of a raster under a tile of the image.
+/* Mesh of a tile: the pixels of a raster under each cell or post of it.
  *
  * PROJ is asked at the nodes of a lattice over the whole Earth, and the mapping is bilinear between
  * them. The lattice is the same at every level and in every latitude zone, and a place that lies on

@@ -1,5 +1,5 @@
-/* The ground seen from above, painted with materials at half the pixel size of the image, so that
- * the pixels on an edge mix. */
+/* Canvas: the ground seen from above, painted with materials at half the pixel size of the image,
+ * so that the pixels on an edge mix. */
 #ifndef SCENE_CANVAS_H
 #define SCENE_CANVAS_H
 

@@ -1,4 +1,5 @@
-/* The polygons that a photo-analyst would draw over the image to teach the classes. */
+/* Exemplars of the scene: the polygons that a photo-analyst would draw over the image to teach the
+ * classes. */
 #ifndef SCENE_EXEMPLARS_H
 #define SCENE_EXEMPLARS_H
 

@@ -1,4 +1,4 @@
-/* The lie of the land: coast, hills, river, lake, and the level ground of town, port and airfield.
+/* Land of the scene: coast, hills, river, lake, and the level ground of town, port and airfield.
  *
  * The scene is designed in its own axes, in metres from its centre: u away from the sea, v along
  * the coast to the left of u. The image looks at it turned by 17 degrees, so that nothing people

@@ -1,6 +1,6 @@
-/* What the ground of the scene is made of, how it looks from above, and which of paper A's six
- * classes it belongs to (Heaton, "Applying artificial neural networks to generate radar simulation
- * data bases": soil, asphalt, concrete, structure, vegetation, water). */
+/* Materials of the scene's ground: how each looks from above, and which of paper A's six classes
+ * it belongs to (Heaton, "Applying artificial neural networks to generate radar simulation data
+ * bases": soil, asphalt, concrete, structure, vegetation, water). */
 #ifndef SCENE_MATERIAL_H
 #define SCENE_MATERIAL_H
 

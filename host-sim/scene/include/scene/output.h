@@ -1,4 +1,4 @@
-/* The scene as files that other programs read. Each appears whole or not at all. */
+/* Output files of the scene. Each appears whole or not at all. */
 #ifndef SCENE_OUTPUT_H
 #define SCENE_OUTPUT_H
 

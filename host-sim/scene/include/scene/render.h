@@ -1,4 +1,4 @@
-/* What the canvas looks like to an imaging satellite, and the truth behind it. */
+/* Rendering of the canvas as an imaging satellite sees it, and the true classes behind it. */
 #ifndef SCENE_RENDER_H
 #define SCENE_RENDER_H
 

@@ -1,5 +1,5 @@
-/* How the scene is painted, from nature to what people built. Each painter works over what the ones
- * before it left. */
+/* Painters of the scene, from nature to what people built. Each paints over what the ones before
+ * it left. */
 #ifndef SCENE_H
 #define SCENE_H
 

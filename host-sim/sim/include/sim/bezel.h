@@ -1,5 +1,5 @@
-/* The bezel around the glass: 20 option select buttons where the page has their labels, and a
- * rocker in each corner. A picture and a map from points to buttons; no window. */
+/* Bezel around the display: 20 option select buttons where the page has their labels, and a rocker
+ * in each corner. A picture, and a map from points to buttons; no window. */
 #ifndef SIM_BEZEL_H
 #define SIM_BEZEL_H
 

@@ -1,5 +1,5 @@
-/* The operator at the bench: what he does in the window, queued for the unit behind what the script
- * does. */
+/* Operator's controls at the bench: what the operator does in the window, queued for the unit
+ * behind what the script does. */
 #ifndef SIM_HANDS_H
 #define SIM_HANDS_H
 

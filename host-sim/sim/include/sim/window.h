@@ -1,4 +1,4 @@
-/* The bench in a window on the PC's screen (SDL2): bezel, glass, mouse and keyboard. */
+/* Window of the bench on the PC's screen (SDL2): bezel, display, mouse and keyboard. */
 #ifndef SIM_WINDOW_H
 #define SIM_WINDOW_H
 

@@ -1,5 +1,5 @@
-/* A table of constants that goes into the firmware as generated C. To add one: write the function
- * that gives an entry, name it in a set (sets.c), and declare the array in the set's header. */
+/* Constant tables that go into the firmware as generated C. To add one: write the function that
+ * gives an entry, name it in a set (sets.c), and declare the array in the set's header. */
 #ifndef TABLES_H
 #define TABLES_H
 

@@ -1,4 +1,5 @@
-/* The elevation models of a build, as one surface: the height of any post of the image.
+/* Terrain surface: the elevation models of a build as one surface, which gives the height of any
+ * post of the image.
  *
  * A post's elevation depends on where it lies and on nothing else, not on the level or tile that
  * asks: so tiles share their edges exactly, and the levels agree. */

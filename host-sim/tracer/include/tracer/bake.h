@@ -1,5 +1,5 @@
-/* Baking: a model seen from many sides, as the signature that a display unit shows
- * (lm/signature.h).
+/* Baking of a signature (lm/signature.h): a model traced from many aspects into the chips that a
+ * display unit shows.
  *
  * What is in a chip. Each look is traced with level ground under the model, and its echoes are put
  * where they lie on the ground: row = slant range / cos(depression). The ground's own direct

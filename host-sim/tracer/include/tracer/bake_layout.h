@@ -1,4 +1,4 @@
-/* How large the pixels of a baked signature must be, and the cells in which it is traced. */
+/* Layout of a baked signature: the size of its pixels, and the cells in which it is traced. */
 #ifndef TRACER_BAKE_LAYOUT_H
 #define TRACER_BAKE_LAYOUT_H
 

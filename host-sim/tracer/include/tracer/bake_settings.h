@@ -1,5 +1,5 @@
-/* What `landmass-target bake` and `landmass-netem bake` are told alike, and what they do with it.
- */
+/* Bake settings: the options that `landmass-target bake` and `landmass-netem bake` share, and the
+ * baking itself. */
 #ifndef TRACER_BAKE_SETTINGS_H
 #define TRACER_BAKE_SETTINGS_H
 

@@ -1,5 +1,5 @@
-/* All rays of a picture as Embree takes them, kept to be cast by nothing but Embree: what the
- * tracer is measured against. */
+/* Embree baseline: all rays of a picture, kept to be cast by Embree alone. The tracer's speed is
+ * measured against it. */
 #ifndef TRACER_EMBREE_BASELINE_H
 #define TRACER_EMBREE_BASELINE_H
 

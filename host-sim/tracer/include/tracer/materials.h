@@ -1,4 +1,4 @@
-/* What surfaces are made of: a table built in, and one in a file. */
+/* Surface materials: a table built in, and one in a file. */
 #ifndef TRACER_MATERIALS_H
 #define TRACER_MATERIALS_H
 

@@ -1,6 +1,6 @@
-/* Models: triangles with materials, in metres. Axes of a model: x ahead (its nose), y to its left,
- * z up, the ground at z = 0 and the origin where the target stands. The outer side of a triangle is
- * the one from which its corners run counter-clockwise. */
+/* Meshes: models made of triangles with materials, in metres. Axes of a model: x ahead (its nose),
+ * y to its left, z up, the ground at z = 0 and the origin where the target stands. The outer side
+ * of a triangle is the one from which its corners run counter-clockwise. */
 #ifndef TRACER_MESH_H
 #define TRACER_MESH_H
 

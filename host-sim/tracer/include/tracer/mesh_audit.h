@@ -1,4 +1,4 @@
-/* What is wrong with a model: found before rays are lost in it. */
+/* Audit of a mesh: finds what is wrong with a model before rays are lost in it. */
 #ifndef TRACER_MESH_AUDIT_H
 #define TRACER_MESH_AUDIT_H
 

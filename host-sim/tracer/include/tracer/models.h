@@ -1,4 +1,4 @@
-/* The models that need no file, built from their dimensions. */
+/* Built-in models, made from their dimensions. */
 #ifndef TRACER_MODELS_H
 #define TRACER_MODELS_H
 

@@ -1,4 +1,4 @@
-/* Wavefront OBJ files: of the format, vertices, faces and material names. */
+/* Wavefront OBJ files; of the format, vertices, faces and material names. */
 #ifndef TRACER_OBJ_FILE_H
 #define TRACER_OBJ_FILE_H
 

@@ -1,5 +1,5 @@
-/* From echoes in cells to a radar chip: paper B, step 5, with fixed parts only: the system's
- * impulse response, coarser pixels, speckle. */
+/* Pixels of a radar chip from echoes in cells: paper B, step 5, with fixed parts only: the
+ * system's impulse response, coarser pixels, speckle. */
 #ifndef TRACER_PIX_H
 #define TRACER_PIX_H
 

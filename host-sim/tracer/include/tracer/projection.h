@@ -1,8 +1,8 @@
-/* What the sensor's rays meet first, by drawing instead of casting: the rays are parallel and stand
- * in columns and rows, so that each triangle of the model is a triangle on the sensor's plane, and
- * the nearest one at a ray's place is the one it meets. Under the ground lies the mirror image of
- * the model: what a ray would meet of it, did it pass through the ground, is what it meets after
- * the ground has reflected it.
+/* Projection of a model on the sensor's plane: the first hit of each primary ray, found by drawing
+ * instead of casting. The rays are parallel and stand in columns and rows, so that each triangle
+ * of the model is a triangle on the plane, and the nearest one at a ray's place is the one it
+ * meets. Under the ground lies the mirror image of the model: what a ray would meet of it, did it
+ * pass through the ground, is what it meets after the ground has reflected it.
  *
  * Cost: about a hundred instructions a triangle and row, and a few a ray that it covers. */
 #ifndef TRACER_PROJECTION_H

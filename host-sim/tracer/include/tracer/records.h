@@ -1,6 +1,6 @@
-/* What the ray tracer hands to a reflection law: every reflection of every ray, before anything is
- * known of its strength. Paper B, III-B and Table I. This header is the contract between the tracer
- * (trace.h), the laws (reflect.h), the sum over cells (accumulate.h) and the trainable networks.
+/* Trace records: every reflection of every ray, before anything is known of its strength. Paper B,
+ * III-B and Table I. This header is the contract between the tracer (trace.h), the laws
+ * (reflect.h), the sum over cells (accumulate.h) and the trainable networks.
  *
  * SHAPE. A sensor plane of `columns` x `rows` emits parallel primary rays, numbered
  *     ray = row * columns + column,   column to the right, row upwards as the radar sees the scene.

@@ -1,5 +1,5 @@
-/* A model standing on its ground, ready to be met by rays. Where they meet the model is Embree's
- * answer; where they meet the ground, a plane, is computed here. */
+/* Traced scene: a model standing on its ground, ready to be met by rays. Embree answers where they
+ * meet the model; where they meet the ground, a plane, is computed here. */
 #ifndef TRACER_SCENE_H
 #define TRACER_SCENE_H
 

@@ -1,4 +1,5 @@
-/* What most sub-commands are told: the model, from where it is seen, and in which cells. */
+/* Setup of a trace: the options that most sub-commands share, for the model, the aspect from which
+ * it is seen, the cells, and the law of reflection. */
 #ifndef TRACER_SETUP_H
 #define TRACER_SETUP_H
 

@@ -1,4 +1,4 @@
-/* A tile of primary rays, followed through all their bounces by one thread. */
+/* Tile of primary rays, followed through all their bounces by one thread. */
 #ifndef TRACER_TRACE_TILE_H
 #define TRACER_TRACE_TILE_H
 
