@@ -13,6 +13,6 @@ SEES_nav     := bus base
 SEES_page    := table base
 SEES_display := page table base
 SEES_unit    := display page nav bus radar targets clutter table map base
-SEES_drivers := base bus
+SEES_drivers := base
 
 ROOM_HEADERS  = $(patsubst %,-Ifirmware/%/include,$(1))

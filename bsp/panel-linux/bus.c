@@ -1,6 +1,7 @@
 #include "bus.h"
 
 #include "drv/not_fitted.h"
+#include "lm/bus_filters.h"
 #include "report.h"
 
 /* The driver tells each loss once; what is said here is said once for a loss and once when it is
@@ -39,7 +40,9 @@ void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile 
     if (interface[0] == '\0') {
         return;
     }
-    heed(b, drv_can_socket_open(&b->socket, interface, profile, zero_us));
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(profile, filters);
+    heed(b, drv_can_socket_open(&b->socket, interface, filters, count, zero_us));
     b->driver = drv_can_socket_port(&b->socket);
     b->port.send = send_frame;
 }

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "drv/can_socket.h"
+#include "lm/bus_profile.h"
 #include "lm/port.h"
 
 struct bus {

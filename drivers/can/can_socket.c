@@ -10,8 +10,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "lm/canas_service.h"
-
 enum { RECEIVE_BUFFER_BYTES = 4 << 20, ANCILLARY_BYTES = 64 };
 
 static int fail(struct drv_can_socket *s, const char *format, ...)
@@ -28,52 +26,11 @@ static int fail(struct drv_can_socket *s, const char *format, ...)
 
 /* ---- filters ---- */
 
-struct filter_list {
-    struct can_filter *filters;
-    size_t count;
-};
-
-static void add_filter(struct filter_list *list, canid_t id, canid_t mask)
+struct can_filter drv_can_socket_filter(const struct lm_can_filter *f)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        if (list->filters[i].can_id == id && list->filters[i].can_mask == mask) {
-            return;
-        }
-    }
-    list->filters[list->count++] = (struct can_filter){.can_id = id, .can_mask = mask};
-}
-
-/* The bits of a redundancy channel's number that are clear in every channel that is used. */
-static canid_t unused_channel_bits(void)
-{
-    canid_t used = 1;
-    while (used < LM_BUS_CHANNELS) {
-        used *= 2;
-    }
-    return (CAN_EFF_MASK >> 16) & ~(used - 1);
-}
-
-size_t drv_can_socket_filters(const struct lm_bus_profile *profile,
-                              struct can_filter filters[DRV_CAN_SOCKET_FILTERS])
-{
-    struct filter_list list = {filters, 0};
-    const canid_t flags = CAN_EFF_FLAG | CAN_RTR_FLAG;
-    const bool is_canas = profile->framing == LM_BUS_CANAEROSPACE;
-    for (size_t i = 0; i < profile->row_count; i++) {
-        const struct lm_bus_row *row = &profile->rows[i];
-        if (is_canas) {
-            /* Bits 11..15 must be clear on every channel. */
-            add_filter(&list, row->id, CAN_SFF_MASK | flags);
-            add_filter(&list, row->id | CAN_EFF_FLAG,
-                       0xffffu | unused_channel_bits() << 16 | flags);
-        } else {
-            add_filter(&list, row->id | CAN_EFF_FLAG, row->packing.mask | flags);
-        }
-    }
-    if (is_canas) {
-        add_filter(&list, LM_CANAS_REQUEST_ID, CAN_SFF_MASK | flags);
-    }
-    return list.count;
+    const canid_t any = f->is_extended ? CAN_EFF_MASK : CAN_SFF_MASK;
+    return (struct can_filter){.can_id = (f->id & any) | (f->is_extended ? CAN_EFF_FLAG : 0),
+                               .can_mask = (f->mask & any) | CAN_EFF_FLAG | CAN_RTR_FLAG};
 }
 
 /* ---- frames and times ---- */
@@ -113,10 +70,8 @@ static uint64_t clock_us(clockid_t clock)
 /* Only the filter is needed; without the others the bus works, only with less to tell. */
 static int set_options(struct drv_can_socket *s)
 {
-    struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
-    const size_t count = drv_can_socket_filters(s->profile, filters);
-    if (setsockopt(s->fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters,
-                   (socklen_t)(count * sizeof *filters)) != 0) {
+    if (setsockopt(s->fd, SOL_CAN_RAW, CAN_RAW_FILTER, s->filters,
+                   (socklen_t)(s->filter_count * sizeof *s->filters)) != 0) {
         return -1;
     }
     const can_err_mask_t errors =
@@ -166,10 +121,20 @@ static int try_to_open(struct drv_can_socket *s)
 }
 
 int drv_can_socket_open(struct drv_can_socket *s, const char *interface,
-                        const struct lm_bus_profile *profile, uint64_t time_zero_us)
+                        const struct lm_can_filter *filters, uint32_t filter_count,
+                        uint64_t time_zero_us)
 {
-    *s = (struct drv_can_socket){.fd = -1, .time_zero_us = time_zero_us, .profile = profile};
+    *s = (struct drv_can_socket){.fd = -1, .time_zero_us = time_zero_us};
     snprintf(s->interface, sizeof s->interface, "%s", interface);
+    if (filter_count > DRV_CAN_SOCKET_FILTERS) {
+        s->retry_us = UINT64_MAX;
+        return fail(s, "%s: %u filters, of which the kernel takes %d", s->interface, filter_count,
+                    DRV_CAN_SOCKET_FILTERS);
+    }
+    for (uint32_t i = 0; i < filter_count; i++) {
+        s->filters[i] = drv_can_socket_filter(&filters[i]);
+    }
+    s->filter_count = filter_count;
     return try_to_open(s);
 }
 

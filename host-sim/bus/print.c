@@ -1,6 +1,7 @@
 #include "bus/print.h"
 
 #include "drv/can_socket.h"
+#include "lm/bus_filters.h"
 #include "lm/canas.h"
 
 #include <math.h>
@@ -47,12 +48,12 @@ static double offset_of(const struct lm_bus_row *row)
 
 void bus_print_filters(FILE *out, const struct lm_bus_profile *profile)
 {
-    struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
-    const size_t count = drv_can_socket_filters(profile, filters);
-    for (size_t i = 0; i < count; i++) {
-        const bool is_extended = (filters[i].can_id & CAN_EFF_FLAG) != 0;
-        fprintf(out, is_extended ? "%08X:%08X\n" : "%03X:%08X\n", filters[i].can_id & CAN_EFF_MASK,
-                filters[i].can_mask);
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(profile, filters);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct can_filter kernels = drv_can_socket_filter(&filters[i]);
+        fprintf(out, filters[i].is_extended ? "%08X:%08X\n" : "%03X:%08X\n", filters[i].id,
+                kernels.can_mask);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "drv/can_log.h"
 #include "drv/can_socket.h"
 #include "lm/bus.h"
+#include "lm/bus_filters.h"
 #include "lm/canas_service.h"
 
 #include <errno.h>
@@ -66,6 +67,14 @@ static uint64_t now_us(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
+}
+
+/* As landmass opens it: the filters of canas17. */
+static int open_canas17(struct drv_can_socket *s, const char *interface)
+{
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(&lm_bus_canas17, filters);
+    return drv_can_socket_open(s, interface, filters, count, 0);
 }
 
 /* Somebody else on the bus: hears everything, reports of errors too. */
@@ -264,7 +273,7 @@ static void a_burst_goes_through_a_card(void)
     enum { BURST = 2000 };
     struct drv_can_socket s;
     const int other = open_other("can1");
-    if (other < 0 || drv_can_socket_open(&s, "can0", &lm_bus_canas17, 0) != LM_OK) {
+    if (other < 0 || open_canas17(&s, "can0") != LM_OK) {
         skipped(sentence, "no cards can0 and can1");
         return;
     }
@@ -369,7 +378,7 @@ static void missing_at_start(void)
     struct drv_can_socket s;
     int errors = 0, got = 0;
     end_bus();
-    const int status = drv_can_socket_open(&s, BUS, &lm_bus_canas17, 0);
+    const int status = open_canas17(&s, BUS);
     begin_bus();
     const int other = open_other(BUS);
     for (int i = 0; i < 20 && got == 0; i++) {
@@ -450,7 +459,7 @@ static void the_load_is_heard_whole(const struct log *log, double seconds)
     struct drv_can_socket s;
     int told[2], errors = 0, wrong = 0;
     uint32_t sent = 0, place = 0, got = 0, values = 0;
-    drv_can_socket_open(&s, BUS, &lm_bus_canas17, 0);
+    open_canas17(&s, BUS);
     const struct lm_can port = drv_can_socket_port(&s);
     (void)!pipe(told);
     const pid_t child = fork();
@@ -502,7 +511,7 @@ int main(int argc, char **argv)
     }
     begin_bus();
     const int other = open_other(BUS);
-    if (drv_can_socket_open(&s, BUS, &lm_bus_canas17, 0) != LM_OK || other < 0) {
+    if (open_canas17(&s, BUS) != LM_OK || other < 0) {
         printf("Bail out! %s\n", s.error);
         return 1;
     }

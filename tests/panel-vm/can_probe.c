@@ -9,6 +9,7 @@
  * counters. */
 #include "drv/can_socket.h"
 #include "lm/bus.h"
+#include "lm/bus_filters.h"
 
 #include <math.h>
 #include <signal.h>
@@ -70,11 +71,19 @@ static void take(struct drv_can_socket *s, struct lm_bus *bus)
     }
 }
 
+/* As landmass opens it: the filters of canas17. */
+static int open_canas17(struct drv_can_socket *s, const char *interface)
+{
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(&lm_bus_canas17, filters);
+    return drv_can_socket_open(s, interface, filters, count, 0);
+}
+
 /* `bus` is NULL, or decodes. */
 static void run(const char *interface, struct lm_bus *bus)
 {
     struct drv_can_socket s;
-    const int status = drv_can_socket_open(&s, interface, &lm_bus_canas17, 0);
+    const int status = open_canas17(&s, interface);
     printf("! %s\n", status == LM_OK ? "open" : s.error);
     while (!is_over) {
         take(&s, bus);

@@ -17,13 +17,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lm/bus_profile.h"
 #include "lm/port.h"
 
 enum {
-    DRV_CAN_SOCKET_BATCH = 64,                       /* frames taken from the kernel at a time */
-    DRV_CAN_SOCKET_QUEUE = 16,                       /* frames that may wait to be sent */
-    DRV_CAN_SOCKET_FILTERS = 2 * LM_BUS_ROWS_MAX + 1 /* below the kernel's limit of 512 */
+    DRV_CAN_SOCKET_BATCH = 64,   /* frames taken from the kernel at a time */
+    DRV_CAN_SOCKET_QUEUE = 16,   /* frames that may wait to be sent */
+    DRV_CAN_SOCKET_FILTERS = 512 /* the kernel's limit, CAN_RAW_FILTER_MAX */
 };
 
 /* How long an interface that is gone is left alone before it is looked for again. */
@@ -36,9 +35,10 @@ struct drv_can_socket {
     bool is_bus_off;       /* the controller has left the bus */
 
     char interface[IFNAMSIZ];
-    const struct lm_bus_profile *profile; /* borrowed */
-    uint64_t retry_us;                    /* CLOCK_MONOTONIC; when to look for it again */
-    bool has_report;                      /* receive is to answer LM_ERR_IO once */
+    struct can_filter filters[DRV_CAN_SOCKET_FILTERS];
+    uint32_t filter_count;
+    uint64_t retry_us; /* CLOCK_MONOTONIC; when to look for it again */
+    bool has_report;   /* receive is to answer LM_ERR_IO once */
     struct lm_can_frame batch[DRV_CAN_SOCKET_BATCH];
     uint32_t batch_next, batch_count;
     struct can_frame queue[DRV_CAN_SOCKET_QUEUE]; /* a ring */
@@ -60,15 +60,17 @@ struct drv_can_socket {
     } count;                         /* only ever grow, but for an open */
 };
 
-/* Open `interface` ("can0") without ever waiting on it: only the profile's identifiers pass, node
- * service requests for CANaerospace, and the controller's reports of time-outs, overruns, bus-off,
- * restart and missing acknowledgements. The receive buffer is asked to hold 4 MiB, because the
- * default of 208 KiB is full after 35 ms of a busy bus. `profile` must outlive *s.
+/* Open `interface` ("can0") without ever waiting on it: only frames that one of the filters
+ * lets through pass (lm_bus_filters lists a profile's; without any filter none does), and the
+ * controller's reports of time-outs, overruns, bus-off, restart and missing acknowledgements. The
+ * receive buffer is asked to hold 4 MiB, because the default of 208 KiB is full after 35 ms of a
+ * busy bus. The filters are copied.
  *
  * LM_OK, or LM_ERR_IO with s->error saying why and s->fd = -1. After a failure *s may be used all
  * the same: its port looks for the interface again every DRV_CAN_SOCKET_RETRY_US. */
 int drv_can_socket_open(struct drv_can_socket *s, const char *interface,
-                        const struct lm_bus_profile *profile, uint64_t time_zero_us);
+                        const struct lm_can_filter *filters, uint32_t filter_count,
+                        uint64_t time_zero_us);
 
 /* Safe on one that is closed, or was never opened successfully. */
 void drv_can_socket_close(struct drv_can_socket *s);
@@ -87,11 +89,8 @@ void drv_can_socket_close(struct drv_can_socket *s);
  * is of no use afterwards. */
 struct lm_can drv_can_socket_port(struct drv_can_socket *s);
 
-/* The kernel's filters for a profile: for CANaerospace one for each row's identifier, 11 bits and
- * no remote frames, one for its redundancy channels, and one for node services; for packed frames
- * one for each identifier and mask. Returns how many were written. */
-size_t drv_can_socket_filters(const struct lm_bus_profile *profile,
-                              struct can_filter filters[DRV_CAN_SOCKET_FILTERS]);
+/* A filter as the kernel has it: identifier, length of identifier and no remote frames. */
+struct can_filter drv_can_socket_filter(const struct lm_can_filter *filter);
 
 /* False for what is no classic data, remote or error frame. time_us stays 0. */
 bool drv_can_socket_convert(const struct can_frame *from, struct lm_can_frame *to);

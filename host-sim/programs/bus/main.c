@@ -2,7 +2,6 @@
 #include "bus/decode.h"
 #include "bus/print.h"
 #include "bus/table_text.h"
-#include "drv/can_socket.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 

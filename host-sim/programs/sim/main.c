@@ -7,6 +7,7 @@
 #include "hs/error.h"
 #include "hs/png.h"
 #include "hs/progress.h"
+#include "lm/bus_filters.h"
 #include "sim/bezel.h"
 #include "sim/hands.h"
 #include "sim/script.h"
@@ -71,7 +72,9 @@ static int open_bus(struct sim *s)
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);
         const uint64_t zero_us = (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-        if (drv_can_socket_open(&s->socket, o->can_interface, o->profile, zero_us) != LM_OK) {
+        struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+        const uint32_t count = lm_bus_filters(o->profile, filters);
+        if (drv_can_socket_open(&s->socket, o->can_interface, filters, count, zero_us) != LM_OK) {
             return hs_error(o->can_interface, NULL, "%s", s->socket.error);
         }
         s->can = drv_can_socket_port(&s->socket);

@@ -3,6 +3,7 @@
 #include "drv/can_socket.h"
 #include "hs/rng.h"
 #include "lm/bus.h"
+#include "lm/bus_filters.h"
 #include "lm/canas_service.h"
 
 #include <errno.h>
@@ -17,11 +18,19 @@
 
 #include <cmocka.h>
 
+/* As landmass opens it: the filters of canas17. */
+static int open_canas17(struct drv_can_socket *s, const char *interface)
+{
+    struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
+    const uint32_t count = lm_bus_filters(&lm_bus_canas17, filters);
+    return drv_can_socket_open(s, interface, filters, count, 0);
+}
+
 static void an_interface_that_does_not_exist_is_named_in_the_error(void **state)
 {
     (void)state;
     struct drv_can_socket s;
-    assert_int_equal(drv_can_socket_open(&s, "nocan7", &lm_bus_canas17, 0), LM_ERR_IO);
+    assert_int_equal(open_canas17(&s, "nocan7"), LM_ERR_IO);
     assert_int_equal(s.fd, -1);
     assert_non_null(strstr(s.error, "nocan7: no such interface"));
     assert_non_null(strstr(s.error, "ip link"));
@@ -29,6 +38,20 @@ static void an_interface_that_does_not_exist_is_named_in_the_error(void **state)
 }
 
 /* Whether the kernel has no CAN at all, or has it and sees that lo is no CAN interface. */
+static void more_filters_than_the_kernel_takes_are_refused_and_not_tried_again(void **state)
+{
+    (void)state;
+    static const struct lm_can_filter filters[DRV_CAN_SOCKET_FILTERS + 1];
+    struct drv_can_socket s;
+    assert_int_equal(drv_can_socket_open(&s, "lo", filters, DRV_CAN_SOCKET_FILTERS + 1, 0),
+                     LM_ERR_IO);
+    assert_non_null(strstr(s.error, "513 filters"));
+    const struct lm_can port = drv_can_socket_port(&s);
+    struct lm_can_frame f;
+    assert_int_equal(port.receive(port.ctx, &f), 0);
+    drv_can_socket_close(&s);
+}
+
 static void what_is_no_can_interface_cannot_be_opened(void **state)
 {
     (void)state;
@@ -37,7 +60,7 @@ static void what_is_no_can_interface_cannot_be_opened(void **state)
         print_message("# skipped: no interface lo here\n");
         skip();
     }
-    assert_int_equal(drv_can_socket_open(&s, "lo", &lm_bus_canas17, 0), LM_ERR_IO);
+    assert_int_equal(open_canas17(&s, "lo"), LM_ERR_IO);
     assert_int_equal(s.fd, -1);
     print_message("# %s\n", s.error);
     assert_non_null(strstr(s.error, "lo: "));
@@ -77,7 +100,7 @@ static void flags_and_bytes_are_carried_over(void **state)
 
 /* The kernel's rule (Documentation/networking/can.rst, 4.1.1): received & mask == filter & mask. */
 struct filters {
-    struct can_filter list[DRV_CAN_SOCKET_FILTERS];
+    struct lm_can_filter list[LM_BUS_FILTERS_MAX];
     size_t count;
     const struct lm_bus_profile *profile;
 };
@@ -85,7 +108,8 @@ struct filters {
 static bool passes(const struct filters *f, canid_t id)
 {
     for (size_t i = 0; i < f->count; i++) {
-        if ((id & f->list[i].can_mask) == (f->list[i].can_id & f->list[i].can_mask)) {
+        const struct can_filter kernels = drv_can_socket_filter(&f->list[i]);
+        if ((id & kernels.can_mask) == (kernels.can_id & kernels.can_mask)) {
             return true;
         }
     }
@@ -119,7 +143,7 @@ static void assert_filtered_as_decoded(const struct filters *f, canid_t id)
 static void assert_filters_of(const struct lm_bus_profile *profile)
 {
     struct filters f = {.profile = profile};
-    f.count = drv_can_socket_filters(profile, f.list);
+    f.count = lm_bus_filters(profile, f.list);
     assert_in_range(f.count, 1, 512); /* CAN_RAW_FILTER_MAX */
     for (canid_t id = 0; id <= CAN_SFF_MASK; id++) {
         assert_filtered_as_decoded(&f, id);
@@ -157,8 +181,8 @@ static void the_filters_pass_what_the_decoder_takes_and_nothing_else(void **stat
     const struct lm_bus_profile profile = {
         .rows = packed, .row_count = 3, .framing = LM_BUS_PACKED};
     assert_filters_of(&profile);
-    struct can_filter list[DRV_CAN_SOCKET_FILTERS];
-    assert_int_equal(drv_can_socket_filters(&profile, list), 2);
+    struct lm_can_filter list[LM_BUS_FILTERS_MAX];
+    assert_int_equal(lm_bus_filters(&profile, list), 2);
 }
 
 static void a_stamp_is_an_age_whatever_the_clock_on_the_wall_does(void **state)
@@ -178,7 +202,7 @@ static struct drv_can_socket stand_in(int *other)
     int ends[2];
     assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends), 0);
     *other = ends[1];
-    return (struct drv_can_socket){.fd = ends[0], .interface = "can0", .profile = &lm_bus_canas17};
+    return (struct drv_can_socket){.fd = ends[0], .interface = "can0"};
 }
 
 static uint64_t monotonic_us(void)
@@ -344,7 +368,7 @@ static void an_interface_that_is_missing_at_start_is_looked_for_now_and_then(voi
 {
     (void)state;
     struct drv_can_socket s;
-    assert_int_equal(drv_can_socket_open(&s, "nocan7", &lm_bus_canas17, 0), LM_ERR_IO);
+    assert_int_equal(open_canas17(&s, "nocan7"), LM_ERR_IO);
     const struct lm_can port = drv_can_socket_port(&s);
     struct lm_can_frame f = {.id = 0x81, .length = 8};
     assert_true(s.retry_us <= monotonic_us() + DRV_CAN_SOCKET_RETRY_US);
@@ -381,6 +405,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_interface_that_does_not_exist_is_named_in_the_error),
+        cmocka_unit_test(more_filters_than_the_kernel_takes_are_refused_and_not_tried_again),
         cmocka_unit_test(what_is_no_can_interface_cannot_be_opened),
         cmocka_unit_test(flags_and_bytes_are_carried_over),
         cmocka_unit_test(the_filters_pass_what_the_decoder_takes_and_nothing_else),

@@ -35,6 +35,16 @@ struct lm_can_frame {
     uint64_t time_us; /* of arrival, on the clock that lm_unit_step is given */
 };
 
+/* Identifiers of 11 and of 29 bits. */
+enum { LM_CAN_ID_STANDARD = 0x7ff, LM_CAN_ID_EXTENDED = 0x1fffffff };
+
+/* A data frame passes when it is of the filter's length of identifier and its identifier & mask is
+ * id & mask. Remote frames never pass. */
+struct lm_can_filter {
+    uint32_t id, mask;
+    bool is_extended; /* 29-bit identifier */
+};
+
 struct lm_can {
     void *ctx;
 
