@@ -124,6 +124,15 @@ static bool take_device(const char *text, void *value)
     return true;
 }
 
+static bool take_profile(const char *text, void *value)
+{
+    const struct lm_bus_profile *profile = lm_bus_profile_named(lm_bus_profiles, text);
+    if (profile != NULL) {
+        memcpy(value, &profile, sizeof profile);
+    }
+    return profile != NULL;
+}
+
 static bool take_axis(const char *text, void *value)
 {
     struct drv_stick_axis axis = {.is_inverted = text[0] == '-'};
@@ -175,6 +184,8 @@ static bool take(struct config *c, const struct config_row *row, const char *tex
         return take_number(row, text, strlen(text), value);
     case CONFIG_CHOICE:
         return take_choice(row, text, value);
+    case CONFIG_PROFILE:
+        return take_profile(text, value);
     case CONFIG_SIZE:
         return take_size(row, text, value);
     case CONFIG_DEVICE:

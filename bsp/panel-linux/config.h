@@ -10,6 +10,7 @@
 
 #include "drv/blit.h"
 #include "drv/stick.h"
+#include "lm/bus_profile.h"
 #include "lm/controls.h"
 
 enum {
@@ -21,7 +22,6 @@ enum {
 /* What the bezel's inputs are: the buttons 1..LM_BUTTONS, then these. */
 enum { CONFIG_KEY_DESIGNATE = LM_BUTTONS, CONFIG_KEY_DROP, CONFIG_KEYS };
 enum { CONFIG_LED_ALIVE, CONFIG_LED_FAULT, CONFIG_LED_NIGHT, CONFIG_LEDS };
-enum config_profile { CONFIG_CANAS17, CONFIG_XCSOAR, CONFIG_GENERIC };
 enum config_glass { CONFIG_GLASS_AUTO, CONFIG_GLASS_DRM, CONFIG_GLASS_FBDEV, CONFIG_GLASS_NONE };
 
 struct config_size {
@@ -39,7 +39,7 @@ struct config_stick {
 struct config {
     char database[CONFIG_PATH];
     char can[CONFIG_NAME];
-    uint32_t can_profile; /* enum config_profile */
+    const struct lm_bus_profile *can_profile;
     uint32_t can_node;
     uint32_t seed;
     uint32_t tiles;

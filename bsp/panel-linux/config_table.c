@@ -23,10 +23,9 @@ const struct config_row config_table[] = {
            "The database in flash: a file, or an MTD device such as /dev/mtd0."),
     OPTION(CONFIG_TEXT, can, 0, 16, "none", "can", "INTERFACE | none", "can0",
            "SocketCAN interface of the avionics bus."),
-    OPTION(CONFIG_CHOICE, can_profile, 0, 0, "canas17 xcsoar generic", "can.profile",
-           "canas17 | xcsoar | generic", "canas17",
-           "What the bus's frames mean: CANaerospace 1.7, XCSoar's dialect, or the table that was "
-           "built in."),
+    OPTION(CONFIG_PROFILE, can_profile, 0, 0, NULL, "can.profile", "PROFILE", "canas17",
+           "What the bus's frames mean: CANaerospace 1.7 (canas17), XCSoar's dialect (xcsoar), the "
+           "table that was built in (generic), or another profile of docs/bus.md."),
     OPTION(
         CONFIG_NUMBER, can_node, 0, 255, NULL, "can.node", "0..255", "0",
         "The panel's node on a CANaerospace bus, where it answers requests; 0: it only listens."),

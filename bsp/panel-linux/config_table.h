@@ -9,7 +9,8 @@ enum config_kind {
     CONFIG_TEXT,
     CONFIG_PATH_TO, /* a text that begins with '/' */
     CONFIG_NUMBER,
-    CONFIG_CHOICE, /* stored as the number of the word */
+    CONFIG_CHOICE,  /* stored as the number of the word */
+    CONFIG_PROFILE, /* of the bus, by its name in lm_bus_profiles; stored as a pointer */
     CONFIG_SIZE,
     CONFIG_DEVICE,
     CONFIG_AXIS,

@@ -70,16 +70,6 @@ static int next_control(void *ctx, struct lm_control *control)
            drv_control_ring_take(&p->hand.ring, control);
 }
 
-static const struct lm_bus_profile *bus_profile(const struct config *c)
-{
-    static const struct lm_bus_profile *const profiles[] = {
-        [CONFIG_CANAS17] = &lm_bus_canas17,
-        [CONFIG_XCSOAR] = &lm_bus_xcsoar,
-        [CONFIG_GENERIC] = &lm_bus_generic,
-    };
-    return profiles[c->can_profile];
-}
-
 /* A database that cannot be used is said on the glass: better than no glass. */
 static void start_with_flash(struct panel *p, const struct lm_flash *flash)
 {
@@ -100,7 +90,7 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
     p->board = (struct lm_board){.radar = &lm_radar_default,
                                  .flash = flash,
                                  .can = &p->bus.port,
-                                 .bus_profile = bus_profile(p->config),
+                                 .bus_profile = p->config->can_profile,
                                  .bus_node = (uint8_t)p->config->can_node,
                                  .controls = &p->controls,
                                  .display = &p->glass.port,
@@ -158,7 +148,7 @@ int panel_open(struct panel *p, const struct config *config)
     p->signals = open_signals();
     p->controls = (struct lm_controls){.ctx = p, .next = next_control};
     const struct lm_flash *flash = open_flash(p);
-    bus_open(&p->bus, config->can, bus_profile(config), p->zero_us);
+    bus_open(&p->bus, config->can, config->can_profile, p->zero_us);
     bezel_open(&p->bezel, config, panel_now_us(p));
     hand_open(&p->hand, config);
     int status = glass_open(&p->glass, config, panel_now_us(p));

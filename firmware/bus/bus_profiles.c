@@ -123,17 +123,16 @@ static bool are_same(const char *a, const char *b)
     return *a == *b;
 }
 
-const struct lm_bus_profile *lm_bus_profile_named(const char *name)
+const struct lm_bus_named_profile lm_bus_profiles[] = {{"canas17", &lm_bus_canas17},
+                                                       {"xcsoar", &lm_bus_xcsoar},
+                                                       {"generic", &lm_bus_generic},
+                                                       {NULL, NULL}};
+
+const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_profile *list,
+                                                  const char *name)
 {
-    static const struct {
-        const char *name;
-        const struct lm_bus_profile *profile;
-    } known[] = {
-        {"canas17", &lm_bus_canas17}, {"xcsoar", &lm_bus_xcsoar}, {"generic", &lm_bus_generic}};
-    for (uint32_t i = 0; i < COUNT(known); i++) {
-        if (are_same(known[i].name, name)) {
-            return known[i].profile;
-        }
+    while (list->name != NULL && !are_same(list->name, name)) {
+        list++;
     }
-    return NULL;
+    return list->profile;
 }

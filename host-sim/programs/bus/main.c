@@ -96,6 +96,16 @@ static int read_table(struct bus_table *table, const char *path)
     return status;
 }
 
+static void complain_of_profile(const char *name)
+{
+    char names[200] = "";
+    for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "one of ", p->name);
+    }
+    hs_error(name, names, "there is no such profile");
+}
+
 static bool is_command(const char *name)
 {
     static const char *const names[] = {"table", "dbc", "filters", "decode", "fields"};
@@ -121,9 +131,9 @@ static int read_options(struct command *c, int argc, char **argv)
     for (int code; (code = getopt_long(argc, argv, "h", options, NULL)) != -1;) {
         switch (code) {
         case OPT_PROFILE:
-            c->profile = lm_bus_profile_named(optarg);
+            c->profile = lm_bus_profile_named(lm_bus_profiles, optarg);
             if (c->profile == NULL) {
-                hs_error(optarg, "canas17, xcsoar or generic", "there is no such profile");
+                complain_of_profile(optarg);
                 return HS_EXIT_USAGE;
             }
             break;

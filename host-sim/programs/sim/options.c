@@ -16,7 +16,7 @@ static const char help[] =
     "  --db FILE          flash image made by landmass-db build\n"
     "  --bus FILE.log     take the bus from a candump -L log, in flight time from its first frame\n"
     "  --can IFACE        take the bus from a SocketCAN interface, in real time\n"
-    "  --profile NAME     what the bus's frames mean: canas17 (default), xcsoar or generic\n"
+    "  --profile NAME     what the bus's frames mean: a profile of docs/bus.md; default canas17\n"
     "  --node N           be node N (1..255) of a CANaerospace bus and answer requests; 0: only "
     "listen (default)\n"
     "  --script FILE      operate the controls by a script (below)\n"
@@ -127,7 +127,7 @@ static bool take_value(struct options *o, int option)
         o->can_interface = optarg;
         return true;
     case OPT_PROFILE:
-        o->profile = lm_bus_profile_named(optarg);
+        o->profile = lm_bus_profile_named(lm_bus_profiles, optarg);
         return o->profile != NULL;
     case OPT_NODE:
         if (!whole(optarg, 0, 255, &n)) {

@@ -226,22 +226,36 @@ static void assert_sound(const struct lm_bus_profile *p)
     }
 }
 
+static void a_board_may_have_a_list_of_its_own(void **state)
+{
+    (void)state;
+    static const struct lm_bus_profile mine = {.name = "mine"};
+    static const struct lm_bus_named_profile list[] = {
+        {"canas17", &lm_bus_canas17}, {"mine", &mine}, {NULL, NULL}};
+    assert_ptr_equal(lm_bus_profile_named(list, "mine"), &mine);
+    assert_ptr_equal(lm_bus_profile_named(list, "canas17"), &lm_bus_canas17);
+    assert_null(lm_bus_profile_named(list, "xcsoar"));
+}
+
 static void a_profile_is_found_by_its_name_only(void **state)
 {
     (void)state;
-    assert_ptr_equal(lm_bus_profile_named("canas17"), &lm_bus_canas17);
-    assert_ptr_equal(lm_bus_profile_named("xcsoar"), &lm_bus_xcsoar);
-    assert_ptr_equal(lm_bus_profile_named("generic"), &lm_bus_generic);
-    assert_null(lm_bus_profile_named("canas"));
-    assert_null(lm_bus_profile_named("canas178"));
-    assert_null(lm_bus_profile_named(""));
+    assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "canas17"), &lm_bus_canas17);
+    assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "xcsoar"), &lm_bus_xcsoar);
+    assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "generic"), &lm_bus_generic);
+    assert_null(lm_bus_profile_named(lm_bus_profiles, "canas"));
+    assert_null(lm_bus_profile_named(lm_bus_profiles, "canas178"));
+    assert_null(lm_bus_profile_named(lm_bus_profiles, ""));
 }
 
-static void both_tables_of_canaerospace_are_sound(void **state)
+static void every_table_of_canaerospace_is_sound(void **state)
 {
     (void)state;
-    assert_sound(&lm_bus_canas17);
-    assert_sound(&lm_bus_xcsoar);
+    for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
+        if (p->profile->framing == LM_BUS_CANAEROSPACE) {
+            assert_sound(p->profile);
+        }
+    }
 }
 
 /* ---- numbers ---- */
@@ -897,7 +911,8 @@ int main(void)
         cmocka_unit_test(every_value_that_another_library_sent_is_decoded_within_its_tolerance),
         cmocka_unit_test(the_table_agrees_with_the_specifications_identifiers),
         cmocka_unit_test(a_profile_is_found_by_its_name_only),
-        cmocka_unit_test(both_tables_of_canaerospace_are_sound),
+        cmocka_unit_test(a_board_may_have_a_list_of_its_own),
+        cmocka_unit_test(every_table_of_canaerospace_is_sound),
         cmocka_unit_test(any_float_in_range_is_within_half_a_count_of_double_arithmetic),
         cmocka_unit_test(a_double_keeps_the_last_count),
         cmocka_unit_test(a_short2_is_value_times_scale_over_32767),

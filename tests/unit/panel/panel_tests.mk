@@ -2,7 +2,7 @@
 T := $(O)/bin/tests/unit/panel/test_config
 TESTS += $(T)
 $(O)/tests/unit/panel/%.o: EXTRA_CFLAGS := -Ibsp/panel-linux -Itests/unit/firmware
-$(T): $(addprefix $(O)/,tests/unit/panel/test_config.o bsp/panel-linux/config.o bsp/panel-linux/config_table.o)
+$(T): $(addprefix $(O)/,tests/unit/panel/test_config.o bsp/panel-linux/config.o bsp/panel-linux/config_table.o) $(LIB_firmware) $(LIB_fixed)
 $(T): LDLIBS := -lcmocka
 
 T := $(O)/bin/tests/unit/panel/test_panel
@@ -23,5 +23,5 @@ TESTS += $(T)
 $(O)/tests/unit/panel/test_bezel.o: EXTRA_CFLAGS += -Itests/unit/drivers
 $(T): $(addprefix $(O)/,tests/unit/panel/test_bezel.o tests/unit/drivers/fake_gpio.o tests/unit/drivers/fake_gpiod$(GPIOD_MAJOR).o \
     $(addprefix bsp/panel-linux/,bezel.o config.o config_table.o report.o) $(addprefix drivers/gpio/,gpio.o debounce.o lines_gpiod$(GPIOD_MAJOR).o)) \
-    $(TEST_SUPPORT) $(LIB_hs)
+    $(TEST_SUPPORT) $(LIB_firmware) $(LIB_fixed) $(LIB_hs)
 $(T): LDLIBS = -lcmocka $(call pkgs,libs,libpng) $(call WRAP,open $(if $(filter 2,$(GPIOD_MAJOR)),opendir readdir closedir))

@@ -78,6 +78,18 @@ static void every_option_refuses_what_is_no_value_of_it(void **state)
     }
 }
 
+static void every_profile_of_the_bus_is_a_choice(void **state)
+{
+    (void)state;
+    for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
+        struct config c;
+        char text[100];
+        snprintf(text, sizeof text, "can.profile = %s\n", p->name);
+        assert_int_equal(read_text(&c, text).count, 0);
+        assert_ptr_equal(c.can_profile, p->profile);
+    }
+}
+
 static void numbers_are_held_to_their_range(void **state)
 {
     (void)state;
@@ -214,6 +226,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_default_is_a_value_of_its_option),
         cmocka_unit_test(every_option_refuses_what_is_no_value_of_it),
+        cmocka_unit_test(every_profile_of_the_bus_is_a_choice),
         cmocka_unit_test(numbers_are_held_to_their_range),
         cmocka_unit_test(values_arrive_where_they_belong),
         cmocka_unit_test(an_option_that_is_given_twice_keeps_its_first_value),

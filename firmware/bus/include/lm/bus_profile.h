@@ -70,8 +70,24 @@ extern const struct lm_bus_profile lm_bus_canas17; /* the specification, and LON
 extern const struct lm_bus_profile lm_bus_xcsoar;  /* as XCSoar reads it: types are assumed */
 extern const struct lm_bus_profile lm_bus_generic; /* made of a text table: see docs/bus.md */
 
-/* "canas17", "xcsoar" or "generic", as a configuration writes it; NULL for any other name. */
-const struct lm_bus_profile *lm_bus_profile_named(const char *name);
+/* A profile and the name by which a configuration selects it. */
+struct lm_bus_named_profile {
+    const char *name;
+    const struct lm_bus_profile *profile;
+};
+
+/* The profiles above: "canas17", "xcsoar" and "generic"; a row of NULLs ends the list. Panel, bench
+ * and tests take their names from it, so that a profile beside these is its rows, an entry here and
+ * a section of docs/bus.md. A board that has a profile of its own passes a list of its own:
+ *
+ *     static const struct lm_bus_named_profile mine[] = {
+ *         {"canas17", &lm_bus_canas17}, {"ours", &our_profile}, {NULL, NULL}};
+ *     board.bus_profile = lm_bus_profile_named(mine, "ours"); */
+extern const struct lm_bus_named_profile lm_bus_profiles[];
+
+/* The profile of this name in the list; NULL when none has exactly this name. */
+const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_profile *list,
+                                                  const char *name);
 
 /* What became of a frame, or of a number in it. Each has a counter. */
 enum lm_bus_outcome {
