@@ -15,9 +15,14 @@ struct build_targets {
     struct build_signatures signatures; /* owned: of its `library` lines */
 };
 
-/* Read a file of targets, and the signatures that it names. Returns 0, or -1 with the error
- * reported and nothing to free. */
+/* Read a file of targets, and the signatures that it names. Returns 0, or -1 with file, line, cause
+ * and remedy reported and nothing to free:
+ * - a file cannot be read, or a line is none of the forms of docs/targets.md,
+ * - a number is out of its range, or a name is too long or stands twice,
+ * - there are too many targets, scatterers, legs or libraries,
+ * - a leg is too short, too long or goes over a pole. */
 int build_targets_read(struct build_targets *t, const char *path);
+/* Harmless on a zeroed struct. */
 void build_targets_free(struct build_targets *t);
 
 /* The bytes of the section, head and records; the caller frees them. NULL when memory ran out. */

@@ -6,19 +6,23 @@
 #include "gis/raster.h"
 #include "hs/class_table.h"
 
-/* Create one with the table's colours and names in it. Returns 0, or -1 reported. */
+/* Create one on `grid` with the table's colours and names in it. Returns 0, or -1 with the error
+ * reported as db_raster_create does. */
 int db_class_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                            const struct db_class_table *table);
 
-/* Open one for reading: one band. Returns 0, or -1 reported. */
+/* Open one for reading. Returns 0, or -1 with the error reported and nothing to close: it cannot be
+ * opened, or has not one band. */
 int db_class_raster_open(struct db_raster *r, const char *path);
 
-/* Read rows; every value must be a class of the table or no data. `scratch` holds rows * width
- * floats and `valid` as many bytes. Returns 0, or -1 reported. */
+/* Read rows y .. y + rows - 1 into `classes`, rows * width bytes: an index into the table, or
+ * DB_CLASS_NODATA. `scratch` holds rows * width floats and `valid` as many bytes. Returns 0, or -1
+ * with the error reported: a row cannot be read, or holds a class that the table has not. */
 int db_class_raster_read(const struct db_raster *r, const struct db_class_table *table, int y,
                          int rows, float *scratch, uint8_t *valid, uint8_t *classes);
 
-/* Print how many pixels each class has, and how many none. */
+/* Print how many pixels each class has, and how many none: counts[index], and
+ * counts[DB_CLASS_NODATA]. */
 void db_class_counts_print(const struct db_class_table *table, const uint64_t counts[256]);
 
 #endif

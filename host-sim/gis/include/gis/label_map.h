@@ -19,8 +19,11 @@ struct db_label_map {
     bool is_default; /* each class stands for itself, and need not occur */
 };
 
-/* Read the map; every class must be in the table. `path` may be NULL: then each class stands for
- * itself. Returns 0, or -1 with file, line, cause and remedy reported. */
+/* Read the map; `path` may be NULL: then each class stands for itself. Returns 0, or -1 with file,
+ * line, cause and remedy reported:
+ * - the file cannot be read, or a line has no '=',
+ * - a class is not in the table,
+ * - a label is too long, or there are more than DB_MAP_MAX. */
 int db_label_map_read(struct db_label_map *map, const char *path,
                       const struct db_class_table *table);
 

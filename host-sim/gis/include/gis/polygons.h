@@ -18,16 +18,21 @@ struct db_polygon {
 };
 
 struct db_polygons {
-    struct db_polygon *items;
+    struct db_polygon *items; /* owned */
     size_t count;
 };
 
 /* Read every feature of the first layer that has a field called `field`. Geometries are reprojected
  * when source and image both name a CRS; a source without one is taken to be in the image's.
- * Features without an area are warned of and left out. Returns 0, or -1 with the error reported. */
+ * Features without an area are warned of and left out. Returns 0, or -1 with the error reported:
+ * - the file cannot be opened, or no layer has the field,
+ * - the image's geotransform has no inverse,
+ * - a geometry cannot be brought to the image's CRS,
+ * - no memory. */
 int db_polygons_read(struct db_polygons *p, const char *path, const char *field,
                      const struct db_grid *grid);
 
+/* Harmless on a zeroed struct. */
 void db_polygons_free(struct db_polygons *p);
 
 /* Pixels x_begin .. x_end - 1 of row y; a result other than 0 ends the walk. */

@@ -13,7 +13,8 @@ struct db_preview {
     float *values; /* owned: plane_count planes; NAN where there is no data */
 };
 
-/* Returns 0, or -1 out of memory, reported. */
+/* Choose the step, so that no side exceeds DB_PREVIEW_SIDE, and take memory for `plane_count`
+ * planes of NAN. Returns 0, or -1 with the error reported (no memory). */
 int db_preview_init(struct db_preview *p, const struct db_grid *grid, int plane_count);
 
 void db_preview_free(struct db_preview *p);
@@ -24,7 +25,8 @@ void db_preview_add(struct db_preview *p, int plane, int y, int rows, int width,
                     const float *values, const uint8_t *valid);
 
 /* Part `panel` of `panels` side by side of a picture p->width * panels wide, 3 bytes a pixel. The
- * planes (1 or 3) are stretched from their 2nd to their 98th percentile; no data is black. */
+ * planes (1 or 3) are stretched from their 2nd to their 98th percentile; no data is black. Returns
+ * 0, or -1 with the error reported (no memory). */
 int db_preview_paint_stretched(const struct db_preview *p, uint8_t *rgb, int panel, int panels);
 
 /* The same of class indices in plane 0, in the colours of the table. */

@@ -34,22 +34,25 @@ struct db_raster_band {
 
 struct db_raster {
     struct db_grid grid;
-    struct db_raster_band *bands;
+    struct db_raster_band *bands; /* owned */
     int band_count;
-    GDALDatasetH *files;
+    GDALDatasetH *files; /* owned */
     int file_count;
     const char *name; /* the first path, for messages; borrowed */
     bool black_is_nodata;
 };
 
-/* Open the files in order; their bands follow each other. All must have the same size, and the same
- * geotransform where they have one (to 1/1000 pixel). A missing CRS is only warned of.
- * Returns 0, or -1 with the error reported and nothing to close. */
+/* Open the files in order; their bands follow each other. A missing geotransform or CRS is only
+ * warned of. Returns 0, or -1 with the error reported and nothing to close:
+ * - a file cannot be opened, or has no band of its own (a container of sub-datasets),
+ * - the files differ in size, or in geotransform where both have one (by more than 1/1000 pixel),
+ * - no memory. */
 int db_raster_open(struct db_raster *r, const struct db_raster_options *options);
 
 /* The same for one file taken as it is. */
 int db_raster_open_one(struct db_raster *r, const char *path);
 
+/* Harmless on a zeroed struct. */
 void db_raster_close(struct db_raster *r);
 
 /* Rows to read at a time so that `bytes_per_pixel` times the block stays within 64 MiB; at least 1.

@@ -5,8 +5,7 @@
 #include "lm/geo.h"
 #include "lm/target.h"
 
-/* How far from its place a leg may end: what the firmware's own steps of length and heading leave.
- */
+/* How far from its place a leg may end: what the firmware's steps of length and heading leave. */
 #define IMAGE_PATH_SLACK_M 0.1
 
 /* The leg from one place to another, ending there as lm_geo_direct goes it. Returns 0, or -1 when

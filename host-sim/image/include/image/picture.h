@@ -7,6 +7,8 @@
 
 #include <stdbool.h>
 
+/* What a picture shows of each cell: gamma in dB, class, elevation in metres, height of what stands
+ * on the ground in metres, or elevation as shaded relief. */
 enum image_plane {
     IMAGE_PLANE_REFLECTIVITY,
     IMAGE_PLANE_CLASS,

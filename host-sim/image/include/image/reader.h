@@ -17,7 +17,7 @@ struct image_findings {
     uint64_t count, shown_max;
 };
 
-/* Note one more. `offset` is into the image. */
+/* Note one more finding, in printf's manner. `offset` is in bytes into the image. */
 void image_find(struct image_findings *f, uint64_t offset, const char *cause, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -37,7 +37,8 @@ struct image {
     const struct lm_chip *chips;
 };
 
-/* Map a file. Returns 0, or -1 with the error reported. */
+/* Map a file. Returns 0, or -1 with the error reported: it cannot be read or
+ * mapped, is no ordinary file, or is empty. image_close unmaps it. */
 int image_map(struct image *image, const char *path);
 
 /* Use bytes in memory, aligned to 8, that stay the caller's. */
@@ -52,6 +53,7 @@ int image_read_tables(struct image *image, struct image_findings *findings);
  * reported. */
 int image_open(struct image *image, const char *path);
 
+/* Unmap the file. What the pointers led to is gone; a lent image stays the caller's. */
 void image_close(struct image *image);
 
 /* The directory's record number for a tile, after checking the entry's CRC and bound; UINT32_MAX

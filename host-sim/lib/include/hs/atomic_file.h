@@ -11,10 +11,12 @@ struct hs_atomic_file {
     char *temporary; /* owned: the name used while writing, in the same folder */
 };
 
-/* A path that exists and is no ordinary file (a device, a pipe, a folder) is refused: it would be
- * replaced. Both return 0, or -1 with the error already reported through hs_error. After a failure,
- * and after commit, nothing is left of the temporary file. Commit flushes to the disk before it
- * renames. */
+/* Begin a file that will be called `path`, and put it in place. Commit flushes to the disk before
+ * it renames. Both return 0, or -1 with the error reported; nothing is left of the temporary file
+ * then, nor after a commit. Failures:
+ * - open: `path` exists and is no ordinary file (a device, a pipe, a folder), because it would be
+ *   replaced; the folder is missing or cannot be written; no memory,
+ * - commit: the disk is full, or the rename is refused. */
 int hs_atomic_open(struct hs_atomic_file *f, const char *path);
 int hs_atomic_commit(struct hs_atomic_file *f);
 

@@ -7,7 +7,7 @@
  *     gamma_db       mean of the constant-gamma reflectivity at X band in dB, -80..40
  *     spread_db      standard deviation of the same, 0..20 dB
  *     limits_db      low high: no pixel of the class leaves them; those of two classes may overlap
- *     texture        gaussian | rayleigh | k: the shape of the distribution in dB (see reflect.h)
+ *     texture        gaussian | rayleigh | k: shape in dB (reflectivity/reflect.h)
  *     texture_shape  order of the k texture, 0.1..1000; 1 unless given
  *     height_m       height of structures and canopy where nothing better is known, 0..500 m
  *     looks          speckle looks, 1..64; 1 unless given
@@ -58,7 +58,11 @@ struct db_class_table {
     int count;
 };
 
-/* Read and check the whole file. Returns 0, or -1 with file, line, cause and remedy reported. */
+/* Read and check the whole file. Returns 0, or -1 with file, line, cause and remedy reported:
+ * - the file cannot be read, or holds no class or more than DB_CLASS_MAX,
+ * - a line is neither a heading nor a value; a name is none or stands twice,
+ * - a key is unknown, stands twice or before any class, or its value is out of range,
+ * - a class lacks a required key, or gamma_db lies outside limits_db. */
 int db_class_table_read(struct db_class_table *table, const char *path);
 
 /* Write the table so that reading it back gives the same. Returns 0, or -1 with the error reported.
@@ -68,7 +72,8 @@ int db_class_table_write(const struct db_class_table *table, const char *path);
 /* The index of the class called `name`, or -1. */
 int db_class_find(const struct db_class_table *table, const char *name);
 
-/* The names in one line, "soil, asphalt, water", for messages. */
+/* Write the names in one line, "soil, asphalt, water", into the `size` bytes of `text`, cut where
+ * they end; for messages. */
 void db_class_names(const struct db_class_table *table, char *text, int size);
 
 #endif

@@ -38,12 +38,15 @@ struct db_usage {
     const char *description; /* whole paragraphs */
 };
 
-/* Read argv[1..]. Returns true when the command shall go on. Otherwise `*exit_code` is HS_EXIT_OK
- * after
- * --help, or HS_EXIT_USAGE with the error reported. Lists read so far must be freed either way. */
+/* Read argv[1..] into the targets of the options. Lists must be freed whatever is returned. Returns
+ * true when the command shall go on. Otherwise *exit_code is:
+ * - HS_EXIT_OK: --help was asked for and printed,
+ * - HS_EXIT_USAGE, reported: a word that is no option or an unknown one, a value too many or too
+ *   few, a number outside its range, or a required option that is missing. */
 bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
 
+/* Free the items. Harmless on a zeroed list. */
 void db_list_free(struct db_list *list);
 
 /* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after

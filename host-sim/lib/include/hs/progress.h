@@ -6,11 +6,12 @@
 
 struct hs_progress {
     const char *label; /* borrowed until hs_progress_end */
-    uint64_t total;
+    uint64_t total;    /* of `done` at the end, in any unit */
     int shown_permille;
     int is_terminal;
 };
 
+/* Start the bar at 0 of `total`. */
 void hs_progress_begin(struct hs_progress *p, const char *label, uint64_t total);
 
 /* Redraws only when the tenth of a per cent changes; cheap enough to call once a block or row. */

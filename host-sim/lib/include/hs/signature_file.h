@@ -40,8 +40,11 @@ bool db_chip_rest_is_zero(const struct lm_chip *c);
  * with the error reported. */
 int db_signature_write(struct db_signature *s, const char *path);
 
-/* Read a file and believe nothing in it: its size is compared before memory is taken, and every
- * record and chip checked. Returns 0, or -1 with the error reported and nothing to free. */
+/* Read a file and believe nothing in it: its size is compared before memory is taken. Returns 0, or
+ * -1 with the error reported and nothing to free:
+ * - the file cannot be read, or is no section of one signature,
+ * - a checksum does not fit, a number is out of its range, or an unused byte is not 0,
+ * - no memory. */
 int db_signature_read(struct db_signature *s, const char *path);
 
 /* Harmless on a zeroed struct. */

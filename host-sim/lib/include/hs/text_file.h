@@ -14,7 +14,7 @@ struct db_text_file {
     char remark[120]; /* what stood after '#' */
 };
 
-/* Returns 0, or -1 with the error reported. */
+/* Returns 0, or -1 with the error reported: the file cannot be opened. */
 int db_text_open(struct db_text_file *f, const char *path);
 
 /* Step to the next line that holds more than a remark. Returns 1, 0 at the end of the file, or -1
@@ -28,6 +28,7 @@ int db_text_error(const struct db_text_file *f, const char *remedy, const char *
 /* Split "key = value" in place; returns 0, or -1 when there is no '=' or either side is empty. */
 int db_text_split(char *line, char **key, char **value);
 
+/* Close the file and free the line. */
 void db_text_close(struct db_text_file *f);
 
 #endif

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* True if all `count` bytes are 0; true of none. */
 static inline bool db_is_zero(const void *bytes, size_t count)
 {
     const uint8_t *b = bytes;

@@ -10,15 +10,17 @@
 
 #include <stdint.h>
 
-/* How the values of one class are distributed in dB, prepared once.
+/* Law of one class: how its values are distributed in dB, prepared once.
  *
  * Each texture is a shape in dB, shifted and scaled so that its mean is gamma_db and its standard
- * deviation spread_db, and drawn again while it falls outside the limits: gaussian  normal in dB,
- * log-normal in power rayleigh  power of two Gaussian components: amplitude Rayleigh, many
- * scatterers to a cell. Unscaled its deviation would be 5.57 dB k         power Gamma distributed
- * with order texture_shape: with the display's single-look speckle on it, amplitude K distributed
- * (a compound of few scatterers). Unscaled its deviation is 4.34 sqrt(trigamma(order)) dB Limits
- * nearer than about two spreads narrow the distribution and may move its mean. */
+ * deviation spread_db, and drawn again while it falls outside the limits. Limits nearer than about
+ * two spreads narrow the distribution and may move its mean. The shapes:
+ * - gaussian: normal in dB, log-normal in power,
+ * - rayleigh: power of two Gaussian components, whose amplitude is Rayleigh: many scatterers in a
+ *   cell. Its deviation before scaling is 5.57 dB,
+ * - k: power Gamma distributed with order texture_shape. With the display's single-look speckle its
+ *   amplitude is K distributed: a compound of few scatterers. Its deviation before scaling is
+ *   4.34 sqrt(trigamma(order)) dB. */
 struct db_reflect_law {
     const struct db_class *c;     /* borrowed */
     double shape_mean, shape_dev; /* of the unscaled texture, dB */

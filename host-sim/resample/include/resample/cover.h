@@ -31,11 +31,14 @@ struct resample_cover {
     double pixel_latitude_bam, pixel_longitude_bam;
 };
 
-/* Paths may be NULL, but `reflectivity` or `heights` alone are an error. Class and reflectivity
- * rasters must be on one grid; the heights may be on their own. All paths are borrowed until close.
- * Returns 0, or -1 with the error reported and nothing to close. */
+/* Open the rasters. Paths are borrowed until close and may be NULL; without `classes` the cover is
+ * empty, whatever the other two. Returns 0, or -1 with the error reported and nothing to close:
+ * - the middle of the class raster lies nowhere on Earth,
+ * - a file cannot be opened, has more than one band, or no georeference,
+ * - classes and reflectivity lie on different grids (heights may lie on their own). */
 int resample_cover_open(struct resample_cover *c, const struct db_class_table *table,
                         const char *classes, const char *reflectivity, const char *heights);
+/* Harmless on a zeroed struct. */
 void resample_cover_close(struct resample_cover *c);
 
 /* Say how large the image's finest cells are. Call once before resample_cover_tile. */

@@ -25,10 +25,12 @@ struct resample_georef {
     double centre_x;       /* of the raster, CRS units: longitudes are wrapped to lie around it */
 };
 
-/* Read the georeferencing of an open dataset; `path` is for messages. Returns 0, or -1 with the
- * error (no geotransform, no CRS, CRS that cannot be reached from WGS-84) reported and nothing to
- * close. */
+/* Read the georeference of an open dataset; `path` is for messages. Returns 0, or -1 with the error
+ * reported and nothing to close:
+ * - the dataset has no geotransform, or no CRS,
+ * - its CRS cannot be reached from WGS-84, or PROJ lacks its data. */
 int resample_georef_open(struct resample_georef *g, GDALDatasetH dataset, const char *path);
+/* Harmless on a zeroed struct. */
 void resample_georef_close(struct resample_georef *g);
 
 /* Move the origin to pixel (x, y) and take another size: the frame of a mosaic. */
@@ -44,7 +46,8 @@ void resample_to_pixels(const struct resample_georef *g, size_t count, const dou
  * part of the raster can be placed on the Earth. */
 int resample_area(const struct resample_georef *g, struct image_area *area);
 
-/* Size of a pixel at the raster's middle in BAM of latitude and of longitude. */
+/* Size of a pixel at the raster's middle, in BAM of latitude and of longitude. Returns 0, or -1
+ * when the middle lies nowhere on Earth. */
 int resample_pixel_bam(const struct resample_georef *g, double *latitude, double *longitude);
 
 /* Are `b`'s pixels those of `a` but for a shift by a whole number of pixels? Then (*x, *y) is the
