@@ -56,10 +56,10 @@ static bool radar_label(const struct lm_page *p, uint8_t osb, struct lm_label *l
 {
     switch (osb) {
     case OSB_MODE:
-        return say(label, lm_page_modes[p->mode], "", false);
+        return say(label, p->radar->mode[p->mode].name, "", false);
     case OSB_FIELD:
-        return say(label, p->picture == LM_PICTURE_PATCH ? "SAR" : lm_page_fields[p->field], "",
-                   false);
+        return say(label, p->picture == LM_PICTURE_PATCH ? "SAR" : p->radar->field[p->field].name,
+                   "", false);
     case OSB_OVERRIDE:
         return say(label, "OVRD", "", p->is_override);
     case OSB_BARO:
@@ -198,7 +198,7 @@ bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value)
 {
     const bool is_range_shown = p->format == LM_FORMAT_RADAR || p->format == LM_FORMAT_DCLT;
     if (is_range_shown && osb == OSB_RANGE_UP && p->picture == LM_PICTURE_SECTOR) {
-        return say_number(value, "", p->radar->range_nm[p->range], false);
+        return say_number(value, "", p->radar->range[p->range].range_nm, false);
     }
     if (p->format != LM_FORMAT_CNTL) {
         return false;

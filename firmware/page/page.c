@@ -3,9 +3,6 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 
-const char lm_page_modes[LM_SECTOR_MODES][6] = {"GM", "GMT", "SEA"};
-const char lm_page_fields[LM_FIELDS][6] = {"NORM", "EXP", "DBS1", "DBS2"};
-
 const struct lm_page_cell lm_page_cells[LM_SAR_CELLS_OFFERED] = {
     {1000, "1M"}, {2000, "2M"}, {3000, "3M"}, {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
 
@@ -13,7 +10,7 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 {
     memset(p, 0, sizeof *p);
     p->radar = radar;
-    p->range = 2;
+    p->range = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
     p->cell = 3;
     p->hidden = LM_OSB_BIT(OSB_FREEZE) | LM_OSB_BIT(OSB_SNOWPLOW) | LM_OSB_BIT(OSB_CURSOR_ZERO) |
                 LM_OSB_BIT(OSB_STEERPOINT) | LM_OSB_BIT(OSB_BIT) | LM_OSB_BIT(OSB_RADAR) |
@@ -75,8 +72,7 @@ static uint32_t press_rocker(struct lm_page *p, uint8_t button)
 
 uint8_t lm_page_range_last(const struct lm_page *p)
 {
-    const struct lm_radar *radar = p->radar;
-    return (uint8_t)fx_min_u32(radar->mode[p->mode].range_last, radar->field[p->field].range_last);
+    return (uint8_t)lm_radar_range_last(p->radar, p->mode, p->field);
 }
 
 /* Begin the sector with this scale. */
@@ -104,8 +100,9 @@ static bool is_within(int32_t value, int32_t low, int32_t high)
     return value >= low && value <= high;
 }
 
-uint32_t lm_page_select_range(struct lm_page *p, int32_t range)
+uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm)
 {
+    const int32_t range = lm_radar_find_range(p->radar, range_nm);
     if (!is_within(range, 0, lm_page_range_last(p))) {
         return 0;
     }
@@ -125,12 +122,13 @@ uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
 uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field)
 {
     if (!is_within(mode, 0, LM_SECTOR_MODES - 1) ||
-        !is_within(field, 0, p->radar->mode[mode].field_last)) {
+        !is_within(field, 0, p->radar->mode[mode].field_last) ||
+        p->range > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)field)) {
         return 0;
     }
     p->mode = (uint8_t)mode;
     p->field = (uint8_t)field;
-    return fit_range(p) | LM_EFFECT_TONE;
+    return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
 }
 
 uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db)
@@ -211,8 +209,7 @@ static uint32_t press_field(struct lm_page *p)
     }
     for (uint32_t i = 0; i < LM_FIELDS; i++) {
         p->field = (uint8_t)((p->field + 1u) % LM_FIELDS);
-        if (p->field <= radar->mode[p->mode].field_last &&
-            p->range <= radar->field[p->field].range_last) {
+        if (p->field <= radar->mode[p->mode].field_last && p->range <= lm_page_range_last(p)) {
             break;
         }
     }

@@ -45,8 +45,6 @@ enum {
 
 #define LM_OSB_BIT(osb) (1u << ((osb)-1))
 
-extern const char lm_page_modes[LM_SECTOR_MODES][6], lm_page_fields[LM_FIELDS][6];
-
 /* Cells of a patch. */
 struct lm_page_cell {
     uint32_t mm;

@@ -29,16 +29,16 @@ static int32_t log2_grazing_q16(uint32_t slant_q8, int32_t height_q10)
 static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_q10,
                      uint8_t range)
 {
-    const uint32_t end_q8 = radar->range_m[range] * 256u;
+    const uint32_t end_q8 = radar->range[range].range_m * 256u;
     const int32_t end_q16 = 3 * fx_log2_q16(end_q8) - log2_grazing_q16(end_q8, height_q10);
-    const int32_t break_q16 = fx_log2_q16(radar->receiver.stc_m[range]) + (8 << 16);
+    const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_m) + (8 << 16);
     /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM; log2(2 pi) is 173768 / 2^16. */
     const int32_t beam_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - ((32 + 8) << 16);
     for (uint32_t i = 0; i < r->cells; i++) {
         const uint32_t slant_q8 = r->first_q8 + i * r->cell_q8;
         const int32_t range_q16 = fx_log2_q16(slant_q8);
         const int32_t grazing_q16 = log2_grazing_q16(slant_q8, height_q10);
-        r->noise_q8[i] = radar->receiver.noise_end_q8[range] +
+        r->noise_q8[i] = radar->range[range].noise_end_q8 +
                          fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_q16);
         r->fall_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
         r->volume_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);

@@ -156,7 +156,7 @@ static void set_runup(struct lm_sector *s, const struct lm_db *db)
 static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_q10,
                        int32_t reference_q10)
 {
-    const uint32_t range_m = s->radar->range_m[s->command.range];
+    const uint32_t range_m = s->radar->range[s->command.range].range_m;
     const uint32_t bins = s->half_m ? s->radar->cells * 23u / 16 : s->radar->cells;
     const uint32_t bin_q8 = (s->half_m ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
     const int32_t above_q10 = height_q10 - reference_q10;
@@ -168,7 +168,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
                       reference_q10);
     lm_slant_set(&s->slant, s->edge_q8 + bin_q8 / 2, bin_q8, bins, &s->grid, first_q8);
     lm_receiver_set(&s->receiver, s->radar, &s->slant, above_q10, s->command.range,
-                    field_of(s)->pulse_ns[s->command.range]);
+                    s->radar->range[s->command.range].pulse_ns[s->command.field]);
     set_runup(s, tiles->db);
     lm_beam_clear(&s->beam);
 }
@@ -176,7 +176,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
 /* The database is read by the bins of the display. */
 static uint8_t level_of(const struct lm_sector *s, const struct lm_db *db)
 {
-    const uint32_t side_m = s->half_m ? 2 * s->half_m : s->radar->range_m[s->command.range];
+    const uint32_t side_m = s->half_m ? 2 * s->half_m : s->radar->range[s->command.range].range_m;
     return lm_scan_level(db, side_m * 1000u / s->radar->cells);
 }
 
@@ -232,7 +232,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
     const uint32_t old_edge_q8 = s->edge_q8, old_half_m = s->half_m;
-    s->half_m = s->radar->range_m[s->command.range] * field_of(s)->window_permille / 1000;
+    s->half_m = s->radar->range[s->command.range].range_m * field_of(s)->window_permille / 1000;
     s->level = level_of(s, tiles->db);
     const int32_t reference_q10 = reference_q10_of(tiles, s->level, platform->place);
     s->up = platform->heading;
@@ -334,7 +334,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
 static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 {
     const struct lm_target_scene scene = {.place = s->platform.place,
-                                          .reach_m = s->radar->range_m[s->command.range],
+                                          .reach_m = s->radar->range[s->command.range].range_m,
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .level = s->level};

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "fx/mem.h"
+#include "fx/sat.h"
 #include "lm/status.h"
 
 #define DB(d) ((d)*256)
@@ -12,8 +13,10 @@
 #define WHERE(member, n, apart)                                                                    \
     .offset = offsetof(struct lm_radar, member), .size = SIZE_OF(member), .count = (n),            \
     .stride = (apart)
-#define ONE(member)               WHERE(member, 1, 0)
-#define EACH(array, n)            WHERE(array[0], n, SIZE_OF(array[0]))
+#define ONE(member)    WHERE(member, 1, 0)
+#define EACH(array, n) WHERE(array[0], n, SIZE_OF(array[0]))
+#define OF_SCALES(member)                                                                          \
+    WHERE(range[0].member, LM_RANGES_MAX, SIZE_OF(range[0])), .is_of_scales = true
 #define OF_MODES(member)          WHERE(mode[0].member, LM_SECTOR_MODES, SIZE_OF(mode[0]))
 #define OF_FIELDS(member)         WHERE(field[0].member, LM_FIELDS, SIZE_OF(field[0]))
 #define OF_WINDOWS(member)        WHERE(field[1].member, LM_FIELDS - 1, SIZE_OF(field[0]))
@@ -21,8 +24,16 @@
 #define SIGNED_BETWEEN(low, high) .is_signed = true, .min = (low), .max = (high)
 
 static const struct lm_radar_field fields[] = {
-    {"range_m", EACH(range_m, LM_RANGES), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
-    {"range_nm", EACH(range_nm, LM_RANGES), BETWEEN(1, 999)},
+    {"ranges", ONE(ranges), BETWEEN(1, LM_RANGES_MAX)},
+    {"range.range_m", OF_SCALES(range_m), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
+    {"range.range_nm", OF_SCALES(range_nm), BETWEEN(1, 999)},
+    {"range.noise_end_q8", OF_SCALES(noise_end_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"range.stc_m", OF_SCALES(stc_m), BETWEEN(100, 400000)},
+    {"range.pulse_ns[NORM]", OF_SCALES(pulse_ns[LM_FIELD_NORM]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[EXP]", OF_SCALES(pulse_ns[LM_FIELD_EXP]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[DBS1]", OF_SCALES(pulse_ns[LM_FIELD_DBS1]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[DBS2]", OF_SCALES(pulse_ns[LM_FIELD_DBS2]), BETWEEN(10, 100000)},
+    {"range_start_nm", ONE(range_start_nm), BETWEEN(1, 999)},
     {"azimuth_half", EACH(azimuth_half, LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"wavelength_um", ONE(wavelength_um), BETWEEN(LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM)},
     {"cells", ONE(cells), BETWEEN(64, LM_RADAR_CELLS_MAX)},
@@ -35,12 +46,9 @@ static const struct lm_radar_field fields[] = {
     {"antenna.bar_spacing", ONE(antenna.bar_spacing), BETWEEN(0, FX_BAM_DEG(10))},
     {"antenna.azimuth_limit", ONE(antenna.azimuth_limit), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"antenna.tilt_max", ONE(antenna.tilt_max), BETWEEN(0, FX_BAM_DEG(60))},
-    {"receiver.noise_end_q8", EACH(receiver.noise_end_q8, LM_RANGES),
-     SIGNED_BETWEEN(DB(-100), DB(20))},
-    {"receiver.stc_m", EACH(receiver.stc_m, LM_RANGES), BETWEEN(100, 400000)},
     {"receiver.noise_looks_log2", ONE(receiver.noise_looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
     {"mode.bam_per_s", OF_MODES(bam_per_s), BETWEEN(LM_RADAR_RATE_MIN, LM_RADAR_RATE_MAX)},
-    {"mode.range_last", OF_MODES(range_last), BETWEEN(0, LM_RANGES - 1)},
+    {"mode.range_max_nm", OF_MODES(range_max_nm), BETWEEN(1, 999)},
     {"mode.field_last", OF_MODES(field_last), BETWEEN(0, LM_FIELDS - 1)},
     {"mode.bars", OF_MODES(bars), BETWEEN(1, 8)},
     {"mode.clutter_q8", OF_MODES(clutter_q8), BETWEEN(0, DB(64))},
@@ -51,7 +59,7 @@ static const struct lm_radar_field fields[] = {
     {"mode.tone.white_q8", OF_MODES(tone.white_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
     {"mode.tone.gamma_q8", OF_MODES(tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
     {"field.bam_per_s", OF_FIELDS(bam_per_s), BETWEEN(0, LM_RADAR_RATE_MAX)},
-    {"field.range_last", OF_FIELDS(range_last), BETWEEN(0, LM_RANGES - 1)},
+    {"field.range_max_nm", OF_FIELDS(range_max_nm), BETWEEN(1, 999)},
     {"field.slew_percent", OF_FIELDS(slew_percent), BETWEEN(1, 200)},
     {"field[NORM].window_permille", ONE(field[LM_FIELD_NORM].window_permille), BETWEEN(0, 0)},
     {"field[EXP..].window_permille", OF_WINDOWS(window_permille), BETWEEN(5, 250)},
@@ -59,10 +67,6 @@ static const struct lm_radar_field fields[] = {
     {"field.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
     {"field.sharpening_least", OF_FIELDS(sharpening_least), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
     {"field.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
-    {"field[NORM].pulse_ns", EACH(field[LM_FIELD_NORM].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
-    {"field[EXP].pulse_ns", EACH(field[LM_FIELD_EXP].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
-    {"field[DBS1].pulse_ns", EACH(field[LM_FIELD_DBS1].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
-    {"field[DBS2].pulse_ns", EACH(field[LM_FIELD_DBS2].pulse_ns, LM_RANGES), BETWEEN(10, 100000)},
     {"sar.cells", ONE(sar.cells), BETWEEN(32, LM_RADAR_PATCH_CELLS_MAX)},
     {"sar.cell_min_mm", ONE(sar.cell_min_mm), BETWEEN(100, 100000)},
     {"sar.cell_max_mm", ONE(sar.cell_max_mm), BETWEEN(100, 100000)},
@@ -108,6 +112,11 @@ int64_t lm_radar_field_value(const struct lm_radar *radar, const struct lm_radar
     return four;
 }
 
+uint32_t lm_radar_field_count(const struct lm_radar *radar, const struct lm_radar_field *field)
+{
+    return field->is_of_scales ? fx_min_u32(radar->ranges, field->count) : field->count;
+}
+
 static bool is_in_range(const struct lm_radar *radar, const struct lm_radar_field *field,
                         uint32_t index)
 {
@@ -122,8 +131,76 @@ enum { HOLDS = UINT8_MAX };
 
 static uint32_t check_scales(const struct lm_radar *r)
 {
-    for (uint32_t i = 1; i < LM_RANGES; i++) {
-        if (r->range_m[i] <= r->range_m[i - 1] || r->range_nm[i] <= r->range_nm[i - 1]) {
+    for (uint32_t i = 1; i < r->ranges; i++) {
+        const struct lm_range_row *before = &r->range[i - 1], *row = &r->range[i];
+        if (row->range_m <= before->range_m || row->range_nm <= before->range_nm) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+/* A row behind the last in use is one that was not counted. */
+static uint32_t check_count(const struct lm_radar *r)
+{
+    for (uint32_t i = r->ranges; i < LM_RANGES_MAX; i++) {
+        if (r->range[i].range_m != 0 || r->range[i].range_nm != 0) {
+            return 0;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_mode_scales(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        if (r->mode[i].range_max_nm < r->range[0].range_nm) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_field_scales(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        if (r->field[i].range_max_nm < r->range[0].range_nm) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_start(const struct lm_radar *r)
+{
+    const int32_t start = lm_radar_find_range(r, r->range_start_nm);
+    const uint32_t last = lm_radar_range_last(r, LM_SECTOR_GM, LM_FIELD_NORM);
+    return start >= 0 && (uint32_t)start <= last ? HOLDS : 0;
+}
+
+static bool is_name(const char name[LM_NAME_SIZE])
+{
+    uint32_t length = 0;
+    while (length < LM_NAME_SIZE && name[length] > ' ' && name[length] <= '~') {
+        length++;
+    }
+    return length > 0 && length < LM_NAME_SIZE && name[length] == 0;
+}
+
+static uint32_t check_mode_names(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        if (!is_name(r->mode[i].name) || lm_radar_find_mode(r, r->mode[i].name) != (int32_t)i) {
+            return i;
+        }
+    }
+    return HOLDS;
+}
+
+static uint32_t check_field_names(const struct lm_radar *r)
+{
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        if (!is_name(r->field[i].name) || lm_radar_find_field(r, r->field[i].name) != (int32_t)i) {
             return i;
         }
     }
@@ -212,7 +289,7 @@ static uint32_t check_sharpening_least(const struct lm_radar *r)
 static uint32_t check_windows(const struct lm_radar *r)
 {
     for (uint32_t i = LM_FIELD_NORM + 1; i < LM_FIELDS; i++) {
-        const uint32_t half_m = r->range_m[0] * r->field[i].window_permille / 1000;
+        const uint32_t half_m = r->range[0].range_m * r->field[i].window_permille / 1000;
         if (2 * half_m * 4 < r->cells) {
             return i;
         }
@@ -239,7 +316,13 @@ static const struct rule {
     const char *field; /* that is named when it breaks */
     uint32_t (*check)(const struct lm_radar *radar);
 } rules[] = {
-    {"range_m", check_scales},
+    {"range.range_m", check_scales},
+    {"ranges", check_count},
+    {"mode.name", check_mode_names},
+    {"field.name", check_field_names},
+    {"mode.range_max_nm", check_mode_scales},
+    {"field.range_max_nm", check_field_scales},
+    {"range_start_nm", check_start},
     {"azimuth_half", check_sectors},
     {"sample", check_sample},
     {"mode.gate_mm_s[1]", check_gates},
@@ -265,7 +348,7 @@ static int refuse(struct lm_radar_fault *fault, const char *field, uint32_t inde
 int lm_radar_check(const struct lm_radar *radar, struct lm_radar_fault *fault)
 {
     for (uint32_t n = 0; n < FIELDS; n++) {
-        for (uint32_t i = 0; i < fields[n].count; i++) {
+        for (uint32_t i = 0; i < lm_radar_field_count(radar, &fields[n]); i++) {
             if (!is_in_range(radar, &fields[n], i)) {
                 return refuse(fault, fields[n].name, i);
             }

@@ -32,7 +32,7 @@ static struct lm_cursor_scene scene_of(const struct lm_unit *u)
         .view = &u->view,
         .ownship = lm_ownship_place(u),
         .heading = u->ownship.heading,
-        .scale_m = radar->range_m[u->page.range],
+        .scale_m = radar->range[u->page.range].range_m,
         .half_px = (int32_t)fx_min_u32(u->plane.width_px, u->plane.height_px) / 2,
         .slew_percent = u->page.picture == LM_PICTURE_PATCH
                             ? 100
@@ -305,7 +305,7 @@ static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t n
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
     case LM_CONTROL_RANGE:
-        return apply_any(u, lm_page_select_range(&u->page, control->range_index), now_us);
+        return apply_any(u, lm_page_select_range(&u->page, control->range_nm), now_us);
     case LM_CONTROL_AZIMUTH:
         return apply_any(u, lm_page_select_azimuth(&u->page, control->azimuth_index), now_us);
     case LM_CONTROL_GAIN:
@@ -348,8 +348,9 @@ static struct lm_view view_of_sector(const struct lm_unit *u)
         .up = is_window ? s->up : u->ownship.heading,
         .height_q10 = has_geometry ? s->grid.height_q10 - s->grid.reference_q10 : 0,
     };
-    return is_window ? lm_view_of_window(&u->frame, &from, s->command.centre, s->half_m)
-                     : lm_view_of_sector(&u->frame, &from, u->board->radar->range_m[u->page.range]);
+    return is_window
+               ? lm_view_of_window(&u->frame, &from, s->command.centre, s->half_m)
+               : lm_view_of_sector(&u->frame, &from, u->board->radar->range[u->page.range].range_m);
 }
 
 static struct lm_view view_of_picture(const struct lm_unit *u)
@@ -387,7 +388,7 @@ static void read_elevation(struct lm_unit *u)
 /* The page's range follows the cursor, when it is to. */
 static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t scale_m = u->board->radar->range_m[u->page.range];
+    const uint32_t scale_m = u->board->radar->range[u->page.range].range_m;
     if (u->page.picture == LM_PICTURE_PATCH || !u->page.is_auto_range || u->is_view_held) {
         return;
     }

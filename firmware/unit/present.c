@@ -59,7 +59,7 @@ static void describe_window(const struct lm_unit *u, struct lm_symbols *s)
 {
     const struct lm_view_from from = {lm_ownship_place(u), u->view.up, u->view.height_q10};
     const struct lm_view whole =
-        lm_view_of_sector(&u->frame, &from, u->board->radar->range_m[u->page.range]);
+        lm_view_of_sector(&u->frame, &from, u->board->radar->range[u->page.range].range_m);
     struct lm_offset at;
     s->is_cue_shown = u->cursor.is_placed && lm_view_find(&whole, u->cursor.place, &at);
     if (s->is_cue_shown) {
@@ -75,7 +75,7 @@ static struct lm_symbols describe(const struct lm_unit *u)
     struct lm_symbols s = {
         .view = u->view,
         .is_sweeping = !(u->flags & LM_FLAGS_NO_LINES),
-        .range_nm = radar->range_nm[u->page.range],
+        .range_nm = radar->range[u->page.range].range_nm,
         .azimuth_half = radar->azimuth_half[u->page.azimuth],
         .antenna_azimuth = lm_sector_edge_bam(sector, sector->line),
         .antenna_elevation = sector->tilt,

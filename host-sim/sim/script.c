@@ -17,6 +17,7 @@ enum { WORDS_MAX = 10, PRESS_US = 100000 };
 struct line_events {
     struct script_event event[2];
     int count;
+    char refusal[80]; /* why the radar cannot do it; "": the words are not understood */
 };
 
 /* All of `word` as a number within the limits. */
@@ -88,21 +89,64 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
     return parse_effects(words + least, count - least, &c->sar);
 }
 
-static bool parse_choice(char **words, int count, struct lm_control *c)
+/* Whether mode and field of view have the scale; where a key may have chosen others, nobody knows.
+ */
+static bool has_scale(const struct script *s, struct line_events *line)
 {
-    static const char *const ranges[] = {"10", "20", "40", "80"};
-    static const char *const azimuths[] = {"60", "30", "10"};
+    const struct lm_radar *radar = s->radar;
+    if (s->mode < 0 || s->range_nm < 0) {
+        return true;
+    }
+    const uint32_t last = lm_radar_range_last(radar, (uint32_t)s->mode, (uint32_t)s->field);
+    if (s->range_nm <= radar->range[last].range_nm) {
+        return true;
+    }
+    snprintf(line->refusal, sizeof line->refusal, "%s %s has no scale of %d nautical miles",
+             radar->mode[s->mode].name, radar->field[s->field].name, (int)s->range_nm);
+    return false;
+}
+
+/* A scale by its nautical miles. */
+static bool parse_range(struct script *s, const char *word, struct line_events *line)
+{
+    double range_nm;
+    if (!number(word, 1, 999, &range_nm)) {
+        return false;
+    }
+    s->range_nm = (int32_t)range_nm;
+    if (s->range_nm != range_nm || lm_radar_find_range(s->radar, s->range_nm) < 0) {
+        snprintf(line->refusal, sizeof line->refusal, "the radar has no scale of %s nautical miles",
+                 word);
+        return false;
+    }
+    line->event[0].control = (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = s->range_nm};
+    return has_scale(s, line);
+}
+
+/* A sector by its degrees to each side. */
+static bool parse_azimuth(const struct lm_radar *radar, const char *word, struct lm_control *c)
+{
+    double degrees;
+    if (!number(word, 0, 90, &degrees) || degrees != floor(degrees)) {
+        return false;
+    }
+    c->kind = LM_CONTROL_AZIMUTH;
+    c->azimuth_index = lm_radar_find_azimuth(radar, (int32_t)degrees);
+    return c->azimuth_index >= 0;
+}
+
+static bool parse_choice(struct script *s, char **words, int count, struct line_events *line)
+{
     static const char *const switches[] = {"off", "on"};
+    struct lm_control *c = &line->event[0].control;
     if (count != 3) {
         return false;
     }
     if (strcmp(words[1], "range") == 0) {
-        c->kind = LM_CONTROL_RANGE;
-        return choice(words[2], ranges, 4, &c->range_index);
+        return parse_range(s, words[2], line);
     }
     if (strcmp(words[1], "azimuth") == 0) {
-        c->kind = LM_CONTROL_AZIMUTH;
-        return choice(words[2], azimuths, 3, &c->azimuth_index);
+        return parse_azimuth(s->radar, words[2], c);
     }
     if (strcmp(words[1], "freeze") == 0) {
         int32_t is_on = 0;
@@ -173,14 +217,25 @@ static bool parse_deflection(char **words, int count, struct line_events *line)
     return true;
 }
 
-/* "gm", "gmt", "sea", and which part of it. */
-static bool parse_sector(char **words, int count, struct lm_control *c)
+/* A mode of the radar table, and a field of view that it has; without one, the first. */
+static bool parse_sector(struct script *s, char **words, int count, struct line_events *line)
 {
-    static const char *const modes[LM_SECTOR_MODES] = {"gm", "gmt", "sea"};
-    static const char *const fields[LM_FIELDS] = {"norm", "exp", "dbs1", "dbs2"};
-    c->kind = LM_CONTROL_SECTOR;
-    return choice(words[1], modes, LM_SECTOR_MODES, &c->sector.mode) &&
-           (count == 2 || (count == 3 && choice(words[2], fields, LM_FIELDS, &c->sector.fov)));
+    const struct lm_radar *radar = s->radar;
+    const int32_t mode = lm_radar_find_mode(radar, words[1]);
+    const int32_t field = count == 3 ? lm_radar_find_field(radar, words[2]) : LM_FIELD_NORM;
+    if (count > 3 || field < 0) {
+        return false;
+    }
+    if (field > radar->mode[mode].field_last) {
+        snprintf(line->refusal, sizeof line->refusal, "%s has no %s", radar->mode[mode].name,
+                 radar->field[field].name);
+        return false;
+    }
+    s->mode = mode;
+    s->field = field;
+    line->event[0].control =
+        (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.mode = mode, .fov = field}};
+    return has_scale(s, line);
 }
 
 /* "steer LAT LON", or "steer off": as the bus says. */
@@ -250,10 +305,8 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
     return true;
 }
 
-static bool parse_line(char **words, int count, struct lm_environment *environment,
-                       struct line_events *line)
+static bool parse_line(struct script *s, char **words, int count, struct line_events *line)
 {
-    static const char *const sectors[] = {"gm", "gmt", "sea"};
     static const char *const weathers[] = {"rain", "jam", "weather", "seastate"};
     int32_t which;
     double seconds;
@@ -264,13 +317,13 @@ static bool parse_line(char **words, int count, struct lm_environment *environme
         return false;
     }
     e->time_us = (uint64_t)llround(seconds * 1e6);
-    if (choice(words[1], sectors, 3, &which)) {
-        return parse_sector(words, count, &e->control);
+    if (lm_radar_find_mode(s->radar, words[1]) >= 0) {
+        return parse_sector(s, words, count, line);
     }
     if (choice(words[1], weathers, 4, &which)) {
-        const bool is_understood = parse_environment(words, count, environment);
+        const bool is_understood = parse_environment(words, count, &s->environment);
         e->control.kind = LM_CONTROL_ENVIRONMENT;
-        e->control.environment = *environment;
+        e->control.environment = s->environment;
         return is_understood;
     }
     if (count == 2) {
@@ -282,6 +335,7 @@ static bool parse_line(char **words, int count, struct lm_environment *environme
                (size_t)snprintf(e->picture, sizeof e->picture, "%s", words[2]) < sizeof e->picture;
     }
     if (strcmp(words[1], "osb") == 0 || strcmp(words[1], "rocker") == 0) {
+        s->mode = s->range_nm = -1; /* a key may select others */
         return parse_button(words, count, line);
     }
     if (strcmp(words[1], "slew") == 0 || strcmp(words[1], "knob") == 0) {
@@ -293,7 +347,7 @@ static bool parse_line(char **words, int count, struct lm_environment *environme
     if (strncmp(words[1], "sar", 3) == 0) {
         return parse_sar(words, count, &e->control);
     }
-    return parse_choice(words, count, &e->control);
+    return parse_choice(s, words, count, line);
 }
 
 static int split(char *line, char **words)
@@ -335,9 +389,10 @@ static int take_line(struct script *s, const char *path, int line_number, char *
         return 0;
     }
     struct line_events parsed;
-    if (count > WORDS_MAX || !parse_line(words, count, &s->environment, &parsed)) {
-        return hs_error(place, "landmass-sim --help lists the commands",
-                        "is not a command of a script");
+    if (count > WORDS_MAX || !parse_line(s, words, count, &parsed)) {
+        const bool is_refused = count <= WORDS_MAX && parsed.refusal[0];
+        return hs_error(place, "landmass-sim --help lists the commands", "%s",
+                        is_refused ? parsed.refusal : "is not a command of a script");
     }
     if (parsed.event[0].time_us < s->last_us) {
         return hs_error(place, "sort the script by time", "goes back in time");
@@ -366,9 +421,11 @@ static int next_control(void *ctx, struct lm_control *control)
     return 0;
 }
 
-int script_read(struct script *s, const char *path)
+int script_read(struct script *s, const char *path, const struct lm_radar *radar)
 {
     memset(s, 0, sizeof *s);
+    s->radar = radar;
+    s->range_nm = radar->range_start_nm;
     s->port = (struct lm_controls){.ctx = s, .next = next_control};
     s->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
     if (!path) {

@@ -194,7 +194,7 @@ static void draw_sweeps(struct world *w, const struct sector_case *what, int cou
         const struct lm_view_from from = {platform.place, platform.heading, 3000 * 1024};
         const struct lm_view view =
             sector.half_m ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
-                          : lm_view_of_sector(&w->frame, &from, lm_radar_default.range_m[0]);
+                          : lm_view_of_sector(&w->frame, &from, lm_radar_default.range[0].range_m);
         const struct lm_ppi ppi =
             lm_view_ppi(&view, &w->frame, sector.slant.cell_q8, sector.edge_q8);
         const uint32_t lines = sector.lines;

@@ -30,7 +30,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz_file file;
     struct script script;
     fuzz_file_open(&file, data, size);
-    if (script_read(&script, file.path) == 0) {
+    if (script_read(&script, file.path, &lm_radar_default) == 0) {
         int handed_out = 0;
         struct lm_control control;
         for (int i = 0; i < script.count; i++) {

@@ -221,7 +221,7 @@ static struct lm_control any_control(enum lm_control_kind kind, int32_t value)
         c.sector.mode = value;
         break;
     case LM_CONTROL_RANGE:
-        c.range_index = value;
+        c.range_nm = value > 0 && value < 10 ? 10 * value : value;
         break;
     case LM_CONTROL_AZIMUTH:
         c.azimuth_index = value;
@@ -306,7 +306,8 @@ static void act(struct world *w, struct fuzz_supply *s)
 static void check(const struct world *w)
 {
     const struct lm_unit *u = &w->unit;
-    FUZZ_ASSERT(u->sector.command.range < LM_RANGES && u->sector.command.azimuth < LM_AZIMUTHS);
+    FUZZ_ASSERT(u->sector.command.range < lm_radar_default.ranges &&
+                u->sector.command.azimuth < LM_AZIMUTHS);
     FUZZ_ASSERT(!u->sector.is_begun || u->sector.line < u->sector.lines);
     FUZZ_ASSERT(u->sar.line <= lm_radar_default.sar.cells);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);

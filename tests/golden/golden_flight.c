@@ -12,9 +12,9 @@ enum { RUNWAY_NORTH_M = -870, RUNWAY_EAST_M = 800 };
 #define GLASS .width_px = 384, .height_px = 384
 /* From the south, over the plain towards town and mountain. */
 #define FROM_SOUTH .north_m = -3600, .east_m = 300, .height_m = 2500
-#define GM(nm, r, deg, a)                                                                          \
+#define GM(nm, deg, a)                                                                             \
     {                                                                                              \
-        .name = "gm-" nm "nm-" deg, FROM_SOUTH, .heading_deg = 5, GLASS, .range = (r),             \
+        .name = "gm-" #nm "nm-" deg, FROM_SOUTH, .heading_deg = 5, GLASS, .range_nm = (nm),        \
         .azimuth = (a)                                                                             \
     }
 
@@ -29,18 +29,18 @@ enum { RUNWAY_NORTH_M = -870, RUNWAY_EAST_M = 800 };
            .keys = {CURSOR_ZERO}
 
 const struct golden_picture golden_pictures[] = {
-    GM("10", 0, "60deg", 0),
-    GM("10", 0, "30deg", 1),
-    GM("10", 0, "10deg", 2),
-    GM("20", 1, "60deg", 0),
-    GM("20", 1, "30deg", 1),
-    GM("20", 1, "10deg", 2),
-    GM("40", 2, "60deg", 0),
-    GM("40", 2, "30deg", 1),
-    GM("40", 2, "10deg", 2),
-    GM("80", 3, "60deg", 0),
-    GM("80", 3, "30deg", 1),
-    GM("80", 3, "10deg", 2),
+    GM(10, "60deg", 0),
+    GM(10, "30deg", 1),
+    GM(10, "10deg", 2),
+    GM(20, "60deg", 0),
+    GM(20, "30deg", 1),
+    GM(20, "10deg", 2),
+    GM(40, "60deg", 0),
+    GM(40, "30deg", 1),
+    GM(40, "10deg", 2),
+    GM(80, "60deg", 0),
+    GM(80, "30deg", 1),
+    GM(80, "10deg", 2),
     {.name = "gm-low-and-looking-out-to-sea",
      GLASS,
      .north_m = 1000,
@@ -320,7 +320,7 @@ static int next_control(void *ctx, struct lm_control *control)
     const struct golden_picture *p = r->picture;
     const struct lm_control script[ITEMS] = {
         {.kind = LM_CONTROL_ENVIRONMENT, .environment = environment_of(r)},
-        {.kind = LM_CONTROL_RANGE, .range_index = p->range},
+        {.kind = LM_CONTROL_RANGE, .range_nm = p->range_nm ? p->range_nm : 10},
         {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = p->azimuth},
         {.kind = LM_CONTROL_GAIN, .gain_db = p->gain_db},
         {.kind = LM_CONTROL_STEERPOINT,

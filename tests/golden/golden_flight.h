@@ -28,7 +28,7 @@ struct golden_picture {
     /* A sector: enum lm_sector_mode and lm_field, indices into the radar table. A window lies half
      * the range straight ahead, where the cursor begins. */
     uint8_t mode, field;
-    uint8_t range, azimuth;
+    uint8_t range_nm, azimuth; /* range_nm 0: 10 */
     int8_t gain_db;
     /* Rain over 2 km around the middle, a jammer 2 km east of it, the sea (0: as in the image). */
     uint8_t rain_mm_h, jam_db, sea_state;

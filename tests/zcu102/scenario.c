@@ -52,7 +52,7 @@ static int read_log(struct tables *t, char *path)
 static int read_script(struct tables *t, const char *path)
 {
     struct script script;
-    if (script_read(&script, strcmp(path, "-") == 0 ? NULL : path) != 0) {
+    if (script_read(&script, strcmp(path, "-") == 0 ? NULL : path, &lm_radar_default) != 0) {
         return -1;
     }
     t->controls = calloc((size_t)script.count + 1, sizeof *t->controls);

@@ -263,7 +263,7 @@ static int run(struct sim *s)
         return hs_error(o->png_folder, "check the folder above it", "cannot be made: %s",
                         strerror(errno));
     }
-    if (script_read(&s->script, o->script) != 0 || open_bus(s) != 0) {
+    if (script_read(&s->script, o->script, &lm_radar_default) != 0 || open_bus(s) != 0) {
         return -1;
     }
     hands_init(&s->hands, &s->script.port);

@@ -164,7 +164,7 @@ static void see_all(const struct sector_world *w, const struct ref_db *db,
             seen[k][i] /= weights[k];
         }
         ref_pulse(seen[k], s->slant.cells,
-                  ref_pulse_m(w->radar.field[s->command.field].pulse_ns[0] * 1e-9) /
+                  ref_pulse_m(w->radar.range[0].pulse_ns[s->command.field] * 1e-9) /
                       (s->slant.cell_q8 / 256.0));
     }
 }

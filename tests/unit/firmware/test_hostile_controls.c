@@ -38,7 +38,7 @@ static void set_numbers(struct lm_control *c, int32_t value, int32_t other)
         c->steerpoint.place.latitude = (fx_bam_t)other;
         break;
     case LM_CONTROL_RANGE:
-        c->range_index = value;
+        c->range_nm = value > 0 && value < 10 ? 10 * value : value;
         break;
     case LM_CONTROL_AZIMUTH:
         c->azimuth_index = value;
@@ -90,7 +90,7 @@ static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u
 static void check_bounds(const struct rig *r)
 {
     const struct lm_page *p = &r->unit.page;
-    assert_true(p->range < LM_RANGES && p->azimuth < LM_AZIMUTHS);
+    assert_true(p->range < lm_radar_default.ranges && p->azimuth < LM_AZIMUTHS);
     assert_true(p->format <= LM_FORMAT_TEST && p->mode < LM_SECTOR_MODES);
     assert_true(p->field < LM_FIELDS && p->range <= lm_page_range_last(p) &&
                 p->cell < LM_SAR_CELLS_OFFERED);
@@ -102,7 +102,7 @@ static void check_bounds(const struct rig *r)
     assert_true(abs(p->palette.symbology) <= LM_ROCKER_STEPS);
     assert_true(p->hidden < 1u << LM_OSBS && r->unit.keys.down < 1u << LM_BUTTONS);
     assert_true(r->unit.sar.line <= lm_radar_default.sar.cells);
-    assert_int_equal(r->unit.sector.command.range < LM_RANGES, 1);
+    assert_int_equal(r->unit.sector.command.range < lm_radar_default.ranges, 1);
     const struct lm_cursor *c = &r->unit.cursor;
     assert_true(abs(c->slew_x) <= LM_FULL_DEFLECTION && abs(c->slew_y) <= LM_FULL_DEFLECTION);
     const int32_t reach_q8 = (r->unit.view.radius_px + 2) * 256;

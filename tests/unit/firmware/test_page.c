@@ -179,7 +179,7 @@ static void osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 3});
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 80});
     press(r, 3);
     assert_true(labelled(r, 3, "EXP", 0));
     press(r, 3);
@@ -444,7 +444,7 @@ static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
     press(r, 8);
     assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
     const struct lm_place start = r->unit.cursor.place;
-    const uint32_t half = lm_radar_default.range_m[0] / 2;
+    const uint32_t half = lm_radar_default.range[0].range_m / 2;
     run(r, 10);
     assert_true(r->unit.cursor.place.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
@@ -471,7 +471,7 @@ static void osb_9_brings_the_cursor_home(void **state)
     run(r, 0.1);
     assert_true(r->unit.cursor.offset.x_q8 > 80 * 256);
     press(r, 9);
-    const uint32_t half = lm_radar_default.range_m[0] / 2;
+    const uint32_t half = lm_radar_default.range[0].range_m / 2;
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512);
     assert_in_range(r->unit.cursor.range_m, half - 60, half + 20);
     free_rig(r);
@@ -620,7 +620,7 @@ static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
     struct rig *r = fly();
     const char *const words[] = {"10", "20", "40", "80"};
     press(r, 2);
-    for (int range = 1; range < LM_RANGES; range++) {
+    for (int range = 1; range < lm_radar_default.ranges; range++) {
         press(r, 20);
         assert_int_equal(r->unit.sector.command.range, range);
         assert_true(says(r, words[range]));
@@ -629,7 +629,7 @@ static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
     assert_false(says(r, LM_GLYPH_UP)); /* no further */
     press(r, 20);
     assert_int_equal(r->unit.sector.command.range, 3);
-    for (int range = LM_RANGES - 2; range >= 0; range--) {
+    for (int range = lm_radar_default.ranges - 2; range >= 0; range--) {
         press(r, 19);
         assert_int_equal(r->unit.sector.command.range, range);
         assert_true(says(r, words[range]));
@@ -814,7 +814,7 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     run(r, 2.5);
     r->bus.is_down = 0;
     r->bus.sent_us = r->now_us;
-    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 9});
+    command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 9});
     /* A frame of a wrong type and a lone half of a double, which the next other frame tears. */
     const struct lm_can_frame bad = {.id = 321, .length = 8, .data = {9, 77}};
     const struct lm_can_frame half = {.id = 1036, .length = 8, .data = {9, LM_CANAS_DOUBLEH}};
@@ -1109,9 +1109,9 @@ static void a_selection_out_of_range_is_refused_and_changes_nothing(void **state
     struct lm_page page;
     lm_page_init(&page, &lm_radar_default);
     const struct lm_page before = page;
-    const int32_t last = lm_page_range_last(&page);
     assert_int_equal(lm_page_select_range(&page, -1), 0);
-    assert_int_equal(lm_page_select_range(&page, last + 1), 0);
+    assert_int_equal(lm_page_select_range(&page, 39), 0);
+    assert_int_equal(lm_page_select_range(&page, 160), 0);
     assert_int_equal(lm_page_select_azimuth(&page, LM_AZIMUTHS), 0);
     assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_MODES, LM_FIELD_NORM), 0);
     assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FIELD_DBS2), 0);
@@ -1120,12 +1120,16 @@ static void a_selection_out_of_range_is_refused_and_changes_nothing(void **state
     assert_memory_equal(&page, &before, sizeof before);
 
     /* The scale at hand begins the sector again; only another one is told as such. */
-    assert_int_equal(lm_page_select_range(&page, page.range), LM_EFFECT_SECTOR);
-    assert_int_equal(lm_page_select_range(&page, last), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
-    /* Sharpening has no scale so large: it is lowered. */
+    assert_int_equal(lm_page_select_range(&page, 40), LM_EFFECT_SECTOR);
+    assert_int_equal(lm_page_select_range(&page, 80), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
+    /* Neither sharpening nor moving targets have a scale so large. */
+    const struct lm_page far = page;
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FIELD_NORM), 0);
+    assert_memory_equal(&page, &far, sizeof far);
+    assert_int_equal(lm_page_select_range(&page, 40), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
     assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1),
-                     LM_EFFECT_SECTOR | LM_EFFECT_RANGE | LM_EFFECT_TONE);
-    assert_int_equal(page.range, lm_page_range_last(&page));
+                     LM_EFFECT_SECTOR | LM_EFFECT_TONE);
 }
 
 int main(void)

@@ -56,7 +56,7 @@ static void a_value_past_either_end_is_refused_by_its_field_s_name(void **state)
     for (uint32_t n = 0; lm_radar_field(n); n++) {
         const struct lm_radar_field *f = lm_radar_field(n);
         assert_true(f->min <= f->max && can_hold(f, f->min) && can_hold(f, f->max));
-        for (uint32_t i = 0; i < f->count; i++) {
+        for (uint32_t i = 0; i < lm_radar_field_count(&lm_radar_default, f); i++) {
             for (uint32_t end = 0; end < 2; end++) {
                 const int64_t past = end == 0 ? f->min - 1 : f->max + 1;
                 struct lm_radar radar = lm_radar_default;
@@ -78,6 +78,16 @@ static void every_byte_of_the_table_belongs_to_a_field(void **state)
 {
     (void)state;
     bool is_known[sizeof(struct lm_radar)] = {false};
+    for (size_t i = 0; i < LM_SECTOR_MODES; i++) {
+        memset(is_known + offsetof(struct lm_radar, mode) + i * sizeof(struct lm_sector_mode_row) +
+                   offsetof(struct lm_sector_mode_row, name),
+               true, LM_NAME_SIZE);
+    }
+    for (size_t i = 0; i < LM_FIELDS; i++) {
+        memset(is_known + offsetof(struct lm_radar, field) + i * sizeof(struct lm_field_row) +
+                   offsetof(struct lm_field_row, name),
+               true, LM_NAME_SIZE);
+    }
     for (uint32_t n = 0; lm_radar_field(n); n++) {
         const struct lm_radar_field *f = lm_radar_field(n);
         for (uint32_t i = 0; i < f->count; i++) {
@@ -98,12 +108,62 @@ static void every_byte_of_the_table_belongs_to_a_field(void **state)
 
 static void scales_fall(struct lm_radar *r)
 {
-    r->range_m[2] = r->range_m[1];
+    r->range[2].range_m = r->range[1].range_m;
 }
 
 static void names_of_scales_fall(struct lm_radar *r)
 {
-    r->range_nm[3] = 30;
+    r->range[3].range_nm = 30;
+}
+
+static void a_row_is_not_counted(struct lm_radar *r)
+{
+    r->ranges = 3;
+}
+
+static void a_mode_lacks_the_smallest_scale(struct lm_radar *r)
+{
+    r->mode[LM_SECTOR_SEA].range_max_nm = 9;
+}
+
+static void a_field_lacks_the_smallest_scale(struct lm_radar *r)
+{
+    r->field[LM_FIELD_DBS2].range_max_nm = 9;
+}
+
+static void the_start_is_no_scale(struct lm_radar *r)
+{
+    r->range_start_nm = 39;
+}
+
+static void the_start_is_beyond_the_mode(struct lm_radar *r)
+{
+    r->mode[LM_SECTOR_GM].range_max_nm = 20;
+}
+
+static void a_mode_has_no_name(struct lm_radar *r)
+{
+    r->mode[LM_SECTOR_GM].name[0] = 0;
+}
+
+static void a_mode_s_name_does_not_end(struct lm_radar *r)
+{
+    memset(r->mode[LM_SECTOR_GMT].name, 'X', LM_NAME_SIZE);
+}
+
+static void two_modes_share_a_name(struct lm_radar *r)
+{
+    memcpy(r->mode[LM_SECTOR_SEA].name, "gmt", 4);
+}
+
+static void two_fields_share_a_name(struct lm_radar *r)
+{
+    memcpy(r->field[LM_FIELD_DBS2].name, "exp", 4);
+}
+
+static void a_field_s_name_has_a_blank(struct lm_radar *r)
+{
+    memcpy(r->field[LM_FIELD_EXP].name, "E P", 4);
 }
 
 static void a_sector_is_wider_than_the_antenna_turns(struct lm_radar *r)
@@ -148,7 +208,7 @@ static void a_field_s_rate_is_too_slow(struct lm_radar *r)
 
 static void a_window_s_cells_are_too_short(struct lm_radar *r)
 {
-    r->range_m[0] = 1852;
+    r->range[0].range_m = 1852;
     r->field[LM_FIELD_DBS2].window_permille = 5;
 }
 
@@ -180,8 +240,18 @@ static void a_broken_rule_between_fields_is_refused_by_name(void **state)
         const char *field;
         uint32_t index;
     } rules[] = {
-        {scales_fall, "range_m", 2},
-        {names_of_scales_fall, "range_m", 3},
+        {scales_fall, "range.range_m", 2},
+        {names_of_scales_fall, "range.range_m", 3},
+        {a_row_is_not_counted, "ranges", 0},
+        {a_mode_lacks_the_smallest_scale, "mode.range_max_nm", LM_SECTOR_SEA},
+        {a_field_lacks_the_smallest_scale, "field.range_max_nm", LM_FIELD_DBS2},
+        {the_start_is_no_scale, "range_start_nm", 0},
+        {the_start_is_beyond_the_mode, "range_start_nm", 0},
+        {a_mode_has_no_name, "mode.name", LM_SECTOR_GM},
+        {a_mode_s_name_does_not_end, "mode.name", LM_SECTOR_GMT},
+        {two_modes_share_a_name, "mode.name", LM_SECTOR_SEA},
+        {two_fields_share_a_name, "field.name", LM_FIELD_DBS2},
+        {a_field_s_name_has_a_blank, "field.name", LM_FIELD_EXP},
         {a_sector_is_wider_than_the_antenna_turns, "azimuth_half", 0},
         {a_sector_is_narrower_than_a_line, "azimuth_half", 2},
         {samples_are_too_far_apart, "sample", 0},

@@ -31,6 +31,16 @@ static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t
            f->size);
 }
 
+/* The default table with all the rows that there is room for. */
+static struct lm_radar full_table(void)
+{
+    struct lm_radar table = lm_radar_default;
+    for (uint32_t i = table.ranges; i < LM_RANGES_MAX; i++) {
+        table.range[i] = table.range[i - 1];
+    }
+    return table;
+}
+
 static uint32_t least(uint32_t a, uint32_t b)
 {
     return a < b ? a : b;
@@ -41,17 +51,27 @@ static uint32_t most(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
+/* Scales rise; every mode and field of view has the first, and the start is the first. */
 static void repair_scales(struct lm_radar *r)
 {
-    for (uint32_t i = 1; i < LM_RANGES; i++) {
-        r->range_m[i] = most(r->range_m[i], r->range_m[i - 1] + 1);
-        r->range_nm[i] = (uint16_t)most(r->range_nm[i], r->range_nm[i - 1] + 1u);
+    const uint32_t rows = r->ranges;
+    for (uint32_t i = 1; i < rows; i++) {
+        struct lm_range_row *row = &r->range[i], *before = &r->range[i - 1];
+        row->range_m = most(row->range_m, before->range_m + 1);
+        row->range_nm = (uint16_t)most(row->range_nm, before->range_nm + 1u);
     }
-    for (uint32_t i = LM_RANGES - 1; i-- > 0;) {
-        r->range_m[LM_RANGES - 1] = least(r->range_m[LM_RANGES - 1], LM_RADAR_RANGE_MAX_M);
-        r->range_nm[LM_RANGES - 1] = (uint16_t)least(r->range_nm[LM_RANGES - 1], 999);
-        r->range_m[i] = least(r->range_m[i], r->range_m[i + 1] - 1);
-        r->range_nm[i] = (uint16_t)least(r->range_nm[i], r->range_nm[i + 1] - 1u);
+    for (uint32_t i = rows; i-- > 0;) {
+        struct lm_range_row *row = &r->range[i];
+        row->range_m = least(row->range_m, LM_RADAR_RANGE_MAX_M - (rows - i));
+        row->range_nm = (uint16_t)least(row->range_nm, 999 - (rows - i));
+    }
+    memset(r->range + rows, 0, (LM_RANGES_MAX - rows) * sizeof *r->range);
+    r->range_start_nm = r->range[0].range_nm;
+    for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        r->mode[i].range_max_nm = (uint16_t)most(r->mode[i].range_max_nm, r->range_start_nm);
+    }
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        r->field[i].range_max_nm = (uint16_t)most(r->field[i].range_max_nm, r->range_start_nm);
     }
 }
 
@@ -74,7 +94,7 @@ static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_fi
     f->sharpening_least = (uint16_t)least(f->sharpening_least, f->sharpening);
     if (number != LM_FIELD_NORM) {
         f->azimuth_half_max = most(f->azimuth_half_max, r->line);
-        while (r->range_m[0] * f->window_permille / 1000 * 8 < r->cells) {
+        while (r->range[0].range_m * f->window_permille / 1000 * 8 < r->cells) {
             f->window_permille++;
         }
     }
@@ -106,23 +126,23 @@ static void repair(struct lm_radar *r)
     r->sar.cell_max_mm = most(r->sar.cell_max_mm, r->sar.cell_min_mm);
 }
 
-/* Every field of view that the mode has on the largest scale and on the smallest. */
+/* Every field of view that the mode has on its smallest scale and on its largest. */
 static void draw_mode(struct rig *r, uint32_t mode)
 {
     const struct lm_radar *radar = r->board.radar;
-    const uint32_t scales[] = {0, LM_RANGES - 1};
     for (uint32_t n = 0; n < 2 * LM_FIELDS; n++) {
         const uint32_t field = n / 2;
+        const uint32_t scale = n % 2 ? lm_radar_range_last(radar, mode, field) : 0;
         if (field <= radar->mode[mode].field_last) {
-            command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
-                                           .value = (int32_t)mode,
-                                           .value_y = (int32_t)field});
-            command(r, (struct lm_control){
-                           .kind = LM_CONTROL_RANGE,
-                           .value = (int32_t)least(scales[n % 2], radar->mode[mode].range_last)});
             const uint32_t lines = r->unit.count.lines;
+            const int32_t smallest = radar->range[0].range_nm, nm = radar->range[scale].range_nm;
+            command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = smallest});
+            command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
+                                           .sector = {(int32_t)mode, (int32_t)field}});
+            command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = nm});
             run(r, FLIGHT_S);
             assert_int_equal(r->unit.sector.command.field, field);
+            assert_int_equal(r->unit.sector.command.range, scale);
             assert_true(r->unit.count.lines > lines);
         }
     }
@@ -170,7 +190,7 @@ static void a_table_with_one_field_at_its_end_is_drawn(void **state)
     for (uint32_t n = 0; lm_radar_field(n); n++) {
         const struct lm_radar_field *f = lm_radar_field(n);
         for (uint32_t end = 0; end < 2; end++) {
-            struct lm_radar table = lm_radar_default;
+            struct lm_radar table = full_table();
             for (uint32_t i = 0; i < f->count; i++) {
                 put(&table, f, i, end == 0 ? f->min : f->max);
             }
@@ -187,7 +207,7 @@ static void tables_with_many_fields_at_their_ends_are_drawn(void **state)
     struct hs_rng rng;
     hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
     for (uint32_t turn = 0; turn < RANDOM_TABLES; turn++) {
-        struct lm_radar table = lm_radar_default;
+        struct lm_radar table = full_table();
         for (uint32_t n = 0; lm_radar_field(n); n++) {
             const struct lm_radar_field *f = lm_radar_field(n);
             for (uint32_t i = 0; i < f->count; i++) {

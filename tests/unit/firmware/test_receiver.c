@@ -39,17 +39,17 @@ static void set_world(struct world *w, uint8_t range, double near_m, double cell
     lm_receiver_set(&w->receiver, &w->radar, &w->slant, height_q10, range, pulse_ns);
     w->ref = (struct ref_receiver){.bins = {first_q8 / 256.0, cell_q8 / 256.0, cells},
                                    .height_m = height_m,
-                                   .end_m = w->radar.range_m[range],
-                                   .noise_end_db = w->radar.receiver.noise_end_q8[range] / 256.0,
+                                   .end_m = w->radar.range[range].range_m,
+                                   .noise_end_db = w->radar.range[range].noise_end_q8 / 256.0,
                                    .noise_table_db = w->noise_table_db,
-                                   .stc_m = w->radar.receiver.stc_m[range],
+                                   .stc_m = w->radar.range[range].stc_m,
                                    .pulse_s = pulse_ns * 1e-9};
 }
 
 /* The whole line of a scale. */
 static void set_scale(struct world *w, uint8_t range, double height_m, uint32_t pulse_ns)
 {
-    const double range_m = lm_radar_default.range_m[range];
+    const double range_m = lm_radar_default.range[range].range_m;
     w->radar = lm_radar_default;
     set_world(w, range, 0, range_m / CELLS, CELLS, height_m, pulse_ns);
 }
@@ -141,7 +141,7 @@ static void the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazin
     (void)state;
     struct world *w = make_world();
     double worst_db = 0;
-    for (uint8_t range = 0; range < LM_RANGES; range++) {
+    for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
         for (double height_m = -100; height_m < 15000; height_m += 833) {
             set_scale(w, range, height_m, 400);
             for (uint32_t i = 0; i < CELLS; i++) {
@@ -169,7 +169,7 @@ static void the_noise_has_its_mean_and_its_number_of_looks(void **state)
     for (uint8_t looks_log2 = 0; looks_log2 <= LM_NOISE_LOOKS_LOG2_MAX; looks_log2++) {
         w->radar = lm_radar_default;
         w->radar.receiver.noise_looks_log2 = looks_log2;
-        w->radar.receiver.stc_m[0] = 100000;
+        w->radar.range[0].stc_m = 100000;
         set_world(w, 0, 0, 72, CELLS, 3000, 400);
         double sum = 0, squares = 0, pairs = 0, columns = 0, before[CELLS] = {0};
         for (uint32_t line = 0; line < LINES; line++) {
@@ -223,8 +223,8 @@ static void another_sweep_has_other_noise_and_the_same_one_the_same(void **state
 static void set_pulse_only(struct world *w, double cell_m, uint32_t pulse_ns)
 {
     w->radar = lm_radar_default;
-    w->radar.receiver.noise_end_q8[3] = -120 * 256;
-    w->radar.receiver.stc_m[3] = 400000;
+    w->radar.range[3].noise_end_q8 = -120 * 256;
+    w->radar.range[3].stc_m = 400000;
     set_world(w, 3, 0, cell_m, CELLS, 3000, pulse_ns);
 }
 
@@ -294,9 +294,9 @@ static void behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade(void *
 {
     (void)state;
     struct world *w = make_world();
-    for (uint8_t range = 0; range < LM_RANGES; range++) {
+    for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
         set_scale(w, range, 4000, 400);
-        const double stc_m = lm_radar_default.receiver.stc_m[range];
+        const double stc_m = lm_radar_default.range[range].stc_m;
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = 1 << 24;
         }
@@ -323,9 +323,9 @@ static void levels_are_those_of_the_reference(void **state)
     double worst_db = 0;
     int compared = 0;
     for (uint32_t line = 0; line < 64; line++) {
-        const uint8_t range = line % LM_RANGES;
+        const uint8_t range = (uint8_t)(line % lm_radar_default.ranges);
         set_scale(w, range, 200 + 10000 * hs_rng_uniform(&rng),
-                  lm_radar_default.field[LM_FIELD_NORM].pulse_ns[range]);
+                  lm_radar_default.range[range].pulse_ns[LM_FIELD_NORM]);
         weather.has_rain = line % 3 == 0;
         weather.noise_rise_q8 = (int32_t)hs_rng_below(&rng, 40 * 256);
         ref_weather.jam = pow(10, weather.noise_rise_q8 / 2560.0) - 1;
@@ -366,8 +366,8 @@ static void whatever_the_table_says_levels_stay_in_their_bounds(void **state)
     static const uint32_t pulses_ns[] = {0, 1, 1000, 60000, UINT32_MAX};
     for (int n = 0; n < 400; n++) {
         w->radar = lm_radar_default;
-        w->radar.receiver.noise_end_q8[3] = n % 2 ? INT16_MAX : INT16_MIN;
-        w->radar.receiver.stc_m[3] = n % 3 ? hs_rng_below(&rng, 400000) : 0;
+        w->radar.range[3].noise_end_q8 = n % 2 ? INT16_MAX : INT16_MIN;
+        w->radar.range[3].stc_m = n % 3 ? hs_rng_below(&rng, 400000) : 0;
         w->radar.receiver.noise_looks_log2 = (uint8_t)hs_rng_below(&rng, 256);
         w->radar.antenna.elevation_beam = n % 5 ? (fx_bam_t)hs_rng_u64(&rng) : 0;
         const uint32_t cells = hs_rng_below(&rng, LM_CELLS_MAX + 1);

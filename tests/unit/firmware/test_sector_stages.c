@@ -216,15 +216,14 @@ static struct ref_receiver receiver_of(const struct trial *t)
 {
     const struct lm_sector *s = &t->w->sector;
     const uint8_t range = s->command.range;
-    const struct lm_receiver_table *table = &s->radar->receiver;
     return (struct ref_receiver){.bins = bins_of(s),
                                  .height_m = height_m(s),
-                                 .end_m = s->radar->range_m[range],
-                                 .noise_end_db = decibels(table->noise_end_q8[range]),
+                                 .end_m = s->radar->range[range].range_m,
+                                 .noise_end_db = decibels(s->radar->range[range].noise_end_q8),
                                  .noise_table_db = t->noise_db,
-                                 .stc_m = table->stc_m[range],
+                                 .stc_m = s->radar->range[range].stc_m,
                                  .pulse_s =
-                                     s->radar->field[s->command.field].pulse_ns[range] * 1e-9};
+                                     s->radar->range[range].pulse_ns[s->command.field] * 1e-9};
 }
 
 /* The environment as the line at an azimuth from north meets it. */

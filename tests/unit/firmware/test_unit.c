@@ -329,8 +329,8 @@ static void hostile_commands_are_refused_and_counted(void **state)
     struct rig *r = start_rig();
     run(r, 1);
     const struct lm_control bad[] = {
-        {.kind = LM_CONTROL_RANGE, .range_index = 4},
-        {.kind = LM_CONTROL_RANGE, .range_index = -1},
+        {.kind = LM_CONTROL_RANGE, .range_nm = 160},
+        {.kind = LM_CONTROL_RANGE, .range_nm = -1},
         {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = 3},
         {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = -1},
         {.kind = LM_CONTROL_GAIN, .gain_db = 31},

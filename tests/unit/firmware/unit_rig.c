@@ -194,7 +194,7 @@ uint32_t lit_pixels(const struct rig *r)
     return lit;
 }
 
-const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .range_index = 0};
+const struct lm_control range_10 = {.kind = LM_CONTROL_RANGE, .range_nm = 10};
 const struct lm_control patch_here = {.kind = LM_CONTROL_SAR,
                                       .sar = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(221) / 20},
                                               .cell_mm = 5000,

@@ -135,7 +135,7 @@ static struct tiny_cell flat_soil(void *ctx, const struct tiny_place *place)
 static void look_closely(struct flight *f)
 {
     drv_control_ring_put(&f->panel.hand.ring,
-                         (struct lm_control){.kind = LM_CONTROL_RANGE, .range_index = 0});
+                         (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 10});
     drv_control_ring_put(&f->panel.hand.ring, lm_control_slew(LM_FULL_DEFLECTION, 0));
     fly(f, 0.3);
     drv_control_ring_put(&f->panel.hand.ring, lm_control_slew(0, 0));

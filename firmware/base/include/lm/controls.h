@@ -33,7 +33,7 @@ enum lm_control_kind {
     LM_CONTROL_SAR,         /* sar: draw a patch */
     LM_CONTROL_ENVIRONMENT, /* environment: rain, jammers, sea state; replaces the one before */
     LM_CONTROL_STEERPOINT,  /* steerpoint: steer to a place, or as the bus says again */
-    LM_CONTROL_RANGE,       /* range_index: select a range scale */
+    LM_CONTROL_RANGE,       /* range_nm: select a range scale */
     LM_CONTROL_AZIMUTH,     /* azimuth_index: select a width of the sector */
     LM_CONTROL_GAIN,        /* gain_db: set the gain */
     LM_CONTROL_FREEZE,      /* is_frozen: hold the picture, or go on */
@@ -64,7 +64,7 @@ struct lm_control {
                                       bus says */
             struct lm_place place; /* latitude -90..90 degrees, also when is_set is false */
         } steerpoint;
-        int32_t range_index;   /* 0..LM_RANGES - 1, as far as the mode has it */
+        int32_t range_nm;      /* of a scale of the radar table that mode and field of view have */
         int32_t azimuth_index; /* 0..LM_AZIMUTHS - 1 */
         int32_t gain_db;       /* brighter than the radar table says: -30..30 */
         bool is_frozen;

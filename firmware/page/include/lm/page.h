@@ -79,13 +79,14 @@ uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
 
 /* Direct commands of a script or an instructor's station. Each returns its effects, which are not
  * 0, or 0 with the page unchanged when an argument is outside its range:
- * - select_range: 0..lm_page_range_last; ends the automatic range;
+ * - select_range: the nautical miles of a scale that mode and field of view have; ends the
+ * automatic range;
  * - select_azimuth: 0..LM_AZIMUTHS - 1;
- * - select_sector: mode 0..LM_SECTOR_MODES - 1, field 0..field_last of that mode; the range scale
- * is lowered to the largest that both have;
+ * - select_sector: mode 0..LM_SECTOR_MODES - 1, field 0..field_last of that mode, and both have the
+ *   range scale at hand: select another one first;
  * - set_gain: -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB;
  * - set_knob: -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION. */
-uint32_t lm_page_select_range(struct lm_page *p, int32_t range);
+uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm);
 uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth);
 uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field);
 uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db);

@@ -4,7 +4,11 @@
  *
  * Each field has its unit and the range that the code bears. lm_radar_check (lm/radar_check.h)
  * holds a table to the ranges and to these rules between fields:
- *  - scales rise, in metres and in nautical miles;
+ *  - scales rise, in metres and in nautical miles, and rows behind the last one are empty;
+ *  - every mode and every field of view has the smallest scale; the first mode has that of the
+ *    start;
+ *  - names are 1 to 5 printable characters without blanks, and no two modes or fields of view share
+ *    one, whatever the case of their letters;
  *  - sectors are one line wide to each side or wider, and end within the antenna's limit;
  *  - samples lie 1/4 to 2/7 of the azimuth beam apart;
  *  - a gate's upper speed is 0 or not below its lower one;
@@ -26,7 +30,8 @@
 #include "lm/class_kind.h"
 #include "lm/config.h"
 
-enum { LM_RANGES = 4, LM_AZIMUTHS = 3 };
+/* Scales that a table may have, sectors that it has, and characters of a name with its zero. */
+enum { LM_RANGES_MAX = 8, LM_AZIMUTHS = 3, LM_NAME_SIZE = 6 };
 
 /* Ends of ranges. The stages that a limit comes from assert that they bear it. */
 enum {
@@ -93,21 +98,23 @@ enum lm_field { LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_DBS1, LM_FIELD_DBS2, LM_FI
 
 /* A mode of the sector. */
 struct lm_sector_mode_row {
-    uint32_t bam_per_s;    /* antenna rate; LM_RADAR_RATE_MIN..MAX */
-    uint8_t range_last;    /* index of the largest scale; 0..LM_RANGES - 1 */
-    uint8_t field_last;    /* enum lm_field: the last that the mode has */
-    uint8_t bars;          /* swept in turn; 1..8 */
-    uint16_t clutter_q8;   /* how much of what stands still is cancelled, dB; 0..64 dB */
-    uint32_t gate_mm_s[2]; /* closing speeds, either way, of what is shown; 0..
-                            * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */
+    char name[LM_NAME_SIZE]; /* on the glass and, in either case, in scripts: "GMT" */
+    uint32_t bam_per_s;      /* antenna rate; LM_RADAR_RATE_MIN..MAX */
+    uint16_t range_max_nm;   /* the largest scale that it has; 1..999 */
+    uint8_t field_last;      /* enum lm_field: the last that the mode has */
+    uint8_t bars;            /* swept in turn; 1..8 */
+    uint16_t clutter_q8;     /* how much of what stands still is cancelled, dB; 0..64 dB */
+    uint32_t gate_mm_s[2];   /* closing speeds, either way, of what is shown; 0..
+                              * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
 
 /* A field of view. */
 struct lm_field_row {
+    char name[LM_NAME_SIZE];   /* as a mode's: "EXP" */
     uint32_t bam_per_s;        /* antenna rate, LM_RADAR_RATE_MIN..MAX; 0: the mode's */
-    uint8_t range_last;        /* index of the largest scale; 0..LM_RANGES - 1 */
+    uint16_t range_max_nm;     /* the largest scale that it has; 1..999 */
     uint8_t slew_percent;      /* pace of the cursor over the glass, of that in NORM; 1..200 */
     uint16_t window_permille;  /* half the window's side, of the range scale; 5..250, and 0 in NORM,
                                 * which shows the sector */
@@ -117,7 +124,16 @@ struct lm_field_row {
     uint16_t sharpening_least; /* real beam where there is less than this; 1.. */
     uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/footprint.h); 0..
                                 * LM_RADAR_AZIMUTHS_LOG2_MAX */
-    uint32_t pulse_ns[LM_RANGES]; /* 10..100,000 */
+};
+
+/* A display scale, and what the receiver does on it. Its name, on the glass, in commands and in
+ * scripts, is the number of nautical miles. */
+struct lm_range_row {
+    uint32_t range_m;     /* 1,852..LM_RADAR_RANGE_MAX_M */
+    uint16_t range_nm;    /* 1..999 */
+    int16_t noise_end_q8; /* noise-equivalent gamma at the scale's end; -100..20 dB */
+    uint32_t stc_m;       /* slant range where sensitivity time control ends; 100..400,000 */
+    uint32_t pulse_ns[LM_FIELDS]; /* by field of view; 10..100,000 */
 };
 
 /* The antenna and its gimbals. */
@@ -132,11 +148,7 @@ struct lm_antenna_table {
 
 /* The receiver. */
 struct lm_receiver_table {
-    int16_t noise_end_q8[LM_RANGES]; /* noise-equivalent gamma at the end of each scale;
-                                      * -100..20 dB */
-    uint32_t stc_m[LM_RANGES];       /* slant range where sensitivity time control ends;
-                                      * 100..400,000 */
-    uint8_t noise_looks_log2;        /* 0..LM_LOOKS_LOG2_MAX */
+    uint8_t noise_looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
 };
 
 /* SAR patches. */
@@ -156,8 +168,9 @@ struct lm_sar_table {
 
 /* The table. */
 struct lm_radar {
-    uint32_t range_m[LM_RANGES];        /* display scales; 1,852..LM_RADAR_RANGE_MAX_M */
-    uint16_t range_nm[LM_RANGES];       /* the same, as the pilot reads them; 1..999 */
+    uint8_t ranges; /* rows of `range` in use; 1..LM_RANGES_MAX */
+    struct lm_range_row range[LM_RANGES_MAX];
+    uint16_t range_start_nm;            /* the scale after power-up; 1..999 */
     fx_bam_t azimuth_half[LM_AZIMUTHS]; /* of the sector: A6, A3, A1; 2^20..LM_RADAR_AZIMUTH_MAX */
     uint32_t wavelength_um;             /* LM_WAVELENGTH_MIN_UM..MAX_UM */
     uint16_t cells;                     /* range cells of a sector line; 64..LM_RADAR_CELLS_MAX */
@@ -175,5 +188,15 @@ struct lm_radar {
 };
 
 extern const struct lm_radar lm_radar_default;
+
+/* Index of the scale of so many nautical miles, of the mode or field of view of that name (in
+ * either case), and of the sector of so many degrees to each side; -1 when the table has none. */
+int32_t lm_radar_find_range(const struct lm_radar *radar, int32_t range_nm);
+int32_t lm_radar_find_mode(const struct lm_radar *radar, const char *name);
+int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name);
+int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees);
+
+/* Index of the largest scale that both a mode and a field of view have. */
+uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t field);
 
 #endif

@@ -14,7 +14,8 @@ struct lm_radar_fault {
     uint32_t index;    /* of the array's element or row; 0 where there is none */
 };
 
-/* Check every field. `fault` may be NULL; it is written on failure only.
+/* Check every field: names, and numbers of the rows in use. `fault` may be NULL; it is written on
+ * failure only.
  *
  * Returns LM_OK, or LM_ERR_TABLE iff
  *  - a number lies outside the range that stands beside its field in lm/radar.h, or
@@ -31,11 +32,15 @@ struct lm_radar_field {
     uint8_t count;   /* elements, 1 and more */
     uint16_t stride; /* from element to element, bytes */
     bool is_signed;
+    bool is_of_scales; /* of the rows of scales: those in use count */
     int64_t min, max;
 };
 
 /* Field number 0.., in the order in which they are checked; NULL behind the last. */
 const struct lm_radar_field *lm_radar_field(uint32_t number);
+
+/* Elements of the field that this table uses. */
+uint32_t lm_radar_field_count(const struct lm_radar *radar, const struct lm_radar_field *field);
 
 /* Element `index` of the field, index < count. */
 int64_t lm_radar_field_value(const struct lm_radar *radar, const struct lm_radar_field *field,

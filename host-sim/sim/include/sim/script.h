@@ -3,6 +3,7 @@
  *   SECONDS gm|gmt|sea [norm|exp|dbs1|dbs2]   mode and field of view; norm when none is named
  *   SECONDS range 10|20|40|80                 nautical miles
  *   SECONDS azimuth 60|30|10                  degrees to each side
+ *                                             (these words are the radar table's)
  *   SECONDS sar LAT LON CELL_M [EFFECT..]     a patch seen from the ownship
  *   SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M [EFFECT..]
  *                                             EFFECT: layover; steady, without the blur of turns
@@ -27,6 +28,7 @@
 
 #include "lm/controls.h"
 #include "lm/port.h"
+#include "lm/radar.h"
 
 struct script_event {
     uint64_t time_us;
@@ -37,6 +39,8 @@ struct script_event {
 };
 
 struct script {
+    const struct lm_radar *radar;      /* borrowed */
+    int32_t mode, field, range_nm;     /* selected by the lines so far; -1 behind a key */
     struct lm_environment environment; /* of the line read last: rain and jammers add up */
     struct script_event *events;       /* owned */
     int count, next;
@@ -45,8 +49,12 @@ struct script {
     struct lm_controls port; /* its ctx is this struct, which must not move */
 };
 
-/* Read a script; NULL gives an empty one. 0, or -1 with the error reported (file and line). */
-int script_read(struct script *s, const char *path);
+/* Read a script, or make an empty one when `path` is NULL, for a unit with this radar table, which
+ * is borrowed. Returns 0, or -1 with the error reported by file and line: a line that is no
+ * command, goes back in time, or starts what the table does not have (a field of view that the mode
+ * lacks, a scale that both lack). Behind a line that presses a key, the unit alone can tell, and
+ * refuses. */
+int script_read(struct script *s, const char *path, const struct lm_radar *radar);
 void script_free(struct script *s);
 
 /* Controls up to `now_us` are handed out through the port. A picture that is due by then is taken

@@ -29,7 +29,7 @@ static int read_text(struct script *s, const char *text)
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    const int status = script_read(s, path);
+    const int status = script_read(s, path, &lm_radar_default);
     unlink(path);
     return status;
 }
@@ -147,12 +147,11 @@ static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(voi
 static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void **state)
 {
     (void)state;
-    static const char *const modes[] = {"gm", "gmt", "sea"};
-    static const char *const fields[] = {"norm", "exp", "dbs1", "dbs2"};
+    const struct lm_radar *radar = &lm_radar_default;
     for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
         struct script s;
         char text[40];
-        snprintf(text, sizeof text, "0 %s\n", modes[mode]);
+        snprintf(text, sizeof text, "0 %s\n", radar->mode[mode].name);
         assert_int_equal(read_text(&s, text), 0);
         const struct lm_control plain = at(&s, 0);
         assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
@@ -160,14 +159,63 @@ static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void
         assert_int_equal(plain.sector.fov, LM_FIELD_NORM);
         script_free(&s);
         for (int field = 0; field < LM_FIELDS; field++) {
-            snprintf(text, sizeof text, "0 %s %s\n", modes[mode], fields[field]);
-            assert_int_equal(read_text(&s, text), 0);
-            const struct lm_control c = at(&s, 0);
-            assert_int_equal(c.sector.mode, mode);
-            assert_int_equal(c.sector.fov, field);
+            snprintf(text, sizeof text, "0 %s %s\n", radar->mode[mode].name,
+                     radar->field[field].name);
+            const bool has_field = field <= radar->mode[mode].field_last;
+            assert_int_equal(read_text(&s, text), has_field ? 0 : -1);
+            if (has_field) {
+                const struct lm_control c = at(&s, 0);
+                assert_int_equal(c.sector.mode, mode);
+                assert_int_equal(c.sector.fov, field);
+            }
             script_free(&s);
         }
     }
+}
+
+static void words_of_the_table_are_taken_in_small_letters(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 gm dbs1\n1 GMT exp\n"), 0);
+    assert_int_equal(at(&s, 0).sector.fov, LM_FIELD_DBS1);
+    assert_int_equal(at(&s, 1).sector.mode, LM_SECTOR_GMT);
+    script_free(&s);
+}
+
+static void a_scale_is_one_of_the_tables_in_nautical_miles(void **state)
+{
+    (void)state;
+    struct script s;
+    char text[40];
+    for (uint32_t i = 0; i < lm_radar_default.ranges; i++) {
+        snprintf(text, sizeof text, "0 range %u\n", (unsigned)lm_radar_default.range[i].range_nm);
+        assert_int_equal(read_text(&s, text), 0);
+        const struct lm_control c = at(&s, 0);
+        assert_int_equal(c.kind, LM_CONTROL_RANGE);
+        assert_int_equal(c.range_nm, lm_radar_default.range[i].range_nm);
+        script_free(&s);
+    }
+    assert_int_equal(read_text(&s, "0 range 39\n"), -1);
+    assert_int_equal(read_text(&s, "0 range 40.5\n"), -1);
+    assert_int_equal(read_text(&s, "0 azimuth 30\n"), 0);
+    assert_int_equal(at(&s, 0).azimuth_index, 1);
+    script_free(&s);
+    assert_int_equal(read_text(&s, "0 azimuth 31\n"), -1);
+}
+
+static void a_start_that_a_mode_does_not_have_is_refused(void **state)
+{
+    (void)state;
+    struct script s;
+    assert_int_equal(read_text(&s, "0 sea dbs1\n"), -1);
+    assert_int_equal(read_text(&s, "0 range 80\n1 gmt\n"), -1);
+    assert_int_equal(read_text(&s, "0 gm dbs2\n1 range 80\n"), -1);
+    assert_int_equal(read_text(&s, "0 range 80\n1 range 40\n2 gmt\n"), 0);
+    script_free(&s);
+    /* A key may have selected another scale: the unit will tell. */
+    assert_int_equal(read_text(&s, "0 range 80\n1 osb 19\n2 gmt\n"), 0);
+    script_free(&s);
 }
 
 static void a_steerpoint_is_a_place_or_off(void **state)
@@ -324,6 +372,9 @@ int main(void)
         cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
         cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
         cmocka_unit_test(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector),
+        cmocka_unit_test(words_of_the_table_are_taken_in_small_letters),
+        cmocka_unit_test(a_scale_is_one_of_the_tables_in_nautical_miles),
+        cmocka_unit_test(a_start_that_a_mode_does_not_have_is_refused),
         cmocka_unit_test(a_steerpoint_is_a_place_or_off),
         cmocka_unit_test(rain_and_jammers_add_up_until_the_weather_is_fair),
         cmocka_unit_test(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for),

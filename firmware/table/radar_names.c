@@ -1,0 +1,69 @@
+#include <stdbool.h>
+
+#include "fx/sat.h"
+#include "lm/radar.h"
+
+static char small(char letter)
+{
+    return letter >= 'A' && letter <= 'Z' ? (char)(letter - 'A' + 'a') : letter;
+}
+
+static bool is_same(const char name[LM_NAME_SIZE], const char *word)
+{
+    uint32_t i = 0;
+    while (i < LM_NAME_SIZE - 1 && name[i] && small(name[i]) == small(word[i])) {
+        i++;
+    }
+    return name[i] == word[i];
+}
+
+int32_t lm_radar_find_range(const struct lm_radar *radar, int32_t range_nm)
+{
+    for (int32_t i = 0; i < radar->ranges; i++) {
+        if (radar->range[i].range_nm == range_nm) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int32_t lm_radar_find_mode(const struct lm_radar *radar, const char *name)
+{
+    for (int32_t i = 0; i < LM_SECTOR_MODES; i++) {
+        if (is_same(radar->mode[i].name, name)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name)
+{
+    for (int32_t i = 0; i < LM_FIELDS; i++) {
+        if (is_same(radar->field[i].name, name)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees)
+{
+    for (int32_t i = 0; i < LM_AZIMUTHS; i++) {
+        if (((uint64_t)radar->azimuth_half[i] * 360 + (1u << 31)) >> 32 == (uint64_t)degrees) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t field)
+{
+    const uint32_t most_nm =
+        fx_min_u32(radar->mode[mode].range_max_nm, radar->field[field].range_max_nm);
+    uint32_t last = 0;
+    while (last + 1 < radar->ranges && radar->range[last + 1].range_nm <= most_nm) {
+        last++;
+    }
+    return last;
+}
