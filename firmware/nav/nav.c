@@ -276,11 +276,12 @@ static void set_heading(struct lm_ownship *out, const struct lm_nav *n, uint64_t
     out->turn_bam_s = fx_sat_i32(rate);
 }
 
-static void set_waypoint(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
+static void set_steerpoint(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
-    const struct pair p = read_pair(n, LM_BUS_WAYPOINT_LATITUDE, LM_BUS_WAYPOINT_LONGITUDE, now_us);
-    out->waypoint_quality = quality_of(&p);
-    out->waypoint = (struct lm_place){(fx_bam_t)p.first.value, (fx_bam_t)p.second.value};
+    const struct pair p =
+        read_pair(n, LM_BUS_STEERPOINT_LATITUDE, LM_BUS_STEERPOINT_LONGITUDE, now_us);
+    out->steerpoint_quality = quality_of(&p);
+    out->steerpoint = (struct lm_place){(fx_bam_t)p.first.value, (fx_bam_t)p.second.value};
 }
 
 static void set_utc(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
@@ -300,7 +301,7 @@ void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out)
     set_position(out, n, &v, now_us);
     set_attitude(out, n, now_us);
     set_heading(out, n, now_us);
-    set_waypoint(out, n, now_us);
+    set_steerpoint(out, n, now_us);
     set_utc(out, n, now_us);
 }
 

@@ -14,12 +14,12 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_elevation_q10 = u->cursor_elevation_q10;
 }
 
-/* Where it is to go: as commanded, or else the bus's waypoint, while that is not stale. */
+/* Where it is to go: as commanded, or else the bus's steerpoint, while that is not stale. */
 static bool find_steerpoint(const struct lm_unit *u, struct lm_place *place)
 {
-    *place = u->has_own_steerpoint ? u->own_steerpoint : u->ownship.waypoint;
+    *place = u->has_own_steerpoint ? u->own_steerpoint : u->ownship.steerpoint;
     return lm_has_ownship(u) &&
-           (u->has_own_steerpoint || u->ownship.waypoint_quality == LM_NAV_GOOD);
+           (u->has_own_steerpoint || u->ownship.steerpoint_quality == LM_NAV_GOOD);
 }
 
 static uint32_t to_go_s(const struct lm_unit *u, struct lm_place place)

@@ -43,7 +43,7 @@ static const char help[] =
     "  SECONDS sarfrom LAT LON CELL_M LOOK_DEG RANGE_M HEIGHT_M [EFFECT..]\n"
     "                                             the same from a commanded place in the air;\n"
     "                                             EFFECT: layover; steady: no blur in turns\n"
-    "  SECONDS steer LAT LON | steer off          steerpoint; off: the bus's waypoint\n"
+    "  SECONDS steer LAT LON | steer off          steerpoint; off: the bus's steerpoint\n"
     "  SECONDS rain LAT LON RADIUS_KM MM_PER_H    one more circle of rain (4 at most):\n"
     "                                             0.1..100 km, 1..150 mm/h\n"
     "  SECONDS jam LAT LON DB                     one more jammer (4 at most), -20..80 dB over\n"

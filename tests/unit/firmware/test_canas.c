@@ -131,7 +131,7 @@ static void every_value_that_another_library_sent_is_decoded_within_its_toleranc
     for (int i = 0; i < lm_bus_canas17.row_count; i++) {
         const struct lm_bus_row *row = &lm_bus_canas17.rows[i];
         const bool is_ins = row->id >= 1049 && row->id <= 1053;
-        const bool is_sent = row->id != 1000 && row->id != 1001; /* no waypoints there */
+        const bool is_sent = row->id != 1000 && row->id != 1001; /* no steerpoint there */
         if ((row->priority == 0 && is_sent && row->field < LM_BUS_NAV_FIELDS) || is_ins) {
             assert_int_equal(compared[i][0], 3000000 / row->period_us);
         }

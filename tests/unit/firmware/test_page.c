@@ -1042,25 +1042,25 @@ static bool is_marked(const struct rig *r, double latitude_deg, double longitude
     return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
 }
 
-static void the_waypoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale(void **state)
+static void the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale(void **state)
 {
     (void)state;
     struct rig *r = fly();
     assert_false(says(r, "TTG"));
-    r->bus.has_waypoint = true;
-    r->bus.waypoint_deg[0] = 46.05, r->bus.waypoint_deg[1] = 11.02;
+    r->bus.has_steerpoint = true;
+    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
     run(r, 1);
     assert_true(is_marked(r, 46.05, 11.02));
-    r->bus.waypoint_deg[1] = 11.001;
+    r->bus.steerpoint_deg[1] = 11.001;
     run(r, 1);
     assert_true(is_marked(r, 46.05, 11.001));
     assert_true(says_time_to(r, 46.05, 150));
-    r->bus.waypoint_deg[0] = 46.6; /* 72 km: off the glass, and 8 minutes */
+    r->bus.steerpoint_deg[0] = 46.6; /* 72 km: off the glass, and 8 minutes */
     run(r, 1);
     assert_true(says_time_to(r, 46.6, 150));
-    r->bus.waypoint_deg[0] = 46.05;
+    r->bus.steerpoint_deg[0] = 46.05;
     run(r, 1);
-    r->bus.has_waypoint = false;
+    r->bus.has_steerpoint = false;
     r->bus.queue_next = 0;
     run(r, 2.8);
     assert_true(is_marked(r, 46.05, 11.001));
@@ -1076,8 +1076,8 @@ static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropp
     struct rig *r = fly();
     struct lm_control steer = {.kind = LM_CONTROL_STEERPOINT,
                                .steerpoint = {true, {hs_bam(46.03), hs_bam(10.99)}}};
-    r->bus.has_waypoint = true;
-    r->bus.waypoint_deg[0] = 46.05, r->bus.waypoint_deg[1] = 11.02;
+    r->bus.has_steerpoint = true;
+    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
     command(r, steer);
     run(r, 1);
     assert_true(is_marked(r, 46.03, 10.99));
@@ -1175,7 +1175,7 @@ int main(void)
         cmocka_unit_test(a_cursor_that_nobody_moved_goes_with_the_scale),
         cmocka_unit_test(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes),
         cmocka_unit_test(a_cursor_that_the_range_follows_is_left_where_it_is),
-        cmocka_unit_test(the_waypoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale),
+        cmocka_unit_test(the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale),
         cmocka_unit_test(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped),
     };
     return cmocka_run_group_tests_name("page", tests, NULL, NULL);

@@ -58,9 +58,9 @@ static int receive(void *ctx, struct lm_can_frame *frame)
                  {312, 0},
                  {303, 0},
                  {305, b->turn_deg_s},
-                 {1000, b->waypoint_deg[0]},
-                 {1001, b->waypoint_deg[1]}};
-    const int count = (int)(sizeof items / sizeof *items) - (b->has_waypoint ? 0 : 2);
+                 {1000, b->steerpoint_deg[0]},
+                 {1001, b->steerpoint_deg[1]}};
+    const int count = (int)(sizeof items / sizeof *items) - (b->has_steerpoint ? 0 : 2);
     put_float(frame, items[b->queue_next].id, items[b->queue_next].value, b->code);
     frame->time_us = b->now_us;
     b->queue_next = (b->queue_next + 1) % count;

@@ -18,8 +18,8 @@ struct fake_bus {
     double jump_degrees;
     double height_m;                        /* 2,000 at first */
     double speed_m_s, nose_deg, turn_deg_s; /* north, whatever nose and turn say */
-    bool has_waypoint;                      /* the active one is sent, too */
-    double waypoint_deg[2];
+    bool has_steerpoint;                    /* a steerpoint is sent, too */
+    double steerpoint_deg[2];
     uint8_t code;
 };
 

@@ -28,8 +28,8 @@ enum lm_bus_field {
     LM_BUS_UP_VELOCITY,
     LM_BUS_PITCH_RATE,
     LM_BUS_YAW_RATE,
-    LM_BUS_WAYPOINT_LATITUDE, /* of the active waypoint: where it is to go */
-    LM_BUS_WAYPOINT_LONGITUDE,
+    LM_BUS_STEERPOINT_LATITUDE, /* of the place to fly to; the active waypoint of CANaerospace */
+    LM_BUS_STEERPOINT_LONGITUDE,
     LM_BUS_UTC,
     LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h, those below to lm/weather_bus.h */
 

@@ -93,8 +93,8 @@ struct lm_ownship {
     enum lm_nav_quality velocity_quality;
     struct lm_nav_origin velocity_origin;
 
-    struct lm_place waypoint; /* the active one */
-    enum lm_nav_quality waypoint_quality;
+    struct lm_place steerpoint; /* place to fly to, as the bus says */
+    enum lm_nav_quality steerpoint_quality;
 
     int32_t utc_s; /* since midnight */
     enum lm_nav_quality utc_quality;

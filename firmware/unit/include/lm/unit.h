@@ -59,7 +59,7 @@ struct lm_unit {
     struct lm_weather_bus weather_bus;
     struct lm_environment environment; /* of both, as sweeps and patches meet it */
     bool is_weather_stale;
-    struct lm_place own_steerpoint; /* commanded: before the bus's waypoint */
+    struct lm_place own_steerpoint; /* commanded: before the bus's steerpoint */
     bool has_own_steerpoint;
     struct lm_bus bus;
     struct lm_nav nav;
