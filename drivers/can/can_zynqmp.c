@@ -88,11 +88,8 @@ static int enter_bus(const struct drv_can *c)
 {
     const drv_registers r = c->base;
     drv_write(r, SRR, SRR_SRST);
-    uint32_t polls = 0;
-    while (!(drv_read(r, SR) & SR_CONFIG)) {
-        if (++polls == RESET_POLLS) {
-            return LM_ERR_IO;
-        }
+    if (!drv_wait_for(r, SR, SR_CONFIG, SR_CONFIG, RESET_POLLS)) {
+        return LM_ERR_IO;
     }
     drv_write(r, BRPR, c->clock_hz / (c->bit_rate * QUANTA) - 1);
     drv_write(r, BTR, BTR_VALUE);

@@ -194,12 +194,9 @@ static uint32_t read_identification(const struct drv_flash *f, uint32_t device)
     queue_byte(f, device, READ_ID);
     queue(f, device, SPI | RECEIVE | DATA_XFER | 4);
     release_device(f, device);
-    for (uint32_t polls = 0; polls < ID_POLLS; polls++) {
-        if (!(drv_read(f->base, GQSPI_ISR) & ISR_RX_FIFO_EMPTY)) {
-            return drv_read(f->base, GQSPI_RXD) & 0xFFFFFFu;
-        }
-    }
-    return 0;
+    return drv_wait_for(f->base, GQSPI_ISR, ISR_RX_FIFO_EMPTY, 0, ID_POLLS)
+               ? drv_read(f->base, GQSPI_RXD) & 0xFFFFFFu
+               : 0;
 }
 
 /* Bytes of the device, or 0 when there is none of the kind. Its size code is the binary logarithm

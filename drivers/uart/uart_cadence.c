@@ -40,6 +40,9 @@ enum {
     SAMPLES_MOST = 16
 };
 
+/* The transmitter empties by itself, a character in 87 us: this bounds the loop, and no more. */
+#define TX_POLLS UINT32_MAX
+
 struct divisors {
     uint32_t baudgen, samples;
 };
@@ -80,15 +83,13 @@ void drv_uart_init(struct drv_uart *u, drv_registers base, uint32_t clock_hz, ui
 
 void drv_uart_put(struct drv_uart *u, char c)
 {
-    while (drv_read(u->base, SR) & SR_TXFULL) {
-    }
+    (void)drv_wait_for(u->base, SR, SR_TXFULL, 0, TX_POLLS);
     drv_write(u->base, FIFO, (uint8_t)c);
 }
 
 void drv_uart_drain(struct drv_uart *u)
 {
-    while ((drv_read(u->base, SR) & (SR_TXEMPTY | SR_TACTIVE)) != SR_TXEMPTY) {
-    }
+    (void)drv_wait_for(u->base, SR, SR_TXEMPTY | SR_TACTIVE, SR_TXEMPTY, TX_POLLS);
 }
 
 int drv_uart_get(struct drv_uart *u)

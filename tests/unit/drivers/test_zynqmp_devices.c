@@ -51,6 +51,16 @@ static void open_can(struct drv_can *c, struct device *d)
     assert_int_equal(drv_can_open(c, &config), LM_OK);
 }
 
+static void a_wait_ends_with_the_value_of_the_register_or_with_its_polls(void **state)
+{
+    (void)state;
+    volatile uint32_t words[2] = {0, 0x5A};
+    assert_true(drv_wait_for(words, 4, 0xF0, 0x50, 1));
+    assert_true(drv_wait_for(words, 0, 0xF0, 0, 1));
+    assert_false(drv_wait_for(words, 4, 0xF0, 0x40, 1));
+    assert_false(drv_wait_for(words, 4, 0xF0, 0x40, 1000));
+}
+
 static void a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth(void **state)
 {
     (void)state;
@@ -483,6 +493,7 @@ static void more_handlers_than_there_is_room_for_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_wait_ends_with_the_value_of_the_register_or_with_its_polls),
         cmocka_unit_test(a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth),
         cmocka_unit_test(a_controller_that_stays_in_reset_is_an_error),
         cmocka_unit_test(bus_off_is_counted_and_left_after_a_tenth_of_a_second),
