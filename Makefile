@@ -11,17 +11,18 @@ pkgs  = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
 LIB_fixed    := $(O)/libfixed.a
 LIB_firmware := $(O)/libfirmware.a
 LIB_drivers  := $(O)/libdrivers.a
-TEST_SUPPORT := $(O)/tests/support/support.o
+LIB_support  := $(O)/tests/support/libsupport.a
 PROGRAMS :=
 TESTS    :=
-include make/layers.mk make/compile.mk make/generated.mk
+include make/layers.mk make/compile.mk make/variants.mk make/generated.mk
 # What is built beside the firmware: a PC's programs and tests, unless the board says otherwise.
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/host-sim.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))
 
-$(LIB_fixed): $(call objs,$(SRC_fixed))
-$(LIB_firmware): $(call objs,$(SRC_firmware))
-$(LIB_drivers): $(DRIVERS:%=$(O)/drivers/%.o)
+$(call archive, $(LIB_fixed), $(SRC_fixed))
+$(call archive, $(LIB_firmware), $(SRC_firmware))
+$(call archive, $(LIB_drivers), $(DRIVERS:%=drivers/%.c))
+$(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 
 .PHONY: help deps all run check check-panel panel package bench gallery fuzz rooms lint format clean
 .PHONY: zcu102 run-zcu102 size bench-zcu102
@@ -41,6 +42,14 @@ run: deps ## Build, make the database of the built-in scene, fly over it, leave 
 
 check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
 	@$(MAKE) --no-print-directory -j2 check-built
+
+# The program test_NAME, or else all that have NAME in folder or name.
+TESTS_named = $(strip $(or $(filter %/$(NAME) %/test_$(NAME),$(TESTS)),$(foreach t,$(TESTS),$(if $(findstring $(NAME),$(t:$(O)/bin/tests/%=%)),$t))))
+.PHONY: test
+test: $(if $(NAME),$(TESTS_named)) ## Build and run the tests of one name or folder: make test NAME=page, NAME=firmware/bus
+	@$(if $(and $(NAME),$(TESTS_named)),sh tests/run.sh $(O) $(TESTS_named),\
+	    echo 'make test NAME=...: a test, or a part of its folder or name, one of'; \
+	    printf '  %s\n' $(patsubst test_%,%,$(subst /test_,/,$(TESTS:$(O)/bin/tests/%=%))); exit 1)
 
 panel: deps ## Build the cockpit panel's program for this machine, or for ARCH=arm64 or amd64
 	@$(MAKE) --no-print-directory BOARD=panel-linux panel-program

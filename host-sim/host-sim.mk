@@ -35,7 +35,7 @@ HOST_PACKAGES_$(1) := $(3)
 HOST_NEEDS_$(1)    := $(call host_needs,$(2))
 HOST_LIBS          := $(1) $(HOST_LIBS)
 $$(foreach l,$(2),$$(if $$(or $$(HOST_HEADERS_$$l),$$(filter $$l,$(HOST_LIBS))),,$$(error host-sim.mk: $(1) sees $$l, which is no library above it)))
-$(O)/host-sim/$(1)/lib$(1).a: $(call objs,$(wildcard host-sim/$(1)/*.c))
+$$(call archive, $(O)/host-sim/$(1)/lib$(1).a, $(wildcard host-sim/$(1)/*.c))
 endef
 define host_library_flags
 $(O)/host-sim/$(1)/%.o: CFLAGS_part := $(call CFLAGS_host_part,$(1))

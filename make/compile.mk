@@ -33,8 +33,8 @@ $(O)/%.a:
 	$(call say,AR,$@)
 	$(Q)$(AR) rcs $@ $^
 
-# Objects and archives in the order of the prerequisites, then what LDLIBS says for this target.
+# Objects, archives in whatever order, then what LDLIBS says for this target.
 $(O)/bin/%:
 	@mkdir -p $(@D)
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(OPT) $(LDFLAGS) $(filter %.o %.a,$^) $(LDLIBS) -lm -o $@
+	$(Q)$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LDLIBS) -lm -o $@

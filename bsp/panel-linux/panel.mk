@@ -1,6 +1,6 @@
 # landmass-panel: the installed cockpit panel. Built with the tests for this machine, and by `make panel` for ARCH.
 LIB_panel := $(O)/libpanel.a
-$(LIB_panel): $(call objs,$(filter-out %/main.c,$(wildcard bsp/panel-linux/*.c)))
+$(call archive, $(LIB_panel), $(filter-out %/main.c,$(wildcard bsp/panel-linux/*.c)))
 PANEL := $(O)/bin/landmass-panel
 PROGRAMS += $(PANEL)
 $(PANEL): $(O)/bsp/panel-linux/main.o $(LIB_panel) $(LIB_drivers) $(LIB_firmware) $(LIB_fixed)

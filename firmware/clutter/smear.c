@@ -23,7 +23,7 @@ struct lm_smear lm_smear_of(int64_t across_q8, int64_t along_q8)
     s.deep_q8 = fx_max_u32(deep_q8 / s.slices, 256);
     /* A range cell that it leaves after a part of the dwell has but that part's resolution, w cells
      * of w walked through, in the shape of the weights: half as wide as the response stretched w
-     * times (tests/unit/firmware/test_target_patch.c). */
+     * times (tests/unit/firmware/targets/test_target_patch.c). */
     s.wide_q8 = fx_max_u32(fx_max_u32(wide_q8 / s.slices, deep_q8 / 2), 256);
     return s;
 }

@@ -68,7 +68,7 @@ const struct lm_radar lm_radar_default = {
      * base): FreeFalcon, as RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below
      * half of that: UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED.
      * Azimuths across a sample: enough for the ground to err less than the speckle does
-     * (tests/unit/firmware/test_footprint.c). */
+     * (tests/unit/firmware/radar/test_footprint.c). */
     .field = {[LM_FIELD_NORM] = {.name = "NORM",
                                  .range_max_nm = 80,
                                  .slew_percent = 100,

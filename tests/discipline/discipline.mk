@@ -1,8 +1,8 @@
 # The rules of the house as tests. The flags of each layer come from the Makefile itself, so that loosening them there
 # is seen here.
-T := $(O)/bin/tests/discipline/rules
-TESTS += $(T)
-$(T): tests/discipline/rules.py tests/discipline/rules_test.py $(O)/tests/discipline/flags
+RULES := $(O)/bin/tests/discipline/rules
+TESTS += $(RULES)
+$(RULES): tests/discipline/rules.py tests/discipline/rules_test.py $(O)/tests/discipline/flags
 	@mkdir -p $(@D)
 	@printf '#!/bin/sh\nexec python3 -B tests/discipline/rules_test.py\n' >$@
 	@chmod +x $@

@@ -1,25 +1,18 @@
-# Golden pictures: one program, built four ways, that must give the same checksums: as the product is built, by clang, without
-# optimisation under the sanitizers, and with clang at its highest level.
-GOLDEN_SRC := $(addprefix tests/golden/,golden.c golden_flight.c golden_scene.c golden_signature.c) \
-    $(addprefix tests/support/,tiny_image.c memory_flash.c) host-sim/lib/png.c host-sim/lib/error.c \
-    host-sim/lib/atomic_file.c $(SRC_core)
+# Golden pictures: one program, built three ways, that must give the same checksums: as the product is built, and in the
+# variants of make/variants.mk, by clang at its highest level and under the sanitizers.
 GOLDEN := $(O)/bin/tests/golden
 TESTS += $(GOLDEN)/test_golden
-
-$(GOLDEN)/golden: $(call objs,$(GOLDEN_SRC))
-$(GOLDEN)/twins: $(call objs,tests/golden/twins.c host-sim/lib/rng.c) $(LIB_firmware) $(LIB_fixed)
-$(GOLDEN)/golden-clang: $(GOLDEN_SRC:%.c=$(O)/golden-clang/%.o)
-$(GOLDEN)/golden-sanitized: $(GOLDEN_SRC:%.c=$(O)/golden-sanitized/%.o)
-$(GOLDEN)/golden-clang: CC := clang
-$(GOLDEN)/golden-clang: OPT := -O3 -g
-$(GOLDEN)/golden-sanitized: OPT := -O0 -g -fsanitize=address,undefined -fno-sanitize-recover=all
-$(GOLDEN)/golden $(GOLDEN)/golden-clang $(GOLDEN)/golden-sanitized: LDLIBS := $(call pkgs,libs,libpng)
+GOLDEN_PARTS := $(patsubst %,$(O)/tests/golden/%.o,golden golden_flight golden_scene golden_signature) \
+    $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
+$(GOLDEN)/golden: $(GOLDEN_PARTS)
+$(GOLDEN)/golden-clang: $(GOLDEN_PARTS:$(O)/%=$(O)/clang/%)
+$(GOLDEN)/golden-sanitized: $(call sanitized,$(GOLDEN_PARTS))
+$(GOLDEN)/golden $(GOLDEN)/golden-clang: LDLIBS = $(call pkgs,libs,libpng)
+$(GOLDEN)/golden-sanitized: LDLIBS = $(LINK_sanitized) $(call pkgs,libs,libpng)
+$(GOLDEN)/twins: $(O)/tests/golden/twins.o $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(GOLDEN)/test_golden: tests/golden/test_golden.sh tests/golden/pictures.golden $(addprefix $(GOLDEN)/,golden golden-clang golden-sanitized)
 	@cp $< $@
 	@chmod +x $@
-
-$(call compile, golden-clang/,,     $$(CFLAGS_host) -Itests/support, clang)
-$(call compile, golden-sanitized/,, $$(CFLAGS_host) -Itests/support, sanitizers)
 
 # The same once more for the panel's processor, by its own compiler where that is installed.
 ifeq ($(BOARD),bench-linux)

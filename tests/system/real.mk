@@ -3,5 +3,5 @@ REAL_TESTS := $(patsubst tests/system/%.c,$(O)/bin/tests/system/%,$(wildcard tes
 TESTS += $(REAL_TESTS)
 $(REAL_TESTS:$(O)/bin/%=$(O)/%.o) $(O)/tests/system/real_scene.o: EXTRA_CFLAGS := $(call pkgs,cflags,gdal)
 $(REAL_TESTS): $(O)/bin/tests/system/%: $(O)/tests/system/%.o $(O)/tests/system/real_scene.o $(O)/drivers/flash/flash_file.o \
-    $(TEST_SUPPORT) $(LIB_firmware) $(LIB_fixed) | $(O)/bin/landmass-db $(O)/bin/landmass-nav $(O)/bin/landmass-sim $(O)/bin/landmass-target
+    $(LIB_support) $(LIB_firmware) $(LIB_fixed) | $(O)/bin/landmass-db $(O)/bin/landmass-nav $(O)/bin/landmass-sim $(O)/bin/landmass-target
 $(REAL_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,gdal proj libpng)

@@ -6,7 +6,7 @@ $(SYSTEM_SCRIPTS): $(O)/bin/tests/system/%: tests/system/%.sh tests/system/test_
 	@cp $< $@
 	@chmod +x $@
 
-T := $(O)/bin/tests/system/test_sim_tool
-$(O)/bin/tests/system/test_sim: $(T)
-$(T): $(O)/tests/system/test_sim_tool.o $(O)/tests/support/tiny_image.o $(LIB_fixed)
-$(T): LDLIBS := $(call pkgs,libs,libpng)
+SIM_TOOL := $(O)/bin/tests/system/test_sim_tool
+$(O)/bin/tests/system/test_sim: $(SIM_TOOL)
+$(SIM_TOOL): $(O)/tests/system/test_sim_tool.o $(LIB_support) $(LIB_fixed)
+$(SIM_TOOL): LDLIBS := $(call pkgs,libs,libpng)

@@ -1,6 +1,6 @@
-T := $(O)/bin/tests/template/test_template
-TESTS += $(T)
-$(T): tests/template/test_template.sh
+TEST_TEMPLATE := $(O)/bin/tests/template/test_template
+TESTS += $(TEST_TEMPLATE)
+$(TEST_TEMPLATE): tests/template/test_template.sh
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@

@@ -4,7 +4,7 @@ ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
 ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_memory)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden
-$(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c support/tiny_image.c)) \
+$(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c)) $(LIB_support) \
     $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: $(O)/tests/zcu102/picture_checksum.o $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: LDLIBS := $(call pkgs,libs,libpng)

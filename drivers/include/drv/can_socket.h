@@ -1,6 +1,6 @@
 /* A CAN controller through Linux's SocketCAN, as struct lm_can.
  *
- * What is tested where: tests/unit/drivers/test_can_socket.c has the failures to open, the
+ * What is tested where: tests/unit/drivers/can/test_can_socket.c has the failures to open, the
  * conversion of frames and times, the filters against the kernel's matching rule, and receiving,
  * sending and their errors over a socket of another family that stands in for the bus. The real
  * thing, on a kernel that has AF_CAN, is tests/panel-vm/can_driver.c: options, filters, stamps,

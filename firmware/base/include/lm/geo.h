@@ -47,7 +47,7 @@ void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_
 /* The point `distance_q8` (metres * 256; beyond 300 km counts as 300 km) away along the ray, and
  * the same for one point.
  * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89
- * (tests/unit/firmware/test_geo.c). Cost: about 130 instructions, near a pole 300. */
+ * (tests/unit/firmware/base/test_geo.c). Cost: about 130 instructions, near a pole 300. */
 struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8);
 struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
                               uint32_t distance_q8);

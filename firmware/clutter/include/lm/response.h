@@ -18,7 +18,7 @@ extern const int16_t lm_response_envelope_q8[LM_RESPONSE_REACH + 1];
 
 /* The amplitude x_q8 cells * 256 away, |x_q8| <= 256 * LM_RESPONSE_REACH, Q15. Linear between
  * entries: worst error 0.0009
- * (tests/unit/firmware/test_target_patch.c). */
+ * (tests/unit/firmware/targets/test_target_patch.c). */
 static inline int32_t lm_response(int32_t x_q8)
 {
     const uint32_t away_q8 = (uint32_t)(x_q8 < 0 ? -x_q8 : x_q8);

@@ -30,8 +30,8 @@ void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, f
 
 /* Cross section of what a cell has of the target, dBsm * 256; LM_RCS_NONE_Q8 for nothing. To be
  * weakened by lm_smear_share_q8. The sum over all cells differs from the target's by less than 0.1
- * dB (tests/unit/firmware/test_signature.c). Only for places within the lay's reach. Cost: 180
- * instructions. */
+ * dB (tests/unit/firmware/targets/test_signature.c). Only for places within the lay's reach. Cost:
+ * 180 instructions. */
 int32_t lm_chip_cell_q8(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8);
 
 enum { LM_CHIP_SHADOW_ALL = 4 * 255 };

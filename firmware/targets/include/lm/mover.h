@@ -27,7 +27,7 @@ int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back);
  * where still ground, on the same side of the velocity, has its Doppler shift, V cos(o') = V cos(o)
  * + v. False, with 0, where none has. A radar at rest displaces nothing. |closing| < 2^21. Worst
  * error 1e-6 radian a tenth of a degree from the velocity and beyond
- * (tests/unit/firmware/test_mover.c). Cost: 300 instructions and a division of 64 bits. */
+ * (tests/unit/firmware/targets/test_mover.c). Cost: 300 instructions and a division of 64 bits. */
 bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int32_t *shift);
 
 #endif

@@ -48,7 +48,7 @@ struct lm_direction {
  * if it matters.
  *
  * Worst error 0.01 dB where the pattern is within 30 dB of its peak
- * (tests/unit/firmware/test_rcs.c). Cost: 60 instructions for a sphere, 500 for a plate. */
+ * (tests/unit/firmware/targets/test_rcs.c). Cost: 60 instructions for a sphere, 500 for a plate. */
 int32_t lm_rcs_q8(const struct lm_shape *shape, uint32_t wavelength_um, struct lm_direction radar);
 
 #endif

@@ -114,8 +114,9 @@ struct lm_return {
 };
 
 /* All scatterers' returns; returns their number. The way to each is its true length, not the far
- * field's: worst error 10 um, so 0.12 degree of phase at 31 mm (tests/unit/firmware/test_target.c).
- * Cost: 500 to 900 instructions a scatterer, six of them divisions of 64 bits. */
+ * field's: worst error 10 um, so 0.12 degree of phase at 31 mm
+ * (tests/unit/firmware/targets/test_target.c). Cost: 500 to 900 instructions a scatterer, six of
+ * them divisions of 64 bits. */
 uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_view *v,
                            uint32_t wavelength_um, struct lm_return returns[LM_SCATTERERS_MAX]);
 

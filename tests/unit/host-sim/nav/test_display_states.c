@@ -1,11 +1,11 @@
 /* What the display does with the jumps, pauses and restarts of two flights that were recorded
  * (../shared/data/nav_tracks): the states that docs/bus.md, "What the glass does", promises. */
-#include "../../firmware/unit_rig.h"
 #include "drv/can_log.h"
 #include "lm/overlay.h"
 #include "nav/read_track.h"
 #include "nav/send.h"
 #include "support.h"
+#include "unit_rig.h"
 
 #include <math.h>
 #include <setjmp.h>

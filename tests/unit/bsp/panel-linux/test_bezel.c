@@ -1,6 +1,6 @@
 /* The bezel: which key is which button, what is stuck, what the lamps and the backlight show. The
- * lines are those of tests/unit/drivers/fake_gpio.h; the backlight's files lie in a folder of the
- * test. */
+ * lines are those of tests/unit/drivers/gpio/fake_gpio.h; the backlight's files lie in a folder of
+ * the test. */
 #include "bezel.h"
 #include "fake_gpio.h"
 #include "support.h"
