@@ -28,7 +28,7 @@ struct bench_bus {
 /* Open the database and lend the unit its memory; the unit is ready for lm_unit_step afterwards.
  * What `bus` points to and `controls` stay the caller's. 0, or -1 with b->error saying why and
  * nothing left open. A database that the firmware cannot use is no error here: the unit runs, shows
- * it on the glass, and unit->has_db is false. */
+ * it on the glass, and unit->map.is_usable is false. */
 int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
                uint32_t noise_seed, const struct bench_bus *bus,
                const struct lm_controls *controls);

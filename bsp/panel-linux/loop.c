@@ -61,9 +61,9 @@ static void tell_counters(const struct panel *p)
            u->count.bus_frames, bus->count.overflowed, bus->count.malformed, bus->count.down,
            bus->count.gone, bus->count.bus_off, bus->count.sent, bus->count.unsent);
     report(REPORT_INFO, "flash: %u tiles, %u bytes, %u read again, %u failed, %u corrupt",
-           u->tiles.count.tiles_read, (unsigned)u->tiles.count.bytes_read,
+           u->map.tiles.count.tiles_read, (unsigned)u->map.tiles.count.bytes_read,
            atomic_load(&p->flash.count.again), atomic_load(&p->flash.count.failed),
-           lm_unit_corrupt_records(u));
+           lm_unit_map_corrupt_records(&u->map));
     report(REPORT_INFO, "glass: %u pictures, %u seen; DRM busy %u, lost %u, late %u, errors %u",
            p->glass.count.pictures, glass_renders(&p->glass), p->glass.drm.count.busy,
            p->glass.drm.count.lost, p->glass.drm.count.late, p->glass.drm.count.errors);

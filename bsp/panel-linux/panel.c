@@ -78,7 +78,7 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
                p->config->database);
         p->board.flash = &drv_no_flash;
         (void)lm_unit_init(p->unit, &p->board);
-    } else if (!p->unit->has_db && flash != &drv_no_flash) {
+    } else if (!p->unit->map.is_usable && flash != &drv_no_flash) {
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
                p->config->database);
     }

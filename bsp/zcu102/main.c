@@ -25,7 +25,7 @@ int main(void)
         say_refusal(&board, status);
         return 1;
     }
-    zcu102_say(&board.console, board.unit.has_db ? "flying\n" : "no usable database\n");
+    zcu102_say(&board.console, board.unit.map.is_usable ? "flying\n" : "no usable database\n");
     for (;;) {
         zcu102_step(&board);
     }

@@ -50,23 +50,26 @@ static void add_counters(const struct lm_unit *u, uint32_t row, struct lm_text *
         add_pair(t, "JUMPS", u->nav.position_jumps, "REFUSED", u->count.commands_refused);
         break;
     case 5:
-        add_pair(t, "TILES", u->tiles.count.tiles_read, "EVICTED", u->tiles.count.evicted);
+        add_pair(t, "TILES", u->map.tiles.count.tiles_read, "EVICTED", u->map.tiles.count.evicted);
         break;
     case 6:
-        add_pair(t, "HITS", lm_tile_cache_hits(&u->tiles), "MISSES", u->tiles.count.misses);
+        add_pair(t, "HITS", lm_tile_cache_hits(&u->map.tiles), "MISSES", u->map.tiles.count.misses);
         break;
     case 7:
-        add_pair(t, "COARSER", u->tiles.count.substituted, "OFF MAP", u->tiles.count.off_map);
+        add_pair(t, "COARSER", u->map.tiles.count.substituted, "OFF MAP",
+                 u->map.tiles.count.off_map);
         break;
     case 8:
-        add_pair(t, "READ ERR", u->tiles.count.io_errors, "CRC ERR", lm_unit_corrupt_records(u));
+        add_pair(t, "READ ERR", u->map.tiles.count.io_errors, "CRC ERR",
+                 lm_unit_map_corrupt_records(&u->map));
         break;
     case 9:
-        add_pair(t, "DROPPED", u->tiles.count.requests_dropped, "DISP ERR",
+        add_pair(t, "DROPPED", u->map.tiles.count.requests_dropped, "DISP ERR",
                  u->count.display_errors);
         break;
     case 10:
-        add_pair(t, "TGT LOST", u->count.targets_lost, "SIG LOST", u->count.signatures_lost);
+        add_pair(t, "TGT LOST", u->map.count.targets_lost, "SIG LOST",
+                 u->map.count.signatures_lost);
         break;
     default:
         add_pair(t, "STUCK", u->keys.count.stuck, "SWAPS", u->count.swaps);
@@ -80,10 +83,10 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
         lm_text_number(t, LM_DB_VERSION, 1);
     } else if (row == 1) {
         lm_text_add(t, "DB ");
-        lm_text_add(t, u->has_db ? u->db.title : "FAIL");
+        lm_text_add(t, u->map.is_usable ? u->map.db.title : "FAIL");
     } else {
-        add_pair(t, "LEVELS", u->has_db ? u->db.level_count : 0, "RECORDS",
-                 u->has_db ? u->db.record_count : 0);
+        add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.level_count : 0, "RECORDS",
+                 u->map.is_usable ? u->map.db.record_count : 0);
     }
 }
 

@@ -64,8 +64,8 @@ static void start_sector(struct lm_unit *u, uint64_t now_us)
         .beam = beam_of(p),
     };
     lm_sector_start(&u->sector, u->board->radar, &command, u->board->noise_seed);
-    u->sector.targets = &u->target_set;
-    u->sector.chips = &u->chips;
+    u->sector.targets = &u->map.target_set;
+    u->sector.chips = &u->map.chips;
     u->sector.environment = &u->environment;
     lm_page_show_picture(&u->page, LM_PICTURE_SECTOR);
     lm_begin_picture(u, now_us);
@@ -106,31 +106,32 @@ static bool resolve_command(const struct lm_unit *u, struct lm_sar_command *comm
 
 int32_t lm_patch_elevation_q10(struct lm_unit *u, const struct lm_sar_command *command)
 {
-    const uint8_t level = lm_scan_level(&u->db, command->cell_mm);
-    return lm_scan_elevation(&u->tiles, level, command->centre, u->db.mean_elevation_q6 * 16);
+    const uint8_t level = lm_scan_level(&u->map.db, command->cell_mm);
+    return lm_scan_elevation(&u->map.tiles, level, command->centre,
+                             u->map.db.mean_elevation_q6 * 16);
 }
 
 static bool start_patch(struct lm_unit *u, struct lm_sar_command command, uint64_t now_us)
 {
     struct lm_sar_flight flight;
     const bool is_in_flight = command.is_from_ownship;
-    if (!u->has_db || (is_in_flight && !resolve_command(u, &command, &flight))) {
+    if (!u->map.is_usable || (is_in_flight && !resolve_command(u, &command, &flight))) {
         return false;
     }
     const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
-                                       .targets = &u->target_set,
-                                       .chips = &u->chips,
+                                       .targets = &u->map.target_set,
+                                       .chips = &u->map.chips,
                                        .reference_q10 = lm_patch_elevation_q10(u, &command),
                                        .epoch = u->board->noise_seed,
                                        .sea_state = u->environment.sea_state,
                                        .environment = &u->environment,
                                        .time_us = now_us};
-    if (lm_sar_start(&u->sar, u->board->radar, &u->db, &command, &scene) != LM_OK) {
+    if (lm_sar_start(&u->sar, u->board->radar, &u->map.db, &command, &scene) != LM_OK) {
         return false;
     }
     lm_page_show_picture(&u->page, LM_PICTURE_PATCH);
     lm_begin_picture(u, now_us);
-    lm_sar_prefetch_targets(&u->sar, &u->tiles);
+    lm_sar_prefetch_targets(&u->sar, &u->map.tiles);
     u->is_acquiring = true;
     u->lines_asked_for = 0;
     u->acquire_until_us = now_us + LM_SAR_ACQUIRE_US;
@@ -378,10 +379,10 @@ void lm_follow_view(struct lm_unit *u)
 
 static void read_elevation(struct lm_unit *u)
 {
-    if (u->has_db) {
-        const uint8_t level = lm_scan_level(&u->db, ELEVATION_CELL_MM);
+    if (u->map.is_usable) {
+        const uint8_t level = lm_scan_level(&u->map.db, ELEVATION_CELL_MM);
         u->cursor_elevation_q10 =
-            lm_scan_elevation(&u->tiles, level, u->cursor.place, LM_NO_ELEVATION);
+            lm_scan_elevation(&u->map.tiles, level, u->cursor.place, LM_NO_ELEVATION);
     }
 }
 

@@ -56,7 +56,7 @@ static void recentre(struct lm_unit *u)
 static void begin_sweep(struct lm_unit *u, const struct lm_platform *platform)
 {
     recentre(u);
-    lm_sector_begin(&u->sector, &u->tiles, platform);
+    lm_sector_begin(&u->sector, &u->map.tiles, platform);
     lm_follow_view(u);
     lm_page_note_tilt(&u->page, u->sector.tilt);
     u->is_off_map = 2 * u->cells_none > u->cells_seen;
@@ -75,14 +75,15 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us, uint32_t *azimu
         }
     }
     const uint32_t samples = s->samples;
-    const bool is_ready = lm_sector_sample_ahead(s, &u->tiles, &platform, azimuths, &u->line);
+    const bool is_ready = lm_sector_sample_ahead(s, &u->map.tiles, &platform, azimuths, &u->line);
     if (s->samples != samples) {
         sample_coverage(u, s->grid.cells);
     }
     if (!is_ready) {
         return false;
     }
-    const uint32_t drawn = lm_sector_draw_line(s, &u->tiles, &platform, &u->sector_tone, &u->line);
+    const uint32_t drawn =
+        lm_sector_draw_line(s, &u->map.tiles, &platform, &u->sector_tone, &u->line);
     const struct lm_ppi ppi = lm_view_ppi(&u->view, &u->frame, s->slant.cell_q8, s->edge_q8);
     lm_ppi_paint(&u->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, drawn),
                  (fx_bam_t)lm_sector_edge_bam(s, drawn + 1), u->line.grey, s->slant.cells);
@@ -93,11 +94,11 @@ static bool draw_sector_line(struct lm_unit *u, uint64_t now_us, uint32_t *azimu
 static bool draw_patch_line(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t cells = u->sar.radar->sar.cells, drawn = u->sar.line;
-    if (!lm_sar_sample_ahead(&u->sar, &u->tiles, SAMPLES_A_STEP, &u->line)) {
+    if (!lm_sar_sample_ahead(&u->sar, &u->map.tiles, SAMPLES_A_STEP, &u->line)) {
         u->next_line_us = drawn == 0 ? now_us : u->next_line_us; /* nothing is owed yet */
         return false;
     }
-    lm_sar_draw_line(&u->sar, &u->tiles, &u->sar_tone, &u->line);
+    lm_sar_draw_line(&u->sar, &u->map.tiles, &u->sar_tone, &u->line);
     lm_patch_paint(&u->plane, &u->frame, drawn, u->line.grey + LM_SAR_GUARD, cells);
     sample_coverage(u, cells);
     u->is_off_map = 2 * u->cells_none > u->cells_seen;
@@ -113,8 +114,8 @@ static bool refer_anew(struct lm_unit *u)
     if (reference_q10 == u->sar.grid.reference_q10) {
         return false;
     }
-    lm_sar_set_reference(&u->sar, &u->db, reference_q10);
-    lm_sar_prefetch_targets(&u->sar, &u->tiles);
+    lm_sar_set_reference(&u->sar, &u->map.db, reference_q10);
+    lm_sar_prefetch_targets(&u->sar, &u->map.tiles);
     return true;
 }
 
@@ -123,7 +124,7 @@ static void ask_for_patch(struct lm_unit *u)
 {
     const uint32_t lines = u->sar.radar->sar.cells;
     for (uint32_t n = 0; n < PREFETCHES_A_STEP && u->lines_asked_for < lines; n++) {
-        lm_sar_prefetch(&u->sar, &u->tiles, u->lines_asked_for);
+        lm_sar_prefetch(&u->sar, &u->map.tiles, u->lines_asked_for);
         const uint32_t next = u->lines_asked_for + LINES_APART;
         u->lines_asked_for = u->lines_asked_for == lines - 1 ? lines : fx_min_u32(next, lines - 1);
     }
@@ -140,7 +141,8 @@ static bool is_drawing(struct lm_unit *u, uint64_t now_us)
     }
     if (u->is_acquiring) {
         const bool has_all = u->lines_asked_for == u->sar.radar->sar.cells &&
-                             lm_tile_cache_is_idle(&u->tiles) && lm_chips_are_settled(&u->chips);
+                             lm_tile_cache_is_idle(&u->map.tiles) &&
+                             lm_chips_are_settled(&u->map.chips);
         const bool is_over = has_all || now_us >= u->acquire_until_us;
         u->is_acquiring = !is_over || refer_anew(u);
         u->next_line_us = now_us + u->sar.line_us; /* the dwell begins */

@@ -10,7 +10,7 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_place = c->place;
     s->cursor_range_m = c->range_m;
     s->cursor_bearing = c->bearing;
-    s->has_cursor_elevation = u->has_db && u->cursor_elevation_q10 != LM_NO_ELEVATION;
+    s->has_cursor_elevation = u->map.is_usable && u->cursor_elevation_q10 != LM_NO_ELEVATION;
     s->cursor_elevation_q10 = u->cursor_elevation_q10;
 }
 

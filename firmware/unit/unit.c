@@ -5,42 +5,10 @@
 #include "unit_internal.h"
 
 enum {
-    TILE_READS_A_STEP = 16,
     TILE_FAULT_SHOWN_US = 3000000,
     FAULTS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD | LM_FLAG_DB | LM_FLAG_TILE | LM_FLAG_BUS |
              LM_FLAG_OFF_MAP | LM_FLAG_WEATHER
 };
-
-/* The image's targets, while no tile is being read yet. */
-static void read_targets(struct lm_unit *u)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < u->db.target_count && count < LM_TARGETS_MAX; i++) {
-        if (lm_target_read(&u->db, i, &u->targets[count], u->board->flash_poll_limit) == LM_OK) {
-            count++;
-        }
-    }
-    u->target_set.items = u->targets;
-    u->target_set.count = count;
-    u->count.targets_lost = u->db.target_count - count;
-}
-
-/* The image's signatures. Targets name them by number, so each stays in its place; one that is lost
- * leaves its targets without a return. */
-static void read_signatures(struct lm_unit *u)
-{
-    const uint32_t count = fx_min_u32(u->db.signature_count, LM_SIGNATURES_MAX);
-    u->count.signatures_lost = u->db.signature_count - count;
-    for (uint32_t i = 0; i < count; i++) {
-        if (lm_signature_read(&u->db, i, &u->signatures[i], u->board->flash_poll_limit) != LM_OK) {
-            memset(&u->signatures[i], 0, sizeof u->signatures[i]);
-            u->count.signatures_lost++;
-        }
-    }
-    u->target_set.signatures = u->signatures;
-    u->target_set.signature_count = count;
-    lm_chips_init(&u->chips, &u->db, u->signatures);
-}
 
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
 {
@@ -67,14 +35,9 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
     lm_page_init(&u->page, board->radar);
     lm_apply(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 
-    u->has_db = lm_db_open(&u->db, board->flash, board->flash_poll_limit) == LM_OK;
-    if (!u->has_db) {
-        return LM_OK;
-    }
-    read_targets(u);
-    read_signatures(u);
-    return lm_tile_cache_init(&u->tiles, &u->db, board->tile_pool, board->tile_pool_bytes,
-                              board->flash_poll_limit);
+    const struct lm_unit_map_lent map = {board->flash, board->tile_pool, board->tile_pool_bytes,
+                                         board->flash_poll_limit};
+    return lm_unit_map_open(&u->map, &map);
 }
 
 static void take_frame(struct lm_unit *u, const struct lm_can_frame *frame)
@@ -157,22 +120,17 @@ static void remember_faults(struct lm_unit *u, uint32_t risen, uint64_t now_us)
     }
 }
 
-uint32_t lm_unit_corrupt_records(const struct lm_unit *u)
-{
-    return u->tiles.count.corrupt + u->chips.count.corrupt;
-}
-
 /* What is wrong, in one word for each. */
 static void judge(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t faults = u->tiles.count.io_errors + lm_unit_corrupt_records(u);
+    const uint32_t faults = u->map.tiles.count.io_errors + lm_unit_map_corrupt_records(&u->map);
     if (faults != u->tile_faults_seen) {
         u->tile_faults_seen = faults;
         u->tile_fault_us = now_us;
     }
     const bool is_tile_fault = faults != 0 && now_us - u->tile_fault_us < TILE_FAULT_SHOWN_US;
     const uint32_t flags =
-        (u->has_db ? 0u : LM_FLAG_DB) | (is_tile_fault ? LM_FLAG_TILE : 0u) |
+        (u->map.is_usable ? 0u : LM_FLAG_DB) | (is_tile_fault ? LM_FLAG_TILE : 0u) |
         (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) | (u->is_off_map ? LM_FLAG_OFF_MAP : 0u) |
         (u->page.is_override ? LM_FLAG_SILENT : 0u) | (u->is_weather_stale ? LM_FLAG_WEATHER : 0u) |
         (now_us < u->unable_until_us ? LM_FLAG_UNABLE : 0u) |
@@ -189,10 +147,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     lm_take_controls(u, now_us);
     judge(u, now_us);
     lm_follow_cursor(u, now_us);
-    if (u->has_db) {
-        lm_chips_service(&u->chips, &u->tiles);
-        lm_tile_cache_service(&u->tiles, now_us, TILE_READS_A_STEP);
-    }
+    lm_unit_map_service(&u->map, now_us);
     lm_draw_due_lines(u, now_us);
     if (now_us >= u->next_frame_us) {
         lm_show_frame(u, now_us);

@@ -46,7 +46,7 @@ void lm_show_frame(struct lm_unit *u, uint64_t now_us);
 static inline int32_t lm_antenna_height_q6(const struct lm_unit *u)
 {
     const bool is_ellipsoidal = u->ownship.height_source == LM_BUS_ELLIPSOID_HEIGHT;
-    return u->ownship.height_q6 - (is_ellipsoidal ? u->db.geoid_q6 : 0);
+    return u->ownship.height_q6 - (is_ellipsoidal ? u->map.db.geoid_q6 : 0);
 }
 
 static inline struct lm_place lm_ownship_place(const struct lm_unit *u)

@@ -398,7 +398,7 @@ static void put_movers(struct golden_rig *r)
     r->targets[0] = mover(1, moved(r->centre, 0, 1000), 180, 15000);
     r->targets[1] = mover(2, moved(moved(r->centre, 0, 2200), FX_BAM_90, 1100), 30, 25000);
     r->targets[2] = mover(3, moved(moved(r->centre, 0, 1500), FX_BAM_90, -3300), 25, 8000);
-    r->unit.target_set.count = 3;
+    r->unit.map.target_set.count = 3;
 }
 
 /* Side by side on the runway, each turned another way. */
@@ -415,7 +415,7 @@ static void put_parked(struct golden_rig *r)
             .flags = LM_TARGET_ABOVE_GROUND | LM_TARGET_HAS_SIGNATURE,
         };
     }
-    r->unit.target_set.count = GOLDEN_TARGETS_MAX;
+    r->unit.map.target_set.count = GOLDEN_TARGETS_MAX;
 }
 
 int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
@@ -424,7 +424,7 @@ int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_p
     prepare(r, p, centre, image, image_bytes);
     const int status = lm_unit_init(&r->unit, &r->board);
     if (p->has_movers || p->has_parked) {
-        r->unit.target_set.items = r->targets;
+        r->unit.map.target_set.items = r->targets;
         (p->has_movers ? put_movers : put_parked)(r);
     }
     r->flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */

@@ -187,11 +187,11 @@ static int fly(struct sim *s)
 static void print_targets(const struct lm_unit *u)
 {
     printf("targets: %u held, %u of the image not; signatures: %u held, %u not\n",
-           u->target_set.count, u->count.targets_lost,
-           u->db.signature_count - u->count.signatures_lost, u->count.signatures_lost);
+           u->map.target_set.count, u->map.count.targets_lost,
+           u->map.db.signature_count - u->map.count.signatures_lost, u->map.count.signatures_lost);
     printf("chips: %u read, %u damaged, %u without room, %u cells of lines left out\n",
-           u->chips.count.read, u->chips.count.corrupt, u->chips.count.left_out,
-           u->chips.count.cells_left_out);
+           u->map.chips.count.read, u->map.chips.count.corrupt, u->map.chips.count.left_out,
+           u->map.chips.count.cells_left_out);
 }
 
 static void print_summary(const struct sim *s)
@@ -217,14 +217,14 @@ static void print_summary(const struct sim *s)
             "%u of a second sender\n",
             w->count.sets, w->count.torn, w->count.refused, w->count.numbers, w->count.rivals);
     }
-    if (!u->has_db) {
+    if (!u->map.is_usable) {
         printf("database: not usable, nothing was drawn\n");
         return;
     }
-    if (u->db.target_count != 0) {
+    if (u->map.db.target_count != 0) {
         print_targets(u);
     }
-    const struct lm_tile_cache *t = &u->tiles;
+    const struct lm_tile_cache *t = &u->map.tiles;
     const double looked = (double)lm_tile_cache_hits(t) + t->count.misses;
     printf(
         "tiles: %u read (%.1f MB), %u evicted; %.2f %% of look-ups hit, %u answered by a coarser "
@@ -235,7 +235,7 @@ static void print_summary(const struct sim *s)
     printf(
         "faults: %u flash reads failed, %u records corrupt, %u requests dropped, %u display "
         "errors\n",
-        t->count.io_errors, lm_unit_corrupt_records(u), t->count.requests_dropped,
+        t->count.io_errors, lm_unit_map_corrupt_records(&u->map), t->count.requests_dropped,
         u->count.display_errors);
 }
 
@@ -272,7 +272,7 @@ static int run(struct sim *s)
                    &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
-    if (!s->bench.unit->has_db) {
+    if (!s->bench.unit->map.is_usable) {
         hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
     }
     if (open_bezel(s) != 0) {

@@ -139,9 +139,9 @@ static void report(struct flight *f)
     zcu102_say_value(u, "lines", unit->count.lines);
     zcu102_say_value(u, "lines-dropped", unit->count.lines_dropped);
     zcu102_say_value(u, "steps-left-out", f->z.steps_left_out);
-    zcu102_say_value(u, "tiles-read", unit->tiles.count.tiles_read);
-    zcu102_say_value(u, "read-errors", unit->tiles.count.io_errors);
-    zcu102_say_value(u, "tiles-corrupt", unit->tiles.count.corrupt);
+    zcu102_say_value(u, "tiles-read", unit->map.tiles.count.tiles_read);
+    zcu102_say_value(u, "read-errors", unit->map.tiles.count.io_errors);
+    zcu102_say_value(u, "tiles-corrupt", unit->map.tiles.count.corrupt);
     zcu102_say_value(u, "flags", unit->flags);
     zcu102_say_value(u, "interrupts", f->z.irq.count.taken);
     zcu102_say_value(u, "stack-used", zcu102_stack_used());

@@ -15,6 +15,7 @@
 #include "lm/page.h"
 #include "lm/sar.h"
 #include "lm/sector.h"
+#include "lm/unit_map.h"
 #include "lm/weather_bus.h"
 
 /* What a board lends, for as long as the unit lives. */
@@ -48,13 +49,7 @@ struct lm_fault {
 
 struct lm_unit {
     const struct lm_board *board; /* borrowed */
-    struct lm_db db;
-    bool has_db;
-    struct lm_tile_cache tiles;
-    struct lm_target targets[LM_TARGETS_MAX];
-    struct lm_signature signatures[LM_SIGNATURES_MAX];
-    struct lm_target_set target_set; /* the part of them that was read */
-    struct lm_chips chips;
+    struct lm_unit_map map;
     struct lm_environment commanded; /* by a script or an instructor: before the bus's */
     struct lm_weather_bus weather_bus;
     struct lm_environment environment; /* of both, as sweeps and patches meet it */
@@ -97,8 +92,6 @@ struct lm_unit {
     bool is_off_map;
 
     struct {
-        uint32_t targets_lost;    /* of the image: damaged, or no room for them */
-        uint32_t signatures_lost; /* likewise; their targets return nothing */
         uint32_t frames, lines, bus_frames;
         uint32_t lines_dropped; /* due, but the step had its fill */
         uint32_t bus_errors;    /* the driver reported the bus down */
@@ -123,8 +116,5 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
  * bus and 8 controls, move the reading of tiles on, draw at most LM_STEP_LINES lines, and show a
  * picture when one is due. Call at least every 4 ms for a smooth sweep. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
-
-/* Records of the image, tiles and chips alike, that were read and did not check. */
-uint32_t lm_unit_corrupt_records(const struct lm_unit *u);
 
 #endif

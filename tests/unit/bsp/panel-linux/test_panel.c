@@ -174,7 +174,7 @@ static void from_the_first_step_on_the_loop_allocates_nothing(void **state)
     assert_int_equal(allocations, before);
     assert_int_equal(f->panel.unit->flags & (LM_FLAG_DB | LM_FLAG_BUS | LM_FLAG_NAV_DEAD), 0);
     assert_in_range(f->panel.unit->count.frames, 610, 620);
-    assert_true(f->panel.unit->tiles.count.tiles_read > 10);
+    assert_true(f->panel.unit->map.tiles.count.tiles_read > 10);
     assert_true(lit_pixels(f->rig) == 0); /* the rig's own unit has not run: this was the panel's */
     void *volatile one = malloc(1);       /* volatile: or the compiler would see through it */
     assert_int_equal(allocations, before + 1);

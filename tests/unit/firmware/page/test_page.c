@@ -821,10 +821,10 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     struct lm_bus_event events[LM_BUS_EVENTS];
     lm_bus_take(&r->unit.bus, &bad, events);
     lm_bus_take(&r->unit.bus, &half, events);
-    r->unit.tiles.count.corrupt = 5;
-    r->unit.chips.count.corrupt = 7;
-    r->unit.count.targets_lost = 21;
-    r->unit.count.signatures_lost = 34;
+    r->unit.map.tiles.count.corrupt = 5;
+    r->unit.map.chips.count.corrupt = 7;
+    r->unit.map.count.targets_lost = 21;
+    r->unit.map.count.signatures_lost = 34;
     run(r, 1);
     press(r, 12);
     /* Stop the clock: the numbers of the picture on the glass. */
@@ -838,12 +838,12 @@ static void the_bit_page_says_what_the_counters_say(void **state)
                     {"BUS ERR  %u", u->count.bus_errors},
                     {"JUMPS    %u", u->nav.position_jumps},
                     {"REFUSED  %u", u->count.commands_refused},
-                    {"TILES    %u", u->tiles.count.tiles_read},
-                    {"EVICTED  %u", u->tiles.count.evicted},
-                    {"COARSER  %u", u->tiles.count.substituted},
-                    {"READ ERR %u", u->tiles.count.io_errors},
+                    {"TILES    %u", u->map.tiles.count.tiles_read},
+                    {"EVICTED  %u", u->map.tiles.count.evicted},
+                    {"COARSER  %u", u->map.tiles.count.substituted},
+                    {"READ ERR %u", u->map.tiles.count.io_errors},
                     {"CRC ERR  %u", 5 + 7},
-                    {"DROPPED  %u", u->tiles.count.requests_dropped},
+                    {"DROPPED  %u", u->map.tiles.count.requests_dropped},
                     {"DISP ERR %u", u->count.display_errors},
                     {"BUS BAD  %u", 1},
                     {"TORN     %u", 1},
@@ -851,8 +851,8 @@ static void the_bit_page_says_what_the_counters_say(void **state)
                     {"SIG LOST %u", 34},
                     {"STUCK    %u", u->keys.count.stuck},
                     {"SWAPS    %u", u->count.swaps},
-                    {"LEVELS   %u", u->db.level_count},
-                    {"RECORDS  %u", u->db.record_count}};
+                    {"LEVELS   %u", u->map.db.level_count},
+                    {"RECORDS  %u", u->map.db.record_count}};
     assert_true(u->count.bus_errors > 1000 && u->count.commands_refused == 1);
     for (size_t i = 0; i < sizeof counters / sizeof *counters; i++) {
         char words[48];
@@ -867,9 +867,9 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     assert_non_null(strstr(lm_bit_row(u, 4).words, line));
     snprintf(line, sizeof line, "BUS      %u", u->count.bus_frames);
     assert_non_null(strstr(lm_bit_row(u, 5).words, line));
-    snprintf(line, sizeof line, "HITS     %u", lm_tile_cache_hits(&u->tiles));
+    snprintf(line, sizeof line, "HITS     %u", lm_tile_cache_hits(&u->map.tiles));
     assert_non_null(strstr(lm_bit_row(u, 9).words, line));
-    snprintf(line, sizeof line, "MISSES   %u", u->tiles.count.misses);
+    snprintf(line, sizeof line, "MISSES   %u", u->map.tiles.count.misses);
     assert_non_null(strstr(lm_bit_row(u, 9).words, line));
     assert_true(says(r, "LANDMASS"));
     /* The bus fell silent at 1.5 s; heading is stale at once and dead a second later. */

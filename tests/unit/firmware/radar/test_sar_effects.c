@@ -414,7 +414,8 @@ static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(voi
                         (int16_t)(cases[i].ratio_db * 256)}},
             .jammer_count = 1};
         const struct lm_sar_scene scene = {.environment = &e};
-        assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.db, &command, &scene), LM_OK);
+        assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.map.db, &command, &scene),
+                         LM_OK);
         const double beams = cases[i].off_deg / hs_degrees(radar->antenna.azimuth_beam);
         const double jam_db = cases[i].ratio_db - 20 * log10(cases[i].distance_m / 18520) -
                               40 * log10(2) * beams * beams;
@@ -422,7 +423,7 @@ static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(voi
         assert_true(fabs(rise_db - 10 * log10(1 + pow(10, jam_db / 10))) < 0.1);
     }
     const struct lm_sar_scene fair = {.environment = NULL};
-    assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.db, &command, &fair), LM_OK);
+    assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.map.db, &command, &fair), LM_OK);
     assert_int_equal(r->unit.sar.floor_q8, radar->sar.noise_floor_q8);
     free_rig(r);
 }

@@ -237,9 +237,9 @@ static struct pixel wanted_at(const struct rig *r, struct lm_place place)
 
 static void put_target(struct rig *r, struct lm_place place, double rcs_db)
 {
-    r->unit.targets[0] =
+    r->unit.map.targets[0] =
         point_at(hs_degrees(place.latitude), hs_degrees(place.longitude), 10, rcs_db);
-    r->unit.target_set = (struct lm_target_set){.items = r->unit.targets, .count = 1};
+    r->unit.map.target_set = (struct lm_target_set){.items = r->unit.map.targets, .count = 1};
 }
 
 /* The window's place, and how bright a point must be to stand out well within the scale. Real beam

@@ -216,11 +216,11 @@ static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
                                    .plane = plane,
                                    .flash_poll_limit = POLLS};
     assert_int_equal(lm_unit_init(&unit, &board), LM_OK);
-    assert_true(unit.has_db);
-    assert_int_equal(unit.target_set.count, 2);
-    assert_int_equal(unit.target_set.items[1].id, 2);
-    assert_int_equal(unit.count.targets_lost, 1);
-    assert_ptr_equal(unit.sector.targets, &unit.target_set);
+    assert_true(unit.map.is_usable);
+    assert_int_equal(unit.map.target_set.count, 2);
+    assert_int_equal(unit.map.target_set.items[1].id, 2);
+    assert_int_equal(unit.map.count.targets_lost, 1);
+    assert_ptr_equal(unit.sector.targets, &unit.map.target_set);
     free(w.bytes);
     tiny_image_free(&image);
 }

@@ -143,7 +143,7 @@ static void every_read_may_fail_once_and_the_sweep_goes_on(void **state)
         command(r, range_10);
         run(r, 4);
         assert_int_equal(r->unit.count.lines, clean->unit.count.lines);
-        assert_int_equal(r->unit.tiles.count.io_errors, 1);
+        assert_int_equal(r->unit.map.tiles.count.io_errors, 1);
         free_rig(r);
     }
     free_rig(clean);
@@ -158,7 +158,7 @@ static void a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser(v
     }
     command(r, range_10);
     run(r, 2);
-    assert_true(r->unit.tiles.count.corrupt > 0);
+    assert_true(r->unit.map.tiles.count.corrupt > 0);
     assert_true(r->unit.flags & LM_FLAG_TILE);
     assert_true(lit_pixels(r) > 10000); /* from the coarsest level, read before the damage */
     free_rig(r);
@@ -173,7 +173,7 @@ static void late_flash_never_holds_the_sweep(void **state)
     run(r, 3);
     assert_int_equal(r->unit.count.lines_dropped, 0);
     assert_true(r->unit.count.lines > 600);
-    assert_true(r->unit.tiles.count.substituted > 0);
+    assert_true(r->unit.map.tiles.count.substituted > 0);
     free_rig(r);
 }
 
@@ -242,10 +242,10 @@ all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_ste
         assert_true(u->page.picture == LM_PICTURE_PATCH && u->sar.line == 0 && ++step < 250);
     } while (u->is_acquiring);
     assert_int_equal(u->lines_asked_for, 256);
-    const uint32_t substituted = u->tiles.count.substituted;
+    const uint32_t substituted = u->map.tiles.count.substituted;
     run(r, 4);
     assert_int_equal(u->sar.line, 256);
-    assert_int_equal(u->tiles.count.substituted, substituted);
+    assert_int_equal(u->map.tiles.count.substituted, substituted);
     free_rig(r);
 }
 
