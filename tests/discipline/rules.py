@@ -179,16 +179,22 @@ def cortex_m7(tree):
 
 
 class CallGraph:
-    """What gcc's -fcallgraph-info=su tells about the objects of a tree."""
+    """What gcc's -fcallgraph-info=su tells about the objects of a tree, and what their tables of functions add.
+
+    A call through a pointer reaches every function that the constant tables of its own file name, and the tables that
+    these name in turn. In a file without such a table it is the board's or an argument's.
+    """
 
     def __init__(self):
         self.stack_bytes = {}  # function -> its own frame
         self.calls = {}  # function -> set of functions
         self.dynamic = []  # functions whose frame is not constant
-        self.indirect = []  # functions that call through a pointer
+        self.indirect = {}  # object -> functions of it that call through a pointer
+        self.unanswered = []  # those of them whose calls go to no table: to the board, or to an argument
+        self.tables = {}  # (object, constant data) -> functions and data that it names
 
     def read(self, path):
-        text = path.read_text()
+        text = path.with_suffix(".ci").read_text()
         for name, label in re.findall(r'node: \{ title: "([^"]+)" label: "([^"]*)"', text):
             size = re.search(r"(\d+) bytes \(([a-z,]+)\)", label)
             if size:
@@ -197,9 +203,44 @@ class CallGraph:
                     self.dynamic.append(name)
         for source, target in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
             if target == "__indirect_call":
-                self.indirect.append(source)
+                self.indirect.setdefault(path, set()).add(source)
             else:
                 self.calls.setdefault(source, set()).add(target)
+        unit = re.search(r'graph: \{ title: "([^"]+)"', text)
+        self.read_tables(path, unit.group(1) if unit else "")
+
+    def read_tables(self, path, source):
+        """Each table has a section of its own, and so has each function, by which a static one is known."""
+        out = subprocess.run(["readelf", "-rW", path], capture_output=True, text=True, check=True).stdout
+        table = None
+        for line in out.splitlines():
+            section = re.match(r"Relocation section '\.rela(\S+)'", line)
+            target = re.match(r"[0-9a-f]+ +[0-9a-f]+ +R_\S+ +[0-9a-f]+ +(\S+)", line)
+            if section:
+                name = data_name(section.group(1))
+                table = self.tables.setdefault((path, name), set()) if name else None
+            elif target and table is not None:
+                static = re.match(r"\.text\.(?:unlikely\.)?(\S+)", target.group(1))
+                table.add(f"{source}:{static.group(1)}" if static else data_name(target.group(1)) or target.group(1))
+
+    def reached_by_tables(self, path):
+        """All that the tables of an object name, and the tables that they name, of this object or of another."""
+        seen, waiting = set(), [key for key in self.tables if key[0] == path]
+        while waiting:
+            owner, name = waiting.pop()
+            for target in self.tables[owner, name] - seen:
+                seen.add(target)
+                own = (owner, target)
+                waiting += [own] if own in self.tables else [key for key in self.tables if key[1] == target]
+        return seen
+
+    def resolve(self):
+        """Add the calls through pointers that tables answer, and keep the callers whose calls none does."""
+        for path, callers in self.indirect.items():
+            functions = self.reached_by_tables(path) & self.stack_bytes.keys()
+            self.unanswered += [] if functions else callers
+            for caller in callers if functions else ():
+                self.calls.setdefault(caller, set()).update(functions)
 
     def cycles(self):
         """Each function from which a call may come back to itself."""
@@ -227,12 +268,20 @@ class CallGraph:
         return max((below(name) for name in self.stack_bytes), default=(0, []))
 
 
+def data_name(section):
+    """The constant that has this section to itself, or None."""
+    found = re.match(r"\.(?:data\.rel\.ro(?:\.local)?|rodata)\.(?!str|cst)(\S+)$", section)
+    return found and found.group(1)
+
+
 def call_graph(tree):
-    objects, bad = tree.objects("call-graph", "-fcallgraph-info=su")
+    """The graph, and what the compiler complained of."""
+    objects, bad = tree.objects("call-graph", "-fcallgraph-info=su", "-ffunction-sections", "-fdata-sections")
     graph = CallGraph()
     if not bad:
         for path in objects:
-            graph.read(path.with_suffix(".ci"))
+            graph.read(path)
+        graph.resolve()
     return graph, bad
 
 

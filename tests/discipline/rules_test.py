@@ -52,6 +52,16 @@ PLANTED = [
      FUNCTION % "    volatile char *p = __builtin_alloca((unsigned long)x);\n    p[0] = 1;\n    return p[x - 1];"),
     ("a stack deeper than the limit is seen", rules.recursion_and_stack, "bytes of stack", "firmware/map/bad.c",
      FUNCTION % "    volatile char big[9000];\n    big[x] = 1;\n    return big[x + 1];"),
+    ("recursion through a table of functions is seen", rules.recursion_and_stack, "(lm_a|half): may call itself",
+     "firmware/map/bad.c",
+     "int lm_a(int x);\nstatic int half(int x)\n{\n    return lm_a(x / 2);\n}\nstatic int same(int x)\n{\n    return x;\n}\n"
+     "static int (*const table[2])(int) = {half, same};\nint lm_a(int x)\n{\n    return table[x & 1](x);\n}\n"),
+    ("a deep stack behind a table of tables is seen", rules.recursion_and_stack, "bytes of stack",
+     "firmware/map/bad.c",
+     "struct row {\n    int (*f)(int);\n};\nextern const struct row lm_row;\nint lm_a(int n, int x);\n"
+     "static int big(int x)\n{\n    volatile char b[9000];\n    b[x] = 1;\n    return b[x + 1];\n}\n"
+     "const struct row lm_row = {big};\nstatic const struct row *const rows[2] = {&lm_row, 0};\n"
+     "int lm_a(int n, int x)\n{\n    return rows[n]->f(x);\n}\n"),
     ("fixed including firmware by a path is seen", rules.includes_upwards, "bad.c:1: includes firmware/",
      "fixed/src/bad.c", '#include "../../firmware/base/include/lm/two.h"\n'),
     ("firmware including a driver by a path is seen", rules.includes_upwards, "bad.c:1: includes drivers/",
@@ -169,7 +179,7 @@ def print_stack(graph):
     """The figures for the record; what is called through a pointer comes on top of them."""
     size, path = graph.deepest()
     print(f"# deepest stack: {size} bytes, {' > '.join(path)}")
-    print(f"# calls through a pointer: {', '.join(sorted(set(graph.indirect))) or 'none'}")
+    print(f"# call through a pointer that no table answers: {', '.join(sorted(graph.unanswered)) or 'none'}")
 
 
 def main():
