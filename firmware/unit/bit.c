@@ -104,10 +104,10 @@ static void add_flags(uint32_t flags, struct lm_text *t)
 /* The last fault first: hours, minutes and seconds since the start, and its word. */
 static void add_fault(const struct lm_unit *u, uint32_t age, struct lm_text *t)
 {
-    if (age >= u->count.faults) {
+    const struct lm_fault *fault = lm_fault_log_at(&u->faults, age);
+    if (!fault) {
         return;
     }
-    const struct lm_fault *fault = &u->faults[(u->count.faults - 1 - age) % LM_FAULTS_KEPT];
     const uint32_t seconds = (uint32_t)(fault->time_us / 1000000);
     lm_text_number(t, seconds / 3600, 2);
     lm_text_add(t, ":");

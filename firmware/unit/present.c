@@ -1,10 +1,13 @@
+#include "present.h"
+
+#include "flags.h"
 #include "lm/bit.h"
-#include "unit_internal.h"
+#include "ownship.h"
 
 static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
 {
     const struct lm_cursor *c = &u->cursor;
-    s->has_cursor = c->is_placed && lm_has_ownship(u);
+    s->has_cursor = c->is_placed && lm_ownship_is_known(&u->ownship);
     s->is_cursor_on_glass = s->has_cursor && c->is_on_glass;
     s->cursor = c->offset;
     s->cursor_place = c->place;
@@ -17,16 +20,16 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
 /* Where it is to go: as commanded, or else the bus's steerpoint, while that is not stale. */
 static bool find_steerpoint(const struct lm_unit *u, struct lm_place *place)
 {
-    *place = u->has_own_steerpoint ? u->own_steerpoint : u->ownship.steerpoint;
-    return lm_has_ownship(u) &&
-           (u->has_own_steerpoint || u->ownship.steerpoint_quality == LM_NAV_GOOD);
+    *place = u->steerpoint.is_commanded ? u->steerpoint.place : u->ownship.steerpoint;
+    return lm_ownship_is_known(&u->ownship) &&
+           (u->steerpoint.is_commanded || u->ownship.steerpoint_quality == LM_NAV_GOOD);
 }
 
 static uint32_t to_go_s(const struct lm_unit *u, struct lm_place place)
 {
     uint32_t distance_q8;
     fx_bam_t bearing;
-    lm_geo_inverse(lm_ownship_place(u), place, &distance_q8, &bearing);
+    lm_geo_inverse(lm_ownship_place(&u->ownship), place, &distance_q8, &bearing);
     const uint64_t distance_mm = (uint64_t)distance_q8 * 1000 / 256;
     const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
     if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
@@ -45,61 +48,39 @@ static void describe_steerpoint(const struct lm_unit *u, struct lm_symbols *s)
         return;
     }
     s->to_go_s = to_go_s(u, place);
-    if (lm_view_find(&u->view, place, &at)) {
-        const struct lm_frame *f = &u->frame;
-        const struct lm_point p = lm_view_point(&u->view, at);
+    if (lm_view_find(&u->picture.view, place, &at)) {
+        const struct lm_frame *f = &u->picture.frame;
+        const struct lm_point p = lm_view_point(&u->picture.view, at);
         s->steerpoint = p;
         s->is_steerpoint_on_glass = p.x >= f->left_px && p.x < f->left_px + f->width_px &&
                                     p.y >= f->top_px && p.y < f->top_px + f->height_px;
     }
 }
 
-/* Where the cursor would be if the whole sector were shown. */
-static void describe_window(const struct lm_unit *u, struct lm_symbols *s)
+/* The aircraft over a picture that stands. It does not stand on the ground that slant ranges are
+ * for. */
+static void describe_ownship(const struct lm_unit *u, struct lm_symbols *s)
 {
-    const struct lm_view_from from = {lm_ownship_place(u), u->view.up, u->view.height_q10};
-    const struct lm_view whole =
-        lm_view_of_sector(&u->frame, &from, u->board->radar->range[u->page.range].range_m);
-    struct lm_offset at;
-    s->is_cue_shown = u->cursor.is_placed && lm_view_find(&whole, u->cursor.place, &at);
-    if (s->is_cue_shown) {
-        s->cue = lm_view_point(&whole, at);
-    }
-    s->is_finer_offered = u->page.field == LM_FIELD_DBS1;
+    struct lm_view level = u->picture.view;
+    level.height_q10 = 0;
+    s->is_ownship_shown = lm_view_find(&level, lm_ownship_place(&u->ownship), &s->ownship);
+    s->ownship_heading = u->ownship.heading - u->picture.view.up;
 }
 
 static struct lm_symbols describe(const struct lm_unit *u)
 {
-    const struct lm_sector *sector = &u->sector;
-    const struct lm_radar *radar = sector->radar;
     struct lm_symbols s = {
-        .view = u->view,
+        .view = u->picture.view,
         .is_sweeping = !(u->flags & LM_FLAGS_NO_LINES),
-        .range_nm = radar->range[u->page.range].range_nm,
-        .azimuth_half = radar->azimuth_half[u->page.azimuth],
-        .antenna_azimuth = lm_sector_edge_bam(sector, sector->line),
-        .antenna_elevation = sector->tilt,
         .gain_db = u->page.gain_db,
         .heading = u->ownship.heading,
         .has_heading = u->ownship.heading_quality != LM_NAV_DEAD,
     };
-    if (u->view.shape == LM_VIEW_WINDOW) {
-        describe_window(u, &s);
-    }
+    lm_picture_describe(&u->picture, &s);
     describe_cursor(u, &s);
     describe_steerpoint(u, &s);
-    if (u->is_view_held && lm_has_ownship(u)) {
-        /* It flies over the map and does not stand on the ground that slant ranges are for. */
-        struct lm_view level = u->view;
-        level.height_q10 = 0;
-        s.is_ownship_shown = lm_view_find(&level, lm_ownship_place(u), &s.ownship);
-        s.ownship_heading = u->ownship.heading - u->view.up;
-    }
-    if (u->view.shape == LM_VIEW_PATCH) {
-        s.patch_cell_mm = u->sar.command.cell_mm;
-        s.patch_percent = (uint16_t)(u->sar.line * 100 / u->sar.radar->sar.cells);
-        s.patch_to_go_s = (uint32_t)((lm_sar_time_to_go_us(&u->sar) + 999999) / 1000000);
-        s.patch_look = u->sar.command.look_azimuth;
+    if (u->picture.is_view_held && lm_ownship_is_known(&u->ownship)) {
+        describe_ownship(u, &s);
     }
     return s;
 }
@@ -107,7 +88,7 @@ static struct lm_symbols describe(const struct lm_unit *u)
 static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
 {
     const struct lm_symbols symbols = describe(u);
-    lm_overlay_picture(glass, &u->plane);
+    lm_overlay_picture(glass, &u->picture.plane);
     lm_overlay_symbols(glass, &symbols);
     lm_overlay_warnings(glass, u->flags);
 }
@@ -123,7 +104,7 @@ static void show_bit(const struct lm_unit *u, const struct lm_glass *glass)
 
 static void draw_glass(const struct lm_unit *u, const struct lm_surface *surface)
 {
-    const struct lm_glass glass = {*surface, &u->frame, &u->palette};
+    const struct lm_glass glass = {*surface, &u->picture.frame, &u->palette};
     switch ((enum lm_format)u->page.format) {
     case LM_FORMAT_RADAR:
     case LM_FORMAT_CNTL:
@@ -150,11 +131,6 @@ void lm_show_frame(struct lm_unit *u, uint64_t now_us)
         u->count.display_busy += status == LM_BUSY;
         u->count.display_errors += status < 0;
         return;
-    }
-    if (u->flags & (LM_FLAG_NAV_DEAD | LM_FLAG_DB)) {
-        lm_plane_clear(&u->plane, &u->frame);
-        lm_sar_restart(
-            &u->sar); /* a patch that was removed is drawn anew, not shown as an empty one */
     }
     draw_glass(u, &surface);
     u->count.display_errors += display->present(display->ctx) != LM_OK;

@@ -306,10 +306,10 @@ static void act(struct world *w, struct fuzz_supply *s)
 static void check(const struct world *w)
 {
     const struct lm_unit *u = &w->unit;
-    FUZZ_ASSERT(u->sector.command.range < lm_radar_default.ranges &&
-                u->sector.command.azimuth < LM_AZIMUTHS);
-    FUZZ_ASSERT(!u->sector.is_begun || u->sector.line < u->sector.lines);
-    FUZZ_ASSERT(u->sar.line <= lm_radar_default.sar.cells);
+    FUZZ_ASSERT(u->picture.sector.command.range < lm_radar_default.ranges &&
+                u->picture.sector.command.azimuth < LM_AZIMUTHS);
+    FUZZ_ASSERT(!u->picture.sector.is_begun || u->picture.sector.line < u->picture.sector.lines);
+    FUZZ_ASSERT(u->picture.sar.line <= lm_radar_default.sar.cells);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
         FUZZ_ASSERT(w->glass[i] <= 0x00FFFFFF);

@@ -210,7 +210,7 @@ static void print_summary(const struct sim *s)
         bus->count.outcome[LM_BUS_BAD_LENGTH], bus->count.outcome[LM_BUS_BAD_NODE],
         bus->count.outcome[LM_BUS_BAD_TYPE], bus->count.outcome[LM_BUS_NOT_A_NUMBER],
         bus->count.outcome[LM_BUS_OUT_OF_RANGE]);
-    const struct lm_weather_bus *w = &u->weather_bus;
+    const struct lm_weather_bus *w = &u->weather.bus;
     if (w->count.sets + w->count.torn + w->count.refused + w->count.numbers != 0) {
         printf(
             "     weather: %u sets taken, %u torn, %u out of range, %u frames of numbers above 3, "

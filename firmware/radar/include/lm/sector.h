@@ -112,6 +112,12 @@ static inline bool lm_sector_is_at_edge(const struct lm_sector *s)
     return !s->is_begun;
 }
 
+/* True when the sweep is over a window, seen from where it began. After lm_sector_begin. */
+static inline bool lm_sector_is_window(const struct lm_sector *s)
+{
+    return s->half_m != 0;
+}
+
 /* Work out the sweep's geometry. Cost: about 200 k instructions. */
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform);

@@ -8,15 +8,13 @@
 #include "lm/canas_service.h"
 #include "lm/controls.h"
 #include "lm/cursor.h"
-#include "lm/environment.h"
+#include "lm/fault_log.h"
 #include "lm/keys.h"
 #include "lm/nav.h"
-#include "lm/overlay.h"
 #include "lm/page.h"
-#include "lm/sar.h"
-#include "lm/sector.h"
+#include "lm/picture.h"
 #include "lm/unit_map.h"
-#include "lm/weather_bus.h"
+#include "lm/unit_weather.h"
 
 /* What a board lends, for as long as the unit lives. */
 struct lm_board {
@@ -36,60 +34,47 @@ struct lm_board {
     const char *restart; /* why the board restarted, in 20 capitals; NULL: it was switched on */
 };
 
-enum { LM_FRAME_US = 33333, LM_SAR_ACQUIRE_US = 500000, LM_BUS_SILENT_US = 1000000 };
-
-/* When a flag rose. The last few are kept for the BIT page. */
-enum { LM_FAULTS_KEPT = 4 };
-struct lm_fault {
-    uint32_t flag; /* its number */
-    uint64_t time_us;
-};
+enum { LM_FRAME_US = 33333, LM_BUS_SILENT_US = 1000000 };
 
 #define LM_NO_ELEVATION INT32_MIN
 
+/* The unit's state. Every part is written by its own functions alone; boards and tests may read. */
 struct lm_unit {
     const struct lm_board *board; /* borrowed */
-    struct lm_unit_map map;
-    struct lm_environment commanded; /* by a script or an instructor: before the bus's */
-    struct lm_weather_bus weather_bus;
-    struct lm_environment environment; /* of both, as sweeps and patches meet it */
-    bool is_weather_stale;
-    struct lm_place own_steerpoint; /* commanded: before the bus's steerpoint */
-    bool has_own_steerpoint;
+
     struct lm_bus bus;
     struct lm_nav nav;
     struct lm_canas_service service;
+    uint64_t last_bus_us; /* when a frame last came */
+    struct {
+        uint32_t jumps; /* of the nav */
+        uint16_t rank;  /* of the sender of the position */
+    } position_seen;
     struct lm_ownship ownship; /* extrapolated to the last step */
+    struct lm_unit_weather weather;
+
+    struct lm_unit_map map;
+    struct {
+        uint32_t seen; /* reads that failed and records that did not check */
+        uint64_t grew_us;
+    } tile_faults;
 
     struct lm_keys keys;
     struct lm_page page;
-    struct lm_cursor cursor;
-    bool is_cursor_awaited; /* by a window: the whole sector is swept until it has a place */
     struct lm_palette palette;
-    struct lm_view view;          /* of the picture on the glass */
-    bool is_view_held;            /* the picture stands, and the aircraft moves over it */
+    struct lm_cursor cursor;
     int32_t cursor_elevation_q10; /* metres * 1024, or LM_NO_ELEVATION */
-    uint64_t unable_until_us;     /* the glass says LM_FLAG_UNABLE until then */
+    struct {
+        bool is_commanded; /* before the bus's steerpoint */
+        struct lm_place place;
+    } steerpoint;
+    uint64_t unable_until_us; /* the glass says LM_FLAG_UNABLE until then */
 
-    struct lm_sector sector;
-    struct lm_sar sar;
-    bool is_acquiring;        /* the patch's tiles are being read */
-    uint32_t lines_asked_for; /* lines of it whose tiles were asked for */
-    uint64_t acquire_until_us;
-    uint64_t next_line_us, next_frame_us;
-    struct lm_tone sector_tone, sar_tone;
-    struct lm_line line;
-    struct lm_plane plane;
-    struct lm_frame frame;
-    uint32_t flags;                         /* enum lm_flag, of the last step */
-    struct lm_fault faults[LM_FAULTS_KEPT]; /* fault n of `count` is at n % LM_FAULTS_KEPT */
-    uint64_t last_bus_us;                   /* when a frame last came */
-    uint32_t jumps_seen;                    /* of the nav */
-    uint16_t position_rank_seen;            /* of the sender of the position */
-    uint32_t tile_faults_seen;              /* of the cache, and when they last grew */
-    uint64_t tile_fault_us;
-    uint32_t cells_none, cells_seen; /* sampled, of the running sweep or patch */
-    bool is_off_map;
+    struct lm_picture picture;
+    uint64_t next_frame_us;
+
+    uint32_t flags; /* enum lm_flag, of the last step */
+    struct lm_fault_log faults;
 
     struct {
         uint32_t frames, lines, bus_frames;
@@ -97,9 +82,8 @@ struct lm_unit {
         uint32_t bus_errors;    /* the driver reported the bus down */
         uint32_t display_errors, display_busy;
         uint32_t commands_refused;
-        uint32_t faults; /* flags that rose; what the operator switches is none */
-        uint32_t swaps;  /* SWAP presses: a board with two displays exchanges their pages */
-    } count;             /* only ever grow */
+        uint32_t swaps; /* SWAP presses: a board with two displays exchanges their pages */
+    } count;            /* only ever grow */
 };
 
 /* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest

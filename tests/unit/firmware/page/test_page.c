@@ -111,7 +111,7 @@ static void osb_1_goes_round_the_modes_and_leaves_the_patch(void **state)
         const uint32_t before = plane_sum(r);
         press(r, 1);
         assert_true(labelled(r, 1, modes[i], 0));
-        assert_int_equal(r->unit.sector.command.mode, (i + 1) % LM_SECTOR_MODES);
+        assert_int_equal(r->unit.picture.sector.command.mode, (i + 1) % LM_SECTOR_MODES);
         run(r, 2.2);
         assert_true(plane_sum(r) != before);
     }
@@ -160,7 +160,7 @@ static void osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture(v
     for (int i = 0; i < 4; i++) {
         press(r, 3);
         assert_true(labelled(r, 3, fields[i], 0));
-        assert_int_equal(r->unit.sector.command.field, (i + 1) % LM_FIELDS);
+        assert_int_equal(r->unit.picture.sector.command.field, (i + 1) % LM_FIELDS);
         struct lm_label label; /* a window has no scan of its own */
         assert_int_equal(lm_page_label(&r->unit.page, 18, &label), i == 3);
         run(r, 4);
@@ -274,20 +274,20 @@ static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
     } pairs[] = {{20, 19, "1.6", "1.4"}, {18, 17, "+1", "-1"}, {6, 7, "+1", "-1"}};
     for (size_t i = 0; i < 3; i++) {
         struct rig *r = fly();
-        const struct lm_tone before = r->unit.sector_tone;
+        const struct lm_tone before = r->unit.picture.tone[LM_PICTURE_SECTOR];
         press(r, 5);
         press(r, pairs[i].up);
         assert_true(says(r, pairs[i].words_up));
-        assert_memory_not_equal(&r->unit.sector_tone, &before, sizeof before);
+        assert_memory_not_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &before, sizeof before);
         press(r, pairs[i].down);
-        assert_memory_equal(&r->unit.sector_tone, &before, sizeof before);
+        assert_memory_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &before, sizeof before);
         press(r, pairs[i].down);
         assert_true(says(r, pairs[i].words_down));
         hold(r, pairs[i].up, 5); /* repeats until it stands at its end */
         const struct lm_page *p = &r->unit.page;
         assert_int_equal(p->gamma_tenths + p->white_db + p->black_db, i == 0 ? 10 : 20);
         press(r, 10); /* RESET */
-        assert_memory_equal(&r->unit.sector_tone, &before, sizeof before);
+        assert_memory_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &before, sizeof before);
         free_rig(r);
     }
 }
@@ -295,7 +295,7 @@ static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
 /* How bright the radar picture is: its greys added up. */
 static uint64_t brightness(const struct rig *r)
 {
-    const struct lm_plane *plane = &r->unit.plane;
+    const struct lm_plane *plane = &r->unit.picture.plane;
     uint64_t sum = 0;
     for (int i = 0; i < plane->width_px * plane->height_px; i++) {
         sum += plane->pixels[i];
@@ -311,7 +311,7 @@ static void osb_1_to_4_of_the_control_page_point_and_shape_the_beam(void **state
     press(r, 5);
     assert_true(labelled(r, 1, "AUTO", 0));
     assert_true(labelled(r, 4, "BEAM", 0));
-    const int32_t automatic = r->unit.sector.tilt;
+    const int32_t automatic = r->unit.picture.sector.tilt;
     const uint64_t before = brightness(r);
     assert_true(automatic < 0); /* down at the end of the range */
     for (int i = 0; i < 50; i++) {
@@ -319,16 +319,16 @@ static void osb_1_to_4_of_the_control_page_point_and_shape_the_beam(void **state
     }
     assert_true(labelled(r, 1, "TILT", 1));
     /* Twenty-five degrees up, as near as tenths of a degree tell where it was. */
-    const double up_deg = (r->unit.sector.tilt - automatic) * 360.0 / 4294967296;
+    const double up_deg = (r->unit.picture.sector.tilt - automatic) * 360.0 / 4294967296;
     assert_true(fabs(up_deg - 25) < 0.1);
     run(r, 2.5);
     assert_true(brightness(r) < before / 2); /* it looks over the near ground */
     press(r, 3);
-    assert_true(r->unit.sector.tilt < automatic + (int32_t)FX_BAM_DEG(25));
+    assert_true(r->unit.picture.sector.tilt < automatic + (int32_t)FX_BAM_DEG(25));
     press(r, 1);
     assert_true(labelled(r, 1, "AUTO", 0));
     run(r, 1.5);
-    assert_true(abs(r->unit.sector.tilt - automatic) < (int32_t)FX_BAM_DEG(1));
+    assert_true(abs(r->unit.picture.sector.tilt - automatic) < (int32_t)FX_BAM_DEG(1));
     const uint64_t fan = brightness(r);
     press(r, 4);
     assert_true(labelled(r, 4, "BEAM", 1));
@@ -345,16 +345,17 @@ static void osb_16_of_the_control_page_shows_patches_in_slant_range(void **state
     struct rig *r = fly();
     command(r, patch_here);
     run(r, 5);
-    assert_false(r->unit.sar.command.has_layover);
+    assert_false(r->unit.picture.sar.command.has_layover);
     press(r, 5);
     assert_true(labelled(r, 16, "SAR", 0));
     press(r, 16);
     assert_true(labelled(r, 16, "SAR", 1));
-    assert_true(r->unit.page.picture == LM_PICTURE_PATCH && r->unit.sar.command.has_layover);
+    assert_true(r->unit.page.picture == LM_PICTURE_PATCH &&
+                r->unit.picture.sar.command.has_layover);
     run(r, 5);
     assert_true(lit_pixels(r) > 10000);
     press(r, 16);
-    assert_false(r->unit.sar.command.has_layover);
+    assert_false(r->unit.picture.sar.command.has_layover);
     free_rig(r);
 }
 
@@ -388,7 +389,7 @@ static void osb_8_and_9_of_the_control_page_choose_tint_and_night(void **state)
  * symbol's colour within the frame's columns near the apex. */
 static int32_t ownship_top(const struct rig *r)
 {
-    const struct lm_frame *f = &r->unit.frame;
+    const struct lm_frame *f = &r->unit.picture.frame;
     const int32_t x = f->left_px + f->width_px / 2 + 12; /* right of the line: radius 0.05 of 240 */
     for (int32_t y = f->top_px; y < f->top_px + f->height_px; y++) {
         if (r->glass[y * WIDTH + x] == r->unit.palette.symbol &&
@@ -568,11 +569,11 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
     command(r, lm_control_designate());
     run(r, 1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    assert_int_equal(r->unit.sar.command.cell_mm, 10000);
-    const struct lm_place centre = r->unit.sar.command.centre;
+    assert_int_equal(r->unit.picture.sar.command.cell_mm, 10000);
+    const struct lm_place centre = r->unit.picture.sar.command.centre;
     press(r, 16);
-    assert_int_equal(r->unit.sar.command.cell_mm, 20000);
-    assert_memory_equal(&r->unit.sar.command.centre, &centre, sizeof centre);
+    assert_int_equal(r->unit.picture.sar.command.cell_mm, 20000);
+    assert_memory_equal(&r->unit.picture.sar.command.centre, &centre, sizeof centre);
     assert_true(says(r, "CELL 20.0M"));
     free_rig(r);
 }
@@ -580,12 +581,13 @@ static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
 /* How far from straight up the outer half of the picture reaches, degrees. */
 static double widest_degrees(const struct rig *r)
 {
-    const struct lm_point apex = r->unit.view.at;
+    const struct lm_point apex = r->unit.picture.view.at;
     double widest = 0;
     for (int32_t y = 0; y < HEIGHT; y++) {
         for (int32_t x = 0; x < WIDTH; x++) {
             const double right = x + 0.5 - apex.x, up = apex.y - (y + 0.5);
-            if (r->plane[y * WIDTH + x] > 0 && hypot(right, up) > r->unit.view.radius_px / 2.0) {
+            if (r->plane[y * WIDTH + x] > 0 &&
+                hypot(right, up) > r->unit.picture.view.radius_px / 2.0) {
                 widest = fmax(widest, fabs(atan2(right, up)) * 57.29578);
             }
         }
@@ -601,7 +603,8 @@ static void osb_18_goes_through_the_azimuths(void **state)
     const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
     for (int i = 0; i < 3; i++) {
         press(r, 18);
-        assert_int_equal(lm_radar_default.azimuth_half[r->unit.sector.command.azimuth], halves[i]);
+        assert_int_equal(lm_radar_default.azimuth_half[r->unit.picture.sector.command.azimuth],
+                         halves[i]);
         struct lm_label label;
         assert_true(lm_page_label(&r->unit.page, 18, &label));
         assert_string_equal(label.line[0], "A");
@@ -622,16 +625,16 @@ static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
     press(r, 2);
     for (int range = 1; range < lm_radar_default.ranges; range++) {
         press(r, 20);
-        assert_int_equal(r->unit.sector.command.range, range);
+        assert_int_equal(r->unit.picture.sector.command.range, range);
         assert_true(says(r, words[range]));
         assert_false(r->unit.page.is_auto_range);
     }
     assert_false(says(r, LM_GLYPH_UP)); /* no further */
     press(r, 20);
-    assert_int_equal(r->unit.sector.command.range, 3);
+    assert_int_equal(r->unit.picture.sector.command.range, 3);
     for (int range = lm_radar_default.ranges - 2; range >= 0; range--) {
         press(r, 19);
-        assert_int_equal(r->unit.sector.command.range, range);
+        assert_int_equal(r->unit.picture.sector.command.range, range);
         assert_true(says(r, words[range]));
     }
     assert_false(says(r, LM_GLYPH_DOWN));
@@ -642,10 +645,10 @@ static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
 {
     (void)state;
     struct rig *r = fly();
-    const struct lm_tone tone = r->unit.sector_tone;
+    const struct lm_tone tone = r->unit.picture.tone[LM_PICTURE_SECTOR];
     press(r, lm_rocker_button(LM_ROCKER_GAIN, true));
     assert_int_equal(r->unit.page.gain_db, 1);
-    assert_memory_not_equal(&r->unit.sector_tone, &tone, sizeof tone);
+    assert_memory_not_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &tone, sizeof tone);
     press(r, lm_rocker_button(LM_ROCKER_GAIN, false));
     command(r, lm_control_knob(1000));
     run(r, 0.01);
@@ -655,7 +658,7 @@ static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
     assert_true(fabs((table.black_q8 - config.black_q8) / 256.0 - 1.584) < 0.01);
     command(r, lm_control_knob(0));
     run(r, 0.01);
-    assert_memory_equal(&r->unit.sector_tone, &tone, sizeof tone);
+    assert_memory_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &tone, sizeof tone);
     const struct lm_palette palette = r->unit.palette;
     const enum lm_rocker rockers[] = {LM_ROCKER_SYM, LM_ROCKER_BRT, LM_ROCKER_CON};
     for (int i = 0; i < 3; i++) {
@@ -679,8 +682,8 @@ static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
     run(r, 0.3);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    const struct lm_frame *f = &r->unit.frame;
-    const struct lm_point at = lm_view_point(&r->unit.view, r->unit.cursor.offset);
+    const struct lm_frame *f = &r->unit.picture.frame;
+    const struct lm_point at = lm_view_point(&r->unit.picture.view, r->unit.cursor.offset);
     for (int32_t x = f->left_px; x < f->left_px + f->width_px; x++) {
         assert_int_equal(r->glass[at.y * WIDTH + x], r->unit.palette.symbol);
     }
@@ -688,7 +691,7 @@ static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
         assert_int_equal(r->glass[y * WIDTH + at.x], r->unit.palette.symbol);
     }
     /* The cue: ticks across the lines at an eighth of the range. */
-    const int32_t away = r->unit.view.radius_px / 8;
+    const int32_t away = r->unit.picture.view.radius_px / 8;
     for (int side = -1; side <= 1; side += 2) {
         assert_int_equal(r->glass[(at.y + 5) * WIDTH + at.x + side * away], r->unit.palette.symbol);
         assert_int_equal(r->glass[(at.y + side * away) * WIDTH + at.x - 5], r->unit.palette.symbol);
@@ -748,12 +751,12 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     command(r, lm_control_designate());
     run(r, 4);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    assert_memory_equal(&r->unit.sar.command.centre, &r->unit.cursor.place,
+    assert_memory_equal(&r->unit.picture.sar.command.centre, &r->unit.cursor.place,
                         sizeof(struct lm_place));
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
     char look[16];
     snprintf(look, sizeof look, "LOOK %03.0f",
-             r->unit.sar.command.look_azimuth * 360.0 / 4294967296.0);
+             r->unit.picture.sar.command.look_azimuth * 360.0 / 4294967296.0);
     assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, look));
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
     command(r, lm_control_drop());
@@ -800,8 +803,8 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     run(r, 0.1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     char words[24];
-    snprintf(words, sizeof words, "%u%% %.0fS", r->unit.sar.line * 100 / 256,
-             ceil((double)lm_sar_time_to_go_us(&r->unit.sar) / 1e6));
+    snprintf(words, sizeof words, "%u%% %.0fS", r->unit.picture.sar.line * 100 / 256,
+             ceil((double)lm_sar_time_to_go_us(&r->unit.picture.sar) / 1e6));
     assert_true(says(r, words));
     free_rig(r);
 }
@@ -951,7 +954,7 @@ static void a_cursor_that_nobody_moved_goes_with_the_scale(void **state)
     command(r, range_10);
     run(r, 0.3);
     assert_true(fabs(cursor_nm(r) - 5) < 0.1);
-    assert_memory_equal(&r->unit.sector.command.centre, &r->unit.cursor.place,
+    assert_memory_equal(&r->unit.picture.sector.command.centre, &r->unit.cursor.place,
                         sizeof r->unit.cursor.place);
     free_rig(r);
 }
@@ -1037,8 +1040,8 @@ static bool is_marked(const struct rig *r, double latitude_deg, double longitude
 {
     const struct lm_place place = {hs_bam(latitude_deg), hs_bam(longitude_deg)};
     struct lm_offset o;
-    assert_true(lm_view_find(&r->unit.view, place, &o));
-    const struct lm_point at = lm_view_point(&r->unit.view, o);
+    assert_true(lm_view_find(&r->unit.picture.view, place, &o));
+    const struct lm_point at = lm_view_point(&r->unit.picture.view, o);
     return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
 }
 

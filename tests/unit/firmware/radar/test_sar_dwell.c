@@ -52,11 +52,12 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
     command(r, control);
     run(r, 0.004);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    while (r->unit.sar.line < CELLS) {
-        if (first_us == 0 && r->now_us >= r->unit.next_line_us - r->unit.sar.line_us &&
-            r->unit.sar.line > 0) {
+    while (r->unit.picture.sar.line < CELLS) {
+        if (first_us == 0 &&
+            r->now_us >= r->unit.picture.next_line_us - r->unit.picture.sar.line_us &&
+            r->unit.picture.sar.line > 0) {
             first_us = r->now_us;
-            first = r->unit.sar.line;
+            first = r->unit.picture.sar.line;
         }
         assert_true(r->now_us < 100000000);
         run(r, 0.002);
@@ -173,13 +174,13 @@ static void the_time_to_go_falls_to_nothing_as_the_lines_are_drawn(void **state)
     command(r, patch_at(r, 45, 37040, 1));
     run(r, 0.6); /* the tiles are there */
     const double total_s = wavelength_m * hypot(37040, 1900) / (2 * 250 * sin(pi / 4));
-    while (r->unit.sar.line < CELLS) {
-        const double left_s = (double)lm_sar_time_to_go_us(&r->unit.sar) / 1e6;
-        const double expected_s = total_s * (CELLS - r->unit.sar.line) / CELLS;
+    while (r->unit.picture.sar.line < CELLS) {
+        const double left_s = (double)lm_sar_time_to_go_us(&r->unit.picture.sar) / 1e6;
+        const double expected_s = total_s * (CELLS - r->unit.picture.sar.line) / CELLS;
         assert_true(fabs(left_s - expected_s) < 0.02 * total_s);
         run(r, 0.05);
     }
-    assert_true(lm_sar_time_to_go_us(&r->unit.sar) == 0);
+    assert_true(lm_sar_time_to_go_us(&r->unit.picture.sar) == 0);
     free_rig(r);
 }
 

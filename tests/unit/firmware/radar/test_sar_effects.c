@@ -362,17 +362,17 @@ static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(vo
         run(r, 0.1);
         assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
         const double lateral = 6 * pi / 180 * 150;
-        const double dwell_s = (double)(r->unit.sar.line_us * CELLS) / 1e6;
+        const double dwell_s = (double)(r->unit.picture.sar.line_us * CELLS) / 1e6;
         const double f = pi * lateral * 0.01 * dwell_s * dwell_s / (2 * 0.031228);
         const double q = fmin(sqrt(1 + pow(0.42 * f, 2)), LINES);
-        const double width = r->unit.sar.defocus_q8 / 256.0;
+        const double width = r->unit.picture.sar.defocus_q8 / 256.0;
         assert_true(is_turning ? q > 1.3 && fabs(width - q) < 0.03 * q : width == 1);
         control.sar.is_from_ownship = false;
         control.sar.range_m = 20000;
         control.sar.height_q6 = 2000 * 64;
         command(r, control);
         run(r, 0.1);
-        assert_int_equal(r->unit.sar.defocus_q8, 256);
+        assert_int_equal(r->unit.picture.sar.defocus_q8, 256);
         free_rig(r);
     }
 }
@@ -414,17 +414,18 @@ static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(voi
                         (int16_t)(cases[i].ratio_db * 256)}},
             .jammer_count = 1};
         const struct lm_sar_scene scene = {.environment = &e};
-        assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.map.db, &command, &scene),
-                         LM_OK);
+        assert_int_equal(
+            lm_sar_start(&r->unit.picture.sar, radar, &r->unit.map.db, &command, &scene), LM_OK);
         const double beams = cases[i].off_deg / hs_degrees(radar->antenna.azimuth_beam);
         const double jam_db = cases[i].ratio_db - 20 * log10(cases[i].distance_m / 18520) -
                               40 * log10(2) * beams * beams;
-        const double rise_db = (r->unit.sar.floor_q8 - radar->sar.noise_floor_q8) / 256.0;
+        const double rise_db = (r->unit.picture.sar.floor_q8 - radar->sar.noise_floor_q8) / 256.0;
         assert_true(fabs(rise_db - 10 * log10(1 + pow(10, jam_db / 10))) < 0.1);
     }
     const struct lm_sar_scene fair = {.environment = NULL};
-    assert_int_equal(lm_sar_start(&r->unit.sar, radar, &r->unit.map.db, &command, &fair), LM_OK);
-    assert_int_equal(r->unit.sar.floor_q8, radar->sar.noise_floor_q8);
+    assert_int_equal(lm_sar_start(&r->unit.picture.sar, radar, &r->unit.map.db, &command, &fair),
+                     LM_OK);
+    assert_int_equal(r->unit.picture.sar.floor_q8, radar->sar.noise_floor_q8);
     free_rig(r);
 }
 

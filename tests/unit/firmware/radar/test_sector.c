@@ -57,8 +57,8 @@ static void show(struct rig *r, enum lm_sector_mode mode, enum lm_field field)
 
 static void finish_sweep(struct rig *r)
 {
-    const uint32_t sweep = r->unit.sector.sweep;
-    while (r->unit.sector.sweep == sweep) {
+    const uint32_t sweep = r->unit.picture.sector.sweep;
+    while (r->unit.picture.sector.sweep == sweep) {
         step(r);
     }
 }
@@ -85,7 +85,7 @@ the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place(
     (void)state;
     static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP};
     struct rig *r = start_over_sea(3000, 250);
-    const struct lm_sector *s = &r->unit.sector;
+    const struct lm_sector *s = &r->unit.picture.sector;
     put_cursor(r, 5, 14000);
     for (int is_window = 0; is_window < 2; is_window++) {
         show(r, LM_SECTOR_GM, fields[is_window]);
@@ -117,7 +117,7 @@ static double measured_rate(struct rig *r, double seconds)
     const uint64_t begin_us = r->now_us;
     while ((double)(r->now_us - begin_us) < seconds * 1e6) {
         finish_sweep(r);
-        swept_deg += hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
+        swept_deg += hs_degrees(r->unit.picture.sector.width) * r->unit.picture.sector.lines;
     }
     return swept_deg * 1e6 / (double)(r->now_us - begin_us);
 }
@@ -131,7 +131,8 @@ static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lo
         command(r, (struct lm_control){.kind = LM_CONTROL_AZIMUTH, .azimuth_index = azimuth});
         run(r, 0.2);
         const double rate = measured_rate(r, seconds[azimuth]);
-        const double swept_deg = hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
+        const double swept_deg =
+            hs_degrees(r->unit.picture.sector.width) * r->unit.picture.sector.lines;
         print_message("# %.0f degrees: %.2f degrees a second\n", sector_deg[azimuth], rate);
         assert_true(fabs(rate / 120 - 1) < 0.02);
         assert_true(fabs(swept_deg / sector_deg[azimuth] - 1) < 0.02);
@@ -156,9 +157,10 @@ static void windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_s
         put_cursor(r, 30, 15000);
         show(r, LM_SECTOR_GM, cases[i].field);
         const double rate = measured_rate(r, 12);
-        const double swept_deg = hs_degrees(r->unit.sector.width) * r->unit.sector.lines;
+        const double swept_deg =
+            hs_degrees(r->unit.picture.sector.width) * r->unit.picture.sector.lines;
         double ground_m, bearing_deg;
-        ref_geo_inverse(ref_of(r->unit.sector.platform.place), ref_of(r->unit.cursor.place),
+        ref_geo_inverse(ref_of(r->unit.picture.sector.platform.place), ref_of(r->unit.cursor.place),
                         &bearing_deg, &ground_m);
         const double seen_deg =
             hs_degrees(hs_bam(asin(1.5 * cases[i].half_window * 18520 / ground_m) * 57.29578));
@@ -199,7 +201,7 @@ static struct pixel bright_spot(const struct rig *r)
 
 static struct pixel middle_of(const struct rig *r)
 {
-    const struct lm_frame square = lm_frame_square(&r->unit.frame);
+    const struct lm_frame square = lm_frame_square(&r->unit.picture.frame);
     return (struct pixel){square.left_px + square.width_px / 2,
                           square.top_px + square.height_px / 2};
 }
@@ -216,11 +218,11 @@ static bool is_near(struct pixel a, struct pixel b, double slack_px)
 /* Slant range rightwards and upwards, metres, of a place on the sea as the window sees it. */
 static struct pixel slant_offset(const struct rig *r, struct lm_place place)
 {
-    const struct lm_platform *from = &r->unit.sector.platform;
+    const struct lm_platform *from = &r->unit.picture.sector.platform;
     double azimuth_deg, ground_m;
     ref_geo_inverse(ref_of(from->place), ref_of(place), &azimuth_deg, &ground_m);
     const double slant_m = hypot(ground_m, from->height_q10 / 1024.0);
-    const double turn = (azimuth_deg - hs_degrees(r->unit.sector.up)) / 57.29577951;
+    const double turn = (azimuth_deg - hs_degrees(r->unit.picture.sector.up)) / 57.29577951;
     return (struct pixel){slant_m * sin(turn), slant_m * cos(turn)};
 }
 
@@ -228,8 +230,8 @@ static struct pixel slant_offset(const struct rig *r, struct lm_place place)
 static struct pixel wanted_at(const struct rig *r, struct lm_place place)
 {
     const struct pixel at = slant_offset(r, place), centre = slant_offset(r, r->unit.cursor.place);
-    const struct lm_frame square = lm_frame_square(&r->unit.frame);
-    const double px_per_m = square.width_px / (2.0 * r->unit.sector.half_m);
+    const struct lm_frame square = lm_frame_square(&r->unit.picture.frame);
+    const double px_per_m = square.width_px / (2.0 * r->unit.picture.sector.half_m);
     const struct pixel middle = middle_of(r);
     return (struct pixel){middle.x + (at.x - centre.x) * px_per_m,
                           middle.y - (at.y - centre.y) * px_per_m};
@@ -279,7 +281,7 @@ static void judge_window(const struct view_case *c)
      * rounding as well: a pixel more. */
     push_cursor(r, c->azimuth_deg);
     finish_sweep(r);
-    while (!r->unit.sector.is_begun) {
+    while (!r->unit.picture.sector.is_begun) {
         step(r);
     }
     const struct pixel moved = wanted_at(r, first), middle = middle_of(r);
@@ -325,7 +327,7 @@ enum { OLD = 1 }; /* grey of a picture that must go */
 
 static void fill_frame(struct rig *r, uint8_t grey)
 {
-    const struct lm_frame *f = &r->unit.frame;
+    const struct lm_frame *f = &r->unit.picture.frame;
     for (int y = 0; y < f->height_px; y++) {
         memset(r->plane + (f->top_px + y) * WIDTH + f->left_px, grey, f->width_px);
     }
@@ -345,10 +347,11 @@ static uint32_t old_pixels(const struct rig *r)
  * grey at full gain. */
 static bool is_swept(const struct rig *r, int x, int y)
 {
-    const struct lm_sector *s = &r->unit.sector;
-    const struct lm_view *v = &r->unit.view;
+    const struct lm_sector *s = &r->unit.picture.sector;
+    const struct lm_view *v = &r->unit.picture.view;
     const bool is_window = s->half_m != 0;
-    const struct lm_frame f = is_window ? lm_frame_square(&r->unit.frame) : r->unit.frame;
+    const struct lm_frame f =
+        is_window ? lm_frame_square(&r->unit.picture.frame) : r->unit.picture.frame;
     const double right = x + 0.5 - v->at.x, up = v->at.y - (y + 0.5);
     const double azimuth_deg = atan2(right, up) * 57.29578, length_px = hypot(right, up);
     const double edge_deg = hs_degrees((fx_bam_t)s->left), slack_deg = hs_degrees(s->width);
@@ -428,7 +431,7 @@ static void a_patch_drawn_twice_is_the_same(void **state)
         command(r, patch);
         step(r);
         assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-        while (r->unit.sar.line < r->unit.sar.radar->sar.cells) {
+        while (r->unit.picture.sar.line < r->unit.picture.sar.radar->sar.cells) {
             step(r);
         }
         assert_true(lit_pixels(r) > 10000);
@@ -445,7 +448,7 @@ static void a_look_that_was_kept_is_what_the_beam_would_see_anew(void **state)
     static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_NORM, LM_FIELD_DBS1,
                                      LM_FIELD_NORM};
     struct rig *r = start_rig();
-    const struct lm_sector *s = &r->unit.sector;
+    const struct lm_sector *s = &r->unit.picture.sector;
     uint32_t kept = 0;
     run(r, 0.5);
     put_cursor(r, 5, 14000);

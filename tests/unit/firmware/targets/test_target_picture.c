@@ -220,7 +220,7 @@ static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
     assert_int_equal(unit.map.target_set.count, 2);
     assert_int_equal(unit.map.target_set.items[1].id, 2);
     assert_int_equal(unit.map.count.targets_lost, 1);
-    assert_ptr_equal(unit.sector.targets, &unit.map.target_set);
+    assert_ptr_equal(unit.picture.sector.targets, &unit.map.target_set);
     free(w.bytes);
     tiny_image_free(&image);
 }

@@ -101,12 +101,12 @@ static void check_bounds(const struct rig *r)
     assert_true(abs(p->palette.contrast) <= LM_ROCKER_STEPS);
     assert_true(abs(p->palette.symbology) <= LM_ROCKER_STEPS);
     assert_true(p->hidden < 1u << LM_OSBS && r->unit.keys.down < 1u << LM_BUTTONS);
-    assert_true(r->unit.sar.line <= lm_radar_default.sar.cells);
-    assert_int_equal(r->unit.sector.command.range < lm_radar_default.ranges, 1);
+    assert_true(r->unit.picture.sar.line <= lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sector.command.range < lm_radar_default.ranges, 1);
     const struct lm_cursor *c = &r->unit.cursor;
     assert_true(abs(c->slew_x) <= LM_FULL_DEFLECTION && abs(c->slew_y) <= LM_FULL_DEFLECTION);
-    const int32_t reach_q8 = (r->unit.view.radius_px + 2) * 256;
-    const struct lm_offset middle = lm_view_middle(&r->unit.view);
+    const int32_t reach_q8 = (r->unit.picture.view.radius_px + 2) * 256;
+    const struct lm_offset middle = lm_view_middle(&r->unit.picture.view);
     assert_true(!c->is_on_glass || (abs(c->offset.x_q8 - middle.x_q8) <= reach_q8 &&
                                     abs(c->offset.y_q8 - middle.y_q8) <= reach_q8));
     for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {

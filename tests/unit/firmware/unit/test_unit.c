@@ -186,7 +186,7 @@ static void a_patch_completes_and_stays(void **state)
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
     run(r, 2);
@@ -210,17 +210,19 @@ static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not
     struct rig *cold = start_rig(), *warm = start_rig();
     command(cold, patch_from_afar);
     run(cold, 1.0 * STEP_US / 1e6);
-    assert_true(cold->unit.page.picture == LM_PICTURE_PATCH && cold->unit.is_acquiring);
-    const int32_t guessed_q10 = cold->unit.sar.grid.reference_q10;
+    assert_true(cold->unit.page.picture == LM_PICTURE_PATCH &&
+                cold->unit.picture.acquire.is_reading);
+    const int32_t guessed_q10 = cold->unit.picture.sar.grid.reference_q10;
     run(cold, 4);
     command(warm, patch_from_afar);
     run(warm, 4);
     command(warm, patch_from_afar); /* all its tiles have been read */
     run(warm, 1.0 * STEP_US / 1e6);
-    assert_int_equal(warm->unit.sar.grid.reference_q10, cold->unit.sar.grid.reference_q10);
-    assert_int_not_equal(guessed_q10, cold->unit.sar.grid.reference_q10);
+    assert_int_equal(warm->unit.picture.sar.grid.reference_q10,
+                     cold->unit.picture.sar.grid.reference_q10);
+    assert_int_not_equal(guessed_q10, cold->unit.picture.sar.grid.reference_q10);
     run(warm, 4);
-    assert_int_equal(cold->unit.sar.line, 256);
+    assert_int_equal(cold->unit.picture.sar.line, 256);
     assert_int_equal(plane_sum(warm), plane_sum(cold));
     free_rig(cold);
     free_rig(warm);
@@ -237,14 +239,15 @@ all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_ste
     command(r, patch_from_afar);
     do {
         run(r, 1.0 * STEP_US / 1e6);
-        assert_in_range(u->lines_asked_for - before, 0, 32);
-        before = u->lines_asked_for;
-        assert_true(u->page.picture == LM_PICTURE_PATCH && u->sar.line == 0 && ++step < 250);
-    } while (u->is_acquiring);
-    assert_int_equal(u->lines_asked_for, 256);
+        assert_in_range(u->picture.acquire.lines_asked_for - before, 0, 32);
+        before = u->picture.acquire.lines_asked_for;
+        assert_true(u->page.picture == LM_PICTURE_PATCH && u->picture.sar.line == 0 &&
+                    ++step < 250);
+    } while (u->picture.acquire.is_reading);
+    assert_int_equal(u->picture.acquire.lines_asked_for, 256);
     const uint32_t substituted = u->map.tiles.count.substituted;
     run(r, 4);
-    assert_int_equal(u->sar.line, 256);
+    assert_int_equal(u->picture.sar.line, 256);
     assert_int_equal(u->map.tiles.count.substituted, substituted);
     free_rig(r);
 }
@@ -261,8 +264,8 @@ static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
     run(r, 1);
     command(r, patch_here);
     run(r, 4);
-    assert_int_equal(r->unit.sar.line, lm_radar_default.sar.cells);
-    const struct lm_frame *f = &r->unit.frame;
+    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    const struct lm_frame *f = &r->unit.picture.frame;
     for (size_t i = 0; i < end; i++) {
         const size_t x = i % 256, y = i / 256;
         const int is_inside = x >= f->left_px && x - f->left_px < f->width_px && y >= f->top_px &&

@@ -147,7 +147,8 @@ static void at_every_jump_the_new_place_is_shown_at_once_and_the_picture_starts_
         assert_int_equal(nav_flags(&r), 0);
         /* It has flown on for 0.1 s since; the record is good for a metre. */
         assert_true(metres_to(&r, fix) < fix->speed_ms * 0.11 + 1);
-        assert_int_equal(u->jumps_seen, u->nav.position_jumps); /* the picture was begun anew */
+        assert_int_equal(u->position_seen.jumps,
+                         u->nav.position_jumps); /* the picture was begun anew */
         stop(&r);
         tried++;
     }

@@ -1,0 +1,44 @@
+#include "flags.h"
+
+enum { TILE_FAULT_SHOWN_US = 3000000 };
+
+static uint32_t judge_map(struct lm_unit *u, uint64_t now_us)
+{
+    const uint32_t faults = u->map.tiles.count.io_errors + lm_unit_map_corrupt_records(&u->map);
+    if (faults != u->tile_faults.seen) {
+        u->tile_faults.seen = faults;
+        u->tile_faults.grew_us = now_us;
+    }
+    const bool is_fault = faults != 0 && now_us - u->tile_faults.grew_us < TILE_FAULT_SHOWN_US;
+    return (u->map.is_usable ? 0u : LM_FLAG_DB) | (is_fault ? LM_FLAG_TILE : 0u);
+}
+
+static uint32_t judge_nav(const struct lm_unit *u)
+{
+    const struct lm_ownship *own = &u->ownship;
+    if (!lm_picture_needs_ownship(&u->picture)) {
+        return 0;
+    }
+    if (own->position_quality == LM_NAV_DEAD || own->height_quality == LM_NAV_DEAD ||
+        own->heading_quality == LM_NAV_DEAD) {
+        return LM_FLAG_NAV_DEAD;
+    }
+    const bool is_good = own->position_quality == LM_NAV_GOOD &&
+                         own->height_quality == LM_NAV_GOOD && own->heading_quality == LM_NAV_GOOD;
+    return is_good ? 0 : LM_FLAG_NAV_STALE;
+}
+
+uint32_t lm_judge_flags(struct lm_unit *u, uint64_t now_us)
+{
+    const uint32_t flags = judge_map(u, now_us) | judge_nav(u) |
+                           (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) |
+                           (u->page.is_override ? LM_FLAG_SILENT : 0u) |
+                           (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |
+                           (u->weather.is_stale ? LM_FLAG_WEATHER : 0u) |
+                           (now_us < u->unable_until_us ? LM_FLAG_UNABLE : 0u) |
+                           (now_us - u->last_bus_us > LM_BUS_SILENT_US ? LM_FLAG_BUS : 0u);
+    const uint32_t risen = flags & ~u->flags;
+    lm_fault_log_add(&u->faults, risen, now_us);
+    u->flags = flags;
+    return risen;
+}

@@ -1,0 +1,54 @@
+#include "follow.h"
+
+#include "commands.h"
+#include "flags.h"
+#include "ownship.h"
+
+enum { ELEVATION_CELL_MM = 30000 /* the map's detail that the cursor's elevation comes from */ };
+
+static void follow_view(struct lm_unit *u)
+{
+    lm_picture_follow_view(&u->picture, (u->flags & LM_FLAGS_STANDING) != 0);
+}
+
+static void read_elevation(struct lm_unit *u)
+{
+    if (u->map.is_usable) {
+        const uint8_t level = lm_scan_level(&u->map.db, ELEVATION_CELL_MM);
+        u->cursor_elevation_q10 =
+            lm_scan_elevation(&u->map.tiles, level, u->cursor.place, LM_NO_ELEVATION);
+    }
+}
+
+/* The page's range follows the cursor, when it is to. */
+static void follow_range(struct lm_unit *u, uint64_t now_us)
+{
+    const uint32_t scale_m = u->board->radar->range[u->page.range].range_m;
+    if (!lm_picture_moves(&u->picture) || !u->page.is_auto_range || u->picture.is_view_held) {
+        return;
+    }
+    const int32_t step = lm_cursor_wants_range(&u->cursor, scale_m);
+    const uint32_t effects = step != 0 ? lm_page_step_range(&u->page, step) : 0;
+    if (effects) {
+        lm_apply_effects(u, effects, now_us);
+        follow_view(u);
+    }
+}
+
+void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
+{
+    follow_view(u);
+    if (!lm_ownship_is_known(&u->ownship)) {
+        return;
+    }
+    const struct lm_cursor_scene scene = lm_picture_cursor_scene(&u->picture);
+    if (!lm_cursor_step(&u->cursor, &scene, now_us)) {
+        return;
+    }
+    lm_cursor_locate(&u->cursor, &scene);
+    read_elevation(u);
+    if (u->picture.is_cursor_awaited && u->cursor.is_placed) {
+        lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
+    }
+    follow_range(u, now_us);
+}

@@ -1,0 +1,223 @@
+/* The SAR patch as a kind of picture: its tiles are read first, then it is drawn once. */
+#include "fx/sat.h"
+#include "ownship.h"
+#include "picture_kind.h"
+
+enum {
+    ACQUIRE_US = 500000, /* tiles are waited for so long at most */
+    SAMPLES_A_STEP = 3,  /* lines; one that needs more waits for the next step */
+    /* Tiles are asked for by every fourth line, some in a step. */
+    LINES_APART = 4,
+    PREFETCHES_A_STEP = 8
+};
+
+static uint32_t lines_of(const struct lm_picture *p)
+{
+    return p->lent.radar->sar.cells;
+}
+
+/* Rate of turn times speed: below 2^31 / 2^29.3 rad/s times 2^21 mm/s. */
+static uint32_t lateral_mm_s2(const struct lm_ownship *own)
+{
+    const uint64_t turn_bam_s = fx_abs_u32(own->turn_bam_s);
+    return (uint32_t)(turn_bam_s * (uint32_t)own->ground_speed_mm_s / 683565276u);
+}
+
+/* The command with the geometry of this moment, and how the aircraft flies, when the patch is to be
+ * seen from the ownship. */
+static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *command,
+                            struct lm_sar_flight *flight)
+{
+    const struct lm_ownship *own = p->lent.ownship;
+    if (own->position_quality != LM_NAV_GOOD || own->height_quality != LM_NAV_GOOD ||
+        own->heading_quality != LM_NAV_GOOD || own->velocity_quality != LM_NAV_GOOD) {
+        return false;
+    }
+    /* The line of sight turns on its way: at the patch it is the way back, turned round. */
+    uint32_t distance_q8;
+    fx_bam_t back, bearing;
+    lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_q8, &back);
+    lm_geo_inverse(lm_ownship_place(own), command->centre, &distance_q8, &bearing);
+    command->look_azimuth = back + FX_BAM_180;
+    command->range_m = distance_q8 / 256;
+    command->height_q6 = lm_antenna_height_q6(own, &p->lent.map->db);
+    *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
+                                     .track = own->track,
+                                     .bearing = bearing,
+                                     .heading = own->heading,
+                                     .lateral_mm_s2 = lateral_mm_s2(own)};
+    return true;
+}
+
+/* Elevation of the map where the patch lies, metres * 1024, from the tiles that are there; asks for
+ * the one that knows best. */
+static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_command *command)
+{
+    struct lm_unit_map *map = p->lent.map;
+    const uint8_t level = lm_scan_level(&map->db, command->cell_mm);
+    return lm_scan_elevation(&map->tiles, level, command->centre, map->db.mean_elevation_q6 * 16);
+}
+
+static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
+{
+    struct lm_sar_flight flight;
+    struct lm_sar_command command = *patch;
+    struct lm_unit_map *map = p->lent.map;
+    const bool is_in_flight = command.is_from_ownship;
+    if (!map->is_usable || (is_in_flight && !resolve_command(p, &command, &flight))) {
+        return false;
+    }
+    const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
+                                       .targets = &map->target_set,
+                                       .chips = &map->chips,
+                                       .reference_q10 = elevation_q10(p, &command),
+                                       .epoch = p->lent.noise_seed,
+                                       .sea_state = p->lent.environment->sea_state,
+                                       .environment = p->lent.environment,
+                                       .time_us = now_us};
+    if (lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene) != LM_OK) {
+        return false;
+    }
+    lm_sar_prefetch_targets(&p->sar, &map->tiles);
+    p->is_cursor_awaited = false;
+    p->acquire.is_reading = true;
+    p->acquire.lines_asked_for = 0;
+    p->acquire.until_us = now_us + ACQUIRE_US;
+    return true;
+}
+
+static void restart(struct lm_picture *p)
+{
+    lm_sar_restart(&p->sar);
+}
+
+/* While tiles are read, ask for those of some more lines: of every fourth one, and of the last. */
+static void prefetch(struct lm_picture *p)
+{
+    const uint32_t lines = lines_of(p);
+    uint32_t line = p->acquire.lines_asked_for;
+    for (uint32_t n = 0; p->acquire.is_reading && n < PREFETCHES_A_STEP && line < lines; n++) {
+        lm_sar_prefetch(&p->sar, &p->lent.map->tiles, line);
+        line = line == lines - 1 ? lines : fx_min_u32(line + LINES_APART, lines - 1);
+    }
+    p->acquire.lines_asked_for = line;
+}
+
+/* What was known of the patch's elevation when it was asked for may have come from a coarse tile:
+ * look again when all have been read. True when it is another one, which targets wait for. */
+static bool refer_anew(struct lm_picture *p)
+{
+    const int32_t reference_q10 = elevation_q10(p, &p->sar.command);
+    if (reference_q10 == p->sar.grid.reference_q10) {
+        return false;
+    }
+    lm_sar_set_reference(&p->sar, &p->lent.map->db, reference_q10);
+    lm_sar_prefetch_targets(&p->sar, &p->lent.map->tiles);
+    return true;
+}
+
+static bool is_ready(struct lm_picture *p, uint64_t now_us)
+{
+    const struct lm_unit_map *map = p->lent.map;
+    if (p->acquire.is_reading) {
+        const bool has_all = p->acquire.lines_asked_for == lines_of(p) &&
+                             lm_tile_cache_is_idle(&map->tiles) &&
+                             lm_chips_are_settled(&map->chips);
+        const bool is_over = has_all || now_us >= p->acquire.until_us;
+        p->acquire.is_reading = !is_over || refer_anew(p);
+        p->next_line_us = now_us + p->sar.line_us; /* the dwell begins */
+    }
+    return !p->acquire.is_reading && p->sar.line < lines_of(p);
+}
+
+static enum lm_sweep begin_none(struct lm_picture *p, uint64_t now_us)
+{
+    (void)p;
+    (void)now_us;
+    return LM_SWEEP_GOES_ON;
+}
+
+static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths)
+{
+    (void)azimuths;
+    const bool has_all =
+        lm_sar_sample_ahead(&p->sar, &p->lent.map->tiles, SAMPLES_A_STEP, &p->line);
+    if (!has_all && p->sar.line == 0) {
+        p->next_line_us = now_us; /* nothing is owed yet */
+    }
+    return has_all;
+}
+
+static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
+{
+    (void)now_us;
+    const uint32_t number = p->sar.line;
+    lm_sar_draw_line(&p->sar, &p->lent.map->tiles, &p->tone[LM_PICTURE_PATCH], &p->line);
+    lm_coverage_add(&p->coverage, &p->line.ground, lines_of(p));
+    lm_coverage_judge(&p->coverage);
+    return number;
+}
+
+static void paint(struct lm_picture *p, uint32_t number)
+{
+    lm_patch_paint(&p->plane, &p->frame, number, p->line.grey + LM_SAR_GUARD, lines_of(p));
+}
+
+static uint64_t line_us(const struct lm_picture *p)
+{
+    return p->sar.line_us;
+}
+
+static void set_beam_none(struct lm_picture *p)
+{
+    (void)p;
+}
+
+static struct lm_view view(const struct lm_picture *p)
+{
+    const struct lm_sar_command *c = &p->sar.command;
+    return lm_view_of_patch(&p->frame, c->centre, c->look_azimuth, lines_of(p), c->cell_mm);
+}
+
+static const struct lm_tone_config *tone(const struct lm_picture *p)
+{
+    return &p->lent.radar->sar.tone;
+}
+
+static uint32_t slew_percent(const struct lm_picture *p)
+{
+    (void)p;
+    return 100;
+}
+
+static bool needs_ownship(const struct lm_picture *p)
+{
+    return p->sar.command.is_from_ownship;
+}
+
+static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
+{
+    symbols->patch_cell_mm = p->sar.command.cell_mm;
+    symbols->patch_percent = (uint16_t)(p->sar.line * 100 / lines_of(p));
+    symbols->patch_to_go_s = (uint32_t)((lm_sar_time_to_go_us(&p->sar) + 999999) / 1000000);
+    symbols->patch_look = p->sar.command.look_azimuth;
+}
+
+const struct lm_picture_methods lm_picture_patch = {
+    .moves = false,
+    .start = start,
+    .restart = restart,
+    .prefetch = prefetch,
+    .is_ready = is_ready,
+    .begin = begin_none,
+    .sample_ahead = sample_ahead,
+    .draw_line = draw_line,
+    .paint = paint,
+    .line_us = line_us,
+    .set_beam = set_beam_none,
+    .view = view,
+    .tone = tone,
+    .slew_percent = slew_percent,
+    .needs_ownship = needs_ownship,
+    .describe = describe,
+};

@@ -1,0 +1,221 @@
+/* The sector as a kind of picture: swept over and over, whole or through a window. */
+#include "ownship.h"
+#include "picture_kind.h"
+
+static struct lm_beam_setting beam_of(const struct lm_page *page)
+{
+    return (struct lm_beam_setting){
+        .is_tilt_manual = page->is_tilt_manual,
+        .is_pencil = page->is_pencil,
+        .tilt = (int32_t)(page->tilt_tenths * (1LL << 32) / 3600),
+    };
+}
+
+/* A window needs a cursor: until there is one, the whole sector. */
+static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
+{
+    (void)patch;
+    (void)now_us;
+    const struct lm_page *page = p->lent.page;
+    p->is_cursor_awaited = page->field != LM_FIELD_NORM && !p->lent.cursor->is_placed;
+    const struct lm_sector_command command = {
+        .mode = page->mode,
+        .field = p->is_cursor_awaited ? (uint8_t)LM_FIELD_NORM : page->field,
+        .range = page->range,
+        .azimuth = page->azimuth,
+        .centre = p->lent.cursor->place,
+        .beam = beam_of(page),
+    };
+    lm_sector_start(&p->sector, p->lent.radar, &command, p->lent.noise_seed);
+    p->sector.targets = &p->lent.map->target_set;
+    p->sector.chips = &p->lent.map->chips;
+    p->sector.environment = p->lent.environment;
+    return true;
+}
+
+static void sweep_on(struct lm_picture *p)
+{
+    (void)p;
+}
+
+/* Tiles are asked for when lines are drawn. */
+static void prefetch_none(struct lm_picture *p)
+{
+    (void)p;
+}
+
+static bool is_ready(struct lm_picture *p, uint64_t now_us)
+{
+    (void)p;
+    (void)now_us;
+    return true;
+}
+
+static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_us)
+{
+    const struct lm_ownship *own = p->lent.ownship;
+    const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
+    return (struct lm_platform){
+        .place = lm_ownship_place(own),
+        .height_q10 = lm_antenna_height_q6(own, &p->lent.map->db) * 16,
+        .heading = own->heading,
+        .track = own->track,
+        .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
+        .time_us = now_us,
+    };
+}
+
+/* A window is put around the cursor anew before each sweep: what is drawn moves with it. */
+static void recentre(struct lm_picture *p)
+{
+    struct lm_offset at;
+    const struct lm_cursor *cursor = p->lent.cursor;
+    const struct lm_frame square = lm_frame_square(&p->frame);
+    const struct lm_offset middle = lm_view_middle(&p->view);
+    if (!cursor->is_placed || p->view.shape != LM_VIEW_WINDOW) {
+        return;
+    }
+    if (lm_view_find(&p->view, cursor->place, &at)) {
+        lm_plane_shift(&p->plane, &square, -((at.x_q8 - middle.x_q8 + 128) >> 8),
+                       (at.y_q8 - middle.y_q8 + 128) >> 8);
+    } else {
+        lm_plane_clear(&p->plane, &p->frame);
+    }
+    p->sector.command.centre = cursor->place;
+}
+
+static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
+{
+    if (!lm_sector_is_at_edge(&p->sector)) {
+        return LM_SWEEP_GOES_ON;
+    }
+    const struct lm_platform platform = platform_of(p, now_us);
+    recentre(p);
+    lm_sector_begin(&p->sector, &p->lent.map->tiles, &platform);
+    lm_page_note_tilt(p->lent.page, p->sector.tilt);
+    lm_coverage_judge(&p->coverage);
+    p->coverage.cells_none = p->coverage.cells_seen = 0;
+    return lm_sector_is_window(&p->sector) ? LM_SWEEP_BEGUN_AT_COST : LM_SWEEP_BEGUN;
+}
+
+static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths)
+{
+    struct lm_sector *s = &p->sector;
+    const struct lm_platform platform = platform_of(p, now_us);
+    const uint32_t samples = s->samples;
+    const bool has_all =
+        lm_sector_sample_ahead(s, &p->lent.map->tiles, &platform, azimuths, &p->line);
+    if (s->samples != samples) {
+        lm_coverage_add(&p->coverage, &p->line.ground, s->grid.cells);
+    }
+    return has_all;
+}
+
+static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
+{
+    const struct lm_platform platform = platform_of(p, now_us);
+    return lm_sector_draw_line(&p->sector, &p->lent.map->tiles, &platform,
+                               &p->tone[LM_PICTURE_SECTOR], &p->line);
+}
+
+static void paint(struct lm_picture *p, uint32_t number)
+{
+    const struct lm_sector *s = &p->sector;
+    const struct lm_ppi ppi = lm_view_ppi(&p->view, &p->frame, s->slant.cell_q8, s->edge_q8);
+    lm_ppi_paint(&p->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, number),
+                 (fx_bam_t)lm_sector_edge_bam(s, number + 1), p->line.grey, s->slant.cells);
+}
+
+static uint64_t line_us(const struct lm_picture *p)
+{
+    return lm_sector_line_us(&p->sector);
+}
+
+static void set_beam(struct lm_picture *p)
+{
+    const struct lm_beam_setting beam = beam_of(p->lent.page);
+    lm_sector_set_beam(&p->sector, &beam);
+}
+
+static uint32_t scale_m(const struct lm_picture *p)
+{
+    return p->lent.radar->range[p->lent.page->range].range_m;
+}
+
+/* A window is seen from where its sweep began; the whole sector from where the aircraft is. */
+static struct lm_view view(const struct lm_picture *p)
+{
+    const struct lm_sector *s = &p->sector;
+    const bool has_geometry = s->grid.cells != 0;
+    const bool is_window = has_geometry && lm_sector_is_window(s);
+    const struct lm_view_from from = {
+        .place = is_window ? s->platform.place : lm_ownship_place(p->lent.ownship),
+        .up = is_window ? s->up : p->lent.ownship->heading,
+        .height_q10 = has_geometry ? s->grid.height_q10 - s->grid.reference_q10 : 0,
+    };
+    return is_window ? lm_view_of_window(&p->frame, &from, s->command.centre, s->half_m)
+                     : lm_view_of_sector(&p->frame, &from, scale_m(p));
+}
+
+static const struct lm_tone_config *tone(const struct lm_picture *p)
+{
+    return &p->lent.radar->mode[p->lent.page->mode].tone;
+}
+
+/* Of the field that is swept, which is another than the page's while the cursor is awaited. */
+static uint32_t slew_percent(const struct lm_picture *p)
+{
+    return p->lent.radar->field[p->sector.command.field].slew_percent;
+}
+
+static bool needs_ownship(const struct lm_picture *p)
+{
+    (void)p;
+    return true;
+}
+
+/* Where the cursor would be if the whole sector were shown. */
+static void describe_window(const struct lm_picture *p, struct lm_symbols *symbols)
+{
+    const struct lm_view_from from = {lm_ownship_place(p->lent.ownship), p->view.up,
+                                      p->view.height_q10};
+    const struct lm_view whole = lm_view_of_sector(&p->frame, &from, scale_m(p));
+    struct lm_offset at;
+    symbols->is_cue_shown =
+        p->lent.cursor->is_placed && lm_view_find(&whole, p->lent.cursor->place, &at);
+    if (symbols->is_cue_shown) {
+        symbols->cue = lm_view_point(&whole, at);
+    }
+    symbols->is_finer_offered = p->lent.page->field == LM_FIELD_DBS1;
+}
+
+static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
+{
+    const struct lm_radar *radar = p->lent.radar;
+    symbols->range_nm = radar->range[p->lent.page->range].range_nm;
+    symbols->azimuth_half = radar->azimuth_half[p->lent.page->azimuth];
+    symbols->antenna_azimuth = lm_sector_edge_bam(&p->sector, p->sector.line);
+    symbols->antenna_elevation = p->sector.tilt;
+    if (p->view.shape == LM_VIEW_WINDOW) {
+        describe_window(p, symbols);
+    }
+}
+
+const struct lm_picture_methods lm_picture_sector = {
+    .moves = true,
+    .start = start,
+    .restart = sweep_on,
+    .prefetch = prefetch_none,
+    .is_ready = is_ready,
+    .begin = begin,
+    .sample_ahead = sample_ahead,
+    .draw_line = draw_line,
+    .paint = paint,
+    .line_us = line_us,
+    .set_beam = set_beam,
+    .view = view,
+    .tone = tone,
+    .slew_percent = slew_percent,
+    .needs_ownship = needs_ownship,
+    .describe = describe,
+};
