@@ -1,4 +1,5 @@
-/* From the levels of up to 64 lines to keys that are up or down. Pure: time is an argument.
+/* Debouncing: from the levels of up to 64 lines to keys that are up or down. Pure: time is an
+ * argument.
  *
  * A key is believed when its line has been different from what is believed, and still, for the
  * whole period; an edge between two looks counts as movement even when both looks agree. */

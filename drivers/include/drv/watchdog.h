@@ -1,5 +1,5 @@
-/* Two watchdogs and the rule by which they are fed: the board's (/dev/watchdog), which resets the
- * machine, and systemd's, which starts the program anew. */
+/* Watchdogs of a Linux board and the rule by which they are fed: the board's (/dev/watchdog), which
+ * resets the machine, and systemd's, which restarts the program. */
 #ifndef DRV_WATCHDOG_H
 #define DRV_WATCHDOG_H
 
