@@ -4,7 +4,7 @@
 #
 #   unit_tests FOLDER,SEES,PROGRAMS,PACKAGES
 #
-# SEES are libraries and layers as in host-sim/host-sim.mk, PROGRAMS those landmass-* that the tests run, PACKAGES their own
+# SEES are libraries and layers as in make/host.mk, PROGRAMS those landmass-* that the tests run, PACKAGES their own
 # names of pkg-config, or options of the linker. What a single test needs besides is a line at the end.
 UNIT := $(O)/bin/tests/unit
 
