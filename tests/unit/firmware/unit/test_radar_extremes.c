@@ -141,8 +141,8 @@ static void draw_mode(struct rig *r, uint32_t mode)
                                            .sector = {(int32_t)mode, (int32_t)field}});
             command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = nm});
             run(r, FLIGHT_S);
-            assert_int_equal(r->unit.sector.command.field, field);
-            assert_int_equal(r->unit.sector.command.range, scale);
+            assert_int_equal(r->unit.picture.sector.command.field, field);
+            assert_int_equal(r->unit.picture.sector.command.range, scale);
             assert_true(r->unit.count.lines > lines);
         }
     }
