@@ -1,10 +1,117 @@
-#include "page_keys.h"
+#include "page_table.h"
 
 #include "fx/mem.h"
 #include "fx/sat.h"
 
-const struct lm_page_cell lm_page_cells[LM_SAR_CELLS_OFFERED] = {
-    {1000, "1M"}, {2000, "2M"}, {3000, "3M"}, {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
+#define OSB_BIT(osb) (1u << ((osb)-1))
+
+/* ---- the keys of a page ---- */
+
+static bool is_format(const struct lm_page *p, enum lm_format format)
+{
+    return p->format == format;
+}
+
+static uint32_t open_format(struct lm_page *p, enum lm_format format)
+{
+    p->format = (uint8_t)format;
+    return 0;
+}
+
+static bool is_on_cntl(const struct lm_page *p)
+{
+    return is_format(p, LM_FORMAT_CNTL);
+}
+
+static bool is_on_bit(const struct lm_page *p)
+{
+    return is_format(p, LM_FORMAT_BIT);
+}
+
+static bool is_on_radar(const struct lm_page *p)
+{
+    return is_format(p, LM_FORMAT_RADAR);
+}
+
+static bool is_on_test(const struct lm_page *p)
+{
+    return is_format(p, LM_FORMAT_TEST);
+}
+
+static uint32_t press_cntl(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return open_format(p, is_on_cntl(p) ? LM_FORMAT_RADAR : LM_FORMAT_CNTL);
+}
+
+static uint32_t press_bit(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return open_format(p, LM_FORMAT_BIT);
+}
+
+static uint32_t press_radar(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return open_format(p, LM_FORMAT_RADAR);
+}
+
+static uint32_t press_test(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return open_format(p, LM_FORMAT_TEST);
+}
+
+static uint32_t press_swap(struct lm_page *p, int32_t step)
+{
+    (void)p, (void)step;
+    return LM_EFFECT_SWAP;
+}
+
+/* Keys that mean the same on every page. */
+static const struct lm_page_key common[] = {
+    {.osb = LM_OSB_CNTL, .words = "CNTL", .is_on = is_on_cntl, .press = press_cntl},
+    {.osb = 12, .words = "BIT", .is_on = is_on_bit, .starts_hidden = true, .press = press_bit},
+    {.osb = 13, .words = "FCR", .is_on = is_on_radar, .starts_hidden = true, .press = press_radar},
+    {.osb = 14, .words = "TEST", .is_on = is_on_test, .starts_hidden = true, .press = press_test},
+    {.osb = 15, .words = "SWAP", .starts_hidden = true, .press = press_swap},
+};
+enum { COMMON = sizeof common / sizeof *common };
+
+/* Pages of text or a pattern, whose keys are the common ones. */
+static const struct lm_page_table plain = {0};
+
+static const struct lm_page_table *const tables[LM_FORMATS] = {
+    [LM_FORMAT_RADAR] = &lm_page_radar, [LM_FORMAT_CNTL] = &lm_page_cntl,
+    [LM_FORMAT_DCLT] = &lm_page_dclt,   [LM_FORMAT_BIT] = &plain,
+    [LM_FORMAT_TEST] = &plain,
+};
+
+static const struct lm_page_table *table_of(const struct lm_page *p)
+{
+    return tables[p->format];
+}
+
+static const struct lm_page_key *find_in(const struct lm_page_key *keys, uint32_t count,
+                                         uint8_t osb)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (keys[i].osb == osb) {
+            return &keys[i];
+        }
+    }
+    return NULL;
+}
+
+/* The key that a page shows: its own, or a common one; NULL where there is none. */
+static const struct lm_page_key *find_key(const struct lm_page_table *table, uint8_t osb)
+{
+    const struct lm_page_table *shown = table->chooses_for ? table->chooses_for : table;
+    const struct lm_page_key *key = find_in(shown->keys, shown->count, osb);
+    return key ? key : find_in(common, COMMON, osb);
+}
+
+/* ---- */
 
 void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 {
@@ -12,15 +119,10 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
     p->radar = radar;
     p->range = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
     p->cell = 3;
-    p->hidden = LM_OSB_BIT(OSB_FREEZE) | LM_OSB_BIT(OSB_SNOWPLOW) | LM_OSB_BIT(OSB_CURSOR_ZERO) |
-                LM_OSB_BIT(OSB_STEERPOINT) | LM_OSB_BIT(OSB_BIT) | LM_OSB_BIT(OSB_RADAR) |
-                LM_OSB_BIT(OSB_TEST) | LM_OSB_BIT(OSB_BARO) | LM_OSB_BIT(OSB_SWAP) |
-                LM_OSB_BIT(OSB_CELL);
-}
-
-uint32_t lm_page_cell_mm(const struct lm_page *p)
-{
-    return lm_page_cells[p->cell].mm;
+    for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
+        const struct lm_page_key *key = find_key(&lm_page_radar, osb);
+        p->hidden |= key && key->starts_hidden ? OSB_BIT(osb) : 0;
+    }
 }
 
 struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table)
@@ -37,8 +139,7 @@ struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone
     };
 }
 
-/* Move a value by a step within its limits. Returns `effect` when it moved. */
-static uint32_t step_int8(int8_t *value, int32_t step, int32_t limit, uint32_t effect)
+uint32_t lm_page_step(int8_t *value, int32_t step, int32_t limit, uint32_t effect)
 {
     const int32_t moved = fx_clamp_i32(*value + step, -limit, limit);
     const bool has_moved = moved != *value;
@@ -59,11 +160,11 @@ static uint32_t press_rocker(struct lm_page *p, uint8_t button)
         return has_moved ? LM_EFFECT_TONE : 0;
     }
     case LM_ROCKER_SYM:
-        return step_int8(&c->symbology, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+        return lm_page_step(&c->symbology, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
     case LM_ROCKER_BRT:
-        return step_int8(&c->brightness, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+        return lm_page_step(&c->brightness, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
     case LM_ROCKER_CON:
-        return step_int8(&c->contrast, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
+        return lm_page_step(&c->contrast, step, LM_ROCKER_STEPS, LM_EFFECT_PALETTE);
     case LM_ROCKERS:
         break;
     }
@@ -83,8 +184,7 @@ static uint32_t take_range(struct lm_page *p, uint32_t range)
     return is_other ? LM_EFFECT_SECTOR | LM_EFFECT_RANGE : LM_EFFECT_SECTOR;
 }
 
-/* Begin the sector with the largest scale, up to the one at hand, that mode and field have. */
-static uint32_t fit_range(struct lm_page *p)
+uint32_t lm_page_fit_range(struct lm_page *p)
 {
     return take_range(p, fx_min_u32(p->range, lm_page_range_last(p)));
 }
@@ -167,214 +267,68 @@ void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
     }
 }
 
-static uint32_t press_range(struct lm_page *p, int32_t step)
-{
-    if (p->picture != LM_PICTURE_SECTOR) {
-        return 0;
-    }
-    p->is_auto_range = false;
-    return lm_page_step_range(p, step);
-}
+/* ---- what keys do and say ---- */
 
-/* The sector's scan, which a window around the cursor does not have. */
-static uint32_t press_azimuth(struct lm_page *p)
+static bool say_key(const struct lm_page *p, const struct lm_page_key *key, struct lm_label *label)
 {
-    if (p->picture != LM_PICTURE_SECTOR || p->field != LM_FIELD_NORM) {
-        return 0;
-    }
-    p->azimuth = (uint8_t)((p->azimuth + 1) % LM_AZIMUTHS);
-    return LM_EFFECT_SECTOR;
-}
-
-/* The next mode of the rotary, with a field and a scale that it has. In a patch: back to the
- * sector. */
-static uint32_t press_mode(struct lm_page *p)
-{
-    if (p->picture != LM_PICTURE_SECTOR) {
-        return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
-    }
-    p->mode = (uint8_t)((p->mode + 1u) % LM_SECTOR_MODES);
-    p->field = p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
-    return fit_range(p) | LM_EFFECT_TONE;
-}
-
-/* The next field of view that this mode has at this range. In a patch: the whole sector. */
-static uint32_t press_field(struct lm_page *p)
-{
-    const uint8_t before = p->field;
-    const struct lm_radar *radar = p->radar;
-    if (p->picture != LM_PICTURE_SECTOR) {
-        p->field = LM_FIELD_NORM;
-        return LM_EFFECT_SECTOR;
-    }
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        p->field = (uint8_t)((p->field + 1u) % LM_FIELDS);
-        if (p->field <= radar->mode[p->mode].field_last && p->range <= lm_page_range_last(p)) {
-            break;
-        }
-    }
-    return p->field != before ? LM_EFFECT_SECTOR : 0;
-}
-
-static uint32_t press_cell(struct lm_page *p)
-{
-    p->cell = (uint8_t)((p->cell + 1u) % LM_SAR_CELLS_OFFERED);
-    return p->picture == LM_PICTURE_PATCH ? LM_EFFECT_PATCH : 0;
-}
-
-static uint32_t set_snowplow(struct lm_page *p, bool is_on)
-{
-    const bool has_changed = p->is_snowplow != is_on;
-    p->is_snowplow = is_on;
-    return has_changed ? LM_EFFECT_SNOWPLOW : 0;
-}
-
-static uint32_t press_declutter(struct lm_page *p, bool is_long)
-{
-    if (is_long) {
-        p->format = LM_FORMAT_DCLT;
-    } else {
-        p->is_decluttered = !p->is_decluttered;
-    }
-    return 0;
-}
-
-static uint32_t press_on_radar(struct lm_page *p, uint8_t osb, bool is_long)
-{
-    switch (osb) {
-    case OSB_MODE:
-        return press_mode(p);
-    case OSB_AUTO:
-        p->is_auto_range = !p->is_auto_range;
-        return 0;
-    case OSB_FIELD:
-        return press_field(p);
-    case OSB_OVERRIDE:
-        p->is_override = !p->is_override;
-        return 0;
-    case OSB_BARO:
-        p->is_baro = !p->is_baro;
-        return LM_EFFECT_HEIGHT;
-    case OSB_FREEZE:
-        p->is_frozen = !p->is_frozen;
-        return 0;
-    case OSB_SNOWPLOW:
-        return set_snowplow(p, !p->is_snowplow);
-    case OSB_CURSOR_ZERO:
-        return LM_EFFECT_CURSOR_HOME;
-    case OSB_STEERPOINT:
-        return set_snowplow(p, false);
-    case OSB_DECLUTTER:
-        return press_declutter(p, is_long);
-    case OSB_CELL:
-        return press_cell(p);
-    case OSB_AZIMUTH:
-        return press_azimuth(p);
-    case OSB_RANGE_DOWN:
-        return press_range(p, -1);
-    case OSB_RANGE_UP:
-        return press_range(p, 1);
-    default:
-        return 0;
-    }
-}
-
-/* Half a degree up or down, from where the beam is. */
-static uint32_t step_tilt(struct lm_page *p, int32_t step)
-{
-    const int32_t most =
-        (int32_t)(((uint64_t)p->radar->antenna.tilt_max * 3600 + (1u << 31)) >> 32);
-    p->is_tilt_manual = true;
-    p->tilt_tenths = (int16_t)fx_clamp_i32(p->tilt_tenths + 5 * step, -most, most);
-    return LM_EFFECT_BEAM;
-}
-
-static uint32_t reset_settings(struct lm_page *p)
-{
-    p->is_tilt_manual = p->is_pencil = p->is_slant = false;
-    p->black_db = p->white_db = p->gamma_tenths = 0;
-    p->gain_db = 0;
-    memset(&p->palette, 0, sizeof p->palette);
-    return LM_EFFECT_TONE | LM_EFFECT_PALETTE | LM_EFFECT_BEAM;
-}
-
-static uint32_t press_on_cntl(struct lm_page *p, uint8_t osb)
-{
-    switch (osb) {
-    case OSB_TILT:
-        p->is_tilt_manual = !p->is_tilt_manual;
-        return LM_EFFECT_BEAM;
-    case OSB_TILT_UP:
-        return step_tilt(p, 1);
-    case OSB_TILT_DOWN:
-        return step_tilt(p, -1);
-    case OSB_BEAM:
-        p->is_pencil = !p->is_pencil;
-        return LM_EFFECT_BEAM;
-    case OSB_SLANT:
-        p->is_slant = !p->is_slant;
-        return p->picture == LM_PICTURE_PATCH ? LM_EFFECT_PATCH : 0;
-    case OSB_BLACK_UP:
-        return step_int8(&p->black_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
-    case OSB_BLACK_DOWN:
-        return step_int8(&p->black_db, -1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
-    case OSB_WHITE_UP:
-        return step_int8(&p->white_db, 1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
-    case OSB_WHITE_DOWN:
-        return step_int8(&p->white_db, -1, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
-    case OSB_GAMMA_UP:
-        return step_int8(&p->gamma_tenths, 1, LM_GAMMA_MAX, LM_EFFECT_TONE);
-    case OSB_GAMMA_DOWN:
-        return step_int8(&p->gamma_tenths, -1, LM_GAMMA_MAX, LM_EFFECT_TONE);
-    case OSB_TINT:
-        p->palette.tint = (uint8_t)((p->palette.tint + 1u) % LM_TINTS);
-        return LM_EFFECT_PALETTE;
-    case OSB_NIGHT:
-        p->palette.is_night = !p->palette.is_night;
-        return LM_EFFECT_PALETTE;
-    case OSB_RESET:
-        return reset_settings(p);
-    case OSB_DECLUTTER:
-        p->format = LM_FORMAT_DCLT;
-        return 0;
-    default:
-        return 0;
-    }
-}
-
-static uint32_t press_on_dclt(struct lm_page *p, uint8_t osb)
-{
-    struct lm_label label;
-    struct lm_page radar = *p;
-    radar.format = LM_FORMAT_RADAR;
-    radar.is_decluttered = false;
-    if (osb == OSB_DECLUTTER) {
-        p->format = LM_FORMAT_RADAR;
-    } else if (lm_page_label(&radar, osb, &label)) {
-        p->hidden ^= LM_OSB_BIT(osb);
-    }
-    return 0;
-}
-
-/* Keys that mean the same on every format: the control page and the direct access. */
-static bool press_format(struct lm_page *p, uint8_t osb)
-{
-    switch (osb) {
-    case OSB_CNTL:
-        p->format = p->format == LM_FORMAT_CNTL ? LM_FORMAT_RADAR : LM_FORMAT_CNTL;
-        return true;
-    case OSB_BIT:
-        p->format = LM_FORMAT_BIT;
-        return true;
-    case OSB_RADAR:
-        p->format = LM_FORMAT_RADAR;
-        return true;
-    case OSB_TEST:
-        p->format = LM_FORMAT_TEST;
-        return true;
-    default:
+    if (!key || (!key->words && !key->text) || (key->is_shown && !key->is_shown(p))) {
         return false;
     }
+    if (key->text) {
+        key->text(p, label);
+    } else {
+        lm_label_say(label, key->words, "");
+    }
+    label->is_inverse = key->is_on && key->is_on(p);
+    return true;
+}
+
+static bool is_hidden(const struct lm_page *p, uint8_t osb)
+{
+    return (p->hidden & OSB_BIT(osb)) != 0;
+}
+
+/* Whether declutter takes the label away. What is out of the ordinary stays. */
+static bool is_taken_away(const struct lm_page *p, const struct lm_page_key *key)
+{
+    const bool stays = key->stays_when_on && key->is_on && key->is_on(p);
+    return table_of(p)->is_decluttered && p->is_decluttered && is_hidden(p, key->osb) && !stays;
+}
+
+bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
+{
+    const struct lm_page_table *table = table_of(p);
+    const struct lm_page_key *key = find_key(table, osb);
+    if (!key || is_taken_away(p, key) || !say_key(p, key, label)) {
+        return false;
+    }
+    if (table->chooses_for) { /* inverse is what declutter takes away */
+        label->is_inverse = osb == LM_OSB_DECLUTTER || is_hidden(p, osb);
+    }
+    return true;
+}
+
+bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value)
+{
+    const struct lm_page_key *key = find_key(table_of(p), osb);
+    if (!key || !key->value || (key->has_value && !key->has_value(p))) {
+        return false;
+    }
+    key->value(p, value);
+    value->is_inverse = false;
+    return true;
+}
+
+/* Whether declutter is to take the label of this key away, from now on. */
+static uint32_t choose(struct lm_page *p, uint8_t osb)
+{
+    struct lm_label label;
+    if (osb == LM_OSB_DECLUTTER) {
+        p->format = LM_FORMAT_RADAR;
+    } else if (lm_page_label(p, osb, &label)) {
+        p->hidden ^= OSB_BIT(osb);
+    }
+    return 0;
 }
 
 uint32_t lm_page_press(struct lm_page *p, struct lm_press press)
@@ -383,36 +337,23 @@ uint32_t lm_page_press(struct lm_page *p, struct lm_press press)
     if (osb > LM_OSBS) {
         return press_rocker(p, osb);
     }
-    if (p->format == LM_FORMAT_DCLT && osb != OSB_CNTL) {
-        return press_on_dclt(p, osb);
+    const struct lm_page_table *table = table_of(p);
+    if (table->chooses_for && osb != LM_OSB_CNTL) {
+        return choose(p, osb);
     }
-    if (press_format(p, osb)) {
-        return 0;
+    const struct lm_page_key *key = find_key(table, osb);
+    if (key && press.is_long && key->hold) {
+        return key->hold(p);
     }
-    if (osb == OSB_SWAP) {
-        return LM_EFFECT_SWAP;
-    }
-    switch ((enum lm_format)p->format) {
-    case LM_FORMAT_RADAR:
-        return press_on_radar(p, osb, press.is_long);
-    case LM_FORMAT_CNTL:
-        return press_on_cntl(p, osb);
-    case LM_FORMAT_DCLT:
-    case LM_FORMAT_BIT:
-    case LM_FORMAT_TEST:
-        break;
-    }
-    return 0;
+    return key && key->press ? key->press(p, key->step) : 0;
 }
 
 enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button)
 {
-    const uint32_t pairs = LM_OSB_BIT(OSB_BLACK_UP) | LM_OSB_BIT(OSB_BLACK_DOWN) |
-                           LM_OSB_BIT(OSB_WHITE_UP) | LM_OSB_BIT(OSB_WHITE_DOWN) |
-                           LM_OSB_BIT(OSB_GAMMA_UP) | LM_OSB_BIT(OSB_GAMMA_DOWN) |
-                           LM_OSB_BIT(OSB_TILT_UP) | LM_OSB_BIT(OSB_TILT_DOWN);
-    if (button > LM_OSBS || (p->format == LM_FORMAT_CNTL && (pairs & LM_OSB_BIT(button)))) {
+    const struct lm_page_table *table = table_of(p);
+    const struct lm_page_key *key = button <= LM_OSBS ? find_key(table, button) : NULL;
+    if (button > LM_OSBS || (key && key->repeats)) {
         return LM_KEY_REPEATS;
     }
-    return p->format == LM_FORMAT_RADAR && button == OSB_DECLUTTER ? LM_KEY_HAS_LONG : LM_KEY_ONCE;
+    return key && key->hold && !table->chooses_for ? LM_KEY_HAS_LONG : LM_KEY_ONCE;
 }

@@ -102,22 +102,23 @@ static void show_bit(const struct lm_unit *u, const struct lm_glass *glass)
     }
 }
 
+static void show_test(const struct lm_unit *u, const struct lm_glass *glass)
+{
+    (void)u;
+    lm_overlay_test_pattern(glass);
+}
+
+/* What each page draws under its labels. */
+static void (*const draw_page[LM_FORMATS])(const struct lm_unit *u,
+                                           const struct lm_glass *glass) = {
+    [LM_FORMAT_RADAR] = show_radar, [LM_FORMAT_CNTL] = show_radar, [LM_FORMAT_DCLT] = show_radar,
+    [LM_FORMAT_BIT] = show_bit,     [LM_FORMAT_TEST] = show_test,
+};
+
 static void draw_glass(const struct lm_unit *u, const struct lm_surface *surface)
 {
     const struct lm_glass glass = {*surface, &u->picture.frame, &u->palette};
-    switch ((enum lm_format)u->page.format) {
-    case LM_FORMAT_RADAR:
-    case LM_FORMAT_CNTL:
-    case LM_FORMAT_DCLT:
-        show_radar(u, &glass);
-        break;
-    case LM_FORMAT_BIT:
-        show_bit(u, &glass);
-        break;
-    case LM_FORMAT_TEST:
-        lm_overlay_test_pattern(&glass);
-        break;
-    }
+    draw_page[u->page.format](u, &glass);
     lm_overlay_labels(&glass, &u->page);
     lm_overlay_alive(&glass, u->count.frames);
 }

@@ -15,7 +15,8 @@ enum lm_format {
     LM_FORMAT_CNTL, /* settings, over the radar picture */
     LM_FORMAT_DCLT, /* which labels declutter takes away, over the radar picture */
     LM_FORMAT_BIT,  /* the unit about itself: text instead of the picture */
-    LM_FORMAT_TEST  /* test pattern */
+    LM_FORMAT_TEST, /* test pattern */
+    LM_FORMATS
 };
 
 /* What a press asks of the unit, bits. */

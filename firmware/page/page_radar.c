@@ -1,0 +1,286 @@
+/* The radar page: mode, field of view and scales of the picture, the cursor, declutter. */
+#include "lm/font.h"
+#include "page_table.h"
+
+/* Cells of a patch that the page offers. */
+static const struct {
+    uint32_t mm;
+    char words[6];
+} cells[LM_SAR_CELLS_OFFERED] = {{1000, "1M"}, {2000, "2M"},   {3000, "3M"},
+                                 {5000, "5M"}, {10000, "10M"}, {20000, "20M"}};
+
+uint32_t lm_page_cell_mm(const struct lm_page *p)
+{
+    return cells[p->cell].mm;
+}
+
+static bool is_patch(const struct lm_page *p)
+{
+    return p->picture == LM_PICTURE_PATCH;
+}
+
+static bool is_sector(const struct lm_page *p)
+{
+    return p->picture == LM_PICTURE_SECTOR;
+}
+
+/* ---- mode, field of view ---- */
+
+static void say_mode(const struct lm_page *p, struct lm_label *label)
+{
+    lm_label_say(label, p->radar->mode[p->mode].name, "");
+}
+
+/* The next mode of the rotary, with a field and a scale that it has. In a patch: back to the
+ * sector. */
+static uint32_t press_mode(struct lm_page *p, int32_t step)
+{
+    if (!is_sector(p)) {
+        return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
+    }
+    p->mode = (uint8_t)((p->mode + (uint32_t)step) % LM_SECTOR_MODES);
+    p->field = p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
+    return lm_page_fit_range(p) | LM_EFFECT_TONE;
+}
+
+static void say_field(const struct lm_page *p, struct lm_label *label)
+{
+    lm_label_say(label, is_patch(p) ? "SAR" : p->radar->field[p->field].name, "");
+}
+
+/* The next field of view that this mode has at this range. In a patch: the whole sector. */
+static uint32_t press_field(struct lm_page *p, int32_t step)
+{
+    const uint8_t before = p->field;
+    if (!is_sector(p)) {
+        p->field = LM_FIELD_NORM;
+        return LM_EFFECT_SECTOR;
+    }
+    for (uint32_t i = 0; i < LM_FIELDS; i++) {
+        p->field = (uint8_t)((p->field + (uint32_t)step) % LM_FIELDS);
+        if (p->field <= p->radar->mode[p->mode].field_last && p->range <= lm_page_range_last(p)) {
+            break;
+        }
+    }
+    return p->field != before ? LM_EFFECT_SECTOR : 0;
+}
+
+static void say_cell(const struct lm_page *p, struct lm_label *label)
+{
+    lm_label_say(label, "CELL", cells[p->cell].words);
+}
+
+static uint32_t press_cell(struct lm_page *p, int32_t step)
+{
+    p->cell = (uint8_t)((p->cell + (uint32_t)step) % LM_SAR_CELLS_OFFERED);
+    return is_patch(p) ? LM_EFFECT_PATCH : 0;
+}
+
+/* ---- scales ---- */
+
+static void say_auto(const struct lm_page *p, struct lm_label *label)
+{
+    lm_label_say(label, p->is_auto_range ? "AUTO" : "MAN", "");
+}
+
+static uint32_t press_auto(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    p->is_auto_range = !p->is_auto_range;
+    return 0;
+}
+
+/* A window around the cursor has no scan of its own. */
+static bool has_azimuth(const struct lm_page *p)
+{
+    return is_sector(p) && p->field == LM_FIELD_NORM;
+}
+
+/* The sector's half angle in tens of degrees, under an A. */
+static void say_azimuth(const struct lm_page *p, struct lm_label *label)
+{
+    const fx_bam_t half = p->radar->azimuth_half[p->azimuth];
+    const char digit[2] = {(char)('0' + (((uint64_t)half * 36 + (1u << 31)) >> 32) % 10), 0};
+    lm_label_say(label, "A", digit);
+}
+
+static uint32_t press_azimuth(struct lm_page *p, int32_t step)
+{
+    if (!has_azimuth(p)) {
+        return 0;
+    }
+    p->azimuth = (uint8_t)((p->azimuth + (uint32_t)step) % LM_AZIMUTHS);
+    return LM_EFFECT_SECTOR;
+}
+
+static bool has_smaller(const struct lm_page *p)
+{
+    return is_sector(p) && p->range > 0;
+}
+
+static bool has_larger(const struct lm_page *p)
+{
+    return is_sector(p) && p->range < lm_page_range_last(p);
+}
+
+static void say_range(const struct lm_page *p, struct lm_label *value)
+{
+    lm_label_number(value, "", p->radar->range[p->range].range_nm, false);
+}
+
+static uint32_t press_range(struct lm_page *p, int32_t step)
+{
+    if (!is_sector(p)) {
+        return 0;
+    }
+    p->is_auto_range = false;
+    return lm_page_step_range(p, step);
+}
+
+/* ---- switches ---- */
+
+static bool is_override(const struct lm_page *p)
+{
+    return p->is_override;
+}
+
+static uint32_t press_override(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    p->is_override = !p->is_override;
+    return 0;
+}
+
+static bool is_baro(const struct lm_page *p)
+{
+    return p->is_baro;
+}
+
+static uint32_t press_baro(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    p->is_baro = !p->is_baro;
+    return LM_EFFECT_HEIGHT;
+}
+
+static bool is_frozen(const struct lm_page *p)
+{
+    return p->is_frozen;
+}
+
+static uint32_t press_freeze(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    p->is_frozen = !p->is_frozen;
+    return 0;
+}
+
+/* ---- the cursor ---- */
+
+static bool is_snowplow(const struct lm_page *p)
+{
+    return p->is_snowplow;
+}
+
+static bool is_held(const struct lm_page *p)
+{
+    return !p->is_snowplow;
+}
+
+static uint32_t set_snowplow(struct lm_page *p, bool is_on)
+{
+    const bool has_changed = p->is_snowplow != is_on;
+    p->is_snowplow = is_on;
+    return has_changed ? LM_EFFECT_SNOWPLOW : 0;
+}
+
+static uint32_t press_snowplow(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return set_snowplow(p, !p->is_snowplow);
+}
+
+static uint32_t press_steerpoint(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    return set_snowplow(p, false);
+}
+
+static uint32_t press_cursor_zero(struct lm_page *p, int32_t step)
+{
+    (void)p, (void)step;
+    return LM_EFFECT_CURSOR_HOME;
+}
+
+/* ---- declutter ---- */
+
+static bool is_decluttered(const struct lm_page *p)
+{
+    return p->is_decluttered;
+}
+
+static uint32_t press_declutter(struct lm_page *p, int32_t step)
+{
+    (void)step;
+    p->is_decluttered = !p->is_decluttered;
+    return 0;
+}
+
+static uint32_t open_choice(struct lm_page *p)
+{
+    p->format = LM_FORMAT_DCLT;
+    return 0;
+}
+
+static const struct lm_page_key keys[] = {
+    {.osb = 1, .text = say_mode, .press = press_mode, .step = 1},
+    {.osb = 2, .text = say_auto, .is_shown = is_sector, .press = press_auto},
+    {.osb = 3, .text = say_field, .press = press_field, .step = 1},
+    {.osb = 4,
+     .words = "OVRD",
+     .is_on = is_override,
+     .stays_when_on = true,
+     .press = press_override},
+    {.osb = 6,
+     .words = "BARO",
+     .is_on = is_baro,
+     .starts_hidden = true,
+     .stays_when_on = true,
+     .press = press_baro},
+    {.osb = 7,
+     .words = "FZ",
+     .is_on = is_frozen,
+     .starts_hidden = true,
+     .stays_when_on = true,
+     .press = press_freeze},
+    {.osb = 8,
+     .words = "SP",
+     .is_on = is_snowplow,
+     .starts_hidden = true,
+     .stays_when_on = true,
+     .press = press_snowplow},
+    {.osb = 9, .words = "CZ", .starts_hidden = true, .press = press_cursor_zero},
+    {.osb = 10, .words = "STP", .is_on = is_held, .starts_hidden = true, .press = press_steerpoint},
+    {.osb = LM_OSB_DECLUTTER,
+     .words = "DCLT",
+     .is_on = is_decluttered,
+     .press = press_declutter,
+     .hold = open_choice},
+    {.osb = 16, .text = say_cell, .starts_hidden = true, .press = press_cell, .step = 1},
+    {.osb = 17}, /* free */
+    {.osb = 18, .text = say_azimuth, .is_shown = has_azimuth, .press = press_azimuth, .step = 1},
+    {.osb = 19, .words = LM_GLYPH_DOWN, .is_shown = has_smaller, .press = press_range, .step = -1},
+    {.osb = 20,
+     .words = LM_GLYPH_UP,
+     .is_shown = has_larger,
+     .value = say_range,
+     .has_value = is_sector,
+     .press = press_range,
+     .step = 1},
+};
+
+const struct lm_page_table lm_page_radar = {
+    .keys = keys, .count = sizeof keys / sizeof *keys, .is_decluttered = true};
+
+/* The page on which the operator chooses what declutter takes away. */
+const struct lm_page_table lm_page_dclt = {.chooses_for = &lm_page_radar};
