@@ -4,28 +4,33 @@
 #define DB(d) ((d)*256)
 
 const struct lm_radar lm_radar_default = {
-    /* Scales 10, 20, 40, 80 nautical miles of 1852 m; sectors of 60, 30 and 10 degrees to each
-     * side; 120 degrees a second in GM, one sweep of A6 in one second: FreeFalcon and FlightGear's
-     * APG-68 agree on scales and sectors; the rate is FreeFalcon's (radardoppler.h: base 60 degrees
-     * a second, twice that in GM). */
+    /* Keys in brackets are those of docs/EQUATIONS.md, Sources; what has no public source is called
+     * UNSOURCED.
+     *
+     * Scales 10, 20, 40, 80 nautical miles of 1852 m; sectors of 60, 30 and 10 degrees to each
+     * side; 120 degrees a second in GM, one sweep of A6 in one second: [FreeFalcon] and
+     * [FlightGear] agree on scales and sectors; the rate is [FreeFalcon]'s, a base of 60 degrees a
+     * second and twice that in GM. */
     .ranges = 4,
     /* Metres, nautical miles, noise at the end, end of sensitivity time control in metres, pulses
-     * in NORM, EXP, DBS1 and DBS2 in nanoseconds. */
+     * in NORM, EXP, DBS1 and DBS2 in nanoseconds. UNSOURCED: noise a little below the grass at the
+     * end of each scale, time control that ends at three quarters of it, pulses that resolve 15 m
+     * to 960 m. */
     .range = {{18520, 10, DB(-40), 13890, {400, 100, 100, 100}},
               {37040, 20, DB(-38), 27780, {1000, 400, 100, 100}},
               {74080, 40, DB(-36), 55560, {3200, 1000, 400, 100}},
               {148160, 80, DB(-34), 111120, {6400, 3200, 400, 100}}},
     .range_start_nm = 40,
     .azimuth_half = {FX_BAM_DEG(60), FX_BAM_DEG(30), FX_BAM_DEG(10)},
-    /* X band, as papers A and B; neither gives the frequency. 9.6 GHz: UNSOURCED. */
+    /* X band, as [Heaton] and [Niu]; neither gives the frequency. 9.6 GHz: UNSOURCED. */
     .wavelength_um = 31228,
-    /* 256 cells and 256 lines in 120 degrees: paper A's effective resolution, "Computational
-       resources". */
+    /* 256 cells and 256 lines in 120 degrees: the effective resolution of [Heaton],
+     * "Computational resources". */
     .cells = 256,
     .line = FX_BAM_DEG(120) / 256,
     /* Every other line: two and a half samples across the two-way beam. */
     .sample = FX_BAM_DEG(120) / 128,
-    /* 3.3 degrees: RADAR.md 1.5 and 2.3. Everything else of the antenna is UNSOURCED: a beam a
+    /* Everything of the antenna is UNSOURCED: 3.3 degrees, a usual width in X band; a beam a
      * little taller than wide, a fan that reaches from the horizon to well below the aircraft's
      * nose, gimbals of 60 degrees. */
     .antenna = {.azimuth_beam = FX_BAM_DEG(33) / 10,
@@ -34,13 +39,11 @@ const struct lm_radar lm_radar_default = {
                 .bar_spacing = FX_BAM_DEG(22) / 10,
                 .azimuth_limit = FX_BAM_DEG(60),
                 .tilt_max = FX_BAM_DEG(30)},
-    /* UNSOURCED: noise a little below the grass at the far end of each scale; a time gain that ends
-     * at three quarters of it. */
     .receiver = {.noise_looks_log2 = 4},
-    /* Rates: FreeFalcon, as above: base 60 degrees a second, twice that in GM; bars of GMT: four,
-     * of GM: one. Gates: FreeFalcon's 3 to 100, here knots. No 80 nm scale in GMT and SEA.
-     * UNSOURCED: looks (many pulses within a beam width average in real beam), 35 dB of clutter
-     * cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
+    /* Rates: [FreeFalcon], as above: base 60 degrees a second, twice that in GM; bars: one in
+     * GM and four in GMT [FlightGear]. Gates: [FreeFalcon]'s 3 to 100, here knots. No 80 nm scale
+     * in GMT and SEA. UNSOURCED: looks (many pulses within a beam width average in real beam), 35
+     * dB of clutter cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
     .mode = {[LM_SECTOR_GM] = {.name = "GM",
                                .bam_per_s = FX_BAM_DEG(120),
                                .range_max_nm = 80,
@@ -65,8 +68,7 @@ const struct lm_radar lm_radar_default = {
                                 .speckle = {.looks_log2 = 0},
                                 .tone = {DB(-48), DB(-6), 320}}},
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
-     * base): FreeFalcon, as RADAR.md 1.2 has them; 8:1 and 64:1 from RADAR.md 2.3; real beam below
-     * half of that: UNSOURCED. Pulses of RADAR.md 2.3's list; which one goes with what: UNSOURCED.
+     * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and real beam below half of that: UNSOURCED.
      * Azimuths across a sample: enough for the ground to err less than the speckle does
      * (tests/unit/firmware/radar/test_footprint.c). */
     .field = {[LM_FIELD_NORM] = {.name = "NORM",
@@ -101,8 +103,9 @@ const struct lm_radar lm_radar_default = {
                                  .sharpening = 64,
                                  .sharpening_least = 32,
                                  .azimuths_log2 = 2}},
-    /* UNSOURCED but for the formulas they go into: squints from 15 degrees (RADAR.md 1.4 on DBS), a
-     * minute of dwell at the most, a patch shown with four looks. */
+    /* UNSOURCED but for the formulas they go into: squints from 15 degrees, where Doppler
+     * beam sharpening is usually said to begin, a minute of dwell at the most, a patch shown with
+     * four looks. */
     .sar = {.cells = 256,
             .cell_min_mm = 500,
             .cell_max_mm = 40000,
@@ -114,13 +117,13 @@ const struct lm_radar lm_radar_default = {
             .speckle = {.looks_log2 = 2},
             .tone = {DB(-42), DB(12), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall
-     * alone, a tree line 2 dB; far shores 5 dB over 60 m (paper A names the effects and gives no
+     * alone, a tree line 2 dB; far shores 5 dB over 60 m ([Heaton] names the effects and gives no
      * figures). */
     .aspect = {.edge_structure_q8 = DB(6),
                .edge_trees_q8 = DB(2),
                .shore_q8 = DB(5),
                .shore_width_m = 60},
-    /* RADAR.md 2.1: nu of 1 to 3 for towns and forest as tunables, none for farmland. */
+    /* Shapes nu of 1 to 3 are usual for towns and forest, none for farmland: UNSOURCED, tunable. */
     .texture = {.shape_log2 = {[LM_KIND_GROUND] = LM_TEXTURE_NONE,
                                [LM_KIND_WATER] = LM_TEXTURE_NONE,
                                [LM_KIND_STRUCTURE] = 1,

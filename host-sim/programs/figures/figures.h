@@ -6,10 +6,10 @@
 
 #define FIGURE_WAVELENGTH_M 0.031228 /* 9.6 GHz, X band */
 
-/* Paper A, Figure 1: the same corner reflectors by a high- and a low-resolution radar. */
+/* [Heaton], Figure 1: the same corner reflectors by a high- and a low-resolution radar. */
 int figure1_draw(const char *path);
 
-/* Paper A, Table 1: the lobes of flat plates, as printed and as they return. */
+/* [Heaton], Table 1: the lobes of flat plates, as printed and as they return. */
 int table1_draw(const char *path);
 
 #endif

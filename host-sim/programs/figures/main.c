@@ -11,10 +11,9 @@ static const struct figure {
     int (*draw)(const char *path);
 } figures[] = {
     {"figure1",
-     "paper A, Figure 1: nine corner reflectors seen by a high- and a low-resolution radar",
+     "Heaton, Figure 1: nine corner reflectors seen by a high- and a low-resolution radar",
      figure1_draw},
-    {"table1",
-     "paper A, Table 1: the lobes of flat plates, one way as printed and two ways as used",
+    {"table1", "Heaton, Table 1: the lobes of flat plates, one way as printed and two ways as used",
      table1_draw},
 };
 enum { FIGURES = sizeof figures / sizeof figures[0] };

@@ -8,7 +8,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Paper A, Table 1 as printed; its angles are those of a one-way pattern. */
+/* Heaton, Table 1 as printed; its angles are those of a one-way pattern. */
 static const struct row {
     double wavelengths, printed_deg, axis_deg, step_deg;
 } rows[4] = {{3, 38, 30, 10}, {10, 12, 10, 2}, {100, 1, 1, 0.2}, {1000, 0.1, 0.1, 0.05}};

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const struct db_usage usage = {
-    "curves", "draw the reflection laws: paper B, Figures 3 to 6",
+    "curves", "draw the reflection laws: Niu and others, Figures 3 to 6",
     "FIGURE is 3 (Fresnel), 4 (small perturbation), 5 (RaySAR, specular) or 6 (RaySAR, diffuse).\n"
     "3 is drawn over the angle of incidence, for several permittivities. The others are drawn\n"
     "over the angle of the echo in the plane of incidence, -90 degrees being on the side that\n"

@@ -8,7 +8,7 @@ static const struct db_usage usage = {
     "materials", "print the built-in surfaces in the form of a file for --materials",
     "Permittivity and loss are relative; heights are the surface's standard deviation; F_S and\n"
     "F_R are RaySAR's specular coefficient and roughness, F_D and F_B its diffuse coefficient\n"
-    "and brilliance (paper B, eq. 10 and 11)."};
+    "and brilliance (Niu and others, eq. 10 and 11)."};
 
 int target_cmd_materials(int argc, char **argv)
 {

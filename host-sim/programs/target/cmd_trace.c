@@ -64,7 +64,7 @@ int target_cmd_trace(int argc, char **argv)
         {"out", DB_TEXT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
         {"picture", DB_TEXT, &outputs.picture, 0, 0, "FILE.png",
          "what was recorded at one reflection, channel by channel, at the places where the\nrays "
-         "were sent (paper B, Table I)",
+         "were sent (Niu and others, Table I)",
          false},
         {"picture-of", DB_INTEGER, &outputs.bounce, 1, TRACE_BOUNCES_MAX, "N",
          "which reflection that is", false},

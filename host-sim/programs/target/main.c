@@ -11,7 +11,7 @@ static const struct hs_command commands[] = {
     {"render", "make the radar picture of a model, or of traced records", target_cmd_render},
     {"sheet", "draw a model and its radar picture side by side, over azimuth", target_cmd_sheet},
     {"bake", "make the signature of a model, for the display unit", target_cmd_bake},
-    {"curves", "draw the reflection laws: paper B, Figures 3 to 6", target_cmd_curves},
+    {"curves", "draw the reflection laws: Niu and others, Figures 3 to 6", target_cmd_curves},
     {"materials", "print the built-in surfaces in the form of a file", target_cmd_materials},
     {"bench", "measure rays a second, beside bare Embree", target_cmd_bench},
 };

@@ -1,4 +1,4 @@
-/* Table picture: traced records as paper B's Table I shows them. */
+/* Table picture: traced records as [Niu]'s Table I shows them. */
 #ifndef TARGET_TABLE_PICTURE_H
 #define TARGET_TABLE_PICTURE_H
 

@@ -1,6 +1,6 @@
 /* Radar cross section of a few simple bodies, in the optical region: every size several wavelengths
- * or more. Sphere, flat plate and triangular corner are those of paper A (Heaton, "High resolution
- * radar targets"); docs/EQUATIONS.md, "Targets", has the equations and where they come from.
+ * or more. Sphere, flat plate and triangular corner are those of [Heaton], "High resolution
+ * radar targets"; docs/EQUATIONS.md, "Targets", has the equations and where they come from.
  *
  * A cross section is in decibels above one square metre (dBsm), times 256. */
 #ifndef LM_RCS_H
@@ -42,7 +42,7 @@ struct lm_direction {
  * Sphere: pi a^2 from everywhere.
  * Plate: physical optics, 4 pi A^2 / lambda^2 at the normal. The lobe is the two-way one, 2
  * asin(lambda / 2a) from null to null: the phase runs over the plate on the way out and again on
- * the way back. Paper A's Table 1 has the one-way lobe, twice as wide. Dihedral and trihedral: the
+ * the way back. [Heaton]'s Table 1 has the one-way lobe, twice as wide. Dihedral and trihedral: the
  * double and the triple reflection of geometrical optics, 8 pi a^2 b^2 / lambda^2 and 4 pi a^4 / (3
  * lambda^2) at the best. What single faces return outside the opening is left out: make them plates
  * if it matters.

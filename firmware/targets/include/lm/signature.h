@@ -1,5 +1,5 @@
 /* Signatures: radar pictures of one target from many sides, as a ray tracer or a network made them
- * (paper B). Records of the image's section SIGNATURES; docs/FORMATS.md, 1.9.
+ * [Niu]. Records of the image's section SIGNATURES; docs/FORMATS.md, 1.9.
  *
  * A chip is the target on level ground, seen from one bearing at one depression, in square pixels
  * of the ground: column 0 is leftmost as the radar looks, row 0 nearest to it. The target's origin

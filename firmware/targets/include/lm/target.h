@@ -1,5 +1,5 @@
 /* Specific targets: a few scatterers each, standing at known places, added to the picture's
- * clutter. Paper A, "High resolution radar targets"; equations: docs/EQUATIONS.md, "Targets";
+ * clutter. [Heaton], "High resolution radar targets"; equations: docs/EQUATIONS.md, "Targets";
  * records: docs/FORMATS.md, 1.8.
  *
  * One rule gives both of the paper's cases. Scatterers that share a resolution cell are summed as

@@ -16,7 +16,7 @@ struct ref_vector {
 };
 
 /* Angle from null to null of a flat plate `wavelengths` wide, degrees: 2 asin(1 / (ways *
- * wavelengths)). One way is an antenna's, and what paper A prints; two ways is an echo's. 180 when
+ * wavelengths)). One way is an antenna's, and what [Heaton] prints; two ways is an echo's. 180 when
  * there is no null. */
 double ref_plate_lobe_deg(double wavelengths, int ways);
 

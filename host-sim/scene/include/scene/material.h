@@ -1,4 +1,4 @@
-/* Materials of the scene's ground: how each looks from above, and which of paper A's six classes
+/* Materials of the scene's ground: how each looks from above, and which of [Heaton]'s six classes
  * it belongs to (Heaton, "Applying artificial neural networks to generate radar simulation data
  * bases": soil, asphalt, concrete, structure, vegetation, water). */
 #ifndef SCENE_MATERIAL_H

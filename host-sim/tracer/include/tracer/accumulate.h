@@ -1,4 +1,4 @@
-/* Accumulation of echoes in the cells where they are focused: paper B, step 4. */
+/* Accumulation of echoes in the cells where they are focused: [Niu], step 4. */
 #ifndef TRACER_ACCUMULATE_H
 #define TRACER_ACCUMULATE_H
 

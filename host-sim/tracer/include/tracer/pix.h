@@ -1,4 +1,4 @@
-/* Pixels of a radar chip from echoes in cells: paper B, step 5, with fixed parts only: the
+/* Pixels of a radar chip from echoes in cells: [Niu], step 5, with fixed parts only: the
  * system's impulse response, coarser pixels, speckle. */
 #ifndef TRACER_PIX_H
 #define TRACER_PIX_H
@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 enum {
-    PIX_KERNEL_SIDE = 107, /* samples of the kernel either way: paper B, Fig. 14 and 15 */
+    PIX_KERNEL_SIDE = 107, /* samples of the kernel either way: [Niu], Fig. 14 and 15 */
     PIX_LOOKS_MAX = 64,
 };
 

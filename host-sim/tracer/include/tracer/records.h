@@ -1,4 +1,4 @@
-/* Trace records: every reflection of every ray, before anything is known of its strength. Paper B,
+/* Trace records: every reflection of every ray, before anything is known of its strength. [Niu],
  * III-B and Table I. This header is the contract between the tracer (trace.h), the laws
  * (reflect.h), the sum over cells (accumulate.h) and the trainable networks.
  *
@@ -15,13 +15,13 @@
  * the radar. up: against gravity. The origin is the scene's centre on the ground, and the target's
  * own origin. Distances are metres, angles radians where a name does not say degrees.
  *
- * TWO DIRECTIONS leave a reflection (paper B, II-A):
+ * TWO DIRECTIONS leave a reflection ([Niu], II-A):
  *     SP, specular: theta1 on the other side of the normal, turned by 2 * theta1 from where the ray
  *         came. TRACE_GOES_ON says that it meets the scene again: the record of the next bounce.
  *     BK, back to the radar: counts only without TRACE_BLOCKED. The echo's place across_m, range_m
  *         and its phase belong to this direction.
  *
- * INTENSITY that a law gives, with coefficients in [0, 1] for both directions (paper B, Fig. 11):
+ * INTENSITY that a law gives, with coefficients in [0, 1] for both directions ([Niu], Fig. 11):
  *     in[0] = 1,  in[b] = in[b - 1] * SPC(parent),  echo = in[b] * BKC(record), 0 when blocked.
  * The picture is the sum of the echoes in their cells (trace_cell), times the area of sensor plane
  * that a ray stands for, step_across_m * step_up_m. */

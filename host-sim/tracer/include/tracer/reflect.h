@@ -1,4 +1,4 @@
-/* Laws of reflection, paper B, step 3: what share of a ray's intensity goes on specularly (SP) and
+/* Laws of reflection, [Niu], step 3: what share of a ray's intensity goes on specularly (SP) and
  * what share returns to the radar (BK). Both are 0..1; a BK of 1 is what a white matt surface
  * returns straight back (RaySAR's F_d = 1 with N.L = 1).
  *

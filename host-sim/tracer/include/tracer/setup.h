@@ -34,7 +34,7 @@ enum {
     SETUP_OPTIONS = SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS + SETUP_CHIP_OPTIONS
 };
 
-/* The defaults: paper B's chip of 54 x 54 pixels of 0.2 m, 0.3 m resolution, X band. */
+/* The defaults: [Niu]'s chip of 54 x 54 pixels of 0.2 m, 0.3 m resolution, X band. */
 struct setup setup_default(void);
 
 /* Fill in the options of each group. `o` has room for as many as the enum says. */

@@ -1,11 +1,11 @@
-/* Ray tracing of the radar signal: paper B, step 2, after its section II-A. */
+/* Ray tracing of the radar signal: [Niu], step 2, after its section II-A. */
 #ifndef TRACER_TRACE_H
 #define TRACER_TRACE_H
 
 #include "tracer/records.h"
 #include "tracer/scene.h"
 
-/* The chip of paper B: 54 x 54 pixels of 0.2 m, traced in cells of half that; X band. */
+/* The chip of [Niu]: 54 x 54 pixels of 0.2 m, traced in cells of half that; X band. */
 #define TRACE_CHIP_CELLS   108
 #define TRACE_CHIP_CELL_M  0.1
 #define TRACE_WAVELENGTH_M 0.03123 /* 9.6 GHz */

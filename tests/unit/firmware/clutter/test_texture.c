@@ -149,7 +149,7 @@ static void each_class_gains_a_draw_of_its_own_shape(void **state)
     }
 }
 
-/* Nathanson, as RADAR.md 2.2 quotes him: -40 dB in state 3 and -30 dB in state 5. */
+/* [Nathanson]: -40 dB in state 3 and -30 dB in state 5. */
 static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void **state)
 {
     (void)state;

@@ -233,7 +233,7 @@ static void hostile_wedges_stay_inside_the_frame(void **state)
     close_glass(&g);
 }
 
-/* The frame that the glass of paper A's display leaves to the picture. */
+/* The frame that the glass of [Heaton]'s display leaves to the picture. */
 static void the_frame_is_the_share_of_the_display_that_is_promised(void **state)
 {
     (void)state;

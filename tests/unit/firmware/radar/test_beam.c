@@ -1,5 +1,6 @@
 /* The beam across and along the line, its tilt and its Doppler sharpening, against the reference in
- * double precision and RADAR.md 1.5: docs/EQUATIONS.md, "Real beam" and "Doppler beam sharpening".
+ * double precision and the notch by hand: docs/EQUATIONS.md, "Real beam" and "Doppler beam
+ * sharpening".
  */
 #include "hs/rng.h"
 #include "lm/antenna.h"

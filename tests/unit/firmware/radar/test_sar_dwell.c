@@ -65,7 +65,7 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
     return (double)(r->now_us - first_us) / 1e6 * CELLS / (CELLS - first);
 }
 
-/* RADAR.md 2.3: 20 nautical miles, 45 degrees, 250 m/s. */
+/* T = l R / (2 V d sin o) by hand: 20 nautical miles, 45 degrees, 250 m/s. */
 static void the_dwell_is_that_of_the_formula_within_2_percent(void **state)
 {
     (void)state;

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
-static const double x_band_m = 0.03; /* 10 GHz, as in paper A: 0.1 m are 3 wavelengths or so */
+static const double x_band_m = 0.03; /* 10 GHz, as in [Heaton]: 0.1 m are 3 wavelengths or so */
 
 static struct lm_direction fixed_of(struct ref_vector v)
 {
@@ -54,9 +54,9 @@ static struct ref_vector random_direction(struct hs_rng *r)
     return (struct ref_vector){v.ahead / length, v.right / length, v.up / length};
 }
 
-/* ---- paper A ---- */
+/* ---- Heaton ---- */
 
-/* Paper A, Table 1, as printed: size in metres and in wavelengths, null to null in degrees. The
+/* [Heaton], Table 1, as printed: size in metres and in wavelengths, null to null in degrees. The
  * printed angles are those of a ONE-way pattern, 2 asin(lambda / a), and the printed wavelengths
  * are round. What a radar receives back is the two-way pattern beside it, half as wide: that is the
  * one which the firmware uses. The 3-wavelength row is outside the optical region, as its footnote

@@ -284,7 +284,7 @@ static void no_return_sums_to_nothing_and_opposite_ones_cancel(void **state)
     assert_true(abs(lm_returns_sum_q8(same, 0xFFFF) - 2560 - (int)(20 * log10(16) * 256)) <= 3);
 }
 
-/* Figure 1 of paper A as a test. Nine corner reflectors of one metre, metres apart, all facing the
+/* Figure 1 of [Heaton] as a test. Nine corner reflectors of one metre, metres apart, all facing the
  * radar's side: one cell that holds them all fluctuates by tens of decibels while the aspect
  * changes by 30 degrees; a cell that holds one of them does not. */
 static void the_same_corners_are_steady_in_fine_cells_and_fluctuate_in_a_coarse_one(void **state)

@@ -1,6 +1,6 @@
 /* Targets in a patch: the shape of a point, its place and its power, sums of points, movers, and
- * what hides them. The shape is judged by RADAR.md 2.4, places by PROJ's geodesics, sums by the
- * equations of EQUATIONS.md in double precision. */
+ * what hides them. The shape is judged by the closed form of Taylor weighting, places by PROJ's
+ * geodesics, sums by the equations of EQUATIONS.md in double precision. */
 #include "hs/angle.h"
 #include "lm/target_patch.h"
 
@@ -104,7 +104,7 @@ static double taylor(double x)
 {
     const double a = acosh(pow(10, 35 / 20.0)) / pi, s2 = 16 / (a * a + 12.25);
     x = fabs(x - round(x)) < 1e-6 && x != 0 ? x + 1e-6 : x; /* beside the poles */
-    double h = sinc(x), energy_db = 0.9140;                 /* RADAR.md 2.4: a loss of 0.91 dB */
+    double h = sinc(x), energy_db = 0.9140;                 /* a loss of 0.91 dB */
     for (int n = 1; n < 4; n++) {
         const double z2 = s2 * (a * a + (n - 0.5) * (n - 0.5));
         h *= (1 - x * x / z2) / (1 - x * x / (n * n));

@@ -1,5 +1,5 @@
-/* The synthetic aperture of the reference against RADAR.md 2.3 and 2.4, and against a transform of
- * the aperture itself. */
+/* The synthetic aperture of the reference against the closed forms of dwell and of Taylor
+ * weighting, and against a transform of the aperture itself. */
 #include "reference/reference.h"
 
 #include <math.h>
@@ -109,7 +109,7 @@ static void a_point_keeps_its_power_wherever_it_lies_in_a_cell(void **state)
     assert_true(fabs(20 * log10(ref_point_response(0)) + 0.91) < 0.01);
 }
 
-/* RADAR.md 2.3: 20 nautical miles, 45 degrees of squint, 250 m/s, and 31.3 mm as in 1.5. */
+/* T = l R / (2 V d sin o) by hand: 20 nautical miles, 45 degrees of squint, 250 m/s, 31.3 mm. */
 static void dwells_are_those_of_the_list(void **state)
 {
     (void)state;

@@ -241,7 +241,7 @@ static void slopes_show_their_projected_area(void **state)
     }
 }
 
-/* Horizons of RADAR.md 2.3 for the 4/3 Earth, in nautical miles. */
+/* Horizons of the 4/3 Earth in nautical miles, the root of twice radius times height, by hand. */
 static void the_sea_ends_at_the_radar_horizon(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Doppler beam sharpening of the reference against RADAR.md 1.5, and movers against geometry. */
+/* Doppler beam sharpening of the reference against the notch by hand, sin o = l N w / (2 V B^2),
+ * and movers against geometry. */
 #include "reference/reference.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 #include <cmocka.h>
 
-/* RADAR.md 1.5: 31.3 mm, 250 m/s, a beam of 3.3 degrees. */
+/* 31.3 mm, 250 m/s, a beam of 3.3 degrees. */
 static struct ref_dbs dbs_at(double rate_deg_s, double speed_m_s)
 {
     return (struct ref_dbs){speed_m_s, 3.3, 0.0313, rate_deg_s};

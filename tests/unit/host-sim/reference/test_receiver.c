@@ -22,7 +22,7 @@ static struct ref_receiver receiver_at(double height_m)
                                  .pulse_s = 400e-9};
 }
 
-/* RADAR.md 2.3. */
+/* A pulse is c t / 2 long: 15 m for 0.1 us. */
 static void pulses_are_as_long_as_in_the_list(void **state)
 {
     (void)state;

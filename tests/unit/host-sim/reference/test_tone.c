@@ -29,7 +29,8 @@ static void speckle_has_mean_one_and_the_spread_of_its_looks(void **state)
     }
 }
 
-/* dB std of RADAR.md 2.1. */
+/* Standard deviation of a Gamma variable of L looks in decibels, 10 / ln 10 times the root of the
+ * trigamma function of L. */
 static void speckle_in_decibels_has_the_published_spread(void **state)
 {
     (void)state;

@@ -124,7 +124,7 @@ static void a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stan
     }
 }
 
-/* RADAR.md, single look: an exponential power has a deviation of 5.57 dB; unscaled, the texture is
+/* Single look: an exponential power has a deviation of 5.57 dB; unscaled, the texture is
  * that law itself. */
 static void the_rayleigh_texture_at_its_own_spread_is_an_exponential_power(void **state)
 {

@@ -44,7 +44,7 @@ static void fresnel_of_metal_reflects_all(void **state)
 }
 
 /* Ulaby, Moore, Fung, volume II, eq. 12.90: Bragg's coefficients of backscatter. The product that
- * paper B prints as eq. (9) fails here. */
+ * [Niu] prints as eq. (9) fails here. */
 static void backscatter_has_braggs_coefficients(void **state)
 {
     (void)state;

@@ -217,7 +217,7 @@ static void every_exemplar_is_nine_tenths_of_its_class_and_every_class_has_many(
     GDALClose(d);
 }
 
-/* Paper A met beach sand that looks like concrete, and water of many colours. */
+/* [Heaton] met beach sand that looks like concrete, and water of many colours. */
 static void water_is_darker_than_soil_in_the_infrared(void **state)
 {
     const struct written *w = *state;
