@@ -1,7 +1,8 @@
-/* Assertions on what an operator did. Include it after <cmocka.h>. */
+/* Assertions on what an operator did. */
 #ifndef CONTROL_ASSERTS_H
 #define CONTROL_ASSERTS_H
 
+#include "check.h"
 #include "lm/controls.h"
 
 /* The same kind, and the same in the member that belongs to it. For the kinds that hands send. */

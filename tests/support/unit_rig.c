@@ -1,16 +1,11 @@
 #include "unit_rig.h"
+#include "check.h"
 
 #include "fx/crc32c.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static void put_float(struct lm_can_frame *f, uint32_t id, double value, uint8_t code)
 {

@@ -1,19 +1,14 @@
 /* Parked targets from their models to the glass: baked, listed, built into the image, flown, and
  * looked at from four sides. Where a target and its shadow should lie follows from its place in the
  * list, its size and the depression alone. */
+#include "check.h"
 #include "real_scene.h"
 
 #include <geodesic.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* host-sim/gallery/airfield.script. */
 static const double range_m = 12000, height_m = 3000, cell_m = 0.5;
@@ -129,9 +124,8 @@ static struct measure apron(int look)
     return measure(&parked[2], look, south_of_it[look]);
 }
 
-static void what_is_parked_shines_where_it_stands(void **state)
+TEST(what_is_parked_shines_where_it_stands)
 {
-    (void)state;
     for (int look = 0; look < LOOKS; look++) {
         for (int i = 0; i < parked_count; i++) {
             const struct area body = {-3, 3, -3, 3};
@@ -142,9 +136,8 @@ static void what_is_parked_shines_where_it_stands(void **state)
 
 /* 5 to 9 m behind the middle of a vehicle lies shadow, and none so far in front, where the two
  * sides along the row have nobody else's. */
-static void vehicles_throw_their_shadow_away_from_the_radar(void **state)
+TEST(vehicles_throw_their_shadow_away_from_the_radar)
 {
-    (void)state;
     for (int look = 0; look < LOOKS; look++) {
         assert_true(apron(look).dark_share < 0.03);
         for (int i = 0; i < parked_count; i++) {
@@ -168,9 +161,8 @@ static double shadow_end_m(const struct parked *p, int look, double from_m)
 }
 
 /* Seen from behind, a shelter 30 m long and 8 m high; its chip is that of 15 degrees. */
-static void a_shelters_shadow_is_as_long_as_its_height_says(void **state)
+TEST(a_shelters_shadow_is_as_long_as_its_height_says)
 {
-    (void)state;
     const double depression = atan(height_m / range_m) * 180 / pi;
     int shelters = 0;
     assert_true(fabs(depression - 15) < 3.5);
@@ -184,9 +176,8 @@ static void a_shelters_shadow_is_as_long_as_its_height_says(void **state)
     assert_int_equal(shelters, 3);
 }
 
-static void what_stands_square_to_the_radar_flashes(void **state)
+TEST(what_stands_square_to_the_radar_flashes)
 {
-    (void)state;
     for (int look = 0; look < LOOKS; look++) {
         double square = 0, aslant = 0;
         for (int i = 0; i < parked_count; i++) {
@@ -204,9 +195,8 @@ static void what_stands_square_to_the_radar_flashes(void **state)
 
 /* Four aircraft with the same heading are the same from each side, and another picture from the
  * next: their flanks brighter than their noses. */
-static void an_aircraft_changes_with_the_side_alone(void **state)
+TEST(an_aircraft_changes_with_the_side_alone)
 {
-    (void)state;
     const struct area body = {-3, 3, -3, 3};
     double mean[LOOKS];
     for (int look = 0; look < LOOKS; look++) {
@@ -221,14 +211,4 @@ static void an_aircraft_changes_with_the_side_alone(void **state)
     assert_true(fabs(mean[2] / mean[0] - 1) > 0.1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_parked_shines_where_it_stands),
-        cmocka_unit_test(vehicles_throw_their_shadow_away_from_the_radar),
-        cmocka_unit_test(a_shelters_shadow_is_as_long_as_its_height_says),
-        cmocka_unit_test(what_stands_square_to_the_radar_flashes),
-        cmocka_unit_test(an_aircraft_changes_with_the_side_alone),
-    };
-    return cmocka_run_group_tests_name("airfield", tests, make_scene, NULL);
-}
+TEST_GROUP(make_scene, NULL);

@@ -1,16 +1,12 @@
 /* Aerial colours and 48 bands of a university, segmented. What the classifier reaches is measured
  * in tests/bench; here: the hole of the mosaic stays a hole, and both pictures show the same place.
  */
+#include "check.h"
 #include "real_scene.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
 #include <gdal.h>
 
 /* As in host-sim/programs/db/classes/heaton6.classes. */
@@ -42,9 +38,8 @@ static void read_classes(const char *name, int side, uint8_t *values)
     read_band(folder, name, 1, side, values);
 }
 
-static void the_hole_of_the_mosaic_has_no_class_and_all_else_has_one(void **state)
+TEST(the_hole_of_the_mosaic_has_no_class_and_all_else_has_one)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -92,9 +87,8 @@ static double part_right(const uint8_t *classes, const uint8_t *labels, int step
 
 /* Far below what the classifier reaches, far above what a shifted, turned or mislabelled raster
  * could. */
-static void in_colours_and_in_48_bands_each_class_lies_on_its_labels(void **state)
+TEST(in_colours_and_in_48_bands_each_class_lies_on_its_labels)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -119,11 +113,4 @@ static int make_scene(void **state)
     return real_scene_make(&scene, "campus", "houston2018_rgb_hs_labels/derived/rgb_512.ppm");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_hole_of_the_mosaic_has_no_class_and_all_else_has_one),
-        cmocka_unit_test(in_colours_and_in_48_bands_each_class_lies_on_its_labels),
-    };
-    return cmocka_run_group_tests_name("real_campus", tests, make_scene, NULL);
-}
+TEST_GROUP(make_scene, NULL);

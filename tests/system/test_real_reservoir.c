@@ -1,21 +1,16 @@
 /* Landsat 5 bands in seven files, polygons and SRTM of a drowned valley in the Amazon forest, in
  * UTM 22 north with negative northings, from the data to pictures. The polygons are read by OGR and
  * brought to the pictures by PROJ. */
+#include "check.h"
 #include "real_scene.h"
 
 #include <gdal.h>
 #include <math.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { POLYGONS_MAX = 64, QUARTERS = 4 };
 
@@ -113,9 +108,8 @@ static int is_forest(const struct polygon *p)
 }
 
 /* A forest may lie behind a ridge from one side: it is judged by all four together. */
-static void each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_bright(void **state)
+TEST(each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_bright)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -143,9 +137,8 @@ static void each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_b
 
 /* Northings below zero, a projection's position: the firmware's own look-up of the polygon's middle
  * finds its class. */
-static void the_middle_of_each_polygon_has_its_class_in_the_flash_image(void **state)
+TEST(the_middle_of_each_polygon_has_its_class_in_the_flash_image)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -212,11 +205,4 @@ static int forget_scene(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_water_polygon_is_dark_from_four_sides_and_each_forest_polygon_bright),
-        cmocka_unit_test(the_middle_of_each_polygon_has_its_class_in_the_flash_image),
-    };
-    return cmocka_run_group_tests_name("real_reservoir", tests, make_scene, forget_scene);
-}
+TEST_GROUP(make_scene, forget_scene);

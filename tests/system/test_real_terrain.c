@@ -1,18 +1,13 @@
 /* Real terrain, DTED level 1 of Hawaii and SRTM of Nice, from the files to ground maps. Where sea,
  * coast and radar shadow should be is worked out here in double precision from the same files:
  * elevations by GDAL, geodesics by PROJ, lines of sight over an Earth of 4/3 its radius. */
+#include "check.h"
 #include "real_scene.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { TILES_MAX = 3, STEPS_A_CELL = 6 };
 
@@ -171,11 +166,8 @@ static void island_terrain(struct terrain *t)
     terrain_read(t, &island, names, 3);
 }
 
-static void
-what_a_line_of_sight_over_the_dted_hides_shows_noise_and_the_sea_is_darker_than_the_land(
-    void **state)
+TEST(what_a_line_of_sight_over_the_dted_hides_shows_noise_and_the_sea_is_darker_than_the_land)
 {
-    (void)state;
     if (!island.is_here) {
         skip();
     }
@@ -259,9 +251,8 @@ static bool is_covered(const int grey[REAL_CELLS], double cell)
     return false;
 }
 
-static void the_coast_is_drawn_at_the_distance_that_the_dted_says(void **state)
+TEST(the_coast_is_drawn_at_the_distance_that_the_dted_says)
 {
-    (void)state;
     if (!island.is_here) {
         skip();
     }
@@ -294,9 +285,8 @@ static void the_coast_is_drawn_at_the_distance_that_the_dted_says(void **state)
 
 /* The recorded track 110 s after the beginning of the piece that is flown: fixes of 9,600 and 9,620
  * s (nav_tracks/nice.csv.gz). */
-static void a_real_flight_along_the_riviera_sees_coast_and_ridges_where_srtm_has_them(void **state)
+TEST(a_real_flight_along_the_riviera_sees_coast_and_ridges_where_srtm_has_them)
 {
-    (void)state;
     if (!riviera.is_here) {
         skip();
     }
@@ -320,13 +310,4 @@ static int make_scenes(void **state)
            real_scene_make(&riviera, "riviera", "srtm_hgt/N43E007.hgt.zip");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(
-            what_a_line_of_sight_over_the_dted_hides_shows_noise_and_the_sea_is_darker_than_the_land),
-        cmocka_unit_test(the_coast_is_drawn_at_the_distance_that_the_dted_says),
-        cmocka_unit_test(a_real_flight_along_the_riviera_sees_coast_and_ridges_where_srtm_has_them),
-    };
-    return cmocka_run_group_tests_name("real_terrain", tests, make_scenes, NULL);
-}
+TEST_GROUP(make_scenes, NULL);

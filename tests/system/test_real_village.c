@@ -1,17 +1,12 @@
 /* Sentinel-2 image, polygons and SRTM of a mining village in the Amazon forest, from the data to
  * patches from four sides. What a patch should show where is asked of the class raster, by GDAL and
  * PROJ's geodesics. */
+#include "check.h"
 #include "real_scene.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* As in host-sim/gallery/village.classes; NONE lies outside the raster. */
 enum { FOREST, VILLAGE, WATER, MUD, NONE };
@@ -88,9 +83,8 @@ static double mean_grey(const struct patch *p, int class_index)
     return count > 0 ? sum / count : 0;
 }
 
-static void water_is_dark_forest_grey_and_the_village_bright_from_every_side(void **state)
+TEST(water_is_dark_forest_grey_and_the_village_bright_from_every_side)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -128,9 +122,8 @@ static double with_forest(const struct patch *p, int across, int along, int reac
 }
 
 /* Canopy of 18 m throws 90 m of shadow at 11 degrees and 100 m in flight. */
-static void shadow_lies_behind_the_forest_that_casts_it_whichever_way_the_radar_looks(void **state)
+TEST(shadow_lies_behind_the_forest_that_casts_it_whichever_way_the_radar_looks)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -180,9 +173,8 @@ static double edge_grey(const struct patch *p, int along, int is_open_wanted)
     return sum / count;
 }
 
-static void forest_edges_that_face_the_radar_are_bright_and_those_behind_are_not(void **state)
+TEST(forest_edges_that_face_the_radar_are_bright_and_those_behind_are_not)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -209,9 +201,8 @@ static int grey_north_up(const struct patch *p, int quarter, int east, int north
 
 /* Turned to north and added, the four patches lie on the class raster: their shadows cancel.
  * Correlation with a mask of what is bright, at shifts of up to three cells. */
-static void turned_to_north_the_four_patches_lie_on_each_other_and_on_the_image(void **state)
+TEST(turned_to_north_the_four_patches_lie_on_each_other_and_on_the_image)
 {
-    (void)state;
     if (!scene.is_here) {
         skip();
     }
@@ -267,13 +258,4 @@ static int make_scene(void **state)
         "sentinel2_amazon_village_srtm_labels/derived/sen2_12band_refl_x10000.bsq");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(water_is_dark_forest_grey_and_the_village_bright_from_every_side),
-        cmocka_unit_test(shadow_lies_behind_the_forest_that_casts_it_whichever_way_the_radar_looks),
-        cmocka_unit_test(forest_edges_that_face_the_radar_are_bright_and_those_behind_are_not),
-        cmocka_unit_test(turned_to_north_the_four_patches_lie_on_each_other_and_on_the_image),
-    };
-    return cmocka_run_group_tests_name("real_village", tests, make_scene, NULL);
-}
+TEST_GROUP(make_scene, NULL);

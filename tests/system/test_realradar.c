@@ -5,19 +5,16 @@
 #include "realradar/point_response.h"
 #include "realradar/speckle_statistics.h"
 
+#include "check.h"
 #include "hs/rng.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
-
-#include <cmocka.h>
 
 static const char gotcha_file[] = "gotcha_xband/data_3dsar_pass1_az001_HH.mat";
 static const double pi = 3.14159265358979323846;
@@ -45,9 +42,8 @@ static void make_image(struct rr_image *image, const struct rr_phase_history *ph
 
 static const struct rr_place point = {12.34, -7.77, 0};
 
-static void a_point_is_found_in_the_picture_within_a_tenth_of_a_metre(void **state)
+TEST(a_point_is_found_in_the_picture_within_a_tenth_of_a_metre)
 {
-    (void)state;
     struct rr_phase_history ph;
     struct rr_profiles profiles;
     struct rr_image image;
@@ -95,9 +91,8 @@ static void assert_cut(const struct rr_cut *cut, double irw_cells, double pslr_d
     assert_true(fabs(cut->pslr_db - pslr_db) < 1);
 }
 
-static void an_unweighted_point_has_the_width_and_sidelobes_of_the_sinc(void **state)
+TEST(an_unweighted_point_has_the_width_and_sidelobes_of_the_sinc)
 {
-    (void)state;
     struct rr_response response;
     measure_point(&response, 0);
     assert_cut(&response.range, 0.886, -13.26);
@@ -107,9 +102,8 @@ static void an_unweighted_point_has_the_width_and_sidelobes_of_the_sinc(void **s
     assert_true(fabs(response.range.islr_db - -10.3) < 0.3);
 }
 
-static void a_weighted_point_has_those_of_taylors_table(void **state)
+TEST(a_weighted_point_has_those_of_taylors_table)
 {
-    (void)state;
     struct rr_response response;
     measure_point(&response, 35);
     assert_cut(&response.range, 1.187, -35.2);
@@ -132,9 +126,8 @@ static double complex exact_focus(const struct rr_phase_history *ph, struct rr_p
     return sum / (ph->pulses * ph->frequencies);
 }
 
-static void back_projection_is_the_matched_filter_to_60_dB(void **state)
+TEST(back_projection_is_the_matched_filter_to_60_dB)
 {
-    (void)state;
     struct rr_phase_history ph;
     struct rr_profiles profiles;
     struct hs_rng rng;
@@ -157,9 +150,8 @@ static void back_projection_is_the_matched_filter_to_60_dB(void **state)
     rr_phase_history_free(&ph);
 }
 
-static void noise_seen_through_the_processing_keeps_one_looks_statistics(void **state)
+TEST(noise_seen_through_the_processing_keeps_one_looks_statistics)
 {
-    (void)state;
     struct rr_phase_history ph;
     struct rr_image image;
     static struct rr_ground ground;
@@ -179,9 +171,8 @@ static void noise_seen_through_the_processing_keeps_one_looks_statistics(void **
     rr_phase_history_free(&ph);
 }
 
-static void a_bright_corner_is_no_even_ground(void **state)
+TEST(a_bright_corner_is_no_even_ground)
 {
-    (void)state;
     struct rr_image image = {.side_px = 2 * RR_WINDOW_PX, .pixel_m = 0.2};
     struct rr_window windows[8];
     const size_t count = (size_t)image.side_px * (size_t)image.side_px;
@@ -199,9 +190,8 @@ static void a_bright_corner_is_no_even_ground(void **state)
     rr_image_free(&image);
 }
 
-static void statistics_of_known_numbers_are_as_computed_by_hand(void **state)
+TEST(statistics_of_known_numbers_are_as_computed_by_hand)
 {
-    (void)state;
     struct rr_statistics s;
     double pair[] = {9, 1};
     rr_statistics_of(&s, pair, 2);
@@ -214,10 +204,8 @@ static void statistics_of_known_numbers_are_as_computed_by_hand(void **state)
     assert_true(fabs(s.ks - (exp(-9.0 / 5) * -1 + 1 - 0.5)) < 1e-12);
 }
 
-static void
-the_firmwares_speckle_is_one_look_where_it_says_one_and_not_where_it_says_four(void **state)
+TEST(the_firmwares_speckle_is_one_look_where_it_says_one_and_not_where_it_says_four)
 {
-    (void)state;
     enum { SIDE = 512, CELLS = SIDE * SIDE };
     static double power[CELLS];
     struct rr_statistics s;
@@ -232,9 +220,8 @@ the_firmwares_speckle_is_one_look_where_it_says_one_and_not_where_it_says_four(v
     assert_true(s.ks > 0.1);
 }
 
-static void rank_correlation_agrees_with_a_worked_example(void **state)
+TEST(rank_correlation_agrees_with_a_worked_example)
 {
-    (void)state;
     /* Ten pairs without ties whose squared differences of rank add up to 194: 1 - 6 * 194 / 990. */
     const float a[] = {106, 100, 86, 101, 99, 103, 97, 113, 112, 110};
     const float b[] = {7, 27, 2, 50, 28, 29, 20, 12, 6, 17};
@@ -375,9 +362,8 @@ static void mat_path(char *path, size_t size, const char *name)
     snprintf(path, size, "%s/tmp/realradar/%s", support_build_dir(), name);
 }
 
-static void a_matlab_file_is_read_value_for_value_plain_or_packed(void **state)
+TEST(a_matlab_file_is_read_value_for_value_plain_or_packed)
 {
-    (void)state;
     char path[512];
     struct rr_phase_history ph;
     mat_path(path, sizeof path, "good.mat");
@@ -396,9 +382,8 @@ static void a_matlab_file_is_read_value_for_value_plain_or_packed(void **state)
 
 /* Torn anywhere and with any byte changed, the file is read or refused; a wild read would end the
  * test. */
-static void a_damaged_matlab_file_is_read_or_refused(void **state)
+TEST(a_damaged_matlab_file_is_read_or_refused)
 {
-    (void)state;
     char path[512];
     int refused = 0, saved = dup(STDERR_FILENO);
     struct rr_phase_history ph;
@@ -436,9 +421,8 @@ static void a_damaged_matlab_file_is_read_or_refused(void **state)
     assert_int_equal(cut_short_and_read, 0);
 }
 
-static void a_file_that_is_no_phase_history_is_refused_by_name(void **state)
+TEST(a_file_that_is_no_phase_history_is_refused_by_name)
 {
-    (void)state;
     char path[512];
     mat_path(path, sizeof path, "bad.mat");
     for (int flaw = NO_RANGES; flaw < FLAWS; flaw++) {
@@ -455,9 +439,8 @@ static void a_file_that_is_no_phase_history_is_refused_by_name(void **state)
     assert_int_equal(support_run("grep -q 'bad.mat: is not a MATLAB file' %s.err", path), 0);
 }
 
-static void the_real_speckle_is_one_look_and_the_road_darker_than_the_grass(void **state)
+TEST(the_real_speckle_is_one_look_and_the_road_darker_than_the_grass)
 {
-    (void)state;
     char path[1024];
     if (!support_data_path(gotcha_file, path, sizeof path)) {
         skip();
@@ -482,9 +465,8 @@ static void the_real_speckle_is_one_look_and_the_road_darker_than_the_grass(void
     rr_phase_history_free(&ph);
 }
 
-static void real_reflectors_are_as_sharp_as_band_and_aperture_allow(void **state)
+TEST(real_reflectors_are_as_sharp_as_band_and_aperture_allow)
 {
-    (void)state;
     char path[1024];
     if (!support_data_path(gotcha_file, path, sizeof path)) {
         skip();
@@ -511,9 +493,8 @@ static void real_reflectors_are_as_sharp_as_band_and_aperture_allow(void **state
     rr_phase_history_free(&ph);
 }
 
-static void a_torn_copy_of_the_real_file_is_refused_by_name(void **state)
+TEST(a_torn_copy_of_the_real_file_is_refused_by_name)
 {
-    (void)state;
     char real[1024], torn[512];
     if (!support_data_path(gotcha_file, real, sizeof real)) {
         skip();
@@ -545,9 +526,8 @@ static void compare_classes(struct rr_class_order *order, const char *folder, co
                   order->class_correlation, order->pixel_correlation);
 }
 
-static void classes_rank_as_a_real_radar_ranks_them(void **state)
+TEST(classes_rank_as_a_real_radar_ranks_them)
 {
-    (void)state;
     enum { SOIL, ASPHALT, CONCRETE, STRUCTURE, VEGETATION, WATER };
     char radar[1024], data[1024], folder[512];
     struct rr_class_order order;
@@ -575,28 +555,4 @@ static void classes_rank_as_a_real_radar_ranks_them(void **state)
     assert_int_equal(order.rows[3].class_index, VEGETATION);
     assert_int_equal(order.rows[4].class_index, STRUCTURE);
     assert_true(order.class_correlation > 0.99 && order.pixel_correlation > 0.6);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_found_in_the_picture_within_a_tenth_of_a_metre),
-        cmocka_unit_test(an_unweighted_point_has_the_width_and_sidelobes_of_the_sinc),
-        cmocka_unit_test(a_weighted_point_has_those_of_taylors_table),
-        cmocka_unit_test(back_projection_is_the_matched_filter_to_60_dB),
-        cmocka_unit_test(noise_seen_through_the_processing_keeps_one_looks_statistics),
-        cmocka_unit_test(a_bright_corner_is_no_even_ground),
-        cmocka_unit_test(statistics_of_known_numbers_are_as_computed_by_hand),
-        cmocka_unit_test(
-            the_firmwares_speckle_is_one_look_where_it_says_one_and_not_where_it_says_four),
-        cmocka_unit_test(rank_correlation_agrees_with_a_worked_example),
-        cmocka_unit_test(a_matlab_file_is_read_value_for_value_plain_or_packed),
-        cmocka_unit_test(a_damaged_matlab_file_is_read_or_refused),
-        cmocka_unit_test(a_file_that_is_no_phase_history_is_refused_by_name),
-        cmocka_unit_test(the_real_speckle_is_one_look_and_the_road_darker_than_the_grass),
-        cmocka_unit_test(real_reflectors_are_as_sharp_as_band_and_aperture_allow),
-        cmocka_unit_test(a_torn_copy_of_the_real_file_is_refused_by_name),
-        cmocka_unit_test(classes_rank_as_a_real_radar_ranks_them),
-    };
-    return cmocka_run_group_tests_name("realradar", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* The drivers of the Zynq UltraScale+ on registers that are memory: what QEMU's model of the board
  * does not do. tests/zcu102 runs them on the model. */
+#include "check.h"
 #include "drv/can_zynqmp.h"
 #include "drv/dp_link.h"
 #include "drv/flash_gqspi.h"
@@ -8,12 +9,7 @@
 #include "drv/watchdog_cadence.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { WORDS = 1024 };
 
@@ -51,9 +47,8 @@ static void open_can(struct drv_can *c, struct device *d)
     assert_int_equal(drv_can_open(c, &config), LM_OK);
 }
 
-static void a_wait_ends_with_the_value_of_the_register_or_with_its_polls(void **state)
+TEST(a_wait_ends_with_the_value_of_the_register_or_with_its_polls)
 {
-    (void)state;
     volatile uint32_t words[2] = {0, 0x5A};
     assert_true(drv_wait_for(words, 4, 0xF0, 0x50, 1));
     assert_true(drv_wait_for(words, 0, 0xF0, 0, 1));
@@ -61,9 +56,8 @@ static void a_wait_ends_with_the_value_of_the_register_or_with_its_polls(void **
     assert_false(drv_wait_for(words, 4, 0xF0, 0x40, 1000));
 }
 
-static void a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth(void **state)
+TEST(a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth)
 {
-    (void)state;
     struct drv_can c;
     struct device d;
     open_can(&c, &d);
@@ -74,9 +68,8 @@ static void a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth(void *
     assert_int_equal(d.registers[CAN_SRR / 4], 2); /* enabled */
 }
 
-static void a_controller_that_stays_in_reset_is_an_error(void **state)
+TEST(a_controller_that_stays_in_reset_is_an_error)
 {
-    (void)state;
     struct drv_can c;
     struct device d = {{0}, 0};
     const struct drv_can_config config = {.base = d.registers,
@@ -87,9 +80,8 @@ static void a_controller_that_stays_in_reset_is_an_error(void **state)
     assert_int_equal(drv_can_open(&c, &config), LM_ERR_IO);
 }
 
-static void bus_off_is_counted_and_left_after_a_tenth_of_a_second(void **state)
+TEST(bus_off_is_counted_and_left_after_a_tenth_of_a_second)
 {
-    (void)state;
     struct drv_can c;
     struct device d;
     struct lm_can_frame frame = {0};
@@ -113,9 +105,8 @@ static void bus_off_is_counted_and_left_after_a_tenth_of_a_second(void **state)
     assert_int_equal(c.port.send(c.port.ctx, &frame), LM_OK);
 }
 
-static void a_controller_that_does_not_come_back_is_asked_again(void **state)
+TEST(a_controller_that_does_not_come_back_is_asked_again)
 {
-    (void)state;
     struct drv_can c;
     struct device d;
     struct lm_can_frame frame = {0};
@@ -130,9 +121,8 @@ static void a_controller_that_does_not_come_back_is_asked_again(void **state)
     assert_int_equal(c.count.recovered, 1);
 }
 
-static void a_full_transmit_fifo_is_busy_and_takes_nothing(void **state)
+TEST(a_full_transmit_fifo_is_busy_and_takes_nothing)
 {
-    (void)state;
     struct drv_can c;
     struct device d;
     open_can(&c, &d);
@@ -143,9 +133,8 @@ static void a_full_transmit_fifo_is_busy_and_takes_nothing(void **state)
     assert_int_equal(c.count.refused, 1);
 }
 
-static void an_interrupt_takes_one_fifo_at_most(void **state)
+TEST(an_interrupt_takes_one_fifo_at_most)
 {
-    (void)state;
     struct drv_can c;
     struct device d;
     open_can(&c, &d);
@@ -154,9 +143,8 @@ static void an_interrupt_takes_one_fifo_at_most(void **state)
     assert_int_equal(c.count.frames, 64);
 }
 
-static void a_length_code_above_eight_is_eight(void **state)
+TEST(a_length_code_above_eight_is_eight)
 {
-    (void)state;
     const uint32_t words[4] = {0x123u << 21, 0xF0001234u, 0x01020304, 0x05060708};
     const struct lm_can_frame frame = drv_can_frame_of(words);
     assert_int_equal(frame.length, 8);
@@ -165,9 +153,8 @@ static void a_length_code_above_eight_is_eight(void **state)
     assert_int_equal(frame.data[7], 8);
 }
 
-static void identifier_words_are_those_of_the_manual(void **state)
+TEST(identifier_words_are_those_of_the_manual)
 {
-    (void)state;
     /* UG1087, TXFIFO_ID: IDH 31..21, SRRRTR 20, IDE 19, IDL 18..1, RTR 0. */
     const struct {
         struct lm_can_frame frame;
@@ -200,9 +187,8 @@ static int open_flash(struct drv_flash *f, struct device *d, uint32_t id)
     return drv_flash_open(f, &config);
 }
 
-static void a_read_that_never_ends_is_given_up(void **state)
+TEST(a_read_that_never_ends_is_given_up)
 {
-    (void)state;
     struct drv_flash f;
     struct device d;
     uint8_t byte = 0x77;
@@ -222,9 +208,8 @@ static void a_read_that_never_ends_is_given_up(void **state)
     assert_int_equal(d.registers[GQSPI_EN / 4], 1);
 }
 
-static void a_device_that_is_absent_or_another_has_no_size(void **state)
+TEST(a_device_that_is_absent_or_another_has_no_size)
 {
-    (void)state;
     struct drv_flash f;
     struct device d;
     uint8_t byte;
@@ -236,9 +221,8 @@ static void a_device_that_is_absent_or_another_has_no_size(void **state)
     }
 }
 
-static void a_read_of_nothing_is_done_at_once(void **state)
+TEST(a_read_of_nothing_is_done_at_once)
 {
-    (void)state;
     struct drv_flash f;
     struct device d;
     open_flash(&f, &d, 0x0020BB20);
@@ -300,9 +284,8 @@ static int train(struct drv_dp_link *l, struct panel *p, uint32_t state, const u
 
 static const uint8_t content[8] = {0x77, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77};
 
-static void a_link_comes_up_with_the_slowest_rate_that_is_enough(void **state)
+TEST(a_link_comes_up_with_the_slowest_rate_that_is_enough)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p;
     assert_int_equal(train(&l, &p, 4, content), LM_OK);
@@ -314,9 +297,8 @@ static void a_link_comes_up_with_the_slowest_rate_that_is_enough(void **state)
     assert_in_range(p.device.now_us, 500, 2000); /* the waits of the standard, and not more */
 }
 
-static void a_panel_that_is_not_there_is_an_error_soon(void **state)
+TEST(a_panel_that_is_not_there_is_an_error_soon)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p;
     assert_int_equal(train(&l, &p, 8, content), LM_ERR_IO);
@@ -327,9 +309,8 @@ static void a_panel_that_is_not_there_is_an_error_soon(void **state)
     assert_in_range(p.device.now_us, 3500, 5000);
 }
 
-static void a_panel_that_wants_more_swing_gets_it(void **state)
+TEST(a_panel_that_wants_more_swing_gets_it)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p;
     const uint8_t late[8] = {0x00, 0x22, 0x77, 0x77, 0x77, 0x77, 0x77, 0x77};
@@ -338,9 +319,8 @@ static void a_panel_that_wants_more_swing_gets_it(void **state)
     assert_int_equal(p.highest_swing, 2);
 }
 
-static void a_link_that_does_not_come_up_is_tried_faster_and_given_up(void **state)
+TEST(a_link_that_does_not_come_up_is_tried_faster_and_given_up)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p;
     const uint8_t never[8] = {0};
@@ -352,9 +332,8 @@ static void a_link_that_does_not_come_up_is_tried_faster_and_given_up(void **sta
     assert_in_range(p.readings, 3 * 6, 3 * 8);
 }
 
-static void a_panel_that_asks_to_and_fro_does_not_hold_the_board(void **state)
+TEST(a_panel_that_asks_to_and_fro_does_not_hold_the_board)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p;
     uint8_t to_and_fro[8];
@@ -368,9 +347,8 @@ static void a_panel_that_asks_to_and_fro_does_not_hold_the_board(void **state)
     }
 }
 
-static void a_phy_that_is_not_ready_is_an_error(void **state)
+TEST(a_phy_that_is_not_ready_is_an_error)
 {
-    (void)state;
     struct drv_dp_link l;
     struct panel p = {.state = 4};
     memcpy(p.answers, content, sizeof content);
@@ -382,9 +360,8 @@ static void a_phy_that_is_not_ready_is_an_error(void **state)
 
 /* ---- watchdog ---- */
 
-static void the_watchdog_is_set_with_its_keys(void **state)
+TEST(the_watchdog_is_set_with_its_keys)
 {
-    (void)state;
     struct drv_watchdog w;
     struct device d = {{0}, 0};
     assert_true(drv_watchdog_start(&w, d.registers, 100000000, 2000));
@@ -400,9 +377,8 @@ static void the_watchdog_is_set_with_its_keys(void **state)
     assert_int_equal(d.registers[2], 0x1999);
 }
 
-static void a_time_that_the_watchdog_cannot_count_is_refused(void **state)
+TEST(a_time_that_the_watchdog_cannot_count_is_refused)
 {
-    (void)state;
     struct drv_watchdog w;
     struct device d = {{0}, 0};
     assert_false(drv_watchdog_start(&w, d.registers, 100000000, 0));
@@ -414,9 +390,8 @@ static void a_time_that_the_watchdog_cannot_count_is_refused(void **state)
 
 /* ---- UART ---- */
 
-static void bit_rates_are_met_within_a_percent(void **state)
+TEST(bit_rates_are_met_within_a_percent)
 {
-    (void)state;
     const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600};
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
         struct drv_uart u;
@@ -427,9 +402,8 @@ static void bit_rates_are_met_within_a_percent(void **state)
     }
 }
 
-static void a_full_ring_of_the_uart_counts_what_it_loses(void **state)
+TEST(a_full_ring_of_the_uart_counts_what_it_loses)
 {
-    (void)state;
     struct drv_uart u;
     struct device d = {{0}, 0};
     drv_uart_init(&u, d.registers, 100000000, 115200);
@@ -452,9 +426,8 @@ static void count_call(void *ctx)
     (*(int *)ctx)++;
 }
 
-static void an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off(void **state)
+TEST(an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off)
 {
-    (void)state;
     struct drv_irq q;
     struct device distributor = {{0}, 0}, core = {{0}, 0};
     int calls = 0;
@@ -477,9 +450,8 @@ static void an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off(voi
     assert_int_equal(calls, 1);
 }
 
-static void more_handlers_than_there_is_room_for_are_refused(void **state)
+TEST(more_handlers_than_there_is_room_for_are_refused)
 {
-    (void)state;
     struct drv_irq q;
     struct device distributor = {{0}, 0}, core = {{0}, 0};
     drv_irq_init(&q, distributor.registers, core.registers);
@@ -488,35 +460,4 @@ static void more_handlers_than_there_is_room_for_are_refused(void **state)
         assert_true(drv_irq_attach(&q, 40 + i, count_call, NULL));
     }
     assert_false(drv_irq_attach(&q, 60, count_call, NULL));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wait_ends_with_the_value_of_the_register_or_with_its_polls),
-        cmocka_unit_test(a_bit_of_one_microsecond_has_ten_quanta_sampled_at_the_eighth),
-        cmocka_unit_test(a_controller_that_stays_in_reset_is_an_error),
-        cmocka_unit_test(bus_off_is_counted_and_left_after_a_tenth_of_a_second),
-        cmocka_unit_test(a_controller_that_does_not_come_back_is_asked_again),
-        cmocka_unit_test(a_full_transmit_fifo_is_busy_and_takes_nothing),
-        cmocka_unit_test(an_interrupt_takes_one_fifo_at_most),
-        cmocka_unit_test(a_length_code_above_eight_is_eight),
-        cmocka_unit_test(identifier_words_are_those_of_the_manual),
-        cmocka_unit_test(a_read_that_never_ends_is_given_up),
-        cmocka_unit_test(a_device_that_is_absent_or_another_has_no_size),
-        cmocka_unit_test(a_read_of_nothing_is_done_at_once),
-        cmocka_unit_test(a_link_comes_up_with_the_slowest_rate_that_is_enough),
-        cmocka_unit_test(a_panel_that_is_not_there_is_an_error_soon),
-        cmocka_unit_test(a_panel_that_wants_more_swing_gets_it),
-        cmocka_unit_test(a_link_that_does_not_come_up_is_tried_faster_and_given_up),
-        cmocka_unit_test(a_panel_that_asks_to_and_fro_does_not_hold_the_board),
-        cmocka_unit_test(a_phy_that_is_not_ready_is_an_error),
-        cmocka_unit_test(the_watchdog_is_set_with_its_keys),
-        cmocka_unit_test(a_time_that_the_watchdog_cannot_count_is_refused),
-        cmocka_unit_test(bit_rates_are_met_within_a_percent),
-        cmocka_unit_test(a_full_ring_of_the_uart_counts_what_it_loses),
-        cmocka_unit_test(an_interrupt_finds_its_handler_and_a_strange_one_is_switched_off),
-        cmocka_unit_test(more_handlers_than_there_is_room_for_are_refused),
-    };
-    return cmocka_run_group_tests_name("zynqmp_devices", tests, NULL, NULL);
 }

@@ -1,26 +1,19 @@
 /* CRC-32C against the published examples of RFC 3720, appendix B.4, and its own definition. */
+#include "check.h"
 #include "fx/crc32c.h"
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-static void the_check_value_of_the_polynomial_is_met(void **state)
+TEST(the_check_value_of_the_polynomial_is_met)
 {
-    (void)state;
     assert_int_equal(fx_crc32c(0, "123456789", 9), 0xe3069283u);
     assert_int_equal(fx_crc32c(0, "", 0), 0);
 }
 
 /* The RFC prints the bytes as sent, lowest first. */
-static void the_examples_of_rfc_3720_are_met(void **state)
+TEST(the_examples_of_rfc_3720_are_met)
 {
-    (void)state;
     uint8_t block[32];
     memset(block, 0, sizeof block);
     assert_int_equal(fx_crc32c(0, block, sizeof block), 0x8a9136aau);
@@ -52,9 +45,8 @@ static uint32_t crc_bit_by_bit(const uint8_t *data, size_t len)
     return ~crc;
 }
 
-static void every_length_and_alignment_agrees_with_the_definition(void **state)
+TEST(every_length_and_alignment_agrees_with_the_definition)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     uint8_t bytes[128];
@@ -68,9 +60,8 @@ static void every_length_and_alignment_agrees_with_the_definition(void **state)
     }
 }
 
-static void a_crc_goes_on_where_another_stopped(void **state)
+TEST(a_crc_goes_on_where_another_stopped)
 {
-    (void)state;
     const char text[] = "the sweep never waits for flash";
     const uint32_t whole = fx_crc32c(0, text, sizeof text);
     for (size_t cut = 0; cut <= sizeof text; cut++) {
@@ -78,9 +69,8 @@ static void a_crc_goes_on_where_another_stopped(void **state)
     }
 }
 
-static void any_single_bit_flipped_in_a_record_is_seen(void **state)
+TEST(any_single_bit_flipped_in_a_record_is_seen)
 {
-    (void)state;
     uint8_t record[512] = {0};
     const uint32_t clean = fx_crc32c(0, record, sizeof record);
     for (size_t bit = 0; bit < sizeof record * 8; bit++) {
@@ -88,16 +78,4 @@ static void any_single_bit_flipped_in_a_record_is_seen(void **state)
         assert_true(fx_crc32c(0, record, sizeof record) != clean);
         record[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_check_value_of_the_polynomial_is_met),
-        cmocka_unit_test(the_examples_of_rfc_3720_are_met),
-        cmocka_unit_test(every_length_and_alignment_agrees_with_the_definition),
-        cmocka_unit_test(a_crc_goes_on_where_another_stopped),
-        cmocka_unit_test(any_single_bit_flipped_in_a_record_is_seen),
-    };
-    return cmocka_run_group_tests_name("crc32c", tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* The decoder of IEEE 754 patterns against the machine's own floating point. */
+#include "check.h"
 #include "fx/float_bits.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const int64_t UNTOUCHED = 0x5a5a5a5a5a5a5a5a;
 
@@ -53,9 +48,8 @@ static uint64_t bits_of(double value)
 
 /* Every sign and exponent with a spread of fractions: 2^20 of the 2^32 patterns, each at random
  * within its 4096. */
-static void single_precision_agrees_with_the_machine_for_every_exponent(void **state)
+TEST(single_precision_agrees_with_the_machine_for_every_exponent)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (uint32_t cell = 0; cell < 1u << 20; cell++) {
@@ -66,9 +60,8 @@ static void single_precision_agrees_with_the_machine_for_every_exponent(void **s
     }
 }
 
-static void double_precision_agrees_with_the_machine_for_every_exponent(void **state)
+TEST(double_precision_agrees_with_the_machine_for_every_exponent)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 2);
     for (uint64_t cell = 0; cell < 1u << 19; cell++) {
@@ -79,9 +72,8 @@ static void double_precision_agrees_with_the_machine_for_every_exponent(void **s
     }
 }
 
-static void numbers_about_the_ends_of_the_range_are_kept_or_refused_rightly(void **state)
+TEST(numbers_about_the_ends_of_the_range_are_kept_or_refused_rightly)
 {
-    (void)state;
     static const double edges[] = {0.0,
                                    -0.0,
                                    0.25,
@@ -107,9 +99,8 @@ static void numbers_about_the_ends_of_the_range_are_kept_or_refused_rightly(void
     assert_true(fx_f64_bits_to_q(bits_of(-0x1p63), 0, &out) && out == INT64_MIN);
 }
 
-static void infinities_and_nan_are_refused_and_leave_the_result_alone(void **state)
+TEST(infinities_and_nan_are_refused_and_leave_the_result_alone)
 {
-    (void)state;
     static const uint32_t bad_f32[] = {0x7f800000, 0xff800000, 0x7fc00000, 0x7f800001, 0xffffffff};
     for (size_t i = 0; i < sizeof bad_f32 / sizeof bad_f32[0]; i++) {
         int64_t out = UNTOUCHED;
@@ -120,9 +111,8 @@ static void infinities_and_nan_are_refused_and_leave_the_result_alone(void **sta
     }
 }
 
-static void any_number_of_fraction_bits_is_answered_sensibly(void **state)
+TEST(any_number_of_fraction_bits_is_answered_sensibly)
 {
-    (void)state;
     int64_t out = UNTOUCHED;
     assert_true(fx_f32_bits_to_q(0x3f800000, INT32_MIN, &out));
     assert_true(out == 0);
@@ -131,16 +121,4 @@ static void any_number_of_fraction_bits_is_answered_sensibly(void **state)
     assert_true(out == UNTOUCHED);
     assert_true(fx_f64_bits_to_q(0, INT32_MAX, &out));
     assert_true(out == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_precision_agrees_with_the_machine_for_every_exponent),
-        cmocka_unit_test(double_precision_agrees_with_the_machine_for_every_exponent),
-        cmocka_unit_test(numbers_about_the_ends_of_the_range_are_kept_or_refused_rightly),
-        cmocka_unit_test(infinities_and_nan_are_refused_and_leave_the_result_alone),
-        cmocka_unit_test(any_number_of_fraction_bits_is_answered_sensibly),
-    };
-    return cmocka_run_group_tests_name("float_bits", tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* The noise: does the hash look like random numbers where the picture would show that it is none?
  * Limits are given in standard deviations of true randomness. */
+#include "check.h"
 #include "fx/hash.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { LOWEST_OF_HASH3 = 12 }; /* the bits that fx_hash3 promises are this and those above it */
 
@@ -49,9 +44,8 @@ static double worst_avalanche(int which)
 }
 
 /* One standard deviation of 2^14 coins is 0.0039; the largest of 1024 such is about 0.013. */
-static void each_input_bit_flips_each_output_bit_half_of_the_time(void **state)
+TEST(each_input_bit_flips_each_output_bit_half_of_the_time)
 {
-    (void)state;
     for (int which = 0; which < 3; which++) {
         const double worst = worst_avalanche(which);
         print_message("# avalanche, input %d: worst bias %.4f\n", which, worst);
@@ -73,9 +67,8 @@ static double chi_square(uint32_t epoch, int shift)
     return sum;
 }
 
-static void every_byte_is_uniform_over_a_grid_of_cells_at_each_epoch(void **state)
+TEST(every_byte_is_uniform_over_a_grid_of_cells_at_each_epoch)
 {
-    (void)state;
     double total = 0;
     for (uint32_t epoch = 0; epoch < 32; epoch++) {
         for (int shift = 0; shift < 32; shift += 8) {
@@ -106,9 +99,8 @@ static double correlation(uint32_t columns, uint32_t rows, uint32_t epochs)
     return sum * 12 / SIDE; /* a product has deviation 1/12, and there are SIDE^2 of them */
 }
 
-static void neighbouring_cells_rows_and_epochs_are_uncorrelated(void **state)
+TEST(neighbouring_cells_rows_and_epochs_are_uncorrelated)
 {
-    (void)state;
     double worst = 0, squares = 0;
     int pairs = 0;
     for (uint32_t rows = 0; rows <= 8; rows++) {
@@ -149,9 +141,8 @@ static int count_shared(uint64_t *values, size_t n)
 /* A hash that merely starts each line at a random place of one long sequence, lowbias32 of
  * (b + start), would overlap in about four pairs of these 8192 lines. Two values in a row are 64
  * bits, which none of 2^21 places shares by chance. */
-static void no_line_is_a_shifted_copy_of_another_line_or_look(void **state)
+TEST(no_line_is_a_shifted_copy_of_another_line_or_look)
 {
-    (void)state;
     enum { CELLS = 1 << 21 };
     uint64_t *values = malloc(CELLS * sizeof *values);
     assert_non_null(values);
@@ -166,9 +157,8 @@ static void no_line_is_a_shifted_copy_of_another_line_or_look(void **state)
 }
 
 /* 2^20 values of 32 bits would share 128 by chance. */
-static void no_two_cells_of_a_few_looks_share_a_value(void **state)
+TEST(no_two_cells_of_a_few_looks_share_a_value)
 {
-    (void)state;
     enum { CELLS = 1 << 20 };
     uint64_t *values = malloc(CELLS * sizeof *values);
     assert_non_null(values);
@@ -178,16 +168,4 @@ static void no_two_cells_of_a_few_looks_share_a_value(void **state)
     const int shared = count_shared(values, CELLS);
     free(values);
     assert_int_equal(shared, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_input_bit_flips_each_output_bit_half_of_the_time),
-        cmocka_unit_test(every_byte_is_uniform_over_a_grid_of_cells_at_each_epoch),
-        cmocka_unit_test(neighbouring_cells_rows_and_epochs_are_uncorrelated),
-        cmocka_unit_test(no_line_is_a_shifted_copy_of_another_line_or_look),
-        cmocka_unit_test(no_two_cells_of_a_few_looks_share_a_value),
-    };
-    return cmocka_run_group_tests_name("hash", tests, NULL, NULL);
 }

@@ -1,19 +1,13 @@
 /* Interpolation and saturation: properties over every weight and every edge. */
+#include "check.h"
 #include "fx/lerp.h"
 #include "fx/sat.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-static void a_flat_field_comes_back_unchanged_for_every_pair_of_weights(void **state)
+TEST(a_flat_field_comes_back_unchanged_for_every_pair_of_weights)
 {
-    (void)state;
     static const uint16_t fields[] = {0, 1, 255, 1000, 32767, 32768, 65534, 65535};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
         const uint16_t c = fields[i];
@@ -26,9 +20,8 @@ static void a_flat_field_comes_back_unchanged_for_every_pair_of_weights(void **s
 }
 
 /* Exact: the truth is a sum of integers times 2^-16, which a double holds without rounding. */
-static void a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights(void **state)
+TEST(a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (uint32_t tx = 0; tx <= 256; tx++) {
@@ -48,18 +41,16 @@ static void a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights(vo
     }
 }
 
-static void a_blend_meets_each_corner_exactly(void **state)
+TEST(a_blend_meets_each_corner_exactly)
 {
-    (void)state;
     assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 0, 0), 1u << 16);
     assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 256, 0), 20u << 16);
     assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 0, 256), 300u << 16);
     assert_int_equal(fx_bilerp_u16_q16(1, 20, 300, 65535, 256, 256), 65535u << 16);
 }
 
-static void sixty_four_bits_saturate_to_thirty_two(void **state)
+TEST(sixty_four_bits_saturate_to_thirty_two)
 {
-    (void)state;
     assert_int_equal(fx_sat_i32(INT32_MAX), INT32_MAX);
     assert_int_equal(fx_sat_i32(INT32_MIN), INT32_MIN);
     assert_int_equal(fx_sat_i32(-1), -1);
@@ -69,9 +60,8 @@ static void sixty_four_bits_saturate_to_thirty_two(void **state)
     assert_int_equal(fx_sat_i32(INT64_MIN), INT32_MIN);
 }
 
-static void clamp_minimum_maximum_and_magnitude_hold_at_the_edges(void **state)
+TEST(clamp_minimum_maximum_and_magnitude_hold_at_the_edges)
 {
-    (void)state;
     assert_int_equal(fx_clamp_i32(5, -3, 4), 4);
     assert_int_equal(fx_clamp_i32(-5, -3, 4), -3);
     assert_int_equal(fx_clamp_i32(0, -3, 4), 0);
@@ -82,16 +72,4 @@ static void clamp_minimum_maximum_and_magnitude_hold_at_the_edges(void **state)
     assert_int_equal(fx_abs_u32(INT32_MIN), 2147483648u);
     assert_int_equal(fx_abs_u32(INT32_MAX), 2147483647u);
     assert_int_equal(fx_abs_u32(-1), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_flat_field_comes_back_unchanged_for_every_pair_of_weights),
-        cmocka_unit_test(a_blend_is_exact_and_inside_its_corners_for_every_pair_of_weights),
-        cmocka_unit_test(a_blend_meets_each_corner_exactly),
-        cmocka_unit_test(sixty_four_bits_saturate_to_thirty_two),
-        cmocka_unit_test(clamp_minimum_maximum_and_magnitude_hold_at_the_edges),
-    };
-    return cmocka_run_group_tests_name("lerp", tests, NULL, NULL);
 }

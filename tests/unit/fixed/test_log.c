@@ -1,18 +1,12 @@
 /* Logarithms, powers and decibels against the C library; the errors are those of fx/log.h. */
+#include "check.h"
 #include "fx/log.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-static void zeros_at_either_end_are_counted_for_every_width(void **state)
+TEST(zeros_at_either_end_are_counted_for_every_width)
 {
-    (void)state;
     assert_int_equal(fx_clz32(0), 32);
     assert_int_equal(fx_clz64(0), 64);
     assert_int_equal(fx_ctz64(0), 64);
@@ -29,9 +23,8 @@ static void zeros_at_either_end_are_counted_for_every_width(void **state)
     }
 }
 
-static void log2_is_within_0_60_lsb(void **state)
+TEST(log2_is_within_0_60_lsb)
 {
-    (void)state;
     double worst = 0;
     for (uint32_t x = 1; x < 1u << 22; x++) {
         worst = fmax(worst, fabs(fx_log2_q16(x) - 65536 * log2(x)));
@@ -48,9 +41,8 @@ static void log2_is_within_0_60_lsb(void **state)
     assert_true(worst <= 0.60);
 }
 
-static void log2_is_exact_for_powers_of_two_and_minus_one_for_zero(void **state)
+TEST(log2_is_exact_for_powers_of_two_and_minus_one_for_zero)
 {
-    (void)state;
     for (int power = 0; power < 64; power++) {
         assert_int_equal(fx_log2_q16_u64(1ull << power), power * 65536);
         if (power < 32) {
@@ -63,9 +55,8 @@ static void log2_is_exact_for_powers_of_two_and_minus_one_for_zero(void **state)
     assert_int_equal(fx_log2_q16_u64(UINT64_MAX), 64 * 65536);
 }
 
-static void log2_never_falls(void **state)
+TEST(log2_never_falls)
 {
-    (void)state;
     for (uint32_t x = 0; x < 1u << 20; x++) {
         assert_true(fx_log2_q16(x + 1) >= fx_log2_q16(x));
     }
@@ -77,9 +68,8 @@ static double error_beyond_rounding(uint32_t got, double want)
     return (fabs(got - want) - 0.5) / want;
 }
 
-static void exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range(void **state)
+TEST(exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range)
 {
-    (void)state;
     double worst = 0;
     for (int32_t x_q16 = -17 * 65536; x_q16 < 16 * 65536; x_q16++) {
         const double want = 65536 * exp2(x_q16 / 65536.0);
@@ -89,9 +79,8 @@ static void exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range(void **stat
     assert_true(worst <= 4e-9);
 }
 
-static void exp2_saturates_above_and_vanishes_below(void **state)
+TEST(exp2_saturates_above_and_vanishes_below)
 {
-    (void)state;
     assert_int_equal(fx_exp2_q16(0), 65536);
     assert_int_equal(fx_exp2_q16(15 * 65536), 1u << 31);
     assert_int_equal(fx_exp2_q16(16 * 65536), UINT32_MAX);
@@ -101,9 +90,8 @@ static void exp2_saturates_above_and_vanishes_below(void **state)
     assert_int_equal(fx_exp2_q16(INT32_MIN), 0);
 }
 
-static void exp2_of_log2_comes_back(void **state)
+TEST(exp2_of_log2_comes_back)
 {
-    (void)state;
     for (uint32_t x = 1; x < 65536; x++) {
         /* 1.1 lsb of Q16 in the exponent is 1.2e-5 of the number. */
         const double back = fx_exp2_q16(fx_log2_q16(x)) / 65536.0;
@@ -111,9 +99,8 @@ static void exp2_of_log2_comes_back(void **state)
     }
 }
 
-static void decibels_are_within_0_0108_dB_for_powers_of_every_size(void **state)
+TEST(decibels_are_within_0_0108_dB_for_powers_of_every_size)
 {
-    (void)state;
     double worst = 0;
     for (uint32_t power = 1; power < 1u << 22; power++) {
         worst = fmax(worst, fabs(fx_db_q8(power) / 256.0 - 10 * log10(power)));
@@ -128,9 +115,8 @@ static void decibels_are_within_0_0108_dB_for_powers_of_every_size(void **state)
     assert_true(worst <= 0.0108);
 }
 
-static void decibels_never_fall_and_keep_to_their_range(void **state)
+TEST(decibels_never_fall_and_keep_to_their_range)
 {
-    (void)state;
     for (uint32_t power = 0; power < 1u << 20; power++) {
         assert_true(fx_db_q8(power + 1) >= fx_db_q8(power));
     }
@@ -139,9 +125,8 @@ static void decibels_never_fall_and_keep_to_their_range(void **state)
     assert_int_equal(fx_db_q8(UINT32_MAX), 24659);
 }
 
-static void decibels_of_64_bits_are_within_0_012_dB(void **state)
+TEST(decibels_of_64_bits_are_within_0_012_dB)
 {
-    (void)state;
     double worst = 0;
     struct hs_rng rng;
     hs_rng_seed(&rng, 3);
@@ -154,9 +139,8 @@ static void decibels_of_64_bits_are_within_0_012_dB(void **state)
     assert_int_equal(fx_db_q8_u64(0), -768);
 }
 
-static void decibels_of_many_are_within_0_015_dB_and_never_fall(void **state)
+TEST(decibels_of_many_are_within_0_015_dB_and_never_fall)
 {
-    (void)state;
     double worst = 0;
     for (uint32_t power = 1; power < 1u << 20; power++) {
         worst = fmax(worst, fabs(fx_db_q8_of_many(power) / 256.0 - 10 * log10(power)));
@@ -172,9 +156,8 @@ static void decibels_of_many_are_within_0_015_dB_and_never_fall(void **state)
     assert_int_equal(fx_db_q8_of_many(0), -43029);
 }
 
-static void decibels_of_many_with_a_sign_are_the_same(void **state)
+TEST(decibels_of_many_with_a_sign_are_the_same)
 {
-    (void)state;
     for (int32_t power = 1; power < 1 << 20; power++) {
         assert_int_equal(fx_db_q8_of_many_i32(power), fx_db_q8_of_many((uint32_t)power));
     }
@@ -185,9 +168,8 @@ static void decibels_of_many_with_a_sign_are_the_same(void **state)
     assert_int_equal(fx_db_q8_of_many_i32(0), -43800);
 }
 
-static void power_from_decibels_is_within_half_an_lsb_and_4e_9(void **state)
+TEST(power_from_decibels_is_within_half_an_lsb_and_4e_9)
 {
-    (void)state;
     double worst = 0;
     for (int32_t db_q8 = -13100; db_q8 < 12331; db_q8++) {
         const double want = 65536 * pow(10, db_q8 / 2560.0);
@@ -197,9 +179,8 @@ static void power_from_decibels_is_within_half_an_lsb_and_4e_9(void **state)
     assert_true(worst <= 4e-9);
 }
 
-static void power_from_decibels_saturates_above_and_vanishes_below(void **state)
+TEST(power_from_decibels_saturates_above_and_vanishes_below)
 {
-    (void)state;
     assert_int_equal(fx_power_q16_from_db_q8(0), 65536);
     assert_int_equal(fx_power_q16_from_db_q8(10 * 256), 655360);
     assert_true(fx_power_q16_from_db_q8(12330) < UINT32_MAX);
@@ -210,9 +191,8 @@ static void power_from_decibels_saturates_above_and_vanishes_below(void **state)
     assert_int_equal(fx_power_q16_from_db_q8(INT32_MIN), 0);
 }
 
-static void powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_fall(void **state)
+TEST(powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_fall)
 {
-    (void)state;
     double worst = 0;
     for (int32_t db_q8 = -45 * 256; db_q8 <= 24 * 256; db_q8++) {
         const double power = fx_power_q24_of_many(db_q8) / 16777216.0;
@@ -227,9 +207,8 @@ static void powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_
     assert_int_equal(fx_power_q24_of_many((1 << 17) - 1), fx_power_q24_of_many(50 * 256));
 }
 
-static void sums_of_many_are_within_0_018_dB_either_way_round(void **state)
+TEST(sums_of_many_are_within_0_018_dB_either_way_round)
 {
-    (void)state;
     double worst = 0;
     for (int32_t a_q8 = -60 * 256; a_q8 <= 20 * 256; a_q8 += 7) {
         const int32_t b_q8 = -20 * 256;
@@ -241,35 +220,10 @@ static void sums_of_many_are_within_0_018_dB_either_way_round(void **state)
     assert_true(worst < 0.018);
 }
 
-static void the_farther_apart_the_less_is_added(void **state)
+TEST(the_farther_apart_the_less_is_added)
 {
-    (void)state;
     for (int32_t apart_q8 = 0; apart_q8 < 0x4000; apart_q8++) {
         assert_true(fx_db_q8_sum_of_many(0, -apart_q8) >= fx_db_q8_sum_of_many(0, -apart_q8 - 1));
     }
     assert_int_equal(fx_db_q8_sum_of_many(0, -0x8000), 1); /* what 32 dB still add, rounded */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(zeros_at_either_end_are_counted_for_every_width),
-        cmocka_unit_test(log2_is_within_0_60_lsb),
-        cmocka_unit_test(log2_is_exact_for_powers_of_two_and_minus_one_for_zero),
-        cmocka_unit_test(log2_never_falls),
-        cmocka_unit_test(exp2_is_within_half_an_lsb_and_4e_9_over_its_whole_range),
-        cmocka_unit_test(exp2_saturates_above_and_vanishes_below),
-        cmocka_unit_test(exp2_of_log2_comes_back),
-        cmocka_unit_test(decibels_are_within_0_0108_dB_for_powers_of_every_size),
-        cmocka_unit_test(decibels_never_fall_and_keep_to_their_range),
-        cmocka_unit_test(decibels_of_64_bits_are_within_0_012_dB),
-        cmocka_unit_test(decibels_of_many_are_within_0_015_dB_and_never_fall),
-        cmocka_unit_test(decibels_of_many_with_a_sign_are_the_same),
-        cmocka_unit_test(powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_fall),
-        cmocka_unit_test(sums_of_many_are_within_0_018_dB_either_way_round),
-        cmocka_unit_test(power_from_decibels_is_within_half_an_lsb_and_4e_9),
-        cmocka_unit_test(power_from_decibels_saturates_above_and_vanishes_below),
-        cmocka_unit_test(the_farther_apart_the_less_is_added),
-    };
-    return cmocka_run_group_tests_name("log", tests, NULL, NULL);
 }

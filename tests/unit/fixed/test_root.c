@@ -1,15 +1,10 @@
 /* Roots and reciprocals are exact, so the proof is their definition rather than a tolerance. */
+#include "check.h"
 #include "fx/recip.h"
 #include "fx/root.h"
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 /* Whether r^2 <= x < (r + 1)^2, written without overflow. */
 static bool is_floor_of_root(uint64_t r, uint64_t x)
@@ -17,17 +12,15 @@ static bool is_floor_of_root(uint64_t r, uint64_t x)
     return r <= UINT32_MAX && r * r <= x && x - r * r <= 2 * r;
 }
 
-static void the_root_of_every_24_bit_number_is_its_floor(void **state)
+TEST(the_root_of_every_24_bit_number_is_its_floor)
 {
-    (void)state;
     for (uint32_t x = 0; x < 1u << 24; x++) {
         assert_true(is_floor_of_root(fx_sqrt_u64(x), x));
     }
 }
 
-static void the_root_of_numbers_of_every_size_is_its_floor(void **state)
+TEST(the_root_of_numbers_of_every_size_is_its_floor)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (int i = 0; i < 5000000; i++) {
@@ -41,9 +34,8 @@ static void the_root_of_numbers_of_every_size_is_its_floor(void **state)
     assert_int_equal(fx_sqrt_u64(UINT64_MAX), UINT32_MAX);
 }
 
-static void the_root_steps_exactly_at_each_square(void **state)
+TEST(the_root_steps_exactly_at_each_square)
 {
-    (void)state;
     for (uint64_t r = 1; r <= UINT32_MAX; r += 1021) {
         assert_true(fx_sqrt_u64(r * r) == r);
         assert_true(fx_sqrt_u64(r * r - 1) == r - 1);
@@ -53,9 +45,8 @@ static void the_root_steps_exactly_at_each_square(void **state)
     assert_int_equal(fx_sqrt_u64(last * last - 1), last - 1);
 }
 
-static void hypot_is_the_floor_for_all_signs_and_the_largest_numbers(void **state)
+TEST(hypot_is_the_floor_for_all_signs_and_the_largest_numbers)
 {
-    (void)state;
     assert_int_equal(fx_hypot_u32(3, -4), 5);
     assert_int_equal(fx_hypot_u32(0, 0), 0);
     assert_int_equal(fx_hypot_u32(INT32_MIN, 0), 2147483648u);
@@ -78,9 +69,8 @@ static bool is_reciprocal(uint32_t d)
     return s >= 31 && s <= 63 && r == (1ull << s) / d && r >> 31 == 1;
 }
 
-static void the_reciprocal_is_floor_of_a_power_of_two_by_division(void **state)
+TEST(the_reciprocal_is_floor_of_a_power_of_two_by_division)
 {
-    (void)state;
     for (uint32_t d = 1; d < 1u << 20; d++) {
         assert_true(is_reciprocal(d));
     }
@@ -97,17 +87,15 @@ static void the_reciprocal_is_floor_of_a_power_of_two_by_division(void **state)
     }
 }
 
-static void the_reciprocal_of_zero_is_the_largest(void **state)
+TEST(the_reciprocal_of_zero_is_the_largest)
 {
-    (void)state;
     int s = -1;
     assert_int_equal(fx_recip_q(0, &s), UINT32_MAX);
     assert_int_equal(s, 0);
 }
 
-static void multiplying_by_the_reciprocal_divides_or_falls_one_short(void **state)
+TEST(multiplying_by_the_reciprocal_divides_or_falls_one_short)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
     for (int i = 0; i < 2000000; i++) {
@@ -119,18 +107,4 @@ static void multiplying_by_the_reciprocal_divides_or_falls_one_short(void **stat
         const uint64_t quotient = x * r >> s;
         assert_true(quotient == x / d || quotient + 1 == x / d);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_root_of_every_24_bit_number_is_its_floor),
-        cmocka_unit_test(the_root_of_numbers_of_every_size_is_its_floor),
-        cmocka_unit_test(the_root_steps_exactly_at_each_square),
-        cmocka_unit_test(hypot_is_the_floor_for_all_signs_and_the_largest_numbers),
-        cmocka_unit_test(the_reciprocal_is_floor_of_a_power_of_two_by_division),
-        cmocka_unit_test(the_reciprocal_of_zero_is_the_largest),
-        cmocka_unit_test(multiplying_by_the_reciprocal_divides_or_falls_one_short),
-    };
-    return cmocka_run_group_tests_name("root", tests, NULL, NULL);
 }

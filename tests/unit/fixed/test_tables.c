@@ -1,15 +1,11 @@
 /* The tables that are compiled are those of the formulas, and the same on every machine. */
+#include "check.h"
 #include "fx/crc32c.h"
 #include "support.h"
 #include "tables/tables.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* The CRC-32C of each set's text. A machine whose mathematical library rounds otherwise, or a
  * formula that has changed, shows here; after a change of a formula, which is also one of the
@@ -41,9 +37,8 @@ static char *made_text(const struct table_set *set)
     return made;
 }
 
-static void the_tables_that_were_compiled_are_those_of_the_formulas(void **state)
+TEST(the_tables_that_were_compiled_are_those_of_the_formulas)
 {
-    (void)state;
     for (int i = 0; i < table_set_count; i++) {
         char path[512];
         snprintf(path, sizeof path, "%s/gen/%s", support_build_dir(), table_sets[i].file);
@@ -55,9 +50,8 @@ static void the_tables_that_were_compiled_are_those_of_the_formulas(void **state
     }
 }
 
-static void the_tables_are_the_same_on_every_machine_that_builds(void **state)
+TEST(the_tables_are_the_same_on_every_machine_that_builds)
 {
-    (void)state;
     assert_int_equal(sizeof known / sizeof *known, table_set_count);
     for (int i = 0; i < table_set_count; i++) {
         char *made = made_text(&table_sets[i]);
@@ -76,9 +70,8 @@ static int64_t one_too_large(int row, int i)
     return i == 2 ? 65536 : 0;
 }
 
-static void an_entry_that_does_not_fit_its_type_is_refused(void **state)
+TEST(an_entry_that_does_not_fit_its_type_is_refused)
 {
-    (void)state;
     const struct table wide = {"wide", "uint32_t", "fits", 0, 3, one_too_large};
     const struct table narrow = {"narrow", "uint16_t", "does not fit", 0, 3, one_too_large};
     const struct table_set fits = {"test", "", "", &wide, 1};
@@ -90,9 +83,8 @@ static void an_entry_that_does_not_fit_its_type_is_refused(void **state)
     fclose(out);
 }
 
-static void the_program_writes_the_same_text_to_a_file_and_to_its_output(void **state)
+TEST(the_program_writes_the_same_text_to_a_file_and_to_its_output)
 {
-    (void)state;
     const char *build = support_build_dir();
     assert_int_equal(support_run("mkdir -p %s/tmp", build), 0);
     assert_int_equal(support_run("%s/bin/landmass-tables fixed %s/tmp/tables.c && "
@@ -102,25 +94,12 @@ static void the_program_writes_the_same_text_to_a_file_and_to_its_output(void **
                      0);
 }
 
-static void the_program_explains_itself_and_refuses_what_makes_no_sense(void **state)
+TEST(the_program_explains_itself_and_refuses_what_makes_no_sense)
 {
-    (void)state;
     const char *build = support_build_dir();
     assert_int_equal(support_run("%s/bin/landmass-tables --help | grep -q 'usage:'", build), 0);
     assert_int_equal(support_run("%s/bin/landmass-tables 2>/dev/null", build), 2);
     assert_int_equal(support_run("%s/bin/landmass-tables nonsense 2>/dev/null", build), 2);
     assert_int_equal(support_run("%s/bin/landmass-tables fixed /nowhere/x.c 2>/dev/null", build),
                      1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_tables_that_were_compiled_are_those_of_the_formulas),
-        cmocka_unit_test(the_tables_are_the_same_on_every_machine_that_builds),
-        cmocka_unit_test(an_entry_that_does_not_fit_its_type_is_refused),
-        cmocka_unit_test(the_program_writes_the_same_text_to_a_file_and_to_its_output),
-        cmocka_unit_test(the_program_explains_itself_and_refuses_what_makes_no_sense),
-    };
-    return cmocka_run_group_tests_name("tables", tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* Sine, cosine, tangent and atan2 against the C library's double precision; the errors asserted
  * here are the ones that fx/trig.h states. */
+#include "check.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double RADIANS_PER_COUNT = 2 * 3.14159265358979323846 / 4294967296.0;
 
@@ -32,9 +27,8 @@ static double worst_over_the_circle(int32_t (*f)(fx_bam_t), double (*truth)(doub
     return worst;
 }
 
-static void degrees_become_the_nearest_count_and_wrap(void **state)
+TEST(degrees_become_the_nearest_count_and_wrap)
 {
-    (void)state;
     for (int degrees = -3600; degrees <= 3600; degrees++) {
         const double turns = degrees / 360.0;
         const double want = round((turns - floor(turns)) * 4294967296.0);
@@ -45,31 +39,27 @@ static void degrees_become_the_nearest_count_and_wrap(void **state)
     assert_int_equal(FX_BAM_DEG(-180), FX_BAM_180);
 }
 
-static void sine_q30_is_within_0_76_lsb_all_round(void **state)
+TEST(sine_q30_is_within_0_76_lsb_all_round)
 {
-    (void)state;
     const double worst = worst_over_the_circle(fx_sin_q30, sin, 1073741824.0);
     print_message("# sine Q30: worst %.3f lsb\n", worst);
     assert_true(worst <= 0.76);
 }
 
-static void cosine_q30_is_within_0_76_lsb_all_round(void **state)
+TEST(cosine_q30_is_within_0_76_lsb_all_round)
 {
-    (void)state;
     assert_true(worst_over_the_circle(fx_cos_q30, cos, 1073741824.0) <= 0.76);
 }
 
-static void sine_q15_is_within_0_58_lsb_all_round(void **state)
+TEST(sine_q15_is_within_0_58_lsb_all_round)
 {
-    (void)state;
     const double worst = worst_over_the_circle(fx_sin_q15, sin, 32768.0);
     print_message("# sine Q15: worst %.3f lsb\n", worst);
     assert_true(worst <= 0.58);
 }
 
-static void sine_and_cosine_q15_are_within_0_58_lsb_on_all_65536_sixteen_bit_angles(void **state)
+TEST(sine_and_cosine_q15_are_within_0_58_lsb_on_all_65536_sixteen_bit_angles)
 {
-    (void)state;
     double worst = 0;
     for (uint32_t i = 0; i < 65536; i++) {
         const double angle = radians(i << 16);
@@ -79,9 +69,8 @@ static void sine_and_cosine_q15_are_within_0_58_lsb_on_all_65536_sixteen_bit_ang
     assert_true(worst <= 0.58);
 }
 
-static void sine_and_cosine_are_exact_on_the_axes(void **state)
+TEST(sine_and_cosine_are_exact_on_the_axes)
 {
-    (void)state;
     static const int quarter_sine[4] = {0, 1, 0, -1};
     for (uint32_t quarter = 0; quarter < 4; quarter++) {
         const fx_bam_t angle = quarter * FX_BAM_90;
@@ -93,9 +82,8 @@ static void sine_and_cosine_are_exact_on_the_axes(void **state)
     }
 }
 
-static void sine_is_odd_cosine_is_even_and_quadrants_mirror_exactly(void **state)
+TEST(sine_is_odd_cosine_is_even_and_quadrants_mirror_exactly)
 {
-    (void)state;
     for (uint32_t i = 0; i < 1u << 20; i++) {
         const fx_bam_t angle = i * 4099u; /* odd, hence all over the circle */
         assert_true(fx_sin_q30(0u - angle) == -fx_sin_q30(angle));
@@ -108,9 +96,8 @@ static void sine_is_odd_cosine_is_even_and_quadrants_mirror_exactly(void **state
 }
 
 /* Every 64th count, and every single one about the seams between two nodes of the table. */
-static void sine_never_falls_between_0_and_90_degrees(void **state)
+TEST(sine_never_falls_between_0_and_90_degrees)
 {
-    (void)state;
     int32_t last_q30 = 0, last_q15 = 0;
     for (uint32_t angle = 0; angle <= FX_BAM_90; angle += 64) {
         assert_true(fx_sin_q30(angle) >= last_q30);
@@ -138,17 +125,15 @@ static double worst_tangent(int degrees)
     return worst;
 }
 
-static void tangent_is_within_0_51_lsb_to_60_degrees_and_0_7_to_89(void **state)
+TEST(tangent_is_within_0_51_lsb_to_60_degrees_and_0_7_to_89)
 {
-    (void)state;
     print_message("# tangent Q16: worst %.3f lsb to 89 degrees\n", worst_tangent(89));
     assert_true(worst_tangent(60) <= 0.51);
     assert_true(worst_tangent(89) <= 0.7);
 }
 
-static void tangent_repeats_each_half_turn_and_saturates_at_the_poles(void **state)
+TEST(tangent_repeats_each_half_turn_and_saturates_at_the_poles)
 {
-    (void)state;
     assert_int_equal(fx_tan_q16(0), 0);
     assert_int_equal(fx_tan_q16(FX_BAM_DEG(45)), 65536);
     assert_int_equal(fx_tan_q16(FX_BAM_DEG(135)), -65536);
@@ -168,9 +153,8 @@ static double atan2_error(int32_t y, int32_t x)
     return fabs(remainder(fx_atan2(y, x) - want, 4294967296.0));
 }
 
-static void atan2_is_within_2_6_counts_for_vectors_of_every_size(void **state)
+TEST(atan2_is_within_2_6_counts_for_vectors_of_every_size)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 3);
     double worst = 0;
@@ -192,9 +176,8 @@ static void atan2_is_within_2_6_counts_for_vectors_of_every_size(void **state)
     assert_true(worst <= 2.6);
 }
 
-static void atan2_is_exact_on_axes_and_diagonals_even_at_the_largest_numbers(void **state)
+TEST(atan2_is_exact_on_axes_and_diagonals_even_at_the_largest_numbers)
 {
-    (void)state;
     static const int32_t sizes[] = {1, 2, 3, 5, 1000, 65537, 0x3fffffff, INT32_MAX - 1, INT32_MAX};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         const int32_t r = sizes[i];
@@ -213,9 +196,8 @@ static void atan2_is_exact_on_axes_and_diagonals_even_at_the_largest_numbers(voi
     assert_int_equal(fx_atan2(0, INT32_MIN), FX_BAM_180);
 }
 
-static void atan2_meets_its_error_where_numbers_are_extreme(void **state)
+TEST(atan2_meets_its_error_where_numbers_are_extreme)
 {
-    (void)state;
     static const int32_t edges[] = {INT32_MIN, INT32_MIN + 1, -65536,   -2, -1, 0, 1, 2, 65535,
                                     3,         INT32_MAX - 1, INT32_MAX};
     const size_t n = sizeof edges / sizeof edges[0];
@@ -225,33 +207,11 @@ static void atan2_meets_its_error_where_numbers_are_extreme(void **state)
     }
 }
 
-static void atan2_finds_the_angle_back_from_its_sine_and_cosine(void **state)
+TEST(atan2_finds_the_angle_back_from_its_sine_and_cosine)
 {
-    (void)state;
     for (uint32_t i = 0; i < 1u << 20; i++) {
         const fx_bam_t angle = i * 4099u;
         const int32_t off = (int32_t)(fx_atan2(fx_sin_q30(angle), fx_cos_q30(angle)) - angle);
         assert_true(fx_abs_u32(off) <= 4);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(degrees_become_the_nearest_count_and_wrap),
-        cmocka_unit_test(sine_q30_is_within_0_76_lsb_all_round),
-        cmocka_unit_test(cosine_q30_is_within_0_76_lsb_all_round),
-        cmocka_unit_test(sine_q15_is_within_0_58_lsb_all_round),
-        cmocka_unit_test(sine_and_cosine_q15_are_within_0_58_lsb_on_all_65536_sixteen_bit_angles),
-        cmocka_unit_test(sine_and_cosine_are_exact_on_the_axes),
-        cmocka_unit_test(sine_is_odd_cosine_is_even_and_quadrants_mirror_exactly),
-        cmocka_unit_test(sine_never_falls_between_0_and_90_degrees),
-        cmocka_unit_test(tangent_is_within_0_51_lsb_to_60_degrees_and_0_7_to_89),
-        cmocka_unit_test(tangent_repeats_each_half_turn_and_saturates_at_the_poles),
-        cmocka_unit_test(atan2_is_within_2_6_counts_for_vectors_of_every_size),
-        cmocka_unit_test(atan2_is_exact_on_axes_and_diagonals_even_at_the_largest_numbers),
-        cmocka_unit_test(atan2_meets_its_error_where_numbers_are_extreme),
-        cmocka_unit_test(atan2_finds_the_angle_back_from_its_sine_and_cosine),
-    };
-    return cmocka_run_group_tests_name("trig", tests, NULL, NULL);
 }

@@ -6,16 +6,11 @@
 #include "support.h"
 
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/types.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 enum { STEP_US = 2000 };
@@ -96,9 +91,8 @@ static void expect_nothing(struct bezel *b)
     assert_false(drv_control_ring_take(&b->ring, &c));
 }
 
-static void each_key_is_the_button_that_the_configuration_says(void **state)
+TEST(each_key_is_the_button_that_the_configuration_says)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     uint64_t now = 0;
@@ -121,9 +115,8 @@ static void each_key_is_the_button_that_the_configuration_says(void **state)
 }
 
 /* The kernel's event is lost: the level is noticed all the same. */
-static void a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second(void **state)
+TEST(a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     uint64_t now = 0;
@@ -134,9 +127,8 @@ static void a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second(v
     bezel_close(&b);
 }
 
-static void a_key_that_is_down_at_the_start_is_stuck_and_means_nothing(void **state)
+TEST(a_key_that_is_down_at_the_start_is_stuck_and_means_nothing)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     uint64_t now = 0;
@@ -157,9 +149,8 @@ static void a_key_that_is_down_at_the_start_is_stuck_and_means_nothing(void **st
     bezel_close(&b);
 }
 
-static void a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go(void **state)
+TEST(a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     uint64_t now = 0;
@@ -175,9 +166,8 @@ static void a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go(v
     bezel_close(&b);
 }
 
-static void a_line_that_is_missing_does_not_stop_the_others(void **state)
+TEST(a_line_that_is_missing_does_not_stop_the_others)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     uint64_t now = 0;
@@ -192,9 +182,8 @@ static void a_line_that_is_missing_does_not_stop_the_others(void **state)
     bezel_close(&b);
 }
 
-static void lamps_and_backlight_follow_and_go_out_at_the_end(void **state)
+TEST(lamps_and_backlight_follow_and_go_out_at_the_end)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     make_backlight(200);
@@ -215,9 +204,8 @@ static void lamps_and_backlight_follow_and_go_out_at_the_end(void **state)
     assert_false(alive->level);
 }
 
-static void a_backlight_that_is_not_there_is_done_without(void **state)
+TEST(a_backlight_that_is_not_there_is_done_without)
 {
-    (void)state;
     static struct bezel b;
     static struct config c;
     set_up(&b, &c);
@@ -228,18 +216,4 @@ static void a_backlight_that_is_not_there_is_done_without(void **state)
     const struct bezel_lamps night = {.is_night = true};
     bezel_show(&b, &night);
     bezel_close(&b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_key_is_the_button_that_the_configuration_says),
-        cmocka_unit_test(a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second),
-        cmocka_unit_test(a_key_that_is_down_at_the_start_is_stuck_and_means_nothing),
-        cmocka_unit_test(a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go),
-        cmocka_unit_test(a_line_that_is_missing_does_not_stop_the_others),
-        cmocka_unit_test(lamps_and_backlight_follow_and_go_out_at_the_end),
-        cmocka_unit_test(a_backlight_that_is_not_there_is_done_without),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

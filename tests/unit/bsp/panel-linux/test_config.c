@@ -1,14 +1,9 @@
 /* The configuration file: what it takes, and what it does with lines that are wrong. */
+#include "check.h"
 #include "config.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 struct told {
     uint32_t count, line;
@@ -32,9 +27,8 @@ static struct told read_text(struct config *c, const char *text)
     return t;
 }
 
-static void every_default_is_a_value_of_its_option(void **state)
+TEST(every_default_is_a_value_of_its_option)
 {
-    (void)state;
     struct config defaults, c;
     char text[CONFIG_FILE_BYTES] = "";
     for (uint32_t i = 0; i < config_option_count(); i++) {
@@ -60,9 +54,8 @@ static void every_default_is_a_value_of_its_option(void **state)
 
 /* Every option, given a value that none of them takes, is refused, named by its line, and as it
  * was. Texts and paths take nearly anything, so theirs is too long. */
-static void every_option_refuses_what_is_no_value_of_it(void **state)
+TEST(every_option_refuses_what_is_no_value_of_it)
 {
-    (void)state;
     char nonsense[200];
     memset(nonsense, '~', sizeof nonsense - 1);
     nonsense[sizeof nonsense - 1] = '\0';
@@ -78,9 +71,8 @@ static void every_option_refuses_what_is_no_value_of_it(void **state)
     }
 }
 
-static void every_profile_of_the_bus_is_a_choice(void **state)
+TEST(every_profile_of_the_bus_is_a_choice)
 {
-    (void)state;
     for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
         struct config c;
         char text[100];
@@ -90,9 +82,8 @@ static void every_profile_of_the_bus_is_a_choice(void **state)
     }
 }
 
-static void numbers_are_held_to_their_range(void **state)
+TEST(numbers_are_held_to_their_range)
 {
-    (void)state;
     static const struct {
         const char *text;
         bool is_good;
@@ -157,9 +148,8 @@ static void numbers_are_held_to_their_range(void **state)
     }
 }
 
-static void values_arrive_where_they_belong(void **state)
+TEST(values_arrive_where_they_belong)
 {
-    (void)state;
     struct config c;
     const struct told t = read_text(&c,
                                     "\t can=vcan1\r\n"
@@ -185,9 +175,8 @@ static void values_arrive_where_they_belong(void **state)
     assert_int_equal(c.glass_turn, DRV_TURN_270);
 }
 
-static void an_option_that_is_given_twice_keeps_its_first_value(void **state)
+TEST(an_option_that_is_given_twice_keeps_its_first_value)
 {
-    (void)state;
     struct config c;
     const struct told t = read_text(&c, "can = a\nseed = 1\ncan = b\n");
     assert_int_equal(t.count, 1);
@@ -195,9 +184,8 @@ static void an_option_that_is_given_twice_keeps_its_first_value(void **state)
     assert_string_equal(c.can, "a");
 }
 
-static void a_wrong_line_does_not_hide_the_right_one_behind_it(void **state)
+TEST(a_wrong_line_does_not_hide_the_right_one_behind_it)
 {
-    (void)state;
     struct config c;
     const struct told t = read_text(&c, "seed = x\nseed = 7\n");
     assert_int_equal(t.count, 1);
@@ -205,9 +193,8 @@ static void a_wrong_line_does_not_hide_the_right_one_behind_it(void **state)
     assert_int_equal(c.seed, 7);
 }
 
-static void what_is_no_text_and_what_is_too_long_loses_only_its_line(void **state)
+TEST(what_is_no_text_and_what_is_too_long_loses_only_its_line)
 {
-    (void)state;
     struct config c;
     struct told t = {0};
     char text[1024] = "can = x\001\n";
@@ -219,19 +206,4 @@ static void what_is_no_text_and_what_is_too_long_loses_only_its_line(void **stat
     assert_int_equal(t.line, 4);
     assert_string_equal(c.can, "can0");
     assert_int_equal(c.seed, 3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_default_is_a_value_of_its_option),
-        cmocka_unit_test(every_option_refuses_what_is_no_value_of_it),
-        cmocka_unit_test(every_profile_of_the_bus_is_a_choice),
-        cmocka_unit_test(numbers_are_held_to_their_range),
-        cmocka_unit_test(values_arrive_where_they_belong),
-        cmocka_unit_test(an_option_that_is_given_twice_keeps_its_first_value),
-        cmocka_unit_test(a_wrong_line_does_not_hide_the_right_one_behind_it),
-        cmocka_unit_test(what_is_no_text_and_what_is_too_long_loses_only_its_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

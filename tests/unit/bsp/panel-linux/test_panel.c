@@ -1,15 +1,12 @@
 /* The whole panel, without devices and with a bus and a flash: what it does in its loop, and what
  * it must not do there. The kernel's side of each device is tested in the virtual machine. */
+#include "check.h"
 #include "panel.h"
 #include "support.h"
 #include "unit_rig.h"
 
 #include <pthread.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,8 +14,6 @@
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* Every allocation of the program comes by here, those of the libraries too. */
 extern void *__libc_malloc(size_t size);
@@ -144,9 +139,8 @@ static void look_closely(struct flight *f)
     assert_int_equal(f->panel.unit->page.picture, LM_PICTURE_PATCH);
 }
 
-static void a_panel_without_any_device_draws_its_page_and_says_what_is_missing(void **state)
+TEST(a_panel_without_any_device_draws_its_page_and_says_what_is_missing)
 {
-    (void)state;
     const struct config c = nothing_fitted();
     struct panel p;
     assert_int_equal(panel_open(&p, &c), 0);
@@ -163,9 +157,8 @@ static void a_panel_without_any_device_draws_its_page_and_says_what_is_missing(v
     panel_close(&p);
 }
 
-static void from_the_first_step_on_the_loop_allocates_nothing(void **state)
+TEST(from_the_first_step_on_the_loop_allocates_nothing)
 {
-    (void)state;
     struct flight *f = take_off();
     const uint32_t before = allocations;
     fly(f, 10);
@@ -182,9 +175,8 @@ static void from_the_first_step_on_the_loop_allocates_nothing(void **state)
     land(f);
 }
 
-static void a_database_that_is_lost_in_flight_is_said_and_outlived(void **state)
+TEST(a_database_that_is_lost_in_flight_is_said_and_outlived)
 {
-    (void)state;
     struct flight *f = take_off();
     fly(f, 1);
     assert_int_equal(truncate(f->config.database, 0), 0);
@@ -199,9 +191,8 @@ static void a_database_that_is_lost_in_flight_is_said_and_outlived(void **state)
 }
 
 /* A country without coarser levels: 121 tiles at its coarsest level, and 16 more are needed. */
-static void a_database_that_needs_more_tiles_is_said_on_the_glass(void **state)
+TEST(a_database_that_needs_more_tiles_is_said_on_the_glass)
 {
-    (void)state;
     struct config c = nothing_fitted();
     struct panel p;
     struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -224,9 +215,8 @@ static void a_database_that_needs_more_tiles_is_said_on_the_glass(void **state)
     tiny_image_free(&image);
 }
 
-static void the_hand_controllers_ring_reaches_the_page(void **state)
+TEST(the_hand_controllers_ring_reaches_the_page)
 {
-    (void)state;
     struct flight *f = take_off();
     fly(f, 0.5);
     drv_control_ring_put(&f->panel.hand.ring, lm_control_button(true, 12));
@@ -248,9 +238,8 @@ static void *stop_soon(void *unused)
 }
 
 /* In real time, with systemd's socket at the other end. */
-static void it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told(void **state)
+TEST(it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told)
 {
-    (void)state;
     struct sockaddr_un at = {.sun_family = AF_UNIX};
     snprintf(at.sun_path, sizeof at.sun_path, "/tmp/landmass-panel-%d", (int)getpid());
     const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
@@ -288,17 +277,4 @@ static void it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_
     assert_in_range(fed, 1, 9); /* 0.8 s, every 0.1 s at most; a busy machine may be late */
     close(fd);
     unlink(at.sun_path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_panel_without_any_device_draws_its_page_and_says_what_is_missing),
-        cmocka_unit_test(from_the_first_step_on_the_loop_allocates_nothing),
-        cmocka_unit_test(a_database_that_is_lost_in_flight_is_said_and_outlived),
-        cmocka_unit_test(a_database_that_needs_more_tiles_is_said_on_the_glass),
-        cmocka_unit_test(the_hand_controllers_ring_reaches_the_page),
-        cmocka_unit_test(it_tells_systemd_that_it_is_ready_alive_and_stopping_and_stops_when_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

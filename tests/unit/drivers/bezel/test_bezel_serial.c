@@ -3,14 +3,10 @@
 
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 struct line {
@@ -45,9 +41,8 @@ static int start(void **state)
     return 0;
 }
 
-static void each_sentence_means_its_control(void **state)
+TEST_WITH(each_sentence_means_its_control, start, NULL)
 {
-    (void)state;
     const struct {
         const char *text;
         struct lm_control control;
@@ -66,9 +61,8 @@ static void each_sentence_means_its_control(void **state)
     assert_int_equal(bezel.count.malformed, 0);
 }
 
-static void what_is_no_sentence_is_counted_and_the_next_one_heard(void **state)
+TEST_WITH(what_is_no_sentence_is_counted_and_the_next_one_heard, start, NULL)
 {
-    (void)state;
     /* The sums are right where it is the text that is wrong. */
     const char *const bad[] = {"$D12*48",  "$D0*74",    "$D29*4F",  "$D*44",
                                "$*00",     "$K1001*4B", "$K--5*7E", "$S100*62",
@@ -86,9 +80,8 @@ static void what_is_no_sentence_is_counted_and_the_next_one_heard(void **state)
     }
 }
 
-static void any_changed_byte_is_found_or_changes_nothing(void **state)
+TEST_WITH(any_changed_byte_is_found_or_changes_nothing, start, NULL)
 {
-    (void)state;
     static const char bytes[] = "$S100,-20*61\r\n";
     struct lm_control meant;
     assert_int_equal(take(bytes, strlen(bytes), &meant), 1);
@@ -119,9 +112,8 @@ static void assert_in_bounds(const struct lm_control *c)
     }
 }
 
-static void noise_never_makes_a_control_out_of_range(void **state)
+TEST_WITH(noise_never_makes_a_control_out_of_range, start, NULL)
 {
-    (void)state;
     static const char alphabet[] = "$*DUKSTX0123456789-,ABCDEF\r\n";
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
@@ -143,15 +135,4 @@ static void noise_never_makes_a_control_out_of_range(void **state)
     }
     assert_true(bezel.count.malformed > 1000);
     assert_int_equal(bezel.count.sentences, controls);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(each_sentence_means_its_control, start),
-        cmocka_unit_test_setup(what_is_no_sentence_is_counted_and_the_next_one_heard, start),
-        cmocka_unit_test_setup(any_changed_byte_is_found_or_changes_nothing, start),
-        cmocka_unit_test_setup(noise_never_makes_a_control_out_of_range, start),
-    };
-    return cmocka_run_group_tests_name("bezel_serial", tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* Recorded traffic: frames come when their time comes, and a bad line loses nothing but itself. */
+#include "check.h"
 #include "drv/can_log.h"
 #include "support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 #include <zlib.h>
-
-#include <cmocka.h>
 
 static struct lm_can_frame parsed(const char *line)
 {
@@ -20,9 +16,8 @@ static struct lm_can_frame parsed(const char *line)
     return frame;
 }
 
-static void every_form_that_candump_writes_is_read(void **state)
+TEST(every_form_that_candump_writes_is_read)
 {
-    (void)state;
     struct lm_can_frame f = parsed("(1436509052.249713) vcan0 40C#091E000040459E04");
     assert_int_equal(f.id, 0x40c);
     assert_true(f.time_us == 1436509052249713u);
@@ -46,9 +41,8 @@ static void every_form_that_candump_writes_is_read(void **state)
     parsed("  (1.000000)  slcan0\t123#0011 R\r");
 }
 
-static void every_other_line_is_refused_with_its_cause(void **state)
+TEST(every_other_line_is_refused_with_its_cause)
 {
-    (void)state;
     static const struct {
         const char *line, *cause;
     } tests[] = {
@@ -112,9 +106,8 @@ static FILE *file_of(const char *text)
     return file;
 }
 
-static void bad_lines_are_reported_by_number_and_lose_only_themselves(void **state)
+TEST(bad_lines_are_reported_by_number_and_lose_only_themselves)
 {
-    (void)state;
     static char text[2000];
     char long_name[600];
     memset(long_name, 'x', sizeof long_name - 1);
@@ -155,9 +148,8 @@ static void bad_lines_are_reported_by_number_and_lose_only_themselves(void **sta
     fclose(file);
 }
 
-static void a_nul_in_a_line_makes_only_that_line_bad(void **state)
+TEST(a_nul_in_a_line_makes_only_that_line_bad)
 {
-    (void)state;
     static const char text[] = "(1.000000) can0 001#00\0 hidden\n(1.000000) can0 002#00\n";
     FILE *file = fmemopen((void *)(uintptr_t)text, sizeof text - 1, "r");
     assert_non_null(file);
@@ -171,9 +163,8 @@ static void a_nul_in_a_line_makes_only_that_line_bad(void **state)
     fclose(file);
 }
 
-static void a_frame_comes_when_its_time_has_come_and_not_before(void **state)
+TEST(a_frame_comes_when_its_time_has_come_and_not_before)
 {
-    (void)state;
     FILE *file = file_of(
         "(1700000000.500000) can0 001#\n"
         "(1700000000.500000) can0 002#\n"
@@ -195,9 +186,8 @@ static void a_frame_comes_when_its_time_has_come_and_not_before(void **state)
     fclose(file);
 }
 
-static void time_stamps_never_go_back(void **state)
+TEST(time_stamps_never_go_back)
 {
-    (void)state;
     FILE *file = file_of(
         "(10.000000) can0 001#\n"
         "(9.000000) can0 002#\n"
@@ -219,9 +209,8 @@ static void time_stamps_never_go_back(void **state)
     fclose(file);
 }
 
-static void a_file_that_cannot_be_read_says_so_once(void **state)
+TEST(a_file_that_cannot_be_read_says_so_once)
 {
-    (void)state;
     FILE *file = fopen("/", "r"); /* a folder opens, but does not read */
     assert_non_null(file);
     struct drv_can_log log;
@@ -234,9 +223,8 @@ static void a_file_that_cannot_be_read_says_so_once(void **state)
     fclose(file);
 }
 
-static void a_log_of_another_program_is_read_whole(void **state)
+TEST(a_log_of_another_program_is_read_whole)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("can_peer/peer_frames_3s.log.gz", path, sizeof path)) {
         skip();
@@ -266,19 +254,4 @@ static void a_log_of_another_program_is_read_whole(void **state)
     assert_int_equal(log.count.malformed, 0);
     assert_int_equal(log.count.backward, 0);
     fclose(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_form_that_candump_writes_is_read),
-        cmocka_unit_test(every_other_line_is_refused_with_its_cause),
-        cmocka_unit_test(bad_lines_are_reported_by_number_and_lose_only_themselves),
-        cmocka_unit_test(a_nul_in_a_line_makes_only_that_line_bad),
-        cmocka_unit_test(a_frame_comes_when_its_time_has_come_and_not_before),
-        cmocka_unit_test(time_stamps_never_go_back),
-        cmocka_unit_test(a_file_that_cannot_be_read_says_so_once),
-        cmocka_unit_test(a_log_of_another_program_is_read_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

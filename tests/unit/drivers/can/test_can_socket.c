@@ -1,5 +1,6 @@
 /* SocketCAN as far as it can be tried without a CAN controller: a local socket stands in for the
  * bus. */
+#include "check.h"
 #include "drv/can_socket.h"
 #include "hs/rng.h"
 #include "lm/bus.h"
@@ -8,15 +9,11 @@
 
 #include <errno.h>
 #include <linux/can/error.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* As landmass opens it: the filters of canas17. */
 static int open_canas17(struct drv_can_socket *s, const char *interface)
@@ -26,9 +23,8 @@ static int open_canas17(struct drv_can_socket *s, const char *interface)
     return drv_can_socket_open(s, interface, filters, count, 0);
 }
 
-static void an_interface_that_does_not_exist_is_named_in_the_error(void **state)
+TEST(an_interface_that_does_not_exist_is_named_in_the_error)
 {
-    (void)state;
     struct drv_can_socket s;
     assert_int_equal(open_canas17(&s, "nocan7"), LM_ERR_IO);
     assert_int_equal(s.fd, -1);
@@ -38,9 +34,8 @@ static void an_interface_that_does_not_exist_is_named_in_the_error(void **state)
 }
 
 /* Whether the kernel has no CAN at all, or has it and sees that lo is no CAN interface. */
-static void more_filters_than_the_kernel_takes_are_refused_and_not_tried_again(void **state)
+TEST(more_filters_than_the_kernel_takes_are_refused_and_not_tried_again)
 {
-    (void)state;
     static const struct lm_can_filter filters[DRV_CAN_SOCKET_FILTERS + 1];
     struct drv_can_socket s;
     assert_int_equal(drv_can_socket_open(&s, "lo", filters, DRV_CAN_SOCKET_FILTERS + 1, 0),
@@ -52,9 +47,8 @@ static void more_filters_than_the_kernel_takes_are_refused_and_not_tried_again(v
     drv_can_socket_close(&s);
 }
 
-static void what_is_no_can_interface_cannot_be_opened(void **state)
+TEST(what_is_no_can_interface_cannot_be_opened)
 {
-    (void)state;
     struct drv_can_socket s;
     if (if_nametoindex("lo") == 0) {
         print_message("# skipped: no interface lo here\n");
@@ -68,9 +62,8 @@ static void what_is_no_can_interface_cannot_be_opened(void **state)
     drv_can_socket_close(&s);
 }
 
-static void flags_and_bytes_are_carried_over(void **state)
+TEST(flags_and_bytes_are_carried_over)
 {
-    (void)state;
     static const struct {
         canid_t raw;
         uint32_t id;
@@ -166,9 +159,8 @@ static void assert_filters_of(const struct lm_bus_profile *profile)
     }
 }
 
-static void the_filters_pass_what_the_decoder_takes_and_nothing_else(void **state)
+TEST(the_filters_pass_what_the_decoder_takes_and_nothing_else)
 {
-    (void)state;
     for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
         assert_filters_of(p->profile);
     }
@@ -186,9 +178,8 @@ static void the_filters_pass_what_the_decoder_takes_and_nothing_else(void **stat
     assert_int_equal(lm_bus_filters(&profile, list), 2);
 }
 
-static void a_stamp_is_an_age_whatever_the_clock_on_the_wall_does(void **state)
+TEST(a_stamp_is_an_age_whatever_the_clock_on_the_wall_does)
 {
-    (void)state;
     const uint64_t mono = 5000000, wall = 1700000000000000;
     assert_true(drv_can_socket_arrival_us(mono, wall, wall) == mono);
     assert_true(drv_can_socket_arrival_us(mono, wall, wall - 2500) == mono - 2500);
@@ -213,9 +204,8 @@ static uint64_t monotonic_us(void)
     return (uint64_t)t.tv_sec * 1000000u + (uint64_t)t.tv_nsec / 1000u;
 }
 
-static void frames_come_in_order_and_bad_ones_are_counted_and_skipped(void **state)
+TEST(frames_come_in_order_and_bad_ones_are_counted_and_skipped)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -248,9 +238,8 @@ static void frames_come_in_order_and_bad_ones_are_counted_and_skipped(void **sta
     drv_can_socket_close(&s);
 }
 
-static void a_flood_of_bad_frames_cannot_hold_the_caller(void **state)
+TEST(a_flood_of_bad_frames_cannot_hold_the_caller)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -265,9 +254,8 @@ static void a_flood_of_bad_frames_cannot_hold_the_caller(void **state)
     drv_can_socket_close(&s);
 }
 
-static void frames_of_several_batches_come_in_order_and_none_is_lost(void **state)
+TEST(frames_of_several_batches_come_in_order_and_none_is_lost)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -292,9 +280,8 @@ static void send_report(int other, canid_t class, uint8_t controller)
     assert_true(send(other, &raw, sizeof raw, 0) > 0);
 }
 
-static void the_controllers_reports_are_counted_and_bus_off_is_said_once(void **state)
+TEST(the_controllers_reports_are_counted_and_bus_off_is_said_once)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -331,9 +318,8 @@ static void the_controllers_reports_are_counted_and_bus_off_is_said_once(void **
     drv_can_socket_close(&s);
 }
 
-static void a_full_queue_drops_the_oldest_frames_and_counts_them(void **state)
+TEST(a_full_queue_drops_the_oldest_frames_and_counts_them)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -365,9 +351,8 @@ static void a_full_queue_drops_the_oldest_frames_and_counts_them(void **state)
     drv_can_socket_close(&s);
 }
 
-static void an_interface_that_is_missing_at_start_is_looked_for_now_and_then(void **state)
+TEST(an_interface_that_is_missing_at_start_is_looked_for_now_and_then)
 {
-    (void)state;
     struct drv_can_socket s;
     assert_int_equal(open_canas17(&s, "nocan7"), LM_ERR_IO);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -383,9 +368,8 @@ static void an_interface_that_is_missing_at_start_is_looked_for_now_and_then(voi
     assert_int_equal(s.count.reopened, 0);
 }
 
-static void a_bus_that_goes_away_is_an_error_with_a_remedy(void **state)
+TEST(a_bus_that_goes_away_is_an_error_with_a_remedy)
 {
-    (void)state;
     int other;
     struct drv_can_socket s = stand_in(&other);
     const struct lm_can port = drv_can_socket_port(&s);
@@ -400,24 +384,4 @@ static void a_bus_that_goes_away_is_an_error_with_a_remedy(void **state)
     assert_int_equal(s.count.unsent, 1);
     s.retry_us = UINT64_MAX;
     assert_int_equal(port.receive(port.ctx, &f), 0); /* said once */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_interface_that_does_not_exist_is_named_in_the_error),
-        cmocka_unit_test(more_filters_than_the_kernel_takes_are_refused_and_not_tried_again),
-        cmocka_unit_test(what_is_no_can_interface_cannot_be_opened),
-        cmocka_unit_test(flags_and_bytes_are_carried_over),
-        cmocka_unit_test(the_filters_pass_what_the_decoder_takes_and_nothing_else),
-        cmocka_unit_test(a_stamp_is_an_age_whatever_the_clock_on_the_wall_does),
-        cmocka_unit_test(frames_come_in_order_and_bad_ones_are_counted_and_skipped),
-        cmocka_unit_test(a_flood_of_bad_frames_cannot_hold_the_caller),
-        cmocka_unit_test(frames_of_several_batches_come_in_order_and_none_is_lost),
-        cmocka_unit_test(the_controllers_reports_are_counted_and_bus_off_is_said_once),
-        cmocka_unit_test(a_full_queue_drops_the_oldest_frames_and_counts_them),
-        cmocka_unit_test(an_interface_that_is_missing_at_start_is_looked_for_now_and_then),
-        cmocka_unit_test(a_bus_that_goes_away_is_an_error_with_a_remedy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,8 @@
 /* Every pixel of every rotation, against the plain statement of what a rotation is. */
+#include "check.h"
 #include "drv/blit.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { STRIDE = 20, BORDER = 0x5a5a5a5a, SIDE = 24 };
 
@@ -70,9 +65,8 @@ static void check(uint16_t width, uint16_t height, uint16_t to_width, uint16_t t
     assert_memory_equal(target, expected, sizeof target);
 }
 
-static void every_turn_puts_every_pixel_where_it_belongs(void **state)
+TEST(every_turn_puts_every_pixel_where_it_belongs)
 {
-    (void)state;
     for (int turn = DRV_TURN_0; turn <= DRV_TURN_270; turn++) {
         check(16, 12, 16, 12, (enum drv_turn)turn);
         check(12, 16, 16, 12, (enum drv_turn)turn);
@@ -80,9 +74,8 @@ static void every_turn_puts_every_pixel_where_it_belongs(void **state)
 }
 
 /* Every difference of sizes from -6 to 6, odd ones too. */
-static void the_picture_is_centred_and_what_is_too_large_is_cut(void **state)
+TEST(the_picture_is_centred_and_what_is_too_large_is_cut)
 {
-    (void)state;
     for (int turn = DRV_TURN_0; turn <= DRV_TURN_270; turn++) {
         for (uint16_t width = 8; width <= 20; width++) {
             for (uint16_t height = 8; height <= 20; height += 3) {
@@ -92,9 +85,8 @@ static void the_picture_is_centred_and_what_is_too_large_is_cut(void **state)
     }
 }
 
-static void rgb565_keeps_the_upper_bits_of_each_colour(void **state)
+TEST(rgb565_keeps_the_upper_bits_of_each_colour)
 {
-    (void)state;
     uint32_t pixels[256];
     uint16_t target[256];
     for (uint32_t i = 0; i < 256; i++) {
@@ -113,9 +105,8 @@ static void rgb565_keeps_the_upper_bits_of_each_colour(void **state)
     assert_int_equal(target[0] >> 11, 31);
 }
 
-static void clearing_leaves_what_lies_beyond_the_rows(void **state)
+TEST(clearing_leaves_what_lies_beyond_the_rows)
 {
-    (void)state;
     uint16_t target[8 * 4];
     memset(target, 0xff, sizeof target);
     const struct drv_target to = {target, 16, 5, 4, DRV_RGB565};
@@ -123,15 +114,4 @@ static void clearing_leaves_what_lies_beyond_the_rows(void **state)
     for (int i = 0; i < 8 * 4; i++) {
         assert_int_equal(target[i], i % 8 < 5 ? 0 : 0xffff);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_turn_puts_every_pixel_where_it_belongs),
-        cmocka_unit_test(the_picture_is_centred_and_what_is_too_large_is_cut),
-        cmocka_unit_test(rgb565_keeps_the_upper_bits_of_each_colour),
-        cmocka_unit_test(clearing_leaves_what_lies_beyond_the_rows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* The DRM driver against a card that is busy, silent, unplugged and taken away. */
+#include "check.h"
 #include "drv/drm.h"
 #include "fake_drm.h"
 
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { WIDTH = 320, HEIGHT = 300, TICK_US = 2000, CONSOLE = 99 };
 
@@ -54,9 +49,8 @@ static uint32_t middle(void)
     return b->pixels[b->height / 2 * row_words + b->width / 2 * b->bpp / 32];
 }
 
-static void each_picture_comes_on_the_screen_with_one_flip(void **state)
+TEST(each_picture_comes_on_the_screen_with_one_flip)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     assert_int_equal(r.drm.state, DRV_DRM_IDLE);
@@ -75,9 +69,8 @@ static void each_picture_comes_on_the_screen_with_one_flip(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void no_second_picture_is_taken_while_one_is_on_its_way(void **state)
+TEST(no_second_picture_is_taken_while_one_is_on_its_way)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     assert_int_equal(show(&r, 1), LM_OK);
@@ -91,9 +84,8 @@ static void no_second_picture_is_taken_while_one_is_on_its_way(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_busy_kernel_is_asked_again_and_the_picture_is_kept(void **state)
+TEST(a_busy_kernel_is_asked_again_and_the_picture_is_kept)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     fake_drm.flip_errno = EBUSY;
@@ -110,9 +102,8 @@ static void a_busy_kernel_is_asked_again_and_the_picture_is_kept(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_kernel_that_stays_busy_is_told_the_mode_anew(void **state)
+TEST(a_kernel_that_stays_busy_is_told_the_mode_anew)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     fake_drm.flip_errno = EBUSY;
@@ -124,9 +115,8 @@ static void a_kernel_that_stays_busy_is_told_the_mode_anew(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_flip_that_is_never_reported_is_given_up_in_time(void **state)
+TEST(a_flip_that_is_never_reported_is_given_up_in_time)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     fake_drm.is_silent = true;
@@ -145,9 +135,8 @@ static void a_flip_that_is_never_reported_is_given_up_in_time(void **state)
 }
 
 /* The report of a flip that was given up must not end the next one. */
-static void a_report_that_comes_too_late_is_only_counted(void **state)
+TEST(a_report_that_comes_too_late_is_only_counted)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     assert_int_equal(show(&r, 1), LM_OK);
@@ -165,9 +154,8 @@ static void a_report_that_comes_too_late_is_only_counted(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_screen_that_is_unplugged_comes_back_with_another_mode(void **state)
+TEST(a_screen_that_is_unplugged_comes_back_with_another_mode)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     fake_drm.has_screen = false;
@@ -189,9 +177,8 @@ static void a_screen_that_is_unplugged_comes_back_with_another_mode(void **state
 }
 
 /* Looking must not make the kernel read the screen's description: that takes long. */
-static void looking_after_a_screen_that_is_there_probes_nothing(void **state)
+TEST(looking_after_a_screen_that_is_there_probes_nothing)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     const uint32_t probes = fake_drm.probes;
@@ -200,9 +187,8 @@ static void looking_after_a_screen_that_is_there_probes_nothing(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_screen_that_comes_later_than_the_program_is_lit(void **state)
+TEST(a_screen_that_comes_later_than_the_program_is_lit)
 {
-    (void)state;
     static struct rig r;
     fake_drm_reset();
     fake_drm.has_screen = false;
@@ -216,9 +202,8 @@ static void a_screen_that_comes_later_than_the_program_is_lit(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_program_that_takes_the_screen_is_outlived(void **state)
+TEST(a_program_that_takes_the_screen_is_outlived)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     fake_drm.is_foreign = true;
@@ -235,9 +220,8 @@ static void a_program_that_takes_the_screen_is_outlived(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void the_end_gives_the_screen_and_the_memory_back(void **state)
+TEST(the_end_gives_the_screen_and_the_memory_back)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     assert_int_equal(show(&r, 1), LM_OK);
@@ -248,9 +232,8 @@ static void the_end_gives_the_screen_and_the_memory_back(void **state)
     drv_drm_close(&r.drm); /* once more does no harm */
 }
 
-static void signals_interrupt_no_call(void **state)
+TEST(signals_interrupt_no_call)
 {
-    (void)state;
     static struct rig r;
     set_up(&r, &standard);
     for (uint32_t n = 1; n < 20; n++) {
@@ -264,9 +247,8 @@ static void signals_interrupt_no_call(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void the_mode_and_the_connector_of_the_configuration_are_kept_to(void **state)
+TEST(the_mode_and_the_connector_of_the_configuration_are_kept_to)
 {
-    (void)state;
     static struct rig r;
     struct drv_drm_config config = standard;
     fake_drm_reset();
@@ -288,9 +270,8 @@ static void the_mode_and_the_connector_of_the_configuration_are_kept_to(void **s
     drv_drm_close(&r.drm);
 }
 
-static void sixteen_bits_are_asked_for_when_they_are_wanted(void **state)
+TEST(sixteen_bits_are_asked_for_when_they_are_wanted)
 {
-    (void)state;
     static struct rig r;
     struct drv_drm_config config = standard;
     config.format = DRV_RGB565;
@@ -302,9 +283,8 @@ static void sixteen_bits_are_asked_for_when_they_are_wanted(void **state)
     drv_drm_close(&r.drm);
 }
 
-static void a_card_without_plain_memory_and_no_card_at_all_are_errors(void **state)
+TEST(a_card_without_plain_memory_and_no_card_at_all_are_errors)
 {
-    (void)state;
     struct drv_drm drm;
     fake_drm_reset();
     fake_drm.has_dumb = false;
@@ -314,26 +294,4 @@ static void a_card_without_plain_memory_and_no_card_at_all_are_errors(void **sta
     assert_int_equal(drv_drm_open(&drm, &nowhere, 0), LM_ERR_IO);
     assert_non_null(strstr(drm.error, "/dev/dri/none"));
     drv_drm_close(&drm);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_picture_comes_on_the_screen_with_one_flip),
-        cmocka_unit_test(no_second_picture_is_taken_while_one_is_on_its_way),
-        cmocka_unit_test(a_busy_kernel_is_asked_again_and_the_picture_is_kept),
-        cmocka_unit_test(a_kernel_that_stays_busy_is_told_the_mode_anew),
-        cmocka_unit_test(a_flip_that_is_never_reported_is_given_up_in_time),
-        cmocka_unit_test(a_report_that_comes_too_late_is_only_counted),
-        cmocka_unit_test(a_screen_that_is_unplugged_comes_back_with_another_mode),
-        cmocka_unit_test(looking_after_a_screen_that_is_there_probes_nothing),
-        cmocka_unit_test(a_screen_that_comes_later_than_the_program_is_lit),
-        cmocka_unit_test(a_program_that_takes_the_screen_is_outlived),
-        cmocka_unit_test(the_end_gives_the_screen_and_the_memory_back),
-        cmocka_unit_test(signals_interrupt_no_call),
-        cmocka_unit_test(the_mode_and_the_connector_of_the_configuration_are_kept_to),
-        cmocka_unit_test(sixteen_bits_are_asked_for_when_they_are_wanted),
-        cmocka_unit_test(a_card_without_plain_memory_and_no_card_at_all_are_errors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,16 @@
 /* The frame buffer driver over a screen that is a file, whose shape the test tells. */
+#include "check.h"
 #include "drv/fbdev.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/fb.h>
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { WIDTH = 40, HEIGHT = 30, PITCH = 192, SIDE = 20 };
 
@@ -115,9 +111,8 @@ static uint32_t middle_word(void)
     return word;
 }
 
-static void a_screen_of_one_picture_is_written_to_directly(void **state)
+TEST_WITH(a_screen_of_one_picture_is_written_to_directly, set_up, tear_down)
 {
-    (void)state;
     struct drv_fbdev f;
     assert_int_equal(drv_fbdev_open(&f, "/dev/fb-test", DRV_TURN_0), LM_OK);
     assert_false(f.can_pan);
@@ -130,9 +125,8 @@ static void a_screen_of_one_picture_is_written_to_directly(void **state)
     drv_fbdev_close(&f); /* once more does no harm */
 }
 
-static void a_screen_of_two_is_turned_over_only_when_the_picture_is_whole(void **state)
+TEST_WITH(a_screen_of_two_is_turned_over_only_when_the_picture_is_whole, set_up, tear_down)
 {
-    (void)state;
     struct drv_fbdev f;
     screen.v.yres_virtual = 2 * HEIGHT;
     screen.fix.ypanstep = 1;
@@ -151,9 +145,8 @@ static void a_screen_of_two_is_turned_over_only_when_the_picture_is_whole(void *
     drv_fbdev_close(&f);
 }
 
-static void a_screen_of_sixteen_bits_gets_sixteen_bits(void **state)
+TEST_WITH(a_screen_of_sixteen_bits_gets_sixteen_bits, set_up, tear_down)
 {
-    (void)state;
     struct drv_fbdev f;
     screen.v.bits_per_pixel = 16;
     screen.v.red.offset = 11;
@@ -165,9 +158,8 @@ static void a_screen_of_sixteen_bits_gets_sixteen_bits(void **state)
     drv_fbdev_close(&f);
 }
 
-static void what_cannot_be_shown_on_is_refused(void **state)
+TEST_WITH(what_cannot_be_shown_on_is_refused, set_up, tear_down)
 {
-    (void)state;
     struct drv_fbdev f;
     assert_int_equal(drv_fbdev_open(&f, "/dev/fb-none", DRV_TURN_0), LM_ERR_IO);
     assert_non_null(strstr(f.error, "/dev/fb-none"));
@@ -184,18 +176,4 @@ static void what_cannot_be_shown_on_is_refused(void **state)
     assert_non_null(strstr(f.error, "contradict"));
     screen.fix.smem_len = 2 * PITCH * HEIGHT;
     assert_int_equal(f.fd, -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_screen_of_one_picture_is_written_to_directly, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_screen_of_two_is_turned_over_only_when_the_picture_is_whole, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_screen_of_sixteen_bits_gets_sixteen_bits, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(what_cannot_be_shown_on_is_refused, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,11 @@
 /* An MTD device with bad blocks, unreadable pages, and a read() that hides what could not be
  * corrected, as Linux's does. */
+#include "check.h"
 #include "drv/flash_mtd.h"
 #include "drv/flash_reader.h"
 
 #include <errno.h>
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -15,8 +13,6 @@
 #include <time.h>
 
 #include <mtd/mtd-user.h>
-
-#include <cmocka.h>
 
 enum { FD = 1000, BLOCK = 4096, BLOCKS = 16, NOTHING = BLOCKS };
 
@@ -128,9 +124,8 @@ static size_t image(uint8_t *bytes)
     return size;
 }
 
-static void reads_step_over_bad_blocks(void **state)
+TEST_WITH(reads_step_over_bad_blocks, set_up, NULL)
 {
-    (void)state;
     static const uint32_t cases[] = {0, 1, 1u << 15, 0x0ff0, 0x5555, 0xfffe};
     static uint8_t expected[sizeof chip.bytes], got[sizeof chip.bytes];
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -152,9 +147,8 @@ static void reads_step_over_bad_blocks(void **state)
     }
 }
 
-static void what_could_not_be_corrected_is_an_error_though_read_says_nothing(void **state)
+TEST_WITH(what_could_not_be_corrected_is_an_error_though_read_says_nothing, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     uint8_t got[2 * BLOCK];
     chip.rotten = 3;
@@ -169,9 +163,8 @@ static void what_could_not_be_corrected_is_an_error_though_read_says_nothing(voi
     drv_flash_mtd_close(&f);
 }
 
-static void a_block_that_cannot_be_read_fails_its_reads_and_no_others(void **state)
+TEST_WITH(a_block_that_cannot_be_read_fails_its_reads_and_no_others, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     uint8_t got[BLOCK];
     chip.unreadable = 5;
@@ -184,9 +177,8 @@ static void a_block_that_cannot_be_read_fails_its_reads_and_no_others(void **sta
     drv_flash_mtd_close(&f);
 }
 
-static void nor_flash_has_no_bad_blocks(void **state)
+TEST_WITH(nor_flash_has_no_bad_blocks, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     chip.type = MTD_NORFLASH;
     assert_int_equal(drv_flash_mtd_open(&f, "/dev/mtd0"), 0);
@@ -195,9 +187,8 @@ static void nor_flash_has_no_bad_blocks(void **state)
     drv_flash_mtd_close(&f);
 }
 
-static void what_is_no_mtd_device_is_left_to_others(void **state)
+TEST_WITH(what_is_no_mtd_device_is_left_to_others, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     chip.has_device = false;
     assert_int_equal(drv_flash_mtd_open(&f, "/dev/sda"), ENOTTY);
@@ -215,9 +206,8 @@ static int finish(struct drv_flash_reader *r)
     return status;
 }
 
-static void the_reader_answers_at_once_and_reads_behind_the_loops_back(void **state)
+TEST_WITH(the_reader_answers_at_once_and_reads_behind_the_loops_back, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     static struct drv_flash_reader r;
     static uint8_t got[3 * BLOCK];
@@ -235,9 +225,8 @@ static void the_reader_answers_at_once_and_reads_behind_the_loops_back(void **st
     drv_flash_mtd_close(&f);
 }
 
-static void the_reader_waits_when_it_is_told_to_be_patient(void **state)
+TEST_WITH(the_reader_waits_when_it_is_told_to_be_patient, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     static struct drv_flash_reader r;
     static uint8_t got[3 * BLOCK];
@@ -251,9 +240,8 @@ static void the_reader_waits_when_it_is_told_to_be_patient(void **state)
     drv_flash_mtd_close(&f);
 }
 
-static void a_read_that_fails_once_is_tried_again_and_one_that_fails_twice_is_told(void **state)
+TEST_WITH(a_read_that_fails_once_is_tried_again_and_one_that_fails_twice_is_told, set_up, NULL)
 {
-    (void)state;
     struct drv_flash_mtd f;
     static struct drv_flash_reader r;
     uint8_t got[BLOCK];
@@ -271,21 +259,4 @@ static void a_read_that_fails_once_is_tried_again_and_one_that_fails_twice_is_to
     drv_flash_reader_stop(&r);
     drv_flash_reader_stop(&r); /* once more does no harm */
     drv_flash_mtd_close(&f);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(reads_step_over_bad_blocks, set_up),
-        cmocka_unit_test_setup(what_could_not_be_corrected_is_an_error_though_read_says_nothing,
-                               set_up),
-        cmocka_unit_test_setup(a_block_that_cannot_be_read_fails_its_reads_and_no_others, set_up),
-        cmocka_unit_test_setup(nor_flash_has_no_bad_blocks, set_up),
-        cmocka_unit_test_setup(what_is_no_mtd_device_is_left_to_others, set_up),
-        cmocka_unit_test_setup(the_reader_answers_at_once_and_reads_behind_the_loops_back, set_up),
-        cmocka_unit_test_setup(the_reader_waits_when_it_is_told_to_be_patient, set_up),
-        cmocka_unit_test_setup(
-            a_read_that_fails_once_is_tried_again_and_one_that_fails_twice_is_told, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* Keys that bounce, glitch, stick, and lose their events. */
+#include "check.h"
 #include "drv/debounce.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { PERIOD_US = 10000, STEP_US = 500, KEY = 5 };
 
@@ -27,9 +21,8 @@ static int watch(struct drv_debounce *d, uint64_t level, uint64_t *now_us, uint6
     return changes;
 }
 
-static void a_press_is_believed_once_after_the_period(void **state)
+TEST(a_press_is_believed_once_after_the_period)
 {
-    (void)state;
     struct drv_debounce d = idle();
     uint64_t now = 0;
     assert_int_equal(watch(&d, 1, &now, PERIOD_US), 0);
@@ -42,9 +35,8 @@ static void a_press_is_believed_once_after_the_period(void **state)
 }
 
 /* Nine bounces within 5 ms, as the virtual machine's gpio-sim was made to do them. */
-static void bounces_make_one_press(void **state)
+TEST(bounces_make_one_press)
 {
-    (void)state;
     struct drv_debounce d = idle();
     uint64_t now = 0;
     int changes = 0;
@@ -55,18 +47,16 @@ static void bounces_make_one_press(void **state)
     assert_true(d.down == 1u << KEY);
 }
 
-static void a_glitch_shorter_than_the_period_is_nothing(void **state)
+TEST(a_glitch_shorter_than_the_period_is_nothing)
 {
-    (void)state;
     struct drv_debounce d = idle();
     uint64_t now = 0;
     assert_int_equal(watch(&d, 1, &now, PERIOD_US - STEP_US), 0);
     assert_int_equal(watch(&d, 0, &now, 10 * PERIOD_US), 0);
 }
 
-static void an_edge_between_two_looks_that_agree_is_movement(void **state)
+TEST(an_edge_between_two_looks_that_agree_is_movement)
 {
-    (void)state;
     struct drv_debounce d = idle();
     const uint64_t key = 1u << KEY;
     drv_debounce_look(&d, key, key, 0);
@@ -75,9 +65,8 @@ static void an_edge_between_two_looks_that_agree_is_movement(void **state)
     assert_true(drv_debounce_look(&d, key, 0, 2 * PERIOD_US - 1) == key);
 }
 
-static void a_key_that_is_down_at_the_start_counts_only_once_it_was_let_go(void **state)
+TEST(a_key_that_is_down_at_the_start_counts_only_once_it_was_let_go)
 {
-    (void)state;
     struct drv_debounce d;
     const uint64_t key = 1u << KEY;
     drv_debounce_init(&d, PERIOD_US, key);
@@ -90,9 +79,8 @@ static void a_key_that_is_down_at_the_start_counts_only_once_it_was_let_go(void 
     assert_true(d.down == key);
 }
 
-static void a_key_that_is_held_is_stuck_after_the_time_said(void **state)
+TEST(a_key_that_is_held_is_stuck_after_the_time_said)
 {
-    (void)state;
     struct drv_debounce d = idle();
     uint64_t now = 0;
     watch(&d, 1, &now, 2 * PERIOD_US);
@@ -101,9 +89,8 @@ static void a_key_that_is_held_is_stuck_after_the_time_said(void **state)
 }
 
 /* All 64 lines at once, the last one too. */
-static void every_line_has_its_own_time(void **state)
+TEST(every_line_has_its_own_time)
 {
-    (void)state;
     struct drv_debounce d = idle();
     uint64_t levels = 0, changed = 0;
     for (uint64_t now = 0; now < 64 + PERIOD_US; now++) {
@@ -118,18 +105,4 @@ static void every_line_has_its_own_time(void **state)
     }
     assert_true(changed == UINT64_MAX);
     assert_true(d.down == UINT64_MAX);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_press_is_believed_once_after_the_period),
-        cmocka_unit_test(bounces_make_one_press),
-        cmocka_unit_test(a_glitch_shorter_than_the_period_is_nothing),
-        cmocka_unit_test(an_edge_between_two_looks_that_agree_is_movement),
-        cmocka_unit_test(a_key_that_is_down_at_the_start_counts_only_once_it_was_let_go),
-        cmocka_unit_test(a_key_that_is_held_is_stuck_after_the_time_said),
-        cmocka_unit_test(every_line_has_its_own_time),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* The GPIO driver over both versions of libgpiod: this file is linked once with each. */
+#include "check.h"
 #include "drv/gpio.h"
 #include "fake_gpio.h"
 
 #include "lm/status.h"
 
 #include <poll.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static struct fake_line *const osb1 = &fake_chips[1].line[3];
 static struct fake_line *const osb2 = &fake_chips[1].line[4];
@@ -29,9 +24,8 @@ static bool wakes(const struct drv_gpio *g)
     return poll(&p, 1, 0) == 1;
 }
 
-static void lines_are_found_by_name_and_read_as_active_or_not(void **state)
+TEST(lines_are_found_by_name_and_read_as_active_or_not)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     osb1->level = osb2->level = true; /* at rest, pulled up */
@@ -45,9 +39,8 @@ static void lines_are_found_by_name_and_read_as_active_or_not(void **state)
     drv_gpio_close(&g);
 }
 
-static void a_line_without_a_name_is_found_by_chip_and_number(void **state)
+TEST(a_line_without_a_name_is_found_by_chip_and_number)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     assert_int_equal(drv_gpio_add_input(&g, "9030000.pl061:5", false), 0);
@@ -59,9 +52,8 @@ static void a_line_without_a_name_is_found_by_chip_and_number(void **state)
     drv_gpio_close(&g);
 }
 
-static void what_is_not_there_is_told_and_leaves_nothing_open(void **state)
+TEST(what_is_not_there_is_told_and_leaves_nothing_open)
 {
-    (void)state;
     static const char *const missing[] = {"OSB99",    "bezel:40", "bezel:",        ":3",
                                           "nobody:3", "bezel:3x", "bezel:99999999"};
     struct drv_gpio g;
@@ -77,9 +69,8 @@ static void what_is_not_there_is_told_and_leaves_nothing_open(void **state)
     drv_gpio_close(&g);
 }
 
-static void an_edge_wakes_the_loop_until_it_was_taken(void **state)
+TEST(an_edge_wakes_the_loop_until_it_was_taken)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     assert_int_equal(drv_gpio_add_input(&g, "OSB1", false), 0);
@@ -95,9 +86,8 @@ static void an_edge_wakes_the_loop_until_it_was_taken(void **state)
 
 /* 41 edges of which the kernel kept 16, and a level that none of them tells: the driver believes
  * the level. */
-static void after_a_storm_of_edges_the_level_is_right(void **state)
+TEST(after_a_storm_of_edges_the_level_is_right)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     assert_int_equal(drv_gpio_add_input(&g, "OSB1", false), 0);
@@ -110,9 +100,8 @@ static void after_a_storm_of_edges_the_level_is_right(void **state)
     drv_gpio_close(&g);
 }
 
-static void a_line_that_cannot_interrupt_is_had_without(void **state)
+TEST(a_line_that_cannot_interrupt_is_had_without)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     osb1->no_interrupt = true;
@@ -123,9 +112,8 @@ static void a_line_that_cannot_interrupt_is_had_without(void **state)
     drv_gpio_close(&g);
 }
 
-static void a_line_that_fails_counts_as_let_go(void **state)
+TEST(a_line_that_fails_counts_as_let_go)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     assert_int_equal(drv_gpio_add_input(&g, "OSB1", false), 0);
@@ -137,9 +125,8 @@ static void a_line_that_fails_counts_as_let_go(void **state)
     drv_gpio_close(&g);
 }
 
-static void lamps_begin_dark_and_shine_at_either_level(void **state)
+TEST(lamps_begin_dark_and_shine_at_either_level)
 {
-    (void)state;
     for (int is_active_low = 0; is_active_low < 2; is_active_low++) {
         struct drv_gpio g;
         set_up(&g);
@@ -155,9 +142,8 @@ static void lamps_begin_dark_and_shine_at_either_level(void **state)
     }
 }
 
-static void closing_gives_every_line_and_chip_back(void **state)
+TEST(closing_gives_every_line_and_chip_back)
 {
-    (void)state;
     struct drv_gpio g;
     set_up(&g);
     for (int i = 0; i < FAKE_LINES; i++) {
@@ -171,20 +157,4 @@ static void closing_gives_every_line_and_chip_back(void **state)
     assert_int_equal(fake_chips[1].opens, 0);
     assert_false(osb1->is_requested);
     assert_int_equal(g.fd, -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_are_found_by_name_and_read_as_active_or_not),
-        cmocka_unit_test(a_line_without_a_name_is_found_by_chip_and_number),
-        cmocka_unit_test(what_is_not_there_is_told_and_leaves_nothing_open),
-        cmocka_unit_test(an_edge_wakes_the_loop_until_it_was_taken),
-        cmocka_unit_test(after_a_storm_of_edges_the_level_is_right),
-        cmocka_unit_test(a_line_that_cannot_interrupt_is_had_without),
-        cmocka_unit_test(a_line_that_fails_counts_as_let_go),
-        cmocka_unit_test(lamps_begin_dark_and_shine_at_either_level),
-        cmocka_unit_test(closing_gives_every_line_and_chip_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

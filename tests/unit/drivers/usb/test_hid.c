@@ -1,15 +1,10 @@
 /* Report descriptors of real devices and of liars. The bytes of real ones are as their makers
  * publish them, and what they must mean comes from whoever described the device, not from us. */
+#include "check.h"
 #include "drv/hid.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* DragonRise game pad 0079:0011. Its first item of all has no data at all, which means 0. */
 static const char dragonrise[] =
@@ -110,9 +105,8 @@ static int32_t value_in(const struct drv_hid_map *map, uint16_t page, uint16_t u
     return value;
 }
 
-static void a_dragonrise_pad_has_two_axes_behind_three_idle_bytes_and_ten_buttons(void **state)
+TEST(a_dragonrise_pad_has_two_axes_behind_three_idle_bytes_and_ten_buttons)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse(dragonrise, &map));
     assert_int_equal(map.application, 4);
@@ -124,9 +118,8 @@ static void a_dragonrise_pad_has_two_axes_behind_three_idle_bytes_and_ten_button
     expect_field(&map, 9, 10, 53, 1, 0, 1);
 }
 
-static void a_dualshock_has_four_axes_and_nineteen_buttons_in_report_one(void **state)
+TEST(a_dualshock_has_four_axes_and_nineteen_buttons_in_report_one)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse(dualshock3, &map));
     assert_true(map.has_numbers);
@@ -139,9 +132,8 @@ static void a_dualshock_has_four_axes_and_nineteen_buttons_in_report_one(void **
 }
 
 /* Places as the table of the xpadneo project has them. */
-static void an_xbox_pad_has_the_places_that_others_have_found(void **state)
+TEST(an_xbox_pad_has_the_places_that_others_have_found)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse(xbox, &map));
     assert_int_equal(map.application, 5);
@@ -153,9 +145,8 @@ static void an_xbox_pad_has_the_places_that_others_have_found(void **state)
     expect_field(&map, 9, 15, 118, 1, 0, 1);
 }
 
-static void the_example_of_the_standard_is_understood(void **state)
+TEST(the_example_of_the_standard_is_understood)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse(pid_example, &map));
     expect_field(&map, 2, DRV_HID_THROTTLE, 0, 8, -127, 127);
@@ -168,9 +159,8 @@ static void the_example_of_the_standard_is_understood(void **state)
 }
 
 /* The report and what it means are those of the article: FC F1 87 80 is X 1FC, Y 1FC, hat 8. */
-static void ten_bit_axes_across_bytes_read_as_others_read_them(void **state)
+TEST(ten_bit_axes_across_bytes_read_as_others_read_them)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse(packed, &map));
     const char rest[] = "FC F1 87 80 00 00 00";
@@ -187,9 +177,8 @@ static void ten_bit_axes_across_bytes_read_as_others_read_them(void **state)
     expect_field(&map, 9, 12, 51, 1, 0, 1);
 }
 
-static void a_maximum_written_as_minus_one_byte_is_255(void **state)
+TEST(a_maximum_written_as_minus_one_byte_is_255)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse("0501 0904 A101 25FF 1500 7508 9501 0930 8102 C0", &map));
     assert_int_equal(map.field[0].high, 255);
@@ -198,9 +187,8 @@ static void a_maximum_written_as_minus_one_byte_is_255(void **state)
     assert_int_equal(map.field[0].high, 127);
 }
 
-static void a_report_that_is_too_short_or_another_one_says_nothing(void **state)
+TEST(a_report_that_is_too_short_or_another_one_says_nothing)
 {
-    (void)state;
     struct drv_hid_map map;
     int32_t value;
     assert_null(parse(pid_example, &map));
@@ -214,9 +202,8 @@ static void a_report_that_is_too_short_or_another_one_says_nothing(void **state)
     assert_false(drv_hid_read(&map, y, other, 4, &value));
 }
 
-static void a_descriptor_that_contradicts_itself_is_refused(void **state)
+TEST(a_descriptor_that_contradicts_itself_is_refused)
 {
-    (void)state;
     static const struct {
         const char *hex, *cause;
     } bad[] = {
@@ -255,9 +242,8 @@ static void a_descriptor_that_contradicts_itself_is_refused(void **state)
     assert_non_null(drv_hid_parse(long_one, sizeof long_one, &map));
 }
 
-static void a_real_descriptor_cut_anywhere_is_refused(void **state)
+TEST(a_real_descriptor_cut_anywhere_is_refused)
 {
-    (void)state;
     uint8_t bytes[1024];
     const size_t size = bytes_of(dualshock3, bytes);
     for (size_t length = 5; length < size; length++) {
@@ -267,28 +253,10 @@ static void a_real_descriptor_cut_anywhere_is_refused(void **state)
     }
 }
 
-static void more_fields_than_there_is_room_for_are_left_out(void **state)
+TEST(more_fields_than_there_is_room_for_are_left_out)
 {
-    (void)state;
     struct drv_hid_map map;
     assert_null(parse("0501 0904 A101 1500 2501 0509 1901 29FF 7501 96FF01 8102 C0", &map));
     assert_int_equal(map.count, DRV_HID_FIELDS);
     assert_int_equal(map.field[DRV_HID_FIELDS - 1].usage, DRV_HID_FIELDS);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_dragonrise_pad_has_two_axes_behind_three_idle_bytes_and_ten_buttons),
-        cmocka_unit_test(a_dualshock_has_four_axes_and_nineteen_buttons_in_report_one),
-        cmocka_unit_test(an_xbox_pad_has_the_places_that_others_have_found),
-        cmocka_unit_test(the_example_of_the_standard_is_understood),
-        cmocka_unit_test(ten_bit_axes_across_bytes_read_as_others_read_them),
-        cmocka_unit_test(a_maximum_written_as_minus_one_byte_is_255),
-        cmocka_unit_test(a_report_that_is_too_short_or_another_one_says_nothing),
-        cmocka_unit_test(a_descriptor_that_contradicts_itself_is_refused),
-        cmocka_unit_test(a_real_descriptor_cut_anywhere_is_refused),
-        cmocka_unit_test(more_fields_than_there_is_room_for_are_left_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

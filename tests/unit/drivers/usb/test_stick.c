@@ -1,14 +1,9 @@
 /* What a hand on the stick means to the firmware. */
 #include "drv/stick.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 /* X, Y -127..127, slider 0..255, a hat of eight positions, 4 buttons: five bytes. */
@@ -61,9 +56,8 @@ static void expect_nothing(struct drv_control_ring *ring)
     assert_false(drv_control_ring_take(ring, &c));
 }
 
-static void full_deflection_is_full_and_away_from_the_operator_is_up(void **state)
+TEST(full_deflection_is_full_and_away_from_the_operator_is_up)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     struct drv_control_ring ring = {0};
@@ -79,9 +73,8 @@ static void full_deflection_is_full_and_away_from_the_operator_is_up(void **stat
 }
 
 /* Over the whole range: nothing within the dead zone, never a step backwards, symmetric. */
-static void deflection_grows_from_the_edge_of_the_dead_zone(void **state)
+TEST(deflection_grows_from_the_edge_of_the_dead_zone)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     int before = -1000;
@@ -96,9 +89,8 @@ static void deflection_grows_from_the_edge_of_the_dead_zone(void **state)
     }
 }
 
-static void what_has_not_changed_is_not_told_again(void **state)
+TEST(what_has_not_changed_is_not_told_again)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     struct drv_control_ring ring = {0};
@@ -110,9 +102,8 @@ static void what_has_not_changed_is_not_told_again(void **state)
     expect_nothing(&ring);
 }
 
-static void a_button_is_told_when_it_goes_down_and_up_as_its_meaning_needs(void **state)
+TEST(a_button_is_told_when_it_goes_down_and_up_as_its_meaning_needs)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     struct drv_control_ring ring = {0};
@@ -128,9 +119,8 @@ static void a_button_is_told_when_it_goes_down_and_up_as_its_meaning_needs(void 
     expect_nothing(&ring);
 }
 
-static void a_device_that_goes_lets_go_of_everything(void **state)
+TEST(a_device_that_goes_lets_go_of_everything)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     struct drv_control_ring ring = {0};
@@ -147,9 +137,8 @@ static void a_device_that_goes_lets_go_of_everything(void **state)
 }
 
 /* A ring that nobody empties: what does not fit is told later, in its last state. */
-static void a_full_ring_loses_no_release(void **state)
+TEST(a_full_ring_loses_no_release)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     struct drv_control_ring ring = {0};
@@ -167,9 +156,8 @@ static void a_full_ring_loses_no_release(void **state)
     expect(&ring, lm_control_button(false, 7));
 }
 
-static void a_hat_slews_in_eight_directions_and_stops_when_it_is_let_go(void **state)
+TEST(a_hat_slews_in_eight_directions_and_stops_when_it_is_let_go)
 {
-    (void)state;
     struct drv_stick_config c = standard();
     c.right.usage = DRV_STICK_HAT_X;
     c.up.usage = DRV_STICK_HAT_Y;
@@ -183,9 +171,8 @@ static void a_hat_slews_in_eight_directions_and_stops_when_it_is_let_go(void **s
     }
 }
 
-static void a_short_report_changes_nothing_and_is_counted(void **state)
+TEST(a_short_report_changes_nothing_and_is_counted)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s = attached(&c);
     feel(&s, 127, 0, 128, CENTRED_HAT, 0x04);
@@ -198,9 +185,8 @@ static void a_short_report_changes_nothing_and_is_counted(void **state)
     assert_int_equal(s.count.odd, REPORT);
 }
 
-static void only_what_calls_itself_a_controller_is_taken_unless_it_is_named(void **state)
+TEST(only_what_calls_itself_a_controller_is_taken_unless_it_is_named)
 {
-    (void)state;
     const struct drv_stick_config c = standard();
     struct drv_stick s;
     uint8_t mouse[sizeof descriptor];
@@ -211,9 +197,8 @@ static void only_what_calls_itself_a_controller_is_taken_unless_it_is_named(void
     assert_null(drv_stick_attach(&s, mouse, sizeof mouse, true));
 }
 
-static void a_device_without_the_axes_is_refused(void **state)
+TEST(a_device_without_the_axes_is_refused)
 {
-    (void)state;
     struct drv_stick_config c = standard();
     c.right.usage = DRV_STICK_X + 3; /* Rx */
     c.up.usage = DRV_STICK_NONE;
@@ -221,21 +206,4 @@ static void a_device_without_the_axes_is_refused(void **state)
     drv_stick_init(&s, &c);
     assert_non_null(drv_stick_attach(&s, descriptor, sizeof descriptor, true));
     assert_false(s.is_attached);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_deflection_is_full_and_away_from_the_operator_is_up),
-        cmocka_unit_test(deflection_grows_from_the_edge_of_the_dead_zone),
-        cmocka_unit_test(what_has_not_changed_is_not_told_again),
-        cmocka_unit_test(a_button_is_told_when_it_goes_down_and_up_as_its_meaning_needs),
-        cmocka_unit_test(a_device_that_goes_lets_go_of_everything),
-        cmocka_unit_test(a_full_ring_loses_no_release),
-        cmocka_unit_test(a_hat_slews_in_eight_directions_and_stops_when_it_is_let_go),
-        cmocka_unit_test(a_short_report_changes_nothing_and_is_counted),
-        cmocka_unit_test(only_what_calls_itself_a_controller_is_taken_unless_it_is_named),
-        cmocka_unit_test(a_device_without_the_axes_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* The USB driver on a bus where devices come, go, lie and fall silent. */
+#include "check.h"
 #include "drv/usb.h"
 #include "fake_usb.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-
-#include <cmocka.h>
 
 static const uint8_t descriptor[] = {0x05, 0x01, 0x09, 0x04, 0xa1, 0x01, 0xc0};
 
@@ -114,9 +109,8 @@ static struct fake_device *stick(void)
     return d;
 }
 
-static void a_device_that_is_there_is_attached_and_its_reports_arrive(void **state)
+TEST(a_device_that_is_there_is_attached_and_its_reports_arrive)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x046d};
     d->serial = "A1";
@@ -133,9 +127,8 @@ static void a_device_that_is_there_is_attached_and_its_reports_arrive(void **sta
     assert_int_equal(atomic_load(&fake_usb_transfers), 0);
 }
 
-static void a_device_may_be_unplugged_and_plugged_in_again_and_again(void **state)
+TEST(a_device_may_be_unplugged_and_plugged_in_again_and_again)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x046d};
     struct drv_usb *u = start(&l);
@@ -152,9 +145,8 @@ static void a_device_may_be_unplugged_and_plugged_in_again_and_again(void **stat
 }
 
 /* Seen on a real kernel: a device whose driver is unbound completes every transfer with nothing. */
-static void a_device_that_sends_nothing_for_ever_is_let_go(void **state)
+TEST(a_device_that_sends_nothing_for_ever_is_let_go)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x046d};
     fake_usb_plug(d);
@@ -171,9 +163,8 @@ static void a_device_that_sends_nothing_for_ever_is_let_go(void **state)
     drv_usb_stop(u);
 }
 
-static void a_device_that_lies_about_itself_is_refused_and_left_alone(void **state)
+TEST(a_device_that_lies_about_itself_is_refused_and_left_alone)
 {
-    (void)state;
     static const struct {
         int told, sent;
         bool has_bad_extra;
@@ -197,9 +188,8 @@ static void a_device_that_lies_about_itself_is_refused_and_left_alone(void **sta
     }
 }
 
-static void a_device_that_was_refused_is_looked_at_again_when_it_is_plugged_in_anew(void **state)
+TEST(a_device_that_was_refused_is_looked_at_again_when_it_is_plugged_in_anew)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x046d};
     d->is_busy = true;
@@ -215,9 +205,8 @@ static void a_device_that_was_refused_is_looked_at_again_when_it_is_plugged_in_a
     drv_usb_stop(u);
 }
 
-static void what_the_client_does_not_want_is_never_opened(void **state)
+TEST(what_the_client_does_not_want_is_never_opened)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x1209};
     fake_usb_plug(d);
@@ -229,9 +218,8 @@ static void what_the_client_does_not_want_is_never_opened(void **state)
     drv_usb_stop(u);
 }
 
-static void a_second_client_has_a_device_of_its_own(void **state)
+TEST(a_second_client_has_a_device_of_its_own)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener hand = {.vendor = 0x046d}, loader = {.vendor = 0x1209};
     fake_usb[1] = (struct fake_device){.vendor = 0x1209,
@@ -257,9 +245,8 @@ static void a_second_client_has_a_device_of_its_own(void **state)
     drv_usb_stop(u);
 }
 
-static void a_machine_that_gets_its_usb_later_is_waited_for(void **state)
+TEST(a_machine_that_gets_its_usb_later_is_waited_for)
 {
-    (void)state;
     struct fake_device *d = stick();
     struct listener l = {.vendor = 0x046d};
     fake_usb_plug(d);
@@ -269,28 +256,11 @@ static void a_machine_that_gets_its_usb_later_is_waited_for(void **state)
     drv_usb_stop(u);
 }
 
-static void more_clients_than_there_is_room_for_are_an_error(void **state)
+TEST(more_clients_than_there_is_room_for_are_an_error)
 {
-    (void)state;
     const struct drv_usb_client clients[DRV_USB_CLIENTS + 1] = {{0}};
     char error[160] = "";
     assert_null(drv_usb_start(clients, DRV_USB_CLIENTS + 1, error));
     assert_true(strlen(error) > 0);
     drv_usb_stop(NULL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_device_that_is_there_is_attached_and_its_reports_arrive),
-        cmocka_unit_test(a_device_may_be_unplugged_and_plugged_in_again_and_again),
-        cmocka_unit_test(a_device_that_sends_nothing_for_ever_is_let_go),
-        cmocka_unit_test(a_device_that_lies_about_itself_is_refused_and_left_alone),
-        cmocka_unit_test(a_device_that_was_refused_is_looked_at_again_when_it_is_plugged_in_anew),
-        cmocka_unit_test(what_the_client_does_not_want_is_never_opened),
-        cmocka_unit_test(a_second_client_has_a_device_of_its_own),
-        cmocka_unit_test(a_machine_that_gets_its_usb_later_is_waited_for),
-        cmocka_unit_test(more_clients_than_there_is_room_for_are_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

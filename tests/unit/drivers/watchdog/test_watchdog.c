@@ -1,20 +1,15 @@
 /* The rule of feeding, the board's watchdog as a file, and systemd's socket as a real one. */
 #include "drv/watchdog.h"
 
+#include "check.h"
 #include "lm/status.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char path[] = "/tmp/landmass-watchdog-XXXXXX"; /* of the device or the socket */
 
@@ -61,9 +56,8 @@ static void expect_silence(int fd)
 }
 
 /* All eight combinations of what has progressed. */
-static void life_is_proved_only_when_everything_has_progressed(void **state)
+TEST(life_is_proved_only_when_everything_has_progressed)
 {
-    (void)state;
     for (uint32_t moved = 0; moved < 8; moved++) {
         struct drv_liveness last = {10, 20, 30};
         const struct drv_liveness now = {10 + (moved & 1), 20 + (moved >> 1 & 1),
@@ -74,9 +68,8 @@ static void life_is_proved_only_when_everything_has_progressed(void **state)
 }
 
 /* Parts that progress one after the other count together: what counts is since the last meal. */
-static void slow_parts_have_until_the_next_meal(void **state)
+TEST(slow_parts_have_until_the_next_meal)
 {
-    (void)state;
     struct drv_liveness last = {0}, now = {0};
     now.frames = 5;
     assert_false(drv_liveness_progressed(&last, now));
@@ -87,9 +80,8 @@ static void slow_parts_have_until_the_next_meal(void **state)
     assert_false(drv_liveness_progressed(&last, now));
 }
 
-static void systemd_is_fed_at_half_its_time_out(void **state)
+TEST_WITH(systemd_is_fed_at_half_its_time_out, no_environment, remove_path)
 {
-    (void)state;
     unlink(path);
     const int fd = bind_socket(path, strlen(path));
     setenv("NOTIFY_SOCKET", path, 1);
@@ -110,9 +102,8 @@ static void systemd_is_fed_at_half_its_time_out(void **state)
     close(fd);
 }
 
-static void a_glass_that_stands_still_starves_the_dog_until_it_moves(void **state)
+TEST_WITH(a_glass_that_stands_still_starves_the_dog_until_it_moves, no_environment, remove_path)
 {
-    (void)state;
     unlink(path);
     const int fd = bind_socket(path, strlen(path));
     setenv("NOTIFY_SOCKET", path, 1);
@@ -131,9 +122,8 @@ static void a_glass_that_stands_still_starves_the_dog_until_it_moves(void **stat
     close(fd);
 }
 
-static void a_time_out_meant_for_another_process_is_not_ours(void **state)
+TEST_WITH(a_time_out_meant_for_another_process_is_not_ours, no_environment, remove_path)
 {
-    (void)state;
     unlink(path);
     const int fd = bind_socket(path, strlen(path));
     setenv("NOTIFY_SOCKET", path, 1);
@@ -149,9 +139,8 @@ static void a_time_out_meant_for_another_process_is_not_ours(void **state)
     close(fd);
 }
 
-static void an_abstract_socket_is_understood(void **state)
+TEST_WITH(an_abstract_socket_is_understood, no_environment, remove_path)
 {
-    (void)state;
     char name[64];
     const int length = snprintf(name, sizeof name, "@landmass-test-%d", (int)getpid());
     setenv("NOTIFY_SOCKET", name, 1);
@@ -165,9 +154,8 @@ static void an_abstract_socket_is_understood(void **state)
     close(fd);
 }
 
-static void a_socket_that_nobody_reads_does_not_stop_the_loop(void **state)
+TEST_WITH(a_socket_that_nobody_reads_does_not_stop_the_loop, no_environment, remove_path)
 {
-    (void)state;
     unlink(path);
     const int fd = bind_socket(path, strlen(path));
     setenv("NOTIFY_SOCKET", path, 1);
@@ -181,9 +169,8 @@ static void a_socket_that_nobody_reads_does_not_stop_the_loop(void **state)
     drv_watchdog_close(&w);
 }
 
-static void only_a_commanded_stop_calls_the_boards_dog_off(void **state)
+TEST_WITH(only_a_commanded_stop_calls_the_boards_dog_off, no_environment, remove_path)
 {
-    (void)state;
     struct drv_watchdog w;
     char bytes[8] = "";
     assert_int_equal(drv_watchdog_open(&w, path, 4, 0), LM_OK);
@@ -198,9 +185,8 @@ static void only_a_commanded_stop_calls_the_boards_dog_off(void **state)
     fclose(device);
 }
 
-static void what_is_not_to_be_had_is_told_and_the_rest_works(void **state)
+TEST_WITH(what_is_not_to_be_had_is_told_and_the_rest_works, no_environment, remove_path)
 {
-    (void)state;
     struct drv_watchdog w;
     assert_int_equal(drv_watchdog_open(&w, "/nowhere/watchdog", 4, 0), LM_ERR_IO);
     assert_non_null(strstr(w.error, "/nowhere/watchdog"));
@@ -210,27 +196,4 @@ static void what_is_not_to_be_had_is_told_and_the_rest_works(void **state)
     assert_non_null(strstr(w.error, "not a path"));
     assert_true(w.fd >= 0);
     drv_watchdog_close(&w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(life_is_proved_only_when_everything_has_progressed),
-        cmocka_unit_test(slow_parts_have_until_the_next_meal),
-        cmocka_unit_test_setup_teardown(systemd_is_fed_at_half_its_time_out, no_environment,
-                                        remove_path),
-        cmocka_unit_test_setup_teardown(a_glass_that_stands_still_starves_the_dog_until_it_moves,
-                                        no_environment, remove_path),
-        cmocka_unit_test_setup_teardown(a_time_out_meant_for_another_process_is_not_ours,
-                                        no_environment, remove_path),
-        cmocka_unit_test_setup_teardown(an_abstract_socket_is_understood, no_environment,
-                                        remove_path),
-        cmocka_unit_test_setup_teardown(a_socket_that_nobody_reads_does_not_stop_the_loop,
-                                        no_environment, remove_path),
-        cmocka_unit_test_setup_teardown(only_a_commanded_stop_calls_the_boards_dog_off,
-                                        no_environment, remove_path),
-        cmocka_unit_test_setup_teardown(what_is_not_to_be_had_is_told_and_the_rest_works,
-                                        no_environment, remove_path),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* Positions along a scan line, against PROJ's geodesics. */
+#include "check.h"
 #include "hs/angle.h"
 #include "lm/geo.h"
 
 #include <geodesic.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static struct lm_place place_of(double latitude, double longitude)
 {
@@ -64,9 +59,8 @@ static void go_on(struct lm_ground_path *p)
 
 static const double latitudes[] = {0, 45, 68, 70, -33, 80, -89, 90};
 
-static void the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles(void **state)
+TEST(the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
         const double worst = worst_direct(latitudes[i], 179.9, 148160);
         print_message("# latitude %g: direct problem off by %.2f m at 80 nm\n", latitudes[i],
@@ -75,17 +69,15 @@ static void the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_mi
     }
 }
 
-static void nearby_points_are_within_5_cm(void **state)
+TEST(nearby_points_are_within_5_cm)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof latitudes / sizeof *latitudes; i++) {
         assert_true(worst_direct(latitudes[i], -71, 640) < 0.05);
     }
 }
 
-static void what_is_too_far_counts_as_300_km(void **state)
+TEST(what_is_too_far_counts_as_300_km)
 {
-    (void)state;
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, place_of(61, -5));
     const struct lm_place most = lm_geo_direct(&o, 7, 300000 * 256);
@@ -120,9 +112,8 @@ static double worst_cell(double lat, double lon, double metres, uint32_t cells)
     return worst;
 }
 
-static void every_cell_of_an_80_mile_line_is_within_half_a_cell(void **state)
+TEST(every_cell_of_an_80_mile_line_is_within_half_a_cell)
 {
-    (void)state;
     static const double places[][2] = {{0, 10}, {45, -100}, {70, 20}, {45, 179.5}, {-70, -179.8}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         const double worst = worst_cell(places[i][0], places[i][1], 148160, 256);
@@ -163,27 +154,24 @@ static double worst_patch_cell(double lat, double lon, const struct lm_ground_ex
     return worst;
 }
 
-static void patch_lines_lie_where_across_and_along_offsets_say(void **state)
+TEST(patch_lines_lie_where_across_and_along_offsets_say)
 {
-    (void)state;
     const struct lm_ground_extent patch = {-132 * 2560, 128 * 2560, 128 * 2560};
     const double worst = worst_patch_cell(61.8, 179.99, &patch, 260);
     print_message("# patch of 10 m cells: worst cell %.3f m off\n", worst);
     assert_true(worst < 0.1);
 }
 
-static void the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells(void **state)
+TEST(the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells)
 {
-    (void)state;
     const struct lm_ground_extent runup = {-138600 * 256, -1320 * 256, 128 * 2560};
     const double worst = worst_patch_cell(61.8, 179.99, &runup, 128);
     print_message("# run-up of 1,072 m cells: worst cell %.1f m off\n", worst);
     assert_true(worst < 107);
 }
 
-static void the_inverse_problem_finds_distance_and_azimuth(void **state)
+TEST(the_inverse_problem_finds_distance_and_azimuth)
 {
-    (void)state;
     for (int deg = 0; deg < 360; deg += 13) {
         double to_lat, to_lon;
         geodesic_direct(52, 179.9, deg, 60000, &to_lat, &to_lon);
@@ -195,26 +183,10 @@ static void the_inverse_problem_finds_distance_and_azimuth(void **state)
     }
 }
 
-static void a_hopeless_distance_does_not_overflow(void **state)
+TEST(a_hopeless_distance_does_not_overflow)
 {
-    (void)state;
     uint32_t distance_q8;
     fx_bam_t azimuth;
     lm_geo_inverse(place_of(-90, 0), place_of(90, 180), &distance_q8, &azimuth);
     assert_true(distance_q8 / 256 > 300000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_direct_problem_is_within_10_cm_of_the_geodesic_at_80_nautical_miles),
-        cmocka_unit_test(nearby_points_are_within_5_cm),
-        cmocka_unit_test(what_is_too_far_counts_as_300_km),
-        cmocka_unit_test(every_cell_of_an_80_mile_line_is_within_half_a_cell),
-        cmocka_unit_test(patch_lines_lie_where_across_and_along_offsets_say),
-        cmocka_unit_test(the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells),
-        cmocka_unit_test(the_inverse_problem_finds_distance_and_azimuth),
-        cmocka_unit_test(a_hopeless_distance_does_not_overflow),
-    };
-    return cmocka_run_group_tests_name("geo", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
  * nothing overflows, every frame is accounted for, and what comes out is always a possible
  * aircraft. */
 #include "bus_frames.h"
+#include "check.h"
 #include "drv/can_log.h"
 #include "hs/rng.h"
 #include "lm/bus.h"
@@ -9,12 +10,8 @@
 #include "lm/status.h"
 #include "lm/weather_bus.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* Anything at all, but often enough an identifier and a type that are taken. */
 static struct lm_can_frame random_frame(struct hs_rng *rng, uint64_t time_us)
@@ -74,9 +71,8 @@ static void assert_possible(const struct lm_ownship *o)
     assert_true(o->position_quality != LM_NAV_DEAD || (o->latitude == 0 && o->longitude == 0));
 }
 
-static void every_random_frame_is_accounted_for_and_the_ownship_stays_possible(void **state)
+TEST(every_random_frame_is_accounted_for_and_the_ownship_stays_possible)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 21);
     /* On the heap, where the sanitizer watches their ends. */
@@ -148,9 +144,8 @@ static size_t damage(struct hs_rng *rng, const char *line, char *out)
     return length + 1;
 }
 
-static void a_damaged_log_is_read_to_its_end_and_every_line_is_counted(void **state)
+TEST(a_damaged_log_is_read_to_its_end_and_every_line_is_counted)
 {
-    (void)state;
     static const char *const lines[] = {
         "(1700006380.038625) vcan0 40C#091E00004047A001",
         "(1700006380.038750) can1 0001040C#1003000012345678",
@@ -187,13 +182,4 @@ static void a_damaged_log_is_read_to_its_end_and_every_line_is_counted(void **st
     assert_true(log.count.frames + log.count.malformed <= log.count.lines);
     fclose(file);
     free(text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_random_frame_is_accounted_for_and_the_ownship_stays_possible),
-        cmocka_unit_test(a_damaged_log_is_read_to_its_end_and_every_line_is_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

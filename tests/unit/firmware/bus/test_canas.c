@@ -1,17 +1,14 @@
 /* The decoder of the avionics bus: what an independent library sent is read to the last digit, and
  * what nobody should have sent changes nothing but a counter. */
 #include "bus_frames.h"
+#include "check.h"
 #include "drv/can_log.h"
 #include "hs/rng.h"
 #include "support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <zlib.h>
-
-#include <cmocka.h>
 
 static enum lm_bus_outcome take(struct lm_bus *c, struct lm_can_frame frame,
                                 struct lm_bus_event *event)
@@ -108,9 +105,8 @@ static void compare_peer_line(const struct peer_log *log, const char *line,
     compared[row][redundancy]++;
 }
 
-static void every_value_that_another_library_sent_is_decoded_within_its_tolerance(void **state)
+TEST(every_value_that_another_library_sent_is_decoded_within_its_tolerance)
 {
-    (void)state;
     char frames[512], expected[512];
     if (!support_data_path("can_peer/peer_frames_3s.log.gz", frames, sizeof frames) ||
         !support_data_path("can_peer/peer_expected_3s.csv.gz", expected, sizeof expected)) {
@@ -152,9 +148,8 @@ static void every_value_that_another_library_sent_is_decoded_within_its_toleranc
 
 /* ---- the table ---- */
 
-static void the_table_agrees_with_the_specifications_identifiers(void **state)
+TEST(the_table_agrees_with_the_specifications_identifiers)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("can_peer/canas_ids.csv", path, sizeof path)) {
         skip();
@@ -226,9 +221,8 @@ static void assert_sound(const struct lm_bus_profile *p)
     }
 }
 
-static void a_board_may_have_a_list_of_its_own(void **state)
+TEST(a_board_may_have_a_list_of_its_own)
 {
-    (void)state;
     static const struct lm_bus_profile mine = {.name = "mine"};
     static const struct lm_bus_named_profile list[] = {
         {"canas17", &lm_bus_canas17}, {"mine", &mine}, {NULL, NULL}};
@@ -237,9 +231,8 @@ static void a_board_may_have_a_list_of_its_own(void **state)
     assert_null(lm_bus_profile_named(list, "xcsoar"));
 }
 
-static void a_profile_is_found_by_its_name_only(void **state)
+TEST(a_profile_is_found_by_its_name_only)
 {
-    (void)state;
     assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "canas17"), &lm_bus_canas17);
     assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "xcsoar"), &lm_bus_xcsoar);
     assert_ptr_equal(lm_bus_profile_named(lm_bus_profiles, "generic"), &lm_bus_generic);
@@ -248,9 +241,8 @@ static void a_profile_is_found_by_its_name_only(void **state)
     assert_null(lm_bus_profile_named(lm_bus_profiles, ""));
 }
 
-static void every_table_of_canaerospace_is_sound(void **state)
+TEST(every_table_of_canaerospace_is_sound)
 {
-    (void)state;
     for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
         if (p->profile->framing == LM_BUS_CANAEROSPACE) {
             assert_sound(p->profile);
@@ -260,9 +252,8 @@ static void every_table_of_canaerospace_is_sound(void **state)
 
 /* ---- numbers ---- */
 
-static void any_float_in_range_is_within_half_a_count_of_double_arithmetic(void **state)
+TEST(any_float_in_range_is_within_half_a_count_of_double_arithmetic)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 11);
     struct lm_bus c;
@@ -283,9 +274,8 @@ static void any_float_in_range_is_within_half_a_count_of_double_arithmetic(void 
     }
 }
 
-static void a_double_keeps_the_last_count(void **state)
+TEST(a_double_keeps_the_last_count)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 12);
     struct lm_bus c;
@@ -308,9 +298,8 @@ static void a_double_keeps_the_last_count(void **state)
     }
 }
 
-static void a_short2_is_value_times_scale_over_32767(void **state)
+TEST(a_short2_is_value_times_scale_over_32767)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -324,9 +313,8 @@ static void a_short2_is_value_times_scale_over_32767(void **state)
     assert_int_equal(event.value, lround(-32768.0 * 179 / 32767 * 0x1p32 / 360));
 }
 
-static void a_long_position_counts_ten_millionths_of_a_degree(void **state)
+TEST(a_long_position_counts_ten_millionths_of_a_degree)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -340,9 +328,8 @@ static void a_long_position_counts_ten_millionths_of_a_degree(void **state)
     assert_int_equal(take(&c, bus_frame(1037, 3, 0, 0x7fffffffu, 0), &event), LM_BUS_OUT_OF_RANGE);
 }
 
-static void both_ends_of_every_range_are_taken_and_the_next_float_is_not(void **state)
+TEST(both_ends_of_every_range_are_taken_and_the_next_float_is_not)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -379,9 +366,8 @@ static const struct {
     {"DOUBLEH", 4}, {"DOUBLEL", 4},
 };
 
-static void every_data_type_has_the_specifications_code_name_and_length(void **state)
+TEST(every_data_type_has_the_specifications_code_name_and_length)
 {
-    (void)state;
     for (int i = 0; i < LM_CANAS_TYPES; i++) {
         const struct lm_canas_type *t = &lm_canas_types[i];
         assert_string_equal(t->name, specified[i].name);
@@ -409,9 +395,8 @@ static const struct lm_bus_row own_rows[] = {
 };
 static const struct lm_bus_profile own_bus = {.name = "own", .rows = own_rows, .row_count = 2};
 
-static void a_number_of_every_type_that_can_carry_it_is_read(void **state)
+TEST(a_number_of_every_type_that_can_carry_it_is_read)
 {
-    (void)state;
     const struct {
         uint8_t type, length;
         uint32_t word; /* left-justified, as it lies in the frame */
@@ -451,9 +436,8 @@ static void a_number_of_every_type_that_can_carry_it_is_read(void **state)
     }
 }
 
-static void a_clock_of_every_type_that_can_carry_it_is_read(void **state)
+TEST(a_clock_of_every_type_that_can_carry_it_is_read)
 {
-    (void)state;
     const uint8_t types[] = {15, 16, 26, 27};
     for (size_t i = 0; i < sizeof types; i++) {
         struct lm_bus c;
@@ -467,9 +451,8 @@ static void a_clock_of_every_type_that_can_carry_it_is_read(void **state)
 }
 
 /* How coarse a value is tells the ownship what to make of it: neighbouring values of the type. */
-static void the_step_of_a_value_is_that_of_its_type(void **state)
+TEST(the_step_of_a_value_is_that_of_its_type)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -489,9 +472,8 @@ static void the_step_of_a_value_is_that_of_its_type(void **state)
     assert_int_equal(event.step, 0);
 }
 
-static void xcsoars_frames_are_read_whatever_byte_1_says(void **state)
+TEST(xcsoars_frames_are_read_whatever_byte_1_says)
 {
-    (void)state;
     for (int type = 0; type < 256; type++) {
         struct lm_bus c;
         struct lm_bus_event event = {0};
@@ -532,9 +514,8 @@ static struct lm_can_frame with_extended_id(struct lm_can_frame frame, uint32_t 
     return frame;
 }
 
-static void every_malformed_frame_is_refused_for_its_own_reason(void **state)
+TEST(every_malformed_frame_is_refused_for_its_own_reason)
 {
-    (void)state;
     const struct lm_can_frame good = bus_float(LM_BUS_LATITUDE, 47.25, 0);
     struct lm_can_frame remote = good, error = good, wide = good;
     remote.is_remote = true;
@@ -600,9 +581,8 @@ static void every_malformed_frame_is_refused_for_its_own_reason(void **state)
     }
 }
 
-static void a_leap_second_is_a_time(void **state)
+TEST(a_leap_second_is_a_time)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -612,9 +592,8 @@ static void a_leap_second_is_a_time(void **state)
     assert_int_equal(event.value, 86400);
 }
 
-static void no_message_is_lost_when_a_sender_restarts_repeats_or_jumps(void **state)
+TEST(no_message_is_lost_when_a_sender_restarts_repeats_or_jumps)
 {
-    (void)state;
     struct lm_bus c;
     lm_bus_init(&c, &lm_bus_canas17);
     const uint8_t codes[] = {200, 201, 0, 1, 2, 2, 2, 130, 131, 3, 255, 0, 1};
@@ -700,9 +679,8 @@ static int complete_pairs(unsigned mask)
     return complete;
 }
 
-static void whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value(void **state)
+TEST(whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value)
 {
-    (void)state;
     for (unsigned variant = 0; variant < 32; variant++) {
         const struct sender s = {
             .is_low_first = (variant & 1) != 0,
@@ -723,10 +701,8 @@ static void whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value(void *
     }
 }
 
-static void
-a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair(void **state)
+TEST(a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair)
 {
-    (void)state;
     for (unsigned variant = 0; variant < 4; variant++) {
         const struct sender s = {
             .is_low_first = (variant & 1) != 0,
@@ -763,9 +739,8 @@ static enum lm_bus_outcome half_something_half(const struct lm_can_frame *someth
     return outcome;
 }
 
-static void anything_else_of_that_identifier_between_the_halves_tears_them(void **state)
+TEST(anything_else_of_that_identifier_between_the_halves_tears_them)
 {
-    (void)state;
     struct lm_can_frame other_node = bus_frame(1036, LM_CANAS_DOUBLEL, 1, 0, 50);
     other_node.data[0] = 10;
     const struct lm_can_frame tearing[] = {
@@ -788,9 +763,8 @@ static void anything_else_of_that_identifier_between_the_halves_tears_them(void 
     assert_int_equal(torn, 1);
 }
 
-static void other_identifiers_and_channels_between_the_halves_do_not_matter(void **state)
+TEST(other_identifiers_and_channels_between_the_halves_do_not_matter)
 {
-    (void)state;
     const struct lm_can_frame half = bus_frame(1036, LM_CANAS_DOUBLEL, 1, 0, 50);
     struct lm_can_frame error = half, remote = half;
     error.is_error = true;
@@ -810,9 +784,8 @@ static void other_identifiers_and_channels_between_the_halves_do_not_matter(void
     }
 }
 
-static void halves_of_two_channels_are_joined_each_on_its_own(void **state)
+TEST(halves_of_two_channels_are_joined_each_on_its_own)
 {
-    (void)state;
     struct lm_bus c;
     struct lm_bus_event event = {0};
     lm_bus_init(&c, &lm_bus_canas17);
@@ -831,9 +804,8 @@ static void halves_of_two_channels_are_joined_each_on_its_own(void **state)
     assert_int_equal(c.canas.count.torn_pairs, 0);
 }
 
-static void a_code_gap_or_age_tears_the_halves(void **state)
+TEST(a_code_gap_or_age_tears_the_halves)
 {
-    (void)state;
     uint32_t torn;
     assert_int_equal(half_something_half(NULL, 125, 1, &torn), LM_BUS_VALUE);
     assert_int_equal(half_something_half(NULL, 125, 2, &torn), LM_BUS_HALF);
@@ -857,9 +829,8 @@ static void a_code_gap_or_age_tears_the_halves(void **state)
     }
 }
 
-static void a_sender_that_changes_its_habit_is_understood_again(void **state)
+TEST(a_sender_that_changes_its_habit_is_understood_again)
 {
-    (void)state;
     struct lm_bus c;
     lm_bus_init(&c, &lm_bus_canas17);
     int whole = 0;
@@ -877,9 +848,8 @@ static void a_sender_that_changes_its_habit_is_understood_again(void **state)
     assert_true(whole >= 4 * PAIRS - 4);
 }
 
-static void a_double_that_is_no_position_is_refused_whole(void **state)
+TEST(a_double_that_is_no_position_is_refused_whole)
 {
-    (void)state;
     const struct {
         uint64_t bits;
         enum lm_bus_outcome outcome;
@@ -903,38 +873,4 @@ static void a_double_that_is_no_position_is_refused_whole(void **state)
             bus_frame(1036, 31, (uint8_t)(code + 1), (uint32_t)bits, i * 100000 + 125);
         assert_int_equal(take(&c, low, &event), tests[i].outcome);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_value_that_another_library_sent_is_decoded_within_its_tolerance),
-        cmocka_unit_test(the_table_agrees_with_the_specifications_identifiers),
-        cmocka_unit_test(a_profile_is_found_by_its_name_only),
-        cmocka_unit_test(a_board_may_have_a_list_of_its_own),
-        cmocka_unit_test(every_table_of_canaerospace_is_sound),
-        cmocka_unit_test(any_float_in_range_is_within_half_a_count_of_double_arithmetic),
-        cmocka_unit_test(a_double_keeps_the_last_count),
-        cmocka_unit_test(a_short2_is_value_times_scale_over_32767),
-        cmocka_unit_test(a_long_position_counts_ten_millionths_of_a_degree),
-        cmocka_unit_test(both_ends_of_every_range_are_taken_and_the_next_float_is_not),
-        cmocka_unit_test(every_data_type_has_the_specifications_code_name_and_length),
-        cmocka_unit_test(a_number_of_every_type_that_can_carry_it_is_read),
-        cmocka_unit_test(a_clock_of_every_type_that_can_carry_it_is_read),
-        cmocka_unit_test(the_step_of_a_value_is_that_of_its_type),
-        cmocka_unit_test(xcsoars_frames_are_read_whatever_byte_1_says),
-        cmocka_unit_test(every_malformed_frame_is_refused_for_its_own_reason),
-        cmocka_unit_test(a_leap_second_is_a_time),
-        cmocka_unit_test(no_message_is_lost_when_a_sender_restarts_repeats_or_jumps),
-        cmocka_unit_test(whatever_halves_are_lost_exactly_the_whole_pairs_give_a_value),
-        cmocka_unit_test(
-            a_sender_five_times_too_fast_is_misread_at_most_before_its_first_whole_pair),
-        cmocka_unit_test(anything_else_of_that_identifier_between_the_halves_tears_them),
-        cmocka_unit_test(other_identifiers_and_channels_between_the_halves_do_not_matter),
-        cmocka_unit_test(halves_of_two_channels_are_joined_each_on_its_own),
-        cmocka_unit_test(a_code_gap_or_age_tears_the_halves),
-        cmocka_unit_test(a_sender_that_changes_its_habit_is_understood_again),
-        cmocka_unit_test(a_double_that_is_no_position_is_refused_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,12 @@
 /* The display as a node of CANaerospace: what it answers, when, and what it refuses. */
 #include "bus_frames.h"
+#include "check.h"
 #include "drv/can_log.h"
 #include "lm/canas_service.h"
 #include "support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <zlib.h>
-
-#include <cmocka.h>
 
 /* A bus that keeps what is sent. */
 struct wire {
@@ -54,9 +51,8 @@ static void ask(struct lm_canas_service *s, uint8_t node, uint8_t service, uint6
     lm_canas_service_take(s, &frame);
 }
 
-static void identification_is_answered_at_once_to_itself_and_to_all(void **state)
+TEST(identification_is_answered_at_once_to_itself_and_to_all)
 {
-    (void)state;
     const uint8_t nodes[] = {NODE, 0};
     for (int i = 0; i < 2; i++) {
         struct lm_canas_service s = begin();
@@ -73,9 +69,8 @@ static void identification_is_answered_at_once_to_itself_and_to_all(void **state
 }
 
 /* The other library's own request and answer, on the wire. */
-static void the_answer_has_the_form_of_another_librarys(void **state)
+TEST(the_answer_has_the_form_of_another_librarys)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("can_peer/peer_frames_3s.log.gz", path, sizeof path)) {
         skip();
@@ -104,9 +99,8 @@ static void the_answer_has_the_form_of_another_librarys(void **state)
     assert_true(s.has_sync && s.sync_stamp == 305419896 && s.count.elsewhere == 1);
 }
 
-static void state_transmission_sends_the_state_with_a_rising_code(void **state)
+TEST(state_transmission_sends_the_state_with_a_rising_code)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_OK};
     const struct lm_can can = port_of(&w);
@@ -122,9 +116,8 @@ static void state_transmission_sends_the_state_with_a_rising_code(void **state)
     }
 }
 
-static void a_time_stamp_is_taken_and_not_answered(void **state)
+TEST(a_time_stamp_is_taken_and_not_answered)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_OK};
     const struct lm_can can = port_of(&w);
@@ -144,9 +137,8 @@ static void a_time_stamp_is_taken_and_not_answered(void **state)
     assert_int_equal(w.count, 0);
 }
 
-static void every_other_service_is_refused_in_silence_and_counted(void **state)
+TEST(every_other_service_is_refused_in_silence_and_counted)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_OK};
     const struct lm_can can = port_of(&w);
@@ -165,9 +157,8 @@ static void every_other_service_is_refused_in_silence_and_counted(void **state)
     assert_memory_equal(&s, &before, sizeof s); /* nothing else has changed */
 }
 
-static void what_is_for_others_or_no_request_is_left_alone(void **state)
+TEST(what_is_for_others_or_no_request_is_left_alone)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_OK};
     const struct lm_can can = port_of(&w);
@@ -197,9 +188,8 @@ static void what_is_for_others_or_no_request_is_left_alone(void **state)
     assert_int_equal(w.count, 0);
 }
 
-static void an_answer_waits_100_ms_for_the_bus_and_no_longer(void **state)
+TEST(an_answer_waits_100_ms_for_the_bus_and_no_longer)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_BUSY};
     const struct lm_can can = port_of(&w);
@@ -228,9 +218,8 @@ static void an_answer_waits_100_ms_for_the_bus_and_no_longer(void **state)
     assert_int_equal(w.count, 1);
 }
 
-static void a_flood_of_requests_is_no_flood_of_answers(void **state)
+TEST(a_flood_of_requests_is_no_flood_of_answers)
 {
-    (void)state;
     struct lm_canas_service s = begin();
     struct wire w = {.answer = LM_OK};
     const struct lm_can can = port_of(&w);
@@ -248,19 +237,4 @@ static void a_flood_of_requests_is_no_flood_of_answers(void **state)
         identities += w.sent[i].id == 129;
     }
     assert_in_range(identities, 1, 19); /* neither keeps the other from being answered */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(identification_is_answered_at_once_to_itself_and_to_all),
-        cmocka_unit_test(the_answer_has_the_form_of_another_librarys),
-        cmocka_unit_test(state_transmission_sends_the_state_with_a_rising_code),
-        cmocka_unit_test(a_time_stamp_is_taken_and_not_answered),
-        cmocka_unit_test(every_other_service_is_refused_in_silence_and_counted),
-        cmocka_unit_test(what_is_for_others_or_no_request_is_left_alone),
-        cmocka_unit_test(an_answer_waits_100_ms_for_the_bus_and_no_longer),
-        cmocka_unit_test(a_flood_of_requests_is_no_flood_of_answers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* What the radar sees of a line, against the geometry in double precision: docs/EQUATIONS.md,
  * "Illumination". Lines are made by hand; the classes are those of tests/support/tiny_image.
  */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double effective_earth_m = 4.0 / 3 * 6371000;
 
@@ -81,9 +76,8 @@ static void set_gm(struct scene *s, double range_nm, double height_m, double ref
     set_grid(s, cell_m / 2, cell_m, 256, height_m, reference_m);
 }
 
-static void flat_ground_shows_its_gamma_at_every_range_of_a_ground_map(void **state)
+TEST(flat_ground_shows_its_gamma_at_every_range_of_a_ground_map)
 {
-    (void)state;
     static struct scene s;
     static const double ranges_nm[] = {10, 20, 40, 80}, heights_m[] = {600, 3000, 9000, 14000};
     double worst = 0;
@@ -109,9 +103,8 @@ static void flat_ground_shows_its_gamma_at_every_range_of_a_ground_map(void **st
     assert_true(worst < 0.25);
 }
 
-static void flat_ground_shows_its_gamma_in_patches_of_every_cell_and_range(void **state)
+TEST(flat_ground_shows_its_gamma_in_patches_of_every_cell_and_range)
 {
-    (void)state;
     static struct scene s;
     static const double cells_m[] = {0.5, 1, 5, 40}, ranges_m[] = {12000, 40000, 100000};
     double worst = 0;
@@ -137,9 +130,8 @@ static double end_of_shadow_m(double antenna_m, double ray)
     return -effective_earth_m * (ray + sqrt(ray * ray - 2 * antenna_m / effective_earth_m));
 }
 
-static void the_shadow_of_a_wall_is_h_over_tan_psi_long(void **state)
+TEST(the_shadow_of_a_wall_is_h_over_tan_psi_long)
 {
-    (void)state;
     static struct scene s;
     static const double heights_m[] = {1500, 3000, 6000, 9000}, ranges_m[] = {12000, 20000, 30000};
     int walls = 0;
@@ -205,9 +197,8 @@ static double level_db(const struct scene *s, const struct truth *t, uint32_t i,
     return (s->line.cell[i] >> 8) / 2.0 - 80 + 10 * log10(t->rise[i] / fmax(flat, least));
 }
 
-static void rough_ground_is_lit_and_hidden_as_the_equations_say(void **state)
+TEST(rough_ground_is_lit_and_hidden_as_the_equations_say)
 {
-    (void)state;
     static struct scene s;
     static struct truth truth;
     struct hs_rng rng;
@@ -249,9 +240,8 @@ static void rough_ground_is_lit_and_hidden_as_the_equations_say(void **state)
     assert_true(worst < 0.25);
 }
 
-static void a_hill_hides_what_lies_behind_it(void **state)
+TEST(a_hill_hides_what_lies_behind_it)
 {
-    (void)state;
     static struct scene s;
     static struct truth truth;
     const double first_m = 15000, cell_m = 10, antenna_m = 2000;
@@ -277,9 +267,8 @@ static void a_hill_hides_what_lies_behind_it(void **state)
     assert_true(s.sight.level_q8[110] > s.sight.level_q8[50] + 6 * 256);
 }
 
-static void the_horizon_never_falls_and_goes_on_from_line_to_line(void **state)
+TEST(the_horizon_never_falls_and_goes_on_from_line_to_line)
 {
-    (void)state;
     static struct scene whole, near, far;
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
@@ -310,9 +299,8 @@ static void the_horizon_never_falls_and_goes_on_from_line_to_line(void **state)
     assert_true(llabs(end - end_in_two) < (int64_t)1 << 12);
 }
 
-static void a_horizon_above_everything_leaves_all_dark(void **state)
+TEST(a_horizon_above_everything_leaves_all_dark)
 {
-    (void)state;
     static struct scene s;
     make_flat(&s, 0);
     set_grid(&s, 90000, 1, 100, 3000, 0);
@@ -325,9 +313,8 @@ static void a_horizon_above_everything_leaves_all_dark(void **state)
     assert_true(is_lit(&s, 99));
 }
 
-static void a_line_that_is_too_near_throughout_is_dark_and_keeps_its_horizon(void **state)
+TEST(a_line_that_is_too_near_throughout_is_dark_and_keeps_its_horizon)
 {
-    (void)state;
     static struct scene s;
     make_flat(&s, 0);
     set_grid(&s, 100, 2, 200, 20000, 0);
@@ -378,9 +365,8 @@ static void assert_edges(const char *classes, double cell_m, const int32_t *expe
     }
 }
 
-static void entering_a_structure_or_trees_brightens_one_cell(void **state)
+TEST(entering_a_structure_or_trees_brightens_one_cell)
 {
-    (void)state;
     enum { B = 6 * 256, T = 2 * 256 };
     assert_edges("sbbs", 10, (int32_t[]){0, B, 0, 0});
     assert_edges("sttsbt", 10, (int32_t[]){0, T, 0, 0, B, T});
@@ -389,9 +375,8 @@ static void entering_a_structure_or_trees_brightens_one_cell(void **state)
     assert_edges("sacsacsab", 10, (int32_t[9]){[8] = B});
 }
 
-static void an_edge_beyond_the_range_counts_as_the_last_of_it(void **state)
+TEST(an_edge_beyond_the_range_counts_as_the_last_of_it)
 {
-    (void)state;
     static struct scene s;
     make_flat(&s, 0);
     s.config.edge_structure_q8 = INT16_MAX;
@@ -406,9 +391,8 @@ static void an_edge_beyond_the_range_counts_as_the_last_of_it(void **state)
     assert_true(abs(s.sight.level_q8[9] - (255 * 128 - 80 * 256 + LM_EDGE_MAX_Q8)) < 64);
 }
 
-static void the_first_cell_enters_nothing(void **state)
+TEST(the_first_cell_enters_nothing)
 {
-    (void)state;
     assert_edges("bbss", 10, (int32_t[4]){0});
     assert_edges("ttss", 10, (int32_t[4]){0});
     assert_edges("b", 10, (int32_t[1]){0});
@@ -431,9 +415,8 @@ static void the_first_cell_enters_nothing(void **state)
     assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
 }
 
-static void the_far_shore_fades_over_its_width(void **state)
+TEST(the_far_shore_fades_over_its_width)
 {
-    (void)state;
     enum { S = 5 * 256, FALL = S / 3 }; /* 60 m are 3 cells of 20 m */
     assert_edges("swwsssss", 20, (int32_t[8]){[3] = S, S - FALL, S - 2 * FALL, S - 3 * FALL});
     /* Water ends it, and the next shore begins anew. */
@@ -451,9 +434,8 @@ static void the_far_shore_fades_over_its_width(void **state)
 
 /* One class in each of eight cells, in every order of three: the search in words misses no place.
  */
-static void edges_are_found_wherever_they_lie(void **state)
+TEST(edges_are_found_wherever_they_lie)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 77);
     for (int n = 0; n < 3000; n++) {
@@ -478,9 +460,8 @@ static void edges_are_found_wherever_they_lie(void **state)
     }
 }
 
-static void edges_run_on_in_shadow_and_show_where_it_ends(void **state)
+TEST(edges_run_on_in_shadow_and_show_where_it_ends)
 {
-    (void)state;
     static struct scene s, without;
     make_flat(&s, 0);
     s.line.cell[10] = cell_of(0, TINY_STRUCTURE, 9); /* 25 m: some 167 m of shadow */
@@ -501,9 +482,8 @@ static void edges_run_on_in_shadow_and_show_where_it_ends(void **state)
                      5 * 256 - (int32_t)(lit - 24) * (5 * 256 / 60));
 }
 
-static void no_data_is_darker_than_any_noise_floor(void **state)
+TEST(no_data_is_darker_than_any_noise_floor)
 {
-    (void)state;
     static struct scene s;
     make_flat(&s, 0);
     for (uint32_t i = 50; i < 100; i++) {
@@ -516,26 +496,4 @@ static void no_data_is_darker_than_any_noise_floor(void **state)
         assert_true(abs(s.sight.level_q8[i] + 80 * 256) < 64);
     }
     assert_true(abs(s.sight.level_q8[100] + 20 * 256) < 64);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_ground_shows_its_gamma_at_every_range_of_a_ground_map),
-        cmocka_unit_test(flat_ground_shows_its_gamma_in_patches_of_every_cell_and_range),
-        cmocka_unit_test(the_shadow_of_a_wall_is_h_over_tan_psi_long),
-        cmocka_unit_test(rough_ground_is_lit_and_hidden_as_the_equations_say),
-        cmocka_unit_test(a_hill_hides_what_lies_behind_it),
-        cmocka_unit_test(the_horizon_never_falls_and_goes_on_from_line_to_line),
-        cmocka_unit_test(a_horizon_above_everything_leaves_all_dark),
-        cmocka_unit_test(a_line_that_is_too_near_throughout_is_dark_and_keeps_its_horizon),
-        cmocka_unit_test(entering_a_structure_or_trees_brightens_one_cell),
-        cmocka_unit_test(an_edge_beyond_the_range_counts_as_the_last_of_it),
-        cmocka_unit_test(the_first_cell_enters_nothing),
-        cmocka_unit_test(the_far_shore_fades_over_its_width),
-        cmocka_unit_test(edges_are_found_wherever_they_lie),
-        cmocka_unit_test(edges_run_on_in_shadow_and_show_where_it_ends),
-        cmocka_unit_test(no_data_is_darker_than_any_noise_floor),
-    };
-    return cmocka_run_group_tests_name("aspect", tests, NULL, NULL);
 }

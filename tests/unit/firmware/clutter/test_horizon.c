@@ -1,17 +1,12 @@
 /* The horizon behind a run-up, against the geometry in double precision and against what a line
  * that is shown leaves. */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/horizon.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double effective_earth_m = 4.0 / 3 * 6371000;
 
@@ -50,9 +45,8 @@ static double highest_tangent(const struct country *c, uint32_t first_m)
     return highest;
 }
 
-static void it_is_the_highest_look_over_the_cells_that_are_shown(void **state)
+TEST(it_is_the_highest_look_over_the_cells_that_are_shown)
 {
-    (void)state;
     static struct country c;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
@@ -68,22 +62,12 @@ static void it_is_the_highest_look_over_the_cells_that_are_shown(void **state)
     }
 }
 
-static void it_stays_open_where_no_cell_is_shown(void **state)
+TEST(it_stays_open_where_no_cell_is_shown)
 {
-    (void)state;
     static struct country c;
     struct hs_rng rng;
     hs_rng_seed(&rng, 2);
     draw_country(&c, &rng, 5000, 300, 14); /* up to 2,250 m, less than half the height */
     assert_int_equal(c.grid.first, 14);
     assert_true(lm_horizon_behind(&c.grid, &c.legend, &c.line) == LM_HORIZON_OPEN);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_the_highest_look_over_the_cells_that_are_shown),
-        cmocka_unit_test(it_stays_open_where_no_cell_is_shown),
-    };
-    return cmocka_run_group_tests_name("horizon", tests, NULL, NULL);
 }

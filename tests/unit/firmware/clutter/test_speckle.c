@@ -1,15 +1,10 @@
 /* Draws and speckle against the statistics of a Gamma distribution. */
+#include "check.h"
 #include "lm/noise.h"
 #include "lm/speckle.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 256 };
 
@@ -51,9 +46,8 @@ static void moments(const double *x, double *mean, double *variance)
     *variance = squares / n - *mean * *mean;
 }
 
-static void one_look_has_a_coefficient_of_variation_of_one(void **state)
+TEST(one_look_has_a_coefficient_of_variation_of_one)
 {
-    (void)state;
     static double power[SIDE * SIDE];
     double mean, variance;
     fill_powers(power, 0, 5);
@@ -63,9 +57,8 @@ static void one_look_has_a_coefficient_of_variation_of_one(void **state)
     assert_true(fabs(sqrt(variance) / mean - 1) < 0.03);
 }
 
-static void the_equivalent_number_of_looks_is_the_number_of_looks(void **state)
+TEST(the_equivalent_number_of_looks_is_the_number_of_looks)
 {
-    (void)state;
     static double power[SIDE * SIDE];
     for (uint8_t log2 = 0; log2 <= LM_NOISE_LOOKS_LOG2_MAX; log2++) {
         double mean, variance;
@@ -91,9 +84,8 @@ static double correlation_along(const double x[LM_NOISE_SLICES], int apart)
     return (products / LM_NOISE_SLICES - mean * mean) / (squares / LM_NOISE_SLICES - mean * mean);
 }
 
-static void every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it(void **state)
+TEST(every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it)
 {
-    (void)state;
     int count[LM_NOISE_SLICES] = {0};
     for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
         const uint32_t slice = lm_noise_slice(entry);
@@ -115,9 +107,8 @@ static void every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it(
 }
 
 /* The correlation that lm_noise_slice promises, of slices and of one look's powers. */
-static void the_order_of_a_row_keeps_neighbours_independent(void **state)
+TEST(the_order_of_a_row_keeps_neighbours_independent)
 {
-    (void)state;
     double slice[LM_NOISE_SLICES], power[LM_NOISE_SLICES];
     for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
         slice[entry] = lm_noise_slice(entry);
@@ -132,9 +123,8 @@ static void the_order_of_a_row_keeps_neighbours_independent(void **state)
 /* 65,536 draws into 1024 slices: chi-square has mean 1023. Its deviation is that of single draws,
  * 45, times the root of 1 + 2 (7^2 + 6^2 + .. + 1) / 8^2, which is 2.3, since eight neighbouring
  * entries come together. */
-static void every_slice_is_drawn_equally_often(void **state)
+TEST(every_slice_is_drawn_equally_often)
 {
-    (void)state;
     static uint32_t slice[SIDE][SIDE];
     for (uint32_t epoch = 0; epoch < 4; epoch++) {
         int count[LM_NOISE_SLICES] = {0};
@@ -165,9 +155,8 @@ static double correlation(uint32_t a[SIDE][SIDE], uint32_t b[SIDE][SIDE], int do
     return sum / n / (1024.0 * 1024 / 12);
 }
 
-static void neighbouring_cells_are_independent(void **state)
+TEST(neighbouring_cells_are_independent)
 {
-    (void)state;
     static uint32_t slice[SIDE][SIDE];
     double worst = 0;
     for (uint32_t epoch = 0; epoch < 3; epoch++) {
@@ -183,9 +172,8 @@ static void neighbouring_cells_are_independent(void **state)
 }
 
 /* One look's powers, line by line: 256 spectra's mean has a deviation of 1/16 at each frequency. */
-static void no_frequency_along_the_lines_stands_out(void **state)
+TEST(no_frequency_along_the_lines_stands_out)
 {
-    (void)state;
     static double power[SIDE * SIDE];
     double mean, variance, most = 0, least = 2;
     fill_powers(power, 0, 11);
@@ -208,9 +196,8 @@ static void no_frequency_along_the_lines_stands_out(void **state)
     assert_true(least > 1 - 5.0 / 16 && most < 1 + 5.0 / 16);
 }
 
-static void kinds_and_epochs_know_nothing_of_each_other(void **state)
+TEST(kinds_and_epochs_know_nothing_of_each_other)
 {
-    (void)state;
     static uint32_t a[SIDE][SIDE], b[SIDE][SIDE];
     fill_slices(a, LM_NOISE_SPECKLE, 7);
     fill_slices(b, LM_NOISE_TEXTURE, 7);
@@ -223,9 +210,8 @@ static void kinds_and_epochs_know_nothing_of_each_other(void **state)
     assert_memory_equal(a, b, sizeof a);
 }
 
-static void lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line(void **state)
+TEST(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line)
 {
-    (void)state;
     const struct lm_raster grown = {.column_q32 = ((uint64_t)70 << 32) - 1, 1, 3};
     const struct lm_raster before = {.column_q32 = (uint64_t)69 << 32, 0, 3};
     const struct lm_raster behind = {.column_q32 = (uint64_t)70 << 32, 0, 3};
@@ -238,9 +224,8 @@ static void lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line(voi
     }
 }
 
-static void every_cell_gains_its_draw(void **state)
+TEST(every_cell_gains_its_draw)
 {
-    (void)state;
     for (uint32_t column = 0; column < 500; column++) {
         const struct lm_speckle_config config = {(uint8_t)(column % 5)};
         const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, column, 1);
@@ -257,21 +242,4 @@ static void every_cell_gains_its_draw(void **state)
             assert_in_range(over_nothing[i] - level[i], 0, 1);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_look_has_a_coefficient_of_variation_of_one),
-        cmocka_unit_test(the_equivalent_number_of_looks_is_the_number_of_looks),
-        cmocka_unit_test(every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it),
-        cmocka_unit_test(the_order_of_a_row_keeps_neighbours_independent),
-        cmocka_unit_test(every_slice_is_drawn_equally_often),
-        cmocka_unit_test(neighbouring_cells_are_independent),
-        cmocka_unit_test(no_frequency_along_the_lines_stands_out),
-        cmocka_unit_test(kinds_and_epochs_know_nothing_of_each_other),
-        cmocka_unit_test(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line),
-        cmocka_unit_test(every_cell_gains_its_draw),
-    };
-    return cmocka_run_group_tests_name("speckle", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Texture, the state of the sea and the noise floor, against the statistics of a K distribution and
  * the sum of powers: docs/EQUATIONS.md, "Speckle and texture". */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/aspect.h"
 #include "lm/radar.h"
@@ -7,13 +8,7 @@
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* ROOM is what the stages take for a few cells. */
 enum { SIDE = 384, CELLS = SIDE * SIDE, ROOM = 16, NONE = LM_TEXTURE_NONE };
@@ -66,9 +61,8 @@ static void fill_powers(double *power, uint8_t shape_log2, uint8_t looks_log2)
     }
 }
 
-static void textured_speckle_has_the_variance_of_a_k_distribution(void **state)
+TEST(textured_speckle_has_the_variance_of_a_k_distribution)
 {
-    (void)state;
     static double power[CELLS];
     for (uint8_t shape = 0; shape <= 4; shape++) {
         for (uint8_t looks = 0; looks <= 4; looks++) {
@@ -102,9 +96,8 @@ static int32_t gain_q8(const struct lm_texture *texture, uint32_t cell, uint32_t
     return levels[0] - level;
 }
 
-static void kinds_without_texture_keep_their_level_to_the_bit(void **state)
+TEST(kinds_without_texture_keep_their_level_to_the_bit)
 {
-    (void)state;
     struct lm_texture texture;
     lm_texture_set(&texture, &lm_radar_default.texture, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
@@ -119,9 +112,8 @@ static void kinds_without_texture_keep_their_level_to_the_bit(void **state)
 }
 
 /* Classes in turns, so that each of a block has neighbours of other shapes. */
-static void each_class_gains_a_draw_of_its_own_shape(void **state)
+TEST(each_class_gains_a_draw_of_its_own_shape)
 {
-    (void)state;
     const struct lm_texture_config config = {.shape_log2 = {[LM_KIND_GROUND] = 4,
                                                             [LM_KIND_WATER] = NONE,
                                                             [LM_KIND_STRUCTURE] = 1,
@@ -150,9 +142,8 @@ static void each_class_gains_a_draw_of_its_own_shape(void **state)
 }
 
 /* [Nathanson]: -40 dB in state 3 and -30 dB in state 5. */
-static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void **state)
+TEST(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each)
 {
-    (void)state;
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_texture texture;
         lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea, 0);
@@ -168,9 +159,8 @@ static void only_water_grows_with_the_state_of_the_sea_by_5_decibels_each(void *
     }
 }
 
-static void a_loss_is_taken_off_every_class(void **state)
+TEST(a_loss_is_taken_off_every_class)
 {
-    (void)state;
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_TREES] = 2;
     static const uint16_t losses_q8[] = {35 * 256, LM_TEXTURE_LOSS_MAX_Q8, UINT16_MAX};
@@ -187,9 +177,8 @@ static void a_loss_is_taken_off_every_class(void **state)
     }
 }
 
-static void a_shadow_stays_below_minus_80_dB_whatever_is_added(void **state)
+TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
 {
-    (void)state;
     int32_t strongest = 0;
     for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
         for (int n = 0; n < LM_NOISE_SLICES; n++) {
@@ -209,9 +198,8 @@ static void a_shadow_stays_below_minus_80_dB_whatever_is_added(void **state)
     }
 }
 
-static void a_hostile_table_reads_nothing_but_the_tables(void **state)
+TEST(a_hostile_table_reads_nothing_but_the_tables)
 {
-    (void)state;
     struct lm_texture_config config;
     struct lm_classes classes;
     memset(&config, 0xff, sizeof config);
@@ -235,9 +223,8 @@ static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
     return speckled_q8[0] - lm_noise_of_q8(2, &raster, 0);
 }
 
-static void the_floor_adds_as_power_to_every_level(void **state)
+TEST(the_floor_adds_as_power_to_every_level)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
     for (int n = 0; n < 20000; n++) {
@@ -248,19 +235,4 @@ static void the_floor_adds_as_power_to_every_level(void **state)
         assert_true(fabs(sum_q8 / 256.0 - expected) < 0.018);
     }
     assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(textured_speckle_has_the_variance_of_a_k_distribution),
-        cmocka_unit_test(kinds_without_texture_keep_their_level_to_the_bit),
-        cmocka_unit_test(each_class_gains_a_draw_of_its_own_shape),
-        cmocka_unit_test(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each),
-        cmocka_unit_test(a_loss_is_taken_off_every_class),
-        cmocka_unit_test(a_shadow_stays_below_minus_80_dB_whatever_is_added),
-        cmocka_unit_test(a_hostile_table_reads_nothing_but_the_tables),
-        cmocka_unit_test(the_floor_adds_as_power_to_every_level),
-    };
-    return cmocka_run_group_tests_name("texture", tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* View and cursor against PROJ's geodesics. */
+#include "check.h"
 #include "hs/angle.h"
 #include "lm/cursor.h"
 
 #include <geodesic.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 480, RANGE_M = 37040 };
 
@@ -75,9 +70,8 @@ static const struct lm_place origins[] = {{0x20B60B61, 0x07D27D28},  /* 46 N 11 
                                           {0xD0000000, 0x7FFFFF00},  /* 67.5 S, the antimeridian */
                                           {0x00000000, 0xF0000000}}; /* the equator */
 
-static void a_place_is_where_geodesics_put_it_within_a_pixel(void **state)
+TEST(a_place_is_where_geodesics_put_it_within_a_pixel)
 {
-    (void)state;
     for (size_t o = 0; o < 3; o++) {
         struct scene s = {0};
         look_from(&s, origins[o], 30);
@@ -97,9 +91,8 @@ static void a_place_is_where_geodesics_put_it_within_a_pixel(void **state)
     }
 }
 
-static void a_place_too_far_to_be_drawn_is_refused(void **state)
+TEST(a_place_too_far_to_be_drawn_is_refused)
 {
-    (void)state;
     struct scene s = {0};
     look_from(&s, origins[0], 0);
     struct lm_offset found = {1, 2};
@@ -111,9 +104,8 @@ static void a_place_too_far_to_be_drawn_is_refused(void **state)
     assert_int_equal(found.y_q8, 2);
 }
 
-static void zero_is_half_the_range_straight_ahead(void **state)
+TEST(zero_is_half_the_range_straight_ahead)
 {
-    (void)state;
     struct scene s = {0};
     look_from(&s, origins[0], 77);
     steps(&s, 0.02);
@@ -123,9 +115,8 @@ static void zero_is_half_the_range_straight_ahead(void **state)
     assert_true(fabs(hs_degrees(s.cursor.bearing) - 77) < 0.2);
 }
 
-static void full_deflection_crosses_half_the_glass_in_a_second_in_every_direction(void **state)
+TEST(full_deflection_crosses_half_the_glass_in_a_second_in_every_direction)
 {
-    (void)state;
     const int directions[][2] = {{1000, 0}, {-1000, 0}, {0, 1000}, {0, -1000}, {500, -500}};
     for (size_t i = 0; i < sizeof directions / sizeof *directions; i++) {
         struct scene s = {0};
@@ -142,9 +133,8 @@ static void full_deflection_crosses_half_the_glass_in_a_second_in_every_directio
     }
 }
 
-static void slewing_stops_at_the_edge_of_what_is_shown(void **state)
+TEST(slewing_stops_at_the_edge_of_what_is_shown)
 {
-    (void)state;
     for (int turn = 0; turn < 360; turn += 20) {
         struct scene s = {0};
         look_from(&s, origins[1], 10);
@@ -164,9 +154,8 @@ static void slewing_stops_at_the_edge_of_what_is_shown(void **state)
     }
 }
 
-static void the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns(void **state)
+TEST(the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns)
 {
-    (void)state;
     struct scene s = {0};
     look_from(&s, origins[0], 0);
     steps(&s, 0.02);
@@ -183,9 +172,8 @@ static void the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns(v
     assert_true(s.cursor.range_m < RANGE_M / 2 - 7000);
 }
 
-static void in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised(void **state)
+TEST(in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised)
 {
-    (void)state;
     struct scene s = {.cursor.is_snowplow = true};
     s.cursor.slew_x = 1000; /* which snowplow does not heed */
     for (int second = 0; second <= 30; second++) {
@@ -202,9 +190,8 @@ static void in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised(void *
     assert_memory_equal(&s.cursor.place, &held, sizeof held);
 }
 
-static void automatic_range_goes_up_from_095_and_down_below_0425(void **state)
+TEST(automatic_range_goes_up_from_095_and_down_below_0425)
 {
-    (void)state;
     const struct {
         double part;
         int wants;
@@ -223,9 +210,8 @@ static void automatic_range_goes_up_from_095_and_down_below_0425(void **state)
     }
 }
 
-static void a_cursor_beyond_reach_comes_home_when_it_is_slewed(void **state)
+TEST(a_cursor_beyond_reach_comes_home_when_it_is_slewed)
 {
-    (void)state;
     struct scene s = {0};
     look_from(&s, origins[0], 0);
     steps(&s, 0.02);
@@ -236,20 +222,4 @@ static void a_cursor_beyond_reach_comes_home_when_it_is_slewed(void **state)
     steps(&s, 0.1);
     assert_true(s.cursor.is_on_glass);
     assert_true(s.cursor.range_m < RANGE_M);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_place_is_where_geodesics_put_it_within_a_pixel),
-        cmocka_unit_test(a_place_too_far_to_be_drawn_is_refused),
-        cmocka_unit_test(zero_is_half_the_range_straight_ahead),
-        cmocka_unit_test(full_deflection_crosses_half_the_glass_in_a_second_in_every_direction),
-        cmocka_unit_test(slewing_stops_at_the_edge_of_what_is_shown),
-        cmocka_unit_test(the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns),
-        cmocka_unit_test(in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised),
-        cmocka_unit_test(automatic_range_goes_up_from_095_and_down_below_0425),
-        cmocka_unit_test(a_cursor_beyond_reach_comes_home_when_it_is_slewed),
-    };
-    return cmocka_run_group_tests_name("cursor", tests, NULL, NULL);
 }

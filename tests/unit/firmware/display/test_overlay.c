@@ -1,17 +1,12 @@
 /* Palettes, primitives, text and the picture's colours. */
+#include "check.h"
 #include "glass_text.h"
 #include "lm/font.h"
 #include "lm/overlay.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SIDE_MAX = 1024, GUARD = 64, CANARY = 0x7EADBEEF };
 
@@ -45,9 +40,8 @@ static unsigned part(uint32_t colour, int which)
     return colour >> (16 - 8 * which) & 255;
 }
 
-static void the_palette_as_delivered_shows_every_grey_as_it_is(void **state)
+TEST(the_palette_as_delivered_shows_every_grey_as_it_is)
 {
-    (void)state;
     struct lm_palette p;
     lm_palette_set(&p, &(struct lm_palette_config){0});
     for (uint32_t i = 0; i < 256; i++) {
@@ -55,9 +49,8 @@ static void the_palette_as_delivered_shows_every_grey_as_it_is(void **state)
     }
 }
 
-static void every_palette_rises_from_black_and_keeps_symbols_apart_from_the_picture(void **state)
+TEST(every_palette_rises_from_black_and_keeps_symbols_apart_from_the_picture)
 {
-    (void)state;
     for (uint8_t tint = 0; tint < LM_TINTS; tint++) {
         for (int night = 0; night < 2; night++) {
             struct lm_palette p;
@@ -76,9 +69,8 @@ static void every_palette_rises_from_black_and_keeps_symbols_apart_from_the_pict
     }
 }
 
-static void night_takes_light_away_from_everything(void **state)
+TEST(night_takes_light_away_from_everything)
 {
-    (void)state;
     for (uint8_t tint = 0; tint < LM_TINTS; tint++) {
         struct lm_palette day, night;
         lm_palette_set(&day, &(struct lm_palette_config){.tint = tint});
@@ -90,9 +82,8 @@ static void night_takes_light_away_from_everything(void **state)
     }
 }
 
-static void rockers_move_brightness_slope_and_symbols_one_way_each(void **state)
+TEST(rockers_move_brightness_slope_and_symbols_one_way_each)
 {
-    (void)state;
     struct lm_palette_config c = {0};
     struct lm_palette p, before;
     for (int8_t step = -LM_ROCKER_STEPS; step < LM_ROCKER_STEPS; step++) {
@@ -118,9 +109,8 @@ static void rockers_move_brightness_slope_and_symbols_one_way_each(void **state)
     }
 }
 
-static void settings_out_of_range_count_as_the_nearest(void **state)
+TEST(settings_out_of_range_count_as_the_nearest)
 {
-    (void)state;
     struct lm_palette p, q;
     lm_palette_set(&p, &(struct lm_palette_config){200, false, 127, 127, 127});
     lm_palette_set(&q, &(struct lm_palette_config){0, false, 8, 8, 8});
@@ -130,9 +120,8 @@ static void settings_out_of_range_count_as_the_nearest(void **state)
     assert_memory_equal(&p, &q, sizeof p);
 }
 
-static void the_picture_goes_through_the_palette_pixel_by_pixel(void **state)
+TEST(the_picture_goes_through_the_palette_pixel_by_pixel)
 {
-    (void)state;
     struct lm_surface s = make_surface(300, 256);
     static uint8_t grey[300 * 256];
     for (size_t i = 0; i < sizeof grey; i++) {
@@ -156,9 +145,8 @@ static void the_picture_goes_through_the_palette_pixel_by_pixel(void **state)
     free_surface(&s);
 }
 
-static void nothing_is_drawn_beyond_the_surface(void **state)
+TEST(nothing_is_drawn_beyond_the_surface)
 {
-    (void)state;
     const uint16_t sizes[][2] = {{256, 256}, {256, 1024}, {1024, 256}, {480, 480}, {1023, 1024}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         struct lm_surface s = make_surface(sizes[i][0], sizes[i][1]);
@@ -190,9 +178,8 @@ static void nothing_is_drawn_beyond_the_surface(void **state)
     }
 }
 
-static void a_line_is_whole_and_as_wide_as_the_pen(void **state)
+TEST(a_line_is_whole_and_as_wide_as_the_pen)
 {
-    (void)state;
     struct lm_surface s = make_surface(256, 256);
     struct lm_pen pen = lm_pen_for(&s, 0x00112233);
     const struct lm_point ends[][2] = {
@@ -212,9 +199,8 @@ static void a_line_is_whole_and_as_wide_as_the_pen(void **state)
     free_surface(&s);
 }
 
-static void text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit(void **state)
+TEST(text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit)
 {
-    (void)state;
     for (uint16_t side = 256; side <= 1024; side++) {
         const struct lm_surface s = {NULL, side, side, side};
         const struct lm_pen pen = lm_pen_for(&s, 0);
@@ -225,9 +211,8 @@ static void text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit(void *
     }
 }
 
-static void every_character_of_the_font_differs_from_every_other(void **state)
+TEST(every_character_of_the_font_differs_from_every_other)
 {
-    (void)state;
     for (int a = 1; a < 0x60; a++) {
         const int is_there = a <= 3 || a > 0x20;
         const int is_blank = memcmp(lm_font_glyph((char)a), lm_font_glyph(' '), 7) == 0;
@@ -240,9 +225,8 @@ static void every_character_of_the_font_differs_from_every_other(void **state)
     assert_memory_equal(lm_font_glyph((char)200), lm_font_glyph(' '), 7);
 }
 
-static void text_is_cut_where_it_does_not_fit_and_numbers_are_exact(void **state)
+TEST(text_is_cut_where_it_does_not_fit_and_numbers_are_exact)
 {
-    (void)state;
     struct lm_text t = {0};
     lm_text_number(&t, 4294967295u, 1);
     lm_text_add(&t, " ");
@@ -259,9 +243,8 @@ static void text_is_cut_where_it_does_not_fit_and_numbers_are_exact(void **state
     assert_int_equal(t.length, LM_TEXT_MAX);
 }
 
-static void each_flag_has_a_word_of_its_own_on_the_glass(void **state)
+TEST(each_flag_has_a_word_of_its_own_on_the_glass)
 {
-    (void)state;
     struct lm_palette palette;
     lm_palette_set(&palette, &(struct lm_palette_config){0});
     for (uint16_t side = 256; side <= 1024; side += 256) {
@@ -280,9 +263,8 @@ static void each_flag_has_a_word_of_its_own_on_the_glass(void **state)
     }
 }
 
-static void the_test_pattern_shows_sixteen_greys_every_colour_and_every_character(void **state)
+TEST(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character)
 {
-    (void)state;
     struct lm_palette palette;
     lm_palette_set(&palette, &(struct lm_palette_config){0});
     struct lm_surface s = make_surface(480, 480);
@@ -301,24 +283,4 @@ static void the_test_pattern_shows_sixteen_greys_every_colour_and_every_characte
     assert_true(glass_find(&s, "0123456789 !\"#$%&'()*+,-./", palette.symbol, 0, NULL));
     assert_true(glass_find(&s, ":;<=>?@[\\]^_\x01\x02\x03", palette.symbol, 0, NULL));
     free_surface(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_palette_as_delivered_shows_every_grey_as_it_is),
-        cmocka_unit_test(every_palette_rises_from_black_and_keeps_symbols_apart_from_the_picture),
-        cmocka_unit_test(night_takes_light_away_from_everything),
-        cmocka_unit_test(rockers_move_brightness_slope_and_symbols_one_way_each),
-        cmocka_unit_test(settings_out_of_range_count_as_the_nearest),
-        cmocka_unit_test(the_picture_goes_through_the_palette_pixel_by_pixel),
-        cmocka_unit_test(nothing_is_drawn_beyond_the_surface),
-        cmocka_unit_test(a_line_is_whole_and_as_wide_as_the_pen),
-        cmocka_unit_test(text_keeps_its_share_of_the_glass_and_thirty_four_columns_fit),
-        cmocka_unit_test(every_character_of_the_font_differs_from_every_other),
-        cmocka_unit_test(text_is_cut_where_it_does_not_fit_and_numbers_are_exact),
-        cmocka_unit_test(each_flag_has_a_word_of_its_own_on_the_glass),
-        cmocka_unit_test(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character),
-    };
-    return cmocka_run_group_tests_name("overlay", tests, NULL, NULL);
 }

@@ -1,18 +1,13 @@
 /* From lines to the plane: every pixel of a sector belongs to exactly one line, at the right range.
  */
+#include "check.h"
 #include "fx/types.h"
 #include "lm/radar.h"
 #include "lm/scan_conv.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double degree = 3.14159265358979323846 / 180;
 enum { CELLS = 256, GUARD = 0xEE };
@@ -110,9 +105,8 @@ static void paint_sector(const struct glass *g, int32_t half_bam, int32_t line_b
     }
 }
 
-static void every_pixel_of_a_sector_is_painted_by_exactly_one_line(void **state)
+TEST(every_pixel_of_a_sector_is_painted_by_exactly_one_line)
 {
-    (void)state;
     for (int n = 0; n < SIZES; n++) {
         for (int a = 0; a < LM_AZIMUTHS; a++) {
             struct glass g;
@@ -147,9 +141,8 @@ static void every_pixel_of_a_sector_is_painted_by_exactly_one_line(void **state)
     }
 }
 
-static void a_pixel_shows_the_cell_at_its_range(void **state)
+TEST(a_pixel_shows_the_cell_at_its_range)
 {
-    (void)state;
     uint8_t line[CELLS];
     for (int i = 0; i < CELLS; i++) {
         line[i] = (uint8_t)i;
@@ -193,9 +186,8 @@ static void paint_fan(const struct glass *g, const struct lm_ppi *ppi)
     }
 }
 
-static void a_window_shows_what_it_would_show_in_a_wider_one(void **state)
+TEST(a_window_shows_what_it_would_show_in_a_wider_one)
 {
-    (void)state;
     static const int32_t apex[][2] = {{250, 400}, {30, 500}, {480, 430}, {-200, 700}, {700, 520}};
     for (int n = 0; n < 5; n++) {
         struct glass wide, narrow;
@@ -219,9 +211,8 @@ static void a_window_shows_what_it_would_show_in_a_wider_one(void **state)
     }
 }
 
-static void hostile_wedges_stay_inside_the_frame(void **state)
+TEST(hostile_wedges_stay_inside_the_frame)
 {
-    (void)state;
     struct glass g;
     make_glass(&g, 300, 200);
     const int32_t deg = (int32_t)FX_BAM_DEG(1);
@@ -234,9 +225,8 @@ static void hostile_wedges_stay_inside_the_frame(void **state)
 }
 
 /* The frame that the glass of [Heaton]'s display leaves to the picture. */
-static void the_frame_is_the_share_of_the_display_that_is_promised(void **state)
+TEST(the_frame_is_the_share_of_the_display_that_is_promised)
 {
-    (void)state;
     const struct lm_frame f = lm_frame_of_display(1000, 1000);
     assert_int_equal(f.left_px, 100);              /* -0.80 of half a screen */
     assert_int_equal(f.left_px + f.width_px, 860); /* +0.72 */
@@ -244,9 +234,8 @@ static void the_frame_is_the_share_of_the_display_that_is_promised(void **state)
     assert_int_equal(f.top_px + f.height_px, 840); /* -0.68 */
 }
 
-static void a_sector_fits_its_frame(void **state)
+TEST(a_sector_fits_its_frame)
 {
-    (void)state;
     for (uint16_t w = 100; w < 2000; w = (uint16_t)(w + 37)) {
         for (uint16_t h = 100; h < 2000; h = (uint16_t)(h + 41)) {
             const struct lm_frame f = {0, 0, w, h};
@@ -263,9 +252,8 @@ static uint8_t patch_grey(uint32_t line, uint32_t range)
     return (uint8_t)(1 + (line * 7 + range * 13) % 255);
 }
 
-static void a_patch_cell_is_a_square_of_pixels_at_its_place(void **state)
+TEST(a_patch_cell_is_a_square_of_pixels_at_its_place)
 {
-    (void)state;
     static const uint16_t px[] = {512, 700, 1024, 1100, 2048};
     static const uint32_t counts[] = {256, 64, 100};
     for (int n = 0; n < 5 * 3; n++) {
@@ -296,9 +284,8 @@ static void a_patch_cell_is_a_square_of_pixels_at_its_place(void **state)
     }
 }
 
-static void a_frame_smaller_than_the_patch_shows_its_middle(void **state)
+TEST(a_frame_smaller_than_the_patch_shows_its_middle)
 {
-    (void)state;
     for (uint16_t size = 100; size <= 330; size = (uint16_t)(size + 10)) {
         struct glass g;
         make_glass(&g, size, (uint16_t)(size + size % 30));
@@ -319,19 +306,4 @@ static void a_frame_smaller_than_the_patch_shows_its_middle(void **state)
                          patch_grey((uint32_t)line, (uint32_t)range));
         close_glass(&g);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_pixel_of_a_sector_is_painted_by_exactly_one_line),
-        cmocka_unit_test(a_pixel_shows_the_cell_at_its_range),
-        cmocka_unit_test(a_window_shows_what_it_would_show_in_a_wider_one),
-        cmocka_unit_test(hostile_wedges_stay_inside_the_frame),
-        cmocka_unit_test(the_frame_is_the_share_of_the_display_that_is_promised),
-        cmocka_unit_test(a_sector_fits_its_frame),
-        cmocka_unit_test(a_patch_cell_is_a_square_of_pixels_at_its_place),
-        cmocka_unit_test(a_frame_smaller_than_the_patch_shows_its_middle),
-    };
-    return cmocka_run_group_tests_name("scan_conv", tests, NULL, NULL);
 }

@@ -2,18 +2,13 @@
  * it lies, to the very pixel. */
 #include "lm/view.h"
 
+#include "check.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 256, WIDTH = 600, HEIGHT = 512 };
 
@@ -97,9 +92,8 @@ static void judge_offsets(const struct lm_view *v, const struct lm_frame *frame,
     }
 }
 
-static void a_symbol_over_a_sector_is_on_the_pixel_of_its_place(void **state)
+TEST(a_symbol_over_a_sector_is_on_the_pixel_of_its_place)
 {
-    (void)state;
     const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
     const struct lm_view_from from = from_here();
     const struct lm_view v = lm_view_of_sector(&frame, &from, 18520);
@@ -107,9 +101,8 @@ static void a_symbol_over_a_sector_is_on_the_pixel_of_its_place(void **state)
     judge_offsets(&v, &frame, 300 * 256, 0);
 }
 
-static void a_symbol_over_a_window_is_on_the_pixel_of_its_place(void **state)
+TEST(a_symbol_over_a_window_is_on_the_pixel_of_its_place)
 {
-    (void)state;
     const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
     for (int32_t azimuth_deg = -50; azimuth_deg <= 50; azimuth_deg += 25) {
         const struct lm_view v = window_of(&frame, azimuth_deg, 12000);
@@ -118,9 +111,8 @@ static void a_symbol_over_a_window_is_on_the_pixel_of_its_place(void **state)
 }
 
 /* The square of a window lies about its centre as evenly as whole pixels can. */
-static void the_middle_of_a_window_is_that_of_its_square(void **state)
+TEST(the_middle_of_a_window_is_that_of_its_square)
 {
-    (void)state;
     const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
     const struct lm_frame square = lm_frame_square(&frame);
     const struct lm_view v = window_of(&frame, 30, 12000);
@@ -130,9 +122,8 @@ static void the_middle_of_a_window_is_that_of_its_square(void **state)
                     2 * square.top_px + square.height_px);
 }
 
-static void a_symbol_over_a_patch_is_on_the_cell_of_its_place(void **state)
+TEST(a_symbol_over_a_patch_is_on_the_cell_of_its_place)
 {
-    (void)state;
     static const uint16_t sizes[][2] = {{600, 512}, {333, 401}, {512, 512}};
     for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
         const struct lm_frame frame = {5, 3, sizes[n][0] / 2, sizes[n][1] / 2};
@@ -169,15 +160,4 @@ static void a_symbol_over_a_patch_is_on_the_cell_of_its_place(void **state)
             assert_int_equal(pixels[high.y * WIDTH + high.x], cell);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_symbol_over_a_sector_is_on_the_pixel_of_its_place),
-        cmocka_unit_test(a_symbol_over_a_window_is_on_the_pixel_of_its_place),
-        cmocka_unit_test(the_middle_of_a_window_is_that_of_its_square),
-        cmocka_unit_test(a_symbol_over_a_patch_is_on_the_cell_of_its_place),
-    };
-    return cmocka_run_group_tests_name("view", tests, NULL, NULL);
 }

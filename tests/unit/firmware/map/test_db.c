@@ -1,6 +1,7 @@
 /* Nothing in the image is believed before it was checked. */
 #include "lm/db.h"
 
+#include "check.h"
 #include "fx/crc32c.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
@@ -8,14 +9,8 @@
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { POLLS = 10 };
 
@@ -41,9 +36,8 @@ static int open_bytes(struct lm_db *db, const uint8_t *bytes, size_t size)
     return lm_db_open(db, &flash.port, POLLS);
 }
 
-static void a_sound_image_opens(void **state)
+TEST(a_sound_image_opens)
 {
-    (void)state;
     struct tiny_image image;
     struct lm_db db;
     build(&image);
@@ -53,9 +47,8 @@ static void a_sound_image_opens(void **state)
     tiny_image_free(&image);
 }
 
-static void every_flipped_bit_of_header_and_tables_is_refused(void **state)
+TEST(every_flipped_bit_of_header_and_tables_is_refused)
 {
-    (void)state;
     struct tiny_image image;
     struct lm_db db;
     build(&image);
@@ -75,9 +68,8 @@ static void every_flipped_bit_of_header_and_tables_is_refused(void **state)
     tiny_image_free(&image);
 }
 
-static void a_truncated_image_is_refused_at_every_length(void **state)
+TEST(a_truncated_image_is_refused_at_every_length)
 {
-    (void)state;
     struct tiny_image image;
     struct lm_db db;
     build(&image);
@@ -88,9 +80,8 @@ static void a_truncated_image_is_refused_at_every_length(void **state)
 }
 
 /* Whatever a header with a right checksum says, what is accepted lies inside the flash. */
-static void hostile_headers_never_lead_outside_the_flash(void **state)
+TEST(hostile_headers_never_lead_outside_the_flash)
 {
-    (void)state;
     struct tiny_image image;
     build(&image);
     struct hs_rng rng;
@@ -139,9 +130,8 @@ static void hostile_headers_never_lead_outside_the_flash(void **state)
 }
 
 /* Found by tests/fuzz: either one overflowed the heights computed from it. */
-static void heights_beyond_16_km_in_the_header_are_refused(void **state)
+TEST(heights_beyond_16_km_in_the_header_are_refused)
 {
-    (void)state;
     static const int32_t heights_q6[] = {INT32_MIN, INT32_MAX, -(1 << 20) - 1, (1 << 20) + 1};
     for (size_t field = 40; field <= 44; field += 4) { /* mean elevation, geoid */
         for (size_t i = 0; i < sizeof heights_q6 / sizeof *heights_q6; i++) {
@@ -156,9 +146,8 @@ static void heights_beyond_16_km_in_the_header_are_refused(void **state)
     }
 }
 
-static void a_newer_version_is_told_from_damage(void **state)
+TEST(a_newer_version_is_told_from_damage)
 {
-    (void)state;
     struct tiny_image image;
     struct lm_db db;
     build(&image);
@@ -168,9 +157,8 @@ static void a_newer_version_is_told_from_damage(void **state)
     tiny_image_free(&image);
 }
 
-static void failing_and_hanging_flash_is_an_io_error(void **state)
+TEST(failing_and_hanging_flash_is_an_io_error)
 {
-    (void)state;
     struct tiny_image image;
     struct lm_db db;
     build(&image);
@@ -187,9 +175,8 @@ static void failing_and_hanging_flash_is_an_io_error(void **state)
     tiny_image_free(&image);
 }
 
-static void zones_change_where_the_format_says(void **state)
+TEST(zones_change_where_the_format_says)
 {
-    (void)state;
     static const struct {
         double degrees;
         int below, above;
@@ -207,27 +194,10 @@ static void zones_change_where_the_format_says(void **state)
     assert_int_equal(lm_db_zone(0), 0);
 }
 
-static void a_level_0_cell_of_shift_9_is_4769_mm(void **state)
+TEST(a_level_0_cell_of_shift_9_is_4769_mm)
 {
-    (void)state;
     struct lm_db db = {.shift0 = 9};
     /* 512 / 2^32 of the meridian, 40,007,862.9 m. */
     assert_int_equal(lm_db_cell_mm(&db, 0), 4769);
     assert_int_equal(lm_db_cell_mm(&db, 3), 38154);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sound_image_opens),
-        cmocka_unit_test(every_flipped_bit_of_header_and_tables_is_refused),
-        cmocka_unit_test(a_truncated_image_is_refused_at_every_length),
-        cmocka_unit_test(hostile_headers_never_lead_outside_the_flash),
-        cmocka_unit_test(heights_beyond_16_km_in_the_header_are_refused),
-        cmocka_unit_test(a_newer_version_is_told_from_damage),
-        cmocka_unit_test(failing_and_hanging_flash_is_an_io_error),
-        cmocka_unit_test(zones_change_where_the_format_says),
-        cmocka_unit_test(a_level_0_cell_of_shift_9_is_4769_mm),
-    };
-    return cmocka_run_group_tests_name("db", tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* What a line finds on the ground, against a direct evaluation of the image in double precision.
  * The evaluation reads the image's bytes by docs/FORMATS.md, not through the cache. */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/scan_line.h"
 #include "memory_flash.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double bam_per_degree = 4294967296.0 / 360;
 
@@ -204,9 +199,8 @@ static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm
     return compare(w, level, p, cells);
 }
 
-static void lines_of_every_direction_level_and_step_agree_with_the_image(void **state)
+TEST(lines_of_every_direction_level_and_step_agree_with_the_image)
 {
-    (void)state;
     static struct world w;
     struct hs_rng rng;
     hs_rng_seed(&rng, 12);
@@ -231,9 +225,8 @@ static void lines_of_every_direction_level_and_step_agree_with_the_image(void **
     assert_true(known > 20000);
 }
 
-static void every_step_of_elevation_that_a_tile_may_have_is_read(void **state)
+TEST(every_step_of_elevation_that_a_tile_may_have_is_read)
 {
-    (void)state;
     static struct world w;
     for (uint8_t post_shift = 0; post_shift <= LM_TILE_POST_SHIFT_MAX; post_shift++) {
         struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -246,9 +239,8 @@ static void every_step_of_elevation_that_a_tile_may_have_is_read(void **state)
     }
 }
 
-static void a_line_that_turns_round_at_a_border_stays_right(void **state)
+TEST(a_line_that_turns_round_at_a_border_stays_right)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     /* The vertex of the parabola within a few centimetres of a tile's edge, either side. */
@@ -265,9 +257,8 @@ static void a_line_that_turns_round_at_a_border_stays_right(void **state)
     close_world(&w);
 }
 
-static void lines_agree_across_the_border_of_a_zone(void **state)
+TEST(lines_agree_across_the_border_of_a_zone)
 {
-    (void)state;
     static struct world w;
     static const double borders_deg[] = {61.875, -61.875, 73.125, 84.375};
     for (int n = 0; n < 4; n++) {
@@ -283,9 +274,8 @@ static void lines_agree_across_the_border_of_a_zone(void **state)
     }
 }
 
-static void lines_agree_across_the_antimeridian_and_greenwich(void **state)
+TEST(lines_agree_across_the_antimeridian_and_greenwich)
 {
-    (void)state;
     static struct world w;
     for (int n = 0; n < 2; n++) {
         const double longitude_deg = n ? 0 : 180;
@@ -301,9 +291,8 @@ static void lines_agree_across_the_antimeridian_and_greenwich(void **state)
     }
 }
 
-static void lines_near_the_poles_do_no_harm(void **state)
+TEST(lines_near_the_poles_do_no_harm)
 {
-    (void)state;
     static struct world w;
     struct hs_rng rng;
     hs_rng_seed(&rng, 3);
@@ -335,9 +324,8 @@ static void lines_near_the_poles_do_no_harm(void **state)
 }
 
 /* Cells far longer than a tile: every cell is a run of its own. */
-static void steps_over_whole_tiles_find_the_right_ones(void **state)
+TEST(steps_over_whole_tiles_find_the_right_ones)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     for (int azimuth = 0; azimuth < 360; azimuth += 15) {
@@ -349,9 +337,8 @@ static void steps_over_whole_tiles_find_the_right_ones(void **state)
     close_world(&w);
 }
 
-static void what_is_not_resident_is_answered_by_the_nearest_ancestor(void **state)
+TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
@@ -382,9 +369,8 @@ static bool leave_out_odd(void *ctx, uint8_t level, uint32_t row, uint32_t colum
     return level == 0 && (row + column) % 2 == 1;
 }
 
-static void tiles_that_the_image_leaves_out_are_answered_by_their_parents(void **state)
+TEST(tiles_that_the_image_leaves_out_are_answered_by_their_parents)
 {
-    (void)state;
     static struct world w;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.rows = spec.columns = 6;
@@ -401,9 +387,8 @@ static void tiles_that_the_image_leaves_out_are_answered_by_their_parents(void *
     close_world(&w);
 }
 
-static void beyond_the_map_there_is_no_data_at_sea_level(void **state)
+TEST(beyond_the_map_there_is_no_data_at_sea_level)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(10, 50, 45, 5, 0);
@@ -415,9 +400,8 @@ static void beyond_the_map_there_is_no_data_at_sea_level(void **state)
     close_world(&w);
 }
 
-static void one_elevation_is_that_of_a_line(void **state)
+TEST(one_elevation_is_that_of_a_line)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     for (int i = 0; i < 100; i++) {
@@ -434,9 +418,8 @@ static void one_elevation_is_that_of_a_line(void **state)
     close_world(&w);
 }
 
-static void the_level_is_the_largest_cell_that_is_not_longer(void **state)
+TEST(the_level_is_the_largest_cell_that_is_not_longer)
 {
-    (void)state;
     static struct world w;
     open_world(&w, 46, 11);
     for (uint32_t cell_mm = 100; cell_mm < 3000000; cell_mm = cell_mm * 9 / 8) {
@@ -446,23 +429,4 @@ static void the_level_is_the_largest_cell_that_is_not_longer(void **state)
                     lm_db_cell_mm(&w.db, (uint8_t)(level + 1)) > cell_mm);
     }
     close_world(&w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_of_every_direction_level_and_step_agree_with_the_image),
-        cmocka_unit_test(every_step_of_elevation_that_a_tile_may_have_is_read),
-        cmocka_unit_test(a_line_that_turns_round_at_a_border_stays_right),
-        cmocka_unit_test(lines_agree_across_the_border_of_a_zone),
-        cmocka_unit_test(lines_agree_across_the_antimeridian_and_greenwich),
-        cmocka_unit_test(lines_near_the_poles_do_no_harm),
-        cmocka_unit_test(steps_over_whole_tiles_find_the_right_ones),
-        cmocka_unit_test(what_is_not_resident_is_answered_by_the_nearest_ancestor),
-        cmocka_unit_test(tiles_that_the_image_leaves_out_are_answered_by_their_parents),
-        cmocka_unit_test(beyond_the_map_there_is_no_data_at_sea_level),
-        cmocka_unit_test(one_elevation_is_that_of_a_line),
-        cmocka_unit_test(the_level_is_the_largest_cell_that_is_not_longer),
-    };
-    return cmocka_run_group_tests_name("scan_line", tests, NULL, NULL);
 }

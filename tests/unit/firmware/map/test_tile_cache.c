@@ -2,17 +2,12 @@
  */
 #include "lm/tile_cache.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "tiny_image.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SLOTS = 40, POLLS = 100, SIDE = 8 };
 
@@ -93,9 +88,8 @@ static void serve(struct fixture *f, uint64_t now_us)
     } while (++rounds < 10000 && !lm_tile_cache_is_idle(&f->cache));
 }
 
-static void the_coarsest_level_is_resident_from_the_start(void **state)
+TEST(the_coarsest_level_is_resident_from_the_start)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     const struct lm_tile *tile = get(f, 3, 3);
     assert_non_null(tile);
@@ -104,9 +98,8 @@ static void the_coarsest_level_is_resident_from_the_start(void **state)
     free_fixture(f);
 }
 
-static void a_tile_that_was_asked_for_is_the_tile_itself_later(void **state)
+TEST(a_tile_that_was_asked_for_is_the_tile_itself_later)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     for (uint32_t i = 0; i < SIDE; i++) {
         get(f, i, SIDE - 1 - i);
@@ -119,9 +112,8 @@ static void a_tile_that_was_asked_for_is_the_tile_itself_later(void **state)
     free_fixture(f);
 }
 
-static void a_lookup_never_waits_for_a_late_read(void **state)
+TEST(a_lookup_never_waits_for_a_late_read)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     f->flash.busy_polls = 50;
     get(f, 0, 0);
@@ -136,9 +128,8 @@ static void a_lookup_never_waits_for_a_late_read(void **state)
     free_fixture(f);
 }
 
-static void every_read_that_fails_is_counted_and_answered_by_an_ancestor(void **state)
+TEST(every_read_that_fails_is_counted_and_answered_by_an_ancestor)
 {
-    (void)state;
     for (uint32_t bad = 1; bad <= 2; bad++) { /* directory entry, record */
         struct fixture *f = make_fixture();
         f->flash.fail_read = f->flash.reads + bad;
@@ -159,9 +150,8 @@ static void every_read_that_fails_is_counted_and_answered_by_an_ancestor(void **
     }
 }
 
-static void any_flipped_bit_in_a_record_or_entry_is_caught(void **state)
+TEST(any_flipped_bit_in_a_record_or_entry_is_caught)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     const int64_t entry = lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
@@ -189,9 +179,8 @@ static void any_flipped_bit_in_a_record_or_entry_is_caught(void **state)
     free_fixture(f);
 }
 
-static void a_record_that_answers_for_another_tile_is_refused(void **state)
+TEST(a_record_that_answers_for_another_tile_is_refused)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     uint8_t *directory = f->image.bytes + f->image.directory_offset;
@@ -214,9 +203,8 @@ static bool leave_out_middle(void *ctx, uint8_t level, uint32_t row, uint32_t co
     return level == 0 && row == hole[0] && column == hole[1];
 }
 
-static void a_tile_the_image_leaves_out_is_no_fault(void **state)
+TEST(a_tile_the_image_leaves_out_is_no_fault)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     uint32_t hole[2] = {finest_band(f)->row0 + 2, finest_band(f)->column0 + 5};
     free_fixture(f);
@@ -243,9 +231,8 @@ static void a_tile_the_image_leaves_out_is_no_fault(void **state)
     free_fixture(f);
 }
 
-static void the_tile_used_longest_ago_leaves_first(void **state)
+TEST(the_tile_used_longest_ago_leaves_first)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     for (uint32_t i = 0; i < SIDE * SIDE; i++) { /* more tiles than slots */
         get(f, 0, 0);                            /* but this one is always wanted */
@@ -259,9 +246,8 @@ static void the_tile_used_longest_ago_leaves_first(void **state)
     free_fixture(f);
 }
 
-static void a_look_finds_what_a_get_would_answer_or_nothing(void **state)
+TEST(a_look_finds_what_a_get_would_answer_or_nothing)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     uint32_t found = 0, late = 0;
@@ -289,9 +275,8 @@ static void a_look_finds_what_a_get_would_answer_or_nothing(void **state)
     free_fixture(f);
 }
 
-static void tiles_of_a_neighbourhood_have_a_chain_each(void **state)
+TEST(tiles_of_a_neighbourhood_have_a_chain_each)
 {
-    (void)state;
     for (int32_t row = -33; row <= 33; row++) {
         for (int32_t column = -33; column <= 33; column++) {
             const bool is_near = row * row + column * column < 34 * 34;
@@ -303,9 +288,8 @@ static void tiles_of_a_neighbourhood_have_a_chain_each(void **state)
     }
 }
 
-static void off_the_map_there_is_nothing(void **state)
+TEST(off_the_map_there_is_nothing)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     assert_null(lm_tile_cache_get(&f->cache, 0, 5, 5));
     assert_int_equal(f->cache.count.off_map, 1);
@@ -313,9 +297,8 @@ static void off_the_map_there_is_nothing(void **state)
     free_fixture(f);
 }
 
-static void a_pool_too_small_for_the_coarsest_level_is_refused(void **state)
+TEST(a_pool_too_small_for_the_coarsest_level_is_refused)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     struct lm_tile_cache *cache = calloc(1, sizeof *cache);
     assert_int_equal(lm_tile_cache_init(cache, &f->db, f->pool, 16 * sizeof(struct lm_tile), POLLS),
@@ -324,9 +307,8 @@ static void a_pool_too_small_for_the_coarsest_level_is_refused(void **state)
     free_fixture(f);
 }
 
-static void a_full_queue_drops_requests_and_counts_them(void **state)
+TEST(a_full_queue_drops_requests_and_counts_them)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     for (uint32_t i = 0; i < 10 * LM_TILE_REQUESTS; i++) {
@@ -340,9 +322,8 @@ static void a_full_queue_drops_requests_and_counts_them(void **state)
     free_fixture(f);
 }
 
-static void a_guest_reads_between_two_tiles_and_one_at_a_time(void **state)
+TEST(a_guest_reads_between_two_tiles_and_one_at_a_time)
 {
-    (void)state;
     struct fixture *f = make_fixture();
     uint8_t header[512];
     struct lm_guest_read guest = {.destination = header, .length = sizeof header}, second = guest;
@@ -374,25 +355,4 @@ static void a_guest_reads_between_two_tiles_and_one_at_a_time(void **state)
     serve(f, 0);
     assert_int_equal(beyond.status, LM_ERR_IO);
     free_fixture(f);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_coarsest_level_is_resident_from_the_start),
-        cmocka_unit_test(a_tile_that_was_asked_for_is_the_tile_itself_later),
-        cmocka_unit_test(a_lookup_never_waits_for_a_late_read),
-        cmocka_unit_test(every_read_that_fails_is_counted_and_answered_by_an_ancestor),
-        cmocka_unit_test(any_flipped_bit_in_a_record_or_entry_is_caught),
-        cmocka_unit_test(a_record_that_answers_for_another_tile_is_refused),
-        cmocka_unit_test(a_tile_the_image_leaves_out_is_no_fault),
-        cmocka_unit_test(the_tile_used_longest_ago_leaves_first),
-        cmocka_unit_test(a_look_finds_what_a_get_would_answer_or_nothing),
-        cmocka_unit_test(tiles_of_a_neighbourhood_have_a_chain_each),
-        cmocka_unit_test(off_the_map_there_is_nothing),
-        cmocka_unit_test(a_pool_too_small_for_the_coarsest_level_is_refused),
-        cmocka_unit_test(a_full_queue_drops_requests_and_counts_them),
-        cmocka_unit_test(a_guest_reads_between_two_tiles_and_one_at_a_time),
-    };
-    return cmocka_run_group_tests_name("tile_cache", tests, NULL, NULL);
 }

@@ -1,15 +1,12 @@
 /* The ownship between two messages: where it is by geodesy, and when it stops being believed. */
 #include "bus_frames.h"
+#include "check.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/nav.h"
 
 #include <geodesic.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 static const double semi_major = 6378137.0, flattening = 1 / 298.257223563;
 
@@ -112,9 +109,8 @@ static struct lm_ownship fly_in_firmware(struct course *c, uint64_t age_us)
     return ownship;
 }
 
-static void two_seconds_of_constant_velocity_are_within_2_cm(void **state)
+TEST(two_seconds_of_constant_velocity_are_within_2_cm)
 {
-    (void)state;
     double worst = 0;
     for (int latitude = -80; latitude <= 80; latitude += 5) {
         for (int azimuth = 0; azimuth < 360; azimuth += 7) {
@@ -140,9 +136,8 @@ static void two_seconds_of_constant_velocity_are_within_2_cm(void **state)
     assert_true(worst < 0.02);
 }
 
-static void two_seconds_are_within_17_cm_of_the_geodesic(void **state)
+TEST(two_seconds_are_within_17_cm_of_the_geodesic)
 {
-    (void)state;
     struct geod_geodesic earth;
     geod_init(&earth, semi_major, flattening);
     double worst = 0, worst_below_60 = 0;
@@ -171,9 +166,8 @@ static void two_seconds_are_within_17_cm_of_the_geodesic(void **state)
     assert_true(worst < 0.17 && worst_below_60 < 0.07);
 }
 
-static void each_coordinate_moves_from_its_own_time(void **state)
+TEST(each_coordinate_moves_from_its_own_time)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_float(&ear, LM_BUS_NORTH_VELOCITY, 200, 0);
@@ -188,9 +182,8 @@ static void each_coordinate_moves_from_its_own_time(void **state)
     assert_int_equal(o.position_quality, LM_NAV_GOOD);
 }
 
-static void near_a_pole_the_position_stays_one(void **state)
+TEST(near_a_pole_the_position_stays_one)
 {
-    (void)state;
     struct course c = {.latitude = 89.9999, .longitude = 20, .north_m_s = 1500, .east_m_s = 1500};
     const struct lm_ownship o = fly_in_firmware(&c, 2000000);
     assert_int_equal(o.latitude, FX_BAM_90);
@@ -200,9 +193,8 @@ static void near_a_pole_the_position_stays_one(void **state)
 
 /* ---- sources ---- */
 
-static void ground_speed_and_track_serve_when_there_is_no_velocity(void **state)
+TEST(ground_speed_and_track_serve_when_there_is_no_velocity)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_float(&ear, LM_BUS_GROUND_SPEED, 100, 0);
@@ -228,9 +220,8 @@ static void ground_speed_and_track_serve_when_there_is_no_velocity(void **state)
     assert_int_equal(at(&ear, 3000001).velocity_north_mm_s, 100000);
 }
 
-static void the_best_height_that_lives_is_used_and_moved_on(void **state)
+TEST(the_best_height_that_lives_is_used_and_moved_on)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_float(&ear, LM_BUS_BARO_ALTITUDE, 1000, 0);
@@ -251,9 +242,8 @@ static void the_best_height_that_lives_is_used_and_moved_on(void **state)
     assert_int_equal(at(&ear, 5600001).height_source, LM_BUS_TRUE_ALTITUDE);
 }
 
-static void the_barometric_height_comes_first_when_it_is_preferred_and_lives(void **state)
+TEST(the_barometric_height_comes_first_when_it_is_preferred_and_lives)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     ear.nav.is_baro_preferred = true;
@@ -265,9 +255,8 @@ static void the_barometric_height_comes_first_when_it_is_preferred_and_lives(voi
     assert_int_equal(at(&ear, 6000000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
 }
 
-static void true_heading_is_preferred_while_it_lives(void **state)
+TEST(true_heading_is_preferred_while_it_lives)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_float(&ear, LM_BUS_HEADING, -90, 0);
@@ -306,9 +295,8 @@ static double heading_by_rotation(double heading, double pitch, double roll, dou
     return atan2(r[1][0], r[0][0]);
 }
 
-static void heading_turns_as_the_body_does(void **state)
+TEST(heading_turns_as_the_body_does)
 {
-    (void)state;
     const double radian = 0.017453292519943295;
     double worst = 0;
     for (int pitch = -60; pitch <= 60; pitch += 20) {
@@ -333,9 +321,8 @@ static void heading_turns_as_the_body_does(void **state)
     assert_true(worst < 0.06);
 }
 
-static void heading_stands_still_where_it_means_nothing(void **state)
+TEST(heading_stands_still_where_it_means_nothing)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_float(&ear, LM_BUS_TRUE_HEADING, 10, 0);
@@ -380,9 +367,8 @@ static void assert_place(const struct ear *ear, uint64_t now_us, int degrees,
     assert_true(fabs(hs_degrees(o.longitude) - degrees) < 1e-5);
 }
 
-static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady(void **state)
+TEST(a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     /* GPS on channels 0 and 1 and INS, each 10 Hz, at 10, 11 and 12 degrees. Channel 0 is silent
@@ -415,9 +401,8 @@ static void a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_ste
                      0); /* another sender's position is no jump of this one */
 }
 
-static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void **state)
+TEST(a_second_node_on_an_identifier_waits_until_the_first_is_stale)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     for (uint64_t t = 0; t <= 3000000; t += 100000) {
@@ -438,9 +423,8 @@ static void a_second_node_on_an_identifier_waits_until_the_first_is_stale(void *
     assert_int_equal(ear.nav.position_jumps, 2); /* at the change, and no other */
 }
 
-static void both_coordinates_come_from_one_sender(void **state)
+TEST(both_coordinates_come_from_one_sender)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_place(&ear, INS, 0, 12, 0);
@@ -450,9 +434,8 @@ static void both_coordinates_come_from_one_sender(void **state)
     assert_place(&ear, 2000, 10, LM_NAV_GOOD);
 }
 
-static void of_too_many_senders_the_best_are_followed(void **state)
+TEST(of_too_many_senders_the_best_are_followed)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     /* The least wanted first, so that each better one has to find a place. */
@@ -477,9 +460,8 @@ static void of_too_many_senders_the_best_are_followed(void **state)
     assert_int_equal(ear.nav.crowded, 2);
 }
 
-static void every_group_tells_who_said_it_and_how_long_ago(void **state)
+TEST(every_group_tells_who_said_it_and_how_long_ago)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     const struct lm_bus_row *rows = lm_bus_canas17.rows;
@@ -560,9 +542,8 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
     return ride;
 }
 
-static void a_float_position_moves_evenly_and_stays_within_its_step(void **state)
+TEST(a_float_position_moves_evenly_and_stays_within_its_step)
 {
-    (void)state;
     struct ride worst = {0};
     for (int heading = 0; heading < 360; heading += 40) {
         const double radian = heading * 0.017453292519943295;
@@ -580,9 +561,8 @@ static void a_float_position_moves_evenly_and_stays_within_its_step(void **state
     assert_true(worst.worst_error_steps < 2.01);
 }
 
-static void a_wrong_velocity_moves_a_float_position_no_further_than_its_step(void **state)
+TEST(a_wrong_velocity_moves_a_float_position_no_further_than_its_step)
 {
-    (void)state;
     const struct ride r = fly_on_floats(47.3, 120, -90, 3);
     print_message("# 3 m/s too fast: worst hop %.3f m, worst error %.2f half steps\n",
                   r.worst_hop_m, r.worst_error_steps);
@@ -590,9 +570,8 @@ static void a_wrong_velocity_moves_a_float_position_no_further_than_its_step(voi
     assert_true(r.worst_hop_m < 0.3 + 0.43); /* its way in 100 ms, and a step of latitude */
 }
 
-static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
+TEST(a_float_position_without_velocity_is_taken_as_it_comes)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     for (int i = 0; i < 20; i++) {
@@ -604,9 +583,8 @@ static void a_float_position_without_velocity_is_taken_as_it_comes(void **state)
     }
 }
 
-static void steps_of_short2_are_no_jumps(void **state)
+TEST(steps_of_short2_are_no_jumps)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     for (uint32_t i = 0; i < 100; i++) {
@@ -647,9 +625,8 @@ static void assert_ages(const struct ear *ear, uint64_t now_us, struct ages expe
 #define S LM_NAV_STALE
 #define G LM_NAV_GOOD
 
-static void every_quality_changes_at_the_microsecond_the_table_says(void **state)
+TEST(every_quality_changes_at_the_microsecond_the_table_says)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     assert_ages(&ear, 0, (struct ages){D, D, D, D, D, D});
@@ -675,9 +652,8 @@ static void every_quality_changes_at_the_microsecond_the_table_says(void **state
                 o.pitch == 0 && o.roll == 0 && o.ground_speed_mm_s == 0 && o.utc_s == 0);
 }
 
-static void one_dead_coordinate_or_angle_kills_its_group(void **state)
+TEST(one_dead_coordinate_or_angle_kills_its_group)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_everything(&ear, 0);
@@ -687,9 +663,8 @@ static void one_dead_coordinate_or_angle_kills_its_group(void **state)
     assert_ages(&ear, 2000001, (struct ages){D, S, D, D, D, G});
 }
 
-static void a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best(void **state)
+TEST(a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_double(&ear, LM_BUS_LATITUDE, 47, 0);
@@ -705,9 +680,8 @@ static void a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best(voi
     assert_int_equal(at(&ear, 200).position_quality, LM_NAV_GOOD);
 }
 
-static void a_lone_half_never_moves_the_position(void **state)
+TEST(a_lone_half_never_moves_the_position)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_everything(&ear, 0);
@@ -721,9 +695,8 @@ static void a_lone_half_never_moves_the_position(void **state)
     }
 }
 
-static void time_going_backwards_is_survived(void **state)
+TEST(time_going_backwards_is_survived)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_everything(&ear, 9000000);
@@ -739,9 +712,8 @@ static void time_going_backwards_is_survived(void **state)
     assert_ages(&ear, UINT64_MAX, (struct ages){D, D, D, D, D, D});
 }
 
-static void a_jump_is_believed_and_counted(void **state)
+TEST(a_jump_is_believed_and_counted)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_double(&ear, LM_BUS_LATITUDE, 60, 0);
@@ -773,9 +745,8 @@ static void a_jump_is_believed_and_counted(void **state)
     assert_int_equal(ear.nav.position_jumps, 5);
 }
 
-static void the_clock_runs_on_between_its_messages(void **state)
+TEST(the_clock_runs_on_between_its_messages)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear(&ear, bus_frame(1200, LM_CANAS_CHAR4, 0, 0x173b3b00, 0)); /* 23:59:59 */
@@ -784,9 +755,8 @@ static void the_clock_runs_on_between_its_messages(void **state)
     assert_int_equal(at(&ear, 2500000).utc_s, 1);
 }
 
-static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
+TEST(the_same_frames_give_the_same_ownship_to_the_last_bit)
 {
-    (void)state;
     struct ear a, b;
     memset(&a, 0x55, sizeof a);
     memset(&b, 0xaa, sizeof b);
@@ -806,38 +776,4 @@ static void the_same_frames_give_the_same_ownship_to_the_last_bit(void **state)
         lm_nav_at(&b.nav, t + 6000, &at_b);
         assert_memory_equal(&at_a, &at_b, sizeof at_a);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_seconds_of_constant_velocity_are_within_2_cm),
-        cmocka_unit_test(two_seconds_are_within_17_cm_of_the_geodesic),
-        cmocka_unit_test(each_coordinate_moves_from_its_own_time),
-        cmocka_unit_test(near_a_pole_the_position_stays_one),
-        cmocka_unit_test(ground_speed_and_track_serve_when_there_is_no_velocity),
-        cmocka_unit_test(the_best_height_that_lives_is_used_and_moved_on),
-        cmocka_unit_test(the_barometric_height_comes_first_when_it_is_preferred_and_lives),
-        cmocka_unit_test(true_heading_is_preferred_while_it_lives),
-        cmocka_unit_test(heading_turns_as_the_body_does),
-        cmocka_unit_test(heading_stands_still_where_it_means_nothing),
-        cmocka_unit_test(a_redundant_sender_takes_over_and_the_better_one_only_when_it_is_steady),
-        cmocka_unit_test(a_second_node_on_an_identifier_waits_until_the_first_is_stale),
-        cmocka_unit_test(both_coordinates_come_from_one_sender),
-        cmocka_unit_test(of_too_many_senders_the_best_are_followed),
-        cmocka_unit_test(every_group_tells_who_said_it_and_how_long_ago),
-        cmocka_unit_test(a_float_position_moves_evenly_and_stays_within_its_step),
-        cmocka_unit_test(a_wrong_velocity_moves_a_float_position_no_further_than_its_step),
-        cmocka_unit_test(a_float_position_without_velocity_is_taken_as_it_comes),
-        cmocka_unit_test(steps_of_short2_are_no_jumps),
-        cmocka_unit_test(every_quality_changes_at_the_microsecond_the_table_says),
-        cmocka_unit_test(one_dead_coordinate_or_angle_kills_its_group),
-        cmocka_unit_test(a_position_that_cannot_be_moved_on_or_is_coarse_is_stale_at_best),
-        cmocka_unit_test(a_lone_half_never_moves_the_position),
-        cmocka_unit_test(time_going_backwards_is_survived),
-        cmocka_unit_test(a_jump_is_believed_and_counted),
-        cmocka_unit_test(the_clock_runs_on_between_its_messages),
-        cmocka_unit_test(the_same_frames_give_the_same_ownship_to_the_last_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

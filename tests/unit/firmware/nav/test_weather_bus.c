@@ -1,14 +1,11 @@
 /* Rain and jammers that come over the bus: docs/bus.md, "Weather". */
 #include "bus_frames.h"
+#include "check.h"
 #include "hs/angle.h"
 #include "lm/status.h"
 #include "lm/weather_bus.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { S = 1000000 };
 
@@ -70,9 +67,8 @@ static void look(struct ear *ear, uint64_t now_us)
     assert_int_equal(lm_environment_check(&ear->e), LM_OK);
 }
 
-static void four_frames_make_a_circle_and_three_a_jammer(void **state)
+TEST(four_frames_make_a_circle_and_three_a_jammer)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_rain(&ear, (struct from){20, 2, 7, S}, 46, 30.4);
@@ -95,9 +91,8 @@ static void four_frames_make_a_circle_and_three_a_jammer(void **state)
 }
 
 /* In any order, and LONG of 1e-7 degree as well. */
-static void places_come_as_long_too(void **state)
+TEST(places_come_as_long_too)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     const struct from from = {20, 0, 1, 0};
@@ -113,9 +108,8 @@ static void places_come_as_long_too(void **state)
 }
 
 /* Move a circle: with any of its frames lost, it stays where it was, whole. */
-static void no_circle_is_ever_half_new(void **state)
+TEST(no_circle_is_ever_half_new)
 {
-    (void)state;
     static const double before[] = {46, 11, 5000, 30}, after[] = {47, 12, 9000, 60};
     for (uint32_t lost = 0; lost < 4; lost++) {
         struct ear ear;
@@ -143,9 +137,8 @@ static void no_circle_is_ever_half_new(void **state)
 }
 
 /* A sender that never counts: a value that comes twice begins a set. */
-static void a_set_is_not_made_of_two(void **state)
+TEST(a_set_is_not_made_of_two)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     const struct from from = {20, 0, 0, 0};
@@ -179,9 +172,8 @@ static void a_set_is_not_made_of_two(void **state)
     assert_int_equal(ear.e.rain_count, 1);
 }
 
-static void a_storm_that_is_not_told_anew_is_flagged_after_3_s_and_gone_after_10(void **state)
+TEST(a_storm_that_is_not_told_anew_is_flagged_after_3_s_and_gone_after_10)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_rain(&ear, (struct from){20, 0, 1, S}, 46, 30);
@@ -205,9 +197,8 @@ static void a_storm_that_is_not_told_anew_is_flagged_after_3_s_and_gone_after_10
     assert_int_equal(ear.e.rain_count, 0);
 }
 
-static void clearing_takes_what_its_bits_say(void **state)
+TEST(clearing_takes_what_its_bits_say)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     for (uint8_t n = 0; n < 4; n++) {
@@ -235,9 +226,8 @@ static void clearing_takes_what_its_bits_say(void **state)
     assert_int_equal(ear.e.rain_count + ear.e.jammer_count, 0);
 }
 
-static void what_is_out_of_range_is_refused_and_counted(void **state)
+TEST(what_is_out_of_range_is_refused_and_counted)
 {
-    (void)state;
     static const struct {
         uint32_t id;
         double value;
@@ -272,9 +262,8 @@ static void what_is_out_of_range_is_refused_and_counted(void **state)
 }
 
 /* A table of the user's own may believe more than the display can show. */
-static void a_wider_table_is_held_to_the_displays_limits(void **state)
+TEST(a_wider_table_is_held_to_the_displays_limits)
 {
-    (void)state;
     static const uint8_t fields[] = {LM_BUS_JAMMER_LATITUDE, LM_BUS_JAMMER_LONGITUDE,
                                      LM_BUS_JAMMER_RATIO};
     struct lm_weather_bus w = {0};
@@ -289,9 +278,8 @@ static void a_wider_table_is_held_to_the_displays_limits(void **state)
     assert_int_equal(w.count.refused, 1);
 }
 
-static void a_second_sender_is_heard_when_the_first_is_stale(void **state)
+TEST(a_second_sender_is_heard_when_the_first_is_stale)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_rain(&ear, (struct from){20, 0, 1, 0}, 46, 30);
@@ -304,9 +292,8 @@ static void a_second_sender_is_heard_when_the_first_is_stale(void **state)
     assert_int_equal(ear.e.rain[0].centre.latitude, hs_bam(47));
 }
 
-static void a_redundant_channel_tears_no_set(void **state)
+TEST(a_redundant_channel_tears_no_set)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     static const double values[] = {46, 11, 5000, 30};
@@ -325,9 +312,8 @@ static void a_redundant_channel_tears_no_set(void **state)
     assert_int_equal(ear.weather.count.torn, 0);
 }
 
-static void what_is_there_already_stands_before_the_buss(void **state)
+TEST(what_is_there_already_stands_before_the_buss)
 {
-    (void)state;
     struct ear ear;
     open_ear(&ear);
     hear_rain(&ear, (struct from){20, 0, 1, 0}, 46, 30);
@@ -338,22 +324,4 @@ static void what_is_there_already_stands_before_the_buss(void **state)
     assert_int_equal(e.rain[0].mm_per_h, 1);
     assert_int_equal(e.rain[3].centre.latitude, hs_bam(46));
     assert_int_equal(e.sea_state, 5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(four_frames_make_a_circle_and_three_a_jammer),
-        cmocka_unit_test(places_come_as_long_too),
-        cmocka_unit_test(no_circle_is_ever_half_new),
-        cmocka_unit_test(a_set_is_not_made_of_two),
-        cmocka_unit_test(a_storm_that_is_not_told_anew_is_flagged_after_3_s_and_gone_after_10),
-        cmocka_unit_test(clearing_takes_what_its_bits_say),
-        cmocka_unit_test(what_is_out_of_range_is_refused_and_counted),
-        cmocka_unit_test(a_wider_table_is_held_to_the_displays_limits),
-        cmocka_unit_test(a_second_sender_is_heard_when_the_first_is_stale),
-        cmocka_unit_test(a_redundant_channel_tears_no_set),
-        cmocka_unit_test(what_is_there_already_stands_before_the_buss),
-    };
-    return cmocka_run_group_tests_name("weather_bus", tests, NULL, NULL);
 }

@@ -1,12 +1,6 @@
 /* When a button acts: lm/keys.h, sentence by sentence. */
+#include "check.h"
 #include "lm/keys.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { BUTTON = 7, STEP_US = 2000 };
 
@@ -27,9 +21,8 @@ static void hold_button(enum lm_key_style style, uint64_t held_us, int *shorts, 
     assert_int_equal(keys.down, 0);
 }
 
-static void a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held(void **state)
+TEST(a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held)
 {
-    (void)state;
     const uint64_t held[] = {STEP_US, 400000, 900000, 30000000};
     for (size_t i = 0; i < sizeof held / sizeof *held; i++) {
         int shorts, longs;
@@ -39,9 +32,8 @@ static void a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held(void
     }
 }
 
-static void a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second(void **state)
+TEST(a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second)
 {
-    (void)state;
     const struct {
         uint64_t held_us;
         int acts;
@@ -54,9 +46,8 @@ static void a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second(voi
     }
 }
 
-static void a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held(void **state)
+TEST(a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held)
 {
-    (void)state;
     int shorts, longs;
     hold_button(LM_KEY_HAS_LONG, 790000, &shorts, &longs);
     assert_int_equal(shorts, 1);
@@ -69,9 +60,8 @@ static void a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held(void **
     assert_int_equal(longs, 1);
 }
 
-static void a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go(void **state)
+TEST(a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go)
 {
-    (void)state;
     struct lm_keys keys = {0};
     struct lm_press press;
     lm_keys_down(&keys, BUTTON, LM_KEY_REPEATS, 0);
@@ -88,9 +78,8 @@ static void a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go(voi
     assert_true(lm_keys_held(&keys, 41600000, &press));
 }
 
-static void a_lost_release_and_a_release_out_of_nowhere_do_no_harm(void **state)
+TEST(a_lost_release_and_a_release_out_of_nowhere_do_no_harm)
 {
-    (void)state;
     struct lm_keys keys = {0};
     assert_false(lm_keys_up(&keys, BUTTON, 5));
     assert_true(lm_keys_down(&keys, BUTTON, LM_KEY_ONCE, 10));
@@ -99,9 +88,8 @@ static void a_lost_release_and_a_release_out_of_nowhere_do_no_harm(void **state)
     assert_false(lm_keys_up(&keys, BUTTON, 40));
 }
 
-static void two_keys_at_once_do_not_disturb_each_other(void **state)
+TEST(two_keys_at_once_do_not_disturb_each_other)
 {
-    (void)state;
     struct lm_keys keys = {0};
     struct lm_press press;
     int acts[LM_BUTTONS + 1] = {0};
@@ -116,17 +104,4 @@ static void two_keys_at_once_do_not_disturb_each_other(void **state)
     }
     assert_int_equal(acts[LM_BUTTONS], 6); /* 0, 0.5, 0.6, 0.7, 0.8, 0.9 */
     assert_int_equal(acts[1], 5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plain_key_acts_once_when_it_goes_down_however_long_it_is_held),
-        cmocka_unit_test(a_repeating_key_waits_half_a_second_then_acts_ten_times_a_second),
-        cmocka_unit_test(a_key_with_a_long_meaning_acts_when_let_go_or_once_when_held),
-        cmocka_unit_test(a_stuck_key_is_counted_once_and_means_nothing_until_it_is_let_go),
-        cmocka_unit_test(a_lost_release_and_a_release_out_of_nowhere_do_no_harm),
-        cmocka_unit_test(two_keys_at_once_do_not_disturb_each_other),
-    };
-    return cmocka_run_group_tests_name("keys", tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* Every key of the page pressed: what it does to the unit, and what the glass then says. Keys stand
  * where RADAR facts put them: 1 = top left, clockwise, five to a side, three tenths of half a
  * screen apart. */
+#include "check.h"
 #include "glass_text.h"
 #include "hs/angle.h"
 #include "lm/bit.h"
@@ -8,15 +9,9 @@
 #include "unit_rig.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static struct lm_surface glass_of(const struct rig *r)
 {
@@ -75,9 +70,8 @@ static struct rig *fly(void)
     return r;
 }
 
-static void the_page_after_power_up_has_the_labels_of_the_key_map(void **state)
+TEST(the_page_after_power_up_has_the_labels_of_the_key_map)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1);
     static const struct {
@@ -102,9 +96,8 @@ static void the_page_after_power_up_has_the_labels_of_the_key_map(void **state)
     free_rig(r);
 }
 
-static void osb_1_goes_round_the_modes_and_leaves_the_patch(void **state)
+TEST(osb_1_goes_round_the_modes_and_leaves_the_patch)
 {
-    (void)state;
     static const char *const modes[] = {"GMT", "SEA", "GM"};
     struct rig *r = fly();
     for (int i = 0; i < 3; i++) {
@@ -125,9 +118,8 @@ static void osb_1_goes_round_the_modes_and_leaves_the_patch(void **state)
     free_rig(r);
 }
 
-static void osb_2_lets_the_range_follow_the_cursor(void **state)
+TEST(osb_2_lets_the_range_follow_the_cursor)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 2);
     assert_true(r->unit.page.is_auto_range);
@@ -151,9 +143,8 @@ static void osb_2_lets_the_range_follow_the_cursor(void **state)
     free_rig(r);
 }
 
-static void osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture(void **state)
+TEST(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture)
 {
-    (void)state;
     static const char *const fields[] = {"EXP", "DBS1", "DBS2", "NORM"};
     struct rig *r = fly();
     uint32_t sums[4];
@@ -175,9 +166,8 @@ static void osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture(v
     free_rig(r);
 }
 
-static void osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt(void **state)
+TEST(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 80});
     press(r, 3);
@@ -195,9 +185,8 @@ static void osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt(void **state)
     free_rig(r);
 }
 
-static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
+TEST(osb_4_stops_the_transmitter_and_the_picture_says_so)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 4);
     const uint32_t lines = r->unit.count.lines, sum = plane_sum(r);
@@ -218,9 +207,8 @@ static void osb_4_stops_the_transmitter_and_the_picture_says_so(void **state)
     free_rig(r);
 }
 
-static void osb_5_opens_the_control_page_over_the_picture_and_closes_it(void **state)
+TEST(osb_5_opens_the_control_page_over_the_picture_and_closes_it)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 5);
     assert_true(labelled(r, 5, "CNTL", 1));
@@ -233,9 +221,8 @@ static void osb_5_opens_the_control_page_over_the_picture_and_closes_it(void **s
     free_rig(r);
 }
 
-static void osb_6_flies_by_the_barometric_height(void **state)
+TEST(osb_6_flies_by_the_barometric_height)
 {
-    (void)state;
     struct rig *r = fly();
     assert_true(labelled(r, 6, "BARO", 0));
     assert_int_equal(r->unit.ownship.height_source, LM_BUS_ELLIPSOID_HEIGHT);
@@ -252,9 +239,8 @@ static void osb_6_flies_by_the_barometric_height(void **state)
     free_rig(r);
 }
 
-static void osb_17_means_nothing_on_the_radar_page(void **state)
+TEST(osb_17_means_nothing_on_the_radar_page)
 {
-    (void)state;
     struct rig *r = fly();
     const struct lm_page before = r->unit.page;
     press(r, 17);
@@ -265,9 +251,8 @@ static void osb_17_means_nothing_on_the_radar_page(void **state)
 }
 
 /* On the control page: what a key changes, and what stands between it and its pair. */
-static void the_control_pages_keys_change_the_tone_of_the_picture(void **state)
+TEST(the_control_pages_keys_change_the_tone_of_the_picture)
 {
-    (void)state;
     static const struct {
         int up, down;
         const char *words_up, *words_down;
@@ -303,9 +288,8 @@ static uint64_t brightness(const struct rig *r)
     return sum;
 }
 
-static void osb_1_to_4_of_the_control_page_point_and_shape_the_beam(void **state)
+TEST(osb_1_to_4_of_the_control_page_point_and_shape_the_beam)
 {
-    (void)state;
     struct rig *r = fly();
     run(r, 1.5);
     press(r, 5);
@@ -339,9 +323,8 @@ static void osb_1_to_4_of_the_control_page_point_and_shape_the_beam(void **state
     free_rig(r);
 }
 
-static void osb_16_of_the_control_page_shows_patches_in_slant_range(void **state)
+TEST(osb_16_of_the_control_page_shows_patches_in_slant_range)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, patch_here);
     run(r, 5);
@@ -359,9 +342,8 @@ static void osb_16_of_the_control_page_shows_patches_in_slant_range(void **state
     free_rig(r);
 }
 
-static void osb_8_and_9_of_the_control_page_choose_tint_and_night(void **state)
+TEST(osb_8_and_9_of_the_control_page_choose_tint_and_night)
 {
-    (void)state;
     struct rig *r = fly();
     const struct lm_palette day = r->unit.palette;
     press(r, 5);
@@ -400,9 +382,8 @@ static int32_t ownship_top(const struct rig *r)
     return -1;
 }
 
-static void osb_7_freezes_the_map_and_the_ownship_moves_over_it(void **state)
+TEST(osb_7_freezes_the_map_and_the_ownship_moves_over_it)
 {
-    (void)state;
     struct rig *r = fly();
     /* Out of the way with the cursor's lines. */
     command(r, lm_control_slew(-1000, 0));
@@ -426,9 +407,8 @@ static void osb_7_freezes_the_map_and_the_ownship_moves_over_it(void **state)
     free_rig(r);
 }
 
-static void a_new_scale_ends_the_freeze(void **state)
+TEST(a_new_scale_ends_the_freeze)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 7);
     press(r, 20);
@@ -438,9 +418,8 @@ static void a_new_scale_ends_the_freeze(void **state)
     free_rig(r);
 }
 
-static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
+TEST(osb_8_and_10_choose_snowplow_or_a_held_cursor)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 8);
     assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
@@ -462,9 +441,8 @@ static void osb_8_and_10_choose_snowplow_or_a_held_cursor(void **state)
     free_rig(r);
 }
 
-static void osb_9_brings_the_cursor_home(void **state)
+TEST(osb_9_brings_the_cursor_home)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, lm_control_slew(1000, -500));
     run(r, 0.4);
@@ -478,9 +456,8 @@ static void osb_9_brings_the_cursor_home(void **state)
     free_rig(r);
 }
 
-static void osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one(void **state)
+TEST(osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 11);
     assert_true(labelled(r, 11, "DCLT", 1));
@@ -496,9 +473,8 @@ static void osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one(void **
     free_rig(r);
 }
 
-static void osb_11_held_opens_the_choice_of_labels(void **state)
+TEST(osb_11_held_opens_the_choice_of_labels)
 {
-    (void)state;
     struct rig *r = fly();
     hold(r, 11, 1);
     assert_int_equal(r->unit.page.format, LM_FORMAT_DCLT);
@@ -516,9 +492,8 @@ static void osb_11_held_opens_the_choice_of_labels(void **state)
     free_rig(r);
 }
 
-static void osb_12_to_14_are_the_direct_access_to_the_formats(void **state)
+TEST(osb_12_to_14_are_the_direct_access_to_the_formats)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 12);
     assert_int_equal(r->unit.page.format, LM_FORMAT_BIT);
@@ -536,9 +511,8 @@ static void osb_12_to_14_are_the_direct_access_to_the_formats(void **state)
     free_rig(r);
 }
 
-static void osb_15_asks_the_board_to_swap(void **state)
+TEST(osb_15_asks_the_board_to_swap)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 15);
     assert_int_equal(r->unit.count.swaps, 1);
@@ -558,9 +532,8 @@ static void slew_right(struct rig *r)
     run(r, 0.1);
 }
 
-static void osb_16_chooses_the_cell_and_draws_the_patch_again(void **state)
+TEST(osb_16_chooses_the_cell_and_draws_the_patch_again)
 {
-    (void)state;
     struct rig *r = fly();
     assert_true(says(r, "5M"));
     press(r, 16);
@@ -595,9 +568,8 @@ static double widest_degrees(const struct rig *r)
     return widest;
 }
 
-static void osb_18_goes_through_the_azimuths(void **state)
+TEST(osb_18_goes_through_the_azimuths)
 {
-    (void)state;
     struct rig *r = fly();
     const char *const digits[] = {"3", "1", "6"};
     const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
@@ -617,9 +589,8 @@ static void osb_18_goes_through_the_azimuths(void **state)
     free_rig(r);
 }
 
-static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
+TEST(osb_19_and_20_step_the_range_and_end_automatic_range)
 {
-    (void)state;
     struct rig *r = fly();
     const char *const words[] = {"10", "20", "40", "80"};
     press(r, 2);
@@ -641,9 +612,8 @@ static void osb_19_and_20_step_the_range_and_end_automatic_range(void **state)
     free_rig(r);
 }
 
-static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
+TEST(rockers_and_the_range_knob_change_gain_and_glass)
 {
-    (void)state;
     struct rig *r = fly();
     const struct lm_tone tone = r->unit.picture.tone[LM_PICTURE_SECTOR];
     press(r, lm_rocker_button(LM_ROCKER_GAIN, true));
@@ -674,9 +644,8 @@ static void rockers_and_the_range_knob_change_gain_and_glass(void **state)
 }
 
 /* The columns of the cursor's vertical and the rows of its horizontal line. */
-static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
+TEST(the_cursors_lines_cross_the_whole_frame_at_its_place)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, lm_control_slew(700, 300));
     run(r, 0.3);
@@ -699,9 +668,8 @@ static void the_cursors_lines_cross_the_whole_frame_at_its_place(void **state)
     free_rig(r);
 }
 
-static void the_cursors_numbers_are_right(void **state)
+TEST(the_cursors_numbers_are_right)
 {
-    (void)state;
     struct rig *r = fly();
     /* Zero: 5 nm due north of the aircraft at the moment of the press, 46 N 11 E minus 0.05 degree
      * plus what it has flown at 150 m/s. */
@@ -725,9 +693,8 @@ static void the_cursors_numbers_are_right(void **state)
     free_rig(r);
 }
 
-static void the_cursor_stays_over_its_place_through_turns_of_the_page(void **state)
+TEST(the_cursor_stays_over_its_place_through_turns_of_the_page)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, lm_control_slew(300, 0));
     run(r, 0.2);
@@ -743,9 +710,8 @@ static void the_cursor_stays_over_its_place_through_turns_of_the_page(void **sta
     free_rig(r);
 }
 
-static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **state)
+TEST(designate_looks_closely_at_the_cursor_and_drop_comes_back)
 {
-    (void)state;
     struct rig *r = fly();
     slew_right(r);
     command(r, lm_control_designate());
@@ -765,9 +731,8 @@ static void designate_looks_closely_at_the_cursor_and_drop_comes_back(void **sta
     free_rig(r);
 }
 
-static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(void **state)
+TEST(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds)
 {
-    (void)state;
     struct rig *r = fly();
     /* Too near: under the aircraft. */
     command(r, lm_control_slew(0, -1000));
@@ -783,9 +748,8 @@ static void a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds(
     free_rig(r);
 }
 
-static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere(void **state)
+TEST(a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere)
 {
-    (void)state;
     struct rig *r = fly();
     command(r, lm_control_designate());
     run(r, 0.1);
@@ -809,9 +773,8 @@ static void a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_els
     free_rig(r);
 }
 
-static void the_bit_page_says_what_the_counters_say(void **state)
+TEST(the_bit_page_says_what_the_counters_say)
 {
-    (void)state;
     struct rig *r = fly();
     r->bus.is_down = 1;
     run(r, 2.5);
@@ -882,7 +845,7 @@ static void the_bit_page_says_what_the_counters_say(void **state)
     free_rig(r);
 }
 
-static void the_bit_page_says_why_the_board_restarted(void **state)
+TEST(the_bit_page_says_why_the_board_restarted)
 {
     struct rig *r = start_rig();
     (void)state;
@@ -893,9 +856,8 @@ static void the_bit_page_says_why_the_board_restarted(void **state)
     free_rig(r);
 }
 
-static void a_broken_database_leaves_a_bit_page_that_says_so(void **state)
+TEST(a_broken_database_leaves_a_bit_page_that_says_so)
 {
-    (void)state;
     struct rig *r = make_rig();
     r->image.bytes[100] ^= 1;
     assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
@@ -906,9 +868,8 @@ static void a_broken_database_leaves_a_bit_page_that_says_so(void **state)
     free_rig(r);
 }
 
-static void buttons_and_deflections_that_do_not_exist_are_refused(void **state)
+TEST(buttons_and_deflections_that_do_not_exist_are_refused)
 {
-    (void)state;
     struct rig *r = fly();
     const struct lm_control bad[] = {
         {.kind = LM_CONTROL_DOWN, .button = 0},
@@ -935,9 +896,8 @@ static double cursor_nm(const struct rig *r)
     return r->unit.cursor.range_m / 1852.0;
 }
 
-static void a_cursor_that_nobody_moved_goes_with_the_scale(void **state)
+TEST(a_cursor_that_nobody_moved_goes_with_the_scale)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 0.5);
     assert_true(fabs(cursor_nm(r) - 20) < 0.3); /* 40 nm at switch-on */
@@ -959,9 +919,8 @@ static void a_cursor_that_nobody_moved_goes_with_the_scale(void **state)
     free_rig(r);
 }
 
-static void a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes(void **state)
+TEST(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes)
 {
-    (void)state;
     for (int is_designated = 0; is_designated < 2; is_designated++) {
         struct rig *r = fly();
         if (is_designated) {
@@ -988,9 +947,8 @@ static void a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes(v
     }
 }
 
-static void a_cursor_that_the_range_follows_is_left_where_it_is(void **state)
+TEST(a_cursor_that_the_range_follows_is_left_where_it_is)
 {
-    (void)state;
     struct rig *r = fly();
     press(r, 20);
     run(r, 0.3);
@@ -1045,9 +1003,8 @@ static bool is_marked(const struct rig *r, double latitude_deg, double longitude
     return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
 }
 
-static void the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale(void **state)
+TEST(the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale)
 {
-    (void)state;
     struct rig *r = fly();
     assert_false(says(r, "TTG"));
     r->bus.has_steerpoint = true;
@@ -1073,9 +1030,8 @@ static void the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_
     free_rig(r);
 }
 
-static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped(void **state)
+TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
 {
-    (void)state;
     struct rig *r = fly();
     struct lm_control steer = {.kind = LM_CONTROL_STEERPOINT,
                                .steerpoint = {true, {hs_bam(46.03), hs_bam(10.99)}}};
@@ -1106,9 +1062,8 @@ static void a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropp
     free_rig(r);
 }
 
-static void a_selection_out_of_range_is_refused_and_changes_nothing(void **state)
+TEST(a_selection_out_of_range_is_refused_and_changes_nothing)
 {
-    (void)state;
     struct lm_page page;
     lm_page_init(&page, &lm_radar_default);
     const struct lm_page before = page;
@@ -1133,53 +1088,4 @@ static void a_selection_out_of_range_is_refused_and_changes_nothing(void **state
     assert_int_equal(lm_page_select_range(&page, 40), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
     assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1),
                      LM_EFFECT_SECTOR | LM_EFFECT_TONE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_selection_out_of_range_is_refused_and_changes_nothing),
-        cmocka_unit_test(the_page_after_power_up_has_the_labels_of_the_key_map),
-        cmocka_unit_test(osb_1_goes_round_the_modes_and_leaves_the_patch),
-        cmocka_unit_test(osb_2_lets_the_range_follow_the_cursor),
-        cmocka_unit_test(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture),
-        cmocka_unit_test(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt),
-        cmocka_unit_test(osb_4_stops_the_transmitter_and_the_picture_says_so),
-        cmocka_unit_test(osb_5_opens_the_control_page_over_the_picture_and_closes_it),
-        cmocka_unit_test(osb_6_flies_by_the_barometric_height),
-        cmocka_unit_test(osb_17_means_nothing_on_the_radar_page),
-        cmocka_unit_test(the_control_pages_keys_change_the_tone_of_the_picture),
-        cmocka_unit_test(osb_1_to_4_of_the_control_page_point_and_shape_the_beam),
-        cmocka_unit_test(osb_16_of_the_control_page_shows_patches_in_slant_range),
-        cmocka_unit_test(osb_8_and_9_of_the_control_page_choose_tint_and_night),
-        cmocka_unit_test(osb_7_freezes_the_map_and_the_ownship_moves_over_it),
-        cmocka_unit_test(a_new_scale_ends_the_freeze),
-        cmocka_unit_test(osb_8_and_10_choose_snowplow_or_a_held_cursor),
-        cmocka_unit_test(osb_9_brings_the_cursor_home),
-        cmocka_unit_test(osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one),
-        cmocka_unit_test(osb_11_held_opens_the_choice_of_labels),
-        cmocka_unit_test(osb_12_to_14_are_the_direct_access_to_the_formats),
-        cmocka_unit_test(osb_15_asks_the_board_to_swap),
-        cmocka_unit_test(osb_16_chooses_the_cell_and_draws_the_patch_again),
-        cmocka_unit_test(osb_18_goes_through_the_azimuths),
-        cmocka_unit_test(osb_19_and_20_step_the_range_and_end_automatic_range),
-        cmocka_unit_test(rockers_and_the_range_knob_change_gain_and_glass),
-        cmocka_unit_test(the_cursors_lines_cross_the_whole_frame_at_its_place),
-        cmocka_unit_test(the_cursors_numbers_are_right),
-        cmocka_unit_test(the_cursor_stays_over_its_place_through_turns_of_the_page),
-        cmocka_unit_test(designate_looks_closely_at_the_cursor_and_drop_comes_back),
-        cmocka_unit_test(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds),
-        cmocka_unit_test(
-            a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere),
-        cmocka_unit_test(the_bit_page_says_what_the_counters_say),
-        cmocka_unit_test(the_bit_page_says_why_the_board_restarted),
-        cmocka_unit_test(a_broken_database_leaves_a_bit_page_that_says_so),
-        cmocka_unit_test(buttons_and_deflections_that_do_not_exist_are_refused),
-        cmocka_unit_test(a_cursor_that_nobody_moved_goes_with_the_scale),
-        cmocka_unit_test(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes),
-        cmocka_unit_test(a_cursor_that_the_range_follows_is_left_where_it_is),
-        cmocka_unit_test(the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale),
-        cmocka_unit_test(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped),
-    };
-    return cmocka_run_group_tests_name("page", tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 #include "sector_world.h"
+#include "check.h"
 
 #include "hs/angle.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POOL_TILES = 400 };
 

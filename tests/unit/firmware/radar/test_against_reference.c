@@ -4,19 +4,14 @@
 #include "hs/angle.h"
 #include "lm/sar.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "reference_support.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 256, POOL_TILES = 400 };
 
@@ -249,9 +244,8 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     ref_picture_free(&picture);
 }
 
-static void patches_agree_with_the_reference(void **state)
+TEST(patches_agree_with_the_reference)
 {
-    (void)state;
     struct patch_scores scores = {0};
     const struct score *whole = &scores.whole, *runups = &scores.runups;
     struct world *w = make_world(9, 1, 46, 11);
@@ -278,9 +272,8 @@ static void patches_agree_with_the_reference(void **state)
 }
 
 /* The same through rain, whose edge runs through each picture. */
-static void patches_in_rain_agree_with_the_reference(void **state)
+TEST(patches_in_rain_agree_with_the_reference)
 {
-    (void)state;
     struct patch_scores scores = {0};
     struct world *w = make_world(9, 1, 46, 11);
     w->is_rainy = true;
@@ -294,13 +287,4 @@ static void patches_in_rain_agree_with_the_reference(void **state)
     judge_stages(&scores.stage);
     assert_true(scores.whole.beyond_half_db * 200 <= scores.whole.pixels);
     assert_true(scores.whole.beyond_1_grey * 200 <= scores.whole.pixels);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(patches_agree_with_the_reference),
-        cmocka_unit_test(patches_in_rain_agree_with_the_reference),
-    };
-    return cmocka_run_group_tests_name("against_reference", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Defocus and layover of a patch against the reference in double precision: docs/EQUATIONS.md,
  * "Unsteady flight" and "Layover". */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/defocus.h"
 #include "lm/layover.h"
@@ -7,18 +8,11 @@
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { LINES = 2 * LM_DEFOCUS_REACH + 1, CELLS = 64 };
 
-static void the_smear_is_as_wide_as_the_quadratic_phase_makes_it(void **state)
+TEST(the_smear_is_as_wide_as_the_quadratic_phase_makes_it)
 {
-    (void)state;
     double worst = 0;
     for (uint32_t lateral = 0; lateral < 60000; lateral = lateral * 3 / 2 + 1) {
         for (uint32_t dwell_us = 20000; dwell_us < 70000000; dwell_us = dwell_us * 5 / 3) {
@@ -33,9 +27,8 @@ static void the_smear_is_as_wide_as_the_quadratic_phase_makes_it(void **state)
     assert_int_equal(lm_defocus_q8(50000, 0, 31228, 60000000), 256);
 }
 
-static void shares_are_those_of_a_box_and_make_one(void **state)
+TEST(shares_are_those_of_a_box_and_make_one)
 {
-    (void)state;
     for (uint32_t width_q8 = 256; width_q8 <= 256 * LINES; width_q8 += 7) {
         uint32_t share_q16[LINES], sum = 0;
         lm_defocus_shares(width_q8, share_q16);
@@ -48,9 +41,8 @@ static void shares_are_those_of_a_box_and_make_one(void **state)
     }
 }
 
-static void lines_are_meant_in_power_down_to_what_is_black(void **state)
+TEST(lines_are_meant_in_power_down_to_what_is_black)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 21);
     static int32_t levels[LINES][CELLS], level[CELLS];
@@ -81,9 +73,8 @@ static void lines_are_meant_in_power_down_to_what_is_black(void **state)
 }
 
 /* Flat ground with posts of many heights, and hills. */
-static void tops_appear_where_the_reference_puts_them(void **state)
+TEST(tops_appear_where_the_reference_puts_them)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 22);
     static struct lm_scan_line ground;
@@ -115,15 +106,4 @@ static void tops_appear_where_the_reference_puts_them(void **state)
             assert_true(shown < 1.05 * laid[i] + beside && shown > 0.95 * laid[i] - beside);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_smear_is_as_wide_as_the_quadratic_phase_makes_it),
-        cmocka_unit_test(shares_are_those_of_a_box_and_make_one),
-        cmocka_unit_test(lines_are_meant_in_power_down_to_what_is_black),
-        cmocka_unit_test(tops_appear_where_the_reference_puts_them),
-    };
-    return cmocka_run_group_tests_name("aperture", tests, NULL, NULL);
 }

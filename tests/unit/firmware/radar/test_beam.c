@@ -2,6 +2,7 @@
  * double precision and the notch by hand: docs/EQUATIONS.md, "Real beam" and "Doppler beam
  * sharpening".
  */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/antenna.h"
 #include "lm/beam.h"
@@ -9,13 +10,7 @@
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 40 };
 
@@ -34,9 +29,8 @@ static struct ref_beam ref_of(uint32_t ratio_q8)
                              radar->sample * degrees_per_bam, ratio_q8 / 256.0};
 }
 
-static void weights_are_those_of_the_pattern(void **state)
+TEST(weights_are_those_of_the_pattern)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 31);
     double worst = 0;
@@ -68,9 +62,8 @@ static void weights_are_those_of_the_pattern(void **state)
     assert_true(worst < 5e-4);
 }
 
-static void a_line_is_the_weighted_sum_of_its_samples(void **state)
+TEST(a_line_is_the_weighted_sum_of_its_samples)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 32);
     static double power[LM_BEAM_TAPS][CELLS], wanted[CELLS];
@@ -108,9 +101,8 @@ static double response(uint32_t ratio_q8, int32_t azimuth)
     return look.first <= 0 && look.first + LM_BEAM_TAPS > 0 ? look.weight_q16[-look.first] : 0;
 }
 
-static void a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio(void **state)
+TEST(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio)
 {
-    (void)state;
     for (uint32_t ratio_q8 = 256; ratio_q8 <= 64 * 256; ratio_q8 += 61) {
         response(ratio_q8, 0);
         const int32_t middle = lm_beam_azimuth(&beam, radar, 0);
@@ -132,9 +124,8 @@ static void a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio(void **st
 }
 
 /* Sweeps to the right and to the left, from one look to the next by steps of any length. */
-static void a_look_takes_what_it_lacks_and_no_more(void **state)
+TEST(a_look_takes_what_it_lacks_and_no_more)
 {
-    (void)state;
     struct hs_rng rng;
     struct lm_beam_look look = {.first = -1000};
     hs_rng_seed(&rng, 33);
@@ -161,9 +152,8 @@ static void a_look_takes_what_it_lacks_and_no_more(void **state)
     }
 }
 
-static void a_sample_of_another_fineness_is_dropped(void **state)
+TEST(a_sample_of_another_fineness_is_dropped)
 {
-    (void)state;
     struct lm_beam_look look;
     lm_beam_clear(&beam);
     lm_beam_aim(&beam, radar, 0, 256, &look);
@@ -183,9 +173,8 @@ static struct ref_dbs dbs_of(uint32_t rate_deg_s, uint32_t speed_mm_s)
                             radar->wavelength_um * 1e-6, rate_deg_s};
 }
 
-static void the_ratio_to_be_had_is_that_of_the_formula(void **state)
+TEST(the_ratio_to_be_had_is_that_of_the_formula)
 {
-    (void)state;
     for (uint32_t rate_deg_s = 3; rate_deg_s <= 120; rate_deg_s += 13) {
         for (uint32_t speed_mm_s = 50000; speed_mm_s < 800000; speed_mm_s += 71000) {
             const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
@@ -200,9 +189,8 @@ static void the_ratio_to_be_had_is_that_of_the_formula(void **state)
 }
 
 /* Where the fields' sharpening runs out: within half a degree of the formula, at three speeds. */
-static void the_notch_opens_where_the_formula_says(void **state)
+TEST(the_notch_opens_where_the_formula_says)
 {
-    (void)state;
     static const uint32_t speeds_mm_s[] = {150000, 250000, 400000};
     static const struct {
         enum lm_field field;
@@ -241,9 +229,8 @@ static void the_notch_opens_where_the_formula_says(void **state)
     }
 }
 
-static void each_look_is_weighed_at_its_own_tangent(void **state)
+TEST(each_look_is_weighed_at_its_own_tangent)
 {
-    (void)state;
     static struct lm_range_grid grid;
     static struct lm_sight sight;
     struct lm_elevation elevation;
@@ -279,29 +266,12 @@ static void each_look_is_weighed_at_its_own_tangent(void **state)
     assert_true(worst_db < 0.1);
 }
 
-static void auto_tilt_is_that_of_the_reference(void **state)
+TEST(auto_tilt_is_that_of_the_reference)
 {
-    (void)state;
     for (int32_t height_m = -200; height_m < 15000; height_m += 379) {
         for (uint32_t range_m = 2000; range_m < 200000; range_m = range_m * 4 / 3) {
             const double tilt_deg = lm_auto_tilt(height_m, range_m) * degrees_per_bam;
             assert_true(fabs(tilt_deg - ref_auto_tilt_deg(height_m, range_m)) < 0.03);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(weights_are_those_of_the_pattern),
-        cmocka_unit_test(a_line_is_the_weighted_sum_of_its_samples),
-        cmocka_unit_test(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio),
-        cmocka_unit_test(a_look_takes_what_it_lacks_and_no_more),
-        cmocka_unit_test(a_sample_of_another_fineness_is_dropped),
-        cmocka_unit_test(the_ratio_to_be_had_is_that_of_the_formula),
-        cmocka_unit_test(the_notch_opens_where_the_formula_says),
-        cmocka_unit_test(each_look_is_weighed_at_its_own_tangent),
-        cmocka_unit_test(auto_tilt_is_that_of_the_reference),
-    };
-    return cmocka_run_group_tests_name("beam", tests, NULL, NULL);
 }

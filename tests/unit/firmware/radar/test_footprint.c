@@ -3,27 +3,20 @@
  * run along the line of sight. */
 #include "lm/footprint.h"
 
+#include "check.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "reference_support.h"
 #include "sector_world.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 /* ---- the mean ---- */
 
-static void
-the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_middle(void **state)
+TEST(the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_middle)
 {
-    (void)state;
     const fx_bam_t spacing = FX_BAM_DEG(120) / 128;
     for (uint32_t log2 = 0; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
         const uint32_t azimuths = 1u << log2;
@@ -40,9 +33,8 @@ the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_middle(v
     }
 }
 
-static void the_mean_is_that_of_the_powers(void **state)
+TEST(the_mean_is_that_of_the_powers)
 {
-    (void)state;
     static struct lm_footprint f;
     static int32_t level_q8[8][LM_CELLS_ROOM], mean_q8[LM_CELLS_ROOM];
     struct hs_rng rng;
@@ -191,9 +183,8 @@ static double rms_of_sweep(struct sector_world *w, const struct lm_sector_comman
     return sqrt(squares / values);
 }
 
-static void the_table_brings_samples_near_to_what_the_beam_sees(void **state)
+TEST(the_table_brings_samples_near_to_what_the_beam_sees)
 {
-    (void)state;
     /* Lakes, woods and blocks of houses 190 m apart over hills. */
     double scale = 2.1;
     struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -272,9 +263,8 @@ static double worth_of_strip(double off_m, uint8_t azimuths_log2)
  * over it, so that the power added up over the lines is gamma w / s, wherever it lies. Parts of a
  * quarter of a sample, 61 m, count it within one of them, and so does the map's cell of 27 m; a
  * whole sample, 245 m, meets it or does not. */
-static void a_strip_along_the_line_of_sight_counts_by_its_width_wherever_it_lies(void **state)
+TEST(a_strip_along_the_line_of_sight_counts_by_its_width_wherever_it_lies)
 {
-    (void)state;
     enum { PLACES = 8 };
     double least[2] = {INFINITY, INFINITY}, most[2] = {0, 0};
     const uint8_t log2[2] = {0, lm_radar_default.field[LM_FIELD_EXP].azimuths_log2};
@@ -290,16 +280,4 @@ static void a_strip_along_the_line_of_sight_counts_by_its_width_wherever_it_lies
     }
     assert_true(least[0] < 0.1);
     assert_true(least[1] > 0.7 && most[1] < 1.3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(
-            the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_middle),
-        cmocka_unit_test(the_mean_is_that_of_the_powers),
-        cmocka_unit_test(the_table_brings_samples_near_to_what_the_beam_sees),
-        cmocka_unit_test(a_strip_along_the_line_of_sight_counts_by_its_width_wherever_it_lies),
-    };
-    return cmocka_run_group_tests_name("footprint", tests, NULL, NULL);
 }

@@ -5,19 +5,14 @@
 #include "lm/patch_rain.h"
 #include "lm/sar.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "reference_support.h"
 #include "target_support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { LINES = 256, CELLS = LINES + LM_SAR_GUARD };
 
@@ -106,9 +101,8 @@ static void look_at_line(struct world *w, uint32_t line, double *loss_db)
 }
 
 /* 2 k R^alpha for each kilometre of the slanting way, by hand: 6 km of rain on the ground. */
-static void rain_before_a_patch_weakens_all_of_it_by_the_recommendations_rate(void **state)
+TEST(rain_before_a_patch_weakens_all_of_it_by_the_recommendations_rate)
 {
-    (void)state;
     static const int rates[] = {1, 5, 20, 60, 150};
     double loss_db[LM_CELLS_ROOM];
     for (int n = 0; n < 5; n++) {
@@ -129,9 +123,8 @@ static void rain_before_a_patch_weakens_all_of_it_by_the_recommendations_rate(vo
 
 /* Rays part at the antenna: the edge of a circle half-way falls twice as far from the middle of the
  * patch as it is from the line of sight. */
-static void the_shadow_of_rain_half_way_is_twice_as_wide(void **state)
+TEST(the_shadow_of_rain_half_way_is_twice_as_wide)
 {
-    (void)state;
     double loss_db[LM_CELLS_ROOM];
     struct world *w = make_world(30000, 5000, 5);
     const double edge_m = 200; /* right of the line of sight, at 15 km */
@@ -165,9 +158,8 @@ static void look_into_the_dark(struct world *w, uint32_t line, double *level_db)
 }
 
 /* Rain that fills the beam: what its drops scatter, from the half of the beam above the ground. */
-static void the_veil_is_what_the_drops_in_the_upper_half_of_the_beam_scatter(void **state)
+TEST(the_veil_is_what_the_drops_in_the_upper_half_of_the_beam_scatter)
 {
-    (void)state;
     const double pi = acos(-1.0);
     double level_db[LM_CELLS_ROOM];
     for (double mm_per_h = 2; mm_per_h < 70; mm_per_h *= 2) {
@@ -223,9 +215,8 @@ static void compare_line(struct world *w, uint32_t line_number, struct apart *ap
     }
 }
 
-static void any_circles_do_to_a_patch_what_the_reference_says(void **state)
+TEST(any_circles_do_to_a_patch_what_the_reference_says)
 {
-    (void)state;
     struct hs_rng rng;
     struct apart apart = {0};
     hs_rng_seed(&rng, 5);
@@ -257,9 +248,8 @@ static void any_circles_do_to_a_patch_what_the_reference_says(void **state)
 }
 
 /* A beam is 1.7 km wide at 30 km: what returns is not seen more sharply across than by that. */
-static void the_veil_ends_as_softly_as_the_beam_is_wide(void **state)
+TEST(the_veil_ends_as_softly_as_the_beam_is_wide)
 {
-    (void)state;
     double level_db[LM_CELLS_ROOM], loss_db[LM_CELLS_ROOM], share[LINES];
     struct world *w = make_world(30000, 5000, 15);
     add_rain(w, hypot(30000, 40000), atan2(40000, 30000) * 180 / acos(-1.0), 40000, 1);
@@ -286,9 +276,8 @@ static void the_veil_ends_as_softly_as_the_beam_is_wide(void **state)
     free(w);
 }
 
-static void rain_behind_beside_and_far_from_a_patch_is_not_there(void **state)
+TEST(rain_behind_beside_and_far_from_a_patch_is_not_there)
 {
-    (void)state;
     struct world *w = make_world(30000, 5000, 5);
     memset(&w->rain, 0xa5, sizeof w->rain);
     look(w);
@@ -309,9 +298,8 @@ static void rain_behind_beside_and_far_from_a_patch_is_not_there(void **state)
 }
 
 /* Whatever the limits of circles and patches allow. The sanitizers watch in test_fuzz_unit. */
-static void no_rain_within_its_limits_makes_levels_of_no_meaning(void **state)
+TEST(no_rain_within_its_limits_makes_levels_of_no_meaning)
 {
-    (void)state;
     static const double ranges_m[] = {3000, 250000}, heights_m[] = {-30000, 0, 30000};
     double loss_db[LM_CELLS_ROOM], dark_db[LM_CELLS_ROOM];
     for (int n = 0; n < 6; n++) {
@@ -382,9 +370,8 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
     *mean_db = 10 * log10(sum / (100 * LINES));
 }
 
-static void bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea(void **state)
+TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     struct tiny_spec spec = tiny_spec_at(46, 11);
@@ -418,19 +405,4 @@ static void bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea(void **s
     assert_true(rainy_sea_db > fair_sea_db + 5);
     assert_true(fabs(rainy_sea_db - veil_db) < 1);
     tiny_image_free(&image);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rain_before_a_patch_weakens_all_of_it_by_the_recommendations_rate),
-        cmocka_unit_test(the_shadow_of_rain_half_way_is_twice_as_wide),
-        cmocka_unit_test(the_veil_is_what_the_drops_in_the_upper_half_of_the_beam_scatter),
-        cmocka_unit_test(any_circles_do_to_a_patch_what_the_reference_says),
-        cmocka_unit_test(the_veil_ends_as_softly_as_the_beam_is_wide),
-        cmocka_unit_test(rain_behind_beside_and_far_from_a_patch_is_not_there),
-        cmocka_unit_test(no_rain_within_its_limits_makes_levels_of_no_meaning),
-        cmocka_unit_test(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea),
-    };
-    return cmocka_run_group_tests_name("patch_rain", tests, NULL, NULL);
 }

@@ -1,18 +1,13 @@
 /* Slant range and the receiver of a real-beam line, against the double-precision reference and
  * theory: docs/EQUATIONS.md, "Real beam". */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/receiver.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 256 };
 
@@ -67,9 +62,8 @@ static struct world *make_world(void)
     return w;
 }
 
-static void a_bin_nearer_than_the_height_has_no_ground_and_the_next_one_has(void **state)
+TEST(a_bin_nearer_than_the_height_has_no_ground_and_the_next_one_has)
 {
-    (void)state;
     struct world *w = make_world();
     for (double height_m = 50; height_m < 15000; height_m *= 1.37) {
         set_scale(w, 0, height_m, 400);
@@ -89,9 +83,8 @@ static void a_bin_nearer_than_the_height_has_no_ground_and_the_next_one_has(void
     free(w);
 }
 
-static void a_bin_takes_the_cell_that_its_slant_range_lies_over(void **state)
+TEST(a_bin_takes_the_cell_that_its_slant_range_lies_over)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 12);
@@ -119,9 +112,8 @@ static void a_bin_takes_the_cell_that_its_slant_range_lies_over(void **state)
     free(w);
 }
 
-static void slant_and_ground_range_are_each_others_inverse(void **state)
+TEST(slant_and_ground_range_are_each_others_inverse)
 {
-    (void)state;
     for (double height_m = -400; height_m < 20000; height_m += 777) {
         for (double ground_m = 300; ground_m < 300000; ground_m *= 1.1) {
             const int32_t height_q10 = (int32_t)lround(height_m * 1024);
@@ -136,9 +128,8 @@ static void slant_and_ground_range_are_each_others_inverse(void **state)
     }
 }
 
-static void the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazing(void **state)
+TEST(the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazing)
 {
-    (void)state;
     struct world *w = make_world();
     double worst_db = 0;
     for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
@@ -161,9 +152,8 @@ static void the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazin
 }
 
 /* Noise alone, of many lines: each bin's power in units of its own mean. */
-static void the_noise_has_its_mean_and_its_number_of_looks(void **state)
+TEST(the_noise_has_its_mean_and_its_number_of_looks)
 {
-    (void)state;
     struct world *w = make_world();
     enum { LINES = 256 };
     for (uint8_t looks_log2 = 0; looks_log2 <= LM_NOISE_LOOKS_LOG2_MAX; looks_log2++) {
@@ -198,9 +188,8 @@ static void the_noise_has_its_mean_and_its_number_of_looks(void **state)
     free(w);
 }
 
-static void another_sweep_has_other_noise_and_the_same_one_the_same(void **state)
+TEST(another_sweep_has_other_noise_and_the_same_one_the_same)
 {
-    (void)state;
     struct world *w = make_world();
     int32_t first[CELLS];
     set_scale(w, 1, 5000, 400);
@@ -228,9 +217,8 @@ static void set_pulse_only(struct world *w, double cell_m, uint32_t pulse_ns)
     set_world(w, 3, 0, cell_m, CELLS, 3000, pulse_ns);
 }
 
-static void a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long(void **state)
+TEST(a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long)
 {
-    (void)state;
     struct world *w = make_world();
     static const uint32_t pulses_ns[] = {100, 400, 1000, 3200, 6400};
     for (int n = 0; n < 5; n++) {
@@ -252,9 +240,8 @@ static void a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long(void **state)
     free(w);
 }
 
-static void a_pulse_means_its_bins_as_the_equations_say(void **state)
+TEST(a_pulse_means_its_bins_as_the_equations_say)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 5);
@@ -275,9 +262,8 @@ static void a_pulse_means_its_bins_as_the_equations_say(void **state)
     free(w);
 }
 
-static void a_pulse_not_longer_than_a_bin_changes_nothing(void **state)
+TEST(a_pulse_not_longer_than_a_bin_changes_nothing)
 {
-    (void)state;
     struct world *w = make_world();
     set_pulse_only(w, 60, 400); /* 59.96 m */
     for (uint32_t i = 0; i < CELLS; i++) {
@@ -290,9 +276,8 @@ static void a_pulse_not_longer_than_a_bin_changes_nothing(void **state)
     free(w);
 }
 
-static void behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade(void **state)
+TEST(behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade)
 {
-    (void)state;
     struct world *w = make_world();
     for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
         set_scale(w, range, 4000, 400);
@@ -311,9 +296,8 @@ static void behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade(void *
     free(w);
 }
 
-static void levels_are_those_of_the_reference(void **state)
+TEST(levels_are_those_of_the_reference)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
@@ -357,9 +341,8 @@ static void levels_are_those_of_the_reference(void **state)
     free(w);
 }
 
-static void whatever_the_table_says_levels_stay_in_their_bounds(void **state)
+TEST(whatever_the_table_says_levels_stay_in_their_bounds)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 6);
@@ -390,23 +373,4 @@ static void whatever_the_table_says_levels_stay_in_their_bounds(void **state)
         }
     }
     free(w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bin_nearer_than_the_height_has_no_ground_and_the_next_one_has),
-        cmocka_unit_test(a_bin_takes_the_cell_that_its_slant_range_lies_over),
-        cmocka_unit_test(slant_and_ground_range_are_each_others_inverse),
-        cmocka_unit_test(the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazing),
-        cmocka_unit_test(the_noise_has_its_mean_and_its_number_of_looks),
-        cmocka_unit_test(another_sweep_has_other_noise_and_the_same_one_the_same),
-        cmocka_unit_test(a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long),
-        cmocka_unit_test(a_pulse_means_its_bins_as_the_equations_say),
-        cmocka_unit_test(a_pulse_not_longer_than_a_bin_changes_nothing),
-        cmocka_unit_test(behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade),
-        cmocka_unit_test(levels_are_those_of_the_reference),
-        cmocka_unit_test(whatever_the_table_says_levels_stay_in_their_bounds),
-    };
-    return cmocka_run_group_tests_name("receiver", tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* How long a patch takes and which cannot be made, in flight: EQUATIONS.md, "Synthetic aperture".
  */
+#include "check.h"
 #include "unit_rig.h"
 
 #include "hs/angle.h"
 
 #include <geodesic.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 256 };
 
@@ -66,9 +61,8 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
 }
 
 /* T = l R / (2 V d sin o) by hand: 20 nautical miles, 45 degrees, 250 m/s. */
-static void the_dwell_is_that_of_the_formula_within_2_percent(void **state)
+TEST(the_dwell_is_that_of_the_formula_within_2_percent)
 {
-    (void)state;
     static const struct {
         double cell_m, printed_s;
     } figures[] = {{0.6, 5.5}, {1, 3.3}, {3, 1.1}, {5, 0.7}};
@@ -85,9 +79,8 @@ static void the_dwell_is_that_of_the_formula_within_2_percent(void **state)
     }
 }
 
-static void the_dwell_follows_squint_speed_and_range(void **state)
+TEST(the_dwell_follows_squint_speed_and_range)
 {
-    (void)state;
     static const struct {
         double squint_deg, speed_m_s, range_m, cell_m;
     } cases[] = {
@@ -119,9 +112,8 @@ static bool is_refused(double speed_m_s, double nose_deg, double bearing_deg, do
 }
 
 /* 15 degrees off the velocity, either way and ahead or astern. */
-static void squints_below_the_tables_are_refused(void **state)
+TEST(squints_below_the_tables_are_refused)
 {
-    (void)state;
     assert_true(is_refused(250, 0, 0, 20000, 5));
     for (int side = -1; side <= 1; side += 2) {
         assert_true(is_refused(250, 0, 14.9 * side, 20000, 5));
@@ -132,9 +124,8 @@ static void squints_below_the_tables_are_refused(void **state)
 }
 
 /* 60 degrees off the nose, wherever the aircraft drifts. */
-static void directions_beyond_the_antennas_limit_are_refused(void **state)
+TEST(directions_beyond_the_antennas_limit_are_refused)
 {
-    (void)state;
     for (int nose_deg = -10; nose_deg <= 10; nose_deg += 10) {
         for (int side = -1; side <= 1; side += 2) {
             assert_true(is_refused(250, nose_deg, nose_deg + 60.1 * side, 20000, 5));
@@ -144,9 +135,8 @@ static void directions_beyond_the_antennas_limit_are_refused(void **state)
 }
 
 /* One minute: at 30 degrees and 100 km with cells of 0.5 m, 104.3 m/s make it. */
-static void a_dwell_beyond_the_tables_is_refused_and_so_is_an_aircraft_at_rest(void **state)
+TEST(a_dwell_beyond_the_tables_is_refused_and_so_is_an_aircraft_at_rest)
 {
-    (void)state;
     const double needed_m_s = wavelength_m * hypot(100000, 1900) / (2 * 0.5 * 0.5 * 60);
     assert_true(is_refused(needed_m_s * 0.98, 0, 30, 100000, 0.5));
     assert_false(is_refused(needed_m_s * 1.02, 0, 30, 100000, 0.5));
@@ -154,9 +144,8 @@ static void a_dwell_beyond_the_tables_is_refused_and_so_is_an_aircraft_at_rest(v
 }
 
 /* Seen from a commanded place no limit holds; the pace is that of 250 m/s abeam. */
-static void a_commanded_geometry_has_no_limits_and_the_reference_pace(void **state)
+TEST(a_commanded_geometry_has_no_limits_and_the_reference_pace)
 {
-    (void)state;
     struct rig *r = fly_at(0, 0);
     struct lm_control control = patch_at(r, 0, 20000, 1);
     control.sar.is_from_ownship = false;
@@ -167,9 +156,8 @@ static void a_commanded_geometry_has_no_limits_and_the_reference_pace(void **sta
     free_rig(r);
 }
 
-static void the_time_to_go_falls_to_nothing_as_the_lines_are_drawn(void **state)
+TEST(the_time_to_go_falls_to_nothing_as_the_lines_are_drawn)
 {
-    (void)state;
     struct rig *r = fly_at(250, 0);
     command(r, patch_at(r, 45, 37040, 1));
     run(r, 0.6); /* the tiles are there */
@@ -182,18 +170,4 @@ static void the_time_to_go_falls_to_nothing_as_the_lines_are_drawn(void **state)
     }
     assert_true(lm_sar_time_to_go_us(&r->unit.picture.sar) == 0);
     free_rig(r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_dwell_is_that_of_the_formula_within_2_percent),
-        cmocka_unit_test(the_dwell_follows_squint_speed_and_range),
-        cmocka_unit_test(squints_below_the_tables_are_refused),
-        cmocka_unit_test(directions_beyond_the_antennas_limit_are_refused),
-        cmocka_unit_test(a_dwell_beyond_the_tables_is_refused_and_so_is_an_aircraft_at_rest),
-        cmocka_unit_test(a_commanded_geometry_has_no_limits_and_the_reference_pace),
-        cmocka_unit_test(the_time_to_go_falls_to_nothing_as_the_lines_are_drawn),
-    };
-    return cmocka_run_group_tests_name("sar_dwell", tests, NULL, NULL);
 }

@@ -2,19 +2,14 @@
  * theory in double precision. */
 #include "unit_rig.h"
 
+#include "check.h"
 #include "fx/log.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "target_support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -43,9 +38,8 @@ static void flat_ground(double elevation_m)
     }
 }
 
-static void a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power(void **state)
+TEST(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power)
 {
-    (void)state;
     const struct lm_classes *classes = tiny_classes();
     for (uint32_t code = 0; code < 16; code++) {
         int32_t level_q8[LM_CELLS_ROOM];
@@ -68,9 +62,8 @@ static void a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power(void **state
     }
 }
 
-static void layover_of_any_line_is_the_sum_of_shared_powers(void **state)
+TEST(layover_of_any_line_is_the_sum_of_shared_powers)
 {
-    (void)state;
     struct hs_rng rng;
     double worst = 0; /* against all power that the cell may have a share of */
     hs_rng_seed(&rng, 2);
@@ -164,9 +157,8 @@ static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
     return sar.noise_epoch;
 }
 
-static void a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again(void **state)
+TEST(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     open_image(&image, &flash);
@@ -201,9 +193,8 @@ static double middle_of_the_bright(void)
     return moment / power;
 }
 
-static void a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on(void **state)
+TEST(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     const struct lm_sar_scene scene = {.epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
@@ -221,9 +212,8 @@ static void a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on(void *
 
 /* ---- unsteady flight ---- */
 
-static void the_blur_is_as_wide_as_the_quadratic_phase_makes_it(void **state)
+TEST(the_blur_is_as_wide_as_the_quadratic_phase_makes_it)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 7);
     for (int i = 0; i < 20000; i++) {
@@ -241,9 +231,8 @@ static void the_blur_is_as_wide_as_the_quadratic_phase_makes_it(void **state)
     assert_int_equal(lm_defocus_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), LINES * 256);
 }
 
-static void the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one(void **state)
+TEST(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one)
 {
-    (void)state;
     for (uint32_t width_q8 = 256; width_q8 <= LINES * 256; width_q8++) {
         uint32_t share_q16[LINES], sum = 0;
         lm_defocus_shares(width_q8, share_q16);
@@ -258,9 +247,8 @@ static void the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one(void
     }
 }
 
-static void smeared_lines_hold_the_mean_power(void **state)
+TEST(smeared_lines_hold_the_mean_power)
 {
-    (void)state;
     struct hs_rng rng;
     static int32_t lines[LINES][CELLS];
     int32_t level_q8[CELLS];
@@ -319,9 +307,8 @@ static double width_of_point(const struct lm_sar_flight *flight, bool is_steady,
     return wide;
 }
 
-static void a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power(void **state)
+TEST(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     open_image(&image, &flash);
@@ -349,9 +336,8 @@ static void a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power(void **state)
 
 /* ---- in flight ---- */
 
-static void a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not(void **state)
+TEST(a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not)
 {
-    (void)state;
     for (int is_turning = 0; is_turning < 2; is_turning++) {
         struct rig *r = start_rig();
         r->bus.turn_deg_s = is_turning ? 6 : 0;
@@ -389,9 +375,8 @@ static struct lm_place place_from(struct lm_place from, double azimuth_deg, doub
 /* EQUATIONS.md, "Noise": on the axis at ten nautical miles it is what it is said to be; it falls
  * with the square of the distance and by the one-way pattern off the axis, and adds to the noise.
  */
-static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(void **state)
+TEST(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing)
 {
-    (void)state;
     const struct {
         double ratio_db, distance_m, off_deg;
     } cases[] = {{20, 18520, 0}, {20, 37040, 0},  {20, 18520, 1.65},
@@ -430,9 +415,8 @@ static void a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing(voi
 }
 
 /* Seen through the unit: what was dark is as bright as the noise. */
-static void a_jammed_patch_has_no_dark_left(void **state)
+TEST(a_jammed_patch_has_no_dark_left)
 {
-    (void)state;
     uint32_t lit[2];
     for (int is_jammed = 0; is_jammed < 2; is_jammed++) {
         struct rig *r = start_rig();
@@ -449,22 +433,4 @@ static void a_jammed_patch_has_no_dark_left(void **state)
     }
     print_message("# lit pixels: %u, jammed %u of 65536\n", lit[0], lit[1]);
     assert_true(lit[1] > 65500 && lit[0] < 64000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_towers_top_is_nearer_by_y_tan_psi_and_keeps_its_power),
-        cmocka_unit_test(layover_of_any_line_is_the_sum_of_shared_powers),
-        cmocka_unit_test(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again),
-        cmocka_unit_test(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on),
-        cmocka_unit_test(the_blur_is_as_wide_as_the_quadratic_phase_makes_it),
-        cmocka_unit_test(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one),
-        cmocka_unit_test(smeared_lines_hold_the_mean_power),
-        cmocka_unit_test(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power),
-        cmocka_unit_test(a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not),
-        cmocka_unit_test(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing),
-        cmocka_unit_test(a_jammed_patch_has_no_dark_left),
-    };
-    return cmocka_run_group_tests_name("sar_effects", tests, NULL, NULL);
 }

@@ -3,19 +3,14 @@
 #include "hs/angle.h"
 #include "lm/sar.h"
 
+#include "check.h"
 #include "reference/reference.h"
 #include "sector_world.h"
 #include "target_support.h"
 #include "unit_rig.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static struct tiny_cell sea(void *ctx, const struct tiny_place *p)
 {
@@ -79,10 +74,8 @@ static void put_cursor(struct rig *r, double azimuth_deg, double ground_m)
 
 /* ---- from where it is seen ---- */
 
-static void
-the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place(void **state)
+TEST(the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place)
 {
-    (void)state;
     static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP};
     struct rig *r = start_over_sea(3000, 250);
     const struct lm_sector *s = &r->unit.picture.sector;
@@ -122,9 +115,8 @@ static double measured_rate(struct rig *r, double seconds)
     return swept_deg * 1e6 / (double)(r->now_us - begin_us);
 }
 
-static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost(void **state)
+TEST(the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost)
 {
-    (void)state;
     const double sector_deg[LM_AZIMUTHS] = {120, 60, 20}, seconds[LM_AZIMUTHS] = {60, 10, 10};
     struct rig *r = start_rig();
     for (int azimuth = 0; azimuth < LM_AZIMUTHS; azimuth++) {
@@ -141,9 +133,8 @@ static void the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lo
     free_rig(r);
 }
 
-static void windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen(void **state)
+TEST(windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen)
 {
-    (void)state;
     const struct {
         enum lm_field field;
         double rate, half_window, half_max_deg;
@@ -297,9 +288,8 @@ static void judge_window(const struct view_case *c)
     free_rig(r);
 }
 
-static void a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window(void **state)
+TEST(a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window)
 {
-    (void)state;
     const struct view_case cases[] = {{LM_FIELD_EXP, 0, 2000, on_a_sample_deg, 14000, 29},
                                       {LM_FIELD_DBS1, 150, 2000, 40, 14000, 20},
                                       {LM_FIELD_DBS2, 150, 2000, 40, 14000, 11}};
@@ -309,9 +299,8 @@ static void a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window(void **st
 }
 
 /* Five nautical miles of slant range at 6 km are 7,053 m over the ground. */
-static void a_point_close_below_is_drawn_in_the_middle_of_the_window_too(void **state)
+TEST(a_point_close_below_is_drawn_in_the_middle_of_the_window_too)
 {
-    (void)state;
     const double ground_m = sqrt(9260.0 * 9260 - 6000.0 * 6000);
     const struct view_case cases[] = {{LM_FIELD_EXP, 0, 6000, on_a_sample_deg, ground_m, 33},
                                       {LM_FIELD_DBS1, 150, 6000, 40, ground_m, 24},
@@ -380,9 +369,8 @@ static void judge_completeness(const struct rig *r)
     assert_int_equal(empty, 0);
 }
 
-static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void **state)
+TEST(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep)
 {
-    (void)state;
     const struct {
         enum lm_sector_mode mode;
         enum lm_field field;
@@ -416,9 +404,8 @@ static void a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep(void *
 }
 
 /* Once the tiles are there: the ground's elevation is taken when a patch is commanded. */
-static void a_patch_drawn_twice_is_the_same(void **state)
+TEST(a_patch_drawn_twice_is_the_same)
 {
-    (void)state;
     struct rig *r = start_rig();
     struct lm_control patch = patch_here;
     patch.sar.is_from_ownship = false;
@@ -442,9 +429,8 @@ static void a_patch_drawn_twice_is_the_same(void **state)
 }
 
 /* Through fields of view, there and back. */
-static void a_look_that_was_kept_is_what_the_beam_would_see_anew(void **state)
+TEST(a_look_that_was_kept_is_what_the_beam_would_see_anew)
 {
-    (void)state;
     static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_NORM, LM_FIELD_DBS1,
                                      LM_FIELD_NORM};
     struct rig *r = start_rig();
@@ -468,20 +454,4 @@ static void a_look_that_was_kept_is_what_the_beam_would_see_anew(void **state)
     }
     assert_true(kept > 1500);
     free_rig(r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost),
-        cmocka_unit_test(windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen),
-        cmocka_unit_test(a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window),
-        cmocka_unit_test(a_point_close_below_is_drawn_in_the_middle_of_the_window_too),
-        cmocka_unit_test(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep),
-        cmocka_unit_test(a_patch_drawn_twice_is_the_same),
-        cmocka_unit_test(
-            the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place),
-        cmocka_unit_test(a_look_that_was_kept_is_what_the_beam_would_see_anew),
-    };
-    return cmocka_run_group_tests_name("sector", tests, NULL, NULL);
 }

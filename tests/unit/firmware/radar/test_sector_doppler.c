@@ -1,5 +1,6 @@
 /* What a sweep shows of points, movers, noise and sea: how sharp it is where, and what GMT and SEA
  * make of it. Measured on the lines behind the receiver, before the tone. */
+#include "check.h"
 #include "reference/reference.h"
 #include "sector_world.h"
 #include "target_support.h"
@@ -7,12 +8,6 @@
 #include "hs/angle.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { POINTS_MAX = LM_TARGETS_NEAR, LINES_MAX = LM_SECTOR_LINES_MAX };
 
@@ -140,9 +135,8 @@ static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, 
     free_sector_world(w);
 }
 
-static void a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch(void **state)
+TEST(a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch)
 {
-    (void)state;
     judge_width(LM_FIELD_DBS1, 45, 20, 0.71, 16, 180, 8);
     judge_width(LM_FIELD_DBS1, -30, 20, 0.71, 16, 180, 8);
     judge_width(LM_FIELD_DBS2, 45, 10, 0.31, 16, 180, 64);
@@ -234,9 +228,8 @@ static void judge_places(struct sector_world *w, const struct spread *s, double 
 
 /* Theory: the beam's mean of a point stands where it does, and the power that it spreads over the
  * lines is that of the point, wherever it is between the azimuths that are sampled. */
-static void a_point_stands_where_it_is_between_any_two_samples(void **state)
+TEST(a_point_stands_where_it_is_between_any_two_samples)
 {
-    (void)state;
     const struct spread cases[] = {
         {LM_FIELD_NORM, 0, 1, 10.17, 40, 10, 16000}, {LM_FIELD_EXP, 30, 1, 8, 32, 1, 16000},
         {LM_FIELD_DBS1, 45, 8, 1.53, 25, 9, 16000},  {LM_FIELD_DBS2, 45, 64, 0.31, 12, 12, 16000},
@@ -313,9 +306,8 @@ static void measure_notch(struct sector_world *w, double ground_m, double apart_
     }
 }
 
-static void the_notch_ends_where_the_formula_says(void **state)
+TEST(the_notch_ends_where_the_formula_says)
 {
-    (void)state;
     const struct {
         enum lm_field field;
         double rate_deg_s, least;
@@ -385,9 +377,8 @@ static double correlation(double a[SECTOR_LINES][END_BIN], double b[SECTOR_LINES
     return ab / sqrt(aa * bb);
 }
 
-static void speckle_is_another_one_in_each_sweep_of_real_beam(void **state)
+TEST(speckle_is_another_one_in_each_sweep_of_real_beam)
 {
-    (void)state;
     static double first[SECTOR_LINES][END_BIN], second[SECTOR_LINES][END_BIN];
     struct sector_world *w = make_flat(false);
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
@@ -427,9 +418,8 @@ static double brightest_of_bars(struct sector_world *w, double azimuth_deg, doub
 }
 
 /* The table's gates are 3 and 100 knots: 1.543 and 51.44 m/s. */
-static void gmt_shows_what_moves_within_its_gates_and_nothing_else(void **state)
+TEST(gmt_shows_what_moves_within_its_gates_and_nothing_else)
 {
-    (void)state;
     const struct {
         double azimuth_deg;
         bool is_closing;
@@ -474,9 +464,8 @@ static double mean_sea_db(struct sector_world *w)
     return 10 * log10(sum / count);
 }
 
-static void the_sea_brightens_by_5_dB_a_state(void **state)
+TEST(the_sea_brightens_by_5_dB_a_state)
 {
-    (void)state;
     const struct lm_sector_command command = {.mode = LM_SECTOR_SEA, .azimuth = 1};
     struct sector_world *w = make_flat(true);
     double before_db = 0;
@@ -491,17 +480,4 @@ static void the_sea_brightens_by_5_dB_a_state(void **state)
         before_db = level_db;
     }
     free_sector_world(w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch),
-        cmocka_unit_test(a_point_stands_where_it_is_between_any_two_samples),
-        cmocka_unit_test(the_notch_ends_where_the_formula_says),
-        cmocka_unit_test(speckle_is_another_one_in_each_sweep_of_real_beam),
-        cmocka_unit_test(gmt_shows_what_moves_within_its_gates_and_nothing_else),
-        cmocka_unit_test(the_sea_brightens_by_5_dB_a_state),
-    };
-    return cmocka_run_group_tests_name("sector_doppler", tests, NULL, NULL);
 }

@@ -1,20 +1,15 @@
 /* A sweep against the double-precision reference, stage by stage: what a sample shows, what the
  * antenna leaves of it, slant range, beam, receiver. Each stage is judged on what the firmware's
  * stage before it handed on, so that no error hides behind another. */
+#include "check.h"
 #include "reference_support.h"
 #include "sector_world.h"
 
 #include "hs/angle.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum stage { SAMPLE, ELEVATION, SLANT, BEAM, RECEIVER, STAGES };
 
@@ -370,9 +365,8 @@ static struct sector_world *make_country(void)
     return w;
 }
 
-static void real_beam_sweeps_agree_with_the_reference_at_every_stage(void **state)
+TEST(real_beam_sweeps_agree_with_the_reference_at_every_stage)
 {
-    (void)state;
     struct sector_world *w = make_country();
     struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 0};
     judge_sweep(w, "GM, 10 nm", &command, NULL);
@@ -381,9 +375,8 @@ static void real_beam_sweeps_agree_with_the_reference_at_every_stage(void **stat
     free_sector_world(w);
 }
 
-static void rain_jammer_and_sea_agree_with_the_reference(void **state)
+TEST(rain_jammer_and_sea_agree_with_the_reference)
 {
-    (void)state;
     struct sector_world *w = make_country();
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 1};
     const struct lm_environment e = {
@@ -396,9 +389,8 @@ static void rain_jammer_and_sea_agree_with_the_reference(void **state)
     free_sector_world(w);
 }
 
-static void windows_agree_with_the_reference_at_every_stage(void **state)
+TEST(windows_agree_with_the_reference_at_every_stage)
 {
-    (void)state;
     struct sector_world *w = make_country();
     struct lm_sector_command command = {
         .mode = LM_SECTOR_GM, .field = LM_FIELD_EXP, .range = 1, .centre = place_at(w, 25, 25000)};
@@ -407,14 +399,4 @@ static void windows_agree_with_the_reference_at_every_stage(void **state)
     command.centre = place_at(w, 45, 25000);
     judge_sweep(w, "DBS1, 20 nm", &command, NULL);
     free_sector_world(w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(real_beam_sweeps_agree_with_the_reference_at_every_stage),
-        cmocka_unit_test(rain_jammer_and_sea_agree_with_the_reference),
-        cmocka_unit_test(windows_agree_with_the_reference_at_every_stage),
-    };
-    return cmocka_run_group_tests_name("sector_stages", tests, NULL, NULL);
 }

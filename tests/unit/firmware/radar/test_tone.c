@@ -1,19 +1,14 @@
 /* From level to grey: the equations of docs/EQUATIONS.md, "Tone", in double precision.
  */
+#include "check.h"
 #include "hs/rng.h"
 #include "lm/radar.h"
 #include "lm/status.h"
 #include "lm/tone.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const struct lm_tone_config configs[] = {
     {-42 * 256, 6 * 256, 384},   {-40 * 256, 8 * 256, 256},       {-60 * 256, -59 * 256, 256},
@@ -57,9 +52,8 @@ static struct errors errors_of(const struct lm_tone_config *c)
     return e;
 }
 
-static void tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within_0_6(void **state)
+TEST(tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within_0_6)
 {
-    (void)state;
     const struct lm_radar *radar = &lm_radar_default;
     const struct lm_tone_config *of_table[] = {&radar->sar.tone, &radar->mode[LM_SECTOR_GM].tone,
                                                &radar->mode[LM_SECTOR_GMT].tone,
@@ -76,9 +70,8 @@ static void tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within
 }
 
 /* Windows of any width: the steps of those just too wide for twice as many are the largest. */
-static void from_gamma_1_on_every_level_is_within_a_grey(void **state)
+TEST(from_gamma_1_on_every_level_is_within_a_grey)
 {
-    (void)state;
     struct hs_rng rng;
     double worst = 0;
     hs_rng_seed(&rng, 1);
@@ -98,9 +91,8 @@ static void from_gamma_1_on_every_level_is_within_a_grey(void **state)
     assert_true(worst < 1.3);
 }
 
-static void below_gamma_1_a_level_gets_the_grey_of_the_nearest_step(void **state)
+TEST(below_gamma_1_a_level_gets_the_grey_of_the_nearest_step)
 {
-    (void)state;
     for (int n = CONFIGS - 2; n < CONFIGS; n++) {
         const struct lm_tone_config *c = &configs[n];
         struct lm_tone tone;
@@ -114,9 +106,8 @@ static void below_gamma_1_a_level_gets_the_grey_of_the_nearest_step(void **state
     }
 }
 
-static void black_and_below_is_black_white_and_above_is_white(void **state)
+TEST(black_and_below_is_black_white_and_above_is_white)
 {
-    (void)state;
     for (int n = 0; n < CONFIGS; n++) {
         const struct lm_tone_config *c = &configs[n];
         struct lm_tone tone;
@@ -131,9 +122,8 @@ static void black_and_below_is_black_white_and_above_is_white(void **state)
     }
 }
 
-static void a_higher_level_is_never_darker(void **state)
+TEST(a_higher_level_is_never_darker)
 {
-    (void)state;
     for (int n = 0; n < CONFIGS; n++) {
         struct lm_tone tone;
         assert_int_equal(lm_tone_set(&tone, &configs[n]), LM_OK);
@@ -143,9 +133,8 @@ static void a_higher_level_is_never_darker(void **state)
     }
 }
 
-static void a_window_that_makes_no_sense_is_refused_and_changes_nothing(void **state)
+TEST(a_window_that_makes_no_sense_is_refused_and_changes_nothing)
 {
-    (void)state;
     static const struct lm_tone_config refused[] = {
         {0, 255, 256}, {-0x8000, 0x7f01, 256}, {0, 0, 256}, {256, 0, 256},
         {0, 2560, 25}, {0, 2560, 1025},        {0, 2560, 0}};
@@ -161,9 +150,8 @@ static void a_window_that_makes_no_sense_is_refused_and_changes_nothing(void **s
     assert_int_equal(lm_tone_set(&tone, &(struct lm_tone_config){-0x8000, 0x7f00, 256}), LM_OK);
 }
 
-static void as_many_greys_are_written_as_were_asked_for(void **state)
+TEST(as_many_greys_are_written_as_were_asked_for)
 {
-    (void)state;
     struct lm_tone tone;
     assert_int_equal(lm_tone_set(&tone, &configs[0]), LM_OK);
     int32_t level[70];
@@ -178,18 +166,4 @@ static void as_many_greys_are_written_as_were_asked_for(void **state)
             assert_int_equal(grey[i], i < cells ? grey_of(&tone, level[i]) : 7);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_of_the_radar_are_within_0_7_of_the_equation_and_mostly_within_0_6),
-        cmocka_unit_test(from_gamma_1_on_every_level_is_within_a_grey),
-        cmocka_unit_test(below_gamma_1_a_level_gets_the_grey_of_the_nearest_step),
-        cmocka_unit_test(black_and_below_is_black_white_and_above_is_white),
-        cmocka_unit_test(a_higher_level_is_never_darker),
-        cmocka_unit_test(a_window_that_makes_no_sense_is_refused_and_changes_nothing),
-        cmocka_unit_test(as_many_greys_are_written_as_were_asked_for),
-    };
-    return cmocka_run_group_tests_name("tone", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Rain and jammers along a line, against the closed forms and the reference in double precision:
  * docs/EQUATIONS.md, "Rain" and "Noise". */
+#include "check.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/receiver.h"
@@ -9,14 +10,8 @@
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 256, HEIGHT_M = 4000 };
 
@@ -100,9 +95,8 @@ static double pass_db(const struct world *w, uint32_t i)
     return -w->weather.loss_q8[i] / 256.0;
 }
 
-static void fair_weather_has_no_rain_and_costs_no_bin(void **state)
+TEST(fair_weather_has_no_rain_and_costs_no_bin)
 {
-    (void)state;
     struct world *w = make_world();
     memset(&w->weather, 0xa5, sizeof w->weather);
     look(w);
@@ -116,9 +110,8 @@ static void fair_weather_has_no_rain_and_costs_no_bin(void **state)
 }
 
 /* 2 k R^alpha a kilometre, by hand: nothing before the rain, all of it behind. */
-static void rain_weakens_what_lies_behind_it_by_the_recommendations_rate(void **state)
+TEST(rain_weakens_what_lies_behind_it_by_the_recommendations_rate)
 {
-    (void)state;
     static const int rates[] = {1, 2, 5, 10, 25, 50, 100, 150};
     struct world *w = make_world();
     for (int n = 0; n < 8; n++) {
@@ -143,9 +136,8 @@ static void rain_weakens_what_lies_behind_it_by_the_recommendations_rate(void **
     free(w);
 }
 
-static void rain_returns_what_its_drops_scatter(void **state)
+TEST(rain_returns_what_its_drops_scatter)
 {
-    (void)state;
     struct world *w = make_world();
     const double pi = acos(-1.0), wavelength_m = 0.031228;
     for (double mm_per_h = 4; mm_per_h < 100; mm_per_h *= 2) {
@@ -172,9 +164,8 @@ static void rain_returns_what_its_drops_scatter(void **state)
     free(w);
 }
 
-static void any_circles_do_to_a_line_what_the_reference_says(void **state)
+TEST(any_circles_do_to_a_line_what_the_reference_says)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 3);
@@ -210,9 +201,8 @@ static void any_circles_do_to_a_line_what_the_reference_says(void **state)
     free(w);
 }
 
-static void who_flies_in_the_rain_is_in_it_from_the_first_bin(void **state)
+TEST(who_flies_in_the_rain_is_in_it_from_the_first_bin)
 {
-    (void)state;
     struct world *w = make_world();
     add_rain(w, 1000, 180, 9000, 20);
     look(w);
@@ -227,9 +217,8 @@ static void who_flies_in_the_rain_is_in_it_from_the_first_bin(void **state)
     free(w);
 }
 
-static void rain_beside_and_behind_the_line_is_not_in_it(void **state)
+TEST(rain_beside_and_behind_the_line_is_not_in_it)
 {
-    (void)state;
     struct world *w = make_world();
     add_rain(w, 30000, 90, 20000, 100);
     add_rain(w, 30000, 180, 20000, 100);
@@ -242,9 +231,8 @@ static void rain_beside_and_behind_the_line_is_not_in_it(void **state)
     free(w);
 }
 
-static void a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range(void **state)
+TEST(a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range)
 {
-    (void)state;
     struct world *w = make_world();
     for (double distance_m = 5000; distance_m < 250000; distance_m *= 1.7) {
         for (double off_deg = -20; off_deg <= 20; off_deg += 0.5) {
@@ -272,9 +260,8 @@ static void a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range(
     free(w);
 }
 
-static void jammers_add_their_powers(void **state)
+TEST(jammers_add_their_powers)
 {
-    (void)state;
     struct world *w = make_world();
     for (uint32_t n = 1; n <= LM_JAMMERS_MAX; n++) {
         add_jammer(w, 18520, 0, 10);
@@ -285,9 +272,8 @@ static void jammers_add_their_powers(void **state)
 }
 
 /* Through the whole receiver: the strobe is brighter the farther out, as the noise is. */
-static void a_strobe_lifts_the_noise_of_every_bin_alike(void **state)
+TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
 {
-    (void)state;
     struct world *w = make_world();
     static uint32_t power[LM_CELLS_ROOM];
     static int32_t quiet[LM_CELLS_ROOM], jammed[LM_CELLS_ROOM];
@@ -301,9 +287,8 @@ static void a_strobe_lifts_the_noise_of_every_bin_alike(void **state)
     free(w);
 }
 
-static void what_is_far_away_is_not_there(void **state)
+TEST(what_is_far_away_is_not_there)
 {
-    (void)state;
     struct world *w = make_world();
     struct lm_environment *e = &w->environment;
     e->rain_count = LM_RAINS_MAX;
@@ -323,9 +308,8 @@ static void what_is_far_away_is_not_there(void **state)
 
 /* The environment's places are a script's: also the antenna's own, the pole and the antimeridian.
  */
-static void no_environment_in_range_leaves_the_bounds(void **state)
+TEST(no_environment_in_range_leaves_the_bounds)
 {
-    (void)state;
     struct world *w = make_world();
     struct hs_rng rng;
     hs_rng_seed(&rng, 15);
@@ -370,9 +354,8 @@ static int checked(const struct lm_environment *e, struct lm_rain rain, struct l
     return lm_environment_check(&changed);
 }
 
-static void an_environment_out_of_its_ranges_is_refused(void **state)
+TEST(an_environment_out_of_its_ranges_is_refused)
 {
-    (void)state;
     const struct lm_place here = {FX_BAM_DEG(46), FX_BAM_DEG(11)};
     const struct lm_rain rain = {here, 5000, 10};
     const struct lm_jammer jammer = {here, 256};
@@ -414,23 +397,4 @@ static void an_environment_out_of_its_ranges_is_refused(void **state)
     bad = good;
     bad.sea_state = LM_SEA_STATE_MAX + 1;
     assert_int_equal(lm_environment_check(&bad), LM_ERR_RANGE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fair_weather_has_no_rain_and_costs_no_bin),
-        cmocka_unit_test(rain_weakens_what_lies_behind_it_by_the_recommendations_rate),
-        cmocka_unit_test(rain_returns_what_its_drops_scatter),
-        cmocka_unit_test(any_circles_do_to_a_line_what_the_reference_says),
-        cmocka_unit_test(who_flies_in_the_rain_is_in_it_from_the_first_bin),
-        cmocka_unit_test(rain_beside_and_behind_the_line_is_not_in_it),
-        cmocka_unit_test(a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range),
-        cmocka_unit_test(jammers_add_their_powers),
-        cmocka_unit_test(a_strobe_lifts_the_noise_of_every_bin_alike),
-        cmocka_unit_test(what_is_far_away_is_not_there),
-        cmocka_unit_test(no_environment_in_range_leaves_the_bounds),
-        cmocka_unit_test(an_environment_out_of_its_ranges_is_refused),
-    };
-    return cmocka_run_group_tests_name("weather", tests, NULL, NULL);
 }

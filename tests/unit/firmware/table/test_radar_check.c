@@ -1,15 +1,10 @@
 /* The radar table's contract: a value past either end of any field is refused by its name, and so
  * is a table that breaks a rule between fields. */
+#include "check.h"
 #include "lm/radar_check.h"
 #include "lm/status.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t index,
                 int64_t value)
@@ -34,9 +29,8 @@ static void expect_refused(const struct lm_radar *radar, const char *field, uint
     assert_int_equal(lm_radar_check(radar, NULL), LM_ERR_TABLE);
 }
 
-static void the_default_table_keeps_its_contract(void **state)
+TEST(the_default_table_keeps_its_contract)
 {
-    (void)state;
     struct lm_radar_fault fault = {"untouched", 7};
     assert_int_equal(lm_radar_check(&lm_radar_default, &fault), LM_OK);
     assert_string_equal(fault.field, "untouched");
@@ -49,9 +43,8 @@ static bool can_hold(const struct lm_radar_field *f, int64_t value)
     return f->is_signed ? value >= -values / 2 && value < values / 2 : value >= 0 && value < values;
 }
 
-static void a_value_past_either_end_is_refused_by_its_field_s_name(void **state)
+TEST(a_value_past_either_end_is_refused_by_its_field_s_name)
 {
-    (void)state;
     uint32_t tried = 0;
     for (uint32_t n = 0; lm_radar_field(n); n++) {
         const struct lm_radar_field *f = lm_radar_field(n);
@@ -74,9 +67,8 @@ static void a_value_past_either_end_is_refused_by_its_field_s_name(void **state)
 
 /* A field that the check does not know would leave a hole: what is left is the compiler's padding.
  */
-static void every_byte_of_the_table_belongs_to_a_field(void **state)
+TEST(every_byte_of_the_table_belongs_to_a_field)
 {
-    (void)state;
     bool is_known[sizeof(struct lm_radar)] = {false};
     for (size_t i = 0; i < LM_SECTOR_MODES; i++) {
         memset(is_known + offsetof(struct lm_radar, mode) + i * sizeof(struct lm_sector_mode_row) +
@@ -232,9 +224,8 @@ static void the_largest_cell_is_smaller_than_the_smallest(struct lm_radar *r)
     r->sar.cell_max_mm = r->sar.cell_min_mm - 1;
 }
 
-static void a_broken_rule_between_fields_is_refused_by_name(void **state)
+TEST(a_broken_rule_between_fields_is_refused_by_name)
 {
-    (void)state;
     static const struct {
         void (*breaks)(struct lm_radar *radar);
         const char *field;
@@ -271,15 +262,4 @@ static void a_broken_rule_between_fields_is_refused_by_name(void **state)
         rules[i].breaks(&radar);
         expect_refused(&radar, rules[i].field, rules[i].index);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_default_table_keeps_its_contract),
-        cmocka_unit_test(a_value_past_either_end_is_refused_by_its_field_s_name),
-        cmocka_unit_test(every_byte_of_the_table_belongs_to_a_field),
-        cmocka_unit_test(a_broken_rule_between_fields_is_refused_by_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,18 +3,13 @@
 #include "hs/angle.h"
 #include "lm/target_line.h"
 
+#include "check.h"
 #include "lm/aspect.h"
 #include "memory_flash.h"
 #include "target_support.h"
 #include "tiny_image.h"
 
 #include <geodesic.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -51,9 +46,8 @@ static struct lm_target moving_point(double lat, double lon, double heading, dou
 
 /* ---- where it is ---- */
 
-static void a_mover_goes_to_the_end_of_its_leg_and_back(void **state)
+TEST(a_mover_goes_to_the_end_of_its_leg_and_back)
 {
-    (void)state;
     const struct lm_target t = moving_point(46, 11, 30, 20, 5000); /* 250 s each way */
     const double times_s[] = {0, 1, 100, 249, 251, 400, 499, 500, 700, 1e6, 1e9};
     for (size_t i = 0; i < sizeof times_s / sizeof *times_s; i++) {
@@ -67,9 +61,8 @@ static void a_mover_goes_to_the_end_of_its_leg_and_back(void **state)
     }
 }
 
-static void the_slowest_the_fastest_and_the_longest_stay_on_their_leg(void **state)
+TEST(the_slowest_the_fastest_and_the_longest_stay_on_their_leg)
 {
-    (void)state;
     const struct {
         uint32_t speed_mm_s, leg_m;
     } cases[] = {{1, LM_TARGET_LEG_MAX_M},
@@ -89,9 +82,8 @@ static void the_slowest_the_fastest_and_the_longest_stay_on_their_leg(void **sta
     }
 }
 
-static void a_target_without_speed_stays(void **state)
+TEST(a_target_without_speed_stays)
 {
-    (void)state;
     const struct lm_target t = point_at(46, 11, 0, 10);
     const struct lm_pose pose = lm_target_pose(&t, UINT64_MAX);
     assert_int_equal(pose.place.latitude, t.latitude);
@@ -123,9 +115,8 @@ static struct lm_target path_target(uint8_t legs, double speed_m_s, double lengt
     return t;
 }
 
-static void a_mover_on_a_path_goes_through_its_places_and_back_or_round(void **state)
+TEST(a_mover_on_a_path_goes_through_its_places_and_back_or_round)
 {
-    (void)state;
     double length_m[3];
     struct lm_target t = path_target(3, 20, length_m);
     const double whole_m = length_m[0] + length_m[1] + length_m[2];
@@ -150,9 +141,8 @@ static void a_mover_on_a_path_goes_through_its_places_and_back_or_round(void **s
     }
 }
 
-static void the_longest_path_and_the_shortest_are_gone_at_any_time(void **state)
+TEST(the_longest_path_and_the_shortest_are_gone_at_any_time)
 {
-    (void)state;
     double length_m[1];
     for (int i = 0; i < 4; i++) {
         struct lm_target t = path_target(1, 20, length_m);
@@ -172,9 +162,8 @@ static void the_longest_path_and_the_shortest_are_gone_at_any_time(void **state)
     }
 }
 
-static void an_unsound_path_is_refused(void **state)
+TEST(an_unsound_path_is_refused)
 {
-    (void)state;
     double length_m[3];
     for (int lie = 0; lie < 11; lie++) {
         struct lm_target t = path_target(3, 20, length_m);
@@ -222,9 +211,8 @@ static void an_unsound_path_is_refused(void **state)
     assert_int_equal(lm_target_check(&bodies), LM_ERR_CORRUPT);
 }
 
-static void unsound_motion_is_refused(void **state)
+TEST(unsound_motion_is_refused)
 {
-    (void)state;
     const struct {
         uint32_t speed_mm_s, leg_m;
         uint16_t flags;
@@ -250,9 +238,8 @@ static void unsound_motion_is_refused(void **state)
 /* ---- where it appears ---- */
 
 /* The definition itself: still ground where the target appears has its Doppler shift. */
-static void the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution(void **state)
+TEST(the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution)
 {
-    (void)state;
     const double speed = 250000;
     double worst = 0;
     int without = 0;
@@ -335,10 +322,8 @@ static double decibels(double ratio)
 
 /* Where its Doppler shift is that of still ground, weakened by the two-way pattern of the beam that
  * looks there: 24.08 dB times the square of the displacement in beams. */
-static void
-a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it(void **state)
+TEST(a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it)
 {
-    (void)state;
     struct hs_rng rng;
     int seen = 0, unseen = 0;
     hs_rng_seed(&rng, 12);
@@ -371,9 +356,8 @@ a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it(
     assert_true(seen > 40 && unseen > 5);
 }
 
-static void the_gates_show_only_closing_speeds_within_them_either_way(void **state)
+TEST(the_gates_show_only_closing_speeds_within_them_either_way)
 {
-    (void)state;
     const struct lm_target_line how = {.gate_mm_s = {2000, 20000}};
     double at_deg;
     for (int speed = 0; speed <= 24; speed++) {
@@ -393,9 +377,8 @@ static void the_gates_show_only_closing_speeds_within_them_either_way(void **sta
 
 /* ---- when ---- */
 
-static void movers_are_placed_anew_for_every_sweep_and_not_for_every_line(void **state)
+TEST(movers_are_placed_anew_for_every_sweep_and_not_for_every_line)
 {
-    (void)state;
     const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
     const struct lm_target_set set = {.items = &t, .count = 1};
     struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
@@ -420,9 +403,8 @@ static double hill(void *ctx, const struct tiny_place *p)
     return 300 + p->east_m / 20;
 }
 
-static void a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone(void **state)
+TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
 {
-    (void)state;
     static uint8_t pool[32 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
     static struct lm_tile_cache tiles;
     static struct lm_db db;
@@ -457,24 +439,4 @@ static void a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone(voi
         assert_true(fabs(near.item[0].elevation_q6 / 64.0 - expected_m) < 1);
     }
     tiny_image_free(&image);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_mover_goes_to_the_end_of_its_leg_and_back),
-        cmocka_unit_test(the_slowest_the_fastest_and_the_longest_stay_on_their_leg),
-        cmocka_unit_test(a_target_without_speed_stays),
-        cmocka_unit_test(a_mover_on_a_path_goes_through_its_places_and_back_or_round),
-        cmocka_unit_test(the_longest_path_and_the_shortest_are_gone_at_any_time),
-        cmocka_unit_test(an_unsound_path_is_refused),
-        cmocka_unit_test(unsound_motion_is_refused),
-        cmocka_unit_test(the_shift_solves_v_cos_o_plus_v_r_wherever_that_has_a_solution),
-        cmocka_unit_test(
-            a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_sees_it),
-        cmocka_unit_test(the_gates_show_only_closing_speeds_within_them_either_way),
-        cmocka_unit_test(movers_are_placed_anew_for_every_sweep_and_not_for_every_line),
-        cmocka_unit_test(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone),
-    };
-    return cmocka_run_group_tests_name("mover", tests, NULL, NULL);
 }

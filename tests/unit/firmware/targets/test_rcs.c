@@ -2,17 +2,12 @@
  * polygons. */
 #include "lm/rcs.h"
 
+#include "check.h"
 #include "hs/rng.h"
 #include "reference/rcs.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 static const double x_band_m = 0.03; /* 10 GHz, as in [Heaton]: 0.1 m are 3 wavelengths or so */
@@ -68,9 +63,8 @@ static const struct {
                {3, 100, 1, 0.2, 0.573},
                {30, 1000, 0.1, 0.02, 0.0573}};
 
-static void table_1_as_printed_is_the_one_way_lobe(void **state)
+TEST(table_1_as_printed_is_the_one_way_lobe)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof table_1 / sizeof table_1[0]; i++) {
         const double one_way = ref_plate_lobe_deg(table_1[i].wavelengths, 1);
         const double two_way = ref_plate_lobe_deg(table_1[i].wavelengths, 2);
@@ -92,9 +86,8 @@ static double first_null_deg(const struct lm_shape *s, double start_deg, double 
     return angle - step_deg;
 }
 
-static void a_plate_returns_the_two_way_lobe_and_not_the_table(void **state)
+TEST(a_plate_returns_the_two_way_lobe_and_not_the_table)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof table_1 / sizeof table_1[0]; i++) {
         const uint32_t side_mm = (uint32_t)lround(table_1[i].wavelengths * x_band_m * 1e3);
         const struct lm_shape plate = {LM_SHAPE_PLATE, false, {side_mm, side_mm}};
@@ -104,9 +97,8 @@ static void a_plate_returns_the_two_way_lobe_and_not_the_table(void **state)
     }
 }
 
-static void the_papers_three_formulas_hold_on_axis(void **state)
+TEST(the_papers_three_formulas_hold_on_axis)
 {
-    (void)state;
     const double a = 0.7, b = 1.9, l = 0.0313;
     const struct lm_shape sphere = {LM_SHAPE_SPHERE, false, {700, 0}};
     const struct lm_shape plate = {LM_SHAPE_PLATE, false, {700, 1900}};
@@ -123,9 +115,8 @@ static void the_papers_three_formulas_hold_on_axis(void **state)
 
 /* "Large corner reflectors ... presenting strong returns over incident angles of roughly 45
  * degrees". */
-static void a_corner_is_strong_over_roughly_45_degrees(void **state)
+TEST(a_corner_is_strong_over_roughly_45_degrees)
 {
-    (void)state;
     const struct lm_shape corner = {LM_SHAPE_TRIHEDRAL, false, {1000, 0}};
     const double peak = rcs_db(&corner, x_band_m, at(0, 0));
     double width[2] = {0, 0};
@@ -163,9 +154,8 @@ static double worst_db(const struct lm_shape *s, double wavelength_m, double dep
     return worst;
 }
 
-static void every_pattern_is_within_a_hundredth_of_a_decibel_of_the_reference(void **state)
+TEST(every_pattern_is_within_a_hundredth_of_a_decibel_of_the_reference)
 {
-    (void)state;
     static const struct {
         struct lm_shape shape;
         double spread_deg;
@@ -183,9 +173,8 @@ static void every_pattern_is_within_a_hundredth_of_a_decibel_of_the_reference(vo
     }
 }
 
-static void a_face_answers_on_its_side_only_unless_it_has_two(void **state)
+TEST(a_face_answers_on_its_side_only_unless_it_has_two)
 {
-    (void)state;
     struct lm_shape plate = {LM_SHAPE_PLATE, false, {300, 300}};
     const double front = rcs_db(&plate, x_band_m, at(1, 1));
     assert_true(rcs_db(&plate, x_band_m, at(181, 1)) <= LM_RCS_NONE_Q8 / 256.0);
@@ -199,9 +188,8 @@ static void a_face_answers_on_its_side_only_unless_it_has_two(void **state)
 }
 
 /* The largest and smallest of everything: what does not overflow comes out right. */
-static void the_limits_of_size_and_wavelength_are_inside_the_arithmetic(void **state)
+TEST(the_limits_of_size_and_wavelength_are_inside_the_arithmetic)
 {
-    (void)state;
     const uint32_t sizes[] = {1, LM_SHAPE_SIZE_MAX_MM};
     const uint32_t waves[] = {LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM};
     const int32_t one = 1 << 30;
@@ -222,18 +210,4 @@ static void the_limits_of_size_and_wavelength_are_inside_the_arithmetic(void **s
             assert_true(fabs(found - fmax(expected, -100)) < 0.01);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(table_1_as_printed_is_the_one_way_lobe),
-        cmocka_unit_test(a_plate_returns_the_two_way_lobe_and_not_the_table),
-        cmocka_unit_test(the_papers_three_formulas_hold_on_axis),
-        cmocka_unit_test(a_corner_is_strong_over_roughly_45_degrees),
-        cmocka_unit_test(every_pattern_is_within_a_hundredth_of_a_decibel_of_the_reference),
-        cmocka_unit_test(a_face_answers_on_its_side_only_unless_it_has_two),
-        cmocka_unit_test(the_limits_of_size_and_wavelength_are_inside_the_arithmetic),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

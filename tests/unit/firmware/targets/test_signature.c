@@ -1,17 +1,12 @@
 /* Signatures: which chip is chosen, how it is read and reduced, and how it is laid over cells,
  * against the double-precision reference. */
+#include "check.h"
 #include "reference/chip.h"
 #include "signature_image.h"
 
 #include "lm/chip_lay.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POLLS = 16 };
 
@@ -34,7 +29,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void the_chip_nearest_to_the_bearing_and_the_depression_is_chosen(void **state)
+TEST_WITH(the_chip_nearest_to_the_bearing_and_the_depression_is_chosen, set_up, tear_down)
 {
     const struct signature_world *f = *state;
     struct hs_rng r;
@@ -54,7 +49,7 @@ static void the_chip_nearest_to_the_bearing_and_the_depression_is_chosen(void **
     }
 }
 
-static void records_with_a_number_out_of_bounds_are_refused(void **state)
+TEST_WITH(records_with_a_number_out_of_bounds_are_refused, set_up, tear_down)
 {
     const struct signature_world *f = *state;
     assert_int_equal(lm_signature_check(&f->signature, CHIPS), LM_OK);
@@ -105,7 +100,7 @@ static void records_with_a_number_out_of_bounds_are_refused(void **state)
     assert_int_equal(lm_chip_check(&c, 0, 3, 1), LM_ERR_CORRUPT);
 }
 
-static void a_head_that_does_not_hold_makes_the_image_unsound(void **state)
+TEST_WITH(a_head_that_does_not_hold_makes_the_image_unsound, set_up, tear_down)
 {
     struct signature_world *f = *state;
     static const struct {
@@ -149,7 +144,7 @@ static void choose(struct signature_world *f, const struct lm_target *targets, u
     lm_chips_choose(&f->chips, near, &chips);
 }
 
-static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void **state)
+TEST_WITH(a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_up, tear_down)
 {
     struct signature_world *f = *state;
     const struct lm_target t = target_with_signature(46, 11, 30);
@@ -180,7 +175,7 @@ static void a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels(void
     assert_null(near.item[0].chip);
 }
 
-static void damage_and_failure_leave_a_target_without_chip_and_are_counted(void **state)
+TEST_WITH(damage_and_failure_leave_a_target_without_chip_and_are_counted, set_up, tear_down)
 {
     struct signature_world *f = *state;
     const struct lm_target t = target_with_signature(46, 11, 30);
@@ -202,7 +197,7 @@ static void damage_and_failure_leave_a_target_without_chip_and_are_counted(void 
     assert_non_null(lm_chip_of(&near.item[0]));
 }
 
-static void chips_are_shared_kept_and_bounded(void **state)
+TEST_WITH(chips_are_shared_kept_and_bounded, set_up, tear_down)
 {
     struct signature_world *f = *state;
     struct lm_target t[ASPECTS + 1];
@@ -272,7 +267,7 @@ static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref,
     s->shadow = fmax(s->shadow, fabs(dark / exact_dark - 1));
 }
 
-static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference(void **state)
+TEST_WITH(a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference, set_up, tear_down)
 {
     struct signature_world *f = *state;
     struct hs_rng r;
@@ -303,25 +298,4 @@ static void a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_referenc
     assert_true(s.worst_power_db < 0.1);
     assert_true(likeness > 0.99);
     assert_true(s.shadow < 0.02);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            the_chip_nearest_to_the_bearing_and_the_depression_is_chosen, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(records_with_a_number_out_of_bounds_are_refused, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_head_that_does_not_hold_makes_the_image_unsound, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(
-            damage_and_failure_leave_a_target_without_chip_and_are_counted, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(chips_are_shared_kept_and_bounded, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference, set_up,
-            tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Targets with a signature in the pictures: a patch, the lines of a window, a sweep. */
+#include "check.h"
 #include "reference/reference.h"
 #include "signature_image.h"
 
@@ -6,13 +7,7 @@
 #include "lm/sector.h"
 #include "lm/target_line.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 256, CELL_MM = 1000 };
 
@@ -110,7 +105,7 @@ static double clutter_db(double width_m, double length_m, double at_m)
     return 10 * log10(width_m * length_m * ref_grazing(&view, at_m, at_m - length_m));
 }
 
-static void corners_are_where_they_stand_and_as_bright_from_every_side(void **state)
+TEST_WITH(corners_are_where_they_stand_and_as_bright_from_every_side, set_up, tear_down)
 {
     struct fixture *f = *state;
     const double cell_m = CELL_MM / 1000.0, centre = (SIDE - 1) / 2.0;
@@ -140,7 +135,7 @@ static void corners_are_where_they_stand_and_as_bright_from_every_side(void **st
     assert_true(worst_level < 0.1);
 }
 
-static void its_shadow_lies_behind_it_and_nowhere_else(void **state)
+TEST_WITH(its_shadow_lies_behind_it_and_nowhere_else, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -166,7 +161,7 @@ static void its_shadow_lies_behind_it_and_nowhere_else(void **state)
     assert_true(inside > 8 && dark / inside > 20);
 }
 
-static void a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow(void **state)
+TEST_WITH(a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -181,7 +176,7 @@ static void a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow(void
     }
 }
 
-static void a_mover_is_displaced_and_its_shadow_stays(void **state)
+TEST_WITH(a_mover_is_displaced_and_its_shadow_stays, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target_set none = {0};
@@ -198,7 +193,8 @@ static void a_mover_is_displaced_and_its_shadow_stays(void **state)
     assert_true(f->picture[87][141] == f->bare[87][141]);
 }
 
-static void a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells(void **state)
+TEST_WITH(a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells, set_up,
+          tear_down)
 {
     struct fixture *f = *state;
     struct lm_target crowd[LM_TARGETS_NEAR];
@@ -271,7 +267,7 @@ static struct lm_target target_beyond(double east_m, double south_m, double head
     return t;
 }
 
-static void the_lines_of_a_window_share_a_chip_without_loss(void **state)
+TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
 {
     struct fixture *f = *state;
     double worst_level = 0, worst_place_m = 0, worst_dark = 0;
@@ -321,7 +317,7 @@ static void the_lines_of_a_window_share_a_chip_without_loss(void **state)
 
 /* Lines that pass by a target are told from its slack: of the largest pixels, a chip's corners are
  * 1.1 km from the target. */
-static void the_slack_of_a_target_holds_the_corners_of_its_chip(void **state)
+TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 0);
@@ -352,7 +348,7 @@ static void draw_line(const struct lm_targets_near *near, struct lm_target_line 
 
 /* Gamma(L): the mean is that without speckle and the variance an L-th of its square, in each cell
  * by itself. */
-static void the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell(void **state)
+TEST_WITH(the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);
@@ -437,7 +433,7 @@ static double boiling(struct fixture *f, struct lm_chips *chips)
 }
 
 /* Four looks, of which neighbouring samples and cells have their own: a sixteenth to a quarter. */
-static void in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands(void **state)
+TEST_WITH(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands, set_up, tear_down)
 {
     struct fixture *f = *state;
     const double chip = boiling(f, &f->world.chips), point = boiling(f, NULL);
@@ -446,7 +442,7 @@ static void in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands(void **sta
     assert_true(point < 0.01);
 }
 
-static void without_its_chip_a_target_is_a_point_of_its_cross_section(void **state)
+TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up, tear_down)
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);
@@ -466,32 +462,4 @@ static void without_its_chip_a_target_is_a_point_of_its_cross_section(void **sta
     }
     const double level = 10 * log10(power) + clutter_db(spacing_m, cell_m, range_m);
     assert_true(fabs(level - 22.5) < 0.1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(corners_are_where_they_stand_and_as_bright_from_every_side,
-                                        set_up, tear_down),
-        cmocka_unit_test_setup_teardown(its_shadow_lies_behind_it_and_nowhere_else, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_mover_is_displaced_and_its_shadow_stays, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_cells, set_up,
-            tear_down),
-        cmocka_unit_test_setup_teardown(the_lines_of_a_window_share_a_chip_without_loss, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(
-            the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(in_the_sweeps_of_a_window_a_chip_boils_and_a_point_stands,
-                                        set_up, tear_down),
-        cmocka_unit_test_setup_teardown(without_its_chip_a_target_is_a_point_of_its_cross_section,
-                                        set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

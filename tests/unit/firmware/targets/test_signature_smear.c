@@ -1,18 +1,13 @@
 /* Movers that are shown by their chip in a patch, against what the aperture makes of its corners.
  */
+#include "check.h"
 #include "extent.h"
 #include "reference/reference.h"
 #include "signature_image.h"
 
 #include "lm/target_patch.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* A patch of 128 cells of a metre around 46 N 11 E, seen from the west for two seconds. */
 enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, NOTHING_Q8 = -120 * 256 };
@@ -135,7 +130,7 @@ static void focus(struct fixture *f, const struct motion *m)
     }
 }
 
-static void a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners(void **state)
+TEST_WITH(a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners, set_up, tear_down)
 {
     struct fixture *f = *state;
     static const struct motion cases[] = {{0.05, 0}, {1.5, 0}, {6, 0},  {-9, 0},
@@ -157,13 +152,4 @@ static void a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners(v
         assert_true(fabs(is.correlation - should.correlation) < 0.25);
         assert_true(fabs(lost_db) < 0.3);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            a_movers_chip_is_smeared_to_what_the_aperture_makes_of_its_corners, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,18 +2,13 @@
 #include "hs/angle.h"
 #include "lm/target.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "reference/rcs.h"
 #include "target_image.h"
 #include "target_support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -26,9 +21,8 @@ static struct lm_target sound_target(void)
     return t;
 }
 
-static void every_flipped_bit_of_a_record_is_refused(void **state)
+TEST(every_flipped_bit_of_a_record_is_refused)
 {
-    (void)state;
     struct lm_target t = sound_target();
     assert_int_equal(lm_target_check(&t), LM_OK);
     for (size_t bit = 0; bit < sizeof t * 8; bit++) {
@@ -45,9 +39,8 @@ static void refused(struct lm_target t)
     assert_int_equal(lm_target_check(&t), LM_ERR_CORRUPT);
 }
 
-static void a_number_out_of_range_is_refused_under_a_right_checksum(void **state)
+TEST(a_number_out_of_range_is_refused_under_a_right_checksum)
 {
-    (void)state;
     struct lm_target t = sound_target();
     refused((t.latitude = hs_bam(90.001), t));
     refused((t = sound_target(), t.elevation_q6 = (1 << 20) + 1, t));
@@ -76,9 +69,8 @@ static void build(struct tiny_image *image, struct with_targets *w)
     add_targets(w, image, sound_target());
 }
 
-static void the_targets_of_an_image_are_read_and_faults_told_apart(void **state)
+TEST(the_targets_of_an_image_are_read_and_faults_told_apart)
 {
-    (void)state;
     struct tiny_image image;
     struct with_targets w;
     struct lm_db db;
@@ -102,9 +94,8 @@ static void the_targets_of_an_image_are_read_and_faults_told_apart(void **state)
     tiny_image_free(&image);
 }
 
-static void an_image_without_targets_has_none(void **state)
+TEST(an_image_without_targets_has_none)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_image image;
     struct lm_db db;
@@ -136,9 +127,8 @@ static int open_changed(struct with_targets *w, size_t at, uint64_t value, size_
     return status;
 }
 
-static void a_section_that_lies_about_itself_is_refused(void **state)
+TEST(a_section_that_lies_about_itself_is_refused)
 {
-    (void)state;
     struct tiny_image image;
     struct with_targets w;
     build(&image, &w);
@@ -172,9 +162,8 @@ static struct ref_vector radar_of(fx_bam_t bearing, fx_bam_t elevation, uint32_t
                                range_m * sin(e)};
 }
 
-static void phases_are_those_of_the_true_way_to_every_scatterer(void **state)
+TEST(phases_are_those_of_the_true_way_to_every_scatterer)
 {
-    (void)state;
     struct hs_rng rng;
     double worst_um = 0, worst_mm = 0;
     hs_rng_seed(&rng, 1);
@@ -211,9 +200,8 @@ static void phases_are_those_of_the_true_way_to_every_scatterer(void **state)
 }
 
 /* The far field's path, -s, would be wrong by o^2 / 2R: 50 m at 20 km, 2 wavelengths. */
-static void ways_are_not_taken_from_the_far_field(void **state)
+TEST(ways_are_not_taken_from_the_far_field)
 {
-    (void)state;
     struct lm_target t = {.id = 1};
     struct lm_target_view v;
     struct lm_return r[LM_SCATTERERS_MAX];
@@ -241,9 +229,8 @@ static double strongest_db(const struct lm_target *t, const struct lm_target_vie
     return strongest;
 }
 
-static void sums_are_those_of_the_phasors(void **state)
+TEST(sums_are_those_of_the_phasors)
 {
-    (void)state;
     struct hs_rng rng;
     double worst = 0;
     int seen = 0;
@@ -269,9 +256,8 @@ static void sums_are_those_of_the_phasors(void **state)
     assert_true(worst < 0.2);
 }
 
-static void no_return_sums_to_nothing_and_opposite_ones_cancel(void **state)
+TEST(no_return_sums_to_nothing_and_opposite_ones_cancel)
 {
-    (void)state;
     const struct lm_return pair[2] = {{.rcs_q8 = 2560, .phase = 0},
                                       {.rcs_q8 = 2560, .phase = FX_BAM_180}};
     assert_int_equal(lm_returns_sum_q8(pair, 0), LM_RCS_NONE_Q8);
@@ -287,9 +273,8 @@ static void no_return_sums_to_nothing_and_opposite_ones_cancel(void **state)
 /* Figure 1 of [Heaton] as a test. Nine corner reflectors of one metre, metres apart, all facing the
  * radar's side: one cell that holds them all fluctuates by tens of decibels while the aspect
  * changes by 30 degrees; a cell that holds one of them does not. */
-static void the_same_corners_are_steady_in_fine_cells_and_fluctuate_in_a_coarse_one(void **state)
+TEST(the_same_corners_are_steady_in_fine_cells_and_fluctuate_in_a_coarse_one)
 {
-    (void)state;
     struct lm_target t = {.id = 1};
     for (int i = 0; i < 9; i++) {
         add_scatterer(&t, LM_SHAPE_TRIHEDRAL, 1000, 7000 * (i / 3) + 400 * (i % 3),
@@ -354,9 +339,8 @@ static double correlation(const double (*x)[PULSES], int scan_step, int pulse_st
     return (product / n - mean * mean) / (square / n - mean * mean);
 }
 
-static void swerling_draws_have_the_mean_the_variance_and_the_shape_of_theory(void **state)
+TEST(swerling_draws_have_the_mean_the_variance_and_the_shape_of_theory)
 {
-    (void)state;
     for (uint8_t c = 1; c <= 4; c++) {
         double(*power)[PULSES] = draw_all(c);
         double column[SCANS], mean = 0, square = 0, distance = 0;
@@ -383,9 +367,8 @@ static void swerling_draws_have_the_mean_the_variance_and_the_shape_of_theory(vo
     }
 }
 
-static void odd_cases_keep_their_draw_for_a_scan_and_even_ones_for_a_pulse(void **state)
+TEST(odd_cases_keep_their_draw_for_a_scan_and_even_ones_for_a_pulse)
 {
-    (void)state;
     for (uint8_t c = 1; c <= 4; c++) {
         double(*power)[PULSES] = draw_all(c);
         const double from_scan_to_scan = correlation((const double(*)[PULSES])power, 1, 0);
@@ -396,32 +379,11 @@ static void odd_cases_keep_their_draw_for_a_scan_and_even_ones_for_a_pulse(void 
     }
 }
 
-static void a_steady_point_is_steady_and_draws_repeat(void **state)
+TEST(a_steady_point_is_steady_and_draws_repeat)
 {
-    (void)state;
     for (uint32_t i = 0; i < 1000; i++) {
         assert_int_equal(lm_swerling_q8(0, -700, i, i * 3, i * 7), -700);
         assert_int_equal(lm_swerling_q8(2, 500, i, 3, 9), lm_swerling_q8(2, 500, i, 3, 9));
     }
     assert_true(lm_swerling_q8(1, 500, 1, 3, 0) != lm_swerling_q8(1, 500, 2, 3, 0));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_flipped_bit_of_a_record_is_refused),
-        cmocka_unit_test(a_number_out_of_range_is_refused_under_a_right_checksum),
-        cmocka_unit_test(the_targets_of_an_image_are_read_and_faults_told_apart),
-        cmocka_unit_test(an_image_without_targets_has_none),
-        cmocka_unit_test(a_section_that_lies_about_itself_is_refused),
-        cmocka_unit_test(phases_are_those_of_the_true_way_to_every_scatterer),
-        cmocka_unit_test(ways_are_not_taken_from_the_far_field),
-        cmocka_unit_test(sums_are_those_of_the_phasors),
-        cmocka_unit_test(no_return_sums_to_nothing_and_opposite_ones_cancel),
-        cmocka_unit_test(the_same_corners_are_steady_in_fine_cells_and_fluctuate_in_a_coarse_one),
-        cmocka_unit_test(swerling_draws_have_the_mean_the_variance_and_the_shape_of_theory),
-        cmocka_unit_test(odd_cases_keep_their_draw_for_a_scan_and_even_ones_for_a_pulse),
-        cmocka_unit_test(a_steady_point_is_steady_and_draws_repeat),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

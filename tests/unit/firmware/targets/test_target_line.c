@@ -4,19 +4,14 @@
 #include "hs/angle.h"
 #include "lm/target_line.h"
 
+#include "check.h"
 #include "lm/aspect.h"
 #include "reference/rcs.h"
 #include "reference/reference.h"
 #include "target_support.h"
 
 #include <geodesic.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -110,9 +105,8 @@ static struct found sweep(const struct lm_target *targets, uint32_t count, doubl
     return f;
 }
 
-static void a_target_is_in_the_right_cell_of_two_lines_that_share_it(void **state)
+TEST(a_target_is_in_the_right_cell_of_two_lines_that_share_it)
 {
-    (void)state;
     static const double places[][2] = {{46, 11}, {0, 179.99}, {-71, -40}};
     struct hs_rng rng;
     double worst = 0, worst_line = 0;
@@ -142,9 +136,8 @@ static void a_target_is_in_the_right_cell_of_two_lines_that_share_it(void **stat
 }
 
 /* Lines a metre apart and cells of two metres, seventy kilometres away. */
-static void a_target_is_where_the_geodesic_puts_it_within_a_metre(void **state)
+TEST(a_target_is_where_the_geodesic_puts_it_within_a_metre)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
     for (int i = 0; i < 1000; i++) {
@@ -167,9 +160,8 @@ static void a_target_is_where_the_geodesic_puts_it_within_a_metre(void **state)
     }
 }
 
-static void no_target_is_lost_or_doubled_between_two_lines_and_two_cells(void **state)
+TEST(no_target_is_lost_or_doubled_between_two_lines_and_two_cells)
 {
-    (void)state;
     for (int i = 0; i < 200; i++) {
         double to[2];
         destination(46, 11, 30 + i * 1e-6, 20000 + i * 0.7, to);
@@ -182,9 +174,8 @@ static void no_target_is_lost_or_doubled_between_two_lines_and_two_cells(void **
     }
 }
 
-static void different_targets_in_one_cell_add_their_powers(void **state)
+TEST(different_targets_in_one_cell_add_their_powers)
 {
-    (void)state;
     double to[2];
     destination(46, 11, 1.3, 20000, to);
     const struct lm_target t[2] = {point_at(to[0], to[1], 0, 20), point_at(to[0], to[1], 0, 20)};
@@ -194,9 +185,8 @@ static void different_targets_in_one_cell_add_their_powers(void **state)
 
 /* Two reflectors of 20 and 26 dBsm ten metres apart share a cell: their phasor sum comes and goes
  * with the bearing. */
-static void scatterers_of_one_target_in_one_cell_add_as_phasors(void **state)
+TEST(scatterers_of_one_target_in_one_cell_add_as_phasors)
 {
-    (void)state;
     struct lm_target t = point_at(46, 11, 0, 0);
     add_scatterer(&t, LM_SHAPE_SPHERE, 5642, -5000, 500, 0, 0, 0);
     add_scatterer(&t, LM_SHAPE_SPHERE, 11284, 5000, 500, 0, 0, 0);
@@ -218,9 +208,8 @@ static void scatterers_of_one_target_in_one_cell_add_as_phasors(void **state)
 
 enum { BITS = 30 };
 
-static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **state)
+TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
 {
-    (void)state;
     double to[2];
     const double azimuth = (100.5 - LINES / 2) * 120 / LINES;
     destination(46, 11, azimuth, 140.5 * cell_m, to);
@@ -244,9 +233,8 @@ static void what_lies_below_the_horizon_of_the_cells_before_is_hidden(void **sta
 
 /* ---- choice ---- */
 
-static void no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted(void **state)
+TEST(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted)
 {
-    (void)state;
     enum { MANY = LM_TARGETS_NEAR + 9 };
     struct lm_target t[MANY + 1];
     struct lm_targets_near near;
@@ -262,9 +250,8 @@ static void no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted(vo
 
 /* An antenna that has flown on since the choice finds the same targets as one that has just chosen.
  */
-static void a_choice_holds_for_a_kilometre_of_flight(void **state)
+TEST(a_choice_holds_for_a_kilometre_of_flight)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 5);
     for (int i = 0; i < 3000; i++) {
@@ -310,9 +297,8 @@ static struct lm_target_line line_beside(struct hs_rng *rng, double lat, double 
 
 /* Points, bodies up to 370 m from their origin, and movers, near and far: the quick look at what a
  * line may meet loses none. With the slack of the whole Earth, all of them are looked at. */
-static void a_target_that_is_passed_over_would_have_given_the_line_nothing(void **state)
+TEST(a_target_that_is_passed_over_would_have_given_the_line_nothing)
 {
-    (void)state;
     static const double latitudes[] = {0, 46, -75, 87};
     struct hs_rng rng;
     uint32_t given = 0;
@@ -346,9 +332,8 @@ static void a_target_that_is_passed_over_would_have_given_the_line_nothing(void 
 
 /* Records that were changed at random and sealed again, as a hostile image might have them: those
  * that pass the check can be used from anywhere (built with the sanitizers, too: targets.mk). */
-static void a_record_that_passes_the_check_can_be_used(void **state)
+TEST(a_record_that_passes_the_check_can_be_used)
 {
-    (void)state;
     struct hs_rng rng;
     struct lm_target t = {0};
     uint32_t passed = 0, given = 0;
@@ -389,21 +374,4 @@ static void a_record_that_passes_the_check_can_be_used(void **state)
     }
     print_message("# %u records passed, %u cells were given something\n", passed, given);
     assert_true(passed > 2000 && given > 500);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_target_is_in_the_right_cell_of_two_lines_that_share_it),
-        cmocka_unit_test(a_target_is_where_the_geodesic_puts_it_within_a_metre),
-        cmocka_unit_test(no_target_is_lost_or_doubled_between_two_lines_and_two_cells),
-        cmocka_unit_test(scatterers_of_one_target_in_one_cell_add_as_phasors),
-        cmocka_unit_test(different_targets_in_one_cell_add_their_powers),
-        cmocka_unit_test(what_lies_below_the_horizon_of_the_cells_before_is_hidden),
-        cmocka_unit_test(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted),
-        cmocka_unit_test(a_choice_holds_for_a_kilometre_of_flight),
-        cmocka_unit_test(a_target_that_is_passed_over_would_have_given_the_line_nothing),
-        cmocka_unit_test(a_record_that_passes_the_check_can_be_used),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,7 @@
 #include "hs/angle.h"
 #include "lm/target_patch.h"
 
+#include "check.h"
 #include "extent.h"
 #include "lm/aspect.h"
 #include "reference/reference.h"
@@ -11,13 +12,7 @@
 
 #include <complex.h>
 #include <geodesic.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -139,9 +134,8 @@ static void measure(const double cut[CUT], double *width, double *side_db)
 
 /* On the levels of line 60 and cell 70 while a point is moved past them in sixteenths of a cell,
  * 30 dB above what is left out at its side lobes. */
-static void a_points_width_and_side_lobes_are_those_of_the_taylor_table(void **state)
+TEST(a_points_width_and_side_lobes_are_those_of_the_taylor_table)
 {
-    (void)state;
     for (int is_along = 0; is_along < 2; is_along++) {
         double cut[CUT], width, side_db;
         for (int i = 0; i < CUT; i++) {
@@ -160,9 +154,8 @@ static void a_points_width_and_side_lobes_are_those_of_the_taylor_table(void **s
     }
 }
 
-static void the_table_is_taylors_response(void **state)
+TEST(the_table_is_taylors_response)
 {
-    (void)state;
     double worst = 0, energy = 0;
     for (int x_q8 = -8 * 256; x_q8 <= 8 * 256; x_q8++) {
         worst = fmax(worst, fabs(lm_response(x_q8) / 32768.0 - taylor(x_q8 / 256.0)));
@@ -180,9 +173,8 @@ static void the_table_is_taylors_response(void **state)
 
 /* ---- place and power ---- */
 
-static void a_point_is_at_its_place_with_all_its_power(void **state)
+TEST(a_point_is_at_its_place_with_all_its_power)
 {
-    (void)state;
     struct hs_rng rng;
     double worst_cells = 0, worst_db = 0;
     hs_rng_seed(&rng, 4);
@@ -209,9 +201,8 @@ static void a_point_is_at_its_place_with_all_its_power(void **state)
     assert_true(worst_db < 0.05);
 }
 
-static void what_is_left_out_lies_below_the_least_level(void **state)
+TEST(what_is_left_out_lies_below_the_least_level)
 {
-    (void)state;
     const struct lm_patch_geometry g = geometry(46, 11, 0);
     static int32_t whole[LINES][LM_CELLS_ROOM];
     for (int rcs_db = -60; rcs_db <= 60; rcs_db += 4) {
@@ -252,9 +243,8 @@ static double expected_power(uint32_t line, uint32_t cell)
     return power;
 }
 
-static void bodies_add_as_phasors_and_targets_as_powers_everywhere(void **state)
+TEST(bodies_add_as_phasors_and_targets_as_powers_everywhere)
 {
-    (void)state;
     struct hs_rng rng;
     double worst_db = 0, squares = 0;
     uint32_t cells = 0;
@@ -298,9 +288,8 @@ static void bodies_add_as_phasors_and_targets_as_powers_everywhere(void **state)
 }
 
 /* Cases 2 and 4 change from pulse to pulse; a patch is made of all pulses of its dwell. */
-static void a_fluctuating_point_has_one_strength_in_a_patch(void **state)
+TEST(a_fluctuating_point_has_one_strength_in_a_patch)
 {
-    (void)state;
     for (uint8_t swerling = 1; swerling <= 4; swerling++) {
         struct lm_target t = point_in(60, 70, 30);
         t.swerling = swerling;
@@ -320,9 +309,8 @@ static void a_fluctuating_point_has_one_strength_in_a_patch(void **state)
 
 /* ---- movers ---- */
 
-static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
+TEST(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 5);
     for (int i = 0; i < 50; i++) {
@@ -343,9 +331,8 @@ static void a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell(void **state)
     }
 }
 
-static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **state)
+TEST(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it)
 {
-    (void)state;
     static double wanted[LINES][CELLS], found[LINES][CELLS];
     const double flies_m_s = 200;
     const struct {
@@ -391,9 +378,8 @@ static void what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it(void **s
 
 /* ---- passed over ---- */
 
-static void lines_that_pass_by_a_target_would_have_nothing_of_it(void **state)
+TEST(lines_that_pass_by_a_target_would_have_nothing_of_it)
 {
-    (void)state;
     static int32_t noted[LINES][LM_CELLS_ROOM];
     struct hs_rng rng;
     uint32_t passed_by = 0, touched = 0;
@@ -428,9 +414,8 @@ static void lines_that_pass_by_a_target_would_have_nothing_of_it(void **state)
 
 enum { BITS = 30, WALL = 20 };
 
-static void a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines(void **state)
+TEST(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines)
 {
-    (void)state;
     /* Seen from 6000 m at 20 km, a wall of 30 m throws a shadow of 100 m: 66 m behind it, a
      * target shows from 10 m up. */
     const struct lm_patch_geometry g = geometry(46, 11, 0);
@@ -466,9 +451,8 @@ static void a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines(void **
     }
 }
 
-static void layover_brings_a_body_nearer_by_its_height_times_the_lean(void **state)
+TEST(layover_brings_a_body_nearer_by_its_height_times_the_lean)
 {
-    (void)state;
     struct lm_target t = point_in(64, 70, 0);
     t.scatterer_count = 0;
     add_scatterer(&t, LM_SHAPE_SPHERE, 5642, 0, 0, 40000, 0, 0);
@@ -480,9 +464,8 @@ static void layover_brings_a_body_nearer_by_its_height_times_the_lean(void **sta
 
 /* ---- hostile records ---- */
 
-static void a_record_that_passes_the_check_can_be_used_in_a_patch(void **state)
+TEST(a_record_that_passes_the_check_can_be_used_in_a_patch)
 {
-    (void)state;
     struct hs_rng rng;
     uint32_t passed = 0, given = 0;
     struct lm_target t = {0};
@@ -524,23 +507,4 @@ static void a_record_that_passes_the_check_can_be_used_in_a_patch(void **state)
     }
     print_message("# %u records passed, %u cells were given something\n", passed, given);
     assert_true(passed > 500 && given > 500);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_points_width_and_side_lobes_are_those_of_the_taylor_table),
-        cmocka_unit_test(the_table_is_taylors_response),
-        cmocka_unit_test(a_point_is_at_its_place_with_all_its_power),
-        cmocka_unit_test(what_is_left_out_lies_below_the_least_level),
-        cmocka_unit_test(bodies_add_as_phasors_and_targets_as_powers_everywhere),
-        cmocka_unit_test(a_fluctuating_point_has_one_strength_in_a_patch),
-        cmocka_unit_test(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell),
-        cmocka_unit_test(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it),
-        cmocka_unit_test(lines_that_pass_by_a_target_would_have_nothing_of_it),
-        cmocka_unit_test(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines),
-        cmocka_unit_test(layover_brings_a_body_nearer_by_its_height_times_the_lean),
-        cmocka_unit_test(a_record_that_passes_the_check_can_be_used_in_a_patch),
-    };
-    return cmocka_run_group_tests_name("target_patch", tests, NULL, NULL);
 }

@@ -2,16 +2,11 @@
 #include "hs/angle.h"
 #include "lm/unit.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "target_image.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POLLS = 16, SLOTS = 32, SIDE = 256 };
 
@@ -51,9 +46,8 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
     }
 }
 
-static void a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched(void **state)
+TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
@@ -82,9 +76,8 @@ static void a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched(voi
     tiny_image_free(&image);
 }
 
-static void a_patch_has_nothing_of_the_targets_of_the_one_before_it(void **state)
+TEST(a_patch_has_nothing_of_the_targets_of_the_one_before_it)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     static uint8_t before[SIDE][SIDE], with[SIDE][SIDE], behind[SIDE][SIDE];
@@ -100,9 +93,8 @@ static void a_patch_has_nothing_of_the_targets_of_the_one_before_it(void **state
 }
 
 /* Forty lines to the left of where it is, so that its line comes long after it has been shown. */
-static void a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch(void **state)
+TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
@@ -163,9 +155,8 @@ static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], i
     return bins;
 }
 
-static void a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere(void **state)
+TEST(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere)
 {
-    (void)state;
     struct tiny_image image;
     struct memory_flash flash;
     static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
@@ -195,9 +186,8 @@ static void a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere(voi
 /* A unit is large: one is enough. */
 static struct lm_unit unit;
 
-static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
+TEST(the_unit_reads_the_targets_and_counts_those_it_has_not)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_image image;
     struct with_targets w;
@@ -223,16 +213,4 @@ static void the_unit_reads_the_targets_and_counts_those_it_has_not(void **state)
     assert_ptr_equal(unit.picture.sector.targets, &unit.map.target_set);
     free(w.bytes);
     tiny_image_free(&image);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched),
-        cmocka_unit_test(a_patch_has_nothing_of_the_targets_of_the_one_before_it),
-        cmocka_unit_test(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch),
-        cmocka_unit_test(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere),
-        cmocka_unit_test(the_unit_reads_the_targets_and_counts_those_it_has_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* A million controls from a bad hand, under the address and undefined-behaviour sanitizers: no
  * bound of the page is ever broken, and the glass goes on. The seed is fixed; another one may be
  * given. */
+#include "check.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { EVENTS = 1000000, A_STEP = 8, HOSTILE_STEP_US = 400 };
 
@@ -115,9 +110,8 @@ static void check_bounds(const struct rig *r)
     }
 }
 
-static void a_million_hostile_controls_break_no_bound(void **state)
+TEST(a_million_hostile_controls_break_no_bound)
 {
-    (void)state;
     const char *seed = getenv("SEED");
     struct hs_rng rng;
     hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
@@ -145,12 +139,4 @@ static void a_million_hostile_controls_break_no_bound(void **state)
     print_message("# %u pictures, %u lines, %u refused, %u swaps\n", r->unit.count.frames,
                   r->unit.count.lines, r->unit.count.commands_refused, r->unit.count.swaps);
     free_rig(r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_million_hostile_controls_break_no_bound),
-    };
-    return cmocka_run_group_tests_name("hostile_controls", tests, NULL, NULL);
 }

@@ -1,18 +1,13 @@
 /* A unit with tables at the ends of what the contract allows, under the address and undefined-
  * behaviour sanitizers: every field of view and a patch are drawn, and nothing overflows. */
+#include "check.h"
 #include "lm/radar_check.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { RANDOM_TABLES = 24 };
 static const double FLIGHT_S = 0.06;
@@ -184,9 +179,8 @@ static void fly(const struct lm_radar *table, double height_m)
     free_rig(r);
 }
 
-static void a_table_with_one_field_at_its_end_is_drawn(void **state)
+TEST(a_table_with_one_field_at_its_end_is_drawn)
 {
-    (void)state;
     for (uint32_t n = 0; lm_radar_field(n); n++) {
         const struct lm_radar_field *f = lm_radar_field(n);
         for (uint32_t end = 0; end < 2; end++) {
@@ -200,9 +194,8 @@ static void a_table_with_one_field_at_its_end_is_drawn(void **state)
     }
 }
 
-static void tables_with_many_fields_at_their_ends_are_drawn(void **state)
+TEST(tables_with_many_fields_at_their_ends_are_drawn)
 {
-    (void)state;
     const char *seed = getenv("SEED");
     struct hs_rng rng;
     hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
@@ -220,13 +213,4 @@ static void tables_with_many_fields_at_their_ends_are_drawn(void **state)
         repair(&table);
         fly(&table, 500 + 600.0 * turn);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_with_one_field_at_its_end_is_drawn),
-        cmocka_unit_test(tables_with_many_fields_at_their_ends_are_drawn),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

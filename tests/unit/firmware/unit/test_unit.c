@@ -1,17 +1,11 @@
 /* The display unit as a whole, on a bus, a flash and a glass that misbehave on demand. */
+#include "check.h"
 #include "unit_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-static void a_good_flight_paints_a_sector_without_a_flag(void **state)
+TEST(a_good_flight_paints_a_sector_without_a_flag)
 {
-    (void)state;
     struct rig *r = start_rig();
     command(r, range_10);
     run(r, 3);
@@ -21,9 +15,8 @@ static void a_good_flight_paints_a_sector_without_a_flag(void **state)
     free_rig(r);
 }
 
-static void frames_come_thirty_times_a_second_and_lines_at_the_radars_rate(void **state)
+TEST(frames_come_thirty_times_a_second_and_lines_at_the_radars_rate)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1); /* nav must come first */
     const uint32_t frames = r->unit.count.frames, lines = r->unit.count.lines;
@@ -33,9 +26,8 @@ static void frames_come_thirty_times_a_second_and_lines_at_the_radars_rate(void 
     free_rig(r);
 }
 
-static void two_runs_give_the_same_pixels(void **state)
+TEST(two_runs_give_the_same_pixels)
 {
-    (void)state;
     struct rig *a = start_rig(), *b = start_rig();
     run(a, 2);
     run(b, 2);
@@ -44,9 +36,8 @@ static void two_runs_give_the_same_pixels(void **state)
     free_rig(b);
 }
 
-static void another_seed_gives_other_speckle(void **state)
+TEST(another_seed_gives_other_speckle)
 {
-    (void)state;
     struct rig *a = start_rig(), *b = make_rig();
     b->board.noise_seed = 1;
     assert_int_equal(lm_unit_init(&b->unit, &b->board), LM_OK);
@@ -57,9 +48,8 @@ static void another_seed_gives_other_speckle(void **state)
     free_rig(b);
 }
 
-static void without_a_bus_the_glass_says_so_and_shows_no_picture(void **state)
+TEST(without_a_bus_the_glass_says_so_and_shows_no_picture)
 {
-    (void)state;
     struct rig *r = start_rig();
     r->bus.is_down = 1;
     run(r, 2);
@@ -71,9 +61,8 @@ static void without_a_bus_the_glass_says_so_and_shows_no_picture(void **state)
     free_rig(r);
 }
 
-static void stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers(void **state)
+TEST(stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers)
 {
-    (void)state;
     struct rig *r = start_rig();
     command(r, range_10);
     run(r, 3);
@@ -95,9 +84,8 @@ static void stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers(v
     free_rig(r);
 }
 
-static void the_warning_is_on_the_glass(void **state)
+TEST(the_warning_is_on_the_glass)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1);
     uint32_t before = 0, after = 0;
@@ -113,9 +101,8 @@ static void the_warning_is_on_the_glass(void **state)
     free_rig(r);
 }
 
-static void an_unusable_database_is_shown_not_hidden(void **state)
+TEST(an_unusable_database_is_shown_not_hidden)
 {
-    (void)state;
     struct rig *r = make_rig();
     r->image.bytes[100] ^= 1;
     assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
@@ -129,9 +116,8 @@ static void an_unusable_database_is_shown_not_hidden(void **state)
     free_rig(r);
 }
 
-static void every_read_may_fail_once_and_the_sweep_goes_on(void **state)
+TEST(every_read_may_fail_once_and_the_sweep_goes_on)
 {
-    (void)state;
     struct rig *clean = start_rig();
     command(clean, range_10);
     run(clean, 4);
@@ -149,9 +135,8 @@ static void every_read_may_fail_once_and_the_sweep_goes_on(void **state)
     free_rig(clean);
 }
 
-static void a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser(void **state)
+TEST(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser)
 {
-    (void)state;
     struct rig *r = start_rig();
     for (size_t i = 0; i < r->image.record_count; i++) {
         r->image.bytes[r->image.tiles_offset + i * LM_TILE_BYTES + 500] ^= 0x10;
@@ -164,9 +149,8 @@ static void a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser(v
     free_rig(r);
 }
 
-static void late_flash_never_holds_the_sweep(void **state)
+TEST(late_flash_never_holds_the_sweep)
 {
-    (void)state;
     struct rig *r = start_rig();
     r->flash.busy_polls = 200;
     command(r, range_10);
@@ -177,9 +161,8 @@ static void late_flash_never_holds_the_sweep(void **state)
     free_rig(r);
 }
 
-static void a_patch_completes_and_stays(void **state)
+TEST(a_patch_completes_and_stays)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1);
     command(r, patch_here);
@@ -204,9 +187,8 @@ static const struct lm_control patch_from_afar = {
             .height_q6 = 2000 * 64,
             .has_layover = true}};
 
-static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read(void **state)
+TEST(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read)
 {
-    (void)state;
     struct rig *cold = start_rig(), *warm = start_rig();
     command(cold, patch_from_afar);
     run(cold, 1.0 * STEP_US / 1e6);
@@ -228,10 +210,8 @@ static void a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not
     free_rig(warm);
 }
 
-static void
-all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_step(void **state)
+TEST(all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_step)
 {
-    (void)state;
     struct rig *r = start_rig();
     const struct lm_unit *u = &r->unit;
     uint32_t before = 0;
@@ -253,9 +233,8 @@ all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_ste
 }
 
 /* Found by tests/fuzz: 256 cells do not fit 183 rows, and were painted beyond the plane. */
-static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
+TEST(a_patch_on_the_smallest_glass_stays_within_its_frame)
 {
-    (void)state;
     struct rig *r = make_rig();
     const size_t end = 256 * 256;
     memset(r->plane, 0xAA, sizeof r->plane);
@@ -280,9 +259,8 @@ static void a_patch_on_the_smallest_glass_stays_within_its_frame(void **state)
 }
 
 /* Found by tests/golden: ten degrees are 9.99999998 as a binary angle, and were shown as 009. */
-static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
+TEST(the_line_of_sight_is_shown_to_the_nearest_degree)
 {
-    (void)state;
     struct rig *r[2];
     for (int i = 0; i < 2; i++) {
         r[i] = start_rig();
@@ -299,9 +277,8 @@ static void the_line_of_sight_is_shown_to_the_nearest_degree(void **state)
     free_rig(r[1]);
 }
 
-static void a_mode_change_leaves_nothing_of_the_last_picture(void **state)
+TEST(a_mode_change_leaves_nothing_of_the_last_picture)
 {
-    (void)state;
     struct rig *r = start_rig();
     command(r, range_10);
     run(r, 3);
@@ -312,9 +289,8 @@ static void a_mode_change_leaves_nothing_of_the_last_picture(void **state)
     free_rig(r);
 }
 
-static void a_jump_of_the_aircraft_starts_the_picture_anew(void **state)
+TEST(a_jump_of_the_aircraft_starts_the_picture_anew)
 {
-    (void)state;
     struct rig *r = start_rig();
     command(r, range_10);
     run(r, 3);
@@ -326,9 +302,8 @@ static void a_jump_of_the_aircraft_starts_the_picture_anew(void **state)
     free_rig(r);
 }
 
-static void hostile_commands_are_refused_and_counted(void **state)
+TEST(hostile_commands_are_refused_and_counted)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1);
     const struct lm_control bad[] = {
@@ -359,9 +334,8 @@ static void hostile_commands_are_refused_and_counted(void **state)
     free_rig(r);
 }
 
-static void freeze_holds_the_picture_and_says_so(void **state)
+TEST(freeze_holds_the_picture_and_says_so)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 2);
     command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = true});
@@ -373,9 +347,8 @@ static void freeze_holds_the_picture_and_says_so(void **state)
     free_rig(r);
 }
 
-static void a_busy_or_broken_display_is_counted_and_survived(void **state)
+TEST(a_busy_or_broken_display_is_counted_and_survived)
 {
-    (void)state;
     struct rig *r = start_rig();
     run(r, 1);
     r->is_display_busy = 1;
@@ -391,9 +364,8 @@ static void a_busy_or_broken_display_is_counted_and_survived(void **state)
     free_rig(r);
 }
 
-static void a_display_of_a_size_nobody_promised_is_refused(void **state)
+TEST(a_display_of_a_size_nobody_promised_is_refused)
 {
-    (void)state;
     struct rig *r = make_rig();
     r->display.width_px = 255;
     assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_RANGE);
@@ -402,44 +374,12 @@ static void a_display_of_a_size_nobody_promised_is_refused(void **state)
     free_rig(r);
 }
 
-static void a_radar_table_that_breaks_its_contract_is_refused(void **state)
+TEST(a_radar_table_that_breaks_its_contract_is_refused)
 {
-    (void)state;
     struct rig *r = make_rig();
     struct lm_radar radar = lm_radar_default;
     radar.mode[LM_SECTOR_GM].bars = 0;
     r->board.radar = &radar;
     assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_TABLE);
     free_rig(r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_good_flight_paints_a_sector_without_a_flag),
-        cmocka_unit_test(frames_come_thirty_times_a_second_and_lines_at_the_radars_rate),
-        cmocka_unit_test(two_runs_give_the_same_pixels),
-        cmocka_unit_test(another_seed_gives_other_speckle),
-        cmocka_unit_test(without_a_bus_the_glass_says_so_and_shows_no_picture),
-        cmocka_unit_test(stale_nav_freezes_the_sweep_then_removes_the_picture_then_recovers),
-        cmocka_unit_test(the_warning_is_on_the_glass),
-        cmocka_unit_test(an_unusable_database_is_shown_not_hidden),
-        cmocka_unit_test(every_read_may_fail_once_and_the_sweep_goes_on),
-        cmocka_unit_test(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser),
-        cmocka_unit_test(late_flash_never_holds_the_sweep),
-        cmocka_unit_test(a_patch_completes_and_stays),
-        cmocka_unit_test(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read),
-        cmocka_unit_test(
-            all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_a_step),
-        cmocka_unit_test(a_patch_on_the_smallest_glass_stays_within_its_frame),
-        cmocka_unit_test(the_line_of_sight_is_shown_to_the_nearest_degree),
-        cmocka_unit_test(a_mode_change_leaves_nothing_of_the_last_picture),
-        cmocka_unit_test(a_jump_of_the_aircraft_starts_the_picture_anew),
-        cmocka_unit_test(hostile_commands_are_refused_and_counted),
-        cmocka_unit_test(freeze_holds_the_picture_and_says_so),
-        cmocka_unit_test(a_busy_or_broken_display_is_counted_and_survived),
-        cmocka_unit_test(a_radar_table_that_breaks_its_contract_is_refused),
-        cmocka_unit_test(a_display_of_a_size_nobody_promised_is_refused),
-    };
-    return cmocka_run_group_tests_name("unit", tests, NULL, NULL);
 }

@@ -5,24 +5,19 @@
 #include "image/reader.h"
 #include "image/verify.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "scene.h"
 #include "support.h"
 
 #include <gdal_alg.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { CELLS = LM_TILE_CELLS };
 
@@ -227,9 +222,8 @@ static void build_cover(const char *terrain, const char *out)
     assert_int_equal(exit_code, 0);
 }
 
-static void every_cell_holds_the_pixel_under_it_on_a_geographic_grid(void **state)
+TEST(every_cell_holds_the_pixel_under_it_on_a_geographic_grid)
 {
-    (void)state;
     write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 300, 250);
     write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -240,9 +234,8 @@ static void every_cell_holds_the_pixel_under_it_on_a_geographic_grid(void **stat
     image_close(&image);
 }
 
-static void every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres(void **state)
+TEST(every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres)
 {
-    (void)state;
     write_cover(32632, (const double[6]){430000, 30, 0, 5220000, 0, -30}, 260, 240);
     write_terrain("terrain.tif", 8.0, 46.9, 0.3, 0.35, 0.001, waves_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -260,9 +253,8 @@ static void every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres
     image_close(&image);
 }
 
-static void the_seam_of_a_projection_spoils_no_cell(void **state)
+TEST(the_seam_of_a_projection_spoils_no_cell)
 {
-    (void)state;
     /* Web Mercator ends at 180 degrees, 20,037,508 m. */
     write_cover(3857, (const double[6]){20037508.34 - 7600, 38, 0, 2280, 0, -38}, 200, 120);
     write_terrain("terrain.tif", 179.9, -0.1, 0.2, 0.2, 0.001, waves_m);
@@ -273,9 +265,8 @@ static void the_seam_of_a_projection_spoils_no_cell(void **state)
     image_close(&image);
 }
 
-static void an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole(void **state)
+TEST(an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole)
 {
-    (void)state;
     static const struct {
         double longitude, latitude;
     } places[] = {{0, 51},      {180, -17},    {20, 61.875}, {-70, -61.875},
@@ -315,9 +306,8 @@ static double west_waves(double x, double y)
     return waves_m(x + 360.0, y);
 }
 
-static void dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface(void **state)
+TEST(dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface)
 {
-    (void)state;
     scene_classes();
     write_terrain("east.tif", 179.8, -17.2, 0.2, 0.2, 0.001, east_waves);
     write_terrain("west.tif", -180.0, -17.2, 0.2, 0.2, 0.001, west_waves);
@@ -341,9 +331,8 @@ static double island_m(double x, double y)
     return d < 0.2 ? 1000.0 * (0.2 - d) : d < 0.25 ? -5.0 : 0.0;
 }
 
-static void outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level(void **state)
+TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
 {
-    (void)state;
     write_cover(4326, (const double[6]){7.95, 0.0002, 0, 47.05, 0, -0.0002}, 500, 500);
     write_terrain("terrain.tif", 7.5, 46.5, 1, 1, 0.002, island_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -398,9 +387,8 @@ static double rugged_m(double x, double y)
 
 /* Levels meet along the class raster's border, where tiles from below lie beside tiles made at
  * their level. */
-static void detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_ground(void **state)
+TEST(detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_ground)
 {
-    (void)state;
     write_cover(32632, (const double[6]){430000, 20, 0, 6870000, 0, -20}, 500, 500);
     struct scene_raster r = {.width = 600,
                              .height = 600,
@@ -415,9 +403,8 @@ static void detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_grou
     image_close(&image);
 }
 
-static void the_mean_elevation_is_that_of_the_land(void **state)
+TEST(the_mean_elevation_is_that_of_the_land)
 {
-    (void)state;
     scene_classes();
     write_terrain("terrain.tif", 7.5, 46.5, 1, 1, 0.002, island_m);
     assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --title Island "
@@ -447,9 +434,8 @@ static double speckled_gamma(double x, double y)
     return speckled_class(x, y) == 0 ? 10.0 : -50.0;
 }
 
-static void cells_larger_than_the_pixels_hold_their_commonest_class_and_mean_power(void **state)
+TEST(cells_larger_than_the_pixels_hold_their_commonest_class_and_mean_power)
 {
-    (void)state;
     scene_classes();
     struct scene_raster r = {.width = 600,
                              .height = 600,
@@ -490,9 +476,8 @@ static double tower_m(double x, double y)
     return x < 8.05 ? 36.0 : -9999.0;
 }
 
-static void heights_come_from_their_raster_and_else_from_the_class(void **state)
+TEST(heights_come_from_their_raster_and_else_from_the_class)
 {
-    (void)state;
     write_cover(4326, (const double[6]){8.0, 0.0005, 0, 47.1, 0, -0.0005}, 200, 200);
     write_terrain("terrain.tif", 7.9, 46.9, 0.4, 0.4, 0.002, waves_m);
     const struct scene_raster r = {.width = 90,
@@ -532,9 +517,8 @@ static double steep_m(double x, double y)
     return x < 8.0 ? 100.0 : 100.0 + (x - 8.0) * 1000 * 76;
 }
 
-static void steep_ground_gets_its_own_class(void **state)
+TEST(steep_ground_gets_its_own_class)
 {
-    (void)state;
     scene_classes();
     write_terrain("terrain.tif", 7.95, 46.95, 0.1, 0.1, 0.001, steep_m);
     assert_int_equal(
@@ -551,9 +535,8 @@ static void steep_ground_gets_its_own_class(void **state)
 
 /* ---- what else must hold ---- */
 
-static void the_same_inputs_give_the_same_bytes(void **state)
+TEST(the_same_inputs_give_the_same_bytes)
 {
-    (void)state;
     write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 100, 90);
     write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -568,9 +551,8 @@ static void the_same_inputs_give_the_same_bytes(void **state)
     assert_int_equal(support_run("cmp %s %s", scene_path("a.lmdb"), scene_path("b.lmdb")), 0);
 }
 
-static void the_firmware_opens_the_image_and_accepts_every_tile(void **state)
+TEST(the_firmware_opens_the_image_and_accepts_every_tile)
 {
-    (void)state;
     write_cover(32632, (const double[6]){430000, 30, 0, 5220000, 0, -30}, 260, 240);
     write_terrain("terrain.tif", 8.0, 46.9, 0.3, 0.35, 0.001, waves_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -617,9 +599,8 @@ static void expect_failure(int exit_code, int expected, const char *message)
                      1);
 }
 
-static void every_bad_input_is_named_and_leaves_no_file(void **state)
+TEST(every_bad_input_is_named_and_leaves_no_file)
 {
-    (void)state;
     scene_classes();
     write_cover(4326, (const double[6]){8.0, 0.0005, 0, 47.1, 0, -0.0005}, 100, 100);
     write_terrain("terrain.tif", 7.9, 46.9, 0.4, 0.4, 0.002, waves_m);
@@ -684,9 +665,8 @@ static void every_bad_input_is_named_and_leaves_no_file(void **state)
                    1, "check that the folder exists");
 }
 
-static void a_full_disk_leaves_no_file_and_the_old_image_as_it_was(void **state)
+TEST(a_full_disk_leaves_no_file_and_the_old_image_as_it_was)
 {
-    (void)state;
     write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 100, 90);
     write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
     scene_classes();
@@ -702,9 +682,8 @@ static void a_full_disk_leaves_no_file_and_the_old_image_as_it_was(void **state)
     unlink(scene_path("old.lmdb"));
 }
 
-static void inspect_verify_and_picture_say_what_is_in_the_image(void **state)
+TEST(inspect_verify_and_picture_say_what_is_in_the_image)
 {
-    (void)state;
     write_cover(4326, (const double[6]){8.01, 0.0003, 0, 47.19, 0, -0.0003}, 100, 90);
     write_terrain("terrain.tif", 8.0, 47.0, 0.2, 0.25, 0.001, waves_m);
     build_cover("terrain.tif", "a.lmdb");
@@ -738,9 +717,8 @@ static double tilted_m(double x, double y)
     return 1000.0 + 1000.0 * (x - 8.0) + 2000.0 * (y - 47.0);
 }
 
-static void a_picture_has_north_up_and_the_scale_it_says(void **state)
+TEST(a_picture_has_north_up_and_the_scale_it_says)
 {
-    (void)state;
     scene_classes();
     write_terrain("terrain.tif", 7.9, 46.9, 0.4, 0.4, 0.001, tilted_m);
     assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --out %s",
@@ -768,9 +746,8 @@ static void a_picture_has_north_up_and_the_scale_it_says(void **state)
     GDALClose(picture);
 }
 
-static void real_dted_becomes_one_island_without_seams(void **state)
+TEST(real_dted_becomes_one_island_without_seams)
 {
-    (void)state;
     char paths[3][512];
     if (!support_data_path("dted1_hawaii/n19_w155_3arc_v2.dt1", paths[0], sizeof paths[0]) ||
         !support_data_path("dted1_hawaii/n19_w156_3arc_v2.dt1", paths[1], sizeof paths[1]) ||
@@ -800,9 +777,8 @@ static void real_dted_becomes_one_island_without_seams(void **state)
 }
 
 /* 20,000 x 20,000 pixels take minutes and 3.4 GB of disk: only when LANDMASS_BIG_TESTS is set. */
-static void twenty_thousand_pixels_a_side_fit_into_a_gibibyte(void **state)
+TEST(twenty_thousand_pixels_a_side_fit_into_a_gibibyte)
 {
-    (void)state;
     if (!getenv("LANDMASS_BIG_TESTS")) {
         print_message("# skipped: LANDMASS_BIG_TESTS is not set (3.4 GB of disk, minutes)\n");
         skip();
@@ -830,28 +806,4 @@ static int tidy(void **state)
     return support_run("rm -rf %s", scene_folder());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_cell_holds_the_pixel_under_it_on_a_geographic_grid),
-        cmocka_unit_test(every_cell_holds_the_pixel_under_it_on_utm_grids_of_both_hemispheres),
-        cmocka_unit_test(the_seam_of_a_projection_spoils_no_cell),
-        cmocka_unit_test(an_area_across_greenwich_the_antimeridian_or_a_zone_border_is_whole),
-        cmocka_unit_test(dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface),
-        cmocka_unit_test(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level),
-        cmocka_unit_test(detail_and_wide_terrain_meet_without_a_crack_on_the_most_rugged_ground),
-        cmocka_unit_test(the_mean_elevation_is_that_of_the_land),
-        cmocka_unit_test(cells_larger_than_the_pixels_hold_their_commonest_class_and_mean_power),
-        cmocka_unit_test(heights_come_from_their_raster_and_else_from_the_class),
-        cmocka_unit_test(steep_ground_gets_its_own_class),
-        cmocka_unit_test(the_same_inputs_give_the_same_bytes),
-        cmocka_unit_test(the_firmware_opens_the_image_and_accepts_every_tile),
-        cmocka_unit_test(every_bad_input_is_named_and_leaves_no_file),
-        cmocka_unit_test(a_full_disk_leaves_no_file_and_the_old_image_as_it_was),
-        cmocka_unit_test(inspect_verify_and_picture_say_what_is_in_the_image),
-        cmocka_unit_test(a_picture_has_north_up_and_the_scale_it_says),
-        cmocka_unit_test(real_dted_becomes_one_island_without_seams),
-        cmocka_unit_test(twenty_thousand_pixels_a_side_fit_into_a_gibibyte),
-    };
-    return cmocka_run_group_tests_name("build", tests, NULL, tidy);
-}
+TEST_GROUP(NULL, tidy);

@@ -10,18 +10,13 @@
 #include "hs/rng.h"
 #include "lm/signature.h"
 
+#include "check.h"
 #include "memory_flash.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* ---- signatures of numbers drawn by lot ---- */
 
@@ -90,9 +85,8 @@ static int read_bytes(const uint8_t *bytes, size_t size)
 
 /* ---- the file ---- */
 
-static void a_file_holds_what_was_baked(void **state)
+TEST(a_file_holds_what_was_baked)
 {
-    (void)state;
     struct db_signature s, back;
     make(&s, "sixteen_letters_", 5, 3);
     assert_int_equal(db_signature_write(&s, scene_path("a.sig")), 0);
@@ -103,9 +97,8 @@ static void a_file_holds_what_was_baked(void **state)
     db_signature_free(&s);
 }
 
-static void every_flipped_bit_of_a_file_is_found(void **state)
+TEST(every_flipped_bit_of_a_file_is_found)
 {
-    (void)state;
     uint8_t *bytes;
     write_sig("one.sig", "one", 1, 1);
     const size_t size = load("one.sig", &bytes);
@@ -221,9 +214,8 @@ static void tell(const struct parts *p, uint32_t count, uint32_t chips, int lie)
     }
 }
 
-static void a_lie_in_a_file_under_right_checksums_is_found(void **state)
+TEST(a_lie_in_a_file_under_right_checksums_is_found)
 {
-    (void)state;
     uint8_t *bytes;
     write_sig("six.sig", "six", 3, 2);
     const size_t size = load("six.sig", &bytes);
@@ -260,9 +252,8 @@ static void write_list(const char *more)
     scene_text("sig.targets", list);
 }
 
-static void a_list_names_libraries_and_targets_name_them(void **state)
+TEST(a_list_names_libraries_and_targets_name_them)
 {
-    (void)state;
     struct build_targets t;
     write_list("");
     assert_int_equal(build_targets_read(&t, scene_path("sig.targets")), 0);
@@ -281,9 +272,8 @@ static void a_list_names_libraries_and_targets_name_them(void **state)
     build_targets_free(&t);
 }
 
-static void a_line_about_signatures_that_makes_no_sense_is_refused(void **state)
+TEST(a_line_about_signatures_that_makes_no_sense_is_refused)
 {
-    (void)state;
     static const char *const bad[] = {
         "library truck six.sig\n", /* there is one */
         "library\n",
@@ -334,9 +324,8 @@ static void build(const char *out)
                      0);
 }
 
-static void the_firmware_reads_the_chips_that_were_baked(void **state)
+TEST(the_firmware_reads_the_chips_that_were_baked)
 {
-    (void)state;
     static const struct {
         uint32_t aspects, depressions;
     } sizes[2] = {{3, 2}, {10, 1}};
@@ -371,9 +360,8 @@ static void the_firmware_reads_the_chips_that_were_baked(void **state)
     image_close(&image);
 }
 
-static void verify_and_inspect_know_signatures(void **state)
+TEST(verify_and_inspect_know_signatures)
 {
-    (void)state;
     build("sig.lmdb");
     assert_int_equal(scene_run("verify %s", scene_path("sig.lmdb")), 0);
     assert_int_equal(scene_run("inspect %s", scene_path("sig.lmdb")), 0);
@@ -416,9 +404,8 @@ static void seal_image(struct copy *c)
     damage_seal(c->bytes, LM_IMAGE_TARGETS, LM_IMAGE_SIGNATURES);
 }
 
-static void a_lie_in_an_image_under_right_checksums_is_found(void **state)
+TEST(a_lie_in_an_image_under_right_checksums_is_found)
 {
-    (void)state;
     struct copy c;
     copy_image(&c);
     uint8_t *kept = malloc(c.size);
@@ -449,9 +436,8 @@ static void a_lie_in_an_image_under_right_checksums_is_found(void **state)
     free(c.bytes);
 }
 
-static void every_flipped_bit_of_the_section_is_found(void **state)
+TEST(every_flipped_bit_of_the_section_is_found)
 {
-    (void)state;
     struct copy c;
     copy_image(&c);
     damage_flip(c.bytes, c.size, c.signatures_at, 64 + 2 * LM_SIGNATURE_BYTES + 16 * LM_CHIP_BYTES,
@@ -465,18 +451,4 @@ static int enter(void **state)
     return scene_folder() ? 0 : -1;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_holds_what_was_baked),
-        cmocka_unit_test(every_flipped_bit_of_a_file_is_found),
-        cmocka_unit_test(a_lie_in_a_file_under_right_checksums_is_found),
-        cmocka_unit_test(a_list_names_libraries_and_targets_name_them),
-        cmocka_unit_test(a_line_about_signatures_that_makes_no_sense_is_refused),
-        cmocka_unit_test(the_firmware_reads_the_chips_that_were_baked),
-        cmocka_unit_test(verify_and_inspect_know_signatures),
-        cmocka_unit_test(a_lie_in_an_image_under_right_checksums_is_found),
-        cmocka_unit_test(every_flipped_bit_of_the_section_is_found),
-    };
-    return cmocka_run_group_tests_name("signatures", tests, enter, NULL);
-}
+TEST_GROUP(enter, NULL);

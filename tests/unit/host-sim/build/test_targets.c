@@ -8,20 +8,15 @@
 #include "hs/rng.h"
 #include "lm/target.h"
 
+#include "check.h"
 #include "fx/crc32c.h"
 #include "memory_flash.h"
 #include "scene.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const char text[] =
     "# everything that a file may say\n"
@@ -43,9 +38,8 @@ static const char text[] =
     "  via 47 8.02\n"
     "  via 47 8\n";
 
-static void a_file_says_all_that_a_record_holds(void **state)
+TEST(a_file_says_all_that_a_record_holds)
 {
-    (void)state;
     struct build_targets t;
     scene_text("all.targets", text);
     assert_int_equal(build_targets_read(&t, scene_path("all.targets")), 0);
@@ -97,9 +91,8 @@ static void a_file_says_all_that_a_record_holds(void **state)
 }
 
 /* Legs of up to 100 km end within a decimetre of their places, as the firmware goes them. */
-static void a_path_leads_to_its_places(void **state)
+TEST(a_path_leads_to_its_places)
 {
-    (void)state;
     static const double places[5][2] = {
         {60, 179.5}, {60.7, -179.6}, {60.1, -179.2}, {60.1001, -179.2}, {59.7, 179.9}};
     struct build_targets t;
@@ -118,9 +111,8 @@ static void a_path_leads_to_its_places(void **state)
     build_targets_free(&t);
 }
 
-static void a_line_that_makes_no_sense_is_refused(void **state)
+TEST(a_line_that_makes_no_sense_is_refused)
 {
-    (void)state;
     static const char *const bad[] = {
         "sphere 1 0 0 0\n",
         "target t 0 0 0 0\n",
@@ -179,9 +171,8 @@ static void a_line_that_makes_no_sense_is_refused(void **state)
 
 /* The file above with bytes changed, lost and doubled: refused with an error, or read into records
  * that the firmware takes. */
-static void whatever_is_read_the_firmware_takes(void **state)
+TEST(whatever_is_read_the_firmware_takes)
 {
-    (void)state;
     struct hs_rng rng;
     uint32_t taken = 0, refused = 0;
     FILE *keep = stderr;
@@ -252,9 +243,8 @@ static void build_with_targets(const char *out)
     build(out, more);
 }
 
-static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state)
+TEST(the_targets_of_a_file_are_those_that_the_firmware_reads)
 {
-    (void)state;
     struct build_targets t;
     struct image image;
     struct memory_flash flash;
@@ -276,9 +266,8 @@ static void the_targets_of_a_file_are_those_that_the_firmware_reads(void **state
     build_targets_free(&t);
 }
 
-static void verify_and_inspect_know_targets(void **state)
+TEST(verify_and_inspect_know_targets)
 {
-    (void)state;
     build_with_targets("with.lmdb");
     assert_int_equal(scene_run("verify %s", scene_path("with.lmdb")), 0);
     assert_int_equal(scene_run("inspect %s", scene_path("with.lmdb")), 0);
@@ -296,9 +285,8 @@ static void verify_and_inspect_know_targets(void **state)
     assert_true(scene_log_holds("section-sha256: TARGETS"));
 }
 
-static void a_fault_in_the_file_leaves_no_image(void **state)
+TEST(a_fault_in_the_file_leaves_no_image)
 {
-    (void)state;
     scene_text("bad.targets", "target t 0 0 0 0 scatterers\nsphere 1 0 0\n");
     assert_int_equal(scene_run("build --classes %s --terrain %s --land-class soil --out %s "
                                "--targets %s",
@@ -311,9 +299,8 @@ static void a_fault_in_the_file_leaves_no_image(void **state)
 
 /* Sections and bytes of an image without targets are those of its twin with them, but for the
  * header, the manifest and what lies behind the tiles. */
-static void an_image_without_targets_is_what_it_was(void **state)
+TEST(an_image_without_targets_is_what_it_was)
 {
-    (void)state;
     struct image with, without;
     build("without.lmdb", "");
     build_with_targets("with.lmdb");
@@ -365,9 +352,8 @@ static void seal(struct copy *c)
     damage_seal(c->bytes, LM_IMAGE_TARGETS, LM_IMAGE_TARGETS);
 }
 
-static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
+TEST(a_lie_about_a_target_under_right_checksums_is_found)
 {
-    (void)state;
     struct copy c;
     copy_image(&c);
     struct lm_target *t = (void *)(c.bytes + c.head_at + 64);
@@ -446,28 +432,10 @@ static void a_lie_about_a_target_under_right_checksums_is_found(void **state)
     free(c.bytes);
 }
 
-static void every_flipped_bit_of_the_section_is_found(void **state)
+TEST(every_flipped_bit_of_the_section_is_found)
 {
-    (void)state;
     struct copy c;
     copy_image(&c);
     damage_flip(c.bytes, c.size, c.head_at, 64 + 3 * LM_TARGET_BYTES, 7);
     free(c.bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_says_all_that_a_record_holds),
-        cmocka_unit_test(a_path_leads_to_its_places),
-        cmocka_unit_test(a_line_that_makes_no_sense_is_refused),
-        cmocka_unit_test(whatever_is_read_the_firmware_takes),
-        cmocka_unit_test(the_targets_of_a_file_are_those_that_the_firmware_reads),
-        cmocka_unit_test(verify_and_inspect_know_targets),
-        cmocka_unit_test(a_fault_in_the_file_leaves_no_image),
-        cmocka_unit_test(an_image_without_targets_is_what_it_was),
-        cmocka_unit_test(a_lie_about_a_target_under_right_checksums_is_found),
-        cmocka_unit_test(every_flipped_bit_of_the_section_is_found),
-    };
-    return cmocka_run_group_tests_name("targets", tests, NULL, NULL);
 }

@@ -2,17 +2,14 @@
 #include "bus/table_text.h"
 
 #include "bus/print.h"
+#include "check.h"
 #include "lm/bus.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static struct bus_table table;
 
@@ -41,9 +38,8 @@ static int read_text(const char *text, char *errors, size_t size)
     "item \"altitude\" field=true-altitude id=0x100 range=0..9000 period=100 stale=300 dead=5000 "
 #define CANAS "profile mine\nframing canaerospace\n"
 
-static void every_mistake_is_refused_with_its_line_and_its_word(void **state)
+TEST(every_mistake_is_refused_with_its_line_and_its_word)
 {
-    (void)state;
     static const struct {
         const char *text, *place, *word;
     } tests[] = {
@@ -126,9 +122,8 @@ static void every_mistake_is_refused_with_its_line_and_its_word(void **state)
     }
 }
 
-static void too_many_items_and_too_long_a_line_are_refused(void **state)
+TEST(too_many_items_and_too_long_a_line_are_refused)
 {
-    (void)state;
     char errors[1024];
     static char text[1 << 17];
     size_t length = (size_t)snprintf(text, sizeof text, PACKED);
@@ -166,9 +161,8 @@ static struct lm_bus_event only_event(const uint8_t bytes[8])
     return events[0];
 }
 
-static void a_table_means_what_it_says(void **state)
+TEST(a_table_means_what_it_says)
 {
-    (void)state;
     char errors[1024];
     assert_int_equal(read_text("# a remark\n"
                                "profile  mine # and another\r\n"
@@ -185,9 +179,8 @@ static void a_table_means_what_it_says(void **state)
     assert_int_equal(e.step, (uint32_t)(0.5 * 0.3048 * 64));
 }
 
-static void a_signed_number_has_its_least_value_too(void **state)
+TEST(a_signed_number_has_its_least_value_too)
 {
-    (void)state;
     char errors[1024];
     const struct {
         uint8_t bytes[8];
@@ -202,9 +195,8 @@ static void a_signed_number_has_its_least_value_too(void **state)
     }
 }
 
-static void a_number_that_says_nothing_is_no_value(void **state)
+TEST(a_number_that_says_nothing_is_no_value)
 {
-    (void)state;
     char errors[1024];
     assert_int_equal(read_text(PACKED "invalid-mask 0x40000\nchannel-mask 0x3\n" ALT
                                       "mask=0x1ff8fffc bits=0+16 none=0xffff when=16+2=1 unit=m\n",
@@ -245,9 +237,8 @@ static void a_number_that_says_nothing_is_no_value(void **state)
     assert_int_equal(bus.count.outcome[LM_BUS_FOREIGN], 1);
 }
 
-static void floats_that_are_no_numbers_are_refused(void **state)
+TEST(floats_that_are_no_numbers_are_refused)
 {
-    (void)state;
     char errors[1024];
     assert_int_equal(read_text(PACKED ALT "bits=0+64 type=float unit=m\n", errors, sizeof errors),
                      0);
@@ -268,9 +259,8 @@ static void floats_that_are_no_numbers_are_refused(void **state)
     }
 }
 
-static void a_canaerospace_of_ones_own_is_read(void **state)
+TEST(a_canaerospace_of_ones_own_is_read)
 {
-    (void)state;
     char errors[1024];
     assert_int_equal(
         read_text(CANAS ALT "id=1500 types=SHORT,FLOAT per-unit=2\n", errors, sizeof errors), 0);
@@ -280,18 +270,4 @@ static void a_canaerospace_of_ones_own_is_read(void **state)
     const struct lm_can_frame frame = {.id = 1500, .length = 6, .data = {7, 6, 0, 0, 0x03, 0xe9}};
     assert_int_equal(lm_bus_take(&bus, &frame, events), 1);
     assert_int_equal(events[0].value, 1001 * 32);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_mistake_is_refused_with_its_line_and_its_word),
-        cmocka_unit_test(too_many_items_and_too_long_a_line_are_refused),
-        cmocka_unit_test(a_table_means_what_it_says),
-        cmocka_unit_test(a_signed_number_has_its_least_value_too),
-        cmocka_unit_test(a_number_that_says_nothing_is_no_value),
-        cmocka_unit_test(floats_that_are_no_numbers_are_refused),
-        cmocka_unit_test(a_canaerospace_of_ones_own_is_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* The confusion matrix against a published one, and the list of the worst regions. */
+#include "check.h"
 #include "classify/confusion.h"
 #include "classify/error_regions.h"
 #include "fixture.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* Congalton, "A review of assessing the accuracy of classifications of remotely sensed data",
  * Remote Sensing of Environment 37, 1991, table 1: deciduous, conifer, agriculture, shrub; rows
@@ -28,9 +23,8 @@ static struct db_confusion congalton(void)
     return c;
 }
 
-static void accuracy_and_kappa_are_those_of_congaltons_table(void **state)
+TEST(accuracy_and_kappa_are_those_of_congaltons_table)
 {
-    (void)state;
     const struct db_confusion c = congalton();
     assert_int_equal(db_confusion_total(&c), 434);
     assert_true(fabs(db_confusion_accuracy(&c) - 321.0 / 434) < 1e-12);
@@ -38,9 +32,8 @@ static void accuracy_and_kappa_are_those_of_congaltons_table(void **state)
     assert_true(fabs(db_confusion_kappa(&c) - 0.6535) < 5e-5);
 }
 
-static void producers_and_users_accuracies_are_those_of_congaltons_table(void **state)
+TEST(producers_and_users_accuracies_are_those_of_congaltons_table)
 {
-    (void)state;
     static const double producers[] = {65.0 / 75, 81.0 / 103, 85.0 / 115, 90.0 / 141};
     static const double users[] = {65.0 / 115, 81.0 / 100, 85.0 / 115, 90.0 / 104};
     const struct db_confusion c = congalton();
@@ -53,18 +46,16 @@ static void producers_and_users_accuracies_are_those_of_congaltons_table(void **
     assert_true(fabs(db_confusion_mean_recall(&c) - mean) < 1e-12);
 }
 
-static void an_empty_matrix_has_no_accuracy(void **state)
+TEST(an_empty_matrix_has_no_accuracy)
 {
-    (void)state;
     const struct db_confusion c = {0};
     assert_true(isnan(db_confusion_accuracy(&c)));
     assert_true(isnan(db_confusion_kappa(&c)));
     assert_true(isnan(db_confusion_mean_recall(&c)));
 }
 
-static void agreement_by_chance_alone_has_a_kappa_of_zero(void **state)
+TEST(agreement_by_chance_alone_has_a_kappa_of_zero)
 {
-    (void)state;
     struct db_confusion c = {0};
     c.counts[0][0] = 90 * 90;
     c.counts[0][1] = c.counts[1][0] = 90 * 10;
@@ -73,9 +64,8 @@ static void agreement_by_chance_alone_has_a_kappa_of_zero(void **state)
     assert_true(db_confusion_accuracy(&c) > 0.8);
 }
 
-static void the_worst_region_comes_first_with_what_it_was_taken_for(void **state)
+TEST(the_worst_region_comes_first_with_what_it_was_taken_for)
 {
-    (void)state;
     const struct db_exemplar items[] = {
         {0, 0, 0, 1, 0}, {1, 0, 0, 1, 0}, {2, 0, 1, 2, 0}, {3, 0, 1, 2, 0}, {4, 0, 1, 2, 0},
     };
@@ -99,14 +89,4 @@ static void the_worst_region_comes_first_with_what_it_was_taken_for(void **state
     free(places);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(accuracy_and_kappa_are_those_of_congaltons_table),
-        cmocka_unit_test(producers_and_users_accuracies_are_those_of_congaltons_table),
-        cmocka_unit_test(an_empty_matrix_has_no_accuracy),
-        cmocka_unit_test(agreement_by_chance_alone_has_a_kappa_of_zero),
-        cmocka_unit_test(the_worst_region_comes_first_with_what_it_was_taken_for),
-    };
-    return cmocka_run_group_tests_name("evaluate", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

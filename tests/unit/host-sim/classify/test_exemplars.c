@@ -1,6 +1,7 @@
 /* Exemplars: which pixels lie in a polygon, by GDAL's own rasteriser; patches, against a flood
  * fill; label rasters of another resolution; nodata; context windows; and splits that never part a
  * region. */
+#include "check.h"
 #include "classify/exemplars.h"
 #include "classify/samples.h"
 #include "classify/split.h"
@@ -15,15 +16,9 @@
 #include <math.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 60 };
 
@@ -73,9 +68,8 @@ static void rasterize_by_gdal(const struct db_grid *grid, const char *wkt, uint8
     OGR_G_DestroyGeometry(g);
 }
 
-static void the_pixels_of_a_polygon_are_those_gdal_burns(void **state)
+TEST(the_pixels_of_a_polygon_are_those_gdal_burns)
 {
-    (void)state;
     struct db_grid grid = fixture_grid(SIDE, SIDE);
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
@@ -112,9 +106,8 @@ static void the_pixels_of_a_polygon_are_those_gdal_burns(void **state)
     OSRDestroySpatialReference(grid.crs);
 }
 
-static void polygons_in_another_crs_land_on_the_same_pixels(void **state)
+TEST(polygons_in_another_crs_land_on_the_same_pixels)
 {
-    (void)state;
     struct db_grid grid = fixture_grid(SIDE, SIDE);
     OGRSpatialReferenceH lonlat = OSRNewSpatialReference(NULL);
     OSRImportFromEPSG(lonlat, 4326);
@@ -161,9 +154,8 @@ static void fill_from(const int32_t *labels, int *patch, int x, int y, int numbe
     }
 }
 
-static void patches_are_those_of_a_flood_fill(void **state)
+TEST(patches_are_those_of_a_flood_fill)
 {
-    (void)state;
     static int32_t labels[SIDE * SIDE];
     static int patch[SIDE * SIDE];
     static uint32_t numbers[SIDE * SIDE];
@@ -222,9 +214,8 @@ static void read_labels(const char *name, const struct db_grid *grid, int32_t *l
     db_label_rows_close(&rows);
 }
 
-static void a_pixel_takes_the_most_frequent_of_finer_labels(void **state)
+TEST(a_pixel_takes_the_most_frequent_of_finer_labels)
 {
-    (void)state;
     const float fine[] = {
         1, 1, 2, 3, //
         2, 1, 3, 3, //
@@ -240,9 +231,8 @@ static void a_pixel_takes_the_most_frequent_of_finer_labels(void **state)
     assert_memory_equal(found, expected, sizeof expected);
 }
 
-static void finer_pixels_take_the_label_they_lie_in(void **state)
+TEST(finer_pixels_take_the_label_they_lie_in)
 {
-    (void)state;
     const float coarse[] = {1, 2, 3, 4};
     struct db_grid labels = {.width = 2, .height = 2}, image = {.width = 4, .height = 4};
     fixture_raster("coarse.tif", &labels, GDT_Byte, coarse, 255);
@@ -253,9 +243,8 @@ static void finer_pixels_take_the_label_they_lie_in(void **state)
     }
 }
 
-static void labels_of_another_extent_are_refused(void **state)
+TEST(labels_of_another_extent_are_refused)
 {
-    (void)state;
     const float labels[8] = {0};
     struct db_grid shape = {.width = 4, .height = 2}, image = {.width = 4, .height = 4};
     struct db_label_rows rows;
@@ -277,9 +266,8 @@ static void open_stack(struct db_raster *r, const char *names, bool black)
     assert_int_equal(db_raster_open(r, &options), 0);
 }
 
-static void a_pixel_without_data_in_any_file_or_not_finite_is_no_data(void **state)
+TEST(a_pixel_without_data_in_any_file_or_not_finite_is_no_data)
 {
-    (void)state;
     const float a[] = {0, 1, 7, 0, NAN, 3}, b[] = {0, 2, 2, 8, 1, INFINITY};
     struct db_grid grid = fixture_grid(6, 1);
     fixture_raster("a.tif", &grid, GDT_Float32, a, 7);
@@ -300,9 +288,8 @@ static void a_pixel_without_data_in_any_file_or_not_finite_is_no_data(void **sta
     OSRDestroySpatialReference(grid.crs);
 }
 
-static void windows_give_mean_and_deviation_whatever_the_blocks(void **state)
+TEST(windows_give_mean_and_deviation_whatever_the_blocks)
 {
-    (void)state;
     enum { W = 17, H = 13, CONTEXT = 5 };
     float values[W * H];
     struct hs_rng rng;
@@ -378,9 +365,8 @@ static void find_stripes(struct db_exemplars *e, struct db_samples *s, struct db
     db_raster_close(&image);
 }
 
-static void exemplars_are_drawn_evenly_up_to_the_cap(void **state)
+TEST(exemplars_are_drawn_evenly_up_to_the_cap)
 {
-    (void)state;
     struct db_exemplars e;
     struct db_samples s;
     struct db_class_table table;
@@ -400,9 +386,8 @@ static void exemplars_are_drawn_evenly_up_to_the_cap(void **state)
     db_exemplars_free(&e);
 }
 
-static void a_split_by_polygons_never_parts_a_region(void **state)
+TEST(a_split_by_polygons_never_parts_a_region)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
         struct db_exemplars e;
         struct db_samples s;
@@ -428,9 +413,8 @@ static void a_split_by_polygons_never_parts_a_region(void **state)
     }
 }
 
-static void a_class_of_one_region_keeps_it_for_training(void **state)
+TEST(a_class_of_one_region_keeps_it_for_training)
 {
-    (void)state;
     struct db_exemplar items[] = {
         {0, 0, 0, 0, 0}, {1, 0, 0, 0, 0}, {2, 0, 1, 1, 0}, {3, 0, 2, 1, 0}};
     float inputs[4] = {0};
@@ -444,9 +428,8 @@ static void a_class_of_one_region_keeps_it_for_training(void **state)
     assert_int_not_equal(items[2].part, items[3].part);
 }
 
-static void pixels_held_out_are_the_part_asked_for(void **state)
+TEST(pixels_held_out_are_the_part_asked_for)
 {
-    (void)state;
     struct db_exemplars e;
     struct db_samples s;
     struct db_class_table table;
@@ -463,9 +446,8 @@ static void pixels_held_out_are_the_part_asked_for(void **state)
     db_exemplars_free(&e);
 }
 
-static void alike_exemplars_of_a_class_are_thinned_to_one(void **state)
+TEST(alike_exemplars_of_a_class_are_thinned_to_one)
 {
-    (void)state;
     struct db_exemplar items[] = {{0, 0, 0, 0, 0},
                                   {1, 0, 0, 0, 0},
                                   {2, 0, 0, 1, 0},
@@ -516,9 +498,8 @@ static int check_real(const struct real_set *set)
     return 1;
 }
 
-static void the_amazon_polygons_hold_the_pixels_their_notes_count(void **state)
+TEST(the_amazon_polygons_hold_the_pixels_their_notes_count)
 {
-    (void)state;
     const struct real_set village = {
         "sentinel2_amazon_village_srtm_labels/derived/sen2_12band_refl_x10000.bsq",
         "sentinel2_amazon_village_srtm_labels/derived/trainingPolygons_sen2.tsv",
@@ -534,23 +515,4 @@ static void the_amazon_polygons_hold_the_pixels_their_notes_count(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_pixels_of_a_polygon_are_those_gdal_burns),
-        cmocka_unit_test(polygons_in_another_crs_land_on_the_same_pixels),
-        cmocka_unit_test(patches_are_those_of_a_flood_fill),
-        cmocka_unit_test(a_pixel_takes_the_most_frequent_of_finer_labels),
-        cmocka_unit_test(finer_pixels_take_the_label_they_lie_in),
-        cmocka_unit_test(labels_of_another_extent_are_refused),
-        cmocka_unit_test(a_pixel_without_data_in_any_file_or_not_finite_is_no_data),
-        cmocka_unit_test(windows_give_mean_and_deviation_whatever_the_blocks),
-        cmocka_unit_test(exemplars_are_drawn_evenly_up_to_the_cap),
-        cmocka_unit_test(a_split_by_polygons_never_parts_a_region),
-        cmocka_unit_test(a_class_of_one_region_keeps_it_for_training),
-        cmocka_unit_test(pixels_held_out_are_the_part_asked_for),
-        cmocka_unit_test(alike_exemplars_of_a_class_are_thinned_to_one),
-        cmocka_unit_test(the_amazon_polygons_hold_the_pixels_their_notes_count),
-    };
-    return cmocka_run_group_tests_name("exemplars", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

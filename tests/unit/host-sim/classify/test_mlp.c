@@ -1,5 +1,6 @@
 /* The network: its gradient against differences of an independent double-precision forward pass,
  * what it can learn, that a seed fixes it, and its file. */
+#include "check.h"
 #include "classify/mlp_apply.h"
 #include "classify/mlp_train.h"
 #include "classify/net_file.h"
@@ -10,15 +11,9 @@
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* ---- The gradient ---- */
 
@@ -90,9 +85,8 @@ static void check_gradient(enum db_unit unit, enum db_loss loss)
     db_mlp_free(&net);
 }
 
-static void the_gradient_is_that_of_finite_differences(void **state)
+TEST(the_gradient_is_that_of_finite_differences)
 {
-    (void)state;
     check_gradient(DB_UNIT_TANH, DB_LOSS_SQUARE);
     check_gradient(DB_UNIT_SIGMOID, DB_LOSS_SQUARE);
     check_gradient(DB_UNIT_TANH, DB_LOSS_CROSS_ENTROPY);
@@ -144,9 +138,8 @@ static void train(struct db_mlp *net, const struct problem *p,
     assert_int_equal(db_mlp_train(net, options, &data, &none, report), 0);
 }
 
-static void interleaved_classes_are_learnt_to_the_goal(void **state)
+TEST(interleaved_classes_are_learnt_to_the_goal)
 {
-    (void)state;
     for (int loss = 0; loss < 2; loss++) {
         const struct problem p = chess_board(1), fresh = chess_board(2);
         struct db_mlp net = {2, 12, 2, DB_UNIT_TANH, (enum db_loss)loss, NULL};
@@ -161,9 +154,8 @@ static void interleaved_classes_are_learnt_to_the_goal(void **state)
     }
 }
 
-static void the_weights_kept_are_the_best_of_the_curve(void **state)
+TEST(the_weights_kept_are_the_best_of_the_curve)
 {
-    (void)state;
     struct problem p = chess_board(1);
     for (int i = 0; i < EXEMPLARS; i += 5) {
         p.targets[i] = (uint8_t)!p.targets[i]; /* A fifth wrong: the goal is out of reach. */
@@ -183,9 +175,8 @@ static void the_weights_kept_are_the_best_of_the_curve(void **state)
     db_mlp_free(&net);
 }
 
-static void alternating_errors_at_a_fixed_rms_are_met_with_every_cure(void **state)
+TEST(alternating_errors_at_a_fixed_rms_are_met_with_every_cure)
 {
-    (void)state;
     struct problem p = chess_board(1);
     for (int i = 0; i < EXEMPLARS; i++) {
         p.inputs[2 * i] = p.inputs[2 * i + 1] =
@@ -209,9 +200,8 @@ static void alternating_errors_at_a_fixed_rms_are_met_with_every_cure(void **sta
     db_mlp_free(&net);
 }
 
-static void a_rare_class_is_not_given_up(void **state)
+TEST(a_rare_class_is_not_given_up)
 {
-    (void)state;
     struct problem p;
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
@@ -259,9 +249,8 @@ static void make_net(struct db_net *net, uint64_t seed)
     }
 }
 
-static void one_seed_gives_one_file_byte_for_byte_and_another_a_different_one(void **state)
+TEST(one_seed_gives_one_file_byte_for_byte_and_another_a_different_one)
 {
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct db_net net;
         char name[16];
@@ -274,9 +263,8 @@ static void one_seed_gives_one_file_byte_for_byte_and_another_a_different_one(vo
     assert_int_equal(support_run("cmp -s %s %s", fixture_path("0.net"), fixture_path("2.net")), 1);
 }
 
-static void a_net_read_back_is_the_same_to_the_last_bit(void **state)
+TEST(a_net_read_back_is_the_same_to_the_last_bit)
 {
-    (void)state;
     struct db_net net, back;
     make_net(&net, 1);
     assert_int_equal(db_net_write(&net, fixture_path("a.net")), 0);
@@ -304,9 +292,8 @@ static char *load(const char *path, size_t *size)
     return text;
 }
 
-static void a_net_cut_short_anywhere_is_refused(void **state)
+TEST(a_net_cut_short_anywhere_is_refused)
 {
-    (void)state;
     struct db_net net;
     make_net(&net, 1);
     assert_int_equal(db_net_write(&net, fixture_path("b.net")), 0);
@@ -324,9 +311,8 @@ static void a_net_cut_short_anywhere_is_refused(void **state)
     free(text);
 }
 
-static void a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused(void **state)
+TEST(a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused)
 {
-    (void)state;
     static const char *const wrong[][2] = {
         {"landmass-net 1", "landmass-net 2"},
         {"bands 2", "bands 0"},
@@ -373,9 +359,8 @@ static void a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused(void **
 
 /* ---- The network on images ---- */
 
-static void the_fast_tanh_is_within_its_stated_error(void **state)
+TEST(the_fast_tanh_is_within_its_stated_error)
 {
-    (void)state;
     double worst = 0;
     for (int i = -200000; i <= 200000; i++) {
         const float x = (float)i / 10000;
@@ -386,9 +371,8 @@ static void the_fast_tanh_is_within_its_stated_error(void **state)
     assert_true(fabsf(db_fast_tanh(1e30f)) <= 1.0f);
 }
 
-static void images_are_classified_as_the_trained_network_says(void **state)
+TEST(images_are_classified_as_the_trained_network_says)
 {
-    (void)state;
     enum { COUNT = 1000, STRIDE = 1100 };
     struct db_net net;
     struct db_applied applied;
@@ -451,9 +435,8 @@ static int count_colour(GDALDatasetH picture, const uint8_t colour[3], double *r
 
 /* Found by looking at the gallery: a network that knew its exemplars after one epoch left a chart
  * without a curve. */
-static void a_training_of_one_epoch_can_be_seen_on_its_chart(void **state)
+TEST(a_training_of_one_epoch_can_be_seen_on_its_chart)
 {
-    (void)state;
     static const uint8_t red[3] = {0xc0, 0x20, 0x20}, blue[3] = {0x20, 0x40, 0xc0};
     struct db_epoch epoch = {.rms = 0.25, .recognition = 0.75, .validation = NAN};
     const struct db_train_report report = {.epochs = &epoch, .epoch_count = 1};
@@ -469,21 +452,4 @@ static void a_training_of_one_epoch_can_be_seen_on_its_chart(void **state)
     assert_true(fabs(recognition_row - (420 - 0.75 * 400)) < 2);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_gradient_is_that_of_finite_differences),
-        cmocka_unit_test(interleaved_classes_are_learnt_to_the_goal),
-        cmocka_unit_test(the_weights_kept_are_the_best_of_the_curve),
-        cmocka_unit_test(alternating_errors_at_a_fixed_rms_are_met_with_every_cure),
-        cmocka_unit_test(a_rare_class_is_not_given_up),
-        cmocka_unit_test(one_seed_gives_one_file_byte_for_byte_and_another_a_different_one),
-        cmocka_unit_test(a_net_read_back_is_the_same_to_the_last_bit),
-        cmocka_unit_test(a_net_cut_short_anywhere_is_refused),
-        cmocka_unit_test(a_net_with_any_line_lost_or_any_number_gone_wrong_is_refused),
-        cmocka_unit_test(the_fast_tanh_is_within_its_stated_error),
-        cmocka_unit_test(images_are_classified_as_the_trained_network_says),
-        cmocka_unit_test(a_training_of_one_epoch_can_be_seen_on_its_chart),
-    };
-    return cmocka_run_group_tests_name("mlp", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

@@ -12,6 +12,7 @@
 
 #include "fx/crc32c.h"
 
+#include "check.h"
 #include "memory_flash.h"
 #include "support.h"
 #include "tiny_image.h"
@@ -19,16 +20,10 @@
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* ---- SHA-256 ---- */
 
@@ -44,9 +39,8 @@ static void assert_digest(const char *text, size_t repeat, const char *expected)
     assert_string_equal(digest, expected);
 }
 
-static void sha256_gives_the_digests_of_fips_180_4(void **state)
+TEST(sha256_gives_the_digests_of_fips_180_4)
 {
-    (void)state;
     assert_digest("", 1, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     assert_digest("abc", 1, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     assert_digest("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq", 1,
@@ -56,9 +50,8 @@ static void sha256_gives_the_digests_of_fips_180_4(void **state)
 
 /* ---- cells and posts ---- */
 
-static void every_reflectivity_within_the_scale_is_a_quarter_of_a_decibel_off_at_most(void **state)
+TEST(every_reflectivity_within_the_scale_is_a_quarter_of_a_decibel_off_at_most)
 {
-    (void)state;
     for (int i = -8025; i <= 4775; i++) {
         const double db = i / 100.0;
         assert_true(fabs(image_gamma_db(image_gamma_code(db)) - db) <= 0.25 + 1e-9);
@@ -67,9 +60,8 @@ static void every_reflectivity_within_the_scale_is_a_quarter_of_a_decibel_off_at
     assert_int_equal(image_gamma_code(90.0), 255);
 }
 
-static void a_height_gets_the_nearest_code(void **state)
+TEST(a_height_gets_the_nearest_code)
 {
-    (void)state;
     for (int dm = 0; dm <= 1000; dm++) {
         const uint16_t chosen = image_heights_dm[image_height_code(image_heights_dm, dm)];
         for (int i = 0; i < 16; i++) {
@@ -117,9 +109,8 @@ static uint16_t mean_of_four(const uint16_t four[4])
     return (uint16_t)((int)code << 8 | best << 4 | nearest);
 }
 
-static void a_coarser_cell_is_the_mean_of_four(void **state)
+TEST(a_coarser_cell_is_the_mean_of_four)
 {
-    (void)state;
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (int trial = 0; trial < 200; trial++) {
@@ -141,9 +132,8 @@ static void a_coarser_cell_is_the_mean_of_four(void **state)
     }
 }
 
-static void posts_come_back_within_half_a_step_and_sea_level_exactly(void **state)
+TEST(posts_come_back_within_half_a_step_and_sea_level_exactly)
 {
-    (void)state;
     static int32_t posts[LM_TILE_POSTS][LM_TILE_POSTS];
     static struct lm_tile tile;
     static const int32_t reliefs_m[] = {0, 1, 900, 1023, 1024, 1025, 2500, 9000, 15400};
@@ -176,9 +166,8 @@ static struct image_area area_of(double south, double west, double north, double
                                (int64_t)(uint32_t)(image_bam(east) - image_bam(west))};
 }
 
-static void two_areas_join_the_short_way_round_the_earth(void **state)
+TEST(two_areas_join_the_short_way_round_the_earth)
 {
-    (void)state;
     const struct {
         double west[2], east[2], joined_west, joined_east;
     } cases[] = {
@@ -201,9 +190,8 @@ static void two_areas_join_the_short_way_round_the_earth(void **state)
     }
 }
 
-static void areas_meet_across_greenwich_and_the_antimeridian(void **state)
+TEST(areas_meet_across_greenwich_and_the_antimeridian)
 {
-    (void)state;
     const struct image_area greenwich = area_of(50, -1, 52, 1),
                             pacific = area_of(50, 179, 52, -179);
     const struct image_area east = area_of(51, 0.5, 53, 3), west = area_of(51, -180, 53, -178);
@@ -262,9 +250,8 @@ static void print_faults(const void *bytes, size_t size)
     image_verify(&image, &findings, &counts);
 }
 
-static void an_image_made_from_formats_md_alone_has_no_faults(void **state)
+TEST(an_image_made_from_formats_md_alone_has_no_faults)
 {
-    (void)state;
     static const double places[][2] = {{46, 11},     {-46, -70},     {0, 0},
                                        {61.875, 20}, {-73.125, 180}, {84.375, 0}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
@@ -278,9 +265,8 @@ static void an_image_made_from_formats_md_alone_has_no_faults(void **state)
     }
 }
 
-static void a_flipped_bit_anywhere_is_found(void **state)
+TEST(a_flipped_bit_anywhere_is_found)
 {
-    (void)state;
     struct tiny_image tiny;
     build_tiny(&tiny, 46, 11, 1, 1);
     const size_t bits = tiny.size * 8;
@@ -305,9 +291,8 @@ static void a_flipped_bit_anywhere_is_found(void **state)
     tiny_image_free(&tiny);
 }
 
-static void a_cut_or_lengthened_image_is_found(void **state)
+TEST(a_cut_or_lengthened_image_is_found)
 {
-    (void)state;
     struct tiny_image tiny;
     build_tiny(&tiny, 46, 11, 1, 1);
     /* A buffer of just the length: a sanitizer sees any step beyond it. */
@@ -351,9 +336,8 @@ static void look_at(const uint8_t *bytes, size_t size)
 
 /* Damage with its checksums put right again, so that it gets as far as it can. Half of it falls on
  * the tables, where a wrong number does the most. */
-static void no_damage_makes_the_reader_step_outside_the_image(void **state)
+TEST(no_damage_makes_the_reader_step_outside_the_image)
 {
-    (void)state;
     struct tiny_image tiny;
     build_tiny(&tiny, 61.875, 179.999, 2, 2);
     uint8_t *sound = malloc(tiny.size);
@@ -465,9 +449,8 @@ static void fall_in_the_heights(struct tiny_image *i)
     struct lm_classes *c = (struct lm_classes *)(void *)(i->bytes + i->classes_offset);
     c->height_dm[5] = 0;
 }
-static void a_lie_with_right_checksums_is_found(void **state)
+TEST(a_lie_with_right_checksums_is_found)
 {
-    (void)state;
     static const struct lie lies[] = {
         {"a record of another row", say_another_row},
         {"a record of another zone", say_another_zone},
@@ -499,9 +482,8 @@ static void a_lie_with_right_checksums_is_found(void **state)
 
 /* ---- writer ---- */
 
-static void a_tile_written_is_a_tile_the_firmware_reads(void **state)
+TEST(a_tile_written_is_a_tile_the_firmware_reads)
 {
-    (void)state;
     char path[512];
     snprintf(path, sizeof path, "%s/tmp/test_image.lmdb", support_build_dir());
     assert_int_equal(support_run("mkdir -p %s/tmp", support_build_dir()), 0);
@@ -535,24 +517,4 @@ static void a_tile_written_is_a_tile_the_firmware_reads(void **state)
     assert_int_equal(record, UINT32_MAX);
     image_close(&image);
     unlink(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sha256_gives_the_digests_of_fips_180_4),
-        cmocka_unit_test(every_reflectivity_within_the_scale_is_a_quarter_of_a_decibel_off_at_most),
-        cmocka_unit_test(a_height_gets_the_nearest_code),
-        cmocka_unit_test(a_coarser_cell_is_the_mean_of_four),
-        cmocka_unit_test(posts_come_back_within_half_a_step_and_sea_level_exactly),
-        cmocka_unit_test(two_areas_join_the_short_way_round_the_earth),
-        cmocka_unit_test(areas_meet_across_greenwich_and_the_antimeridian),
-        cmocka_unit_test(an_image_made_from_formats_md_alone_has_no_faults),
-        cmocka_unit_test(a_flipped_bit_anywhere_is_found),
-        cmocka_unit_test(a_cut_or_lengthened_image_is_found),
-        cmocka_unit_test(a_lie_with_right_checksums_is_found),
-        cmocka_unit_test(no_damage_makes_the_reader_step_outside_the_image),
-        cmocka_unit_test(a_tile_written_is_a_tile_the_firmware_reads),
-    };
-    return cmocka_run_group_tests_name("image", tests, NULL, NULL);
 }

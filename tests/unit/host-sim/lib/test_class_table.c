@@ -1,17 +1,12 @@
 /* The class table: what is written is read back, and what is wrong is refused with its line. */
+#include "check.h"
 #include "fixture.h"
 #include "hs/class_table.h"
 
 #include "hs/error.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const char good[] =
     "[mud]\n"
@@ -31,9 +26,8 @@ static const char good[] =
     "spread_db = 0\n"
     "limits_db = -50 -25\n";
 
-static void a_table_written_and_read_back_is_the_same_with_its_sources(void **state)
+TEST(a_table_written_and_read_back_is_the_same_with_its_sources)
 {
-    (void)state;
     struct db_class_table a, b;
     fixture_write("good.classes", good);
     assert_int_equal(db_class_table_read(&a, fixture_path("good.classes")), 0);
@@ -48,9 +42,8 @@ static void a_table_written_and_read_back_is_the_same_with_its_sources(void **st
     assert_memory_equal(&a, &b, sizeof a);
 }
 
-static void heatons_six_classes_are_as_the_paper_names_them(void **state)
+TEST(heatons_six_classes_are_as_the_paper_names_them)
 {
-    (void)state;
     struct db_class_table t;
     char names[256];
     assert_int_equal(db_class_table_read(&t, "host-sim/programs/db/classes/heaton6.classes"), 0);
@@ -67,9 +60,8 @@ static void heatons_six_classes_are_as_the_paper_names_them(void **state)
     assert_true(soil->high_db > vegetation->low_db);
 }
 
-static void every_mistake_is_refused_with_its_line(void **state)
+TEST(every_mistake_is_refused_with_its_line)
 {
-    (void)state;
     static const struct {
         const char *from, *to, *says;
     } wrong[] = {
@@ -103,9 +95,8 @@ static void every_mistake_is_refused_with_its_line(void **state)
     }
 }
 
-static void a_seventeenth_class_is_refused(void **state)
+TEST(a_seventeenth_class_is_refused)
 {
-    (void)state;
     struct db_class_table t;
     FILE *f = fopen(fixture_path("many.classes"), "w");
     for (int i = 0; i < 17; i++) {
@@ -118,13 +109,4 @@ static void a_seventeenth_class_is_refused(void **state)
     assert_int_equal(db_class_table_read(&t, fixture_path("many.classes")), -1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_written_and_read_back_is_the_same_with_its_sources),
-        cmocka_unit_test(heatons_six_classes_are_as_the_paper_names_them),
-        cmocka_unit_test(every_mistake_is_refused_with_its_line),
-        cmocka_unit_test(a_seventeenth_class_is_refused),
-    };
-    return cmocka_run_group_tests_name("class_table", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

@@ -1,22 +1,16 @@
 /* What every host program leans on: files that appear whole, and numbers that repeat. */
+#include "check.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-static void an_aborted_file_leaves_nothing_and_keeps_the_old_one(void **state)
+TEST(an_aborted_file_leaves_nothing_and_keeps_the_old_one)
 {
-    (void)state;
     char path[] = "/tmp/landmass-test-XXXXXX";
     const int fd = mkstemp(path);
     assert_true(write(fd, "old", 3) == 3);
@@ -44,9 +38,8 @@ static void an_aborted_file_leaves_nothing_and_keeps_the_old_one(void **state)
     unlink(path);
 }
 
-static void a_full_disk_is_an_error_and_leaves_no_file(void **state)
+TEST(a_full_disk_is_an_error_and_leaves_no_file)
 {
-    (void)state;
     if (access("/dev/full", W_OK) != 0) {
         print_message("# skipped: no /dev/full here\n");
         skip();
@@ -58,9 +51,8 @@ static void a_full_disk_is_an_error_and_leaves_no_file(void **state)
     assert_int_equal(access("/tmp/landmass-never", F_OK), -1);
 }
 
-static void a_device_is_refused_not_replaced(void **state)
+TEST(a_device_is_refused_not_replaced)
 {
-    (void)state;
     struct hs_atomic_file f;
     assert_int_equal(hs_atomic_open(&f, "/dev/null"), -1);
     char temporary[] = "/tmp/landmass-test-XXXXXX";
@@ -70,9 +62,8 @@ static void a_device_is_refused_not_replaced(void **state)
     hs_atomic_abort(&f);
 }
 
-static void normal_numbers_have_mean_zero_and_variance_one(void **state)
+TEST(normal_numbers_have_mean_zero_and_variance_one)
 {
-    (void)state;
     struct hs_rng r;
     hs_rng_seed(&r, 7);
     double sum = 0, squares = 0;
@@ -86,9 +77,8 @@ static void normal_numbers_have_mean_zero_and_variance_one(void **state)
     assert_true(fabs(squares / n - 1) < 0.02);
 }
 
-static void numbers_below_a_bound_are_even(void **state)
+TEST(numbers_below_a_bound_are_even)
 {
-    (void)state;
     struct hs_rng r;
     hs_rng_seed(&r, 9);
     int count[3] = {0};
@@ -98,16 +88,4 @@ static void numbers_below_a_bound_are_even(void **state)
     for (int i = 0; i < 3; i++) {
         assert_in_range(count[i], 9700, 10300);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_aborted_file_leaves_nothing_and_keeps_the_old_one),
-        cmocka_unit_test(a_full_disk_is_an_error_and_leaves_no_file),
-        cmocka_unit_test(a_device_is_refused_not_replaced),
-        cmocka_unit_test(normal_numbers_have_mean_zero_and_variance_one),
-        cmocka_unit_test(numbers_below_a_bound_are_even),
-    };
-    return cmocka_run_group_tests_name("common", tests, NULL, NULL);
 }

@@ -1,17 +1,13 @@
 /* The frames are byte for byte what an independent CANaerospace library sends for the same values.
  */
+#include "check.h"
 #include "decode.h"
 #include "nav/canas.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* One row of the peer's list of what its frames carry. */
 struct expected {
@@ -85,9 +81,8 @@ static struct canas_frame ours(const struct expected *e, const struct decoded_fr
     return canas_char4(&codes, id, node, id == CANAS_UTC ? clock : date);
 }
 
-static void our_frames_are_the_peers_byte_for_byte(void **state)
+TEST(our_frames_are_the_peers_byte_for_byte)
 {
-    (void)state;
     struct decoded_log log;
     FILE *frames = open_peer("can_peer/peer_frames_3s.log.gz");
     assert_true(decode_log(frames, &log));
@@ -119,9 +114,8 @@ static void our_frames_are_the_peers_byte_for_byte(void **state)
 
 /* The list prints doubles to twelve digits only, so that the bytes come from the peer's own pairs
  * and the list tells that they were joined the right way round. */
-static void our_pairs_of_doubles_are_the_peers(void **state)
+TEST(our_pairs_of_doubles_are_the_peers)
 {
-    (void)state;
     struct decoded_log log;
     FILE *frames = open_peer("can_peer/peer_frames_3s.log.gz");
     assert_true(decode_log(frames, &log));
@@ -148,9 +142,8 @@ static void our_pairs_of_doubles_are_the_peers(void **state)
 }
 
 /* The specification's own example: $4000 at a scale of 1500 is 750 K. */
-static void a_short_pair_carries_the_specifications_example(void **state)
+TEST(a_short_pair_carries_the_specifications_example)
 {
-    (void)state;
     struct canas_codes codes = {{0}};
     const struct canas_frame f = canas_short2(&codes, 324, 2, 750.0229, 1500);
     const uint8_t wanted[8] = {2, 12, 0, 0, 0x40, 0x00, 0x05, 0xDC};
@@ -159,9 +152,8 @@ static void a_short_pair_carries_the_specifications_example(void **state)
     assert_int_equal(over.data[4] << 8 | over.data[5], 0x8001);
 }
 
-static void message_codes_count_for_each_identifier_and_begin_again_after_255(void **state)
+TEST(message_codes_count_for_each_identifier_and_begin_again_after_255)
 {
-    (void)state;
     struct canas_codes codes = {{0}};
     for (int i = 0; i < 600; i++) {
         assert_int_equal(canas_float(&codes, 311, 1, 0).data[3], i % 256);
@@ -176,9 +168,8 @@ static void message_codes_count_for_each_identifier_and_begin_again_after_255(vo
     assert_int_equal(pair[1].data[3], 0);
 }
 
-static void a_line_is_what_candump_writes(void **state)
+TEST(a_line_is_what_candump_writes)
 {
-    (void)state;
     char line[CANAS_LINE_MAX];
     const struct canas_frame f = {
         .id = 0x40C, .length = 8, .data = {9, 2, 0, 0, 0x12, 0x34, 0x56, 0x78}};
@@ -187,16 +178,4 @@ static void a_line_is_what_candump_writes(void **state)
     assert_int_equal(n, strlen(line));
     canas_candump_line(line, &f, 7, "a23456789012345");
     assert_string_equal(line, "(0.000007) a23456789012345 40C#0902000012345678");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(our_frames_are_the_peers_byte_for_byte),
-        cmocka_unit_test(our_pairs_of_doubles_are_the_peers),
-        cmocka_unit_test(a_short_pair_carries_the_specifications_example),
-        cmocka_unit_test(message_codes_count_for_each_identifier_and_begin_again_after_255),
-        cmocka_unit_test(a_line_is_what_candump_writes),
-    };
-    return cmocka_run_group_tests_name("canas", tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* What the display does with the jumps, pauses and restarts of two flights that were recorded
  * (../shared/data/nav_tracks): the states that docs/bus.md, "What the glass does", promises. */
+#include "check.h"
 #include "drv/can_log.h"
 #include "lm/overlay.h"
 #include "nav/read_track.h"
@@ -8,12 +9,8 @@
 #include "unit_rig.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SECOND = 1000000, NAV_FLAGS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD };
 
@@ -122,9 +119,8 @@ static double metres_to(const struct replay *r, const struct nav_fix *fix)
 }
 
 /* Each fifth of the flight's jumps, from two seconds before it. */
-static void at_every_jump_the_new_place_is_shown_at_once_and_the_picture_starts_anew(void **state)
+TEST(at_every_jump_the_new_place_is_shown_at_once_and_the_picture_starts_anew)
 {
-    (void)state;
     struct replay r;
     if (!load(&r, "nav_tracks/zero_gravity.csv.gz")) {
         skip();
@@ -198,9 +194,8 @@ static void fall_silent(struct replay *r, int64_t from_us, double seconds)
     stop(r);
 }
 
-static void a_silent_bus_is_flagged_then_the_picture_removed_and_both_end_with_it(void **state)
+TEST(a_silent_bus_is_flagged_then_the_picture_removed_and_both_end_with_it)
 {
-    (void)state;
     struct replay r;
     const double lengths[] = {1.2, 3, 40};
     if (!load(&r, "nav_tracks/nice.csv.gz")) {
@@ -213,9 +208,8 @@ static void a_silent_bus_is_flagged_then_the_picture_removed_and_both_end_with_i
     nav_track_free(&r.track);
 }
 
-static void single_lost_frames_change_nothing(void **state)
+TEST(single_lost_frames_change_nothing)
 {
-    (void)state;
     struct replay r;
     if (!load(&r, "nav_tracks/nice.csv.gz")) {
         skip();
@@ -233,9 +227,8 @@ static void single_lost_frames_change_nothing(void **state)
 }
 
 /* The replay starts over: another place, another time of day, and message codes from 0. */
-static void a_flight_that_starts_over_is_followed_from_its_first_fix(void **state)
+TEST(a_flight_that_starts_over_is_followed_from_its_first_fix)
 {
-    (void)state;
     struct replay r;
     if (!load(&r, "nav_tracks/zero_gravity.csv.gz")) {
         skip();
@@ -281,9 +274,8 @@ static int keep_answer(void *ctx, const struct lm_can_frame *frame)
     return LM_OK;
 }
 
-static void the_unit_answers_in_the_step_that_hears_the_request(void **state)
+TEST(the_unit_answers_in_the_step_that_hears_the_request)
 {
-    (void)state;
     struct rig *rig = make_rig();
     struct talk talk = {.asked = {.id = 128, .length = 4}};
     rig->can = (struct lm_can){.ctx = &talk, .receive = hear_request, .send = keep_answer};
@@ -315,16 +307,4 @@ static void the_unit_answers_in_the_step_that_hears_the_request(void **state)
     /* Nothing is known of the aircraft: flag 1 of the state. */
     assert_int_equal(talk.said.data[7] & NAV_FLAGS, LM_FLAG_NAV_DEAD);
     free_rig(rig);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_every_jump_the_new_place_is_shown_at_once_and_the_picture_starts_anew),
-        cmocka_unit_test(a_silent_bus_is_flagged_then_the_picture_removed_and_both_end_with_it),
-        cmocka_unit_test(single_lost_frames_change_nothing),
-        cmocka_unit_test(a_flight_that_starts_over_is_followed_from_its_first_fix),
-        cmocka_unit_test(the_unit_answers_in_the_step_that_hears_the_request),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,14 @@
 /* The log as a display would receive it: rates, order, sequence, and values true to the track. */
+#include "check.h"
 #include "decode.h"
 #include "nav/read_track.h"
 #include "nav/send.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
@@ -74,9 +70,8 @@ static int count_id(const struct decoded_log *log, uint32_t id)
     return n;
 }
 
-static void rates_are_those_of_the_specification(void **state)
+TEST(rates_are_those_of_the_specification)
 {
-    (void)state;
     static const struct {
         uint32_t id;
         int per_second, frames;
@@ -110,9 +105,8 @@ static void rates_are_those_of_the_specification(void **state)
     forget(&f);
 }
 
-static void time_codes_and_intervals_run_without_a_break(void **state)
+TEST(time_codes_and_intervals_run_without_a_break)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     send_track(&f, &usual);
@@ -134,9 +128,8 @@ static void time_codes_and_intervals_run_without_a_break(void **state)
     forget(&f);
 }
 
-static void a_rate_scale_changes_every_rate(void **state)
+TEST(a_rate_scale_changes_every_rate)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     struct nav_send_options scaled = usual;
@@ -155,9 +148,8 @@ static void a_rate_scale_changes_every_rate(void **state)
 }
 
 /* Rain from 2 s to 6 s, a jammer all along, and everything cleared at 10 s. */
-static void weather_is_told_once_a_second_in_whole_sets(void **state)
+TEST(weather_is_told_once_a_second_in_whole_sets)
 {
-    (void)state;
     const double rain[] = {46, 11, 5000, 30, 2, 6}, jammer[] = {46.5, 11.5, 25};
     for (double scale = 0.25; scale <= 4; scale *= 4) {
         struct flight f;
@@ -192,9 +184,8 @@ static void weather_is_told_once_a_second_in_whole_sets(void **state)
     }
 }
 
-static void weather_out_of_range_is_not_taken(void **state)
+TEST(weather_out_of_range_is_not_taken)
 {
-    (void)state;
     static const double bad[][6] = {
         {91, 0, 5000, 30, 0, 9}, {0, 181, 5000, 30, 0, 9}, {0, 0, 99, 30, 0, 9},
         {0, 0, 5000, 0, 0, 9},   {0, 0, 5000, 151, 0, 9},  {0, 0, 5000, 30, -1, 9},
@@ -233,9 +224,8 @@ static void place_at(const struct nav_track *t, int64_t time_us, double *latitud
                 longitude, &unused);
 }
 
-static void pairs_are_adjacent_and_true_to_a_tenth_of_a_millimetre(void **state)
+TEST(pairs_are_adjacent_and_true_to_a_tenth_of_a_millimetre)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     send_track(&f, &usual);
@@ -260,9 +250,8 @@ static void pairs_are_adjacent_and_true_to_a_tenth_of_a_millimetre(void **state)
 }
 
 /* Every other value, at the time its own frame was sent, to the precision of FLOAT. */
-static void values_are_those_of_the_track_when_each_frame_is_sent(void **state)
+TEST(values_are_those_of_the_track_when_each_frame_is_sent)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     send_track(&f, &usual);
@@ -297,9 +286,8 @@ static void values_are_those_of_the_track_when_each_frame_is_sent(void **state)
     forget(&f);
 }
 
-static void float_and_long_positions_are_true_to_their_precision(void **state)
+TEST(float_and_long_positions_are_true_to_their_precision)
 {
-    (void)state;
     for (int kind = NAV_POSITION_FLOAT; kind <= NAV_POSITION_LONG; kind++) {
         struct flight f;
         make_flight(&f);
@@ -337,9 +325,8 @@ static void float_and_long_positions_are_true_to_their_precision(void **state)
 }
 
 /* 1700000000 is 2023-11-14T22:13:20Z. */
-static void clock_and_date_are_sent_on_the_second(void **state)
+TEST(clock_and_date_are_sent_on_the_second)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     send_track(&f, &usual);
@@ -362,9 +349,8 @@ static void clock_and_date_are_sent_on_the_second(void **state)
     forget(&f);
 }
 
-static void the_bus_is_silent_in_a_gap_and_true_on_both_sides(void **state)
+TEST(the_bus_is_silent_in_a_gap_and_true_on_both_sides)
 {
-    (void)state;
     struct flight f;
     make_flight(&f);
     for (size_t i = 11; i < f.track.count; i++) {
@@ -398,9 +384,8 @@ static int load(struct flight *f, const char *name)
 /* The real flight with its hold-then-jump blemishes, about ten minutes of it with 60 s cut out:
  * every position sent lies on the way between its fixes, or, where that way is a jump, on the fix
  * before it. */
-static void the_real_flight_is_sent_with_its_blemishes(void **state)
+TEST(the_real_flight_is_sent_with_its_blemishes)
 {
-    (void)state;
     struct flight f;
     if (load(&f, "nav_tracks/zero_gravity.csv.gz") != 0) {
         skip();
@@ -454,9 +439,8 @@ static void the_real_flight_is_sent_with_its_blemishes(void **state)
     forget(&f);
 }
 
-static void the_real_calibration_flight_is_banked_where_it_turns(void **state)
+TEST(the_real_calibration_flight_is_banked_where_it_turns)
 {
-    (void)state;
     struct flight f;
     if (load(&f, "nav_tracks/nice.csv.gz") != 0) {
         skip();
@@ -476,9 +460,8 @@ static void the_real_calibration_flight_is_banked_where_it_turns(void **state)
     forget(&f);
 }
 
-static void the_program_writes_whole_files_or_none(void **state)
+TEST(the_program_writes_whole_files_or_none)
 {
-    (void)state;
     const char *b = support_build_dir();
     char log[300];
     snprintf(log, sizeof log, "%s/tmp/nav.log", b);
@@ -508,24 +491,4 @@ static void the_program_writes_whole_files_or_none(void **state)
     assert_int_equal(support_run("%s/bin/landmass-nav --rain 46,11,50,30 x.csv 2>/dev/null", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-nav 2>/dev/null", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-nav --help >/dev/null", b), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rates_are_those_of_the_specification),
-        cmocka_unit_test(time_codes_and_intervals_run_without_a_break),
-        cmocka_unit_test(a_rate_scale_changes_every_rate),
-        cmocka_unit_test(weather_is_told_once_a_second_in_whole_sets),
-        cmocka_unit_test(weather_out_of_range_is_not_taken),
-        cmocka_unit_test(pairs_are_adjacent_and_true_to_a_tenth_of_a_millimetre),
-        cmocka_unit_test(values_are_those_of_the_track_when_each_frame_is_sent),
-        cmocka_unit_test(float_and_long_positions_are_true_to_their_precision),
-        cmocka_unit_test(clock_and_date_are_sent_on_the_second),
-        cmocka_unit_test(the_bus_is_silent_in_a_gap_and_true_on_both_sides),
-        cmocka_unit_test(the_real_flight_is_sent_with_its_blemishes),
-        cmocka_unit_test(the_real_calibration_flight_is_banked_where_it_turns),
-        cmocka_unit_test(the_program_writes_whole_files_or_none),
-    };
-    return cmocka_run_group_tests_name("log", tests, NULL, NULL);
 }

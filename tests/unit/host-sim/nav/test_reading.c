@@ -1,20 +1,15 @@
 /* Tracks from files, good ones and bad ones. */
+#include "check.h"
 #include "hs/rng.h"
 #include "nav/read_track.h"
 #include "support.h"
 
 #include <fcntl.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 struct result {
     struct nav_track track;
@@ -60,9 +55,8 @@ static void assert_near(double is, double wanted, double tolerance)
     assert_true(fabs(is - wanted) <= tolerance);
 }
 
-static void csv_columns_come_in_any_order_case_and_unit(void **state)
+TEST(csv_columns_come_in_any_order_case_and_unit)
 {
-    (void)state;
     struct result r = read_csv(
         "\xEF\xBB\xBFLongitude;LAT;callsign;altitude_m;groundspeed_ms;TIME\r\n"
         "7.5;43.5;\"A;1200;90.5;2020-06-25T08:23:06.5Z\r\n"
@@ -91,9 +85,8 @@ static void csv_columns_come_in_any_order_case_and_unit(void **state)
 #define HEAD "time,lat,lon,altitude\n"
 #define GOOD "1,43,7,100\n2,43.1,7,100\n3,43.2,7,100\n4,43.3,7,100\n5,43.4,7,100\n6,43.5,7,100\n"
 
-static void a_line_that_cannot_be_used_is_counted_and_left_out(void **state)
+TEST(a_line_that_cannot_be_used_is_counted_and_left_out)
 {
-    (void)state;
     static const char *const bad[] = {
         "7,43x,7,100\n",  "7,91,7,100\n",   "7,43,400,100\n",
         "7,43,7\n",       "7,43,7,100,5\n", "seven,43,7,100\n",
@@ -114,9 +107,8 @@ static void a_line_that_cannot_be_used_is_counted_and_left_out(void **state)
     }
 }
 
-static void repeated_and_backward_times_are_counted_and_left_out(void **state)
+TEST(repeated_and_backward_times_are_counted_and_left_out)
 {
-    (void)state;
     struct result r =
         read_csv(HEAD GOOD "6,44,7,100\n3,44,7,100\n\n7,43.6,7,100\n,43,7,1\n8,,7,1\n");
     assert_int_equal(r.status, 0);
@@ -129,9 +121,8 @@ static void repeated_and_backward_times_are_counted_and_left_out(void **state)
     nav_track_free(&r.track);
 }
 
-static void what_is_no_track_is_an_error(void **state)
+TEST(what_is_no_track_is_an_error)
 {
-    (void)state;
     static const char *const texts[] = {"",
                                         "\n",
                                         "a,b,c\n1,2,3\n",
@@ -156,9 +147,8 @@ static void what_is_no_track_is_an_error(void **state)
     "<trkpt lat='" lat "' lon='7.1'><ele>500</ele><time>" time "</time></trkpt>"
 #define GPX(body) "<?xml version='1.0'?><gpx version='1.1'><trk>" body "</trk></gpx>"
 
-static void gpx_segments_begin_legs(void **state)
+TEST(gpx_segments_begin_legs)
 {
-    (void)state;
     struct result r = read_as(
         NAV_FORMAT_GPX, false,
         GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
@@ -178,9 +168,8 @@ static void gpx_segments_begin_legs(void **state)
     nav_track_free(&r.track);
 }
 
-static void bad_gpx_is_refused_or_its_points_left_out(void **state)
+TEST(bad_gpx_is_refused_or_its_points_left_out)
 {
-    (void)state;
     struct result r = read_as(
         NAV_FORMAT_GPX, false,
         GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
@@ -205,9 +194,8 @@ static void bad_gpx_is_refused_or_its_points_left_out(void **state)
 
 /* The B record of the specification's example: 16:02:40, 54 07.121 N, 002 49.342 W, 280 m by
  * pressure, 421 m by satellite. */
-static void igc_records_are_read_as_the_specification_says(void **state)
+TEST(igc_records_are_read_as_the_specification_says)
 {
-    (void)state;
     struct result r = read_as(NAV_FORMAT_IGC, false,
                               "AXXX001\r\nHFDTE150709\r\nB1602405407121N00249342WA0028000421\r\n"
                               "LXXX remark\r\nB1602455107126S00149300EV002880042900309020\r\n"
@@ -226,9 +214,8 @@ static void igc_records_are_read_as_the_specification_says(void **state)
     nav_track_free(&r.track);
 }
 
-static void igc_goes_on_after_midnight_and_needs_a_date(void **state)
+TEST(igc_goes_on_after_midnight_and_needs_a_date)
 {
-    (void)state;
     struct result r =
         read_as(NAV_FORMAT_IGC, false,
                 "HFDTEDATE:311219,01\nB2359585407121N00249342WA0028000421\n"
@@ -245,9 +232,8 @@ static void igc_goes_on_after_midnight_and_needs_a_date(void **state)
 }
 
 /* Whatever becomes of a file, the reader returns, and what it returns is in order and in range. */
-static void torn_files_give_an_error_or_a_proper_track(void **state)
+TEST(torn_files_give_an_error_or_a_proper_track)
 {
-    (void)state;
     static const char *const whole[] = {
         HEAD GOOD,
         GPX("<trkseg>" GPX_POINT("43", "2020-01-01T00:00:00Z")
@@ -275,20 +261,4 @@ static void torn_files_give_an_error_or_a_proper_track(void **state)
         }
         nav_track_free(&r.track);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(csv_columns_come_in_any_order_case_and_unit),
-        cmocka_unit_test(a_line_that_cannot_be_used_is_counted_and_left_out),
-        cmocka_unit_test(repeated_and_backward_times_are_counted_and_left_out),
-        cmocka_unit_test(what_is_no_track_is_an_error),
-        cmocka_unit_test(gpx_segments_begin_legs),
-        cmocka_unit_test(bad_gpx_is_refused_or_its_points_left_out),
-        cmocka_unit_test(igc_records_are_read_as_the_specification_says),
-        cmocka_unit_test(igc_goes_on_after_midnight_and_needs_a_date),
-        cmocka_unit_test(torn_files_give_an_error_or_a_proper_track),
-    };
-    return cmocka_run_group_tests_name("reading", tests, NULL, NULL);
 }

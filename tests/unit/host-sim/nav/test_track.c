@@ -1,16 +1,11 @@
 /* What is known between the fixes of a track, and what is not. */
+#include "check.h"
 #include "nav/make_track.h"
 #include "nav/read_track.h"
 #include "nav/track.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double degree = 3.14159265358979323846 / 180.0;
 static const struct nav_limits usual = {0, 411};
@@ -42,9 +37,8 @@ static double metres(double latitude_a, double longitude_a, double latitude_b, d
 
 /* Against the direct and inverse problems of PROJ's geodesic library: at a share of the time the
  * aircraft has done that share of the way and not left the geodesic, anywhere on the globe. */
-static void the_position_follows_the_geodesic_at_constant_speed(void **state)
+TEST(the_position_follows_the_geodesic_at_constant_speed)
 {
-    (void)state;
     static const double ends[][4] = {{43.5, 7, 43.51, 7.02},
                                      {0, 179.99, 0.01, -179.98},
                                      {-60, 20, -59.97, 20.1},
@@ -73,9 +67,8 @@ static void the_position_follows_the_geodesic_at_constant_speed(void **state)
     }
 }
 
-static void a_gap_is_not_covered_and_ends_the_leg(void **state)
+TEST(a_gap_is_not_covered_and_ends_the_leg)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     struct nav_motion m;
@@ -100,9 +93,8 @@ static void a_gap_is_not_covered_and_ends_the_leg(void **state)
     nav_track_free(&t);
 }
 
-static void a_slow_track_has_a_longer_gap_by_default(void **state)
+TEST(a_slow_track_has_a_longer_gap_by_default)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     for (int i = 0; i < 10; i++) {
@@ -116,9 +108,8 @@ static void a_slow_track_has_a_longer_gap_by_default(void **state)
 
 /* 5 km in a second: the aircraft stays where it was until the second is over, and nothing that is
  * derived knows of the jump. */
-static void a_jump_happens_at_its_time_and_nowhere_else(void **state)
+TEST(a_jump_happens_at_its_time_and_nowhere_else)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     struct nav_motion m;
@@ -141,9 +132,8 @@ static void a_jump_happens_at_its_time_and_nowhere_else(void **state)
     nav_track_free(&t);
 }
 
-static void a_held_position_is_kept_and_counted(void **state)
+TEST(a_held_position_is_kept_and_counted)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     struct nav_motion m;
@@ -160,9 +150,8 @@ static void a_held_position_is_kept_and_counted(void **state)
     nav_track_free(&t);
 }
 
-static void what_the_record_says_is_not_replaced(void **state)
+TEST(what_the_record_says_is_not_replaced)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     for (int i = 0; i < 5; i++) {
@@ -183,9 +172,8 @@ static void what_the_record_says_is_not_replaced(void **state)
 
 /* A turn of v / R needs a bank of atan(v^2 / (g R)); with only positions given, that is what must
  * come out of them, for right and left turns, and the climb angle as pitch. */
-static void bank_and_pitch_are_derived_from_positions_alone(void **state)
+TEST(bank_and_pitch_are_derived_from_positions_alone)
 {
-    (void)state;
     const double radius = 4000, speed = 160;
     for (int side = -1; side <= 1; side += 2) {
         struct nav_track circle = {0}, t = {0};
@@ -211,9 +199,8 @@ static void bank_and_pitch_are_derived_from_positions_alone(void **state)
 
 /* In a steady turn at bank phi the body turns at psi' sin(phi) in pitch and psi' cos(phi) in yaw.
  */
-static void a_circle_is_a_circle_and_is_flown_banked(void **state)
+TEST(a_circle_is_a_circle_and_is_flown_banked)
 {
-    (void)state;
     const struct nav_circle c = {42, -30, 5000, 3000, 150, 90};
     struct nav_track t = {0};
     struct nav_findings found;
@@ -241,9 +228,8 @@ static void a_circle_is_a_circle_and_is_flown_banked(void **state)
     nav_track_free(&t);
 }
 
-static void a_straight_line_covers_its_distance(void **state)
+TEST(a_straight_line_covers_its_distance)
 {
-    (void)state;
     const struct nav_straight line = {60, 179.5, 70, 1000, 200};
     struct nav_track t = {0};
     assert_int_equal(nav_make_straight(&line, 0, 300, &t), 0);
@@ -256,9 +242,8 @@ static void a_straight_line_covers_its_distance(void **state)
 
 /* Half a degree from the pole the direction of a straight line changes by 0.2 degrees a second;
  * what is derived for a fix must be that of the fix and not of a neighbour. */
-static void the_derived_track_is_right_near_the_pole(void **state)
+TEST(the_derived_track_is_right_near_the_pole)
 {
-    (void)state;
     const struct nav_straight line = {89.5, 10, 80, 1000, 200};
     struct nav_track straight = {0}, t = {0};
     struct nav_findings found;
@@ -274,9 +259,8 @@ static void the_derived_track_is_right_near_the_pole(void **state)
     nav_track_free(&t);
 }
 
-static void headings_turn_the_short_way_through_north(void **state)
+TEST(headings_turn_the_short_way_through_north)
 {
-    (void)state;
     struct nav_track t = {0};
     struct nav_findings found;
     struct nav_motion m;
@@ -300,9 +284,8 @@ static void headings_turn_the_short_way_through_north(void **state)
 }
 
 /* What the note beside the recording says of it, found again. */
-static void the_real_flights_blemishes_are_found(void **state)
+TEST(the_real_flights_blemishes_are_found)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("nav_tracks/zero_gravity.csv.gz", path, sizeof path)) {
         skip();
@@ -322,23 +305,4 @@ static void the_real_flights_blemishes_are_found(void **state)
     assert_near(t.fix[0].speed_ms, 155 * 1852.0 / 3600, 1e-9);
     assert_true(t.fix[0].roll_deg == 0.5);
     nav_track_free(&t);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_position_follows_the_geodesic_at_constant_speed),
-        cmocka_unit_test(a_gap_is_not_covered_and_ends_the_leg),
-        cmocka_unit_test(a_slow_track_has_a_longer_gap_by_default),
-        cmocka_unit_test(a_jump_happens_at_its_time_and_nowhere_else),
-        cmocka_unit_test(a_held_position_is_kept_and_counted),
-        cmocka_unit_test(what_the_record_says_is_not_replaced),
-        cmocka_unit_test(bank_and_pitch_are_derived_from_positions_alone),
-        cmocka_unit_test(a_circle_is_a_circle_and_is_flown_banked),
-        cmocka_unit_test(a_straight_line_covers_its_distance),
-        cmocka_unit_test(the_derived_track_is_right_near_the_pole),
-        cmocka_unit_test(headings_turn_the_short_way_through_north),
-        cmocka_unit_test(the_real_flights_blemishes_are_found),
-    };
-    return cmocka_run_group_tests_name("track", tests, NULL, NULL);
 }

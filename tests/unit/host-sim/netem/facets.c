@@ -1,14 +1,11 @@
 #include "facets.h"
+#include "check.h"
 
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static float between(struct hs_rng *rng, double low, double high)
 {

@@ -1,19 +1,15 @@
 /* Chips from files: written here byte by byte as the format is described, and damaged. */
+#include "check.h"
 #include "gis/gdal_start.h"
 #include "hs/png.h"
 #include "netem/chip.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { COLUMNS = 5, ROWS = 3, FILE_SIZE_MAX = 2048 };
 
@@ -55,9 +51,8 @@ static size_t make_mstar(unsigned char *bytes, const char *extra)
     return (size_t)length + 8 * COLUMNS * ROWS;
 }
 
-static void a_raw_mstar_chip_gives_its_magnitudes_and_its_aspect(void **state)
+TEST(a_raw_mstar_chip_gives_its_magnitudes_and_its_aspect)
 {
-    (void)state;
     unsigned char bytes[FILE_SIZE_MAX];
     char path[] = "/tmp/landmass-chip-XXXXXX";
     const int fd = mkstemp(path);
@@ -78,9 +73,8 @@ static void a_raw_mstar_chip_gives_its_magnitudes_and_its_aspect(void **state)
     unlink(path);
 }
 
-static void every_truncated_or_impossible_mstar_chip_is_refused(void **state)
+TEST(every_truncated_or_impossible_mstar_chip_is_refused)
 {
-    (void)state;
     unsigned char bytes[FILE_SIZE_MAX];
     struct nm_chip chip;
     const size_t size = make_mstar(bytes, "");
@@ -109,9 +103,8 @@ static void every_truncated_or_impossible_mstar_chip_is_refused(void **state)
     }
 }
 
-static void a_magnitude_that_is_none_is_refused(void **state)
+TEST(a_magnitude_that_is_none_is_refused)
 {
-    (void)state;
     static const float wrong[] = {-1, NAN, INFINITY, 2e9f};
     for (int i = 0; i < 4; i++) {
         unsigned char bytes[FILE_SIZE_MAX];
@@ -122,9 +115,8 @@ static void a_magnitude_that_is_none_is_refused(void **state)
     }
 }
 
-static void an_angle_that_is_absent_is_unknown(void **state)
+TEST(an_angle_that_is_absent_is_unknown)
 {
-    (void)state;
     unsigned char bytes[FILE_SIZE_MAX];
     struct nm_chip chip;
     const size_t size =
@@ -139,9 +131,8 @@ static int parse_csv(struct nm_chip *chip, const char *text)
     return nm_chip_parse_csv(chip, "chip.csv", text, strlen(text));
 }
 
-static void a_csv_chip_is_rows_of_numbers(void **state)
+TEST(a_csv_chip_is_rows_of_numbers)
 {
-    (void)state;
     struct nm_chip chip;
     assert_int_equal(parse_csv(&chip, "0.5, 1,2\r\n\n3 4,\t5e-1\n\n"), 0);
     assert_int_equal(chip.picture.width, 3);
@@ -151,9 +142,8 @@ static void a_csv_chip_is_rows_of_numbers(void **state)
     nm_picture_close(&chip.picture);
 }
 
-static void a_csv_chip_that_is_no_chip_is_refused(void **state)
+TEST(a_csv_chip_that_is_no_chip_is_refused)
 {
-    (void)state;
     static const char *const wrong[] = {"",      "\n\n",   "1,2\n3\n", "1\n2,3\n",
                                         "a,b\n", "1,,2\n", "1,-2\n",   "nan\n",
                                         "inf\n", "1;2\n",  "1,2x\n"};
@@ -165,9 +155,8 @@ static void a_csv_chip_that_is_no_chip_is_refused(void **state)
     }
 }
 
-static void a_png_chip_is_read_from_zero_to_one(void **state)
+TEST(a_png_chip_is_read_from_zero_to_one)
 {
-    (void)state;
     char path[] = "/tmp/landmass-chip-XXXXXX.png";
     const int fd = mkstemps(path, 4);
     close(fd);
@@ -185,9 +174,8 @@ static void a_png_chip_is_read_from_zero_to_one(void **state)
     unlink(path);
 }
 
-static void a_real_chip_is_read(void **state)
+TEST(a_real_chip_is_read)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("mstar_t72_15deg/170001.jpeg", path, sizeof path)) {
         skip();
@@ -203,19 +191,4 @@ static void a_real_chip_is_read(void **state)
     }
     assert_true(most == 1);
     nm_picture_close(&chip.picture);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_raw_mstar_chip_gives_its_magnitudes_and_its_aspect),
-        cmocka_unit_test(every_truncated_or_impossible_mstar_chip_is_refused),
-        cmocka_unit_test(a_magnitude_that_is_none_is_refused),
-        cmocka_unit_test(an_angle_that_is_absent_is_unknown),
-        cmocka_unit_test(a_csv_chip_is_rows_of_numbers),
-        cmocka_unit_test(a_csv_chip_that_is_no_chip_is_refused),
-        cmocka_unit_test(a_png_chip_is_read_from_zero_to_one),
-        cmocka_unit_test(a_real_chip_is_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,15 @@
 /* The derivative that training follows is that of the loss: every group of values of every network,
  * through multiplication along the bounces, the sum in the cells, convolution, ReLU and tanh,
  * beside finite differences. */
+#include "check.h"
 #include "facets.h"
 #include "netem/loss.h"
 #include "netem/simulator.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 24, SIDE = 12, PER_GROUP = 8 };
 
@@ -157,31 +154,27 @@ static void check_architecture(const char *name, int is_pix_trainable, enum nm_l
     close_bench(&b);
 }
 
-static void every_group_of_every_network_has_the_right_gradient(void **state)
+TEST(every_group_of_every_network_has_the_right_gradient)
 {
-    (void)state;
     for (int i = 0; i < NM_ARCHITECTURES; i++) {
         check_architecture(nm_architectures[i].name, 0, NM_MSE);
     }
 }
 
-static void the_gradient_reaches_the_networks_through_the_trainable_pixels(void **state)
+TEST(the_gradient_reaches_the_networks_through_the_trainable_pixels)
 {
-    (void)state;
     check_architecture("EP8", 1, NM_MSE);
     check_architecture("EP2", 1, NM_MSE);
 }
 
-static void the_absolute_error_has_its_own_gradient(void **state)
+TEST(the_absolute_error_has_its_own_gradient)
 {
-    (void)state;
     check_architecture("EP8", 0, NM_MAE);
     check_architecture("EP7", 1, NM_MAE);
 }
 
-static void frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it(void **state)
+TEST(frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it)
 {
-    (void)state;
     struct bench b = {.kind = NM_MSE};
     open_bench(&b, nm_architecture_find("EP8"));
     b.model.is_pix_trainable = true;
@@ -196,9 +189,8 @@ static void frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it(void **
 }
 
 /* Pre-training compares step 4 with the simulator's own picture. */
-static void the_picture_of_step_4_has_the_right_gradient_too(void **state)
+TEST(the_picture_of_step_4_has_the_right_gradient_too)
 {
-    (void)state;
     struct bench b = {.kind = NM_MSE};
     open_bench(&b, nm_architecture_find("EP8"));
     struct nm_simulator *s = &b.simulator;
@@ -221,16 +213,4 @@ static void the_picture_of_step_4_has_the_right_gradient_too(void **state)
     assert_true(fabs(b.gradient[i] - expected) < 1e-5 * fabs(expected));
     nm_picture_close(&aim);
     close_bench(&b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_group_of_every_network_has_the_right_gradient),
-        cmocka_unit_test(the_gradient_reaches_the_networks_through_the_trainable_pixels),
-        cmocka_unit_test(the_absolute_error_has_its_own_gradient),
-        cmocka_unit_test(frozen_networks_get_no_gradient_and_the_pixels_get_all_of_it),
-        cmocka_unit_test(the_picture_of_step_4_has_the_right_gradient_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* The scores beside other people's implementations, and the identities of their definitions. */
+#include "check.h"
 #include "hs/rng.h"
 #include "netem/score.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { LARGEST = 128 };
 
@@ -36,9 +31,8 @@ static void shift_right(const double *a, double *b, int side)
  * sample covariance, range 1; and the steerable pyramid of T. Runia's PyTorchSteerablePyramid (the
  * NumPy class, 8 bands) with the sums of Sampat's eq. 9 by scipy.signal.convolve2d. That pyramid
  * looks its filters up in tables, hence 1e-4. */
-static void the_scores_agree_with_other_peoples_programs(void **state)
+TEST(the_scores_agree_with_other_peoples_programs)
 {
-    (void)state;
     static const struct {
         int side;
         double cw_ssim, shifted, ssim, mse;
@@ -62,9 +56,8 @@ static void the_scores_agree_with_other_peoples_programs(void **state)
     }
 }
 
-static void equal_pictures_score_one_and_the_order_does_not_matter(void **state)
+TEST(equal_pictures_score_one_and_the_order_does_not_matter)
 {
-    (void)state;
     static double a[64 * 64], b[64 * 64];
     struct nm_score ab, ba, aa;
     make_pair(a, b, 64);
@@ -76,9 +69,8 @@ static void equal_pictures_score_one_and_the_order_does_not_matter(void **state)
 }
 
 /* |c| of a sum of 49 unrelated complex products is about 1 / sqrt(49) of the sum of their sizes. */
-static void unrelated_noise_scores_little(void **state)
+TEST(unrelated_noise_scores_little)
 {
-    (void)state;
     static double a[128 * 128], b[128 * 128];
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
@@ -94,9 +86,8 @@ static void unrelated_noise_scores_little(void **state)
 }
 
 /* With K = 0 a change of brightness of one picture only counts as 2 g / (1 + g^2). */
-static void cw_ssim_sees_contrast_as_its_formula_says(void **state)
+TEST(cw_ssim_sees_contrast_as_its_formula_says)
 {
-    (void)state;
     static double a[64 * 64], b[64 * 64];
     make_pair(a, b, 64);
     for (int i = 0; i < 64 * 64; i++) {
@@ -105,15 +96,4 @@ static void cw_ssim_sees_contrast_as_its_formula_says(void **state)
     double score;
     assert_int_equal(nm_score_cw_ssim(a, b, 64, &score), 0);
     assert_true(fabs(score - 2 * 0.5 / 1.25) < 1e-9);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_scores_agree_with_other_peoples_programs),
-        cmocka_unit_test(equal_pictures_score_one_and_the_order_does_not_matter),
-        cmocka_unit_test(unrelated_noise_scores_little),
-        cmocka_unit_test(cw_ssim_sees_contrast_as_its_formula_says),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

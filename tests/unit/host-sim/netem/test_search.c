@@ -1,4 +1,5 @@
 /* Finding from where a chip was taken, and what is known of the chips. */
+#include "check.h"
 #include "netem/chip_list.h"
 #include "netem/dataset.h"
 #include "netem/search.h"
@@ -8,14 +9,10 @@
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { VIEWS = 36, SIDE = 24, CHIP = 40 };
 
@@ -39,9 +36,8 @@ static void fill_library(struct nm_library *l)
     }
 }
 
-static void azimuth_and_place_of_a_noisy_chip_are_found(void **state)
+TEST(azimuth_and_place_of_a_noisy_chip_are_found)
 {
-    (void)state;
     struct nm_library library;
     struct nm_searcher s;
     struct nm_match match;
@@ -73,9 +69,8 @@ static void azimuth_and_place_of_a_noisy_chip_are_found(void **state)
 }
 
 /* Without noise the correlation coefficient of the right place is 1 whatever the brightness. */
-static void the_score_of_a_perfect_match_is_one(void **state)
+TEST(the_score_of_a_perfect_match_is_one)
 {
-    (void)state;
     struct nm_library library;
     struct nm_searcher s;
     struct nm_match match;
@@ -98,9 +93,8 @@ static void the_score_of_a_perfect_match_is_one(void **state)
 
 /* Scores that cannot tell a view from its opposite, the wrong one winning in a third of the chips.
  */
-static void neighbours_tell_the_front_from_the_back(void **state)
+TEST(neighbours_tell_the_front_from_the_back)
 {
-    (void)state;
     enum { CHIPS = 60, TURNS = 72 };
     struct nm_match matches[CHIPS];
     struct hs_rng rng;
@@ -138,9 +132,8 @@ static int write_list(const char *path, const char *text)
     return fclose(f);
 }
 
-static void a_list_of_chips_is_read_back_as_it_was_written(void **state)
+TEST(a_list_of_chips_is_read_back_as_it_was_written)
 {
-    (void)state;
     char path[] = "/tmp/landmass-list-XXXXXX";
     struct nm_chip_list list, again;
     close(mkstemp(path));
@@ -170,9 +163,8 @@ static void a_list_of_chips_is_read_back_as_it_was_written(void **state)
     unlink(path);
 }
 
-static void a_list_that_makes_no_sense_is_refused(void **state)
+TEST(a_list_that_makes_no_sense_is_refused)
 {
-    (void)state;
     static const char *const wrong[] = {"",
                                         "a 1\n",
                                         "a 1 2 3\n",
@@ -195,9 +187,8 @@ static void a_list_that_makes_no_sense_is_refused(void **state)
     unlink(path);
 }
 
-static void a_chip_is_turned_and_calibrated_by_its_clutter(void **state)
+TEST(a_chip_is_turned_and_calibrated_by_its_clutter)
 {
-    (void)state;
     char path[] = "/tmp/landmass-chip-XXXXXX.csv";
     struct nm_chip chip;
     close(mkstemps(path, 4));
@@ -222,9 +213,8 @@ static void a_chip_is_turned_and_calibrated_by_its_clutter(void **state)
 /* The file is that of the paper's authors. Its band is 72 of 107: a Taylor response of -35 dB whose
  * first nulls lie 107 / 72 samples apart. With 0.3 m between -3 dB points that is a spacing of 0.17
  * m, not of the 0.1 m cells that it is laid over there; ours is as wide as the radar's. */
-static void the_kernel_of_the_papers_authors_is_ours_at_another_width(void **state)
+TEST(the_kernel_of_the_papers_authors_is_ours_at_another_width)
 {
-    (void)state;
     static double kernel[NM_LARGE * NM_LARGE];
     char path[512];
     if (!support_data_path("slicy/Impt108.csv", path, sizeof path)) {
@@ -241,9 +231,8 @@ static void the_kernel_of_the_papers_authors_is_ours_at_another_width(void **sta
     nm_picture_close(&theirs.picture);
 }
 
-static void the_fixed_kernel_is_as_wide_as_the_radars_resolution(void **state)
+TEST(the_fixed_kernel_is_as_wide_as_the_radars_resolution)
 {
-    (void)state;
     static double kernel[NM_LARGE * NM_LARGE];
     nm_kernel_make(0.3, 0.1, 2, kernel);
     const double *line = kernel + NM_LARGE / 2 * NM_LARGE + NM_LARGE / 2;
@@ -254,24 +243,7 @@ static void the_fixed_kernel_is_as_wide_as_the_radars_resolution(void **state)
 }
 
 /* sqrt(4 pi) A / wavelength: RCS of a flat plate of 1 m^2 at 3 cm is 13963 m^2. */
-static void the_kernels_gain_is_the_root_of_a_plates_cross_section(void **state)
+TEST(the_kernels_gain_is_the_root_of_a_plates_cross_section)
 {
-    (void)state;
     assert_true(fabs(pow(nm_kernel_gain(1, 0.03), 2) - 13962.6) < 0.1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(azimuth_and_place_of_a_noisy_chip_are_found),
-        cmocka_unit_test(the_score_of_a_perfect_match_is_one),
-        cmocka_unit_test(neighbours_tell_the_front_from_the_back),
-        cmocka_unit_test(a_list_of_chips_is_read_back_as_it_was_written),
-        cmocka_unit_test(a_list_that_makes_no_sense_is_refused),
-        cmocka_unit_test(a_chip_is_turned_and_calibrated_by_its_clutter),
-        cmocka_unit_test(the_kernel_of_the_papers_authors_is_ours_at_another_width),
-        cmocka_unit_test(the_fixed_kernel_is_as_wide_as_the_radars_resolution),
-        cmocka_unit_test(the_kernels_gain_is_the_root_of_a_plates_cross_section),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,15 @@
 /* Training: a reflection law that only the pictures know is found again, on aspects never shown; a
  * killed training goes on to the same bits. */
+#include "check.h"
 #include "facets.h"
 #include "netem/model_file.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 32, SIDE = 16, RAYS = 20, TRAINING = 12, CHIPS = 16 };
 
@@ -159,9 +156,8 @@ static double law_error(const struct nm_training *t, enum nm_direction direction
 }
 
 /* 0.003253 is what the paper reaches on real chips of SLICY (Fig. 23). */
-static void a_hidden_law_is_found_and_holds_on_aspects_never_shown(void **state)
+TEST(a_hidden_law_is_found_and_holds_on_aspects_never_shown)
 {
-    (void)state;
     struct world w;
     open_world(&w, &short_plan, "EP8", 0);
     run(&w, w.training, 200);
@@ -175,9 +171,8 @@ static void a_hidden_law_is_found_and_holds_on_aspects_never_shown(void **state)
     close_world(&w);
 }
 
-static void the_phases_follow_the_plan_and_the_pixels_come_last(void **state)
+TEST(the_phases_follow_the_plan_and_the_pixels_come_last)
 {
-    (void)state;
     struct world w;
     struct nm_plan plan = short_plan;
     plan.epochs[NM_REAL_CHIPS] = 2;
@@ -202,9 +197,8 @@ static void the_phases_follow_the_plan_and_the_pixels_come_last(void **state)
     close_world(&w);
 }
 
-static void a_training_that_was_killed_goes_on_to_the_same_bits(void **state)
+TEST(a_training_that_was_killed_goes_on_to_the_same_bits)
 {
-    (void)state;
     char path[] = "/tmp/landmass-netem-XXXXXX";
     struct nm_plan plan = short_plan;
     plan.epochs[NM_REAL_CHIPS] = 2;
@@ -233,9 +227,8 @@ static void a_training_that_was_killed_goes_on_to_the_same_bits(void **state)
     }
 }
 
-static void descent_without_adam_learns_too_and_so_does_the_absolute_error(void **state)
+TEST(descent_without_adam_learns_too_and_so_does_the_absolute_error)
 {
-    (void)state;
     struct nm_plan plan = short_plan;
     plan.method = NM_SGD;
     plan.loss = NM_MAE;
@@ -249,9 +242,8 @@ static void descent_without_adam_learns_too_and_so_does_the_absolute_error(void 
     close_world(&w);
 }
 
-static void phase_correlation_finds_every_shift_within_reach(void **state)
+TEST(phase_correlation_finds_every_shift_within_reach)
 {
-    (void)state;
     enum { SQUARE = 54, REACH = 6 };
     struct nm_registrar r;
     struct nm_picture real;
@@ -283,9 +275,8 @@ static void phase_correlation_finds_every_shift_within_reach(void **state)
     nm_picture_close(&real);
 }
 
-static void a_model_file_cut_short_is_refused(void **state)
+TEST(a_model_file_cut_short_is_refused)
 {
-    (void)state;
     struct world w;
     char path[] = "/tmp/landmass-netem-XXXXXX";
     const int fd = mkstemp(path);
@@ -311,17 +302,4 @@ static void a_model_file_cut_short_is_refused(void **state)
     close(fd);
     unlink(path);
     close_world(&w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_hidden_law_is_found_and_holds_on_aspects_never_shown),
-        cmocka_unit_test(the_phases_follow_the_plan_and_the_pixels_come_last),
-        cmocka_unit_test(a_training_that_was_killed_goes_on_to_the_same_bits),
-        cmocka_unit_test(descent_without_adam_learns_too_and_so_does_the_absolute_error),
-        cmocka_unit_test(phase_correlation_finds_every_shift_within_reach),
-        cmocka_unit_test(a_model_file_cut_short_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

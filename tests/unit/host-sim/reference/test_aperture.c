@@ -1,14 +1,9 @@
 /* The synthetic aperture of the reference against the closed forms of dwell and of Taylor
  * weighting, and against a transform of the aperture itself. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -45,9 +40,8 @@ static struct shape shape_of(const struct ref_taylor *t)
     return s;
 }
 
-static void point_responses_are_those_of_the_table(void **state)
+TEST(point_responses_are_those_of_the_table)
 {
-    (void)state;
     static const struct {
         struct ref_taylor taylor;
         double width, side_lobe_db, integrated_db, loss_db;
@@ -78,9 +72,8 @@ static void point_responses_are_those_of_the_table(void **state)
 }
 
 /* The response is the transform of the weighting. */
-static void the_response_is_the_transform_of_the_weights(void **state)
+TEST(the_response_is_the_transform_of_the_weights)
 {
-    (void)state;
     const struct ref_taylor t = {35, 4};
     enum { PIECES = 2000 };
     for (double x = 0; x < 8; x += 0.31) {
@@ -95,9 +88,8 @@ static void the_response_is_the_transform_of_the_weights(void **state)
 
 /* The response is band limited to one cell, so that its samples have its energy wherever they lie.
  */
-static void a_point_keeps_its_power_wherever_it_lies_in_a_cell(void **state)
+TEST(a_point_keeps_its_power_wherever_it_lies_in_a_cell)
 {
-    (void)state;
     for (double place = 0; place < 1; place += 0.09) {
         double sum = 0;
         for (int cell = -4000; cell <= 4000; cell++) {
@@ -110,9 +102,8 @@ static void a_point_keeps_its_power_wherever_it_lies_in_a_cell(void **state)
 }
 
 /* T = l R / (2 V d sin o) by hand: 20 nautical miles, 45 degrees of squint, 250 m/s, 31.3 mm. */
-static void dwells_are_those_of_the_list(void **state)
+TEST(dwells_are_those_of_the_list)
 {
-    (void)state;
     static const double cells_m[] = {0.6, 1, 3, 5}, dwells_s[] = {5.5, 3.3, 1.1, 0.7};
     for (int n = 0; n < 4; n++) {
         const double dwell_s = ref_sar_dwell_s(0.0313, 37040, 250, cells_m[n], 45);
@@ -156,9 +147,8 @@ static double defocused_width(double f)
     return 2 * last / 50.0;
 }
 
-static void unsteady_flight_spreads_a_point_as_its_quadratic_phase_does(void **state)
+TEST(unsteady_flight_spreads_a_point_as_its_quadratic_phase_does)
 {
-    (void)state;
     const double wavelength_m = 0.0312, dwell_s = 3, focused = defocused_width(0);
     assert_true(fabs(focused - 1.184) < 0.05);
     for (double f = 0; f < 14; f += 1.4) {
@@ -173,9 +163,8 @@ static void unsteady_flight_spreads_a_point_as_its_quadratic_phase_does(void **s
     }
 }
 
-static void lines_are_spread_with_their_energy(void **state)
+TEST(lines_are_spread_with_their_energy)
 {
-    (void)state;
     enum { LINES = 31 };
     double power[LINES][2] = {{0}};
     const double *lines[LINES];
@@ -199,9 +188,8 @@ static void lines_are_spread_with_their_energy(void **state)
 }
 
 /* A mast of 30 m at a grazing angle of 20 degrees, cells of 2 m: its top lies 30 tan 20 nearer. */
-static void layover_moves_a_top_nearer_and_keeps_the_energy(void **state)
+TEST(layover_moves_a_top_nearer_and_keeps_the_energy)
 {
-    (void)state;
     enum { CELLS = 64 };
     double power[CELLS] = {0}, top_m[CELLS] = {0}, laid[CELLS];
     const double shift = tan(20 * pi / 180) / 2, moved = 30 * shift;
@@ -225,18 +213,4 @@ static void layover_moves_a_top_nearer_and_keeps_the_energy(void **state)
     power[0] = 9;
     ref_layover(power, top_m, CELLS, shift, laid);
     assert_true(laid[0] == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(point_responses_are_those_of_the_table),
-        cmocka_unit_test(the_response_is_the_transform_of_the_weights),
-        cmocka_unit_test(a_point_keeps_its_power_wherever_it_lies_in_a_cell),
-        cmocka_unit_test(dwells_are_those_of_the_list),
-        cmocka_unit_test(unsteady_flight_spreads_a_point_as_its_quadratic_phase_does),
-        cmocka_unit_test(lines_are_spread_with_their_energy),
-        cmocka_unit_test(layover_moves_a_top_nearer_and_keeps_the_energy),
-    };
-    return cmocka_run_group_tests_name("reference aperture", tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* What the reference says a radar sees, against geometry on paper. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 4000 };
 static const double a = REF_EFFECTIVE_EARTH_M, nautical_mile_m = 1852, foot_m = 0.3048;
@@ -75,9 +70,8 @@ static double ray_ground_m(double antenna_m, double tangent)
 /* RADAR tables: a 10 m building at 2, 5, 10, 15, 30 degrees throws 286, 114, 57, 37, 17 m. The
  * grazing angle is that of the ray over the roof, on the Earth curved by 4/3, 20 km away: curvature
  * is 0.13 degree there, 7 % of the shadow at 2 degrees. */
-static void the_shadow_of_a_wall_is_its_height_over_the_tangent_of_grazing(void **state)
+TEST(the_shadow_of_a_wall_is_its_height_over_the_tangent_of_grazing)
 {
-    (void)state;
     const double grazing_deg[] = {2, 5, 10, 15, 30}, table_m[] = {286, 114, 57, 37, 17};
     const double wall_m = 10, cell_m = 1, wall_range_m = 20000;
     const struct ref_params params = no_edges();
@@ -96,9 +90,8 @@ static void the_shadow_of_a_wall_is_its_height_over_the_tangent_of_grazing(void 
     }
 }
 
-static void shadows_on_the_curved_earth_end_where_the_ray_meets_the_ground(void **state)
+TEST(shadows_on_the_curved_earth_end_where_the_ray_meets_the_ground)
 {
-    (void)state;
     const double cell_m = 30, antenna_m = 3000;
     const struct ref_params params = no_edges();
     for (int range_nm = 10; range_nm <= 80; range_nm += 10) {
@@ -116,9 +109,8 @@ static void shadows_on_the_curved_earth_end_where_the_ray_meets_the_ground(void 
 
 /* A cone of slope m crossed beside its top at x is the hyperbola h - m hypot(x, y). A ray of slope
  * p grazes it at y = p x / sqrt(m^2 - p^2), and comes down at p to the ground. */
-static void the_shadow_of_a_cone_starts_and_ends_where_its_tangent_does(void **state)
+TEST(the_shadow_of_a_cone_starts_and_ends_where_its_tangent_does)
 {
-    (void)state;
     const double top_m = 300, m = 0.5, cone_range_m = 60000, cell_m = 10;
     const double antenna_m = cone_range_m * (tan_deg(10) + cone_range_m / (2 * a));
     const struct ref_params params = no_edges();
@@ -145,9 +137,8 @@ static void the_shadow_of_a_cone_starts_and_ends_where_its_tangent_does(void **s
     }
 }
 
-static void a_cone_flatter_than_the_ray_throws_no_shadow(void **state)
+TEST(a_cone_flatter_than_the_ray_throws_no_shadow)
 {
-    (void)state;
     const double top_m = 100, m = 0.1, cone_range_m = 60000, cell_m = 10;
     const double antenna_m = cone_range_m * (tan_deg(10) + cone_range_m / (2 * a));
     const struct ref_params params = no_edges();
@@ -162,9 +153,8 @@ static void a_cone_flatter_than_the_ray_throws_no_shadow(void **state)
     free(bins);
 }
 
-static void a_step_down_throws_the_shadow_of_a_wall_and_a_step_up_shows_its_face(void **state)
+TEST(a_step_down_throws_the_shadow_of_a_wall_and_a_step_up_shows_its_face)
 {
-    (void)state;
     const double step_m = 50, range_m = 40000, cell_m = 5;
     const double slope = tan_deg(8), antenna_m = step_m + range_m * (slope + range_m / (2 * a));
     const struct ref_params params = no_edges();
@@ -182,9 +172,8 @@ static void a_step_down_throws_the_shadow_of_a_wall_and_a_step_up_shows_its_face
 }
 
 /* The K law is exact for flat ground: the horizon's rise over a cell is what the gain undoes. */
-static void flat_ground_shows_its_gamma_at_all_ranges(void **state)
+TEST(flat_ground_shows_its_gamma_at_all_ranges)
 {
-    (void)state;
     const struct ref_params params = no_edges();
     const double scales_nm[] = {10, 20, 40, 80};
     for (int scale = 0; scale < 4; scale++) {
@@ -201,9 +190,8 @@ static void flat_ground_shows_its_gamma_at_all_ranges(void **state)
     }
 }
 
-static void flat_ground_of_a_patch_shows_its_gamma(void **state)
+TEST(flat_ground_of_a_patch_shows_its_gamma)
 {
-    (void)state;
     const struct ref_params params = no_edges();
     const double cells_m[] = {0.5, 1, 3, 10}, ranges_m[] = {8000, 37040, 74080};
     for (int i = 0; i < 12; i++) {
@@ -220,9 +208,8 @@ static void flat_ground_of_a_patch_shows_its_gamma(void **state)
 /* A strip of slope angle theta shows ds / cos theta x sin(psi + theta) across the beam, flat ground
  * ds sin psi: a ratio of 1 + tan theta / tan psi. The slopes are one metre high so that range and
  * grazing angle change little on them. */
-static void slopes_show_their_projected_area(void **state)
+TEST(slopes_show_their_projected_area)
 {
-    (void)state;
     const double range_m = 50000, cell_m = 1;
     const struct ref_params params = no_edges();
     const double theta_deg[] = {-4, -2, 0, 2, 5, 15, 30, 45}, psi_deg[] = {5, 10, 20, 30};
@@ -242,9 +229,8 @@ static void slopes_show_their_projected_area(void **state)
 }
 
 /* Horizons of the 4/3 Earth in nautical miles, the root of twice radius times height, by hand. */
-static void the_sea_ends_at_the_radar_horizon(void **state)
+TEST(the_sea_ends_at_the_radar_horizon)
 {
-    (void)state;
     const double feet[] = {500, 5000, 20000, 40000}, horizon_nm[] = {27.5, 86.9, 173.8, 245.7};
     const struct ref_params params = no_edges();
     for (int i = 0; i < 4; i++) {
@@ -291,9 +277,8 @@ static void assert_edges(const char *kinds, const struct ref_params *params, con
     free(bins);
 }
 
-static void leading_edges_brighten_the_first_cell_of_structures_and_trees(void **state)
+TEST(leading_edges_brighten_the_first_cell_of_structures_and_trees)
 {
-    (void)state;
     struct ref_params params = no_edges();
     params.edge_structure_db = 6;
     params.edge_trees_db = 3;
@@ -305,9 +290,8 @@ static void leading_edges_brighten_the_first_cell_of_structures_and_trees(void *
 
 /* Shore 1 dB over 58 m of 10 m cells: round(5.8) = 6 cells, steps of floor(256 / 6) = 42, so 256,
  * 214, .. 46, 4, 0; water ends the ramp and the next shore begins another. */
-static void the_far_shore_is_a_ramp_that_water_ends(void **state)
+TEST(the_far_shore_is_a_ramp_that_water_ends)
 {
-    (void)state;
     struct ref_params params = no_edges();
     params.shore_db = 1;
     params.shore_width_m = 58;
@@ -318,9 +302,8 @@ static void the_far_shore_is_a_ramp_that_water_ends(void **state)
     assert_edges("wsssgg", &params, both);
 }
 
-static void a_shore_narrower_than_a_cell_is_one_cell(void **state)
+TEST(a_shore_narrower_than_a_cell_is_one_cell)
 {
-    (void)state;
     struct ref_params params = no_edges();
     params.shore_db = 8;
     params.shore_width_m = 1;
@@ -330,9 +313,8 @@ static void a_shore_narrower_than_a_cell_is_one_cell(void **state)
 
 /* The shore lies in the shadow of a wall: its ramp runs on in the dark, and what comes out of the
  * shadow has the rest of it. */
-static void edges_count_in_shadow_and_show_only_when_lit(void **state)
+TEST(edges_count_in_shadow_and_show_only_when_lit)
 {
-    (void)state;
     struct ref_params params = no_edges();
     params.shore_db = 10;
     params.shore_width_m = 100;
@@ -350,9 +332,8 @@ static void edges_count_in_shadow_and_show_only_when_lit(void **state)
     free(bins);
 }
 
-static void no_data_is_ground_of_minus_80_db_that_hides(void **state)
+TEST(no_data_is_ground_of_minus_80_db_that_hides)
 {
-    (void)state;
     const struct ref_params params = no_edges();
     struct ref_bin *bins = flat_line(32, 20000, 10);
     bins[8].has_data = false;
@@ -365,9 +346,8 @@ static void no_data_is_ground_of_minus_80_db_that_hides(void **state)
 }
 
 /* Partly in shadow: the cell where the shadow of a wall ends shows the part of it that is lit. */
-static void a_cell_partly_in_shadow_is_partly_lit(void **state)
+TEST(a_cell_partly_in_shadow_is_partly_lit)
 {
-    (void)state;
     const struct ref_params params = no_edges();
     struct ref_bin *bins = flat_line(200, 20000, 10);
     bins[50].height_m = 20;
@@ -380,35 +360,11 @@ static void a_cell_partly_in_shadow_is_partly_lit(void **state)
     free(bins);
 }
 
-static void the_receiver_gain_is_held_where_flat_ground_is_too_flat(void **state)
+TEST(the_receiver_gain_is_held_where_flat_ground_is_too_flat)
 {
-    (void)state;
     const struct ref_view view = {1000, 0, 100};
     const double beyond_m = sqrt(2 * a * 1000) * 2;
     assert_near(ref_grazing(&view, beyond_m, beyond_m), 1.0 / 256, 0);
     assert_near(ref_gain_db(&view, beyond_m, beyond_m), 10 * log10(beyond_m * 256 / 100), 1e-9);
     assert_near(ref_grazing(&view, 10000, 9900), 0.1 - 9900 / (2 * a), 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_shadow_of_a_wall_is_its_height_over_the_tangent_of_grazing),
-        cmocka_unit_test(shadows_on_the_curved_earth_end_where_the_ray_meets_the_ground),
-        cmocka_unit_test(the_shadow_of_a_cone_starts_and_ends_where_its_tangent_does),
-        cmocka_unit_test(a_cone_flatter_than_the_ray_throws_no_shadow),
-        cmocka_unit_test(a_step_down_throws_the_shadow_of_a_wall_and_a_step_up_shows_its_face),
-        cmocka_unit_test(flat_ground_shows_its_gamma_at_all_ranges),
-        cmocka_unit_test(flat_ground_of_a_patch_shows_its_gamma),
-        cmocka_unit_test(slopes_show_their_projected_area),
-        cmocka_unit_test(the_sea_ends_at_the_radar_horizon),
-        cmocka_unit_test(leading_edges_brighten_the_first_cell_of_structures_and_trees),
-        cmocka_unit_test(the_far_shore_is_a_ramp_that_water_ends),
-        cmocka_unit_test(a_shore_narrower_than_a_cell_is_one_cell),
-        cmocka_unit_test(edges_count_in_shadow_and_show_only_when_lit),
-        cmocka_unit_test(no_data_is_ground_of_minus_80_db_that_hides),
-        cmocka_unit_test(a_cell_partly_in_shadow_is_partly_lit),
-        cmocka_unit_test(the_receiver_gain_is_held_where_flat_ground_is_too_flat),
-    };
-    return cmocka_run_group_tests_name("reference aspect", tests, NULL, NULL);
 }

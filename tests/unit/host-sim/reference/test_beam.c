@@ -1,13 +1,8 @@
 /* The antenna of the reference against closed forms: two-way widths, elevation pattern, tilt. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double rad = 0.017453292519943295, line_deg = 120.0 / 128;
 
@@ -29,9 +24,8 @@ static double half_power_deg(const struct ref_beam *b, double middle_deg, double
     return near;
 }
 
-static void a_point_is_smeared_over_the_two_way_beam(void **state)
+TEST(a_point_is_smeared_over_the_two_way_beam)
 {
-    (void)state;
     static const double beams_deg[] = {2.2, 3.3, 4.0}, ratios[] = {1, 2, 4, 8, 16, 32, 64, 128};
     double worst = 0;
     for (int n = 0; n < 24; n++) {
@@ -46,17 +40,15 @@ static void a_point_is_smeared_over_the_two_way_beam(void **state)
 }
 
 /* One way it is half power at half the width: the pattern is the square of 2^(-4 x^2). */
-static void the_pattern_is_the_square_of_one_that_is_half_at_half_its_width(void **state)
+TEST(the_pattern_is_the_square_of_one_that_is_half_at_half_its_width)
 {
-    (void)state;
     const struct ref_beam b = {3.3, line_deg, 1};
     assert_true(fabs(ref_beam_pattern(&b, 1.65) - 0.25) < 1e-12);
     assert_true(fabs(ref_beam_pattern(&b, -3.3 / 2 / sqrt(2)) - 0.5) < 1e-12);
 }
 
-static void samples_lie_where_a_finer_beam_needs_them(void **state)
+TEST(samples_lie_where_a_finer_beam_needs_them)
 {
-    (void)state;
     static const struct {
         double ratio, share;
     } cases[] = {{1, 1}, {2, 2}, {4, 4}, {8, 8}, {16, 16}, {32, 32}, {64, 64}};
@@ -71,9 +63,8 @@ static void samples_lie_where_a_finer_beam_needs_them(void **state)
     }
 }
 
-static void a_flat_field_stays_flat_and_a_wedge_a_wedge(void **state)
+TEST(a_flat_field_stays_flat_and_a_wedge_a_wedge)
 {
-    (void)state;
     const struct ref_beam b = {3.3, line_deg, 1};
     double flat[1] = {7}, wedge[REF_BEAM_SAMPLES][1], sum[1];
     const double *power[REF_BEAM_SAMPLES];
@@ -93,9 +84,8 @@ static void a_flat_field_stays_flat_and_a_wedge_a_wedge(void **state)
     }
 }
 
-static void below_the_fan_and_above_the_axis_the_pattern_is_gaussian(void **state)
+TEST(below_the_fan_and_above_the_axis_the_pattern_is_gaussian)
 {
-    (void)state;
     const struct ref_antenna a = {4.6, 30, 2.2};
     const double b = 4.6 * rad;
     for (double tilt_deg = -20; tilt_deg <= 10; tilt_deg += 2.5) {
@@ -118,9 +108,8 @@ static void below_the_fan_and_above_the_axis_the_pattern_is_gaussian(void **stat
 
 /* Seen from the middle of an Earth of 4/3 its radius: the angle of the ground at range R below the
  * horizontal, without the parabola. */
-static void auto_tilt_points_the_axis_at_the_far_end(void **state)
+TEST(auto_tilt_points_the_axis_at_the_far_end)
 {
-    (void)state;
     for (double height_m = 150; height_m < 14000; height_m *= 1.6) {
         for (double range_m = 18520; range_m < 150000; range_m *= 2) {
             const double a = REF_EFFECTIVE_EARTH_M, turn = range_m / a;
@@ -130,9 +119,8 @@ static void auto_tilt_points_the_axis_at_the_far_end(void **state)
     }
 }
 
-static void bars_lie_evenly_about_the_tilt(void **state)
+TEST(bars_lie_evenly_about_the_tilt)
 {
-    (void)state;
     const struct ref_antenna a = {4.6, 30, 2.2};
     assert_true(ref_bar_tilt_deg(&a, -3, 0, 1) == -3);
     double sum = 0;
@@ -145,9 +133,8 @@ static void bars_lie_evenly_about_the_tilt(void **state)
 }
 
 /* Flat ground of one level, seen from 3,000 m through every stage: the hole, then the level. */
-static void a_line_over_flat_ground_has_its_hole_and_its_level(void **state)
+TEST(a_line_over_flat_ground_has_its_hole_and_its_level)
 {
-    (void)state;
     enum { CELLS = 256 };
     static struct ref_bin cells[CELLS];
     const struct ref_bin *samples[REF_BEAM_SAMPLES];
@@ -185,19 +172,4 @@ static void a_line_over_flat_ground_has_its_hole_and_its_level(void **state)
             assert_true(fabs(level_db[i] - expected_db) < 0.01);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_smeared_over_the_two_way_beam),
-        cmocka_unit_test(the_pattern_is_the_square_of_one_that_is_half_at_half_its_width),
-        cmocka_unit_test(samples_lie_where_a_finer_beam_needs_them),
-        cmocka_unit_test(a_flat_field_stays_flat_and_a_wedge_a_wedge),
-        cmocka_unit_test(below_the_fan_and_above_the_axis_the_pattern_is_gaussian),
-        cmocka_unit_test(auto_tilt_points_the_axis_at_the_far_end),
-        cmocka_unit_test(bars_lie_evenly_about_the_tilt),
-        cmocka_unit_test(a_line_over_flat_ground_has_its_hole_and_its_level),
-    };
-    return cmocka_run_group_tests_name("reference beam", tests, NULL, NULL);
 }

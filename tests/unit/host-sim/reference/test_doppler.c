@@ -1,14 +1,9 @@
 /* Doppler beam sharpening of the reference against the notch by hand, sin o = l N w / (2 V B^2),
  * and movers against geometry. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 /* 31.3 mm, 250 m/s, a beam of 3.3 degrees. */
 static struct ref_dbs dbs_at(double rate_deg_s, double speed_m_s)
@@ -16,9 +11,8 @@ static struct ref_dbs dbs_at(double rate_deg_s, double speed_m_s)
     return (struct ref_dbs){speed_m_s, 3.3, 0.0313, rate_deg_s};
 }
 
-static void the_notch_opens_as_in_the_table(void **state)
+TEST(the_notch_opens_as_in_the_table)
 {
-    (void)state;
     static const double rates_deg_s[] = {120, 60, 15, 3};
     static const struct {
         double ratio, notch_deg[4]; /* NAN: none is to be had */
@@ -36,9 +30,8 @@ static void the_notch_opens_as_in_the_table(void **state)
     }
 }
 
-static void the_notch_is_where_the_ratio_runs_out(void **state)
+TEST(the_notch_is_where_the_ratio_runs_out)
 {
-    (void)state;
     for (double speed_m_s = 100; speed_m_s < 700; speed_m_s *= 1.5) {
         const struct ref_dbs d = dbs_at(15, speed_m_s);
         const double notch_deg = ref_dbs_notch_deg(&d, 8);
@@ -55,9 +48,8 @@ static void the_notch_is_where_the_ratio_runs_out(void **state)
 }
 
 /* The Doppler frequencies of two directions apart by a sharpened beam, over the dwell: one turn. */
-static void a_dwell_tells_two_neighbouring_cells_apart_by_one_turn(void **state)
+TEST(a_dwell_tells_two_neighbouring_cells_apart_by_one_turn)
 {
-    (void)state;
     const double rad = acos(-1.0) / 180, wavelength_m = 0.0313;
     for (double off_deg = 10; off_deg < 60; off_deg += 7) {
         const struct ref_dbs d = dbs_at(15, 250);
@@ -69,9 +61,8 @@ static void a_dwell_tells_two_neighbouring_cells_apart_by_one_turn(void **state)
     }
 }
 
-static void what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch(void **state)
+TEST(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch)
 {
-    (void)state;
     assert_true(ref_dbs_used(100, 8, 4) == 8);
     assert_true(ref_dbs_used(5.5, 8, 4) == 4);
     assert_true(ref_dbs_used(4, 8, 4) == 4);
@@ -79,9 +70,8 @@ static void what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notc
 }
 
 /* A target at o that closes with v has the Doppler frequency of ground at o - d. */
-static void a_mover_lies_where_still_ground_has_its_frequency(void **state)
+TEST(a_mover_lies_where_still_ground_has_its_frequency)
 {
-    (void)state;
     const double rad = acos(-1.0) / 180, speed_m_s = 250;
     for (double off_deg = 20; off_deg < 80; off_deg += 11) {
         for (double closing_m_s = -8; closing_m_s < 9; closing_m_s += 4) {
@@ -97,16 +87,4 @@ static void a_mover_lies_where_still_ground_has_its_frequency(void **state)
     }
     assert_true(isnan(ref_mover_shift_deg(100, 250, 10)));
     assert_true(ref_mover_shift_deg(5, 250, -30) == ref_mover_shift_deg(5, 250, 30));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_notch_opens_as_in_the_table),
-        cmocka_unit_test(the_notch_is_where_the_ratio_runs_out),
-        cmocka_unit_test(a_dwell_tells_two_neighbouring_cells_apart_by_one_turn),
-        cmocka_unit_test(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch),
-        cmocka_unit_test(a_mover_lies_where_still_ground_has_its_frequency),
-    };
-    return cmocka_run_group_tests_name("reference doppler", tests, NULL, NULL);
 }

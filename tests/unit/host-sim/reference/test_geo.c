@@ -1,15 +1,10 @@
 /* Where the reference puts a point, against PROJ's geodesics (Karney 2013: exact to nanometres). */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include <geodesic.h>
-
-#include <cmocka.h>
 
 static const double range_80nm_m = 80 * 1852.0;
 
@@ -49,9 +44,8 @@ static double worst_direct_m(struct ref_place from, double range_m)
 }
 
 /* EQUATIONS.md promises 2 m; what is left of e2 (s/R)^3 after its small factors is centimetres. */
-static void a_point_80_nm_away_is_within_5_cm_of_the_geodesic(void **state)
+TEST(a_point_80_nm_away_is_within_5_cm_of_the_geodesic)
 {
-    (void)state;
     const double latitudes[] = {0, 45, 70, 80, -33, -80};
     for (int i = 0; i < 6; i++) {
         const struct ref_place from = {latitudes[i], 7};
@@ -62,9 +56,8 @@ static void a_point_80_nm_away_is_within_5_cm_of_the_geodesic(void **state)
     }
 }
 
-static void points_across_the_antimeridian_are_as_good(void **state)
+TEST(points_across_the_antimeridian_are_as_good)
 {
-    (void)state;
     const double latitudes[] = {0, 45, 70, 80};
     for (int i = 0; i < 4; i++) {
         assert_true(worst_direct_m((struct ref_place){latitudes[i], 179.9}, range_80nm_m) < 0.05);
@@ -93,9 +86,8 @@ static double worst_parabola_m(double latitude_deg, double length_m)
 
 /* EQUATIONS.md says 12 m at latitude 70. Half a range cell, which is what a line may err, is 290 m
  * at 80 nautical miles of 256 cells. Half the length is an eighth of the error. */
-static void the_parabola_stays_near_the_curve(void **state)
+TEST(the_parabola_stays_near_the_curve)
 {
-    (void)state;
     const double latitudes[] = {0, 45, 60, 70, 80}, promised_m[] = {0.6, 2, 5, 12, 55};
     for (int i = 0; i < 5; i++) {
         const double worst_m = worst_parabola_m(latitudes[i], range_80nm_m);
@@ -105,9 +97,8 @@ static void the_parabola_stays_near_the_curve(void **state)
     }
 }
 
-static void the_parabola_meets_both_ends_and_the_middle(void **state)
+TEST(the_parabola_meets_both_ends_and_the_middle)
 {
-    (void)state;
     const struct geod_geodesic g = wgs84();
     const struct ref_place from = {52, -179.8};
     const struct ref_path path = ref_gm_path(from, 250, 100000);
@@ -119,9 +110,8 @@ static void the_parabola_meets_both_ends_and_the_middle(void **state)
 
 /* A patch of 20 km at latitude 70, the largest there is: the surface is right everywhere, guard
  * cells included, and across is to the right of the line of sight. */
-static void the_surface_of_a_patch_is_right_within_5_cm(void **state)
+TEST(the_surface_of_a_patch_is_right_within_5_cm)
 {
-    (void)state;
     const struct geod_geodesic g = wgs84();
     const struct ref_place centre = {70, -179.95};
     double worst = 0;
@@ -139,18 +129,16 @@ static void the_surface_of_a_patch_is_right_within_5_cm(void **state)
     assert_true(worst < 0.05);
 }
 
-static void right_of_a_line_of_sight_to_the_north_is_east(void **state)
+TEST(right_of_a_line_of_sight_to_the_north_is_east)
 {
-    (void)state;
     const struct ref_surface s = ref_sar_surface((struct ref_place){46, 11}, 0, 1000);
     const struct ref_place right = ref_surface_at(&s, 500, 0), far = ref_surface_at(&s, 0, 500);
     assert_true(right.longitude_deg > 11.006 && fabs(right.latitude_deg - 46) < 1e-5);
     assert_true(far.latitude_deg > 46.004 && fabs(far.longitude_deg - 11) < 1e-9);
 }
 
-static void the_way_back_finds_what_the_way_out_went(void **state)
+TEST(the_way_back_finds_what_the_way_out_went)
 {
-    (void)state;
     for (double latitude_deg = -80; latitude_deg <= 80; latitude_deg += 20) {
         for (double azimuth_deg = -170; azimuth_deg < 180; azimuth_deg += 37) {
             for (double distance_m = 500; distance_m < 300000; distance_m *= 6) {
@@ -163,18 +151,4 @@ static void the_way_back_finds_what_the_way_out_went(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_80_nm_away_is_within_5_cm_of_the_geodesic),
-        cmocka_unit_test(points_across_the_antimeridian_are_as_good),
-        cmocka_unit_test(the_parabola_stays_near_the_curve),
-        cmocka_unit_test(the_parabola_meets_both_ends_and_the_middle),
-        cmocka_unit_test(the_surface_of_a_patch_is_right_within_5_cm),
-        cmocka_unit_test(right_of_a_line_of_sight_to_the_north_is_east),
-        cmocka_unit_test(the_way_back_finds_what_the_way_out_went),
-    };
-    return cmocka_run_group_tests_name("reference geo", tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* The reference's view of an image file, and its whole pictures, on scenes made for the purpose. */
+#include "check.h"
 #include "reference/reference.h"
 #include "support.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const double bam_deg = 360 / 4294967296.0;
 
@@ -65,9 +60,8 @@ static struct ref_place scattered(const double *corner, int i)
                               corner[1] + ((i * 61 % 103) / 103.0 - 0.499) * 0.0027};
 }
 
-static void a_place_finds_its_cell_also_across_borders_of_zones_and_longitude(void **state)
+TEST(a_place_finds_its_cell_also_across_borders_of_zones_and_longitude)
 {
-    (void)state;
     for (int k = 0; k < CORNERS; k++) {
         const struct tiny_spec spec = checkered_spec(corners[k]);
         struct ref_db db;
@@ -96,9 +90,8 @@ static void a_place_finds_its_cell_also_across_borders_of_zones_and_longitude(vo
     }
 }
 
-static void a_plane_comes_back_from_its_posts(void **state)
+TEST(a_plane_comes_back_from_its_posts)
 {
-    (void)state;
     for (int k = 0; k < CORNERS; k++) {
         const struct tiny_spec spec = checkered_spec(corners[k]);
         struct ref_db db;
@@ -120,9 +113,8 @@ static void a_plane_comes_back_from_its_posts(void **state)
     }
 }
 
-static void the_level_is_the_largest_cell_not_longer_than_a_range_cell(void **state)
+TEST(the_level_is_the_largest_cell_not_longer_than_a_range_cell)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.level_count = 6;
     struct ref_db db;
@@ -144,9 +136,8 @@ static bool leave_out_level_0(void *ctx, uint8_t level, uint32_t row, uint32_t c
     return level == 0 && row % 2 == 1;
 }
 
-static void a_missing_tile_is_answered_by_its_parent_and_nothing_by_no_data(void **state)
+TEST(a_missing_tile_is_answered_by_its_parent_and_nothing_by_no_data)
 {
-    (void)state;
     struct tiny_spec spec = checkered_spec(corners[0]);
     spec.leave_out = leave_out_level_0;
     spec.level_count = 3;
@@ -180,9 +171,8 @@ static void a_missing_tile_is_answered_by_its_parent_and_nothing_by_no_data(void
     ref_db_close(&db);
 }
 
-static void a_damaged_record_counts_as_missing_and_a_damaged_header_is_refused(void **state)
+TEST(a_damaged_record_counts_as_missing_and_a_damaged_header_is_refused)
 {
-    (void)state;
     const struct tiny_spec spec = tiny_spec_at(46, 11);
     struct tiny_image image;
     assert_int_equal(tiny_image_build(&image, &spec), 0);
@@ -236,9 +226,8 @@ static void open_block(struct ref_db *db)
 
 /* In the patch the block lies right of the middle and beyond it; its front is bright and its
  * shadow, 20 m / tan 10 degrees = 113 m, falls away from the radar. */
-static void a_patch_shows_a_block_and_its_shadow_where_they_are(void **state)
+TEST(a_patch_shows_a_block_and_its_shadow_where_they_are)
 {
-    (void)state;
     struct ref_db db;
     open_block(&db);
     const struct ref_sar sar = block_sar();
@@ -288,9 +277,8 @@ static double ridge_m(void *ctx, const struct tiny_place *place)
     return fmax(0, 900 - 0.6 * fabs(place->north_m + 3000) + 0.01 * place->east_m);
 }
 
-static void a_ridge_before_the_patch_throws_its_shadow_into_it(void **state)
+TEST(a_ridge_before_the_patch_throws_its_shadow_into_it)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 11;
     spec.rows = spec.columns = 10;
@@ -338,9 +326,8 @@ static struct tiny_cell coast(void *ctx, const struct tiny_place *place)
                              : (struct tiny_cell){-20, TINY_SOIL, 0};
 }
 
-static void a_sweep_has_its_coast_where_it_is_and_its_brightness(void **state)
+TEST(a_sweep_has_its_coast_where_it_is_and_its_brightness)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 13;
     spec.rows = spec.columns = 8;
@@ -387,9 +374,8 @@ static void a_sweep_has_its_coast_where_it_is_and_its_brightness(void **state)
 }
 
 /* Speckle of a whole patch of one class: the spread of four looks. */
-static void the_speckle_of_a_flat_patch_has_the_spread_of_its_looks(void **state)
+TEST(the_speckle_of_a_flat_patch_has_the_spread_of_its_looks)
 {
-    (void)state;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.rows = spec.columns = 3;
     struct ref_db db;
@@ -420,9 +406,8 @@ static void the_speckle_of_a_flat_patch_has_the_spread_of_its_looks(void **state
     ref_db_close(&db);
 }
 
-static void the_program_renders_dumps_and_explains_itself(void **state)
+TEST(the_program_renders_dumps_and_explains_itself)
 {
-    (void)state;
     char image_path[] = "/tmp/landmass-tiny-XXXXXX", dump_path[64], raw_path[64], png_path[64];
     close(mkstemp(image_path));
     snprintf(dump_path, sizeof dump_path, "%s.csv", image_path);
@@ -457,21 +442,4 @@ static void the_program_renders_dumps_and_explains_itself(void **state)
                      1);
     assert_int_equal(support_run("%s sar /nonexistent 2>/dev/null", program), 1);
     assert_int_equal(support_run("rm -f %s*", image_path), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_place_finds_its_cell_also_across_borders_of_zones_and_longitude),
-        cmocka_unit_test(a_plane_comes_back_from_its_posts),
-        cmocka_unit_test(the_level_is_the_largest_cell_not_longer_than_a_range_cell),
-        cmocka_unit_test(a_missing_tile_is_answered_by_its_parent_and_nothing_by_no_data),
-        cmocka_unit_test(a_damaged_record_counts_as_missing_and_a_damaged_header_is_refused),
-        cmocka_unit_test(a_patch_shows_a_block_and_its_shadow_where_they_are),
-        cmocka_unit_test(a_ridge_before_the_patch_throws_its_shadow_into_it),
-        cmocka_unit_test(a_sweep_has_its_coast_where_it_is_and_its_brightness),
-        cmocka_unit_test(the_speckle_of_a_flat_patch_has_the_spread_of_its_looks),
-        cmocka_unit_test(the_program_renders_dumps_and_explains_itself),
-    };
-    return cmocka_run_group_tests_name("reference picture", tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* The receiver and the weather of the reference against theory: pulses, noise, time gain, ITU-R
  * P.838-3, radar meteorology, the equation of a jammer. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double rad = 0.017453292519943295;
 
@@ -23,9 +18,8 @@ static struct ref_receiver receiver_at(double height_m)
 }
 
 /* A pulse is c t / 2 long: 15 m for 0.1 us. */
-static void pulses_are_as_long_as_in_the_list(void **state)
+TEST(pulses_are_as_long_as_in_the_list)
 {
-    (void)state;
     static const double pulses_us[] = {0.1, 0.4, 1, 3.2, 6.4},
                         lengths_m[] = {15, 60, 150, 480, 960};
     for (int n = 0; n < 5; n++) {
@@ -34,9 +28,8 @@ static void pulses_are_as_long_as_in_the_list(void **state)
 }
 
 /* The share of bin i + m in bin i is what of a box of the pulse's length falls into it. */
-static void a_pulse_is_a_box_that_keeps_the_energy(void **state)
+TEST(a_pulse_is_a_box_that_keeps_the_energy)
 {
-    (void)state;
     for (double bins = 0.1; bins < 12; bins += 0.173) {
         double sum = 0, place = 0;
         for (int m = -REF_PULSE_REACH; m <= REF_PULSE_REACH; m++) {
@@ -55,9 +48,8 @@ static void a_pulse_is_a_box_that_keeps_the_energy(void **state)
 
 /* The received power of gamma-ground: gamma g area / r^4 with an area of r: gamma g / r^3. Steady
  * noise beside it is worth a gamma of noise r^3 / g. */
-static void the_noise_is_steady_behind_the_antenna(void **state)
+TEST(the_noise_is_steady_behind_the_antenna)
 {
-    (void)state;
     for (double height_m = 100; height_m < 12000; height_m *= 1.5) {
         const struct ref_receiver r = receiver_at(height_m);
         double least = INFINITY, most = 0;
@@ -78,9 +70,8 @@ static void the_noise_is_steady_behind_the_antenna(void **state)
     }
 }
 
-static void the_hole_ends_at_the_height_and_cells_are_found_by_pythagoras(void **state)
+TEST(the_hole_ends_at_the_height_and_cells_are_found_by_pythagoras)
 {
-    (void)state;
     for (double height_m = 0.5; height_m < 12000; height_m *= 3) {
         assert_true(ref_ground_of_slant(height_m, height_m) == 0);
         assert_int_equal(ref_slant_cell(height_m, height_m, 0, 72, 256), 256);
@@ -96,9 +87,8 @@ static void the_hole_ends_at_the_height_and_cells_are_found_by_pythagoras(void *
     assert_int_equal(ref_slant_cell(30000, 100, 6000, 72, 256), 256);
 }
 
-static void levels_are_the_sum_of_signal_and_noise_less_the_time_gains_end(void **state)
+TEST(levels_are_the_sum_of_signal_and_noise_less_the_time_gains_end)
 {
-    (void)state;
     struct ref_receiver r = receiver_at(3000);
     static double power[256], level_db[256], table_db[REF_SPECKLE_SLICES];
     ref_speckle_table(16, table_db);
@@ -139,9 +129,8 @@ static double regression(const struct bell *bells, int count, double slope, doub
     return sum;
 }
 
-static void rain_weakens_as_the_recommendation_says_at_10_ghz(void **state)
+TEST(rain_weakens_as_the_recommendation_says_at_10_ghz)
 {
-    (void)state;
     static const struct bell k_bells[] = {{-5.33980, -0.10008, 1.13098},
                                           {-0.35351, 1.26970, 0.45400},
                                           {-0.23789, 0.86036, 0.15354},
@@ -161,18 +150,16 @@ static void rain_weakens_as_the_recommendation_says_at_10_ghz(void **state)
 }
 
 /* 10 mm/h is 39 dBZ by Marshall and Palmer, and pi^5 0.93 10^-18 / l^4 is 2.714e-10 at 3.2 cm. */
-static void rain_scatters_as_its_reflectivity_factor_says(void **state)
+TEST(rain_scatters_as_its_reflectivity_factor_says)
 {
-    (void)state;
     const double z = ref_rain_eta(10, 0.032) / 2.714e-10;
     assert_true(fabs(10 * log10(z) - 39.01) < 0.02);
     assert_true(fabs(ref_rain_eta(10, 0.016) / ref_rain_eta(10, 0.032) - 16) < 1e-9);
     assert_true(fabs(log10(ref_rain_eta(100, 0.032) / ref_rain_eta(10, 0.032)) - 1.6) < 1e-9);
 }
 
-static void a_line_meets_a_circle_in_its_chord(void **state)
+TEST(a_line_meets_a_circle_in_its_chord)
 {
-    (void)state;
     for (double off_deg = -40; off_deg <= 40; off_deg += 1.7) {
         const struct ref_rain rain = {30000, off_deg, 9000, 10};
         double from_m, to_m;
@@ -187,9 +174,8 @@ static void a_line_meets_a_circle_in_its_chord(void **state)
 }
 
 /* Integrated bin by bin, the rain's losses come to 2 k R^alpha times the chord. */
-static void what_lies_behind_the_rain_loses_its_whole_chord(void **state)
+TEST(what_lies_behind_the_rain_loses_its_whole_chord)
 {
-    (void)state;
     static struct ref_weather_line weather;
     const struct ref_bins bins = {36, 72, 256};
     const struct ref_environment e = {.rain = {{8000, 3, 1700, 25}, {9000, -2, 2500, 5}},
@@ -210,28 +196,10 @@ static void what_lies_behind_the_rain_loses_its_whole_chord(void **state)
     assert_true(fabs(step_db + 2 * rate_db * 0.072) < 1e-9);
 }
 
-static void a_jammer_has_half_its_power_half_a_beam_off(void **state)
+TEST(a_jammer_has_half_its_power_half_a_beam_off)
 {
-    (void)state;
     const struct ref_jammer axis = {18520, 0, 23}, beside = {18520, 1.65, 23}, far = {37040, 0, 23};
     assert_true(fabs(10 * log10(ref_jam(&axis, 3.3)) - 23) < 1e-9);
     assert_true(fabs(ref_jam(&beside, 3.3) / ref_jam(&axis, 3.3) - 0.5) < 1e-12);
     assert_true(fabs(ref_jam(&far, 3.3) / ref_jam(&axis, 3.3) - 0.25) < 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulses_are_as_long_as_in_the_list),
-        cmocka_unit_test(a_pulse_is_a_box_that_keeps_the_energy),
-        cmocka_unit_test(the_noise_is_steady_behind_the_antenna),
-        cmocka_unit_test(the_hole_ends_at_the_height_and_cells_are_found_by_pythagoras),
-        cmocka_unit_test(levels_are_the_sum_of_signal_and_noise_less_the_time_gains_end),
-        cmocka_unit_test(rain_weakens_as_the_recommendation_says_at_10_ghz),
-        cmocka_unit_test(rain_scatters_as_its_reflectivity_factor_says),
-        cmocka_unit_test(a_line_meets_a_circle_in_its_chord),
-        cmocka_unit_test(what_lies_behind_the_rain_loses_its_whole_chord),
-        cmocka_unit_test(a_jammer_has_half_its_power_half_a_beam_off),
-    };
-    return cmocka_run_group_tests_name("reference receiver", tests, NULL, NULL);
 }

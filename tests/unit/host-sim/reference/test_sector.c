@@ -1,16 +1,11 @@
 /* A whole sector of the reference over a plain with one bright cell: where it is shown and how
  * wide, in real beam and sharpened, in fair weather and foul. */
+#include "check.h"
 #include "reference/reference.h"
 #include "tiny_image.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double rad = 0.017453292519943295, height_m = 3000, beacon_m = 9000;
 
@@ -144,7 +139,7 @@ static double expected_deviation_deg(const struct ref_sector *s, double ratio, d
     return sqrt(beam_deg * beam_deg + wide_deg * wide_deg / 12);
 }
 
-static void a_bright_cell_is_smeared_over_the_two_way_beam(void **state)
+TEST(a_bright_cell_is_smeared_over_the_two_way_beam)
 {
     const struct world *w = *state;
     const struct ref_sector s = sector_of(w, 10);
@@ -157,7 +152,7 @@ static void a_bright_cell_is_smeared_over_the_two_way_beam(void **state)
     assert_true(fabs(deviation_deg / expected_deg - 1) < 0.06);
 }
 
-static void sharpened_it_is_a_beam_over_the_ratio_and_wide_again_in_the_notch(void **state)
+TEST(sharpened_it_is_a_beam_over_the_ratio_and_wide_again_in_the_notch)
 {
     const struct world *w = *state;
     struct ref_sector s = sector_of(w, 6);
@@ -177,7 +172,7 @@ static void sharpened_it_is_a_beam_over_the_ratio_and_wide_again_in_the_notch(vo
     }
 }
 
-static void the_plain_is_as_bright_as_it_is_behind_the_hole(void **state)
+TEST(the_plain_is_as_bright_as_it_is_behind_the_hole)
 {
     const struct world *w = *state;
     const struct ref_sector s = sector_of(w, 55);
@@ -210,7 +205,7 @@ static void the_plain_is_as_bright_as_it_is_behind_the_hole(void **state)
     ref_picture_free(&p);
 }
 
-static void rain_and_a_jammer_are_where_they_are(void **state)
+TEST(rain_and_a_jammer_are_where_they_are)
 {
     const struct world *w = *state;
     struct ref_sector s = sector_of(w, 30);
@@ -239,13 +234,4 @@ static void rain_and_a_jammer_are_where_they_are(void **state)
     ref_picture_free(&foul);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_bright_cell_is_smeared_over_the_two_way_beam),
-        cmocka_unit_test(sharpened_it_is_a_beam_over_the_ratio_and_wide_again_in_the_notch),
-        cmocka_unit_test(the_plain_is_as_bright_as_it_is_behind_the_hole),
-        cmocka_unit_test(rain_and_a_jammer_are_where_they_are),
-    };
-    return cmocka_run_group_tests_name("reference sector", tests, open_world, close_world);
-}
+TEST_GROUP(open_world, close_world);

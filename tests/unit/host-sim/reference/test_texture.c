@@ -1,13 +1,8 @@
 /* Texture and the state of the sea in the reference, against the K distribution. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 /* Mean and variance of a table's 1024 equally likely powers. */
 static void moments_of(const double table_db[REF_SPECKLE_SLICES], double *mean, double *variance)
@@ -23,9 +18,8 @@ static void moments_of(const double table_db[REF_SPECKLE_SLICES], double *mean, 
 }
 
 /* Texture and speckle are independent, so the moments of their product are products. */
-static void texture_times_speckle_is_k_distributed(void **state)
+TEST(texture_times_speckle_is_k_distributed)
 {
-    (void)state;
     struct ref_texture texture;
     double speckle_db[REF_SPECKLE_SLICES];
     for (unsigned nu = 1; nu <= 16; nu *= 2) {
@@ -45,9 +39,8 @@ static void texture_times_speckle_is_k_distributed(void **state)
     }
 }
 
-static void each_kind_has_its_own_texture_and_only_water_the_sea(void **state)
+TEST(each_kind_has_its_own_texture_and_only_water_the_sea)
 {
-    (void)state;
     const struct ref_params params = {
         .texture_shape = {[LM_KIND_STRUCTURE] = 2, [LM_KIND_TREES] = 4}, .sea_db = ref_sea_db(5)};
     static struct ref_texture texture;
@@ -69,23 +62,12 @@ static void each_kind_has_its_own_texture_and_only_water_the_sea(void **state)
     }
 }
 
-static void texture_is_the_grounds_and_not_the_noises(void **state)
+TEST(texture_is_the_grounds_and_not_the_noises)
 {
-    (void)state;
     static const double no_speckle[REF_SPECKLE_SLICES];
     struct ref_bin bins[2] = {{.is_lit = true, .level_db = -20, .texture_db = 7},
                               {.is_lit = false, .level_db = -20, .texture_db = 7}};
     ref_speckle(bins, 2, no_speckle, -30);
     assert_true(fabs(bins[0].echo_db - 10 * log10(pow(10, -1.3) + 1e-3)) < 1e-9);
     assert_true(fabs(bins[1].echo_db + 30) < 1e-9);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(texture_times_speckle_is_k_distributed),
-        cmocka_unit_test(each_kind_has_its_own_texture_and_only_water_the_sea),
-        cmocka_unit_test(texture_is_the_grounds_and_not_the_noises),
-    };
-    return cmocka_run_group_tests_name("reference texture", tests, NULL, NULL);
 }

@@ -1,20 +1,14 @@
 /* Speckle and tone of the reference, against the theory of the Gamma distribution. */
+#include "check.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const unsigned looks[] = {1, 2, 4, 8, 16};
 enum { LOOKS = 5 };
 
-static void speckle_has_mean_one_and_the_spread_of_its_looks(void **state)
+TEST(speckle_has_mean_one_and_the_spread_of_its_looks)
 {
-    (void)state;
     for (int i = 0; i < LOOKS; i++) {
         double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
         ref_speckle_table(looks[i], table_db);
@@ -31,9 +25,8 @@ static void speckle_has_mean_one_and_the_spread_of_its_looks(void **state)
 
 /* Standard deviation of a Gamma variable of L looks in decibels, 10 / ln 10 times the root of the
  * trigamma function of L. */
-static void speckle_in_decibels_has_the_published_spread(void **state)
+TEST(speckle_in_decibels_has_the_published_spread)
 {
-    (void)state;
     const double published_db[LOOKS] = {5.57, 3.49, 2.31, 1.58, 1.10};
     for (int i = 0; i < LOOKS; i++) {
         double table_db[REF_SPECKLE_SLICES], sum = 0, squares = 0;
@@ -48,9 +41,8 @@ static void speckle_in_decibels_has_the_published_spread(void **state)
 
 /* One look is exponential: slices end at -ln(1 - p), and the share of the mean below x is
  * 1 - (1 + x) exp(-x). */
-static void slices_of_one_look_are_those_of_the_exponential(void **state)
+TEST(slices_of_one_look_are_those_of_the_exponential)
 {
-    (void)state;
     double table_db[REF_SPECKLE_SLICES];
     ref_speckle_table(1, table_db);
     double below = 0;
@@ -65,9 +57,8 @@ static void slices_of_one_look_are_those_of_the_exponential(void **state)
     assert_true(fabs(last - 10 * log10((1 - below) * REF_SPECKLE_SLICES)) < 1e-5);
 }
 
-static void speckle_rises_from_slice_to_slice(void **state)
+TEST(speckle_rises_from_slice_to_slice)
 {
-    (void)state;
     for (int i = 0; i < LOOKS; i++) {
         double table_db[REF_SPECKLE_SLICES];
         ref_speckle_table(looks[i], table_db);
@@ -78,9 +69,8 @@ static void speckle_rises_from_slice_to_slice(void **state)
 }
 
 /* Every cell draws by itself: of 4096 pairs, four share a slice by chance. */
-static void cells_columns_epochs_and_kinds_draw_by_themselves(void **state)
+TEST(cells_columns_epochs_and_kinds_draw_by_themselves)
 {
-    (void)state;
     int same[4] = {0};
     for (uint32_t n = 0; n < 4096; n++) {
         const uint32_t column = n / 64, cell = n % 64;
@@ -99,9 +89,8 @@ static void cells_columns_epochs_and_kinds_draw_by_themselves(void **state)
 
 /* 30 degrees are pi / 6 columns for each cell of the range: at 196 cells, the middle of cells 192
  * to 199, 102.6, and at 200 cells 104.7. There a column is 0.286 to 0.293 degrees wide. */
-static void columns_of_the_ground_are_as_wide_as_cells_are_long(void **state)
+TEST(columns_of_the_ground_are_as_wide_as_cells_are_long)
 {
-    (void)state;
     assert_int_equal(ref_ground_column(30, 0, 50, 192), 102);
     assert_int_equal(ref_ground_column(30, 0, 50, 199), 102);
     assert_int_equal(ref_ground_column(30, 9800, 50, 0), 104);
@@ -113,9 +102,8 @@ static void columns_of_the_ground_are_as_wide_as_cells_are_long(void **state)
     }
 }
 
-static void noise_adds_to_the_power_before_speckle(void **state)
+TEST(noise_adds_to_the_power_before_speckle)
 {
-    (void)state;
     double table_db[REF_SPECKLE_SLICES];
     ref_speckle_table(4, table_db);
     struct ref_bin bins[2] = {{.is_lit = false, .slice = 7},
@@ -125,9 +113,8 @@ static void noise_adds_to_the_power_before_speckle(void **state)
     assert_true(fabs(bins[1].echo_db - (-45 + 10 * log10(2) + table_db[1000])) < 1e-12);
 }
 
-static void tone_rises_from_black_to_white(void **state)
+TEST(tone_rises_from_black_to_white)
 {
-    (void)state;
     struct ref_params params = ref_params_default();
     const double exponents[] = {0.4, 1, 2.2};
     for (int i = 0; i < 3; i++) {
@@ -145,19 +132,4 @@ static void tone_rises_from_black_to_white(void **state)
         assert_int_equal(ref_grey(ref_brightness(middle, &params), &params),
                          lround(255 * pow(0.5, exponents[i])));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(speckle_has_mean_one_and_the_spread_of_its_looks),
-        cmocka_unit_test(speckle_in_decibels_has_the_published_spread),
-        cmocka_unit_test(slices_of_one_look_are_those_of_the_exponential),
-        cmocka_unit_test(speckle_rises_from_slice_to_slice),
-        cmocka_unit_test(cells_columns_epochs_and_kinds_draw_by_themselves),
-        cmocka_unit_test(columns_of_the_ground_are_as_wide_as_cells_are_long),
-        cmocka_unit_test(noise_adds_to_the_power_before_speckle),
-        cmocka_unit_test(tone_rises_from_black_to_white),
-    };
-    return cmocka_run_group_tests_name("reference tone", tests, NULL, NULL);
 }

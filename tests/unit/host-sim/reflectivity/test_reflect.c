@@ -1,5 +1,6 @@
 /* Reflectivity: each texture against its theory, limits, independence of order, and both methods on
  * a raster. */
+#include "check.h"
 #include "fixture.h"
 #include "gis/raster.h"
 #include "reflectivity/reflect.h"
@@ -9,15 +10,9 @@
 
 #include <math.h>
 #include <ogr_srs_api.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 400 };
 
@@ -59,9 +54,8 @@ static struct moments draw(const struct db_class *c)
  * of a Gamma variate, polygamma(2, order) / polygamma(1, order)^1.5: -1.1395 for order 1 (the
  * Gumbel distribution's, of opposite sign), -0.7803 for order 2 (polygamma(2, 2) = 2 - 2 zeta(3) =
  * -0.40411, polygamma(1, 2) = pi^2 / 6 - 1 = 0.64493). */
-static void each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory(void **state)
+TEST(each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory)
 {
-    (void)state;
     static const struct {
         enum db_texture texture;
         double shape, skewness;
@@ -88,9 +82,8 @@ static void each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory(
 }
 
 /* A coarse cell beside the mean of the pixels in it. */
-static void a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stands_for(void **state)
+TEST(a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stands_for)
 {
-    (void)state;
     static const struct db_class classes[] = {
         {.gamma_db = -15, .spread_db = 3, .low_db = -24, .high_db = -6},
         {.gamma_db = -2,
@@ -126,9 +119,8 @@ static void a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stan
 
 /* Single look: an exponential power has a deviation of 5.57 dB; unscaled, the texture is
  * that law itself. */
-static void the_rayleigh_texture_at_its_own_spread_is_an_exponential_power(void **state)
+TEST(the_rayleigh_texture_at_its_own_spread_is_an_exponential_power)
 {
-    (void)state;
     const struct db_class c = {.gamma_db = -2.5068,
                                .spread_db = 5.5700,
                                .low_db = -300,
@@ -149,9 +141,8 @@ static void the_rayleigh_texture_at_its_own_spread_is_an_exponential_power(void 
 
 /* A normal cut at one spread either side keeps its mean and narrows to 0.5396 of its deviation
  * (1 - 2 phi(1) / (2 Phi(1) - 1) = 0.29112). */
-static void no_value_leaves_the_limits_and_cutting_narrows_as_theory_says(void **state)
+TEST(no_value_leaves_the_limits_and_cutting_narrows_as_theory_says)
 {
-    (void)state;
     const struct db_class c = {.gamma_db = -20, .spread_db = 3, .low_db = -23, .high_db = -17};
     const struct moments m = draw(&c);
     assert_true(m.low >= -23 && m.high <= -17);
@@ -160,9 +151,8 @@ static void no_value_leaves_the_limits_and_cutting_narrows_as_theory_says(void *
     assert_true(fabs(m.deviation - 3 * 0.53956) < 0.02);
 }
 
-static void neighbours_are_independent_and_seeds_differ(void **state)
+TEST(neighbours_are_independent_and_seeds_differ)
 {
-    (void)state;
     const struct db_class c = {.spread_db = 1, .low_db = -90, .high_db = 60};
     struct db_reflect_law law;
     db_reflect_law_init(&law, &c);
@@ -225,9 +215,8 @@ static struct moments measure_stripe(const float *values, int stripe)
     return measure(picked, count);
 }
 
-static void assigned_rasters_have_each_classes_mean_spread_and_limits(void **state)
+TEST(assigned_rasters_have_each_classes_mean_spread_and_limits)
 {
-    (void)state;
     static float values[SIDE * SIDE], again[SIDE * SIDE];
     static uint8_t valid[SIDE * SIDE];
     write_scene();
@@ -250,9 +239,8 @@ static void assigned_rasters_have_each_classes_mean_spread_and_limits(void **sta
     assert_memory_equal(values, again, sizeof values);
 }
 
-static void adjusted_rasters_keep_the_detail_and_make_water_uniform(void **state)
+TEST(adjusted_rasters_keep_the_detail_and_make_water_uniform)
 {
-    (void)state;
     static float values[SIDE * SIDE], bright[SIDE * SIDE];
     static uint8_t valid[SIDE * SIDE];
     write_scene();
@@ -274,9 +262,8 @@ static void adjusted_rasters_keep_the_detail_and_make_water_uniform(void **state
     }
 }
 
-static void the_command_says_what_is_wrong(void **state)
+TEST(the_command_says_what_is_wrong)
 {
-    (void)state;
     write_scene();
     const char *raster = fixture_path("class.tif"), *table = fixture_path("three.classes");
     const char *out = fixture_path("never.tif");
@@ -297,18 +284,4 @@ static void the_command_says_what_is_wrong(void **state)
                               table, out));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_texture_has_the_mean_the_spread_and_the_skewness_of_its_theory),
-        cmocka_unit_test(
-            a_coarse_cell_has_the_mean_and_the_spread_of_the_pixels_that_it_stands_for),
-        cmocka_unit_test(the_rayleigh_texture_at_its_own_spread_is_an_exponential_power),
-        cmocka_unit_test(no_value_leaves_the_limits_and_cutting_narrows_as_theory_says),
-        cmocka_unit_test(neighbours_are_independent_and_seeds_differ),
-        cmocka_unit_test(assigned_rasters_have_each_classes_mean_spread_and_limits),
-        cmocka_unit_test(adjusted_rasters_keep_the_detail_and_make_water_uniform),
-        cmocka_unit_test(the_command_says_what_is_wrong),
-    };
-    return cmocka_run_group_tests_name("reflect", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

@@ -1,18 +1,13 @@
 /* The invented country obeys the laws that real country obeys: water runs down, lakes lie level,
  * and slopes follow the law that the erosion claims to solve. */
+#include "check.h"
 #include "erosion.h"
 #include "noise.h"
 #include "scene/land.h"
 #include "scene/shape.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* cmocka compares single precision only. */
 static void assert_near(double is, double wanted, double tolerance)
@@ -36,7 +31,7 @@ static int free_land(void **state)
 
 /* Sampled every 10 m, the ground under the river falls from the hills to the sea. 5 cm are allowed,
  * because in a bend the posts on the two banks belong to different stretches. */
-static void the_river_runs_downhill_all_the_way(void **state)
+TEST(the_river_runs_downhill_all_the_way)
 {
     const struct land *l = *state;
     double last = 0, top = 0;
@@ -60,7 +55,7 @@ static void the_river_runs_downhill_all_the_way(void **state)
 
 /* Nothing within 300 m of the river lies below its surface there, but for the 10 cm that posts 25 m
  * apart take from a bend of the upper river, whose surface falls 2 cm a metre. */
-static void the_river_lies_lowest_in_its_valley(void **state)
+TEST(the_river_lies_lowest_in_its_valley)
 {
     const struct land *l = *state;
     for (int i = 1; i + 1 < l->river_count; i += 3) {
@@ -83,7 +78,7 @@ static void the_river_lies_lowest_in_its_valley(void **state)
     }
 }
 
-static void the_lake_is_level_and_no_shore_lies_below_it(void **state)
+TEST(the_lake_is_level_and_no_shore_lies_below_it)
 {
     const struct land *l = *state;
     int water = 0, island = 0;
@@ -101,7 +96,7 @@ static void the_lake_is_level_and_no_shore_lies_below_it(void **state)
     assert_true(island > 0);
 }
 
-static void the_sea_is_at_zero_and_all_land_above(void **state)
+TEST(the_sea_is_at_zero_and_all_land_above)
 {
     const struct land *l = *state;
     for (int i = 0; i < l->posts * l->posts; i++) {
@@ -113,7 +108,7 @@ static void the_sea_is_at_zero_and_all_land_above(void **state)
     }
 }
 
-static void the_runway_is_level(void **state)
+TEST(the_runway_is_level)
 {
     const struct land *l = *state;
     const struct frame f = land_airfield();
@@ -122,7 +117,7 @@ static void the_runway_is_level(void **state)
     }
 }
 
-static void the_hills_rise_several_hundred_metres(void **state)
+TEST(the_hills_rise_several_hundred_metres)
 {
     const struct land *l = *state;
     float top = 0;
@@ -147,9 +142,8 @@ static int start_hills(struct erosion *e)
 
 /* In the steady state uplift equals erosion, U = K sqrt(A) S, wherever the slope is not held by the
  * talus: the slope times the root of the drained area is U / K. */
-static void slopes_settle_to_the_stream_power_law(void **state)
+TEST(slopes_settle_to_the_stream_power_law)
 {
-    (void)state;
     struct erosion e;
     assert_int_equal(start_hills(&e), 0);
     erosion_run(&e, 3000, 0.25, 10);
@@ -168,9 +162,8 @@ static void slopes_settle_to_the_stream_power_law(void **state)
     erosion_free(&e);
 }
 
-static void every_place_drains_to_a_base_and_no_water_is_lost(void **state)
+TEST(every_place_drains_to_a_base_and_no_water_is_lost)
 {
-    (void)state;
     struct erosion e;
     assert_int_equal(start_hills(&e), 0);
     erosion_run(&e, 200, 0.25, 0.7);
@@ -188,9 +181,8 @@ static void every_place_drains_to_a_base_and_no_water_is_lost(void **state)
     erosion_free(&e);
 }
 
-static void cutting_land_loses_none_of_it(void **state)
+TEST(cutting_land_loses_none_of_it)
 {
-    (void)state;
     struct hs_rng r;
     hs_rng_seed(&r, 11);
     const struct frame f = frame_at((struct point){300, -200}, 31);
@@ -207,18 +199,4 @@ static void cutting_land_loses_none_of_it(void **state)
     assert_near(shape_area(&inner), 80 * 40, 1e-6);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_river_runs_downhill_all_the_way),
-        cmocka_unit_test(the_river_lies_lowest_in_its_valley),
-        cmocka_unit_test(the_lake_is_level_and_no_shore_lies_below_it),
-        cmocka_unit_test(the_sea_is_at_zero_and_all_land_above),
-        cmocka_unit_test(the_runway_is_level),
-        cmocka_unit_test(the_hills_rise_several_hundred_metres),
-        cmocka_unit_test(slopes_settle_to_the_stream_power_law),
-        cmocka_unit_test(every_place_drains_to_a_base_and_no_water_is_lost),
-        cmocka_unit_test(cutting_land_loses_none_of_it),
-    };
-    return cmocka_run_group_tests_name("land", tests, make_land, free_land);
-}
+TEST_GROUP(make_land, free_land);

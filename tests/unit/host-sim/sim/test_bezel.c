@@ -2,14 +2,9 @@
 #include "sim/bezel.h"
 #include "sim/hands.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 static const uint16_t sizes[][2] = {{256, 256}, {480, 480}, {1024, 1024}, {256, 1024}, {1024, 400}};
@@ -21,9 +16,8 @@ static int overlap(struct bezel_box a, struct bezel_box b)
            b.y < a.y + a.height;
 }
 
-static void buttons_lie_on_the_bezel_apart_from_each_other_and_from_the_glass(void **state)
+TEST(buttons_lie_on_the_bezel_apart_from_each_other_and_from_the_glass)
 {
-    (void)state;
     for (size_t i = 0; i < SIZES; i++) {
         const struct bezel b = bezel_around(sizes[i][0], sizes[i][1]);
         const struct bezel_box glass = {b.margin_px, b.margin_px, b.glass_width_px,
@@ -40,9 +34,8 @@ static void buttons_lie_on_the_bezel_apart_from_each_other_and_from_the_glass(vo
     }
 }
 
-static void every_point_of_a_button_is_that_button_and_the_glass_is_none(void **state)
+TEST(every_point_of_a_button_is_that_button_and_the_glass_is_none)
 {
-    (void)state;
     const struct bezel b = bezel_around(480, 480);
     uint32_t seen = 0, points = 0, area = 0;
     for (int32_t button = 1; button <= LM_BUTTONS; button++) {
@@ -63,9 +56,8 @@ static void every_point_of_a_button_is_that_button_and_the_glass_is_none(void **
     assert_int_equal(points, area);
 }
 
-static void keys_stand_clockwise_from_the_top_left(void **state)
+TEST(keys_stand_clockwise_from_the_top_left)
 {
-    (void)state;
     const struct bezel b = bezel_around(480, 480);
     for (int32_t i = 1; i < 5; i++) {
         assert_true(bezel_box_of(&b, i).x < bezel_box_of(&b, i + 1).x);
@@ -77,9 +69,8 @@ static void keys_stand_clockwise_from_the_top_left(void **state)
     assert_true(bezel_box_of(&b, 11).y > 540 && bezel_box_of(&b, 16).x < 60);
 }
 
-static void the_picture_holds_the_glass_whole_and_lights_what_is_down(void **state)
+TEST(the_picture_holds_the_glass_whole_and_lights_what_is_down)
 {
-    (void)state;
     for (size_t i = 0; i < SIZES; i++) {
         const struct bezel b = bezel_around(sizes[i][0], sizes[i][1]);
         const size_t pixels = (size_t)b.width_px * b.height_px;
@@ -114,9 +105,8 @@ static void the_picture_holds_the_glass_whole_and_lights_what_is_down(void **sta
     }
 }
 
-static void hands_speak_after_the_script_and_let_go_of_everything(void **state)
+TEST(hands_speak_after_the_script_and_let_go_of_everything)
 {
-    (void)state;
     struct hands h;
     struct lm_control c;
     hands_init(&h, NULL);
@@ -136,9 +126,8 @@ static void hands_speak_after_the_script_and_let_go_of_everything(void **state)
     assert_int_equal(h.port.next(h.port.ctx, &c), 0);
 }
 
-static void the_knob_stops_at_its_ends_and_a_full_queue_is_counted(void **state)
+TEST(the_knob_stops_at_its_ends_and_a_full_queue_is_counted)
 {
-    (void)state;
     struct hands h;
     struct lm_control c;
     hands_init(&h, NULL);
@@ -155,17 +144,4 @@ static void the_knob_stops_at_its_ends_and_a_full_queue_is_counted(void **state)
     assert_int_equal(taken, HANDS_QUEUE);
     hands_turn_knob(&h, -9000);
     assert_int_equal(h.knob, -LM_FULL_DEFLECTION);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(buttons_lie_on_the_bezel_apart_from_each_other_and_from_the_glass),
-        cmocka_unit_test(every_point_of_a_button_is_that_button_and_the_glass_is_none),
-        cmocka_unit_test(keys_stand_clockwise_from_the_top_left),
-        cmocka_unit_test(the_picture_holds_the_glass_whole_and_lights_what_is_down),
-        cmocka_unit_test(hands_speak_after_the_script_and_let_go_of_everything),
-        cmocka_unit_test(the_knob_stops_at_its_ends_and_a_full_queue_is_counted),
-    };
-    return cmocka_run_group_tests_name("bezel", tests, NULL, NULL);
 }

@@ -4,17 +4,12 @@
 #include "hs/angle.h"
 #include "lm/radar.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 enum { NOTHING = 99 };
@@ -45,9 +40,8 @@ static struct lm_control at(struct script *s, double seconds)
     return c;
 }
 
-static void a_press_goes_down_and_comes_up_a_tenth_of_a_second_later(void **state)
+TEST(a_press_goes_down_and_comes_up_a_tenth_of_a_second_later)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "1 osb 19\n"), 0);
     assert_int_equal(at(&s, 0.999).kind, NOTHING);
@@ -62,9 +56,8 @@ static void a_press_goes_down_and_comes_up_a_tenth_of_a_second_later(void **stat
     script_free(&s);
 }
 
-static void a_long_press_overlaps_what_the_next_lines_do(void **state)
+TEST(a_long_press_overlaps_what_the_next_lines_do)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "1 osb 11 1.5\n2 gm\n2.2 picture now\n3 drop\n"), 0);
     assert_int_equal(at(&s, 1).kind, LM_CONTROL_DOWN);
@@ -77,9 +70,8 @@ static void a_long_press_overlaps_what_the_next_lines_do(void **state)
     script_free(&s);
 }
 
-static void a_patch_takes_the_effects_behind_it_and_no_other_word(void **state)
+TEST(a_patch_takes_the_effects_behind_it_and_no_other_word)
 {
-    (void)state;
     static const struct {
         const char *words;
         int has_layover, is_steady;
@@ -103,9 +95,8 @@ static void a_patch_takes_the_effects_behind_it_and_no_other_word(void **state)
     assert_int_equal(read_text(&s, "0 sar 46 11 5 upright\n"), -1);
 }
 
-static void a_slew_lasts_as_long_as_it_says(void **state)
+TEST(a_slew_lasts_as_long_as_it_says)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "0 slew 0.5 -1 2\n"), 0);
     struct lm_control c = at(&s, 0);
@@ -116,9 +107,8 @@ static void a_slew_lasts_as_long_as_it_says(void **state)
     script_free(&s);
 }
 
-static void rockers_and_knob_are_their_buttons_and_deflection(void **state)
+TEST(rockers_and_knob_are_their_buttons_and_deflection)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "0 rocker gain +1\n1 rocker con -1\n2 knob -0.25\n"), 0);
     assert_int_equal(at(&s, 0.5).button, lm_rocker_button(LM_ROCKER_GAIN, true));
@@ -130,9 +120,8 @@ static void rockers_and_knob_are_their_buttons_and_deflection(void **state)
     script_free(&s);
 }
 
-static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(void **state)
+TEST(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs)
 {
-    (void)state;
     uint32_t seen = 0;
     for (int rocker = 0; rocker < LM_ROCKERS; rocker++) {
         for (int more = 0; more < 2; more++) {
@@ -144,9 +133,8 @@ static void the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs(voi
     assert_int_equal(seen, 0xFF);
 }
 
-static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void **state)
+TEST(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector)
 {
-    (void)state;
     const struct lm_radar *radar = &lm_radar_default;
     for (int mode = 0; mode < LM_SECTOR_MODES; mode++) {
         struct script s;
@@ -173,9 +161,8 @@ static void a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector(void
     }
 }
 
-static void words_of_the_table_are_taken_in_small_letters(void **state)
+TEST(words_of_the_table_are_taken_in_small_letters)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "0 gm dbs1\n1 GMT exp\n"), 0);
     assert_int_equal(at(&s, 0).sector.fov, LM_FIELD_DBS1);
@@ -183,9 +170,8 @@ static void words_of_the_table_are_taken_in_small_letters(void **state)
     script_free(&s);
 }
 
-static void a_scale_is_one_of_the_tables_in_nautical_miles(void **state)
+TEST(a_scale_is_one_of_the_tables_in_nautical_miles)
 {
-    (void)state;
     struct script s;
     char text[40];
     for (uint32_t i = 0; i < lm_radar_default.ranges; i++) {
@@ -204,9 +190,8 @@ static void a_scale_is_one_of_the_tables_in_nautical_miles(void **state)
     assert_int_equal(read_text(&s, "0 azimuth 31\n"), -1);
 }
 
-static void a_start_that_a_mode_does_not_have_is_refused(void **state)
+TEST(a_start_that_a_mode_does_not_have_is_refused)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "0 sea dbs1\n"), -1);
     assert_int_equal(read_text(&s, "0 range 80\n1 gmt\n"), -1);
@@ -218,9 +203,8 @@ static void a_start_that_a_mode_does_not_have_is_refused(void **state)
     script_free(&s);
 }
 
-static void a_steerpoint_is_a_place_or_off(void **state)
+TEST(a_steerpoint_is_a_place_or_off)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s, "1 steer 45 -90.5\n2 steer off\n"), 0);
     struct lm_control c = at(&s, 1);
@@ -234,9 +218,8 @@ static void a_steerpoint_is_a_place_or_off(void **state)
     script_free(&s);
 }
 
-static void rain_and_jammers_add_up_until_the_weather_is_fair(void **state)
+TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
 {
-    (void)state;
     struct script s;
     assert_int_equal(read_text(&s,
                                "1 rain 45 -90 10 30\n2 jam -45 90 12.5\n3 rain 0 0 0.1 150\n"
@@ -285,9 +268,8 @@ static bool is_accepted(const char *line, int count)
     return is_read;
 }
 
-static void there_is_no_more_rain_and_jamming_than_the_unit_has_room_for(void **state)
+TEST(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for)
 {
-    (void)state;
     freopen("/dev/null", "w", stderr);
     assert_true(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX));
     assert_false(is_accepted("0 rain 1 2 3 4\n", LM_RAINS_MAX + 1));
@@ -296,9 +278,8 @@ static void there_is_no_more_rain_and_jamming_than_the_unit_has_room_for(void **
     assert_true(is_accepted("0 rain 1 2 3 4\n0 weather fair\n", LM_RAINS_MAX + 1));
 }
 
-static void commands_that_are_none_are_refused(void **state)
+TEST(commands_that_are_none_are_refused)
 {
-    (void)state;
     const char *const bad[] = {"0 osb\n",
                                "0 osb 0\n",
                                "0 osb 21\n",
@@ -360,25 +341,4 @@ static void commands_that_are_none_are_refused(void **state)
             fail_msg("accepted: %s", bad[i]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_press_goes_down_and_comes_up_a_tenth_of_a_second_later),
-        cmocka_unit_test(a_long_press_overlaps_what_the_next_lines_do),
-        cmocka_unit_test(a_patch_takes_the_effects_behind_it_and_no_other_word),
-        cmocka_unit_test(a_slew_lasts_as_long_as_it_says),
-        cmocka_unit_test(rockers_and_knob_are_their_buttons_and_deflection),
-        cmocka_unit_test(the_buttons_of_the_rockers_are_all_different_and_follow_the_osbs),
-        cmocka_unit_test(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector),
-        cmocka_unit_test(words_of_the_table_are_taken_in_small_letters),
-        cmocka_unit_test(a_scale_is_one_of_the_tables_in_nautical_miles),
-        cmocka_unit_test(a_start_that_a_mode_does_not_have_is_refused),
-        cmocka_unit_test(a_steerpoint_is_a_place_or_off),
-        cmocka_unit_test(rain_and_jammers_add_up_until_the_weather_is_fair),
-        cmocka_unit_test(there_is_no_more_rain_and_jamming_than_the_unit_has_room_for),
-        cmocka_unit_test(commands_that_are_none_are_refused),
-    };
-    return cmocka_run_group_tests_name("script", tests, NULL, NULL);
 }

@@ -2,15 +2,10 @@
 #include "sim/window.h"
 
 #include <SDL.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "check.h"
 #include "control_asserts.h"
 
 struct bench {
@@ -52,9 +47,8 @@ static void expect_nothing(struct bench *b)
     assert_int_equal(b->hands.port.next(b->hands.port.ctx, &c), 0);
 }
 
-static void each_button_has_its_key(void **state)
+TEST(each_button_has_its_key)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     const SDL_Keycode keys[LM_BUTTONS] = {
@@ -73,9 +67,8 @@ static void each_button_has_its_key(void **state)
     window_close(b.window);
 }
 
-static void arrows_return_backspace_and_page_keys_work_the_hand_controller(void **state)
+TEST(arrows_return_backspace_and_page_keys_work_the_hand_controller)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     key(SDLK_UP, true, false);
@@ -106,9 +99,8 @@ static void mouse(uint32_t type, int x, int y)
     SDL_PushEvent(&e);
 }
 
-static void a_click_holds_the_button_under_the_mouse_until_it_is_let_go_anywhere(void **state)
+TEST(a_click_holds_the_button_under_the_mouse_until_it_is_let_go_anywhere)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     for (int32_t button = 1; button <= LM_BUTTONS; button++) {
@@ -128,9 +120,8 @@ static void a_click_holds_the_button_under_the_mouse_until_it_is_let_go_anywhere
     window_close(b.window);
 }
 
-static void a_window_that_loses_the_keyboard_lets_go_of_everything(void **state)
+TEST(a_window_that_loses_the_keyboard_lets_go_of_everything)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     key(SDLK_7, true, false);
@@ -146,9 +137,8 @@ static void a_window_that_loses_the_keyboard_lets_go_of_everything(void **state)
     window_close(b.window);
 }
 
-static void escape_and_closing_end_it(void **state)
+TEST(escape_and_closing_end_it)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     key(SDLK_ESCAPE, true, false);
@@ -160,9 +150,8 @@ static void escape_and_closing_end_it(void **state)
     window_close(b.window);
 }
 
-static void the_window_shows_the_pixels_it_is_given(void **state)
+TEST(the_window_shows_the_pixels_it_is_given)
 {
-    (void)state;
     struct bench b;
     open_bench(&b);
     const size_t pixels = (size_t)b.bezel.width_px * b.bezel.height_px;
@@ -186,17 +175,4 @@ static void the_window_shows_the_pixels_it_is_given(void **state)
     free(back);
     free(glass);
     window_close(b.window);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_window_shows_the_pixels_it_is_given),
-        cmocka_unit_test(each_button_has_its_key),
-        cmocka_unit_test(arrows_return_backspace_and_page_keys_work_the_hand_controller),
-        cmocka_unit_test(a_click_holds_the_button_under_the_mouse_until_it_is_let_go_anywhere),
-        cmocka_unit_test(a_window_that_loses_the_keyboard_lets_go_of_everything),
-        cmocka_unit_test(escape_and_closing_end_it),
-    };
-    return cmocka_run_group_tests_name("window", tests, NULL, NULL);
 }

@@ -1,17 +1,15 @@
 #include "fixture.h"
 
+#include "check.h"
 #include "gis/gdal_start.h"
 #include "support.h"
 
 #include <ogr_srs_api.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 int fixture_open(void **state)
 {

@@ -2,6 +2,7 @@
 #ifndef IMAGE_DAMAGE_H
 #define IMAGE_DAMAGE_H
 
+#include "check.h"
 #include "scene.h"
 
 #include "image/reader.h"
@@ -10,14 +11,8 @@
 #include "fx/crc32c.h"
 #include "lm/image.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* How much image_verify finds wrong; not to be read to its end is one fault more. */
 static inline uint64_t damage_faults(const void *bytes, size_t size)

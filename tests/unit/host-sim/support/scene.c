@@ -1,18 +1,15 @@
 #include "scene.h"
 
+#include "check.h"
 #include "gis/gdal_start.h"
 #include "support.h"
 
 #include <ogr_srs_api.h>
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 const char *scene_folder(void)
 {

@@ -3,21 +3,17 @@
 #include "fill.h"
 #include "terrain/surface.h"
 
+#include "check.h"
 #include "scene.h"
 #include "support.h"
 
 #include <cpl_string.h>
 #include <gdal_utils.h>
 #include <math.h>
-#include <setjmp.h>
 #include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { N = LM_TILE_POSTS };
 
@@ -111,9 +107,8 @@ static double worst_against_gdal(struct terrain *t, GDALDatasetH source, uint8_t
 /* Half a step of 1/64 m, and float against double. */
 static const double rounding_m = 0.5 / 64 + 0.002;
 
-static void posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges(void **state)
+TEST(posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges)
 {
-    (void)state;
     char a[512], b[512], c[512];
     if (!support_data_path("dted1_hawaii/n19_w155_3arc_v2.dt1", a, sizeof a) ||
         !support_data_path("dted1_hawaii/n19_w156_3arc_v2.dt1", b, sizeof b) ||
@@ -134,9 +129,8 @@ static void posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges(vo
     GDALClose(vrt);
 }
 
-static void posts_over_utm_with_negative_northings_are_gdals_bilinear_samples(void **state)
+TEST(posts_over_utm_with_negative_northings_are_gdals_bilinear_samples)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("landsat5_amazon_tucurui_srtm_labels/derived/srtm.bsq", path,
                            sizeof path)) {
@@ -158,9 +152,8 @@ static double plane(double x, double y)
     return 100.0 + 300.0 * (x - 10.0) - 200.0 * (y - 50.0);
 }
 
-static void a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model(void **state)
+TEST(a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model)
 {
-    (void)state;
     const struct scene_raster r = {.width = 1200,
                                    .height = 1200,
                                    .geotransform = {10.0, 0.001, 0, 51.2, 0, -0.001},
@@ -195,9 +188,8 @@ static double comb(double x, double y)
     return (long)floor(x / 0.001) & 1 ? 100.0 : 0.0;
 }
 
-static void a_model_much_finer_than_the_cells_is_averaged(void **state)
+TEST(a_model_much_finer_than_the_cells_is_averaged)
 {
-    (void)state;
     const struct scene_raster r = {.width = 1000,
                                    .height = 1000,
                                    .geotransform = {10.0, 0.001, 0, 51.0, 0, -0.001},
@@ -222,9 +214,8 @@ static void a_model_much_finer_than_the_cells_is_averaged(void **state)
 
 /* A square hole in a slope of a metre a pixel, in rectangles on both sides of the coarse picture's
  * size. */
-static void a_hole_in_a_slope_is_filled_with_the_slope(void **state)
+TEST(a_hole_in_a_slope_is_filled_with_the_slope)
 {
-    (void)state;
     scene_folder();
     static const int sides[] = {5, 40, 256, 257, 700, 1500};
     for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
@@ -265,9 +256,8 @@ static double holed(double x, double y)
     return is_land_hole || is_sea_hole ? -32768 : is_sea ? 0 : 500 + 1000 * (x - 10);
 }
 
-static void voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea(void **state)
+TEST(voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea)
 {
-    (void)state;
     const struct scene_raster r = {.width = 800,
                                    .height = 800,
                                    .geotransform = {10.0, 0.001, 0, 50.8, 0, -0.001},
@@ -307,9 +297,8 @@ static double large_holes(double x, double y)
     return is_at_sea || is_on_coast ? -9999 : x > 10.7 ? 300 : 0;
 }
 
-static void a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea(void **state)
+TEST(a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea)
 {
-    (void)state;
     const struct scene_raster r = {.width = 1000,
                                    .height = 500,
                                    .geotransform = {10.0, 0.001, 0, 50.5, 0, -0.001},
@@ -343,9 +332,8 @@ static double all_void(double x, double y)
     return (double)NAN;
 }
 
-static void a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through(void **state)
+TEST(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through)
 {
-    (void)state;
     struct scene_raster r = {.width = 100,
                              .height = 100,
                              .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
@@ -368,9 +356,8 @@ static void a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through
     terrain_close(&t);
 }
 
-static void beyond_the_model_posts_keep_the_height_of_its_edge(void **state)
+TEST(beyond_the_model_posts_keep_the_height_of_its_edge)
 {
-    (void)state;
     const struct scene_raster r = {.width = 100,
                                    .height = 100,
                                    .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
@@ -403,9 +390,8 @@ static double feet(double x, double y)
     return 1000;
 }
 
-static void of_two_models_the_nearer_one_lends_its_edge(void **state)
+TEST(of_two_models_the_nearer_one_lends_its_edge)
 {
-    (void)state;
     scene_folder();
     struct scene_raster r = {.width = 100,
                              .height = 100,
@@ -456,9 +442,8 @@ static double jumps(double x, double y)
 
 /* At levels and places where the mapping is bent, cut or wrapped, on ground that jumps by 100 m a
  * pixel. */
-static void tiles_share_their_edges_bit_for_bit(void **state)
+TEST(tiles_share_their_edges_bit_for_bit)
 {
-    (void)state;
     static const struct {
         int epsg;
         double geotransform[6];
@@ -504,9 +489,8 @@ static void tiles_share_their_edges_bit_for_bit(void **state)
     }
 }
 
-static void elevations_in_feet_become_metres(void **state)
+TEST(elevations_in_feet_become_metres)
 {
-    (void)state;
     const struct scene_raster r = {.width = 100,
                                    .height = 100,
                                    .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
@@ -526,9 +510,8 @@ static void elevations_in_feet_become_metres(void **state)
     terrain_close(&t);
 }
 
-static void the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled(void **state)
+TEST(the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("srtm_hgt/N48W125.hgt.zip", path, sizeof path)) {
         skip();
@@ -564,9 +547,8 @@ static void the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled(vo
 
 /* The same places asked for at all levels, and from both sides of a zone border, on ground that
  * jumps by up to 100 m a pixel: not a bit of difference. */
-static void a_place_has_one_height_whichever_level_or_zone_asks(void **state)
+TEST(a_place_has_one_height_whichever_level_or_zone_asks)
 {
-    (void)state;
     static const struct {
         int epsg;
         double geotransform[6];
@@ -631,23 +613,4 @@ static int tidy(void **state)
     return support_run("rm -rf %s", scene_folder());
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(posts_over_dted_are_gdals_bilinear_samples_across_the_files_edges),
-        cmocka_unit_test(posts_over_utm_with_negative_northings_are_gdals_bilinear_samples),
-        cmocka_unit_test(a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model),
-        cmocka_unit_test(a_model_much_finer_than_the_cells_is_averaged),
-        cmocka_unit_test(a_hole_in_a_slope_is_filled_with_the_slope),
-        cmocka_unit_test(voids_on_land_are_filled_from_their_rim_and_voids_at_sea_are_sea),
-        cmocka_unit_test(a_large_void_on_a_coast_is_left_unless_voids_are_said_to_be_sea),
-        cmocka_unit_test(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through),
-        cmocka_unit_test(beyond_the_model_posts_keep_the_height_of_its_edge),
-        cmocka_unit_test(of_two_models_the_nearer_one_lends_its_edge),
-        cmocka_unit_test(tiles_share_their_edges_bit_for_bit),
-        cmocka_unit_test(a_place_has_one_height_whichever_level_or_zone_asks),
-        cmocka_unit_test(elevations_in_feet_become_metres),
-        cmocka_unit_test(the_unknown_half_of_an_srtm_tile_is_left_and_the_hills_are_filled),
-    };
-    return cmocka_run_group_tests_name("terrain", tests, NULL, tidy);
-}
+TEST_GROUP(NULL, tidy);

@@ -1,18 +1,13 @@
 /* Signatures against geometry: where things lie in a chip, what hides the ground, and how much
  * comes back. */
+#include "check.h"
 #include "shapes.h"
 #include "tracer/accumulate.h"
 #include "tracer/bake.h"
 #include "tracer/models.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -78,9 +73,8 @@ static double weigh(const struct lm_chip *c, double *row, double *column)
 }
 
 /* A cube of 0.2 m ahead, to the right and above: in each chip where the radar sees it. */
-static void a_thing_lies_where_the_radar_puts_it(void **state)
+TEST(a_thing_lies_where_the_radar_puts_it)
 {
-    (void)state;
     const struct vec at = {3, -1.2, 2}, half = {0.1, 0.1, 0.1};
     struct mesh m = {0};
     shape_box(&m, vec_sub(at, half), vec_add(at, half), mesh_material(&m, "metal"));
@@ -106,9 +100,8 @@ static void a_thing_lies_where_the_radar_puts_it(void **state)
 /* A wall of 2 x 3 m, square to the radar, in chips much shorter than the ground that lights it. Of
  * one reflection it returns its area as seen; the ground nothing. Of two, what goes by way of the
  * ground comes from the wall's foot: the same area both ways round, times what goes on. */
-static void the_ground_returns_only_what_it_reflects(void **state)
+TEST(the_ground_returns_only_what_it_reflects)
 {
-    (void)state;
     struct plain shiny = {1, 0.5};
     struct mesh m = {0};
     struct db_signature s;
@@ -136,9 +129,8 @@ static void the_ground_returns_only_what_it_reflects(void **state)
 }
 
 /* A box hides what lies under it and behind it as far as its height over the tangent. */
-static void a_box_throws_the_shadow_of_its_height(void **state)
+TEST(a_box_throws_the_shadow_of_its_height)
 {
-    (void)state;
     struct mesh m = {0};
     struct db_signature s;
     struct bake_report report;
@@ -168,9 +160,8 @@ static void a_box_throws_the_shadow_of_its_height(void **state)
     mesh_free(&m);
 }
 
-static void the_mean_is_what_was_ordered_and_the_table_is_the_chips_sum(void **state)
+TEST(the_mean_is_what_was_ordered_and_the_table_is_the_chips_sum)
 {
-    (void)state;
     struct mesh m = {0};
     struct db_signature s;
     struct bake_report report;
@@ -194,9 +185,8 @@ static void the_mean_is_what_was_ordered_and_the_table_is_the_chips_sum(void **s
     mesh_free(&m);
 }
 
-static void a_code_is_the_nearest_half_decibel(void **state)
+TEST(a_code_is_the_nearest_half_decibel)
 {
-    (void)state;
     assert_int_equal(bake_code(0), 0);
     assert_int_equal(bake_code(1e-9), 0);
     assert_int_equal(bake_code(1), 160);
@@ -208,9 +198,8 @@ static void a_code_is_the_nearest_half_decibel(void **state)
 }
 
 /* A mast far ahead: from all sides it, its lean and its shadow at 15 degrees are in the chip. */
-static void the_pixels_hold_model_lean_and_shadow(void **state)
+TEST(the_pixels_hold_model_lean_and_shadow)
 {
-    (void)state;
     struct mesh m = {0};
     struct db_signature s;
     struct bake_report report;
@@ -236,9 +225,8 @@ static void the_pixels_hold_model_lean_and_shadow(void **state)
     mesh_free(&m);
 }
 
-static void a_model_that_returns_nothing_is_refused(void **state)
+TEST(a_model_that_returns_nothing_is_refused)
 {
-    (void)state;
     struct plain black = {0, 0};
     struct mesh m = {0};
     struct db_signature s;
@@ -249,18 +237,4 @@ static void a_model_that_returns_nothing_is_refused(void **state)
     assert_int_equal(bake(&o, &m, &s, &report), -1);
     assert_null(s.chips);
     mesh_free(&m);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_thing_lies_where_the_radar_puts_it),
-        cmocka_unit_test(the_ground_returns_only_what_it_reflects),
-        cmocka_unit_test(a_box_throws_the_shadow_of_its_height),
-        cmocka_unit_test(the_mean_is_what_was_ordered_and_the_table_is_the_chips_sum),
-        cmocka_unit_test(a_code_is_the_nearest_half_decibel),
-        cmocka_unit_test(the_pixels_hold_model_lean_and_shadow),
-        cmocka_unit_test(a_model_that_returns_nothing_is_refused),
-    };
-    return cmocka_run_group_tests_name("bake", tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* From model to radar picture: things are where theory puts them. */
+#include "check.h"
 #include "known_records.h"
 #include "shapes.h"
 #include "support.h"
@@ -9,14 +10,8 @@
 #include "tracer/trace.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { CELLS = TRACE_CHIP_CELLS };
 
@@ -34,9 +29,8 @@ static struct reflect_law plain_law(void)
 }
 
 /* By hand: of the plate every cell that it fills gets what its area of plane holds. */
-static void a_plates_power_is_its_area_times_its_share(void **state)
+TEST(a_plates_power_is_its_area_times_its_share)
 {
-    (void)state;
     struct trace_records r;
     known_plate(&r, 2, 30, 80);
     struct reflect_law law = plain_law();
@@ -55,9 +49,8 @@ static void a_plates_power_is_its_area_times_its_share(void **state)
 }
 
 /* Two shares multiplied, then the second surface's own: all of it in the seam. */
-static void shares_multiply_along_the_bounces(void **state)
+TEST(shares_multiply_along_the_bounces)
 {
-    (void)state;
     struct trace_records r;
     known_dihedral(&r, 1, 0.5, 15, 40);
     struct reflect_law law = plain_law();
@@ -80,9 +73,8 @@ static void shares_multiply_along_the_bounces(void **state)
 }
 
 /* Three times the share of a mirror, from the aperture of a square trihedral, a^2 sqrt 3. */
-static void a_trihedral_returns_the_share_of_three_mirrors(void **state)
+TEST(a_trihedral_returns_the_share_of_three_mirrors)
 {
-    (void)state;
     struct mesh m = {0};
     struct scene s;
     struct trace_records r;
@@ -145,9 +137,8 @@ static int brightest(const float *picture)
     return best;
 }
 
-static void a_trihedral_is_brightest_at_its_apex(void **state)
+TEST(a_trihedral_is_brightest_at_its_apex)
 {
-    (void)state;
     for (double azimuth = 350; azimuth <= 370; azimuth += 10) {
         struct trace_records r;
         float *picture = picture_of("trihedral", fmod(azimuth, 360), 35, &r);
@@ -160,9 +151,8 @@ static void a_trihedral_is_brightest_at_its_apex(void **state)
     }
 }
 
-static void a_dihedral_is_brightest_along_its_seam(void **state)
+TEST(a_dihedral_is_brightest_along_its_seam)
 {
-    (void)state;
     struct trace_records r;
     float *picture = picture_of("dihedral", 0, 30, &r);
     const int cell = brightest(picture);
@@ -177,9 +167,8 @@ static void a_dihedral_is_brightest_along_its_seam(void **state)
 }
 
 /* Crown and brim meet in a circle of 0.5 m: double bounces are focused on its near half. */
-static void a_top_hat_is_an_arc_around_its_crown(void **state)
+TEST(a_top_hat_is_an_arc_around_its_crown)
 {
-    (void)state;
     struct trace_records r;
     float *picture = picture_of("tophat", 77, 30, &r);
     const double psi = 30 * pi / 180;
@@ -195,9 +184,8 @@ static void a_top_hat_is_an_arc_around_its_crown(void **state)
 }
 
 /* No light is made: with shares that add up to one, what comes back is at most what was sent. */
-static void no_more_power_comes_back_than_was_sent(void **state)
+TEST(no_more_power_comes_back_than_was_sent)
 {
-    (void)state;
     struct trace_records r;
     float *picture = picture_of("slicy", 25, 30, &r);
     struct reflect_law law = plain_law();
@@ -217,9 +205,8 @@ static void no_more_power_comes_back_than_was_sent(void **state)
     trace_records_free(&r);
 }
 
-static void level_ground_is_even(void **state)
+TEST(level_ground_is_even)
 {
-    (void)state;
     struct trace_records r;
     float *picture = picture_of("plate", 90, 15, &r); /* edge on: next to nothing */
     const float ground = picture[5 * CELLS + 5];
@@ -230,19 +217,4 @@ static void level_ground_is_even(void **state)
     }
     free(picture);
     trace_records_free(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plates_power_is_its_area_times_its_share),
-        cmocka_unit_test(shares_multiply_along_the_bounces),
-        cmocka_unit_test(a_trihedral_returns_the_share_of_three_mirrors),
-        cmocka_unit_test(a_trihedral_is_brightest_at_its_apex),
-        cmocka_unit_test(a_dihedral_is_brightest_along_its_seam),
-        cmocka_unit_test(a_top_hat_is_an_arc_around_its_crown),
-        cmocka_unit_test(no_more_power_comes_back_than_was_sent),
-        cmocka_unit_test(level_ground_is_even),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Models: bodies are closed, files are believed only as far as they make sense. */
+#include "check.h"
 #include "shapes.h"
 #include "support.h"
 #include "tracer/mesh_audit.h"
@@ -8,16 +9,10 @@
 
 #include "hs/rng.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static const char *scratch(void)
 {
@@ -55,9 +50,8 @@ static double volume_of(const struct mesh *m)
     return sum;
 }
 
-static void bodies_are_closed_and_have_the_volume_of_their_formula(void **state)
+TEST(bodies_are_closed_and_have_the_volume_of_their_formula)
 {
-    (void)state;
     struct mesh m = {0};
     add_box(&m);
     struct mesh_audit a = audited(&m);
@@ -88,9 +82,8 @@ static void bodies_are_closed_and_have_the_volume_of_their_formula(void **state)
     }
 }
 
-static void the_aircraft_has_its_public_dimensions(void **state)
+TEST(the_aircraft_has_its_public_dimensions)
 {
-    (void)state;
     struct mesh m = {0};
     struct vec low, high;
     const double foot_m = 0.3048;
@@ -103,9 +96,8 @@ static void the_aircraft_has_its_public_dimensions(void **state)
     mesh_free(&m);
 }
 
-static void each_fault_of_a_body_is_counted(void **state)
+TEST(each_fault_of_a_body_is_counted)
 {
-    (void)state;
     struct mesh m = {0};
     add_box(&m);
     m.triangle_count--; /* a hole */
@@ -143,9 +135,8 @@ static void each_fault_of_a_body_is_counted(void **state)
 }
 
 /* Files repeat the corners of each face: they count as one place. */
-static void corners_at_one_place_are_one(void **state)
+TEST(corners_at_one_place_are_one)
 {
-    (void)state;
     struct mesh box = {0}, loose = {0};
     add_box(&box);
     mesh_material(&loose, "metal");
@@ -159,9 +150,8 @@ static void corners_at_one_place_are_one(void **state)
     mesh_free(&loose);
 }
 
-static void a_model_that_is_written_is_read_back(void **state)
+TEST(a_model_that_is_written_is_read_back)
 {
-    (void)state;
     struct mesh m = {0}, again;
     model_tank(&m);
     assert_int_equal(obj_write(&m, scratch()), 0);
@@ -188,9 +178,8 @@ static int read_text(struct mesh *m, const char *text)
     return obj_read(m, scratch(), OBJ_UP_Y);
 }
 
-static void a_file_is_read_as_the_format_says(void **state)
+TEST(a_file_is_read_as_the_format_says)
 {
-    (void)state;
     struct mesh m;
     assert_int_equal(read_text(&m,
                                "# y up\r\n"
@@ -209,9 +198,8 @@ static void a_file_is_read_as_the_format_says(void **state)
     mesh_free(&m);
 }
 
-static void a_file_that_makes_no_sense_is_refused(void **state)
+TEST(a_file_that_makes_no_sense_is_refused)
 {
-    (void)state;
     static const char *const bad[] = {
         "",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\n",                             /* no face */
@@ -238,9 +226,8 @@ static void a_file_that_makes_no_sense_is_refused(void **state)
 }
 
 /* The size is looked at before anything is read. */
-static void a_file_of_gigabytes_is_refused_at_once(void **state)
+TEST(a_file_of_gigabytes_is_refused_at_once)
 {
-    (void)state;
     struct mesh m;
     FILE *out = fopen(scratch(), "wb");
     assert_int_equal(ftruncate(fileno(out), 3LL << 30), 0);
@@ -249,9 +236,8 @@ static void a_file_of_gigabytes_is_refused_at_once(void **state)
     unlink(scratch());
 }
 
-static void the_models_have_their_dimensions(void **state)
+TEST(the_models_have_their_dimensions)
 {
-    (void)state;
     struct mesh m = {0};
     struct vec low, high;
     model_slicy(&m);
@@ -282,9 +268,8 @@ static double reach_m(const struct scene *s, struct vec from, struct vec along)
 
 /* Rays from all sides meet ours where they meet the published one: all parts are in their places.
  */
-static void slicy_is_met_where_the_published_mesh_is(void **state)
+TEST(slicy_is_met_where_the_published_mesh_is)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("slicy/SLICY1.obj", path, sizeof path)) {
         skip();
@@ -316,21 +301,4 @@ static void slicy_is_met_where_the_published_mesh_is(void **state)
     scene_close(&their_scene);
     mesh_free(&ours);
     mesh_free(&theirs);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_are_closed_and_have_the_volume_of_their_formula),
-        cmocka_unit_test(the_aircraft_has_its_public_dimensions),
-        cmocka_unit_test(each_fault_of_a_body_is_counted),
-        cmocka_unit_test(corners_at_one_place_are_one),
-        cmocka_unit_test(a_model_that_is_written_is_read_back),
-        cmocka_unit_test(a_file_is_read_as_the_format_says),
-        cmocka_unit_test(a_file_that_makes_no_sense_is_refused),
-        cmocka_unit_test(a_file_of_gigabytes_is_refused_at_once),
-        cmocka_unit_test(the_models_have_their_dimensions),
-        cmocka_unit_test(slicy_is_met_where_the_published_mesh_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

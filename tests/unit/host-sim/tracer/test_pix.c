@@ -1,24 +1,18 @@
 /* Impulse response, pixels and speckle. */
+#include "check.h"
 #include "support.h"
 #include "tracer/pix.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 enum { SIDE = PIX_KERNEL_SIDE, MIDDLE = SIDE / 2 };
 
 /* A system's published response: the same to the last digit, 72 samples of window in 107. */
-static void the_taylor_response_is_the_published_one(void **state)
+TEST(the_taylor_response_is_the_published_one)
 {
-    (void)state;
     char path[512];
     if (!support_data_path("slicy/Impt108.csv", path, sizeof path)) {
         skip();
@@ -47,9 +41,8 @@ static double db(double ratio)
 
 /* What that response is known for: nulls every third sample, a first side lobe of -35.6 dB, 2.51
  * samples wide at half its height. */
-static void the_response_has_its_nulls_side_lobe_and_width(void **state)
+TEST(the_response_has_its_nulls_side_lobe_and_width)
 {
-    (void)state;
     double response[SIDE];
     pix_taylor(72, response);
     const double *h = response + MIDDLE;
@@ -66,9 +59,8 @@ static void the_response_has_its_nulls_side_lobe_and_width(void **state)
 }
 
 /* Widths between -3 dB points by interpolation, for resolutions that samples of 0.1 m can show. */
-static void the_response_is_as_wide_as_asked(void **state)
+TEST(the_response_is_as_wide_as_asked)
 {
-    (void)state;
     for (double width = 0.25; width < 1; width += 0.05) {
         double response[SIDE];
         pix_taylor(pix_aperture(width, 0.1), response);
@@ -84,9 +76,8 @@ static void the_response_is_as_wide_as_asked(void **state)
     assert_int_equal(pix_aperture(0.3, 0.1), 42);
 }
 
-static void spreading_keeps_the_power_and_the_place(void **state)
+TEST(spreading_keeps_the_power_and_the_place)
 {
-    (void)state;
     enum { WIDTH = 240, HEIGHT = 220 };
     float *power = calloc(WIDTH * HEIGHT, sizeof *power);
     power[100 * WIDTH + 130] = 5;
@@ -107,9 +98,8 @@ static void spreading_keeps_the_power_and_the_place(void **state)
     free(power);
 }
 
-static void level_ground_stays_level_to_the_edge(void **state)
+TEST(level_ground_stays_level_to_the_edge)
 {
-    (void)state;
     float power[60 * 90];
     for (int i = 0; i < 60 * 90; i++) {
         power[i] = 3;
@@ -120,9 +110,8 @@ static void level_ground_stays_level_to_the_edge(void **state)
     }
 }
 
-static void pixels_are_means_of_their_cells(void **state)
+TEST(pixels_are_means_of_their_cells)
 {
-    (void)state;
     const float cells[4 * 6] = {1, 2, 3, 4, 5, 6, 7,  8,  9,  10, 11, 12,
                                 0, 0, 1, 1, 2, 2, 10, 10, 20, 20, 30, 30};
     float pixels[6];
@@ -133,9 +122,8 @@ static void pixels_are_means_of_their_cells(void **state)
 
 /* Intensity of L looks: mean 1 and variance 1 / L; of one look the chance to exceed x is exp(-x).
  */
-static void speckle_has_the_statistics_of_its_looks(void **state)
+TEST(speckle_has_the_statistics_of_its_looks)
 {
-    (void)state;
     enum { COUNT = 200000 };
     float *power = malloc(COUNT * sizeof *power);
     for (int looks = 1; looks <= 16; looks *= 4) {
@@ -157,18 +145,4 @@ static void speckle_has_the_statistics_of_its_looks(void **state)
         assert_true(looks > 1 || fabs(above / COUNT - exp(-2)) < 0.004);
     }
     free(power);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_taylor_response_is_the_published_one),
-        cmocka_unit_test(the_response_has_its_nulls_side_lobe_and_width),
-        cmocka_unit_test(the_response_is_as_wide_as_asked),
-        cmocka_unit_test(spreading_keeps_the_power_and_the_place),
-        cmocka_unit_test(level_ground_stays_level_to_the_edge),
-        cmocka_unit_test(pixels_are_means_of_their_cells),
-        cmocka_unit_test(speckle_has_the_statistics_of_its_looks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* What is drawn against what is cast: Embree, and a surface without gaps. */
+#include "check.h"
 #include "shapes.h"
 #include "tracer/models.h"
 #include "tracer/projection.h"
@@ -6,13 +7,7 @@
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { STRIP_ROWS = 7 };
 
@@ -169,23 +164,20 @@ static void compare_model(void (*build)(struct mesh *m))
     }
 }
 
-static void what_is_drawn_of_slicy_is_what_cast_rays_meet(void **state)
+TEST(what_is_drawn_of_slicy_is_what_cast_rays_meet)
 {
-    (void)state;
     compare_model(model_slicy);
 }
 
-static void what_is_drawn_of_a_tank_is_what_cast_rays_meet(void **state)
+TEST(what_is_drawn_of_a_tank_is_what_cast_rays_meet)
 {
-    (void)state;
     compare_model(model_tank);
 }
 
 /* Rough ground of triangles that share their sides, wider than the sensor, some corners and sides
  * of which lie exactly on rays: each ray meets one. */
-static void no_ray_slips_between_triangles_that_share_a_side(void **state)
+TEST(no_ray_slips_between_triangles_that_share_a_side)
 {
-    (void)state;
     enum { SIDE = 40 };
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
@@ -219,9 +211,8 @@ static void no_ray_slips_between_triangles_that_share_a_side(void **state)
     }
 }
 
-static void strips_of_any_height_give_the_same_drawing(void **state)
+TEST(strips_of_any_height_give_the_same_drawing)
 {
-    (void)state;
     struct mesh m = {0};
     struct scene s;
     model_tank(&m);
@@ -239,15 +230,4 @@ static void strips_of_any_height_give_the_same_drawing(void **state)
     free(near_m);
     scene_close(&s);
     mesh_free(&m);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_drawn_of_slicy_is_what_cast_rays_meet),
-        cmocka_unit_test(what_is_drawn_of_a_tank_is_what_cast_rays_meet),
-        cmocka_unit_test(no_ray_slips_between_triangles_that_share_a_side),
-        cmocka_unit_test(strips_of_any_height_give_the_same_drawing),
-    };
-    return cmocka_run_group_tests_name("projection", tests, NULL, NULL);
 }

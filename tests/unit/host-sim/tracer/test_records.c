@@ -1,19 +1,14 @@
 /* Traced records: the contract of records.h, and a file that is believed only when all of it holds.
  */
+#include "check.h"
 #include "known_records.h"
 #include "support.h"
 #include "tracer/records.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { RAYS = 8 };
 
@@ -25,9 +20,8 @@ static const char *scratch(void)
     return path;
 }
 
-static void the_known_records_keep_the_contract(void **state)
+TEST(the_known_records_keep_the_contract)
 {
-    (void)state;
     struct trace_records r;
     known_plate(&r, 2, 30, RAYS);
     assert_int_equal(trace_records_check(&r, "plate"), 0);
@@ -37,9 +31,8 @@ static void the_known_records_keep_the_contract(void **state)
     trace_records_free(&r);
 }
 
-static void what_is_written_is_read_back_to_the_bit(void **state)
+TEST(what_is_written_is_read_back_to_the_bit)
 {
-    (void)state;
     struct trace_records r, again;
     known_dihedral(&r, 1, 0.5, 15, RAYS);
     assert_int_equal(trace_records_write(&r, scratch()), 0);
@@ -83,9 +76,8 @@ static int read_bytes(const uint8_t *bytes, size_t size)
 }
 
 /* One bit of each byte in turn, and each length up to the whole. */
-static void a_file_of_which_any_byte_changed_or_is_missing_is_refused(void **state)
+TEST(a_file_of_which_any_byte_changed_or_is_missing_is_refused)
 {
-    (void)state;
     struct trace_records r;
     known_dihedral(&r, 1, 0.5, 15, 2);
     assert_int_equal(trace_records_write(&r, scratch()), 0);
@@ -105,9 +97,8 @@ static void a_file_of_which_any_byte_changed_or_is_missing_is_refused(void **sta
 }
 
 /* Each field of a record, one after the other, set to what it must not be. */
-static void a_record_that_breaks_the_contract_is_not_written(void **state)
+TEST(a_record_that_breaks_the_contract_is_not_written)
 {
-    (void)state;
     struct trace_records r;
     known_dihedral(&r, 1, 0.5, 15, RAYS);
     struct trace_record *t = &r.bounces[1].records[3];
@@ -139,9 +130,8 @@ static void a_record_that_breaks_the_contract_is_not_written(void **state)
     trace_records_free(&r);
 }
 
-static void an_echo_falls_into_the_cell_that_holds_it(void **state)
+TEST(an_echo_falls_into_the_cell_that_holds_it)
 {
-    (void)state;
     const struct trace_grid grid = {4, 6, 0.5};
     assert_int_equal(trace_cell(&grid, -1, -1.5f), 0);
     assert_int_equal(trace_cell(&grid, 0.99f, -1.5f), 3);
@@ -153,9 +143,8 @@ static void an_echo_falls_into_the_cell_that_holds_it(void **state)
     assert_int_equal(trace_cell(&grid, NAN, 0), -1);
 }
 
-static void the_image_of_a_channel_is_keyed_by_the_place_of_emission(void **state)
+TEST(the_image_of_a_channel_is_keyed_by_the_place_of_emission)
 {
-    (void)state;
     struct trace_records r;
     known_dihedral(&r, 1, 0.5, 15, RAYS);
     struct trace_bounce *second = &r.bounces[1];
@@ -170,17 +159,4 @@ static void the_image_of_a_channel_is_keyed_by_the_place_of_emission(void **stat
     assert_true(fabsf(image[0] - 75 * 3.14159265f / 180) < 1e-6f);               /* floor, low */
     assert_true(fabsf(image[RAYS * RAYS - 1] - 15 * 3.14159265f / 180) < 1e-6f); /* wall, high */
     trace_records_free(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_known_records_keep_the_contract),
-        cmocka_unit_test(what_is_written_is_read_back_to_the_bit),
-        cmocka_unit_test(a_file_of_which_any_byte_changed_or_is_missing_is_refused),
-        cmocka_unit_test(a_record_that_breaks_the_contract_is_not_written),
-        cmocka_unit_test(an_echo_falls_into_the_cell_that_holds_it),
-        cmocka_unit_test(the_image_of_a_channel_is_keyed_by_the_place_of_emission),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

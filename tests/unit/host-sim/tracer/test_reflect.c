@@ -1,13 +1,8 @@
 /* Laws of reflection against the textbooks. */
+#include "check.h"
 #include "tracer/reflect.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -19,9 +14,8 @@ static double rad(double deg)
 /* Air to glass of index 1.5: 4 % straight on; at 45 degrees 9.20 % across the plane of incidence
  * and 0.85 % in it; none of the latter at Brewster's 56.31 degrees; all of both at 90 (Hecht,
  * Optics, 4.6). */
-static void fresnel_is_that_of_glass(void **state)
+TEST(fresnel_is_that_of_glass)
 {
-    (void)state;
     const double e = 1.5 * 1.5;
     assert_true(fabs(cabs(reflect_fresnel_hh(e, 0)) - 0.2) < 1e-12);
     assert_true(fabs(cabs(reflect_fresnel_vv(e, 0)) - 0.2) < 1e-12);
@@ -33,9 +27,8 @@ static void fresnel_is_that_of_glass(void **state)
 }
 
 /* A good conductor: -1 for hh and +1 for vv at any angle but the very flattest. */
-static void fresnel_of_metal_reflects_all(void **state)
+TEST(fresnel_of_metal_reflects_all)
 {
-    (void)state;
     const double complex metal = 1 - 1e9 * I;
     for (double t = 0; t < 85; t += 5) {
         assert_true(cabs(reflect_fresnel_hh(metal, rad(t)) + 1) < 1e-4);
@@ -45,9 +38,8 @@ static void fresnel_of_metal_reflects_all(void **state)
 
 /* Ulaby, Moore, Fung, volume II, eq. 12.90: Bragg's coefficients of backscatter. The product that
  * [Niu] prints as eq. (9) fails here. */
-static void backscatter_has_braggs_coefficients(void **state)
+TEST(backscatter_has_braggs_coefficients)
 {
-    (void)state;
     const double complex e = 6 - 1 * I;
     for (double t = 0; t < 90; t += 5) {
         const double s2 = pow(sin(rad(t)), 2), c = cos(rad(t));
@@ -61,9 +53,8 @@ static void backscatter_has_braggs_coefficients(void **state)
                 1e-12);
 }
 
-static void way_out_and_way_back_may_be_exchanged(void **state)
+TEST(way_out_and_way_back_may_be_exchanged)
 {
-    (void)state;
     const double complex e = 4 - 0.5 * I;
     for (double t = 5; t < 90; t += 10) {
         assert_true(cabs(reflect_beta_vv(e, rad(t), rad(30), 0.3) -
@@ -76,9 +67,8 @@ static void way_out_and_way_back_may_be_exchanged(void **state)
 static const struct reflect_material soil = {"soil", 6, 1, 0.001, 0.01, 0.4, 0.02, 0.3, 1};
 
 /* Ulaby's sigma0 of a Gaussian surface, 4 k^4 s^2 l^2 cos^4 t |alpha|^2 exp(-(k l sin t)^2). */
-static void small_perturbation_is_the_textbooks_in_backscatter(void **state)
+TEST(small_perturbation_is_the_textbooks_in_backscatter)
 {
-    (void)state;
     const double wavelength = 0.03, k = 2 * pi / wavelength;
     const double complex e = 6 - 1 * I;
     for (double t = 0; t < 85; t += 5) {
@@ -93,9 +83,8 @@ static void small_perturbation_is_the_textbooks_in_backscatter(void **state)
 }
 
 /* The azimuth is found again from the three angles of a record. */
-static void the_turn_gives_back_the_azimuth(void **state)
+TEST(the_turn_gives_back_the_azimuth)
 {
-    (void)state;
     for (double t1 = 5; t1 < 90; t1 += 20) {
         for (double t3 = 0; t3 <= 180; t3 += 20) {
             const double a = rad(t1), b = rad(35), c = rad(t3);
@@ -108,9 +97,8 @@ static void the_turn_gives_back_the_azimuth(void **state)
 }
 
 /* Figures 5 and 6: F_s in the specular direction at every incidence; diffuse alike to all sides. */
-static void raysar_is_as_paper_b_describes_it(void **state)
+TEST(raysar_is_as_paper_b_describes_it)
 {
-    (void)state;
     for (double t = 0; t < 90; t += 10) {
         assert_true(fabs(reflect_raysar_specular(&soil, rad(t), rad(t), rad(2 * t)) - 0.4) < 1e-9);
         assert_true(fabs(reflect_raysar_diffuse(&soil, rad(t)) - 0.3 * cos(rad(t))) < 1e-12);
@@ -120,9 +108,8 @@ static void raysar_is_as_paper_b_describes_it(void **state)
                      0.4 * pow(cos(rad(30)), 50)) < 1e-9);
 }
 
-static void every_law_gives_shares_between_none_and_all(void **state)
+TEST(every_law_gives_shares_between_none_and_all)
 {
-    (void)state;
     struct reflect_law law = {.wavelength_m = 0.03, .materials = {soil}};
     for (int kind = 0; kind < REFLECT_KINDS; kind++) {
         law.kind = (enum reflect_kind)kind;
@@ -139,19 +126,4 @@ static void every_law_gives_shares_between_none_and_all(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fresnel_is_that_of_glass),
-        cmocka_unit_test(fresnel_of_metal_reflects_all),
-        cmocka_unit_test(backscatter_has_braggs_coefficients),
-        cmocka_unit_test(way_out_and_way_back_may_be_exchanged),
-        cmocka_unit_test(small_perturbation_is_the_textbooks_in_backscatter),
-        cmocka_unit_test(the_turn_gives_back_the_azimuth),
-        cmocka_unit_test(raysar_is_as_paper_b_describes_it),
-        cmocka_unit_test(every_law_gives_shares_between_none_and_all),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

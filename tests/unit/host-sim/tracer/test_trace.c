@@ -1,4 +1,5 @@
 /* The tracer against closed forms, textbook cross sections and an intersection of its own. */
+#include "check.h"
 #include "known_records.h"
 #include "shapes.h"
 #include "support.h"
@@ -8,14 +9,8 @@
 #include "hs/rng.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -51,9 +46,8 @@ static void add_point(struct mesh *m, struct vec at)
 
 /* From wherever it is seen, a point is focused at its own place: to the right of the line of sight
  * and behind the centre along it. Half the distance, as eq. (4) prints, fails here. */
-static void a_point_is_focused_where_it_is(void **state)
+TEST(a_point_is_focused_where_it_is)
 {
-    (void)state;
     const struct vec at = {0.31, -0.17, 0.24}; /* ahead, left, up */
     for (double azimuth = 0; azimuth < 360; azimuth += 37) {
         struct mesh m = {0};
@@ -81,9 +75,8 @@ static void a_point_is_focused_where_it_is(void **state)
 }
 
 /* The same rays through a dihedral as known_records.h has in closed form. */
-static void a_dihedral_gives_the_records_of_its_closed_form(void **state)
+TEST(a_dihedral_gives_the_records_of_its_closed_form)
 {
-    (void)state;
     const double psi = 15 * pi / 180, height = 0.5, side = 1;
     struct trace_records known, r;
     known_dihedral(&known, side, height, 15, 40);
@@ -143,9 +136,8 @@ static double aperture_m2(const struct trace_records *r, uint32_t bounces)
  * dihedral of plates ab, 8 pi (ab)^2 / l^2; square plates of side a in a trihedral, 12 pi a^4 /
  * l^2; triangular ones, 4 pi a^4 / (3 l^2). So the apertures ab, ab sqrt 2, a^2 sqrt 3, a^2 /
  * sqrt 3. */
-static void corner_apertures_are_those_of_the_textbook(void **state)
+TEST(corner_apertures_are_those_of_the_textbook)
 {
-    (void)state;
     const double boresight = atan(sqrt(0.5)) * 180 / pi; /* 35.26 degrees above two plates */
     const struct vec s = {sqrt(0.5), sqrt(0.5), 0}, p = {sqrt(0.5), -sqrt(0.5), 0}, up = {0, 0, 1};
     const struct vec o = {0, 0, 0};
@@ -181,9 +173,8 @@ static void corner_apertures_are_those_of_the_textbook(void **state)
 }
 
 /* Off its boresight too, what a trihedral returns after three bounces comes from its apex. */
-static void three_bounces_of_a_trihedral_focus_in_its_apex(void **state)
+TEST(three_bounces_of_a_trihedral_focus_in_its_apex)
 {
-    (void)state;
     const struct vec apex = {0.2, 0.3, 0.1};
     for (double azimuth = 340; azimuth <= 380; azimuth += 10) {
         struct mesh m = {0};
@@ -211,9 +202,8 @@ static void three_bounces_of_a_trihedral_focus_in_its_apex(void **state)
 
 /* A box hides the ground behind it from primary rays, and its own face from the echo of what lies
  * before it when the echo would pass through it. */
-static void nothing_echoes_from_the_shadow(void **state)
+TEST(nothing_echoes_from_the_shadow)
 {
-    (void)state;
     struct mesh m = {0};
     const double height = 1, psi = 30 * pi / 180;
     shape_box(&m, (struct vec){-0.5, -1, 0}, (struct vec){0.5, 1, height},
@@ -240,9 +230,8 @@ static void nothing_echoes_from_the_shadow(void **state)
 }
 
 /* Under a roof: the echo of the floor's reflection is cut off, and said to be. */
-static void an_echo_under_a_roof_is_blocked(void **state)
+TEST(an_echo_under_a_roof_is_blocked)
 {
-    (void)state;
     struct mesh m = {0};
     const uint32_t metal = mesh_material(&m, "metal");
     /* A mirror ahead sends the rays back under the roof; from there the radar is not seen. */
@@ -295,9 +284,8 @@ static uint32_t brute_force(const struct mesh *m, struct vec from, struct vec al
     return best;
 }
 
-static void embree_meets_what_brute_force_meets(void **state)
+TEST(embree_meets_what_brute_force_meets)
 {
-    (void)state;
     struct mesh m = {0};
     model_tank(&m);
     struct scene s;
@@ -337,9 +325,8 @@ static void embree_meets_what_brute_force_meets(void **state)
     mesh_free(&m);
 }
 
-static void the_records_do_not_depend_on_the_number_of_threads(void **state)
+TEST(the_records_do_not_depend_on_the_number_of_threads)
 {
-    (void)state;
     struct mesh m = {0};
     model_slicy(&m);
     struct trace_order o = order_of(20, 15, TRACE_CHIP_CELLS, TRACE_CHIP_CELL_M, 1);
@@ -381,9 +368,8 @@ static uint32_t apart(const struct trace_bounce *one, const struct trace_bounce 
 
 /* The same tank, but full of small triangles that no ray sees: more of them than there are rays,
  * which are cast then. */
-static void primary_rays_meet_the_same_drawn_or_cast(void **state)
+TEST(primary_rays_meet_the_same_drawn_or_cast)
 {
-    (void)state;
     const struct trace_order o = order_of(33, 20, TRACE_CHIP_CELLS, TRACE_CHIP_CELL_M, 1);
     struct trace_records drawn, cast;
     for (int is_cast = 0; is_cast < 2; is_cast++) {
@@ -409,20 +395,4 @@ static void primary_rays_meet_the_same_drawn_or_cast(void **state)
     }
     trace_records_free(&drawn);
     trace_records_free(&cast);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_focused_where_it_is),
-        cmocka_unit_test(a_dihedral_gives_the_records_of_its_closed_form),
-        cmocka_unit_test(corner_apertures_are_those_of_the_textbook),
-        cmocka_unit_test(three_bounces_of_a_trihedral_focus_in_its_apex),
-        cmocka_unit_test(nothing_echoes_from_the_shadow),
-        cmocka_unit_test(an_echo_under_a_roof_is_blocked),
-        cmocka_unit_test(embree_meets_what_brute_force_meets),
-        cmocka_unit_test(primary_rays_meet_the_same_drawn_or_cast),
-        cmocka_unit_test(the_records_do_not_depend_on_the_number_of_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Train, segment and correct as programs: a small scene whose truth is known, bad input, and real
  * imagery. */
+#include "check.h"
 #include "fixture.h"
 #include "gis/raster.h"
 #include "support.h"
@@ -9,16 +10,10 @@
 
 #include <math.h>
 #include <ogr_srs_api.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { WIDTH = 96, HEIGHT = 80 };
 
@@ -106,9 +101,8 @@ static int segment_scene(const char *out)
         fixture_path("where"), fixture_path("scene.tsv"));
 }
 
-static void a_scene_comes_out_as_it_was_made_with_its_holes(void **state)
+TEST(a_scene_comes_out_as_it_was_made_with_its_holes)
 {
-    (void)state;
     static uint8_t found[WIDTH * HEIGHT];
     train_scene("scene.net");
     assert_int_equal(segment_scene("out.tif"), 0);
@@ -129,17 +123,15 @@ static void a_scene_comes_out_as_it_was_made_with_its_holes(void **state)
     assert_int_equal(support_run("! ls %s | grep unfinished", fixture_path("")), 0);
 }
 
-static void one_seed_gives_one_net_byte_for_byte(void **state)
+TEST(one_seed_gives_one_net_byte_for_byte)
 {
-    (void)state;
     train_scene("a.net");
     train_scene("b.net");
     assert_int_equal(support_run("cmp %s %s", fixture_path("a.net"), fixture_path("b.net")), 0);
 }
 
-static void later_corrections_win_and_are_counted(void **state)
+TEST(later_corrections_win_and_are_counted)
 {
-    (void)state;
     static uint8_t found[WIDTH * HEIGHT];
     char said[4096];
     train_scene("scene.net");
@@ -170,9 +162,8 @@ static void later_corrections_win_and_are_counted(void **state)
 
 /* ---- What can be wrong ---- */
 
-static void bad_input_to_train_is_named_with_its_remedy(void **state)
+TEST(bad_input_to_train_is_named_with_its_remedy)
 {
-    (void)state;
     write_scene();
     const char *tsv = fixture_path("scene.tsv"), *net = fixture_path("never.net");
     assert_true(fixture_fails(HS_EXIT_FAILED, "cannot be opened as an image",
@@ -207,9 +198,8 @@ static void bad_input_to_train_is_named_with_its_remedy(void **state)
     assert_int_not_equal(access(net, F_OK), 0);
 }
 
-static void images_that_do_not_fit_are_refused(void **state)
+TEST(images_that_do_not_fit_are_refused)
 {
-    (void)state;
     static const float zeros[20 * 20] = {0};
     train_scene("scene.net");
     struct db_grid other = fixture_grid(20, 20);
@@ -233,9 +223,8 @@ static void images_that_do_not_fit_are_refused(void **state)
     assert_int_not_equal(access(out, F_OK), 0);
 }
 
-static void a_raster_cut_short_is_an_error_and_leaves_no_output(void **state)
+TEST(a_raster_cut_short_is_an_error_and_leaves_no_output)
 {
-    (void)state;
     train_scene("scene.net");
     assert_int_equal(
         support_run("head -c 6000 %s > %s", fixture_path("band2.tif"), fixture_path("cut.tif")), 0);
@@ -247,9 +236,8 @@ static void a_raster_cut_short_is_an_error_and_leaves_no_output(void **state)
     assert_int_equal(support_run("! ls %s | grep unfinished", fixture_path("")), 0);
 }
 
-static void an_unknown_class_in_a_correction_is_an_error(void **state)
+TEST(an_unknown_class_in_a_correction_is_an_error)
 {
-    (void)state;
     train_scene("scene.net");
     assert_int_equal(segment_scene("out.tif"), 0);
     fixture_write("fix.tsv",
@@ -261,9 +249,8 @@ static void an_unknown_class_in_a_correction_is_an_error(void **state)
                               fixture_path("fix.tsv"), fixture_path("never.tif")));
 }
 
-static void every_command_explains_itself(void **state)
+TEST(every_command_explains_itself)
 {
-    (void)state;
     static const char *const commands[] = {"train", "segment", "correct", "reflect"};
     for (size_t i = 0; i < 4; i++) {
         char said[16384];
@@ -320,35 +307,18 @@ static void train_amazon(const char *image, const char *polygons, const char *co
     assert_true(overall(said, 1) >= 85);
 }
 
-static void sentinel_exemplars_of_a_village_are_recognised_to_95_per_cent(void **state)
+TEST(sentinel_exemplars_of_a_village_are_recognised_to_95_per_cent)
 {
-    (void)state;
     static const char *const names[] = {"forest", "village", "water", "dryout"};
     train_amazon("sentinel2_amazon_village_srtm_labels/derived/sen2_12band_refl_x10000.bsq",
                  "sentinel2_amazon_village_srtm_labels/derived/trainingPolygons_sen2.tsv", names);
 }
 
-static void landsat_exemplars_of_a_reservoir_are_recognised_to_95_per_cent(void **state)
+TEST(landsat_exemplars_of_a_reservoir_are_recognised_to_95_per_cent)
 {
-    (void)state;
     static const char *const names[] = {"forest", "water", "cleared", "fallen_dry"};
     train_amazon("landsat5_amazon_tucurui_srtm_labels/derived/lsat_7band.bsq",
                  "landsat5_amazon_tucurui_srtm_labels/derived/trainingPolygons_lsat.tsv", names);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_comes_out_as_it_was_made_with_its_holes),
-        cmocka_unit_test(one_seed_gives_one_net_byte_for_byte),
-        cmocka_unit_test(later_corrections_win_and_are_counted),
-        cmocka_unit_test(bad_input_to_train_is_named_with_its_remedy),
-        cmocka_unit_test(images_that_do_not_fit_are_refused),
-        cmocka_unit_test(a_raster_cut_short_is_an_error_and_leaves_no_output),
-        cmocka_unit_test(an_unknown_class_in_a_correction_is_an_error),
-        cmocka_unit_test(every_command_explains_itself),
-        cmocka_unit_test(sentinel_exemplars_of_a_village_are_recognised_to_95_per_cent),
-        cmocka_unit_test(landsat_exemplars_of_a_reservoir_are_recognised_to_95_per_cent),
-    };
-    return cmocka_run_group_tests_name("segment", tests, fixture_open, fixture_close);
-}
+TEST_GROUP(fixture_open, fixture_close);

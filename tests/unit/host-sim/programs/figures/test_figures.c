@@ -1,16 +1,11 @@
 /* landmass-figures: pictures that are there, not empty, and nothing left of a failure. */
+#include "check.h"
 #include "support.h"
 
 #include <png.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static int draw(const char *arguments)
 {
@@ -35,9 +30,8 @@ static size_t inked_pixels(const char *path)
     return ink;
 }
 
-static void every_figure_is_drawn(void **state)
+TEST(every_figure_is_drawn)
 {
-    (void)state;
     static const char *const names[] = {"figure1", "table1"};
     assert_int_equal(support_run("mkdir -p %s/tmp", support_build_dir()), 0);
     for (int i = 0; i < 2; i++) {
@@ -51,21 +45,11 @@ static void every_figure_is_drawn(void **state)
     }
 }
 
-static void a_wrong_command_line_exits_with_2_and_an_unwritable_file_with_1(void **state)
+TEST(a_wrong_command_line_exits_with_2_and_an_unwritable_file_with_1)
 {
-    (void)state;
     assert_int_equal(draw("--help"), 0);
     assert_int_equal(draw(""), 2);
     assert_int_equal(draw("figure9 there.png"), 2);
     assert_int_equal(draw("figure1 /no/such/folder/there.png"), 1);
     assert_int_equal(access("there.png", F_OK), -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_figure_is_drawn),
-        cmocka_unit_test(a_wrong_command_line_exits_with_2_and_an_unwritable_file_with_1),
-    };
-    return cmocka_run_group_tests_name("figures", tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* The program as a user meets it. */
+#include "check.h"
 #include "support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static char folder[] = "/tmp/landmass-netem-XXXXXX";
 
@@ -30,9 +25,8 @@ static int remove_folder(void **state)
     return support_run("rm -rf %s", folder);
 }
 
-static void every_command_explains_itself(void **state)
+TEST(every_command_explains_itself)
 {
-    (void)state;
     static const char *const commands[] = {"",     "register", "train",   "score", "simulate",
                                            "bake", "plot",     "recover", "paper"};
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
@@ -42,9 +36,8 @@ static void every_command_explains_itself(void **state)
     }
 }
 
-static void a_command_line_that_makes_no_sense_is_told_so(void **state)
+TEST(a_command_line_that_makes_no_sense_is_told_so)
 {
-    (void)state;
     const char *b = support_build_dir();
     assert_int_equal(support_run("%s/bin/landmass-netem guess", b), 2);
     assert_int_equal(support_run("%s/bin/landmass-netem train --model tank", b), 2);
@@ -56,9 +49,8 @@ static void a_command_line_that_makes_no_sense_is_told_so(void **state)
                      1);
 }
 
-static void a_training_killed_at_any_epoch_ends_in_the_same_file(void **state)
+TEST(a_training_killed_at_any_epoch_ends_in_the_same_file)
 {
-    (void)state;
     const char *b = support_build_dir();
     assert_int_equal(support_run(RECOVER, b, folder, "whole"), 0);
     assert_int_equal(support_run("cd %s/whole && ls loss.png specular.png back.png kernels.png "
@@ -77,9 +69,8 @@ static void a_training_killed_at_any_epoch_ends_in_the_same_file(void **state)
     assert_int_equal(support_run(RECOVER " --resume --batch 9", b, folder, "cut"), 1);
 }
 
-static void trainings_are_drawn_together(void **state)
+TEST(trainings_are_drawn_together)
 {
-    (void)state;
     assert_int_equal(support_run("%s/bin/landmass-netem plot --training "
                                  "%s/whole/training.netem,%s/cut/training.netem --out %s/both",
                                  support_build_dir(), folder, folder, folder),
@@ -89,9 +80,8 @@ static void trainings_are_drawn_together(void **state)
 }
 
 /* What `simulate` writes is a chip: trained on itself it is scored as equal. */
-static void learned_chips_can_be_made_and_read_again(void **state)
+TEST(learned_chips_can_be_made_and_read_again)
 {
-    (void)state;
     const char *b = support_build_dir();
     assert_int_equal(support_run("%s/bin/landmass-netem simulate --model slicy --cells 64 --rays 1 "
                                  "--training %s/whole/training.netem --views 3 --out %s/made",
@@ -114,9 +104,8 @@ static void learned_chips_can_be_made_and_read_again(void **state)
                      0);
 }
 
-static void what_was_learned_can_be_baked(void **state)
+TEST(what_was_learned_can_be_baked)
 {
-    (void)state;
     assert_int_equal(support_run("%s/bin/landmass-netem bake --model slicy --rays 1 --aspects 3 "
                                  "--depressions 15,30 --training %s/whole/training.netem --out "
                                  "%s/learned.sig && test $(wc -c <%s/learned.sig) = "
@@ -131,9 +120,8 @@ static void what_was_learned_can_be_baked(void **state)
 }
 
 /* The chips of the real T-72: found, learned for a moment, and scored. */
-static void real_chips_go_all_the_way(void **state)
+TEST(real_chips_go_all_the_way)
 {
-    (void)state;
     char chips[512];
     const char *b = support_build_dir();
     if (!support_data_path("mstar_t72_15deg", chips, sizeof chips)) {
@@ -163,9 +151,8 @@ static void real_chips_go_all_the_way(void **state)
 
 /* The simulated response lies on the real ones within a twentieth of the peak, and one look is one
  * look. */
-static void the_response_is_that_of_a_real_radar(void **state)
+TEST(the_response_is_that_of_a_real_radar)
 {
-    (void)state;
     char history[512];
     if (!support_data_path("gotcha_xband/data_3dsar_pass1_az001_HH.mat", history, sizeof history)) {
         skip();
@@ -185,9 +172,8 @@ static void the_response_is_that_of_a_real_radar(void **state)
 
 /* Raw chips by the published description, with the models' own pictures for magnitudes would teach
  * nothing new; that they are taken, divided and trained on in one command is what is shown. */
-static void the_papers_experiment_is_one_command(void **state)
+TEST(the_papers_experiment_is_one_command)
 {
-    (void)state;
     const char *b = support_build_dir();
     assert_int_equal(
         support_run("cd %s && for d in 15 30; do mkdir -p s$d; for i in 1 2 3 4 5; do "
@@ -208,18 +194,4 @@ static void the_papers_experiment_is_one_command(void **state)
                      0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_command_explains_itself),
-        cmocka_unit_test(a_command_line_that_makes_no_sense_is_told_so),
-        cmocka_unit_test(a_training_killed_at_any_epoch_ends_in_the_same_file),
-        cmocka_unit_test(trainings_are_drawn_together),
-        cmocka_unit_test(learned_chips_can_be_made_and_read_again),
-        cmocka_unit_test(what_was_learned_can_be_baked),
-        cmocka_unit_test(real_chips_go_all_the_way),
-        cmocka_unit_test(the_response_is_that_of_a_real_radar),
-        cmocka_unit_test(the_papers_experiment_is_one_command),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
-}
+TEST_GROUP(make_folder, remove_folder);

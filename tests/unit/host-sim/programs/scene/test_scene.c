@@ -1,17 +1,13 @@
 /* What landmass-scene writes, read back by GDAL as a database builder reads it. */
+#include "check.h"
 #include "support.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <gdal.h>
 #include <gdal_alg.h>
 #include <ogr_api.h>
@@ -74,7 +70,7 @@ static int checksum(const struct written *w, const char *name, int band)
     return sum;
 }
 
-static void the_same_seed_gives_the_same_pixels_and_another_does_not(void **state)
+TEST(the_same_seed_gives_the_same_pixels_and_another_does_not)
 {
     const struct written *w = *state;
     struct written again = {.folder = ""}, other = {.folder = ""};
@@ -99,7 +95,7 @@ static void the_same_seed_gives_the_same_pixels_and_another_does_not(void **stat
     support_run("rm -rf %s %s", again.folder, other.folder);
 }
 
-static void the_image_is_georeferenced_in_utm_over_the_atlantic(void **state)
+TEST(the_image_is_georeferenced_in_utm_over_the_atlantic)
 {
     const struct written *w = *state;
     GDALDatasetH d = open_file(w, "image.tif");
@@ -124,7 +120,7 @@ static void the_image_is_georeferenced_in_utm_over_the_atlantic(void **state)
     GDALClose(d);
 }
 
-static void the_terrain_reaches_past_every_edge_of_the_image(void **state)
+TEST(the_terrain_reaches_past_every_edge_of_the_image)
 {
     const struct written *w = *state;
     GDALDatasetH d = open_file(w, "terrain.tif");
@@ -138,7 +134,7 @@ static void the_terrain_reaches_past_every_edge_of_the_image(void **state)
     GDALClose(d);
 }
 
-static void every_class_covers_a_plausible_share(void **state)
+TEST(every_class_covers_a_plausible_share)
 {
     const struct written *w = *state;
     static const double least[CLASSES] = {0.03, 0.008, 0.002, 0.004, 0.4, 0.1};
@@ -191,7 +187,7 @@ static double purity(const struct written *w, OGRGeometryH polygon, int class, i
 
 /* The rounding of the coordinates to 1e-7 degree (1 cm) may move a centre across an outline, so
  * that the promise of nine pixels in ten is tested at 0.89. */
-static void every_exemplar_is_nine_tenths_of_its_class_and_every_class_has_many(void **state)
+TEST(every_exemplar_is_nine_tenths_of_its_class_and_every_class_has_many)
 {
     const struct written *w = *state;
     GDALDatasetH d = open_file(w, "exemplars.geojson"), image = open_file(w, "image.tif");
@@ -218,7 +214,7 @@ static void every_exemplar_is_nine_tenths_of_its_class_and_every_class_has_many(
 }
 
 /* [Heaton] met beach sand that looks like concrete, and water of many colours. */
-static void water_is_darker_than_soil_in_the_infrared(void **state)
+TEST(water_is_darker_than_soil_in_the_infrared)
 {
     const struct written *w = *state;
     GDALDatasetH d = open_file(w, "image.tif");
@@ -238,7 +234,7 @@ static void water_is_darker_than_soil_in_the_infrared(void **state)
     GDALClose(d);
 }
 
-static void structures_stand_and_water_does_not(void **state)
+TEST(structures_stand_and_water_does_not)
 {
     const struct written *w = *state;
     GDALDatasetH d = open_file(w, "heights.tif");
@@ -259,9 +255,8 @@ static void structures_stand_and_water_does_not(void **state)
     GDALClose(d);
 }
 
-static void a_bad_command_line_or_folder_is_told_and_writes_nothing(void **state)
+TEST(a_bad_command_line_or_folder_is_told_and_writes_nothing)
 {
-    (void)state;
     const char *bin = support_build_dir();
     assert_int_equal(support_run("%s/bin/landmass-scene 2>/dev/null", bin), 2);
     assert_int_equal(support_run("%s/bin/landmass-scene --out x --size 7 2>/dev/null", bin), 2);
@@ -270,17 +265,4 @@ static void a_bad_command_line_or_folder_is_told_and_writes_nothing(void **state
     assert_int_equal(support_run("%s/bin/landmass-scene --help > /dev/null", bin), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_image_is_georeferenced_in_utm_over_the_atlantic),
-        cmocka_unit_test(the_terrain_reaches_past_every_edge_of_the_image),
-        cmocka_unit_test(every_class_covers_a_plausible_share),
-        cmocka_unit_test(every_exemplar_is_nine_tenths_of_its_class_and_every_class_has_many),
-        cmocka_unit_test(water_is_darker_than_soil_in_the_infrared),
-        cmocka_unit_test(structures_stand_and_water_does_not),
-        cmocka_unit_test(the_same_seed_gives_the_same_pixels_and_another_does_not),
-        cmocka_unit_test(a_bad_command_line_or_folder_is_told_and_writes_nothing),
-    };
-    return cmocka_run_group_tests_name("scene", tests, write_scene, forget_scene);
-}
+TEST_GROUP(write_scene, forget_scene);

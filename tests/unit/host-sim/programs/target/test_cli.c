@@ -1,14 +1,9 @@
 /* landmass-target as its user meets it. */
+#include "check.h"
 #include "support.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Run "landmass-target ARGUMENTS" in the scratch folder. */
 static int run(const char *arguments)
@@ -24,9 +19,8 @@ static int shell(const char *command)
     return support_run("cd %s/tmp/target-cli && %s", support_build_dir(), command);
 }
 
-static void every_command_explains_itself(void **state)
+TEST(every_command_explains_itself)
 {
-    (void)state;
     static const char *const commands[] = {"",      "model ",  "trace ",     "render ", "sheet ",
                                            "bake ", "curves ", "materials ", "bench "};
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
@@ -38,9 +32,8 @@ static void every_command_explains_itself(void **state)
     }
 }
 
-static void a_command_line_without_sense_ends_with_2(void **state)
+TEST(a_command_line_without_sense_ends_with_2)
 {
-    (void)state;
     assert_int_equal(run("2>/dev/null"), 2);
     assert_int_equal(run("paint"), 2);
     assert_int_equal(run("trace --model slicy"), 2);
@@ -49,9 +42,8 @@ static void a_command_line_without_sense_ends_with_2(void **state)
     assert_int_equal(run("render --model slicy"), 2);
 }
 
-static void bad_input_ends_with_1_and_leaves_no_file(void **state)
+TEST(bad_input_ends_with_1_and_leaves_no_file)
 {
-    (void)state;
     assert_int_equal(shell("rm -f out.png && printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' "
                            ">open.obj"),
                      0);
@@ -75,9 +67,8 @@ static void bad_input_ends_with_1_and_leaves_no_file(void **state)
 
 /* The same picture, whether the records took the way through a file or not, and from the model
  * that was written as OBJ. */
-static void records_render_as_their_model_does(void **state)
+TEST(records_render_as_their_model_does)
 {
-    (void)state;
     assert_int_equal(run("render --model tank --azimuth 40 --law spm-vv --looks 4 --csv a.csv"), 0);
     assert_int_equal(run("trace --model tank --azimuth 40 --out tank.trace"), 0);
     assert_int_equal(run("render --records tank.trace --law spm-vv --looks 4 --csv b.csv"), 0);
@@ -95,9 +86,8 @@ static void records_render_as_their_model_does(void **state)
 }
 
 /* The same file whatever the number of threads; its size is that of its chips. */
-static void a_signature_is_baked_the_same_by_any_number_of_threads(void **state)
+TEST(a_signature_is_baked_the_same_by_any_number_of_threads)
 {
-    (void)state;
     assert_int_equal(run("bake --model slicy --aspects 3 --depressions 12,25 --rays 1 --threads 1 "
                          "--mean 5 --out a.sig --sheet sheet.png"),
                      0);
@@ -109,9 +99,8 @@ static void a_signature_is_baked_the_same_by_any_number_of_threads(void **state)
                      0);
 }
 
-static void sheets_and_curves_are_pictures(void **state)
+TEST(sheets_and_curves_are_pictures)
 {
-    (void)state;
     assert_int_equal(run("sheet --model slicy --count 2 --rays 1 --out sheet.png"), 0);
     assert_int_equal(run("trace --model slicy --bounces 2 --out s.trace --picture table.png"), 0);
     assert_int_equal(run("trace --model slicy --bounces 2 --out s.trace --picture no.png "
@@ -125,17 +114,4 @@ static void sheets_and_curves_are_pictures(void **state)
     assert_int_equal(shell("for f in sheet.png table.png curves[3456].png; do "
                            "head -c 4 $f | tail -c 3 | grep -q PNG || exit 1; done"),
                      0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_command_explains_itself),
-        cmocka_unit_test(a_command_line_without_sense_ends_with_2),
-        cmocka_unit_test(bad_input_ends_with_1_and_leaves_no_file),
-        cmocka_unit_test(records_render_as_their_model_does),
-        cmocka_unit_test(a_signature_is_baked_the_same_by_any_number_of_threads),
-        cmocka_unit_test(sheets_and_curves_are_pictures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
