@@ -12,6 +12,7 @@ struct db_confusion {
     uint64_t counts[DB_CLASS_MAX][DB_CLASS_MAX];
 };
 
+/* Number of pixels. */
 uint64_t db_confusion_total(const struct db_confusion *c);
 
 /* Part of all pixels that were given their class; NaN without pixels. */

@@ -55,6 +55,7 @@ struct db_exemplar_source {
 int db_exemplars_find(struct db_exemplars *e, const struct db_exemplar_source *source,
                       const struct db_grid *grid);
 
+/* Harmless on a zeroed struct. */
 void db_exemplars_free(struct db_exemplars *e);
 
 /* A label raster seen on the image's grid. */
@@ -71,6 +72,7 @@ int db_label_rows_open(struct db_label_rows *l, const char *path, const struct d
 /* The labels of image row y, `width` of them; -1 where there is none. Returns 0, or -1 reported. */
 int db_label_rows_read(struct db_label_rows *l, int y, int32_t *labels);
 
+/* Harmless on a zeroed struct. */
 void db_label_rows_close(struct db_label_rows *l);
 
 #endif

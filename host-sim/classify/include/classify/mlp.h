@@ -36,6 +36,7 @@ struct db_mlp_parts db_mlp_split(const struct db_mlp *net, float *weights);
  * memory. */
 int db_mlp_init(struct db_mlp *net, uint64_t seed);
 
+/* Free the weights. Harmless on a zeroed struct. */
 void db_mlp_free(struct db_mlp *net);
 
 /* Activities of one batch; the caller owns the arrays. */
@@ -49,6 +50,7 @@ struct db_mlp_batch {
     float *output_delta;    /* count x outputs; scratch of the backward pass */
 };
 
+/* Fill `hidden` and `outputs` from `inputs`. */
 void db_mlp_forward(const struct db_mlp *net, const struct db_mlp_batch *batch);
 
 /* After the forward pass: the gradient of the mean loss over the batch, laid out as `weights`. */

@@ -20,6 +20,7 @@ struct db_applied {
 /* Returns 0, or -1 out of memory, reported. */
 int db_apply_init(struct db_applied *a, const struct db_net *net);
 
+/* Harmless on a zeroed struct. */
 void db_apply_free(struct db_applied *a);
 
 /* The output with the largest sum over the members, for each of `count` pixels. `planes` holds one

@@ -67,6 +67,7 @@ int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
                  const struct db_train_data *training, const struct db_train_data *validation,
                  struct db_train_report *report);
 
+/* Harmless on a zeroed struct. */
 void db_train_report_free(struct db_train_report *report);
 
 /* Mean over the classes of the part of `data` that the network recognises, and the RMS error over

@@ -37,6 +37,7 @@ struct db_samples {
 int db_samples_read(struct db_samples *s, const struct db_raster *r, int context,
                     const struct db_exemplars *e);
 
+/* Harmless on a zeroed struct. */
 void db_samples_free(struct db_samples *s);
 
 #endif

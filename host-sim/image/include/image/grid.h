@@ -42,6 +42,7 @@ struct image_frame {
     int64_t latitude_step, longitude_step; /* of one cell */
 };
 
+/* The frame of a tile, and the area that it covers. */
 struct image_frame image_frame_of(uint8_t shift, uint8_t zone, uint32_t row, uint32_t column);
 struct image_area image_frame_area(const struct image_frame *frame);
 

@@ -14,6 +14,7 @@ struct image_sha256 {
     uint8_t block[64];
 };
 
+/* Start a digest, and add bytes to it. */
 void image_sha256_begin(struct image_sha256 *s);
 void image_sha256_add(struct image_sha256 *s, const void *data, size_t length_bytes);
 

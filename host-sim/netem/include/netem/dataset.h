@@ -42,6 +42,7 @@ int nm_dataset_load(struct nm_dataset *d, const struct nm_chip_list *list,
                     double share, uint64_t seed);
 void nm_dataset_free(struct nm_dataset *d);
 
+/* The samples of each part; they borrow from `d`. */
 struct nm_samples nm_dataset_training(const struct nm_dataset *d);
 struct nm_samples nm_dataset_validation(const struct nm_dataset *d);
 

@@ -29,6 +29,7 @@ void nm_netem_backward(struct nm_netem *em, const double *weights, const struct 
 double nm_netem_ask(const struct nm_architecture *architecture, const double *weights,
                     const struct nm_reflection *reflection, enum nm_direction direction);
 
+/* Harmless on a zeroed struct. */
 void nm_netem_free(struct nm_netem *em);
 
 #endif

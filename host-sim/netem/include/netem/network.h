@@ -27,6 +27,7 @@ size_t nm_network_size(const struct nm_network *net);
 /* How many activities `rows` rays have, all layers together. */
 size_t nm_network_activity_size(const struct nm_network *net, int rows);
 
+/* Width of the output layer. */
 int nm_network_outputs(const struct nm_network *net);
 
 /* Draws weights of variance 2 / previous width (He et al., ICCV 2015, eq. 10, for ReLU layers);

@@ -12,6 +12,8 @@ struct nm_library {
     double *pictures; /* owned: views x side_px^2 */
 };
 
+/* Take memory for so many square pictures, all zero. Returns 0, or -1 with the error reported (no
+ * memory). Close is harmless on a zeroed struct. */
 int nm_library_open(struct nm_library *library, int views, int side_px);
 void nm_library_close(struct nm_library *library);
 
@@ -26,6 +28,9 @@ struct nm_match {
     struct nm_origin *origins; /* owned: that place */
 };
 
+/* Take memory for the scores of so many views. Returns 0, or -1 with the error reported (no
+ * memory).
+ */
 int nm_match_open(struct nm_match *match, int views);
 void nm_match_close(struct nm_match *match);
 

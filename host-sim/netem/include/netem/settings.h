@@ -21,6 +21,7 @@ struct nm_settings {
 
 enum { NM_TARGET_OPTIONS = SETUP_MODEL_OPTIONS + 9, NM_CHIP_OPTIONS = 8, NM_TRAIN_OPTIONS = 12 };
 
+/* The defaults that --help names. */
 struct nm_settings nm_settings_default(void);
 
 /* Fill in the options of each group; `o` has room for as many as the enum says. */

@@ -27,6 +27,7 @@ struct nm_sample {
     double *own;             /* owned: step 4 by the simulator's own law, cells^2 */
 };
 
+/* Harmless on a zeroed struct. */
 void nm_sample_free(struct nm_sample *sample);
 
 struct nm_plan {

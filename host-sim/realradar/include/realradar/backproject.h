@@ -39,9 +39,13 @@ struct rr_image {
     double *power; /* owned; side_px rows of side_px */
 };
 
+/* Focus a square of level ground `side_m` wide, which must be narrower than the profiles' repeating
+ * range, in pixels of `pixel_m`. Returns 0, or -1 with the error reported (no memory). Cost:
+ * rr_focus of every pixel. */
 int rr_image_make(struct rr_image *image, const struct rr_profiles *profiles, double side_m,
                   double pixel_m);
 void rr_image_free(struct rr_image *image);
+/* The place of the centre of a pixel, metres. */
 struct rr_place rr_image_place(const struct rr_image *image, int column, int row);
 
 /* 8-bit grey of the logarithm: white is the brightest pixel, black `span_db` below it. Returns 0,

@@ -48,11 +48,13 @@ void rr_phase_history_add_point(struct rr_phase_history *ph, struct rr_place pla
  * but the radar's own band and aperture. */
 void rr_phase_history_fill_noise(struct rr_phase_history *ph, unsigned seed);
 
+/* Harmless on a zeroed struct. */
 void rr_phase_history_free(struct rr_phase_history *ph);
 
 /* Needs two pulses or more. */
 struct rr_resolution rr_resolution_of(const struct rr_phase_history *ph);
 
+/* Straight distance between two places, metres. */
 double rr_distance_m(struct rr_place a, struct rr_place b);
 
 /* `from` plus `length_m` times the unit vector. */

@@ -67,6 +67,7 @@ struct material_look {
     double greenness; /* the same of the balance between visible and near infrared */
 };
 
+/* The look of a material; constant data. */
 const struct material_look *material_look(enum material m);
 /* Words for a file: "beach sand", "clay tiles". */
 const char *material_name(enum material m);

@@ -11,6 +11,8 @@
 #define SCENE_EAST_M  334000.0
 #define SCENE_NORTH_M 4651000.0
 
+/* GeoTIFF files: the bands of the image, its true classes, the heights of what stands on the
+ * ground, and the elevation of the ground. */
 int output_image(const struct scene *s, const struct picture *p, const char *path);
 int output_truth(const struct scene *s, const struct picture *p, const char *path);
 int output_heights(const struct scene *s, const struct picture *p, const char *path);

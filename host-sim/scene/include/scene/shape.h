@@ -25,13 +25,17 @@ struct frame {
     double cos, sin;
 };
 
+/* Distance in metres; the point that lies `fraction` of the way from a to b. */
 double point_distance(struct point a, struct point b);
 struct point point_between(struct point a, struct point b, double fraction);
 
+/* The frame whose local x runs `direction_deg` to the left of u; the place of local coordinates;
+ * the rectangle x0..x1 by y0..y1 in them. */
 struct frame frame_at(struct point origin, double direction_deg);
 struct point frame_point(const struct frame *f, double x, double y);
 struct shape frame_rectangle(const struct frame *f, double x0, double y0, double x1, double y1);
 
+/* Area in m^2; mean of the corners; whether a place lies inside or on the edge. */
 double shape_area(const struct shape *s);
 struct point shape_centre(const struct shape *s);
 bool shape_contains(const struct shape *s, struct point p);

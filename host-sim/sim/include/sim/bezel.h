@@ -14,6 +14,7 @@ struct bezel {
     uint16_t width_px, height_px; /* glass and margins */
 };
 
+/* The bezel for a display of that size. */
 struct bezel bezel_around(uint16_t glass_width_px, uint16_t glass_height_px);
 
 struct bezel_box {

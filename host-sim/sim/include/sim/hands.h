@@ -26,10 +26,14 @@ struct hands {
 /* `script` is asked first, and borrowed; the port's ctx is *h, which must not move. */
 void hands_init(struct hands *h, const struct lm_controls *script);
 
+/* Press or release button 1..LM_BUTTONS. What it is already has no effect. */
 void hands_button(struct hands *h, int32_t button, bool is_down);
 enum hands_arrow { HANDS_LEFT, HANDS_RIGHT, HANDS_UP, HANDS_DOWN };
+/* Press or release an arrow key: the cursor is slewed at full deflection while one is held. */
 void hands_arrow(struct hands *h, enum hands_arrow arrow, bool is_down);
+/* Turn the range knob by thousandths of full deflection; it stops at either end. */
 void hands_turn_knob(struct hands *h, int32_t thousandths);
+/* Target management switch: up, or down. */
 void hands_designate(struct hands *h);
 void hands_drop(struct hands *h);
 

@@ -13,6 +13,7 @@ struct bake_looks {
     double depression_deg[LM_SIGNATURE_DEPRESSIONS_MAX]; /* rising, 1..89 */
 };
 
+/* Azimuth of aspect 0..aspects - 1: evenly around, the first at 0. */
 double bake_azimuth_deg(const struct bake_looks *looks, long aspect);
 
 struct bake_layout {

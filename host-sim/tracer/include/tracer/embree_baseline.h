@@ -27,6 +27,7 @@ void embree_baseline_flush(struct embree_baseline_rays *b);
 size_t embree_baseline_cast(const struct scene *s, const struct embree_baseline_rays *b,
                             size_t first, size_t end);
 
+/* Harmless on a zeroed struct. */
 void embree_baseline_free(struct embree_baseline_rays *b);
 
 #endif

@@ -78,6 +78,7 @@ struct reflect_shares {
     float specular, back;
 };
 
+/* The shares of one record by the law, each 0..1. */
 struct reflect_shares reflect_record(const struct reflect_law *law, const struct trace_record *t);
 
 #endif
