@@ -13,7 +13,7 @@ SRC_firmware := $(sort $(wildcard firmware/*/*.c) \
 SRC_core     := $(SRC_firmware) $(SRC_fixed)
 
 GEN_INC := $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include)
-$(GEN)/host/%.o: CC := $(HOSTCC)
+$(GEN)/host/%.o: override CC := $(HOSTCC)
 $(call compile, gen/host/,, $$(CSTD) -O1 -D_GNU_SOURCE $$(GEN_INC), build machine)
 $(GEN)/bin/%:
 	@mkdir -p $(@D)

@@ -5,7 +5,7 @@ CORTEX_M7_FLAGS := -mcpu=cortex-m7 -mthumb -mfloat-abi=soft -O2 -g -ffreestandin
 TESTS += $(CORTEX_M7)/test_golden
 
 CORTEX_M7_INC := $(INC_firmware) $(addprefix -Itests/,golden support zcu102 cortex-m7)
-$(O)/cortex-m7/%.o: CC := arm-none-eabi-gcc
+$(O)/cortex-m7/%.o: override CC := arm-none-eabi-gcc
 $(call compile, cortex-m7/,, $$(CSTD) $$(WARN) $$(CORTEX_M7_FLAGS) $$(CORTEX_M7_INC), Cortex-M7)
 $(CORTEX_M7)/golden.elf: $(CORTEX_M7_SRC:%.c=$(O)/cortex-m7/%.o) linker/mps2-an500.ld
 	@mkdir -p $(@D)
