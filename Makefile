@@ -5,6 +5,7 @@ O     := build/$(BOARD)
 include bsp/$(BOARD)/board.mk
 
 OPT  ?= -O2 -g
+CLANG ?= clang-19
 PKG_CONFIG ?= pkg-config
 pkgs  = $(shell $(PKG_CONFIG) --$(1) $(2) 2>/dev/null)
 
@@ -24,7 +25,7 @@ $(call archive, $(LIB_firmware), $(SRC_firmware))
 $(call archive, $(LIB_drivers), $(DRIVERS:%=drivers/%.c))
 $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 
-.PHONY: help deps all run check check-panel panel package bench gallery fuzz rooms lint format clean
+.PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
 .PHONY: zcu102 run-zcu102 size bench-zcu102
 
 help: ## Print this menu
@@ -58,6 +59,9 @@ package: deps ## Build the panel's Debian packages for arm64 and amd64 in build/
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package
 
+check-clang: deps ## Unit tests and golden pictures once more, built by CLANG (clang-19); like check, part of .ci/run
+	@$(MAKE) --no-print-directory -j2 CC=$(CLANG) O=build/$(CLANG) check-unit
+
 check-panel: deps ## Run the panel on real kernel interfaces: a Debian kernel in QEMU (part of check)
 	@$(MAKE) --no-print-directory -j2 check-panel-built
 
@@ -90,8 +94,8 @@ bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and m
 rooms: $(O)/tests/discipline/flags ## Print which room, library or program may see which, and which does
 	@python3 -B tests/discipline/rooms.py $<
 
-lint: ## Formatting, clang-tidy, cppcheck, and both compilers without a warning
-	@sh tests/discipline/lint.sh
+lint: deps ## clang-format, clang-tidy, cppcheck, shellcheck, and CLANG without a warning
+	@CLANG=$(CLANG) sh tests/discipline/lint.sh
 
 format: ## Apply clang-format to every C file
 	@git ls-files -co --exclude-standard '*.c' '*.h' | xargs clang-format -i
@@ -99,8 +103,11 @@ format: ## Apply clang-format to every C file
 clean: ## Remove everything that was built
 	rm -rf build
 
-.PHONY: check-built
+.PHONY: check-built check-unit
 check-built: $(PROGRAMS) $(TESTS)
 	@sh tests/run.sh $(O) $(TESTS)
+UNIT_TESTS := $(filter $(O)/bin/tests/unit/% $(O)/bin/tests/golden/test_golden,$(TESTS))
+check-unit: $(UNIT_TESTS)
+	@sh tests/run.sh $(O) $(UNIT_TESTS)
 
 -include $(shell find $(O) -type f -name '*.d' 2>/dev/null)

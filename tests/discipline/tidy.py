@@ -1,6 +1,6 @@
 """Asks clang-tidy about every source that make would compile, tests excepted.
 
-    make -Bn CC=clang O=BUILD lint-build | python3 tidy.py BUILD
+    make -Bn CC=clang-19 O=BUILD lint-build | python3 tidy.py BUILD
 
 The commands of make tell which flags a source has. One that clang-tidy passed is asked again when its object, and so
 the source or a header that it includes, has become newer, or .clang-tidy has. Ends with 1 if there is a finding.

@@ -41,7 +41,8 @@ static void set_crs(GDALDatasetH dataset, int epsg)
 
 void scene_write(const char *name, const struct scene_raster *raster)
 {
-    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), scene_path(name), raster->width,
+    const char *path = scene_path(name); /* the first one registers GDAL's drivers */
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), path, raster->width,
                                       raster->height, 1, raster->type, NULL);
     assert_non_null(dataset);
     const double *t = raster->geotransform;
