@@ -26,7 +26,7 @@ $(call archive, $(LIB_drivers), $(DRIVERS:%=drivers/%.c))
 $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
-.PHONY: zcu102 run-zcu102 size bench-zcu102
+.PHONY: zcu102 run-zcu102 size bench-zcu102 coverage figures
 
 help: ## Print this menu
 	@echo 'landmass: make TARGET'
@@ -84,12 +84,18 @@ run-zcu102: zcu102 ## Fly the built-in scene on that board in QEMU; leave its sc
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O)
 
-size: zcu102 ## Print that board's memory map, its budgets, and the deepest stack
+size: zcu102 ## Print that board's memory map, its budgets, the deepest stack, and the last release's
 	@python3 -B tests/zcu102/memory.py
 
 bench-zcu102: zcu102 ## Count the instructions of a flight there, by stage and mode: the same figures in each run
 	@$(MAKE) --no-print-directory $(PROGRAMS) $(ZCU102_TOOLS)
 	@sh bsp/zcu102/run.sh $(O) count
+
+coverage: deps ## Print what share of fixed and firmware the unit tests and golden pictures run
+	@$(MAKE) --no-print-directory -j2 O=build/coverage OPT='-O1 -g --coverage' OPT_core= coverage-built
+
+figures: deps ## Print size, stack, instructions and coverage beside those of the last release
+	@sh tests/figures/figures.sh $(O)
 
 rooms: $(O)/tests/discipline/flags ## Print which room, library or program may see which, and which does
 	@python3 -B tests/discipline/rooms.py $<
@@ -109,5 +115,11 @@ check-built: $(PROGRAMS) $(TESTS)
 UNIT_TESTS := $(filter $(O)/bin/tests/unit/% $(O)/bin/tests/golden/test_golden,$(TESTS))
 check-unit: $(UNIT_TESTS)
 	@sh tests/run.sh $(O) $(UNIT_TESTS)
+
+.PHONY: coverage-built
+coverage-built: $(UNIT_TESTS)
+	@find $(O) -name '*.gcda' -delete
+	@sh tests/run.sh $(O) $(UNIT_TESTS) >$(O)/tests.log || tail -n 1 $(O)/tests.log
+	@python3 -B tests/figures/coverage.py $(O)
 
 -include $(shell find $(O) -type f -name '*.d' 2>/dev/null)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# bench.sh BUILD-DIR: what a pixel and a line cost in instructions (callgrind counts them, so that the figures are the
+# bench.sh BUILD-DIR [counts]: what a pixel and a line cost in instructions (callgrind counts them, so that the figures are the
 # same on a busy machine), tiles read for a picture, time against the reference in double precision, and the
-# classifier beside its peers. Nothing here passes or fails.
+# classifier beside its peers; or the counts alone. Nothing here passes or fails.
 set -eu
-build=${1:?usage: bench.sh BUILD-DIR}
+build=${1:?usage: bench.sh BUILD-DIR [counts]}
 here=$(dirname "$0")
 bench=$build/bin/tests/bench/stage_bench
 work=$(mktemp -d)
@@ -21,9 +21,10 @@ count() { # what stage_bench is to draw
         awk '$2 > n[$1] { n[$1] = $2 } END { for (f in n) print f, n[f] }'
 }
 
-# Rows of a table from such a list; "rest" is what the whole has and its parts have not.
-table() { # divisor format
-    awk -v per="$1" -v format="$2" '
+# Rows of a table from such a list; "rest" is what the whole has and its parts have not. The whole is a figure that is
+# kept beside that of the last release (tests/figures).
+table() { # divisor format figure
+    awk -v per="$1" -v format="$2" -v figure="$3" -v figures="$work/figures" '
         function row(name, n) { if (n) printf "  %-44s " format "\n", name, n / per }
         function part(name, n) { parts += n; row(name, n) }
         { n[$1] = $2 }
@@ -42,18 +43,21 @@ table() { # divisor format
             row("rest: geometry, tiles asked for, set-up", whole - parts)
             row("paint into the plane", paint)
             row("all", whole + paint)
+            printf "%.1f instructions %s\n", (whole + paint) / per, figure >> figures
         }'
 }
 
 if command -v valgrind > /dev/null; then
     echo "SAR patch of 256 x 256 cells of 5 m, on a glass of 512 x 512: instructions a pixel"
     count sar > "$work/sar"
-    table 65536 '%7.1f' < "$work/sar"
+    table 65536 '%7.1f' "SAR patch, a pixel" < "$work/sar"
     awk '$1 == "lm_sar_prefetch" { printf "  %-44s %7.1f\n", "and, before it: asking for its tiles", $2 / 65536 }' "$work/sar"
     count chips > "$work/chips"
     echo
     echo "Sixteen targets with a signature, 60 x 60 cells of 0.5 m each: instructions a target and patch"
-    awk '{ n[$1] = $2 } END {
+    awk -v figures="$work/figures" '{ n[$1] = $2 } END {
+        chip = n["lm_chips_service"] + n["lm_patch_chips_shade"] + n["lm_patch_chips_add"]
+        printf "%.0f instructions target with a signature in a patch\n", chip / 16 >> figures
         printf "  %-44s %9.0f\n", "reading and reducing its chip", n["lm_chips_service"] / 16
         printf "  %-44s %9.0f\n", "shadow", n["lm_patch_chips_shade"] / 16
         printf "  %-44s %9.0f\n", "power", n["lm_patch_chips_add"] / 16
@@ -63,11 +67,13 @@ if command -v valgrind > /dev/null; then
         read -r _ lines _ samples < "$work/said"
         echo
         echo "$mode, 10 nautical miles, on a glass of 512 x 512: instructions a line drawn ($lines lines, $samples sampled)"
-        table "$lines" '%7.0f' < "$work/$mode"
+        table "$lines" '%7.0f' "$mode, a line" < "$work/$mode"
     done
+    python3 -B "$here/../figures/figures.py" bench < "$work/figures"
 else
     echo "bench: valgrind is missing (make deps), no instructions counted"
 fi
+[ "${2:-}" != counts ] || exit 0
 
 echo
 echo "Processor time of the patch: ns a pixel, firmware and double-precision reference, five runs"

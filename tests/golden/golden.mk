@@ -1,8 +1,8 @@
 # Golden pictures: one program, built three ways, that must give the same checksums: as the product is built, and in the
 # variants of make/variants.mk, by clang at its highest level and under the sanitizers.
 GOLDEN := $(O)/bin/tests/golden
-# A build by clang anyhow (make check-clang) draws them once.
-GOLDEN_VARIANTS := $(if $(findstring clang,$(CC)),,golden-clang golden-sanitized)
+# A build by clang anyhow (make check-clang) or for coverage draws them once.
+GOLDEN_VARIANTS := $(if $(findstring clang,$(CC))$(findstring coverage,$(OPT)),,golden-clang golden-sanitized)
 TESTS += $(GOLDEN)/test_golden
 GOLDEN_PARTS := $(patsubst %,$(O)/tests/golden/%.o,golden golden_flight golden_scene golden_signature) \
     $(LIB_support) $(LIB_hs) $(LIB_firmware) $(LIB_fixed)

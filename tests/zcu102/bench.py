@@ -12,6 +12,9 @@ from pathlib import Path
 import fly
 import machine
 
+sys.path.insert(0, str(Path(__file__).parent.parent / "figures"))
+import figures  # noqa: E402
+
 LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
 # As bench.c numbers them: enum lm_sector_mode times enum lm_field, and the patch behind them.
@@ -59,20 +62,39 @@ def print_line_budget(modes):
                       f"{worst:12,} = {worst / MIPS:8,.0f} us, {worst / (LINE_BUDGET_US * MIPS):6.0%}")
 
 
-def print_goals(modes, first_picture_us):
-    """The goals of docs/zcu102.md: a pixel or a line, from the map to its grey; painting is apart, for
-    it goes by the pixels of the glass."""
-    def a_line(mode, *stages):
-        return sum(modes[mode][stage][1] for stage in stages) / modes[mode]["line"][0]
+# What makes a line, from the map to its grey, and what paints it.
+SECTOR_STAGES = ("lm_sector_sample_ahead", "lm_sector_draw_line", "lm_ppi_paint")
+PATCH_STAGES = ("lm_sar_sample_ahead", "lm_sar_draw_line", "lm_patch_paint")
 
-    patch = a_line(PATCH, "lm_sar_sample_ahead", "lm_sar_draw_line") / PATCH_CELLS
-    line = a_line(0, "lm_sector_sample_ahead", "lm_sector_draw_line")
+
+def a_line(stages, names):
+    """Instructions of a line: (to its grey, painting). Painting is apart, for it goes by the pixels of the glass."""
+    ahead, draw, paint = (stages[name][1] / stages["line"][0] for name in names)
+    return ahead + draw, paint
+
+
+def print_goals(modes, first_picture_us):
+    """The goals of docs/zcu102.md."""
+    pixel, paint_pixel = (each / PATCH_CELLS for each in a_line(modes[PATCH], PATCH_STAGES))
+    line, paint = a_line(modes[0], SECTOR_STAGES)
     print("\nagainst the goals")
-    print(f"  SAR patch, every effect: {patch:6.1f} instructions a pixel (goal 45), and "
-          f"{a_line(PATCH, 'lm_patch_paint') / PATCH_CELLS:.1f} for painting it on this glass")
-    print(f"  GM line of 256 cells:    {line:6,.0f} instructions (goal 20,000), and {a_line(0, 'lm_ppi_paint'):,.0f} "
-          "for painting it")
+    print(f"  SAR patch, every effect: {pixel:6.1f} instructions a pixel (goal 45), and "
+          f"{paint_pixel:.1f} for painting it on this glass")
+    print(f"  GM line of 256 cells:    {line:6,.0f} instructions (goal 20,000), and {paint:,.0f} for painting it")
     print(f"  reset to first picture:  {first_picture_us / 1000:6.1f} ms of the guest's time (goal 1,000)")
+
+
+def record(modes, first_picture_us):
+    rows = []
+    for mode, stages in sorted(modes.items()):
+        if "line" not in stages:
+            continue
+        drawn, paint = a_line(stages, PATCH_STAGES if mode == PATCH else SECTOR_STAGES)
+        rows += [(drawn, "instructions", f"{MODES[mode]}, a line"),
+                 (paint, "instructions", f"{MODES[mode]}, painting a line"),
+                 (stages["step"][2], "instructions", f"{MODES[mode]}, worst step"),
+                 (stages["frame-step"][2], "instructions", f"{MODES[mode]}, worst step with a frame")]
+    figures.record("bench-zcu102", rows + [(first_picture_us, "us", "reset to first picture, the guest's time")])
 
 
 def main():
@@ -95,7 +117,9 @@ def main():
     for mode, stages in sorted(modes.items()):
         print_mode(MODES.get(mode, f"mode {mode}"), stages)
     print_line_budget(modes)
-    print_goals(modes, value(lines, "first-picture-us"))
+    first_picture_us = value(lines, "first-picture-us")
+    print_goals(modes, first_picture_us)
+    record(modes, first_picture_us)
     return 0
 
 

@@ -8,7 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "discipline"))
+sys.path[:0] = [str(Path(__file__).parent.parent / folder) for folder in ("discipline", "figures")]
+import figures  # noqa: E402
 from rules import CallGraph  # noqa: E402
 
 BUILD = Path("build/zcu102")
@@ -123,9 +124,11 @@ def main():
     print(f"\ndeepest chain of calls: {chain[0]:,} bytes\n    {' > '.join(chain[1])}")
     print(f"deepest interrupt, on its own stack: {interrupt[0]:,} bytes\n    {' > '.join(interrupt[1])}\n")
     failed = False
-    for what, size, most in budgets(rows, chain):
+    fits = budgets(rows, chain)
+    for what, size, most in fits:
         failed |= size > most
         print(f"{what:48}{size:12,} of {most:12,}  {'OVER BUDGET' if size > most else 'fits'}")
+    figures.record("size", [(size, "bytes", what) for what, size, _ in fits])
     return 1 if failed else 0
 
 
