@@ -18,8 +18,9 @@ enum {
     STACK_USED_BYTES = 128 << 10,
     TELL_US = 1000000,
     ALIVE_PICTURES = 15, /* half a second of them */
-    /* What the operator did himself is no fault. */
-    FAULTS = LM_FLAG_NAV_STALE | LM_FLAG_NAV_DEAD | LM_FLAG_DB | LM_FLAG_TILE | LM_FLAG_BUS
+    /* The fault lamp calls somebody to the equipment. The edge of the map and a sender of weather
+     * that has gone quiet are no work for him, and the glass says them. */
+    LAMP_FAULTS = LM_FLAGS_FAULT & ~(LM_FLAG_OFF_MAP | LM_FLAG_WEATHER)
 };
 
 /* Touch the stack that the loop may need, so that its pages are there and locked. */
@@ -128,8 +129,8 @@ static void show_lamps(struct panel *p)
     const struct lm_unit *u = p->unit;
     const struct bezel_lamps lamps = {
         .is_lit = {[CONFIG_LED_ALIVE] = (glass_renders(&p->glass) / ALIVE_PICTURES & 1) != 0,
-                   [CONFIG_LED_FAULT] = (u->flags & FAULTS) != 0 || bezel_is_stuck(&p->bezel) ||
-                                        !glass_is_lit(&p->glass),
+                   [CONFIG_LED_FAULT] = (u->flags & LAMP_FAULTS) != 0 ||
+                                        bezel_is_stuck(&p->bezel) || !glass_is_lit(&p->glass),
                    [CONFIG_LED_NIGHT] = u->page.palette.is_night},
         .is_night = u->page.palette.is_night,
     };
@@ -144,8 +145,10 @@ void panel_step(struct panel *p, uint64_t now_us)
     p->count.steps++;
     show_lamps(p);
     tell_flags(p, now_us);
-    const struct drv_liveness life = {
-        .frames = p->unit->count.frames, .bus = p->bus.polls, .renders = glass_renders(&p->glass)};
+    const struct lm_liveness life = {.steps = p->count.steps,
+                                     .frames = p->unit->count.frames,
+                                     .bus = p->bus.polls,
+                                     .shown = glass_renders(&p->glass)};
     (void)drv_watchdog_service(&p->watchdog, life, now_us);
 }
 

@@ -30,10 +30,10 @@ static void tick(void *board)
     if (!z->is_supervised) {
         return;
     }
-    const struct zcu102_beats beats =
-        zcu102_beats_of(&z->unit, z->steps, &z->can, &z->supervisor.last);
+    const struct lm_liveness life =
+        zcu102_life_of(&z->unit, z->steps, &z->can, &z->supervisor.last);
     const enum zcu102_cause cause =
-        zcu102_supervise(&z->supervisor, drv_timer_us(&z->timer), &beats);
+        zcu102_supervise(&z->supervisor, drv_timer_us(&z->timer), &life);
     if (cause != ZCU102_POWER_ON) {
         zcu102_restart(cause, z->core.interrupted_pc, 0, 0);
     }

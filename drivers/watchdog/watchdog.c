@@ -100,16 +100,17 @@ int drv_watchdog_open(struct drv_watchdog *w, const char *device, uint32_t timeo
     return status;
 }
 
-bool drv_watchdog_service(struct drv_watchdog *w, struct drv_liveness now, uint64_t now_us)
+bool drv_watchdog_service(struct drv_watchdog *w, struct lm_liveness now, uint64_t now_us)
 {
     if (w->period_us == 0 || now_us < w->due_us) {
         return false;
     }
-    if (!drv_liveness_progressed(&w->last, now)) {
+    if (lm_liveness_judge(&w->last, &now) != LM_ALIVE) {
         w->count.refused += !w->is_hungry;
         w->is_hungry = true;
         return false;
     }
+    w->last = now;
     w->is_hungry = false;
     w->due_us = now_us + w->period_us;
     if (w->fd >= 0) {

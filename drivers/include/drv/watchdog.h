@@ -6,16 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The proof of life. Pure. All of the counts must have grown since the last time it was accepted:
- * one part that stands still starves the dog, however busy the others are. */
-struct drv_liveness {
-    uint32_t frames;  /* pictures drawn by the firmware */
-    uint32_t bus;     /* times that the bus was asked for frames */
-    uint32_t renders; /* pictures that reached the glass, or found none connected */
-};
-
-/* True: everything has progressed since the last call that said so, and *last is `now`. */
-bool drv_liveness_progressed(struct drv_liveness *last, struct drv_liveness now);
+#include "lm/liveness.h"
 
 struct drv_watchdog {
     int fd;             /* of /dev/watchdog; -1: not used */
@@ -25,7 +16,7 @@ struct drv_watchdog {
     uint32_t timeout_s; /* as the board's watchdog took it */
     bool has_bitten;    /* the board's watchdog says that it caused the last restart */
     bool is_hungry;     /* feeding was due, and life has not been proved since */
-    struct drv_liveness last;
+    struct lm_liveness last;
     char error[160]; /* why the last call failed */
     struct {
         uint32_t fed;
@@ -40,8 +31,9 @@ struct drv_watchdog {
 int drv_watchdog_open(struct drv_watchdog *w, const char *device, uint32_t timeout_s,
                       uint64_t now_us);
 
-/* Feed when it is due and `now` proves life. Tells true when it was fed. Never waits. */
-bool drv_watchdog_service(struct drv_watchdog *w, struct drv_liveness now, uint64_t now_us);
+/* Feed when it is due and `now` proves life since the last meal. True when it was fed. Never
+ * waits. */
+bool drv_watchdog_service(struct drv_watchdog *w, struct lm_liveness now, uint64_t now_us);
 
 /* Tell systemd something, such as "READY=1" or "STATUS=...": at most 512 bytes. Never waits. */
 void drv_watchdog_notify(struct drv_watchdog *w, const char *text);

@@ -55,29 +55,37 @@ static void expect_silence(int fd)
     assert_int_equal(recv(fd, got, sizeof got, 0), -1);
 }
 
-/* All eight combinations of what has progressed. */
+/* All combinations of what has progressed. The first that stands still is named. */
 TEST(life_is_proved_only_when_everything_has_progressed)
 {
-    for (uint32_t moved = 0; moved < 8; moved++) {
-        struct drv_liveness last = {10, 20, 30};
-        const struct drv_liveness now = {10 + (moved & 1), 20 + (moved >> 1 & 1),
-                                         30 + (moved >> 2)};
-        assert_int_equal(drv_liveness_progressed(&last, now), moved == 7);
-        assert_int_equal(last.frames, moved == 7 ? 11 : 10);
+    const struct lm_liveness last = {5, 10, 20, UINT32_MAX};
+    for (uint32_t moved = 0; moved < 16; moved++) {
+        const struct lm_liveness now = {5 + (moved & 1), 10 + (moved >> 1 & 1),
+                                        20 + (moved >> 2 & 1), UINT32_MAX + (moved >> 3)};
+        const enum lm_life life = !(moved & 1)   ? LM_LIFE_NO_STEP
+                                  : !(moved & 2) ? LM_LIFE_NO_FRAME
+                                  : !(moved & 4) ? LM_LIFE_NO_BUS
+                                  : !(moved & 8) ? LM_LIFE_NOT_SHOWN
+                                                 : LM_ALIVE;
+        assert_int_equal(lm_liveness_judge(&last, &now), life);
     }
 }
 
 /* Parts that progress one after the other count together: what counts is since the last meal. */
-TEST(slow_parts_have_until_the_next_meal)
+TEST_WITH(slow_parts_have_until_the_next_meal, no_environment, remove_path)
 {
-    struct drv_liveness last = {0}, now = {0};
+    struct drv_watchdog w;
+    struct lm_liveness now = {0};
+    assert_int_equal(drv_watchdog_open(&w, path, 4, 0), LM_OK);
     now.frames = 5;
-    assert_false(drv_liveness_progressed(&last, now));
+    assert_false(drv_watchdog_service(&w, now, 0));
     now.bus = 3;
-    assert_false(drv_liveness_progressed(&last, now));
-    now.renders = 1;
-    assert_true(drv_liveness_progressed(&last, now));
-    assert_false(drv_liveness_progressed(&last, now));
+    now.steps = 9;
+    assert_false(drv_watchdog_service(&w, now, 1000));
+    now.shown = 1;
+    assert_true(drv_watchdog_service(&w, now, 2000));
+    assert_false(drv_watchdog_service(&w, now, 10000000));
+    drv_watchdog_close(&w);
 }
 
 TEST_WITH(systemd_is_fed_at_half_its_time_out, no_environment, remove_path)
@@ -91,7 +99,7 @@ TEST_WITH(systemd_is_fed_at_half_its_time_out, no_environment, remove_path)
     uint32_t fed = 0;
     for (uint64_t now = 0; now <= 10000000; now += 2000) {
         const uint32_t n = (uint32_t)(now / 2000) + 1;
-        if (drv_watchdog_service(&w, (struct drv_liveness){n, n, n}, now)) {
+        if (drv_watchdog_service(&w, (struct lm_liveness){n, n, n, n}, now)) {
             expect_message(fd, "WATCHDOG=1");
             fed++;
         }
@@ -110,14 +118,14 @@ TEST_WITH(a_glass_that_stands_still_starves_the_dog_until_it_moves, no_environme
     setenv("WATCHDOG_USEC", "2000000", 1);
     struct drv_watchdog w;
     assert_int_equal(drv_watchdog_open(&w, NULL, 5, 0), LM_OK);
-    assert_true(drv_watchdog_service(&w, (struct drv_liveness){1, 1, 1}, 0));
+    assert_true(drv_watchdog_service(&w, (struct lm_liveness){1, 1, 1, 1}, 0));
     expect_message(fd, "WATCHDOG=1");
     for (uint32_t ms = 2; ms < 5000; ms += 2) {
-        assert_false(drv_watchdog_service(&w, (struct drv_liveness){ms, ms, 1}, ms * 1000));
+        assert_false(drv_watchdog_service(&w, (struct lm_liveness){ms, ms, ms, 1}, ms * 1000));
     }
     expect_silence(fd);
     assert_int_equal(w.count.refused, 1);
-    assert_true(drv_watchdog_service(&w, (struct drv_liveness){6000, 6000, 2}, 5000000));
+    assert_true(drv_watchdog_service(&w, (struct lm_liveness){6000, 6000, 6000, 2}, 5000000));
     drv_watchdog_close(&w);
     close(fd);
 }
@@ -132,7 +140,7 @@ TEST_WITH(a_time_out_meant_for_another_process_is_not_ours, no_environment, remo
     struct drv_watchdog w;
     assert_int_equal(drv_watchdog_open(&w, NULL, 5, 0), LM_OK);
     assert_int_equal(w.period_us, 0);
-    assert_false(drv_watchdog_service(&w, (struct drv_liveness){1, 1, 1}, 0));
+    assert_false(drv_watchdog_service(&w, (struct lm_liveness){1, 1, 1, 1}, 0));
     drv_watchdog_notify(&w, "READY=1");
     expect_message(fd, "READY=1");
     drv_watchdog_close(&w);
@@ -175,7 +183,7 @@ TEST_WITH(only_a_commanded_stop_calls_the_boards_dog_off, no_environment, remove
     char bytes[8] = "";
     assert_int_equal(drv_watchdog_open(&w, path, 4, 0), LM_OK);
     assert_int_equal(w.period_us, 2000000); /* a file changes no time-out; ours holds */
-    assert_true(drv_watchdog_service(&w, (struct drv_liveness){1, 1, 1}, 0));
+    assert_true(drv_watchdog_service(&w, (struct lm_liveness){1, 1, 1, 1}, 0));
     FILE *device = fopen(path, "r");
     assert_int_equal(fread(bytes, 1, sizeof bytes, device), 0);
     drv_watchdog_close(&w);
