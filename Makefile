@@ -15,7 +15,7 @@ LIB_drivers  := $(O)/libdrivers.a
 LIB_support  := $(O)/tests/support/libsupport.a
 PROGRAMS :=
 TESTS    :=
-include make/layers.mk make/compile.mk make/variants.mk make/generated.mk make/host.mk
+include make/layers.mk make/compile.mk make/variants.mk firmware/kernels/kernels.mk make/generated.mk make/host.mk
 # What is built beside the firmware: a PC's programs and tests, unless the board says otherwise.
 PARTS ?= drivers/*.mk bsp/panel-linux/panel.mk host-sim/host-sim.mk tests/*.mk tests/*/*.mk tests/*/*/*.mk
 include $(sort $(wildcard $(PARTS)))

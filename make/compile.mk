@@ -25,7 +25,6 @@ $(call compile, tests/,    tests/,    $$(CFLAGS_host) -Itests/support $$(EXTRA_C
 
 $(O)/firmware/display/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
 $(O)/firmware/map/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
-$(O)/firmware/map/tile_read.o: OPT_core += -fno-unroll-loops # and so has a run in a tile that stands in for another
 
 $(O)/%.a:
 	@mkdir -p $(@D)

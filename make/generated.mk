@@ -8,7 +8,7 @@ BUS_TABLE ?= host-sim/bus/arinc825.bus
 vpath %.c $(GEN)
 
 SRC_fixed    := $(sort $(wildcard fixed/src/*.c) fixed/src/tables.c)
-SRC_firmware := $(sort $(wildcard firmware/*/*.c) \
+SRC_firmware := $(sort $(wildcard firmware/*/*.c) $(SRC_kernels) \
     $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c))
 SRC_core     := $(SRC_firmware) $(SRC_fixed)
 

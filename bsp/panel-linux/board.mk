@@ -16,5 +16,8 @@ PKG_CONFIG := PKG_CONFIG_LIBDIR=/usr/lib/$(TRIPLET)/pkgconfig:/usr/share/pkgconf
 
 DRIVERS = $(LINUX_DRIVERS)
 
+# Vectors of 64-bit Arm, for which some loops are written anew.
+KERNELS := $(if $(filter arm64,$(ARCH)),arm64,c)
+
 # For any processor of its kind: a package does not know where it will be installed.
 OPT_core := -O3 -funroll-loops

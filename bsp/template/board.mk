@@ -9,6 +9,9 @@ OPT := -O2 -g
 # How the two lowest layers are compiled besides. They are integers: the picture is the same whatever you choose.
 OPT_core := -O3 -funroll-loops
 
+# Loops written for vectors of the machine: arm64 on any 64-bit Arm, c on every other (firmware/kernels).
+KERNELS := c
+
 # The drivers that the board has, each without its ending.
 DRIVERS := not_fitted/not_fitted
 

@@ -6,6 +6,9 @@ NM      := aarch64-linux-gnu-nm
 DRIVERS := bezel/bezel_serial can/can_zynqmp display/display_dp display/dp_link flash/flash_gqspi irq/irq_gic400 \
     timer/timer_generic uart/uart_cadence watchdog/watchdog_cadence
 
+# Loops written for the vectors of 64-bit Arm (firmware/kernels).
+KERNELS := arm64
+
 # No operating system, no C library, nothing loaded at an address that is not known when it is linked.
 OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector -ffunction-sections -fdata-sections \
     -fcallgraph-info=su # for the deepest stack (tests/zcu102/memory.py)

@@ -1,12 +1,12 @@
 #include "lm/aspect.h"
 
-#include <stdbool.h>
-
-#include "aspect_line.h"
-#include "aspect_neon.h"
 #include "fx/log.h"
 #include "fx/sat.h"
-#include "shore.h"
+#include "lm/kernels_clutter.h"
+#include "tops.h"
+
+_Static_assert((int)LM_LEGEND_CODES == LM_K_CODES && (int)LM_SIGHT_WORK >= LM_K_LIGHT_WORK,
+               "lm/aspect.h has what lm/kernels_clutter.h wants");
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
 
@@ -94,129 +94,16 @@ static uint8_t eighths_of(int32_t edge_q8)
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
                    const struct lm_classes *classes)
 {
-    const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = MARK_WATER,
-                                       [LM_KIND_STRUCTURE] = MARK_STRUCTURE,
-                                       [LM_KIND_TREES] = MARK_TREES};
-    const uint8_t edge_q3[CODES] = {[MARK_STRUCTURE] = eighths_of(config->edge_structure_q8),
-                                    [MARK_TREES] = eighths_of(config->edge_trees_q8)};
-    for (uint32_t n = 0; n < CODES; n++) {
-        const uint16_t height_dm = classes->height_dm[n];
-        const uint8_t mark = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
-        legend->height_q14[n] = (int32_t)(height_dm * (uint32_t)Q19_OF_DM >> 5);
-        legend->kind[n] = edge_q3[mark] * (32 << MARK_BITS) + mark;
-        legend->bytes.mark[n] = mark;
-        legend->bytes.edge_q3[n] = edge_q3[n];
-        for (uint32_t upper = 0; upper < 2; upper++) {
-            legend->bytes.height_dm[upper][n] = (uint8_t)(height_dm >> 8 * upper);
-        }
+    const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = LM_K_WATER,
+                                       [LM_KIND_STRUCTURE] = LM_K_STRUCTURE,
+                                       [LM_KIND_TREES] = LM_K_TREES};
+    for (uint32_t n = 0; n < LM_LEGEND_CODES; n++) {
+        legend->height_dm[n] = classes->height_dm[n];
+        legend->mark[n] = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
     }
+    legend->edge_structure_q3 = eighths_of(config->edge_structure_q8);
+    legend->edge_trees_q3 = eighths_of(config->edge_trees_q8);
     legend->shore_q8 = config->shore_q8;
-}
-
-/* What a cell shows by itself; its level but for the horizon's rise and the edges. */
-static void look(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                 const struct lm_scan_line *line, uint32_t end, struct lm_sight_work *restrict w,
-                 int32_t *restrict level_q8)
-{
-    for (uint32_t i = 0; i < end; i++) {
-        const uint32_t cell = line->cell[i];
-        w->tangent[LM_LANES + i] = tangent_of(grid, legend, line, i);
-        w->kind[LM_LANES + i] = kind_of(legend, cell);
-        level_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + grid->gain_q8[i];
-    }
-}
-
-/* Before the first cell shown stands the horizon that the line starts with, and nothing that it
- * could be entered from; behind the last one, nothing that rises. */
-static void set_ends(const struct lm_range_grid *grid, int32_t start, struct lm_sight_work *w)
-{
-    int32_t *behind = w->tangent + LM_LANES + grid->cells;
-    for (uint32_t i = 0; i < LM_LANES; i++) {
-        w->tangent[i] = w->of_four[i] = w->horizon[i] = start;
-    }
-    for (uint32_t i = 0; i < LM_LANES; i++) {
-        behind[i] = INT32_MIN;
-    }
-    const int32_t first_kind = w->kind[LM_LANES + grid->first];
-    w->kind[LM_LANES - 1] = first_kind;
-    for (uint32_t i = LM_LANES; i < LM_LANES + grid->first; i++) {
-        w->tangent[i] = start;
-        w->kind[i] = first_kind;
-    }
-}
-
-static void join_fours(uint32_t end, struct lm_sight_work *w)
-{
-    for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
-        const int32_t *t = w->tangent + i;
-        w->of_four[i] = fx_max_i32(fx_max_i32(t[-3], t[-2]), fx_max_i32(t[-1], t[0]));
-    }
-}
-
-/* The running horizon, and cells lit by what they show above it: E_i of the equations. The horizon
- * before a cell is the largest of eight tangents and of the horizon before those: eight neighbours
- * wait for the eight before them, and not a cell for the one before it. It rises by less than 2^31:
- * see start_of. Returns whether some cell is behind a shore. */
-static bool light(uint32_t end, struct lm_sight_work *restrict w, struct lm_sight *restrict sight)
-{
-    int32_t left = 0;
-    for (uint32_t i = 0; i < end; i++) {
-        const uint32_t at = LM_LANES + i;
-        const int32_t kind = w->kind[at], kind_before = w->kind[at - 1];
-        const int32_t of_eight = fx_max_i32(w->of_four[at - 1], w->of_four[at - 5]);
-        const int32_t horizon = fx_max_i32(of_eight, w->horizon[at - LM_LANES]);
-        const int32_t next = fx_max_i32(horizon, w->tangent[at]);
-        const int32_t edge_q8 = kind != kind_before ? kind >> MARK_BITS : 0;
-        const int32_t lit_q8 = sight->level_q8[i] + edge_q8 + fx_db_q8_of_many_i32(next - horizon);
-        w->horizon[at] = sight->horizon[i] = horizon;
-        sight->level_q8[i] = next != horizon ? lit_q8 : LM_LEVEL_SHADOW;
-        left |= kind_before & ~kind;
-    }
-    return left & MARK_WATER;
-}
-
-/* Shores are rare: they are looked for where a stretch, which may end behind the line, has one. */
-static void add_shores(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                       const struct lm_scan_line *line, struct lm_sight_work *w,
-                       struct lm_sight *sight)
-{
-    const uint32_t cells = grid->cells;
-    int32_t *kind = w->kind + LM_LANES;
-    for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
-        kind[cells + i] = 0;
-    }
-    for (uint32_t first = 0; first < cells; first += LM_SHORE_STRETCH, kind += LM_SHORE_STRETCH) {
-        const int32_t *before = kind - 1;
-        uint64_t behind_shore[LM_SHORE_STRETCH / 8];
-        int32_t left = 0;
-        for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
-            left |= before[i] & ~kind[i];
-        }
-        if (left & MARK_WATER) {
-            for (uint32_t i = 0; i < LM_SHORE_STRETCH; i++) {
-                ((uint8_t *)behind_shore)[i] = (uint8_t)(before[i] & ~kind[i]);
-            }
-            for (uint32_t k = 0; k < LM_SHORE_STRETCH / 8; k++) {
-                add_shores_of(grid, legend, line, behind_shore[k], first + 8 * k, sight);
-            }
-        }
-    }
-}
-
-/* Horizon, level and edges of a line whose horizon starts with `start`. */
-static void light_line(const struct lm_range_grid *grid, const struct lm_legend *legend,
-                       const struct lm_scan_line *line, int32_t start, struct lm_sight *sight)
-{
-    const uint32_t cells = grid->cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
-    struct lm_sight_work *w = &sight->work;
-    look(grid, legend, line, end, w, sight->level_q8);
-    set_ends(grid, start, w);
-    join_fours(end, w);
-    if (light(end, w, sight)) {
-        add_shores(grid, legend, line, w, sight);
-    }
-    const uint32_t last = LM_LANES + cells - 1;
-    sight->horizon[cells] = fx_max_i32(w->horizon[last], w->tangent[last]);
 }
 
 /* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
@@ -232,16 +119,32 @@ static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
     return fx_sat_i32(start < lowest ? lowest : start);
 }
 
+static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_legend *legend,
+                             const struct lm_scan_line *line)
+{
+    const struct lm_k_tops tops = tops_of(grid, legend, line);
+    const uint32_t code = line->cell[grid->first] % LM_LEGEND_CODES;
+    return lm_k_tangent(&tops, grid->first, lm_k_height_m_q14(legend->height_dm[code]));
+}
+
 lm_horizon_q40_t lm_aspect_run(const struct lm_range_grid *grid, const struct lm_legend *legend,
                                const struct lm_scan_line *line, lm_horizon_q40_t horizon,
                                struct lm_sight *sight)
 {
-    const int32_t start = start_of(grid, tangent_of(grid, legend, line, grid->first), horizon);
-    if (FX_HAS_NEON) {
-        light_line_neon(grid, legend, line, start, sight);
-    } else {
-        light_line(grid, legend, line, start, sight);
-    }
+    const struct lm_k_lit_line lit = {
+        .tops = tops_of(grid, legend, line),
+        .gain_db_q8 = grid->gain_q8,
+        .mark_of_class = legend->mark,
+        .edge_structure_db_q3 = legend->edge_structure_q3,
+        .edge_trees_db_q3 = legend->edge_trees_q3,
+        .shore_db_q8 = legend->shore_q8,
+        .shore_fall_db_q8 = grid->shore_fall_q8,
+        .start = start_of(grid, first_tangent(grid, legend, line), horizon),
+        .horizon = sight->horizon,
+        .level_db_q8 = sight->level_q8,
+        .work = sight->work,
+    };
+    lm_k_light(&lit);
     return grid->first < grid->cells
                ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
                : horizon;

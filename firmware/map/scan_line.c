@@ -1,7 +1,6 @@
 #include "lm/scan_line.h"
 
 #include "lm/tile_read.h"
-#include "tile_read_neon.h"
 
 /* One coordinate of a line, cell k being at `at + k (step + k half_bend)`. The unit is 2^-32 of a
  * tile's side, so that the upper half is the tile's row or column and the lower half the place in
@@ -185,10 +184,6 @@ static struct lm_track track_above(const struct way *w, uint32_t k, uint32_t gen
 static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
                        struct lm_scan_line *line)
 {
-    if (FX_HAS_NEON) {
-        lay_neon(tile, first, end, line);
-        return;
-    }
     uint32_t *cell = line->cell + first;
     int32_t *elevation = line->elevation_q14 + first;
     const uint32_t *const behind = line->cell + end;
@@ -201,6 +196,9 @@ static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
         }
         cell += LM_LANES;
         elevation += LM_LANES;
+        /* Else the compiler would add up one distance, which costs more before the loop and in it.
+         */
+        __asm__("" : "+r"(cell), "+r"(elevation));
     } while (cell < behind);
 }
 

@@ -1,9 +1,11 @@
 #include "lm/beam.h"
 
-#include "beam_neon.h"
 #include "fx/bits.h"
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/kernels_radar.h"
+
+_Static_assert((int)LM_BEAM_TAPS == LM_K_TAPS, "a look has what lm/kernels_radar.h wants");
 
 _Static_assert(1 << LM_BEAM_FINEST == LM_RADAR_SHARPENING_MAX, "what the table may ask for");
 
@@ -106,29 +108,12 @@ uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
     return b->power_q24[slot_of(sample)];
 }
 
-/* The sum / 2^16 of the powers' halves: as weights add up to 2^16, the sum of either half fits 32
- * bits, and the upper one's is whole. */
-static uint32_t sum_of(const uint32_t *const power[LM_BEAM_TAPS], const uint32_t *weight_q16,
-                       uint32_t i)
-{
-    uint32_t upper = 0, lower = 0;
-    for (uint32_t j = 0; j < LM_BEAM_TAPS; j++) {
-        upper += (power[j][i] >> 16) * weight_q16[j];
-        lower += (power[j][i] & 0xffff) * weight_q16[j];
-    }
-    return upper + (lower >> 16);
-}
-
-void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look,
-                 uint32_t *restrict power_q24, uint32_t cells)
+void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
+                 uint32_t cells)
 {
     const uint32_t *power[LM_BEAM_TAPS];
-    uint32_t weight_q16[LM_BEAM_TAPS];
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
         power[j] = b->power_q24[slot_of(look->first + j)];
-        weight_q16[j] = look->weight_q16[j];
     }
-    for (uint32_t i = beam_sum_neon(power, weight_q16, power_q24, cells); i < cells; i++) {
-        power_q24[i] = sum_of(power, weight_q16, i);
-    }
+    lm_k_beam_sum(power, look->weight_q16, power_q24, cells);
 }

@@ -1,10 +1,10 @@
 #include "lm/footprint.h"
 
-#include "footprint_neon.h"
-#include "fx/log.h"
 #include "fx/mem.h"
-#include "fx/sat.h"
-#include "lm/aspect.h"
+#include "fx/tables.h"
+#include "lm/kernels_radar.h"
+#include "lm/level.h"
+#include "lm/radar.h"
 
 _Static_assert((int)LM_FOOTPRINT_LOG2_MAX == (int)LM_RADAR_AZIMUTHS_LOG2_MAX,
                "what the table may ask for");
@@ -23,22 +23,14 @@ void lm_footprint_begin(struct lm_footprint *f, const int32_t *level_q8, uint32_
     memcpy(f->sum_q8, level_q8, cells * sizeof *level_q8);
 }
 
-void lm_footprint_add(struct lm_footprint *f, const int32_t *restrict level_q8, uint32_t cells)
+void lm_footprint_add(struct lm_footprint *f, const int32_t *level_q8, uint32_t cells)
 {
-    int32_t *restrict sum_q8 = f->sum_q8;
-    for (uint32_t i = sum_neon(sum_q8, level_q8, 0, INT32_MIN, sum_q8, cells); i < cells; i++) {
-        sum_q8[i] = fx_db_q8_sum_of_many(sum_q8[i], level_q8[i]);
-    }
+    lm_k_levels_add(f->sum_q8, level_q8, cells);
 }
 
-void lm_footprint_mean(const struct lm_footprint *f, uint32_t azimuths_log2,
-                       int32_t *restrict level_q8, uint32_t cells)
+void lm_footprint_mean(const struct lm_footprint *f, uint32_t azimuths_log2, int32_t *level_q8,
+                       uint32_t cells)
 {
-    const int32_t *restrict sum_q8 = f->sum_q8;
     const int32_t azimuths_q8 = ((int32_t)azimuths_log2 * FX_DB_OCTAVE_Q14 + 32) / 64;
-    uint32_t i = sum_neon(sum_q8, level_q8, azimuths_q8, LM_LEVEL_SHADOW, level_q8, cells);
-    for (; i < cells; i++) {
-        const int32_t all_q8 = fx_db_q8_sum_of_many(sum_q8[i], level_q8[i]);
-        level_q8[i] = fx_max_i32(all_q8 - azimuths_q8, LM_LEVEL_SHADOW);
-    }
+    lm_k_levels_mean(f->sum_q8, azimuths_q8, LM_LEVEL_SHADOW, level_q8, cells);
 }

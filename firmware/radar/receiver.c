@@ -4,7 +4,8 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/geo.h"
-#include "receiver_neon.h"
+#include "lm/kernels_radar.h"
+#include "lm/noise.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
 
@@ -127,42 +128,6 @@ static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
     }
 }
 
-/* Signal and noise of a bin, which are added in decibels; the noise fluctuates. */
-static inline int32_t sum_q8(uint32_t power_q24, int32_t loss_q8, int32_t noise_q8, int32_t draw_q8)
-{
-    const int32_t signal_q8 = fx_db_q8_of_many(power_q24) - UNIT_Q24_DB_Q8;
-    return fx_db_q8_sum_of_many(signal_q8 - loss_q8, noise_q8 + draw_q8);
-}
-
-static void detect(const struct lm_receiver *r, int32_t rise_q8, const struct lm_noise_line *noise,
-                   const uint32_t *restrict power_q24, int32_t *restrict level_q8)
-{
-    int32_t draw_q8[LM_CELLS_ROOM];
-    if (FX_HAS_NEON) {
-        detect_neon(r, rise_q8, noise, power_q24, level_q8);
-        return;
-    }
-    lm_noise_draw(noise, r->looks_log2, draw_q8, r->cells);
-    for (uint32_t i = 0; i < r->cells; i++) {
-        const int32_t noise_q8 = r->noise_q8[i] + rise_q8;
-        level_q8[i] = sum_q8(power_q24[i], 0, noise_q8, draw_q8[i]) - r->fall_q8[i];
-    }
-}
-
-/* The same in rain, whose drops move and so fluctuate as the noise does. */
-static void detect_in_rain(const struct lm_receiver *r, const struct lm_weather *w,
-                           const struct lm_noise_line *noise, const uint32_t *restrict power_q24,
-                           int32_t *restrict level_q8)
-{
-    int32_t draw_q8[LM_CELLS_ROOM];
-    const int32_t rise_q8 = w->noise_rise_q8;
-    lm_noise_draw(noise, r->looks_log2, draw_q8, r->cells);
-    for (uint32_t i = 0; i < r->cells; i++) {
-        const int32_t noise_q8 = fx_db_q8_sum_of_many(r->noise_q8[i] + rise_q8, w->rain_q8[i]);
-        level_q8[i] = sum_q8(power_q24[i], w->loss_q8[i], noise_q8, draw_q8[i]) - r->fall_q8[i];
-    }
-}
-
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
                      uint32_t sweep, uint32_t *power_q24, int32_t *level_q8)
 {
@@ -172,9 +137,15 @@ void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weath
     if (r->weight_q16[1] != 0) {
         smear(r, power_q24);
     }
+    const struct lm_k_receiver k = {.noise_db_q8 = r->noise_q8,
+                                    .fall_db_q8 = r->fall_q8,
+                                    .rise_db_q8 = weather ? weather->noise_rise_q8 : 0,
+                                    .row_db_q8 = lm_noise_q8[r->looks_log2],
+                                    .entry = noise.entry};
     if (weather && weather->has_rain) {
-        detect_in_rain(r, weather, &noise, power_q24, level_q8);
+        const struct lm_k_rain rain = {weather->loss_q8, weather->rain_q8};
+        lm_k_detect_in_rain(&k, &rain, power_q24, level_q8, r->cells);
     } else {
-        detect(r, weather ? weather->noise_rise_q8 : 0, &noise, power_q24, level_q8);
+        lm_k_detect(&k, power_q24, level_q8, r->cells);
     }
 }

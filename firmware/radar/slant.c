@@ -2,10 +2,9 @@
 
 #include <stdbool.h>
 
-#include "fx/log.h"
 #include "fx/sat.h"
 #include "lm/geo.h"
-#include "slant_neon.h"
+#include "lm/kernels_radar.h"
 
 void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
                   const struct lm_range_grid *grid, uint32_t ground_first_q8)
@@ -35,22 +34,16 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint3
 }
 
 void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_q8,
-                  uint32_t *restrict power_q24)
+                  uint32_t *power_q24)
 {
-    level_q8[grid->cells] = LM_LEVEL_SHADOW;
-    const int32_t *restrict cell_of = s->cell_of, *restrict level = level_q8;
     int32_t *const bin_q8 = (int32_t *)power_q24;
-    const uint32_t cells = s->cells;
-    for (uint32_t i = fetch_neon(level, cell_of, bin_q8, cells); i < cells; i++) {
-        bin_q8[i] = level[cell_of[i]];
-    }
+    level_q8[grid->cells] = LM_LEVEL_SHADOW;
+    lm_k_gather(level_q8, s->cell_of, bin_q8, s->cells);
     for (uint32_t k = 0; k < s->pairs; k++) {
         const struct lm_slant_pair *pair = &s->pair[k];
-        bin_q8[pair->bin] = fx_max_i32(bin_q8[pair->bin], level[pair->last]);
+        bin_q8[pair->bin] = fx_max_i32(bin_q8[pair->bin], level_q8[pair->last]);
     }
     /* Within 2^17: at the lowest -195 dB of a cell hardly lit, -113 of texture, -33 of speckle, -48
      * of a chip's shadow, -96 of the elevation pattern. */
-    for (uint32_t i = power_neon(power_q24, cells); i < cells; i++) {
-        power_q24[i] = fx_power_q24_of_many(bin_q8[i]);
-    }
+    lm_k_powers_of_levels(power_q24, s->cells);
 }

@@ -1,9 +1,15 @@
 #include "lm/tone.h"
 
+#include <stddef.h>
+
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/kernels_radar.h"
 #include "lm/status.h"
-#include "tone_neon.h"
+
+_Static_assert((int)LM_TONE_LINES == LM_K_TONE_LINES &&
+                   (int)LM_TONE_PLACES_LOG2 == LM_K_TONE_PLACES_LOG2,
+               "a curve has what lm/kernels_radar.h wants");
 
 /* White lies `span_q8` above black, at step `last`. */
 struct window {
@@ -89,13 +95,12 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
     return LM_OK;
 }
 
-void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *restrict grey,
-                 uint32_t cells)
+void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *grey, uint32_t cells)
 {
-    const int32_t black_q8 = t->black_q8, white_q8 = t->white_q8, step_log2 = t->step_log2;
-    const int32_t start_q8 = black_q8 - (1 << step_log2 >> 1); /* half a step before black */
-    for (uint32_t i = tone_neon(t, start_q8, level_q8, grey, cells); i < cells; i++) {
-        const int32_t above_q8 = fx_clamp_i32(level_q8[i], black_q8, white_q8) - start_q8;
-        grey[i] = (uint8_t)t->grey[above_q8 >> step_log2];
-    }
+    const struct lm_k_tone_curve curve = {.black_db_q8 = t->black_q8,
+                                          .white_db_q8 = t->white_q8,
+                                          .step_log2 = t->step_log2,
+                                          .grey_of_step = t->grey,
+                                          .lines = t->has_lines ? t->lines : NULL};
+    lm_k_tone(&curve, level_q8, grey, cells);
 }

@@ -7,7 +7,7 @@ $(RULES): tests/discipline/rules.py tests/discipline/rules_test.py $(O)/tests/di
 	@printf '#!/bin/sh\nexec python3 -B tests/discipline/rules_test.py\n' >$@
 	@chmod +x $@
 
-$(O)/tests/discipline/flags: Makefile make/layers.mk firmware/rooms.mk host-sim/host-sim.mk make/host.mk \
+$(O)/tests/discipline/flags: Makefile make/layers.mk firmware/rooms.mk firmware/kernels/kernels.mk host-sim/host-sim.mk make/host.mk \
     bsp/$(BOARD)/board.mk tests/discipline/discipline.mk | $(LIB_firmware) $(LIB_fixed)
 	@mkdir -p $(@D)
 	@printf '%s\n' 'CC $(CC)' 'GENERATED $(GEN)' 'ROOMS $(ROOMS)' $(foreach r,$(ROOMS) drivers,'SEES_$r $(SEES_$r)') 'fixed $(CFLAGS_fixed)' \

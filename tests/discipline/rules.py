@@ -12,6 +12,7 @@ from pathlib import Path
 LOW_LAYERS = ("fixed", "firmware")  # freestanding: no library, no float, no state of their own
 LAYERS = ("fixed", "firmware", "drivers", "bsp")
 SYSTEM_HEADERS = {"stdint.h", "stddef.h", "stdbool.h", "limits.h"}
+VECTOR_HEADERS = {"arm64": "arm_neon.h"}  # of the folders of firmware/kernels that have one
 MEMORY_FUNCTIONS = {"memcpy", "memmove", "memset", "memcmp"}
 LONGEST_FUNCTION_LINES = 100
 DEEPEST_STACK_BYTES = 8192
@@ -94,6 +95,8 @@ class Tree:
         for layer in LOW_LAYERS:
             made = {path.relative_to(generated): path for path in self.files(generated / layer, ".c")}
             for path, source in [(path, path) for path in self.files(layer, ".c")] + sorted(made.items()):
+                if architecture(path) not in (None, "c"):
+                    continue  # compiled by the boards that have it
                 target = folder / path.with_suffix(".o")
                 target.parent.mkdir(parents=True, exist_ok=True)
                 jobs.append((self.part_of(path), source, target))
@@ -101,6 +104,12 @@ class Tree:
             complaints = list(pool.map(lambda job: self.compile(*job, *more, compiler=compiler), jobs))
         bad = [first_error(text) for text in complaints if text]
         return [job[2] for job in jobs], bad
+
+
+def architecture(path):
+    """Whose kernels a file belongs to, by its folder: c, arm64; None for what is no kernel."""
+    parts = Path(path).parts
+    return parts[2] if parts[:2] == ("firmware", "kernels") and len(parts) == 4 else None
 
 
 def first_error(complaint):
@@ -298,11 +307,6 @@ def recursion_and_stack(tree):
     return bad
 
 
-def is_neon(path):
-    """Whether a file is about the vectors of 64-bit Arm: neon.h, stage_neon.h."""
-    return path.suffix == ".h" and path.stem.split("_")[-1] == "neon"
-
-
 def includes(tree, path):
     for number, line in numbered_lines(tree.text(path)):
         found = re.match(r'\s*#\s*include\s*([<"])([^>"]+)', line)
@@ -323,14 +327,15 @@ def resolve(tree, path, name):
 
 def includes_upwards(tree):
     """A layer includes itself and the layers below, a board's folder no other board's, and the two lowest layers
-    four headers of the compiler. A driver may bring libraries of its own board."""
+    four headers of the compiler; a kernel's folder that of its architecture. A driver may bring libraries of its own
+    board."""
     bad = []
     for level, layer in enumerate(LAYERS):
         for path in tree.sources(layer):
             for number, bracket, name in includes(tree, path):
                 place = f"{path}:{number}"
                 if bracket == "<":
-                    is_vectors = name == "arm_neon.h" and is_neon(path)
+                    is_vectors = VECTOR_HEADERS.get(architecture(path)) == name
                     if layer in LOW_LAYERS and name not in SYSTEM_HEADERS and not is_vectors:
                         bad.append(f"{place}: includes <{name}>")
                     continue
@@ -428,11 +433,10 @@ def host_doors(tree):
 
 
 def conditionals(tree):
-    """One firmware for all boards: #if only in lm/config.h, for include guards, to refuse a machine (#error), and where
-    vectors of Arm have a file of their own beside the plain code."""
+    """One firmware for all boards: #if only in lm/config.h, for include guards, and to refuse a machine (#error)."""
     bad = []
     for path in tree.sources(*LOW_LAYERS):
-        if path == Path("firmware/base/include/lm/config.h") or is_neon(path):
+        if path == Path("firmware/base/include/lm/config.h"):
             continue
         lines = tree.text(path).splitlines()
         for number, line in enumerate(lines, 1):

@@ -15,6 +15,7 @@ GOOD = {
     "firmware/base/two.c": '#include "lm/two.h"\n#include "fx/one.h"\n\n'
                           "static const char *const names[] = {\"float\", \"double\"};\n\n"
                           "int lm_two(int x)\n{\n    return fx_one(x) + names[x & 1][0];\n}\n",
+    "firmware/kernels/arm64/eight.c": "#include <arm_neon.h>\n",
     "firmware/unit/include/lm/six.h": "extern int six;\n",
     "firmware/clutter/seven.h": "extern int seven;\n",
     "drivers/include/drv/three.h": "extern int three;\n",
@@ -68,6 +69,10 @@ PLANTED = [
      "firmware/map/bad.c", '#include "../../drivers/include/drv/three.h"\n'),
     ("firmware including the C library is seen", rules.includes_upwards, "includes <string.h>",
      "firmware/map/bad.c", "#include <string.h>\n"),
+    ("a stage including the vectors of Arm is seen", rules.includes_upwards, "bad.c:1: includes <arm_neon.h>",
+     "firmware/map/bad.c", "#include <arm_neon.h>\n"),
+    ("a kernel in plain C including the vectors of Arm is seen", rules.includes_upwards, "bad.c:1: includes <arm_neon.h>",
+     "firmware/kernels/c/bad.c", "#include <arm_neon.h>\n"),
     ("a driver including its board is seen", rules.includes_upwards, "includes bsp/here/four.h",
      "drivers/bad.c", '#include "../bsp/here/four.h"\n'),
     ("a board including another board is seen", rules.includes_upwards, "another board's bsp/other/five.h",
@@ -84,6 +89,8 @@ PLANTED = [
      '"hs/bad.h" does not compile by itself', "host-sim/lib/include/hs/bad.h", "uint32_t hs_bad(void);\n"),
     ("an #ifdef for the host is seen", rules.conditionals, "bad.c:1: #ifdef HOST",
      "firmware/map/bad.c", "#ifdef HOST\n#endif\n"),
+    ("an #if in a kernel for Arm is seen", rules.conditionals, "bad_neon.h:2: #ifdef __aarch64__",
+     "firmware/kernels/arm64/bad_neon.h", "#include <arm_neon.h>\n#ifdef __aarch64__\n#endif\n"),
     ("a function of 101 lines is seen", rules.long_functions, "a function of 101 lines", "firmware/map/bad.c",
      FUNCTION % "\n".join(["    x++;"] * 98 + ["    return x;"])),
     ("a static counter is seen", rules.mutable_data, r"calls\S* can be written to", "firmware/map/bad.c",

@@ -11,7 +11,6 @@ $(GOLDEN)/golden-clang: $(GOLDEN_PARTS:$(O)/%=$(O)/clang/%)
 $(GOLDEN)/golden-sanitized: $(call sanitized,$(GOLDEN_PARTS))
 $(GOLDEN)/golden $(GOLDEN)/golden-clang: LDLIBS = $(call pkgs,libs,libpng)
 $(GOLDEN)/golden-sanitized: LDLIBS = $(LINK_sanitized) $(call pkgs,libs,libpng)
-$(GOLDEN)/twins: $(O)/tests/golden/twins.o $(LIB_hs) $(LIB_firmware) $(LIB_fixed)
 $(GOLDEN)/test_golden: tests/golden/test_golden.sh tests/golden/pictures.golden $(addprefix $(GOLDEN)/,golden $(GOLDEN_VARIANTS))
 	@cp $< $@
 	@chmod +x $@
@@ -20,7 +19,7 @@ $(GOLDEN)/test_golden: tests/golden/test_golden.sh tests/golden/pictures.golden 
 ifeq ($(BOARD),bench-linux)
 ARM64 := build/panel-linux-arm64
 TESTS += $(GOLDEN)/test_golden_arm64
-$(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh $(GOLDEN)/twins golden-arm64
+$(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh golden-arm64
 	@mkdir -p $(@D)
 	@cp $< $@
 	@chmod +x $@
@@ -28,7 +27,7 @@ $(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh $(GOLDEN)/twins g
 .PHONY: golden-arm64
 golden-arm64:
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 \
-	    CC=aarch64-linux-gnu-gcc O=$(ARM64) $(addprefix $(ARM64)/bin/tests/golden/,golden twins)
+	    O=$(ARM64) $(ARM64)/bin/tests/golden/golden
 endif
 
 .PHONY: golden-update

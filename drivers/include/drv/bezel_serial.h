@@ -1,5 +1,5 @@
-/* Serial bezel: keys and knobs over a serial line, as struct lm_controls. Each act of the operator
- * is a line of text, framed like a sentence of NMEA 0183:
+/* A bezel that speaks over a serial line, as struct lm_controls. A line of text for each thing that
+ * the operator does, framed as NMEA 0183 frames sentences:
  *
  *   $D12*47        button 12 (1..LM_BUTTONS) goes down
  *   $U12*56        and up

@@ -1,5 +1,4 @@
-/* Picture conversion: from the firmware's picture to the pixels of a panel, with format, rotation
- * and centring. Pure. */
+/* From the firmware's picture to the pixels of a panel: format, rotation and centring. Pure. */
 #ifndef DRV_BLIT_H
 #define DRV_BLIT_H
 

@@ -1,5 +1,4 @@
-/* CAN log: a recording of a bus in the format of `candump -L` (can-utils), played back as struct
- * lm_can:
+/* A recorded bus, as `candump -L` of can-utils writes it, played back as struct lm_can:
  *
  *     (1436509052.249713) can0 40C#091E000040459E04
  *

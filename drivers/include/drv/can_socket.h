@@ -1,4 +1,4 @@
-/* SocketCAN: a CAN controller through the Linux kernel, as struct lm_can.
+/* A CAN controller through Linux's SocketCAN, as struct lm_can.
  *
  * What is tested where: tests/unit/drivers/can/test_can_socket.c has the failures to open, the
  * conversion of frames and times, the filters against the kernel's matching rule, and receiving,

@@ -1,4 +1,4 @@
-/* CAN controllers of Zynq UltraScale+, as struct lm_can. Registers and sequences: UG1085,
+/* The CAN controllers of Zynq UltraScale+ as struct lm_can. Registers and sequences: UG1085,
  * chapter 20, and UG1087, module CAN.
  *
  * Frames are received by interrupt into a ring, stamped with the time of the interrupt, and handed

@@ -1,5 +1,5 @@
-/* Control ring: a lock-free queue of controls from a driver's thread to the loop, with one writer
- * and one reader. All zero is an empty ring. */
+/* Controls on their way from a driver's thread to the loop: one writer, one reader, no lock. All
+ * zero is an empty ring. */
 #ifndef DRV_CONTROL_RING_H
 #define DRV_CONTROL_RING_H
 
@@ -8,14 +8,14 @@
 
 #include "lm/controls.h"
 
-enum { DRV_CONTROL_RING = 64 }; /* controls that may wait; a power of two */
+enum { DRV_CONTROL_RING = 64 };
 
 struct drv_control_ring {
     struct lm_control control[DRV_CONTROL_RING];
     atomic_uint head, tail; /* how many were ever put in, and taken out */
 };
 
-/* Append a control; the writer's side. False when the ring is full: nothing was put in. */
+/* False when the ring is full: nothing was put in. */
 static inline bool drv_control_ring_put(struct drv_control_ring *r, struct lm_control control)
 {
     const unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
@@ -27,8 +27,7 @@ static inline bool drv_control_ring_put(struct drv_control_ring *r, struct lm_co
     return true;
 }
 
-/* Take the oldest control; the reader's side. False when the ring is empty: *control is left alone.
- */
+/* False when it is empty. */
 static inline bool drv_control_ring_take(struct drv_control_ring *r, struct lm_control *control)
 {
     const unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);

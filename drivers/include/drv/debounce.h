@@ -1,5 +1,4 @@
-/* Debouncing: from the levels of up to 64 lines to keys that are up or down. Pure: time is an
- * argument.
+/* From the levels of up to 64 lines to keys that are up or down. Pure: time is an argument.
  *
  * A key is believed when its line has been different from what is believed, and still, for the
  * whole period; an edge between two looks counts as movement even when both looks agree. */

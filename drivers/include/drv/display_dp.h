@@ -1,4 +1,4 @@
-/* DisplayPort controller of Zynq UltraScale+, as struct lm_display: the graphics plane, fed from
+/* The DisplayPort controller of Zynq UltraScale+ as struct lm_display: the graphics plane, fed from
  * memory by channel 3 of its DMA. Registers and sequences: UG1085, chapter 33, and UG1087, modules
  * DP and DPDMA; blanking: VESA Coordinated Video Timings 1.2, reduced blanking.
  *

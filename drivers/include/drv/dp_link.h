@@ -1,7 +1,6 @@
-/* DisplayPort link training: the panel is asked over the AUX channel what it can do, and the link
- * is brought up at the slowest rate that carries the picture. Sequence: VESA DisplayPort
- * Standard 1.2, 3.5.1.2 (training) and 2.11.7 (AUX); addresses of the panel's registers: the same,
- * table 2-73 (DPCD); registers: UG1087, module DP.
+/* The link of a DisplayPort transmitter to its panel: asked over the AUX channel what it can do,
+ * then trained. Sequence: VESA DisplayPort Standard 1.2, 3.5.1.2 (training) and 2.11.7 (AUX);
+ * addresses of the panel's registers: the same, table 2-73 (DPCD); registers: UG1087, module DP.
  *
  * QEMU's panel answers and is content at once, so that asking, choosing and the order of the steps
  * are tested there; a panel that is content late, never, or not at all on registers in memory. NOT

@@ -1,5 +1,5 @@
-/* DRM screen: a panel behind Linux's Direct Rendering Manager, with two buffers in the card's
- * memory and a flip for each picture, so that no picture is ever seen half drawn.
+/* A panel behind Linux's Direct Rendering Manager: two buffers in the card's memory and a flip for
+ * each picture, so that no picture is ever seen half drawn.
  *
  * The kernel is spoken to directly (linux/drm.h): nothing here allocates memory after the opening,
  * which libdrm cannot promise, and a screen that was unplugged comes back in the loop.

@@ -1,5 +1,4 @@
-/* Frame buffer device: a panel behind Linux's older interface, for kernels whose display has no DRM
- * driver. */
+/* A panel behind the older frame buffer device: for kernels whose display has no DRM driver. */
 #ifndef DRV_FBDEV_H
 #define DRV_FBDEV_H
 
@@ -28,8 +27,6 @@ struct drv_fbdev {
 /* Map the screen of `device` ("/dev/fb0") and make it black; the format is the device's own. LM_OK,
  * or LM_ERR_IO with f->error saying why and nothing open. */
 int drv_fbdev_open(struct drv_fbdev *f, const char *device, enum drv_turn turn);
-
-/* Unmap the screen, which keeps its last picture. Safe on one that is closed. */
 void drv_fbdev_close(struct drv_fbdev *f);
 
 /* Copy the picture to the screen. Waits for no vertical blank: some drivers never report one.

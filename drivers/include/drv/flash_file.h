@@ -1,5 +1,4 @@
-/* Flash in a file, as struct lm_flash: the bench's image, or an MTD device that can be read as a
- * file. */
+/* Flash that is a file: the bench's image, or an MTD device that can be read as one. */
 #ifndef DRV_FLASH_FILE_H
 #define DRV_FLASH_FILE_H
 
@@ -14,8 +13,6 @@ struct drv_flash_file {
 
 /* Open `path` for reading. Returns 0, or the errno of what failed with nothing open. */
 int drv_flash_file_open(struct drv_flash_file *f, const char *path);
-
-/* Close what drv_flash_file_open opened; once. */
 void drv_flash_file_close(struct drv_flash_file *f);
 
 #endif

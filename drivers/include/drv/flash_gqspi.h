@@ -1,7 +1,7 @@
-/* Quad-SPI flash of Zynq UltraScale+, as struct lm_flash: serial flash behind the generic quad-SPI
- * controller, read by that controller's DMA. Registers and sequences: UG1085, chapter 24, and
- * UG1087, module QSPI; commands: data sheet of the N25Q512A (Micron), "quad output fast read,
- * 4-byte address" (6Ch) and "read identification" (9Fh).
+/* Serial flash behind the generic quad-SPI controller of Zynq UltraScale+ as struct lm_flash, read
+ * by the controller's DMA. Registers and sequences: UG1085, chapter 24, and UG1087, module QSPI;
+ * commands: data sheet of the N25Q512A (Micron), "quad output fast read, 4-byte address" (6Ch) and
+ * "read identification" (9Fh).
  *
  * One device on the lower bus, or two of a kind on both, read as one: the first half of the image
  * is in the lower one.

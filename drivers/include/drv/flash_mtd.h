@@ -1,4 +1,4 @@
-/* MTD flash: NOR or NAND behind Linux's MTD character device ("/dev/mtd0"), read only.
+/* Flash behind Linux's MTD character device ("/dev/mtd0"), read only, NOR or NAND.
  *
  * On NAND an image lies as nandwrite leaves it: blocks that are marked bad are left out, and the
  * image goes on in the next good one. The map of good blocks is made when the device is opened. */
@@ -31,8 +31,6 @@ struct drv_flash_mtd {
 /* Open `path`. Returns 0, ENOTTY when it is no MTD device (an ordinary file, another device), or
  * the errno of what failed; then nothing is open. Asks the device about each of its blocks. */
 int drv_flash_mtd_open(struct drv_flash_mtd *f, const char *path);
-
-/* Close the device and free the map of its blocks. Safe on one that is closed. */
 void drv_flash_mtd_close(struct drv_flash_mtd *f);
 
 #endif

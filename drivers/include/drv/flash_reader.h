@@ -1,5 +1,5 @@
-/* Flash reader thread: reads from a flash that may wait, so that the loop never does. The thread is
- * started once; afterwards nothing is allocated, and the loop takes no lock. */
+/* A flash that never makes the loop wait: a thread reads from another flash that may.
+ * It is started once; afterwards nothing is allocated, and the loop takes no lock. */
 #ifndef DRV_FLASH_READER_H
 #define DRV_FLASH_READER_H
 

@@ -1,4 +1,4 @@
-/* GPIO lines through libgpiod: keys in, lamps out. The file lines_gpiod1.c is for libgpiod
+/* Lines of GPIO chips through libgpiod: keys in, lamps out. The file lines_gpiod1.c is for libgpiod
  * 1.6, lines_gpiod2.c for 2.x; the build takes the one whose library is installed.
  *
  * Events only wake the loop. The kernel keeps 16 of them for a line and drops the newest (1.6) or
@@ -29,10 +29,8 @@ struct drv_gpio {
     } count;
 };
 
-/* Begin without lines. LM_OK, or LM_ERR_IO with g->error saying why. */
+/* LM_OK, or LM_ERR_IO with g->error. */
 int drv_gpio_open(struct drv_gpio *g);
-
-/* Give all lines back to the kernel. Safe on one that is closed. */
 void drv_gpio_close(struct drv_gpio *g);
 
 /* Request a line by its name, which is looked for on all chips, or by CHIP:OFFSET, the chip's label
@@ -42,14 +40,12 @@ void drv_gpio_close(struct drv_gpio *g);
 int drv_gpio_add_input(struct drv_gpio *g, const char *name, bool is_active_low);
 int drv_gpio_add_output(struct drv_gpio *g, const char *name, bool is_active_low);
 
-/* Take the events that wait. Bit n of the answer: input n has had an edge since the last call.
- * Never waits. */
+/* Forget the events that wait. Bit n: input n has had an edge since the last call. Never waits. */
 uint64_t drv_gpio_take_edges(struct drv_gpio *g);
 
 /* Bit n: input n is active now. One that cannot be read counts as inactive. */
 uint64_t drv_gpio_levels(struct drv_gpio *g);
 
-/* Switch output `output`, a number that drv_gpio_add_output returned. A failure is counted. */
 void drv_gpio_set(struct drv_gpio *g, uint32_t output, bool is_lit);
 
 #endif

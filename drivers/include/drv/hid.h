@@ -1,4 +1,4 @@
-/* HID report descriptor: where in the reports of a USB human interface device each axis and button
+/* The report descriptor of a USB human interface device: where in its reports each axis and button
  * lies. (Device Class Definition for HID 1.11, section 6.2.2.) Pure, and hostile-proof: a
  * descriptor that contradicts itself is refused whole. */
 #ifndef DRV_HID_H

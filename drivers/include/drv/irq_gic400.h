@@ -1,4 +1,4 @@
-/* Interrupt controller GIC-400 of Zynq UltraScale+ (UG1085, chapter 13). Registers: Arm Generic
+/* The interrupt controller GIC-400 of Zynq UltraScale+ (UG1085, chapter 13). Registers: Arm Generic
  * Interrupt Controller Architecture Specification 2.0 (IHI 0048B), chapter 4. */
 #ifndef DRV_IRQ_GIC400_H
 #define DRV_IRQ_GIC400_H

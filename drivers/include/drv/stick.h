@@ -1,5 +1,5 @@
-/* Hand controller: which axis slews the cursor, which turns the range knob, what each button means.
- * Reports in, controls out; knows nothing of USB. */
+/* A hand controller as the operator's hands: which axis slews the cursor, which turns the range
+ * knob, what each button means. Bytes in, controls out; knows nothing of USB. */
 #ifndef DRV_STICK_H
 #define DRV_STICK_H
 
@@ -65,7 +65,7 @@ void drv_stick_init(struct drv_stick *s, const struct drv_stick_config *config);
 const char *drv_stick_attach(struct drv_stick *s, const uint8_t *descriptor, size_t size,
                              bool is_named);
 
-/* Take an input report of the device. Any contents are safe. */
+/* A report came. */
 void drv_stick_report(struct drv_stick *s, const uint8_t *report, size_t size);
 
 /* The device has gone: everything is let go. */

@@ -1,4 +1,4 @@
-/* Generic timer of a 64-bit Arm core (DDI 0487, chapter D11): a counter that all cores
+/* The generic timer that each 64-bit Arm core has (DDI 0487, chapter D11): a counter that all cores
  * share, and the EL1 physical timer, whose interrupt is line 30 of the core's own. */
 #ifndef DRV_TIMER_GENERIC_H
 #define DRV_TIMER_GENERIC_H
@@ -21,8 +21,6 @@ uint64_t drv_timer_us(const struct drv_timer *t);
 /* Raise the calling core's timer interrupt at `time_us`, or at once when that is past. Level-
  * sensitive: it stays raised until it is set again or stopped. */
 void drv_timer_alarm(const struct drv_timer *t, uint64_t time_us);
-
-/* Switch the calling core's alarm off. */
 void drv_timer_stop(void);
 
 /* Wait until an interrupt is pending for this core, whether or not the core takes interrupts now.

@@ -1,4 +1,4 @@
-/* UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085,
+/* The UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085,
  * chapter 21, and register reference UG1087, module UART. Sending waits for room in the transmit
  * FIFO of 64 bytes; receiving is by interrupt into a ring.
  *
@@ -12,8 +12,6 @@
 
 enum { DRV_UART_RING = 256 }; /* a power of two */
 
-/* State of a UART; the caller owns it, and it must not move while its interrupt is enabled.
- * Counters only ever grow. */
 struct drv_uart {
     drv_registers base;
     uint8_t ring[DRV_UART_RING];
@@ -24,22 +22,21 @@ struct drv_uart {
     } count;
 };
 
-/* Set the UART up for 8 data bits, no parity and one stop bit at `baud` from a reference clock of
- * `clock_hz`; the rate is met within 1 % for 9600..921600 baud at 100 MHz. Enables the receiver's
- * interrupts; what was received before is dropped. */
+/* 8 data bits, no parity, one stop bit at `baud` from a reference clock of `clock_hz`; the rate is
+ * met within 1 % for 9600..921600 baud at 100 MHz. Interrupts of the receiver are enabled; what was
+ * received before is dropped. */
 void drv_uart_init(struct drv_uart *u, drv_registers base, uint32_t clock_hz, uint32_t baud);
 
-/* Send a byte, after waiting for room in the transmit FIFO: at most one character time, 87 us at
- * 115,200 baud. */
+/* Wait for room, and send. */
 void drv_uart_put(struct drv_uart *u, char c);
 
-/* Wait until the last bit has left: up to 64 character times. */
+/* Wait until the last bit has left. */
 void drv_uart_drain(struct drv_uart *u);
 
-/* The next byte received, 0..255; -1 when none waits. Never waits. */
+/* The next byte received, or -1. */
 int drv_uart_get(struct drv_uart *u);
 
-/* Interrupt handler: moves what was received, at most 64 bytes a call, into the ring. */
+/* The interrupt handler. */
 void drv_uart_interrupt(void *uart);
 
 #endif

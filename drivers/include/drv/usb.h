@@ -1,4 +1,4 @@
-/* USB devices with interrupt reports, through libusb on a thread of their own: libusb allocates
+/* USB devices with interrupt reports, through libusb, on a thread of their own: libusb allocates
  * whenever a transfer is submitted, which a real-time loop must not.
  *
  * A client is whoever wants one device: today the hand controller, later a maintenance loader. The
@@ -67,7 +67,6 @@ struct drv_usb *drv_usb_start(const struct drv_usb_client *clients, uint32_t cou
 /* Let go of every device and end the thread. NULL is allowed. */
 void drv_usb_stop(struct drv_usb *u);
 
-/* The counters as they are now. Safe while the thread runs. */
 struct drv_usb_counts drv_usb_counts(const struct drv_usb *u);
 
 #endif

@@ -1,5 +1,5 @@
-/* Watchdogs of a Linux board and the rule by which they are fed: the board's (/dev/watchdog), which
- * resets the machine, and systemd's, which restarts the program. */
+/* Two watchdogs and the rule by which they are fed: the board's (/dev/watchdog), which resets the
+ * machine, and systemd's, which starts the program anew. */
 #ifndef DRV_WATCHDOG_H
 #define DRV_WATCHDOG_H
 

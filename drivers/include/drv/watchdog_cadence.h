@@ -1,4 +1,4 @@
-/* System watchdog of Zynq UltraScale+ (Cadence). Registers, keys and sequences: UG1085, chapter
+/* The system watchdog of Zynq UltraScale+ (Cadence). Registers, keys and sequences: UG1085, chapter
  * 14, and UG1087, module SWDT. It resets the board when it is not fed for `timeout_ms`.
  *
  * Its writes are tested on registers in memory (tests/unit/drivers/test_zynqmp_devices.c). NOT

@@ -3,7 +3,6 @@
 #define FX_LOG_H
 
 #include "fx/bits.h"
-#include "fx/neon.h"
 #include "fx/tables.h"
 
 #include <stdint.h>
@@ -41,9 +40,6 @@ static inline int32_t fx_db_q8_u64(uint64_t power)
 /* Zeros above the highest bit that is set, in whole groups of four: 0..28; 28 for x = 0. */
 static inline uint32_t fx_leading_nibbles_of_many(uint32_t x)
 {
-    if (FX_HAS_NEON) {
-        return (uint32_t)fx_clz32(x | 1) & 28;
-    }
     const uint32_t by_16 = x >> 16 == 0 ? 16 : 0, x_16 = x << by_16;
     const uint32_t by_8 = x_16 >> 24 == 0 ? 8 : 0, x_8 = x_16 << by_8;
     return by_16 + by_8 + (x_8 >> 28 == 0 ? 4 : 0);

@@ -1,6 +1,6 @@
-/* Bus profile: the table that says which frames of the avionics bus bring which fields. The decoder
- * (lm/bus.h), the controller's filters (lm/bus_filters.h), the tables of docs/bus.md and the .dbc
- * file of `landmass-bus` all follow from it. */
+/* The avionics bus: which fields the display takes from it, and how they come. A profile is one
+ * const table; the decoder, the controller's filters, the tables of docs/bus.md and the .dbc file
+ * of `landmass-bus` all follow from it. */
 #ifndef LM_BUS_PROFILE_H
 #define LM_BUS_PROFILE_H
 
@@ -10,24 +10,21 @@
 #include "lm/bus_fields.h"
 #include "lm/config.h"
 
-/* A run of bits in the data of a packed frame. Bit 0 is the most significant bit of byte 0 in a
- * big-endian frame, the least significant one in a little-endian frame. */
+/* Where a number lies in a frame of a packed profile, and what it means. */
 struct lm_bus_bits {
-    uint8_t first, count;
+    uint8_t first, count; /* from the top of byte 0 when big-endian, else from its bottom */
 };
 
 enum lm_bus_packed_type { LM_BUS_UNSIGNED, LM_BUS_SIGNED, LM_BUS_FLOAT }; /* FLOAT: 32 or 64 bits */
 
-/* Packed: where the number of a row lies and what it means. */
 struct lm_bus_packing {
-    uint32_t mask;            /* a frame is the row's when its identifier & mask is the row's id */
-    struct lm_bus_bits bits;  /* the number: count 1..32 for integers, 32 or 64 for FLOAT */
-    struct lm_bus_bits match; /* condition: these bits are `match_value`; count 0..8, 0: none */
+    uint32_t mask;            /* a frame is the row's when its identifier & mask is the row's */
+    struct lm_bus_bits bits;  /* count 1..64, of integers 1..32 */
+    struct lm_bus_bits match; /* and when these bits are `match_value`; count 0..8 */
     uint8_t match_value;
     uint8_t type; /* enum lm_bus_packed_type */
-    bool is_little_endian;
-    bool has_none;
-    uint32_t none; /* with has_none: raw integer that means "not available" */
+    bool is_little_endian, has_none;
+    uint32_t none; /* the integer, as it lies there, that says "not available" */
     /* value = (number * multiplier + bias) / 2^shift, rounded down; the number of a FLOAT is taken
      * with frac_bits. |number| < 2^32, multiplier < 2^30 and |bias| < 2^61 bound every step by
      * 2^63. */
@@ -36,37 +33,37 @@ struct lm_bus_packing {
     int64_t bias;
 };
 
-/* Row of a profile: one way in which a field comes over the bus. */
+/* One way in which a field comes over the bus. */
 struct lm_bus_row {
-    const char *name;   /* as the bus's specification has it: "GPS latitude" */
-    uint32_t id;        /* CANaerospace: 11 bits, as on channel 0; packed: 29 bits */
+    const char *name;
+    uint32_t id;        /* CANaerospace: on channel 0; else of 29 bits */
     uint8_t field;      /* enum lm_bus_field */
     uint8_t priority;   /* among the rows of a field, all different; 0 is preferred */
-    uint16_t stale_ms;  /* a value older than this is flagged */
-    uint16_t dead_ms;   /* a value older than this is removed; above stale_ms */
-    uint32_t period_us; /* nominal, between two values */
-    int32_t low, high;  /* range that is believed, ends included, in the field's unit on the bus */
-    uint32_t types;     /* CANaerospace: allowed data types, set of 1u << LM_CANAS_... */
-    int32_t per_unit;   /* CANaerospace: counts of the integer types in one unit on the bus */
-    struct lm_bus_packing packing; /* packed */
+    uint16_t stale_ms;  /* older than this: flagged */
+    uint16_t dead_ms;   /* older than this: removed */
+    uint32_t period_us; /* nominal */
+    int32_t low, high;  /* what is believed, both ends included, in the unit of the bus */
+    uint32_t types;     /* CANaerospace: set of 1u << data type */
+    int32_t per_unit;   /* CANaerospace: what the integer types count to one unit of the bus */
+    struct lm_bus_packing packing;
 };
 
 enum lm_bus_framing {
     LM_BUS_CANAEROSPACE, /* lm/canas.h */
-    LM_BUS_PACKED        /* 29-bit identifiers, numbers at any bit: lm/bus_bitfield.h */
+    LM_BUS_PACKED        /* 29-bit identifiers, numbers somewhere in the data: lm/bus_bitfield.h */
 };
 
-/* A profile. Constant; whoever decodes by it borrows it. */
 struct lm_bus_profile {
-    const char *name; /* for documents; a configuration uses that of lm_bus_profiles */
+    const char *name;
     const struct lm_bus_row *rows;
-    uint8_t row_count;      /* 1..LM_BUS_ROWS_MAX */
-    uint8_t framing;        /* enum lm_bus_framing */
-    bool are_types_assumed; /* CANaerospace: byte 1 of a frame is not read; each row has exactly
-                               one type, which is assumed */
-    uint32_t channel_mask;  /* packed: bits of the identifier that tell redundant senders apart */
-    uint32_t invalid_mask;  /* packed: bits of the identifier of which one that is set says that
-                               the sender does not vouch for its data */
+    uint8_t row_count; /* 1..LM_BUS_ROWS_MAX */
+    uint8_t framing;   /* enum lm_bus_framing */
+    /* CANaerospace: byte 1 of a frame is not looked at; each row has the one type it is taken for.
+     */
+    bool are_types_assumed;
+    /* Packed: which bits of the identifier tell redundant senders apart (0: nothing does), and
+     * which say, when one of them is set, that the sender does not vouch for its data. */
+    uint32_t channel_mask, invalid_mask;
 };
 
 extern const struct lm_bus_profile lm_bus_canas17; /* the specification, and LONG positions */
@@ -92,7 +89,7 @@ extern const struct lm_bus_named_profile lm_bus_profiles[];
 const struct lm_bus_profile *lm_bus_profile_named(const struct lm_bus_named_profile *list,
                                                   const char *name);
 
-/* Outcome of a frame, or of a number in a packed one. Each has a counter in struct lm_bus. */
+/* What became of a frame, or of a number in it. Each has a counter. */
 enum lm_bus_outcome {
     LM_BUS_VALUE,         /* an event is filled */
     LM_BUS_HALF,          /* half of a DOUBLE, kept until the other one comes */

@@ -1,9 +1,9 @@
-/* CANaerospace decoder: one frame in, at most one event out. Source: CANaerospace V1.7 (Stock
- * Flight Systems, revision of 12.1.2006), the part that a display listens to.
+/* CANaerospace V1.7 (Stock Flight Systems, revision of 12.1.2006), the part a display listens to:
+ * one frame of the bus in, at most one value in fixed point out.
  *
- * The message code never decides whether a frame is new: a sender that restarts, repeats or never
- * counts is heard from its first frame on. The code only serves to join the halves of a DOUBLE and
- * to count breaks. */
+ * Nothing here ever decides by message code whether a frame is new: a sender that restarts, repeats
+ * or never counts is heard from its first frame on. The code serves to join the halves of a DOUBLE
+ * and to count breaks. */
 #ifndef LM_CANAS_H
 #define LM_CANAS_H
 
@@ -14,7 +14,7 @@
 #include "lm/bus_profile.h"
 #include "lm/port.h"
 
-/* Data types (byte 1 of a frame) that the program names; lm_canas_types has all of them. */
+/* Data type codes (byte 1) that are named somewhere; lm_canas_types has all. */
 enum {
     LM_CANAS_NODATA = 0,
     LM_CANAS_ERROR = 1,
@@ -59,27 +59,28 @@ enum {
     LM_CANAS_LOW_SERVICE_LAST = 2031
 };
 
-/* The half of a DOUBLE that came last, and how its sender arranges halves. */
+/* A half of a DOUBLE, and what is known of the way its sender arranges them. */
 struct lm_canas_pair {
     enum { LM_CANAS_EMPTY, LM_CANAS_WAITING, LM_CANAS_JOINED } state;
-    uint8_t type, node, code; /* of that half */
-    uint32_t word;            /* of that half */
-    uint64_t time_us;         /* of that half's arrival */
-    int8_t habit;             /* code of DOUBLEL minus that of DOUBLEH, 1 or -1, times 2 when
-                                 DOUBLEH comes last; 0: not known yet */
-    uint32_t habit_gap_us;    /* time between the two halves that the habit was learnt from */
+    uint8_t type, node, code; /* of the half that came last */
+    uint32_t word;
+    uint64_t time_us;
+    /* How this sender arranges its halves: the code of DOUBLEL minus that of DOUBLEH, 1 or -1,
+     * times 2 when DOUBLEH comes last; 0 while it is not known. */
+    int8_t habit;
+    uint32_t habit_gap_us; /* time between the two halves that told */
 };
 
-/* State of the decoder; the caller owns it. Starts as zeros. Counters only ever grow. */
+/* What the decoder remembers; the caller owns it. Starts as zeros. Counters only ever grow. */
 struct lm_canas {
-    struct lm_canas_pair pair[2][LM_BUS_CHANNELS]; /* of latitude and of longitude */
+    struct lm_canas_pair pair[2][LM_BUS_CHANNELS]; /* latitude, longitude */
     struct {
-        uint8_t node, code; /* of the last frame of a row and channel; node 0: none yet */
+        uint8_t node, code; /* node 0: nothing heard yet */
     } last[LM_BUS_ROWS_MAX][LM_BUS_CHANNELS];
     struct {
         uint32_t torn_pairs;      /* halves dropped without their mate */
-        uint32_t sequence_breaks; /* frames whose message code is not one more than the last: a
-                                     frame was lost or repeated, or the sender restarted */
+        uint32_t sequence_breaks; /* message code not one more than the last: lost, repeated or
+                                     restarted */
     } count;
 };
 
@@ -98,11 +99,8 @@ struct lm_canas {
 enum lm_bus_outcome lm_canas_take(struct lm_canas *c, const struct lm_bus_profile *profile,
                                   const struct lm_can_frame *frame, struct lm_bus_event *event);
 
-/* True when a row of this field may take this data type:
- *
- * - the clock: integer types of three or four single bytes
- * - other fields: FLOAT, integers of one element, SHORT2
- * - latitude and longitude: the halves of a DOUBLE as well */
+/* Can a row of this field take this type? FLOAT, whole numbers, SHORT2; halves of a DOUBLE for
+ * latitude and longitude; three or four single bytes for the clock. */
 bool lm_canas_fits(enum lm_bus_field field, uint8_t type);
 
 #endif

@@ -6,11 +6,9 @@
 #include <stdint.h>
 
 #include "lm/db.h"
+#include "lm/level.h"
 #include "lm/radar.h"
 #include "lm/scan_line.h"
-
-/* Levels are in 1/256 dB of gamma-equivalent reflectivity. */
-enum { LM_LEVEL_SHADOW = -0x8000 };
 
 /* Nothing nearer than this or than half the antenna's height is shown: the beam does not look down
  * more steeply than 63 degrees. */
@@ -36,17 +34,14 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_aspect_config *c
                        uint32_t first_q8, uint32_t cell_q8, uint32_t cells, int32_t height_q10,
                        int32_t reference_q10);
 
+enum { LM_LEGEND_CODES = 16 }; /* height codes of a map, and classes */
+
 /* What a map's classes and height codes mean here, worked out once for many lines. */
 struct lm_legend {
-    int32_t height_q14[16]; /* of the height code, metres * 16384: below 2^27 */
-    int32_t kind[16];       /* of the class: brightness of its leading edge * 8, and a mark */
-    int32_t shore_q8;       /* brightness of a far shore */
-
-    /* The same as bytes side by side, for machines that look up 16 of them at once: heights of the
-     * height codes, marks of the classes, and edges of the marks. */
-    struct {
-        uint8_t height_dm[2][16], edge_q3[16], mark[16]; /* lower bytes, upper bytes */
-    } bytes;
+    uint16_t height_dm[LM_LEGEND_CODES];      /* of the height code */
+    uint8_t mark[LM_LEGEND_CODES];            /* of the class: lm/kernels_clutter.h */
+    uint8_t edge_structure_q3, edge_trees_q3; /* leading edges, dB * 8 */
+    int32_t shore_q8;                         /* brightness of a far shore, dB * 256 */
 };
 
 void lm_legend_set(struct lm_legend *legend, const struct lm_aspect_config *config,
@@ -58,16 +53,8 @@ typedef int64_t lm_horizon_q40_t;
 /* No terrain seen yet: the first cell that is looked at will be lit as flat ground is. */
 #define LM_HORIZON_OPEN INT64_MIN
 
-enum { LM_SHORE_STRETCH = 32 }; /* cells that are searched for shores at once */
-
-/* What is known of a line on the way; too large for a stack. Cell i is entry LM_LANES + i, for what
- * a cell is compared with may stand before the line. */
-struct lm_sight_work {
-    int32_t kind[LM_LANES + LM_CELLS_ROOM + LM_SHORE_STRETCH];
-    int32_t tangent[LM_LANES + LM_CELLS_ROOM]; /* of the cell's top */
-    int32_t of_four[LM_LANES + LM_CELLS_ROOM]; /* the largest of the cell's and the three before */
-    int32_t horizon[LM_LANES + LM_CELLS_ROOM]; /* before the cell */
-};
+/* Entries that working out the light takes for scratch: too large for a stack. */
+enum { LM_SIGHT_WORK = 4 * (LM_LANES + LM_CELLS_ROOM) + 32 };
 
 /* What becomes of a line's cells. */
 struct lm_sight {
@@ -75,7 +62,7 @@ struct lm_sight {
      * so far, in the grid's format. Cells that are not shown leave it alone. */
     int32_t horizon[LM_CELLS_ROOM];
     int32_t level_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW where nothing is lit */
-    struct lm_sight_work work;       /* means nothing afterwards; 64-bit Arm does without */
+    int32_t work[LM_SIGHT_WORK];     /* means nothing afterwards */
 };
 
 /* Fill `sight` for the cells of the grid. Returns the horizon behind the last cell. */

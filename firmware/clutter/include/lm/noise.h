@@ -74,8 +74,4 @@ struct lm_noise_line {
 /* For `cells` <= LM_CELLS_MAX. Cost: half an instruction a cell. */
 void lm_noise_line_set(struct lm_noise_line *n, const struct lm_raster *r, uint32_t cells);
 
-/* The draws of a line's cells, of whole blocks. Cost: half an instruction a cell. */
-void lm_noise_draw(const struct lm_noise_line *n, uint32_t looks_log2, int32_t *draw_q8,
-                   uint32_t cells);
-
 #endif

@@ -21,6 +21,7 @@
 #include "fx/types.h"
 #include "lm/class_kind.h"
 #include "lm/port.h"
+#include "lm/tile_point.h"
 
 enum {
     LM_DB_VERSION = 2,
@@ -31,10 +32,7 @@ enum {
     LM_DB_SHIFT_MAX = 20,      /* a cell of the coarsest level: 9.8 km */
     LM_DB_SIXTEENTH_LOG2 = 26, /* of a quarter turn, BAM: where zones may begin */
     LM_DB_CLASSES = 16,
-    LM_DB_CLASS_NONE = 15, /* no data: drawn as nothing */
-    LM_TILE_CELLS = 64,    /* along one side */
-    LM_TILE_CELLS_LOG2 = 6,
-    LM_TILE_POSTS = 65, /* elevation posts at the cells' corners, shared with the neighbours */
+    LM_DB_CLASS_NONE = 15,      /* no data: drawn as nothing */
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
     LM_TILE_BYTES = 16960,
     LM_TARGET_BYTES = 640, /* a record of TARGETS: lm/target.h */
@@ -43,16 +41,6 @@ enum {
     LM_CHIP_BYTES = 4672,
     LM_DB_SIGNATURES_MAX = 16,
     LM_DB_CHIPS_MAX = LM_DB_SIGNATURES_MAX * 128 * 8
-};
-
-/* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */
-enum { LM_GAMMA_CODE_STEP_Q8 = 128, LM_GAMMA_CODE_ZERO_Q8 = -80 * 256 };
-
-/* A cell and the elevation post at its south-west corner: side by side, because whoever looks at
- * one needs the other. */
-struct lm_tile_point {
-    uint16_t cell; /* bits 15..8 reflectivity code, 7..4 class, 3..0 structure height code */
-    uint16_t post;
 };
 
 /* A tile record, in flash and in the cache alike. 16,960 bytes. */

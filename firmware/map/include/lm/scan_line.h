@@ -5,15 +5,11 @@
 
 #include <stdint.h>
 
-#include "lm/config.h"
 #include "lm/geo.h"
+#include "lm/lanes.h"
 #include "lm/tile_cache.h"
 
 enum { LM_CELL_NONE = 0x00F0 }; /* no data: class 15, reflectivity code 0 */
-
-/* The stages work in whole groups of LM_LANES, as many numbers as a wide vector holds; what they
- * write behind the last cell means nothing. */
-enum { LM_LANES = 8, LM_CELLS_ROOM = LM_CELLS_MAX + LM_LANES };
 
 struct lm_scan_line {
     uint32_t cell[LM_CELLS_ROOM];         /* as in the tile record, or LM_CELL_NONE */

@@ -1,5 +1,4 @@
-/* Navigation: position, height, velocity, heading and attitude of the ownship at any moment,
- * extrapolated from the last events of the bus. */
+/* Where the aircraft is now and how it lies in the air, from what the bus said a moment ago. */
 #ifndef LM_NAV_H
 #define LM_NAV_H
 
@@ -11,62 +10,65 @@
 #include "lm/config.h"
 #include "lm/geo.h"
 
-/* Quality of a group of numbers, by the age of the older one. stale_ms and dead_ms come with each
- * event (lm/bus_event.h). A larger quality is a better one. */
+/* How far a number may be trusted. The ages that part the three come with the event: a
+ * number is stale when it is older than `stale_ms`, dead when it is older than `dead_ms` or was
+ * never heard. The better the larger. */
 enum lm_nav_quality {
-    LM_NAV_DEAD,  /* older than dead_ms, or never heard: the numbers are zero */
-    LM_NAV_STALE, /* older than stale_ms: still extrapolated, and to be flagged */
+    LM_NAV_DEAD,  /* removed: the numbers are zero */
+    LM_NAV_STALE, /* still extrapolated, but flagged */
     LM_NAV_GOOD
 };
 
-/* Speed above which two fixes of one sender are a jump. */
+/* Two fixes that this speed cannot connect are a jump. */
 #define LM_NAV_JUMP_M_S 1500
 
-/* Settling time of a sender: one that fell silent for longer than its stale age is preferred again
- * after it was heard for this long without another such pause. */
+/* A sender that fell silent for longer than its stale age must be heard this long without another
+ * such pause before it is preferred to one that did not. */
 #define LM_NAV_SETTLE_US 1000000
 
-/* Step of a coordinate above which the position is stale at best: 20 m, in BAM. A SHORT2 of full
- * scale 180 degrees has steps of 612 m, a FLOAT of at most 1.7 m. */
+/* A position whose type cannot tell places nearer than this apart, in BAM (20 m), is stale at best:
+ * SHORT2 of full scale 180 degrees has steps of 612 m, FLOAT of at most 1.7 m. */
 #define LM_NAV_COARSE_BAM 2144
 
-/* What was heard: the last value of each field from each of its senders. The caller owns it.
- * Counters only ever grow. */
+/* The last value of each field from each of its senders; the caller owns it. Counters only ever
+ * grow. */
 struct lm_nav {
-    /* time_us, value, step, ages, row and node are those of the event: lm/bus_event.h. */
     struct lm_nav_item {
         uint64_t time_us;
-        uint64_t steady_us; /* since when the sender is heard without a stale pause */
-        int32_t value;
-        uint32_t step;
+        uint64_t steady_us; /* when the run without a pause began that this value continues */
+        int32_t value;      /* in the field's unit */
+        uint32_t step;      /* see lm_bus_event */
         uint16_t stale_ms, dead_ms;
-        uint16_t rank; /* of the sender: priority * 256 + channel; the lowest is preferred */
+        uint16_t rank; /* priority of the row * 256 + channel: the least is preferred */
         uint8_t row, node;
         bool has_value;
-    } item[LM_BUS_NAV_FIELDS][LM_NAV_SOURCES]; /* filled from the first sender on */
+    } item[LM_BUS_NAV_FIELDS][LM_NAV_SOURCES];
 
-    bool is_baro_preferred; /* the operator's choice: barometric altitude before other heights */
+    bool is_baro_preferred; /* height: barometric altitude before the others; the operator's choice
+                             */
 
-    /* Fixes further from the same sender's last one than LM_NAV_JUMP_M_S allows (at least 150 m),
-     * each coordinate counted for itself. A jump is believed at once, because an instructor may
-     * move the aircraft; a picture that was drawn across it is to be started again. */
+    /* Fixes that lie further from the sender's one before than LM_NAV_JUMP_M_S allows (at least
+     * 150 m), each coordinate counted for itself. A jump is believed at once: an instructor moves
+     * the aircraft. Whoever draws watches this number and starts the picture anew when it changes.
+     */
     uint32_t position_jumps;
     uint32_t crowded; /* values not kept: LM_NAV_SOURCES better senders of the field were alive */
-    uint32_t rivals;  /* values of a second node while the first one is good: see lm_nav_take */
+    uint32_t rivals;  /* values of a second node where a first one is good: see lm_nav_take */
 };
 
-/* Sender and age of a group of numbers. All zero when the group is LM_NAV_DEAD. */
+/* Who said a number, and how long ago. For a group of fields, of the one that is older. All zero
+ * when the group's quality is LM_NAV_DEAD. */
 struct lm_nav_origin {
-    uint32_t age_us; /* of the older number */
-    uint16_t rank;   /* see struct lm_nav_item */
-    uint8_t row;     /* row of the profile that brought the group's first number */
-    uint8_t node;    /* sender of the group's first number */
+    uint32_t age_us;
+    uint16_t rank; /* as above */
+    uint8_t row;   /* of the profile; of the group's first field */
+    uint8_t node;
 };
 
-/* The ownship at one moment. Each group of numbers has a quality; when that is LM_NAV_DEAD the
- * group's numbers are zero and its source says nothing. */
+/* Each group of numbers has a quality of its own; when that is LM_NAV_DEAD the numbers are zero and
+ * the source says nothing. */
 struct lm_ownship {
-    fx_bam_t latitude, longitude; /* WGS-84; latitude signed, -90..90 degrees */
+    fx_bam_t latitude, longitude; /* latitude signed */
     enum lm_nav_quality position_quality;
     struct lm_nav_origin position_origin;
 
@@ -99,57 +101,52 @@ struct lm_ownship {
     struct lm_nav_origin utc_origin;
 };
 
-/* Begin with nothing heard: every quality is LM_NAV_DEAD. */
+/* Nothing heard yet. */
 void lm_nav_init(struct lm_nav *n);
 
-/* Take an event. It is not kept when
- *
- * - its field is not the aircraft's (LM_BUS_NAV_FIELDS and above)
- * - LM_NAV_SOURCES better senders of the field are alive (counted in crowded)
- * - another node sends the same row and channel and is not stale yet (counted in rivals): the
- *   picture does not jump between two aircraft
- *
- * A later call wins over an earlier one, whatever their time stamps say, so that a recording that
+/* Take an event of the bus. Events of fields that are none of the aircraft's change nothing. A
+ * later call wins over an earlier one, whatever their time stamps say, so that a recording that
  * starts over is followed at once.
  *
- * A coordinate of a type with steps, such as FLOAT, is smoothed: it says only that the aircraft is
- * within half a step. What is kept is the sender's last position, extrapolated with the velocity
- * and moved by no more than it takes to lie within that half step. The position is then never worse
- * than the type allows, and does not jump by up to 1.7 m ten times a second. Without a velocity the
- * value is kept as it came.
+ * An identifier has one node that sends it. Where a second one sends it as well, the first is heard
+ * until it is stale: the picture does not jump between two aircraft.
  *
- * Cost: 75 instructions, and those of an extrapolation for a coordinate. */
+ * A coordinate that came in a type of coarse steps, such as FLOAT, is smoothed: it says only that
+ * the aircraft is within half a step. What is kept is the sender's last position carried on with
+ * the velocity, moved by no more than it takes to lie within that half step. So the position is
+ * never worse than the type allows and does not jump by a step of up to 1.7 m ten times a second.
+ * Without a velocity the value is kept as it came. */
 void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event);
 
-/* Work out the ownship at `now_us`, on the clock of the frames' time stamps. A value up to its
- * stale age in the future counts as just heard; one further ahead comes from a clock that was set
- * back, and is dead until it is heard again.
+/* The aircraft at `now_us`, on the clock of the frames' time stamps. A value up to its stale age in
+ * the future counts as just heard; one further ahead comes from a clock that was set back, and is
+ * dead until it is heard again.
  *
- * Senders. Of several senders of a field (rows of the profile, redundancy channels) the best is
- * used: good and settled (no pause in the last LM_NAV_SETTLE_US), then good, then stale; among
- * equals the lowest rank. Both fields of a pair, such as latitude and longitude, have one sender.
+ * Of several senders of a field (rows of the profile, redundancy channels) that one is used which
+ * is good and settled; or else good; or else stale; among equals the one of the lowest rank.
+ * Settled is a sender without a pause in the last LM_NAV_SETTLE_US. Both fields of a pair (latitude
+ * and longitude, and so on) are always of one rank.
  *
- * Position. Each coordinate is extrapolated from its own time, along the velocity on the two radii
- * of WGS-84 at the present height. Worst errors after 2 s at 300 m/s, up to 80 degrees of latitude
- * (test_nav.c): 0.016 m against a course of constant velocity, 0.16 m against the geodesic, whose
- * course turns (0.06 m up to 60 degrees). Within 0.6 degree of a pole longitude moves too slowly.
- * The quality is stale at best when the velocity is dead, because the position then stands still,
- * or when a coordinate came in steps above LM_NAV_COARSE_BAM.
+ * Position: latitude and longitude each from its own time, along the velocity on WGS-84's two radii
+ * at the present height, for at most the 2 s until they are dead. Worst errors after 2 s at 300 m/s
+ * up to 80 degrees of latitude (test_nav.c): 0.016 m against a course of constant velocity, 0.16 m
+ * against the geodesic, whose course turns (0.06 m up to 60 degrees). Within 0.6 degree of a pole
+ * longitude moves too slowly. Stale at best when the velocity is dead, because then it stands
+ * still, or when a coordinate came in steps above LM_NAV_COARSE_BAM.
  *
- * Velocity. North and east, or else ground speed along the track.
+ * Velocity: north and east, or else ground speed along the track.
  *
- * Height. Above the ellipsoid, or else true altitude, or else corrected barometric altitude, which
- * comes first when is_baro_preferred; extrapolated by up-velocity, or else altitude rate.
+ * Height: above the ellipsoid, or else true altitude, or else corrected barometric (this one first
+ * when is_baro_preferred); moved on by up-velocity, or else altitude rate.
  *
- * Heading. True heading, or else heading; extrapolated by the body's pitch and yaw rates while
- * these and the attitude are good: within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60
- * degrees of pitch.
+ * Heading: true heading, or else heading; turned on by the body's pitch and yaw rates while these
+ * and the attitude are good, within 0.06 degree after 100 ms at 12 and 7 deg/s and up to 60 degrees
+ * of pitch.
  *
- * Attitude. Pitch and roll as they came.
+ * Attitude: pitch and roll as they came.
  *
- * "Or else" means when the former is dead, not already when it is stale: the two are different
- * quantities, and a picture that changes between them at every lost frame is worse than one that
- * is 300 ms old.
+ * "Or else" means when the former is dead, not already when it is stale: these are different
+ * quantities, and a picture that changes its mind at every lost frame is worse than one 300 ms old.
  *
  * Cost: 3,800 instructions with one sender of each field (x86-64, gcc -O2, counted). */
 void lm_nav_at(const struct lm_nav *n, uint64_t now_us, struct lm_ownship *out);

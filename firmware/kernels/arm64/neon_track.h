@@ -1,11 +1,10 @@
 /* The cells of a track, four at a time, by the vectors of 64-bit Arm. */
-#ifndef TRACK_NEON_H
-#define TRACK_NEON_H
+#ifndef NEON_TRACK_H
+#define NEON_TRACK_H
 
-#include "fx/neon.h"
+#include <arm_neon.h>
+
 #include "lm/track.h"
-
-#if FX_HAS_NEON
 
 /* Four cells, how far it is to the next four, and by how much that grows. */
 struct neon_track {
@@ -34,5 +33,4 @@ static inline uint32x4_t neon_next(struct neon_track *t)
     return at;
 }
 
-#endif
 #endif

@@ -1,34 +1,12 @@
-/* What tiles say, by the vectors of 64-bit Arm: eight places at a time. Only the points of the
- * tiles are fetched one by one, Arm having no gather; what tile_read.c makes of them is the same to
- * the bit. Not for other machines, where it is never called. */
-#ifndef TILE_READ_NEON_H
-#define TILE_READ_NEON_H
+#include <arm_neon.h>
 
 #include "fx/mem.h"
-#include "lm/tile_read.h"
-#include "track_neon.h"
+#include "lm/kernels_map.h"
+#include "lm/lanes.h"
+#include "neon_track.h"
 
-#if FX_HAS_NEON
-
-/* Tell cells first..end - 1, and those behind them up to a whole number of LM_LANES, which tile
- * they lie in. Two vectors at a time, which the compiler does not do by itself. */
-static inline void lay_neon(struct lm_tile_base tile, uint32_t first, uint32_t end,
-                            struct lm_scan_line *line)
-{
-    const uint32x4_t record = vdupq_n_u32(tile.record);
-    const int32x4_t scale = vdupq_n_s32(tile.scale);
-    uint32_t *cell = line->cell + first;
-    int32_t *elevation = line->elevation_q14 + first;
-    const uint32_t *const behind = line->cell + end;
-    do {
-        vst1q_u32(cell, record);
-        vst1q_u32(cell + 4, record);
-        vst1q_s32(elevation, scale);
-        vst1q_s32(elevation + 4, scale);
-        cell += LM_LANES;
-        elevation += LM_LANES;
-    } while (cell < behind);
-}
+/* Eight places at a time. Arm has no gather: only the points of the tiles are fetched one by one.
+ */
 
 /* Weights of eight places: bits 25..18 of each. */
 static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
@@ -51,9 +29,9 @@ struct neon_source {
 
 /* The compiler must not see that the two are a constant apart: it would add it for each place
  * instead of keeping two registers. */
-static inline struct neon_source neon_source_of(const struct lm_tile *pool)
+static inline struct neon_source neon_source_of(const struct lm_tile_point *points)
 {
-    struct neon_source s = {(const uint8_t *)pool->points[0], (const uint8_t *)pool->points[1]};
+    struct neon_source s = {(const uint8_t *)points, (const uint8_t *)(points + LM_TILE_POSTS)};
     __asm__("" : "+r"(s.south), "+r"(s.north));
     return s;
 }
@@ -105,20 +83,22 @@ static inline uint32x4x2_t neon_bilerp(const struct neon_posts *p, uint16x8_t ea
     }};
 }
 
-/* Base plus post, as ground_at takes them from a scale: Arm shifts by what the lowest byte says. */
+/* Base plus post, as lm_k_tile_sample takes them from a scale: Arm shifts by what the lowest byte
+ * says. */
 static inline uint32x4_t neon_elevation(uint32x4_t scale, uint32x4_t post_q16)
 {
     return vaddq_u32(scale, vshlq_u32(post_q16, vreinterpretq_s32_u32(scale)));
 }
 
-static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,
-                                    uint32_t first, uint32_t groups, struct lm_scan_line *line)
+void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_places *places,
+                    uint32_t first, uint32_t groups, uint32_t *cell_of_line,
+                    int32_t *elevation_m_q14)
 {
-    const struct neon_source source = neon_source_of(pool);
+    const struct neon_source source = neon_source_of(points);
     struct neon_track north_track = neon_track_from(&places->north, first);
     struct neon_track east_track = neon_track_from(&places->east, first);
-    uint32_t *cell = line->cell + first;
-    uint32_t *elevation = (uint32_t *)line->elevation_q14 + first;
+    uint32_t *cell = cell_of_line + first;
+    uint32_t *elevation = (uint32_t *)elevation_m_q14 + first;
     for (const uint32_t *const end = cell + groups * LM_LANES; cell != end; cell += LM_LANES) {
         uint32_t offset[LM_LANES];
         neon_pair south[LM_LANES], north[LM_LANES];
@@ -144,20 +124,3 @@ static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_
         }
     }
 }
-
-#else
-
-static inline void lay_neon(struct lm_tile_base tile, uint32_t first, uint32_t end,
-                            struct lm_scan_line *line)
-{
-    (void)tile, (void)first, (void)end, (void)line;
-}
-
-static inline void read_groups_neon(const struct lm_tile *pool, const struct lm_places *places,
-                                    uint32_t first, uint32_t groups, struct lm_scan_line *line)
-{
-    (void)pool, (void)places, (void)first, (void)groups, (void)line;
-}
-
-#endif
-#endif

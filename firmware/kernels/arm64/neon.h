@@ -1,40 +1,37 @@
-/* Whether the vectors of 64-bit Arm (NEON) are at hand, and what several loops make of them. A loop
- * that is written for them has a twin in plain C with the same results to the bit, which every
- * other machine runs. -DFX_NO_NEON takes the twins on Arm too. */
-#ifndef FX_NEON_H
-#define FX_NEON_H
+/* What several kernels make of the vectors of 64-bit Arm (NEON, Advanced SIMD): tables of 16 and 64
+ * bytes looked up at once, decibels and powers. Each is equal to the bit to the function of
+ * fx/log.h that it names. */
+#ifndef NEON_H
+#define NEON_H
+
+#include <arm_neon.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "fx/tables.h"
 
-#include <stddef.h>
-
-#if defined(__aarch64__) && defined(__ARM_NEON) && !defined(FX_NO_NEON)
-
-#include <arm_neon.h>
-#define FX_HAS_NEON 1
-
 /* The lower halves of sixteen numbers, and the lower bytes of those. */
-static inline uint16x8x2_t fx_neon_lower_halves(uint32x4x4_t v)
+static inline uint16x8x2_t neon_lower_halves(uint32x4x4_t v)
 {
     return (uint16x8x2_t){
         {vuzp1q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
          vuzp1q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
 }
 
-static inline uint8x16_t fx_neon_lower_bytes(uint16x8x2_t v)
+static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)
 {
     return vuzp1q_u8(vreinterpretq_u8_u16(v.val[0]), vreinterpretq_u8_u16(v.val[1]));
 }
 
 /* Eight entries of a table of 16 numbers, of which the lower and the upper bytes are given; the
  * indices stand in the lower half. */
-static inline uint16x8_t fx_neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)
+static inline uint16x8_t neon_words(uint8x16_t low, uint8x16_t high, uint8x16_t index)
 {
     return vreinterpretq_u16_u8(vzip1q_u8(vqtbl1q_u8(low, index), vqtbl1q_u8(high, index)));
 }
 
 /* The same of sixteen: lower bytes first. */
-static inline uint16x8x2_t fx_neon_words_of_16(const uint8x16_t table[2], uint8x16_t index)
+static inline uint16x8x2_t neon_words_of_16(const uint8x16_t table[2], uint8x16_t index)
 {
     const uint8x16_t low = vqtbl1q_u8(table[0], index), high = vqtbl1q_u8(table[1], index);
     return (uint16x8x2_t){
@@ -42,7 +39,7 @@ static inline uint16x8x2_t fx_neon_words_of_16(const uint8x16_t table[2], uint8x
 }
 
 /* The upper halves of eight numbers, each shifted up by its zeros, so that it starts with a one. */
-static inline uint16x8_t fx_neon_tops(uint32x4_t low, uint32x4_t high)
+static inline uint16x8_t neon_tops(uint32x4_t low, uint32x4_t high)
 {
     const int32x4_t zeros[2] = {vreinterpretq_s32_u32(vclzq_u32(low)),
                                 vreinterpretq_s32_u32(vclzq_u32(high))};
@@ -52,15 +49,15 @@ static inline uint16x8_t fx_neon_tops(uint32x4_t low, uint32x4_t high)
 
 /* level + fx_db_q8_of_many(power) of eight; anything where the power is 0. The table is not looked
  * up: its lines stay in registers. */
-static inline int32x4x2_t fx_neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t power)
+static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t power)
 {
     const uint32x4_t zeros[2] = {vclzq_u32(power.val[0]), vclzq_u32(power.val[1])};
-    const uint16x8_t top = fx_neon_tops(power.val[0], power.val[1]);
+    const uint16x8_t top = neon_tops(power.val[0], power.val[1]);
     /* Eight bits behind the first one, four of which say which line. */
     const uint8x16_t twice = vreinterpretq_u8_u16(vaddq_u16(top, top));
     const uint8x16_t mantissa = vuzp2q_u8(twice, twice), line = vshrq_n_u8(mantissa, 4);
     const uint16x8_t base =
-        fx_neon_words(vld1q_u8(fx_table_db_lines[0]), vld1q_u8(fx_table_db_lines[1]), line);
+        neon_words(vld1q_u8(fx_table_db_lines[0]), vld1q_u8(fx_table_db_lines[1]), line);
     const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_db_lines[2]), line);
     const uint16x8_t db_q13 = vmlal_u8(base, vget_low_u8(slope), vget_low_u8(mantissa));
     /* Below the 32nd octave, as many as there are zeros. */
@@ -74,10 +71,10 @@ static inline int32x4x2_t fx_neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t p
 
 /* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
  * a step is added before it is cut off, whole steps are behind. */
-static inline uint16x8x2_t fx_neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32x4x4_t power)
+static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32x4x4_t power)
 {
-    const uint16x8_t top[2] = {fx_neon_tops(power.val[0], power.val[1]),
-                               fx_neon_tops(power.val[2], power.val[3])};
+    const uint16x8_t top[2] = {neon_tops(power.val[0], power.val[1]),
+                               neon_tops(power.val[2], power.val[3])};
     const uint8x16_t mantissa = vshrn_high_n_u16(vshrn_n_u16(top[0], 7), top[1], 7);
     const uint8x16_t line = vshrq_n_u8(mantissa, 4);
     const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_db_lines[0]), line),
@@ -99,8 +96,8 @@ static inline uint16x8x2_t fx_neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32
 }
 
 /* How far apart eight levels are, in steps of the table. */
-static inline uint16x8_t fx_neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int32x4_t b0_q8,
-                                             int32x4_t b1_q8)
+static inline uint16x8_t neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int32x4_t b0_q8,
+                                          int32x4_t b1_q8)
 {
     const uint32x4_t apart[2] = {vreinterpretq_u32_s32(vabdq_s32(a0_q8, b0_q8)),
                                  vreinterpretq_u32_s32(vabdq_s32(a1_q8, b1_q8))};
@@ -111,12 +108,12 @@ static inline uint16x8_t fx_neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, i
 /* fx_db_q8_sum_of_many of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
  * loop, whose stores would else have them loaded again each time. Steps' upper bits choose lines.
  */
-static inline int32x4x4_t fx_neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs,
-                                            uint8x16x4_t falls, int32x4x4_t a_q8, int32x4x4_t b_q8)
+static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, uint8x16x4_t falls,
+                                         int32x4x4_t a_q8, int32x4x4_t b_q8)
 {
     const uint16x8_t step[2] = {
-        fx_neon_db_sum_step(a_q8.val[0], a_q8.val[1], b_q8.val[0], b_q8.val[1]),
-        fx_neon_db_sum_step(a_q8.val[2], a_q8.val[3], b_q8.val[2], b_q8.val[3])};
+        neon_db_sum_step(a_q8.val[0], a_q8.val[1], b_q8.val[0], b_q8.val[1]),
+        neon_db_sum_step(a_q8.val[2], a_q8.val[3], b_q8.val[2], b_q8.val[3])};
     const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(step[0], 3), step[1], 3);
     const uint8x16_t place =
         vuzp1q_u8(vreinterpretq_u8_u16(step[0]), vreinterpretq_u8_u16(step[1]));
@@ -137,13 +134,13 @@ static inline int32x4x4_t fx_neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t high
 }
 
 /* Eight numbers, and eight more. */
-static inline int32x4x4_t fx_neon_load_8_and_8(const int32_t *from, const int32_t *and_from)
+static inline int32x4x4_t neon_load_8_and_8(const int32_t *from, const int32_t *and_from)
 {
     return (int32x4x4_t){
         {vld1q_s32(from), vld1q_s32(from + 4), vld1q_s32(and_from), vld1q_s32(and_from + 4)}};
 }
 
-static inline void fx_neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t x)
+static inline void neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t x)
 {
     vst1q_s32(to, x.val[0]);
     vst1q_s32(to + 4, x.val[1]);
@@ -152,7 +149,7 @@ static inline void fx_neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4
 }
 
 /* Octaves in Q8 above 2^-31 for fx_power_q24_of_many of eight: -31.0 up to just below 1.0. */
-static inline int16x8_t fx_neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
+static inline int16x8_t neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
 {
     const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
     const int16x8_t octaves_q8 = vaddq_s16(vqrdmulhq_n_s16(db_q8, 10885), vdupq_n_s16(-7 * 256));
@@ -160,7 +157,7 @@ static inline int16x8_t fx_neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
 }
 
 /* Q15 to Q31 and then up by as many bits, of which there are none or less. */
-static inline uint32x4x2_t fx_neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
+static inline uint32x4x2_t neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
 {
     const uint16x8_t nothing = vdupq_n_u16(0);
     const uint32x4_t low = vreinterpretq_u32_u16(vzip1q_u16(nothing, x_q15)),
@@ -171,10 +168,10 @@ static inline uint32x4x2_t fx_neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
 
 /* fx_power_q24_of_many of sixteen. Of the lines of its table the lower byte of the octaves chooses
  * one; the upper byte says how far down. */
-static inline uint32x4x4_t fx_neon_power_q24(int32x4x4_t db_q8)
+static inline uint32x4x4_t neon_power_q24(int32x4x4_t db_q8)
 {
-    const int16x8_t low_q8 = fx_neon_octaves_q8(db_q8.val[0], db_q8.val[1]);
-    const int16x8_t high_q8 = fx_neon_octaves_q8(db_q8.val[2], db_q8.val[3]);
+    const int16x8_t low_q8 = neon_octaves_q8(db_q8.val[0], db_q8.val[1]);
+    const int16x8_t high_q8 = neon_octaves_q8(db_q8.val[2], db_q8.val[3]);
     const uint8x16_t place = vuzp1q_u8(vreinterpretq_u8_s16(low_q8), vreinterpretq_u8_s16(high_q8));
     const uint8x16_t line = vshrq_n_u8(place, 4);
     const uint8x16_t base[2] = {vqtbl1q_u8(vld1q_u8(fx_table_power_lines[0]), line),
@@ -184,13 +181,9 @@ static inline uint32x4x4_t fx_neon_power_q24(int32x4x4_t db_q8)
                                         vget_low_u8(slope), vget_low_u8(place));
     const uint16x8_t high_q15 =
         vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(base[0], base[1])), slope, place);
-    const uint32x4x2_t low_q24 = fx_neon_shift_q15(low_q15, vshrq_n_s16(low_q8, 8)),
-                       high_q24 = fx_neon_shift_q15(high_q15, vshrq_n_s16(high_q8, 8));
+    const uint32x4x2_t low_q24 = neon_shift_q15(low_q15, vshrq_n_s16(low_q8, 8)),
+                       high_q24 = neon_shift_q15(high_q15, vshrq_n_s16(high_q8, 8));
     return (uint32x4x4_t){{low_q24.val[0], low_q24.val[1], high_q24.val[0], high_q24.val[1]}};
 }
-
-#else
-#define FX_HAS_NEON 0
-#endif
 
 #endif

@@ -1,15 +1,7 @@
-/* The grey of sixteen levels at a time, by the vectors of 64-bit Arm, to the bit as in tone.c: the
- * lines of the curve stay in registers. Returns how many cells it did, which is none on other
- * machines and where the curve has no lines. */
-#ifndef TONE_NEON_H
-#define TONE_NEON_H
+#include "../plain.h"
+#include "neon.h"
 
-#include <stddef.h>
-
-#include "fx/neon.h"
-#include "lm/tone.h"
-
-#if FX_HAS_NEON
+/* Sixteen levels at a time; the lines of the curve stay in registers. */
 
 /* A window, eight times, and where its step 0 begins; what makes steps of the levels above that. */
 struct tone_window {
@@ -28,20 +20,25 @@ static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *l
     return vshlq_u16(vsubq_u16(vreinterpretq_u16_s16(within), w->start_q8), w->minus_step_log2);
 }
 
-static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, const int32_t *level_q8,
-                                 uint8_t *restrict grey, uint32_t cells)
+void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t *restrict grey,
+               uint32_t cells)
 {
-    const struct tone_window window = {vdupq_n_s16(t->black_q8), vdupq_n_s16(t->white_q8),
-                                       vdupq_n_u16((uint16_t)start_q8),
-                                       vdupq_n_s16((int16_t)-t->step_log2)};
+    if (!t->lines) {
+        lm_k_tone_c(t, level_q8, grey, cells);
+        return;
+    }
+    const int32_t start_q8 = t->black_db_q8 - (1 << t->step_log2 >> 1);
+    const struct tone_window window = {
+        vdupq_n_s16((int16_t)t->black_db_q8), vdupq_n_s16((int16_t)t->white_db_q8),
+        vdupq_n_u16((uint16_t)start_q8), vdupq_n_s16((int16_t)-t->step_log2)};
     const uint8x16x4_t lows = vld1q_u8_x4(t->lines[0]), highs = vld1q_u8_x4(t->lines[1]);
     const uint8x16x4_t slopes = vld1q_u8_x4(t->lines[2]);
-    const uint32_t whole = t->has_lines ? cells & ~15u : 0;
+    const uint32_t whole = cells & ~15u;
     for (size_t i = 0; i < whole; i += 16) {
         const uint16x8_t first = neon_step(&window, level_q8 + i);
         const uint16x8_t second = neon_step(&window, level_q8 + i + 8);
-        const uint8x16_t line =
-            vshrn_high_n_u16(vshrn_n_u16(first, LM_TONE_PLACES_LOG2), second, LM_TONE_PLACES_LOG2);
+        const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(first, LM_K_TONE_PLACES_LOG2), second,
+                                                 LM_K_TONE_PLACES_LOG2);
         const uint8x16_t place =
             vuzp1q_u8(vreinterpretq_u8_u16(first), vreinterpretq_u8_u16(second));
         const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
@@ -53,17 +50,7 @@ static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, cons
         vst1q_u8(grey + i,
                  vuzp2q_u8(vreinterpretq_u8_u16(first_q8), vreinterpretq_u8_u16(second_q8)));
     }
-    return whole;
+    if (whole < cells) {
+        lm_k_tone_c(t, level_q8 + whole, grey + whole, cells - whole);
+    }
 }
-
-#else
-
-static inline uint32_t tone_neon(const struct lm_tone *t, int32_t start_q8, const int32_t *level_q8,
-                                 uint8_t *grey, uint32_t cells)
-{
-    return (void)t, (void)start_q8, (void)level_q8, (void)grey, (void)cells, 0;
-}
-
-#endif
-
-#endif

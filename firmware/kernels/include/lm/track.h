@@ -1,10 +1,11 @@
-/* One coordinate of the cells along a line, whose way bends a little. */
+/* Track: one coordinate of the cells along a line that bends a little, as a quadratic in the cell's
+ * number. Everything is modulo 2^32, so that no overflow is an error; the unit is the user's. */
 #ifndef LM_TRACK_H
 #define LM_TRACK_H
 
 #include <stdint.h>
 
-/* Cell k is at `at + k (step + k half_bend)`, modulo 2^32. The unit is the user's. */
+/* Cell k lies at `at + k (step + k half_bend)`. */
 struct lm_track {
     uint32_t at, step, half_bend;
 };

@@ -1,0 +1,110 @@
+#include "fx/log.h"
+#include "lm/kernels_radar.h"
+#include "lm/lanes.h"
+#include "neon.h"
+
+enum { NEON_CELLS = 2 * LM_LANES }; /* that a turn takes: two blocks of draws */
+
+/* Rows of fx_table_db_sum_lines. */
+struct neon_sum_lines {
+    uint8x16x4_t lows, highs, falls;
+};
+
+static inline struct neon_sum_lines neon_sum_lines(void)
+{
+    return (struct neon_sum_lines){vld1q_u8_x4(fx_table_db_sum_lines[0]),
+                                   vld1q_u8_x4(fx_table_db_sum_lines[1]),
+                                   vld1q_u8_x4(fx_table_db_sum_lines[2])};
+}
+
+static inline int32x4x2_t neon_signal_q8(const uint32_t *power_q24)
+{
+    const int32x4_t unit = vdupq_n_s32(-LM_K_UNIT_Q24_DB_Q8);
+    const int32x4_t nothing = vdupq_n_s32(fx_db_q8_of_many(0) - LM_K_UNIT_Q24_DB_Q8);
+    const uint32x4x2_t power = {{vld1q_u32(power_q24), vld1q_u32(power_q24 + 4)}};
+    const int32x4x2_t some = neon_add_db_q8((int32x4x2_t){{unit, unit}}, power);
+    return (int32x4x2_t){{vbslq_s32(vceqzq_u32(power.val[0]), nothing, some.val[0]),
+                          vbslq_s32(vceqzq_u32(power.val[1]), nothing, some.val[1])}};
+}
+
+/* The signals of the bins from i and from `next` on. */
+static inline int32x4x4_t neon_signals_q8(const uint32_t *power_q24, size_t i, size_t next)
+{
+    const int32x4x2_t a = neon_signal_q8(power_q24 + i), b = neon_signal_q8(power_q24 + next);
+    return (int32x4x4_t){{a.val[0], a.val[1], b.val[0], b.val[1]}};
+}
+
+/* The mean noise of the same bins. */
+static inline int32x4x4_t neon_means_q8(const struct lm_k_receiver *r, size_t i, size_t next)
+{
+    int32x4x4_t mean = neon_load_8_and_8(r->noise_db_q8 + i, r->noise_db_q8 + next);
+    for (size_t k = 0; k < 4; k++) {
+        mean.val[k] = vaddq_s32(mean.val[k], vdupq_n_s32(r->rise_db_q8));
+    }
+    return mean;
+}
+
+static inline int32x4x4_t neon_add_draws(const struct lm_k_receiver *r, size_t i, size_t next,
+                                         int32x4x4_t noise)
+{
+    const int16x8_t draw_q8[2] = {vld1q_s16(r->row_db_q8 + r->entry[i / LM_LANES]),
+                                  vld1q_s16(r->row_db_q8 + r->entry[next / LM_LANES])};
+    for (size_t n = 0; n < 2; n++) {
+        noise.val[2 * n] = vaddw_s16(noise.val[2 * n], vget_low_s16(draw_q8[n]));
+        noise.val[2 * n + 1] = vaddw_high_s16(noise.val[2 * n + 1], draw_q8[n]);
+    }
+    return noise;
+}
+
+static inline int32x4x4_t neon_less(int32x4x4_t a, int32x4x4_t b)
+{
+    for (size_t k = 0; k < 4; k++) {
+        a.val[k] = vsubq_s32(a.val[k], b.val[k]);
+    }
+    return a;
+}
+
+/* Signal and noise together, less the receiver's fall, of the same bins. */
+static inline void neon_store_sum(const struct lm_k_receiver *r, const struct neon_sum_lines *lines,
+                                  size_t i, size_t next, int32x4x4_t signal, int32x4x4_t noise,
+                                  int32_t *level_q8)
+{
+    const int32x4x4_t fall = neon_load_8_and_8(r->fall_db_q8 + i, r->fall_db_q8 + next);
+    const int32x4x4_t sum = neon_db_q8_sum(lines->lows, lines->highs, lines->falls, signal, noise);
+    neon_store_8_and_8(level_q8 + i, level_q8 + next, neon_less(sum, fall));
+}
+
+/* The block beside block i / LM_LANES; a block that is left over is done twice at once. */
+static inline size_t neon_next_block(size_t i, uint32_t cells)
+{
+    return i + LM_LANES < cells ? i + LM_LANES : i;
+}
+
+void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *power_q24,
+                 int32_t *restrict level_q8, uint32_t cells)
+{
+    const struct lm_k_receiver r = *receiver;
+    const struct neon_sum_lines lines = neon_sum_lines();
+    for (size_t i = 0; i < cells; i += NEON_CELLS) {
+        const size_t next = neon_next_block(i, cells);
+        const int32x4x4_t noise = neon_add_draws(&r, i, next, neon_means_q8(&r, i, next));
+        neon_store_sum(&r, &lines, i, next, neon_signals_q8(power_q24, i, next), noise, level_q8);
+    }
+}
+
+void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k_rain *in_rain,
+                         const uint32_t *power_q24, int32_t *restrict level_q8, uint32_t cells)
+{
+    const struct lm_k_receiver r = *receiver;
+    const struct lm_k_rain w = *in_rain;
+    const struct neon_sum_lines lines = neon_sum_lines();
+    for (size_t i = 0; i < cells; i += NEON_CELLS) {
+        const size_t next = neon_next_block(i, cells);
+        const int32x4x4_t rain = neon_load_8_and_8(w.rain_db_q8 + i, w.rain_db_q8 + next);
+        const int32x4x4_t loss = neon_load_8_and_8(w.loss_db_q8 + i, w.loss_db_q8 + next);
+        const int32x4x4_t mean =
+            neon_db_q8_sum(lines.lows, lines.highs, lines.falls, neon_means_q8(&r, i, next), rain);
+        const int32x4x4_t signal = neon_less(neon_signals_q8(power_q24, i, next), loss);
+        neon_store_sum(&r, &lines, i, next, signal, neon_add_draws(&r, i, next, mean), level_q8);
+    }
+}

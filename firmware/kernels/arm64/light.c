@@ -1,0 +1,315 @@
+#include "../plain.h"
+#include "../shore.h"
+#include "fx/bits.h"
+#include "lm/tile_point.h"
+#include "neon.h"
+
+/* Sixteen cells a turn from the map to their levels, for so many bytes a vector holds. What
+ * c/light.c does in several loops is one here, and small tables are held in registers. */
+
+enum { NEON_CELLS = 16 }; /* that a turn takes */
+
+_Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in a line's arrays");
+_Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
+
+/* Heights of the codes, lower bytes and upper bytes; edges of the marks, marks of the classes. */
+struct neon_legend {
+    uint8x16_t height_dm[2], edge_q3, mark;
+};
+
+/* What a turn takes over from the one before it. */
+struct neon_before {
+    int32x4_t tangent, of_two, horizon;
+    uint8x16_t mark;
+};
+
+/* Which cells of a turn are not shown: all bits of them are set. */
+struct neon_hidden {
+    uint32x4x4_t words;
+    uint8x16_t bytes;
+};
+
+/* Where a turn's cells are. */
+struct neon_place {
+    const uint32_t *cell, *elevation_q14, *fall_q14, *gain_q8;
+    const int32_t *inverse_range;
+    int32_t *horizon, *level_q8;
+    uint8_t *behind_shore;
+};
+
+static inline void neon_set_heights(struct neon_legend *l, const struct lm_k_tops *tops)
+{
+    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code));
+    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code + 8));
+    l->height_dm[0] = vuzp1q_u8(low, high);
+    l->height_dm[1] = vuzp2q_u8(low, high);
+}
+
+static inline struct neon_legend neon_legend_of(const struct lm_k_lit_line *line)
+{
+    struct neon_legend l;
+    neon_set_heights(&l, &line->tops);
+    l.edge_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
+    l.edge_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_q3, LM_K_TREES);
+    l.mark = vld1q_u8(line->mark_of_class);
+    return l;
+}
+
+/* lm_k_tangent of sixteen cells whose height codes are given. */
+static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struct neon_place *at,
+                                        uint8x16_t code)
+{
+    const uint16x8x2_t height_dm = neon_words_of_16(l->height_dm, code);
+    const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_q14);
+    const uint32x4x4_t fall_q14 = vld1q_u32_x4(at->fall_q14);
+    const int32x4x4_t inverse_range = vld1q_s32_x4(at->inverse_range);
+    int32x4x4_t tangent;
+    for (size_t n = 0; n < 4; n++) {
+        const uint16x8_t pair_dm = height_dm.val[n / 2];
+        const uint32x4_t height_q19 = n % 2 ? vmull_high_n_u16(pair_dm, LM_K_Q19_OF_DM)
+                                            : vmull_n_u16(vget_low_u16(pair_dm), LM_K_Q19_OF_DM);
+        const uint32x4_t apparent_q14 =
+            vsraq_n_u32(vsubq_u32(foot_q14.val[n], fall_q14.val[n]), height_q19, 5);
+        /* Twice the product's upper half. */
+        tangent.val[n] = vqdmulhq_s32(vreinterpretq_s32_u32(apparent_q14), inverse_range.val[n]);
+    }
+    return tangent;
+}
+
+/* The horizon behind each of four cells. */
+static inline int32x4_t neon_horizon(struct neon_before *b, int32x4_t tangent)
+{
+    const int32x4_t of_two = vmaxq_s32(tangent, vextq_s32(b->tangent, tangent, 3));
+    const int32x4_t of_four = vmaxq_s32(of_two, vextq_s32(b->of_two, of_two, 2));
+    b->tangent = tangent;
+    b->of_two = of_two;
+    return vmaxq_s32(of_four, b->horizon);
+}
+
+/* By how much the horizon rises over each of four cells. */
+static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
+{
+    const int32x4_t before = b->horizon;
+    b->horizon = neon_horizon(b, tangent);
+    return vreinterpretq_u32_s32(vsubq_s32(b->horizon, vextq_s32(before, b->horizon, 3)));
+}
+
+/* Brightness of the leading edges of cells whose classes are given, of which the hidden ones change
+ * nothing; *left gets the mark of water behind a shore. */
+static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_before *b,
+                                    uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
+{
+    const uint8x16_t mark = vbslq_u8(hidden, b->mark, vqtbl1q_u8(l->mark, class_index));
+    const uint8x16_t before = vextq_u8(b->mark, mark, 15);
+    b->mark = mark;
+    *left = vbicq_u8(before, mark);
+    return vqtbl1q_u8(l->edge_q3, vbicq_u8(mark, before));
+}
+
+/* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
+static inline uint16x8x2_t neon_shown(uint8x16_t edge_q3, uint16x8x2_t cells, uint32x4x4_t rise)
+{
+    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_q3), 5), vshll_high_n_u8(edge_q3, 5)}};
+    /* The upper byte times LM_GAMMA_CODE_STEP_Q8. With LM_EDGE_MAX_Q8 and the rise's decibels it
+     * takes 16 bits: 32640 + 8160 + 24659. */
+    for (size_t n = 0; n < 2; n++) {
+        own_q8.val[n] = vsraq_n_u16(own_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
+    }
+    return neon_add_db_q8_of_16(own_q8, rise);
+}
+
+/* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
+static inline __attribute__((always_inline)) void neon_cells(const struct neon_legend *l,
+                                                             const struct neon_hidden *hidden,
+                                                             struct neon_before *b,
+                                                             struct neon_place *at)
+{
+    const uint16x8x2_t cells = neon_lower_halves(vld1q_u32_x4(at->cell));
+    const uint8x16_t lower = neon_lower_bytes(cells);
+    const int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1)));
+    uint32x4x4_t rise;
+    for (size_t n = 0; n < 4; n++) {
+        rise.val[n] =
+            neon_rise(b, vbslq_s32(hidden->words.val[n], vdupq_n_s32(INT32_MIN), seen.val[n]));
+        vst1q_s32(at->horizon + 4 * n, b->horizon);
+    }
+    uint8x16_t left;
+    const uint8x16_t edge_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    vst1q_u8(at->behind_shore, left);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_q3, cells, rise);
+    const uint32x4x4_t gain_q8 = vld1q_u32_x4(at->gain_q8);
+    for (size_t n = 0; n < 4; n++) {
+        const uint16x8_t pair_q8 = shown_q8.val[n / 2];
+        const uint32x4_t lit_q8 = n % 2 ? vaddw_high_u16(gain_q8.val[n], pair_q8)
+                                        : vaddw_u16(gain_q8.val[n], vget_low_u16(pair_q8));
+        vst1q_s32(at->level_q8 + 4 * n,
+                  vbslq_s32(vceqzq_u32(rise.val[n]), vdupq_n_s32(LM_LEVEL_SHADOW),
+                            vreinterpretq_s32_u32(lit_q8)));
+    }
+    at->cell += NEON_CELLS;
+    at->elevation_q14 += NEON_CELLS;
+    at->fall_q14 += NEON_CELLS;
+    at->gain_q8 += NEON_CELLS;
+    at->inverse_range += NEON_CELLS;
+    at->horizon += NEON_CELLS;
+    at->level_q8 += NEON_CELLS;
+    at->behind_shore += NEON_CELLS;
+    /* Else the compiler would add up one distance and, with it, five addresses. */
+    __asm__(""
+            : "+r"(at->cell), "+r"(at->elevation_q14), "+r"(at->fall_q14), "+r"(at->gain_q8),
+              "+r"(at->inverse_range));
+}
+
+/* The first `count` cells of a turn. */
+static inline struct neon_hidden neon_hide(uint32_t count)
+{
+    static const uint32_t number[4] = {0, 1, 2, 3};
+    struct neon_hidden h;
+    for (uint32_t n = 0; n < 4; n++) {
+        h.words.val[n] =
+            vcltq_u32(vaddq_u32(vld1q_u32(number), vdupq_n_u32(4 * n)), vdupq_n_u32(count));
+    }
+    h.bytes = neon_lower_bytes(neon_lower_halves(h.words));
+    return h;
+}
+
+/* The marks of eight cells. */
+static inline uint64_t neon_marks(const struct lm_k_lit_line *line, uint32_t i)
+{
+    const uint32_t *cell = line->tops.cell + i;
+    const uint16x8_t halves = vuzp1q_u16(vreinterpretq_u16_u32(vld1q_u32(cell)),
+                                         vreinterpretq_u16_u32(vld1q_u32(cell + 4)));
+    const uint8x8_t class_index = vshr_n_u8(vmovn_u16(halves), 4);
+    const uint8x8_t mark = vqtbl1_u8(vld1q_u8(line->mark_of_class), class_index);
+    return vget_lane_u64(vreinterpret_u64_u8(mark), 0);
+}
+
+/* Add to four levels what is positive of the shore, where there is light. */
+static inline void neon_brighten(int32_t *level_q8, int32x4_t shore_q8)
+{
+    const int32x4_t old_q8 = vld1q_s32(level_q8), zero = vdupq_n_s32(0);
+    const uint32x4_t is_dark = vceqq_s32(old_q8, vdupq_n_s32(LM_LEVEL_SHADOW));
+    const int32x4_t more_q8 = vbslq_s32(is_dark, zero, vmaxq_s32(shore_q8, zero));
+    vst1q_s32(level_q8, vaddq_s32(old_q8, more_q8));
+}
+
+/* The shore from cell i on: whole groups of eight cells without water, and then one by one. */
+static inline void neon_add_shore(const struct lm_k_lit_line *line, uint32_t i)
+{
+    static const int32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const int32_t fall_q8 = line->shore_fall_db_q8;
+    int32_t shore_q8 = line->shore_db_q8;
+    for (; i + 8 <= line->tops.cells && shore_q8 > 0; i += 8, shore_q8 -= 8 * fall_q8) {
+        if ((neon_marks(line, i) & EACH_IS_WATER) != 0) {
+            break;
+        }
+        const int32x4_t all_q8 = vdupq_n_s32(shore_q8);
+        for (size_t k = 0; k < 8; k += 4) {
+            neon_brighten(line->level_db_q8 + i + k,
+                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_q8));
+        }
+    }
+    add_shore(line, i, shore_q8);
+}
+
+/* Shores behind eight cells from `first` on, each of which has a byte of `eight`. */
+static inline void neon_add_shores(const struct lm_k_lit_line *line, uint64_t eight, uint32_t first)
+{
+    for (uint64_t left = eight & EACH_IS_WATER; left != 0; left &= left - 1) {
+        neon_add_shore(line, first + (uint32_t)fx_ctz64(left) / 8);
+    }
+}
+
+/* Shores are rare: they are looked for where a stretch, which may end behind the line, has one.
+ * Each cell has a byte, from those of `first` on. */
+static inline void neon_shores(const struct lm_k_lit_line *line, const uint8_t *behind_shore,
+                               uint32_t first)
+{
+    const uint8_t *const end = behind_shore + line->tops.cells;
+    for (const uint8_t *at = behind_shore + first; at < end;) {
+        const uint8x16x2_t left = vld1q_u8_x2(at);
+        const uint8x16_t some = vshlq_n_u8(vorrq_u8(left.val[0], left.val[1]), 7);
+        at += LM_K_SHORE_STRETCH;
+        if (vmaxvq_u8(some) != 0) {
+            const uint32_t behind = (uint32_t)(at - behind_shore);
+            for (uint32_t i = behind - LM_K_SHORE_STRETCH; i < behind; i += 8) {
+                const uint8x8_t eight = vld1_u8(behind_shore + i);
+                neon_add_shores(line, vget_lane_u64(vreinterpret_u64_u8(eight), 0), i);
+            }
+        }
+    }
+}
+
+/* What the first turn compares its cells with. */
+static inline struct neon_before neon_before_of(const struct lm_k_lit_line *line)
+{
+    const int32x4_t all = vdupq_n_s32(line->start);
+    const uint32_t class_index = line->tops.cell[line->tops.first] >> 4 & (LM_K_CODES - 1);
+    return (struct neon_before){all, all, all, vdupq_n_u8(line->mark_of_class[class_index])};
+}
+
+void lm_k_light(const struct lm_k_lit_line *line)
+{
+    uint8_t behind_shore[LM_CELLS_MAX + LM_K_SHORE_STRETCH];
+    const struct lm_k_tops *const tops = &line->tops;
+    const size_t hidden = tops->first % NEON_CELLS, first = tops->first - hidden;
+    int32_t *const horizon = line->horizon, *const level_q8 = line->level_db_q8;
+    horizon[0] = line->start;
+    for (size_t k = 0; k < first; k++) {
+        horizon[k + 1] = line->start;
+        level_q8[k] = LM_LEVEL_SHADOW;
+    }
+    const struct neon_legend l = neon_legend_of(line);
+    struct neon_before before = neon_before_of(line);
+    struct neon_place at = {.cell = tops->cell + first,
+                            .elevation_q14 = (const uint32_t *)tops->elevation_m_q14 + first,
+                            .fall_q14 = (const uint32_t *)tops->fall_m_q14 + first,
+                            .gain_q8 = (const uint32_t *)line->gain_db_q8 + first,
+                            .inverse_range = tops->inverse_range + first,
+                            .horizon = horizon + first + 1,
+                            .level_q8 = level_q8 + first,
+                            .behind_shore = behind_shore + first};
+    const uint32_t *const end = tops->cell + tops->cells;
+    if (hidden != 0) {
+        const struct neon_hidden some = neon_hide((uint32_t)hidden);
+        neon_cells(&l, &some, &before, &at);
+    }
+    const uint32x4_t zero = vdupq_n_u32(0);
+    const struct neon_hidden none = {{{zero, zero, zero, zero}}, vdupq_n_u8(0)};
+    while (at.cell < end) {
+        neon_cells(&l, &none, &before, &at);
+    }
+    vst1q_u8(at.behind_shore, vdupq_n_u8(0)); /* looked at with an odd number of turns */
+    neon_shores(line, behind_shore, (uint32_t)first);
+}
+
+static inline int32x4_t neon_highest_of(int32x4_t highest, int32x4x4_t tangent)
+{
+    return vmaxq_s32(highest, vmaxq_s32(vmaxq_s32(tangent.val[0], tangent.val[1]),
+                                        vmaxq_s32(tangent.val[2], tangent.val[3])));
+}
+
+/* The last turn ends with the line and takes some cells once more. */
+int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
+{
+    if (tops->cells - tops->first < NEON_CELLS) {
+        return lm_k_highest_tangent_c(tops);
+    }
+    const uint32_t last = tops->cells - NEON_CELLS;
+    struct neon_legend l;
+    neon_set_heights(&l, tops);
+    int32x4_t highest = vdupq_n_s32(INT32_MIN);
+    for (uint32_t i = tops->first, end = 0; end < tops->cells; i = end) {
+        const uint32_t begin = i < last ? i : last;
+        const struct neon_place at = {.elevation_q14 =
+                                          (const uint32_t *)tops->elevation_m_q14 + begin,
+                                      .fall_q14 = (const uint32_t *)tops->fall_m_q14 + begin,
+                                      .inverse_range = tops->inverse_range + begin};
+        const uint8x16_t lower =
+            neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(tops->cell + begin)));
+        highest = neon_highest_of(
+            highest, neon_tangents(&l, &at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1))));
+        end = begin + NEON_CELLS;
+    }
+    return vmaxvq_s32(highest);
+}

@@ -1,0 +1,92 @@
+#include "lm/kernels_clutter.h"
+#include "neon.h"
+
+enum { NEON_CELLS = 2 * LM_LANES }; /* that a turn takes: two blocks of draws */
+
+/* Classes that have a shape: all bits of a class's byte, or none. */
+static inline uint8x16_t neon_classes_of(const int32_t *word_of_class, int32_t shape)
+{
+    const int32x4x4_t word = vld1q_s32_x4(word_of_class);
+    const int16x8_t low = vmovn_high_s32(vmovn_s32(word.val[0]), word.val[1]);
+    const int16x8_t high = vmovn_high_s32(vmovn_s32(word.val[2]), word.val[3]);
+    const uint8x16_t of_class = vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(low), high));
+    const uint8x16_t mask = vdupq_n_u8((1 << LM_K_SHAPE_BITS) - 1);
+    return vceqq_u8(vandq_u8(of_class, mask), vdupq_n_u8((uint8_t)shape));
+}
+
+/* The classes of sixteen cells. */
+static inline uint8x16_t neon_class_index(const uint32_t *cell)
+{
+    return vshrq_n_u8(neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(cell))), 4);
+}
+
+static inline void neon_add(int32_t *level_q8, int16x8_t gain_q8)
+{
+    vst1q_s32(level_q8, vaddw_s16(vld1q_s32(level_q8), vget_low_s16(gain_q8)));
+    vst1q_s32(level_q8 + 4, vaddw_high_s16(vld1q_s32(level_q8 + 4), gain_q8));
+}
+
+void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell, int32_t *restrict level_q8,
+                     uint32_t cells)
+{
+    const int32x4x4_t word = vld1q_s32_x4(word_of_class);
+    int16x4_t gain_q8[4];
+    for (size_t n = 0; n < 4; n++) {
+        gain_q8[n] = vshrn_n_s32(word.val[n], LM_K_SHAPE_BITS);
+    }
+    const uint8x16_t first = vreinterpretq_u8_s16(vcombine_s16(gain_q8[0], gain_q8[1]));
+    const uint8x16_t second = vreinterpretq_u8_s16(vcombine_s16(gain_q8[2], gain_q8[3]));
+    const uint8x16_t bytes[2] = {vuzp1q_u8(first, second), vuzp2q_u8(first, second)};
+    for (size_t i = 0; i < cells; i += NEON_CELLS) {
+        const uint16x8x2_t of_cells = neon_words_of_16(bytes, neon_class_index(cell + i));
+        neon_add(level_q8 + i, vreinterpretq_s16_u16(of_cells.val[0]));
+        neon_add(level_q8 + i + 8, vreinterpretq_s16_u16(of_cells.val[1]));
+    }
+}
+
+void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_q8,
+                      const uint32_t *entry, const uint32_t *cell, int32_t *restrict level_q8,
+                      uint32_t cells)
+{
+    const uint8x16_t has_it = neon_classes_of(word_of_class, shape);
+    for (size_t i = 0; i < cells; i += NEON_CELLS, entry += 2) {
+        const uint8x16_t here = vqtbl1q_u8(has_it, neon_class_index(cell + i));
+        if (vmaxvq_u32(vreinterpretq_u32_u8(here)) != 0) {
+            const int16x8_t low = vmovl_s8(vget_low_s8(vreinterpretq_s8_u8(here)));
+            const int16x8_t high = vmovl_high_s8(vreinterpretq_s8_u8(here));
+            neon_add(level_q8 + i, vandq_s16(vld1q_s16(row_q8 + entry[0]), low));
+            neon_add(level_q8 + i + 8, vandq_s16(vld1q_s16(row_q8 + entry[1]), high));
+        }
+    }
+}
+
+void lm_k_noise_add(const int16_t *row_q8, const uint32_t *entry, int32_t *restrict level_q8,
+                    uint32_t cells)
+{
+    for (size_t i = 0; i < cells; i += LM_LANES) {
+        neon_add(level_q8 + i, vld1q_s16(row_q8 + entry[i / LM_LANES]));
+    }
+}
+
+void lm_k_noise_floor(const int16_t *row_q8, const uint32_t *entry, int32_t floor_q8,
+                      const int32_t *level_q8, int32_t *restrict noisy_q8, uint32_t cells)
+{
+    const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
+    const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
+    const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
+    const int32x4_t one = vdupq_n_s32(floor_q8);
+    const int32x4x4_t floor = {{one, one, one, one}};
+    for (size_t i = 0; i < cells; i += NEON_CELLS) {
+        /* A block that is left over is done twice at once. */
+        const size_t next = i + LM_LANES < cells ? i + LM_LANES : i;
+        const int32x4x4_t level = neon_load_8_and_8(level_q8 + i, level_q8 + next);
+        int32x4x4_t sum = neon_db_q8_sum(lows, highs, falls, level, floor);
+        const int16x8_t draw_q8[2] = {vld1q_s16(row_q8 + entry[i / LM_LANES]),
+                                      vld1q_s16(row_q8 + entry[next / LM_LANES])};
+        for (size_t n = 0; n < 2; n++) {
+            sum.val[2 * n] = vaddw_s16(sum.val[2 * n], vget_low_s16(draw_q8[n]));
+            sum.val[2 * n + 1] = vaddw_high_s16(sum.val[2 * n + 1], draw_q8[n]);
+        }
+        neon_store_8_and_8(noisy_q8 + i, noisy_q8 + next, sum);
+    }
+}

@@ -1,0 +1,39 @@
+#include "draws.h"
+#include "fx/log.h"
+#include "lm/kernels_radar.h"
+
+/* Signal and noise of a bin, which are added in decibels; the noise fluctuates. */
+static inline int32_t sum_db_q8(uint32_t power_q24, int32_t loss_db_q8, int32_t noise_db_q8,
+                                int32_t draw_db_q8)
+{
+    const int32_t signal_db_q8 = fx_db_q8_of_many(power_q24) - LM_K_UNIT_Q24_DB_Q8;
+    return fx_db_q8_sum_of_many(signal_db_q8 - loss_db_q8, noise_db_q8 + draw_db_q8);
+}
+
+void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict power_q24,
+                 int32_t *restrict level_db_q8, uint32_t cells)
+{
+    const struct lm_k_receiver r = *receiver;
+    int32_t draw_db_q8[LM_CELLS_ROOM];
+    draw(r.row_db_q8, r.entry, draw_db_q8, cells);
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t noise_db_q8 = r.noise_db_q8[i] + r.rise_db_q8;
+        level_db_q8[i] = sum_db_q8(power_q24[i], 0, noise_db_q8, draw_db_q8[i]) - r.fall_db_q8[i];
+    }
+}
+
+void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k_rain *in_rain,
+                         const uint32_t *restrict power_q24, int32_t *restrict level_db_q8,
+                         uint32_t cells)
+{
+    const struct lm_k_receiver r = *receiver;
+    const struct lm_k_rain w = *in_rain;
+    int32_t draw_db_q8[LM_CELLS_ROOM];
+    draw(r.row_db_q8, r.entry, draw_db_q8, cells);
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t noise_db_q8 =
+            fx_db_q8_sum_of_many(r.noise_db_q8[i] + r.rise_db_q8, w.rain_db_q8[i]);
+        level_db_q8[i] =
+            sum_db_q8(power_q24[i], w.loss_db_q8[i], noise_db_q8, draw_db_q8[i]) - r.fall_db_q8[i];
+    }
+}

@@ -1,0 +1,48 @@
+#include "draws.h"
+#include "fx/log.h"
+#include "lm/kernels_clutter.h"
+
+static int32_t word_of(const int32_t *word_of_class, uint32_t cell)
+{
+    return word_of_class[(int32_t)cell >> 4 & (LM_K_CODES - 1)]; /* signed: becomes a gather */
+}
+
+void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell,
+                     int32_t *restrict level_db_q8, uint32_t cells)
+{
+    for (uint32_t i = 0; i < cells; i++) {
+        level_db_q8[i] += word_of(word_of_class, cell[i]) >> LM_K_SHAPE_BITS;
+    }
+}
+
+void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_db_q8,
+                      const uint32_t *entry, const uint32_t *cell, int32_t *restrict level_db_q8,
+                      uint32_t cells)
+{
+    int32_t draw_db_q8[LM_CELLS_ROOM];
+    draw(row_db_q8, entry, draw_db_q8, cells);
+    for (uint32_t i = 0; i < cells; i++) {
+        const int32_t its = word_of(word_of_class, cell[i]) & ((1 << LM_K_SHAPE_BITS) - 1);
+        level_db_q8[i] += its == shape ? draw_db_q8[i] : 0;
+    }
+}
+
+void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *restrict level_db_q8,
+                    uint32_t cells)
+{
+    int32_t draw_db_q8[LM_CELLS_ROOM];
+    draw(row_db_q8, entry, draw_db_q8, cells);
+    for (uint32_t i = 0; i < cells; i++) {
+        level_db_q8[i] += draw_db_q8[i];
+    }
+}
+
+void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t floor_db_q8,
+                      const int32_t *level_db_q8, int32_t *restrict noisy_db_q8, uint32_t cells)
+{
+    int32_t draw_db_q8[LM_CELLS_ROOM];
+    draw(row_db_q8, entry, draw_db_q8, cells);
+    for (uint32_t i = 0; i < cells; i++) {
+        noisy_db_q8[i] = fx_db_q8_sum_of_many(level_db_q8[i], floor_db_q8) + draw_db_q8[i];
+    }
+}

@@ -1,0 +1,119 @@
+/* Kernels of the clutter: light and shadow along a line, texture, speckle and noise floor. What
+ * holds for every kernel (arrays, groups of 16 cells, ownership, costs) is in lm/kernels_map.h. */
+#ifndef LM_KERNELS_CLUTTER_H
+#define LM_KERNELS_CLUTTER_H
+
+#include <stdint.h>
+
+#include "lm/lanes.h"
+
+/* Light and shadow. Equations: docs/EQUATIONS.md, "Illumination". */
+
+/* Marks of a class: at most one is set. */
+enum { LM_K_WATER = 1, LM_K_STRUCTURE = 2, LM_K_TREES = 4, LM_K_MARK_BITS = 3 };
+
+enum { LM_K_CODES = 16 }; /* height codes of a map, and classes */
+
+/* The tops of a line's cells, and where they are seen from. */
+struct lm_k_tops {
+    uint32_t first;                    /* cells before this one are too near to be shown */
+    uint32_t cells;                    /* of the line; 1..LM_CELLS_MAX */
+    const uint32_t *cell;              /* as in a tile record: struct lm_tile_point */
+    const int32_t *elevation_m_q14;    /* of the terrain; magnitude below 2^29 */
+    const int32_t *fall_m_q14;         /* antenna's height and the Earth's drop; below 2^30 */
+    const int32_t *inverse_range;      /* 1 / range in the tangents' format and Q17 more; 0..2^31 */
+    const uint16_t *height_dm_of_code; /* LM_K_CODES entries */
+};
+
+enum { LM_K_Q19_OF_DM = 52429 }; /* 2^19 / 10; times 65535 it takes 32 bits */
+
+/* Height of a structure, metres * 16384; up to 0.4 mm more for 100 m; below 2^27. */
+static inline int32_t lm_k_height_m_q14(uint16_t height_dm)
+{
+    return (int32_t)(height_dm * (uint32_t)LM_K_Q19_OF_DM >> 5);
+}
+
+/* Tangent of the elevation angle under which the top of cell i appears, given its structure's
+ * height. The top is below 2^31 above the antenna, times 2^31. Sums have no sign, because what
+ * stands behind the last cell may be anything; nor has the shift, whose 32 bits do not see it. */
+static inline int32_t lm_k_tangent(const struct lm_k_tops *tops, uint32_t i, int32_t height_m_q14)
+{
+    const uint32_t top_m_q14 = (uint32_t)tops->elevation_m_q14[i] + (uint32_t)height_m_q14;
+    const int32_t apparent_m_q14 = (int32_t)(top_m_q14 - (uint32_t)tops->fall_m_q14[i]);
+    return (int32_t)((uint64_t)((int64_t)apparent_m_q14 * tops->inverse_range[i]) >> 31);
+}
+
+/* The highest tangent of cells first..cells - 1, of which there is one at least. Reads no other
+ * cell. Cost: 3 a cell. */
+int32_t lm_k_highest_tangent(const struct lm_k_tops *tops);
+
+/* A line to be lit, and where the results go. */
+struct lm_k_lit_line {
+    struct lm_k_tops tops;
+    const int32_t *gain_db_q8;    /* level of reflectivity code 0 where the horizon rises by 1 */
+    const uint8_t *mark_of_class; /* LM_K_CODES entries */
+    uint8_t edge_structure_db_q3; /* leading edge of a structure, dB * 8 */
+    uint8_t edge_trees_db_q3;     /* and of trees */
+    int32_t shore_db_q8;          /* brightness of the first cell behind water */
+    int32_t shore_fall_db_q8;     /* by how much each further one is darker; 0 or more */
+    int32_t start;                /* horizon before cell `first`; within 2^31 of any tangent */
+    int32_t *horizon;             /* result */
+    int32_t *level_db_q8;         /* result */
+    int32_t *work;                /* scratch of LM_K_LIGHT_WORK entries; too large for a stack */
+};
+
+enum {
+    LM_K_SHORE_STRETCH = 32, /* cells that are searched for shores at once */
+    LM_K_LIGHT_WORK = 4 * (LM_LANES + LM_CELLS_ROOM) + LM_K_SHORE_STRETCH
+};
+
+/* Work out horizon and level of every cell of a line.
+ *
+ *     tangent                          horizon[i + 1], the largest tangent so far
+ *        |            ________________________________
+ *        |     ______/ #                   .
+ *        | ___/ #    # #     .  .     .  . .     .       #  lit: the horizon rises
+ *        |_#__#_.__.__#_#_____________________________     .  dark: LM_LEVEL_SHADOW
+ *          first                               cells
+ *
+ * - horizon[0..first] is `start`; horizon[i + 1] is what cell i leaves, for i < cells.
+ * - A cell that does not raise the horizon, or lies before `first`, has LM_LEVEL_SHADOW.
+ * - The level of a lit cell is its reflectivity, gain_db_q8 and 10 log10 of the horizon's rise,
+ *   and the edge of its class where the cell before it has another mark. It takes 17 bits.
+ * - From the first cell behind water on, lit cells are brighter by what is left of the shore, to
+ *   the next water or where nothing is left.
+ *
+ * Arrays of tops and gain are read from cell 0 on; `horizon` has room for LM_CELLS_ROOM entries and
+ * is written from entry 0 on. `first` may be `cells`. Cost: 9 a cell. */
+void lm_k_light(const struct lm_k_lit_line *line);
+
+/* Texture and speckle: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
+ * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
+ * it. `entry` has one for each block of the line, and for whole groups. */
+
+/* A class's word: the gain in 1/256 dB, signed and of 16 bits, times 2^LM_K_SHAPE_BITS; below it
+ * the row of its draws. One number, so that a vector machine looks up one. */
+enum { LM_K_SHAPE_BITS = 3 };
+
+/* Add to each level the gain of its cell's class. `cell` as in a tile record; `word_of_class` has
+ * LM_K_CODES entries. Cost: 2 a cell. */
+void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell, int32_t *level_db_q8,
+                     uint32_t cells);
+
+/* Add draws to the levels of those cells whose class has this shape (0..7), and to no others.
+ * Cost: 2 a cell, 1 where a group has no such cell. */
+void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_db_q8,
+                      const uint32_t *entry, const uint32_t *cell, int32_t *level_db_q8,
+                      uint32_t cells);
+
+/* Add a draw to each level. Groups have LM_LANES cells. Cost: 1 a cell. */
+void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *level_db_q8,
+                    uint32_t cells);
+
+/* Power of each level and the floor together, as a level, and a draw added to it. Levels and floor
+ * within 2^30 of 0; the sum's worst error is 0.018 dB. Groups have LM_LANES cells. Cost: 5 a
+ * cell. */
+void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t floor_db_q8,
+                      const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
+
+#endif

@@ -1,0 +1,81 @@
+/* Kernel of the map: cells and elevations that tiles of the cache have at the places of a line.
+ *
+ * Kernels are the loops over a line's cells that some machines have vectors for. Each takes a whole
+ * line and returns a whole line. firmware/kernels/c/ has them for every machine; another folder
+ * beside it has the same functions for one architecture (arm64), equal to the bit. The board's
+ * make file chooses: `KERNELS := arm64`. What holds for all of them:
+ *
+ * - Every pointer is borrowed for the call, and arrays that are not said to be the same are apart.
+ * - Arrays need the alignment of their type, no more.
+ * - A kernel reads and writes whole groups of cells. An array of a line has LM_CELLS_ROOM entries
+ *   (lm/lanes.h), and no kernel touches one behind the last group that holds a cell. A group has
+ *   16 cells unless the function says otherwise. What a kernel leaves in a group behind the last
+ *   cell means nothing; what it finds there may be anything.
+ * - No kernel fails, waits, or keeps anything between two calls.
+ * - Costs are instructions a cell where vectors have 128 bits (arm64), measured by
+ *   `make bench-zcu102`; calls add some 30 a line. */
+#ifndef LM_KERNELS_MAP_H
+#define LM_KERNELS_MAP_H
+
+#include <stdint.h>
+
+#include "fx/lerp.h"
+#include "fx/mem.h"
+#include "lm/tile_point.h"
+#include "lm/track.h"
+
+/* Where the cells of a line lie in their tiles, as fractions of a tile's side times 2^32: no place
+ * lies outside a tile, and the way from one tile into the next is a sum that overflows.
+ *
+ *     2^32 +---------------+      bits 31..26  row or column of the cell, 0..63
+ *          |               |      bits 25..18  place in the cell, 0..255 / 256
+ *    north |         x     |      bits 17..0   left out
+ *          |               |
+ *        0 +---------------+
+ *          0     east    2^32 */
+struct lm_places {
+    struct lm_track north, east;
+};
+
+/* What a tile has at one place. */
+struct lm_ground {
+    uint32_t cell; /* as in the record */
+    int32_t
+        elevation_q14; /* terrain, metres * 16384; up to 8 too low: weights are 1/256 each way */
+};
+
+/* One cell of lm_k_tile_read, for those who look at a single place.
+ *
+ * `points`: the points of the first tile of a pool. `record`: from there to the points of the tile
+ * in question, counted in points. `scale`: elevation of the tile's base in Q14, a multiple of 256,
+ * less the number of bits (4..8) by which a post in Q16 is shifted down to metres in Q14.
+ *
+ * The four posts around the place are blended (fx/lerp.h). The post's part and the base are below
+ * 2^29. Indices are signed, because then a loop of this becomes vector gathers. */
+static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *points, uint32_t record,
+                                                int32_t scale, uint32_t north, uint32_t east)
+{
+    const int32_t row = (int32_t)(north >> 26), column = (int32_t)(east >> 26);
+    const int32_t at = (int32_t)record + row * LM_TILE_POSTS + column;
+    const uint32_t south_west = fx_load_u32(points + at), south_east = fx_load_u32(points + at + 1);
+    const uint32_t north_west = fx_load_u32(points + at + LM_TILE_POSTS);
+    const uint32_t north_east = fx_load_u32(points + at + LM_TILE_POSTS + 1);
+    const uint32_t post_q16 = fx_bilerp_u16_q16(
+        (uint16_t)(south_west >> 16), (uint16_t)(south_east >> 16), (uint16_t)(north_west >> 16),
+        (uint16_t)(north_east >> 16), east << 6 >> 24, north << 6 >> 24);
+    const uint32_t shift = (0u - (uint32_t)scale) & 0xFF;
+    return (struct lm_ground){.cell = south_west & 0xFFFF,
+                              .elevation_q14 = scale + (int32_t)(post_q16 >> shift)};
+}
+
+/* Read the tiles at cells first..first + 8 * groups - 1 of a line, in place.
+ *
+ * Before: cell[k] is the `record` and elevation_m_q14[k] the `scale` of lm_k_tile_sample for the
+ * tile that cell k lies in, also for the cells that fill the last group of 8. After: the cell as in
+ * the record, and the elevation of the terrain in metres * 16384.
+ *
+ * `points` as there, of tiles that have passed lm_tile_check. Cost: 13 a cell. */
+void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_places *places,
+                    uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
+
+#endif

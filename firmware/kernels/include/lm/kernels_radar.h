@@ -1,0 +1,84 @@
+/* Kernels of the radar: bins from cells, azimuths and beam, receiver, tone. What holds for every
+ * kernel (arrays, groups of 16 cells, ownership, costs) is in lm/kernels_map.h. */
+#ifndef LM_KERNELS_RADAR_H
+#define LM_KERNELS_RADAR_H
+
+#include <stdint.h>
+
+#include "fx/tables.h"
+
+/* Each bin takes the level of one cell: bin_db_q8[i] = level_db_q8[cell_of[i]]. `cell_of` may hold
+ * any index of `level_db_q8`. Reads and writes no bin behind the last one. Cost: 2 a cell. */
+void lm_k_gather(const int32_t *level_db_q8, const int32_t *cell_of, int32_t *bin_db_q8,
+                 uint32_t cells);
+
+/* Replace each level by its power, in place: `line` holds level_db_q8 (signed; magnitude below
+ * 2^17), and then 10^(level / 10) in Q24. 1 is the least power, -72.25 dB; powers of 24.08 dB and
+ * more are those of the octave below 2^32. Writes no entry behind the last cell. Cost: 4 a cell. */
+void lm_k_powers_of_levels(uint32_t *line, uint32_t cells);
+
+/* Sum of powers, as levels: add `level_db_q8` to `sum_db_q8`. Levels within 2^30 of 0; worst error
+ * 0.018 dB. Writes no entry behind the last cell. Cost: 4 a cell. */
+void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t cells);
+
+/* Likewise, less `less_db_q8` and not below `least_db_q8`, with the result in `level_db_q8`. Writes
+ * no entry behind the last cell. Cost: 5 a cell. */
+void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
+                      int32_t *level_db_q8, uint32_t cells);
+
+enum { LM_K_TAPS = 8 };
+
+/* Weighted sum of LM_K_TAPS lines of powers, rounded down. The weights add up to 65536, so that the
+ * sum fits. Writes no entry behind the last cell. Cost: 7 a cell. */
+void lm_k_beam_sum(const uint32_t *const power_q24[LM_K_TAPS], const uint32_t *weight_q16,
+                   uint32_t *sum_q24, uint32_t cells);
+
+/* 10 log10 2^24, in 1/256 dB. */
+enum { LM_K_UNIT_Q24_DB_Q8 = 24 * FX_DB_OCTAVE_Q14 / 64 };
+
+/* A receiver's noise, and its bins. */
+struct lm_k_receiver {
+    const int32_t *noise_db_q8; /* mean of each bin, dB of gamma */
+    const int32_t *fall_db_q8;  /* by how much each bin is darker in the end */
+    int32_t rise_db_q8;         /* of the noise, in all bins */
+    const int16_t *row_db_q8;   /* draws of the noise, as in lm/kernels_clutter.h */
+    const uint32_t *entry;
+};
+
+/* Rain in each bin. */
+struct lm_k_rain {
+    const int32_t *loss_db_q8; /* on the way there and back; 0 or more */
+    const int32_t *rain_db_q8; /* what the drops return, dB of gamma */
+};
+
+/* Level of each bin: signal and noise added as powers, then less fall_db_q8. The noise is its mean
+ * and a draw; 1.0 in Q24 of power is 0 dB; no power counts as -240 dB. Levels within 2^30 of 0.
+ * Groups have LM_LANES cells. Cost: 9 a cell. */
+void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32_t *level_db_q8,
+                 uint32_t cells);
+
+/* Likewise in rain: the signal is weaker by the loss; noise and rain add before the draw, because
+ * drops move and so fluctuate as the noise does. Cost: 14 a cell. */
+void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
+                         const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
+
+enum { LM_K_TONE_LINES = 64, LM_K_TONE_PLACES_LOG2 = 5 };
+
+/* A tone curve from black to white. */
+struct lm_k_tone_curve {
+    int32_t black_db_q8, white_db_q8; /* 16 bits each, black below white */
+    int32_t step_log2;                /* 0..5: a step is 2^step_log2 of 1/256 dB */
+    const int32_t *grey_of_step;      /* 0..255 of each step from black, step 0, to white */
+
+    /* NULL, or the same curve in LM_K_TONE_LINES straight lines, for machines that look up 64 bytes
+     * at once. Step 32 n + k has (base[n] + k slope[n]) / 256, rounded down. Rows: lower byte and
+     * upper byte of base[n] - 32 (n mod 8) slope[n], modulo 2^16; slope[n]. */
+    const uint8_t (*lines)[LM_K_TONE_LINES];
+};
+
+/* Grey of each level; any level is allowed. Writes no entry behind the last cell. Cost: 2 a cell,
+ * without lines 6. */
+void lm_k_tone(const struct lm_k_tone_curve *tone, const int32_t *level_db_q8, uint8_t *grey,
+               uint32_t cells);
+
+#endif

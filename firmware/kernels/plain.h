@@ -1,0 +1,26 @@
+/* The kernels of c/ by the names that they have where another folder's are linked beside them: its
+ * tails call them, and a test compares the two (tests/kernels). lm_k_tone_c is lm_k_tone of c/. */
+#ifndef PLAIN_H
+#define PLAIN_H
+
+#include "lm/kernels_clutter.h"
+#include "lm/kernels_map.h"
+#include "lm/kernels_radar.h"
+
+extern __typeof__(lm_k_tile_read) lm_k_tile_read_c;
+extern __typeof__(lm_k_highest_tangent) lm_k_highest_tangent_c;
+extern __typeof__(lm_k_light) lm_k_light_c;
+extern __typeof__(lm_k_class_gain) lm_k_class_gain_c;
+extern __typeof__(lm_k_class_noise) lm_k_class_noise_c;
+extern __typeof__(lm_k_noise_add) lm_k_noise_add_c;
+extern __typeof__(lm_k_noise_floor) lm_k_noise_floor_c;
+extern __typeof__(lm_k_gather) lm_k_gather_c;
+extern __typeof__(lm_k_powers_of_levels) lm_k_powers_of_levels_c;
+extern __typeof__(lm_k_levels_add) lm_k_levels_add_c;
+extern __typeof__(lm_k_levels_mean) lm_k_levels_mean_c;
+extern __typeof__(lm_k_beam_sum) lm_k_beam_sum_c;
+extern __typeof__(lm_k_detect) lm_k_detect_c;
+extern __typeof__(lm_k_detect_in_rain) lm_k_detect_in_rain_c;
+extern __typeof__(lm_k_tone) lm_k_tone_c;
+
+#endif

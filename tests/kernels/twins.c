@@ -1,0 +1,512 @@
+/* Compares each kernel of this build with its twin in plain C, in one process, on lines drawn at
+ * random and at the edges of what their headers allow. Prints TAP, and of a kernel that differs the
+ * seed, the first cell, and both values. That the plain ones are right is for the unit tests.
+ *
+ *   twins [SEEDS]     so many lines for each kernel (300) */
+#include "fx/sat.h"
+#include "hs/rng.h"
+#include "lm/aspect.h"
+#include "lm/noise.h"
+#include "lm/tile_cache.h"
+#include "lm/tone.h"
+#include "plain.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { GUARD = 32, ROOM = LM_CELLS_ROOM + GUARD, TILES = 3, UNTOUCHED = 0x5a5a5a5a };
+
+/* What a kernel may read. Each array is drawn anew for each seed, its whole length. */
+struct input {
+    struct hs_rng rng;
+    uint32_t cells, first;
+    int32_t number[4]; /* floor, rise, ...: what the kernel has of that kind */
+    uint32_t cell[ROOM], power_q24[LM_K_TAPS][ROOM], weight_q16[LM_K_TAPS], entry[ROOM];
+    int32_t level_db_q8[ROOM], other_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
+    int32_t cell_of[ROOM], word_of_class[LM_K_CODES];
+    uint8_t looks_log2;
+    struct lm_tile pool[TILES];
+    struct lm_places places;
+    struct lm_scan_line ground;
+    struct lm_range_grid grid;
+    struct lm_legend legend;
+    struct lm_tone tone;
+};
+
+/* What a kernel may write: two lines, of which entries first..end - 1 are compared. From entry
+ * `room` on, a kernel may write nothing that its twin does not. */
+struct output {
+    uint32_t line[2][ROOM];
+    uint32_t first, end[2], room;
+    int32_t work[LM_K_LIGHT_WORK];
+};
+
+/* A row of the table below. `run` calls the kernel, or its twin in plain C. */
+struct kernel {
+    const char *name;
+    void (*draw)(struct input *in);
+    void (*run)(const struct input *in, struct output *out, bool is_plain);
+};
+
+#define TWIN(kernel) (is_plain ? kernel##_c : (kernel))
+
+/* A number of any size up to 32 bits; each size is as likely. */
+static uint32_t any_size(struct input *in)
+{
+    const uint32_t any = (uint32_t)hs_rng_u64(&in->rng);
+    return any >> hs_rng_below(&in->rng, 32);
+}
+
+/* -limit..limit - 1, and now and then an end of that. */
+static int32_t within(struct input *in, uint32_t limit)
+{
+    const uint32_t any = hs_rng_below(&in->rng, 2 * limit), rare = hs_rng_below(&in->rng, 40);
+    return (int32_t)((rare == 0 ? 0 : rare == 1 ? 2 * limit - 1 : any) - limit);
+}
+
+/* Sizes, small ones apart, up to `limit`. */
+static int32_t within_size(struct input *in, uint32_t limit)
+{
+    return within(in, fx_max_u32(limit >> hs_rng_below(&in->rng, 24), 1));
+}
+
+static void draw_line(int32_t *line, struct input *in, uint32_t limit)
+{
+    for (uint32_t k = 0; k < ROOM; k++) {
+        line[k] = hs_rng_below(&in->rng, 8) == 0 ? LM_LEVEL_SHADOW : within_size(in, limit);
+    }
+}
+
+static void draw_noise(struct input *in)
+{
+    in->looks_log2 = (uint8_t)hs_rng_below(&in->rng, LM_NOISE_LOOKS_LOG2_MAX + 1);
+    for (uint32_t k = 0; k < ROOM; k++) {
+        in->entry[k] = hs_rng_below(&in->rng, LM_NOISE_SLICES);
+    }
+}
+
+static void draw_levels(struct input *in)
+{
+    draw_noise(in);
+    draw_line(in->level_db_q8, in, 1 << 30);
+    draw_line(in->other_db_q8, in, 1 << 30);
+    in->number[0] = within_size(in, 1 << 30);
+    in->number[1] = within_size(in, 1 << 15);
+}
+
+static void draw_small_levels(struct input *in)
+{
+    draw_line(in->level_db_q8, in, 1 << 17);
+    for (uint32_t k = 0; k < ROOM; k++) {
+        in->cell_of[k] = (int32_t)hs_rng_below(&in->rng, LM_CELLS_ROOM);
+    }
+}
+
+static void draw_powers(struct input *in)
+{
+    uint32_t left = 65536;
+    draw_noise(in);
+    for (uint32_t j = 0; j < LM_K_TAPS; j++) {
+        in->weight_q16[j] = j + 1 < LM_K_TAPS ? hs_rng_below(&in->rng, left + 1) : left;
+        left -= in->weight_q16[j];
+        for (uint32_t k = 0; k < ROOM; k++) {
+            in->power_q24[j][k] = hs_rng_below(&in->rng, 8) ? any_size(in) : 0u - (k & 1);
+        }
+    }
+    draw_line(in->level_db_q8, in, 1 << 20);
+    draw_line(in->other_db_q8, in, 1 << 20);
+    draw_line(in->fall_db_q8, in, 1 << 20);
+    draw_line(in->rain_db_q8, in, 1 << 20);
+    in->number[0] = within_size(in, 1 << 16);
+}
+
+static void draw_classes(struct input *in)
+{
+    draw_levels(in);
+    for (uint32_t k = 0; k < LM_K_CODES; k++) {
+        const int32_t gain_db_q8 = within_size(in, 1 << 15);
+        in->word_of_class[k] = gain_db_q8 * (1 << LM_K_SHAPE_BITS) +
+                               (int32_t)hs_rng_below(&in->rng, LM_NOISE_LOOKS_LOG2_MAX + 2);
+    }
+    for (uint32_t k = 0; k < ROOM; k++) {
+        in->cell[k] = (uint32_t)hs_rng_u64(&in->rng) & 0xffff;
+    }
+}
+
+/* A tile of whatever numbers lm_tile_check lets pass. */
+static void draw_tile(struct input *in, struct lm_tile *tile)
+{
+    for (int i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
+        const uint16_t any = (uint16_t)hs_rng_u64(&in->rng);
+        struct lm_tile_point *point = &tile->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS];
+        point->post = any % 16 == 0 ? 0 : any % 16 == 1 ? UINT16_MAX : any;
+        point->cell = (uint16_t)hs_rng_u64(&in->rng);
+    }
+    tile->base_q6 = within(in, 1 << 20);
+    tile->post_shift = (uint8_t)hs_rng_below(&in->rng, LM_TILE_POST_SHIFT_MAX + 1);
+}
+
+static struct lm_track any_track(struct input *in)
+{
+    const uint32_t at = (uint32_t)hs_rng_u64(&in->rng), step = any_size(in);
+    return (struct lm_track){at, step, any_size(in)};
+}
+
+/* Runs of a line in tiles of a pool. */
+static void draw_tiles(struct input *in)
+{
+    in->places.north = any_track(in);
+    in->places.east = any_track(in);
+    in->first = hs_rng_below(&in->rng, in->cells);
+    draw_tile(in, &in->pool[hs_rng_below(&in->rng, TILES)]);
+    struct lm_tile_base tile = {0, 0};
+    for (uint32_t k = 0; k < LM_CELLS_ROOM; k++) {
+        if (k == 0 || hs_rng_below(&in->rng, 50) == 0) {
+            tile = lm_tile_base_of(in->pool, &in->pool[hs_rng_below(&in->rng, TILES)]);
+        }
+        in->ground.cell[k] = tile.record;
+        in->ground.elevation_q14[k] = tile.scale;
+    }
+}
+
+/* Ground as rough as a cell is long, and now and then any; classes in runs. */
+static void draw_ground(struct input *in, uint32_t cell_q8)
+{
+    const bool is_wild = hs_rng_below(&in->rng, 4) == 0;
+    uint32_t low_bits = (uint32_t)hs_rng_u64(&in->rng);
+    int32_t elevation_q14 = 0;
+    for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
+        const uint32_t any = (uint32_t)hs_rng_u64(&in->rng);
+        low_bits = any % 5 == 0 ? any >> 8 : low_bits;
+        elevation_q14 = is_wild ? (int32_t)hs_rng_below(&in->rng, 48000u << 14) - (16000 << 14)
+                                : elevation_q14 % (1 << 26) + within(in, 16 * cell_q8);
+        in->ground.cell[i] = (any >> 16 & 0xFF00) | (low_bits & 0xFF);
+        in->ground.elevation_q14[i] = elevation_q14;
+    }
+}
+
+static void draw_legend(struct input *in, struct lm_aspect_config *config)
+{
+    static struct lm_classes classes;
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        classes.entry[i].kind = (uint8_t)hs_rng_below(&in->rng, LM_KINDS);
+        classes.height_dm[i] = (uint16_t)(any_size(in) >> 16);
+    }
+    config->edge_structure_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
+    config->edge_trees_q8 = (int16_t)hs_rng_below(&in->rng, 32768);
+    config->shore_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
+    config->shore_width_m = (uint16_t)hs_rng_below(&in->rng, 2000);
+    lm_legend_set(&in->legend, config, &classes);
+}
+
+static void draw_light(struct input *in)
+{
+    struct lm_aspect_config config;
+    const uint32_t cell_q8 = 128u << hs_rng_below(&in->rng, 10);
+    const uint32_t first_q8 = cell_q8 + hs_rng_below(&in->rng, 60000 * 256);
+    draw_legend(in, &config);
+    draw_ground(in, cell_q8);
+    memset(&in->grid, 0, sizeof in->grid);
+    lm_range_grid_set(&in->grid, &config, first_q8, cell_q8, in->cells, within(in, 30000 * 1024),
+                      0);
+    in->number[0] = within_size(in, 1 << 30);
+}
+
+/* Windows of any width, with every gamma; levels in them, beside them, and beyond 16 bits. */
+static void draw_tone(struct input *in)
+{
+    const uint32_t widest_q8 = 255u * 256u >> hs_rng_below(&in->rng, 8);
+    const int32_t span_q8 = fx_max_i32((int32_t)hs_rng_below(&in->rng, widest_q8 + 1), 256);
+    const int32_t black_q8 = (int32_t)hs_rng_below(&in->rng, 65536u - (uint32_t)span_q8) - 32768;
+    const struct lm_tone_config config = {(int16_t)black_q8, (int16_t)(black_q8 + span_q8),
+                                          (uint16_t)(26 + hs_rng_below(&in->rng, 999))};
+    if (lm_tone_set(&in->tone, &config) != 0) {
+        abort();
+    }
+    for (uint32_t k = 0; k < ROOM; k++) {
+        const int32_t any = (int32_t)hs_rng_u64(&in->rng), place_q15 = any & 0x7fff;
+        in->level_db_q8[k] =
+            k % 8 == 0 ? any >> k % 24 : black_q8 - 500 + (place_q15 * (span_q8 + 1000) >> 15);
+    }
+}
+
+static int32_t *signed_line(uint32_t *line)
+{
+    return (int32_t *)line;
+}
+
+static const int16_t *row_of(const struct input *in)
+{
+    return lm_noise_q8[in->looks_log2];
+}
+
+static void copy_cells(uint32_t *to, const void *from)
+{
+    memcpy(to, from, LM_CELLS_ROOM * sizeof *to);
+}
+
+static void run_tile_read(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t groups = (in->cells - in->first + LM_LANES - 1) / LM_LANES;
+    copy_cells(out->line[0], in->ground.cell);
+    copy_cells(out->line[1], in->ground.elevation_q14);
+    TWIN(lm_k_tile_read)
+    (in->pool[0].points[0], &in->places, in->first, groups, out->line[0],
+     signed_line(out->line[1]));
+    out->first = in->first;
+    out->end[0] = out->end[1] = in->first + groups * LM_LANES;
+    out->room = out->end[0];
+}
+
+static struct lm_k_tops tops_of(const struct input *in)
+{
+    return (struct lm_k_tops){in->grid.first,           in->cells,         in->ground.cell,
+                              in->ground.elevation_q14, in->grid.fall_q14, in->grid.inverse_range,
+                              in->legend.height_dm};
+}
+
+static void run_light(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_tops tops = tops_of(in);
+    const uint16_t height_dm = tops.height_dm_of_code[tops.cell[tops.first] % LM_K_CODES];
+    const int64_t tangent = lm_k_tangent(&tops, tops.first, lm_k_height_m_q14(height_dm));
+    const struct lm_k_lit_line line = {
+        .tops = tops,
+        .gain_db_q8 = in->grid.gain_q8,
+        .mark_of_class = in->legend.mark,
+        .edge_structure_db_q3 = in->legend.edge_structure_q3,
+        .edge_trees_db_q3 = in->legend.edge_trees_q3,
+        .shore_db_q8 = in->legend.shore_q8,
+        .shore_fall_db_q8 = in->grid.shore_fall_q8,
+        .start = fx_sat_i32(tangent + in->number[0]),
+        .horizon = signed_line(out->line[0]),
+        .level_db_q8 = signed_line(out->line[1]),
+        .work = out->work,
+    };
+    TWIN(lm_k_light)(&line);
+    out->end[0] = in->cells + 1;
+    out->room = LM_CELLS_ROOM;
+}
+
+static void run_highest_tangent(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_tops tops = tops_of(in);
+    const bool has_cells = tops.first < tops.cells;
+    out->line[0][0] = has_cells ? (uint32_t)TWIN(lm_k_highest_tangent)(&tops) : 0;
+    out->end[0] = 1;
+    out->room = 16;
+}
+
+static void run_class_gain(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_class_gain)
+    (in->word_of_class, in->cell, signed_line(out->line[0]), in->cells);
+}
+
+static void run_class_noise(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_class_noise)
+    (in->word_of_class, in->looks_log2, row_of(in), in->entry, in->cell, signed_line(out->line[0]),
+     in->cells);
+}
+
+static void run_noise_add(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_noise_add)(row_of(in), in->entry, signed_line(out->line[0]), in->cells);
+}
+
+static void run_noise_floor(const struct input *in, struct output *out, bool is_plain)
+{
+    TWIN(lm_k_noise_floor)
+    (row_of(in), in->entry, in->number[0], in->level_db_q8, signed_line(out->line[0]), in->cells);
+}
+
+static void run_gather(const struct input *in, struct output *out, bool is_plain)
+{
+    TWIN(lm_k_gather)(in->level_db_q8, in->cell_of, signed_line(out->line[0]), in->cells);
+    out->room = in->cells;
+}
+
+static void run_powers_of_levels(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_powers_of_levels)(out->line[0], in->cells);
+    out->room = in->cells;
+}
+
+static void run_levels_add(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->other_db_q8);
+    TWIN(lm_k_levels_add)(signed_line(out->line[0]), in->level_db_q8, in->cells);
+    out->room = in->cells;
+}
+
+static void run_levels_mean(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_levels_mean)
+    (in->other_db_q8, in->number[1], LM_LEVEL_SHADOW, signed_line(out->line[0]), in->cells);
+    out->room = in->cells;
+}
+
+static void run_beam_sum(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t *power_q24[LM_K_TAPS];
+    for (uint32_t j = 0; j < LM_K_TAPS; j++) {
+        power_q24[j] = in->power_q24[j];
+    }
+    TWIN(lm_k_beam_sum)(power_q24, in->weight_q16, out->line[0], in->cells);
+    out->room = in->cells;
+}
+
+static struct lm_k_receiver receiver_of(const struct input *in)
+{
+    return (struct lm_k_receiver){in->level_db_q8, in->fall_db_q8, in->number[0], row_of(in),
+                                  in->entry};
+}
+
+static void run_detect(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_receiver r = receiver_of(in);
+    TWIN(lm_k_detect)(&r, in->power_q24[0], signed_line(out->line[0]), in->cells);
+}
+
+static void run_detect_in_rain(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_receiver r = receiver_of(in);
+    const struct lm_k_rain rain = {in->other_db_q8, in->rain_db_q8};
+    TWIN(lm_k_detect_in_rain)(&r, &rain, in->power_q24[0], signed_line(out->line[0]), in->cells);
+}
+
+static void run_tone(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_tone_curve curve = {in->tone.black_q8, in->tone.white_q8, in->tone.step_log2,
+                                          in->tone.grey,
+                                          in->tone.has_lines ? in->tone.lines : NULL};
+    uint8_t grey[ROOM];
+    memset(grey, UNTOUCHED & 0xff, sizeof grey);
+    TWIN(lm_k_tone)(&curve, in->level_db_q8, grey, in->cells);
+    for (uint32_t k = 0; k < ROOM; k++) {
+        out->line[0][k] = k < in->cells || grey[k] != (UNTOUCHED & 0xff) ? grey[k] : UNTOUCHED;
+    }
+    out->room = in->cells;
+}
+
+static const struct kernel kernels[] = {
+    {"lm_k_tile_read", draw_tiles, run_tile_read},
+    {"lm_k_light", draw_light, run_light},
+    {"lm_k_highest_tangent", draw_light, run_highest_tangent},
+    {"lm_k_class_gain", draw_classes, run_class_gain},
+    {"lm_k_class_noise", draw_classes, run_class_noise},
+    {"lm_k_noise_add", draw_levels, run_noise_add},
+    {"lm_k_noise_floor", draw_levels, run_noise_floor},
+    {"lm_k_gather", draw_small_levels, run_gather},
+    {"lm_k_powers_of_levels", draw_small_levels, run_powers_of_levels},
+    {"lm_k_levels_add", draw_levels, run_levels_add},
+    {"lm_k_levels_mean", draw_levels, run_levels_mean},
+    {"lm_k_beam_sum", draw_powers, run_beam_sum},
+    {"lm_k_detect", draw_powers, run_detect},
+    {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},
+    {"lm_k_tone", draw_tone, run_tone},
+};
+
+enum { KERNELS = sizeof kernels / sizeof *kernels };
+
+/* Lengths on either side of a group first, then any. */
+static void draw_cells(struct input *in, uint32_t seed)
+{
+    static const uint16_t edge[] = {1, 7, 8, 9, 15, 16, 17, 31, 32, 33, 63, 64, 65, 255, 256, 257};
+    const uint32_t edges = sizeof edge / sizeof *edge;
+    in->cells = seed < edges              ? edge[seed]
+                : seed < edges + LM_LANES ? LM_CELLS_MAX - (seed - edges)
+                                          : 1 + hs_rng_below(&in->rng, LM_CELLS_MAX);
+}
+
+/* The entry of a line where an output is not as in the other, or the length where none is. */
+static uint32_t first_different(const struct output *a, const struct output *b, int line)
+{
+    uint32_t k = a->first;
+    while (k < a->end[line] && a->line[line][k] == b->line[line][k]) {
+        k++;
+    }
+    return k;
+}
+
+/* The entry from `room` on that was written to by one of them alone, or ROOM. */
+static uint32_t first_touched(const struct output *plain, const struct output *ours, int line)
+{
+    uint32_t k = ours->room;
+    while (k < ROOM && ours->line[line][k] == plain->line[line][k]) {
+        k++;
+    }
+    return k;
+}
+
+/* Whether one line comes out alike and nothing else is written; says what is not so. */
+static bool is_same(const struct kernel *kernel, const struct input *in, uint32_t seed,
+                    const struct output *ours, const struct output *plain)
+{
+    for (int line = 0; line < 2; line++) {
+        const uint32_t k = first_different(ours, plain, line);
+        if (k < ours->end[line]) {
+            printf("# %s, seed %u: cell %u of %u of line %d is %d, and %d in plain C\n",
+                   kernel->name, (unsigned)seed, (unsigned)k, (unsigned)in->cells, line,
+                   (int)ours->line[line][k], (int)plain->line[line][k]);
+            return false;
+        }
+        const uint32_t touched = first_touched(plain, ours, line);
+        if (touched < ROOM) {
+            printf("# %s, seed %u: entry %u of line %d is written, behind %u cells\n", kernel->name,
+                   (unsigned)seed, (unsigned)touched, line, (unsigned)in->cells);
+            return false;
+        }
+    }
+    return true;
+}
+
+static void run(const struct kernel *kernel, const struct input *in, struct output *out,
+                bool is_plain)
+{
+    for (uint32_t k = 0; k < ROOM; k++) {
+        out->line[0][k] = out->line[1][k] = UNTOUCHED;
+    }
+    out->first = 0;
+    out->end[0] = out->end[1] = in->cells;
+    out->room = (in->cells + 15) / 16 * 16;
+    kernel->run(in, out, is_plain);
+}
+
+static bool is_same_of_all_seeds(const struct kernel *kernel, uint32_t seeds)
+{
+    static struct input in;
+    static struct output ours, plain;
+    for (uint32_t seed = 0; seed < seeds; seed++) {
+        hs_rng_seed(&in.rng, seed);
+        draw_cells(&in, seed);
+        kernel->draw(&in);
+        run(kernel, &in, &ours, false);
+        run(kernel, &in, &plain, true);
+        if (!is_same(kernel, &in, seed, &ours, &plain)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int main(int argc, char **argv)
+{
+    const uint32_t seeds = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 300;
+    int failed = 0;
+    for (int i = 0; i < KERNELS; i++) {
+        const bool is_good = is_same_of_all_seeds(&kernels[i], seeds);
+        failed += !is_good;
+        printf("%sok %d - %s gives what its twin in plain C does, bit for bit\n",
+               is_good ? "" : "not ", i + 1, kernels[i].name);
+    }
+    printf("1..%d\n", KERNELS);
+    return failed != 0;
+}
