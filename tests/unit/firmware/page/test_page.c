@@ -61,6 +61,12 @@ static int labelled(const struct rig *r, int osb, const char *words, int is_inve
     }
 }
 
+/* The index of a scale, nautical miles. */
+static int scale_of(int range_nm)
+{
+    return lm_radar_find_range(&lm_radar_default, range_nm);
+}
+
 /* A rig in good flight at 10 nm with a picture. */
 static struct rig *fly(void)
 {
@@ -124,20 +130,20 @@ TEST(osb_2_lets_the_range_follow_the_cursor)
     press(r, 2);
     assert_true(r->unit.page.is_auto_range);
     assert_true(labelled(r, 2, "AUTO", 0));
-    assert_int_equal(r->unit.page.range, 0);
+    assert_int_equal(r->unit.page.range, scale_of(10));
     /* From half of 10 nm up to where 20 nm is due. */
     command(r, lm_control_slew(0, 1000));
     run(r, 0.55);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    assert_int_equal(r->unit.page.range, 1);
+    assert_int_equal(r->unit.page.range, scale_of(20));
     assert_true(says(r, "20"));
     /* And back: below 0.425 of 20 nm. */
     command(r, lm_control_slew(0, -1000));
     run(r, 0.2);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    assert_int_equal(r->unit.page.range, 0);
+    assert_int_equal(r->unit.page.range, scale_of(10));
     press(r, 2);
     assert_true(labelled(r, 2, "MAN", 0));
     free_rig(r);
@@ -424,7 +430,7 @@ TEST(osb_8_and_10_choose_snowplow_or_a_held_cursor)
     press(r, 8);
     assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
     const struct lm_place start = r->unit.cursor.place;
-    const uint32_t half = lm_radar_default.range[0].range_m / 2;
+    const uint32_t half = lm_radar_default.range[scale_of(10)].range_m / 2;
     run(r, 10);
     assert_true(r->unit.cursor.place.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
@@ -450,7 +456,7 @@ TEST(osb_9_brings_the_cursor_home)
     run(r, 0.1);
     assert_true(r->unit.cursor.offset.x_q8 > 80 * 256);
     press(r, 9);
-    const uint32_t half = lm_radar_default.range[0].range_m / 2;
+    const uint32_t half = lm_radar_default.range[scale_of(10)].range_m / 2;
     assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512);
     assert_in_range(r->unit.cursor.range_m, half - 60, half + 20);
     free_rig(r);
@@ -483,7 +489,7 @@ TEST(osb_11_held_opens_the_choice_of_labels)
     press(r, 1);
     press(r, 19);
     assert_true(labelled(r, 9, "CZ", 0) && labelled(r, 1, "GM", 1));
-    assert_int_equal(r->unit.page.range, 0); /* the keys only choose */
+    assert_int_equal(r->unit.page.range, scale_of(10)); /* the keys only choose */
     press(r, 11);
     assert_int_equal(r->unit.page.format, LM_FORMAT_RADAR);
     press(r, 11);
@@ -592,21 +598,23 @@ TEST(osb_18_goes_through_the_azimuths)
 TEST(osb_19_and_20_step_the_range_and_end_automatic_range)
 {
     struct rig *r = fly();
-    const char *const words[] = {"10", "20", "40", "80"};
+    char words[8];
     press(r, 2);
-    for (int range = 1; range < lm_radar_default.ranges; range++) {
+    for (int range = scale_of(10) + 1; range < lm_radar_default.ranges; range++) {
         press(r, 20);
         assert_int_equal(r->unit.picture.sector.command.range, range);
-        assert_true(says(r, words[range]));
+        snprintf(words, sizeof words, "%d", lm_radar_default.range[range].range_nm);
+        assert_true(says(r, words));
         assert_false(r->unit.page.is_auto_range);
     }
     assert_false(says(r, LM_GLYPH_UP)); /* no further */
     press(r, 20);
-    assert_int_equal(r->unit.picture.sector.command.range, 3);
+    assert_int_equal(r->unit.picture.sector.command.range, lm_radar_default.ranges - 1);
     for (int range = lm_radar_default.ranges - 2; range >= 0; range--) {
         press(r, 19);
         assert_int_equal(r->unit.picture.sector.command.range, range);
-        assert_true(says(r, words[range]));
+        snprintf(words, sizeof words, "%d", lm_radar_default.range[range].range_nm);
+        assert_true(says(r, words));
     }
     assert_false(says(r, LM_GLYPH_DOWN));
     free_rig(r);
@@ -907,7 +915,7 @@ TEST(a_cursor_that_nobody_moved_goes_with_the_scale)
     assert_true(r->unit.cursor.is_on_glass);
     press(r, 20); /* up */
     run(r, 0.3);
-    assert_int_equal(r->unit.page.range, 1);
+    assert_int_equal(r->unit.page.range, scale_of(20));
     assert_true(fabs(cursor_nm(r) - 10) < 0.1);
     /* A window opens about the new place. */
     command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FIELD_EXP}});
@@ -941,7 +949,7 @@ TEST(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes)
         const struct lm_place before = r->unit.cursor.place;
         press(r, 20);
         run(r, 0.3);
-        assert_int_equal(r->unit.page.range, 1);
+        assert_int_equal(r->unit.page.range, scale_of(20));
         assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
         free_rig(r);
     }
@@ -956,7 +964,7 @@ TEST(a_cursor_that_the_range_follows_is_left_where_it_is)
     const struct lm_place before = r->unit.cursor.place;
     assert_true(r->unit.cursor.is_home);
     run(r, 20);
-    assert_int_equal(r->unit.page.range, 0);
+    assert_int_equal(r->unit.page.range, scale_of(10));
     assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
     free_rig(r);
 }

@@ -280,7 +280,7 @@ TEST(behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade)
 {
     struct world *w = make_world();
     for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
-        set_scale(w, range, 4000, 400);
+        set_scale(w, range, 4000, 100); /* shorter than any bin */
         const double stc_m = lm_radar_default.range[range].stc_m;
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = 1 << 24;

@@ -207,6 +207,12 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
     }
 }
 
+/* The index of a scale, nautical miles. */
+static uint8_t scale_of(int32_t range_nm)
+{
+    return (uint8_t)lm_radar_find_range(&lm_radar_default, range_nm);
+}
+
 static struct ref_receiver receiver_of(const struct trial *t)
 {
     const struct lm_sector *s = &t->w->sector;
@@ -368,9 +374,9 @@ static struct sector_world *make_country(void)
 TEST(real_beam_sweeps_agree_with_the_reference_at_every_stage)
 {
     struct sector_world *w = make_country();
-    struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 0};
+    struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = scale_of(10)};
     judge_sweep(w, "GM, 10 nm", &command, NULL);
-    command.range = 2;
+    command.range = scale_of(40);
     judge_sweep(w, "GM, 40 nm", &command, NULL);
     free_sector_world(w);
 }
@@ -378,7 +384,7 @@ TEST(real_beam_sweeps_agree_with_the_reference_at_every_stage)
 TEST(rain_jammer_and_sea_agree_with_the_reference)
 {
     struct sector_world *w = make_country();
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = 1};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = scale_of(20)};
     const struct lm_environment e = {
         .rain = {{place_at(w, 12, 17000), 5000, 25}, {place_at(w, -20, 24000), 7000, 4}},
         .jammer = {{place_at(w, 30, 50000), 25 * 256}},
@@ -392,8 +398,10 @@ TEST(rain_jammer_and_sea_agree_with_the_reference)
 TEST(windows_agree_with_the_reference_at_every_stage)
 {
     struct sector_world *w = make_country();
-    struct lm_sector_command command = {
-        .mode = LM_SECTOR_GM, .field = LM_FIELD_EXP, .range = 1, .centre = place_at(w, 25, 25000)};
+    struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                        .field = LM_FIELD_EXP,
+                                        .range = scale_of(20),
+                                        .centre = place_at(w, 25, 25000)};
     judge_sweep(w, "EXP, 20 nm", &command, NULL);
     command.field = LM_FIELD_DBS1;
     command.centre = place_at(w, 45, 25000);

@@ -105,22 +105,22 @@ static void scales_fall(struct lm_radar *r)
 
 static void names_of_scales_fall(struct lm_radar *r)
 {
-    r->range[3].range_nm = 30;
+    r->range[3].range_nm = r->range[2].range_nm;
 }
 
 static void a_row_is_not_counted(struct lm_radar *r)
 {
-    r->ranges = 3;
+    r->ranges--;
 }
 
 static void a_mode_lacks_the_smallest_scale(struct lm_radar *r)
 {
-    r->mode[LM_SECTOR_SEA].range_max_nm = 9;
+    r->mode[LM_SECTOR_SEA].range_max_nm = (uint16_t)(r->range[0].range_nm - 1);
 }
 
 static void a_field_lacks_the_smallest_scale(struct lm_radar *r)
 {
-    r->field[LM_FIELD_DBS2].range_max_nm = 9;
+    r->field[LM_FIELD_DBS2].range_max_nm = (uint16_t)(r->range[0].range_nm - 1);
 }
 
 static void the_start_is_no_scale(struct lm_radar *r)
