@@ -1,5 +1,6 @@
-/* The page's state and its keys: what each button means, what its label says. Knows nothing of
- * drawing; docs/guide.md, "The page", is the map of the keys. */
+/* Page: what the operator has selected, what each button means, and what its label says. Knows
+ * nothing of drawing. docs/guide.md, "The page", is the map of the keys; each page is a table of
+ * them in firmware/page/page_*.c. */
 #ifndef LM_PAGE_H
 #define LM_PAGE_H
 
@@ -10,6 +11,7 @@
 #include "lm/palette.h"
 #include "lm/radar.h"
 
+/* Formats: what the page shows. */
 enum lm_format {
     LM_FORMAT_RADAR,
     LM_FORMAT_CNTL, /* settings, over the radar picture */
@@ -19,7 +21,7 @@ enum lm_format {
     LM_FORMATS
 };
 
-/* What a press asks of the unit, bits. */
+/* Effects: what a press or a command asks of the unit, bits. */
 enum lm_effect {
     LM_EFFECT_SECTOR = 1 << 0, /* begin a sector with the page's mode, field and scales */
     LM_EFFECT_PATCH = 1 << 1,  /* the patch's cell is another */
@@ -44,28 +46,39 @@ enum {
 /* The only home of what the operator selected: kind of picture, mode, field, scales, freeze and the
  * settings of the control page. Everybody may read it; only the functions below change it. */
 struct lm_page {
-    const struct lm_radar *radar; /* borrowed */
+    const struct lm_radar *radar; /* borrowed; keeps its contract (lm/radar_check.h) */
     uint8_t format;               /* enum lm_format */
     uint8_t picture;              /* enum lm_picture_kind */
-    uint8_t mode, field;          /* of the sector: enum lm_sector_mode, enum lm_field */
-    uint8_t range, azimuth;       /* indices into the radar table */
-    uint8_t cell;                 /* of the patch: index into this page's own table */
-    bool is_baro;  /* the aircraft's height is the barometric one, where there is one */
-    bool is_slant; /* a patch is shown in slant range: what stands high leans nearer */
-    bool is_tilt_manual, is_pencil; /* the beam: its axis by hand, and not spoiled into a fan */
-    int16_t tilt_tenths;            /* of its axis, tenths of a degree up */
-    bool is_auto_range, is_override, is_frozen, is_snowplow, is_decluttered;
-    uint32_t hidden; /* bit n - 1: declutter takes OSB n's label away */
+    uint8_t mode;                 /* of the sector: enum lm_sector_mode */
+    uint8_t field;                /* of the sector: enum lm_field, one that the mode has */
+    uint8_t range;                /* row of the radar table's scales, 0..lm_page_range_last */
+    uint8_t azimuth;              /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
+    uint8_t cell;                 /* of the patch, 0..LM_SAR_CELLS_OFFERED - 1: lm_page_cell_mm */
+    bool is_baro;        /* the aircraft's height is the barometric one, where there is one */
+    bool is_slant;       /* a patch is shown in slant range: what stands high leans nearer */
+    bool is_tilt_manual; /* the operator points the beam's axis, not the radar */
+    bool is_pencil;      /* the beam is not spoiled into a fan */
+    int16_t tilt_tenths; /* of the beam's axis, tenths of a degree up */
+    bool is_auto_range;  /* the scale follows the cursor */
+    bool is_override;    /* the transmitter is silent */
+    bool is_frozen;      /* the picture is held, and the aircraft moves over it */
+    bool is_snowplow;    /* the cursor stays ahead of the aircraft */
+    bool is_decluttered; /* the labels in `hidden` are not shown on the radar page */
+    uint32_t hidden;     /* bit n - 1: declutter takes OSB n's label away */
 
-    int16_t gain_db, knob;
-    int8_t black_db, white_db, gamma_tenths; /* changes of the radar table's tone */
+    int16_t gain_db;     /* brighter than the radar table says, -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB */
+    int16_t knob;        /* deflection, -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
+    int8_t black_db;     /* added to the table's black, -LM_WINDOW_MAX_DB..LM_WINDOW_MAX_DB */
+    int8_t white_db;     /* added to the table's white, likewise */
+    int8_t gamma_tenths; /* added to the table's gamma, -LM_GAMMA_MAX..LM_GAMMA_MAX */
     struct lm_palette_config palette;
 };
 
-/* As after power-up: ground map, 40 nm, A6, manual range, automatic tilt. */
+/* As after power-up: the first mode, the whole sector, the table's scale of the start, its first
+ * sector, manual range, automatic tilt. Borrows `radar` for as long as the page lives. */
 void lm_page_init(struct lm_page *p, const struct lm_radar *radar);
 
-/* How button 1..LM_BUTTONS behaves while it is held. */
+/* The style of button 1..LM_BUTTONS, on the page that is shown: how it behaves while it is held. */
 enum lm_key_style lm_page_key_style(const struct lm_page *p, uint8_t button);
 
 /* Obey a button. Returns the effects, 0 for a button that means nothing here. A button whose value
@@ -101,7 +114,7 @@ void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind);
  * points it by hand. */
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt);
 
-/* Text beside a key: one or two lines of at most five characters. */
+/* Label: text beside a key, one or two lines of at most five characters. */
 struct lm_label {
     char line[2][6];
     bool is_inverse;
@@ -110,14 +123,15 @@ struct lm_label {
 /* The label of OSB 1..20 as it is to be shown now; false when there is none. */
 bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label);
 
-/* What stands between OSB `osb` and `osb` - 1 (left) or + 1 (right): the value that these two keys
- * change. False when nothing does. */
+/* The value between OSB `osb` and its partner, which these two keys change: `osb` - 1 on the left
+ * edge, `osb` + 1 on the right one. False when there is none. */
 bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value);
 
-/* Cell of the patch that the page offers. */
+/* The cell of a patch that the operator has selected, millimetres. */
 uint32_t lm_page_cell_mm(const struct lm_page *p);
 
-/* The radar table's tone after gain, knob and settings. */
+/* The tone of a picture: the radar table's after gain, knob and settings. Fit for lm_tone_set
+ * whenever the table keeps its contract. */
 struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table);
 
 #endif

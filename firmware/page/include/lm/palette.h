@@ -1,4 +1,5 @@
-/* What a grey and a symbol look like on the glass: tint, day or night, and three rockers. */
+/* Palette: the colours of greys and symbols on the glass, by tint, day or night, and three
+ * rockers. */
 #ifndef LM_PALETTE_H
 #define LM_PALETTE_H
 
