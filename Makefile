@@ -45,9 +45,10 @@ check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
 	@$(MAKE) --no-print-directory -j2 check-built
 
 # The program test_NAME, or else all that have NAME in folder or name.
-TESTS_named = $(strip $(or $(filter %/$(NAME) %/test_$(NAME),$(TESTS)),$(foreach t,$(TESTS),$(if $(findstring $(NAME),$(t:$(O)/bin/tests/%=%)),$t))))
+TESTS_named = $(strip $(or $(filter %/$(NAME) %/test_$(NAME),$(TESTS)), \
+    $(foreach t,$(TESTS),$(if $(findstring $(NAME),$(t:$(O)/bin/tests/%=%)),$t))))
 .PHONY: test
-test: $(if $(NAME),$(TESTS_named)) ## Build and run the tests of one name or folder: make test NAME=page, NAME=firmware/bus
+test: $(if $(NAME),$(TESTS_named)) ## Build and run the tests of one name or folder: NAME=page, NAME=firmware/bus
 	@$(if $(and $(NAME),$(TESTS_named)),sh tests/run.sh $(O) $(TESTS_named),\
 	    echo 'make test NAME=...: a test, or a part of its folder or name, one of'; \
 	    printf '  %s\n' $(patsubst test_%,%,$(subst /test_,/,$(TESTS:$(O)/bin/tests/%=%))); exit 1)

@@ -8,6 +8,7 @@ $(PANEL): LDLIBS = $(LINUX_LIBS)
 
 .PHONY: panel-program panel-package
 panel-package: $(PANEL)
-	@STRIP=$(TRIPLET)-strip OBJDUMP=$(TRIPLET)-objdump sh bsp/panel-linux/debian/build.sh $(ARCH) $(PANEL) build/packages $(RUN)
+	@STRIP=$(TRIPLET)-strip OBJDUMP=$(TRIPLET)-objdump \
+	    sh bsp/panel-linux/debian/build.sh $(ARCH) $(PANEL) build/packages $(RUN)
 panel-program: $(PANEL)
 	@echo 'the panel for $(ARCH): $(PANEL)'

@@ -10,7 +10,8 @@ $(RULES): tests/discipline/rules.py tests/discipline/rules_test.py $(O)/tests/di
 $(O)/tests/discipline/flags: Makefile make/layers.mk firmware/rooms.mk firmware/kernels/kernels.mk host-sim/host-sim.mk make/host.mk \
     bsp/$(BOARD)/board.mk tests/discipline/discipline.mk | $(LIB_firmware) $(LIB_fixed)
 	@mkdir -p $(@D)
-	@printf '%s\n' 'CC $(CC)' 'GENERATED $(GEN)' 'ROOMS $(ROOMS)' $(foreach r,$(ROOMS) drivers,'SEES_$r $(SEES_$r)') 'fixed $(CFLAGS_fixed)' \
+	@printf '%s\n' 'CC $(CC)' 'GENERATED $(GEN)' 'ROOMS $(ROOMS)' \
+	    $(foreach r,$(ROOMS) drivers,'SEES_$r $(SEES_$r)') 'fixed $(CFLAGS_fixed)' \
 	    $(foreach r,$(ROOMS),'firmware/$r $(call CFLAGS_room,$r)') 'drivers $(CFLAGS_drivers)' 'bsp $(CFLAGS_bsp)' \
 	    'LIBRARIES $(HOST_LIBS:%=host-sim/%)' 'PROGRAMS $(HOST_PROGRAMS:%=host-sim/programs/%)' \
 	    $(foreach p,$(HOST_LIBS) $(HOST_PROGRAMS:%=programs/%), \

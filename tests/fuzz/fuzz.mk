@@ -7,8 +7,10 @@ $(call archive, $(LIB_fuzz), $(addprefix tests/fuzz/,seal.c file.c track.c))
 
 define fuzz_rules
 FUZZ_NAMES += $(1)
-FUZZ_OBJS_$(1) := $(call sanitized,$(addprefix $(O)/tests/fuzz/,fuzz_$(1).o quiet_errors.o) $(LIB_fuzz) $(LIB_support) $(call host_archives,$(2)))
-$(O)/bin/tests/fuzz/test_fuzz_$(1): $(O)/sanitized/tests/fuzz/standalone.o $$(FUZZ_OBJS_$(1)) | $(wildcard tests/fuzz/corpus/$(1)/*)
+FUZZ_OBJS_$(1) := $(call sanitized,$(addprefix $(O)/tests/fuzz/,fuzz_$(1).o quiet_errors.o) \
+    $(LIB_fuzz) $(LIB_support) $(call host_archives,$(2)))
+$(O)/bin/tests/fuzz/test_fuzz_$(1): $(O)/sanitized/tests/fuzz/standalone.o $$(FUZZ_OBJS_$(1)) \
+    | $(wildcard tests/fuzz/corpus/$(1)/*)
 $(O)/bin/fuzz/$(1): $$(FUZZ_OBJS_$(1))
 $(O)/bin/tests/fuzz/test_fuzz_$(1) $(O)/bin/fuzz/$(1): LDLIBS = $$(LINK_sanitized) $$(call host_links,$(2))
 endef

@@ -4,7 +4,8 @@ ZCU102_TOOLS := $(addprefix $(ZCU102)/,golden_flash picture_checksum scenario)
 ZCU102_TESTS := $(addprefix $(ZCU102)/,test_devices test_golden test_flight test_memory)
 TESTS += $(ZCU102_TESTS)
 $(O)/tests/zcu102/%.o: CFLAGS_host += -Itests/golden
-$(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c)) $(LIB_support) \
+$(ZCU102)/golden_flash: $(call objs,$(addprefix tests/,zcu102/golden_flash.c golden/golden_scene.c golden/golden_signature.c)) \
+    $(LIB_support) \
     $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: $(O)/tests/zcu102/picture_checksum.o $(LIB_hs) $(LIB_fixed)
 $(ZCU102)/picture_checksum: LDLIBS := $(call pkgs,libs,libpng)
@@ -13,7 +14,8 @@ $(ZCU102)/scenario: $(O)/tests/zcu102/scenario.o $(call host_archives,sim driver
 # Whatever this make was told about compilers and folders is not for the board's.
 .PHONY: zcu102-images
 zcu102-images:
-	@! command -v aarch64-linux-gnu-gcc >/dev/null || env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=zcu102 all
+	@! command -v aarch64-linux-gnu-gcc >/dev/null || \
+	    env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=zcu102 all
 
 $(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) $(addprefix $(O)/bin/landmass-,sim nav) | zcu102-images
 	@mkdir -p $(@D)

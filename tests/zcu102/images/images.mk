@@ -1,4 +1,4 @@
-# Images that tests run on the board ZCU102, beside the product. They are built with the board's make (bsp/zcu102/board.mk).
+# Images that tests run on the board ZCU102, beside the product. The board's make builds them (bsp/zcu102/board.mk).
 ifeq ($(BOARD),zcu102)
 CFLAGS_host += -Itests/golden -Itests/zcu102 -Itests/zcu102/images
 TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf devices.elf faults.elf)
