@@ -1,4 +1,12 @@
-/* A SAR patch: parallel lines along the line of sight, constant cell both ways. */
+/* SAR patch: a synthetic-aperture picture of cells x cells, drawn once. Its lines are parallel to
+ * the line of sight, and its cell is the same in range and across.
+ *
+ * Order of the calls: lm_sar_start, then lm_sar_prefetch for some lines and lm_sar_prefetch_targets
+ * while tiles are read, then for each line lm_sar_sample_ahead until it says true, and
+ * lm_sar_draw_line until s->line is radar->sar.cells. The order of the stages behind them is in
+ * lm/line.h. Only lm_sar_start fails; every call runs in bounded time.
+ *
+ * Source: docs/EQUATIONS.md, "Synthetic aperture". */
 #ifndef LM_SAR_H
 #define LM_SAR_H
 
@@ -25,10 +33,11 @@ enum {
     LM_SAR_RING = LM_SAR_AHEAD + LM_DEFOCUS_REACH + 1
 };
 
-/* No line is drawn faster: a dwell shorter than that of all lines takes as long as they do. */
+/* Shortest time from a line to the next. A patch whose dwell is shorter than all its lines together
+ * takes as long as the lines. */
 enum { LM_SAR_LINE_MIN_US = 500 };
 
-/* How the aircraft flies while it makes a patch: what the dwell and the limits depend on. */
+/* Flight of the aircraft while it makes a patch. Dwell and limits depend on it. */
 struct lm_sar_flight {
     uint32_t speed_mm_s;    /* over the ground */
     fx_bam_t track;         /* of that velocity */
@@ -37,7 +46,7 @@ struct lm_sar_flight {
     uint32_t lateral_mm_s2; /* how hard it turns: what motion compensation leaves of it blurs */
 };
 
-/* What a patch finds when it begins. */
+/* Surroundings of a patch at its start. */
 struct lm_sar_scene {
     const struct lm_sar_flight *flight;  /* NULL for a commanded place in the air; read at once */
     const struct lm_target_set *targets; /* borrowed; NULL: none */
@@ -49,7 +58,8 @@ struct lm_sar_scene {
     uint64_t time_us;                         /* movers are where they are then */
 };
 
-/* A patch that is being drawn. Set up by lm_sar_start. */
+/* State of a patch. Set up by lm_sar_start; the caller owns it, and all fields are read-only to
+ * others. */
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
@@ -86,46 +96,56 @@ struct lm_sar {
     uint64_t power_q32[LM_CELLS_ROOM];           /* scratch */
 };
 
-/* LM_OK, or LM_ERR_RANGE with *s unchanged: a cell, range or height outside the limits; and seen
- * from an aircraft in flight a squint below the table's, a bearing beyond the antenna's limit off
- * the nose, or a dwell beyond the table's. A commanded place in the air knows none of these three
- * limits; its dwell is that of an aircraft that flies by at the table's reference speed, the patch
- * abeam to the right. The command's geometry must be complete (is_from_ownship already resolved by
- * the caller). */
+/* Start a patch. The command's geometry must be complete: the caller resolves is_from_ownship.
+ * Returns LM_OK, or LM_ERR_RANGE with *s unchanged when
+ * - cell_mm is outside the table's cell_min_mm..cell_max_mm;
+ * - range_m is outside 1,000..250,000, or the patch would begin nearer than 16 LM_RANGE_MIN_M;
+ * - height_q6 is more than 30 km above or below mean sea level;
+ * - in flight (scene->flight), the squint is below the table's squint_min;
+ * - in flight, the bearing is off the nose by more than the antenna's azimuth_limit;
+ * - in flight, the dwell is longer than the table's dwell_max_ms.
+ * A commanded place in the air has none of the last three limits. Its dwell is that of an aircraft
+ * that passes at the table's reference speed, with the patch abeam to the right. Cost: a little
+ * more than lm_sar_set_reference. */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_scene *scene);
 
-/* Take another elevation for that of the patch, which begins anew: when the tile that knows it came
- * after the start. Dwell and limits stay as they were. Cost: about 60 k instructions. */
+/* Change the patch's reference elevation (metres * 1024) and restart it. Called when a finer tile
+ * arrives after lm_sar_start. Dwell and limits are not recomputed. Cost: about 60 k instructions.
+ */
 void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10);
 
-/* Dwell that is left, microseconds. */
+/* Time until the last line is due, microseconds. */
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 
-/* Ask for the tiles of line `line` and of its run-up. */
+/* Ask for the tiles of line `line` (0..radar->sar.cells - 1) and of the ground before it. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
-/* Choose the targets that the patch may show, and want their chips. */
+/* Select the targets that the patch may show, and ask for their chips. */
 void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles);
 
-/* Take samples that the next line needs, at most `at_most` of them: the first line needs
- * LM_SAR_AHEAD + 1, which is more than the time of one line. True when it has all. */
+/* Take samples that the next line needs, at most `at_most` of them. True when the line has all;
+ * false: call again. The first line needs LM_SAR_AHEAD + 1 samples, which is more than one line has
+ * time for. Cost: about 9 k instructions a sample of 256 cells. */
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line);
 
-/* Draw the next line: line->grey has its greys, its cells from [LM_SAR_GUARD] on, and so have the
- * levels that it returns, good until the next call; line->ground is that of the line sampled last,
- * up to LM_SAR_AHEAD lines on, which the first line brings at once. Call while s->line <
- * radar->sar.cells. */
+/* Draw the next line and move on. Call while s->line < radar->sar.cells. The first cell of the
+ * display stands at index LM_SAR_GUARD of line->grey and of the levels (dB * 256) that are
+ * returned; the levels are valid until the next call. line->ground belongs to the line sampled
+ * last, which is up to LM_SAR_AHEAD lines further on. Samples that lm_sar_sample_ahead has not
+ * taken are taken here. Cost without them: about 640 instructions for 256 cells without defocus. */
 const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line);
 
-/* One stage of that: line `number` from the map to noise and speckle, without targets and smear, in
- * line->ground, and its levels from level_q8[LM_SAR_GUARD] on. s->horizon is where it started. */
+/* Sample line `number`: the stages from the map to noise and speckle, without points of targets and
+ * without defocus. Leaves its cells in line->ground, its levels (dB * 256) from
+ * level_q8[LM_SAR_GUARD] on, and in s->horizon the horizon that it started with. For tests; part of
+ * lm_sar_draw_line. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                         struct lm_line *line, int32_t *level_q8);
 
-/* Begin the patch again from its first line. */
+/* Restart the patch from its first line; samples and targets are taken again. */
 void lm_sar_restart(struct lm_sar *s);
 
 #endif

@@ -1,7 +1,11 @@
-/* A sector swept line by line, out and back: the whole of it, or a window around the cursor that
- * the display shows enlarged (EXP, DBS). docs/EQUATIONS.md, "Real beam" and "Doppler beam
- * sharpening".
- */
+/* Sector: a real-beam or Doppler-sharpened picture, swept line by line, out and back. Either the
+ * whole sector (NORM) or a window around the cursor that the display shows enlarged (EXP, DBS).
+ *
+ * Order of the calls: lm_sector_start once, then for each line lm_sector_begin where
+ * lm_sector_is_at_edge, lm_sector_sample_ahead until it says true, and lm_sector_draw_line. The
+ * order of the stages behind them is in lm/line.h. No call fails; all run in bounded time.
+ *
+ * Source: docs/EQUATIONS.md, "Real beam" and "Doppler beam sharpening". */
 #ifndef LM_SECTOR_H
 #define LM_SECTOR_H
 
@@ -20,11 +24,11 @@
 #include "lm/weather.h"
 
 enum {
-    LM_SECTOR_LINES_MAX = 512,  /* that a sweep over a window draws */
-    LM_SECTOR_LINES_PER_S = 512 /* at most, in a window */
+    LM_SECTOR_LINES_MAX = 512,  /* lines of a sweep over a window, at most */
+    LM_SECTOR_LINES_PER_S = 512 /* lines drawn in a second of a window, at most */
 };
 
-/* From where a line is drawn. */
+/* Position, attitude and velocity of the aircraft when a line is drawn. */
 struct lm_platform {
     struct lm_place place;
     int32_t height_q10;  /* metres * 1024 above mean sea level */
@@ -34,7 +38,8 @@ struct lm_platform {
     uint64_t time_us;    /* where movers are */
 };
 
-/* What is asked for. */
+/* What to show. The caller keeps the indices within the radar table and the field within the mode's
+ * field_last. */
 struct lm_sector_command {
     uint8_t mode, field;    /* enum lm_sector_mode, enum lm_field */
     uint8_t range, azimuth; /* indices into the radar table; azimuth counts in NORM alone */
@@ -45,8 +50,9 @@ struct lm_sector_command {
     } beam;
 };
 
-/* A sector that is being swept. Set up by lm_sector_start; the rest is worked out when a sweep
- * begins. */
+/* State of a sector. lm_sector_start sets the command; the geometry is computed by lm_sector_begin.
+ * The caller owns it, may set the four borrowed pointers after the start, and may change
+ * command.centre at an edge; all else is read-only to others. */
 struct lm_sector {
     const struct lm_radar *radar;             /* borrowed */
     const struct lm_environment *environment; /* borrowed; NULL: fair weather, sea state 3 */
@@ -98,15 +104,16 @@ struct lm_sector {
     int32_t level_q8[LM_CELLS_ROOM];   /* and behind the receiver: what the tone is made of */
 };
 
-/* Begin with these scales, all valid; `epoch` is that of the first sweep's noise. Environment,
- * targets and chips are none. */
+/* Start a sector: forget sweep, samples and geometry, and take the command. `epoch` numbers the
+ * first sweep's noise: the same one draws the same. Sets environment, targets and chips to NULL;
+ * the caller sets them next. */
 void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
                      const struct lm_sector_command *command, uint32_t epoch);
 
-/* Point the beam otherwise, in the middle of a sweep if need be. */
+/* Change tilt and shape of the beam at once; in the middle of a sweep its later samples have it. */
 void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting);
 
-/* Whether a sweep is to begin with the next line: the moment to change command.centre. */
+/* True when the next line begins a sweep: the moment to change command.centre. */
 static inline bool lm_sector_is_at_edge(const struct lm_sector *s)
 {
     return !s->is_begun;
@@ -118,27 +125,31 @@ static inline bool lm_sector_is_window(const struct lm_sector *s)
     return s->half_m != 0;
 }
 
-/* Work out the sweep's geometry. Cost: about 200 k instructions. */
+/* Begin a sweep: compute its geometry for where `platform` is now. The database must be open. Cost:
+ * about 200 k instructions where height or window have changed. */
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform);
 
-/* Time that a line takes; after lm_sector_begin. */
+/* Time from a line to the next, microseconds. After lm_sector_begin. */
 uint32_t lm_sector_line_us(const struct lm_sector *s);
 
-/* Edges of line `line` (up to `lines`) from the sector's middle, right positive. */
+/* Left edge of line `line`, and so the right edge of the one before: signed BAM from the sector's
+ * middle, right positive. `line` is 0..lines. */
 int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line);
 
-/* Take samples that the next line needs, as long as `*azimuths`, the azimuths that may still be
- * traced, is above 0; those that were are taken off. A window's first line needs all of
- * LM_BEAM_TAPS, which is more than the time of one line. True when it has all. At an edge, begins
- * the sweep itself. */
+/* Take samples that the next line needs. `*azimuths` is how many azimuths may still be traced;
+ * those that were traced are subtracted, and at 0 the call returns. True when the line has all
+ * samples; false: call again. At an edge it begins the sweep itself. The first line of a window
+ * needs all LM_BEAM_TAPS samples, which is more than one line has time for. Cost: about 11 k
+ * instructions a traced azimuth (docs/benchmarks.md). */
 bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
                             const struct lm_platform *platform, uint32_t *azimuths,
                             struct lm_line *line);
 
-/* Draw the next line into line->grey[0 .. slant.cells - 1], ask for the tiles of one some way
- * ahead, and move on. At an edge, begins the sweep itself. Returns the number of the line. At most
- * LM_BEAM_TAPS lines are sampled for it, one or a few once the ring is full. */
+/* Draw the next line into line->grey[0 .. slant.cells - 1], ask for the tiles of a line some way
+ * ahead, and move on. Returns the number of the line that was drawn. Samples that
+ * lm_sector_sample_ahead has not taken are taken here, LM_BEAM_TAPS at most. Cost without them:
+ * about 5 k instructions for 256 cells. */
 uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line);

@@ -12,7 +12,7 @@ struct lm_coverage {
     bool is_off_map;                 /* as judged last */
 };
 
-/* Look at the first `cells` cells of a line. Cost: about 10 instructions for 16 cells. */
+/* Look at the first `cells` cells of a line. */
 void lm_coverage_add(struct lm_coverage *c, const struct lm_scan_line *line, uint32_t cells);
 
 /* Off the map is a picture that has more than half of its cells outside. */

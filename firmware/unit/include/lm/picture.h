@@ -67,15 +67,15 @@ void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
  * - there is no map that a patch could be made from;
  * - the patch is to be seen from the ownship, and navigation is not good (enum lm_nav_quality);
  * - lm_sar_start refuses it.
- * A sector always begins. Cost: about 20 k instructions for a sector and 80 k for a patch. */
+ * A sector always begins. */
 bool lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
                       const struct lm_sar_command *patch, uint64_t now_us);
 
-/* Begin the picture at hand again from its first line with what is drawn removed: its lines are
- * wrong, or the glass may not show them any longer. A sector sweeps on. */
+/* Remove what is drawn, because the glass may not show it any longer. A patch then begins again
+ * from its first line; a sector sweeps on. */
 void lm_picture_remove(struct lm_picture *p);
 
-/* Take the page's gain and tone, for every kind of picture. Cost: about 10 k instructions. */
+/* Take the page's gain and tone, for every kind of picture. */
 void lm_picture_set_tone(struct lm_picture *p);
 
 /* Point the beam as the page says. A patch's beam is not the operator's: nothing happens. */

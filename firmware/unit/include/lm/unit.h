@@ -1,4 +1,12 @@
-/* The display unit: bus and controls in, pictures out. This alone knows the order of things. */
+/* Display unit: bus frames and controls in, pictures out.
+ *
+ * A board fills struct lm_board, calls lm_unit_init once, and then lm_unit_step for ever, from one
+ * thread; drivers are called back from inside these two. The unit allocates nothing and keeps all
+ * of its state in struct lm_unit, so that two units do not disturb each other.
+ *
+ * Its parts call one way: unit.c -> follow.c -> commands.c -> picture.c, unit.c -> pacing.c ->
+ * picture.c, unit.c -> flags.c, unit.c -> present.c. When a board may feed its watchdog:
+ * lm/liveness.h. What counts as a fault: lm/fault_log.h. */
 #ifndef LM_UNIT_H
 #define LM_UNIT_H
 
@@ -16,7 +24,8 @@
 #include "lm/unit_map.h"
 #include "lm/unit_weather.h"
 
-/* What a board lends, for as long as the unit lives. */
+/* Ports and memory that a board lends. All pointers stay valid as long as the unit lives; none may
+ * be NULL unless that is said. */
 struct lm_board {
     const struct lm_radar *radar;
     const struct lm_flash *flash;
@@ -96,9 +105,16 @@ struct lm_unit {
  *  - LM_ERR_NO_MEMORY iff the tile pool is too small for the database's coarsest level. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
-/* Do what is due at `now_us` (which never goes back): take at most LM_STEP_FRAMES frames from the
- * bus and 8 controls, move the reading of tiles on, draw at most LM_STEP_LINES lines, and show a
- * picture when one is due. Call at least every 4 ms for a smooth sweep. */
+/* Do what is due at `now_us`, microseconds since the start, which never goes back. In this order:
+ *  - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
+ *  - take at most 8 controls;
+ *  - judge the flags, and remove the picture when navigation is lost;
+ *  - move view, cursor and range on;
+ *  - start and finish reads of tiles, without waiting;
+ *  - draw at most LM_STEP_LINES lines;
+ *  - draw and show the glass, every LM_FRAME_US.
+ * Call at least every 4 ms for a smooth sweep. Never waits and never fails: what goes wrong is in
+ * u->flags and u->count. Cost: docs/benchmarks.md. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
 
 #endif
