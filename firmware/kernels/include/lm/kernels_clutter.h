@@ -96,7 +96,7 @@ void lm_k_light(const struct lm_k_lit_line *line);
 enum { LM_K_SHAPE_BITS = 3 };
 
 /* Add to each level the gain of its cell's class. `cell` as in a tile record; `word_of_class` has
- * LM_K_CODES entries. Cost: 2 a cell. */
+ * LM_K_CODES entries. Cost: 3 a cell. */
 void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell, int32_t *level_db_q8,
                      uint32_t cells);
 
@@ -111,7 +111,7 @@ void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *le
                     uint32_t cells);
 
 /* Power of each level and the floor together, as a level, and a draw added to it. Levels and floor
- * within 2^30 of 0; the sum's worst error is 0.018 dB. Groups have LM_LANES cells. Cost: 5 a
+ * within 2^30 of 0; the sum's worst error is 0.018 dB. Groups have LM_LANES cells. Cost: 4 a
  * cell. */
 void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t floor_db_q8,
                       const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);

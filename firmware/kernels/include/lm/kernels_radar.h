@@ -14,15 +14,15 @@ void lm_k_gather(const int32_t *level_db_q8, const int32_t *cell_of, int32_t *bi
 
 /* Replace each level by its power, in place: `line` holds level_db_q8 (signed; magnitude below
  * 2^17), and then 10^(level / 10) in Q24. 1 is the least power, -72.25 dB; powers of 24.08 dB and
- * more are those of the octave below 2^32. Writes no entry behind the last cell. Cost: 4 a cell. */
+ * more are those of the octave below 2^32. Writes no entry behind the last cell. Cost: 3 a cell. */
 void lm_k_powers_of_levels(uint32_t *line, uint32_t cells);
 
 /* Sum of powers, as levels: add `level_db_q8` to `sum_db_q8`. Levels within 2^30 of 0; worst error
- * 0.018 dB. Writes no entry behind the last cell. Cost: 4 a cell. */
+ * 0.018 dB. Writes no entry behind the last cell. Cost: 3 a cell. */
 void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t cells);
 
 /* Likewise, less `less_db_q8` and not below `least_db_q8`, with the result in `level_db_q8`. Writes
- * no entry behind the last cell. Cost: 5 a cell. */
+ * no entry behind the last cell. Cost: 3 a cell. */
 void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
                       int32_t *level_db_q8, uint32_t cells);
 
@@ -58,7 +58,7 @@ void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32
                  uint32_t cells);
 
 /* Likewise in rain: the signal is weaker by the loss; noise and rain add before the draw, because
- * drops move and so fluctuate as the noise does. Cost: 14 a cell. */
+ * drops move and so fluctuate as the noise does. Cost: 12 a cell. */
 void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
                          const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
 
