@@ -157,8 +157,9 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
                        int32_t reference_q10)
 {
     const uint32_t range_m = s->radar->range[s->command.range].range_m;
-    const uint32_t bins = s->half_m ? s->radar->cells * 23u / 16 : s->radar->cells;
-    const uint32_t bin_q8 = (s->half_m ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
+    const uint32_t bins = lm_sector_is_window(s) ? s->radar->cells * 23u / 16 : s->radar->cells;
+    const uint32_t bin_q8 =
+        (lm_sector_is_window(s) ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
     const int32_t above_q10 = height_q10 - reference_q10;
     const uint32_t end_q8 = lm_ground_of_slant(s->edge_q8 + bins * bin_q8, above_q10);
     s->ground_edge_q8 = lm_ground_of_slant(s->edge_q8, above_q10);
@@ -176,7 +177,8 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
 /* The database is read by the bins of the display. */
 static uint8_t level_of(const struct lm_sector *s, const struct lm_db *db)
 {
-    const uint32_t side_m = s->half_m ? 2 * s->half_m : s->radar->range[s->command.range].range_m;
+    const uint32_t side_m =
+        lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range].range_m;
     return lm_scan_level(db, side_m * 1000u / s->radar->cells);
 }
 
@@ -238,13 +240,13 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     s->up = platform->heading;
     s->platform = *platform;
     lm_geo_set_origin(&s->origin, platform->place);
-    if (s->half_m != 0) {
+    if (lm_sector_is_window(s)) {
         set_window(s, platform, platform->height_q10 - reference_q10);
     } else {
         set_sector(s);
     }
     refresh_ranges(s, tiles, platform->height_q10, reference_q10, old_edge_q8, old_half_m);
-    if (s->half_m != 0) {
+    if (lm_sector_is_window(s)) {
         s->has_runup = false;
         lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
     }
@@ -338,7 +340,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .level = s->level};
-    if (!lm_targets_refresh(&s->near, s->targets, &scene) || s->half_m == 0 || !s->chips) {
+    if (!lm_targets_refresh(&s->near, s->targets, &scene) || !lm_sector_is_window(s) || !s->chips) {
         return;
     }
     const struct lm_chip_scene chips = {
@@ -514,7 +516,7 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     if (!s->is_begun) {
         lm_sector_begin(s, tiles, platform);
     }
-    if (s->half_m == 0) {
+    if (!lm_sector_is_window(s)) {
         s->up = platform->heading;
         s->platform.place = platform->place;
     }

@@ -187,6 +187,48 @@ static const struct lm_control patch_from_afar = {
             .height_q6 = 2000 * 64,
             .has_layover = true}};
 
+/* The patch goes when navigation does, whether or not the display takes a frame. */
+TEST(a_patch_that_loses_its_navigation_is_drawn_again_though_no_frame_is_shown)
+{
+    struct rig *r = start_rig();
+    run(r, 1);
+    command(r, patch_here);
+    run(r, 4);
+    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    r->is_display_busy = 1;
+    r->bus.stop_us = r->now_us;
+    run(r, 11);
+    assert_true(r->unit.flags & LM_FLAG_NAV_DEAD);
+    assert_int_equal(r->unit.picture.sar.line, 0);
+    for (size_t i = 0; i < sizeof r->plane; i++) {
+        assert_int_equal(r->plane[i], 0);
+    }
+    r->bus.stop_us = UINT64_MAX;
+    r->bus.sent_us = r->now_us;
+    run(r, 4);
+    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    free_rig(r);
+}
+
+/* What the operator switches is no fault, and only the last few are kept. */
+TEST(the_fault_log_keeps_the_last_faults_and_nothing_else)
+{
+    struct lm_fault_log log = {.count = 0};
+    lm_fault_log_add(&log, LM_FLAG_FROZEN | LM_FLAG_SILENT | LM_FLAG_UNABLE, 1);
+    assert_null(lm_fault_log_at(&log, 0));
+    lm_fault_log_add(&log, LM_FLAG_BUS | LM_FLAG_DB | LM_FLAG_FROZEN, 2);
+    assert_int_equal(log.count, 2);
+    assert_int_equal(1u << lm_fault_log_at(&log, 0)->flag, LM_FLAG_BUS);
+    assert_int_equal(1u << lm_fault_log_at(&log, 1)->flag, LM_FLAG_DB);
+    for (uint64_t n = 0; n < 4; n++) {
+        lm_fault_log_add(&log, LM_FLAG_TILE, 10 + n);
+    }
+    for (uint32_t age = 0; age < LM_FAULTS_KEPT; age++) {
+        assert_int_equal(lm_fault_log_at(&log, age)->time_us, 13 - age);
+    }
+    assert_null(lm_fault_log_at(&log, LM_FAULTS_KEPT));
+}
+
 TEST(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read)
 {
     struct rig *cold = start_rig(), *warm = start_rig();
