@@ -437,12 +437,7 @@ static double speckled_gamma(double x, double y)
 TEST(cells_larger_than_the_pixels_hold_their_commonest_class_and_mean_power)
 {
     scene_classes();
-    struct scene_raster r = {.width = 600,
-                             .height = 600,
-                             .geotransform = {8, 0.0001, 0, 47.1, 0, -0.0001},
-                             .epsg = 4326,
-                             .type = GDT_Byte,
-                             .value = speckled_class};
+    struct scene_raster r = scene_in_degrees(600, 8, 47.1, 0.0001, GDT_Byte, speckled_class);
     scene_write("classes.tif", &r);
     r.type = GDT_Float32;
     r.value = speckled_gamma;

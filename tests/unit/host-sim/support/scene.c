@@ -39,6 +39,17 @@ static void set_crs(GDALDatasetH dataset, int epsg)
     OSRDestroySpatialReference(crs);
 }
 
+struct scene_raster scene_in_degrees(int side, double west_deg, double north_deg, double step_deg,
+                                     GDALDataType type, double (*value)(double x, double y))
+{
+    return (struct scene_raster){.width = side,
+                                 .height = side,
+                                 .geotransform = {west_deg, step_deg, 0, north_deg, 0, -step_deg},
+                                 .epsg = 4326,
+                                 .type = type,
+                                 .value = value};
+}
+
 void scene_write(const char *name, const struct scene_raster *raster)
 {
     const char *path = scene_path(name); /* the first one registers GDAL's drivers */

@@ -23,6 +23,11 @@ const char *scene_folder(void);
 /* "<folder>/<name>", good until the eighth next call. */
 const char *scene_path(const char *name);
 
+/* A square of `side` pixels of `step_deg` each, longitude and latitude, whose north-west corner is
+ * given. */
+struct scene_raster scene_in_degrees(int side, double west_deg, double north_deg, double step_deg,
+                                     GDALDataType type, double (*value)(double x, double y));
+
 /* Write the raster as GeoTIFF under the folder. */
 void scene_write(const char *name, const struct scene_raster *raster);
 

@@ -154,12 +154,7 @@ static double plane(double x, double y)
 
 TEST(a_plane_stays_a_plane_whether_cells_are_finer_or_coarser_than_the_model)
 {
-    const struct scene_raster r = {.width = 1200,
-                                   .height = 1200,
-                                   .geotransform = {10.0, 0.001, 0, 51.2, 0, -0.001},
-                                   .epsg = 4326,
-                                   .type = GDT_Float32,
-                                   .value = plane};
+    const struct scene_raster r = scene_in_degrees(1200, 10.0, 51.2, 0.001, GDT_Float32, plane);
     scene_write("plane.tif", &r);
     /* 0.001 degree is 11,930 BAM: cells of 2^10 to 2^18. */
     for (uint8_t shift = 10; shift <= 18; shift++) {
@@ -190,12 +185,7 @@ static double comb(double x, double y)
 
 TEST(a_model_much_finer_than_the_cells_is_averaged)
 {
-    const struct scene_raster r = {.width = 1000,
-                                   .height = 1000,
-                                   .geotransform = {10.0, 0.001, 0, 51.0, 0, -0.001},
-                                   .epsg = 4326,
-                                   .type = GDT_Int16,
-                                   .value = comb};
+    const struct scene_raster r = scene_in_degrees(1000, 10.0, 51.0, 0.001, GDT_Int16, comb);
     scene_write("comb.tif", &r);
     struct terrain t;
     open_terrain(&t, 17, 1, scene_path("comb.tif"));
@@ -334,12 +324,7 @@ static double all_void(double x, double y)
 
 TEST(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through)
 {
-    struct scene_raster r = {.width = 100,
-                             .height = 100,
-                             .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
-                             .epsg = 4326,
-                             .type = GDT_Float32,
-                             .value = all_void};
+    struct scene_raster r = scene_in_degrees(100, 10.0, 51.0, 0.01, GDT_Float32, all_void);
     scene_write("void.tif", &r);
     r.value = plane;
     scene_write("under.tif", &r);
@@ -358,12 +343,7 @@ TEST(a_model_of_voids_only_reaches_nothing_and_the_next_one_shows_through)
 
 TEST(beyond_the_model_posts_keep_the_height_of_its_edge)
 {
-    const struct scene_raster r = {.width = 100,
-                                   .height = 100,
-                                   .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
-                                   .epsg = 4326,
-                                   .type = GDT_Float32,
-                                   .value = plane};
+    const struct scene_raster r = scene_in_degrees(100, 10.0, 51.0, 0.01, GDT_Float32, plane);
     scene_write("edge.tif", &r);
     struct terrain t;
     open_terrain(&t, 13, 1, scene_path("edge.tif"));
@@ -393,12 +373,7 @@ static double feet(double x, double y)
 TEST(of_two_models_the_nearer_one_lends_its_edge)
 {
     scene_folder();
-    struct scene_raster r = {.width = 100,
-                             .height = 100,
-                             .geotransform = {12.0, 0.01, 0, 51.0, 0, -0.01},
-                             .epsg = 4326,
-                             .type = GDT_Float32,
-                             .value = feet};
+    struct scene_raster r = scene_in_degrees(100, 12.0, 51.0, 0.01, GDT_Float32, feet);
     scene_write("far.tif", &r);
     r.geotransform[0] = 10.0;
     r.value = plane;
@@ -491,12 +466,7 @@ TEST(tiles_share_their_edges_bit_for_bit)
 
 TEST(elevations_in_feet_become_metres)
 {
-    const struct scene_raster r = {.width = 100,
-                                   .height = 100,
-                                   .geotransform = {10.0, 0.01, 0, 51.0, 0, -0.01},
-                                   .epsg = 4326,
-                                   .type = GDT_Int16,
-                                   .value = feet};
+    const struct scene_raster r = scene_in_degrees(100, 10.0, 51.0, 0.01, GDT_Int16, feet);
     scene_write("feet.tif", &r);
     GDALDatasetH d = GDALOpen(scene_path("feet.tif"), GA_Update);
     GDALSetRasterUnitType(GDALGetRasterBand(d, 1), "ft");
