@@ -70,6 +70,16 @@ static const struct lm_place origins[] = {{0x20B60B61, 0x07D27D28},  /* 46 N 11 
                                           {0xD0000000, 0x7FFFFF00},  /* 67.5 S, the antimeridian */
                                           {0x00000000, 0xF0000000}}; /* the equator */
 
+TEST(the_place_under_the_origin_is_the_origin)
+{
+    for (size_t o = 0; o < 3; o++) {
+        struct scene s = {0};
+        look_from(&s, origins[o], 30);
+        const struct lm_place there = lm_view_place(&s.view, (struct lm_offset){0, 0});
+        assert_true(distance(there, origins[o]) < 0.1);
+    }
+}
+
 TEST(a_place_is_where_geodesics_put_it_within_a_pixel)
 {
     for (size_t o = 0; o < 3; o++) {

@@ -284,3 +284,61 @@ TEST(the_test_pattern_shows_sixteen_greys_every_colour_and_every_character)
     assert_true(glass_find(&s, ":;<=>?@[\\]^_\x01\x02\x03", palette.symbol, 0, NULL));
     free_surface(&s);
 }
+
+/* Rows that the bars of the test pattern cover. */
+static bool is_bar_row(int32_t y)
+{
+    return (y >= 98 && y <= 177) || (y >= 223 && y <= 282) || (y >= 348 && y <= 402);
+}
+
+TEST(the_bars_of_the_test_pattern_have_no_gaps)
+{
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){.tint = 1});
+    const struct lm_surface s = make_surface(512, 512);
+    const struct lm_frame frame = lm_frame_of_display(512, 512);
+    lm_overlay_test_pattern(&(struct lm_glass){s, &frame, &p});
+    const uint32_t *greys = s.pixels + 120 * s.stride_px, *colours = s.pixels + 380 * s.stride_px;
+    for (uint32_t x = 0; x < 512; x++) {
+        assert_int_equal(greys[x], p.picture[x * 16 / 512 * 255 / 15]);
+    }
+    /* Nine colours: no column has another one than its own or, at a border, the next. */
+    const uint32_t own[] = {p.symbol,   p.faint,    p.warning,  p.ink,     p.picture[255],
+                            0x00FF0000, 0x0000FF00, 0x000000FF, 0x00FFFFFF};
+    for (uint32_t x = 0; x < 512; x++) {
+        const uint32_t i = x * 9 / 512;
+        assert_true(colours[x] == own[i] || (i < 8 && colours[x] == own[i + 1]));
+    }
+    struct lm_surface done = s;
+    free_surface(&done);
+}
+
+TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_closed)
+{
+    struct lm_palette p;
+    lm_palette_set(&p, &(struct lm_palette_config){0});
+    struct lm_surface s = make_surface(500, 500);
+    const struct lm_frame frame = lm_frame_of_display(500, 500);
+    lm_overlay_test_pattern(&(struct lm_glass){s, &frame, &p});
+    for (uint32_t i = 0; i <= 10; i++) {
+        const uint32_t at = 499 * i / 10;
+        assert_int_equal(s.pixels[20 * s.stride_px + at],
+                         at == 20 || at == 479 ? p.symbol : p.faint);
+        assert_true(s.pixels[at * s.stride_px + 498] != 0 && s.pixels[at * s.stride_px + 499] != 0);
+    }
+    /* On the largest circle, up, down and to the sides of the middle. */
+    const int32_t radius = 249;
+    for (int32_t degrees = 0; degrees < 360; degrees += 3) {
+        const double turn = degrees * 3.14159265358979323846 / 180;
+        const int32_t x = (int32_t)lround(249 + radius * sin(turn));
+        const int32_t y = (int32_t)lround(249 - radius * cos(turn));
+        bool is_drawn = false;
+        for (int32_t k = 0; k < 9; k++) {
+            const int32_t u = x + k % 3 - 1, v = y + k / 3 - 1;
+            is_drawn |= u >= 0 && v >= 0 && u < 500 && v < 500 &&
+                        s.pixels[v * (int32_t)s.stride_px + u] == p.symbol;
+        }
+        assert_true(is_drawn || (is_bar_row(y)));
+    }
+    free_surface(&s);
+}

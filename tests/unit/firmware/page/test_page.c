@@ -329,6 +329,23 @@ TEST(osb_1_to_4_of_the_control_page_point_and_shape_the_beam)
     free_rig(r);
 }
 
+TEST(tilt_by_hand_ends_where_the_antenna_does)
+{
+    struct rig *r = fly();
+    const double end_deg = lm_radar_default.antenna.tilt_max * 360.0 / 4294967296;
+    run(r, 1.5);
+    press(r, 5);
+    for (int way = 0; way < 2; way++) {
+        for (int i = 0; i < 4 * 60; i++) {
+            press(r, 2 + way);
+        }
+        const double tilt_deg = (int32_t)r->unit.picture.sector.tilt * 360.0 / 4294967296;
+        assert_true(fabs(fabs(tilt_deg) - end_deg) < 0.1);
+        assert_true((tilt_deg > 0) == (way == 0));
+    }
+    free_rig(r);
+}
+
 TEST(osb_16_of_the_control_page_shows_patches_in_slant_range)
 {
     struct rig *r = fly();
