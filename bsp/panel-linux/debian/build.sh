@@ -1,11 +1,11 @@
 #!/bin/sh
-# Make the Debian package of the panel. Usage: build.sh ARCH PROGRAM OUT-DIR [RUNNER]: PROGRAM is for ARCH, and RUNNER, if
-# any, runs it here.
+# Builds the Debian package of the panel. Usage: build.sh ARCH PROGRAM OUT-DIR [RUNNER]
+# PROGRAM is the panel's program for ARCH. RUNNER, if any, runs it on this machine.
 set -eu
 arch=$1 program=$2 out=$3 runner=${4:-}
 here=$(dirname "$0")
 version=$($runner "$program" --version | sed 's/.* //')
-# The same source gives the same package: its times are those of the last commit.
+# The package is reproducible: its times are those of the last commit.
 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$here" log -1 --format=%ct 2>/dev/null || echo 0)}
 export SOURCE_DATE_EPOCH
 date=$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y-%m-%d)
@@ -41,7 +41,7 @@ gzip -9nc "$here/../../../CHANGELOG.md" >"$doc/CHANGELOG.md.gz"
 } | gzip -9n >"$doc/changelog.gz"
 install -m 644 "$here/copyright" "$doc/copyright"
 
-# Libraries by the names that the program asks for.
+# The dependencies follow from the names of the libraries that the program needs.
 depends='adduser, libc6 (>= 2.34)'
 for library in $("${OBJDUMP:-objdump}" -p "$program" | sed -n 's/^ *NEEDED *//p'); do
     case $library in

@@ -1,5 +1,6 @@
-# The options as `landmass-panel --options` prints them, as a configuration file (as=conf) or as a part of the manual
-# (as=man). Of a row of like options (key.1, key.2 ...) only the first is explained.
+# Turns the output of `landmass-panel --options` into a configuration file (as=conf) or a part of
+# the manual page (as=man). Of a family of like options (key.1, key.2 ...) only the first is
+# explained.
 function family(name) {
     return name ~ /^key\./ ? "key." : name ~ /^stick\.button\./ ? "stick.button." : name
 }
@@ -20,7 +21,7 @@ function finish(    is_like) {
         printf "#%s\n", assignment
     }
 }
-# In the manual the words come behind the last of a row.
+# In the manual page the explanation follows the last option of a family.
 function explain() {
     if (as == "man" && explanation != "")
         print explanation
