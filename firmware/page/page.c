@@ -119,8 +119,8 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
     p->radar = radar;
     p->range = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
     p->cell = 3;
-    for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
-        const struct lm_page_key *key = find_key(&lm_page_radar, osb);
+    for (uint32_t osb = 1; osb <= LM_OSBS; osb++) {
+        const struct lm_page_key *key = find_key(&lm_page_radar, (uint8_t)osb);
         p->hidden |= key && key->starts_hidden ? OSB_BIT(osb) : 0;
     }
 }

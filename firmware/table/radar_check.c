@@ -14,7 +14,7 @@
     .offset = offsetof(struct lm_radar, member), .size = SIZE_OF(member), .count = (n),            \
     .stride = (apart)
 #define ONE(member)    WHERE(member, 1, 0)
-#define EACH(array, n) WHERE(array[0], n, SIZE_OF(array[0]))
+#define EACH(first, n) WHERE(first, n, SIZE_OF(first))
 #define OF_SCALES(member)                                                                          \
     WHERE(range[0].member, LM_RANGES_MAX, SIZE_OF(range[0])), .is_of_scales = true
 #define OF_MODES(member)          WHERE(mode[0].member, LM_SECTOR_MODES, SIZE_OF(mode[0]))
@@ -34,7 +34,7 @@ static const struct lm_radar_field fields[] = {
     {"range.pulse_ns[DBS1]", OF_SCALES(pulse_ns[LM_FIELD_DBS1]), BETWEEN(10, 100000)},
     {"range.pulse_ns[DBS2]", OF_SCALES(pulse_ns[LM_FIELD_DBS2]), BETWEEN(10, 100000)},
     {"range_start_nm", ONE(range_start_nm), BETWEEN(1, 999)},
-    {"azimuth_half", EACH(azimuth_half, LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
+    {"azimuth_half", EACH(azimuth_half[0], LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"wavelength_um", ONE(wavelength_um), BETWEEN(LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM)},
     {"cells", ONE(cells), BETWEEN(64, LM_RADAR_CELLS_MAX)},
     {"line", ONE(line), BETWEEN(1 << 20, FX_BAM_DEG(10))},
@@ -84,7 +84,7 @@ static const struct lm_radar_field fields[] = {
     {"aspect.edge_trees_q8", ONE(aspect.edge_trees_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
     {"aspect.shore_q8", ONE(aspect.shore_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
     {"aspect.shore_width_m", ONE(aspect.shore_width_m), BETWEEN(0, 10000)},
-    {"texture.shape_log2", EACH(texture.shape_log2, LM_KINDS), BETWEEN(0, LM_TEXTURE_NONE)},
+    {"texture.shape_log2", EACH(texture.shape_log2[0], LM_KINDS), BETWEEN(0, LM_TEXTURE_NONE)},
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
 
