@@ -6,12 +6,12 @@
 #include "bezel.h"
 #include "bus.h"
 #include "config.h"
+#include "display.h"
 #include "drv/flash_file.h"
 #include "drv/flash_mtd.h"
 #include "drv/flash_reader.h"
 #include "drv/watchdog.h"
-#include "glass.h"
-#include "hand.h"
+#include "hand_controller.h"
 #include "lm/unit.h"
 
 enum {

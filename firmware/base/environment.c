@@ -5,9 +5,9 @@
 #include "fx/sat.h"
 #include "lm/status.h"
 
-static bool is_on_earth(struct lm_place place)
+static bool is_on_earth(struct lm_position position)
 {
-    return fx_abs_u32((int32_t)place.latitude) <= FX_BAM_90;
+    return fx_abs_u32((int32_t)position.latitude) <= FX_BAM_90;
 }
 
 static bool is_rain(const struct lm_rain *r)
@@ -18,7 +18,8 @@ static bool is_rain(const struct lm_rain *r)
 
 static bool is_jammer(const struct lm_jammer *j)
 {
-    return is_on_earth(j->place) && j->ratio_q8 >= -20 * 256 && j->ratio_q8 <= 80 * 256;
+    return is_on_earth(j->position) && j->noise_ratio_db_q8 >= -20 * 256 &&
+           j->noise_ratio_db_q8 <= 80 * 256;
 }
 
 int lm_environment_check(const struct lm_environment *e)

@@ -6,7 +6,7 @@
 
 /* WGS-84 (NIMA TR8350.2, table 3.1): semi-major axis 6,378,137 m, first eccentricity squared
  * 0.00669437999014. */
-static const int64_t semi_major_q8 = 6378137LL * 256;
+static const int64_t semi_major_m_q8 = 6378137LL * 256;
 enum {
     ECCENTRICITY2_Q30 = 7188035, /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
     FLATTENING_Q30 = (1 << 30) - ECCENTRICITY2_Q30,
@@ -27,37 +27,37 @@ static int64_t sqrt_q30(int64_t a_q30)
     return (int64_t)fx_sqrt_u64((uint64_t)a_q30 << 30);
 }
 
-void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place)
+void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position)
 {
     const int64_t one_q30 = 1 << 30;
     const int32_t pole = (int32_t)FX_BAM_90;
-    const int32_t latitude = fx_clamp_i32((int32_t)place.latitude, -pole, pole);
-    o->place = (struct lm_place){(fx_bam_t)latitude, place.longitude};
-    o->sin_q30 = fx_sin_q30(o->place.latitude);
-    o->cos_q30 = fx_cos_q30(o->place.latitude);
+    const int32_t latitude = fx_clamp_i32((int32_t)position.latitude, -pole, pole);
+    o->position = (struct lm_position){(fx_bam_t)latitude, position.longitude};
+    o->sin_q30 = fx_sin_q30(o->position.latitude);
+    o->cos_q30 = fx_cos_q30(o->position.latitude);
     const int64_t sin2_q30 = mul_q30(o->sin_q30, o->sin_q30);
     const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, ECCENTRICITY2_Q30);
     const int64_t w_q30 = sqrt_q30(w2_q30);
-    /* semi_major_q8 << 30 is below 2^31 * 2^30 = 2^61. */
-    const int64_t n_q8 = (semi_major_q8 << 30) / w_q30;
+    /* semi_major_m_q8 << 30 is below 2^31 * 2^30 = 2^61. */
+    const int64_t n_q8 = (semi_major_m_q8 << 30) / w_q30;
     const int64_t m_q8 = mul_q30(n_q8, FLATTENING_Q30) * one_q30 / w2_q30;
-    o->prime_vertical_radius_q8 = (uint32_t)n_q8;
-    o->meridian_radius_q8 = (uint32_t)m_q8;
-    o->axis_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
+    o->prime_vertical_radius_m_q8 = (uint32_t)n_q8;
+    o->meridian_radius_m_q8 = (uint32_t)m_q8;
+    o->axis_m_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
 }
 
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth)
 {
     const int64_t sin_az = fx_sin_q30(azimuth), cos_az = fx_cos_q30(azimuth);
     /* Euler: the curvature at an azimuth, from the two principal radii. */
-    const int64_t n_q8 = o->prime_vertical_radius_q8, m_q8 = o->meridian_radius_q8;
+    const int64_t n_q8 = o->prime_vertical_radius_m_q8, m_q8 = o->meridian_radius_m_q8;
     const int64_t mix_q8 =
         mul_q30(n_q8, mul_q30(cos_az, cos_az)) + mul_q30(m_q8, mul_q30(sin_az, sin_az));
-    const int64_t radius_q8 = m_q8 * n_q8 / mix_q8; /* 2^31 * 2^31 */
+    const int64_t radius_m_q8 = m_q8 * n_q8 / mix_q8; /* 2^31 * 2^31 */
     r->origin = o;
     r->sin_q30 = (int32_t)sin_az;
     r->cos_q30 = (int32_t)cos_az;
-    r->per_radius_q62 = ((int64_t)1 << 62) / radius_q8; /* 2^31.4 */
+    r->per_radius_q62 = ((int64_t)1 << 62) / radius_m_q8; /* 2^31.4 */
 }
 
 /* The angle whose tangent is t, up to 1/16: t - t^3 / 3 + t^5 / 5, short of it by 6e-10 at most. */
@@ -72,64 +72,65 @@ static inline fx_bam_t small_angle(int64_t t_q32)
 
 /* The longitude of a point (x, east) in the plane of the equator, and how far it is from the
  * Earth's axis. |x| < 2^35, |east| < 2^31. */
-static inline fx_bam_t turn_of(int64_t x_q12, int64_t east_q12, int64_t *axis_q12)
+static inline fx_bam_t turn_of(int64_t x_q12, int64_t east_m_q12, int64_t *axis_q12)
 {
-    if ((east_q12 < 0 ? -east_q12 : east_q12) >= x_q12 / 16) { /* near a pole */
-        const int32_t x_q8 = (int32_t)(x_q12 >> 4), east_q8 = (int32_t)(east_q12 >> 4);
-        *axis_q12 = (int64_t)fx_hypot_u32(x_q8, east_q8) * 16;
-        return fx_atan2(east_q8, x_q8);
+    if ((east_m_q12 < 0 ? -east_m_q12 : east_m_q12) >= x_q12 / 16) { /* near a pole */
+        const int32_t x_q8 = (int32_t)(x_q12 >> 4), east_m_q8 = (int32_t)(east_m_q12 >> 4);
+        *axis_q12 = (int64_t)fx_hypot_u32(x_q8, east_m_q8) * 16;
+        return fx_atan2(east_m_q8, x_q8);
     }
     /* With t = east / x, up to 1/16, the root of x^2 + east^2 is x + east t / 2 (1 - t^2 / 4 +
      * ...), 2 cm too short at most. */
-    const int64_t t_q32 = east_q12 * one_q32 / x_q12, square_q32 = t_q32 * t_q32 >> 32;
-    const int64_t more_q12 = east_q12 * t_q32 >> 33;
+    const int64_t t_q32 = east_m_q12 * one_q32 / x_q12, square_q32 = t_q32 * t_q32 >> 32;
+    const int64_t more_q12 = east_m_q12 * t_q32 >> 33;
     *axis_q12 = x_q12 + more_q12 - (more_q12 * square_q32 >> 34);
     return small_angle(t_q32);
 }
 
 /* Lengths are counted from the origin, in metres * 4096: up to 300 km, below 2^31, so that a
  * product with a sine in Q30 stays below 2^61, and a sum of two below 2^62. */
-struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8)
+struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_q8)
 {
     const struct lm_geo_origin *const o = r->origin;
     const int64_t sin_q30 = o->sin_q30, cos_q30 = o->cos_q30;
     const int64_t sixth_q32 = 715827883, twentieth_q32 = 214748365;
     /* The arc a = s / R, below 0.05: 2^27 * 2^31.4 before the shift, 2^28 behind it. Forward is
      * R sin a = s - s a^2 / 6 (1 - a^2 / 20), down R (1 - cos a) = s a / 2 (1 - a^2 / 12). */
-    const int64_t s_q8 = fx_min_u32(distance_q8, FARTHEST_Q8), s_q12 = s_q8 * 16;
-    const int64_t arc_q32 = s_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
+    const int64_t s_m_q8 = fx_min_u32(distance_m_q8, FARTHEST_Q8), s_m_q12 = s_m_q8 * 16;
+    const int64_t arc_q32 = s_m_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
     const int64_t sixth_square_q32 = square_q32 * sixth_q32 >> 32;
     const int64_t bend_q32 =
         sixth_square_q32 - (sixth_square_q32 * (square_q32 * twentieth_q32 >> 32) >> 32);
-    const int64_t forward_q12 = s_q12 - (s_q12 * bend_q32 >> 32);
-    const int64_t chord_q12 = s_q12 * arc_q32 >> 33;
+    const int64_t forward_q12 = s_m_q12 - (s_m_q12 * bend_q32 >> 32);
+    const int64_t chord_q12 = s_m_q12 * arc_q32 >> 33;
     const int64_t down_q12 = chord_q12 - (chord_q12 * sixth_square_q32 >> 33);
-    const int64_t north_q12 = mul_q30(forward_q12, r->cos_q30);
-    const int64_t east_q12 = mul_q30(forward_q12, r->sin_q30);
+    const int64_t north_m_q12 = mul_q30(forward_q12, r->cos_q30);
+    const int64_t east_m_q12 = mul_q30(forward_q12, r->sin_q30);
 
-    const int64_t x0_q12 = o->axis_q8 * 16LL;
-    const int64_t x_q12 = x0_q12 - ((north_q12 * sin_q30 + down_q12 * cos_q30) >> 30);
-    const int64_t up_q12 = (north_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
+    const int64_t x0_q12 = o->axis_m_q8 * 16LL;
+    const int64_t x_q12 = x0_q12 - ((north_m_q12 * sin_q30 + down_q12 * cos_q30) >> 30);
+    const int64_t up_q12 = (north_m_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
     int64_t axis_q12;
-    const fx_bam_t east = turn_of(x_q12, east_q12, &axis_q12);
+    const fx_bam_t east = turn_of(x_q12, east_m_q12, &axis_q12);
     /* The latitude's tangent is z / (1 - e2) axis, and the origin's that of its own two. Seen from
      * the origin's direction, in which (1 - e2) N is as far as the origin, the difference is small.
      */
     const int64_t out_q12 = mul_q30(axis_q12 - x0_q12, FLATTENING_Q30);
     const int64_t beside_q42 = up_q12 * cos_q30 - out_q12 * sin_q30;
-    const int64_t along_q12 = 16 * mul_q30(o->prime_vertical_radius_q8, FLATTENING_Q30) +
-                              ((out_q12 * cos_q30 + up_q12 * sin_q30) >> 30);
-    return (struct lm_place){
-        .latitude = o->place.latitude + small_angle(beside_q42 / (along_q12 >> 2)),
-        .longitude = o->place.longitude + east,
+    const int64_t along_m_q12 = 16 * mul_q30(o->prime_vertical_radius_m_q8, FLATTENING_Q30) +
+                                ((out_q12 * cos_q30 + up_q12 * sin_q30) >> 30);
+    return (struct lm_position){
+        .latitude = o->position.latitude + small_angle(beside_q42 / (along_m_q12 >> 2)),
+        .longitude = o->position.longitude + east,
     };
 }
 
-struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth, uint32_t distance_q8)
+struct lm_position lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
+                                 uint32_t distance_m_q8)
 {
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, o, azimuth);
-    return lm_geo_along(&ray, distance_q8);
+    return lm_geo_along(&ray, distance_m_q8);
 }
 
 /* difference / cells in units of 2^-32, modulo 2^64: whole part first, so that nothing overflows on
@@ -155,7 +156,8 @@ static void fit_coordinate(uint32_t a, uint32_t b, uint32_t c, uint32_t cells, u
     *bend = 2 * (uint64_t)curve;
 }
 
-void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3], uint32_t cells)
+void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_position points[3],
+                        uint32_t cells)
 {
     fit_coordinate(points[0].latitude, points[1].latitude, points[2].latitude, cells, &p->latitude,
                    &p->latitude_step, &p->latitude_bend);
@@ -172,19 +174,20 @@ static struct lm_ground_arch arch_of(fx_bam_t left, fx_bam_t middle, fx_bam_t ri
     };
 }
 
-void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_bam_t azimuth,
+void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent)
 {
     struct lm_geo_origin o;
-    lm_geo_set_origin(&o, place);
+    lm_geo_set_origin(&o, position);
     for (int row = 0; row < 3; row++) {
-        const int32_t along_q8 =
-            extent->near_q8 + (int32_t)((int64_t)(extent->far_q8 - extent->near_q8) * row / 2);
-        struct lm_place q[3];
+        const int32_t along_m_q8 =
+            extent->near_m_q8 +
+            (int32_t)((int64_t)(extent->far_m_q8 - extent->near_m_q8) * row / 2);
+        struct lm_position q[3];
         for (int column = 0; column < 3; column++) {
-            const int32_t across_q8 = (column - 1) * extent->side_q8;
-            q[column] = lm_geo_direct(&o, azimuth + fx_atan2(across_q8, along_q8),
-                                      fx_hypot_u32(across_q8, along_q8));
+            const int32_t across_m_q8 = (column - 1) * extent->side_m_q8;
+            q[column] = lm_geo_direct(&o, azimuth + fx_atan2(across_m_q8, along_m_q8),
+                                      fx_hypot_u32(across_m_q8, along_m_q8));
         }
         p->row[row].latitude = arch_of(q[0].latitude, q[1].latitude, q[2].latitude);
         p->row[row].longitude = arch_of(q[0].longitude, q[1].longitude, q[2].longitude);
@@ -201,7 +204,7 @@ static inline fx_bam_t arch_at(const struct lm_ground_arch *a, int32_t x_q16)
 }
 
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
-                          struct lm_place points[3])
+                          struct lm_position points[3])
 {
     const int32_t x_q16 = (int32_t)(((int64_t)(2 * line + 1) << 16) / lines) - (1 << 16);
     for (int row = 0; row < 3; row++) {
@@ -213,12 +216,12 @@ void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32
 void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_patch *p,
                           uint32_t line, uint32_t lines, uint32_t cells)
 {
-    struct lm_place points[3];
+    struct lm_position points[3];
     lm_ground_patch_line(p, line, lines, points);
     lm_ground_path_fit(path, points, cells);
 }
 
-void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
+void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                     fx_bam_t *azimuth)
 {
     struct lm_geo_origin middle;
@@ -226,17 +229,17 @@ void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance
     const int32_t far = 1 << 27;
     const int32_t dlat = fx_clamp_i32((int32_t)(to.latitude - from.latitude), -far, far);
     const int32_t dlon = fx_clamp_i32((int32_t)(to.longitude - from.longitude), -far, far);
-    const struct lm_place half_way = {from.latitude + (uint32_t)(dlat / 2), from.longitude};
+    const struct lm_position half_way = {from.latitude + (uint32_t)(dlat / 2), from.longitude};
     lm_geo_set_origin(&middle, half_way);
     /* BAM to metres: angle * 2 pi / 2^32 * radius; 2 pi in Q28 is 1,686,629,713. */
     const int64_t arc_north = (int64_t)dlat * 1686629713 >> 28;
     const int64_t arc_east = mul_q30((int64_t)dlon * 1686629713 >> 28, middle.cos_q30);
-    const int64_t north_q8 = arc_north * middle.meridian_radius_q8 >> 32;
-    const int64_t east_q8 = arc_east * middle.prime_vertical_radius_q8 >> 32;
-    *distance_q8 = fx_hypot_u32((int32_t)north_q8, (int32_t)east_q8);
+    const int64_t north_m_q8 = arc_north * middle.meridian_radius_m_q8 >> 32;
+    const int64_t east_m_q8 = arc_east * middle.prime_vertical_radius_m_q8 >> 32;
+    *distance_m_q8 = fx_hypot_u32((int32_t)north_m_q8, (int32_t)east_m_q8);
     /* The azimuth at the midpoint, turned back by half the convergence of the meridians. */
     const int64_t convergence = mul_q30(dlon, middle.sin_q30) / 2;
-    *azimuth = fx_atan2((int32_t)east_q8, (int32_t)north_q8) - (uint32_t)convergence;
+    *azimuth = fx_atan2((int32_t)east_m_q8, (int32_t)north_m_q8) - (uint32_t)convergence;
 }
 
 /* Metres * 256 below 2^26.7 and a height below 2^22.9 of them: squares below 2^54. */
@@ -245,13 +248,13 @@ static uint64_t square_q16(int64_t q8)
     return (uint64_t)(q8 * q8);
 }
 
-uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10)
+uint32_t lm_ground_of_slant_m_q8(uint32_t slant_m_q8, int32_t height_m_q10)
 {
-    const uint64_t slant = square_q16(slant_q8), height = square_q16(height_q10 / 4);
+    const uint64_t slant = square_q16(slant_m_q8), height = square_q16(height_m_q10 / 4);
     return slant > height ? fx_sqrt_u64(slant - height) : 0;
 }
 
-uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10)
+uint32_t lm_slant_of_ground_m_q8(uint32_t ground_m_q8, int32_t height_m_q10)
 {
-    return fx_sqrt_u64(square_q16(ground_q8) + square_q16(height_q10 / 4));
+    return fx_sqrt_u64(square_q16(ground_m_q8) + square_q16(height_m_q10 / 4));
 }

@@ -4,11 +4,11 @@
 
 /* Where the top of a cell appears, cells * 256. Tops are below 2^29.3 in Q14, and lean below 2^17.
  */
-static int64_t place_q8(const struct lm_layover *l, uint32_t i, int32_t top_q14)
+static int64_t appears_at_cells_q8(const struct lm_layover *l, uint32_t i, int32_t top_m_q14)
 {
-    const int64_t above_q14 = top_q14 - (int64_t)l->reference_q10 * 16;
-    const int64_t nearer_q8 = above_q14 * l->lean_q16 >> 22;
-    return (int64_t)i * 256 - nearer_q8 * 256 / (int64_t)l->cell_q8;
+    const int64_t above_m_q14 = top_m_q14 - (int64_t)l->reference_m_q10 * 16;
+    const int64_t nearer_m_q8 = above_m_q14 * l->lean_q16 >> 22;
+    return (int64_t)i * 256 - nearer_m_q8 * 256 / (int64_t)l->cell_m_q8;
 }
 
 static void add(const struct lm_layover *l, uint64_t *power_q32, int64_t cell, uint64_t share_q32)
@@ -20,7 +20,7 @@ static void add(const struct lm_layover *l, uint64_t *power_q32, int64_t cell, u
 }
 
 void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes,
-                    const struct lm_scan_line *ground, int32_t *level_q8,
+                    const struct lm_scan_line *ground, int32_t *level_db_q8,
                     uint64_t power_q32[LM_CELLS_ROOM])
 {
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 32);
@@ -28,17 +28,18 @@ void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes
         power_q32[i] = 0;
     }
     for (uint32_t i = l->first; i < l->cells; i++) {
-        if (level_q8[i] <= LM_LEVEL_SHADOW / 2) {
+        if (level_db_q8[i] <= LM_LEVEL_SHADOW / 2) {
             continue;
         }
-        const int32_t height_q14 = classes->height_dm[ground->cell[i] & 15] * 8192 / 5;
-        const int64_t at_q8 = place_q8(l, i, ground->elevation_q14[i] + height_q14);
-        const uint64_t whole_q32 = fx_power_q32_of_many(level_q8[i]);
-        const uint64_t far_q32 = (whole_q32 >> 8) * (uint64_t)(at_q8 & 255);
-        add(l, power_q32, at_q8 >> 8, whole_q32 - far_q32);
-        add(l, power_q32, (at_q8 >> 8) + 1, far_q32);
+        const int32_t height_m_q14 = classes->height_dm[ground->cell[i] & 15] * 8192 / 5;
+        const int64_t at_cells_q8 =
+            appears_at_cells_q8(l, i, ground->elevation_m_q14[i] + height_m_q14);
+        const uint64_t whole_q32 = fx_power_q32_vec(level_db_q8[i]);
+        const uint64_t far_q32 = (whole_q32 >> 8) * (uint64_t)(at_cells_q8 & 255);
+        add(l, power_q32, at_cells_q8 >> 8, whole_q32 - far_q32);
+        add(l, power_q32, (at_cells_q8 >> 8) + 1, far_q32);
     }
     for (uint32_t i = l->first; i < l->cells; i++) {
-        level_q8[i] = power_q32[i] == 0 ? LM_LEVEL_SHADOW : fx_db_q8_u64(power_q32[i]) - unit_q8;
+        level_db_q8[i] = power_q32[i] == 0 ? LM_LEVEL_SHADOW : fx_db_q8_u64(power_q32[i]) - unit_q8;
     }
 }

@@ -1,6 +1,6 @@
 #include "lm/noise.h"
 
-void lm_noise_line_set(struct lm_noise_line *n, const struct lm_raster *r, uint32_t cells)
+void lm_noise_line_set(struct lm_noise_line *n, const struct lm_noise_key *r, uint32_t cells)
 {
     const uint32_t blocks = (cells + 4 * LM_NOISE_BLOCK - 1) / (4 * LM_NOISE_BLOCK) * 4;
     const uint32_t epoch = r->epoch;

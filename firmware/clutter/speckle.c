@@ -12,22 +12,22 @@ _Static_assert((int)LM_TEXTURE_SHAPE_BITS == LM_K_SHAPE_BITS && (int)LM_DB_CLASS
                    (int)LM_NOISE_BLOCK == LM_LANES,
                "lm/speckle.h and lm/noise.h have what lm/kernels_clutter.h wants");
 
-void lm_speckle_run(const struct lm_speckle_config *config, const struct lm_raster *raster,
-                    int32_t *level_q8, uint32_t cells)
+void lm_speckle_run(const struct lm_speckle_config *config, const struct lm_noise_key *noise_key,
+                    int32_t *level_db_q8, uint32_t cells)
 {
     struct lm_noise_line noise;
-    lm_noise_line_set(&noise, raster, cells);
-    lm_k_noise_add(lm_noise_q8[config->looks_log2], noise.entry, level_q8, cells);
+    lm_noise_line_set(&noise, noise_key, cells);
+    lm_k_noise_add(lm_noise_db_q8[config->looks_log2], noise.entry, level_db_q8, cells);
 }
 
-void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_q8,
-                          const struct lm_raster *raster, const int32_t *level_q8,
-                          int32_t *speckled_q8, uint32_t cells)
+void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_db_q8,
+                          const struct lm_noise_key *noise_key, const int32_t *level_db_q8,
+                          int32_t *speckled_db_q8, uint32_t cells)
 {
     struct lm_noise_line noise;
-    lm_noise_line_set(&noise, raster, cells);
-    lm_k_noise_floor(lm_noise_q8[config->looks_log2], noise.entry, floor_q8, level_q8, speckled_q8,
-                     cells);
+    lm_noise_line_set(&noise, noise_key, cells);
+    lm_k_noise_floor(lm_noise_db_q8[config->looks_log2], noise.entry, floor_db_q8, level_db_q8,
+                     speckled_db_q8, cells);
 }
 
 /* Which shapes the classes have, and whether some gain. */
@@ -50,30 +50,31 @@ static void summarize(struct lm_texture *t)
 }
 
 void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
-                    const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_q8)
+                    const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_db_q8)
 {
     const int32_t above = fx_min_i32(sea_state, LM_SEA_STATE_MAX) - LM_SEA_STATE_OF_IMAGE;
-    const int32_t off_q8 = fx_min_i32(loss_q8, LM_TEXTURE_LOSS_MAX_Q8);
+    const int32_t off_db_q8 = fx_min_i32(loss_db_q8, LM_TEXTURE_LOSS_MAX_DB_Q8);
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         const uint8_t kind = classes->entry[i].kind & (LM_KINDS - 1);
         const int32_t shape = fx_min_i32(config->shape_log2[kind], LM_TEXTURE_NONE);
-        const int32_t gain_q8 = (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_Q8 : 0) - off_q8;
-        t->of_class[i] = gain_q8 * (1 << LM_TEXTURE_SHAPE_BITS) + shape;
+        const int32_t gain_db_q8 =
+            (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_Q8 : 0) - off_db_q8;
+        t->of_class[i] = gain_db_q8 * (1 << LM_TEXTURE_SHAPE_BITS) + shape;
     }
     summarize(t);
 }
 
-void lm_texture_run(const struct lm_texture *t, const struct lm_raster *raster,
-                    const uint32_t *cell, int32_t *level_q8, uint32_t cells)
+void lm_texture_run(const struct lm_texture *t, const struct lm_noise_key *noise_key,
+                    const uint32_t *cell, int32_t *level_db_q8, uint32_t cells)
 {
     struct lm_noise_line noise;
     if (t->has_gain) {
-        lm_k_class_gain(t->of_class, cell, level_q8, cells);
+        lm_k_class_gain(t->of_class, cell, level_db_q8, cells);
     }
-    lm_noise_line_set(&noise, raster, cells);
+    lm_noise_line_set(&noise, noise_key, cells);
     for (uint32_t n = 0; n < t->shapes; n++) {
         const uint8_t shape = t->shape_log2[n];
-        lm_k_class_noise(t->of_class, shape, lm_noise_q8[shape], noise.entry, cell, level_q8,
+        lm_k_class_noise(t->of_class, shape, lm_noise_db_q8[shape], noise.entry, cell, level_db_q8,
                          cells);
     }
 }

@@ -7,7 +7,7 @@ void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, scene->ownship);
-    c->place = lm_geo_direct(&origin, scene->heading, scene->scale_m / 2 * 256);
+    c->position = lm_geo_direct(&origin, scene->heading, scene->scale_m / 2 * 256);
     c->is_placed = c->is_home = true;
 }
 
@@ -19,12 +19,12 @@ void lm_cursor_stabilise(struct lm_cursor *c)
 /* The nearest offset within the circle, ahead of the aircraft. */
 static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
 {
-    const int64_t radius_q8 = (int64_t)radius_px * 256;
-    o.y_q8 = fx_max_i32(o.y_q8, 0);
-    const int64_t length_q8 = fx_hypot_u32(o.x_q8, o.y_q8);
-    if (length_q8 > radius_q8) {
-        o.x_q8 = (int32_t)(o.x_q8 * radius_q8 / length_q8);
-        o.y_q8 = (int32_t)(o.y_q8 * radius_q8 / length_q8);
+    const int64_t radius_px_q8 = (int64_t)radius_px * 256;
+    o.y_px_q8 = fx_max_i32(o.y_px_q8, 0);
+    const int64_t length_px_q8 = fx_hypot_u32(o.x_px_q8, o.y_px_q8);
+    if (length_px_q8 > radius_px_q8) {
+        o.x_px_q8 = (int32_t)(o.x_px_q8 * radius_px_q8 / length_px_q8);
+        o.y_px_q8 = (int32_t)(o.y_px_q8 * radius_px_q8 / length_px_q8);
     }
     return o;
 }
@@ -32,10 +32,11 @@ static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
 /* The nearest offset within the square around the middle. */
 static struct lm_offset within_square(struct lm_offset o, const struct lm_view *view)
 {
-    const int32_t edge_q8 = (view->radius_px - 1) * 256;
+    const int32_t edge_px_q8 = (view->radius_px - 1) * 256;
     const struct lm_offset middle = lm_view_middle(view);
-    return (struct lm_offset){middle.x_q8 + fx_clamp_i32(o.x_q8 - middle.x_q8, -edge_q8, edge_q8),
-                              middle.y_q8 + fx_clamp_i32(o.y_q8 - middle.y_q8, -edge_q8, edge_q8)};
+    return (struct lm_offset){
+        middle.x_px_q8 + fx_clamp_i32(o.x_px_q8 - middle.x_px_q8, -edge_px_q8, edge_px_q8),
+        middle.y_px_q8 + fx_clamp_i32(o.y_px_q8 - middle.y_px_q8, -edge_px_q8, edge_px_q8)};
 }
 
 static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
@@ -45,22 +46,23 @@ static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
 }
 
 /* The deflection's way in one step, pixels * 256: at most 512 * 256 / 50. */
-static int32_t way_q8(int32_t deflection, int32_t half_px)
+static int32_t way_px_q8(int32_t deflection, int32_t half_px)
 {
-    const int32_t full_q8 = half_px * 256 * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
-    return full_q8 * deflection / 1000;
+    const int32_t full_px_q8 =
+        half_px * 256 * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
+    return full_px_q8 * deflection / 1000;
 }
 
 static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
 {
     struct lm_offset o;
-    if (!lm_view_find(scene->view, c->place, &o)) {
+    if (!lm_view_find(scene->view, c->position, &o)) {
         lm_cursor_zero(c, scene);
         return;
     }
-    o.x_q8 += way_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
-    o.y_q8 += way_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
-    c->place = lm_view_place(scene->view, within(o, scene->view));
+    o.x_px_q8 += way_px_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
+    o.y_px_q8 += way_px_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
+    c->position = lm_view_place(scene->view, within(o, scene->view));
     c->is_home = false;
 }
 
@@ -81,21 +83,22 @@ bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, ui
 
 void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
 {
-    uint32_t distance_q8;
-    lm_geo_inverse(scene->ownship, c->place, &distance_q8, &c->bearing);
-    c->range_m = distance_q8 / 256;
+    uint32_t distance_m_q8;
+    lm_geo_inverse(scene->ownship, c->position, &distance_m_q8, &c->bearing);
+    c->range_m = distance_m_q8 / 256;
     c->offset = (struct lm_offset){0, 0};
-    c->is_on_glass = lm_view_find(scene->view, c->place, &c->offset);
+    c->is_on_glass = lm_view_find(scene->view, c->position, &c->offset);
     if (c->is_on_glass) {
         /* A pixel's grace: a place comes back from the ground a little moved. */
         const struct lm_offset o = within(c->offset, scene->view);
-        c->is_on_glass = fx_hypot_u32(o.x_q8 - c->offset.x_q8, o.y_q8 - c->offset.y_q8) <= 256;
+        c->is_on_glass =
+            fx_hypot_u32(o.x_px_q8 - c->offset.x_px_q8, o.y_px_q8 - c->offset.y_px_q8) <= 256;
     }
 }
 
 int32_t lm_cursor_wants_range(const struct lm_cursor *c, uint32_t scale_m)
 {
-    if (c->offset.y_q8 <= 0) {
+    if (c->offset.y_px_q8 <= 0) {
         return 0;
     }
     /* Ranges are below 1,300 km: products below 2^31. */

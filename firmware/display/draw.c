@@ -80,8 +80,8 @@ void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_poin
 
 struct lm_point lm_ray_end(struct lm_spot from, fx_bam_t azimuth, int32_t length)
 {
-    return (struct lm_point){(from.x_q8 + (length * fx_sin_q15(azimuth) >> 7)) >> 8,
-                             (from.y_q8 - (length * fx_cos_q15(azimuth) >> 7)) >> 8};
+    return (struct lm_point){(from.x_px_q8 + (length * fx_sin_q15(azimuth) >> 7)) >> 8,
+                             (from.y_px_q8 - (length * fx_cos_q15(azimuth) >> 7)) >> 8};
 }
 
 void lm_draw_arc(const struct lm_pen *pen, struct lm_spot centre, int32_t radius, fx_bam_t left,

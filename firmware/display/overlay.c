@@ -2,7 +2,7 @@
 
 #include "fx/mem.h"
 #include "lm/font.h"
-#include "marks.h"
+#include "overlay_internal.h"
 
 enum { BLACK_PX = 32, LIT_PX = 16 };
 

@@ -108,7 +108,7 @@ static struct rows rows_in_range(const struct lm_ppi *ppi, const struct directio
     if (least <= 0) {
         return all;
     }
-    const int64_t near_q32 = (int64_t)ppi->near_cell_q8 * (1 << 24);
+    const int64_t near_q32 = (int64_t)ppi->near_cells_q8 * (1 << 24);
     const int64_t far_q32 = near_q32 + ((int64_t)cells << 32);
     const struct rows found = clip_rows(&all, near_q32 / most - 2, far_q32 / least + 2);
     /* A pixel's range is cut by less than 2^-17 of a cell for each column before it: a cell more.
@@ -203,8 +203,8 @@ static inline struct wedge paint_rows(struct wedge w, int32_t rows, struct asked
     return w;
 }
 
-void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
-                  fx_bam_t right, const uint8_t *grey, uint32_t cells)
+void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
+                         fx_bam_t right, const uint8_t *grey, uint32_t cells)
 {
     const struct lm_frame *clip = &ppi->clip;
     const int32_t leftmost = clip->left_px - ppi->apex_x_px;
@@ -223,7 +223,7 @@ void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam
     w.apex =
         plane->pixels + ppi->apex_x_px + (ptrdiff_t)(ppi->apex_y_px - 1 - rows.first) * w.width_px;
     w.range_q33 = (2 * rows.first + 1) * w.along.up_q32 + w.along.right_q32 -
-                  (int64_t)ppi->near_cell_q8 * (1 << 25);
+                  (int64_t)ppi->near_cells_q8 * (1 << 25);
     if (!are_inside(&w.left, &w.right, &rows, &columns)) {
         paint_rows(w, rows.end - rows.first, (struct asked){true, true}, &columns, grey, cells);
         return;
@@ -337,8 +337,8 @@ static inline void paint_cells(uint8_t *corner, ptrdiff_t up, int32_t side_px, c
     }
 }
 
-void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
-                    const uint8_t *grey, uint32_t cells)
+void lm_scan_conv_patch(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
+                        const uint8_t *grey, uint32_t cells)
 {
     const int32_t cell_px = lm_patch_cell_px(frame, cells), side_px = cell_px * (int32_t)cells;
     const int32_t left = (frame->width_px - side_px) / 2 + (int32_t)line * cell_px;

@@ -1,6 +1,6 @@
 #include "fx/sat.h"
 #include "lm/font.h"
-#include "marks.h"
+#include "overlay_internal.h"
 
 enum { FEET_PER_M_Q12 = 13438, NM_M = 1852, ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
 
@@ -50,7 +50,7 @@ static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
     const int32_t dot = pen.dot_px;
-    const int32_t length = (int32_t)(1500ull * 304800 * 256 / 1000 / s->view.mm_q8_per_px);
+    const int32_t length = (int32_t)(1500ull * 304800 * 256 / 1000 / s->view.scale_mm_per_px_q8);
     const int32_t x = s->view.middle.x - s->view.radius_px + 4 * dot;
     const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
     line(&pen, x, y, x + length, y);
@@ -200,9 +200,9 @@ static void write_angle(const struct lm_glass *g, int32_t row, const char *lette
     write_row(g, row, ALIGN_RIGHT, t.words);
 }
 
-static void write_place(const struct lm_glass *g, struct lm_place place)
+static void write_place(const struct lm_glass *g, struct lm_position position)
 {
-    const int32_t latitude = (int32_t)place.latitude, longitude = (int32_t)place.longitude;
+    const int32_t latitude = (int32_t)position.latitude, longitude = (int32_t)position.longitude;
     write_angle(g, 1, latitude < 0 ? "S" : "N", fx_abs_u32(latitude), 2);
     write_angle(g, 2, longitude < 0 ? "W" : "E", fx_abs_u32(longitude), 3);
 }
@@ -219,14 +219,14 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     lm_text_number(&t, tenths % 10, 1);
     write_row(g, 1, ALIGN_LEFT, t.words);
     if (s->has_cursor_elevation) {
-        const int64_t feet_q22 = (int64_t)s->cursor_elevation_q10 * FEET_PER_M_Q12;
+        const int64_t feet_q22 = (int64_t)s->cursor_elevation_m_q10 * FEET_PER_M_Q12;
         t = (struct lm_text){0};
         lm_text_add(&t, "ELV ");
         lm_text_signed(&t, (int32_t)((feet_q22 + (1 << 21)) >> 22));
         lm_text_add(&t, "FT");
         write_row(g, 2, ALIGN_LEFT, t.words);
     }
-    write_place(g, s->cursor_place);
+    write_place(g, s->cursor_position);
 }
 
 /* Time to go to the steerpoint, minutes and seconds. */

@@ -1,6 +1,6 @@
 #include "fx/sat.h"
 #include "lm/font.h"
-#include "marks.h"
+#include "overlay_internal.h"
 
 enum { GREYS = 16, GRID = 10 };
 

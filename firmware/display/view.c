@@ -14,12 +14,12 @@ struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_v
                                   frame->top_px + frame->height_px};
     return (struct lm_view){
         .shape = LM_VIEW_SECTOR,
-        .origin = from->place,
+        .origin = from->position,
         .up = from->up,
-        .height_q10 = from->height_q10,
+        .height_m_q10 = from->height_m_q10,
         .at = apex,
         .middle = apex,
-        .mm_q8_per_px = (uint32_t)((uint64_t)range_m * 256000u / radius_px),
+        .scale_mm_per_px_q8 = (uint32_t)((uint64_t)range_m * 256000u / radius_px),
         .radius_px = radius_px,
     };
 }
@@ -30,8 +30,8 @@ static struct lm_point middle_of(const struct lm_frame *frame)
                              frame->top_px + frame->height_px / 2};
 }
 
-struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_place centre, fx_bam_t look,
-                                uint32_t cells, uint32_t cell_mm)
+struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_position centre,
+                                fx_bam_t look, uint32_t cells, uint32_t cell_mm)
 {
     const uint16_t cell_px = lm_patch_cell_px(frame, cells);
     return (struct lm_view){
@@ -40,57 +40,58 @@ struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_place ce
         .up = look,
         .at = middle_of(frame),
         .middle = middle_of(frame),
-        .mm_q8_per_px = cell_mm * 256u / cell_px,
+        .scale_mm_per_px_q8 = cell_mm * 256u / cell_px,
         .radius_px = cell_px * (int32_t)cells / 2,
     };
 }
 
 /* Length on the glass of a way over the ground from the origin, pixels * 256: a radar's is the
  * slant range. */
-static uint64_t length_q8_of(const struct lm_view *v, uint32_t ground_q8)
+static uint64_t length_px_q8_of(const struct lm_view *v, uint32_t ground_m_q8)
 {
-    const uint32_t length_q8 =
-        v->height_q10 ? lm_slant_of_ground(ground_q8, v->height_q10) : ground_q8;
-    /* metres * 256 -> pixels * 256: times 256,000 / mm_q8_per_px. */
-    return (uint64_t)length_q8 * 256000u / v->mm_q8_per_px;
+    const uint32_t length_px_q8 =
+        v->height_m_q10 ? lm_slant_of_ground_m_q8(ground_m_q8, v->height_m_q10) : ground_m_q8;
+    /* metres * 256 -> pixels * 256: times 256,000 / scale_mm_per_px_q8. */
+    return (uint64_t)length_px_q8 * 256000u / v->scale_mm_per_px_q8;
 }
 
 /* Offset of a place not farther than FARTHEST_Q8; false when it is. */
-static bool offset_of(const struct lm_view *v, struct lm_place place, struct lm_offset *offset)
+static bool offset_of(const struct lm_view *v, struct lm_position position,
+                      struct lm_offset *offset)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    lm_geo_inverse(v->origin, place, &distance_q8, &azimuth);
-    const uint64_t length_q8 = length_q8_of(v, distance_q8);
-    if (distance_q8 > FARTHEST_Q8 || length_q8 > INT32_MAX / 2) {
+    lm_geo_inverse(v->origin, position, &distance_m_q8, &azimuth);
+    const uint64_t length_px_q8 = length_px_q8_of(v, distance_m_q8);
+    if (distance_m_q8 > FARTHEST_Q8 || length_px_q8 > INT32_MAX / 2) {
         return false;
     }
     const fx_bam_t turn = azimuth - v->up;
-    *offset = (struct lm_offset){(int32_t)((int64_t)length_q8 * fx_sin_q30(turn) >> 30),
-                                 (int32_t)((int64_t)length_q8 * fx_cos_q30(turn) >> 30)};
+    *offset = (struct lm_offset){(int32_t)((int64_t)length_px_q8 * fx_sin_q30(turn) >> 30),
+                                 (int32_t)((int64_t)length_px_q8 * fx_cos_q30(turn) >> 30)};
     return true;
 }
 
 struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_view_from *from,
-                                 struct lm_place centre, uint32_t half_m)
+                                 struct lm_position centre, uint32_t half_m)
 {
     const struct lm_frame square = lm_frame_square(frame);
     struct lm_view v = {
         .shape = LM_VIEW_WINDOW,
-        .origin = from->place,
+        .origin = from->position,
         .up = from->up,
-        .height_q10 = from->height_q10,
+        .height_m_q10 = from->height_m_q10,
         .middle = middle_of(&square),
-        .mm_q8_per_px = (uint32_t)((uint64_t)half_m * 512000u / square.width_px),
+        .scale_mm_per_px_q8 = (uint32_t)((uint64_t)half_m * 512000u / square.width_px),
         .radius_px = square.width_px / 2,
     };
     struct lm_offset offset = {0, 0};
-    if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_q8) > LM_VIEW_APEX_FAR_PX * 256 ||
-        fx_abs_u32(offset.y_q8) > LM_VIEW_APEX_FAR_PX * 256) {
+    if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_px_q8) > LM_VIEW_APEX_FAR_PX * 256 ||
+        fx_abs_u32(offset.y_px_q8) > LM_VIEW_APEX_FAR_PX * 256) {
         offset = (struct lm_offset){0, LM_VIEW_APEX_FAR_PX * 256}; /* nothing of it can be seen */
     }
-    v.at = (struct lm_point){v.middle.x - ((offset.x_q8 + 128) >> 8),
-                             v.middle.y + ((offset.y_q8 + 128) >> 8)};
+    v.at = (struct lm_point){v.middle.x - ((offset.x_px_q8 + 128) >> 8),
+                             v.middle.y + ((offset.y_px_q8 + 128) >> 8)};
     return v;
 }
 
@@ -99,46 +100,47 @@ struct lm_offset lm_view_middle(const struct lm_view *v)
     return (struct lm_offset){(v->middle.x - v->at.x) * 256, (v->at.y - v->middle.y) * 256};
 }
 
-bool lm_view_find(const struct lm_view *v, struct lm_place place, struct lm_offset *offset)
+bool lm_view_find(const struct lm_view *v, struct lm_position position, struct lm_offset *offset)
 {
     struct lm_offset found;
-    if (!offset_of(v, place, &found)) {
+    if (!offset_of(v, position, &found)) {
         return false;
     }
     const struct lm_offset middle = lm_view_middle(v);
-    if (fx_abs_u32(found.x_q8 - middle.x_q8) > LM_DRAW_FAR * 256u ||
-        fx_abs_u32(found.y_q8 - middle.y_q8) > LM_DRAW_FAR * 256u) {
+    if (fx_abs_u32(found.x_px_q8 - middle.x_px_q8) > LM_DRAW_FAR * 256u ||
+        fx_abs_u32(found.y_px_q8 - middle.y_px_q8) > LM_DRAW_FAR * 256u) {
         return false;
     }
     *offset = found;
     return true;
 }
 
-struct lm_place lm_view_place(const struct lm_view *v, struct lm_offset offset)
+struct lm_position lm_view_place(const struct lm_view *v, struct lm_offset offset)
 {
     struct lm_geo_origin origin;
-    const uint64_t length_q8 = fx_hypot_u32(offset.x_q8, offset.y_q8);
-    const uint64_t along_q8 = (length_q8 * v->mm_q8_per_px + 128000u) / 256000u;
-    const uint32_t range_q8 = along_q8 < FARTHEST_Q8 ? (uint32_t)along_q8 : FARTHEST_Q8;
-    const uint32_t ground_q8 =
-        v->height_q10 ? lm_ground_of_slant(range_q8, v->height_q10) : range_q8;
+    const uint64_t length_px_q8 = fx_hypot_u32(offset.x_px_q8, offset.y_px_q8);
+    const uint64_t along_px_q8 = (length_px_q8 * v->scale_mm_per_px_q8 + 128000u) / 256000u;
+    const uint32_t range_m_q8 = along_px_q8 < FARTHEST_Q8 ? (uint32_t)along_px_q8 : FARTHEST_Q8;
+    const uint32_t ground_m_q8 =
+        v->height_m_q10 ? lm_ground_of_slant_m_q8(range_m_q8, v->height_m_q10) : range_m_q8;
     lm_geo_set_origin(&origin, v->origin);
-    return lm_geo_direct(&origin, v->up + fx_atan2(offset.x_q8, offset.y_q8), ground_q8);
+    return lm_geo_direct(&origin, v->up + fx_atan2(offset.x_px_q8, offset.y_px_q8), ground_m_q8);
 }
 
-struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame, uint32_t cell_q8,
-                          uint32_t edge_q8)
+struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame, uint32_t cell_m_q8,
+                          uint32_t edge_m_q8)
 {
     return (struct lm_ppi){
         .clip = v->shape == LM_VIEW_WINDOW ? lm_frame_square(frame) : *frame,
         .apex_x_px = v->at.x,
         .apex_y_px = v->at.y,
-        .cells_per_px_q16 = (uint32_t)(((uint64_t)v->mm_q8_per_px << 16) / (cell_q8 * 1000ull)),
-        .near_cell_q8 = (int32_t)((uint64_t)edge_q8 * 256 / cell_q8),
+        .cells_per_px_q16 =
+            (uint32_t)(((uint64_t)v->scale_mm_per_px_q8 << 16) / (cell_m_q8 * 1000ull)),
+        .near_cells_q8 = (int32_t)((uint64_t)edge_m_q8 * 256 / cell_m_q8),
     };
 }
 
 struct lm_point lm_view_point(const struct lm_view *v, struct lm_offset offset)
 {
-    return (struct lm_point){v->at.x + (offset.x_q8 >> 8), v->at.y - 1 - (offset.y_q8 >> 8)};
+    return (struct lm_point){v->at.x + (offset.x_px_q8 >> 8), v->at.y - 1 - (offset.y_px_q8 >> 8)};
 }

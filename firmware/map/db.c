@@ -28,20 +28,19 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
 
 /* Heights in the header go into sums as large as an int: believed up to 16 km either way, as a
  * record's are. */
-static bool is_height(int32_t height_q6)
+static bool is_height(int32_t height_m_q6)
 {
-    return height_q6 >= -HEIGHT_MAX_Q6 && height_q6 <= HEIGHT_MAX_Q6;
+    return height_m_q6 >= -HEIGHT_MAX_Q6 && height_m_q6 <= HEIGHT_MAX_Q6;
 }
 
 static bool header_is_sound(const struct lm_image_header *h, uint64_t flash_bytes)
 {
     return h->header_bytes == LM_DB_HEADER_BYTES && h->image_bytes <= flash_bytes &&
-           h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 &&
-           h->level_count <= LM_DB_LEVELS_MAX &&
-           h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
+           h->shift0 >= LM_DB_SHIFT_MIN && h->lod_count >= 1 && h->lod_count <= LM_DB_LODS_MAX &&
+           h->shift0 + h->lod_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
            h->band_count <= LM_DB_BANDS_MAX && h->record_bytes == LM_TILE_BYTES &&
-           h->section_count <= LM_IMAGE_SECTIONS_MAX && is_height(h->mean_elevation_q6) &&
-           is_height(h->geoid_q6);
+           h->section_count <= LM_IMAGE_SECTIONS_MAX && is_height(h->mean_elevation_m_q6) &&
+           is_height(h->geoid_m_q6);
 }
 
 static const struct lm_image_section *section_of_type(const struct lm_image_header *h,
@@ -89,10 +88,10 @@ static uint32_t columns_round(uint8_t shift, uint8_t zone)
 
 static bool band_is_sound(const struct lm_db *db, const struct lm_band *b)
 {
-    if (b->level >= db->level_count || b->zone > 3 || b->rows == 0 || b->columns == 0) {
+    if (b->lod >= db->lod_count || b->zone > 3 || b->rows == 0 || b->columns == 0) {
         return false;
     }
-    const uint8_t shift = (uint8_t)(db->shift0 + b->level);
+    const uint8_t shift = (uint8_t)(db->shift0 + b->lod);
     const uint32_t rows_all = 1u << (31 - LM_TILE_CELLS_LOG2 - shift); /* pole to pole */
     const uint32_t columns_all = columns_round(shift, b->zone);
     if (b->row0 >= rows_all || b->rows > rows_all - b->row0 || b->column0 >= columns_all ||
@@ -234,12 +233,12 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     }
     db->flash = flash;
     db->shift0 = h.shift0;
-    db->level_count = h.level_count;
+    db->lod_count = h.lod_count;
     db->band_count = h.band_count;
     db->entry_count = h.entry_count;
     db->record_count = h.record_count;
-    db->mean_elevation_q6 = h.mean_elevation_q6;
-    db->geoid_q6 = h.geoid_q6;
+    db->mean_elevation_m_q6 = h.mean_elevation_m_q6;
+    db->geoid_m_q6 = h.geoid_m_q6;
     db->centre_latitude = h.centre_latitude;
     db->centre_longitude = h.centre_longitude;
     memcpy(db->title, h.title, sizeof h.title);
@@ -251,14 +250,14 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     return tables == LM_OK ? read_signatures_head(db, &h, poll_limit) : tables;
 }
 
-int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column)
+int64_t lm_db_entry(const struct lm_db *db, uint8_t lod, uint32_t row, uint32_t column)
 {
     for (uint32_t i = 0; i < db->band_count; i++) {
         const struct lm_band *b = &db->bands[i];
-        if (b->level != level || row < b->row0 || row - b->row0 >= b->rows) {
+        if (b->lod != lod || row < b->row0 || row - b->row0 >= b->rows) {
             continue;
         }
-        const uint32_t round = columns_round((uint8_t)(db->shift0 + level), b->zone);
+        const uint32_t round = columns_round((uint8_t)(db->shift0 + lod), b->zone);
         const uint32_t east = (column - b->column0) & (round - 1);
         if (column < round && east < b->columns) {
             return (int64_t)b->entry0 + (int64_t)(row - b->row0) * b->columns + east;
@@ -281,17 +280,18 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t byte
     return LM_OK;
 }
 
-int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column)
+int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_t column)
 {
     const uint8_t *bytes = (const uint8_t *)tile;
-    const bool is_sound = tile->level == level && tile->row == row && tile->column == column &&
-                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX && is_height(tile->base_q6) &&
+    const bool is_sound = tile->lod == lod && tile->row == row && tile->column == column &&
+                          tile->post_shift <= LM_TILE_POST_SHIFT_MAX &&
+                          is_height(tile->base_m_q6) &&
                           fx_crc32c(0, bytes + 4, LM_TILE_BYTES - 4) == tile->crc;
     return is_sound ? LM_OK : LM_ERR_CORRUPT;
 }
 
-uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t level)
+uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t lod)
 {
     /* 40,007,862.917 m of meridian / 2^32 = 9.31506 mm = 610,472 / 65,536 mm. */
-    return (uint32_t)(((uint64_t)610472 << (db->shift0 + level)) >> 16);
+    return (uint32_t)(((uint64_t)610472 << (db->shift0 + lod)) >> 16);
 }

@@ -33,13 +33,13 @@ struct walk {
     uint32_t sixteenth; /* of the row where the walk stands, see below */
 };
 
-uint8_t lm_scan_level(const struct lm_db *db, uint32_t cell_mm)
+uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
 {
-    uint8_t level = 0;
-    while (level + 1 < db->level_count && lm_db_cell_mm(db, (uint8_t)(level + 1)) <= cell_mm) {
-        level++;
+    uint8_t lod = 0;
+    while (lod + 1 < db->lod_count && lm_db_cell_mm(db, (uint8_t)(lod + 1)) <= cell_mm) {
+        lod++;
     }
-    return level;
+    return lod;
 }
 
 static inline uint64_t magnitude(int64_t x)
@@ -102,13 +102,13 @@ static inline void start_axis(struct axis *a, struct growth g, uint32_t side_log
     enter(a, k, cells);
 }
 
-static APART void start_walk(struct walk *w, const struct lm_db *db, uint8_t level,
+static APART void start_walk(struct walk *w, const struct lm_db *db, uint8_t lod,
                              const struct lm_ground_path *path, uint32_t cells)
 {
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
-    w->side_log2 = (uint32_t)db->shift0 + level + LM_TILE_CELLS_LOG2;
+    w->side_log2 = (uint32_t)db->shift0 + lod + LM_TILE_CELLS_LOG2;
     start_axis(&w->north, (struct growth){from_pole, path->latitude_step, path->latitude_bend},
                w->side_log2, 0, cells);
 }
@@ -161,15 +161,15 @@ static inline bool go_on(struct walk *w, uint32_t k)
     return true;
 }
 
-static inline struct lm_track track_of(const struct way *w)
+static inline struct lm_quadratic track_of(const struct way *w)
 {
-    return (struct lm_track){(uint32_t)w->at, (uint32_t)w->step, (uint32_t)w->half_bend};
+    return (struct lm_quadratic){(uint32_t)w->at, (uint32_t)w->step, (uint32_t)w->half_bend};
 }
 
 /* A way in the tiles of an ancestor so many generations up, exact at cell k. Elsewhere in a run
  * about that cell, 264 cells off at the most, it is within 264^2 / 2 + 264 units of 2^-32 of the
  * ancestor's side: 2^-10 of one of its cells. */
-static struct lm_track track_above(const struct way *w, uint32_t k, uint32_t generations)
+static struct lm_quadratic track_above(const struct way *w, uint32_t k, uint32_t generations)
 {
     const uint64_t half = (uint64_t)1 << generations >> 1;
     const struct way up =
@@ -181,11 +181,11 @@ static struct lm_track track_above(const struct way *w, uint32_t k, uint32_t gen
 
 /* Tell the cells of a run, and those behind it up to a whole number of LM_LANES, which tile they
  * lie in. */
-static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
-                       struct lm_scan_line *line)
+static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_t end,
+                               struct lm_scan_line *line)
 {
     uint32_t *cell = line->cell + first;
-    int32_t *elevation = line->elevation_q14 + first;
+    int32_t *elevation = line->elevation_m_q14 + first;
     const uint32_t *const behind = line->cell + end;
     do {
         for (int lane = 0; lane < LM_LANES; lane++) {
@@ -203,21 +203,21 @@ static inline void lay(struct lm_tile_base tile, uint32_t first, uint32_t end,
 }
 
 /* A run in a tile that was not found at once: what answers for it is good for this run only. */
-static APART void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t level,
+static APART void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t lod,
                                  uint32_t first, uint32_t end, struct lm_scan_line *line)
 {
-    const struct lm_tile *tile = lm_tile_cache_get(tiles, level, w->north.tile, w->east.tile);
+    const struct lm_tile *tile = lm_tile_cache_get(tiles, lod, w->north.tile, w->east.tile);
     if (!tile) {
         for (uint32_t k = first; k < end; k++) {
             line->cell[k] = LM_CELL_NONE;
-            line->elevation_q14[k] = 0;
+            line->elevation_m_q14[k] = 0;
         }
         return;
     }
-    const uint32_t middle = (first + end) / 2, generations = tile->level - (uint32_t)level;
-    const struct lm_places places = {track_above(&w->north.way, middle, generations),
-                                     track_above(&w->east.way, middle, generations)};
-    lay(lm_tile_base_of(tiles->pool, tile), first, end, line);
+    const uint32_t middle = (first + end) / 2, generations = tile->lod - (uint32_t)lod;
+    const struct lm_tile_coords places = {track_above(&w->north.way, middle, generations),
+                                          track_above(&w->east.way, middle, generations)};
+    assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
     lm_tile_read(tiles->pool, &places, first, end, line);
 }
 
@@ -226,13 +226,13 @@ static void read_waiting(const struct walk *w, const struct lm_tile *pool, uint3
                          uint32_t end, struct lm_scan_line *line)
 {
     if (first != end) {
-        const struct lm_places places = {track_of(&w->north.way), track_of(&w->east.way)};
+        const struct lm_tile_coords places = {track_of(&w->north.way), track_of(&w->east.way)};
         lm_tile_read(pool, &places, first, end, line);
     }
 }
 
 /* Read the cells of a zone, from cell k on. Returns the first one behind them. */
-static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t level, uint32_t k,
+static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t lod, uint32_t k,
                           struct lm_scan_line *line)
 {
     const struct lm_tile *pool = tiles->pool;
@@ -241,12 +241,12 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
     do {
         const uint32_t end = end_of_run(w);
         const struct lm_tile_slot *slot =
-            lm_tile_cache_look(tiles, level, w->north.tile, w->east.tile);
+            lm_tile_cache_peek(tiles, lod, w->north.tile, w->east.tile);
         if (slot) {
-            lay(slot->base, k, end, line);
+            assign_tile(slot->base, k, end, line);
         } else {
             read_waiting(w, pool, waiting, k, line);
-            read_otherwise(w, tiles, level, k, end, line);
+            read_otherwise(w, tiles, lod, k, end, line);
             waiting = end;
         }
         k = end;
@@ -255,45 +255,45 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
     return k;
 }
 
-void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t level,
+void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t lod,
                       const struct lm_ground_path *path, uint32_t cells)
 {
     struct walk w;
-    start_walk(&w, tiles->db, level, path, cells);
+    start_walk(&w, tiles->db, lod, path, cells);
     for (uint32_t k = 0; k < cells;) {
-        k = read_zone(&w, tiles, level, k, line);
+        k = read_zone(&w, tiles, lod, k, line);
     }
 }
 
-void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t level,
+void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
                            const struct lm_ground_path *path, uint32_t cells)
 {
     struct walk w;
-    start_walk(&w, tiles->db, level, path, cells);
+    start_walk(&w, tiles->db, lod, path, cells);
     for (uint32_t k = 0; k < cells;) {
         enter_zone(&w, k);
         do {
-            lm_tile_cache_want(tiles, level, w.north.tile, w.east.tile);
+            lm_tile_cache_want(tiles, lod, w.north.tile, w.east.tile);
             k = end_of_run(&w);
         } while (go_on(&w, k));
     }
 }
 
-int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t level, struct lm_place place,
-                          int32_t otherwise_q10)
+int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
+                          int32_t otherwise_m_q10)
 {
-    const uint32_t side_log2 = (uint32_t)tiles->db->shift0 + level + LM_TILE_CELLS_LOG2;
-    const uint64_t from_pole = (uint64_t)(place.latitude + FX_BAM_90) << 32;
+    const uint32_t side_log2 = (uint32_t)tiles->db->shift0 + lod + LM_TILE_CELLS_LOG2;
+    const uint64_t from_pole = (uint64_t)(position.latitude + FX_BAM_90) << 32;
     const uint64_t north = from_pole >> side_log2;
     const uint64_t east =
-        ((uint64_t)place.longitude << 32) >> (side_log2 + lm_db_zone(place.latitude));
+        ((uint64_t)position.longitude << 32) >> (side_log2 + lm_db_zone(position.latitude));
     const struct lm_tile *tile =
-        lm_tile_cache_get(tiles, level, (uint32_t)(north >> 32), (uint32_t)(east >> 32));
+        lm_tile_cache_get(tiles, lod, (uint32_t)(north >> 32), (uint32_t)(east >> 32));
     if (!tile) {
-        return otherwise_q10;
+        return otherwise_m_q10;
     }
-    const uint32_t generations = tile->level - (uint32_t)level;
+    const uint32_t generations = tile->lod - (uint32_t)lod;
     return lm_tile_ground(tile, (uint32_t)(north >> generations), (uint32_t)(east >> generations))
-               .elevation_q14 >>
+               .elevation_m_q14 >>
            4;
 }

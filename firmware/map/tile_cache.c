@@ -5,14 +5,14 @@
 /* Requests looked through for one that is the same. */
 enum { REMEMBERED = 32 };
 
-static uint16_t *head_of(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+static uint16_t *head_of(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
-    return &c->heads[level][lm_tile_chain(row, column)];
+    return &c->heads[lod][lm_tile_chain(row, column)];
 }
 
-static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+static uint16_t find(const struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
-    uint16_t i = c->heads[level][lm_tile_chain(row, column)];
+    uint16_t i = c->heads[lod][lm_tile_chain(row, column)];
     /* A chain holds each slot at most once, so this ends. */
     while (i != LM_SLOT_NONE) {
         const struct lm_tile_slot *s = &c->slots[i];
@@ -27,7 +27,7 @@ static uint16_t find(const struct lm_tile_cache *c, uint8_t level, uint32_t row,
 static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
 {
     const struct lm_tile_slot *s = &c->slots[victim];
-    uint16_t *link = head_of(c, s->level, s->row, s->column);
+    uint16_t *link = head_of(c, s->lod, s->row, s->column);
     while (*link != victim) {
         link = &c->slots[*link].next;
     }
@@ -39,7 +39,7 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
  * but nothing is written if it does. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
-    const uint8_t coarsest = (uint8_t)(c->db->level_count - 1);
+    const uint8_t coarsest = (uint8_t)(c->db->lod_count - 1);
     uint16_t best = LM_SLOT_NONE;
     uint32_t best_age = 0;
     for (uint32_t i = 0; i < c->slot_count; i++) {
@@ -48,7 +48,7 @@ static uint16_t take_slot(struct lm_tile_cache *c)
             return (uint16_t)i;
         }
         const uint32_t age = c->clock - s->last_use;
-        const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->level == coarsest;
+        const bool is_pinned = s->state == LM_SLOT_RESIDENT && s->lod == coarsest;
         if (!is_pinned && s->state != LM_SLOT_READING && (best == LM_SLOT_NONE || age > best_age)) {
             best = (uint16_t)i;
             best_age = age;
@@ -68,11 +68,11 @@ static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *ke
     if (i == LM_SLOT_NONE) {
         return i;
     }
-    uint16_t *head = head_of(c, key->level, key->row, key->column);
+    uint16_t *head = head_of(c, key->lod, key->row, key->column);
     c->slots[i] = (struct lm_tile_slot){.resident = LM_TILE_NO_NAME,
                                         .row = key->row,
                                         .column = key->column,
-                                        .level = key->level,
+                                        .lod = key->lod,
                                         .last_use = c->clock,
                                         .next = *head};
     *head = i;
@@ -114,7 +114,7 @@ static void start_next(struct lm_tile_cache *c)
 {
     const struct lm_tile_key key = c->wanted[c->wanted_tail % LM_TILE_REQUESTS];
     c->wanted_tail++;
-    uint16_t slot = find(c, key.level, key.row, key.column);
+    uint16_t slot = find(c, key.lod, key.row, key.column);
     if (slot == LM_SLOT_NONE) {
         slot = claim_slot(c, &key);
     } else if (is_settled(c, slot)) {
@@ -140,7 +140,7 @@ static void take_entry(struct lm_tile_cache *c)
     } else if (record == UINT32_MAX) {
         const struct lm_tile_slot absent = c->slots[c->reading_slot];
         finish(c, LM_SLOT_ABSENT);
-        lm_tile_cache_want(c, absent.level, absent.row, absent.column); /* its parent will do */
+        lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* its parent will do */
     } else {
         c->is_reading_entry = false;
         start_read(c, c->db->records_offset + (uint64_t)record * LM_TILE_BYTES,
@@ -151,7 +151,7 @@ static void take_entry(struct lm_tile_cache *c)
 static void take_record(struct lm_tile_cache *c)
 {
     const struct lm_tile_slot *s = &c->slots[c->reading_slot];
-    if (lm_tile_check(&c->pool[c->reading_slot], s->level, s->row, s->column) != LM_OK) {
+    if (lm_tile_check(&c->pool[c->reading_slot], s->lod, s->row, s->column) != LM_OK) {
         fail(c, &c->count.corrupt);
         return;
     }
@@ -160,32 +160,32 @@ static void take_record(struct lm_tile_cache *c)
     finish(c, LM_SLOT_RESIDENT);
 }
 
-bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_guest_read *guest)
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *wanted)
 {
-    if (c->guest) {
+    if (c->request) {
         return false;
     }
-    guest->status = LM_BUSY;
-    c->guest = guest;
+    wanted->status = LM_BUSY;
+    c->request = wanted;
     return true;
 }
 
 static void finish_guest(struct lm_tile_cache *c, bool is_ok)
 {
-    c->guest->status = is_ok ? LM_OK : LM_ERR_IO;
+    c->request->status = is_ok ? LM_OK : LM_ERR_IO;
     c->count.io_errors += !is_ok;
-    c->guest = NULL;
-    c->is_reading_guest = false;
+    c->request = NULL;
+    c->is_reading_request = false;
 }
 
 static void start_guest(struct lm_tile_cache *c)
 {
     const struct lm_flash *flash = c->db->flash;
-    const struct lm_guest_read *g = c->guest;
+    const struct lm_flash_request *g = c->request;
     c->count.bytes_read += g->length;
-    c->is_reading_guest =
+    c->is_reading_request =
         flash->read_start(flash->ctx, g->offset, g->destination, g->length) == LM_OK;
-    if (!c->is_reading_guest) {
+    if (!c->is_reading_request) {
         finish_guest(c, false);
     }
 }
@@ -193,7 +193,7 @@ static void start_guest(struct lm_tile_cache *c)
 /* Begin with what is to be read next; false when there is nothing. */
 static bool start_any(struct lm_tile_cache *c)
 {
-    if (c->guest) {
+    if (c->request) {
         start_guest(c);
     } else if (c->wanted_tail != c->wanted_head) {
         start_next(c);
@@ -206,7 +206,7 @@ static bool start_any(struct lm_tile_cache *c)
 /* What was being read is there, or is not to be had. */
 static void take_read(struct lm_tile_cache *c, bool is_ok)
 {
-    if (c->is_reading_guest) {
+    if (c->is_reading_request) {
         finish_guest(c, is_ok);
     } else if (!is_ok) {
         fail(c, &c->count.io_errors);
@@ -219,7 +219,7 @@ static void take_read(struct lm_tile_cache *c, bool is_ok)
 
 static bool is_reading(const struct lm_tile_cache *c)
 {
-    return c->is_reading_guest || c->reading_slot != LM_SLOT_NONE;
+    return c->is_reading_request || c->reading_slot != LM_SLOT_NONE;
 }
 
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads)
@@ -260,7 +260,7 @@ static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 
 /* Ask for a tile that is not resident or, when it is, note that it is in use; `i` is its slot, or
  * LM_SLOT_NONE. False when the image has no such tile. */
-static bool want_tile(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column,
+static bool want_tile(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column,
                       uint16_t i)
 {
     if (i != LM_SLOT_NONE) {
@@ -272,19 +272,19 @@ static bool want_tile(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint
             return true;
         }
     }
-    const int64_t entry = lm_db_entry(c->db, level, row, column);
+    const int64_t entry = lm_db_entry(c->db, lod, row, column);
     if (entry < 0) {
         return false;
     }
-    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, level});
+    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, lod});
     return true;
 }
 
-void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column)
+void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
     /* What the image leaves out is answered by the first ancestor that it has. */
-    for (; level < c->db->level_count; level++, row >>= 1, column >>= 1) {
-        if (want_tile(c, level, row, column, find(c, level, row, column))) {
+    for (; lod < c->db->lod_count; lod++, row >>= 1, column >>= 1) {
+        if (want_tile(c, lod, row, column, find(c, lod, row, column))) {
             return;
         }
     }
@@ -303,21 +303,21 @@ static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
 
 /* The tile or its first ancestor that is resident answers; the first of them that the image has is
  * wanted. */
-const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
+const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column)
 {
     bool is_wanted = false, is_missed = false;
     c->clock++;
-    for (uint8_t at = level; at < c->db->level_count; at++, row >>= 1, column >>= 1) {
+    for (uint8_t at = lod; at < c->db->lod_count; at++, row >>= 1, column >>= 1) {
         const uint16_t i = find(c, at, row, column);
         if (is_resident(c, i)) {
-            c->count.otherwise += at != level;
+            c->count.otherwise += at != lod;
             c->count.substituted += is_missed;
             return answer(c, i);
         }
         if (!is_wanted) {
             is_wanted = want_tile(c, at, row, column, i);
-            is_missed = is_wanted && at == level;
+            is_missed = is_wanted && at == lod;
             c->count.misses += is_missed;
         }
     }
@@ -328,18 +328,18 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, 
 
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
 {
-    return !is_reading(c) && !c->guest && c->wanted_head == c->wanted_tail;
+    return !is_reading(c) && !c->request && c->wanted_head == c->wanted_tail;
 }
 
 /* Read every tile of the coarsest level, waiting for each: this happens once, before the first
  * picture. */
 static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
 {
-    const uint8_t level = (uint8_t)(c->db->level_count - 1);
+    const uint8_t lod = (uint8_t)(c->db->lod_count - 1);
     uint32_t total = 0;
     for (uint32_t b = 0; b < c->db->band_count; b++) {
         const struct lm_band *band = &c->db->bands[b];
-        if (band->level != level) {
+        if (band->lod != lod) {
             continue;
         }
         const uint64_t tiles = (uint64_t)band->rows * band->columns;
@@ -347,10 +347,10 @@ static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
             return LM_ERR_NO_MEMORY;
         }
         total += (uint32_t)tiles;
-        const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - level - band->zone);
+        const uint32_t round = 1u << (32 - LM_TILE_CELLS_LOG2 - c->db->shift0 - lod - band->zone);
         for (uint32_t t = 0; t < tiles; t++) {
             const uint32_t column = (band->column0 + t % band->columns) & (round - 1);
-            lm_tile_cache_want(c, level, band->row0 + t / band->columns, column);
+            lm_tile_cache_want(c, lod, band->row0 + t / band->columns, column);
             for (uint32_t polls = 0; polls < poll_limit && !lm_tile_cache_is_idle(c); polls++) {
                 lm_tile_cache_service(c, 0, 1);
             }
@@ -371,9 +371,9 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
     for (uint32_t i = 0; i <= LM_TILE_SLOTS_MAX; i++) {
         c->slots[i].resident = LM_TILE_NO_NAME;
     }
-    for (uint32_t level = 0; level < LM_DB_LEVELS_MAX; level++) {
+    for (uint32_t lod = 0; lod < LM_DB_LODS_MAX; lod++) {
         for (uint32_t i = 0; i < LM_TILE_CHAINS; i++) {
-            c->heads[level][i] = LM_SLOT_NONE;
+            c->heads[lod][i] = LM_SLOT_NONE;
         }
     }
     return read_coarsest(c, poll_limit);

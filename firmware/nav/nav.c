@@ -175,24 +175,24 @@ static void set_height(struct lm_ownship *out, const struct lm_nav *n, uint64_t 
     out->height_source = height.field;
     out->height_origin = height.origin;
     /* mm/s * us is 1e-9 m, of which 15,625,000 make a 64th. At most 500,000 * 65,535,000. */
-    out->height_q6 = height.value + (int32_t)(rate.value * height.age_us / 15625000);
+    out->height_m_q6 = height.value + (int32_t)(rate.value * height.age_us / 15625000);
 }
 
 /* Angle in BAM that a point moves in `age_us` at `speed_mm_s` on a circle. The way is below 1.5 *
  * 10^6 mm/s * 2 s = 3 * 10^9 um, times 2^32 / (2 pi) = 683,565,276 below 2^61; the radius, 2^31,
  * takes 2^43 as micrometres. */
-static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_q8)
+static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_m_q8)
 {
     const int64_t way_um = speed_mm_s * age_us / 1000;
-    return way_um * 683565276 / (radius_q8 * 15625 / 4);
+    return way_um * 683565276 / (radius_m_q8 * 15625 / 4);
 }
 
 /* A latitude, `age_us` later. */
 static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_geo_origin *origin,
-                              int64_t height_q8, const struct velocity *v)
+                              int64_t height_m_q8, const struct velocity *v)
 {
     const int64_t moved =
-        latitude + arc_bam(v->north_mm_s, age_us, origin->meridian_radius_q8 + height_q8);
+        latitude + arc_bam(v->north_mm_s, age_us, origin->meridian_radius_m_q8 + height_m_q8);
     const int32_t pole = (int32_t)FX_BAM_90;
     return moved > pole ? pole : moved < -pole ? -pole : (int32_t)moved;
 }
@@ -200,17 +200,17 @@ static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_
 /* A longitude, `age_us` later, by when the latitude is `latitude`. The circle is that of the
  * latitude half way along, which makes a course of constant velocity right to second order. */
 static int32_t carry_longitude(int32_t longitude, int64_t age_us, fx_bam_t latitude,
-                               const struct lm_geo_origin *origin, int64_t height_q8,
+                               const struct lm_geo_origin *origin, int64_t height_m_q8,
                                const struct velocity *v)
 {
-    const int64_t least_radius_q8 = 64000 << 8; /* 0.6 degree from the pole */
-    const int64_t meridian_q8 = origin->meridian_radius_q8 + height_q8;
+    const int64_t least_radius_m_q8 = 64000 << 8; /* 0.6 degree from the pole */
+    const int64_t meridian_m_q8 = origin->meridian_radius_m_q8 + height_m_q8;
     const fx_bam_t half_way =
-        latitude - (fx_bam_t)(arc_bam(v->north_mm_s, age_us, meridian_q8) / 2);
-    const int64_t circle_q8 =
-        times_q30(origin->prime_vertical_radius_q8 + height_q8, fx_cos_q30(half_way));
-    const int64_t moved =
-        arc_bam(v->east_mm_s, age_us, circle_q8 > least_radius_q8 ? circle_q8 : least_radius_q8);
+        latitude - (fx_bam_t)(arc_bam(v->north_mm_s, age_us, meridian_m_q8) / 2);
+    const int64_t circle_m_q8 =
+        times_q30(origin->prime_vertical_radius_m_q8 + height_m_q8, fx_cos_q30(half_way));
+    const int64_t moved = arc_bam(
+        v->east_mm_s, age_us, circle_m_q8 > least_radius_m_q8 ? circle_m_q8 : least_radius_m_q8);
     return (int32_t)((uint32_t)longitude + (uint32_t)moved);
 }
 
@@ -228,12 +228,13 @@ static void set_position(struct lm_ownship *out, const struct lm_nav *n, const s
         out->position_quality = LM_NAV_STALE;
     }
     out->position_origin = origin_of(&p);
-    const int64_t height_q8 = (int64_t)out->height_q6 * 4;
+    const int64_t height_m_q8 = (int64_t)out->height_m_q6 * 4;
     struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, (struct lm_place){(fx_bam_t)p.first.value, 0});
-    out->latitude = (fx_bam_t)carry_latitude(p.first.value, p.first.age_us, &origin, height_q8, v);
+    lm_geo_set_origin(&origin, (struct lm_position){(fx_bam_t)p.first.value, 0});
+    out->latitude =
+        (fx_bam_t)carry_latitude(p.first.value, p.first.age_us, &origin, height_m_q8, v);
     out->longitude = (fx_bam_t)carry_longitude(p.second.value, p.second.age_us, out->latitude,
-                                               &origin, height_q8, v);
+                                               &origin, height_m_q8, v);
 }
 
 static void set_attitude(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
@@ -281,7 +282,7 @@ static void set_steerpoint(struct lm_ownship *out, const struct lm_nav *n, uint6
     const struct pair p =
         read_pair(n, LM_BUS_STEERPOINT_LATITUDE, LM_BUS_STEERPOINT_LONGITUDE, now_us);
     out->steerpoint_quality = quality_of(&p);
-    out->steerpoint = (struct lm_place){(fx_bam_t)p.first.value, (fx_bam_t)p.second.value};
+    out->steerpoint = (struct lm_position){(fx_bam_t)p.first.value, (fx_bam_t)p.second.value};
 }
 
 static void set_utc(struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
@@ -341,14 +342,14 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
     if (before.quality == LM_NAV_DEAD || v.quality == LM_NAV_DEAD || latitude == NULL) {
         return fix->value;
     }
-    const int64_t height_q8 = (int64_t)read_height(n, fix->time_us).value * 4;
+    const int64_t height_m_q8 = (int64_t)read_height(n, fix->time_us).value * 4;
     struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, (struct lm_place){(fx_bam_t)latitude->value, 0});
+    lm_geo_set_origin(&origin, (struct lm_position){(fx_bam_t)latitude->value, 0});
     const int32_t carried =
         field == LM_BUS_LATITUDE
-            ? carry_latitude(last->value, before.age_us, &origin, height_q8, &v)
+            ? carry_latitude(last->value, before.age_us, &origin, height_m_q8, &v)
             : carry_longitude(last->value, before.age_us, (fx_bam_t)latitude->value, &origin,
-                              height_q8, &v);
+                              height_m_q8, &v);
     const int32_t off = (int32_t)((uint32_t)carried - (uint32_t)fix->value);
     const int32_t half = fix->step > INT32_MAX ? INT32_MAX / 2 : (int32_t)(fix->step / 2);
     const int32_t held = off > half ? half : off < -half ? -half : off;

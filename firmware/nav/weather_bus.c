@@ -54,12 +54,12 @@ static struct lm_environment meaning_of(const struct lm_weather_slot *s, bool is
 {
     struct lm_environment e = {.rain_count = !is_jammer, .jammer_count = is_jammer};
     const int32_t *part = s->set.part;
-    const struct lm_place place = {(fx_bam_t)part[0], (fx_bam_t)part[1]};
+    const struct lm_position position = {(fx_bam_t)part[0], (fx_bam_t)part[1]};
     if (is_jammer) {
         e.jammer[0] =
-            (struct lm_jammer){place, (int16_t)fx_clamp_i32(part[2], INT16_MIN, INT16_MAX)};
+            (struct lm_jammer){position, (int16_t)fx_clamp_i32(part[2], INT16_MIN, INT16_MAX)};
     } else {
-        e.rain[0] = (struct lm_rain){place, (uint32_t)fx_max_i32(part[2], 0) / 64,
+        e.rain[0] = (struct lm_rain){position, (uint32_t)fx_max_i32(part[2], 0) / 64,
                                      (uint16_t)fx_clamp_i32(part[3], 0, UINT16_MAX)};
     }
     return e;

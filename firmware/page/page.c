@@ -117,8 +117,8 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 {
     memset(p, 0, sizeof *p);
     p->radar = radar;
-    p->range = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
-    p->cell = 3;
+    p->range_index = (uint8_t)lm_radar_find_range(radar, radar->range_start_nm);
+    p->cell_index = 3;
     for (uint32_t osb = 1; osb <= LM_OSBS; osb++) {
         const struct lm_page_key *key = find_key(&lm_page_radar, (uint8_t)osb);
         p->hidden |= key && key->starts_hidden ? OSB_BIT(osb) : 0;
@@ -128,13 +128,13 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table)
 {
     /* |gain| 30, |window| 20, |table| below 64 dB and the knob's 2: below 2^15 / 256 dB. */
-    const int32_t gain_q8 = p->gain_db * 256 + p->knob * LM_KNOB_FULL_Q8 / LM_FULL_DEFLECTION;
-    const int32_t black_q8 = table->black_q8 + p->black_db * 256;
-    const int32_t white_q8 = table->white_q8 + p->white_db * 256;
+    const int32_t gain_db_q8 = p->gain_db * 256 + p->knob * LM_KNOB_FULL_Q8 / LM_FULL_DEFLECTION;
+    const int32_t black_db_q8 = table->black_db_q8 + p->black_db * 256;
+    const int32_t white_db_q8 = table->white_db_q8 + p->white_db * 256;
     const int32_t gamma_q8 = table->gamma_q8 + p->gamma_tenths * 256 / 10;
     return (struct lm_tone_config){
-        .black_q8 = (int16_t)(black_q8 - gain_q8),
-        .white_q8 = (int16_t)(fx_max_i32(white_q8, black_q8 + 256) - gain_q8),
+        .black_db_q8 = (int16_t)(black_db_q8 - gain_db_q8),
+        .white_db_q8 = (int16_t)(fx_max_i32(white_db_q8, black_db_q8 + 256) - gain_db_q8),
         .gamma_q8 = (uint16_t)fx_clamp_i32(gamma_q8, 64, 1024),
     };
 }
@@ -173,26 +173,26 @@ static uint32_t press_rocker(struct lm_page *p, uint8_t button)
 
 uint8_t lm_page_range_last(const struct lm_page *p)
 {
-    return (uint8_t)lm_radar_range_last(p->radar, p->mode, p->field);
+    return (uint8_t)lm_radar_range_last(p->radar, p->mode, p->fov);
 }
 
 /* Begin the sector with this scale. */
 static uint32_t take_range(struct lm_page *p, uint32_t range)
 {
-    const bool is_other = range != p->range;
-    p->range = (uint8_t)range;
+    const bool is_other = range != p->range_index;
+    p->range_index = (uint8_t)range;
     return is_other ? LM_EFFECT_SECTOR | LM_EFFECT_RANGE : LM_EFFECT_SECTOR;
 }
 
 uint32_t lm_page_fit_range(struct lm_page *p)
 {
-    return take_range(p, fx_min_u32(p->range, lm_page_range_last(p)));
+    return take_range(p, fx_min_u32(p->range_index, lm_page_range_last(p)));
 }
 
 uint32_t lm_page_step_range(struct lm_page *p, int32_t step)
 {
-    const int32_t range = fx_clamp_i32(p->range + step, 0, lm_page_range_last(p));
-    return range != p->range ? take_range(p, (uint32_t)range) : 0;
+    const int32_t range = fx_clamp_i32(p->range_index + step, 0, lm_page_range_last(p));
+    return range != p->range_index ? take_range(p, (uint32_t)range) : 0;
 }
 
 static bool is_within(int32_t value, int32_t low, int32_t high)
@@ -215,19 +215,19 @@ uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
     if (!is_within(azimuth, 0, LM_AZIMUTHS - 1)) {
         return 0;
     }
-    p->azimuth = (uint8_t)azimuth;
+    p->azimuth_index = (uint8_t)azimuth;
     return LM_EFFECT_SECTOR;
 }
 
 uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field)
 {
     if (!is_within(mode, 0, LM_SECTOR_MODES - 1) ||
-        !is_within(field, 0, p->radar->mode[mode].field_last) ||
-        p->range > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)field)) {
+        !is_within(field, 0, p->radar->mode[mode].fov_last) ||
+        p->range_index > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)field)) {
         return 0;
     }
     p->mode = (uint8_t)mode;
-    p->field = (uint8_t)field;
+    p->fov = (uint8_t)field;
     return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
 }
 

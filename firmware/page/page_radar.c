@@ -11,7 +11,7 @@ static const struct {
 
 uint32_t lm_page_cell_mm(const struct lm_page *p)
 {
-    return cells[p->cell].mm;
+    return cells[p->cell_index].mm;
 }
 
 static bool is_patch(const struct lm_page *p)
@@ -39,40 +39,40 @@ static uint32_t press_mode(struct lm_page *p, int32_t step)
         return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
     }
     p->mode = (uint8_t)((p->mode + (uint32_t)step) % LM_SECTOR_MODES);
-    p->field = p->field > p->radar->mode[p->mode].field_last ? (uint8_t)LM_FIELD_NORM : p->field;
+    p->fov = p->fov > p->radar->mode[p->mode].fov_last ? (uint8_t)LM_FOV_NORM : p->fov;
     return lm_page_fit_range(p) | LM_EFFECT_TONE;
 }
 
 static void say_field(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, is_patch(p) ? "SAR" : p->radar->field[p->field].name, "");
+    lm_label_say(label, is_patch(p) ? "SAR" : p->radar->fov[p->fov].name, "");
 }
 
 /* The next field of view that this mode has at this range. In a patch: the whole sector. */
 static uint32_t press_field(struct lm_page *p, int32_t step)
 {
-    const uint8_t before = p->field;
+    const uint8_t before = p->fov;
     if (!is_sector(p)) {
-        p->field = LM_FIELD_NORM;
+        p->fov = LM_FOV_NORM;
         return LM_EFFECT_SECTOR;
     }
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        p->field = (uint8_t)((p->field + (uint32_t)step) % LM_FIELDS);
-        if (p->field <= p->radar->mode[p->mode].field_last && p->range <= lm_page_range_last(p)) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        p->fov = (uint8_t)((p->fov + (uint32_t)step) % LM_FOVS);
+        if (p->fov <= p->radar->mode[p->mode].fov_last && p->range_index <= lm_page_range_last(p)) {
             break;
         }
     }
-    return p->field != before ? LM_EFFECT_SECTOR : 0;
+    return p->fov != before ? LM_EFFECT_SECTOR : 0;
 }
 
 static void say_cell(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, "CELL", cells[p->cell].words);
+    lm_label_say(label, "CELL", cells[p->cell_index].words);
 }
 
 static uint32_t press_cell(struct lm_page *p, int32_t step)
 {
-    p->cell = (uint8_t)((p->cell + (uint32_t)step) % LM_SAR_CELLS_OFFERED);
+    p->cell_index = (uint8_t)((p->cell_index + (uint32_t)step) % LM_SAR_CELLS_OFFERED);
     return is_patch(p) ? LM_EFFECT_PATCH : 0;
 }
 
@@ -93,13 +93,13 @@ static uint32_t press_auto(struct lm_page *p, int32_t step)
 /* A window around the cursor has no scan of its own. */
 static bool has_azimuth(const struct lm_page *p)
 {
-    return is_sector(p) && p->field == LM_FIELD_NORM;
+    return is_sector(p) && p->fov == LM_FOV_NORM;
 }
 
 /* The sector's half angle in tens of degrees, under an A. */
 static void say_azimuth(const struct lm_page *p, struct lm_label *label)
 {
-    const fx_bam_t half = p->radar->azimuth_half[p->azimuth];
+    const fx_bam_t half = p->radar->azimuth_half[p->azimuth_index];
     const char digit[2] = {(char)('0' + (((uint64_t)half * 36 + (1u << 31)) >> 32) % 10), 0};
     lm_label_say(label, "A", digit);
 }
@@ -109,23 +109,23 @@ static uint32_t press_azimuth(struct lm_page *p, int32_t step)
     if (!has_azimuth(p)) {
         return 0;
     }
-    p->azimuth = (uint8_t)((p->azimuth + (uint32_t)step) % LM_AZIMUTHS);
+    p->azimuth_index = (uint8_t)((p->azimuth_index + (uint32_t)step) % LM_AZIMUTHS);
     return LM_EFFECT_SECTOR;
 }
 
 static bool has_smaller(const struct lm_page *p)
 {
-    return is_sector(p) && p->range > 0;
+    return is_sector(p) && p->range_index > 0;
 }
 
 static bool has_larger(const struct lm_page *p)
 {
-    return is_sector(p) && p->range < lm_page_range_last(p);
+    return is_sector(p) && p->range_index < lm_page_range_last(p);
 }
 
 static void say_range(const struct lm_page *p, struct lm_label *value)
 {
-    lm_label_number(value, "", p->radar->range[p->range].range_nm, false);
+    lm_label_number(value, "", p->radar->range[p->range_index].range_nm, false);
 }
 
 static uint32_t press_range(struct lm_page *p, int32_t step)

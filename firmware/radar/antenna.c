@@ -5,18 +5,18 @@
 
 enum { STEP_Q20 = 1 << 9, RADIAN_Q20_OF_CIRCLE = 6588397 /* 2 pi */ };
 
-void lm_elevation_set(struct lm_elevation *e, const struct lm_antenna_table *antenna)
+void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenna_table *antenna)
 {
     /* b in Q20 radians: a beam is at most half a circle, 2^31 times 2^22.7. */
     const int64_t beam_q20 =
         (int64_t)((uint64_t)antenna->elevation_beam * RADIAN_Q20_OF_CIRCLE >> 32);
-    for (int32_t n = 0; n < LM_ELEVATION_STEPS; n++) {
+    for (int32_t n = 0; n < LM_ANTENNA_PATTERN_STEPS; n++) {
         /* x = e / b in Q12; 80 log10(2) dB is 6165 / 256. Far beyond the beam everything is as good
          * as nothing: -96 dB. */
         const int64_t off_q20 = (int64_t)n * STEP_Q20 + STEP_Q20 / 2;
         const int64_t x_q12 = (off_q20 << 12) / (beam_q20 > 0 ? beam_q20 : 1);
-        const int64_t fall_q8 = (x_q12 * x_q12 >> 12) * 6165 >> 12;
-        e->gain_q8[n] = fall_q8 < 96 * 256 ? -(int32_t)fall_q8 : -96 * 256;
+        const int64_t fall_db_q8 = (x_q12 * x_q12 >> 12) * 6165 >> 12;
+        e->gain_db_q8[n] = fall_db_q8 < 96 * 256 ? -(int32_t)fall_db_q8 : -96 * 256;
     }
 }
 
@@ -28,12 +28,13 @@ static int32_t tan_q20(int64_t angle)
     return fx_tan_q16((fx_bam_t)held) * 16;
 }
 
-struct lm_fan lm_fan_at(int32_t tilt, fx_bam_t fan)
+struct lm_antenna_fan lm_antenna_fan_at(int32_t tilt, fx_bam_t fan)
 {
-    return (struct lm_fan){.high_q20 = tan_q20(tilt), .low_q20 = tan_q20((int64_t)tilt - fan)};
+    return (struct lm_antenna_fan){.high_q20 = tan_q20(tilt),
+                                   .low_q20 = tan_q20((int64_t)tilt - fan)};
 }
 
-int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m)
+int32_t lm_antenna_auto_tilt(int32_t height_m, uint32_t range_m)
 {
     /* Twice the radius of the Earth, 4/3 as large as it is: what refraction makes of it. */
     const uint64_t two_radii_m = 16989333;
@@ -43,13 +44,14 @@ int32_t lm_auto_tilt(int32_t height_m, uint32_t range_m)
 
 /* Weigh what is outside of the fan. Tangents come with 22 bits of fraction or more; 20 are asked
  * for. */
-static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down, struct lm_fan fan,
-                  const int32_t *restrict gain_q8, int32_t *restrict level_q8)
+static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down,
+                  struct lm_antenna_fan fan, const int32_t *restrict gain_db_q8,
+                  int32_t *restrict level_db_q8)
 {
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t t_q20 = tangent[i] >> down;
         const int32_t off_q20 = fx_max_i32(t_q20 - fan.high_q20, fan.low_q20 - t_q20);
-        level_q8[i] += gain_q8[fx_min_i32(off_q20 >> 9, LM_ELEVATION_STEPS - 1)];
+        level_db_q8[i] += gain_db_q8[fx_min_i32(off_q20 >> 9, LM_ANTENNA_PATTERN_STEPS - 1)];
     }
 }
 
@@ -69,13 +71,13 @@ static uint32_t first_at(const int32_t *tangent, uint32_t down, int32_t t_q20, u
     return first;
 }
 
-void lm_elevation_run(const struct lm_elevation *e, const struct lm_fan *fan,
-                      const struct lm_range_grid *grid, struct lm_sight *sight)
+void lm_antenna_pattern_apply(const struct lm_antenna_pattern *e, const struct lm_antenna_fan *fan,
+                              const struct lm_range_grid *grid, struct lm_lit_line *lit)
 {
-    const int32_t *const tangent = sight->horizon + 1;
+    const int32_t *const tangent = lit->horizon + 1;
     const uint32_t cells = grid->cells, down = grid->tangent_bits - 20;
     const uint32_t within = first_at(tangent, down, fan->low_q20 + 1, 0, cells);
     const uint32_t above = first_at(tangent, down, fan->high_q20, within, cells);
-    weigh(tangent, within, down, *fan, e->gain_q8, sight->level_q8);
-    weigh(tangent + above, cells - above, down, *fan, e->gain_q8, sight->level_q8 + above);
+    weigh(tangent, within, down, *fan, e->gain_db_q8, lit->level_db_q8);
+    weigh(tangent + above, cells - above, down, *fan, e->gain_db_q8, lit->level_db_q8 + above);
 }

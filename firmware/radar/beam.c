@@ -47,24 +47,24 @@ static uint32_t pattern_q16(uint64_t x_q12)
 /* x = off * ratio / beam for the samples of a look: their pattern, and what all of it is, at most
  * 2^19. */
 static uint32_t weigh(const struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
-                      uint32_t ratio_q8, struct lm_beam_look *look)
+                      uint32_t ratio_q8, struct lm_beam_taps *taps)
 {
     /* A ratio of 2^16 at the most; beams of less than 1/200 degree count as that. */
     const fx_bam_t beam = fx_max_u32(radar->antenna.azimuth_beam, 1u << 16);
     const uint64_t x_per_bam_q44 = ((uint64_t)ratio_q8 << 36) / beam;
-    int32_t off = azimuth - lm_beam_azimuth(b, radar, look->first);
+    int32_t off = azimuth - lm_beam_azimuth(b, radar, taps->first);
     uint32_t sum = 0;
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
         /* |off| is below five spacings, so below 2^27, times 2^36. */
-        look->weight_q16[j] = pattern_q16(fx_abs_u32(off) * x_per_bam_q44 >> 32);
-        sum += look->weight_q16[j];
+        taps->weight_q16[j] = pattern_q16(fx_abs_u32(off) * x_per_bam_q44 >> 32);
+        sum += taps->weight_q16[j];
         off -= (int32_t)lm_beam_spacing(b, radar);
     }
     return sum;
 }
 
-void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
-                 uint32_t ratio_q8, struct lm_beam_look *look)
+void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
+                      uint32_t ratio_q8, struct lm_beam_taps *taps)
 {
     const uint8_t fineness = fineness_of(ratio_q8);
     if (fineness != b->fineness) {
@@ -74,15 +74,15 @@ void lm_beam_aim(struct lm_beam *b, const struct lm_radar *radar, int32_t azimut
     /* Floor of azimuth / spacing + 1/2, for either sign. */
     const int64_t spacing = lm_beam_spacing(b, radar), shifted = (int64_t)azimuth + spacing / 2;
     const int64_t nearest = (shifted - (shifted < 0 ? spacing - 1 : 0)) / spacing;
-    look->first = (int32_t)nearest - LM_BEAM_TAPS / 2;
-    const uint32_t sum = weigh(b, radar, azimuth, ratio_q8, look);
+    taps->first = (int32_t)nearest - LM_BEAM_TAPS / 2;
+    const uint32_t sum = weigh(b, radar, azimuth, ratio_q8, taps);
     const uint64_t share_q48 = ((uint64_t)1 << 48) / fx_max_u32(sum, 1);
     uint32_t left = 65536;
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-        look->weight_q16[j] = (uint32_t)(look->weight_q16[j] * share_q48 >> 32);
-        left -= look->weight_q16[j];
+        taps->weight_q16[j] = (uint32_t)(taps->weight_q16[j] * share_q48 >> 32);
+        left -= taps->weight_q16[j];
     }
-    look->weight_q16[LM_BEAM_TAPS / 2] += left; /* what rounding left goes to the middle */
+    taps->weight_q16[LM_BEAM_TAPS / 2] += left; /* what rounding left goes to the middle */
 }
 
 bool lm_beam_has(const struct lm_beam *b, int32_t sample)
@@ -90,16 +90,16 @@ bool lm_beam_has(const struct lm_beam *b, int32_t sample)
     return sample >= b->first && sample - b->first < b->held;
 }
 
-bool lm_beam_lacks(const struct lm_beam *b, const struct lm_beam_look *look, int32_t *sample)
+bool lm_beam_next_missing(const struct lm_beam *b, const struct lm_beam_taps *taps, int32_t *sample)
 {
-    const int32_t end = b->first + b->held, look_end = look->first + LM_BEAM_TAPS;
-    const bool is_apart = look->first >= end || look_end <= b->first;
-    const bool is_before = look->first < b->first;
-    *sample = is_apart ? look->first : is_before ? b->first - 1 : end;
+    const int32_t end = b->first + b->held, look_end = taps->first + LM_BEAM_TAPS;
+    const bool is_apart = taps->first >= end || look_end <= b->first;
+    const bool is_before = taps->first < b->first;
+    *sample = is_apart ? taps->first : is_before ? b->first - 1 : end;
     return is_apart || is_before || look_end > end;
 }
 
-uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
+uint32_t *lm_beam_slot(struct lm_beam *b, int32_t sample)
 {
     const int32_t end = b->first + b->held;
     const bool is_next = sample == end, is_before = sample == b->first - 1;
@@ -108,12 +108,12 @@ uint32_t *lm_beam_room(struct lm_beam *b, int32_t sample)
     return b->power_q24[slot_of(sample)];
 }
 
-void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_look *look, uint32_t *power_q24,
+void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_taps *taps, uint32_t *power_q24,
                  uint32_t cells)
 {
     const uint32_t *power[LM_BEAM_TAPS];
     for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-        power[j] = b->power_q24[slot_of(look->first + j)];
+        power[j] = b->power_q24[slot_of(taps->first + j)];
     }
-    lm_k_beam_sum(power, look->weight_q16, power_q24, cells);
+    lm_k_beam_sum(power, taps->weight_q16, power_q24, cells);
 }

@@ -5,8 +5,8 @@
 
 enum { LINES = 2 * LM_DEFOCUS_REACH + 1, WIDTH_MAX_Q8 = LINES * 256 };
 
-uint32_t lm_defocus_q8(uint32_t lateral_mm_s2, uint32_t residual_permille, uint32_t wavelength_um,
-                       uint64_t dwell_us)
+uint32_t lm_defocus_lines_q8(uint32_t lateral_mm_s2, uint32_t residual_permille,
+                             uint32_t wavelength_um, uint64_t dwell_us)
 {
     /* 0.42 f = 0.42 pi A' T^2 / 2 l = 0.6597 A' T^2 / l. A' in um/s2 is below 2^34; a dwell beyond
      * 2^17 ms is as bad as one of it, and its square below 2^34 ms2: 2^68 would overflow, so A' is
@@ -17,30 +17,30 @@ uint32_t lm_defocus_q8(uint32_t lateral_mm_s2, uint32_t residual_permille, uint3
     /* um/s2 * ms2 / um is 10^-6, and below 2^53 for a wavelength of a millimetre; 0.6597 in Q8 is
      * 169. */
     const uint64_t turns = residual_um_s2 * dwell_ms * dwell_ms / wavelength_um;
-    const uint64_t smear_q8 = turns * 169 / 1000000;
-    if (smear_q8 >= WIDTH_MAX_Q8) {
+    const uint64_t smear_lines_q8 = turns * 169 / 1000000;
+    if (smear_lines_q8 >= WIDTH_MAX_Q8) {
         return WIDTH_MAX_Q8;
     }
-    const uint32_t width_q8 = fx_hypot_u32(256, (int32_t)smear_q8);
-    return width_q8 < WIDTH_MAX_Q8 ? width_q8 : WIDTH_MAX_Q8;
+    const uint32_t width_lines_q8 = fx_hypot_u32(256, (int32_t)smear_lines_q8);
+    return width_lines_q8 < WIDTH_MAX_Q8 ? width_lines_q8 : WIDTH_MAX_Q8;
 }
 
-void lm_defocus_shares(uint32_t width_q8, uint32_t share_q16[LINES])
+void lm_defocus_shares(uint32_t width_lines_q8, uint32_t share_q16[LINES])
 {
     /* Line m covers m - 1/2 .. m + 1/2, the smear -q/2 .. q/2; ends are doubled to stay whole. */
     uint32_t rest_q16 = 65536;
     for (int32_t m = LM_DEFOCUS_REACH; m > 0; m--) {
-        const int32_t overlap = (int32_t)width_q8 - (2 * m - 1) * 256;
+        const int32_t overlap = (int32_t)width_lines_q8 - (2 * m - 1) * 256;
         const uint32_t part = overlap < 0 ? 0 : overlap < 512 ? (uint32_t)overlap : 512;
-        const uint32_t share = part * 32768 / width_q8;
+        const uint32_t share = part * 32768 / width_lines_q8;
         share_q16[LM_DEFOCUS_REACH - m] = share_q16[LM_DEFOCUS_REACH + m] = share;
         rest_q16 -= 2 * share;
     }
     share_q16[LM_DEFOCUS_REACH] = rest_q16;
 }
 
-void lm_defocus_run(const int32_t *const line_q8[LINES], const uint32_t share_q16[LINES],
-                    int32_t *level_q8, uint64_t *power_q32, uint32_t cells)
+void lm_defocus_run(const int32_t *const line_db_q8[LINES], const uint32_t share_q16[LINES],
+                    int32_t *level_db_q8, uint64_t *power_q32, uint32_t cells)
 {
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 32);
     for (uint32_t i = 0; i < cells; i++) {
@@ -49,11 +49,11 @@ void lm_defocus_run(const int32_t *const line_q8[LINES], const uint32_t share_q1
     for (uint32_t m = 0; m < LINES; m++) {
         const uint64_t share = share_q16[m];
         for (uint32_t i = 0; share != 0 && i < cells; i++) {
-            const uint64_t power = fx_power_q32_of_many(line_q8[m][i]);
+            const uint64_t power = fx_power_q32_vec(line_db_q8[m][i]);
             power_q32[i] += (power >> 16) * share + ((power & 0xffffu) * share >> 16);
         }
     }
     for (uint32_t i = 0; i < cells; i++) {
-        level_q8[i] = fx_db_q8_u64(power_q32[i]) - unit_q8;
+        level_db_q8[i] = fx_db_q8_u64(power_q32[i]) - unit_q8;
     }
 }

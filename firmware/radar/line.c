@@ -5,15 +5,16 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
                                lm_horizon_q40_t horizon)
 {
     const uint32_t cells = setup->grid->cells;
-    lm_scan_line_run(&line->ground, tiles, setup->level, path, cells);
-    horizon = lm_aspect_run(setup->grid, setup->legend, &line->ground, horizon, &line->sight);
-    lm_texture_run(setup->texture, &setup->raster, line->ground.cell, line->sight.level_q8, cells);
+    lm_scan_line_run(&line->ground, tiles, setup->lod, path, cells);
+    horizon = lm_illuminate(setup->grid, setup->class_lut, &line->ground, horizon, &line->lit);
+    lm_texture_run(setup->texture, &setup->noise_key, line->ground.cell, line->lit.level_db_q8,
+                   cells);
     return horizon;
 }
 
 void lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
                          const struct lm_line_targets *targets)
 {
-    const struct lm_target_sight sight = {line->sight.horizon, grid->tangent_bits};
-    lm_target_add(targets->near, &targets->where, &sight, line->sight.level_q8);
+    const struct lm_target_horizon horizon = {line->lit.horizon, grid->tangent_bits};
+    lm_target_line_add(targets->candidates, &targets->where, &horizon, line->lit.level_db_q8);
 }

@@ -19,17 +19,17 @@ enum {
 
 static struct lm_reach reach_of(const struct lm_patch_geometry *g)
 {
-    const uint32_t before_q8 = (g->lines - 1) * g->cell_q8 / 2 + g->guard * g->cell_q8;
-    return (struct lm_reach){g->centre_q8 - before_q8, g->cell_q8, g->cells};
+    const uint32_t before_db_q8 = (g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
+    return (struct lm_reach){g->centre_m_q8 - before_db_q8, g->cell_m_q8, g->cells};
 }
 
 /* How far the ray through the middle of line `line` is turned from the line of sight. */
 static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
 {
-    const int64_t across_q8 = (2 * (int64_t)line + 1 - g->lines) * g->cell_q8 / 2;
+    const int64_t across_m_q8 = (2 * (int64_t)line + 1 - g->lines) * g->cell_m_q8 / 2;
     const int64_t most = RANGE_MOST_Q8;
-    const int64_t held_q8 = across_q8 > most ? most : across_q8 < -most ? -most : across_q8;
-    return fx_atan2((int32_t)held_q8, (int32_t)g->centre_q8);
+    const int64_t held_m_q8 = across_m_q8 > most ? most : across_m_q8 < -most ? -most : across_m_q8;
+    return fx_atan2((int32_t)held_m_q8, (int32_t)g->centre_m_q8);
 }
 
 /* The circle with its loss for each metre along the ground. The loss of a level way is below 2^26,
@@ -37,12 +37,12 @@ static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
 static struct lm_shower slanted(const struct lm_patch_rain *p, uint32_t n)
 {
     struct lm_shower s = p->shower[n];
-    s.loss_q32 = (uint32_t)((uint64_t)s.loss_q32 * p->slant_q16 >> 16);
+    s.loss_db_per_m_q32 = (uint32_t)((uint64_t)s.loss_db_per_m_q32 * p->slant_q16 >> 16);
     return s;
 }
 
 void lm_patch_rain_find(struct lm_patch_rain *p, const struct lm_environment *e,
-                        const struct lm_radar *radar, struct lm_place antenna, fx_bam_t azimuth)
+                        const struct lm_radar *radar, struct lm_position antenna, fx_bam_t azimuth)
 {
     const uint32_t count = e ? fx_min_u32(e->rain_count, LM_RAINS_MAX) : 0;
     p->count = 0;
@@ -62,8 +62,8 @@ static bool is_met(const struct lm_shower *s, int32_t most, const struct lm_reac
 {
     struct lm_chord chord;
     const int32_t nearest = fx_clamp_i32((int32_t)s->at.off, -most, most);
-    const uint32_t end_q8 = reach->first_q8 + reach->cells * reach->cell_q8;
-    return lm_shower_meet(s, (fx_bam_t)nearest, &chord) && chord.from_q8 < (int32_t)end_q8;
+    const uint32_t end_m_q8 = reach->first_m_q8 + reach->cells * reach->cell_m_q8;
+    return lm_shower_meet(s, (fx_bam_t)nearest, &chord) && chord.from_m_q8 < (int32_t)end_m_q8;
 }
 
 static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
@@ -79,24 +79,24 @@ static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
     p->count = kept;
 }
 
-/* Loss along the ray, in p->loss_q8. */
+/* Loss along the ray, in p->loss_db_q8. */
 static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_reach *reach)
 {
     struct lm_chord chord;
-    memset(p->loss_q8, 0, reach->cells * sizeof *p->loss_q8);
+    memset(p->loss_db_q8, 0, reach->cells * sizeof *p->loss_db_q8);
     for (uint32_t n = 0; n < p->count; n++) {
         if (lm_shower_meet(&p->shower[n], aside, &chord)) {
             const struct lm_shower s = slanted(p, n);
-            lm_shower_add_loss(&s, &chord, reach, p->loss_q8);
+            lm_shower_add_loss(&s, &chord, reach, p->loss_db_q8);
         }
     }
 }
 
-/* Half the angle under which the antenna sees the part of a ring at `range_q8` that lies in the
+/* Half the angle under which the antenna sees the part of a ring at `range_m_q8` that lies in the
  * circle: cos = (D^2 + r^2 - rho^2) / 2 D r. Squares are below 2^58. */
-static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_q8)
+static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
 {
-    const int64_t d = s->at.distance_q8, r = range_q8, radius = (int64_t)s->radius_m * 256;
+    const int64_t d = s->at.distance_m_q8, r = range_m_q8, radius = (int64_t)s->radius_m * 256;
     int64_t x = d * d + r * r - radius * radius, one = 2 * d * r;
     if (x >= one || x <= -one) {
         return x >= one ? 0 : FX_BAM_180;
@@ -116,7 +116,7 @@ static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
 {
     const int64_t off = (int32_t)s->at.off;
     for (uint32_t i = 0; i < reach->cells; i++) {
-        const int64_t half = half_angle(s, reach->first_q8 + i * reach->cell_q8);
+        const int64_t half = half_angle(s, reach->first_m_q8 + i * reach->cell_m_q8);
         const int64_t left = off - half, right = off + half, most = FX_BAM_90;
         p->left[i] = (int32_t)(left < -most ? -most : left > most ? most : left);
         p->right[i] = (int32_t)(right < -most ? -most : right > most ? most : right);
@@ -130,7 +130,7 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
                     const struct lm_reach *reach)
 {
     const int32_t width = p->beam / 8, begin = axis + (ray - RAYS / 2) * width, end = begin + width;
-    const int32_t echo_q8 = s->echo_q8 - 1996 - 32 * FX_DB_OCTAVE_Q14 / 64;
+    const int32_t echo_db_q8 = s->echo_db_q8 - 1996 - 32 * FX_DB_OCTAVE_Q14 / 64;
     const uint32_t all_q32 = UINT32_MAX / (uint32_t)width;
     const int64_t in_beams_q40 = ((int64_t)1 << 40) / p->beam;
     set_loss(p, (fx_bam_t)(begin + width / 2), reach);
@@ -138,45 +138,46 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
         const int32_t from = fx_clamp_i32(p->left[i], begin, end);
         const int32_t to = fx_clamp_i32(p->right[i], begin, end);
         const int32_t x_q9 = (int32_t)(((from + to) / 2 - axis) * in_beams_q40 >> 31);
-        const int32_t off_q8 = (x_q9 * x_q9 >> 8) * 6165 >> 10; /* 2^10 times 6165: 24.08 dB */
-        const int32_t filled_q8 = fx_db_q8_of_many((uint32_t)(to - from) * all_q32);
-        const int32_t level_q8 = p->volume_q8[i] + echo_q8 + filled_q8 - off_q8 - p->loss_q8[i];
-        p->power_q32[i] += fx_power_q32_of_many(fx_max_i32(level_q8, NOTHING_Q8));
+        const int32_t off_db_q8 = (x_q9 * x_q9 >> 8) * 6165 >> 10; /* 2^10 times 6165: 24.08 dB */
+        const int32_t filled_q8 = fx_db_q8_vec((uint32_t)(to - from) * all_q32);
+        const int32_t level_db_q8 =
+            p->volume_db_q8[i] + echo_db_q8 + filled_q8 - off_db_q8 - p->loss_db_q8[i];
+        p->power_q32[i] += fx_power_q32_vec(fx_max_i32(level_db_q8, NOTHING_Q8));
     }
 }
 
 /* 10 log10 of the volume that a cell of rain fills over its clutter's area, w ds g: s w ds b
  * sqrt(pi / 8 ln 2) / 2. A beam in BAM is 2 pi / 2^32 of it in radians, log2(2 pi) being 173768 /
  * 2^16. */
-static int32_t volume_q8(const struct lm_radar *radar, const struct lm_patch_geometry *g,
-                         uint32_t range_q8)
+static int32_t volume_db_q8(const struct lm_radar *radar, const struct lm_patch_geometry *g,
+                            uint32_t range_m_q8)
 {
     const int32_t log2_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - (32 << 16) +
-                             fx_log2_q16(range_q8) + 2 * fx_log2_q16(g->cell_q8) - (24 << 16);
+                             fx_log2_q16(range_m_q8) + 2 * fx_log2_q16(g->cell_m_q8) - (24 << 16);
     return fx_db_q8_of_log2_q16(log2_q16) + HALF_BEAM_Q8 -
-           lm_clutter_area_q8(g->cell_q8, g->cell_q8, range_q8,
-                              range_q8 - fx_min_u32(range_q8, g->cell_q8), &g->heights);
+           lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, range_m_q8,
+                                   range_m_q8 - fx_min_u32(range_m_q8, g->cell_m_q8), &g->heights);
 }
 
 void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
-                       const struct lm_patch_geometry *g, int32_t noise_q8)
+                       const struct lm_patch_geometry *g, int32_t noise_db_q8)
 {
     if (p->count == 0) {
         return;
     }
     const struct lm_reach reach = reach_of(g);
     p->beam = fx_max_i32((int32_t)radar->antenna.azimuth_beam, BEAM_LEAST);
-    p->noise_q8 = noise_q8;
+    p->noise_db_q8 = noise_db_q8;
     keep_met(p, g, &reach);
     if (p->count == 0) {
         return;
     }
     /* Heights are below 2^26 in Q10, so 2^24 in Q8; a way below 2^28 times 2^16. */
-    const int32_t above_q8 = (g->heights.antenna_q10 - g->heights.reference_q10) / 4;
-    p->slant_q16 =
-        (uint32_t)(((uint64_t)fx_hypot_u32((int32_t)g->centre_q8, above_q8) << 16) / g->centre_q8);
+    const int32_t above_m_q8 = (g->heights.antenna_m_q10 - g->heights.reference_m_q10) / 4;
+    p->slant_q16 = (uint32_t)(((uint64_t)fx_hypot_u32((int32_t)g->centre_m_q8, above_m_q8) << 16) /
+                              g->centre_m_q8);
     for (uint32_t i = 0; i < g->cells; i++) {
-        p->volume_q8[i] = volume_q8(radar, g, reach.first_q8 + i * reach.cell_q8);
+        p->volume_db_q8[i] = volume_db_q8(radar, g, reach.first_m_q8 + i * reach.cell_m_q8);
     }
     p->veil[0].is_set = p->veil[1].is_set = false;
 }
@@ -186,9 +187,9 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
 static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
                               const struct lm_reach *reach)
 {
-    struct lm_veil *v = &p->veil[station & 1];
+    struct lm_rain_veil *v = &p->veil[station & 1];
     if (v->is_set && v->station == station) {
-        return v->level_q8;
+        return v->level_db_q8;
     }
     const int32_t one_q8 = fx_db_q8_u64((uint64_t)1 << 32);
     v->is_set = true;
@@ -201,30 +202,32 @@ static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
         }
     }
     for (uint32_t i = 0; i < reach->cells; i++) {
-        v->level_q8[i] = fx_db_q8_sum_of_many(p->noise_q8, fx_db_q8_u64(p->power_q32[i]) - one_q8);
+        v->level_db_q8[i] =
+            fx_db_q8_sum_vec(p->noise_db_q8, fx_db_q8_u64(p->power_q32[i]) - one_q8);
     }
-    return v->level_q8;
+    return v->level_db_q8;
 }
 
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *g, uint32_t line,
-                       const int32_t *clutter_q8, int32_t *level_q8)
+                       const int32_t *clutter_db_q8, int32_t *level_db_q8)
 {
     const struct lm_reach reach = reach_of(g);
     const fx_bam_t aside = aside_of(g, (int32_t)line);
     const int32_t apart = p->beam / STATIONS, rest = (int32_t)aside % apart;
     const int32_t station = (int32_t)aside / apart - (rest < 0);
-    const int32_t part_q8 = (int32_t)((int64_t)(rest < 0 ? rest + apart : rest) * 256 / apart);
-    const int32_t *before_q8 = veil_at(p, station, &reach);
-    const int32_t *after_q8 = veil_at(p, station + 1, &reach);
+    const int32_t part_db_q8 = (int32_t)((int64_t)(rest < 0 ? rest + apart : rest) * 256 / apart);
+    const int32_t *before_db_q8 = veil_at(p, station, &reach);
+    const int32_t *after_db_q8 = veil_at(p, station + 1, &reach);
     set_loss(p, aside, &reach);
     for (uint32_t i = 0; i < g->cells; i++) {
-        const int32_t veil_q8 = before_q8[i] + ((after_q8[i] - before_q8[i]) * part_q8 >> 8);
-        level_q8[i] = fx_db_q8_sum_of_many(clutter_q8[i] - p->loss_q8[i], veil_q8);
+        const int32_t veil_db_q8 =
+            before_db_q8[i] + ((after_db_q8[i] - before_db_q8[i]) * part_db_q8 >> 8);
+        level_db_q8[i] = fx_db_q8_sum_vec(clutter_db_q8[i] - p->loss_db_q8[i], veil_db_q8);
     }
 }
 
 void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_geometry *g,
-                          struct lm_patch_points *points)
+                          struct lm_target_patch *points)
 {
     const struct lm_reach reach = reach_of(g);
     struct lm_chord chord;
@@ -232,11 +235,12 @@ void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_g
         const struct lm_shower s = slanted(p, n);
         for (uint32_t i = 0; i < points->count; i++) {
             struct lm_patch_point *point = &points->item[i];
-            const int64_t range_q8 = reach.first_q8 + (int64_t)point->cell * reach.cell_q8;
+            const int64_t range_m_q8 = reach.first_m_q8 + (int64_t)point->cell * reach.cell_m_q8;
             if (lm_shower_meet(&s, aside_of(g, point->line), &chord)) {
-                const int32_t at_q8 = range_q8 < RANGE_MOST_Q8 ? (int32_t)range_q8 : RANGE_MOST_Q8;
-                const uint32_t before_q8 = (uint32_t)lm_chord_before_q8(chord, at_q8);
-                point->level_q8 -= (int32_t)((uint64_t)before_q8 * s.loss_q32 >> 32);
+                const int32_t at_m_q8 =
+                    range_m_q8 < RANGE_MOST_Q8 ? (int32_t)range_m_q8 : RANGE_MOST_Q8;
+                const uint32_t before_db_q8 = (uint32_t)lm_chord_before_m_q8(chord, at_m_q8);
+                point->level_db_q8 -= (int32_t)((uint64_t)before_db_q8 * s.loss_db_per_m_q32 >> 32);
             }
         }
     }

@@ -11,14 +11,14 @@ enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
 
 /* log2 of g of the equations for a slant range, Q16: flat ground's grazing there, between 1/256 and
  * 2, steeper than which the beam does not look. */
-static int32_t log2_grazing_q16(uint32_t slant_q8, int32_t height_q10)
+static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
 {
-    const uint32_t ground_q8 = lm_ground_of_slant(slant_q8, height_q10);
-    int64_t grazing_q24 = height_q10 > 0 ? GRAZING_MAX_Q24 : GRAZING_MIN_Q24;
-    if (ground_q8 != 0) {
+    const uint32_t ground_m_q8 = lm_ground_of_slant_m_q8(slant_m_q8, height_m_q10);
+    int64_t grazing_q24 = height_m_q10 > 0 ? GRAZING_MAX_Q24 : GRAZING_MIN_Q24;
+    if (ground_m_q8 != 0) {
         /* |height| < 2^26, so 2^48; range < 2^27 times 2^24. */
-        grazing_q24 = (int64_t)height_q10 * (1 << 22) / (int64_t)ground_q8 -
-                      ((int64_t)ground_q8 * LM_CURVATURE_Q48 >> 32);
+        grazing_q24 = (int64_t)height_m_q10 * (1 << 22) / (int64_t)ground_m_q8 -
+                      ((int64_t)ground_m_q8 * LM_CURVATURE_Q48 >> 32);
     }
     const int64_t least = GRAZING_MIN_Q24, most = GRAZING_MAX_Q24;
     grazing_q24 = grazing_q24 < least ? least : grazing_q24 > most ? most : grazing_q24;
@@ -27,22 +27,22 @@ static int32_t log2_grazing_q16(uint32_t slant_q8, int32_t height_q10)
 
 /* What depends on slant range alone. Logarithms are below 32 in Q16, so 2^21, and three times that.
  */
-static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_q10,
+static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_m_q10,
                      uint8_t range)
 {
-    const uint32_t end_q8 = radar->range[range].range_m * 256u;
-    const int32_t end_q16 = 3 * fx_log2_q16(end_q8) - log2_grazing_q16(end_q8, height_q10);
-    const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_m) + (8 << 16);
+    const uint32_t end_m_q8 = radar->range[range].range_m * 256u;
+    const int32_t end_m_q16 = 3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
+    const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);
     /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM; log2(2 pi) is 173768 / 2^16. */
     const int32_t beam_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - ((32 + 8) << 16);
     for (uint32_t i = 0; i < r->cells; i++) {
-        const uint32_t slant_q8 = r->first_q8 + i * r->cell_q8;
-        const int32_t range_q16 = fx_log2_q16(slant_q8);
-        const int32_t grazing_q16 = log2_grazing_q16(slant_q8, height_q10);
-        r->noise_q8[i] = radar->range[range].noise_end_q8 +
-                         fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_q16);
-        r->fall_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
-        r->volume_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);
+        const uint32_t slant_m_q8 = r->first_m_q8 + i * r->cell_m_q8;
+        const int32_t range_q16 = fx_log2_q16(slant_m_q8);
+        const int32_t grazing_q16 = log2_grazing_q16(slant_m_q8, height_m_q10);
+        r->noise_db_q8[i] = radar->range[range].noise_end_db_q8 +
+                            fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_m_q16);
+        r->stc_rolloff_db_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
+        r->volume_db_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);
     }
 }
 
@@ -57,28 +57,28 @@ static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
     const uint32_t whole_q16 = length > one ? (uint32_t)(((uint64_t)one << 16) / length) : one;
     /* Length + 1 - 2 last is twice the share of the last bin that is covered, up to 2. */
     const uint64_t covered_q17 = length + one - 2 * last * one;
-    const uint32_t end_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
+    const uint32_t end_m_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
     uint32_t left_q16 = one;
     for (uint32_t m = LM_PULSE_REACH_MAX; m > 0; m--) {
-        r->weight_q16[m] = m > last ? 0 : m == last ? end_q16 : whole_q16;
+        r->weight_q16[m] = m > last ? 0 : m == last ? end_m_q16 : whole_q16;
         left_q16 -= 2 * r->weight_q16[m];
     }
     r->weight_q16[0] = left_q16; /* with what rounding left */
 }
 
 void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
-                     const struct lm_slant *slant, int32_t height_q10, uint8_t range,
+                     const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
                      uint32_t pulse_ns)
 {
-    r->first_q8 = slant->first_q8;
-    r->cell_q8 = slant->cell_q8;
+    r->first_m_q8 = slant->first_m_q8;
+    r->cell_m_q8 = slant->cell_m_q8;
     r->cells = slant->cells;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
-    set_bins(r, radar, height_q10, range);
+    set_bins(r, radar, height_m_q10, range_index);
     /* Half the speed of light is 149.896 metres a microsecond: 2514841 / 2^16 metres * 256 a
      * nanosecond. 2^32 times 2^21.3. */
     const uint64_t pulse_q24 = (uint64_t)pulse_ns * 2514841u;
-    set_pulse(r, pulse_q24 / fx_max_u32(slant->cell_q8, 1));
+    set_pulse(r, pulse_q24 / fx_max_u32(slant->cell_m_q8, 1));
 }
 
 /* (a + b) w of powers on either side of a bin and a weight of at most 2^15, cut to whole parts of
@@ -129,23 +129,23 @@ static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
 }
 
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
-                     uint32_t sweep, uint32_t *power_q24, int32_t *level_q8)
+                     uint32_t sweep, uint32_t *power_q24, int32_t *level_db_q8)
 {
-    const struct lm_raster raster = lm_raster_of(LM_NOISE_RECEIVER, line, sweep);
+    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_RECEIVER, line, sweep);
     struct lm_noise_line noise;
-    lm_noise_line_set(&noise, &raster, r->cells);
+    lm_noise_line_set(&noise, &noise_key, r->cells);
     if (r->weight_q16[1] != 0) {
         smear(r, power_q24);
     }
-    const struct lm_k_receiver k = {.noise_db_q8 = r->noise_q8,
-                                    .fall_db_q8 = r->fall_q8,
-                                    .rise_db_q8 = weather ? weather->noise_rise_q8 : 0,
-                                    .row_db_q8 = lm_noise_q8[r->looks_log2],
+    const struct lm_k_receiver k = {.noise_db_q8 = r->noise_db_q8,
+                                    .fall_db_q8 = r->stc_rolloff_db_q8,
+                                    .rise_db_q8 = weather ? weather->noise_rise_db_q8 : 0,
+                                    .row_db_q8 = lm_noise_db_q8[r->looks_log2],
                                     .entry = noise.entry};
     if (weather && weather->has_rain) {
-        const struct lm_k_rain rain = {weather->loss_q8, weather->rain_q8};
-        lm_k_detect_in_rain(&k, &rain, power_q24, level_q8, r->cells);
+        const struct lm_k_rain rain = {weather->loss_db_q8, weather->rain_db_q8};
+        lm_k_detect_in_rain(&k, &rain, power_q24, level_db_q8, r->cells);
     } else {
-        lm_k_detect(&k, power_q24, level_q8, r->cells);
+        lm_k_detect(&k, power_q24, level_db_q8, r->cells);
     }
 }

@@ -11,7 +11,7 @@ _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
 
 enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
 
-static uint32_t metres_q8_of_mm(uint32_t mm)
+static uint32_t m_q8_of_mm(uint32_t mm)
 {
     return (uint32_t)(((uint64_t)mm * 256 + 500) / 1000);
 }
@@ -25,9 +25,9 @@ static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
 /* T = l R / (2 V d sin o), R the slant range, V sin o the speed across. In these units the
  * numerator is below 2^20 * 2^18.1 * 10^6 = 2^58. */
 static uint64_t dwell_us(const struct lm_radar *radar, const struct lm_sar_command *c,
-                         int32_t reference_q10, uint32_t across_mm_s)
+                         int32_t reference_m_q10, uint32_t across_mm_s)
 {
-    const int32_t above_m = c->height_q6 / 64 - reference_q10 / 1024;
+    const int32_t above_m = c->height_m_q6 / 64 - reference_m_q10 / 1024;
     const uint64_t slant_m = fx_hypot_u32((int32_t)c->range_m, above_m);
     return (uint64_t)radar->wavelength_um * slant_m * 1000000u /
            ((uint64_t)2 * c->cell_mm * fx_max_u32(across_mm_s, 1));
@@ -50,59 +50,59 @@ static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight
 }
 
 /* Where the guard cells begin, if they do ahead of the antenna: metres * 256 of ground range. */
-static int64_t guard_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
+static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const uint32_t before_centre = radar->sar.cells / 2u + LM_SAR_GUARD;
-    return (int64_t)c->range_m * 256 - (int64_t)before_centre * metres_q8_of_mm(c->cell_mm);
+    return (int64_t)c->range_m * 256 - (int64_t)before_centre * m_q8_of_mm(c->cell_mm);
 }
 
 static bool command_is_sound(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
-    const int32_t highest_q6 = 30000 * 64;
+    const int32_t highest_m_q6 = 30000 * 64;
     return c->cell_mm >= radar->sar.cell_min_mm && c->cell_mm <= radar->sar.cell_max_mm &&
-           c->range_m >= 1000 && c->range_m <= 250000 && c->height_q6 >= -highest_q6 &&
-           c->height_q6 <= highest_q6 && guard_q8(radar, c) >= LM_RANGE_MIN_M << 12;
+           c->range_m >= 1000 && c->range_m <= 250000 && c->height_m_q6 >= -highest_m_q6 &&
+           c->height_m_q6 <= highest_m_q6 && guard_m_q8(radar, c) >= LM_RANGE_MIN_M << 12;
 }
 
-static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
+static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
 {
     const struct lm_sar_command *c = &s->command;
-    const uint32_t cells = s->radar->sar.cells, cell_q8 = metres_q8_of_mm(c->cell_mm);
-    const uint32_t near_q8 = (uint32_t)guard_q8(s->radar, c);
-    const int32_t half_q8 = (int32_t)(cells * cell_q8 / 2);
-    const struct lm_ground_extent extent = {-half_q8 - LM_SAR_GUARD * (int32_t)cell_q8, half_q8,
-                                            half_q8};
+    const uint32_t cells = s->radar->sar.cells, cell_m_q8 = m_q8_of_mm(c->cell_mm);
+    const uint32_t near_m_q8 = (uint32_t)guard_m_q8(s->radar, c);
+    const int32_t half_m_q8 = (int32_t)(cells * cell_m_q8 / 2);
+    const struct lm_ground_extent extent = {-half_m_q8 - LM_SAR_GUARD * (int32_t)cell_m_q8,
+                                            half_m_q8, half_m_q8};
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
-    s->level = lm_scan_level(db, c->cell_mm);
-    lm_range_grid_set(&s->grid, &s->radar->aspect, near_q8 + cell_q8 / 2, cell_q8,
-                      cells + LM_SAR_GUARD, c->height_q6 * 16, reference_q10);
+    s->lod = lm_scan_lod(db, c->cell_mm);
+    lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
+                      cells + LM_SAR_GUARD, c->height_m_q6 * 16, reference_m_q10);
 }
 
 /* The run-up to the patch's first guard cell. */
 static void set_runup(struct lm_sar *s, const struct lm_db *db)
 {
     const struct lm_sar_command *c = &s->command;
-    struct lm_runup *r = &s->runup;
-    lm_runup_set(r, db, &s->radar->aspect, (uint32_t)guard_q8(s->radar, c), &s->grid);
-    const int32_t near_q8 = (int32_t)r->start_q8 - (int32_t)(c->range_m * 256u);
-    const struct lm_ground_extent extent = {near_q8,
-                                            near_q8 + (int32_t)(LM_RUNUP_CELLS * r->cell_q8),
-                                            (int32_t)(s->radar->sar.cells * s->grid.cell_q8 / 2)};
-    lm_ground_patch_set(&s->runup_ground, c->centre, c->look_azimuth, &extent);
+    struct lm_foreground *r = &s->foreground;
+    lm_foreground_set(r, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
+    const int32_t near_m_q8 = (int32_t)r->start_db_q8 - (int32_t)(c->range_m * 256u);
+    const struct lm_ground_extent extent = {
+        near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * r->cell_m_q8),
+        (int32_t)(s->radar->sar.cells * s->grid.cell_m_q8 / 2)};
+    lm_ground_patch_set(&s->foreground_ground, c->centre, c->look_azimuth, &extent);
 }
 
 /* The grazing angle of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
 static void set_layover(struct lm_sar *s)
 {
-    const uint32_t range_q8 = s->command.range_m * 256u;
-    const int64_t above_q10 = (int64_t)s->grid.height_q10 - s->grid.reference_q10;
+    const uint32_t range_m_q8 = s->command.range_m * 256u;
+    const int64_t above_m_q10 = (int64_t)s->grid.height_m_q10 - s->grid.reference_m_q10;
     /* 2^26 * 2^14 over a range in Q8; at 1 km, 2^22. */
     const int64_t grazing_q16 =
-        above_q10 * (1 << 14) / range_q8 - ((int64_t)range_q8 * LM_CURVATURE_Q48 >> 40);
+        above_m_q10 * (1 << 14) / range_m_q8 - ((int64_t)range_m_q8 * LM_CURVATURE_Q48 >> 40);
     s->layover = (struct lm_layover){
-        .reference_q10 = s->grid.reference_q10,
+        .reference_m_q10 = s->grid.reference_m_q10,
         .lean_q16 = s->command.has_layover && grazing_q16 > 0 ? (int32_t)grazing_q16 : 0,
-        .cell_q8 = s->grid.cell_q8,
+        .cell_m_q8 = s->grid.cell_m_q8,
         .first = s->grid.first,
         .cells = s->grid.cells,
     };
@@ -113,13 +113,13 @@ static void set_geometry(struct lm_sar *s)
     s->geometry = (struct lm_patch_geometry){
         .centre = s->command.centre,
         .look = s->command.look_azimuth,
-        .centre_q8 = s->command.range_m * 256u,
-        .cell_q8 = s->grid.cell_q8,
+        .centre_m_q8 = s->command.range_m * 256u,
+        .cell_m_q8 = s->grid.cell_m_q8,
         .lines = s->radar->sar.cells,
         .cells = s->grid.cells,
         .guard = LM_SAR_GUARD,
         .first = fx_max_u32(s->grid.first, LM_SAR_GUARD),
-        .heights = {s->grid.height_q10, s->grid.reference_q10},
+        .heights = {s->grid.height_m_q10, s->grid.reference_m_q10},
         .wavelength_um = s->radar->wavelength_um,
         .across_mm_s = s->across_mm_s,
         .lean_q16 = s->layover.lean_q16,
@@ -134,18 +134,18 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
 {
     const struct lm_sar_command *c = &s->command;
     struct lm_geo_origin centre;
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    s->floor_q8 = s->radar->sar.noise_floor_q8;
+    s->floor_db_q8 = s->radar->sar.noise_floor_db_q8;
     s->rain.count = 0;
     if (!environment || environment->rain_count + environment->jammer_count == 0) {
         return;
     }
     lm_geo_set_origin(&centre, c->centre);
-    const struct lm_place antenna =
+    const struct lm_position antenna =
         lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, c->range_m * 256);
-    lm_geo_inverse(antenna, c->centre, &distance_q8, &azimuth);
-    s->floor_q8 += lm_noise_rise_q8(environment, s->radar, antenna, azimuth);
+    lm_geo_inverse(antenna, c->centre, &distance_m_q8, &azimuth);
+    s->floor_db_q8 += lm_noise_rise_db_q8(environment, s->radar, antenna, azimuth);
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
 }
 
@@ -167,7 +167,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     const int32_t across_mm_s =
         flight ? speed_across_mm_s(flight) : -(int32_t)radar->sar.reference_speed_mm_s;
     const uint64_t patch_us =
-        dwell_us(radar, command, scene->reference_q10, fx_abs_u32(across_mm_s));
+        dwell_us(radar, command, scene->reference_m_q10, fx_abs_u32(across_mm_s));
     if (flight && !can_be_made(radar, flight, patch_us)) {
         return LM_ERR_RANGE;
     }
@@ -182,24 +182,25 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->noise_epoch = noise_epoch_of(command, scene->epoch);
     s->across_mm_s = across_mm_s;
     find_weather(s, scene->environment);
-    s->defocus_q8 = flight && !command->is_steady
-                        ? lm_defocus_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
-                                        radar->wavelength_um, patch_us)
-                        : 256;
-    lm_legend_set(&s->legend, &radar->aspect, &db->classes);
+    s->defocus_lines_q8 =
+        flight && !command->is_steady
+            ? lm_defocus_lines_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
+                                  radar->wavelength_um, patch_us)
+            : 256;
+    lm_class_lut_set(&s->class_lut, &radar->illumination, &db->classes);
     lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state, 0);
     s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
-    lm_sar_set_reference(s, db, scene->reference_q10);
+    lm_sar_set_reference(s, db, scene->reference_m_q10);
     return LM_OK;
 }
 
-void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10)
+void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
 {
-    set_grid(s, db, reference_q10);
+    set_grid(s, db, reference_m_q10);
     set_runup(s, db);
     set_layover(s);
     set_geometry(s);
-    lm_patch_rain_set(&s->rain, s->radar, &s->geometry, s->floor_q8);
+    lm_patch_rain_set(&s->rain, s->radar, &s->geometry, s->floor_db_q8);
     lm_sar_restart(s);
 }
 
@@ -217,19 +218,19 @@ static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32
 /* The path over the run-up before them. */
 static void set_runup_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t number)
 {
-    lm_ground_patch_path(path, &s->runup_ground, number * LM_SAR_RUNUP_LINES, s->radar->sar.cells,
-                         LM_RUNUP_CELLS);
+    lm_ground_patch_path(path, &s->foreground_ground, number * LM_SAR_FOREGROUND_LINES,
+                         s->radar->sar.cells, LM_FOREGROUND_CELLS);
 }
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
 {
-    const uint32_t first = line / LM_SAR_RUNUP_LINES;
+    const uint32_t first = line / LM_SAR_FOREGROUND_LINES;
     struct lm_ground_path path;
     set_path(&path, s, line);
-    lm_scan_line_prefetch(tiles, s->level, &path, s->grid.cells);
+    lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
     for (uint32_t number = first; number <= first + 1; number++) {
         set_runup_path(&path, s, number);
-        lm_scan_line_prefetch(tiles, s->runup.level, &path, LM_RUNUP_CELLS);
+        lm_scan_line_prefetch(tiles, s->foreground.lod, &path, LM_FOREGROUND_CELLS);
     }
 }
 
@@ -248,28 +249,28 @@ static uint32_t displaced_most_m(const struct lm_sar *s)
 
 void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
-    s->near.count = 0;
+    s->candidates.count = 0;
     if (!s->targets || s->targets->count == 0) {
         return;
     }
     /* Half the diagonal: 1.5 is more than the root of 2. */
-    const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_q8 / 512 * 3 / 2 + 1;
-    const struct lm_target_scene scene = {.place = s->command.centre,
+    const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_m_q8 / 512 * 3 / 2 + 1;
+    const struct lm_target_scene scene = {.position = s->command.centre,
                                           .reach_m = half_diagonal_m + displaced_most_m(s),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
-                                          .level = s->level};
-    lm_targets_select(&s->near, s->targets, &scene);
+                                          .lod = s->lod};
+    lm_target_candidates_select(&s->candidates, s->targets, &scene);
     if (s->chips) {
         const struct lm_chip_scene chips = {.centre = s->command.centre,
                                             .reach_m = scene.reach_m,
                                             .is_parallel = true,
                                             .look = s->command.look_azimuth,
-                                            .range_q8 = s->command.range_m * 256,
+                                            .range_m_q8 = s->command.range_m * 256,
                                             .heights = s->geometry.heights,
                                             .cell_mm = s->command.cell_mm,
                                             .side_most = LM_CHIP_SIDE};
-        lm_chips_choose(s->chips, &s->near, &chips);
+        lm_chips_choose(s->chips, &s->candidates, &chips);
     }
 }
 
@@ -277,8 +278,8 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
 static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
     lm_sar_prefetch_targets(s, tiles);
-    if (s->near.count != 0) {
-        lm_patch_points_set(&s->points, &s->near, &s->geometry);
+    if (s->candidates.count != 0) {
+        lm_target_patch_set(&s->points, &s->candidates, &s->geometry);
         lm_patch_rain_weaken(&s->rain, &s->geometry, &s->points);
     }
     s->has_points = true;
@@ -290,43 +291,45 @@ static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache
 {
     struct lm_ground_path path;
     set_runup_path(&path, s, number);
-    return lm_runup_trace(&s->runup, &s->legend, tiles, &path, &line->ground);
+    return lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
 }
 
 /* The horizon that a line starts with: between those behind the run-ups to its left and right. */
 static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *tiles,
                                       uint32_t number, struct lm_line *line)
 {
-    const uint32_t second = number / LM_SAR_RUNUP_LINES + 1;
-    if (second != s->second_runup) {
-        const bool goes_on = s->second_runup != 0 && second == s->second_runup + 1;
-        s->runups[0] = goes_on ? s->runups[1] : trace_runup(s, tiles, second - 1, line);
-        s->runups[1] = trace_runup(s, tiles, second, line);
-        s->second_runup = second;
+    const uint32_t second = number / LM_SAR_FOREGROUND_LINES + 1;
+    if (second != s->second_foreground) {
+        const bool goes_on = s->second_foreground != 0 && second == s->second_foreground + 1;
+        s->foregrounds[0] = goes_on ? s->foregrounds[1] : trace_runup(s, tiles, second - 1, line);
+        s->foregrounds[1] = trace_runup(s, tiles, second, line);
+        s->second_foreground = second;
     }
     /* Where no cell of the run-up is shown, both are open. */
-    if (s->runups[0] == LM_HORIZON_OPEN) {
+    if (s->foregrounds[0] == LM_HORIZON_OPEN) {
         return LM_HORIZON_OPEN;
     }
     /* Tangents of 32 bits with at least 22 behind the point: below 2^49, and times 16 lines. */
-    const int64_t rise_q40 = s->runups[1] - s->runups[0];
-    return s->runups[0] + rise_q40 * (int64_t)(number % LM_SAR_RUNUP_LINES) / LM_SAR_RUNUP_LINES;
+    const int64_t rise_q40 = s->foregrounds[1] - s->foregrounds[0];
+    return s->foregrounds[0] +
+           rise_q40 * (int64_t)(number % LM_SAR_FOREGROUND_LINES) / LM_SAR_FOREGROUND_LINES;
 }
 
 /* The cells of a line of the patch. */
-static struct lm_raster raster_of(const struct lm_sar *s, enum lm_noise_kind kind, uint32_t number)
+static struct lm_noise_key raster_of(const struct lm_sar *s, enum lm_noise_kind kind,
+                                     uint32_t number)
 {
-    return lm_raster_of(kind, number, s->noise_epoch);
+    return lm_noise_key_of(kind, number, s->noise_epoch);
 }
 
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                        struct lm_line *line)
 {
     const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .legend = &s->legend,
+                                        .class_lut = &s->class_lut,
                                         .texture = &s->texture,
-                                        .raster = raster_of(s, LM_NOISE_TEXTURE, number),
-                                        .level = s->level};
+                                        .noise_key = raster_of(s, LM_NOISE_TEXTURE, number),
+                                        .lod = s->lod};
     struct lm_ground_path path;
     set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);
@@ -334,27 +337,29 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
 }
 
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line, int32_t *level_q8)
+                        struct lm_line *line, int32_t *level_db_q8)
 {
-    int32_t *clutter_q8 = line->sight.level_q8;
+    int32_t *clutter_db_q8 = line->lit.level_db_q8;
     trace_line(s, tiles, number, line);
     if (s->command.has_layover) {
-        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_q8, s->power_q32);
+        lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_db_q8,
+                       s->power_q32);
     }
     if (s->chips && s->points.on_line[number] != 0) {
-        lm_patch_chips_shade(&s->points, number, &s->geometry, clutter_q8);
+        lm_target_patch_shade(&s->points, number, &s->geometry, clutter_db_q8);
         s->chips->count.cells_left_out +=
-            lm_patch_chips_add(&s->points, number, &s->geometry, clutter_q8);
+            lm_target_patch_add_chips(&s->points, number, &s->geometry, clutter_db_q8);
     }
-    const struct lm_raster raster = raster_of(s, LM_NOISE_SPECKLE, number);
+    const struct lm_noise_key noise_key = raster_of(s, LM_NOISE_SPECKLE, number);
     if (s->rain.count != 0) {
-        lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_q8, level_q8);
-        lm_speckle_run(&s->radar->sar.speckle, &raster, level_q8 + LM_SAR_GUARD,
+        lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_db_q8, level_db_q8);
+        lm_speckle_run(&s->radar->sar.speckle, &noise_key, level_db_q8 + LM_SAR_GUARD,
                        s->radar->sar.cells);
         return;
     }
-    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_q8, &raster, clutter_q8 + LM_SAR_GUARD,
-                         level_q8 + LM_SAR_GUARD, s->radar->sar.cells);
+    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_db_q8, &noise_key,
+                         clutter_db_q8 + LM_SAR_GUARD, level_db_q8 + LM_SAR_GUARD,
+                         s->radar->sar.cells);
 }
 
 /* Whether a point is seen on lines before the one that it stands on. */
@@ -376,7 +381,7 @@ static bool judge_points(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
         if (is_early(s, p) && !is_judged) {
             const uint32_t number = (uint32_t)p->line;
             trace_line(s, tiles, number, line);
-            lm_patch_points_hide(&s->points, number, line->sight.horizon, s->grid.tangent_bits,
+            lm_target_patch_hide(&s->points, number, line->lit.horizon, s->grid.tangent_bits,
                                  s->grid.cells);
             traced++;
         }
@@ -386,7 +391,7 @@ static bool judge_points(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 
 static int32_t *ring_line(struct lm_sar *s, uint32_t number)
 {
-    return s->ring_q8[number % LM_SAR_RING];
+    return s->ring_db_q8[number % LM_SAR_RING];
 }
 
 /* Sample lines up to `end`. */
@@ -395,7 +400,7 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 {
     for (; s->sampled < end; s->sampled++) {
         lm_sar_sample_line(s, tiles, s->sampled, line, ring_line(s, s->sampled));
-        lm_patch_points_hide(&s->points, s->sampled, line->sight.horizon, s->grid.tangent_bits,
+        lm_target_patch_hide(&s->points, s->sampled, line->lit.horizon, s->grid.tangent_bits,
                              s->grid.cells);
     }
 }
@@ -404,16 +409,17 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
  * a target returns is its own. */
 static void add_points(struct lm_sar *s, uint32_t end)
 {
-    const int32_t least_q8 = s->radar->sar.noise_floor_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
+    const int32_t least_db_q8 = s->radar->sar.noise_floor_db_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
     for (; s->summed < end; s->summed++) {
-        lm_patch_points_add(&s->points, s->summed, least_q8, &s->geometry, ring_line(s, s->summed));
+        lm_target_patch_add_points(&s->points, s->summed, least_db_q8, &s->geometry,
+                                   ring_line(s, s->summed));
     }
 }
 
-/* The levels of the line at hand: as they are, or out of focus, in smeared_q8. */
-static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_q8)
+/* The levels of the line at hand: as they are, or out of focus, in smeared_db_q8. */
+static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
 {
-    if (s->defocus_q8 <= 256) {
+    if (s->defocus_lines_q8 <= 256) {
         return ring_line(s, s->line);
     }
     const int32_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
@@ -423,10 +429,10 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_q8)
         const int32_t number = fx_clamp_i32((int32_t)s->line + m, 0, last);
         near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number) + LM_SAR_GUARD;
     }
-    lm_defocus_shares(s->defocus_q8, share_q16);
-    lm_defocus_run(near_lines, share_q16, smeared_q8 + LM_SAR_GUARD, s->power_q32,
+    lm_defocus_shares(s->defocus_lines_q8, share_q16);
+    lm_defocus_run(near_lines, share_q16, smeared_db_q8 + LM_SAR_GUARD, s->power_q32,
                    s->radar->sar.cells);
-    return smeared_q8;
+    return smeared_db_q8;
 }
 
 /* Samples up to `end`, at most so many. */
@@ -457,15 +463,15 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
     const uint32_t lines = s->radar->sar.cells;
     lm_sar_sample_ahead(s, tiles, LM_PATCH_POINTS_MAX, line);
     add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
-    const int32_t *const level_q8 = focus_line(s, line->sight.level_q8);
-    lm_tone_run(tone, level_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, lines);
+    const int32_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
+    lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, lines);
     s->line++;
-    return level_q8;
+    return level_db_q8;
 }
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = s->judged = s->second_runup = 0;
+    s->line = s->sampled = s->summed = s->judged = s->second_foreground = 0;
     s->has_points = false;
-    lm_patch_points_clear(&s->points);
+    lm_target_patch_clear(&s->points);
 }

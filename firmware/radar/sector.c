@@ -21,9 +21,9 @@ enum {
     RUNUP_LEAST_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
 };
 
-static const struct lm_field_row *field_of(const struct lm_sector *s)
+static const struct lm_fov_row *field_of(const struct lm_sector *s)
 {
-    return &s->radar->field[s->command.field];
+    return &s->radar->fov[s->command.fov];
 }
 
 static const struct lm_sector_mode_row *mode_of(const struct lm_sector *s)
@@ -50,9 +50,9 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->line = 0;
     s->sweep = epoch;
     s->grid.cells = 0; /* none yet */
-    s->near.is_chosen = false;
+    s->candidates.is_chosen = false;
     s->samples = 0;
-    lm_elevation_set(&s->elevation, &radar->antenna);
+    lm_antenna_pattern_set(&s->pattern, &radar->antenna);
     lm_beam_clear(&s->beam);
 }
 
@@ -71,11 +71,11 @@ int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line)
 /* The whole sector, in lines of the table. */
 static void set_sector(struct lm_sector *s)
 {
-    const uint32_t half_lines = s->radar->azimuth_half[s->command.azimuth] / s->radar->line;
+    const uint32_t half_lines = s->radar->azimuth_half[s->command.azimuth_index] / s->radar->line;
     s->width = s->radar->line;
     s->lines = 2 * half_lines;
     s->left = -(int32_t)(half_lines * s->width);
-    s->edge_q8 = 0;
+    s->edge_m_q8 = 0;
 }
 
 /* The angle at which half the diagonal of a window is seen, from outside of it. */
@@ -120,17 +120,17 @@ static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half
 }
 
 /* A window: what lies within half the diagonal of its centre. */
-static void set_window(struct lm_sector *s, const struct lm_platform *platform, int32_t above_q10)
+static void set_window(struct lm_sector *s, const struct lm_platform *platform, int32_t above_m_q10)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    lm_geo_inverse(platform->place, s->command.centre, &distance_q8, &azimuth);
-    const uint32_t reach_q8 = s->half_m * 256u / 16 * 23; /* a little more than the root of 2 */
+    lm_geo_inverse(platform->position, s->command.centre, &distance_m_q8, &azimuth);
+    const uint32_t reach_m_q8 = s->half_m * 256u / 16 * 23; /* a little more than the root of 2 */
     /* Places farther than any radar looks count as that far: the window is empty there. */
-    const uint32_t ground_q8 = fx_min_u32(distance_q8, 250000u * 256u);
-    const uint32_t slant_q8 = lm_slant_of_ground(ground_q8, above_q10);
-    s->edge_q8 = slant_q8 > reach_q8 ? slant_q8 - reach_q8 : 0;
-    set_window_lines(s, (int32_t)(azimuth - s->up), half_angle_of(s->half_m, ground_q8 / 256));
+    const uint32_t ground_m_q8 = fx_min_u32(distance_m_q8, 250000u * 256u);
+    const uint32_t slant_m_q8 = lm_slant_of_ground_m_q8(ground_m_q8, above_m_q10);
+    s->edge_m_q8 = slant_m_q8 > reach_m_q8 ? slant_m_q8 - reach_m_q8 : 0;
+    set_window_lines(s, (int32_t)(azimuth - s->up), half_angle_of(s->half_m, ground_m_q8 / 256));
 }
 
 /* ---- its geometry in range ---- */
@@ -138,38 +138,42 @@ static void set_window(struct lm_sector *s, const struct lm_platform *platform, 
 /* Elevation of the flat ground that the time gain assumes: what lies below the aircraft, but not
  * above the mean of the map's land, so that a mountain below does not turn up the plains around it.
  */
-static int32_t reference_q10_of(struct lm_tile_cache *tiles, uint8_t level, struct lm_place place)
+static int32_t reference_m_q10_of(struct lm_tile_cache *tiles, uint8_t lod,
+                                  struct lm_position position)
 {
-    return fx_min_i32(lm_scan_elevation(tiles, level, place, 0), tiles->db->mean_elevation_q6 * 16);
+    return fx_min_i32(lm_scan_elevation(tiles, lod, position, 0),
+                      tiles->db->mean_elevation_m_q6 * 16);
 }
 
 static void set_runup(struct lm_sector *s, const struct lm_db *db)
 {
-    s->has_runup = false;
-    s->runup.grid.cells = 0;
-    if (s->ground_edge_q8 >= RUNUP_LEAST_Q8) {
-        lm_runup_set(&s->runup, db, &s->radar->aspect, s->ground_edge_q8, &s->grid);
+    s->has_foreground = false;
+    s->foreground.grid.cells = 0;
+    if (s->ground_edge_m_q8 >= RUNUP_LEAST_Q8) {
+        lm_foreground_set(&s->foreground, db, &s->radar->illumination, s->ground_edge_m_q8,
+                          &s->grid);
     }
 }
 
 /* Bins of slant range, the cells of ground under them, and everything that depends on both. */
-static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_q10,
-                       int32_t reference_q10)
+static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
+                       int32_t reference_m_q10)
 {
-    const uint32_t range_m = s->radar->range[s->command.range].range_m;
+    const uint32_t range_m = s->radar->range[s->command.range_index].range_m;
     const uint32_t bins = lm_sector_is_window(s) ? s->radar->cells * 23u / 16 : s->radar->cells;
-    const uint32_t bin_q8 =
+    const uint32_t bin_m_q8 =
         (lm_sector_is_window(s) ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
-    const int32_t above_q10 = height_q10 - reference_q10;
-    const uint32_t end_q8 = lm_ground_of_slant(s->edge_q8 + bins * bin_q8, above_q10);
-    s->ground_edge_q8 = lm_ground_of_slant(s->edge_q8, above_q10);
-    const uint32_t cell_q8 = fx_max_u32((end_q8 - s->ground_edge_q8 + bins - 1) / bins, bin_q8);
-    const uint32_t first_q8 = s->ground_edge_q8 + cell_q8 / 2;
-    lm_range_grid_set(&s->grid, &s->radar->aspect, first_q8, cell_q8, bins, height_q10,
-                      reference_q10);
-    lm_slant_set(&s->slant, s->edge_q8 + bin_q8 / 2, bin_q8, bins, &s->grid, first_q8);
-    lm_receiver_set(&s->receiver, s->radar, &s->slant, above_q10, s->command.range,
-                    s->radar->range[s->command.range].pulse_ns[s->command.field]);
+    const int32_t above_m_q10 = height_m_q10 - reference_m_q10;
+    const uint32_t end_m_q8 = lm_ground_of_slant_m_q8(s->edge_m_q8 + bins * bin_m_q8, above_m_q10);
+    s->ground_edge_m_q8 = lm_ground_of_slant_m_q8(s->edge_m_q8, above_m_q10);
+    const uint32_t cell_m_q8 =
+        fx_max_u32((end_m_q8 - s->ground_edge_m_q8 + bins - 1) / bins, bin_m_q8);
+    const uint32_t first_m_q8 = s->ground_edge_m_q8 + cell_m_q8 / 2;
+    lm_range_grid_set(&s->grid, &s->radar->illumination, first_m_q8, cell_m_q8, bins, height_m_q10,
+                      reference_m_q10);
+    lm_slant_set(&s->slant, s->edge_m_q8 + bin_m_q8 / 2, bin_m_q8, bins, &s->grid, first_m_q8);
+    lm_receiver_set(&s->receiver, s->radar, &s->slant, above_m_q10, s->command.range_index,
+                    s->radar->range[s->command.range_index].pulse_ns[s->command.fov]);
     set_runup(s, tiles->db);
     lm_beam_clear(&s->beam);
 }
@@ -178,25 +182,25 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
 static uint8_t level_of(const struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m =
-        lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range].range_m;
-    return lm_scan_level(db, side_m * 1000u / s->radar->cells);
+        lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range_index].range_m;
+    return lm_scan_lod(db, side_m * 1000u / s->radar->cells);
 }
 
-static bool differs(int32_t a_q10, int32_t b_q10)
+static bool differs(int32_t a_m_q10, int32_t b_m_q10)
 {
-    return fx_abs_u32(a_q10 - b_q10) > fx_abs_u32(a_q10) / 128 + 1024;
+    return fx_abs_u32(a_m_q10 - b_m_q10) > fx_abs_u32(a_m_q10) / 128 + 1024;
 }
 
 /* The geometry depends on the height: it is made again when that has changed by a hundredth and a
  * metre. Until then all of it stays that of the old height, gain and horizon alike. */
-static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_q10,
-                           int32_t reference_q10, uint32_t old_edge_q8, uint32_t old_half_m)
+static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
+                           int32_t reference_m_q10, uint32_t old_edge_m_q8, uint32_t old_half_m)
 {
-    const bool is_same = s->grid.cells != 0 && s->edge_q8 == old_edge_q8 &&
-                         s->half_m == old_half_m && !differs(height_q10, s->grid.height_q10) &&
-                         !differs(reference_q10, s->grid.reference_q10);
+    const bool is_same = s->grid.cells != 0 && s->edge_m_q8 == old_edge_m_q8 &&
+                         s->half_m == old_half_m && !differs(height_m_q10, s->grid.height_m_q10) &&
+                         !differs(reference_m_q10, s->grid.reference_m_q10);
     if (!is_same) {
-        set_ranges(s, tiles, height_q10, reference_q10);
+        set_ranges(s, tiles, height_m_q10, reference_m_q10);
     }
 }
 
@@ -206,14 +210,14 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
 static void set_tilt(struct lm_sector *s)
 {
     const struct lm_antenna_table *antenna = &s->radar->antenna;
-    const int32_t above_m = (s->grid.height_q10 - s->grid.reference_q10) / 1024;
-    const uint32_t far_m = (s->edge_q8 + s->slant.cells * s->slant.cell_q8) / 256;
+    const int32_t above_m = (s->grid.height_m_q10 - s->grid.reference_m_q10) / 1024;
+    const uint32_t far_m = (s->edge_m_q8 + s->slant.cells * s->slant.cell_m_q8) / 256;
     const struct lm_beam_setting *set = &s->command.beam;
     const int32_t axis =
-        set->is_tilt_manual ? set->tilt : lm_auto_tilt(above_m, fx_max_u32(far_m, 1));
+        set->is_tilt_manual ? set->tilt : lm_antenna_auto_tilt(above_m, fx_max_u32(far_m, 1));
     const int32_t bars = mode_of(s)->bars, bar = (int32_t)(s->sweep % (uint32_t)bars);
     s->tilt = axis + (2 * bar - bars + 1) * (int32_t)(antenna->bar_spacing / 2);
-    s->fan = lm_fan_at(s->tilt, set->is_pencil ? 0 : antenna->fan);
+    s->fan = lm_antenna_fan_at(s->tilt, set->is_pencil ? 0 : antenna->fan);
 }
 
 void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setting)
@@ -227,31 +231,32 @@ void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setti
 static void set_texture(struct lm_sector *s, const struct lm_classes *classes)
 {
     const uint8_t sea_state = s->environment ? s->environment->sea_state : LM_SEA_STATE_OF_IMAGE;
-    lm_texture_set(&s->texture, &s->radar->texture, classes, sea_state, mode_of(s)->clutter_q8);
+    lm_texture_set(&s->texture, &s->radar->texture, classes, sea_state, mode_of(s)->clutter_db_q8);
 }
 
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
-    const uint32_t old_edge_q8 = s->edge_q8, old_half_m = s->half_m;
-    s->half_m = s->radar->range[s->command.range].range_m * field_of(s)->window_permille / 1000;
-    s->level = level_of(s, tiles->db);
-    const int32_t reference_q10 = reference_q10_of(tiles, s->level, platform->place);
+    const uint32_t old_edge_m_q8 = s->edge_m_q8, old_half_m = s->half_m;
+    s->half_m =
+        s->radar->range[s->command.range_index].range_m * field_of(s)->window_permille / 1000;
+    s->lod = level_of(s, tiles->db);
+    const int32_t reference_m_q10 = reference_m_q10_of(tiles, s->lod, platform->position);
     s->up = platform->heading;
     s->platform = *platform;
-    lm_geo_set_origin(&s->origin, platform->place);
+    lm_geo_set_origin(&s->origin, platform->position);
     if (lm_sector_is_window(s)) {
-        set_window(s, platform, platform->height_q10 - reference_q10);
+        set_window(s, platform, platform->height_m_q10 - reference_m_q10);
     } else {
         set_sector(s);
     }
-    refresh_ranges(s, tiles, platform->height_q10, reference_q10, old_edge_q8, old_half_m);
+    refresh_ranges(s, tiles, platform->height_m_q10, reference_m_q10, old_edge_m_q8, old_half_m);
     if (lm_sector_is_window(s)) {
-        s->has_runup = false;
+        s->has_foreground = false;
         lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
     }
     set_tilt(s);
-    lm_legend_set(&s->legend, &s->radar->aspect, &tiles->db->classes);
+    lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
     set_texture(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
@@ -290,15 +295,15 @@ static int32_t middle_of(const struct lm_sector *s, uint32_t line)
 
 /* ---- samples ---- */
 
-/* A path of `cells` equal cells outwards from `from_q8` to `to_q8`. */
-static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from_q8, uint32_t to_q8,
-                                     uint32_t cells)
+/* A path of `cells` equal cells outwards from `from_m_q8` to `to_m_q8`. */
+static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from_m_q8,
+                                     uint32_t to_m_q8, uint32_t cells)
 {
     struct lm_ground_path path;
-    const struct lm_place points[3] = {
-        from_q8 ? lm_geo_along(ray, from_q8) : ray->origin->place,
-        lm_geo_along(ray, from_q8 + (to_q8 - from_q8) / 2),
-        lm_geo_along(ray, to_q8),
+    const struct lm_position points[3] = {
+        from_m_q8 ? lm_geo_along(ray, from_m_q8) : ray->origin->position,
+        lm_geo_along(ray, from_m_q8 + (to_m_q8 - from_m_q8) / 2),
+        lm_geo_along(ray, to_m_q8),
     };
     lm_ground_path_fit(&path, points, cells);
     return path;
@@ -306,8 +311,8 @@ static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from
 
 static struct lm_ground_path sample_path(const struct lm_sector *s, const struct lm_geo_ray *ray)
 {
-    return path_of(ray, s->ground_edge_q8, s->ground_edge_q8 + s->grid.cells * s->grid.cell_q8,
-                   s->grid.cells);
+    return path_of(ray, s->ground_edge_m_q8,
+                   s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8, s->grid.cells);
 }
 
 /* The horizon that the ground before a window makes: all azimuths within a line of the table share
@@ -315,62 +320,65 @@ static struct lm_ground_path sample_path(const struct lm_sector *s, const struct
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
                                    fx_bam_t azimuth, struct lm_line *line)
 {
-    if (s->runup.grid.cells == 0) {
+    if (s->foreground.grid.cells == 0) {
         return LM_HORIZON_OPEN;
     }
     const fx_bam_t width = s->radar->line, from_left = azimuth - s->up + FX_BAM_90;
     const uint32_t part = from_left / width;
-    if (!s->has_runup || part != s->runup_part) {
+    if (!s->has_foreground || part != s->foreground_part) {
         struct lm_geo_ray ray;
         lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
         const struct lm_ground_path path =
-            path_of(&ray, s->runup.start_q8, s->ground_edge_q8, LM_RUNUP_CELLS);
-        s->runup_horizon = lm_runup_trace(&s->runup, &s->legend, tiles, &path, &line->ground);
-        s->runup_part = part;
-        s->has_runup = true;
+            path_of(&ray, s->foreground.start_db_q8, s->ground_edge_m_q8, LM_FOREGROUND_CELLS);
+        s->foreground_horizon =
+            lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
+        s->foreground_part = part;
+        s->has_foreground = true;
     }
-    return s->runup_horizon;
+    return s->foreground_horizon;
 }
 
 /* The targets in range, and in a window the chips of those that are in it. */
 static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 {
-    const struct lm_target_scene scene = {.place = s->platform.place,
-                                          .reach_m = s->radar->range[s->command.range].range_m,
+    const struct lm_target_scene scene = {.position = s->platform.position,
+                                          .reach_m =
+                                              s->radar->range[s->command.range_index].range_m,
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
-                                          .level = s->level};
-    if (!lm_targets_refresh(&s->near, s->targets, &scene) || !lm_sector_is_window(s) || !s->chips) {
+                                          .lod = s->lod};
+    if (!lm_target_candidates_refresh(&s->candidates, s->targets, &scene) ||
+        !lm_sector_is_window(s) || !s->chips) {
         return;
     }
     const struct lm_chip_scene chips = {
         .centre = s->command.centre,
         .reach_m = s->half_m * 3 / 2,
-        .radar = s->platform.place,
-        .heights = {s->grid.height_q10, s->grid.reference_q10},
-        .cell_mm = lm_mm_of_metres_q8(s->grid.cell_q8),
+        .radar = s->platform.position,
+        .heights = {s->grid.height_m_q10, s->grid.reference_m_q10},
+        .cell_mm = lm_mm_of_m_q8(s->grid.cell_m_q8),
         .side_most = CHIP_SIDE_MOST,
     };
-    lm_chips_choose(s->chips, &s->near, &chips);
+    lm_chips_choose(s->chips, &s->candidates, &chips);
 }
 
 /* Add the targets that the sampled line meets. */
 static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                        const struct lm_raster *speckle, struct lm_line *line)
+                        const struct lm_noise_key *speckle, struct lm_line *line)
 {
     const struct lm_sector_mode_row *mode = mode_of(s);
     find_targets(s, tiles);
     const struct lm_line_targets targets = {
-        .near = &s->near,
-        .where = {.place = s->platform.place,
+        .candidates = &s->candidates,
+        .where = {.position = s->platform.position,
                   .azimuth = azimuth,
                   .width = lm_beam_spacing(&s->beam, s->radar),
-                  .first_q8 = s->ground_edge_q8 + s->grid.cell_q8 / 2,
-                  .cell_q8 = s->grid.cell_q8,
+                  .first_m_q8 = s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2,
+                  .cell_m_q8 = s->grid.cell_m_q8,
                   .cells = s->grid.cells,
                   .first = s->grid.first,
-                  .height_q10 = s->grid.height_q10,
-                  .reference_q10 = s->grid.reference_q10,
+                  .height_m_q10 = s->grid.height_m_q10,
+                  .reference_m_q10 = s->grid.reference_m_q10,
                   .wavelength_um = s->radar->wavelength_um,
                   .is_doppler = s->beam.fineness != 0, /* sharpened */
                   .beam = s->radar->antenna.azimuth_beam,
@@ -379,7 +387,7 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
                   .scan = s->sweep,
                   .pulse = s->samples,
-                  .raster = speckle,
+                  .noise_key = speckle,
                   .speckle = mode->speckle},
     };
     lm_line_add_targets(line, &s->grid, &targets);
@@ -388,14 +396,14 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
 /* Texture belongs to the ground: cells as wide as they are long lie side by side at each range, so
  * that azimuths closer than that find the same. Columns are counted from north, by the middle of
  * each block. */
-static struct lm_raster ground_raster(const struct lm_sector *s, fx_bam_t azimuth)
+static struct lm_noise_key ground_raster(const struct lm_sector *s, fx_bam_t azimuth)
 {
     const uint64_t two_pi_q28 = 1686629713;
     const uint64_t radians_q32 = azimuth * two_pi_q28 >> 28; /* below 2^34.7 */
-    struct lm_raster r = lm_raster_of(LM_NOISE_TEXTURE, 0, s->sweep);
+    struct lm_noise_key r = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
     r.growth_q32 = radians_q32 * LM_NOISE_BLOCK;
     /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    r.column_q32 = radians_q32 * s->ground_edge_q8 / s->grid.cell_q8 + r.growth_q32 / 2;
+    r.column_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + r.growth_q32 / 2;
     return r;
 }
 
@@ -403,10 +411,10 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
                   struct lm_line *line)
 {
     const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .legend = &s->legend,
+                                        .class_lut = &s->class_lut,
                                         .texture = &s->texture,
-                                        .raster = ground_raster(s, azimuth),
-                                        .level = s->level};
+                                        .noise_key = ground_raster(s, azimuth),
+                                        .lod = s->lod};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);
@@ -418,7 +426,7 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
 static uint32_t azimuths_log2_of(const struct lm_sector *s)
 {
     const uint32_t log2 = field_of(s)->azimuths_log2, finer_log2 = s->beam.fineness;
-    return log2 > finer_log2 ? fx_min_u32(log2 - finer_log2, LM_FOOTPRINT_LOG2_MAX) : 0;
+    return log2 > finer_log2 ? fx_min_u32(log2 - finer_log2, LM_AZIMUTH_AVERAGE_LOG2_MAX) : 0;
 }
 
 /* Trace the azimuths across a sample: everything in the line is that of the last one, but the
@@ -434,23 +442,23 @@ static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx
     }
     const uint32_t last = (1u << log2) - 1;
     for (uint32_t turn = 0; turn <= last; turn++) {
-        const fx_bam_t off = (fx_bam_t)lm_footprint_offset(spacing, log2, turn);
+        const fx_bam_t off = (fx_bam_t)lm_azimuth_average_offset(spacing, log2, turn);
         trace(s, tiles, azimuth + off, line);
         if (turn == 0) {
-            lm_footprint_begin(&s->footprint, line->sight.level_q8, s->grid.cells);
+            lm_azimuth_average_begin(&s->average, line->lit.level_db_q8, s->grid.cells);
         } else if (turn < last) {
-            lm_footprint_add(&s->footprint, line->sight.level_q8, s->grid.cells);
+            lm_azimuth_average_add(&s->average, line->lit.level_db_q8, s->grid.cells);
         }
     }
-    lm_footprint_mean(&s->footprint, log2, line->sight.level_q8, s->grid.cells);
+    lm_azimuth_average_mean(&s->average, log2, line->lit.level_db_q8, s->grid.cells);
 }
 
 /* Put the origin where the aircraft is by now. */
 static void follow(struct lm_sector *s)
 {
-    const struct lm_place place = s->platform.place, old = s->origin.place;
-    if (place.latitude != old.latitude || place.longitude != old.longitude) {
-        lm_geo_set_origin(&s->origin, place);
+    const struct lm_position position = s->platform.position, old = s->origin.position;
+    if (position.latitude != old.latitude || position.longitude != old.longitude) {
+        lm_geo_set_origin(&s->origin, position);
     }
 }
 
@@ -459,15 +467,16 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
                         struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
-    const struct lm_raster speckle = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)sample, s->sweep);
+    const struct lm_noise_key speckle =
+        lm_noise_key_of(LM_NOISE_SPECKLE, (uint32_t)sample, s->sweep);
     follow(s);
     trace_footprint(s, tiles, azimuth, line);
-    lm_speckle_run(&mode_of(s)->speckle, &speckle, line->sight.level_q8, s->grid.cells);
+    lm_speckle_run(&mode_of(s)->speckle, &speckle, line->lit.level_db_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
         add_targets(s, tiles, azimuth, &speckle, line);
     }
-    lm_elevation_run(&s->elevation, &s->fan, &s->grid, &line->sight);
-    lm_slant_run(&s->slant, &s->grid, line->sight.level_q8, lm_beam_room(&s->beam, sample));
+    lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &line->lit);
+    lm_slant_run(&s->slant, &s->grid, line->lit.level_db_q8, lm_beam_slot(&s->beam, sample));
     s->samples++;
 }
 
@@ -477,12 +486,12 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
 static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform *platform,
                             int32_t azimuth)
 {
-    const struct lm_field_row *field = field_of(s);
-    if (field->sharpening <= 1) {
+    const struct lm_fov_row *fov = field_of(s);
+    if (fov->sharpening <= 1) {
         return 256;
     }
     const fx_bam_t off = s->up + (fx_bam_t)azimuth - platform->track;
-    return lm_dbs_sharpening_q8(field,
+    return lm_dbs_sharpening_q8(fov,
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
@@ -500,9 +509,9 @@ static void look_at(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
     const int32_t spacing = (int32_t)s->radar->sample, moved = azimuth - aim->azimuth;
     const bool is_sharpened = ratio_q8 != 256 || s->beam.fineness != 0;
     if (aim->is_kept && !is_sharpened && moved % spacing == 0) {
-        aim->look.first += moved / spacing;
+        aim->taps.first += moved / spacing;
     } else {
-        lm_beam_aim(&s->beam, s->radar, azimuth, ratio_q8, &aim->look);
+        lm_beam_set_taps(&s->beam, s->radar, azimuth, ratio_q8, &aim->taps);
     }
     aim->azimuth = azimuth;
     aim->is_kept = ratio_q8 == 256;
@@ -518,7 +527,7 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     if (!lm_sector_is_window(s)) {
         s->up = platform->heading;
-        s->platform.place = platform->place;
+        s->platform.position = platform->position;
     }
     if (!s->is_aimed) {
         const int32_t azimuth = middle_of(s, s->line);
@@ -533,7 +542,7 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
 {
     int32_t sample;
     aim(s, tiles, platform);
-    while (lm_beam_lacks(&s->beam, &aim_of(s)->look, &sample)) {
+    while (lm_beam_next_missing(&s->beam, &aim_of(s)->taps, &sample)) {
         if (*azimuths == 0) {
             return false;
         }
@@ -550,7 +559,7 @@ static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
     const fx_bam_t azimuth = s->up + (fx_bam_t)middle_of(s, line_ahead(s, ahead));
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const struct lm_ground_path path = sample_path(s, &ray);
-    lm_scan_line_prefetch(tiles, s->level, &path, s->grid.cells);
+    lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
 }
 
 uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
@@ -561,15 +570,15 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    lm_beam_sum(&s->beam, &aim_of(s)->look, s->power_q24, cells);
+    lm_beam_sum(&s->beam, &aim_of(s)->taps, s->power_q24, cells);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
-        lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.place,
+        lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,
                         s->up + (fx_bam_t)azimuth);
         weather = &s->weather;
     }
-    lm_receiver_run(&s->receiver, weather, drawn, s->sweep, s->power_q24, s->level_q8);
-    lm_tone_run(tone, s->level_q8, line->grey, cells);
+    lm_receiver_run(&s->receiver, weather, drawn, s->sweep, s->power_q24, s->level_db_q8);
+    lm_tone_run(tone, s->level_db_q8, line->grey, cells);
     if (drawn % LINES_APART == 0) {
         prefetch(s, tiles);
     }

@@ -5,16 +5,16 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-bool lm_bearing_find(struct lm_place antenna, struct lm_place place, fx_bam_t azimuth,
+bool lm_bearing_find(struct lm_position antenna, struct lm_position position, fx_bam_t azimuth,
                      struct lm_bearing *b)
 {
     const uint32_t far = 1u << 27;
-    if (fx_abs_u32((int32_t)(place.latitude - antenna.latitude)) >= far ||
-        fx_abs_u32((int32_t)(place.longitude - antenna.longitude)) >= far) {
+    if (fx_abs_u32((int32_t)(position.latitude - antenna.latitude)) >= far ||
+        fx_abs_u32((int32_t)(position.longitude - antenna.longitude)) >= far) {
         return false;
     }
     fx_bam_t bearing;
-    lm_geo_inverse(antenna, place, &b->distance_q8, &bearing);
+    lm_geo_inverse(antenna, position, &b->distance_m_q8, &bearing);
     b->off = bearing - azimuth;
     return true;
 }
@@ -23,16 +23,16 @@ bool lm_shower_meet(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *
 {
     const fx_bam_t off = s->at.off - aside;
     /* Distance below 2^29, radius below 2^24.7. */
-    const int64_t along_q8 = ((int64_t)s->at.distance_q8 * fx_cos_q30(off)) >> 30;
-    const int64_t across_q8 = ((int64_t)s->at.distance_q8 * fx_sin_q30(off)) >> 30;
-    const int64_t radius_q8 = (int64_t)s->radius_m * 256;
-    const int64_t square = radius_q8 * radius_q8 - across_q8 * across_q8;
-    const int64_t half_q8 = square > 0 ? (int64_t)fx_sqrt_u64((uint64_t)square) : 0;
-    if (half_q8 == 0 || along_q8 + half_q8 <= 0) {
+    const int64_t along_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_cos_q30(off)) >> 30;
+    const int64_t across_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_sin_q30(off)) >> 30;
+    const int64_t radius_m_q8 = (int64_t)s->radius_m * 256;
+    const int64_t square = radius_m_q8 * radius_m_q8 - across_m_q8 * across_m_q8;
+    const int64_t half_m_q8 = square > 0 ? (int64_t)fx_sqrt_u64((uint64_t)square) : 0;
+    if (half_m_q8 == 0 || along_m_q8 + half_m_q8 <= 0) {
         return false;
     }
-    chord->from_q8 = (int32_t)(along_q8 > half_q8 ? along_q8 - half_q8 : 0);
-    chord->to_q8 = (int32_t)(along_q8 + half_q8);
+    chord->from_m_q8 = (int32_t)(along_m_q8 > half_m_q8 ? along_m_q8 - half_m_q8 : 0);
+    chord->to_m_q8 = (int32_t)(along_m_q8 + half_m_q8);
     return true;
 }
 
@@ -42,24 +42,24 @@ void lm_shower_weigh(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength
      */
     const int32_t rate_q16 = fx_log2_q16(fx_max_u32(mm_per_h, 1));
     const uint32_t loss_q16 = fx_exp2_q16((int32_t)((int64_t)rate_q16 * 82385 >> 16) - 351307);
-    s->loss_q32 = (uint32_t)(((uint64_t)loss_q16 << 16) / 1000);
+    s->loss_db_per_m_q32 = (uint32_t)(((uint64_t)loss_q16 << 16) / 1000);
     /* pi^5 |K|^2 200 10^-18 / l^4: -132.4479 dB, and 240 dB for the micrometres; 16 log10 R. */
-    s->echo_q8 = 27533 + fx_db_q8_of_log2_q16((int32_t)((int64_t)rate_q16 * 8 / 5)) -
-                 fx_db_q8_of_log2_q16(4 * fx_log2_q16(wavelength_um));
+    s->echo_db_q8 = 27533 + fx_db_q8_of_log2_q16((int32_t)((int64_t)rate_q16 * 8 / 5)) -
+                    fx_db_q8_of_log2_q16(4 * fx_log2_q16(wavelength_um));
 }
 
 /* Depths are below 2^27, a loss below 2^31 (2^26 level, 32 times as much on the steepest way down);
  * their product is dB * 256 in Q32. */
 void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
-                        const struct lm_reach *reach, int32_t *restrict loss_q8)
+                        const struct lm_reach *reach, int32_t *restrict loss_db_q8)
 {
-    const int32_t step_q8 = (int32_t)reach->cell_q8;
-    const int32_t edge_q8 = (int32_t)reach->first_q8 - step_q8 / 2;
+    const int32_t step_m_q8 = (int32_t)reach->cell_m_q8;
+    const int32_t edge_m_q8 = (int32_t)reach->first_m_q8 - step_m_q8 / 2;
     const struct lm_chord c = *chord;
     for (uint32_t i = 0; i < reach->cells; i++) {
-        const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
+        const int32_t near_m_q8 = edge_m_q8 + (int32_t)i * step_m_q8;
         const int32_t twice_q8 =
-            lm_chord_before_q8(c, near_q8) + lm_chord_before_q8(c, near_q8 + step_q8);
-        loss_q8[i] += (int32_t)((uint64_t)(uint32_t)twice_q8 * s->loss_q32 >> 33);
+            lm_chord_before_m_q8(c, near_m_q8) + lm_chord_before_m_q8(c, near_m_q8 + step_m_q8);
+        loss_db_q8[i] += (int32_t)((uint64_t)(uint32_t)twice_q8 * s->loss_db_per_m_q32 >> 33);
     }
 }

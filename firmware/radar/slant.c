@@ -6,19 +6,20 @@
 #include "lm/geo.h"
 #include "lm/kernels_radar.h"
 
-void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint32_t cells,
-                  const struct lm_range_grid *grid, uint32_t ground_first_q8)
+void lm_slant_set(struct lm_slant *s, uint32_t first_m_q8, uint32_t cell_m_q8, uint32_t cells,
+                  const struct lm_range_grid *grid, uint32_t ground_first_m_q8)
 {
-    const int32_t height_q10 = grid->height_q10 - grid->reference_q10;
-    const int64_t edge_q8 = (int64_t)ground_first_q8 - grid->cell_q8 / 2;
-    s->first_q8 = first_q8;
-    s->cell_q8 = cell_q8;
+    const int32_t height_m_q10 = grid->height_m_q10 - grid->reference_m_q10;
+    const int64_t edge_m_q8 = (int64_t)ground_first_m_q8 - grid->cell_m_q8 / 2;
+    s->first_m_q8 = first_m_q8;
+    s->cell_m_q8 = cell_m_q8;
     s->cells = cells;
     for (uint32_t i = 0; i < cells; i++) {
-        const int64_t ground_q8 = lm_ground_of_slant(first_q8 + i * cell_q8, height_q10);
-        const int64_t past_q8 = ground_q8 - edge_q8;
-        const uint64_t cell = past_q8 < 0 ? grid->cells : (uint64_t)past_q8 / grid->cell_q8;
-        const bool has_ground = ground_q8 != 0 && cell < grid->cells;
+        const int64_t ground_m_q8 =
+            lm_ground_of_slant_m_q8(first_m_q8 + i * cell_m_q8, height_m_q10);
+        const int64_t past_m_q8 = ground_m_q8 - edge_m_q8;
+        const uint64_t cell = past_m_q8 < 0 ? grid->cells : (uint64_t)past_m_q8 / grid->cell_m_q8;
+        const bool has_ground = ground_m_q8 != 0 && cell < grid->cells;
         s->cell_of[i] = (int32_t)(has_ground ? cell : grid->cells);
     }
     for (uint32_t i = cells; i < cells + LM_LANES; i++) {
@@ -33,15 +34,15 @@ void lm_slant_set(struct lm_slant *s, uint32_t first_q8, uint32_t cell_q8, uint3
     }
 }
 
-void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_q8,
+void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, int32_t *level_db_q8,
                   uint32_t *power_q24)
 {
-    int32_t *const bin_q8 = (int32_t *)power_q24;
-    level_q8[grid->cells] = LM_LEVEL_SHADOW;
-    lm_k_gather(level_q8, s->cell_of, bin_q8, s->cells);
+    int32_t *const bin_db_q8 = (int32_t *)power_q24;
+    level_db_q8[grid->cells] = LM_LEVEL_SHADOW;
+    lm_k_gather(level_db_q8, s->cell_of, bin_db_q8, s->cells);
     for (uint32_t k = 0; k < s->pairs; k++) {
         const struct lm_slant_pair *pair = &s->pair[k];
-        bin_q8[pair->bin] = fx_max_i32(bin_q8[pair->bin], level_q8[pair->last]);
+        bin_db_q8[pair->bin] = fx_max_i32(bin_db_q8[pair->bin], level_db_q8[pair->last]);
     }
     /* Within 2^17: at the lowest -195 dB of a cell hardly lit, -113 of texture, -33 of speckle, -48
      * of a chip's shadow, -96 of the elevation pattern. */

@@ -11,13 +11,13 @@ _Static_assert((int)LM_TONE_LINES == LM_K_TONE_LINES &&
                    (int)LM_TONE_PLACES_LOG2 == LM_K_TONE_PLACES_LOG2,
                "a curve has what lm/kernels_radar.h wants");
 
-/* White lies `span_q8` above black, at step `last`. */
+/* White lies `span_db_q8` above black, at step `last`. */
 struct window {
-    int32_t span_q8, last, step_log2, gamma_q8;
+    int32_t span_db_q8, last, step_log2, gamma_q8;
 };
 
 /* 255 v^gamma in Q16 at a step below white. */
-static uint32_t curve_q16(const struct window *w, int32_t step)
+static uint32_t curve_grey_q16(const struct window *w, int32_t step)
 {
     if (step == 0) {
         return 0;
@@ -25,32 +25,32 @@ static uint32_t curve_q16(const struct window *w, int32_t step)
     /* log2 v is -11..0 in Q16, for only white's own step may lie above it, by half a step; times
      * gamma up to 4: above -2^22. */
     const int32_t log2_q16 =
-        fx_log2_q16((uint32_t)step << w->step_log2) - fx_log2_q16((uint32_t)w->span_q8);
+        fx_log2_q16((uint32_t)step << w->step_log2) - fx_log2_q16((uint32_t)w->span_db_q8);
     return 255u * fx_exp2_q16((int32_t)((int64_t)log2_q16 * w->gamma_q8 / 256));
 }
 
 static void set_steps(struct lm_tone *t, const struct window *w)
 {
     for (int32_t step = 0; step < w->last; step++) {
-        t->grey[step] = (int32_t)((curve_q16(w, step) + 32768u) >> 16);
+        t->grey[step] = (int32_t)((curve_grey_q16(w, step) + 32768u) >> 16);
     }
     t->grey[w->last] = 255;
 }
 
 /* Where lines meet: grey in Q8, with the half for rounding. White has as much more as its line's
  * slope may lose by rounding down. */
-static int32_t knot_q8(const struct window *w, int32_t step)
+static int32_t knot_grey_q8(const struct window *w, int32_t step)
 {
-    const int32_t white_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
-    return step < w->last ? (int32_t)(curve_q16(w, step) >> 8) + 128 : white_q8;
+    const int32_t white_db_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
+    return step < w->last ? (int32_t)(curve_grey_q16(w, step) >> 8) + 128 : white_db_q8;
 }
 
 /* Chords, whose slopes are rounded down: none ends above the start of the next. */
 static void set_lines(struct lm_tone *t, const struct window *w)
 {
-    int32_t base = knot_q8(w, 0);
+    int32_t base = knot_grey_q8(w, 0);
     for (int32_t n = 0; n < LM_TONE_LINES; n++) {
-        const int32_t first = n * LM_TONE_PLACES, next = knot_q8(w, first + LM_TONE_PLACES);
+        const int32_t first = n * LM_TONE_PLACES, next = knot_grey_q8(w, first + LM_TONE_PLACES);
         const int32_t steps = fx_clamp_i32(w->last - first, 1, LM_TONE_PLACES);
         const int32_t slope = (next - base) / steps;
         const int32_t shifted = base - n % 8 * LM_TONE_PLACES * slope;
@@ -73,18 +73,18 @@ static bool is_gentle(const struct window *w)
 
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
 {
-    const int32_t span_q8 = config->white_q8 - config->black_q8;
-    if (span_q8 < 256 || span_q8 > 255 * 256 || config->gamma_q8 < LM_TONE_GAMMA_MIN_Q8 ||
+    const int32_t span_db_q8 = config->white_db_q8 - config->black_db_q8;
+    if (span_db_q8 < 256 || span_db_q8 > 255 * 256 || config->gamma_q8 < LM_TONE_GAMMA_MIN_Q8 ||
         config->gamma_q8 > LM_TONE_GAMMA_MAX_Q8) {
         return LM_ERR_RANGE;
     }
-    struct window w = {.span_q8 = span_q8, .last = span_q8, .gamma_q8 = config->gamma_q8};
+    struct window w = {.span_db_q8 = span_db_q8, .last = span_db_q8, .gamma_q8 = config->gamma_q8};
     while (w.last >= LM_TONE_STEPS) {
         w.step_log2++;
-        w.last = (span_q8 + (1 << w.step_log2 >> 1)) >> w.step_log2;
+        w.last = (span_db_q8 + (1 << w.step_log2 >> 1)) >> w.step_log2;
     }
-    t->black_q8 = config->black_q8;
-    t->white_q8 = config->white_q8;
+    t->black_db_q8 = config->black_db_q8;
+    t->white_db_q8 = config->white_db_q8;
     t->step_log2 = (uint8_t)w.step_log2;
     t->has_lines = is_gentle(&w);
     if (t->has_lines) {
@@ -95,12 +95,12 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
     return LM_OK;
 }
 
-void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *grey, uint32_t cells)
+void lm_tone_run(const struct lm_tone *t, const int32_t *level_db_q8, uint8_t *grey, uint32_t cells)
 {
-    const struct lm_k_tone_curve curve = {.black_db_q8 = t->black_q8,
-                                          .white_db_q8 = t->white_q8,
+    const struct lm_k_tone_curve curve = {.black_db_q8 = t->black_db_q8,
+                                          .white_db_q8 = t->white_db_q8,
                                           .step_log2 = t->step_log2,
                                           .grey_of_step = t->grey,
                                           .lines = t->has_lines ? t->lines : NULL};
-    lm_k_tone(&curve, level_q8, grey, cells);
+    lm_k_tone(&curve, level_db_q8, grey, cells);
 }

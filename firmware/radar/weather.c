@@ -6,30 +6,30 @@
 #include "shower.h"
 
 /* J - 20 log10(R_j / 18520 m) - 40 log10(2) (o / B)^2: the jammer's noise beside the receiver's. */
-static int32_t jammer_q8(const struct lm_jammer *j, const struct lm_bearing *b, fx_bam_t beam)
+static int32_t jammer_db_q8(const struct lm_jammer *j, const struct lm_bearing *b, fx_bam_t beam)
 {
     const int32_t ten_miles_q16 = 1453379; /* log2(18520 * 256) */
-    const int32_t spread_q8 =
-        fx_db_q8_of_log2_q16(2 * (fx_log2_q16(fx_max_u32(b->distance_q8, 256)) - ten_miles_q16));
+    const int32_t spread_db_q8 =
+        fx_db_q8_of_log2_q16(2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, 256)) - ten_miles_q16));
     /* Sixteen beams off the axis nothing is left. x in Q12: 2^32 and 3083 / 256 dB times 2^8. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32((int32_t)b->off) << 12) / fx_max_u32(beam, 1);
     const uint64_t x = x_q12 < 16u << 12 ? x_q12 : 16u << 12;
-    return j->ratio_q8 - spread_q8 - (int32_t)((x * x >> 12) * 3083 >> 12);
+    return j->noise_ratio_db_q8 - spread_db_q8 - (int32_t)((x * x >> 12) * 3083 >> 12);
 }
 
-int32_t lm_noise_rise_q8(const struct lm_environment *e, const struct lm_radar *radar,
-                         struct lm_place antenna, fx_bam_t azimuth)
+int32_t lm_noise_rise_db_q8(const struct lm_environment *e, const struct lm_radar *radar,
+                            struct lm_position antenna, fx_bam_t azimuth)
 {
-    int32_t rise_q8 = 0;
+    int32_t rise_db_q8 = 0;
     struct lm_bearing b;
     for (uint32_t n = 0; n < fx_min_u32(e->jammer_count, LM_JAMMERS_MAX); n++) {
         const struct lm_jammer *j = &e->jammer[n];
-        if (lm_bearing_find(antenna, j->place, azimuth, &b)) {
-            const int32_t jam_q8 = jammer_q8(j, &b, radar->antenna.azimuth_beam);
-            rise_q8 = fx_db_q8_sum_of_many(rise_q8, jam_q8);
+        if (lm_bearing_find(antenna, j->position, azimuth, &b)) {
+            const int32_t jam_db_q8 = jammer_db_q8(j, &b, radar->antenna.azimuth_beam);
+            rise_db_q8 = fx_db_q8_sum_vec(rise_db_q8, jam_db_q8);
         }
     }
-    return rise_q8;
+    return rise_db_q8;
 }
 
 /* A circle of rain that the line meets. */
@@ -39,7 +39,7 @@ struct met {
 };
 
 static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_environment *e,
-                             const struct lm_radar *radar, struct lm_place antenna,
+                             const struct lm_radar *radar, struct lm_position antenna,
                              fx_bam_t azimuth)
 {
     uint32_t count = 0;
@@ -56,46 +56,47 @@ static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_envir
 }
 
 /* Add the rain's echo, so weakened, by the share of each bin that it fills: at most 1 in Q32. */
-static void add_echo(const struct met *m, const struct lm_reach *reach, const int32_t *loss_q8,
-                     int32_t *restrict echo_q8)
+static void add_echo(const struct met *m, const struct lm_reach *reach, const int32_t *loss_db_q8,
+                     int32_t *restrict echo_db_q8)
 {
-    const int32_t step_q8 = (int32_t)reach->cell_q8;
-    const int32_t edge_q8 = (int32_t)reach->first_q8 - step_q8 / 2;
-    const uint32_t per_step_q32 = UINT32_MAX / fx_max_u32(reach->cell_q8, 1);
+    const int32_t step_m_q8 = (int32_t)reach->cell_m_q8;
+    const int32_t edge_m_q8 = (int32_t)reach->first_m_q8 - step_m_q8 / 2;
+    const uint32_t per_step_q32 = UINT32_MAX / fx_max_u32(reach->cell_m_q8, 1);
     const struct lm_chord c = m->chord;
     for (uint32_t i = 0; i < reach->cells; i++) {
-        const int32_t near_q8 = edge_q8 + (int32_t)i * step_q8;
+        const int32_t near_m_q8 = edge_m_q8 + (int32_t)i * step_m_q8;
         const int32_t filled_q8 =
-            lm_chord_before_q8(c, near_q8 + step_q8) - lm_chord_before_q8(c, near_q8);
+            lm_chord_before_m_q8(c, near_m_q8 + step_m_q8) - lm_chord_before_m_q8(c, near_m_q8);
         const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
-        const int32_t share_q8 = fx_db_q8_of_many(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
-        echo_q8[i] = fx_db_q8_sum_of_many(echo_q8[i], m->shower.echo_q8 + share_q8 - loss_q8[i]);
+        const int32_t share_q8 = fx_db_q8_vec(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
+        echo_db_q8[i] =
+            fx_db_q8_sum_vec(echo_db_q8[i], m->shower.echo_db_q8 + share_q8 - loss_db_q8[i]);
     }
 }
 
 void lm_weather_line(struct lm_weather *w, const struct lm_environment *environment,
                      const struct lm_receiver *receiver, const struct lm_radar *radar,
-                     struct lm_place antenna, fx_bam_t azimuth)
+                     struct lm_position antenna, fx_bam_t azimuth)
 {
     struct met met[LM_RAINS_MAX];
-    const struct lm_reach reach = {receiver->first_q8, receiver->cell_q8, receiver->cells};
-    w->noise_rise_q8 = lm_noise_rise_q8(environment, radar, antenna, azimuth);
+    const struct lm_reach reach = {receiver->first_m_q8, receiver->cell_m_q8, receiver->cells};
+    w->noise_rise_db_q8 = lm_noise_rise_db_q8(environment, radar, antenna, azimuth);
     const uint32_t count = find_showers(met, environment, radar, antenna, azimuth);
     w->has_rain = count != 0;
     if (!w->has_rain) {
         return;
     }
     for (uint32_t i = 0; i < receiver->cells; i++) {
-        w->loss_q8[i] = 0;
-        w->rain_q8[i] = LM_NO_RAIN_Q8;
+        w->loss_db_q8[i] = 0;
+        w->rain_db_q8[i] = LM_NO_RAIN_Q8;
     }
     for (uint32_t n = 0; n < count; n++) {
-        lm_shower_add_loss(&met[n].shower, &met[n].chord, &reach, w->loss_q8);
+        lm_shower_add_loss(&met[n].shower, &met[n].chord, &reach, w->loss_db_q8);
     }
     for (uint32_t n = 0; n < count; n++) {
-        add_echo(&met[n], &reach, w->loss_q8, w->rain_q8);
+        add_echo(&met[n], &reach, w->loss_db_q8, w->rain_db_q8);
     }
     for (uint32_t i = 0; i < receiver->cells; i++) {
-        w->rain_q8[i] += receiver->volume_q8[i];
+        w->rain_db_q8[i] += receiver->volume_db_q8[i];
     }
 }

@@ -18,8 +18,8 @@
 #define OF_SCALES(member)                                                                          \
     WHERE(range[0].member, LM_RANGES_MAX, SIZE_OF(range[0])), .is_of_scales = true
 #define OF_MODES(member)          WHERE(mode[0].member, LM_SECTOR_MODES, SIZE_OF(mode[0]))
-#define OF_FIELDS(member)         WHERE(field[0].member, LM_FIELDS, SIZE_OF(field[0]))
-#define OF_WINDOWS(member)        WHERE(field[1].member, LM_FIELDS - 1, SIZE_OF(field[0]))
+#define OF_FIELDS(member)         WHERE(fov[0].member, LM_FOVS, SIZE_OF(fov[0]))
+#define OF_WINDOWS(member)        WHERE(fov[1].member, LM_FOVS - 1, SIZE_OF(fov[0]))
 #define BETWEEN(low, high)        .min = (low), .max = (high)
 #define SIGNED_BETWEEN(low, high) .is_signed = true, .min = (low), .max = (high)
 
@@ -27,12 +27,12 @@ static const struct lm_radar_field fields[] = {
     {"ranges", ONE(ranges), BETWEEN(1, LM_RANGES_MAX)},
     {"range.range_m", OF_SCALES(range_m), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
     {"range.range_nm", OF_SCALES(range_nm), BETWEEN(1, 999)},
-    {"range.noise_end_q8", OF_SCALES(noise_end_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
-    {"range.stc_m", OF_SCALES(stc_m), BETWEEN(100, 400000)},
-    {"range.pulse_ns[NORM]", OF_SCALES(pulse_ns[LM_FIELD_NORM]), BETWEEN(10, 100000)},
-    {"range.pulse_ns[EXP]", OF_SCALES(pulse_ns[LM_FIELD_EXP]), BETWEEN(10, 100000)},
-    {"range.pulse_ns[DBS1]", OF_SCALES(pulse_ns[LM_FIELD_DBS1]), BETWEEN(10, 100000)},
-    {"range.pulse_ns[DBS2]", OF_SCALES(pulse_ns[LM_FIELD_DBS2]), BETWEEN(10, 100000)},
+    {"range.noise_end_db_q8", OF_SCALES(noise_end_db_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"range.stc_end_m", OF_SCALES(stc_end_m), BETWEEN(100, 400000)},
+    {"range.pulse_ns[NORM]", OF_SCALES(pulse_ns[LM_FOV_NORM]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[EXP]", OF_SCALES(pulse_ns[LM_FOV_EXP]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[DBS1]", OF_SCALES(pulse_ns[LM_FOV_DBS1]), BETWEEN(10, 100000)},
+    {"range.pulse_ns[DBS2]", OF_SCALES(pulse_ns[LM_FOV_DBS2]), BETWEEN(10, 100000)},
     {"range_start_nm", ONE(range_start_nm), BETWEEN(1, 999)},
     {"azimuth_half", EACH(azimuth_half[0], LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"wavelength_um", ONE(wavelength_um), BETWEEN(LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM)},
@@ -49,24 +49,24 @@ static const struct lm_radar_field fields[] = {
     {"receiver.noise_looks_log2", ONE(receiver.noise_looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
     {"mode.bam_per_s", OF_MODES(bam_per_s), BETWEEN(LM_RADAR_RATE_MIN, LM_RADAR_RATE_MAX)},
     {"mode.range_max_nm", OF_MODES(range_max_nm), BETWEEN(1, 999)},
-    {"mode.field_last", OF_MODES(field_last), BETWEEN(0, LM_FIELDS - 1)},
+    {"mode.fov_last", OF_MODES(fov_last), BETWEEN(0, LM_FOVS - 1)},
     {"mode.bars", OF_MODES(bars), BETWEEN(1, 8)},
-    {"mode.clutter_q8", OF_MODES(clutter_q8), BETWEEN(0, DB(64))},
+    {"mode.clutter_db_q8", OF_MODES(clutter_db_q8), BETWEEN(0, DB(64))},
     {"mode.gate_mm_s[0]", OF_MODES(gate_mm_s[0]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.gate_mm_s[1]", OF_MODES(gate_mm_s[1]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.speckle.looks_log2", OF_MODES(speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
-    {"mode.tone.black_q8", OF_MODES(tone.black_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
-    {"mode.tone.white_q8", OF_MODES(tone.white_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"mode.tone.black_db_q8", OF_MODES(tone.black_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"mode.tone.white_db_q8", OF_MODES(tone.white_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
     {"mode.tone.gamma_q8", OF_MODES(tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
-    {"field.bam_per_s", OF_FIELDS(bam_per_s), BETWEEN(0, LM_RADAR_RATE_MAX)},
-    {"field.range_max_nm", OF_FIELDS(range_max_nm), BETWEEN(1, 999)},
-    {"field.slew_percent", OF_FIELDS(slew_percent), BETWEEN(1, 200)},
-    {"field[NORM].window_permille", ONE(field[LM_FIELD_NORM].window_permille), BETWEEN(0, 0)},
-    {"field[EXP..].window_permille", OF_WINDOWS(window_permille), BETWEEN(5, 250)},
-    {"field.azimuth_half_max", OF_FIELDS(azimuth_half_max), BETWEEN(0, LM_RADAR_AZIMUTH_MAX)},
-    {"field.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
-    {"field.sharpening_least", OF_FIELDS(sharpening_least), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
-    {"field.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
+    {"fov.bam_per_s", OF_FIELDS(bam_per_s), BETWEEN(0, LM_RADAR_RATE_MAX)},
+    {"fov.range_max_nm", OF_FIELDS(range_max_nm), BETWEEN(1, 999)},
+    {"fov.slew_percent", OF_FIELDS(slew_percent), BETWEEN(1, 200)},
+    {"fov[NORM].window_permille", ONE(fov[LM_FOV_NORM].window_permille), BETWEEN(0, 0)},
+    {"fov[EXP..].window_permille", OF_WINDOWS(window_permille), BETWEEN(5, 250)},
+    {"fov.azimuth_half_max", OF_FIELDS(azimuth_half_max), BETWEEN(0, LM_RADAR_AZIMUTH_MAX)},
+    {"fov.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
+    {"fov.sharpening_least", OF_FIELDS(sharpening_least), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
+    {"fov.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
     {"sar.cells", ONE(sar.cells), BETWEEN(32, LM_RADAR_PATCH_CELLS_MAX)},
     {"sar.cell_min_mm", ONE(sar.cell_min_mm), BETWEEN(100, 100000)},
     {"sar.cell_max_mm", ONE(sar.cell_max_mm), BETWEEN(100, 100000)},
@@ -75,15 +75,18 @@ static const struct lm_radar_field fields[] = {
     {"sar.reference_speed_mm_s", ONE(sar.reference_speed_mm_s),
      BETWEEN(1000, LM_RADAR_SPEED_MAX_MM_S)},
     {"sar.mocomp_residual_permille", ONE(sar.mocomp_residual_permille), BETWEEN(0, 1000)},
-    {"sar.noise_floor_q8", ONE(sar.noise_floor_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"sar.noise_floor_db_q8", ONE(sar.noise_floor_db_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
     {"sar.speckle.looks_log2", ONE(sar.speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
-    {"sar.tone.black_q8", ONE(sar.tone.black_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
-    {"sar.tone.white_q8", ONE(sar.tone.white_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"sar.tone.black_db_q8", ONE(sar.tone.black_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"sar.tone.white_db_q8", ONE(sar.tone.white_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
     {"sar.tone.gamma_q8", ONE(sar.tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
-    {"aspect.edge_structure_q8", ONE(aspect.edge_structure_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
-    {"aspect.edge_trees_q8", ONE(aspect.edge_trees_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
-    {"aspect.shore_q8", ONE(aspect.shore_q8), SIGNED_BETWEEN(0, LM_EDGE_MAX_Q8)},
-    {"aspect.shore_width_m", ONE(aspect.shore_width_m), BETWEEN(0, 10000)},
+    {"illumination.edge_structure_db_q8", ONE(illumination.edge_structure_db_q8),
+     SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
+    {"illumination.edge_trees_db_q8", ONE(illumination.edge_trees_db_q8),
+     SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
+    {"illumination.shore_db_q8", ONE(illumination.shore_db_q8),
+     SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
+    {"illumination.shore_width_m", ONE(illumination.shore_width_m), BETWEEN(0, 10000)},
     {"texture.shape_log2", EACH(texture.shape_log2[0], LM_KINDS), BETWEEN(0, LM_TEXTURE_NONE)},
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -163,8 +166,8 @@ static uint32_t check_mode_scales(const struct lm_radar *r)
 
 static uint32_t check_field_scales(const struct lm_radar *r)
 {
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        if (r->field[i].range_max_nm < r->range[0].range_nm) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        if (r->fov[i].range_max_nm < r->range[0].range_nm) {
             return i;
         }
     }
@@ -174,7 +177,7 @@ static uint32_t check_field_scales(const struct lm_radar *r)
 static uint32_t check_start(const struct lm_radar *r)
 {
     const int32_t start = lm_radar_find_range(r, r->range_start_nm);
-    const uint32_t last = lm_radar_range_last(r, LM_SECTOR_GM, LM_FIELD_NORM);
+    const uint32_t last = lm_radar_range_last(r, LM_SECTOR_GM, LM_FOV_NORM);
     return start >= 0 && (uint32_t)start <= last ? HOLDS : 0;
 }
 
@@ -199,8 +202,8 @@ static uint32_t check_mode_names(const struct lm_radar *r)
 
 static uint32_t check_field_names(const struct lm_radar *r)
 {
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        if (!is_name(r->field[i].name) || lm_radar_find_field(r, r->field[i].name) != (int32_t)i) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        if (!is_name(r->fov[i].name) || lm_radar_find_field(r, r->fov[i].name) != (int32_t)i) {
             return i;
         }
     }
@@ -226,8 +229,8 @@ static uint32_t check_sample(const struct lm_radar *r)
 
 static uint32_t check_rates(const struct lm_radar *r)
 {
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        if (r->field[i].bam_per_s != 0 && r->field[i].bam_per_s < LM_RADAR_RATE_MIN) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        if (r->fov[i].bam_per_s != 0 && r->fov[i].bam_per_s < LM_RADAR_RATE_MIN) {
             return i;
         }
     }
@@ -247,7 +250,7 @@ static uint32_t check_gates(const struct lm_radar *r)
 
 static bool is_window_of_tone(const struct lm_tone_config *tone)
 {
-    return tone->white_q8 - tone->black_q8 >= DB(1);
+    return tone->white_db_q8 - tone->black_db_q8 >= DB(1);
 }
 
 static uint32_t check_tones(const struct lm_radar *r)
@@ -267,8 +270,8 @@ static uint32_t check_patch_tone(const struct lm_radar *r)
 
 static uint32_t check_sharpening(const struct lm_radar *r)
 {
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        if ((r->field[i].sharpening & (r->field[i].sharpening - 1)) != 0) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        if ((r->fov[i].sharpening & (r->fov[i].sharpening - 1)) != 0) {
             return i;
         }
     }
@@ -277,8 +280,8 @@ static uint32_t check_sharpening(const struct lm_radar *r)
 
 static uint32_t check_sharpening_least(const struct lm_radar *r)
 {
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        if (r->field[i].sharpening_least > r->field[i].sharpening) {
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        if (r->fov[i].sharpening_least > r->fov[i].sharpening) {
             return i;
         }
     }
@@ -288,8 +291,8 @@ static uint32_t check_sharpening_least(const struct lm_radar *r)
 /* Cells of the smallest window are a quarter of a metre long or longer; the scales rise. */
 static uint32_t check_windows(const struct lm_radar *r)
 {
-    for (uint32_t i = LM_FIELD_NORM + 1; i < LM_FIELDS; i++) {
-        const uint32_t half_m = r->range[0].range_m * r->field[i].window_permille / 1000;
+    for (uint32_t i = LM_FOV_NORM + 1; i < LM_FOVS; i++) {
+        const uint32_t half_m = r->range[0].range_m * r->fov[i].window_permille / 1000;
         if (2 * half_m * 4 < r->cells) {
             return i;
         }
@@ -299,8 +302,8 @@ static uint32_t check_windows(const struct lm_radar *r)
 
 static uint32_t check_window_sectors(const struct lm_radar *r)
 {
-    for (uint32_t i = LM_FIELD_NORM + 1; i < LM_FIELDS; i++) {
-        if (r->field[i].azimuth_half_max < r->line) {
+    for (uint32_t i = LM_FOV_NORM + 1; i < LM_FOVS; i++) {
+        if (r->fov[i].azimuth_half_max < r->line) {
             return i;
         }
     }
@@ -319,21 +322,21 @@ static const struct rule {
     {"range.range_m", check_scales},
     {"ranges", check_count},
     {"mode.name", check_mode_names},
-    {"field.name", check_field_names},
+    {"fov.name", check_field_names},
     {"mode.range_max_nm", check_mode_scales},
-    {"field.range_max_nm", check_field_scales},
+    {"fov.range_max_nm", check_field_scales},
     {"range_start_nm", check_start},
     {"azimuth_half", check_sectors},
     {"sample", check_sample},
     {"mode.gate_mm_s[1]", check_gates},
-    {"mode.tone.white_q8", check_tones},
-    {"field.bam_per_s", check_rates},
-    {"field.window_permille", check_windows},
-    {"field.azimuth_half_max", check_window_sectors},
-    {"field.sharpening", check_sharpening},
-    {"field.sharpening_least", check_sharpening_least},
+    {"mode.tone.white_db_q8", check_tones},
+    {"fov.bam_per_s", check_rates},
+    {"fov.window_permille", check_windows},
+    {"fov.azimuth_half_max", check_window_sectors},
+    {"fov.sharpening", check_sharpening},
+    {"fov.sharpening_least", check_sharpening_least},
     {"sar.cell_max_mm", check_patch_cells},
-    {"sar.tone.white_q8", check_patch_tone},
+    {"sar.tone.white_db_q8", check_patch_tone},
 };
 enum { RULES = sizeof rules / sizeof *rules };
 

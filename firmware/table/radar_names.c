@@ -39,8 +39,8 @@ int32_t lm_radar_find_mode(const struct lm_radar *radar, const char *name)
 
 int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name)
 {
-    for (int32_t i = 0; i < LM_FIELDS; i++) {
-        if (is_same(radar->field[i].name, name)) {
+    for (int32_t i = 0; i < LM_FOVS; i++) {
+        if (is_same(radar->fov[i].name, name)) {
             return i;
         }
     }
@@ -60,7 +60,7 @@ int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees)
 uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t field)
 {
     const uint32_t most_nm =
-        fx_min_u32(radar->mode[mode].range_max_nm, radar->field[field].range_max_nm);
+        fx_min_u32(radar->mode[mode].range_max_nm, radar->fov[field].range_max_nm);
     uint32_t last = 0;
     while (last + 1 < radar->ranges && radar->range[last + 1].range_nm <= most_nm) {
         last++;

@@ -38,24 +38,25 @@ static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_sce
 }
 
 /* Bearing and elevation of the radar, as the target sees it. */
-static void view_of(struct lm_target_view *v, const struct lm_target_item *item,
+static void view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
                     const struct lm_chip_scene *scene)
 {
-    uint32_t range_q8 = scene->range_q8;
+    uint32_t range_m_q8 = scene->range_m_q8;
     fx_bam_t back = scene->look + FX_BAM_180;
     if (!scene->is_parallel) {
-        lm_geo_inverse(item->pose.place, scene->radar, &range_q8, &back);
+        lm_geo_inverse(candidate->pose.position, scene->radar, &range_m_q8, &back);
     }
-    lm_target_view_of(v, item, back, range_q8, &scene->heights);
+    lm_target_view_of(v, candidate, back, range_m_q8, &scene->heights);
 }
 
-static bool is_large_and_near(const struct lm_signature *s, const struct lm_target_item *item,
+static bool is_large_and_near(const struct lm_signature *s,
+                              const struct lm_target_candidate *candidate,
                               const struct lm_chip_scene *scene)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    lm_geo_inverse(scene->centre, item->pose.place, &distance_q8, &azimuth);
-    return distance_q8 / 256 <= scene->reach_m + LM_TARGET_EXTENT_M &&
+    lm_geo_inverse(scene->centre, candidate->pose.position, &distance_m_q8, &azimuth);
+    return distance_m_q8 / 256 <= scene->reach_m + LM_TARGET_EXTENT_M &&
            s->pixel_mm * LM_CHIP_SIDE >= scene->cell_mm * POINT_BELOW_CELLS;
 }
 
@@ -96,19 +97,19 @@ static const struct lm_chip_slot *want(struct lm_chips *c, const struct lm_signa
 }
 
 /* The chip that an item is best shown by. False when it has none or needs none. */
-static bool key_of(const struct lm_target_set *set, struct lm_target_item *item,
+static bool key_of(const struct lm_target_set *set, struct lm_target_candidate *candidate,
                    const struct lm_chip_scene *scene, struct lm_chip_key *key)
 {
-    const struct lm_target *t = &set->items[item->index];
+    const struct lm_target *t = &set->items[candidate->index];
     const struct lm_signature *s = lm_target_signature(set, t);
-    item->chip = NULL;
-    if (!s || !is_large_and_near(s, item, scene)) {
+    candidate->chip = NULL;
+    if (!s || !is_large_and_near(s, candidate, scene)) {
         return false;
     }
     struct lm_target_view v;
-    view_of(&v, item, scene);
+    view_of(&v, candidate, scene);
     const struct lm_chip_choice choice = lm_signature_choose(s, v.bearing, v.elevation);
-    item->chip_turn = choice.turn;
+    candidate->chip_turn = choice.turn;
     *key = (struct lm_chip_key){.signature = t->signature,
                                 .aspect = (uint8_t)choice.aspect,
                                 .depression = (uint8_t)choice.depression,
@@ -116,26 +117,26 @@ static bool key_of(const struct lm_target_set *set, struct lm_target_item *item,
     return true;
 }
 
-void lm_chips_choose(struct lm_chips *c, struct lm_targets_near *near,
+void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates,
                      const struct lm_chip_scene *scene)
 {
-    const struct lm_target_set *set = &near->set;
-    struct lm_chip_key key[LM_TARGETS_NEAR];
-    bool has_key[LM_TARGETS_NEAR];
+    const struct lm_target_set *set = &candidates->set;
+    struct lm_chip_key key[LM_TARGET_CANDIDATES_MAX];
+    bool has_key[LM_TARGET_CANDIDATES_MAX];
     for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
         c->slots[i].is_in_use = false;
     }
     /* What is there already is spoken for before room is made for the rest. */
-    for (uint32_t i = 0; i < near->count; i++) {
-        has_key[i] = key_of(set, &near->item[i], scene, &key[i]);
+    for (uint32_t i = 0; i < candidates->count; i++) {
+        has_key[i] = key_of(set, &candidates->candidate[i], scene, &key[i]);
         for (uint32_t k = 0; has_key[i] && k < LM_CHIPS_MAX; k++) {
             struct lm_chip_slot *slot = &c->slots[k];
             slot->is_in_use |= slot->state != LM_CHIP_FREE && is_same(&slot->key, &key[i]);
         }
     }
-    for (uint32_t i = 0; i < near->count; i++) {
+    for (uint32_t i = 0; i < candidates->count; i++) {
         if (has_key[i]) {
-            near->item[i].chip = want(c, &set->signatures[key[i].signature], &key[i]);
+            candidates->candidate[i].chip = want(c, &set->signatures[key[i].signature], &key[i]);
         }
     }
 }
@@ -154,9 +155,9 @@ static void start_read(struct lm_chips *c, struct lm_tile_cache *tiles, struct l
     const struct lm_chip_key *key = &slot->key;
     const struct lm_signature *s = &c->signatures[key->signature];
     const uint64_t number = s->chip0 + (uint32_t)key->depression * s->aspects + key->aspect;
-    c->read = (struct lm_guest_read){.offset = c->db->chips_offset + number * LM_CHIP_BYTES,
-                                     .destination = &c->stage,
-                                     .length = LM_CHIP_BYTES};
+    c->read = (struct lm_flash_request){.offset = c->db->chips_offset + number * LM_CHIP_BYTES,
+                                        .destination = &c->stage,
+                                        .length = LM_CHIP_BYTES};
     if (lm_tile_cache_read(tiles, &c->read)) {
         c->busy = slot;
         c->is_reading = true;
@@ -181,36 +182,36 @@ static void start_next(struct lm_chips *c, struct lm_tile_cache *tiles)
 /* ---- reducing ---- */
 
 /* Cross section of a pixel, m2 in Q32: below 2^47.9, and the sum of a chip's below 2^60. */
-static uint64_t area_q32(uint8_t code)
+static uint64_t rcs_m2_q32(uint8_t code)
 {
-    return code == 0
-               ? 0
-               : fx_power_q32_of_many(LM_SIGNATURE_CODE_ZERO_Q8 + code * LM_SIGNATURE_CODE_STEP_Q8);
+    return code == 0 ? 0
+                     : fx_power_q32_vec(LM_SIGNATURE_CODE_ZERO_DBSM_Q8 +
+                                        code * LM_SIGNATURE_CODE_STEP_DB_Q8);
 }
 
 /* dBsm * 256 of such a sum. */
-static int32_t level_q8(uint64_t sum_q32)
+static int32_t level_dbsm_q8(uint64_t sum_q32)
 {
-    return sum_q32 == 0 ? LM_SIGNATURE_CODE_ZERO_Q8
+    return sum_q32 == 0 ? LM_SIGNATURE_CODE_ZERO_DBSM_Q8
                         : fx_db_q8_u64(sum_q32) - fx_db_q8_u64((uint64_t)1 << 32);
 }
 
-static uint64_t total_q32(const struct lm_chip *chip)
+static uint64_t total_m2_q32(const struct lm_chip *chip)
 {
     uint64_t sum_q32 = 0;
     for (uint32_t row = 0; row < LM_CHIP_SIDE; row++) {
         for (uint32_t column = 0; column < LM_CHIP_SIDE; column++) {
-            sum_q32 += area_q32(chip->level[row][column]);
+            sum_q32 += rcs_m2_q32(chip->level[row][column]);
         }
     }
     return sum_q32;
 }
 
 /* A part of the total, Q31, to 2^-31 of it: both below 2^60, and cut alike until they fit. */
-static uint32_t share_q31(uint64_t part_q32, uint64_t total_q32)
+static uint32_t share_q31(uint64_t part_m2_q32, uint64_t total_m2_q32)
 {
-    const uint32_t cut = total_q32 >> 32 == 0 ? 0 : 32 - (uint32_t)fx_clz64(total_q32);
-    return total_q32 == 0 ? 0 : (uint32_t)((part_q32 >> cut << 31) / (total_q32 >> cut));
+    const uint32_t cut = total_m2_q32 >> 32 == 0 ? 0 : 32 - (uint32_t)fx_clz64(total_m2_q32);
+    return total_m2_q32 == 0 ? 0 : (uint32_t)((part_m2_q32 >> cut << 31) / (total_m2_q32 >> cut));
 }
 
 static void widen(struct lm_chip_box *box, uint32_t row, uint32_t column)
@@ -236,11 +237,11 @@ static struct amount reduce_pixel(const struct lm_chips *c, uint32_t row, uint32
     uint32_t dark = 0;
     for (uint32_t r = row << shift; r < (row << shift) + side; r++) {
         for (uint32_t k = column << shift; k < (column << shift) + side; k++) {
-            sum_q32 += area_q32(chip->level[r][k]);
+            sum_q32 += rcs_m2_q32(chip->level[r][k]);
             dark += (uint32_t)chip->shadow[r][k / 8] >> k % 8 & 1u;
         }
     }
-    return (struct amount){share_q31(sum_q32, c->total_q32), dark * 255 >> 2 * shift};
+    return (struct amount){share_q31(sum_q32, c->total_m2_q32), dark * 255 >> 2 * shift};
 }
 
 static void reduce_row(struct lm_chips *c, uint32_t row)
@@ -288,8 +289,8 @@ static void take_read(struct lm_chips *c)
         c->count.corrupt++;
         finish(c, LM_CHIP_BAD);
     } else {
-        c->total_q32 = total_q32(&c->stage);
-        slot->total_q8 = level_q8(c->total_q32);
+        c->total_m2_q32 = total_m2_q32(&c->stage);
+        slot->total_dbsm_q8 = level_dbsm_q8(c->total_m2_q32);
     }
 }
 

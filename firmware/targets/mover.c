@@ -28,10 +28,10 @@ static uint32_t gone_mm(const struct lm_target *t, uint64_t time_us, uint32_t wh
 }
 
 /* So far along a leg. */
-static struct lm_place place_on(const struct lm_path_leg *leg, uint32_t mm)
+static struct lm_position place_on(const struct lm_path_leg *leg, uint32_t mm)
 {
     struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, (struct lm_place){leg->latitude, leg->longitude});
+    lm_geo_set_origin(&origin, (struct lm_position){leg->latitude, leg->longitude});
     return lm_geo_direct(&origin, leg->heading, (uint32_t)((uint64_t)mm * 32 / 125));
 }
 
@@ -46,7 +46,7 @@ static const struct lm_path_leg *find_leg(const struct lm_target *t, uint32_t *m
     return leg;
 }
 
-struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us)
+struct lm_pose lm_mover_pose(const struct lm_target *t, uint64_t time_us)
 {
     struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, t->leg_m * 1000};
     if (t->speed_mm_s == 0) {
@@ -59,7 +59,7 @@ struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us)
     return (struct lm_pose){place_on(leg, mm), leg->heading + (is_back ? FX_BAM_180 : 0)};
 }
 
-int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)
+int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)
 {
     return (int32_t)((int64_t)speed_mm_s * fx_cos_q30(heading - back) >> 30);
 }

@@ -141,8 +141,9 @@ static int32_t log2_rcs(const struct lm_shape *shape, uint32_t wavelength_um,
     }
 }
 
-int32_t lm_rcs_q8(const struct lm_shape *shape, uint32_t wavelength_um, struct lm_direction radar)
+int32_t lm_rcs_dbsm_q8(const struct lm_shape *shape, uint32_t wavelength_um,
+                       struct lm_direction radar)
 {
-    const int32_t rcs_q8 = fx_db_q8_of_log2_q16(log2_rcs(shape, wavelength_um, radar));
-    return fx_max_i32(rcs_q8, LM_RCS_NONE_Q8);
+    const int32_t rcs_dbsm_q8 = fx_db_q8_of_log2_q16(log2_rcs(shape, wavelength_um, radar));
+    return fx_max_i32(rcs_dbsm_q8, LM_RCS_NONE_DBSM_Q8);
 }

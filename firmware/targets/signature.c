@@ -75,10 +75,10 @@ struct lm_chip_choice lm_signature_choose(const struct lm_signature *s, fx_bam_t
     };
 }
 
-int32_t lm_signature_rcs_q8(const struct lm_signature *s, fx_bam_t bearing, fx_bam_t elevation)
+int32_t lm_signature_rcs_dbsm_q8(const struct lm_signature *s, fx_bam_t bearing, fx_bam_t elevation)
 {
     const struct lm_chip_choice choice = lm_signature_choose(s, bearing, elevation);
     const int32_t code = s->rcs[choice.depression][choice.aspect];
-    return code == 0 ? LM_RCS_NONE_Q8
-                     : LM_SIGNATURE_CODE_ZERO_Q8 + code * LM_SIGNATURE_CODE_STEP_Q8;
+    return code == 0 ? LM_RCS_NONE_DBSM_Q8
+                     : LM_SIGNATURE_CODE_ZERO_DBSM_Q8 + code * LM_SIGNATURE_CODE_STEP_DB_Q8;
 }

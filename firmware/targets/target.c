@@ -70,10 +70,10 @@ int lm_target_check(const struct lm_target *t)
     const uint8_t *bytes = (const uint8_t *)t;
     bool is_sound = fx_crc32c(0, bytes + 4, LM_TARGET_BYTES - 4) == t->crc &&
                     fx_abs_u32((int32_t)t->latitude) <= FX_BAM_90 &&
-                    is_within(t->elevation_q6, ELEVATION_MAX_Q6) && kind_is_sound(t) &&
+                    is_within(t->elevation_m_q6, ELEVATION_MAX_Q6) && kind_is_sound(t) &&
                     (t->flags & ~LM_TARGET_FLAGS) == 0 && motion_is_sound(t) &&
                     t->swerling <= LM_TARGET_SWERLING_MAX &&
-                    is_within(t->mean_rcs_q8, LM_TARGET_RCS_MAX_Q8);
+                    is_within(t->mean_rcs_dbsm_q8, LM_TARGET_RCS_MAX_Q8);
     for (uint32_t i = 0; is_sound && i < t->scatterer_count; i++) {
         is_sound = scatterer_is_sound(&t->scatterers[i]);
     }
@@ -184,7 +184,7 @@ uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_vie
         const struct lm_shape shape = lm_scatterer_shape(s);
         const int32_t *o = s->offset_mm;
         returns[i] = (struct lm_return){
-            .rcs_q8 = lm_rcs_q8(&shape, wavelength_um, in_axes_of(s, v->toward_q30)),
+            .rcs_dbsm_q8 = lm_rcs_dbsm_q8(&shape, wavelength_um, in_axes_of(s, v->toward_q30)),
             .phase = phase_of(path_q8(v, o), wavelength_um),
             .along_mm = -turn_mm(o[0], cos_q30, o[1], sin_q30),
             .across_mm = turn_mm(o[0], sin_q30, o[1], -cos_q30),
@@ -196,12 +196,12 @@ uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_vie
 
 /* ---- sums and draws ---- */
 
-int32_t lm_returns_sum_q8(const struct lm_return *returns, uint32_t mask)
+int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask)
 {
-    int32_t strongest_q8 = LM_RCS_NONE_Q8;
+    int32_t strongest_dbsm_q8 = LM_RCS_NONE_DBSM_Q8;
     for (uint32_t i = 0; mask >> i != 0; i++) {
         if (mask >> i & 1) {
-            strongest_q8 = fx_max_i32(strongest_q8, returns[i].rcs_q8);
+            strongest_dbsm_q8 = fx_max_i32(strongest_dbsm_q8, returns[i].rcs_dbsm_q8);
         }
     }
     /* Amplitudes against the strongest, at most 2^16, are half the decibels; 16 of them times 2^30:
@@ -210,16 +210,16 @@ int32_t lm_returns_sum_q8(const struct lm_return *returns, uint32_t mask)
     for (uint32_t i = 0; mask >> i != 0; i++) {
         if (mask >> i & 1) {
             const int64_t amplitude_q16 =
-                fx_power_q16_from_db_q8((returns[i].rcs_q8 - strongest_q8) / 2);
+                fx_power_q16_from_db_q8((returns[i].rcs_dbsm_q8 - strongest_dbsm_q8) / 2);
             re_q46 += amplitude_q16 * fx_cos_q30(returns[i].phase);
             im_q46 += amplitude_q16 * fx_sin_q30(returns[i].phase);
         }
     }
     const int64_t re_q20 = re_q46 >> 26, im_q20 = im_q46 >> 26;
     const uint64_t power_q40 = (uint64_t)(re_q20 * re_q20 + im_q20 * im_q20);
-    const int32_t sum_q8 =
-        strongest_q8 + fx_db_q8_of_log2_q16(fx_log2_q16_u64(power_q40) - 40 * 65536);
-    return mask == 0 ? LM_RCS_NONE_Q8 : fx_max_i32(sum_q8, LM_RCS_NONE_Q8);
+    const int32_t sum_dbsm_q8 =
+        strongest_dbsm_q8 + fx_db_q8_of_log2_q16(fx_log2_q16_u64(power_q40) - 40 * 65536);
+    return mask == 0 ? LM_RCS_NONE_DBSM_Q8 : fx_max_i32(sum_dbsm_q8, LM_RCS_NONE_DBSM_Q8);
 }
 
 /* -ln of a uniform draw of (0, 1), Q16: below 22.2 * 65536. */
@@ -229,17 +229,17 @@ static uint32_t exponential_q16(uint32_t hash)
     return (uint32_t)((uint64_t)minus_log2_q16 * 2977044472u >> 32); /* ln 2 */
 }
 
-int32_t lm_swerling_q8(uint8_t swerling, int32_t mean_q8, uint32_t id, uint32_t scan,
-                       uint32_t pulse)
+int32_t lm_swerling_dbsm_q8(uint8_t swerling, int32_t mean_dbsm_q8, uint32_t id, uint32_t scan,
+                            uint32_t pulse)
 {
     if (swerling == 0) {
-        return mean_q8;
+        return mean_dbsm_q8;
     }
     const uint32_t draw = swerling % 2 == 0 ? 2 * pulse : 0;
     uint32_t power_q16 = exponential_q16(fx_hash3(id, draw, scan));
     if (swerling >= 3) {
         power_q16 = (power_q16 + exponential_q16(fx_hash3(id, draw + 1, scan))) / 2;
     }
-    const int32_t drawn_q8 = mean_q8 + fx_db_q8(power_q16) - fx_db_q8(65536);
-    return fx_max_i32(drawn_q8, LM_RCS_NONE_Q8);
+    const int32_t drawn_dbsm_q8 = mean_dbsm_q8 + fx_db_q8(power_q16) - fx_db_q8(65536);
+    return fx_max_i32(drawn_dbsm_q8, LM_RCS_NONE_DBSM_Q8);
 }

@@ -5,7 +5,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/chip_line.h"
+#include "lm/chip_sector.h"
 
 enum { NO_CELL = -1 };
 
@@ -39,26 +39,26 @@ static struct wedge wedge_of(fx_bam_t azimuth, uint64_t half)
 /* What the line covers, on a plane around the place that the targets were chosen from. Lengths in
  * metres * 256. */
 struct cover {
-    int32_t north_q8, east_q8; /* the antenna */
-    uint32_t begin_q8, end_q8; /* ranges of the line's cells, as they may be from that place */
-    struct wedge still, mover; /* in which targets are, or are displaced from */
+    int32_t north_m_q8, east_m_q8; /* the antenna */
+    uint32_t begin_m_q8, end_m_q8; /* ranges of the line's cells, as they may be from that place */
+    struct wedge still, mover;     /* in which targets are, or are displaced from */
 };
 
-static struct cover cover_of(const struct lm_target_line *line, struct lm_place from)
+static struct cover cover_of(const struct lm_target_line *line, struct lm_position from)
 {
     /* 2 pi * 6,371 km / 2^32 in metres * 256, with an error of 0.6 %. */
     const int64_t bam_q10 = 2443;
     const int32_t far = 1 << 24; /* 156 km: far beyond LM_TARGET_DRIFT_M */
-    const struct lm_place at = line->place;
+    const struct lm_position at = line->position;
     const int64_t dlat = fx_clamp_i32((int32_t)(at.latitude - from.latitude), -far, far);
     const int64_t dlon = fx_clamp_i32((int32_t)(at.longitude - from.longitude), -far, far);
-    const int32_t north_q8 = (int32_t)(dlat * bam_q10 >> 10);
-    const int32_t east_q8 = (int32_t)(dlon * bam_q10 * fx_cos_q15(at.latitude) >> 25);
-    const uint32_t gone_q8 = fx_abs_u32(north_q8) + fx_abs_u32(east_q8);
-    const uint32_t begin_q8 = line->first_q8 + line->first * line->cell_q8;
-    struct cover c = {.north_q8 = north_q8, .east_q8 = east_q8};
-    c.begin_q8 = begin_q8 - fx_min_u32(begin_q8, line->cell_q8 + gone_q8);
-    c.end_q8 = line->first_q8 + line->cells * line->cell_q8 + gone_q8;
+    const int32_t north_m_q8 = (int32_t)(dlat * bam_q10 >> 10);
+    const int32_t east_m_q8 = (int32_t)(dlon * bam_q10 * fx_cos_q15(at.latitude) >> 25);
+    const uint32_t gone_m_q8 = fx_abs_u32(north_m_q8) + fx_abs_u32(east_m_q8);
+    const uint32_t begin_m_q8 = line->first_m_q8 + line->first * line->cell_m_q8;
+    struct cover c = {.north_m_q8 = north_m_q8, .east_m_q8 = east_m_q8};
+    c.begin_m_q8 = begin_m_q8 - fx_min_u32(begin_m_q8, line->cell_m_q8 + gone_m_q8);
+    c.end_m_q8 = line->first_m_q8 + line->cells * line->cell_m_q8 + gone_m_q8;
     c.still = c.mover = wedge_of(line->azimuth, line->width);
     if (line->is_doppler) {
         c.mover = wedge_of(line->azimuth, (uint64_t)line->width + shift_most(line));
@@ -67,27 +67,29 @@ static struct cover cover_of(const struct lm_target_line *line, struct lm_place 
 }
 
 /* Can the line meet the target at all? Places are within 2^27, by sines of 2^15. */
-static inline bool may_meet(const struct cover *c, const struct lm_target_item *item)
+static inline bool may_meet(const struct cover *c, const struct lm_target_candidate *candidate)
 {
-    const struct wedge *w = item->is_mover ? &c->mover : &c->still;
-    const int64_t north_q8 = item->north_q8 - c->north_q8, east_q8 = item->east_q8 - c->east_q8;
-    const int64_t slack_q23 = (int64_t)item->slack_q8 << 15;
-    return north_q8 * w->left_sin_q15 - east_q8 * w->left_cos_q15 <= slack_q23 &&
-           east_q8 * w->right_cos_q15 - north_q8 * w->right_sin_q15 <= slack_q23 &&
-           item->distance_q8 <= c->end_q8 + item->slack_q8 &&
-           item->distance_q8 + item->slack_q8 >= c->begin_q8;
+    const struct wedge *w = candidate->is_mover ? &c->mover : &c->still;
+    const int64_t north_m_q8 = candidate->north_m_q8 - c->north_m_q8,
+                  east_m_q8 = candidate->east_m_q8 - c->east_m_q8;
+    const int64_t slack_m_q23 = (int64_t)candidate->slack_m_q8 << 15;
+    return north_m_q8 * w->left_sin_q15 - east_m_q8 * w->left_cos_q15 <= slack_m_q23 &&
+           east_m_q8 * w->right_cos_q15 - north_m_q8 * w->right_sin_q15 <= slack_m_q23 &&
+           candidate->distance_m_q8 <= c->end_m_q8 + candidate->slack_m_q8 &&
+           candidate->distance_m_q8 + candidate->slack_m_q8 >= c->begin_m_q8;
 }
 
-_Static_assert(LM_TARGETS_NEAR <= 32, "a bit for each");
+_Static_assert(LM_TARGET_CANDIDATES_MAX <= 32, "a bit for each");
 
 /* The targets that the line may meet: bit i for item i. It meets few, and most lines none, so that
  * this loop is most of what they cost. */
-static uint32_t find_near(const struct lm_targets_near *near, const struct lm_target_line *line)
+static uint32_t find_near(const struct lm_target_candidates *candidates,
+                          const struct lm_target_line *line)
 {
-    const struct cover cover = cover_of(line, near->place);
+    const struct cover cover = cover_of(line, candidates->position);
     uint32_t found = 0;
-    for (uint32_t i = 0; i < near->count; i++) {
-        found |= (uint32_t)may_meet(&cover, &near->item[i]) << i;
+    for (uint32_t i = 0; i < candidates->count; i++) {
+        found |= (uint32_t)may_meet(&cover, &candidates->candidate[i]) << i;
     }
     return found;
 }
@@ -95,10 +97,10 @@ static uint32_t find_near(const struct lm_targets_near *near, const struct lm_ta
 /* ---- where a target is from the line ---- */
 
 struct spot {
-    uint32_t range_q8;     /* ground range from the antenna, metres * 256 */
+    uint32_t range_m_q8;   /* ground range from the antenna, metres * 256 */
     fx_bam_t azimuth;      /* from the antenna, where it appears */
     fx_bam_t true_azimuth; /* where it is */
-    int32_t gain_q8;       /* of the beam, dB: 0 or less */
+    int32_t gain_db_q8;    /* of the beam, dB: 0 or less */
 };
 
 /* Whether a closing speed is one of those that are shown. */
@@ -122,50 +124,54 @@ static bool displace(const struct lm_target_line *line, int32_t closing_mm_s, st
     /* x in Q12 is at most 5/4; 80 log10(2) dB are 6165 / 256. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32(shift) << 12) / fx_max_u32(line->beam, 1);
     spot->azimuth += (fx_bam_t)shift;
-    spot->gain_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
+    spot->gain_db_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
     return true;
 }
 
 /* The direction from the target to the antenna. */
-static fx_bam_t back_of(const struct lm_target_line *line, const struct lm_target_item *item)
+static fx_bam_t back_of(const struct lm_target_line *line,
+                        const struct lm_target_candidate *candidate)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t back;
-    lm_geo_inverse(item->pose.place, line->place, &distance_q8, &back);
+    lm_geo_inverse(candidate->pose.position, line->position, &distance_m_q8, &back);
     return back;
 }
 
 /* How fast the target comes nearer, if anything depends on that. */
 static int32_t closing_mm_s(const struct lm_target_line *line, const struct lm_target *t,
-                            const struct lm_target_item *item)
+                            const struct lm_target_candidate *candidate)
 {
     const bool is_asked_for = line->is_doppler || line->gate_mm_s[1] != 0;
     return is_asked_for && t->speed_mm_s != 0
-               ? lm_closing_mm_s(t->speed_mm_s, item->pose.heading, back_of(line, item))
+               ? lm_mover_closing_mm_s(t->speed_mm_s, candidate->pose.heading,
+                                       back_of(line, candidate))
                : 0;
 }
 
 static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
-                      const struct lm_target_item *item, struct spot *spot)
+                      const struct lm_target_candidate *candidate, struct spot *spot)
 {
-    const int32_t closing = closing_mm_s(line, t, item);
+    const int32_t closing = closing_mm_s(line, t, candidate);
     if (!is_in_gate(line, closing) ||
-        !lm_target_locate(line->place, item->pose.place, &spot->range_q8, &spot->azimuth)) {
+        !lm_target_view_locate(line->position, candidate->pose.position, &spot->range_m_q8,
+                               &spot->azimuth)) {
         return false;
     }
     spot->true_azimuth = spot->azimuth;
-    spot->gain_q8 = 0;
+    spot->gain_db_q8 = 0;
     return !line->is_doppler || displace(line, closing, spot);
 }
 
 /* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
 static struct spot beside(const struct spot *target, const struct lm_return *r)
 {
-    const int32_t along_q8 = (int32_t)target->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
-    const int32_t across_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
-    return (struct spot){.range_q8 = fx_hypot_u32(along_q8, across_q8),
-                         .azimuth = target->azimuth + fx_atan2(across_q8, along_q8),
-                         .gain_q8 = target->gain_q8};
+    const int32_t along_m_q8 =
+        (int32_t)target->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
+    const int32_t across_m_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
+    return (struct spot){.range_m_q8 = fx_hypot_u32(along_m_q8, across_m_q8),
+                         .azimuth = target->azimuth + fx_atan2(across_m_q8, along_m_q8),
+                         .gain_db_q8 = target->gain_db_q8};
 }
 
 static uint32_t off_line(const struct lm_target_line *line, const struct spot *s)
@@ -176,7 +182,7 @@ static uint32_t off_line(const struct lm_target_line *line, const struct spot *s
 /* What the line takes of a spot's power, 1/256 dB: a spot is shared by the two lines that it lies
  * between, by its nearness to each, so that what the beam makes of both has its middle at the spot.
  * Only for a spot less than a line's width off. */
-static int32_t share_q8(const struct lm_target_line *line, const struct spot *s)
+static int32_t share_db_q8(const struct lm_target_line *line, const struct spot *s)
 {
     return fx_db_q8(line->width - off_line(line, s)) - fx_db_q8(line->width);
 }
@@ -184,12 +190,12 @@ static int32_t share_q8(const struct lm_target_line *line, const struct spot *s)
 /* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two cells share one. */
 static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 {
-    const int32_t half_q8 = (int32_t)(line->cell_q8 / 2);
-    const int64_t past_q8 = (int64_t)s->range_q8 - line->first_q8 + half_q8;
-    if (off_line(line, s) >= line->width || past_q8 < 0) {
+    const int32_t half_m_q8 = (int32_t)(line->cell_m_q8 / 2);
+    const int64_t past_m_q8 = (int64_t)s->range_m_q8 - line->first_m_q8 + half_m_q8;
+    if (off_line(line, s) >= line->width || past_m_q8 < 0) {
         return NO_CELL;
     }
-    const uint32_t cell = (uint32_t)past_q8 / line->cell_q8;
+    const uint32_t cell = (uint32_t)past_m_q8 / line->cell_m_q8;
     return cell >= line->first && cell < line->cells ? (int32_t)cell : NO_CELL;
 }
 
@@ -197,26 +203,27 @@ static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
 
 static struct lm_target_heights heights_of(const struct lm_target_line *line)
 {
-    return (struct lm_target_heights){line->height_q10, line->reference_q10};
+    return (struct lm_target_heights){line->height_m_q10, line->reference_m_q10};
 }
 
 static struct lm_target_view view_of(const struct lm_target_line *line,
-                                     const struct lm_target_item *item, uint32_t range_q8)
+                                     const struct lm_target_candidate *candidate,
+                                     uint32_t range_m_q8)
 {
     const struct lm_target_heights h = heights_of(line);
     struct lm_target_view v;
-    lm_target_view_of(&v, item, back_of(line, item), range_q8, &h);
+    lm_target_view_of(&v, candidate, back_of(line, candidate), range_m_q8, &h);
     return v;
 }
 
 /* 10 log10 of the cell's area; the line is as wide as its arc. */
-static int32_t area_q8(const struct lm_target_line *line, uint32_t cell)
+static int32_t area_dbm2_q8(const struct lm_target_line *line, uint32_t cell)
 {
     const struct lm_target_heights h = heights_of(line);
-    const uint32_t range_q8 = line->first_q8 + cell * line->cell_q8;
-    const uint32_t before_q8 = cell == line->first ? range_q8 : range_q8 - line->cell_q8;
-    return lm_clutter_area_q8(lm_arc_q8(range_q8, line->width), line->cell_q8, range_q8, before_q8,
-                              &h);
+    const uint32_t range_m_q8 = line->first_m_q8 + cell * line->cell_m_q8;
+    const uint32_t before_m_q8 = cell == line->first ? range_m_q8 : range_m_q8 - line->cell_m_q8;
+    return lm_clutter_area_dbm2_q8(lm_arc_m_q8(range_m_q8, line->width), line->cell_m_q8,
+                                   range_m_q8, before_m_q8, &h);
 }
 
 /* What becomes of the scatterers of one target in one line. */
@@ -227,17 +234,18 @@ struct echo {
 };
 
 /* The line's cell of a return at a spot, unless something nearer hides it. */
-static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_sight *sight,
-                        const struct lm_target_item *item, const struct spot *s, int32_t up_mm)
+static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
+                        const struct lm_target_candidate *candidate, const struct spot *s,
+                        int32_t up_mm)
 {
     const struct lm_target_heights h = heights_of(line);
     const int32_t cell = cell_of(line, s);
-    if (cell == NO_CELL || sight == NULL) {
+    if (cell == NO_CELL || horizon == NULL) {
         return cell;
     }
-    const int32_t top_q10 = item->elevation_q6 * 16 + up_mm * 128 / 125;
-    const int64_t horizon_q38 = sight->horizon[cell] * ((int64_t)1 << (38 - sight->bits));
-    return lm_target_tangent_q38(top_q10, s->range_q8, &h) > horizon_q38 ? cell : NO_CELL;
+    const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + up_mm * 128 / 125;
+    const int64_t horizon_q38 = horizon->horizon[cell] * ((int64_t)1 << (38 - horizon->bits));
+    return lm_target_view_tangent_q38(top_m_q10, s->range_m_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 
 /* What of a target without bodies can be hidden last: the top of its signature. */
@@ -249,37 +257,40 @@ static int32_t top_mm(const struct lm_signature *s)
 /* A target without bodies, looked at where it can be seen only: few of those that the line may meet
  * are in it. */
 static void make_point_echo(struct echo *e, const struct lm_target_line *line,
-                            const struct lm_target_sight *sight, const struct lm_target_set *set,
-                            const struct lm_target_item *item, const struct spot *spot)
+                            const struct lm_target_horizon *horizon,
+                            const struct lm_target_set *set,
+                            const struct lm_target_candidate *candidate, const struct spot *spot)
 {
-    const struct lm_target *t = &set->items[item->index];
+    const struct lm_target *t = &set->items[candidate->index];
     e->count = 1;
     e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, t))};
-    e->cell[0] = lit_cell(line, sight, item, spot, e->returns[0].up_mm);
+    e->cell[0] = lit_cell(line, horizon, candidate, spot, e->returns[0].up_mm);
     if (e->cell[0] != NO_CELL) {
-        const struct lm_target_view v = view_of(line, item, spot->range_q8);
-        e->returns[0].rcs_q8 = lm_target_whole_q8(set, t, &v, line->scan, line->pulse) +
-                               share_q8(line, spot) + spot->gain_q8;
+        const struct lm_target_view v = view_of(line, candidate, spot->range_m_q8);
+        e->returns[0].rcs_dbsm_q8 =
+            lm_target_view_rcs_dbsm_q8(set, t, &v, line->scan, line->pulse) +
+            share_db_q8(line, spot) + spot->gain_db_q8;
     }
 }
 
 static void make_bodies_echo(struct echo *e, const struct lm_target_line *line,
-                             const struct lm_target_sight *sight, const struct lm_target *t,
-                             const struct lm_target_item *item, const struct spot *spot)
+                             const struct lm_target_horizon *horizon, const struct lm_target *t,
+                             const struct lm_target_candidate *candidate, const struct spot *spot)
 {
-    const struct lm_target_view v = view_of(line, item, spot->range_q8);
+    const struct lm_target_view v = view_of(line, candidate, spot->range_m_q8);
     e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     for (uint32_t i = 0; i < e->count; i++) {
         const struct spot s = beside(spot, &e->returns[i]);
-        e->cell[i] = lit_cell(line, sight, item, &s, e->returns[i].up_mm);
+        e->cell[i] = lit_cell(line, horizon, candidate, &s, e->returns[i].up_mm);
         if (e->cell[i] != NO_CELL) {
-            e->returns[i].rcs_q8 += share_q8(line, &s) + s.gain_q8;
+            e->returns[i].rcs_dbsm_q8 += share_db_q8(line, &s) + s.gain_db_q8;
         }
     }
 }
 
 /* One phasor sum for each cell that has some of the returns. */
-static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line, int32_t *level_q8)
+static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line,
+                         int32_t *level_db_q8)
 {
     uint32_t cells = 0, done = 0;
     for (uint32_t i = 0; i < e->count; i++) {
@@ -292,9 +303,9 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
             mask |= (uint32_t)(e->cell[k] == cell) << k;
         }
         done |= mask;
-        const int32_t gamma_q8 =
-            lm_returns_sum_q8(e->returns, mask) - area_q8(line, (uint32_t)cell);
-        level_q8[cell] = fx_db_q8_sum_of_many(level_q8[cell], gamma_q8);
+        const int32_t gamma_db_q8 =
+            lm_returns_sum_dbsm_q8(e->returns, mask) - area_dbm2_q8(line, (uint32_t)cell);
+        level_db_q8[cell] = fx_db_q8_sum_vec(level_db_q8[cell], gamma_db_q8);
         cells++;
     }
     return cells;
@@ -302,57 +313,63 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
 
 /* Whether the line sees the top of a target that is shown by its chip: over the cell of its range,
  * on whichever line. */
-static bool sees_top(const struct lm_target_line *line, const struct lm_target_sight *sight,
-                     const struct lm_target_set *set, const struct lm_target_item *item,
+static bool sees_top(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
+                     const struct lm_target_set *set, const struct lm_target_candidate *candidate,
                      const struct spot *spot)
 {
-    const int32_t up_mm = top_mm(lm_target_signature(set, &set->items[item->index]));
-    const struct spot ahead = {.range_q8 = spot->range_q8, .azimuth = line->azimuth};
-    return lit_cell(line, sight, item, &ahead, up_mm) != NO_CELL;
+    const int32_t up_mm = top_mm(lm_target_signature(set, &set->items[candidate->index]));
+    const struct spot ahead = {.range_m_q8 = spot->range_m_q8, .azimuth = line->azimuth};
+    return lit_cell(line, horizon, candidate, &ahead, up_mm) != NO_CELL;
 }
 
 /* Draw a target by its chip. */
-static uint32_t add_chip(const struct lm_target_line *line, const struct lm_target_item *item,
-                         const struct spot *spot, int32_t *level_q8)
+static uint32_t add_chip(const struct lm_target_line *line,
+                         const struct lm_target_candidate *candidate, const struct spot *spot,
+                         int32_t *level_db_q8)
 {
-    const uint32_t cell = (spot->range_q8 - line->first_q8 + line->cell_q8 / 2) / line->cell_q8;
-    const int32_t clutter_q8 = area_q8(line, cell) - spot->gain_q8;
-    const struct lm_chip_spot at = {
-        .range_q8 = spot->range_q8,
+    const uint32_t cell =
+        (spot->range_m_q8 - line->first_m_q8 + line->cell_m_q8 / 2) / line->cell_m_q8;
+    const int32_t clutter_db_q8 = area_dbm2_q8(line, cell) - spot->gain_db_q8;
+    const struct lm_chip_sector_place at = {
+        .range_m_q8 = spot->range_m_q8,
         .off_bam = (int32_t)(line->azimuth - spot->azimuth),
         .shadow_off_bam = (int32_t)(line->azimuth - spot->true_azimuth),
     };
-    return lm_chip_line_add(item, &at, line, clutter_q8, level_q8);
+    return lm_chip_sector_add(candidate, &at, line, clutter_db_q8, level_db_q8);
 }
 
-static uint32_t add_target(const struct lm_targets_near *near, const struct lm_target_item *item,
-                           const struct lm_target_line *line, const struct lm_target_sight *sight,
-                           const struct spot *spot, int32_t *level_q8)
+static uint32_t add_target(const struct lm_target_candidates *candidates,
+                           const struct lm_target_candidate *candidate,
+                           const struct lm_target_line *line,
+                           const struct lm_target_horizon *horizon, const struct spot *spot,
+                           int32_t *level_db_q8)
 {
-    const struct lm_target *t = &near->set.items[item->index];
+    const struct lm_target *t = &candidates->set.items[candidate->index];
     struct echo echo;
-    if (lm_chip_of(item)) {
-        return sees_top(line, sight, &near->set, item, spot) ? add_chip(line, item, spot, level_q8)
-                                                             : 0;
+    if (lm_chip_of(candidate)) {
+        return sees_top(line, horizon, &candidates->set, candidate, spot)
+                   ? add_chip(line, candidate, spot, level_db_q8)
+                   : 0;
     }
     if (t->scatterer_count == 0) {
-        make_point_echo(&echo, line, sight, &near->set, item, spot);
+        make_point_echo(&echo, line, horizon, &candidates->set, candidate, spot);
     } else {
-        make_bodies_echo(&echo, line, sight, t, item, spot);
+        make_bodies_echo(&echo, line, horizon, t, candidate, spot);
     }
-    return add_echo(&echo, line, level_q8);
+    return add_echo(&echo, line, level_db_q8);
 }
 
-uint32_t lm_target_add(const struct lm_targets_near *near, const struct lm_target_line *line,
-                       const struct lm_target_sight *sight, int32_t *level_q8)
+uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
+                            const struct lm_target_line *line,
+                            const struct lm_target_horizon *horizon, int32_t *level_db_q8)
 {
     uint32_t cells = 0;
-    for (uint32_t left = find_near(near, line); left != 0; left &= left - 1) {
-        const struct lm_target_item *item = &near->item[fx_ctz64(left)];
-        const struct lm_target *t = &near->set.items[item->index];
+    for (uint32_t left = find_near(candidates, line); left != 0; left &= left - 1) {
+        const struct lm_target_candidate *candidate = &candidates->candidate[fx_ctz64(left)];
+        const struct lm_target *t = &candidates->set.items[candidate->index];
         struct spot spot;
-        if (find_spot(line, t, item, &spot)) {
-            cells += add_target(near, item, line, sight, &spot, level_q8);
+        if (find_spot(line, t, candidate, &spot)) {
+            cells += add_target(candidates, candidate, line, horizon, &spot, level_db_q8);
         }
     }
     return cells;

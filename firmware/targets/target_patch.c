@@ -5,15 +5,15 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 
 /* ---- where the points are ---- */
 
 /* Of a target in the patch: ground range from the antenna and offset from the line of sight through
  * the centre, metres * 256, and how far Doppler displaces it. */
 struct spot {
-    int32_t range_q8, across_q8, shift_q8;
-    int64_t smear_across_q8, walk_q8; /* over the dwell: where it appears, and along */
+    int32_t range_m_q8, across_m_q8, shift_m_q8;
+    int64_t smear_across_m_q8, walk_m_q8; /* over the dwell: where it appears, and along */
 };
 
 /* Doppler displaces a mover by s v / V across, v the speed with which it comes nearer. While the
@@ -24,106 +24,112 @@ static void put_mover(const struct lm_patch_geometry *g, const struct lm_target 
 {
     /* Speeds below 2^20, ranges below 2^27, the dwell below 2^17; displaced beyond 2^28 it is
      * nowhere near. */
-    const int64_t closing_mm_s = lm_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
-    const int64_t right_mm_s = lm_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
-    const int64_t shift_q8 = spot->range_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 28;
+    const int64_t closing_mm_s =
+        lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
+    const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
+    const int64_t shift_m_q8 = spot->range_m_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 28;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
-    spot->shift_q8 = (int32_t)(shift_q8 > limit ? limit : shift_q8 < -limit ? -limit : shift_q8);
-    spot->smear_across_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
-    spot->walk_q8 = -closing_mm_s * g->dwell_ms / 3906;
+    spot->shift_m_q8 = (int32_t)(shift_m_q8 > limit    ? limit
+                                 : shift_m_q8 < -limit ? -limit
+                                                       : shift_m_q8);
+    spot->smear_across_m_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
+    spot->walk_m_q8 = -closing_mm_s * g->dwell_ms / 3906;
 }
 
 static bool find_spot(const struct lm_patch_geometry *g, const struct lm_target *t,
-                      const struct lm_target_item *item, struct spot *spot)
+                      const struct lm_target_candidate *candidate, struct spot *spot)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    if (!lm_target_locate(g->centre, item->pose.place, &distance_q8, &azimuth)) {
+    if (!lm_target_view_locate(g->centre, candidate->pose.position, &distance_m_q8, &azimuth)) {
         return false;
     }
     const fx_bam_t off = azimuth - g->look;
-    const int64_t along_q8 = (int64_t)distance_q8 * fx_cos_q30(off) >> 30;
-    spot->range_q8 = fx_max_i32((int32_t)(g->centre_q8 + along_q8), 0);
-    spot->across_q8 = (int32_t)((int64_t)distance_q8 * fx_sin_q30(off) >> 30);
-    spot->shift_q8 = 0;
-    spot->smear_across_q8 = spot->walk_q8 = 0;
+    const int64_t along_m_q8 = (int64_t)distance_m_q8 * fx_cos_q30(off) >> 30;
+    spot->range_m_q8 = fx_max_i32((int32_t)(g->centre_m_q8 + along_m_q8), 0);
+    spot->across_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_sin_q30(off) >> 30);
+    spot->shift_m_q8 = 0;
+    spot->smear_across_m_q8 = spot->walk_m_q8 = 0;
     if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
-        put_mover(g, t, item->pose.heading, spot);
+        put_mover(g, t, candidate->pose.heading, spot);
     }
     return true;
 }
 
 /* Metres * 256 in cells * 256. */
-static int32_t in_cells(const struct lm_patch_geometry *g, int64_t metres_q8)
+static int32_t in_cells(const struct lm_patch_geometry *g, int64_t length_m_q8)
 {
-    return (int32_t)(metres_q8 * 256 / (int64_t)g->cell_q8);
+    return (int32_t)(length_m_q8 * 256 / (int64_t)g->cell_m_q8);
 }
 
 /* The whole cell that holds a place. */
-static int32_t cell_at(int32_t place_q8)
+static int32_t cell_at(int32_t place_cells_q8)
 {
-    return (place_q8 + 128) >> 8;
+    return (place_cells_q8 + 128) >> 8;
 }
 
 static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
-                                      const struct lm_target_item *item, const struct spot *spot,
-                                      const struct lm_return *r)
+                                      const struct lm_target_candidate *candidate,
+                                      const struct spot *spot, const struct lm_return *r)
 {
-    const int32_t range_q8 = spot->range_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
-    const int32_t across_q8 = spot->across_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
-    const int32_t top_q10 = item->elevation_q6 * 16 + r->up_mm * 128 / 125;
+    const int32_t range_m_q8 = spot->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
+    const int32_t across_m_q8 = spot->across_m_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
+    const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + r->up_mm * 128 / 125;
     /* From the middle of the first line, and of the first guard cell. */
-    const int64_t left_q8 = (int64_t)(g->lines - 1) * g->cell_q8 / 2;
-    const int64_t near_q8 =
-        g->centre_q8 - ((int64_t)(g->lines - 1) * g->cell_q8 / 2 + g->guard * g->cell_q8);
-    const int64_t nearer_q8 = (int64_t)(top_q10 - g->heights.reference_q10) * g->lean_q16 >> 18;
-    const uint32_t at_q8 = (uint32_t)fx_max_i32(range_q8, 1);
+    const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
+    const int64_t near_m_q8 =
+        g->centre_m_q8 - ((int64_t)(g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
+    const int64_t nearer_m_q8 =
+        (int64_t)(top_m_q10 - g->heights.reference_m_q10) * g->lean_q16 >> 18;
+    const uint32_t at_cells_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
     struct lm_patch_point p = {
-        .across_q8 = in_cells(g, across_q8 + spot->shift_q8 + left_q8),
-        .along_q8 = in_cells(g, range_q8 - near_q8 - nearer_q8),
-        .level_q8 =
-            r->rcs_q8 - lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
-                                           at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights),
+        .across_cells_q8 = in_cells(g, across_m_q8 + spot->shift_m_q8 + left_m_q8),
+        .along_cells_q8 = in_cells(g, range_m_q8 - near_m_q8 - nearer_m_q8),
+        .level_db_q8 = r->rcs_dbsm_q8 -
+                       lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, at_cells_q8,
+                                               at_cells_q8 - fx_min_u32(at_cells_q8, g->cell_m_q8),
+                                               &g->heights),
         .phase = r->phase,
-        .tangent_q38 = lm_target_tangent_q38(top_q10, at_q8, &g->heights),
-        .line = cell_at(in_cells(g, across_q8 + left_q8)),
-        .cell = cell_at(in_cells(g, range_q8 - near_q8)),
-        .is_displaced = spot->shift_q8 != 0,
+        .tangent_q38 = lm_target_view_tangent_q38(top_m_q10, at_cells_q8, &g->heights),
+        .line = cell_at(in_cells(g, across_m_q8 + left_m_q8)),
+        .cell = cell_at(in_cells(g, range_m_q8 - near_m_q8)),
+        .is_displaced = spot->shift_m_q8 != 0,
     };
     return p;
 }
 
 /* Add a point for each return of a target. All pulses of the dwell make one picture: every kind of
  * fluctuation is drawn once for it. Of a target with a signature, the top is what can be hidden. */
-static void add_points(struct lm_patch_points *p, const struct lm_target_set *set,
-                       const struct lm_target_item *item, const struct lm_patch_geometry *g,
-                       const struct spot *spot, uint8_t target)
+static void add_points(struct lm_target_patch *p, const struct lm_target_set *set,
+                       const struct lm_target_candidate *candidate,
+                       const struct lm_patch_geometry *g, const struct spot *spot, uint8_t target)
 {
-    const struct lm_target *t = &set->items[item->index];
+    const struct lm_target *t = &set->items[candidate->index];
     const struct lm_signature *s = lm_target_signature(set, t);
     struct lm_return returns[LM_SCATTERERS_MAX];
     struct lm_target_view v;
     uint32_t count = 1;
-    lm_target_view_of(&v, item, g->look + FX_BAM_180, (uint32_t)spot->range_q8, &g->heights);
+    lm_target_view_of(&v, candidate, g->look + FX_BAM_180, (uint32_t)spot->range_m_q8, &g->heights);
     if (t->scatterer_count != 0) {
         count = lm_target_returns(t, &v, g->wavelength_um, returns);
     } else {
-        returns[0] = (struct lm_return){.rcs_q8 = lm_target_whole_q8(set, t, &v, g->epoch, 0)};
+        returns[0] =
+            (struct lm_return){.rcs_dbsm_q8 = lm_target_view_rcs_dbsm_q8(set, t, &v, g->epoch, 0)};
     }
     for (uint32_t k = 0; k < count; k++) {
         struct lm_patch_point *point = &p->item[p->count++];
-        *point = point_of(g, item, spot, &returns[k]);
+        *point = point_of(g, candidate, spot, &returns[k]);
         point->target = target;
         if (s) {
-            point->tangent_q38 =
-                lm_target_tangent_q38(item->elevation_q6 * 16 + (int32_t)(s->height_mm * 128 / 125),
-                                      (uint32_t)fx_max_i32(spot->range_q8, 1), &g->heights);
+            point->tangent_q38 = lm_target_view_tangent_q38(
+                candidate->elevation_m_q6 * 16 + (int32_t)(s->height_mm * 128 / 125),
+                (uint32_t)fx_max_i32(spot->range_m_q8, 1), &g->heights);
         }
     }
 }
 
 /* Note that a target has something to do on lines first..end - 1, as many of them as there are. */
-static void note_lines(struct lm_patch_points *p, uint32_t target, int32_t first, int32_t end,
+static void note_lines(struct lm_target_patch *p, uint32_t target, int32_t first, int32_t end,
                        const struct lm_patch_geometry *g)
 {
     const int32_t last = fx_min_i32(end, (int32_t)g->lines);
@@ -132,77 +138,82 @@ static void note_lines(struct lm_patch_points *p, uint32_t target, int32_t first
     }
 }
 
-/* Lines from one place to another and up to `reach_q8` beyond the ends of their smear. */
-static void note_around(struct lm_patch_points *p, uint32_t target, int32_t left_q8,
-                        int32_t right_q8, uint32_t reach_q8, const struct lm_patch_geometry *g)
+/* Lines from one place to another and up to `reach_cells_q8` beyond the ends of their smear. */
+static void note_around(struct lm_target_patch *p, uint32_t target, int32_t left_cells_q8,
+                        int32_t right_cells_q8, uint32_t reach_cells_q8,
+                        const struct lm_patch_geometry *g)
 {
     const struct lm_smear *smear = &p->target[target].smear;
-    const int32_t aside_q8 = (int32_t)(fx_abs_u32(smear->across_q8) * smear->slices / 2 + reach_q8);
-    note_lines(p, target, (left_q8 - aside_q8) >> 8, ((right_q8 + aside_q8) >> 8) + 1, g);
+    const int32_t aside_cells_q8 =
+        (int32_t)(fx_abs_u32(smear->across_cells_q8) * smear->slices / 2 + reach_cells_q8);
+    note_lines(p, target, (left_cells_q8 - aside_cells_q8) >> 8,
+               ((right_cells_q8 + aside_cells_q8) >> 8) + 1, g);
 }
 
 /* Lines that the points of a target may touch, and those that they stand on. */
-static void note_points(struct lm_patch_points *p, uint32_t target,
+static void note_points(struct lm_target_patch *p, uint32_t target,
                         const struct lm_patch_geometry *g)
 {
     struct lm_patch_target *t = &p->target[target];
-    int32_t left_q8 = INT32_MAX, right_q8 = INT32_MIN;
+    int32_t left_cells_q8 = INT32_MAX, right_cells_q8 = INT32_MIN;
     for (uint32_t i = t->begin; i < t->end; i++) {
         const struct lm_patch_point *point = &p->item[i];
         note_lines(p, target, point->line, point->line + 1, g);
         if (!point->is_chip) {
-            left_q8 = fx_min_i32(left_q8, point->across_q8);
-            right_q8 = fx_max_i32(right_q8, point->across_q8);
+            left_cells_q8 = fx_min_i32(left_cells_q8, point->across_cells_q8);
+            right_cells_q8 = fx_max_i32(right_cells_q8, point->across_cells_q8);
         }
     }
-    t->has_points = left_q8 <= right_q8;
+    t->has_points = left_cells_q8 <= right_cells_q8;
     /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
-    note_around(p, target, left_q8, right_q8, (LM_RESPONSE_REACH + 1) * t->smear.wide_q8, g);
+    note_around(p, target, left_cells_q8, right_cells_q8,
+                (LM_RESPONSE_REACH + 1) * t->smear.wide_q8, g);
 }
 
 /* Lay the target's chip over its point. */
-static void add_chip(struct lm_patch_points *p, const struct lm_chip_slot *slot, fx_bam_t turn,
+static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot, fx_bam_t turn,
                      const struct lm_patch_geometry *g, const struct spot *spot)
 {
     struct lm_patch_point *point = &p->item[p->count - 1];
     struct lm_patch_chip *chip = &p->chip[point->target];
-    const uint32_t at_q8 = (uint32_t)fx_max_i32(spot->range_q8, 1);
+    const uint32_t at_cells_q8 = (uint32_t)fx_max_i32(spot->range_m_q8, 1);
     chip->point = p->count - 1;
-    chip->shadow_across_q8 = point->across_q8 - in_cells(g, spot->shift_q8);
-    chip->area_q8 = lm_clutter_area_q8(g->cell_q8, g->cell_q8, at_q8,
-                                       at_q8 - fx_min_u32(at_q8, g->cell_q8), &g->heights);
-    lm_chip_lay_set(&chip->lay, slot, turn, lm_mm_of_metres_q8(g->cell_q8),
-                    &p->target[point->target].smear);
+    chip->shadow_across_cells_q8 = point->across_cells_q8 - in_cells(g, spot->shift_m_q8);
+    chip->area_dbm2_q8 =
+        lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, at_cells_q8,
+                                at_cells_q8 - fx_min_u32(at_cells_q8, g->cell_m_q8), &g->heights);
+    lm_chip_patch_set(&chip->patch, slot, turn, lm_mm_of_m_q8(g->cell_m_q8),
+                      &p->target[point->target].smear);
     point->is_chip = p->target[point->target].has_chip = true;
-    const struct lm_chip_reach *lit = &chip->lay.lit, *dark = &chip->lay.dark;
+    const struct lm_chip_reach *lit = &chip->patch.lit, *dark = &chip->patch.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
-    const int32_t shadow = cell_at(chip->shadow_across_q8);
-    note_around(p, point->target, point->across_q8, point->across_q8, cells * 256, g);
+    const int32_t shadow = cell_at(chip->shadow_across_cells_q8);
+    note_around(p, point->target, point->across_cells_q8, point->across_cells_q8, cells * 256, g);
     note_lines(p, point->target, shadow + dark->right, shadow + dark->right_end, g);
 }
 
-void lm_patch_points_clear(struct lm_patch_points *p)
+void lm_target_patch_clear(struct lm_target_patch *p)
 {
     p->count = p->target_count = 0;
     memset(p->on_line, 0, sizeof p->on_line);
 }
 
-void lm_patch_points_set(struct lm_patch_points *p, const struct lm_targets_near *near,
+void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candidates *candidates,
                          const struct lm_patch_geometry *g)
 {
     memset(p, 0, sizeof *p);
-    for (uint32_t i = 0; i < near->count; i++) {
-        const struct lm_target_item *item = &near->item[i];
-        const struct lm_chip_slot *slot = lm_chip_of(item);
+    for (uint32_t i = 0; i < candidates->count; i++) {
+        const struct lm_target_candidate *candidate = &candidates->candidate[i];
+        const struct lm_chip_slot *slot = lm_chip_of(candidate);
         struct lm_patch_target *t = &p->target[p->target_count];
         struct spot spot;
-        if (find_spot(g, &near->set.items[item->index], item, &spot)) {
-            t->smear = lm_smear_of(spot.smear_across_q8 * 256 / (int64_t)g->cell_q8,
-                                   spot.walk_q8 * 256 / (int64_t)g->cell_q8);
+        if (find_spot(g, &candidates->set.items[candidate->index], candidate, &spot)) {
+            t->smear = lm_smear_of(spot.smear_across_m_q8 * 256 / (int64_t)g->cell_m_q8,
+                                   spot.walk_m_q8 * 256 / (int64_t)g->cell_m_q8);
             t->begin = p->count;
-            add_points(p, &near->set, item, g, &spot, (uint8_t)p->target_count);
+            add_points(p, &candidates->set, candidate, g, &spot, (uint8_t)p->target_count);
             if (slot) {
-                add_chip(p, slot, item->chip_turn, g, &spot);
+                add_chip(p, slot, candidate->chip_turn, g, &spot);
             }
             t->end = p->count;
             note_points(p, p->target_count, g);
@@ -222,7 +233,7 @@ static uint32_t take_next(uint32_t *targets)
     return next;
 }
 
-void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_t *horizon,
+void lm_target_patch_hide(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
                           uint32_t bits, uint32_t cells)
 {
     for (uint32_t left = p->on_line[line]; left != 0;) {
@@ -242,7 +253,7 @@ void lm_patch_points_hide(struct lm_patch_points *p, uint32_t line, const int32_
 /* One slice of the dwell: how far it lies from its point, cells * 256, what of the point's power it
  * has, and its stretch, inverted. */
 struct slice {
-    int32_t across_q8, along_q8, share_q8;
+    int32_t across_cells_q8, along_cells_q8, share_db_q8;
     int32_t thin_q16, flat_q16;
     uint32_t deep_q8;
 };
@@ -250,35 +261,35 @@ struct slice {
 static struct slice slice_of(const struct lm_smear *s, uint32_t number)
 {
     const int32_t from_middle = 2 * (int32_t)number + 1 - (int32_t)s->slices;
-    return (struct slice){.across_q8 = from_middle * s->across_q8 / 2,
-                          .along_q8 = from_middle * s->along_q8 / 2,
-                          .share_q8 = lm_smear_share_q8(s, number),
+    return (struct slice){.across_cells_q8 = from_middle * s->across_cells_q8 / 2,
+                          .along_cells_q8 = from_middle * s->along_cells_q8 / 2,
+                          .share_db_q8 = lm_smear_share_db_q8(s, number),
                           .thin_q16 = (int32_t)((256u << 16) / s->wide_q8),
                           .flat_q16 = (int32_t)((256u << 16) / s->deep_q8),
                           .deep_q8 = s->deep_q8};
 }
 
 /* A distance in units of the stretched response. */
-static int32_t squeezed(int32_t x_q8, int32_t inverse_q16)
+static int32_t squeezed(int32_t x_cells_q8, int32_t inverse_q16)
 {
-    return (int32_t)((int64_t)x_q8 * inverse_q16 >> 16);
+    return (int32_t)((int64_t)x_cells_q8 * inverse_q16 >> 16);
 }
 
-/* Cells of the response each way that a point of this level reaches on a line `dx_q8` beside it;
- * -1: not even the line. */
-static int32_t reach_of(int32_t level_q8, int32_t dx_q8, int32_t least_q8)
+/* Cells of the response each way that a point of this level reaches on a line `dx_cells_q8` beside
+ * it; -1: not even the line. */
+static int32_t reach_of(int32_t level_db_q8, int32_t dx_cells_q8, int32_t least_db_q8)
 {
-    const uint32_t away_q8 = fx_abs_u32(dx_q8);
-    if (away_q8 >= LM_RESPONSE_REACH * 256u) {
+    const uint32_t away_cells_q8 = fx_abs_u32(dx_cells_q8);
+    if (away_cells_q8 >= LM_RESPONSE_REACH * 256u) {
         return -1;
     }
-    const int32_t most_q8 = level_q8 + lm_response_envelope_q8[away_q8 / 256];
+    const int32_t most_db_q8 = level_db_q8 + lm_response_envelope_db_q8[away_cells_q8 / 256];
     int32_t reach = LM_RESPONSE_REACH - 1;
     /* The cell `reach` cells on is at least half a cell nearer than that. */
-    while (reach > 0 && most_q8 + lm_response_envelope_q8[reach - 1] < least_q8) {
+    while (reach > 0 && most_db_q8 + lm_response_envelope_db_q8[reach - 1] < least_db_q8) {
         reach--;
     }
-    return most_q8 + lm_response_envelope_q8[0] < least_q8 ? -1 : reach;
+    return most_db_q8 + lm_response_envelope_db_q8[0] < least_db_q8 ? -1 : reach;
 }
 
 /* Cells that hold something, first..end - 1. */
@@ -286,31 +297,33 @@ struct span {
     int32_t first, end;
 };
 
-/* Add a slice of a point, its amplitude against `reference_q8`, to the cells of line `line`.
- * Amplitudes are at most 2^24, and a target has 16: sums below 2^28. What stays below `least_q8` is
- * left out. */
-static void spread(struct lm_patch_points *work, const struct lm_patch_point *p,
-                   const struct slice *slice, uint32_t line, int32_t least_q8, int32_t reference_q8,
-                   struct span within, struct span *touched)
+/* Add a slice of a point, its amplitude against `reference_db_q8`, to the cells of line `line`.
+ * Amplitudes are at most 2^24, and a target has 16: sums below 2^28. What stays below `least_db_q8`
+ * is left out. */
+static void spread(struct lm_target_patch *work, const struct lm_patch_point *p,
+                   const struct slice *slice, uint32_t line, int32_t least_db_q8,
+                   int32_t reference_db_q8, struct span within, struct span *touched)
 {
-    const int32_t dx_q8 =
-        squeezed((int32_t)line * 256 - p->across_q8 - slice->across_q8, slice->thin_q16);
-    const int32_t level_q8 = p->level_q8 + slice->share_q8;
-    const int32_t reach = reach_of(level_q8, dx_q8, least_q8);
+    const int32_t dx_cells_q8 = squeezed(
+        (int32_t)line * 256 - p->across_cells_q8 - slice->across_cells_q8, slice->thin_q16);
+    const int32_t level_db_q8 = p->level_db_q8 + slice->share_db_q8;
+    const int32_t reach = reach_of(level_db_q8, dx_cells_q8, least_db_q8);
     if (reach < 0) {
         return;
     }
-    const int64_t amplitude_q24 = (int64_t)fx_power_q16_from_db_q8((level_q8 - reference_q8) / 2)
-                                  << 8;
-    const int64_t line_q24 = amplitude_q24 * lm_response(dx_q8) >> 15;
+    const int64_t amplitude_q24 =
+        (int64_t)fx_power_q16_from_db_q8((level_db_q8 - reference_db_q8) / 2) << 8;
+    const int64_t line_q24 = amplitude_q24 * lm_response(dx_cells_q8) >> 15;
     const int64_t re_q24 = line_q24 * fx_cos_q30(p->phase) >> 30;
     const int64_t im_q24 = line_q24 * fx_sin_q30(p->phase) >> 30;
-    const int32_t along_q8 = p->along_q8 + slice->along_q8, middle = cell_at(along_q8);
+    const int32_t along_cells_q8 = p->along_cells_q8 + slice->along_cells_q8,
+                  middle = cell_at(along_cells_q8);
     const int32_t cells = (int32_t)((uint32_t)reach * slice->deep_q8 / 256);
     const int32_t first = fx_max_i32(middle - cells, within.first);
     const int32_t end = fx_min_i32(middle + cells + 1, within.end);
     for (int32_t i = first; i < end; i++) {
-        const int32_t response_q15 = lm_response(squeezed(i * 256 - along_q8, slice->flat_q16));
+        const int32_t response_q15 =
+            lm_response(squeezed(i * 256 - along_cells_q8, slice->flat_q16));
         work->re_q24[i] += (int32_t)(re_q24 * response_q15 >> 15);
         work->im_q24[i] += (int32_t)(im_q24 * response_q15 >> 15);
     }
@@ -321,8 +334,8 @@ static void spread(struct lm_patch_points *work, const struct lm_patch_point *p,
 }
 
 /* Turn the sums into levels and clear them. */
-static void collect(struct lm_patch_points *work, struct span touched, int32_t reference_q8,
-                    int32_t *level_q8)
+static void collect(struct lm_target_patch *work, struct span touched, int32_t reference_db_q8,
+                    int32_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 48);
     for (int32_t i = touched.first; i < touched.end; i++) {
@@ -330,43 +343,44 @@ static void collect(struct lm_patch_points *work, struct span touched, int32_t r
         const uint64_t power_q48 = (uint64_t)(re_q24 * re_q24 + im_q24 * im_q24);
         work->re_q24[i] = work->im_q24[i] = 0;
         if (power_q48 != 0) {
-            level_q8[i] =
-                fx_db_q8_sum_of_many(level_q8[i], reference_q8 + fx_db_q8_u64(power_q48) - unit_q8);
+            level_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i],
+                                              reference_db_q8 + fx_db_q8_u64(power_q48) - unit_q8);
         }
     }
 }
 
 /* Its bodies add as phasors, the slices of its dwell, whose phases run away from each other, as
  * powers. */
-static void add_target(struct lm_patch_points *p, const struct lm_patch_target *t, uint32_t line,
-                       int32_t least_q8, struct span within, int32_t *level_q8)
+static void add_target(struct lm_target_patch *p, const struct lm_patch_target *t, uint32_t line,
+                       int32_t least_db_q8, struct span within, int32_t *level_db_q8)
 {
     const struct lm_smear *smear = &t->smear;
-    int32_t strongest_q8 = p->item[t->begin].level_q8;
+    int32_t strongest_db_q8 = p->item[t->begin].level_db_q8;
     for (uint32_t i = t->begin + 1; i < t->end; i++) {
-        strongest_q8 = fx_max_i32(strongest_q8, p->item[i].level_q8);
+        strongest_db_q8 = fx_max_i32(strongest_db_q8, p->item[i].level_db_q8);
     }
     for (uint32_t number = 0; number < smear->slices; number++) {
         const struct slice slice = slice_of(smear, number);
         struct span touched = {within.end, within.first};
-        const int32_t reference_q8 = strongest_q8 + slice.share_q8;
+        const int32_t reference_db_q8 = strongest_db_q8 + slice.share_db_q8;
         for (uint32_t i = t->begin; i < t->end; i++) {
             if (!p->item[i].is_hidden && !p->item[i].is_chip) {
-                spread(p, &p->item[i], &slice, line, least_q8, reference_q8, within, &touched);
+                spread(p, &p->item[i], &slice, line, least_db_q8, reference_db_q8, within,
+                       &touched);
             }
         }
-        collect(p, touched, reference_q8, level_q8);
+        collect(p, touched, reference_db_q8, level_db_q8);
     }
 }
 
-void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least_q8,
-                         const struct lm_patch_geometry *g, int32_t *level_q8)
+void lm_target_patch_add_points(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
+                                const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const struct lm_patch_target *t = &p->target[take_next(&left)];
         if (t->has_points) {
-            add_target(p, t, line, least_q8, within, level_q8);
+            add_target(p, t, line, least_db_q8, within, level_db_q8);
         }
     }
 }
@@ -375,7 +389,7 @@ void lm_patch_points_add(struct lm_patch_points *p, uint32_t line, int32_t least
 
 /* Where a chip's origin lies, cells * 256. */
 struct origin {
-    int32_t across_q8, along_q8;
+    int32_t across_cells_q8, along_cells_q8;
 };
 
 /* The cells of a line that a chip may reach. */
@@ -383,8 +397,8 @@ static struct span cells_under(const struct lm_chip_reach *reach, const struct l
                                const struct origin *origin, uint32_t line,
                                const struct lm_patch_geometry *g)
 {
-    const int32_t middle = cell_at(origin->along_q8);
-    const int32_t aside = (int32_t)line - cell_at(origin->across_q8);
+    const int32_t middle = cell_at(origin->along_cells_q8);
+    const int32_t aside = (int32_t)line - cell_at(origin->across_cells_q8);
     if (at->is_hidden || aside < reach->right || aside >= reach->right_end) {
         return (struct span){0, 0};
     }
@@ -393,29 +407,30 @@ static struct span cells_under(const struct lm_chip_reach *reach, const struct l
 }
 
 /* Put the cells of a line that a chip's shadow reaches into the dark. */
-static void shade(const struct lm_patch_points *p, const struct lm_patch_chip *chip, uint32_t line,
-                  const struct lm_patch_geometry *g, int32_t *level_q8)
+static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *chip, uint32_t line,
+                  const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
     const struct lm_patch_point *at = &p->item[chip->point];
-    const struct origin origin = {chip->shadow_across_q8, at->along_q8};
-    const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
-    const struct span under = cells_under(&chip->lay.dark, at, &origin, line, g);
+    const struct origin origin = {chip->shadow_across_cells_q8, at->along_cells_q8};
+    const int32_t right_cells_q8 = (int32_t)line * 256 - origin.across_cells_q8;
+    const struct span under = cells_under(&chip->patch.dark, at, &origin, line, g);
     for (int32_t i = under.first; i < under.end; i++) {
-        const uint32_t dark = lm_chip_cell_shadow(&chip->lay, right_q8, i * 256 - origin.along_q8);
-        level_q8[i] = dark == LM_CHIP_SHADOW_ALL
-                          ? LM_LEVEL_SHADOW
-                          : level_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
+        const uint32_t dark =
+            lm_chip_patch_shadow(&chip->patch, right_cells_q8, i * 256 - origin.along_cells_q8);
+        level_db_q8[i] = dark == LM_CHIP_SHADOW_ALL
+                             ? LM_LEVEL_SHADOW
+                             : level_db_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
     }
 }
 
-void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
-                          const struct lm_patch_geometry *g, int32_t *level_q8)
+void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
+                           const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const uint32_t target = take_next(&left);
         if (p->target[target].has_chip) {
-            shade(p, &p->chip[target], line, g, level_q8);
+            shade(p, &p->chip[target], line, g, level_db_q8);
         }
     }
 }
@@ -424,24 +439,26 @@ void lm_patch_chips_shade(const struct lm_patch_points *p, uint32_t line,
  * it is. */
 static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_point *at,
                           const struct slice *slice, uint32_t line, uint32_t room,
-                          const struct lm_patch_geometry *g, int32_t *level_q8)
+                          const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
-    const struct origin origin = {at->across_q8 + slice->across_q8, at->along_q8 + slice->along_q8};
-    const struct span under = cells_under(&chip->lay.lit, at, &origin, line, g);
+    const struct origin origin = {at->across_cells_q8 + slice->across_cells_q8,
+                                  at->along_cells_q8 + slice->along_cells_q8};
+    const struct span under = cells_under(&chip->patch.lit, at, &origin, line, g);
     const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
-    const int32_t right_q8 = (int32_t)line * 256 - origin.across_q8;
+    const int32_t right_cells_q8 = (int32_t)line * 256 - origin.across_cells_q8;
     for (int32_t i = under.first; i < under.end && cells <= room; i++) {
-        const int32_t rcs_q8 = lm_chip_cell_q8(&chip->lay, right_q8, i * 256 - origin.along_q8);
-        if (rcs_q8 > LM_RCS_NONE_Q8) {
-            level_q8[i] =
-                fx_db_q8_sum_of_many(level_q8[i], rcs_q8 + slice->share_q8 - chip->area_q8);
+        const int32_t rcs_dbsm_q8 = lm_chip_patch_rcs_dbsm_q8(&chip->patch, right_cells_q8,
+                                                              i * 256 - origin.along_cells_q8);
+        if (rcs_dbsm_q8 > LM_RCS_NONE_DBSM_Q8) {
+            level_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i], rcs_dbsm_q8 + slice->share_db_q8 -
+                                                                  chip->area_dbm2_q8);
         }
     }
     return cells;
 }
 
-uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
-                            const struct lm_patch_geometry *g, int32_t *level_q8)
+uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t line,
+                                   const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     uint32_t room = LM_CHIP_CELLS_A_LINE, left_out = 0;
     for (uint32_t targets = p->on_line[line]; targets != 0;) {
@@ -452,7 +469,7 @@ uint32_t lm_patch_chips_add(const struct lm_patch_points *p, uint32_t line,
         const uint32_t slices = p->target[target].has_chip ? smear->slices : 0;
         for (uint32_t number = 0; number < slices; number++) {
             const struct slice slice = slice_of(smear, number);
-            const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_q8);
+            const uint32_t cells = add_slice(chip, at, &slice, line, room, g, level_db_q8);
             left_out += cells > room ? cells : 0;
             room -= cells > room ? 0 : cells;
         }

@@ -4,92 +4,94 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */, TWO_PI_Q26 = 421657428 };
 
 /* The place of a target from an origin, the inverse problem put right by the direct one: the first
  * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
  * they do not agree, near a pole or half a world away. */
-bool lm_target_locate(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
-                      fx_bam_t *azimuth)
+bool lm_target_view_locate(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
+                           fx_bam_t *azimuth)
 {
     struct lm_geo_origin origin;
-    uint32_t miss_q8;
+    uint32_t miss_m_q8;
     fx_bam_t miss_azimuth;
-    lm_geo_inverse(from, to, distance_q8, azimuth);
-    if (*distance_q8 > 300000u * 256u) {
+    lm_geo_inverse(from, to, distance_m_q8, azimuth);
+    if (*distance_m_q8 > 300000u * 256u) {
         return false;
     }
     lm_geo_set_origin(&origin, from);
-    const struct lm_place reached = lm_geo_direct(&origin, *azimuth, *distance_q8);
-    lm_geo_inverse(reached, to, &miss_q8, &miss_azimuth);
-    if (miss_q8 > *distance_q8 / 16 + 256) {
+    const struct lm_position reached = lm_geo_direct(&origin, *azimuth, *distance_m_q8);
+    lm_geo_inverse(reached, to, &miss_m_q8, &miss_azimuth);
+    if (miss_m_q8 > *distance_m_q8 / 16 + 256) {
         return false;
     }
     const fx_bam_t turn = miss_azimuth - *azimuth;
-    const int32_t on_q8 = (int32_t)((int64_t)miss_q8 * fx_cos_q30(turn) >> 30);
-    const int32_t aside_q8 = (int32_t)((int64_t)miss_q8 * fx_sin_q30(turn) >> 30);
-    const int32_t along_q8 = (int32_t)*distance_q8 + on_q8;
-    *distance_q8 = fx_hypot_u32(along_q8, aside_q8);
-    *azimuth += fx_atan2(aside_q8, along_q8);
+    const int32_t on_m_q8 = (int32_t)((int64_t)miss_m_q8 * fx_cos_q30(turn) >> 30);
+    const int32_t aside_m_q8 = (int32_t)((int64_t)miss_m_q8 * fx_sin_q30(turn) >> 30);
+    const int32_t along_m_q8 = (int32_t)*distance_m_q8 + on_m_q8;
+    *distance_m_q8 = fx_hypot_u32(along_m_q8, aside_m_q8);
+    *azimuth += fx_atan2(aside_m_q8, along_m_q8);
     return true;
 }
 
 /* The Earth's drop at a ground range, metres * 1024; a range of 400 km, 2^26.6, squared in units of
  * 16 m2 times the curvature: 2^57.2. */
-static int32_t drop_q10(uint32_t range_q8)
+static int32_t drop_m_q10(uint32_t range_m_q8)
 {
-    return (int32_t)(((((int64_t)range_q8 * range_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
+    return (int32_t)(((((int64_t)range_m_q8 * range_m_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
 }
 
-void lm_target_view_of(struct lm_target_view *v, const struct lm_target_item *item, fx_bam_t back,
-                       uint32_t range_q8, const struct lm_target_heights *h)
+void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
+                       fx_bam_t back, uint32_t range_m_q8, const struct lm_target_heights *h)
 {
     /* Heights within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all below 2^29 in Q10. */
-    const int32_t range_q10 = (int32_t)(fx_min_u32(range_q8, 400000u * 256u) * 4);
-    const int32_t above_q10 =
-        h->antenna_q10 - item->elevation_q6 * 16 - drop_q10((uint32_t)range_q10 / 4);
-    const uint64_t slant_q10 = fx_hypot_u32(range_q10, above_q10);
-    lm_target_view_set(v, back - item->pose.heading, fx_atan2(above_q10, range_q10),
-                       (uint32_t)(slant_q10 * 1000 >> 10));
+    const int32_t range_m_q10 = (int32_t)(fx_min_u32(range_m_q8, 400000u * 256u) * 4);
+    const int32_t above_m_q10 =
+        h->antenna_m_q10 - candidate->elevation_m_q6 * 16 - drop_m_q10((uint32_t)range_m_q10 / 4);
+    const uint64_t slant_m_q10 = fx_hypot_u32(range_m_q10, above_m_q10);
+    lm_target_view_set(v, back - candidate->pose.heading, fx_atan2(above_m_q10, range_m_q10),
+                       (uint32_t)(slant_m_q10 * 1000 >> 10));
 }
 
-int32_t lm_target_whole_q8(const struct lm_target_set *set, const struct lm_target *t,
-                           const struct lm_target_view *v, uint32_t scan, uint32_t pulse)
+int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set, const struct lm_target *t,
+                                   const struct lm_target_view *v, uint32_t scan, uint32_t pulse)
 {
     const struct lm_signature *s = lm_target_signature(set, t);
     if (s) {
-        return lm_signature_rcs_q8(s, v->bearing, v->elevation);
+        return lm_signature_rcs_dbsm_q8(s, v->bearing, v->elevation);
     }
     return t->flags & LM_TARGET_HAS_SIGNATURE
-               ? LM_RCS_NONE_Q8
-               : lm_swerling_q8(t->swerling, t->mean_rcs_q8, t->id, scan, pulse);
+               ? LM_RCS_NONE_DBSM_Q8
+               : lm_swerling_dbsm_q8(t->swerling, t->mean_rcs_dbsm_q8, t->id, scan, pulse);
 }
 
-int64_t lm_target_tangent_q38(int32_t top_q10, uint32_t range_q8, const struct lm_target_heights *h)
+int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,
+                                   const struct lm_target_heights *h)
 {
-    const int64_t apparent_q10 = (int64_t)top_q10 - h->antenna_q10 - drop_q10(range_q8);
-    return apparent_q10 * ((int64_t)1 << 36) / (int64_t)fx_max_u32(range_q8, LM_RANGE_MIN_M * 256u);
+    const int64_t apparent_m_q10 = (int64_t)top_m_q10 - h->antenna_m_q10 - drop_m_q10(range_m_q8);
+    return apparent_m_q10 * ((int64_t)1 << 36) /
+           (int64_t)fx_max_u32(range_m_q8, LM_RANGE_MIN_M * 256u);
 }
 
 /* 2^26.6 * 2^32 turns, to Q16, times 2 pi in Q26. */
-uint64_t lm_arc_q8(uint32_t range_q8, fx_bam_t width)
+uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width)
 {
-    const uint64_t turns_q16 = (uint64_t)range_q8 * width >> 24;
+    const uint64_t turns_q16 = (uint64_t)range_m_q8 * width >> 24;
     return turns_q16 * TWO_PI_Q26 >> 34;
 }
 
-int32_t lm_clutter_area_q8(uint64_t width_q8, uint32_t cell_q8, uint32_t range_q8,
-                           uint32_t before_q8, const struct lm_target_heights *h)
+int32_t lm_clutter_area_dbm2_q8(uint64_t width_m_q8, uint32_t cell_m_q8, uint32_t range_m_q8,
+                                uint32_t before_m_q8, const struct lm_target_heights *h)
 {
     /* g, as the time gain has it: a height of 2^26 in Q10, times 2^22, over metres in Q8, less the
      * range of the cell before over 2a. */
-    const int64_t above_q10 = (int64_t)h->antenna_q10 - h->reference_q10;
-    const int64_t grazing_q24 = above_q10 * (1 << 22) / (int64_t)fx_max_u32(range_q8, 1) -
-                                ((int64_t)before_q8 * LM_CURVATURE_Q48 >> 32);
+    const int64_t above_m_q10 = (int64_t)h->antenna_m_q10 - h->reference_m_q10;
+    const int64_t grazing_q24 = above_m_q10 * (1 << 22) / (int64_t)fx_max_u32(range_m_q8, 1) -
+                                ((int64_t)before_m_q8 * LM_CURVATURE_Q48 >> 32);
     const uint64_t g_q24 =
         (uint64_t)(grazing_q24 < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing_q24);
-    return fx_db_q8_of_log2_q16(fx_log2_q16_u64(width_q8) + fx_log2_q16(cell_q8) +
+    return fx_db_q8_of_log2_q16(fx_log2_q16_u64(width_m_q8) + fx_log2_q16(cell_m_q8) +
                                 fx_log2_q16_u64(g_q24) - (8 + 8 + 24) * 65536);
 }

@@ -85,7 +85,7 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
         lm_text_add(t, "DB ");
         lm_text_add(t, u->map.is_usable ? u->map.db.title : "FAIL");
     } else {
-        add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.level_count : 0, "RECORDS",
+        add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.lod_count : 0, "RECORDS",
                  u->map.is_usable ? u->map.db.record_count : 0);
     }
 }

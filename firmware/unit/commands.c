@@ -74,7 +74,7 @@ static bool designate(struct lm_unit *u, uint64_t now_us)
         lm_cursor_stabilise(&u->cursor);
         return true;
     }
-    const struct lm_sar_command command = {.centre = u->cursor.place,
+    const struct lm_sar_command command = {.centre = u->cursor.position,
                                            .cell_mm = lm_page_cell_mm(&u->page),
                                            .is_from_ownship = true,
                                            .has_layover = u->page.is_slant};
@@ -100,11 +100,11 @@ static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 
 static bool obey_steerpoint(struct lm_unit *u, const struct lm_control *control)
 {
-    if (fx_abs_u32((int32_t)control->steerpoint.place.latitude) > FX_BAM_90) {
+    if (fx_abs_u32((int32_t)control->steerpoint.position.latitude) > FX_BAM_90) {
         return false;
     }
     u->steerpoint.is_commanded = control->steerpoint.is_set;
-    u->steerpoint.place = control->steerpoint.place;
+    u->steerpoint.position = control->steerpoint.position;
     return true;
 }
 
@@ -139,7 +139,7 @@ static bool obey_slew(struct lm_unit *u, const struct lm_control *control)
     return true;
 }
 
-static bool obey(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+static bool apply_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     switch (control->kind) {
     case LM_CONTROL_SECTOR:
@@ -185,6 +185,6 @@ void lm_take_controls(struct lm_unit *u, uint64_t now_us)
     const struct lm_controls *controls = u->board->controls;
     struct lm_control control;
     for (uint32_t i = 0; i < CONTROLS_A_STEP && controls->next(controls->ctx, &control) == 1; i++) {
-        u->count.commands_refused += !obey(u, &control, now_us);
+        u->count.commands_refused += !apply_control(u, &control, now_us);
     }
 }

@@ -14,16 +14,16 @@ static void follow_view(struct lm_unit *u)
 static void read_elevation(struct lm_unit *u)
 {
     if (u->map.is_usable) {
-        const uint8_t level = lm_scan_level(&u->map.db, ELEVATION_CELL_MM);
-        u->cursor_elevation_q10 =
-            lm_scan_elevation(&u->map.tiles, level, u->cursor.place, LM_NO_ELEVATION);
+        const uint8_t lod = lm_scan_lod(&u->map.db, ELEVATION_CELL_MM);
+        u->cursor_elevation_m_q10 =
+            lm_scan_elevation(&u->map.tiles, lod, u->cursor.position, LM_NO_ELEVATION);
     }
 }
 
 /* The page's range follows the cursor, when it is to. */
 static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t scale_m = u->board->radar->range[u->page.range].range_m;
+    const uint32_t scale_m = u->board->radar->range[u->page.range_index].range_m;
     if (!lm_picture_moves(&u->picture) || !u->page.is_auto_range || u->picture.is_view_held) {
         return;
     }

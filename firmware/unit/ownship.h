@@ -7,15 +7,15 @@
 
 /* Height above mean sea level, metres * 64, as the map's elevations are: satellites measure from
  * the ellipsoid. */
-static inline int32_t lm_antenna_height_q6(const struct lm_ownship *own, const struct lm_db *db)
+static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own, const struct lm_db *db)
 {
     const bool is_ellipsoidal = own->height_source == LM_BUS_ELLIPSOID_HEIGHT;
-    return own->height_q6 - (is_ellipsoidal ? db->geoid_q6 : 0);
+    return own->height_m_q6 - (is_ellipsoidal ? db->geoid_m_q6 : 0);
 }
 
-static inline struct lm_place lm_ownship_place(const struct lm_ownship *own)
+static inline struct lm_position lm_ownship_place(const struct lm_ownship *own)
 {
-    return (struct lm_place){own->latitude, own->longitude};
+    return (struct lm_position){own->latitude, own->longitude};
 }
 
 /* True when position and heading can be used, however old they are. */

@@ -13,7 +13,7 @@ static bool is_drawing(struct lm_picture *p, bool may_draw, uint64_t now_us)
 
 /* Limit the backlog: when drawing is too late, the overdue lines are dropped, and the picture goes
  * on from now. Returns how often that was done. */
-static uint32_t forgive_lines(struct lm_picture *p, bool may_draw, uint64_t now_us)
+static uint32_t drop_overdue_lines(struct lm_picture *p, bool may_draw, uint64_t now_us)
 {
     const bool is_late = is_drawing(p, may_draw, now_us);
     if (is_late && p->next_line_us + LATE_MOST_US > now_us) {
@@ -35,7 +35,7 @@ struct lm_paced lm_draw_due_lines(struct lm_picture *p, bool may_draw, uint64_t 
         paced.lines++;
     }
     if (p->next_line_us <= now_us) {
-        paced.dropped = forgive_lines(p, may_draw, now_us);
+        paced.dropped = drop_overdue_lines(p, may_draw, now_us);
     }
     return paced;
 }

@@ -34,13 +34,13 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
         return false;
     }
     /* The line of sight turns on its way: at the patch it is the way back, turned round. */
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t back, bearing;
-    lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_q8, &back);
-    lm_geo_inverse(lm_ownship_place(own), command->centre, &distance_q8, &bearing);
+    lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_m_q8, &back);
+    lm_geo_inverse(lm_ownship_place(own), command->centre, &distance_m_q8, &bearing);
     command->look_azimuth = back + FX_BAM_180;
-    command->range_m = distance_q8 / 256;
-    command->height_q6 = lm_antenna_height_q6(own, &p->lent.map->db);
+    command->range_m = distance_m_q8 / 256;
+    command->height_m_q6 = lm_antenna_height_m_q6(own, &p->lent.map->db);
     *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
                                      .track = own->track,
                                      .bearing = bearing,
@@ -54,8 +54,8 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
 static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_command *command)
 {
     struct lm_unit_map *map = p->lent.map;
-    const uint8_t level = lm_scan_level(&map->db, command->cell_mm);
-    return lm_scan_elevation(&map->tiles, level, command->centre, map->db.mean_elevation_q6 * 16);
+    const uint8_t lod = lm_scan_lod(&map->db, command->cell_mm);
+    return lm_scan_elevation(&map->tiles, lod, command->centre, map->db.mean_elevation_m_q6 * 16);
 }
 
 static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
@@ -70,7 +70,7 @@ static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint
     const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &map->target_set,
                                        .chips = &map->chips,
-                                       .reference_q10 = elevation_q10(p, &command),
+                                       .reference_m_q10 = elevation_q10(p, &command),
                                        .epoch = p->lent.noise_seed,
                                        .sea_state = p->lent.environment->sea_state,
                                        .environment = p->lent.environment,
@@ -105,13 +105,13 @@ static void prefetch(struct lm_picture *p)
 
 /* What was known of the patch's elevation when it was asked for may have come from a coarse tile:
  * look again when all have been read. True when it is another one, which targets wait for. */
-static bool refer_anew(struct lm_picture *p)
+static bool refresh_reference(struct lm_picture *p)
 {
-    const int32_t reference_q10 = elevation_q10(p, &p->sar.command);
-    if (reference_q10 == p->sar.grid.reference_q10) {
+    const int32_t reference_m_q10 = elevation_q10(p, &p->sar.command);
+    if (reference_m_q10 == p->sar.grid.reference_m_q10) {
         return false;
     }
-    lm_sar_set_reference(&p->sar, &p->lent.map->db, reference_q10);
+    lm_sar_set_reference(&p->sar, &p->lent.map->db, reference_m_q10);
     lm_sar_prefetch_targets(&p->sar, &p->lent.map->tiles);
     return true;
 }
@@ -124,7 +124,7 @@ static bool is_ready(struct lm_picture *p, uint64_t now_us)
                              lm_tile_cache_is_idle(&map->tiles) &&
                              lm_chips_are_settled(&map->chips);
         const bool is_over = has_all || now_us >= p->acquire.until_us;
-        p->acquire.is_reading = !is_over || refer_anew(p);
+        p->acquire.is_reading = !is_over || refresh_reference(p);
         p->next_line_us = now_us + p->sar.line_us; /* the dwell begins */
     }
     return !p->acquire.is_reading && p->sar.line < lines_of(p);
@@ -160,7 +160,7 @@ static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
 
 static void paint(struct lm_picture *p, uint32_t number)
 {
-    lm_patch_paint(&p->plane, &p->frame, number, p->line.grey + LM_SAR_GUARD, lines_of(p));
+    lm_scan_conv_patch(&p->plane, &p->frame, number, p->line.grey + LM_SAR_GUARD, lines_of(p));
 }
 
 static uint64_t line_us(const struct lm_picture *p)

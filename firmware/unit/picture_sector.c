@@ -17,13 +17,13 @@ static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint
     (void)patch;
     (void)now_us;
     const struct lm_page *page = p->lent.page;
-    p->is_cursor_awaited = page->field != LM_FIELD_NORM && !p->lent.cursor->is_placed;
+    p->is_cursor_awaited = page->fov != LM_FOV_NORM && !p->lent.cursor->is_placed;
     const struct lm_sector_command command = {
         .mode = page->mode,
-        .field = p->is_cursor_awaited ? (uint8_t)LM_FIELD_NORM : page->field,
-        .range = page->range,
-        .azimuth = page->azimuth,
-        .centre = p->lent.cursor->place,
+        .fov = p->is_cursor_awaited ? (uint8_t)LM_FOV_NORM : page->fov,
+        .range_index = page->range_index,
+        .azimuth_index = page->azimuth_index,
+        .centre = p->lent.cursor->position,
         .beam = beam_of(page),
     };
     lm_sector_start(&p->sector, p->lent.radar, &command, p->lent.noise_seed);
@@ -56,8 +56,8 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
     const struct lm_ownship *own = p->lent.ownship;
     const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
     return (struct lm_platform){
-        .place = lm_ownship_place(own),
-        .height_q10 = lm_antenna_height_q6(own, &p->lent.map->db) * 16,
+        .position = lm_ownship_place(own),
+        .height_m_q10 = lm_antenna_height_m_q6(own, &p->lent.map->db) * 16,
         .heading = own->heading,
         .track = own->track,
         .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
@@ -75,13 +75,13 @@ static void recentre(struct lm_picture *p)
     if (!cursor->is_placed || p->view.shape != LM_VIEW_WINDOW) {
         return;
     }
-    if (lm_view_find(&p->view, cursor->place, &at)) {
-        lm_plane_shift(&p->plane, &square, -((at.x_q8 - middle.x_q8 + 128) >> 8),
-                       (at.y_q8 - middle.y_q8 + 128) >> 8);
+    if (lm_view_find(&p->view, cursor->position, &at)) {
+        lm_plane_shift(&p->plane, &square, -((at.x_px_q8 - middle.x_px_q8 + 128) >> 8),
+                       (at.y_px_q8 - middle.y_px_q8 + 128) >> 8);
     } else {
         lm_plane_clear(&p->plane, &p->frame);
     }
-    p->sector.command.centre = cursor->place;
+    p->sector.command.centre = cursor->position;
 }
 
 static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
@@ -121,9 +121,9 @@ static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
 static void paint(struct lm_picture *p, uint32_t number)
 {
     const struct lm_sector *s = &p->sector;
-    const struct lm_ppi ppi = lm_view_ppi(&p->view, &p->frame, s->slant.cell_q8, s->edge_q8);
-    lm_ppi_paint(&p->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, number),
-                 (fx_bam_t)lm_sector_edge_bam(s, number + 1), p->line.grey, s->slant.cells);
+    const struct lm_ppi ppi = lm_view_ppi(&p->view, &p->frame, s->slant.cell_m_q8, s->edge_m_q8);
+    lm_scan_conv_sector(&p->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, number),
+                        (fx_bam_t)lm_sector_edge_bam(s, number + 1), p->line.grey, s->slant.cells);
 }
 
 static uint64_t line_us(const struct lm_picture *p)
@@ -139,7 +139,7 @@ static void set_beam(struct lm_picture *p)
 
 static uint32_t scale_m(const struct lm_picture *p)
 {
-    return p->lent.radar->range[p->lent.page->range].range_m;
+    return p->lent.radar->range[p->lent.page->range_index].range_m;
 }
 
 /* A window is seen from where its sweep began; the whole sector from where the aircraft is. */
@@ -149,9 +149,9 @@ static struct lm_view view(const struct lm_picture *p)
     const bool has_geometry = s->grid.cells != 0;
     const bool is_window = has_geometry && lm_sector_is_window(s);
     const struct lm_view_from from = {
-        .place = is_window ? s->platform.place : lm_ownship_place(p->lent.ownship),
+        .position = is_window ? s->platform.position : lm_ownship_place(p->lent.ownship),
         .up = is_window ? s->up : p->lent.ownship->heading,
-        .height_q10 = has_geometry ? s->grid.height_q10 - s->grid.reference_q10 : 0,
+        .height_m_q10 = has_geometry ? s->grid.height_m_q10 - s->grid.reference_m_q10 : 0,
     };
     return is_window ? lm_view_of_window(&p->frame, &from, s->command.centre, s->half_m)
                      : lm_view_of_sector(&p->frame, &from, scale_m(p));
@@ -165,7 +165,7 @@ static const struct lm_tone_config *tone(const struct lm_picture *p)
 /* Of the field that is swept, which is another than the page's while the cursor is awaited. */
 static uint32_t slew_percent(const struct lm_picture *p)
 {
-    return p->lent.radar->field[p->sector.command.field].slew_percent;
+    return p->lent.radar->fov[p->sector.command.fov].slew_percent;
 }
 
 static bool needs_ownship(const struct lm_picture *p)
@@ -178,22 +178,22 @@ static bool needs_ownship(const struct lm_picture *p)
 static void describe_window(const struct lm_picture *p, struct lm_symbols *symbols)
 {
     const struct lm_view_from from = {lm_ownship_place(p->lent.ownship), p->view.up,
-                                      p->view.height_q10};
+                                      p->view.height_m_q10};
     const struct lm_view whole = lm_view_of_sector(&p->frame, &from, scale_m(p));
     struct lm_offset at;
     symbols->is_cue_shown =
-        p->lent.cursor->is_placed && lm_view_find(&whole, p->lent.cursor->place, &at);
+        p->lent.cursor->is_placed && lm_view_find(&whole, p->lent.cursor->position, &at);
     if (symbols->is_cue_shown) {
         symbols->cue = lm_view_point(&whole, at);
     }
-    symbols->is_finer_offered = p->lent.page->field == LM_FIELD_DBS1;
+    symbols->is_finer_offered = p->lent.page->fov == LM_FOV_DBS1;
 }
 
 static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
 {
     const struct lm_radar *radar = p->lent.radar;
-    symbols->range_nm = radar->range[p->lent.page->range].range_nm;
-    symbols->azimuth_half = radar->azimuth_half[p->lent.page->azimuth];
+    symbols->range_nm = radar->range[p->lent.page->range_index].range_nm;
+    symbols->azimuth_half = radar->azimuth_half[p->lent.page->azimuth_index];
     symbols->antenna_azimuth = lm_sector_edge_bam(&p->sector, p->sector.line);
     symbols->antenna_elevation = p->sector.tilt;
     if (p->view.shape == LM_VIEW_WINDOW) {

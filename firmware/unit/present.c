@@ -10,27 +10,27 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->has_cursor = c->is_placed && lm_ownship_is_known(&u->ownship);
     s->is_cursor_on_glass = s->has_cursor && c->is_on_glass;
     s->cursor = c->offset;
-    s->cursor_place = c->place;
+    s->cursor_position = c->position;
     s->cursor_range_m = c->range_m;
     s->cursor_bearing = c->bearing;
-    s->has_cursor_elevation = u->map.is_usable && u->cursor_elevation_q10 != LM_NO_ELEVATION;
-    s->cursor_elevation_q10 = u->cursor_elevation_q10;
+    s->has_cursor_elevation = u->map.is_usable && u->cursor_elevation_m_q10 != LM_NO_ELEVATION;
+    s->cursor_elevation_m_q10 = u->cursor_elevation_m_q10;
 }
 
 /* Where it is to go: as commanded, or else the bus's steerpoint, while that is not stale. */
-static bool find_steerpoint(const struct lm_unit *u, struct lm_place *place)
+static bool find_steerpoint(const struct lm_unit *u, struct lm_position *position)
 {
-    *place = u->steerpoint.is_commanded ? u->steerpoint.place : u->ownship.steerpoint;
+    *position = u->steerpoint.is_commanded ? u->steerpoint.position : u->ownship.steerpoint;
     return lm_ownship_is_known(&u->ownship) &&
            (u->steerpoint.is_commanded || u->ownship.steerpoint_quality == LM_NAV_GOOD);
 }
 
-static uint32_t to_go_s(const struct lm_unit *u, struct lm_place place)
+static uint32_t to_go_s(const struct lm_unit *u, struct lm_position position)
 {
-    uint32_t distance_q8;
+    uint32_t distance_m_q8;
     fx_bam_t bearing;
-    lm_geo_inverse(lm_ownship_place(&u->ownship), place, &distance_q8, &bearing);
-    const uint64_t distance_mm = (uint64_t)distance_q8 * 1000 / 256;
+    lm_geo_inverse(lm_ownship_place(&u->ownship), position, &distance_m_q8, &bearing);
+    const uint64_t distance_mm = (uint64_t)distance_m_q8 * 1000 / 256;
     const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
     if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
         return LM_TO_GO_NONE;
@@ -41,14 +41,14 @@ static uint32_t to_go_s(const struct lm_unit *u, struct lm_place place)
 
 static void describe_steerpoint(const struct lm_unit *u, struct lm_symbols *s)
 {
-    struct lm_place place;
+    struct lm_position position;
     struct lm_offset at;
-    s->has_steerpoint = find_steerpoint(u, &place);
+    s->has_steerpoint = find_steerpoint(u, &position);
     if (!s->has_steerpoint) {
         return;
     }
-    s->to_go_s = to_go_s(u, place);
-    if (lm_view_find(&u->picture.view, place, &at)) {
+    s->to_go_s = to_go_s(u, position);
+    if (lm_view_find(&u->picture.view, position, &at)) {
         const struct lm_frame *f = &u->picture.frame;
         const struct lm_point p = lm_view_point(&u->picture.view, at);
         s->steerpoint = p;
@@ -62,7 +62,7 @@ static void describe_steerpoint(const struct lm_unit *u, struct lm_symbols *s)
 static void describe_ownship(const struct lm_unit *u, struct lm_symbols *s)
 {
     struct lm_view level = u->picture.view;
-    level.height_q10 = 0;
+    level.height_m_q10 = 0;
     s->is_ownship_shown = lm_view_find(&level, lm_ownship_place(&u->ownship), &s->ownship);
     s->ownship_heading = u->ownship.heading - u->picture.view.up;
 }

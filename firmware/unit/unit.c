@@ -87,7 +87,7 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
 
 /* The aircraft is somewhere else at once: lines drawn from there and from here must not stand side
  * by side. */
-static void heed_jump(struct lm_unit *u, uint64_t now_us)
+static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
 {
     const bool is_other_source = u->ownship.position_quality != LM_NAV_DEAD &&
                                  u->ownship.position_origin.rank != u->position_seen.rank;
@@ -114,7 +114,7 @@ static void draw_lines(struct lm_unit *u, uint64_t now_us)
 void lm_unit_step(struct lm_unit *u, uint64_t now_us)
 {
     take_bus(u, now_us);
-    heed_jump(u, now_us);
+    restart_after_jump(u, now_us);
     lm_unit_weather_at(&u->weather, now_us);
     lm_take_controls(u, now_us);
     if (lm_judge_flags(u, now_us) & LM_FLAGS_REMOVING) {

@@ -29,7 +29,7 @@ static int64_t add_bands(struct build_plan *plan, int level, const struct image_
         const int64_t into_tile = area->west & (((int64_t)1 << tile_shift) - 1);
         const int64_t columns = ((into_tile + area->width - 1) >> tile_shift) + 1;
         struct lm_band *band = &plan->bands[plan->band_count++];
-        *band = (struct lm_band){.level = (uint8_t)level,
+        *band = (struct lm_band){.lod = (uint8_t)level,
                                  .zone = zone,
                                  .row0 = row,
                                  .column0 = area->west >> tile_shift,
@@ -62,8 +62,8 @@ int build_plan_make(struct build_plan *plan, uint8_t shift0, struct build_extent
     for (int i = 0; i < count; i++) {
         last_level = extents[i].level > last_level ? extents[i].level : last_level;
     }
-    const int end = LM_DB_SHIFT_MAX + 1 - shift0 < LM_DB_LEVELS_MAX ? LM_DB_SHIFT_MAX + 1 - shift0
-                                                                    : LM_DB_LEVELS_MAX;
+    const int end = LM_DB_SHIFT_MAX + 1 - shift0 < LM_DB_LODS_MAX ? LM_DB_SHIFT_MAX + 1 - shift0
+                                                                  : LM_DB_LODS_MAX;
     last_level = last_level < end - 1 ? last_level : end - 1;
     for (int level = 0; level < end; level++) {
         struct image_area area = {0};
@@ -92,7 +92,7 @@ const struct lm_band *build_plan_band(const struct build_plan *plan, int level, 
 {
     for (int i = 0; i < plan->band_count; i++) {
         const struct lm_band *b = &plan->bands[i];
-        if (b->level == level && row >= b->row0 && row - b->row0 < b->rows) {
+        if (b->lod == level && row >= b->row0 && row - b->row0 < b->rows) {
             return b;
         }
     }

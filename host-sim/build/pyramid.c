@@ -30,7 +30,7 @@ static void free_row(struct tile_row *row)
 
 static uint32_t round_mask(const struct pyramid *p, const struct lm_band *band)
 {
-    return image_columns_round((uint8_t)(p->b->plan.shift0 + band->level), band->zone) - 1;
+    return image_columns_round((uint8_t)(p->b->plan.shift0 + band->lod), band->zone) - 1;
 }
 
 static struct build_tile *tile_at(const struct pyramid *p, const struct tile_row *row,
@@ -52,7 +52,7 @@ static int make_row_tiles(struct pyramid *p, uint32_t number, const struct tile_
         struct build_tile *const children[4] = {
             tile_at(p, &below[0], 2 * column), tile_at(p, &below[0], 2 * column + 1),
             tile_at(p, &below[1], 2 * column), tile_at(p, &below[1], 2 * column + 1)};
-        if (build_tile_make(p->b, band->level, band->zone, number, column, children,
+        if (build_tile_make(p->b, band->lod, band->zone, number, column, children,
                             &row->tiles[i]) != 0) {
             return -1;
         }
@@ -61,7 +61,7 @@ static int make_row_tiles(struct pyramid *p, uint32_t number, const struct tile_
             if (image_writer_tile(p->writer, entry, &row->tiles[i]->record) != 0) {
                 return -1;
             }
-            p->counts->tiles[band->level]++;
+            p->counts->tiles[band->lod]++;
         }
         hs_progress_update(&p->progress, ++p->entries_done);
     }
@@ -96,7 +96,7 @@ static int make_band(struct pyramid *p, const struct lm_band *band)
 {
     for (uint32_t r = 0; r < band->rows; r++) {
         struct tile_row row;
-        const int result = make_row(p, band->level, band->row0 + r, &row);
+        const int result = make_row(p, band->lod, band->row0 + r, &row);
         free_row(&row);
         if (result != 0) {
             return -1;
@@ -113,7 +113,7 @@ int build_pyramid(struct build_context *b, struct image_writer *writer,
     hs_progress_begin(&p.progress, "building", b->plan.entry_count);
     int result = 0;
     for (int i = 0; result == 0 && i < b->plan.band_count; i++) {
-        if (b->plan.bands[i].level == b->plan.level_count - 1) {
+        if (b->plan.bands[i].lod == b->plan.level_count - 1) {
             result = make_band(&p, &b->plan.bands[i]);
         }
     }

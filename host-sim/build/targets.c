@@ -72,7 +72,7 @@ static bool set_elevation(struct lm_target *t, char *word)
         return false;
     }
     t->flags = is_above_ground ? LM_TARGET_ABOVE_GROUND : 0;
-    t->elevation_q6 = (int32_t)lround(metres * 64);
+    t->elevation_m_q6 = (int32_t)lround(metres * 64);
     return true;
 }
 
@@ -130,7 +130,7 @@ static bool set_kind(struct lm_target *t, const struct build_signatures *signatu
         return false;
     }
     t->swerling = (uint8_t)number[0];
-    t->mean_rcs_q8 = (int32_t)lround(number[1] * 256);
+    t->mean_rcs_dbsm_q8 = (int32_t)lround(number[1] * 256);
     return true;
 }
 
@@ -241,9 +241,9 @@ static int read_via(const struct db_text_file *f, struct lm_target *t, char *con
         return db_text_error(f, "leave some places out", "the path has more than %d legs",
                              LM_TARGET_LEGS_MAX);
     }
-    const struct lm_place begin = {t->latitude, t->longitude};
-    const struct lm_place to = {hs_bam(latitude), hs_bam(longitude)};
-    const struct lm_place from =
+    const struct lm_position begin = {t->latitude, t->longitude};
+    const struct lm_position to = {hs_bam(latitude), hs_bam(longitude)};
+    const struct lm_position from =
         t->path_legs > 0 ? image_path_end(&t->path[t->path_legs - 1]) : begin;
     if (image_path_leg(from, to, &t->path[t->path_legs]) != 0) {
         return db_text_error(

@@ -207,7 +207,7 @@ static int make_from_inputs(struct build_context *b, int level, const struct ima
 
 static void identify(struct lm_tile *tile, int level, const struct image_frame *f)
 {
-    tile->level = (uint8_t)level;
+    tile->lod = (uint8_t)level;
     tile->zone = f->zone;
     tile->row = f->row;
     tile->column = f->column;

@@ -129,11 +129,11 @@ void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], st
     while ((high - floor_to(low, shift) + (1 << shift) / 2) >> shift > UINT16_MAX) {
         shift++;
     }
-    tile->base_q6 = floor_to(low, shift);
+    tile->base_m_q6 = floor_to(low, shift);
     tile->post_shift = (uint8_t)shift;
     for (int r = 0; r < LM_TILE_POSTS; r++) {
         for (int c = 0; c < LM_TILE_POSTS; c++) {
-            const int32_t above = posts_q6[r][c] - tile->base_q6;
+            const int32_t above = posts_q6[r][c] - tile->base_m_q6;
             tile->points[r][c].post = (uint16_t)((above + (1 << shift) / 2) >> shift);
         }
     }

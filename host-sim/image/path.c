@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-double image_path_apart_m(struct lm_place a, struct lm_place b)
+double image_path_apart_m(struct lm_position a, struct lm_position b)
 {
     uint32_t distance_q8;
     fx_bam_t azimuth;
@@ -14,16 +14,16 @@ double image_path_apart_m(struct lm_place a, struct lm_place b)
     return distance_q8 / 256.0;
 }
 
-struct lm_place image_path_end(const struct lm_path_leg *leg)
+struct lm_position image_path_end(const struct lm_path_leg *leg)
 {
     struct lm_geo_origin origin;
-    lm_geo_set_origin(&origin, (struct lm_place){leg->latitude, leg->longitude});
+    lm_geo_set_origin(&origin, (struct lm_position){leg->latitude, leg->longitude});
     return lm_geo_direct(&origin, leg->heading, (uint32_t)((uint64_t)leg->length_mm * 32 / 125));
 }
 
 /* lm_geo_inverse is good to 0.2 %, lm_geo_direct to centimetres: what the one misses by, the other
  * tells, and each round leaves the 0.2 % of that, and what meridians converge over the leg. */
-int image_path_leg(struct lm_place from, struct lm_place to, struct lm_path_leg *leg)
+int image_path_leg(struct lm_position from, struct lm_position to, struct lm_path_leg *leg)
 {
     uint32_t distance_q8;
     fx_bam_t heading;

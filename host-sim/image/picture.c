@@ -16,7 +16,7 @@ static struct image_area level_area(const struct image *image, int level)
     struct image_area all = {0};
     for (uint32_t i = 0; i < image->header.band_count; i++) {
         const struct lm_band *b = &image->db.bands[i];
-        if (b->level != level) {
+        if (b->lod != level) {
             continue;
         }
         const uint8_t shift = (uint8_t)(image->header.shift0 + level);
@@ -49,7 +49,7 @@ int image_view_fit(const struct image *image, struct image_view *v, int level, i
 {
     const bool is_whole = v->area.width == 0;
     const int first = level >= 0 ? level : 0;
-    const int last = level >= 0 ? level : image->header.level_count - 1;
+    const int last = level >= 0 ? level : image->header.lod_count - 1;
     for (v->level = first; v->level <= last; v->level++) {
         const double cell = ldexp(1.0, image->header.shift0 + v->level);
         if (is_whole) {
@@ -104,7 +104,7 @@ static bool find_spot(struct look *l, int level, int64_t latitude, uint32_t long
                       struct spot *s)
 {
     const struct image *image = l->image;
-    for (int k = level; k < image->header.level_count; k++) {
+    for (int k = level; k < image->header.lod_count; k++) {
         s->shift = (uint8_t)(image->header.shift0 + k);
         const uint32_t row = image_row_of(s->shift, latitude);
         s->zone = image_row_zone(s->shift, row);

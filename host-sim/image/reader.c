@@ -92,8 +92,8 @@ static int check_header(const struct image *image, struct image_findings *f)
     }
     const bool is_sound =
         h->header_bytes == LM_DB_HEADER_BYTES && h->record_bytes == LM_TILE_BYTES &&
-        h->shift0 >= LM_DB_SHIFT_MIN && h->level_count >= 1 && h->level_count <= LM_DB_LEVELS_MAX &&
-        h->shift0 + h->level_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
+        h->shift0 >= LM_DB_SHIFT_MIN && h->lod_count >= 1 && h->lod_count <= LM_DB_LODS_MAX &&
+        h->shift0 + h->lod_count - 1 <= LM_DB_SHIFT_MAX && h->band_count >= 1 &&
         h->band_count <= LM_DB_BANDS_MAX && h->section_count >= LM_IMAGE_MANIFEST &&
         h->section_count <= LM_IMAGE_SECTIONS_MAX && h->image_bytes >= LM_DB_HEADER_BYTES;
     if (!is_sound) {
@@ -173,12 +173,12 @@ static int check_band(const struct image *image, uint32_t index, struct image_fi
     if (b->reserved != 0) {
         image_find(f, at, "band %" PRIu32 ": unused bytes are not zero", index);
     }
-    if (b->level >= image->header.level_count || b->zone > 3) {
-        image_find(f, at, "band %" PRIu32 ": level %u or zone %u does not exist", index, b->level,
+    if (b->lod >= image->header.lod_count || b->zone > 3) {
+        image_find(f, at, "band %" PRIu32 ": level %u or zone %u does not exist", index, b->lod,
                    b->zone);
         return -1;
     }
-    const uint8_t shift = (uint8_t)(image->header.shift0 + b->level);
+    const uint8_t shift = (uint8_t)(image->header.shift0 + b->lod);
     const uint32_t rows_all = image_rows_all(shift), round = image_columns_round(shift, b->zone);
     if (b->rows < 1 || b->row0 >= rows_all || b->rows > rows_all - b->row0 || b->columns < 1 ||
         b->column0 >= round || b->columns > round) {
@@ -211,15 +211,15 @@ static void fill_db(struct image *image)
 {
     const struct lm_image_header *h = &image->header;
     image->db = (struct lm_db){
-        .level_count = h->level_count,
+        .lod_count = h->lod_count,
         .shift0 = h->shift0,
         .band_count = h->band_count,
         .entry_count = h->entry_count,
         .record_count = h->record_count,
         .directory_offset = image->sections[LM_IMAGE_DIRECTORY]->offset,
         .records_offset = image->sections[LM_IMAGE_TILES]->offset,
-        .mean_elevation_q6 = h->mean_elevation_q6,
-        .geoid_q6 = h->geoid_q6,
+        .mean_elevation_m_q6 = h->mean_elevation_m_q6,
+        .geoid_m_q6 = h->geoid_m_q6,
         .centre_latitude = h->centre_latitude,
         .centre_longitude = h->centre_longitude,
     };
@@ -338,7 +338,7 @@ const struct lm_band *image_band(const struct image *image, uint8_t level, uint3
 {
     for (uint32_t i = 0; i < image->header.band_count; i++) {
         const struct lm_band *b = &image->db.bands[i];
-        if (b->level == level && row >= b->row0 && row - b->row0 < b->rows) {
+        if (b->lod == level && row >= b->row0 && row - b->row0 < b->rows) {
             return b;
         }
     }

@@ -30,7 +30,7 @@ static void print_body(const struct lm_scatterer *s)
 
 static void print_leg(const struct lm_path_leg *leg)
 {
-    const struct lm_place to = image_path_end(leg);
+    const struct lm_position to = image_path_end(leg);
     printf("        via %.6f %.6f: %.1f m on %.2f\n", image_degrees((int32_t)to.latitude),
            image_longitude_degrees(to.longitude), leg->length_mm / 1000.0,
            image_degrees((int64_t)leg->heading));
@@ -49,12 +49,12 @@ void image_targets_print(const struct image *image)
         const bool is_above_ground = (t->flags & LM_TARGET_ABOVE_GROUND) != 0;
         printf("%10.6f %11.6f %s%*.1f %8.2f", image_degrees((int32_t)t->latitude),
                image_longitude_degrees(t->longitude), is_above_ground ? "ground" : "",
-               is_above_ground ? 6 : 12, t->elevation_q6 / 64.0,
+               is_above_ground ? 6 : 12, t->elevation_m_q6 / 64.0,
                image_degrees((int64_t)t->heading));
         if (t->flags & LM_TARGET_HAS_SIGNATURE) {
             printf("  signature %u", t->signature);
         } else if (t->scatterer_count == 0) {
-            printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_q8 / 256.0);
+            printf("  swerling %u, mean %.1f dBsm", t->swerling, t->mean_rcs_dbsm_q8 / 256.0);
         }
         if (t->flags & LM_TARGET_HAS_PATH) {
             printf("  moving %.1f m/s%s", t->speed_mm_s / 1000.0,
@@ -87,7 +87,7 @@ static bool rest_is_zero(const struct lm_target *t)
     const size_t used_bytes = t->path_legs * sizeof t->path[0] +
                               t->scatterer_count * sizeof t->scatterers[0]; /* one of them is 0 */
     const bool is_point = t->scatterer_count == 0 && !(t->flags & LM_TARGET_HAS_SIGNATURE);
-    return rest && (is_point || (t->swerling == 0 && t->mean_rcs_q8 == 0)) &&
+    return rest && (is_point || (t->swerling == 0 && t->mean_rcs_dbsm_q8 == 0)) &&
            db_is_zero((const uint8_t *)t->scatterers + used_bytes,
                       sizeof t->scatterers - used_bytes);
 }
@@ -96,8 +96,8 @@ static bool rest_is_zero(const struct lm_target *t)
  * is round? */
 static bool path_hangs_together(const struct lm_target *t)
 {
-    const struct lm_place begin = {t->latitude, t->longitude};
-    struct lm_place at = begin;
+    const struct lm_position begin = {t->latitude, t->longitude};
+    struct lm_position at = begin;
     for (int i = 0; i < t->path_legs; i++) {
         if (t->path[i].latitude != at.latitude || t->path[i].longitude != at.longitude) {
             return false;

@@ -119,11 +119,11 @@ static void check_classes(struct verify *v)
 static bool bands_overlap(const struct image *image, const struct lm_band *a,
                           const struct lm_band *b)
 {
-    if (a->level != b->level || a->row0 >= b->row0 + b->rows || b->row0 >= a->row0 + a->rows) {
+    if (a->lod != b->lod || a->row0 >= b->row0 + b->rows || b->row0 >= a->row0 + a->rows) {
         return false;
     }
     const uint32_t mask =
-        image_columns_round((uint8_t)(image->header.shift0 + a->level), a->zone) - 1;
+        image_columns_round((uint8_t)(image->header.shift0 + a->lod), a->zone) - 1;
     return ((b->column0 - a->column0) & mask) < a->columns ||
            ((a->column0 - b->column0) & mask) < b->columns;
 }
@@ -192,7 +192,7 @@ static bool posts_are_in_bounds(const struct lm_tile *t)
         const uint16_t p = t->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS].post;
         highest = p > highest ? p : highest;
     }
-    return t->base_q6 + ((int64_t)highest << t->post_shift) <= IMAGE_ELEVATION_LIMIT_Q6;
+    return t->base_m_q6 + ((int64_t)highest << t->post_shift) <= IMAGE_ELEVATION_LIMIT_Q6;
 }
 
 static int count_bad_cells(const struct image *image, const struct lm_tile *t)
@@ -228,13 +228,13 @@ static bool check_tile(struct verify *v, uint32_t record, const struct lm_tile *
     const struct image *image = v->image;
     const uint64_t at = image_record_offset(image, record);
     const uint64_t before = v->findings->count;
-    if (fx_crc32c(0, &t->level, LM_TILE_BYTES - sizeof t->crc) != t->crc) {
+    if (fx_crc32c(0, &t->lod, LM_TILE_BYTES - sizeof t->crc) != t->crc) {
         image_find(v->findings, at, "record %" PRIu32 ": its checksum does not fit it", record);
     }
     if (!tile_reserved_is_zero(t)) {
         image_find(v->findings, at, "record %" PRIu32 ": unused bytes are not zero", record);
     }
-    if (t->base_q6 < -IMAGE_ELEVATION_LIMIT_Q6 || t->base_q6 > IMAGE_ELEVATION_LIMIT_Q6 ||
+    if (t->base_m_q6 < -IMAGE_ELEVATION_LIMIT_Q6 || t->base_m_q6 > IMAGE_ELEVATION_LIMIT_Q6 ||
         t->post_shift > LM_TILE_POST_SHIFT_MAX || !posts_are_in_bounds(t)) {
         image_find(v->findings, at, "record %" PRIu32 ": elevations out of range", record);
     }
@@ -243,13 +243,13 @@ static bool check_tile(struct verify *v, uint32_t record, const struct lm_tile *
         image_find(v->findings, at, "record %" PRIu32 ": %d cells of a class that is not described",
                    record, bad_cells);
     }
-    const int64_t entry = lm_db_entry(&image->db, t->level, t->row, t->column);
-    const struct lm_band *band = entry >= 0 ? image_band(image, t->level, t->row) : NULL;
+    const int64_t entry = lm_db_entry(&image->db, t->lod, t->row, t->column);
+    const struct lm_band *band = entry >= 0 ? image_band(image, t->lod, t->row) : NULL;
     if (entry < 0 || (uint32_t)entry != v->entry_of[record] || band->zone != t->zone) {
         image_find(v->findings, at,
                    "record %" PRIu32 ": says it is level %u zone %u row %" PRIu32 " column %" PRIu32
                    ", which is not what the directory takes it for",
-                   record, t->level, t->zone, t->row, t->column);
+                   record, t->lod, t->zone, t->row, t->column);
         return false;
     }
     return v->findings->count == before;
@@ -288,9 +288,9 @@ static void report_edge(struct verify *v, uint32_t record, const char *side, int
 
 static void check_east_edge(struct verify *v, uint32_t record, const struct lm_tile *t)
 {
-    const uint8_t shift = (uint8_t)(v->image->header.shift0 + t->level);
+    const uint8_t shift = (uint8_t)(v->image->header.shift0 + t->lod);
     const uint32_t mask = image_columns_round(shift, t->zone) - 1;
-    const struct lm_tile *east = find_tile(v->image, t->level, t->row, (t->column + 1) & mask);
+    const struct lm_tile *east = find_tile(v->image, t->lod, t->row, (t->column + 1) & mask);
     int bad = 0;
     for (int r = 0; east && r < LM_TILE_POSTS; r++) {
         bad += !posts_agree(t, r, LM_TILE_CELLS, east, r, 0);
@@ -303,11 +303,11 @@ static void check_east_edge(struct verify *v, uint32_t record, const struct lm_t
 static void check_north_edge(struct verify *v, uint32_t record, const struct lm_tile *t)
 {
     const struct image *image = v->image;
-    const struct lm_band *band = image_band(image, t->level, t->row + 1);
+    const struct lm_band *band = image_band(image, t->lod, t->row + 1);
     if (!band) {
         return;
     }
-    const uint8_t shift = (uint8_t)(image->header.shift0 + t->level);
+    const uint8_t shift = (uint8_t)(image->header.shift0 + t->lod);
     const int cell_shift = shift + band->zone;
     const struct lm_tile *north = NULL;
     uint32_t north_column = UINT32_MAX;
@@ -321,7 +321,7 @@ static void check_north_edge(struct verify *v, uint32_t record, const struct lm_
         const uint32_t column = longitude >> (cell_shift + LM_TILE_CELLS_LOG2);
         if (column != north_column) {
             north_column = column;
-            north = find_tile(image, t->level, t->row + 1, column);
+            north = find_tile(image, t->lod, t->row + 1, column);
             v->counts->edges += north != NULL;
         }
         const int north_post = (int)(longitude >> cell_shift & (LM_TILE_CELLS - 1));
@@ -361,12 +361,12 @@ static bool child_fits(const struct image *image, const struct lm_tile *parent,
 
 static void check_parent(struct verify *v, uint32_t record, const struct lm_tile *t)
 {
-    if (t->level + 1 >= v->image->header.level_count) {
+    if (t->lod + 1 >= v->image->header.lod_count) {
         return;
     }
     const uint64_t at = image_record_offset(v->image, record);
     const struct lm_tile *parent =
-        find_tile(v->image, (uint8_t)(t->level + 1), t->row >> 1, t->column >> 1);
+        find_tile(v->image, (uint8_t)(t->lod + 1), t->row >> 1, t->column >> 1);
     if (!parent) {
         image_find(v->findings, at, "record %" PRIu32 ": there is no tile above it", record);
         return;

@@ -94,7 +94,7 @@ int image_writer_begin(struct image_writer *w, const char *path,
 
 int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile)
 {
-    tile->crc = fx_crc32c(0, &tile->level, LM_TILE_BYTES - sizeof tile->crc);
+    tile->crc = fx_crc32c(0, &tile->lod, LM_TILE_BYTES - sizeof tile->crc);
     w->tiles_crc = fx_crc32c(w->tiles_crc, tile, LM_TILE_BYTES);
     image_sha256_add(&w->tiles_sha256, tile, LM_TILE_BYTES);
     w->records[entry] = w->header.record_count++;

@@ -175,9 +175,9 @@ void rr_window_take(const struct rr_image *image, const struct rr_window *window
 void rr_firmware_speckle(double *power, unsigned side, unsigned looks_log2, unsigned epoch)
 {
     for (uint32_t row = 0; row < side; row++) {
-        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, row, epoch);
+        const struct lm_noise_key raster = lm_noise_key_of(LM_NOISE_SPECKLE, row, epoch);
         for (uint32_t column = 0; column < side; column++) {
-            const double level_db = lm_noise_of_q8(looks_log2, &raster, column) / 256.0;
+            const double level_db = lm_noise_cell_db_q8(looks_log2, &raster, column) / 256.0;
             power[row * side + column] = pow(10, level_db / 10);
         }
     }

@@ -78,7 +78,7 @@ static int read_header(struct ref_db *db, const char *name)
     db->entry_count = get_u32(h + 28);
     db->record_count = get_u32(h + 32);
     const bool is_sound = db->shift0 >= LM_DB_SHIFT_MIN && db->level_count >= 1 &&
-                          db->level_count <= LM_DB_LEVELS_MAX &&
+                          db->level_count <= LM_DB_LODS_MAX &&
                           db->shift0 + db->level_count - 1 <= LM_DB_SHIFT_MAX &&
                           db->band_count >= 1 && db->band_count <= LM_DB_BANDS_MAX &&
                           get_u32(h + 36) == LM_TILE_BYTES && get_u64(h + 16) <= db->size &&
@@ -96,7 +96,7 @@ static int read_header(struct ref_db *db, const char *name)
 static bool is_sound_band(const struct ref_db *db, const struct lm_band *band)
 {
     const uint64_t entries = (uint64_t)band->rows * band->columns;
-    return band->level < db->level_count && band->zone <= 3 && band->rows >= 1 &&
+    return band->lod < db->level_count && band->zone <= 3 && band->rows >= 1 &&
            band->columns >= 1 && entries / band->columns == band->rows &&
            entries <= db->entry_count && band->entry0 <= db->entry_count - entries;
 }
@@ -258,8 +258,8 @@ static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry,
     }
     const struct lm_tile *tile =
         (const struct lm_tile *)(const void *)(db->records + (size_t)record * LM_TILE_BYTES);
-    const bool is_asked_for = tile->level == level && tile->zone == g->zone &&
-                              tile->row == g->row && tile->column == g->column;
+    const bool is_asked_for = tile->lod == level && tile->zone == g->zone && tile->row == g->row &&
+                              tile->column == g->column;
     return is_good_record(db, record, tile) && is_asked_for && tile->post_shift <= POST_SHIFT_MAX
                ? tile
                : NULL;
@@ -272,7 +272,7 @@ static const struct lm_tile *find_tile(const struct ref_db *db, unsigned level,
     for (uint32_t i = 0; i < db->band_count; i++) {
         const struct lm_band *band = &db->bands[i];
         const uint32_t along = (g->column - band->column0) & (columns - 1);
-        if (band->level == level && band->zone == g->zone && g->row >= band->row0 &&
+        if (band->lod == level && band->zone == g->zone && g->row >= band->row0 &&
             g->row - band->row0 < band->rows && along < band->columns) {
             return entry_tile(db, band->entry0 + (g->row - band->row0) * band->columns + along,
                               level, g);
@@ -323,6 +323,6 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
     const double south_side = low[0].post * (1 - east) + low[1].post * east;
     const double north_side = high[0].post * (1 - east) + high[1].post * east;
     const double code = south_side * (1 - north) + north_side * north;
-    *elevation_m = (tile->base_q6 + ldexp(code, tile->post_shift)) / 64;
+    *elevation_m = (tile->base_m_q6 + ldexp(code, tile->post_shift)) / 64;
     return true;
 }

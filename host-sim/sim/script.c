@@ -53,19 +53,19 @@ static bool parse_effects(char **words, int count, struct lm_sar_command *sar)
     return true;
 }
 
-static bool place(char **words, struct lm_place *at)
+static bool place(char **words, struct lm_position *at)
 {
     double lat, lon;
     if (!number(words[0], -90, 90, &lat) || !number(words[1], -180, 180, &lon)) {
         return false;
     }
-    *at = (struct lm_place){hs_bam(lat), hs_bam(lon)};
+    *at = (struct lm_position){hs_bam(lat), hs_bam(lon)};
     return true;
 }
 
 static bool parse_sar(char **words, int count, struct lm_control *c)
 {
-    struct lm_place centre;
+    struct lm_position centre;
     double cell, look = 0, range = 0, height = 0;
     const bool is_from_ownship = strcmp(words[1], "sar") == 0;
     const int least = is_from_ownship ? 5 : 8;
@@ -84,7 +84,7 @@ static bool parse_sar(char **words, int count, struct lm_control *c)
         .is_from_ownship = is_from_ownship,
         .look_azimuth = hs_bam(look),
         .range_m = (uint32_t)lround(range),
-        .height_q6 = (int32_t)lround(height * 64),
+        .height_m_q6 = (int32_t)lround(height * 64),
     };
     return parse_effects(words + least, count - least, &c->sar);
 }
@@ -102,7 +102,7 @@ static bool has_scale(const struct script *s, struct line_events *line)
         return true;
     }
     snprintf(line->refusal, sizeof line->refusal, "%s %s has no scale of %d nautical miles",
-             radar->mode[s->mode].name, radar->field[s->field].name, (int)s->range_nm);
+             radar->mode[s->mode].name, radar->fov[s->field].name, (int)s->range_nm);
     return false;
 }
 
@@ -222,13 +222,13 @@ static bool parse_sector(struct script *s, char **words, int count, struct line_
 {
     const struct lm_radar *radar = s->radar;
     const int32_t mode = lm_radar_find_mode(radar, words[1]);
-    const int32_t field = count == 3 ? lm_radar_find_field(radar, words[2]) : LM_FIELD_NORM;
+    const int32_t field = count == 3 ? lm_radar_find_field(radar, words[2]) : LM_FOV_NORM;
     if (count > 3 || field < 0) {
         return false;
     }
-    if (field > radar->mode[mode].field_last) {
+    if (field > radar->mode[mode].fov_last) {
         snprintf(line->refusal, sizeof line->refusal, "%s has no %s", radar->mode[mode].name,
-                 radar->field[field].name);
+                 radar->fov[field].name);
         return false;
     }
     s->mode = mode;
@@ -243,7 +243,7 @@ static bool parse_steer(char **words, int count, struct lm_control *c)
 {
     c->kind = LM_CONTROL_STEERPOINT;
     c->steerpoint.is_set = count == 4;
-    return count == 4 ? place(words + 2, &c->steerpoint.place)
+    return count == 4 ? place(words + 2, &c->steerpoint.position)
                       : count == 3 && strcmp(words[2], "off") == 0;
 }
 
@@ -280,8 +280,8 @@ static bool add_jammer(char **words, int count, struct lm_environment *e)
         return false;
     }
     struct lm_jammer *jammer = &e->jammer[e->jammer_count++];
-    jammer->ratio_q8 = (int16_t)lround(ratio_db * 256);
-    return place(words + 2, &jammer->place);
+    jammer->noise_ratio_db_q8 = (int16_t)lround(ratio_db * 256);
+    return place(words + 2, &jammer->position);
 }
 
 /* What changes the environment; the control carries the whole of it. */

@@ -225,7 +225,7 @@ static int64_t noise(int looks_log2, int entry)
 }
 
 static const struct table noise_tables[] = {
-    {"lm_noise_q8", "int16_t",
+    {"lm_noise_db_q8", "int16_t",
      "dB of the mean of slice lm_noise_slice(i) of 1024 of a Gamma(2^row) variable",
      LM_NOISE_LOOKS_LOG2_MAX + 1, LM_NOISE_SLICES + LM_NOISE_BLOCK, noise},
 };
@@ -287,7 +287,7 @@ static int64_t response_envelope(int row, int cell)
 static const struct table response_tables[] = {
     {"lm_response_q15", "int16_t", "amplitude of the response to a point, i / 16 cells away", 0,
      RESPONSE_CELLS *RESPONSE_STEPS + 2, response},
-    {"lm_response_envelope_q8", "int16_t", "dB of its largest power from i cells away on", 0,
+    {"lm_response_envelope_db_q8", "int16_t", "dB of its largest power from i cells away on", 0,
      RESPONSE_CELLS + 1, response_envelope},
 };
 

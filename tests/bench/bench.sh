@@ -30,14 +30,14 @@ table() { # divisor format figure
         { n[$1] = $2 }
         END {
             whole = n["lm_sar_draw_line"] + n["lm_sector_draw_line"] + n["lm_sar_start"]
-            paint = n["lm_patch_paint"] + n["lm_ppi_paint"]
+            paint = n["lm_scan_conv_patch"] + n["lm_scan_conv_sector"]
             part("scan_line: cells, terrain", n["lm_scan_line_run"])
-            part("aspect: horizon, shadow, slope, edges", n["lm_aspect_run"] + n["lm_horizon_behind"])
+            part("aspect: horizon, shadow, slope, edges", n["lm_illuminate"] + n["lm_foreground_line_horizon"])
             part("texture, speckle, noise of a patch", n["lm_texture_run"] + n["lm_speckle_run"] + n["lm_speckle_floor_run"])
-            part("mean over a sample of several azimuths", n["lm_footprint_begin"] + n["lm_footprint_add"] + n["lm_footprint_mean"])
-            part("elevation pattern", n["lm_elevation_run"])
+            part("mean over a sample of several azimuths", n["lm_azimuth_average_begin"] + n["lm_azimuth_average_add"] + n["lm_azimuth_average_mean"])
+            part("elevation pattern", n["lm_antenna_pattern_apply"])
             part("slant range, levels to power", n["lm_slant_run"])
-            part("beam", n["lm_beam_aim"] + n["lm_beam_sum"])
+            part("beam", n["lm_beam_set_taps"] + n["lm_beam_sum"])
             part("receiver: pulse, noise, logarithm", n["lm_receiver_run"])
             part("tone", n["lm_tone_run"])
             row("rest: geometry, tiles asked for, set-up", whole - parts)
@@ -56,11 +56,11 @@ if command -v valgrind > /dev/null; then
     echo
     echo "Sixteen targets with a signature, 60 x 60 cells of 0.5 m each: instructions a target and patch"
     awk -v figures="$work/figures" '{ n[$1] = $2 } END {
-        chip = n["lm_chips_service"] + n["lm_patch_chips_shade"] + n["lm_patch_chips_add"]
+        chip = n["lm_chips_service"] + n["lm_target_patch_shade"] + n["lm_target_patch_add_chips"]
         printf "%.0f instructions target with a signature in a patch\n", chip / 16 >> figures
         printf "  %-44s %9.0f\n", "reading and reducing its chip", n["lm_chips_service"] / 16
-        printf "  %-44s %9.0f\n", "shadow", n["lm_patch_chips_shade"] / 16
-        printf "  %-44s %9.0f\n", "power", n["lm_patch_chips_add"] / 16
+        printf "  %-44s %9.0f\n", "shadow", n["lm_target_patch_shade"] / 16
+        printf "  %-44s %9.0f\n", "power", n["lm_target_patch_add_chips"] / 16
     }' "$work/chips"
     for mode in gm exp dbs1 dbs2 gmt sea; do
         count $mode > "$work/$mode"

@@ -123,14 +123,14 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
     struct lm_sar sar;
     const struct lm_sar_scene scene = {.targets = targets,
                                        .chips = &w->chips,
-                                       .reference_q10 = 60 * 1024,
+                                       .reference_m_q10 = 60 * 1024,
                                        .sea_state = LM_SEA_STATE_OF_IMAGE};
     const struct lm_sar_command command = {
         .centre = {w->db.centre_latitude, w->db.centre_longitude},
         .cell_mm = cell_mm,
         .look_azimuth = FX_BAM_DEG(37),
         .range_m = 20000,
-        .height_q6 = 3000 * 64,
+        .height_m_q6 = 3000 * 64,
     };
     for (int n = 0; n < count; n++) {
         if (lm_sar_start(&sar, &lm_radar_default, &w->db, &command, &scene) != LM_OK) {
@@ -144,8 +144,8 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
         make_resident(w);
         while (sar.line < lm_radar_default.sar.cells) {
             lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
-            lm_patch_paint(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
-                           lm_radar_default.sar.cells);
+            lm_scan_conv_patch(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
+                               lm_radar_default.sar.cells);
         }
     }
     return 0;
@@ -155,9 +155,9 @@ static const struct sector_case {
     const char *name;
     uint8_t mode, field;
 } sector_cases[] = {
-    {"gm", LM_SECTOR_GM, LM_FIELD_NORM},   {"exp", LM_SECTOR_GM, LM_FIELD_EXP},
-    {"dbs1", LM_SECTOR_GM, LM_FIELD_DBS1}, {"dbs2", LM_SECTOR_GM, LM_FIELD_DBS2},
-    {"gmt", LM_SECTOR_GMT, LM_FIELD_NORM}, {"sea", LM_SECTOR_SEA, LM_FIELD_NORM},
+    {"gm", LM_SECTOR_GM, LM_FOV_NORM},   {"exp", LM_SECTOR_GM, LM_FOV_EXP},
+    {"dbs1", LM_SECTOR_GM, LM_FOV_DBS1}, {"dbs2", LM_SECTOR_GM, LM_FOV_DBS2},
+    {"gmt", LM_SECTOR_GMT, LM_FOV_NORM}, {"sea", LM_SECTOR_SEA, LM_FOV_NORM},
 };
 
 static const struct sector_case *find_case(const char *name)
@@ -177,33 +177,33 @@ static void draw_sweeps(struct world *w, const struct sector_case *what, int cou
     uint32_t drawn = 0;
     static struct lm_sector sector;
     const struct lm_platform platform = {
-        .place = {w->db.centre_latitude - (fx_bam_t)(8000 / 9.3e-3), w->db.centre_longitude},
-        .height_q10 = 3000 * 1024,
+        .position = {w->db.centre_latitude - (fx_bam_t)(8000 / 9.3e-3), w->db.centre_longitude},
+        .height_m_q10 = 3000 * 1024,
         .track = FX_BAM_DEG(-30),
         .speed_mm_s = 250000,
     };
     const struct lm_environment fair = {.sea_state = LM_SEA_STATE_OF_IMAGE};
     const struct lm_sector_command command = {
         .mode = what->mode,
-        .field = what->field,
+        .fov = what->field,
         .centre = {w->db.centre_latitude, w->db.centre_longitude}};
     lm_sector_start(&sector, &lm_radar_default, &command, 0);
     sector.environment = &fair;
     for (int n = 0; n < count; n++) {
         lm_sector_begin(&sector, &w->tiles, &platform);
-        const struct lm_view_from from = {platform.place, platform.heading, 3000 * 1024};
+        const struct lm_view_from from = {platform.position, platform.heading, 3000 * 1024};
         const struct lm_view view =
             sector.half_m ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
                           : lm_view_of_sector(&w->frame, &from, lm_radar_default.range[0].range_m);
         const struct lm_ppi ppi =
-            lm_view_ppi(&view, &w->frame, sector.slant.cell_q8, sector.edge_q8);
+            lm_view_ppi(&view, &w->frame, sector.slant.cell_m_q8, sector.edge_m_q8);
         const uint32_t lines = sector.lines;
         for (uint32_t i = 0; i < lines; i++) {
             const uint32_t line =
                 lm_sector_draw_line(&sector, &w->tiles, &platform, &w->tone, &w->line);
-            lm_ppi_paint(&w->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(&sector, line),
-                         (fx_bam_t)lm_sector_edge_bam(&sector, line + 1), w->line.grey,
-                         sector.slant.cells);
+            lm_scan_conv_sector(&w->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(&sector, line),
+                                (fx_bam_t)lm_sector_edge_bam(&sector, line + 1), w->line.grey,
+                                sector.slant.cells);
             make_resident(w);
             drawn++;
         }

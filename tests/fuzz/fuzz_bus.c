@@ -15,7 +15,7 @@ static void check_ownship(const struct lm_ownship *o)
     const int32_t quarter = (int32_t)FX_BAM_90;
     FUZZ_ASSERT((int32_t)o->latitude <= quarter && (int32_t)o->latitude >= -quarter);
     FUZZ_ASSERT(o->pitch <= quarter && o->pitch >= -quarter);
-    FUZZ_ASSERT(o->height_q6 >= -3500 * 64 && o->height_q6 <= 32500 * 64);
+    FUZZ_ASSERT(o->height_m_q6 >= -3500 * 64 && o->height_m_q6 <= 32500 * 64);
     FUZZ_ASSERT(abs(o->velocity_north_mm_s) <= 1500000 && abs(o->velocity_east_mm_s) <= 1500000);
     FUZZ_ASSERT(o->utc_s >= 0 && o->utc_s < 86400);
 }

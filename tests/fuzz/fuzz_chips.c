@@ -2,7 +2,7 @@
  * a patch and a line from anywhere. The first numbers of the input are the record and the look, the
  * rest is the chip, over and over. */
 #include "fuzz.h"
-#include "lm/chip_line.h"
+#include "lm/chip_sector.h"
 #include "lm/target_patch.h"
 #include "memory_flash.h"
 
@@ -20,8 +20,8 @@ struct world {
     struct lm_tile_cache tiles;
     struct lm_chips chips;
     struct lm_target target;
-    struct lm_targets_near near;
-    struct lm_patch_points points;
+    struct lm_target_candidates near;
+    struct lm_target_patch points;
     uint32_t cell_mm;
     fx_bam_t look;
     uint32_t range_q8;
@@ -67,24 +67,24 @@ static void choose(struct world *w, bool is_window)
 {
     const struct lm_target_set set = {
         .items = &w->target, .count = 1, .signatures = &w->signature, .signature_count = 1};
-    const struct lm_target_scene scene = {.place = {w->target.latitude, w->target.longitude},
+    const struct lm_target_scene scene = {.position = {w->target.latitude, w->target.longitude},
                                           .reach_m = 2000};
-    const struct lm_chip_scene chips = {.centre = scene.place,
+    const struct lm_chip_scene chips = {.centre = scene.position,
                                         .reach_m = 2000,
                                         .radar = {w->look % FX_BAM_90, w->target.longitude},
                                         .is_parallel = !is_window,
                                         .look = w->look,
-                                        .range_q8 = w->range_q8,
+                                        .range_m_q8 = w->range_q8,
                                         .heights = {3000 * 1024, 0},
                                         .cell_mm = w->cell_mm,
                                         .side_most = is_window ? 32 : LM_CHIP_SIDE};
-    lm_targets_select(&w->near, &set, &scene);
+    lm_target_candidates_select(&w->near, &set, &scene);
     lm_chips_choose(&w->chips, &w->near, &chips);
 }
 
 static void serve(struct world *w)
 {
-    const struct lm_chip_slot *slot = w->near.item[0].chip;
+    const struct lm_chip_slot *slot = w->near.candidate[0].chip;
     if (slot) {
         w->chip.aspect = slot->key.aspect;
         w->chip.crc = fx_crc32c(0, (const uint8_t *)&w->chip + 4, sizeof w->chip - 4);
@@ -102,8 +102,8 @@ static void draw_patch(struct world *w)
 {
     const struct lm_patch_geometry g = {.centre = {w->target.latitude, w->target.longitude},
                                         .look = w->look,
-                                        .centre_q8 = w->range_q8,
-                                        .cell_q8 = w->cell_mm * 256 / 1000,
+                                        .centre_m_q8 = w->range_q8,
+                                        .cell_m_q8 = w->cell_mm * 256 / 1000,
                                         .lines = LINES,
                                         .cells = CELLS,
                                         .guard = 4,
@@ -112,10 +112,10 @@ static void draw_patch(struct world *w)
                                         .across_mm_s = 200000,
                                         .dwell_ms = 4000};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
-    lm_patch_points_set(&w->points, &w->near, &g);
+    lm_target_patch_set(&w->points, &w->near, &g);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_patch_chips_shade(&w->points, k, &g, level_q8);
-        lm_patch_chips_add(&w->points, k, &g, level_q8);
+        lm_target_patch_shade(&w->points, k, &g, level_q8);
+        lm_target_patch_add_chips(&w->points, k, &g, level_q8);
     }
     for (uint32_t i = CELLS; i < LM_CELLS_ROOM; i++) {
         FUZZ_ASSERT(level_q8[i] == 0);
@@ -124,21 +124,21 @@ static void draw_patch(struct world *w)
 
 static void draw_line(struct world *w)
 {
-    const struct lm_target_item *item = &w->near.item[0];
+    const struct lm_target_candidate *item = &w->near.candidate[0];
     const uint32_t cell_q8 = w->cell_mm * 256 / 1000;
     const struct lm_target_line line = {.width = 1 + w->look % (FX_BAM_180 / 8),
-                                        .first_q8 = w->range_q8,
-                                        .cell_q8 = cell_q8,
+                                        .first_m_q8 = w->range_q8,
+                                        .cell_m_q8 = cell_q8,
                                         .cells = CELLS,
-                                        .height_q10 = 3000 * 1024};
-    const struct lm_chip_spot spot = {
-        .range_q8 = w->range_q8 + cell_q8 * (w->look % CELLS),
+                                        .height_m_q10 = 3000 * 1024};
+    const struct lm_chip_sector_place spot = {
+        .range_m_q8 = w->range_q8 + cell_q8 * (w->look % CELLS),
         .off_bam = (int32_t)(w->target.heading >> 8),
         .shadow_off_bam = (int32_t)w->target.heading,
     };
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     if (lm_chip_of(item)) {
-        FUZZ_ASSERT(lm_chip_line_add(item, &spot, &line, 30 * 256, level_q8) <= CELLS);
+        FUZZ_ASSERT(lm_chip_sector_add(item, &spot, &line, 30 * 256, level_q8) <= CELLS);
     }
     for (uint32_t i = CELLS; i < LM_CELLS_ROOM; i++) {
         FUZZ_ASSERT(level_q8[i] == 0);

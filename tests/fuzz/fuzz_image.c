@@ -10,15 +10,15 @@ const uint32_t fuzz_mutations = 60000;
 
 enum { SLOTS = 24, POLLS = 64 };
 
-static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struct lm_place from,
+static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struct lm_position from,
                    uint32_t cell_mm)
 {
     struct lm_geo_origin origin;
     struct lm_ground_path path;
     lm_geo_set_origin(&origin, from);
-    const struct lm_place points[3] = {from, lm_geo_direct(&origin, 0x2AAAAAAA, 2560000),
-                                       lm_geo_direct(&origin, 0x2AAAAAAA, 5120000)};
-    const uint8_t level = lm_scan_level(cache->db, cell_mm);
+    const struct lm_position points[3] = {from, lm_geo_direct(&origin, 0x2AAAAAAA, 2560000),
+                                          lm_geo_direct(&origin, 0x2AAAAAAA, 5120000)};
+    const uint8_t level = lm_scan_lod(cache->db, cell_mm);
     for (int i = 0; i < 2; i++) {
         lm_ground_path_fit(&path, points, 64);
         lm_scan_line_run(line, cache, level, &path, 64); /* asks for what is missing */
@@ -33,9 +33,9 @@ static void look_at_bands(struct lm_tile_cache *cache)
     for (uint32_t i = 0; i < db->band_count && i < 8; i++) {
         const struct lm_band *b = &db->bands[i];
         const struct lm_tile *tile =
-            lm_tile_cache_get(cache, b->level, b->row0 + b->rows - 1, b->column0 + b->columns - 1);
-        FUZZ_ASSERT(!tile || tile->level >= b->level);
-        const int64_t entry = lm_db_entry(db, b->level, b->row0, b->column0);
+            lm_tile_cache_get(cache, b->lod, b->row0 + b->rows - 1, b->column0 + b->columns - 1);
+        FUZZ_ASSERT(!tile || tile->lod >= b->lod);
+        const int64_t entry = lm_db_entry(db, b->lod, b->row0, b->column0);
         FUZZ_ASSERT(entry >= 0 && entry < db->entry_count);
     }
     lm_tile_cache_service(cache, 0, POLLS);
@@ -47,8 +47,8 @@ static void use(const struct lm_db *db, struct fuzz_supply *s)
     struct lm_scan_line *line = malloc(sizeof *line);
     uint8_t *pool = malloc(SLOTS * sizeof(struct lm_tile));
     FUZZ_ASSERT(cache && line && pool);
-    const struct lm_place there = {fuzz_u32(s), fuzz_u32(s)};
-    const struct lm_place centre = {db->centre_latitude, db->centre_longitude};
+    const struct lm_position there = {fuzz_u32(s), fuzz_u32(s)};
+    const struct lm_position centre = {db->centre_latitude, db->centre_longitude};
     if (lm_tile_cache_init(cache, db, pool, SLOTS * sizeof(struct lm_tile), POLLS) == LM_OK) {
         look_at_bands(cache);
         for (uint32_t cell_mm = 500; cell_mm < 100000000; cell_mm *= 40) {

@@ -25,7 +25,7 @@ enum {
 
 /* How they are looked at. */
 struct look {
-    struct lm_place place; /* against the first target's */
+    struct lm_position place; /* against the first target's */
     fx_bam_t azimuth, track;
     uint32_t speed_mm_s;
     uint32_t time_s;
@@ -72,42 +72,42 @@ static uint8_t *image_with(const uint8_t *section, size_t size, size_t *image_si
 
 static void draw_sector(const struct lm_target *t, uint32_t count, const struct look *look)
 {
-    struct lm_targets_near near;
+    struct lm_target_candidates near;
     const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_scene scene = {
-        .place = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
+        .position = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
-    lm_targets_select(&near, &set, &scene);
-    FUZZ_ASSERT(near.count <= LM_TARGETS_NEAR);
+    lm_target_candidates_select(&near, &set, &scene);
+    FUZZ_ASSERT(near.count <= LM_TARGET_CANDIDATES_MAX);
     for (fx_bam_t i = 0; i < 8; i++) {
-        const struct lm_target_line line = {.place = look->place,
+        const struct lm_target_line line = {.position = look->place,
                                             .azimuth = look->azimuth + i * (FX_BAM_180 / 4),
                                             .width = FX_BAM_180 / 4,
-                                            .first_q8 = 37040,
-                                            .cell_q8 = 37040,
+                                            .first_m_q8 = 37040,
+                                            .cell_m_q8 = 37040,
                                             .cells = 256,
-                                            .height_q10 = 3000 * 1024,
+                                            .height_m_q10 = 3000 * 1024,
                                             .wavelength_um = 31228,
                                             .is_doppler = i % 2,
                                             .beam = FX_BAM_180 / 3,
                                             .speed_mm_s = look->speed_mm_s & 0x1fffff,
                                             .track = look->track,
                                             .gate_mm_s = {1500, i % 3 ? 50000 : 0}};
-        (void)lm_target_add(&near, &line, NULL, level_q8);
+        (void)lm_target_line_add(&near, &line, NULL, level_q8);
     }
 }
 
 static void draw_patch(const struct lm_target *t, uint32_t count, const struct look *look)
 {
-    struct lm_patch_points *points = malloc(sizeof *points);
-    struct lm_targets_near near;
+    struct lm_target_patch *points = malloc(sizeof *points);
+    struct lm_target_candidates near;
     const struct lm_target_set set = {.items = t, .count = count};
     const struct lm_target_scene scene = {
-        .place = look->place, .reach_m = 2000, .time_us = (uint64_t)look->time_s * 1000000};
+        .position = look->place, .reach_m = 2000, .time_us = (uint64_t)look->time_s * 1000000};
     const struct lm_patch_geometry g = {.centre = look->place,
                                         .look = look->azimuth,
-                                        .centre_q8 = 20000 * 256,
-                                        .cell_q8 = 128u << (look->track & 6),
+                                        .centre_m_q8 = 20000 * 256,
+                                        .cell_m_q8 = 128u << (look->track & 6),
                                         .lines = LINES,
                                         .cells = CELLS,
                                         .guard = 4,
@@ -119,12 +119,12 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
     int32_t horizon[LM_CELLS_ROOM] = {0};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     FUZZ_ASSERT(points);
-    lm_targets_select(&near, &set, &scene);
-    lm_patch_points_set(points, &near, &g);
+    lm_target_candidates_select(&near, &set, &scene);
+    lm_target_patch_set(points, &near, &g);
     FUZZ_ASSERT(points->count <= LM_PATCH_POINTS_MAX);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_patch_points_hide(points, k, horizon, 26, CELLS);
-        lm_patch_points_add(points, k, -56 * 256, &g, level_q8);
+        lm_target_patch_hide(points, k, horizon, 26, CELLS);
+        lm_target_patch_add_points(points, k, -56 * 256, &g, level_q8);
     }
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
         FUZZ_ASSERT(points->re_q24[i] == 0 && points->im_q24[i] == 0);

@@ -15,7 +15,7 @@ enum { SIDE = 256, POOL_TILES = 64, QUEUE = 32, STEPS_MAX = 300, PLACES = 4 };
 
 struct world {
     struct tiny_image image; /* a copy, to be damaged */
-    struct lm_place centre;
+    struct lm_position centre;
     struct memory_flash flash;
     struct lm_can can;
     struct lm_controls controls;
@@ -200,7 +200,7 @@ static void command_patch(struct world *w, struct fuzz_supply *s)
     c->is_from_ownship = flags & 16;
     c->look_azimuth = (fx_bam_t)fuzz_u16(s) << 16;
     c->range_m = flags & 32 ? fuzz_u32(s) : 1000u + 4u * fuzz_u16(s);
-    c->height_q6 = flags & 64 ? (int32_t)fuzz_u32(s) : (int16_t)fuzz_u16(s) * 59;
+    c->height_m_q6 = flags & 64 ? (int32_t)fuzz_u32(s) : (int16_t)fuzz_u16(s) * 59;
 }
 
 /* Any kind, one that does not exist included, with `value` wherever the kind has a number. */
@@ -306,8 +306,8 @@ static void act(struct world *w, struct fuzz_supply *s)
 static void check(const struct world *w)
 {
     const struct lm_unit *u = &w->unit;
-    FUZZ_ASSERT(u->picture.sector.command.range < lm_radar_default.ranges &&
-                u->picture.sector.command.azimuth < LM_AZIMUTHS);
+    FUZZ_ASSERT(u->picture.sector.command.range_index < lm_radar_default.ranges &&
+                u->picture.sector.command.azimuth_index < LM_AZIMUTHS);
     FUZZ_ASSERT(!u->picture.sector.is_begun || u->picture.sector.line < u->picture.sector.lines);
     FUZZ_ASSERT(u->picture.sar.line <= lm_radar_default.sar.cells);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);
@@ -353,8 +353,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const uint8_t first = fuzz_u8(&supply);
     const double *place = places[first & 3];
     const struct tiny_image *base = base_image(first & 3);
-    w->centre = (struct lm_place){(fx_bam_t)(int64_t)(place[0] / 360 * 4294967296.0),
-                                  (fx_bam_t)(int64_t)(place[1] / 360 * 4294967296.0)};
+    w->centre = (struct lm_position){(fx_bam_t)(int64_t)(place[0] / 360 * 4294967296.0),
+                                     (fx_bam_t)(int64_t)(place[1] / 360 * 4294967296.0)};
     w->image = *base;
     w->image.bytes = malloc(base->size);
     FUZZ_ASSERT(w->image.bytes);

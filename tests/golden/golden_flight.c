@@ -59,11 +59,7 @@ const struct golden_picture golden_pictures[] = {
      .heading_deg = 80},
     {.name = "gm-north", .place = GOLDEN_NORTH, GLASS, .north_m = -5000, .height_m = 2500},
     {.name = "gmt", GLASS, FROM_SOUTH, .speed_m_s = 200, .mode = LM_SECTOR_GMT, .has_movers = true},
-    {.name = "gmt-exp",
-     TOWN_AHEAD,
-     .mode = LM_SECTOR_GMT,
-     .has_movers = true,
-     .field = LM_FIELD_EXP},
+    {.name = "gmt-exp", TOWN_AHEAD, .mode = LM_SECTOR_GMT, .has_movers = true, .field = LM_FOV_EXP},
     {.name = "sea",
      GLASS,
      .speed_m_s = 200,
@@ -71,17 +67,17 @@ const struct golden_picture golden_pictures[] = {
      .heading_deg = -80,
      .mode = LM_SECTOR_SEA,
      .has_movers = true},
-    {.name = "sea-exp", TOWN_AHEAD, .mode = LM_SECTOR_SEA, .field = LM_FIELD_EXP},
+    {.name = "sea-exp", TOWN_AHEAD, .mode = LM_SECTOR_SEA, .field = LM_FOV_EXP},
     {.name = "sea-state-6",
      GLASS,
      .height_m = 700,
      .heading_deg = -80,
      .mode = LM_SECTOR_SEA,
      .sea_state = 6},
-    {.name = "exp", TOWN_AHEAD, .field = LM_FIELD_EXP},
-    {.name = "dbs1-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FIELD_DBS1},
-    {.name = "dbs1-across-the-notch", TOWN_AHEAD, .field = LM_FIELD_DBS1},
-    {.name = "dbs2-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FIELD_DBS2},
+    {.name = "exp", TOWN_AHEAD, .field = LM_FOV_EXP},
+    {.name = "dbs1-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FOV_DBS1},
+    {.name = "dbs1-across-the-notch", TOWN_AHEAD, .field = LM_FOV_DBS1},
+    {.name = "dbs2-off-the-track", TOWN_AHEAD, .drift_deg = -40, .field = LM_FOV_DBS2},
     {.name = "gm-rain", FROM_SOUTH, GLASS, .rain_mm_h = 60},
     {.name = "gm-jammer", FROM_SOUTH, GLASS, .jam_db = 40},
     {.name = "gm-pencil-beam", FROM_SOUTH, GLASS, .keys = {CNTL, PENCIL}},
@@ -187,7 +183,7 @@ const struct golden_picture golden_pictures[] = {
      .drift_deg = -40,
      .keys = {CURSOR_ZERO},
      .has_parked = true,
-     .field = LM_FIELD_DBS2},
+     .field = LM_FOV_DBS2},
     {.name = "page-steerpoint", FROM_SOUTH, GLASS, .speed_m_s = 200, .has_steerpoint = true},
     {.name = "page-steerpoint-smallest-glass",
      FROM_SOUTH,
@@ -209,8 +205,8 @@ static uint64_t duration_us(const struct golden_picture *p)
     /* A sweep of GM takes a second, of the other modes two; a patch two and the reading of its
      * tiles; the window of DBS1 two and of DBS2 3.3, once the cursor is in its place. */
     uint32_t flown_us = p->cell_mm || p->mode || p->keys[0] ? 2600000 : 1300000;
-    if (p->field != LM_FIELD_NORM) {
-        flown_us = p->field == LM_FIELD_DBS2 ? 5600000 : 3800000;
+    if (p->field != LM_FOV_NORM) {
+        flown_us = p->field == LM_FOV_DBS2 ? 5600000 : 3800000;
     }
     return START_US + flown_us;
 }
@@ -263,7 +259,8 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     return 1;
 }
 
-static struct lm_sar_command patch_command(const struct golden_picture *p, struct lm_place centre)
+static struct lm_sar_command patch_command(const struct golden_picture *p,
+                                           struct lm_position centre)
 {
     return (struct lm_sar_command){.centre = centre,
                                    .cell_mm = p->cell_mm,
@@ -271,10 +268,10 @@ static struct lm_sar_command patch_command(const struct golden_picture *p, struc
                                    .is_from_ownship = p->range_m == 0,
                                    .look_azimuth = FX_BAM_DEG(p->heading_deg),
                                    .range_m = p->range_m,
-                                   .height_q6 = p->height_m * 64};
+                                   .height_m_q6 = p->height_m * 64};
 }
 
-static struct lm_place moved(struct lm_place from, fx_bam_t azimuth, int32_t metres)
+static struct lm_position moved(struct lm_position from, fx_bam_t azimuth, int32_t metres)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, from);
@@ -303,7 +300,7 @@ static int next_key(const struct golden_picture *p, uint32_t item, struct lm_con
     return 1;
 }
 
-static struct lm_control picture_control(const struct golden_picture *p, struct lm_place centre)
+static struct lm_control picture_control(const struct golden_picture *p, struct lm_position centre)
 {
     if (p->cell_mm) {
         return (struct lm_control){.kind = LM_CONTROL_SAR, .sar = patch_command(p, centre)};
@@ -354,7 +351,7 @@ static int present(void *ctx)
     return LM_OK;
 }
 
-static void prepare(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
+static void prepare(struct golden_rig *r, const struct golden_picture *p, struct lm_position centre,
                     const uint8_t *image, size_t image_bytes)
 {
     memset(r, 0, sizeof *r);
@@ -378,17 +375,17 @@ static void prepare(struct golden_rig *r, const struct golden_picture *p, struct
 }
 
 /* A vehicle that answers as a whole, driving to and fro over 6 km. */
-static struct lm_target mover(uint32_t id, struct lm_place place, int32_t heading_deg,
+static struct lm_target mover(uint32_t id, struct lm_position place, int32_t heading_deg,
                               uint32_t speed_mm_s)
 {
     return (struct lm_target){.id = id,
                               .latitude = place.latitude,
                               .longitude = place.longitude,
-                              .elevation_q6 = 3 * 64,
+                              .elevation_m_q6 = 3 * 64,
                               .heading = FX_BAM_DEG(heading_deg),
                               .swerling = 1,
                               .flags = LM_TARGET_ABOVE_GROUND,
-                              .mean_rcs_q8 = 35 * 256,
+                              .mean_rcs_dbsm_q8 = 35 * 256,
                               .speed_mm_s = speed_mm_s,
                               .leg_m = 6000};
 }
@@ -406,7 +403,7 @@ static void put_parked(struct golden_rig *r)
 {
     static const int32_t heading_deg[GOLDEN_TARGETS_MAX] = {0, 100, 190, 325};
     for (uint32_t i = 0; i < GOLDEN_TARGETS_MAX; i++) {
-        const struct lm_place place = moved(r->centre, FX_BAM_90, (int32_t)i * 45 - 70);
+        const struct lm_position place = moved(r->centre, FX_BAM_90, (int32_t)i * 45 - 70);
         r->targets[i] = (struct lm_target){
             .id = i,
             .latitude = place.latitude,
@@ -418,7 +415,7 @@ static void put_parked(struct golden_rig *r)
     r->unit.map.target_set.count = GOLDEN_TARGETS_MAX;
 }
 
-int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_place centre,
+int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_position centre,
                const uint8_t *image, size_t image_bytes)
 {
     prepare(r, p, centre, image, image_bytes);

@@ -25,7 +25,7 @@ struct golden_picture {
     int32_t north_m, east_m, height_m, heading_deg;
     uint16_t speed_m_s; /* along the track; it stands still all the same */
     int8_t drift_deg;   /* the track is so far to the right of the heading */
-    /* A sector: enum lm_sector_mode and lm_field, indices into the radar table. A window lies half
+    /* A sector: enum lm_sector_mode and lm_fov, indices into the radar table. A window lies half
      * the range straight ahead, where the cursor begins. */
     uint8_t mode, field;
     uint8_t range_nm, azimuth; /* range_nm 0: 10 */
@@ -56,7 +56,7 @@ struct golden_rig {
     struct lm_controls controls;
     struct lm_display display;
     const struct golden_picture *picture;
-    struct lm_place centre, aircraft;
+    struct lm_position centre, aircraft;
     struct lm_target targets[GOLDEN_TARGETS_MAX]; /* in place of the image's */
     uint64_t now_us, bus_us;                      /* bus_us: when the next set of values is due */
     uint32_t bus_item, control_item;
@@ -68,8 +68,8 @@ struct golden_rig {
 
 /* Fly until the picture is on rig->glass, over the image, whose middle lies at `centre`. Returns
  * LM_OK or lm_unit_init's answer. */
-int golden_fly(struct golden_rig *rig, const struct golden_picture *picture, struct lm_place centre,
-               const uint8_t *image, size_t image_bytes);
+int golden_fly(struct golden_rig *rig, const struct golden_picture *picture,
+               struct lm_position centre, const uint8_t *image, size_t image_bytes);
 
 /* CRC-32C of the radar picture alone: the plane of grey levels before symbols and labels, row by
  * row. A label that changes leaves it as it is. */

@@ -31,10 +31,10 @@ static uint32_t bam_of(double degrees)
     return (uint32_t)llround(degrees * 4294967296.0 / 360);
 }
 
-struct lm_place golden_centre(enum golden_place place)
+struct lm_position golden_centre(enum golden_place place)
 {
-    return (struct lm_place){bam_of(countries[place].latitude_deg),
-                             bam_of(countries[place].longitude_deg)};
+    return (struct lm_position){bam_of(countries[place].latitude_deg),
+                                bam_of(countries[place].longitude_deg)};
 }
 
 /* Metres from the middle of the country, whole, as its own round Earth has them. */

@@ -18,7 +18,7 @@ enum golden_place {
 const char *golden_place_name(enum golden_place place);
 
 /* The middle of the country. */
-struct lm_place golden_centre(enum golden_place place);
+struct lm_position golden_centre(enum golden_place place);
 
 /* Build its image: tiny_image_build's answer. The caller frees it. */
 int golden_image(enum golden_place place, struct tiny_image *image);

@@ -5,7 +5,7 @@
  *   twins [SEEDS]     so many lines for each kernel (300) */
 #include "fx/sat.h"
 #include "hs/rng.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "lm/noise.h"
 #include "lm/tile_cache.h"
 #include "lm/tone.h"
@@ -27,10 +27,10 @@ struct input {
     int32_t cell_of[ROOM], word_of_class[LM_K_CODES];
     uint8_t looks_log2;
     struct lm_tile pool[TILES];
-    struct lm_places places;
+    struct lm_tile_coords places;
     struct lm_scan_line ground;
     struct lm_range_grid grid;
-    struct lm_legend legend;
+    struct lm_class_lut legend;
     struct lm_tone tone;
 };
 
@@ -143,14 +143,14 @@ static void draw_tile(struct input *in, struct lm_tile *tile)
         point->post = any % 16 == 0 ? 0 : any % 16 == 1 ? UINT16_MAX : any;
         point->cell = (uint16_t)hs_rng_u64(&in->rng);
     }
-    tile->base_q6 = within(in, 1 << 20);
+    tile->base_m_q6 = within(in, 1 << 20);
     tile->post_shift = (uint8_t)hs_rng_below(&in->rng, LM_TILE_POST_SHIFT_MAX + 1);
 }
 
-static struct lm_track any_track(struct input *in)
+static struct lm_quadratic any_track(struct input *in)
 {
     const uint32_t at = (uint32_t)hs_rng_u64(&in->rng), step = any_size(in);
-    return (struct lm_track){at, step, any_size(in)};
+    return (struct lm_quadratic){at, step, any_size(in)};
 }
 
 /* Runs of a line in tiles of a pool. */
@@ -166,7 +166,7 @@ static void draw_tiles(struct input *in)
             tile = lm_tile_base_of(in->pool, &in->pool[hs_rng_below(&in->rng, TILES)]);
         }
         in->ground.cell[k] = tile.record;
-        in->ground.elevation_q14[k] = tile.scale;
+        in->ground.elevation_m_q14[k] = tile.scale;
     }
 }
 
@@ -182,27 +182,27 @@ static void draw_ground(struct input *in, uint32_t cell_q8)
         elevation_q14 = is_wild ? (int32_t)hs_rng_below(&in->rng, 48000u << 14) - (16000 << 14)
                                 : elevation_q14 % (1 << 26) + within(in, 16 * cell_q8);
         in->ground.cell[i] = (any >> 16 & 0xFF00) | (low_bits & 0xFF);
-        in->ground.elevation_q14[i] = elevation_q14;
+        in->ground.elevation_m_q14[i] = elevation_q14;
     }
 }
 
-static void draw_legend(struct input *in, struct lm_aspect_config *config)
+static void draw_legend(struct input *in, struct lm_illumination_config *config)
 {
     static struct lm_classes classes;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         classes.entry[i].kind = (uint8_t)hs_rng_below(&in->rng, LM_KINDS);
         classes.height_dm[i] = (uint16_t)(any_size(in) >> 16);
     }
-    config->edge_structure_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
-    config->edge_trees_q8 = (int16_t)hs_rng_below(&in->rng, 32768);
-    config->shore_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
+    config->edge_structure_db_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
+    config->edge_trees_db_q8 = (int16_t)hs_rng_below(&in->rng, 32768);
+    config->shore_db_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
     config->shore_width_m = (uint16_t)hs_rng_below(&in->rng, 2000);
-    lm_legend_set(&in->legend, config, &classes);
+    lm_class_lut_set(&in->legend, config, &classes);
 }
 
 static void draw_light(struct input *in)
 {
-    struct lm_aspect_config config;
+    struct lm_illumination_config config;
     const uint32_t cell_q8 = 128u << hs_rng_below(&in->rng, 10);
     const uint32_t first_q8 = cell_q8 + hs_rng_below(&in->rng, 60000 * 256);
     draw_legend(in, &config);
@@ -238,7 +238,7 @@ static int32_t *signed_line(uint32_t *line)
 
 static const int16_t *row_of(const struct input *in)
 {
-    return lm_noise_q8[in->looks_log2];
+    return lm_noise_db_q8[in->looks_log2];
 }
 
 static void copy_cells(uint32_t *to, const void *from)
@@ -250,7 +250,7 @@ static void run_tile_read(const struct input *in, struct output *out, bool is_pl
 {
     const uint32_t groups = (in->cells - in->first + LM_LANES - 1) / LM_LANES;
     copy_cells(out->line[0], in->ground.cell);
-    copy_cells(out->line[1], in->ground.elevation_q14);
+    copy_cells(out->line[1], in->ground.elevation_m_q14);
     TWIN(lm_k_tile_read)
     (in->pool[0].points[0], &in->places, in->first, groups, out->line[0],
      signed_line(out->line[1]));
@@ -261,8 +261,9 @@ static void run_tile_read(const struct input *in, struct output *out, bool is_pl
 
 static struct lm_k_tops tops_of(const struct input *in)
 {
-    return (struct lm_k_tops){in->grid.first,           in->cells,         in->ground.cell,
-                              in->ground.elevation_q14, in->grid.fall_q14, in->grid.inverse_range,
+    return (struct lm_k_tops){in->grid.first,      in->cells,
+                              in->ground.cell,     in->ground.elevation_m_q14,
+                              in->grid.fall_m_q14, in->grid.inverse_range,
                               in->legend.height_dm};
 }
 
@@ -273,12 +274,12 @@ static void run_light(const struct input *in, struct output *out, bool is_plain)
     const int64_t tangent = lm_k_tangent(&tops, tops.first, lm_k_height_m_q14(height_dm));
     const struct lm_k_lit_line line = {
         .tops = tops,
-        .gain_db_q8 = in->grid.gain_q8,
+        .gain_db_q8 = in->grid.gain_db_q8,
         .mark_of_class = in->legend.mark,
-        .edge_structure_db_q3 = in->legend.edge_structure_q3,
-        .edge_trees_db_q3 = in->legend.edge_trees_q3,
-        .shore_db_q8 = in->legend.shore_q8,
-        .shore_fall_db_q8 = in->grid.shore_fall_q8,
+        .edge_structure_db_q3 = in->legend.edge_structure_db_q3,
+        .edge_trees_db_q3 = in->legend.edge_trees_db_q3,
+        .shore_db_q8 = in->legend.shore_db_q8,
+        .shore_fall_db_q8 = in->grid.shore_fall_db_q8,
         .start = fx_sat_i32(tangent + in->number[0]),
         .horizon = signed_line(out->line[0]),
         .level_db_q8 = signed_line(out->line[1]),
@@ -384,8 +385,8 @@ static void run_detect_in_rain(const struct input *in, struct output *out, bool 
 
 static void run_tone(const struct input *in, struct output *out, bool is_plain)
 {
-    const struct lm_k_tone_curve curve = {in->tone.black_q8, in->tone.white_q8, in->tone.step_log2,
-                                          in->tone.grey,
+    const struct lm_k_tone_curve curve = {in->tone.black_db_q8, in->tone.white_db_q8,
+                                          in->tone.step_log2, in->tone.grey,
                                           in->tone.has_lines ? in->tone.lines : NULL};
     uint8_t grey[ROOM];
     memset(grey, UNTOUCHED & 0xff, sizeof grey);

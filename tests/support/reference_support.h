@@ -22,15 +22,15 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
                                           const struct lm_tone_config *tone,
                                           const struct lm_speckle_config *speckle)
 {
-    const struct lm_aspect_config *a = &radar->aspect;
-    struct ref_params params = {.edge_structure_db = decibels(a->edge_structure_q8),
-                                .edge_trees_db = decibels(a->edge_trees_q8),
-                                .shore_db = decibels(a->shore_q8),
+    const struct lm_illumination_config *a = &radar->illumination;
+    struct ref_params params = {.edge_structure_db = decibels(a->edge_structure_db_q8),
+                                .edge_trees_db = decibels(a->edge_trees_db_q8),
+                                .shore_db = decibels(a->shore_db_q8),
                                 .shore_width_m = a->shore_width_m,
                                 .noise_floor_db = noise_floor_db,
                                 .looks = 1u << speckle->looks_log2,
-                                .black_db = decibels(tone->black_q8),
-                                .white_db = decibels(tone->white_q8),
+                                .black_db = decibels(tone->black_db_q8),
+                                .white_db = decibels(tone->white_db_q8),
                                 .gamma_exponent = decibels(tone->gamma_q8)};
     for (int kind = 0; kind < LM_KINDS; kind++) {
         const uint8_t log2 = radar->texture.shape_log2[kind];
@@ -50,7 +50,7 @@ static inline void take_ground(const struct lm_scan_line *ground, const struct l
         bins[i].kind = classes->entry[bins[i].class_index].kind;
         bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
         bins[i].height_m = classes->height_dm[cell & 15] / 10.0;
-        bins[i].elevation_m = ground->elevation_q14[i] / 16384.0;
+        bins[i].elevation_m = ground->elevation_m_q14[i] / 16384.0;
     }
 }
 

@@ -24,8 +24,8 @@ static inline struct lm_target point_at(double latitude, double longitude, doubl
     struct lm_target t = {.id = 7,
                           .latitude = hs_bam(latitude),
                           .longitude = hs_bam(longitude),
-                          .elevation_q6 = (int32_t)lround(elevation_m * 64),
-                          .mean_rcs_q8 = (int32_t)lround(rcs_db * 256)};
+                          .elevation_m_q6 = (int32_t)lround(elevation_m * 64),
+                          .mean_rcs_dbsm_q8 = (int32_t)lround(rcs_db * 256)};
     seal_target(&t);
     return t;
 }

@@ -137,7 +137,7 @@ static int add_band(struct builder *b, uint8_t level, uint8_t zone, uint32_t row
     int64_t count = tile_index(b->east - 1, wide) - first + 1;
     count = count < round_the_world ? count : round_the_world;
     b->bands[b->band_count++] =
-        (struct lm_band){.level = level,
+        (struct lm_band){.lod = level,
                          .zone = zone,
                          .row0 = row0,
                          .rows = rows,
@@ -176,7 +176,7 @@ static int choose_bands(struct builder *b)
     if (asked == 0 && b->spec->margin > 0) {
         return -1;
     }
-    for (uint32_t i = 0; i < LM_DB_LEVELS_MAX; i++) {
+    for (uint32_t i = 0; i < LM_DB_LODS_MAX; i++) {
         const uint8_t level = (uint8_t)i;
         if (b->spec->shift0 + level > LM_DB_SHIFT_MAX) {
             break;
@@ -268,7 +268,7 @@ static const struct lm_tile *find_tile(const struct builder *b, uint8_t level, u
         const struct lm_band *band = &b->bands[i];
         const uint32_t wide = tile_width_log2(b, level, band->zone);
         const uint32_t along = (column - band->column0) & ((UINT32_C(1) << (32 - wide)) - 1);
-        if (band->level == level && row - band->row0 < band->rows && along < band->columns) {
+        if (band->lod == level && row - band->row0 < band->rows && along < band->columns) {
             return b->tiles[band->entry0 + (row - band->row0) * band->columns + along];
         }
     }
@@ -278,9 +278,9 @@ static const struct lm_tile *find_tile(const struct builder *b, uint8_t level, u
 static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, uint32_t r,
                           uint32_t c)
 {
-    if (tile->level > 0) {
-        const struct lm_tile *child = find_tile(b, (uint8_t)(tile->level - 1),
-                                                tile->row * 2 + r / 32, tile->column * 2 + c / 32);
+    if (tile->lod > 0) {
+        const struct lm_tile *child = find_tile(b, (uint8_t)(tile->lod - 1), tile->row * 2 + r / 32,
+                                                tile->column * 2 + c / 32);
         if (child != NULL) {
             const uint32_t y = r * 2 % TILE, x = c * 2 % TILE;
             const uint16_t four[4] = {child->points[y][x].cell, child->points[y][x + 1].cell,
@@ -289,7 +289,7 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
             return mean_of_four(b, four);
         }
     }
-    const uint32_t high = b->spec->shift0 + tile->level, wide = high + tile->zone;
+    const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
     const int64_t latitude = ((int64_t)tile->row * TILE + r) * (1 << high) + (1 << (high - 1));
     const int64_t longitude = ((int64_t)tile->column * TILE + c) * (1 << wide) + (1 << (wide - 1));
     const struct tiny_place place = place_at(b, latitude, longitude);
@@ -299,7 +299,7 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
 static void sample_posts(const struct builder *b, const struct lm_tile *tile,
                          double posts_m[LM_TILE_POSTS][LM_TILE_POSTS])
 {
-    const uint32_t high = b->spec->shift0 + tile->level, wide = high + tile->zone;
+    const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
     for (uint32_t r = 0; r < LM_TILE_POSTS; r++) {
         for (uint32_t c = 0; c < LM_TILE_POSTS; c++) {
             const struct tiny_place place =
@@ -326,13 +326,14 @@ static int make_posts(struct builder *b, struct lm_tile *tile)
     }
     const double step = 1 << shift;
     tile->post_shift = shift;
-    tile->base_q6 = (int32_t)(floor(low * 64 / step) * step);
+    tile->base_m_q6 = (int32_t)(floor(low * 64 / step) * step);
     for (uint32_t r = 0; r < LM_TILE_POSTS; r++) {
         for (uint32_t c = 0; c < LM_TILE_POSTS; c++) {
-            tile->points[r][c].post = (uint16_t)lround((posts_m[r][c] * 64 - tile->base_q6) / step);
+            tile->points[r][c].post =
+                (uint16_t)lround((posts_m[r][c] * 64 - tile->base_m_q6) / step);
         }
     }
-    return shift <= POST_SHIFT_MAX && abs(tile->base_q6) <= 1 << 20 ? 0 : -1;
+    return shift <= POST_SHIFT_MAX && abs(tile->base_m_q6) <= 1 << 20 ? 0 : -1;
 }
 
 /* Posts of land count towards the mean elevation of the header. */
@@ -344,7 +345,7 @@ static void count_land(struct builder *b, const struct lm_tile *tile)
             if (class_index != LM_DB_CLASS_NONE &&
                 b->classes->entry[class_index].kind != LM_KIND_WATER) {
                 b->land_sum_m +=
-                    (tile->base_q6 + tile->points[r][c].post * (1 << tile->post_shift)) / 64.0;
+                    (tile->base_m_q6 + tile->points[r][c].post * (1 << tile->post_shift)) / 64.0;
                 b->land_count++;
             }
         }
@@ -353,10 +354,10 @@ static void count_land(struct builder *b, const struct lm_tile *tile)
 
 static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, uint32_t c)
 {
-    const uint32_t wide = tile_width_log2(b, band->level, band->zone);
+    const uint32_t wide = tile_width_log2(b, band->lod, band->zone);
     const uint32_t row = band->row0 + r;
     const uint32_t column = (band->column0 + c) & ((UINT32_C(1) << (32 - wide)) - 1);
-    if (b->spec->leave_out && b->spec->leave_out(b->spec->ctx, band->level, row, column)) {
+    if (b->spec->leave_out && b->spec->leave_out(b->spec->ctx, band->lod, row, column)) {
         return 0;
     }
     struct lm_tile *tile = calloc(1, sizeof *tile);
@@ -365,7 +366,7 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
     }
     b->tiles[band->entry0 + r * band->columns + c] = tile;
     b->record_count++;
-    tile->level = band->level;
+    tile->lod = band->lod;
     tile->zone = band->zone;
     tile->row = row;
     tile->column = column;
@@ -373,7 +374,7 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
         tile->points[i / TILE][i % TILE].cell = make_cell(b, tile, i / TILE, i % TILE);
     }
     const int status = make_posts(b, tile);
-    if (band->level == 0) {
+    if (band->lod == 0) {
         count_land(b, tile);
     }
     return status;

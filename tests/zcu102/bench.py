@@ -17,7 +17,7 @@ import figures  # noqa: E402
 
 LINE_BUDGET_US = 3900  # a line of the fastest sweep, 256 of them in a second
 MIPS = 100
-# As bench.c numbers them: enum lm_sector_mode times enum lm_field, and the patch behind them.
+# As bench.c numbers them: enum lm_sector_mode times enum lm_fov, and the patch behind them.
 SECTORS = [f"{mode} {field}" for mode in ("GM", "GMT", "SEA") for field in ("NORM", "EXP", "DBS1", "DBS2")]
 MODES = dict(enumerate(SECTORS + ["SAR patch"]))
 PATCH = len(SECTORS)
@@ -63,8 +63,8 @@ def print_line_budget(modes):
 
 
 # What makes a line, from the map to its grey, and what paints it.
-SECTOR_STAGES = ("lm_sector_sample_ahead", "lm_sector_draw_line", "lm_ppi_paint")
-PATCH_STAGES = ("lm_sar_sample_ahead", "lm_sar_draw_line", "lm_patch_paint")
+SECTOR_STAGES = ("lm_sector_sample_ahead", "lm_sector_draw_line", "lm_scan_conv_sector")
+PATCH_STAGES = ("lm_sar_sample_ahead", "lm_sar_draw_line", "lm_scan_conv_patch")
 
 
 def a_line(stages, names):

@@ -11,7 +11,7 @@ struct golden_flash {
     uint32_t magic, reserved;
     struct {
         char name[16];
-        struct lm_place centre;
+        struct lm_position centre;
         uint64_t offset, size;
     } places[GOLDEN_PLACES];
 };

@@ -20,9 +20,9 @@ void lm_k_powers_of_levels(uint32_t *line, uint32_t cells)
 {
     const uint32_t whole = cells & ~15u;
     for (size_t i = 0; i < whole; i += 16) {
-        const int32_t *level_q8 = (const int32_t *)line + i;
-        const int32x4x4_t level = {{vld1q_s32(level_q8), vld1q_s32(level_q8 + 4),
-                                    vld1q_s32(level_q8 + 8), vld1q_s32(level_q8 + 12)}};
+        const int32_t *level_db_q8 = (const int32_t *)line + i;
+        const int32x4x4_t level = {{vld1q_s32(level_db_q8), vld1q_s32(level_db_q8 + 4),
+                                    vld1q_s32(level_db_q8 + 8), vld1q_s32(level_db_q8 + 12)}};
         const uint32x4x4_t power = neon_power_q24(level);
         for (size_t k = 0; k < 4; k++) {
             vst1q_u32(line + i + 4 * k, power.val[k]);

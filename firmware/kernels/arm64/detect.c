@@ -20,7 +20,7 @@ static inline struct neon_sum_lines neon_sum_lines(void)
 static inline int32x4x2_t neon_signal_q8(const uint32_t *power_q24)
 {
     const int32x4_t unit = vdupq_n_s32(-LM_K_UNIT_Q24_DB_Q8);
-    const int32x4_t nothing = vdupq_n_s32(fx_db_q8_of_many(0) - LM_K_UNIT_Q24_DB_Q8);
+    const int32x4_t nothing = vdupq_n_s32(fx_db_q8_vec(0) - LM_K_UNIT_Q24_DB_Q8);
     const uint32x4x2_t power = {{vld1q_u32(power_q24), vld1q_u32(power_q24 + 4)}};
     const int32x4x2_t some = neon_add_db_q8((int32x4x2_t){{unit, unit}}, power);
     return (int32x4x2_t){{vbslq_s32(vceqzq_u32(power.val[0]), nothing, some.val[0]),
@@ -47,11 +47,11 @@ static inline int32x4x4_t neon_means_q8(const struct lm_k_receiver *r, size_t i,
 static inline int32x4x4_t neon_add_draws(const struct lm_k_receiver *r, size_t i, size_t next,
                                          int32x4x4_t noise)
 {
-    const int16x8_t draw_q8[2] = {vld1q_s16(r->row_db_q8 + r->entry[i / LM_LANES]),
-                                  vld1q_s16(r->row_db_q8 + r->entry[next / LM_LANES])};
+    const int16x8_t draw_db_q8[2] = {vld1q_s16(r->row_db_q8 + r->entry[i / LM_LANES]),
+                                     vld1q_s16(r->row_db_q8 + r->entry[next / LM_LANES])};
     for (size_t n = 0; n < 2; n++) {
-        noise.val[2 * n] = vaddw_s16(noise.val[2 * n], vget_low_s16(draw_q8[n]));
-        noise.val[2 * n + 1] = vaddw_high_s16(noise.val[2 * n + 1], draw_q8[n]);
+        noise.val[2 * n] = vaddw_s16(noise.val[2 * n], vget_low_s16(draw_db_q8[n]));
+        noise.val[2 * n + 1] = vaddw_high_s16(noise.val[2 * n + 1], draw_db_q8[n]);
     }
     return noise;
 }
@@ -67,11 +67,11 @@ static inline int32x4x4_t neon_less(int32x4x4_t a, int32x4x4_t b)
 /* Signal and noise together, less the receiver's fall, of the same bins. */
 static inline void neon_store_sum(const struct lm_k_receiver *r, const struct neon_sum_lines *lines,
                                   size_t i, size_t next, int32x4x4_t signal, int32x4x4_t noise,
-                                  int32_t *level_q8)
+                                  int32_t *level_db_q8)
 {
     const int32x4x4_t fall = neon_load_8_and_8(r->fall_db_q8 + i, r->fall_db_q8 + next);
     const int32x4x4_t sum = neon_db_q8_sum(lines->lows, lines->highs, lines->falls, signal, noise);
-    neon_store_8_and_8(level_q8 + i, level_q8 + next, neon_less(sum, fall));
+    neon_store_8_and_8(level_db_q8 + i, level_db_q8 + next, neon_less(sum, fall));
 }
 
 /* The block beside block i / LM_LANES; a block that is left over is done twice at once. */

@@ -14,7 +14,7 @@ _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
 /* Heights of the codes, lower bytes and upper bytes; edges of the marks, marks of the classes. */
 struct neon_legend {
-    uint8x16_t height_dm[2], edge_q3, mark;
+    uint8x16_t height_dm[2], edge_m_q3, mark;
 };
 
 /* What a turn takes over from the one before it. */
@@ -31,9 +31,9 @@ struct neon_hidden {
 
 /* Where a turn's cells are. */
 struct neon_place {
-    const uint32_t *cell, *elevation_q14, *fall_q14, *gain_q8;
+    const uint32_t *cell, *elevation_m_q14, *fall_m_q14, *gain_db_q8;
     const int32_t *inverse_range;
-    int32_t *horizon, *level_q8;
+    int32_t *horizon, *level_db_q8;
     uint8_t *behind_shore;
 };
 
@@ -49,8 +49,8 @@ static inline struct neon_legend neon_legend_of(const struct lm_k_lit_line *line
 {
     struct neon_legend l;
     neon_set_heights(&l, &line->tops);
-    l.edge_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
-    l.edge_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_q3, LM_K_TREES);
+    l.edge_m_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
+    l.edge_m_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_m_q3, LM_K_TREES);
     l.mark = vld1q_u8(line->mark_of_class);
     return l;
 }
@@ -60,18 +60,18 @@ static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struc
                                         uint8x16_t code)
 {
     const uint16x8x2_t height_dm = neon_words_of_16(l->height_dm, code);
-    const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_q14);
-    const uint32x4x4_t fall_q14 = vld1q_u32_x4(at->fall_q14);
+    const uint32x4x4_t foot_q14 = vld1q_u32_x4(at->elevation_m_q14);
+    const uint32x4x4_t fall_m_q14 = vld1q_u32_x4(at->fall_m_q14);
     const int32x4x4_t inverse_range = vld1q_s32_x4(at->inverse_range);
     int32x4x4_t tangent;
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_dm = height_dm.val[n / 2];
-        const uint32x4_t height_q19 = n % 2 ? vmull_high_n_u16(pair_dm, LM_K_Q19_OF_DM)
-                                            : vmull_n_u16(vget_low_u16(pair_dm), LM_K_Q19_OF_DM);
-        const uint32x4_t apparent_q14 =
-            vsraq_n_u32(vsubq_u32(foot_q14.val[n], fall_q14.val[n]), height_q19, 5);
+        const uint32x4_t height_m_q19 = n % 2 ? vmull_high_n_u16(pair_dm, LM_K_Q19_OF_DM)
+                                              : vmull_n_u16(vget_low_u16(pair_dm), LM_K_Q19_OF_DM);
+        const uint32x4_t apparent_m_q14 =
+            vsraq_n_u32(vsubq_u32(foot_q14.val[n], fall_m_q14.val[n]), height_m_q19, 5);
         /* Twice the product's upper half. */
-        tangent.val[n] = vqdmulhq_s32(vreinterpretq_s32_u32(apparent_q14), inverse_range.val[n]);
+        tangent.val[n] = vqdmulhq_s32(vreinterpretq_s32_u32(apparent_m_q14), inverse_range.val[n]);
     }
     return tangent;
 }
@@ -103,15 +103,15 @@ static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_bef
     const uint8x16_t before = vextq_u8(b->mark, mark, 15);
     b->mark = mark;
     *left = vbicq_u8(before, mark);
-    return vqtbl1q_u8(l->edge_q3, vbicq_u8(mark, before));
+    return vqtbl1q_u8(l->edge_m_q3, vbicq_u8(mark, before));
 }
 
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
-static inline uint16x8x2_t neon_shown(uint8x16_t edge_q3, uint16x8x2_t cells, uint32x4x4_t rise)
+static inline uint16x8x2_t neon_shown(uint8x16_t edge_m_q3, uint16x8x2_t cells, uint32x4x4_t rise)
 {
-    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_q3), 5), vshll_high_n_u8(edge_q3, 5)}};
-    /* The upper byte times LM_GAMMA_CODE_STEP_Q8. With LM_EDGE_MAX_Q8 and the rise's decibels it
-     * takes 16 bits: 32640 + 8160 + 24659. */
+    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_m_q3), 5), vshll_high_n_u8(edge_m_q3, 5)}};
+    /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
+     * it takes 16 bits: 32640 + 8160 + 24659. */
     for (size_t n = 0; n < 2; n++) {
         own_q8.val[n] = vsraq_n_u16(own_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
@@ -134,29 +134,29 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_l
         vst1q_s32(at->horizon + 4 * n, b->horizon);
     }
     uint8x16_t left;
-    const uint8x16_t edge_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    const uint8x16_t edge_m_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
     vst1q_u8(at->behind_shore, left);
-    const uint16x8x2_t shown_q8 = neon_shown(edge_q3, cells, rise);
-    const uint32x4x4_t gain_q8 = vld1q_u32_x4(at->gain_q8);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_m_q3, cells, rise);
+    const uint32x4x4_t gain_db_q8 = vld1q_u32_x4(at->gain_db_q8);
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_q8 = shown_q8.val[n / 2];
-        const uint32x4_t lit_q8 = n % 2 ? vaddw_high_u16(gain_q8.val[n], pair_q8)
-                                        : vaddw_u16(gain_q8.val[n], vget_low_u16(pair_q8));
-        vst1q_s32(at->level_q8 + 4 * n,
+        const uint32x4_t lit_db_q8 = n % 2 ? vaddw_high_u16(gain_db_q8.val[n], pair_q8)
+                                           : vaddw_u16(gain_db_q8.val[n], vget_low_u16(pair_q8));
+        vst1q_s32(at->level_db_q8 + 4 * n,
                   vbslq_s32(vceqzq_u32(rise.val[n]), vdupq_n_s32(LM_LEVEL_SHADOW),
-                            vreinterpretq_s32_u32(lit_q8)));
+                            vreinterpretq_s32_u32(lit_db_q8)));
     }
     at->cell += NEON_CELLS;
-    at->elevation_q14 += NEON_CELLS;
-    at->fall_q14 += NEON_CELLS;
-    at->gain_q8 += NEON_CELLS;
+    at->elevation_m_q14 += NEON_CELLS;
+    at->fall_m_q14 += NEON_CELLS;
+    at->gain_db_q8 += NEON_CELLS;
     at->inverse_range += NEON_CELLS;
     at->horizon += NEON_CELLS;
-    at->level_q8 += NEON_CELLS;
+    at->level_db_q8 += NEON_CELLS;
     at->behind_shore += NEON_CELLS;
     /* Else the compiler would add up one distance and, with it, five addresses. */
     __asm__(""
-            : "+r"(at->cell), "+r"(at->elevation_q14), "+r"(at->fall_q14), "+r"(at->gain_q8),
+            : "+r"(at->cell), "+r"(at->elevation_m_q14), "+r"(at->fall_m_q14), "+r"(at->gain_db_q8),
               "+r"(at->inverse_range));
 }
 
@@ -185,31 +185,31 @@ static inline uint64_t neon_marks(const struct lm_k_lit_line *line, uint32_t i)
 }
 
 /* Add to four levels what is positive of the shore, where there is light. */
-static inline void neon_brighten(int32_t *level_q8, int32x4_t shore_q8)
+static inline void neon_brighten(int32_t *level_db_q8, int32x4_t shore_db_q8)
 {
-    const int32x4_t old_q8 = vld1q_s32(level_q8), zero = vdupq_n_s32(0);
+    const int32x4_t old_q8 = vld1q_s32(level_db_q8), zero = vdupq_n_s32(0);
     const uint32x4_t is_dark = vceqq_s32(old_q8, vdupq_n_s32(LM_LEVEL_SHADOW));
-    const int32x4_t more_q8 = vbslq_s32(is_dark, zero, vmaxq_s32(shore_q8, zero));
-    vst1q_s32(level_q8, vaddq_s32(old_q8, more_q8));
+    const int32x4_t more_q8 = vbslq_s32(is_dark, zero, vmaxq_s32(shore_db_q8, zero));
+    vst1q_s32(level_db_q8, vaddq_s32(old_q8, more_q8));
 }
 
 /* The shore from cell i on: whole groups of eight cells without water, and then one by one. */
 static inline void neon_add_shore(const struct lm_k_lit_line *line, uint32_t i)
 {
     static const int32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const int32_t fall_q8 = line->shore_fall_db_q8;
-    int32_t shore_q8 = line->shore_db_q8;
-    for (; i + 8 <= line->tops.cells && shore_q8 > 0; i += 8, shore_q8 -= 8 * fall_q8) {
+    const int32_t fall_m_q8 = line->shore_fall_db_q8;
+    int32_t shore_db_q8 = line->shore_db_q8;
+    for (; i + 8 <= line->tops.cells && shore_db_q8 > 0; i += 8, shore_db_q8 -= 8 * fall_m_q8) {
         if ((neon_marks(line, i) & EACH_IS_WATER) != 0) {
             break;
         }
-        const int32x4_t all_q8 = vdupq_n_s32(shore_q8);
+        const int32x4_t all_q8 = vdupq_n_s32(shore_db_q8);
         for (size_t k = 0; k < 8; k += 4) {
             neon_brighten(line->level_db_q8 + i + k,
-                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_q8));
+                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_m_q8));
         }
     }
-    add_shore(line, i, shore_q8);
+    add_shore(line, i, shore_db_q8);
 }
 
 /* Shores behind eight cells from `first` on, each of which has a byte of `eight`. */
@@ -253,21 +253,21 @@ void lm_k_light(const struct lm_k_lit_line *line)
     uint8_t behind_shore[LM_CELLS_MAX + LM_K_SHORE_STRETCH];
     const struct lm_k_tops *const tops = &line->tops;
     const size_t hidden = tops->first % NEON_CELLS, first = tops->first - hidden;
-    int32_t *const horizon = line->horizon, *const level_q8 = line->level_db_q8;
+    int32_t *const horizon = line->horizon, *const level_db_q8 = line->level_db_q8;
     horizon[0] = line->start;
     for (size_t k = 0; k < first; k++) {
         horizon[k + 1] = line->start;
-        level_q8[k] = LM_LEVEL_SHADOW;
+        level_db_q8[k] = LM_LEVEL_SHADOW;
     }
     const struct neon_legend l = neon_legend_of(line);
     struct neon_before before = neon_before_of(line);
     struct neon_place at = {.cell = tops->cell + first,
-                            .elevation_q14 = (const uint32_t *)tops->elevation_m_q14 + first,
-                            .fall_q14 = (const uint32_t *)tops->fall_m_q14 + first,
-                            .gain_q8 = (const uint32_t *)line->gain_db_q8 + first,
+                            .elevation_m_q14 = (const uint32_t *)tops->elevation_m_q14 + first,
+                            .fall_m_q14 = (const uint32_t *)tops->fall_m_q14 + first,
+                            .gain_db_q8 = (const uint32_t *)line->gain_db_q8 + first,
                             .inverse_range = tops->inverse_range + first,
                             .horizon = horizon + first + 1,
-                            .level_q8 = level_q8 + first,
+                            .level_db_q8 = level_db_q8 + first,
                             .behind_shore = behind_shore + first};
     const uint32_t *const end = tops->cell + tops->cells;
     if (hidden != 0) {
@@ -301,9 +301,9 @@ int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
     int32x4_t highest = vdupq_n_s32(INT32_MIN);
     for (uint32_t i = tops->first, end = 0; end < tops->cells; i = end) {
         const uint32_t begin = i < last ? i : last;
-        const struct neon_place at = {.elevation_q14 =
+        const struct neon_place at = {.elevation_m_q14 =
                                           (const uint32_t *)tops->elevation_m_q14 + begin,
-                                      .fall_q14 = (const uint32_t *)tops->fall_m_q14 + begin,
+                                      .fall_m_q14 = (const uint32_t *)tops->fall_m_q14 + begin,
                                       .inverse_range = tops->inverse_range + begin};
         const uint8x16_t lower =
             neon_lower_bytes(neon_lower_halves(vld1q_u32_x4(tops->cell + begin)));

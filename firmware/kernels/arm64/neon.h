@@ -47,9 +47,9 @@ static inline uint16x8_t neon_tops(uint32x4_t low, uint32x4_t high)
                       vreinterpretq_u16_u32(vshlq_u32(high, zeros[1])));
 }
 
-/* level + fx_db_q8_of_many(power) of eight; anything where the power is 0. The table is not looked
+/* level + fx_db_q8_vec(power) of eight; anything where the power is 0. The table is not looked
  * up: its lines stay in registers. */
-static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t power)
+static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_db_q8, uint32x4x2_t power)
 {
     const uint32x4_t zeros[2] = {vclzq_u32(power.val[0]), vclzq_u32(power.val[1])};
     const uint16x8_t top = neon_tops(power.val[0], power.val[1]);
@@ -65,13 +65,13 @@ static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_q8, uint32x4x2_t powe
     const uint32x4_t low =
         vmlsq_n_u32(vaddw_u16(all, vget_low_u16(db_q13)), zeros[0], FX_DB_OCTAVE_Q13);
     const uint32x4_t high = vmlsq_n_u32(vaddw_high_u16(all, db_q13), zeros[1], FX_DB_OCTAVE_Q13);
-    return (int32x4x2_t){{vsraq_n_s32(level_q8.val[0], vreinterpretq_s32_u32(low), 5),
-                          vsraq_n_s32(level_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
+    return (int32x4x2_t){{vsraq_n_s32(level_db_q8.val[0], vreinterpretq_s32_u32(low), 5),
+                          vsraq_n_s32(level_db_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
 }
 
 /* The same of sixteen, where all fits in 16 bits: the decibels take 24659. An octave's fraction of
  * a step is added before it is cut off, whole steps are behind. */
-static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32x4x4_t power)
+static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32x4x4_t power)
 {
     const uint16x8_t top[2] = {neon_tops(power.val[0], power.val[1]),
                                neon_tops(power.val[2], power.val[3])};
@@ -89,10 +89,10 @@ static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_q8, uint32x4x
                                             vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n + 1])));
         const uint16x8_t octave = veorq_u16(zeros, vdupq_n_u16(31));
         const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_OCTAVE_Q13 % 32);
-        level_q8.val[n] =
-            vmlaq_n_u16(vsraq_n_u16(level_q8.val[n], fine_q13, 5), octave, FX_DB_OCTAVE_Q13 / 32);
+        level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
+                                         FX_DB_OCTAVE_Q13 / 32);
     }
-    return level_q8;
+    return level_db_q8;
 }
 
 /* How far apart eight levels are, in steps of the table. */
@@ -105,7 +105,7 @@ static inline uint16x8_t neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int3
     return vminq_u16(steps, vdupq_n_u16(511));
 }
 
-/* fx_db_q8_sum_of_many of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
+/* fx_db_q8_sum_vec of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
  * loop, whose stores would else have them loaded again each time. Steps' upper bits choose lines.
  */
 static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, uint8x16x4_t falls,
@@ -148,7 +148,7 @@ static inline void neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t 
     vst1q_s32(and_to + 4, x.val[3]);
 }
 
-/* Octaves in Q8 above 2^-31 for fx_power_q24_of_many of eight: -31.0 up to just below 1.0. */
+/* Octaves in Q8 above 2^-31 for fx_power_q24_vec of eight: -31.0 up to just below 1.0. */
 static inline int16x8_t neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
 {
     const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
@@ -166,7 +166,7 @@ static inline uint32x4x2_t neon_shift_q15(uint16x8_t x_q15, int16x8_t up)
         {vshlq_u32(low, vmovl_s16(vget_low_s16(up))), vshlq_u32(high, vmovl_high_s16(up))}};
 }
 
-/* fx_power_q24_of_many of sixteen. Of the lines of its table the lower byte of the octaves chooses
+/* fx_power_q24_vec of sixteen. Of the lines of its table the lower byte of the octaves chooses
  * one; the upper byte says how far down. */
 static inline uint32x4x4_t neon_power_q24(int32x4x4_t db_q8)
 {

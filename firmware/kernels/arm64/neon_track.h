@@ -4,7 +4,7 @@
 
 #include <arm_neon.h>
 
-#include "lm/track.h"
+#include "lm/quadratic.h"
 
 /* Four cells, how far it is to the next four, and by how much that grows. */
 struct neon_track {
@@ -12,13 +12,13 @@ struct neon_track {
 };
 
 /* From cell `first` on. */
-static inline struct neon_track neon_track_from(const struct lm_track *t, uint32_t first)
+static inline struct neon_track neon_track_from(const struct lm_quadratic *t, uint32_t first)
 {
     const uint32x4_t k = {0, 1, 2, 3}, eight_k_16 = {16, 24, 32, 40};
     const uint32_t step = t->step + 2 * first * t->half_bend;
     const uint32x4_t slope = vmlaq_n_u32(vdupq_n_u32(step), k, t->half_bend);
     return (struct neon_track){
-        vmlaq_u32(vdupq_n_u32(lm_track_at(t, first)), k, slope),
+        vmlaq_u32(vdupq_n_u32(lm_quadratic_at(t, first)), k, slope),
         vmlaq_n_u32(vdupq_n_u32(4 * step), eight_k_16, t->half_bend),
         vdupq_n_u32(32 * t->half_bend),
     };

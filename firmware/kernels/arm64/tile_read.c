@@ -90,7 +90,7 @@ static inline uint32x4_t neon_elevation(uint32x4_t scale, uint32x4_t post_q16)
     return vaddq_u32(scale, vshlq_u32(post_q16, vreinterpretq_s32_u32(scale)));
 }
 
-void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_places *places,
+void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coords *places,
                     uint32_t first, uint32_t groups, uint32_t *cell_of_line,
                     int32_t *elevation_m_q14)
 {

@@ -5,19 +5,19 @@
 
 /* A window, eight times, and where its step 0 begins; what makes steps of the levels above that. */
 struct tone_window {
-    int16x8_t black_q8, white_q8;
-    uint16x8_t start_q8; /* modulo 2^16 */
+    int16x8_t black_db_q8, white_db_q8;
+    uint16x8_t start_db_q8; /* modulo 2^16 */
     int16x8_t minus_step_log2;
 };
 
 /* Steps of eight levels. What does not fit 16 bits is beyond the window; above its start, 16 bits
  * without a sign hold all of it. */
-static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *level_q8)
+static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *level_db_q8)
 {
     const int16x8_t level_of_16 =
-        vqmovn_high_s32(vqmovn_s32(vld1q_s32(level_q8)), vld1q_s32(level_q8 + 4));
-    const int16x8_t within = vminq_s16(vmaxq_s16(level_of_16, w->black_q8), w->white_q8);
-    return vshlq_u16(vsubq_u16(vreinterpretq_u16_s16(within), w->start_q8), w->minus_step_log2);
+        vqmovn_high_s32(vqmovn_s32(vld1q_s32(level_db_q8)), vld1q_s32(level_db_q8 + 4));
+    const int16x8_t within = vminq_s16(vmaxq_s16(level_of_16, w->black_db_q8), w->white_db_q8);
+    return vshlq_u16(vsubq_u16(vreinterpretq_u16_s16(within), w->start_db_q8), w->minus_step_log2);
 }
 
 void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t *restrict grey,
@@ -43,12 +43,12 @@ void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t
             vuzp1q_u8(vreinterpretq_u8_u16(first), vreinterpretq_u8_u16(second));
         const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
         const uint8x16_t slope = vqtbl4q_u8(slopes, line);
-        const uint16x8_t first_q8 = vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)),
-                                             vget_low_u8(slope), vget_low_u8(place));
+        const uint16x8_t first_m_q8 = vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)),
+                                               vget_low_u8(slope), vget_low_u8(place));
         const uint16x8_t second_q8 =
             vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), slope, place);
         vst1q_u8(grey + i,
-                 vuzp2q_u8(vreinterpretq_u8_u16(first_q8), vreinterpretq_u8_u16(second_q8)));
+                 vuzp2q_u8(vreinterpretq_u8_u16(first_m_q8), vreinterpretq_u8_u16(second_q8)));
     }
     if (whole < cells) {
         lm_k_tone_c(t, level_q8 + whole, grey + whole, cells - whole);

@@ -12,6 +12,6 @@ void lm_k_gather(const int32_t *restrict level_db_q8, const int32_t *restrict ce
 void lm_k_powers_of_levels(uint32_t *line, uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        line[i] = fx_power_q24_of_many((int32_t)line[i]);
+        line[i] = fx_power_q24_vec((int32_t)line[i]);
     }
 }

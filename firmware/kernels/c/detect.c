@@ -6,8 +6,8 @@
 static inline int32_t sum_db_q8(uint32_t power_q24, int32_t loss_db_q8, int32_t noise_db_q8,
                                 int32_t draw_db_q8)
 {
-    const int32_t signal_db_q8 = fx_db_q8_of_many(power_q24) - LM_K_UNIT_Q24_DB_Q8;
-    return fx_db_q8_sum_of_many(signal_db_q8 - loss_db_q8, noise_db_q8 + draw_db_q8);
+    const int32_t signal_db_q8 = fx_db_q8_vec(power_q24) - LM_K_UNIT_Q24_DB_Q8;
+    return fx_db_q8_sum_vec(signal_db_q8 - loss_db_q8, noise_db_q8 + draw_db_q8);
 }
 
 void lm_k_detect(const struct lm_k_receiver *receiver, const uint32_t *restrict power_q24,
@@ -32,7 +32,7 @@ void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k
     draw(r.row_db_q8, r.entry, draw_db_q8, cells);
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t noise_db_q8 =
-            fx_db_q8_sum_of_many(r.noise_db_q8[i] + r.rise_db_q8, w.rain_db_q8[i]);
+            fx_db_q8_sum_vec(r.noise_db_q8[i] + r.rise_db_q8, w.rain_db_q8[i]);
         level_db_q8[i] =
             sum_db_q8(power_q24[i], w.loss_db_q8[i], noise_db_q8, draw_db_q8[i]) - r.fall_db_q8[i];
     }

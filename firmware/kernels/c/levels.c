@@ -6,7 +6,7 @@ void lm_k_levels_add(int32_t *restrict sum_db_q8, const int32_t *restrict level_
                      uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        sum_db_q8[i] = fx_db_q8_sum_of_many(sum_db_q8[i], level_db_q8[i]);
+        sum_db_q8[i] = fx_db_q8_sum_vec(sum_db_q8[i], level_db_q8[i]);
     }
 }
 
@@ -14,7 +14,7 @@ void lm_k_levels_mean(const int32_t *restrict sum_db_q8, int32_t less_db_q8, int
                       int32_t *restrict level_db_q8, uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t all_db_q8 = fx_db_q8_sum_of_many(sum_db_q8[i], level_db_q8[i]);
+        const int32_t all_db_q8 = fx_db_q8_sum_vec(sum_db_q8[i], level_db_q8[i]);
         level_db_q8[i] = fx_max_i32(all_db_q8 - less_db_q8, least_db_q8);
     }
 }

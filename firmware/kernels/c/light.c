@@ -59,7 +59,7 @@ static void look(const struct lm_k_lit_line *line, uint32_t end, struct work *re
         const int32_t height_m_q14 = words.height_m_q14[(int32_t)(cell % LM_K_CODES)];
         w->tangent[LM_LANES + i] = lm_k_tangent(&tops, i, height_m_q14);
         w->kind[LM_LANES + i] = words.kind[(int32_t)((cell >> 4) % LM_K_CODES)];
-        level_db_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_Q8 + gain_db_q8[i];
+        level_db_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_DB_Q8 + gain_db_q8[i];
     }
 }
 
@@ -82,7 +82,7 @@ static void set_ends(const struct lm_k_lit_line *line, struct work *w)
     }
 }
 
-static void join_fours(uint32_t end, struct work *w)
+static void max_of_four(uint32_t end, struct work *w)
 {
     for (uint32_t i = LM_LANES; i < LM_LANES + end; i++) {
         const int32_t *t = w->tangent + i;
@@ -105,8 +105,7 @@ static bool light(uint32_t end, struct work *restrict w, int32_t *restrict line_
         const int32_t horizon = fx_max_i32(of_eight, w->horizon[at - LM_LANES]);
         const int32_t next = fx_max_i32(horizon, w->tangent[at]);
         const int32_t edge_db_q8 = kind != kind_before ? kind >> LM_K_MARK_BITS : 0;
-        const int32_t lit_db_q8 =
-            level_db_q8[i] + edge_db_q8 + fx_db_q8_of_many_i32(next - horizon);
+        const int32_t lit_db_q8 = level_db_q8[i] + edge_db_q8 + fx_db_q8_vec_i32(next - horizon);
         w->horizon[at] = line_horizon[i] = horizon;
         level_db_q8[i] = next != horizon ? lit_db_q8 : LM_LEVEL_SHADOW;
         left |= kind_before & ~kind;
@@ -155,7 +154,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
     struct work *w = (struct work *)line->work;
     look(line, end, w, line->level_db_q8);
     set_ends(line, w);
-    join_fours(end, w);
+    max_of_four(end, w);
     if (light(end, w, line->horizon, line->level_db_q8)) {
         add_shores(line, w);
     }

@@ -48,7 +48,7 @@ static inline uint32_t fx_leading_nibbles_of_many(uint32_t x)
 /* The same as fx_db_q8, for loops over many: most machines that work on eight numbers at a time
  * cannot count zeros, but shift and look up they can. -43029 for power 0. Worst
  * error 0.015 dB. */
-static inline int32_t fx_db_q8_of_many(uint32_t power)
+static inline int32_t fx_db_q8_vec(uint32_t power)
 {
     /* The power is shifted up to 2^28..2^32, where 12 bits are a mantissa of 8 bits or more. */
     const uint32_t octaves = fx_leading_nibbles_of_many(power);
@@ -58,7 +58,7 @@ static inline int32_t fx_db_q8_of_many(uint32_t power)
 
 /* The same of a power below 2^31, for three quarters of the price: numbers with a sign are compared
  * in one instruction. -43800 for power 0. */
-static inline int32_t fx_db_q8_of_many_i32(int32_t power)
+static inline int32_t fx_db_q8_vec_i32(int32_t power)
 {
     /* Up to 2^15..2^31, 2^23..2^31, and down to 2^8..2^12. */
     const int32_t by_16 = power < 1 << 15 ? 16 : 0, p_16 = power << by_16;
@@ -70,7 +70,7 @@ static inline int32_t fx_db_q8_of_many_i32(int32_t power)
 /* 10^(dB / 10) in Q24 without counting or branching, for loops over many: 1 up to -72.25 dB and
  * UINT32_MAX's octave from 24.08 dB up; |dB_q8| < 2^17. Worst error 0.012 dB where the result has
  * more than 9 bits. */
-static inline uint32_t fx_power_q24_of_many(int32_t db_q8)
+static inline uint32_t fx_power_q24_vec(int32_t db_q8)
 {
     /* Octaves above 2^-24 in Q8: log2(10) / 10 is 10885.3 / 2^15; the product stays below 2^31. */
     const int32_t octaves_q8 = ((db_q8 * 10885 + 16384) >> 15) + (24 << 8);
@@ -81,7 +81,7 @@ static inline uint32_t fx_power_q24_of_many(int32_t db_q8)
 
 /* 10^(dB / 10) in Q32 of 64 bits, likewise: 1 up to -96.3 dB and 2^63's octave from 93.3 dB up;
  * |dB_q8| < 2^16. Worst error 0.014 dB where the result has more than 9 bits. */
-static inline uint64_t fx_power_q32_of_many(int32_t db_q8)
+static inline uint64_t fx_power_q32_vec(int32_t db_q8)
 {
     const int32_t octaves_q16 = (db_q8 * 21771 >> 8) + (32 << 16) + 128;
     const int32_t low_q16 = octaves_q16 < 0 ? 0 : octaves_q16;
@@ -91,7 +91,7 @@ static inline uint64_t fx_power_q32_of_many(int32_t db_q8)
 
 /* Decibels of the sum of two powers given in decibels, all in Q8; |a - b| < 2^31. Worst error
  * 0.018 dB. */
-static inline int32_t fx_db_q8_sum_of_many(int32_t a_q8, int32_t b_q8)
+static inline int32_t fx_db_q8_sum_vec(int32_t a_q8, int32_t b_q8)
 {
     const int32_t high_q8 = a_q8 > b_q8 ? a_q8 : b_q8, low_q8 = a_q8 > b_q8 ? b_q8 : a_q8;
     const int32_t step = (high_q8 - low_q8) >> 4;

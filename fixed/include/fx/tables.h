@@ -28,17 +28,17 @@ extern const uint32_t fx_table_exp2_q31[256];
 extern const uint16_t fx_table_db_q14[256];
 
 /* The same in Q13 by straight lines, and for i from those of 8 bits behind its first one; little
- * for i = 0: see fx_db_q8_of_many. */
+ * for i = 0: see fx_db_q8_vec. */
 #define FX_DB_OCTAVE_Q13 24660
 extern const uint8_t fx_table_db_lines[3][16];
 extern const int32_t fx_table_db_steps_q13[4096];
 
-/* 2^(i / 256) in Q15 by straight lines, and so in Q31: see fx_power_q24_of_many. */
+/* 2^(i / 256) in Q15 by straight lines, and so in Q31: see fx_power_q24_vec. */
 extern const uint8_t fx_table_power_lines[3][16];
 extern const uint32_t fx_table_power_q31[256];
 
 /* 10 * log10(1 + 10^(-d / 10)) for d = (i + 0.5) / 16 dB, in Q13 by straight lines, and so in Q8:
- * see fx_db_q8_sum_of_many. */
+ * see fx_db_q8_sum_vec. */
 extern const uint8_t fx_table_db_sum_lines[3][64];
 extern const int32_t fx_table_db_sum_q8[512];
 

@@ -170,8 +170,8 @@ static void fill_classes(struct lm_classes *to, const struct db_class_table *tab
         memcpy(e->name, c->name, strnlen(c->name, sizeof e->name));
         memcpy(e->colour, c->colour, sizeof e->colour);
         e->kind = (uint8_t)c->kind;
-        e->gamma_q8 = (int16_t)lround(c->gamma_db * 256.0);
-        e->spread_q8 = (uint16_t)lround(c->spread_db * 256.0);
+        e->gamma_db_q8 = (int16_t)lround(c->gamma_db * 256.0);
+        e->spread_db_q8 = (uint16_t)lround(c->spread_db * 256.0);
         e->height_dm = (uint16_t)lround(c->height_m * 10.0);
         e->looks = (uint16_t)fmax(1.0, round(c->looks));
     }
@@ -410,8 +410,8 @@ static void fill_header(struct lm_image_header *h, const struct build_context *b
     const struct build_counts *n = &b->counts;
     const double mean_m =
         n->land_area_m2 > 0 ? n->land_metres_m2 / n->land_area_m2 : s->sea_level_m;
-    h->mean_elevation_q6 = (int32_t)lround(mean_m * 64.0);
-    h->geoid_q6 = (int32_t)lround(s->geoid_m * 64.0);
+    h->mean_elevation_m_q6 = (int32_t)lround(mean_m * 64.0);
+    h->geoid_m_q6 = (int32_t)lround(s->geoid_m * 64.0);
     h->centre_latitude = centre[0];
     h->centre_longitude = centre[1];
     if (s->title) {
@@ -448,7 +448,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     choose_centre(b, s, centre);
     struct image_writer w;
     const struct lm_image_header header = {.shift0 = b->plan.shift0,
-                                           .level_count = b->plan.level_count,
+                                           .lod_count = b->plan.level_count,
                                            .band_count = b->plan.band_count,
                                            .entry_count = b->plan.entry_count};
     if (image_writer_begin(&w, s->out, &header, &b->classes, b->plan.bands) != 0) {
@@ -472,7 +472,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     report->image_bytes = w.header.image_bytes;
     report->entry_count = w.header.entry_count;
     report->record_count = w.header.record_count;
-    report->mean_elevation_q6 = w.header.mean_elevation_q6;
+    report->mean_elevation_q6 = w.header.mean_elevation_m_q6;
     return 0;
 }
 

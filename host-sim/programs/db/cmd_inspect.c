@@ -26,8 +26,8 @@ static void print_header(const struct image *image)
     printf("bytes           %" PRIu64 "\n", h->image_bytes);
     printf("centre          %.6f, %.6f\n", image_degrees((int32_t)h->centre_latitude),
            image_longitude_degrees(h->centre_longitude));
-    printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_q6 / 64.0);
-    printf("geoid           %.1f m above WGS-84\n", h->geoid_q6 / 64.0);
+    printf("mean elevation  %.1f m above mean sea level\n", h->mean_elevation_m_q6 / 64.0);
+    printf("geoid           %.1f m above WGS-84\n", h->geoid_m_q6 / 64.0);
     printf("finest cell     %.3f m (shift0 %u)\n", ldexp(IMAGE_METRES_PER_BAM, h->shift0),
            h->shift0);
     printf("\nsection     offset         bytes  crc\n");
@@ -43,12 +43,12 @@ static void print_bands(const struct image *image)
     printf("\nlevel zone      south       west      north       east        rows     columns\n");
     for (uint32_t i = 0; i < image->header.band_count; i++) {
         const struct lm_band *b = &image->db.bands[i];
-        const uint8_t shift = (uint8_t)(image->header.shift0 + b->level);
+        const uint8_t shift = (uint8_t)(image->header.shift0 + b->lod);
         const struct image_frame first = image_frame_of(shift, b->zone, b->row0, b->column0);
         const struct image_frame last = image_frame_of(shift, b->zone, b->row0 + b->rows, 0);
         const uint32_t width =
             (uint32_t)((uint64_t)b->columns * LM_TILE_CELLS << (shift + b->zone));
-        printf("%5u %4u %10.5f %10.5f %10.5f %10.5f  %10" PRIu32 "  %10" PRIu32 "\n", b->level,
+        printf("%5u %4u %10.5f %10.5f %10.5f %10.5f  %10" PRIu32 "  %10" PRIu32 "\n", b->lod,
                b->zone, image_degrees(first.south), image_longitude_degrees(first.west),
                image_degrees(last.south), image_longitude_degrees(first.west + width), b->rows,
                b->columns);
@@ -67,12 +67,12 @@ static uint32_t count_tiles(const struct image *image, const struct lm_band *b)
 
 static void print_levels(const struct image *image)
 {
-    uint32_t tiles[LM_DB_LEVELS_MAX] = {0};
+    uint32_t tiles[LM_DB_LODS_MAX] = {0};
     for (uint32_t i = 0; i < image->header.band_count; i++) {
-        tiles[image->db.bands[i].level] += count_tiles(image, &image->db.bands[i]);
+        tiles[image->db.bands[i].lod] += count_tiles(image, &image->db.bands[i]);
     }
     printf("\nlevel     cell m       tiles         bytes\n");
-    for (int level = 0; level < image->header.level_count; level++) {
+    for (int level = 0; level < image->header.lod_count; level++) {
         printf("%5d %10.2f  %10" PRIu32 "  %12" PRIu64 "\n", level,
                ldexp(IMAGE_METRES_PER_BAM, image->header.shift0 + level), tiles[level],
                (uint64_t)tiles[level] * LM_TILE_BYTES);
@@ -87,9 +87,9 @@ static void print_classes(const struct image *image)
         const struct lm_class *c = &image->db.classes.entry[i];
         if (c->name[0]) {
             printf("%5d %-16.16s %-9s %9.2f  %9.2f  %8.1f  %5u  %02x%02x%02x\n", i, c->name,
-                   c->kind <= LM_KIND_TREES ? kinds[c->kind] : "unknown", c->gamma_q8 / 256.0,
-                   c->spread_q8 / 256.0, c->height_dm / 10.0, c->looks, c->colour[0], c->colour[1],
-                   c->colour[2]);
+                   c->kind <= LM_KIND_TREES ? kinds[c->kind] : "unknown", c->gamma_db_q8 / 256.0,
+                   c->spread_db_q8 / 256.0, c->height_dm / 10.0, c->looks, c->colour[0],
+                   c->colour[1], c->colour[2]);
         }
     }
     printf("heights m      ");

@@ -32,7 +32,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
          "north-west)",
          true},
         {"out", DB_TEXT, &s->out, 0, 0, "P.png", "the picture", true},
-        {"level", DB_INTEGER, &s->level, -1, LM_DB_LEVELS_MAX - 1, "L",
+        {"level", DB_INTEGER, &s->level, -1, LM_DB_LODS_MAX - 1, "L",
          "level of detail; -1: the finest that fits the picture", false},
         {"area", DB_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",
          "degrees; left out: all of that level", false},
@@ -74,9 +74,9 @@ static int parse_plane(const char *name)
 
 static int draw(const struct image *image, const struct settings *s, struct image_view *view)
 {
-    if (s->level >= image->header.level_count) {
+    if (s->level >= image->header.lod_count) {
         return hs_error("--level", "see `landmass-db inspect`", "the image ends at level %u",
-                        image->header.level_count - 1u);
+                        image->header.lod_count - 1u);
     }
     if (image_view_fit(image, view, (int)s->level, (int)s->max_size) != 0) {
         return -1;

@@ -4,7 +4,7 @@
 
 #include "hs/angle.h"
 #include "hs/chart.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "lm/target_line.h"
 #include "lm/target_patch.h"
 
@@ -50,11 +50,12 @@ static double cell_area_db(double cell_m, double cell_range_m)
     return 10 * log10(cell_m * cell_m * (height_m / cell_range_m - drop));
 }
 
-static struct lm_targets_near near_of(const struct lm_target_set *set, struct lm_place place)
+static struct lm_target_candidates near_of(const struct lm_target_set *set,
+                                           struct lm_position place)
 {
-    struct lm_targets_near near;
-    const struct lm_target_scene scene = {.place = place, .reach_m = (uint32_t)range_m + 1000};
-    lm_targets_select(&near, set, &scene);
+    struct lm_target_candidates near;
+    const struct lm_target_scene scene = {.position = place, .reach_m = (uint32_t)range_m + 1000};
+    lm_target_candidates_select(&near, set, &scene);
     return near;
 }
 
@@ -63,23 +64,23 @@ static void look_finely(struct patch *p, const struct lm_target *t, double look_
 {
     const struct lm_patch_geometry g = {.centre = {t->latitude, t->longitude},
                                         .look = hs_bam(look_deg),
-                                        .centre_q8 = (uint32_t)(range_m * 256),
-                                        .cell_q8 = (uint32_t)(p->cell_m * 256),
+                                        .centre_m_q8 = (uint32_t)(range_m * 256),
+                                        .cell_m_q8 = (uint32_t)(p->cell_m * 256),
                                         .lines = (uint32_t)p->cells,
                                         .cells = (uint32_t)p->cells,
                                         .heights = {(int32_t)(height_m * 1024), 0},
                                         .wavelength_um =
                                             (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
     const struct lm_target_set set = {.items = t, .count = 1};
-    const struct lm_targets_near near = near_of(&set, g.centre);
-    struct lm_patch_points points;
-    lm_patch_points_set(&points, &near, &g);
+    const struct lm_target_candidates near = near_of(&set, g.centre);
+    struct lm_target_patch points;
+    lm_target_patch_set(&points, &near, &g);
     for (int k = 0; k < p->cells; k++) {
         int32_t level_q8[CELLS_MAX];
         for (int i = 0; i < p->cells; i++) {
             level_q8[i] = LM_LEVEL_SHADOW;
         }
-        lm_patch_points_add(&points, (uint32_t)k, LM_LEVEL_SHADOW, &g, level_q8);
+        lm_target_patch_add_points(&points, (uint32_t)k, LM_LEVEL_SHADOW, &g, level_q8);
         for (int i = 0; i < p->cells; i++) {
             const double at_m = range_m + (i + 0.5 - p->cells / 2.0) * p->cell_m;
             p->dbsm[k][i] = level_q8[i] / 256.0 + cell_area_db(p->cell_m, at_m);
@@ -93,23 +94,23 @@ static void look_coarsely(struct patch *p, const struct lm_target *t, double loo
 {
     struct lm_target turned = *t;
     struct lm_geo_origin origin;
-    struct lm_place place;
+    struct lm_position place;
     int32_t level_q8 = LM_LEVEL_SHADOW;
     const double beam_m = 64 * p->cell_m;
-    lm_geo_set_origin(&origin, (struct lm_place){t->latitude, t->longitude});
+    lm_geo_set_origin(&origin, (struct lm_position){t->latitude, t->longitude});
     place = lm_geo_direct(&origin, FX_BAM_180, (uint32_t)(range_m * 256));
     turned.heading -= hs_bam(look_deg);
-    const struct lm_target_line line = {.place = place,
+    const struct lm_target_line line = {.position = place,
                                         .width = hs_bam(beam_m / range_m * 180 / pi),
-                                        .first_q8 = (uint32_t)(range_m * 256),
-                                        .cell_q8 = (uint32_t)(p->cell_m * 256),
+                                        .first_m_q8 = (uint32_t)(range_m * 256),
+                                        .cell_m_q8 = (uint32_t)(p->cell_m * 256),
                                         .cells = 1,
-                                        .height_q10 = (int32_t)(height_m * 1024),
+                                        .height_m_q10 = (int32_t)(height_m * 1024),
                                         .wavelength_um =
                                             (uint32_t)lround(FIGURE_WAVELENGTH_M * 1e6)};
     const struct lm_target_set set = {.items = &turned, .count = 1};
-    const struct lm_targets_near near = near_of(&set, place);
-    lm_target_add(&near, &line, NULL, &level_q8);
+    const struct lm_target_candidates near = near_of(&set, place);
+    lm_target_line_add(&near, &line, NULL, &level_q8);
     p->dbsm[0][0] =
         level_q8 / 256.0 + cell_area_db(p->cell_m, range_m) + 10 * log10(beam_m / p->cell_m);
 }

@@ -31,7 +31,8 @@ static double returned_db(void *ctx, double degrees)
     const struct lm_direction ahead = {1 << 30, 0, 0};
     const struct lm_direction aside = {(int32_t)lround(cos(angle) * one),
                                        (int32_t)lround(sin(angle) * one), 0};
-    return (lm_rcs_q8(&plate, wavelength_um, aside) - lm_rcs_q8(&plate, wavelength_um, ahead)) /
+    return (lm_rcs_dbsm_q8(&plate, wavelength_um, aside) -
+            lm_rcs_dbsm_q8(&plate, wavelength_um, ahead)) /
            256.0;
 }
 

@@ -143,29 +143,29 @@ TEST(decibels_of_many_are_within_0_015_dB_and_never_fall)
 {
     double worst = 0;
     for (uint32_t power = 1; power < 1u << 20; power++) {
-        worst = fmax(worst, fabs(fx_db_q8_of_many(power) / 256.0 - 10 * log10(power)));
-        assert_true(fx_db_q8_of_many(power) >= fx_db_q8_of_many(power - 1));
+        worst = fmax(worst, fabs(fx_db_q8_vec(power) / 256.0 - 10 * log10(power)));
+        assert_true(fx_db_q8_vec(power) >= fx_db_q8_vec(power - 1));
     }
     for (uint64_t power = 1u << 20; power <= UINT32_MAX; power += 1021) {
         const uint32_t p = (uint32_t)power;
-        worst = fmax(worst, fabs(fx_db_q8_of_many(p) / 256.0 - 10 * log10(p)));
-        assert_true(fx_db_q8_of_many(p) >= fx_db_q8_of_many(p - 1021));
+        worst = fmax(worst, fabs(fx_db_q8_vec(p) / 256.0 - 10 * log10(p)));
+        assert_true(fx_db_q8_vec(p) >= fx_db_q8_vec(p - 1021));
     }
     print_message("# decibels of many, Q8: worst %.5f dB\n", worst);
     assert_true(worst <= 0.015);
-    assert_int_equal(fx_db_q8_of_many(0), -43029);
+    assert_int_equal(fx_db_q8_vec(0), -43029);
 }
 
 TEST(decibels_of_many_with_a_sign_are_the_same)
 {
     for (int32_t power = 1; power < 1 << 20; power++) {
-        assert_int_equal(fx_db_q8_of_many_i32(power), fx_db_q8_of_many((uint32_t)power));
+        assert_int_equal(fx_db_q8_vec_i32(power), fx_db_q8_vec((uint32_t)power));
     }
     for (int64_t power = 1 << 20; power <= INT32_MAX; power += 1021) {
         const int32_t p = (int32_t)power;
-        assert_int_equal(fx_db_q8_of_many_i32(p), fx_db_q8_of_many((uint32_t)p));
+        assert_int_equal(fx_db_q8_vec_i32(p), fx_db_q8_vec((uint32_t)p));
     }
-    assert_int_equal(fx_db_q8_of_many_i32(0), -43800);
+    assert_int_equal(fx_db_q8_vec_i32(0), -43800);
 }
 
 TEST(power_from_decibels_is_within_half_an_lsb_and_4e_9)
@@ -195,16 +195,16 @@ TEST(powers_of_many_are_within_0_012_dB_from_minus_45_to_24_dB_and_never_fall)
 {
     double worst = 0;
     for (int32_t db_q8 = -45 * 256; db_q8 <= 24 * 256; db_q8++) {
-        const double power = fx_power_q24_of_many(db_q8) / 16777216.0;
+        const double power = fx_power_q24_vec(db_q8) / 16777216.0;
         worst = fmax(worst, fabs(10 * log10(power) - db_q8 / 256.0));
-        assert_true(fx_power_q24_of_many(db_q8) >= fx_power_q24_of_many(db_q8 - 1));
+        assert_true(fx_power_q24_vec(db_q8) >= fx_power_q24_vec(db_q8 - 1));
     }
     print_message("worst error %.4f dB\n", worst);
     assert_true(worst < 0.012);
-    assert_int_equal(fx_power_q24_of_many(-0xC000), 1);
-    assert_int_equal(fx_power_q24_of_many(1 - (1 << 17)), 1);
-    assert_true(fx_power_q24_of_many(50 * 256) > UINT32_MAX - (UINT32_MAX >> 8));
-    assert_int_equal(fx_power_q24_of_many((1 << 17) - 1), fx_power_q24_of_many(50 * 256));
+    assert_int_equal(fx_power_q24_vec(-0xC000), 1);
+    assert_int_equal(fx_power_q24_vec(1 - (1 << 17)), 1);
+    assert_true(fx_power_q24_vec(50 * 256) > UINT32_MAX - (UINT32_MAX >> 8));
+    assert_int_equal(fx_power_q24_vec((1 << 17) - 1), fx_power_q24_vec(50 * 256));
 }
 
 TEST(sums_of_many_are_within_0_018_dB_either_way_round)
@@ -213,8 +213,8 @@ TEST(sums_of_many_are_within_0_018_dB_either_way_round)
     for (int32_t a_q8 = -60 * 256; a_q8 <= 20 * 256; a_q8 += 7) {
         const int32_t b_q8 = -20 * 256;
         const double sum = 10 * log10(pow(10, a_q8 / 2560.0) + pow(10, b_q8 / 2560.0));
-        worst = fmax(worst, fabs(fx_db_q8_sum_of_many(a_q8, b_q8) / 256.0 - sum));
-        assert_int_equal(fx_db_q8_sum_of_many(a_q8, b_q8), fx_db_q8_sum_of_many(b_q8, a_q8));
+        worst = fmax(worst, fabs(fx_db_q8_sum_vec(a_q8, b_q8) / 256.0 - sum));
+        assert_int_equal(fx_db_q8_sum_vec(a_q8, b_q8), fx_db_q8_sum_vec(b_q8, a_q8));
     }
     print_message("worst error %.4f dB\n", worst);
     assert_true(worst < 0.018);
@@ -223,7 +223,7 @@ TEST(sums_of_many_are_within_0_018_dB_either_way_round)
 TEST(the_farther_apart_the_less_is_added)
 {
     for (int32_t apart_q8 = 0; apart_q8 < 0x4000; apart_q8++) {
-        assert_true(fx_db_q8_sum_of_many(0, -apart_q8) >= fx_db_q8_sum_of_many(0, -apart_q8 - 1));
+        assert_true(fx_db_q8_sum_vec(0, -apart_q8) >= fx_db_q8_sum_vec(0, -apart_q8 - 1));
     }
-    assert_int_equal(fx_db_q8_sum_of_many(0, -0x8000), 1); /* what 32 dB still add, rounded */
+    assert_int_equal(fx_db_q8_sum_vec(0, -0x8000), 1); /* what 32 dB still add, rounded */
 }

@@ -17,7 +17,7 @@ void instrument_nothing(void)
 {
 }
 
-_Static_assert(LM_SECTOR_MODES *LM_FIELDS < INSTRUMENT_MODES, "a sum for each mode and the patch");
+_Static_assert(LM_SECTOR_MODES *LM_FOVS < INSTRUMENT_MODES, "a sum for each mode and the patch");
 
 struct bench {
     struct zcu102 z;
@@ -38,8 +38,8 @@ static void add(struct instrument_sum *sum, uint64_t spent)
 /* A number for what is being drawn: mode and field of the sector, behind them the patch. */
 static uint32_t mode_of(const struct lm_page *page)
 {
-    return page->picture == LM_PICTURE_PATCH ? LM_SECTOR_MODES * LM_FIELDS
-                                             : (uint32_t)page->mode * LM_FIELDS + page->field;
+    return page->picture == LM_PICTURE_PATCH ? LM_SECTOR_MODES * LM_FOVS
+                                             : (uint32_t)page->mode * LM_FOVS + page->fov;
 }
 
 static void fly(struct bench *b)

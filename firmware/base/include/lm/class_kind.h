@@ -2,7 +2,7 @@
 #ifndef LM_CLASS_KIND_H
 #define LM_CLASS_KIND_H
 
-enum lm_kind {
+enum lm_class_kind {
     LM_KIND_GROUND = 0,
     LM_KIND_WATER = 1,
     LM_KIND_STRUCTURE = 2,

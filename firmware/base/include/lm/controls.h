@@ -55,14 +55,14 @@ struct lm_control {
     union {
         struct {
             int32_t mode; /* enum lm_sector_mode */
-            int32_t fov;  /* field of view, enum lm_field: as far as the mode has it */
+            int32_t fov;  /* field of view, enum lm_fov: as far as the mode has it */
         } sector;
         struct lm_sar_command sar; /* limits: lm_sar_start */
         struct lm_environment environment;
         struct {
-            bool is_set;           /* true: steer to `place`, whatever the bus says; false: as the
-                                      bus says */
-            struct lm_place place; /* latitude -90..90 degrees, also when is_set is false */
+            bool is_set; /* true: steer to `place`, whatever the bus says; false: as the
+                            bus says */
+            struct lm_position position; /* latitude -90..90 degrees, also when is_set is false */
         } steerpoint;
         int32_t range_nm;      /* of a scale of the radar table that mode and field of view have */
         int32_t azimuth_index; /* 0..LM_AZIMUTHS - 1 */

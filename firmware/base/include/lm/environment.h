@@ -11,14 +11,14 @@ enum { LM_RAINS_MAX = 4, LM_JAMMERS_MAX = 4 };
 enum { LM_SEA_STATE_MAX = 8, LM_SEA_STATE_OF_IMAGE = 3 };
 
 struct lm_rain {
-    struct lm_place centre;
+    struct lm_position centre;
     uint32_t radius_m; /* 100..100,000 */
     uint16_t mm_per_h; /* 1..150 */
 };
 
 struct lm_jammer {
-    struct lm_place place;
-    int16_t ratio_q8; /* to the noise, on the axis at ten nautical miles: -20..80 dB */
+    struct lm_position position;
+    int16_t noise_ratio_db_q8; /* to the noise, on the axis at ten nautical miles: -20..80 dB */
 };
 
 struct lm_environment {

@@ -12,27 +12,27 @@
 #define LM_CURVATURE_Q48 16567747LL
 
 /* Lengths are metres * 256, but the sizes of cells are told in millimetres, cut to whole ones. */
-static inline uint32_t lm_mm_of_metres_q8(uint32_t metres_q8)
+static inline uint32_t lm_mm_of_m_q8(uint32_t length_m_q8)
 {
-    return (uint32_t)((uint64_t)metres_q8 * 1000 / 256);
+    return (uint32_t)((uint64_t)length_m_q8 * 1000 / 256);
 }
 
-struct lm_place {
+struct lm_position {
     fx_bam_t latitude; /* signed: +-FX_BAM_90 */
     fx_bam_t longitude;
 };
 
 /* What the direct problem needs of its starting point, worked out once. Lengths in metres * 256. */
 struct lm_geo_origin {
-    struct lm_place place;
-    int32_t sin_q30, cos_q30;          /* of the latitude */
-    int32_t axis_q8;                   /* from the Earth's axis */
-    uint32_t meridian_radius_q8;       /* M */
-    uint32_t prime_vertical_radius_q8; /* N */
+    struct lm_position position;
+    int32_t sin_q30, cos_q30;            /* of the latitude */
+    int32_t axis_m_q8;                   /* from the Earth's axis */
+    uint32_t meridian_radius_m_q8;       /* M */
+    uint32_t prime_vertical_radius_m_q8; /* N */
 };
 
 /* Latitudes beyond a pole count as the pole. Cost: about 150 instructions. */
-void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_place place);
+void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position);
 
 /* A direction from an origin, and what all points along it have in common. */
 struct lm_geo_ray {
@@ -44,13 +44,13 @@ struct lm_geo_ray {
 /* `azimuth` from north by east. Cost: about 130 instructions. */
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth);
 
-/* The point `distance_q8` (metres * 256; beyond 300 km counts as 300 km) away along the ray, and
+/* The point `distance_m_q8` (metres * 256; beyond 300 km counts as 300 km) away along the ray, and
  * the same for one point.
  * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89
  * (tests/unit/firmware/base/test_geo.c). Cost: about 130 instructions, near a pole 300. */
-struct lm_place lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_q8);
-struct lm_place lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
-                              uint32_t distance_q8);
+struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_q8);
+struct lm_position lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
+                                 uint32_t distance_m_q8);
 
 /* A path over the ground in equal steps: latitude and longitude are parabolas of the step number,
  * kept as forward differences in units of 2^-32 BAM. Longitudes wrap, as they should. */
@@ -62,7 +62,8 @@ struct lm_ground_path {
 
 /* The path whose cell i (0..cells-1) is centred (i + 1/2) / cells of the way, through three points
  * at the start, middle and end. cells >= 1. */
-void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_place points[3], uint32_t cells);
+void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_position points[3],
+                        uint32_t cells);
 
 /* One coordinate across a rectangle: the parabola through its values at the left edge, the middle
  * and the right edge. */
@@ -81,20 +82,20 @@ struct lm_ground_patch {
     } row[3];
 };
 
-/* How far a rectangle reaches, metres * 256: along its axis from `near_q8` to `far_q8` ahead of the
- * place (behind it when negative), and to either side. All within 300 km. */
+/* How far a rectangle reaches, metres * 256: along its axis from `near_m_q8` to `far_m_q8` ahead of
+ * the place (behind it when negative), and to either side. All within 300 km. */
 struct lm_ground_extent {
-    int32_t near_q8, far_q8, side_q8;
+    int32_t near_m_q8, far_m_q8, side_m_q8;
 };
 
 /* Cost: about 4,500 instructions. */
-void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_place place, fx_bam_t azimuth,
+void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent);
 
 /* The beginning, middle and end of line `line` of `lines`, whose across offset is (line + 1/2 -
  * lines/2) / lines of the width. The surface goes on beyond the last line: line < lines + 32. */
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
-                          struct lm_place points[3]);
+                          struct lm_position points[3]);
 
 /* The path of `cells` cells along that line. Cost: about 130 instructions. */
 void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_patch *p,
@@ -103,12 +104,12 @@ void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_pa
 /* Great-circle style distance and azimuth of a point up to 300 km away, by the midpoint's radii;
  * error under 0.2 % of the distance below 75 degrees of latitude. For looking at a place, not for
  * navigation. Cost: about 300 instructions. */
-void lm_geo_inverse(struct lm_place from, struct lm_place to, uint32_t *distance_q8,
+void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                     fx_bam_t *azimuth);
 
-/* Ground range of slant range `slant_q8`, and back, for flat ground `height_q10` (metres * 1024,
- * either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
-uint32_t lm_ground_of_slant(uint32_t slant_q8, int32_t height_q10);
-uint32_t lm_slant_of_ground(uint32_t ground_q8, int32_t height_q10);
+/* Ground range of slant range `slant_m_q8`, and back, for flat ground `height_m_q10` (metres *
+ * 1024, either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
+uint32_t lm_ground_of_slant_m_q8(uint32_t slant_m_q8, int32_t height_m_q10);
+uint32_t lm_slant_of_ground_m_q8(uint32_t ground_m_q8, int32_t height_m_q10);
 
 #endif

@@ -12,7 +12,7 @@ enum {
 };
 
 /* Reflectivity codes: gamma in dB = code / 2 - 80, so -80.0 .. +47.5 dB. */
-enum { LM_GAMMA_CODE_STEP_Q8 = 128, LM_GAMMA_CODE_ZERO_Q8 = -80 * 256 };
+enum { LM_GAMMA_CODE_STEP_DB_Q8 = 128, LM_GAMMA_CODE_ZERO_DB_Q8 = -80 * 256 };
 
 /* A cell and the elevation post at its south-west corner: side by side, because whoever looks at
  * one needs the other. A loop loads both as one little-endian word, cell in the low half. */

@@ -11,16 +11,16 @@ enum { LM_SMEAR_SLICES = 8, LM_SMEAR_ACROSS_MOST = 1024, LM_SMEAR_ALONG_MOST = 2
  * before, stretched to wide_q8 and deep_q8 / 256 times its size. */
 struct lm_smear {
     uint32_t slices; /* 1, 2, 4 or LM_SMEAR_SLICES */
-    int32_t across_q8, along_q8;
+    int32_t across_cells_q8, along_cells_q8;
     uint32_t wide_q8, deep_q8; /* from 256 up */
 };
 
 /* The smear of what goes so far over the whole dwell, cells * 256; what is farther than
  * LM_SMEAR_..._MOST is taken for that. Up to a cell either way there is none. */
-struct lm_smear lm_smear_of(int64_t across_q8, int64_t along_q8);
+struct lm_smear lm_smear_of(int64_t across_cells_q8, int64_t along_cells_q8);
 
 /* Power of a slice in its middle, of that of the whole unsmeared, dB * 256: its share of the dwell
  * under Taylor's weights, over its stretch both ways. */
-int32_t lm_smear_share_q8(const struct lm_smear *s, uint32_t slice);
+int32_t lm_smear_share_db_q8(const struct lm_smear *s, uint32_t slice);
 
 #endif

@@ -16,7 +16,7 @@
 enum { LM_CURSOR_HALVES_PER_S = 1, LM_CURSOR_STEP_US = 20000 };
 
 struct lm_cursor {
-    struct lm_place place;
+    struct lm_position position;
     bool is_placed;         /* false until the aircraft's position is known */
     bool is_home;           /* where lm_cursor_zero put it: nobody has moved it since */
     bool is_snowplow;       /* and not yet stabilised */
@@ -32,7 +32,7 @@ struct lm_cursor {
 /* What the cursor is moved against. */
 struct lm_cursor_scene {
     const struct lm_view *view;
-    struct lm_place ownship;
+    struct lm_position ownship;
     fx_bam_t heading;
     uint32_t scale_m;     /* the display's range scale */
     int32_t half_px;      /* half the shorter side of the glass */

@@ -17,7 +17,7 @@ struct lm_point {
 /* A place between the surface's edges, pixels * 256 from its upper left corner: the middle of pixel
  * (x, y) is at (256 x + 128, 256 y + 128). */
 struct lm_spot {
-    int32_t x_q8, y_q8;
+    int32_t x_px_q8, y_px_q8;
 };
 
 static inline struct lm_spot lm_pixel_middle(struct lm_point p)

@@ -48,10 +48,10 @@ struct lm_symbols {
 
     bool has_cursor, is_cursor_on_glass;
     struct lm_offset cursor;
-    struct lm_place cursor_place;
+    struct lm_position cursor_position;
     uint32_t cursor_range_m;
     fx_bam_t cursor_bearing;
-    int32_t cursor_elevation_q10; /* metres * 1024 */
+    int32_t cursor_elevation_m_q10; /* metres * 1024 */
     bool has_cursor_elevation;
 
     bool has_steerpoint, is_steerpoint_on_glass;

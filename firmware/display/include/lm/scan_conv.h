@@ -34,14 +34,14 @@ struct lm_ppi {
     struct lm_frame clip;         /* nothing is painted outside */
     int32_t apex_x_px, apex_y_px; /* a corner of pixels, from the plane's upper left; below 2^14 */
     uint32_t cells_per_px_q16;    /* 1..2^20 */
-    int32_t near_cell_q8; /* where the lines' first cell begins, cells * 256 from the apex */
+    int32_t near_cells_q8; /* where the lines' first cell begins, cells * 256 from the apex */
 };
 
 /* Paint the wedge from azimuth `left` up to, not including, `right` (from straight up, clockwise,
  * both within +-80 degrees, right after left). Lines that share an edge share no pixel and leave
  * none out. */
-void lm_ppi_paint(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
-                  fx_bam_t right, const uint8_t *grey, uint32_t cells);
+void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
+                         fx_bam_t right, const uint8_t *grey, uint32_t cells);
 
 /* Move the frame's picture by whole pixels, right and down; what comes in from outside is empty. */
 void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, int32_t right_px,
@@ -55,7 +55,7 @@ struct lm_frame lm_frame_square(const struct lm_frame *frame);
 uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells);
 
 /* Paint column `line` of a patch of cells x cells; grey[0] is the nearest cell, at the bottom. */
-void lm_patch_paint(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
-                    const uint8_t *grey, uint32_t cells);
+void lm_scan_conv_patch(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
+                        const uint8_t *grey, uint32_t cells);
 
 #endif

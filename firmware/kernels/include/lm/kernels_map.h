@@ -20,8 +20,8 @@
 
 #include "fx/lerp.h"
 #include "fx/mem.h"
+#include "lm/quadratic.h"
 #include "lm/tile_point.h"
-#include "lm/track.h"
 
 /* Where the cells of a line lie in their tiles, as fractions of a tile's side times 2^32: no place
  * lies outside a tile, and the way from one tile into the next is a sum that overflows.
@@ -32,15 +32,15 @@
  *          |               |
  *        0 +---------------+
  *          0     east    2^32 */
-struct lm_places {
-    struct lm_track north, east;
+struct lm_tile_coords {
+    struct lm_quadratic north, east;
 };
 
 /* What a tile has at one place. */
 struct lm_ground {
     uint32_t cell; /* as in the record */
     int32_t
-        elevation_q14; /* terrain, metres * 16384; up to 8 too low: weights are 1/256 each way */
+        elevation_m_q14; /* terrain, metres * 16384; up to 8 too low: weights are 1/256 each way */
 };
 
 /* One cell of lm_k_tile_read, for those who look at a single place.
@@ -64,7 +64,7 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
         (uint16_t)(north_east >> 16), east << 6 >> 24, north << 6 >> 24);
     const uint32_t shift = (0u - (uint32_t)scale) & 0xFF;
     return (struct lm_ground){.cell = south_west & 0xFFFF,
-                              .elevation_q14 = scale + (int32_t)(post_q16 >> shift)};
+                              .elevation_m_q14 = scale + (int32_t)(post_q16 >> shift)};
 }
 
 /* Read the tiles at cells first..first + 8 * groups - 1 of a line, in place.
@@ -74,7 +74,7 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
  * the record, and the elevation of the terrain in metres * 16384.
  *
  * `points` as there, of tiles that have passed lm_tile_check. Cost: 11 a cell. */
-void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_places *places,
+void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coords *places,
                     uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
 #endif

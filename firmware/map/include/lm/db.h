@@ -26,7 +26,7 @@
 enum {
     LM_DB_VERSION = 2,
     LM_DB_HEADER_BYTES = 512,
-    LM_DB_LEVELS_MAX = 12,
+    LM_DB_LODS_MAX = 12,
     LM_DB_BANDS_MAX = 64,
     LM_DB_SHIFT_MIN = 4,       /* a level-0 cell of 0.15 m */
     LM_DB_SHIFT_MAX = 20,      /* a cell of the coarsest level: 9.8 km */
@@ -46,11 +46,11 @@ enum {
 /* A tile record, in flash and in the cache alike. 16,960 bytes. */
 struct lm_tile {
     uint32_t crc; /* CRC-32C of all bytes after this field */
-    uint8_t level, zone;
+    uint8_t lod, zone;
     uint16_t reserved0;
     uint32_t row,
         column; /* the record says which tile it is; an answer to another question is refused */
-    int32_t base_q6;    /* elevation of post code 0, metres * 64 */
+    int32_t base_m_q6;  /* elevation of post code 0, metres * 64 */
     uint8_t post_shift; /* one post step is 2^post_shift / 64 metres; 0..4 */
     uint8_t reserved1[11];
     /* Row 0 is the southernmost, column 0 the westernmost. Row and column 64 have no cells of their
@@ -62,7 +62,7 @@ _Static_assert(sizeof(struct lm_tile) == LM_TILE_BYTES, "the record must be what
 
 /* A rectangle of tiles of one level in one latitude zone, with its run of directory entries. */
 struct lm_band {
-    uint8_t level, zone;
+    uint8_t lod, zone;
     uint16_t reserved;
     uint32_t row0, rows;       /* rows >= 1 */
     uint32_t column0, columns; /* columns >= 1; column0 + columns may pass the antimeridian */
@@ -71,11 +71,11 @@ struct lm_band {
 _Static_assert(sizeof(struct lm_band) == 24, "the record must be what FORMATS.md says");
 
 struct lm_class {
-    char name[16];     /* zero-padded; may fill all 16 */
-    uint8_t kind;      /* enum lm_kind */
-    uint8_t colour[3]; /* for host pictures */
-    int16_t gamma_q8;  /* mean reflectivity, dB * 256 */
-    uint16_t spread_q8;
+    char name[16];       /* zero-padded; may fill all 16 */
+    uint8_t kind;        /* enum lm_class_kind */
+    uint8_t colour[3];   /* for host pictures */
+    int16_t gamma_db_q8; /* mean reflectivity, dB * 256 */
+    uint16_t spread_db_q8;
     uint16_t height_dm;
     uint16_t looks;
     uint8_t reserved[36];
@@ -91,15 +91,15 @@ _Static_assert(sizeof(struct lm_classes) == 1056, "the record must be what FORMA
 /* The image after its header, class table and band table were read and checked. */
 struct lm_db {
     const struct lm_flash *flash; /* borrowed */
-    uint8_t level_count, shift0;
+    uint8_t lod_count, shift0;
     uint16_t band_count;
     uint32_t entry_count, record_count;
     uint32_t target_count;                /* 0 when the image has no section TARGETS */
     uint32_t signature_count, chip_count; /* 0 when it has no section SIGNATURES */
     uint64_t directory_offset, records_offset, targets_offset; /* of the first record each */
     uint64_t signatures_offset, chips_offset;
-    int32_t mean_elevation_q6; /* of the land in the image, metres * 64 */
-    int32_t geoid_q6;          /* height of mean sea level above the ellipsoid here, metres * 64 */
+    int32_t mean_elevation_m_q6; /* of the land in the image, metres * 64 */
+    int32_t geoid_m_q6; /* height of mean sea level above the ellipsoid here, metres * 64 */
     fx_bam_t centre_latitude, centre_longitude;
     char title[33]; /* as the builder named it; ends in a zero */
     struct lm_classes classes;
@@ -146,7 +146,7 @@ static inline uint32_t lm_db_zone(fx_bam_t latitude)
 }
 
 /* Directory entry of a tile, or -1 when no band holds it. Cost: one pass over the level's bands. */
-int64_t lm_db_entry(const struct lm_db *db, uint8_t level, uint32_t row, uint32_t column);
+int64_t lm_db_entry(const struct lm_db *db, uint8_t lod, uint32_t row, uint32_t column);
 
 /* Check 8 bytes read from the directory against the entry they should be. LM_OK and *record
  * (UINT32_MAX for a tile that the image leaves out); LM_ERR_CORRUPT when the checksum or the bound
@@ -156,9 +156,9 @@ int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t byte
 
 /* Check a record read from flash: checksum, identity, bounds. LM_OK or LM_ERR_CORRUPT.
  * Cost: one CRC over 17 kB. */
-int lm_tile_check(const struct lm_tile *tile, uint8_t level, uint32_t row, uint32_t column);
+int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_t column);
 
 /* Cell height of a level in millimetres along the meridian (2^shift * 9.31506 mm). */
-uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t level);
+uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t lod);
 
 #endif

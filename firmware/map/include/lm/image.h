@@ -35,10 +35,10 @@ struct lm_image_header {
     char magic[8];
     uint32_t version, header_bytes;
     uint64_t image_bytes;
-    uint8_t shift0, level_count;
+    uint8_t shift0, lod_count;
     uint16_t band_count;
     uint32_t entry_count, record_count, record_bytes;
-    int32_t mean_elevation_q6, geoid_q6;
+    int32_t mean_elevation_m_q6, geoid_m_q6;
     uint32_t centre_latitude, centre_longitude;
     uint32_t section_count, reserved0;
     struct lm_image_section sections[LM_IMAGE_SECTIONS_MAX];

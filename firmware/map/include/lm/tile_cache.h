@@ -39,18 +39,18 @@ struct lm_tile_slot {
     uint32_t last_use; /* the cache's clock when it was last answered from or asked for */
     uint32_t row, column;
     uint16_t next; /* in its chain, or LM_SLOT_NONE */
-    uint8_t level, state;
+    uint8_t lod, state;
 };
 
 enum { LM_SLOT_NONE = LM_TILE_SLOTS_MAX, LM_TILE_CHAINS = 1024 };
 
 struct lm_tile_key {
     uint32_t row, column, entry; /* entry: in the directory */
-    uint8_t level;
+    uint8_t lod;
 };
 
 /* A read of somebody else's, taken between two tiles: the flash does one at a time. */
-struct lm_guest_read {
+struct lm_flash_request {
     uint64_t offset;
     void *destination;
     uint32_t length;
@@ -65,9 +65,9 @@ struct lm_tile_cache {
     uint64_t now_us; /* of the last service */
 
     struct lm_tile_slot
-        slots[LM_TILE_SLOTS_MAX + 1]; /* the last one, at which chains end, is free */
-    uint16_t heads[LM_DB_LEVELS_MAX][LM_TILE_CHAINS]; /* first slots of the chains of each level */
-    struct lm_tile_key wanted[LM_TILE_REQUESTS];      /* ring */
+        slots[LM_TILE_SLOTS_MAX + 1];               /* the last one, at which chains end, is free */
+    uint16_t heads[LM_DB_LODS_MAX][LM_TILE_CHAINS]; /* first slots of the chains of each level */
+    struct lm_tile_key wanted[LM_TILE_REQUESTS];    /* ring */
     uint32_t wanted_head, wanted_tail;
 
     /* The read under way. */
@@ -75,8 +75,8 @@ struct lm_tile_cache {
     bool is_reading_entry; /* first the directory entry, then the record */
     uint32_t reading_entry;
     uint32_t entry_bytes[2];
-    struct lm_guest_read *guest; /* borrowed: waits or is being read; NULL: none */
-    bool is_reading_guest;
+    struct lm_flash_request *request; /* borrowed: waits or is being read; NULL: none */
+    bool is_reading_request;
 
     struct {
         uint32_t otherwise;   /* lookups not answered by the tile asked for */
@@ -101,7 +101,7 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
 /* The tile itself when it is resident; otherwise asks for it and answers its nearest resident
  * ancestor, or NULL where the map has nothing. The pointer is good until the next
  * lm_tile_cache_service. Cost: one chain a level tried. */
-const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t level, uint32_t row,
+const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column);
 
 /* Lookups answered by the tile asked for. */
@@ -127,10 +127,10 @@ static inline uint32_t lm_tile_chain(uint32_t row, uint32_t column)
 /* The same as lm_tile_cache_get for one who mostly finds: the slot of the tile if it is resident
  * and the first of its chain; NULL otherwise, and nothing is counted. Cost: some 12 instructions.
  */
-static inline const struct lm_tile_slot *lm_tile_cache_look(struct lm_tile_cache *c, uint8_t level,
+static inline const struct lm_tile_slot *lm_tile_cache_peek(struct lm_tile_cache *c, uint8_t lod,
                                                             uint32_t row, uint32_t column)
 {
-    struct lm_tile_slot *s = &c->slots[c->heads[level][lm_tile_chain(row, column)]];
+    struct lm_tile_slot *s = &c->slots[c->heads[lod][lm_tile_chain(row, column)]];
     if (s->resident != lm_tile_name(row, column)) {
         return NULL;
     }
@@ -147,17 +147,17 @@ static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
 {
     const uint32_t bytes = (uint32_t)((const uint8_t *)tile - (const uint8_t *)pool); /* < 2^27 */
     return (struct lm_tile_base){.record = bytes / (uint32_t)sizeof(struct lm_tile_point),
-                                 .scale = tile->base_q6 * 256 + (tile->post_shift - 8)};
+                                 .scale = tile->base_m_q6 * 256 + (tile->post_shift - 8)};
 }
 
 /* Ask for a tile that will be needed soon. Does nothing when it is resident or already asked for.
  */
-void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t level, uint32_t row, uint32_t column);
+void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column);
 
-/* Read something else of the image before the next tile. `guest`, its offset, destination and
+/* Read something else of the image before the next tile. `wanted`, its offset, destination and
  * length filled in, is borrowed until its status is no longer LM_BUSY. One at a time: false, and
  * nothing is taken, while another one waits. */
-bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_guest_read *guest);
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *wanted);
 
 /* Go on with the reading: at most `reads` polls or starts. Never waits. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);

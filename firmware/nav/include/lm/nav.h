@@ -72,7 +72,7 @@ struct lm_ownship {
     enum lm_nav_quality position_quality;
     struct lm_nav_origin position_origin;
 
-    int32_t height_q6;               /* metres * 64 */
+    int32_t height_m_q6;             /* metres * 64 */
     enum lm_bus_field height_source; /* ELLIPSOID_HEIGHT; TRUE_ and BARO_ALTITUDE: mean sea level */
     enum lm_nav_quality height_quality;
     struct lm_nav_origin height_origin;
@@ -93,7 +93,7 @@ struct lm_ownship {
     enum lm_nav_quality velocity_quality;
     struct lm_nav_origin velocity_origin;
 
-    struct lm_place steerpoint; /* place to fly to, as the bus says */
+    struct lm_position steerpoint; /* place to fly to, as the bus says */
     enum lm_nav_quality steerpoint_quality;
 
     int32_t utc_s; /* since midnight */

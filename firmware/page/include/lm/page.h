@@ -50,10 +50,10 @@ struct lm_page {
     uint8_t format;               /* enum lm_format */
     uint8_t picture;              /* enum lm_picture_kind */
     uint8_t mode;                 /* of the sector: enum lm_sector_mode */
-    uint8_t field;                /* of the sector: enum lm_field, one that the mode has */
-    uint8_t range;                /* row of the radar table's scales, 0..lm_page_range_last */
-    uint8_t azimuth;              /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
-    uint8_t cell;                 /* of the patch, 0..LM_SAR_CELLS_OFFERED - 1: lm_page_cell_mm */
+    uint8_t fov;                  /* of the sector: enum lm_fov, one that the mode has */
+    uint8_t range_index;          /* row of the radar table's scales, 0..lm_page_range_last */
+    uint8_t azimuth_index;        /* index of the radar table's sectors, 0..LM_AZIMUTHS - 1 */
+    uint8_t cell_index;           /* of the patch, 0..LM_SAR_CELLS_OFFERED - 1: lm_page_cell_mm */
     bool is_baro;        /* the aircraft's height is the barometric one, where there is one */
     bool is_slant;       /* a patch is shown in slant range: what stands high leans nearer */
     bool is_tilt_manual; /* the operator points the beam's axis, not the radar */
@@ -96,7 +96,7 @@ uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
  * - select_range: the nautical miles of a scale that mode and field of view have; ends the
  * automatic range;
  * - select_azimuth: 0..LM_AZIMUTHS - 1;
- * - select_sector: mode 0..LM_SECTOR_MODES - 1, field 0..field_last of that mode, and both have the
+ * - select_sector: mode 0..LM_SECTOR_MODES - 1, field 0..fov_last of that mode, and both have the
  *   range scale at hand: select another one first;
  * - set_gain: -LM_GAIN_MAX_DB..LM_GAIN_MAX_DB;
  * - set_knob: -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION. */

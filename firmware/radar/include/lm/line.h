@@ -2,17 +2,17 @@
  *
  *     stage                        sector (lm_sector_...)       patch (lm_sar_...)
  *     ---------------------------- ---------------------------- -----------------------------
- *     ground before the picture    lm_runup_trace               lm_runup_trace
+ *     ground before the picture    lm_foreground_horizon               lm_foreground_horizon
  *     tiles to cells               lm_line_trace                lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     texture and sea state        lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
- *     chips of targets             with the points below        lm_patch_chips_shade, _add
+ *     chips of targets             with the points below        lm_target_patch_shade, _add
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_speckle_floor_run
  *     speckle                      lm_speckle_run               lm_speckle_run, _floor_run
- *     points of targets            lm_line_add_targets          lm_patch_points_add
- *     elevation pattern            lm_elevation_run             -
+ *     points of targets            lm_line_add_targets          lm_target_patch_add_points
+ *     elevation pattern            lm_antenna_pattern_apply             -
  *     ground range to slant range  lm_slant_run                 -
  *     azimuth                      lm_beam_sum                  lm_defocus_run
  *     pulse, noise, rain, jammers  lm_receiver_run              -
@@ -27,31 +27,31 @@
 #ifndef LM_LINE_H
 #define LM_LINE_H
 
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
 #include "lm/target_line.h"
 
 /* Targets that a line may meet. */
 struct lm_line_targets {
-    const struct lm_targets_near *near; /* borrowed: chosen for this sweep or patch */
+    const struct lm_target_candidates *candidates; /* borrowed: chosen for this sweep or patch */
     struct lm_target_line where;
 };
 
 /* Input of the stages that lm_line_trace runs; none of them changes it. Pointers are borrowed. */
 struct lm_line_setup {
     const struct lm_range_grid *grid;
-    const struct lm_legend *legend;
+    const struct lm_class_lut *class_lut;
     const struct lm_texture *texture;
-    struct lm_raster raster; /* of the texture */
-    uint8_t level;           /* of the database */
+    struct lm_noise_key noise_key; /* of the texture */
+    uint8_t lod;                   /* of the database */
 };
 
 /* Work space of a line, and its result. The caller owns it, so that a bench or a test can look at
  * each stage. One is enough for all lines; nothing in it outlives the next call. */
 struct lm_line {
     struct lm_scan_line ground;  /* cells and elevations, from the map */
-    struct lm_sight sight;       /* horizon, and levels as the stages change them in place */
+    struct lm_lit_line lit;      /* horizon, and levels as the stages change them in place */
     uint8_t grey[LM_CELLS_ROOM]; /* result: 0..255 for each cell of the display line */
 };
 

@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #include "lm/defocus.h"
-#include "lm/horizon.h"
+#include "lm/foreground.h"
 #include "lm/layover.h"
 #include "lm/line.h"
 #include "lm/patch_rain.h"
@@ -24,8 +24,8 @@
 #include "lm/tone.h"
 
 enum {
-    LM_SAR_GUARD = 4,        /* cells before the patch that are traced and not shown */
-    LM_SAR_RUNUP_LINES = 16, /* lines from one run-up that is traced to the next */
+    LM_SAR_GUARD = 4,             /* cells before the patch that are traced and not shown */
+    LM_SAR_FOREGROUND_LINES = 16, /* lines from one run-up that is traced to the next */
 
     /* A point is spread over lines before its own, and those are smeared: lines are sampled so many
      * before they are drawn, and kept as long as a smear needs them. */
@@ -51,7 +51,7 @@ struct lm_sar_scene {
     const struct lm_sar_flight *flight;  /* NULL for a commanded place in the air; read at once */
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: every signature is a point */
-    int32_t reference_q10;               /* elevation of the patch, metres * 1024 */
+    int32_t reference_m_q10;             /* elevation of the patch, metres * 1024 */
     uint32_t epoch;                      /* of noise and of what fluctuates */
     uint8_t sea_state;
     const struct lm_environment *environment; /* rain and jammers; NULL: none; read at once */
@@ -63,13 +63,14 @@ struct lm_sar_scene {
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
-    uint64_t line_us;                            /* from line to line: the dwell's share */
-    uint32_t dwell_ms;                           /* below 2^17 */
-    struct lm_ground_patch ground, runup_ground; /* with the guard cells; what lies before them */
+    uint64_t line_us;  /* from line to line: the dwell's share */
+    uint32_t dwell_ms; /* below 2^17 */
+    struct lm_ground_patch ground,
+        foreground_ground; /* with the guard cells; what lies before them */
     struct lm_range_grid grid;
-    struct lm_runup runup;
-    uint8_t level; /* of the database */
-    struct lm_legend legend;
+    struct lm_foreground foreground;
+    uint8_t lod; /* of the database */
+    struct lm_class_lut class_lut;
     struct lm_texture texture;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: none */
@@ -77,30 +78,30 @@ struct lm_sar {
     uint32_t epoch;                      /* of what fluctuates */
     uint32_t noise_epoch;                /* the same for this patch alone */
     int32_t across_mm_s;                 /* velocity to the right of the line of sight */
-    int32_t floor_q8;                    /* of noise, jammers' included; dB of gamma */
+    int32_t floor_db_q8;                 /* of noise, jammers' included; dB of gamma */
     struct lm_patch_rain rain;
     struct lm_layover layover;
-    uint32_t defocus_q8; /* width of the smear, lines * 256; 256: none */
+    uint32_t defocus_lines_q8; /* width of the smear, lines * 256; 256: none */
     struct lm_patch_geometry geometry;
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
 
-    uint32_t second_runup;         /* number of the second of two that were traced; 0: none was */
-    lm_horizon_q40_t runups[2];    /* the horizons behind them */
-    lm_horizon_q40_t horizon;      /* where the line traced last started */
-    uint32_t line;                 /* next to be drawn; done when it is radar->sar.cells */
-    uint32_t sampled, summed;      /* lines that are in the ring, and that have the points */
-    bool has_points;               /* the targets' were found, */
-    uint32_t judged;               /* and so many of them looked at, whether they are hidden */
-    struct lm_patch_points points; /* of the targets, from the first line on */
-    int32_t ring_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
-    uint64_t power_q32[LM_CELLS_ROOM];           /* scratch */
+    uint32_t second_foreground;      /* number of the second of two that were traced; 0: none was */
+    lm_horizon_q40_t foregrounds[2]; /* the horizons behind them */
+    lm_horizon_q40_t horizon;        /* where the line traced last started */
+    uint32_t line;                   /* next to be drawn; done when it is radar->sar.cells */
+    uint32_t sampled, summed;        /* lines that are in the ring, and that have the points */
+    bool has_points;                 /* the targets' were found, */
+    uint32_t judged;                 /* and so many of them looked at, whether they are hidden */
+    struct lm_target_patch points;   /* of the targets, from the first line on */
+    int32_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
+    uint64_t power_q32[LM_CELLS_ROOM];              /* scratch */
 };
 
 /* Start a patch. The command's geometry must be complete: the caller resolves is_from_ownship.
  * Returns LM_OK, or LM_ERR_RANGE with *s unchanged when
  * - cell_mm is outside the table's cell_min_mm..cell_max_mm;
  * - range_m is outside 1,000..250,000, or the patch would begin nearer than 16 LM_RANGE_MIN_M;
- * - height_q6 is more than 30 km above or below mean sea level;
+ * - height_m_q6 is more than 30 km above or below mean sea level;
  * - in flight (scene->flight), the squint is below the table's squint_min;
  * - in flight, the bearing is off the nose by more than the antenna's azimuth_limit;
  * - in flight, the dwell is longer than the table's dwell_max_ms.
@@ -113,7 +114,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
 /* Change the patch's reference elevation (metres * 1024) and restart it. Called when a finer tile
  * arrives after lm_sar_start. Dwell and limits are not recomputed. Cost: about 60 k instructions.
  */
-void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_q10);
+void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10);
 
 /* Time until the last line is due, microseconds. */
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
@@ -140,10 +141,10 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 
 /* Sample line `number`: the stages from the map to noise and speckle, without points of targets and
  * without defocus. Leaves its cells in line->ground, its levels (dB * 256) from
- * level_q8[LM_SAR_GUARD] on, and in s->horizon the horizon that it started with. For tests; part of
- * lm_sar_draw_line. */
+ * level_db_q8[LM_SAR_GUARD] on, and in s->horizon the horizon that it started with. For tests; part
+ * of lm_sar_draw_line. */
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
-                        struct lm_line *line, int32_t *level_q8);
+                        struct lm_line *line, int32_t *level_db_q8);
 
 /* Restart the patch from its first line; samples and targets are taken again. */
 void lm_sar_restart(struct lm_sar *s);

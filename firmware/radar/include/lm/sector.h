@@ -13,9 +13,9 @@
 #include <stdint.h>
 
 #include "lm/antenna.h"
+#include "lm/azimuth_average.h"
 #include "lm/beam.h"
-#include "lm/footprint.h"
-#include "lm/horizon.h"
+#include "lm/foreground.h"
 #include "lm/line.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
@@ -30,20 +30,21 @@ enum {
 
 /* Position, attitude and velocity of the aircraft when a line is drawn. */
 struct lm_platform {
-    struct lm_place place;
-    int32_t height_q10;  /* metres * 1024 above mean sea level */
-    fx_bam_t heading;    /* of the nose: the middle of the sector */
-    fx_bam_t track;      /* of the velocity over the ground */
-    uint32_t speed_mm_s; /* 0 where it is not known: nothing is sharpened then */
-    uint64_t time_us;    /* where movers are */
+    struct lm_position position;
+    int32_t height_m_q10; /* metres * 1024 above mean sea level */
+    fx_bam_t heading;     /* of the nose: the middle of the sector */
+    fx_bam_t track;       /* of the velocity over the ground */
+    uint32_t speed_mm_s;  /* 0 where it is not known: nothing is sharpened then */
+    uint64_t time_us;     /* where movers are */
 };
 
 /* What to show. The caller keeps the indices within the radar table and the field within the mode's
- * field_last. */
+ * fov_last. */
 struct lm_sector_command {
-    uint8_t mode, field;    /* enum lm_sector_mode, enum lm_field */
-    uint8_t range, azimuth; /* indices into the radar table; azimuth counts in NORM alone */
-    struct lm_place centre; /* of the window; not read in NORM */
+    uint8_t mode, fov; /* enum lm_sector_mode, enum lm_fov */
+    uint8_t range_index,
+        azimuth_index;         /* indices into the radar table; azimuth counts in NORM alone */
+    struct lm_position centre; /* of the window; not read in NORM */
     struct lm_beam_setting {
         bool is_tilt_manual, is_pencil; /* not automatic; not spoiled into a fan */
         int32_t tilt;                   /* manual: signed BAM */
@@ -70,38 +71,38 @@ struct lm_sector {
     int32_t left;   /* the sweep's left edge from the middle, signed BAM */
     fx_bam_t width; /* of a line */
     uint32_t lines;
-    uint32_t half_m;         /* window: half its side on the ground; 0 in NORM */
-    uint32_t edge_q8;        /* slant range where bin 0 begins, metres * 256 */
-    uint32_t ground_edge_q8; /* ground range where cell 0 begins */
-    int32_t tilt;            /* of the beam's axis in this sweep, signed BAM */
+    uint32_t half_m;           /* window: half its side on the ground; 0 in NORM */
+    uint32_t edge_m_q8;        /* slant range where bin 0 begins, metres * 256 */
+    uint32_t ground_edge_m_q8; /* ground range where cell 0 begins */
+    int32_t tilt;              /* of the beam's axis in this sweep, signed BAM */
 
-    uint8_t level; /* of the database */
+    uint8_t lod; /* of the database */
     struct lm_range_grid grid;
     struct lm_slant slant;
-    struct lm_elevation elevation;
-    struct lm_fan fan;
-    struct lm_legend legend;
+    struct lm_antenna_pattern pattern;
+    struct lm_antenna_fan fan;
+    struct lm_class_lut class_lut;
     struct lm_texture texture;
-    struct lm_footprint footprint; /* of the sample that is being taken */
+    struct lm_azimuth_average average; /* of the sample that is being taken */
     struct lm_beam beam;
     bool is_aimed;         /* at the next line */
     struct lm_sector_aim { /* of the even and the odd line that was aimed at last */
         bool is_kept;      /* not sharpened, so that one like it may use it */
         int32_t azimuth;
-        struct lm_beam_look look;
+        struct lm_beam_taps taps;
     } aims[2];
     struct lm_receiver receiver;
     struct lm_weather weather;
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
 
-    struct lm_runup runup;          /* its grid has no cells: the line begins at the antenna */
-    lm_horizon_q40_t runup_horizon; /* behind it, */
-    uint32_t runup_part;            /* in this part of the sector, */
-    bool has_runup;                 /* once it was traced */
+    struct lm_foreground foreground;     /* its grid has no cells: the line begins at the antenna */
+    lm_horizon_q40_t foreground_horizon; /* behind it, */
+    uint32_t foreground_part;            /* in this part of the sector, */
+    bool has_foreground;                 /* once it was traced */
 
-    uint32_t samples;                  /* taken so far: only grows */
-    uint32_t power_q24[LM_CELLS_ROOM]; /* of the line drawn last, behind beam and pulse */
-    int32_t level_q8[LM_CELLS_ROOM];   /* and behind the receiver: what the tone is made of */
+    uint32_t samples;                   /* taken so far: only grows */
+    uint32_t power_q24[LM_CELLS_ROOM];  /* of the line drawn last, behind beam and pulse */
+    int32_t level_db_q8[LM_CELLS_ROOM]; /* and behind the receiver: what the tone is made of */
 };
 
 /* Start a sector: forget sweep, samples and geometry, and take the command. `epoch` numbers the

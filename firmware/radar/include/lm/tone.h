@@ -19,7 +19,7 @@ enum {
 /* The window from black, step 0, to white, step 256..2047; from 1024 on where it is 4 dB or wider.
  */
 struct lm_tone {
-    int16_t black_q8, white_q8;
+    int16_t black_db_q8, white_db_q8;
     uint8_t step_log2; /* 0..5: a step is 2^step_log2 of 1/256 dB */
     bool has_lines;
     /* Grey of each step up to white; wide entries, because wide loads are what vector machines
@@ -39,6 +39,7 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config);
 /* Grey of a line's levels: 0 at black and below, 255 at white and above, never darker for more.
  * Where gamma is 1 or more, within 1 of round(255 v^gamma), v the level's place in the window;
  * below, within 1/2 of what the nearest step has. Cost: see docs/benchmarks.md. */
-void lm_tone_run(const struct lm_tone *t, const int32_t *level_q8, uint8_t *grey, uint32_t cells);
+void lm_tone_run(const struct lm_tone *t, const int32_t *level_db_q8, uint8_t *grey,
+                 uint32_t cells);
 
 #endif

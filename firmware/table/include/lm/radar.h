@@ -53,14 +53,14 @@ enum {
 
 /* An edge is a byte of eighths of a decibel. With a code and a rise in decibels it takes 16 bits.
  */
-enum { LM_EDGE_MAX_Q8 = 255 * 32 };
+enum { LM_EDGE_MAX_DB_Q8 = 255 * 32 };
 
 /* Brightness of what stands out of the ground. */
-struct lm_aspect_config {
-    int16_t edge_structure_q8; /* leading edge of a structure, dB; 0..LM_EDGE_MAX_Q8 */
-    int16_t edge_trees_q8;     /* leading edge of trees, dB; 0..LM_EDGE_MAX_Q8 */
-    int16_t shore_q8;          /* far shore at the water, dB; 0..LM_EDGE_MAX_Q8 */
-    uint16_t shore_width_m;    /* of the shore's fall to nothing; 0..10,000 */
+struct lm_illumination_config {
+    int16_t edge_structure_db_q8; /* leading edge of a structure, dB; 0..LM_EDGE_MAX_DB_Q8 */
+    int16_t edge_trees_db_q8;     /* leading edge of trees, dB; 0..LM_EDGE_MAX_DB_Q8 */
+    int16_t shore_db_q8;          /* far shore at the water, dB; 0..LM_EDGE_MAX_DB_Q8 */
+    uint16_t shore_width_m;       /* of the shore's fall to nothing; 0..10,000 */
 };
 
 /* Speckle of a picture. */
@@ -68,7 +68,7 @@ struct lm_speckle_config {
     uint8_t looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
 };
 
-/* Texture of the ground: shape by kind of class (enum lm_kind), as log2 nu of 0..4, or
+/* Texture of the ground: shape by kind of class (enum lm_class_kind), as log2 nu of 0..4, or
  * LM_TEXTURE_NONE. */
 enum { LM_TEXTURE_NONE = 5 };
 struct lm_texture_config {
@@ -78,7 +78,8 @@ struct lm_texture_config {
 /* Tone window: which level is black, which is white, and the curve between them. */
 enum { LM_TONE_GAMMA_MIN_Q8 = 26, LM_TONE_GAMMA_MAX_Q8 = 1024 };
 struct lm_tone_config {
-    int16_t black_q8, white_q8; /* dB; white 1 to 255 dB above black; in a table -64..64 dB each */
+    int16_t black_db_q8,
+        white_db_q8;   /* dB; white 1 to 255 dB above black; in a table -64..64 dB each */
     uint16_t gamma_q8; /* exponent; LM_TONE_GAMMA_MIN_Q8..MAX_Q8, 0.1..4; in a table 64 and more,
                         * for the page goes no lower */
 };
@@ -94,16 +95,16 @@ enum lm_picture_kind {
 enum lm_sector_mode { LM_SECTOR_GM, LM_SECTOR_GMT, LM_SECTOR_SEA, LM_SECTOR_MODES };
 
 /* Field of view: the whole sector or a window around the cursor, and how sharp it is. */
-enum lm_field { LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_DBS1, LM_FIELD_DBS2, LM_FIELDS };
+enum lm_fov { LM_FOV_NORM, LM_FOV_EXP, LM_FOV_DBS1, LM_FOV_DBS2, LM_FOVS };
 
 /* A mode of the sector. */
 struct lm_sector_mode_row {
     char name[LM_NAME_SIZE]; /* on the glass and, in either case, in scripts: "GMT" */
     uint32_t bam_per_s;      /* antenna rate; LM_RADAR_RATE_MIN..MAX */
     uint16_t range_max_nm;   /* the largest scale that it has; 1..999 */
-    uint8_t field_last;      /* enum lm_field: the last that the mode has */
+    uint8_t fov_last;        /* enum lm_fov: the last that the mode has */
     uint8_t bars;            /* swept in turn; 1..8 */
-    uint16_t clutter_q8;     /* how much of what stands still is cancelled, dB; 0..64 dB */
+    uint16_t clutter_db_q8;  /* how much of what stands still is cancelled, dB; 0..64 dB */
     uint32_t gate_mm_s[2];   /* closing speeds, either way, of what is shown; 0..
                               * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */
     struct lm_speckle_config speckle;
@@ -111,7 +112,7 @@ struct lm_sector_mode_row {
 };
 
 /* A field of view. */
-struct lm_field_row {
+struct lm_fov_row {
     char name[LM_NAME_SIZE];   /* as a mode's: "EXP" */
     uint32_t bam_per_s;        /* antenna rate, LM_RADAR_RATE_MIN..MAX; 0: the mode's */
     uint16_t range_max_nm;     /* the largest scale that it has; 1..999 */
@@ -129,11 +130,11 @@ struct lm_field_row {
 /* A display scale, and what the receiver does on it. Its name, on the glass, in commands and in
  * scripts, is the number of nautical miles. */
 struct lm_range_row {
-    uint32_t range_m;     /* 1,852..LM_RADAR_RANGE_MAX_M */
-    uint16_t range_nm;    /* 1..999 */
-    int16_t noise_end_q8; /* noise-equivalent gamma at the scale's end; -100..20 dB */
-    uint32_t stc_m;       /* slant range where sensitivity time control ends; 100..400,000 */
-    uint32_t pulse_ns[LM_FIELDS]; /* by field of view; 10..100,000 */
+    uint32_t range_m;           /* 1,852..LM_RADAR_RANGE_MAX_M */
+    uint16_t range_nm;          /* 1..999 */
+    int16_t noise_end_db_q8;    /* noise-equivalent gamma at the scale's end; -100..20 dB */
+    uint32_t stc_end_m;         /* slant range where sensitivity time control ends; 100..400,000 */
+    uint32_t pulse_ns[LM_FOVS]; /* by field of view; 10..100,000 */
 };
 
 /* The antenna and its gimbals. */
@@ -161,7 +162,7 @@ struct lm_sar_table {
                                         * 1,000..LM_RADAR_SPEED_MAX_MM_S */
     uint16_t mocomp_residual_permille; /* of a lateral acceleration that motion compensation leaves;
                                         * 0 (none) ..1000 */
-    int16_t noise_floor_q8;            /* dB of gamma; -100..20 dB */
+    int16_t noise_floor_db_q8;         /* dB of gamma; -100..20 dB */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
@@ -181,9 +182,9 @@ struct lm_radar {
     struct lm_antenna_table antenna;
     struct lm_receiver_table receiver;
     struct lm_sector_mode_row mode[LM_SECTOR_MODES];
-    struct lm_field_row field[LM_FIELDS];
+    struct lm_fov_row fov[LM_FOVS];
     struct lm_sar_table sar;
-    struct lm_aspect_config aspect;
+    struct lm_illumination_config illumination;
     struct lm_texture_config texture;
 };
 

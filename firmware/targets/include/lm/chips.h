@@ -34,7 +34,7 @@ struct lm_chip_slot {
     uint8_t origin_row;           /* as in the signature, before the reduction */
     uint8_t rows_ready;           /* reduced so far */
     uint32_t pixel_mm;            /* after the reduction */
-    int32_t total_q8;             /* cross section of it all, dBsm * 256 */
+    int32_t total_dbsm_q8;        /* cross section of it all, dBsm * 256 */
     struct lm_chip_box lit, dark; /* pixels with power, and with shadow */
     /* Sums over the pixels in the rows before `row` and the columns before `column`, at
      * [row][column]: what lies in any box is had from its four corners. Shares of the total, 2^31
@@ -56,8 +56,8 @@ struct lm_chips {
     struct lm_chip_slot slots[LM_CHIPS_MAX];
     const struct lm_signature *signatures; /* borrowed: those of the targets */
     struct lm_chip stage;                  /* what was read last, */
-    uint64_t total_q32;                    /* and its cross section, m2 */
-    struct lm_guest_read read;
+    uint64_t total_m2_q32;                 /* and its cross section, m2 */
+    struct lm_flash_request read;
     struct lm_chip_slot *busy; /* being read or reduced; NULL when idle */
     bool is_reading;
     struct {
@@ -69,12 +69,12 @@ struct lm_chips {
 
 /* Where the chips of a picture are seen from. */
 struct lm_chip_scene {
-    struct lm_place centre; /* of patch or window */
-    uint32_t reach_m;       /* half its diagonal: targets beyond it need no chip */
-    struct lm_place radar;
-    bool is_parallel; /* all is seen along `look`, from range_q8: a patch; else from `radar` */
+    struct lm_position centre; /* of patch or window */
+    uint32_t reach_m;          /* half its diagonal: targets beyond it need no chip */
+    struct lm_position radar;
+    bool is_parallel; /* all is seen along `look`, from range_m_q8: a patch; else from `radar` */
     fx_bam_t look;
-    uint32_t range_q8;
+    uint32_t range_m_q8;
     struct lm_target_heights heights;
     uint32_t cell_mm;   /* chips are reduced to the largest pixel that is not larger, */
     uint32_t side_most; /* and to that many of them either way at most */
@@ -87,7 +87,7 @@ void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
 /* Choose chips for the targets near, and want those that are not there. Each item's `chip` and
  * `chip_turn` are set; chips that are no longer in use make room. Cost: 2500 instructions for each
  * near target with a signature. */
-void lm_chips_choose(struct lm_chips *c, struct lm_targets_near *near,
+void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates,
                      const struct lm_chip_scene *scene);
 
 /* Go on with reading them, through the tile cache, and reduce what has come. Call once a step.
@@ -98,9 +98,9 @@ void lm_chips_service(struct lm_chips *c, struct lm_tile_cache *tiles);
 bool lm_chips_are_settled(const struct lm_chips *c);
 
 /* The chip of an item when it is there, else NULL. */
-static inline const struct lm_chip_slot *lm_chip_of(const struct lm_target_item *item)
+static inline const struct lm_chip_slot *lm_chip_of(const struct lm_target_candidate *candidate)
 {
-    return item->chip && item->chip->state == LM_CHIP_RESIDENT ? item->chip : NULL;
+    return candidate->chip && candidate->chip->state == LM_CHIP_RESIDENT ? candidate->chip : NULL;
 }
 
 #endif

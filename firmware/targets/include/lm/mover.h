@@ -7,7 +7,7 @@
 
 /* Where a target is and which way it faces. */
 struct lm_pose {
-    struct lm_place place;
+    struct lm_position position;
     fx_bam_t heading;
 };
 
@@ -16,11 +16,11 @@ struct lm_pose {
  * record. Its heading is that of the leg's beginning all along. The same time gives the same pose
  * on every machine. Cost: 800 instructions for a mover, two divisions of 64 bits among them, and 10
  * for each leg of a path. */
-struct lm_pose lm_target_pose(const struct lm_target *t, uint64_t time_us);
+struct lm_pose lm_mover_pose(const struct lm_target *t, uint64_t time_us);
 
 /* How fast a mover comes nearer, mm/s, along the ground; `back` is the direction from it to the
  * radar. */
-int32_t lm_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back);
+int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back);
 
 /* How far to the right (signed BAM) of its place a target of this closing speed appears, when the
  * radar flies at `speed_mm_s` and its velocity points `off` to the right of the line of sight:

@@ -23,7 +23,7 @@ enum lm_shape_kind {
 
 enum {
     LM_SHAPE_SIZE_MAX_MM = 100000,
-    LM_RCS_NONE_Q8 = -100 * 256 /* returned for nothing at all, and nothing less is */
+    LM_RCS_NONE_DBSM_Q8 = -100 * 256 /* returned for nothing at all, and nothing less is */
 };
 
 struct lm_shape {
@@ -49,6 +49,7 @@ struct lm_direction {
  *
  * Worst error 0.01 dB where the pattern is within 30 dB of its peak
  * (tests/unit/firmware/targets/test_rcs.c). Cost: 60 instructions for a sphere, 500 for a plate. */
-int32_t lm_rcs_q8(const struct lm_shape *shape, uint32_t wavelength_um, struct lm_direction radar);
+int32_t lm_rcs_dbsm_q8(const struct lm_shape *shape, uint32_t wavelength_um,
+                       struct lm_direction radar);
 
 #endif

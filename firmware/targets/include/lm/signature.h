@@ -26,7 +26,7 @@ enum {
 };
 
 /* Cross sections as codes: dBsm = code / 2 - 80, so -79.5 .. +47.5; 0: nothing at all. */
-enum { LM_SIGNATURE_CODE_STEP_Q8 = 128, LM_SIGNATURE_CODE_ZERO_Q8 = -80 * 256 };
+enum { LM_SIGNATURE_CODE_STEP_DB_Q8 = 128, LM_SIGNATURE_CODE_ZERO_DBSM_Q8 = -80 * 256 };
 
 struct lm_signature {
     uint32_t crc; /* CRC-32C of all bytes after this field */
@@ -78,8 +78,9 @@ struct lm_chip_choice {
 struct lm_chip_choice lm_signature_choose(const struct lm_signature *s, fx_bam_t bearing,
                                           fx_bam_t elevation);
 
-/* Cross section of the whole target from there, dBsm * 256: of the nearest chip; LM_RCS_NONE_Q8
- * when that is empty. */
-int32_t lm_signature_rcs_q8(const struct lm_signature *s, fx_bam_t bearing, fx_bam_t elevation);
+/* Cross section of the whole target from there, dBsm * 256: of the nearest chip;
+ * LM_RCS_NONE_DBSM_Q8 when that is empty. */
+int32_t lm_signature_rcs_dbsm_q8(const struct lm_signature *s, fx_bam_t bearing,
+                                 fx_bam_t elevation);
 
 #endif

@@ -57,13 +57,13 @@ struct lm_target {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint32_t id;  /* of its own in the image: what its fluctuation is drawn by */
     fx_bam_t latitude, longitude;
-    int32_t elevation_q6;    /* of the origin, metres * 64: above mean sea level, or as flagged */
-    fx_bam_t heading;        /* of the forward axis, from north by east */
-    uint8_t scatterer_count; /* 0..16; 0: a signature, or a point that fluctuates by itself */
-    uint8_t swerling;        /* 0..4, of such a point */
-    uint16_t flags;          /* LM_TARGET_...; others make it unsound */
-    int32_t mean_rcs_q8;     /* of such a point, dBsm * 256 */
-    char name[16];           /* zero-padded; may fill all 16 */
+    int32_t elevation_m_q6;   /* of the origin, metres * 64: above mean sea level, or as flagged */
+    fx_bam_t heading;         /* of the forward axis, from north by east */
+    uint8_t scatterer_count;  /* 0..16; 0: a signature, or a point that fluctuates by itself */
+    uint8_t swerling;         /* 0..4, of such a point */
+    uint16_t flags;           /* LM_TARGET_...; others make it unsound */
+    int32_t mean_rcs_dbsm_q8; /* of such a point, dBsm * 256 */
+    char name[16];            /* zero-padded; may fill all 16 */
     union {
         struct lm_scatterer scatterers[LM_SCATTERERS_MAX];
         struct lm_path_leg path[LM_TARGET_LEGS_MAX]; /* when flagged; the first begins here */
@@ -107,8 +107,8 @@ void lm_target_view_set(struct lm_target_view *v, fx_bam_t bearing, fx_bam_t ele
 
 /* What one scatterer returns. */
 struct lm_return {
-    int32_t rcs_q8; /* dBsm * 256 */
-    fx_bam_t phase; /* of the way out and back, against the target's origin */
+    int32_t rcs_dbsm_q8; /* dBsm * 256 */
+    fx_bam_t phase;      /* of the way out and back, against the target's origin */
     int32_t along_mm, across_mm,
         up_mm; /* from the origin: away from the radar, right as it looks */
 };
@@ -121,16 +121,16 @@ uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_vie
                            uint32_t wavelength_um, struct lm_return returns[LM_SCATTERERS_MAX]);
 
 /* |sum of sqrt(rcs) exp(j phase)|^2 of the returns whose bit is set in `mask`, dBsm * 256;
- * LM_RCS_NONE_Q8 for none. Worst error 0.14 dB down to 20 dB below the strongest return, most
+ * LM_RCS_NONE_DBSM_Q8 for none. Worst error 0.14 dB down to 20 dB below the strongest return, most
  * of it from the phases.
  * Cost: about 180 instructions a return. */
-int32_t lm_returns_sum_q8(const struct lm_return *returns, uint32_t mask);
+int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask);
 
 /* One draw of a fluctuating point (Swerling 1960): case 0 is steady; 1 and 2 have an exponential
  * cross section (chi-square of 2 degrees of freedom), 3 and 4 one of 4 degrees; 1 and 3 keep theirs
  * during a scan, 2 and 4 draw anew for every pulse. Without a state: the same numbers give the same
- * draw. LM_RCS_NONE_Q8 at the least. Cost: about 170 instructions. */
-int32_t lm_swerling_q8(uint8_t swerling, int32_t mean_q8, uint32_t id, uint32_t scan,
-                       uint32_t pulse);
+ * draw. LM_RCS_NONE_DBSM_Q8 at the least. Cost: about 170 instructions. */
+int32_t lm_swerling_dbsm_q8(uint8_t swerling, int32_t mean_dbsm_q8, uint32_t id, uint32_t scan,
+                            uint32_t pulse);
 
 #endif

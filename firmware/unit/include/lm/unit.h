@@ -72,10 +72,10 @@ struct lm_unit {
     struct lm_page page;
     struct lm_palette palette;
     struct lm_cursor cursor;
-    int32_t cursor_elevation_q10; /* metres * 1024, or LM_NO_ELEVATION */
+    int32_t cursor_elevation_m_q10; /* metres * 1024, or LM_NO_ELEVATION */
     struct {
         bool is_commanded; /* before the bus's steerpoint */
-        struct lm_place place;
+        struct lm_position position;
     } steerpoint;
     uint64_t unable_until_us; /* the glass says LM_FLAG_UNABLE until then */
 

@@ -8,7 +8,7 @@
 #include "image/writer.h"
 
 struct build_level_counts {
-    uint32_t tiles[LM_DB_LEVELS_MAX];
+    uint32_t tiles[LM_DB_LODS_MAX];
 };
 
 /* Make the tiles of b->plan and append them to the writer. Memory: two tile rows a level, 38 kB a

@@ -61,7 +61,7 @@ void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], st
 /* One post of a tile, metres x 64. */
 static inline int64_t image_post_q6(const struct lm_tile *tile, int row, int column)
 {
-    return tile->base_q6 + ((int64_t)tile->points[row][column].post << tile->post_shift);
+    return tile->base_m_q6 + ((int64_t)tile->points[row][column].post << tile->post_shift);
 }
 
 #endif

@@ -36,7 +36,7 @@ struct ref_bin {
     /* scan_line */
     bool has_data; /* false: class 15, or no tile */
     int class_index;
-    int kind; /* enum lm_kind */
+    int kind; /* enum lm_class_kind */
     double gamma_db, height_m, elevation_m;
     /* aspect */
     double tangent, horizon, rise; /* t, T, d */

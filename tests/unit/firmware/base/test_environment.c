@@ -13,7 +13,8 @@ static struct lm_environment full(void)
         e.rain[i] = (struct lm_rain){.radius_m = 100000, .mm_per_h = 150};
     }
     for (int i = 0; i < LM_JAMMERS_MAX; i++) {
-        e.jammer[i] = (struct lm_jammer){.place = {.latitude = 1}, .ratio_q8 = 80 * 256};
+        e.jammer[i] =
+            (struct lm_jammer){.position = {.latitude = 1}, .noise_ratio_db_q8 = 80 * 256};
     }
     return e;
 }

@@ -7,9 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-static struct lm_place place_of(double latitude, double longitude)
+static struct lm_position place_of(double latitude, double longitude)
 {
-    return (struct lm_place){hs_bam(latitude), hs_bam(longitude)};
+    return (struct lm_position){hs_bam(latitude), hs_bam(longitude)};
 }
 
 static double metres_between(double lat1, double lon1, double lat2, double lon2)
@@ -33,11 +33,11 @@ static void geodesic_direct(double lat, double lon, double azimuth, double metre
 static double worst_direct(double lat, double lon, double metres)
 {
     struct lm_geo_origin o;
-    const struct lm_place start = place_of(lat, lon);
+    const struct lm_position start = place_of(lat, lon);
     lm_geo_set_origin(&o, start);
     double worst = 0;
     for (int deg = 0; deg < 360; deg += 7) {
-        const struct lm_place p = lm_geo_direct(&o, FX_BAM_DEG(deg), (uint32_t)(metres * 256));
+        const struct lm_position p = lm_geo_direct(&o, FX_BAM_DEG(deg), (uint32_t)(metres * 256));
         double to_lat, to_lon;
         geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg, metres,
                         &to_lat, &to_lon);
@@ -80,8 +80,8 @@ TEST(what_is_too_far_counts_as_300_km)
 {
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, place_of(61, -5));
-    const struct lm_place most = lm_geo_direct(&o, 7, 300000 * 256);
-    const struct lm_place farther = lm_geo_direct(&o, 7, UINT32_MAX);
+    const struct lm_position most = lm_geo_direct(&o, 7, 300000 * 256);
+    const struct lm_position farther = lm_geo_direct(&o, 7, UINT32_MAX);
     assert_memory_equal(&most, &farther, sizeof most);
 }
 
@@ -89,19 +89,19 @@ TEST(what_is_too_far_counts_as_300_km)
 static double worst_cell(double lat, double lon, double metres, uint32_t cells)
 {
     struct lm_geo_origin o;
-    const struct lm_place start = place_of(lat, lon);
+    const struct lm_position start = place_of(lat, lon);
     lm_geo_set_origin(&o, start);
     double worst = 0;
     for (int deg = 3; deg < 360; deg += 11) {
         const uint32_t length_q8 = (uint32_t)(metres * 256);
         const fx_bam_t azimuth = FX_BAM_DEG(deg);
-        const struct lm_place points[3] = {start, lm_geo_direct(&o, azimuth, length_q8 / 2),
-                                           lm_geo_direct(&o, azimuth, length_q8)};
+        const struct lm_position points[3] = {start, lm_geo_direct(&o, azimuth, length_q8 / 2),
+                                              lm_geo_direct(&o, azimuth, length_q8)};
         struct lm_ground_path path;
         lm_ground_path_fit(&path, points, cells);
         for (uint32_t i = 0; i < cells; i++, go_on(&path)) {
-            const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
-                                       (fx_bam_t)(path.longitude >> 32)};
+            const struct lm_position p = {(fx_bam_t)(path.latitude >> 32),
+                                          (fx_bam_t)(path.longitude >> 32)};
             double to_lat, to_lon;
             geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg,
                             (i + 0.5) * metres / cells, &to_lat, &to_lon);
@@ -128,13 +128,14 @@ static double worst_patch_cell(double lat, double lon, const struct lm_ground_ex
                                int cells)
 {
     struct lm_ground_patch patch;
-    const double azimuth = 37, side_m = extent->side_q8 / 256.0, near_m = extent->near_q8 / 256.0;
-    const double cell_m = (extent->far_q8 / 256.0 - near_m) / cells;
-    const struct lm_place centre = place_of(lat, lon);
+    const double azimuth = 37, side_m = extent->side_m_q8 / 256.0,
+                 near_m = extent->near_m_q8 / 256.0;
+    const double cell_m = (extent->far_m_q8 / 256.0 - near_m) / cells;
+    const struct lm_position centre = place_of(lat, lon);
     lm_ground_patch_set(&patch, centre, FX_BAM_DEG(37), extent);
     double worst = 0;
     for (uint32_t line = 0; line < 256; line += 5) {
-        struct lm_place points[3];
+        struct lm_position points[3];
         struct lm_ground_path path;
         lm_ground_patch_line(&patch, line, 256, points);
         lm_ground_path_fit(&path, points, (uint32_t)cells);
@@ -145,8 +146,8 @@ static double worst_patch_cell(double lat, double lon, const struct lm_ground_ex
             geodesic_direct(hs_degrees(centre.latitude), hs_degrees(centre.longitude),
                             azimuth + atan2(across, along) * 180 / 3.14159265358979,
                             hypot(across, along), &to_lat, &to_lon);
-            const struct lm_place p = {(fx_bam_t)(path.latitude >> 32),
-                                       (fx_bam_t)(path.longitude >> 32)};
+            const struct lm_position p = {(fx_bam_t)(path.latitude >> 32),
+                                          (fx_bam_t)(path.longitude >> 32)};
             worst = fmax(worst, metres_between(to_lat, to_lon, hs_degrees(p.latitude),
                                                hs_degrees(p.longitude)));
         }

@@ -65,7 +65,7 @@ static void assert_possible(const struct lm_ownship *o)
     const int32_t quarter = (int32_t)FX_BAM_90;
     assert_true((int32_t)o->latitude <= quarter && (int32_t)o->latitude >= -quarter);
     assert_true(o->pitch <= quarter && o->pitch >= -quarter);
-    assert_true(o->height_q6 >= (-1000 - 2500) * 64 && o->height_q6 <= (30000 + 2500) * 64);
+    assert_true(o->height_m_q6 >= (-1000 - 2500) * 64 && o->height_m_q6 <= (30000 + 2500) * 64);
     assert_true(abs(o->velocity_north_mm_s) <= 1500000 && abs(o->velocity_east_mm_s) <= 1500000);
     assert_true(o->utc_s >= 0 && o->utc_s < 86400);
     assert_true(o->position_quality != LM_NAV_DEAD || (o->latitude == 0 && o->longitude == 0));

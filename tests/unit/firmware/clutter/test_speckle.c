@@ -12,9 +12,10 @@ enum { SIDE = 256 };
 static void fill_slices(uint32_t slice[SIDE][SIDE], enum lm_noise_kind kind, uint32_t epoch)
 {
     for (uint32_t line = 0; line < SIDE; line++) {
-        const struct lm_raster raster = lm_raster_of(kind, line, epoch);
+        const struct lm_noise_key noise_key = lm_noise_key_of(kind, line, epoch);
         for (uint32_t i = 0; i < SIDE; i++) {
-            const uint32_t entry = lm_noise_entry(&raster, i / LM_NOISE_BLOCK) + i % LM_NOISE_BLOCK;
+            const uint32_t entry =
+                lm_noise_entry(&noise_key, i / LM_NOISE_BLOCK) + i % LM_NOISE_BLOCK;
             slice[line][i] = lm_noise_slice(entry);
         }
     }
@@ -25,9 +26,9 @@ static void fill_powers(double *power, uint8_t looks_log2, uint32_t epoch)
 {
     const struct lm_speckle_config config = {looks_log2};
     for (uint32_t line = 0; line < SIDE; line++) {
-        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, line, epoch);
+        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, line, epoch);
         int32_t level[SIDE] = {0};
-        lm_speckle_run(&config, &raster, level, SIDE);
+        lm_speckle_run(&config, &noise_key, level, SIDE);
         for (uint32_t i = 0; i < SIDE; i++) {
             power[line * SIDE + i] = pow(10, level[i] / 2560.0);
         }
@@ -95,13 +96,13 @@ TEST(every_slice_stands_once_in_a_row_and_the_first_ones_again_behind_it)
     for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
         int16_t sorted_q8[LM_NOISE_SLICES];
         for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
-            sorted_q8[lm_noise_slice(entry)] = lm_noise_q8[row][entry];
+            sorted_q8[lm_noise_slice(entry)] = lm_noise_db_q8[row][entry];
         }
         for (int n = 1; n < LM_NOISE_SLICES; n++) {
             assert_true(sorted_q8[n] >= sorted_q8[n - 1]);
         }
         for (int k = 0; k < LM_NOISE_BLOCK; k++) {
-            assert_int_equal(lm_noise_q8[row][LM_NOISE_SLICES + k], lm_noise_q8[row][k]);
+            assert_int_equal(lm_noise_db_q8[row][LM_NOISE_SLICES + k], lm_noise_db_q8[row][k]);
         }
     }
 }
@@ -112,7 +113,7 @@ TEST(the_order_of_a_row_keeps_neighbours_independent)
     double slice[LM_NOISE_SLICES], power[LM_NOISE_SLICES];
     for (uint32_t entry = 0; entry < LM_NOISE_SLICES; entry++) {
         slice[entry] = lm_noise_slice(entry);
-        power[entry] = pow(10, lm_noise_q8[0][entry] / 2560.0);
+        power[entry] = pow(10, lm_noise_db_q8[0][entry] / 2560.0);
     }
     for (int apart = 1; apart < LM_NOISE_BLOCK; apart++) {
         assert_true(fabs(correlation_along(slice, apart)) < 0.0136);
@@ -212,9 +213,9 @@ TEST(kinds_and_epochs_know_nothing_of_each_other)
 
 TEST(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line)
 {
-    const struct lm_raster grown = {.column_q32 = ((uint64_t)70 << 32) - 1, 1, 3};
-    const struct lm_raster before = {.column_q32 = (uint64_t)69 << 32, 0, 3};
-    const struct lm_raster behind = {.column_q32 = (uint64_t)70 << 32, 0, 3};
+    const struct lm_noise_key grown = {.column_q32 = ((uint64_t)70 << 32) - 1, 1, 3};
+    const struct lm_noise_key before = {.column_q32 = (uint64_t)69 << 32, 0, 3};
+    const struct lm_noise_key behind = {.column_q32 = (uint64_t)70 << 32, 0, 3};
     struct lm_noise_line line;
     lm_noise_line_set(&line, &grown, 64);
     assert_int_equal(line.entry[0], lm_noise_entry(&before, 0));
@@ -228,16 +229,16 @@ TEST(every_cell_gains_its_draw)
 {
     for (uint32_t column = 0; column < 500; column++) {
         const struct lm_speckle_config config = {(uint8_t)(column % 5)};
-        const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, column, 1);
+        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, column, 1);
         int32_t level[48], over_nothing[48], none[48];
         for (int i = 0; i < 48; i++) {
             level[i] = 1000 * i - 0x8000;
             none[i] = level[i];
         }
-        lm_speckle_run(&config, &raster, level, 48);
-        lm_speckle_floor_run(&config, -1000 * 256, &raster, none, over_nothing, 48);
+        lm_speckle_run(&config, &noise_key, level, 48);
+        lm_speckle_floor_run(&config, -1000 * 256, &noise_key, none, over_nothing, 48);
         for (uint32_t i = 0; i < 48; i++) {
-            const int32_t draw = lm_noise_of_q8(config.looks_log2, &raster, i);
+            const int32_t draw = lm_noise_cell_db_q8(config.looks_log2, &noise_key, i);
             assert_int_equal(level[i], 1000 * (int32_t)i - 0x8000 + draw);
             assert_in_range(over_nothing[i] - level[i], 0, 1);
         }

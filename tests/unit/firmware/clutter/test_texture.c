@@ -2,7 +2,7 @@
  * the sum of powers: docs/EQUATIONS.md, "Speckle and texture". */
 #include "check.h"
 #include "hs/rng.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "lm/radar.h"
 #include "lm/speckle.h"
 #include "tiny_image.h"
@@ -45,8 +45,8 @@ static void fill_powers(double *power, uint8_t shape_log2, uint8_t looks_log2)
     struct lm_texture texture;
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t row = 0; row < SIDE; row++) {
-        const struct lm_raster rough = lm_raster_of(LM_NOISE_TEXTURE, row, 77);
-        const struct lm_raster speckle = lm_raster_of(LM_NOISE_SPECKLE, row, 77);
+        const struct lm_noise_key rough = lm_noise_key_of(LM_NOISE_TEXTURE, row, 77);
+        const struct lm_noise_key speckle = lm_noise_key_of(LM_NOISE_SPECKLE, row, 77);
         const struct lm_speckle_config looks = {looks_log2};
         uint32_t cell[SIDE];
         int32_t level[SIDE] = {0};
@@ -85,14 +85,14 @@ TEST(textured_speckle_has_the_variance_of_a_k_distribution)
 /* What a cell of a class gains, for the n-th draw of any. */
 static int32_t gain_q8(const struct lm_texture *texture, uint32_t cell, uint32_t n, int32_t level)
 {
-    const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, n, 4);
+    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, n, 4);
     uint32_t cells[ROOM];
     int32_t levels[ROOM];
     for (int i = 0; i < ROOM; i++) {
         cells[i] = cell;
         levels[i] = level;
     }
-    lm_texture_run(texture, &raster, cells, levels, 1);
+    lm_texture_run(texture, &noise_key, cells, levels, 1);
     return levels[0] - level;
 }
 
@@ -126,17 +126,18 @@ TEST(each_class_gains_a_draw_of_its_own_shape)
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
     assert_int_equal(texture.shapes, 3);
     for (uint32_t column = 0; column < 200; column++) {
-        const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, column, 9);
+        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, column, 9);
         uint32_t cell[48], which[48];
         int32_t level[48] = {0};
         for (int i = 0; i < 48; i++) {
             which[i] = hs_rng_below(&rng, column % 4 + 1);
             cell[i] = cell_of(class_index[which[i]]);
         }
-        lm_texture_run(&texture, &raster, cell, level, 48);
+        lm_texture_run(&texture, &noise_key, cell, level, 48);
         for (uint32_t i = 0; i < 48; i++) {
             const int log2 = log2_of[which[i]];
-            assert_int_equal(level[i], log2 < 0 ? 0 : lm_noise_of_q8((uint32_t)log2, &raster, i));
+            assert_int_equal(level[i],
+                             log2 < 0 ? 0 : lm_noise_cell_db_q8((uint32_t)log2, &noise_key, i));
         }
     }
 }
@@ -147,11 +148,11 @@ TEST(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each)
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_texture texture;
         lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea, 0);
-        const struct lm_raster raster = lm_raster_of(LM_NOISE_TEXTURE, (uint32_t)sea, 1);
+        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, (uint32_t)sea, 1);
         const uint32_t cell[ROOM] = {cell_of(TINY_WATER), cell_of(TINY_SOIL),
                                      cell_of(TINY_STRUCTURE), cell_of(TINY_TREES)};
         int32_t level[ROOM] = {-40 * 256, -20 * 256, 0, -15 * 256};
-        lm_texture_run(&texture, &raster, cell, level, 4);
+        lm_texture_run(&texture, &noise_key, cell, level, 4);
         assert_int_equal(level[0], (-40 + 5 * ((sea < 8 ? sea : 8) - 3)) * 256);
         assert_int_equal(level[1], -20 * 256);
         assert_int_equal(level[2], 0);
@@ -163,7 +164,7 @@ TEST(a_loss_is_taken_off_every_class)
 {
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_TREES] = 2;
-    static const uint16_t losses_q8[] = {35 * 256, LM_TEXTURE_LOSS_MAX_Q8, UINT16_MAX};
+    static const uint16_t losses_q8[] = {35 * 256, LM_TEXTURE_LOSS_MAX_DB_Q8, UINT16_MAX};
     for (size_t n = 0; n < 3; n++) {
         struct lm_texture whole, less;
         lm_texture_set(&whole, &config, tiny_classes(), 0, 0);
@@ -171,8 +172,9 @@ TEST(a_loss_is_taken_off_every_class)
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
             const int32_t lost =
                 gain_q8(&whole, cell_of(i), i, 0) - gain_q8(&less, cell_of(i), i, 0);
-            assert_int_equal(lost, losses_q8[n] < LM_TEXTURE_LOSS_MAX_Q8 ? losses_q8[n]
-                                                                         : LM_TEXTURE_LOSS_MAX_Q8);
+            assert_int_equal(lost, losses_q8[n] < LM_TEXTURE_LOSS_MAX_DB_Q8
+                                       ? losses_q8[n]
+                                       : LM_TEXTURE_LOSS_MAX_DB_Q8);
         }
     }
 }
@@ -182,7 +184,7 @@ TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
     int32_t strongest = 0;
     for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
         for (int n = 0; n < LM_NOISE_SLICES; n++) {
-            strongest = lm_noise_q8[row][n] > strongest ? lm_noise_q8[row][n] : strongest;
+            strongest = lm_noise_db_q8[row][n] > strongest ? lm_noise_db_q8[row][n] : strongest;
         }
     }
     const struct lm_texture_config config = {{0, 0, 0, 0}};
@@ -193,7 +195,7 @@ TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
             const int32_t level =
                 LM_LEVEL_SHADOW + gain_q8(&texture, cell_of(class_index), n, LM_LEVEL_SHADOW);
             assert_true(level + strongest < -80 * 256);
-            assert_true(level > -0x10000); /* what fx_power_q32_of_many takes */
+            assert_true(level > -0x10000); /* what fx_power_q32_vec takes */
         }
     }
 }
@@ -217,10 +219,10 @@ TEST(a_hostile_table_reads_nothing_but_the_tables)
 static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
 {
     const struct lm_speckle_config config = {2};
-    const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, 700, 2);
+    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, 700, 2);
     int32_t level[ROOM] = {level_q8}, speckled_q8[ROOM];
-    lm_speckle_floor_run(&config, floor_q8, &raster, level, speckled_q8, 1);
-    return speckled_q8[0] - lm_noise_of_q8(2, &raster, 0);
+    lm_speckle_floor_run(&config, floor_q8, &noise_key, level, speckled_q8, 1);
+    return speckled_q8[0] - lm_noise_cell_db_q8(2, &noise_key, 0);
 }
 
 TEST(the_floor_adds_as_power_to_every_level)

@@ -10,12 +10,12 @@ enum { SIDE = 480, RANGE_M = 37040 };
 
 static const double pi = 3.14159265358979323846;
 
-static struct lm_place place_at(double lat, double lon)
+static struct lm_position place_at(double lat, double lon)
 {
-    return (struct lm_place){hs_bam(lat), hs_bam(lon)};
+    return (struct lm_position){hs_bam(lat), hs_bam(lon)};
 }
 
-static struct lm_place moved(struct lm_place from, double azimuth, double metres)
+static struct lm_position moved(struct lm_position from, double azimuth, double metres)
 {
     struct geod_geodesic earth;
     double lat, lon, back;
@@ -25,7 +25,7 @@ static struct lm_place moved(struct lm_place from, double azimuth, double metres
     return place_at(lat, lon);
 }
 
-static double distance(struct lm_place a, struct lm_place b)
+static double distance(struct lm_position a, struct lm_position b)
 {
     struct geod_geodesic earth;
     double metres, there, back;
@@ -44,7 +44,7 @@ struct scene {
     uint64_t now_us;
 };
 
-static void look_from(struct scene *s, struct lm_place ownship, double heading)
+static void look_from(struct scene *s, struct lm_position ownship, double heading)
 {
     s->frame = lm_frame_of_display(SIDE, SIDE);
     const struct lm_view_from from = {ownship, hs_bam(heading), 0};
@@ -66,16 +66,17 @@ static void steps(struct scene *s, double seconds)
     }
 }
 
-static const struct lm_place origins[] = {{0x20B60B61, 0x07D27D28},  /* 46 N 11 E */
-                                          {0xD0000000, 0x7FFFFF00},  /* 67.5 S, the antimeridian */
-                                          {0x00000000, 0xF0000000}}; /* the equator */
+static const struct lm_position origins[] = {
+    {0x20B60B61, 0x07D27D28},  /* 46 N 11 E */
+    {0xD0000000, 0x7FFFFF00},  /* 67.5 S, the antimeridian */
+    {0x00000000, 0xF0000000}}; /* the equator */
 
 TEST(the_place_under_the_origin_is_the_origin)
 {
     for (size_t o = 0; o < 3; o++) {
         struct scene s = {0};
         look_from(&s, origins[o], 30);
-        const struct lm_place there = lm_view_place(&s.view, (struct lm_offset){0, 0});
+        const struct lm_position there = lm_view_place(&s.view, (struct lm_offset){0, 0});
         assert_true(distance(there, origins[o]) < 0.1);
     }
 }
@@ -87,14 +88,14 @@ TEST(a_place_is_where_geodesics_put_it_within_a_pixel)
         look_from(&s, origins[o], 30);
         for (double turn = -60; turn <= 60; turn += 15) {
             for (double part = 0.05; part <= 1; part += 0.19) {
-                const struct lm_place there = moved(origins[o], 30 + turn, part * RANGE_M);
+                const struct lm_position there = moved(origins[o], 30 + turn, part * RANGE_M);
                 struct lm_offset found;
                 assert_true(lm_view_find(&s.view, there, &found));
                 const double r = part * s.view.radius_px * 256;
                 /* lm_geo_inverse: 0.2 % of the distance; 210 pixels of it are half a pixel. */
-                assert_true(fabs(found.x_q8 - r * sin(turn * pi / 180)) < 128);
-                assert_true(fabs(found.y_q8 - r * cos(turn * pi / 180)) < 128);
-                const struct lm_place back = lm_view_place(&s.view, found);
+                assert_true(fabs(found.x_px_q8 - r * sin(turn * pi / 180)) < 128);
+                assert_true(fabs(found.y_px_q8 - r * cos(turn * pi / 180)) < 128);
+                const struct lm_position back = lm_view_place(&s.view, found);
                 assert_true(distance(back, there) < 0.003 * part * RANGE_M + 2);
             }
         }
@@ -110,8 +111,8 @@ TEST(a_place_too_far_to_be_drawn_is_refused)
     assert_false(lm_view_find(&s.view, place_at(-46, -169), &found));
     struct lm_view patch = lm_view_of_patch(&s.frame, origins[0], 0, 256, 500);
     assert_false(lm_view_find(&patch, moved(origins[0], 10, 20000), &found));
-    assert_int_equal(found.x_q8, 1);
-    assert_int_equal(found.y_q8, 2);
+    assert_int_equal(found.x_px_q8, 1);
+    assert_int_equal(found.y_px_q8, 2);
 }
 
 TEST(zero_is_half_the_range_straight_ahead)
@@ -119,7 +120,7 @@ TEST(zero_is_half_the_range_straight_ahead)
     struct scene s = {0};
     look_from(&s, origins[0], 77);
     steps(&s, 0.02);
-    assert_true(distance(s.cursor.place, moved(origins[0], 77, RANGE_M / 2)) < 1);
+    assert_true(distance(s.cursor.position, moved(origins[0], 77, RANGE_M / 2)) < 1);
     assert_true(s.cursor.is_on_glass);
     assert_in_range(s.cursor.range_m, RANGE_M / 2 - 40, RANGE_M / 2 + 40);
     assert_true(fabs(hs_degrees(s.cursor.bearing) - 77) < 0.2);
@@ -136,8 +137,8 @@ TEST(full_deflection_crosses_half_the_glass_in_a_second_in_every_direction)
         s.cursor.slew_x = directions[i][0];
         s.cursor.slew_y = directions[i][1];
         steps(&s, 0.3);
-        const double px_x = (s.cursor.offset.x_q8 - before.x_q8) / 256.0;
-        const double px_y = (s.cursor.offset.y_q8 - before.y_q8) / 256.0;
+        const double px_x = (s.cursor.offset.x_px_q8 - before.x_px_q8) / 256.0;
+        const double px_y = (s.cursor.offset.y_px_q8 - before.y_px_q8) / 256.0;
         assert_true(fabs(px_x - 0.3 * SIDE / 2 * directions[i][0] / 1000) < 1);
         assert_true(fabs(px_y - 0.3 * SIDE / 2 * directions[i][1] / 1000) < 1);
     }
@@ -153,14 +154,14 @@ TEST(slewing_stops_at_the_edge_of_what_is_shown)
         s.cursor.slew_y = (int32_t)lround(1000 * cos(turn * pi / 180));
         steps(&s, 5);
         assert_true(s.cursor.is_on_glass);
-        assert_true(hypot(s.cursor.offset.x_q8, s.cursor.offset.y_q8) <
+        assert_true(hypot(s.cursor.offset.x_px_q8, s.cursor.offset.y_px_q8) <
                     (s.view.radius_px + 1.5) * 256);
-        assert_true(s.cursor.offset.y_q8 > -256);
+        assert_true(s.cursor.offset.y_px_q8 > -256);
         s.view = lm_view_of_patch(&s.frame, moved(origins[1], 10, 15000), hs_bam(40), 256, 5000);
         steps(&s, 5);
         assert_true(s.cursor.is_on_glass);
-        assert_in_range(s.cursor.offset.x_q8 + 129 * 256, 0, 258 * 256);
-        assert_in_range(s.cursor.offset.y_q8 + 129 * 256, 0, 258 * 256);
+        assert_in_range(s.cursor.offset.x_px_q8 + 129 * 256, 0, 258 * 256);
+        assert_in_range(s.cursor.offset.y_px_q8 + 129 * 256, 0, 258 * 256);
     }
 }
 
@@ -169,15 +170,15 @@ TEST(the_cursor_stays_over_its_place_while_the_aircraft_flies_and_turns)
     struct scene s = {0};
     look_from(&s, origins[0], 0);
     steps(&s, 0.02);
-    const struct lm_place held = s.cursor.place;
+    const struct lm_position held = s.cursor.position;
     for (int second = 1; second <= 60; second++) {
         look_from(&s, moved(origins[0], 20, 150.0 * second), second * 0.5);
         steps(&s, 0.02);
-        assert_int_equal(s.cursor.place.latitude, held.latitude);
-        assert_int_equal(s.cursor.place.longitude, held.longitude);
+        assert_int_equal(s.cursor.position.latitude, held.latitude);
+        assert_int_equal(s.cursor.position.longitude, held.longitude);
         struct lm_offset found;
         assert_true(lm_view_find(&s.view, held, &found));
-        assert_int_equal(found.x_q8, s.cursor.offset.x_q8);
+        assert_int_equal(found.x_px_q8, s.cursor.offset.x_px_q8);
     }
     assert_true(s.cursor.range_m < RANGE_M / 2 - 7000);
 }
@@ -187,17 +188,17 @@ TEST(in_snowplow_it_moves_with_the_aircraft_until_it_is_stabilised)
     struct scene s = {.cursor.is_snowplow = true};
     s.cursor.slew_x = 1000; /* which snowplow does not heed */
     for (int second = 0; second <= 30; second++) {
-        const struct lm_place ownship = moved(origins[0], 20, 150.0 * second);
+        const struct lm_position ownship = moved(origins[0], 20, 150.0 * second);
         look_from(&s, ownship, second);
         steps(&s, 0.02);
-        assert_true(distance(s.cursor.place, moved(ownship, second, RANGE_M / 2)) < 1);
+        assert_true(distance(s.cursor.position, moved(ownship, second, RANGE_M / 2)) < 1);
     }
     s.cursor.slew_x = 0;
     lm_cursor_stabilise(&s.cursor);
-    const struct lm_place held = s.cursor.place;
+    const struct lm_position held = s.cursor.position;
     look_from(&s, moved(origins[0], 20, 9000), 50);
     steps(&s, 0.1);
-    assert_memory_equal(&s.cursor.place, &held, sizeof held);
+    assert_memory_equal(&s.cursor.position, &held, sizeof held);
 }
 
 TEST(automatic_range_goes_up_from_095_and_down_below_0425)
@@ -209,7 +210,7 @@ TEST(automatic_range_goes_up_from_095_and_down_below_0425)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct lm_cursor c = {.range_m = (uint32_t)(cases[i].part * RANGE_M), .offset = {0, 25600}};
         assert_int_equal(lm_cursor_wants_range(&c, RANGE_M), cases[i].wants);
-        c.offset.y_q8 = -25600; /* flown past: stays */
+        c.offset.y_px_q8 = -25600; /* flown past: stays */
         assert_int_equal(lm_cursor_wants_range(&c, RANGE_M), 0);
     }
     /* Between two scales no cursor makes it swing. */

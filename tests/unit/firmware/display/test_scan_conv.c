@@ -83,7 +83,7 @@ static void paint(const struct glass *g, int32_t left_bam, int32_t right_bam, ui
     uint8_t line[CELLS];
     memset(line, grey, sizeof line);
     const struct lm_ppi ppi = sector_ppi(&g->frame);
-    lm_ppi_paint(&g->plane, &ppi, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
+    lm_scan_conv_sector(&g->plane, &ppi, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
 }
 
 static const uint16_t sizes[][2] = {{256, 256}, {512, 512}, {384, 512}, {1024, 1024}, {1000, 600}};
@@ -156,8 +156,8 @@ TEST(a_pixel_shows_the_cell_at_its_range)
         for (int32_t i = -128; i < 128; i += 9) {
             memset(g.plane.pixels, GUARD, (size_t)g.plane.width_px * g.plane.height_px);
             lm_plane_clear(&g.plane, &g.frame);
-            lm_ppi_paint(&g.plane, &ppi, (fx_bam_t)(i * width), (fx_bam_t)((i + 1) * width), line,
-                         CELLS);
+            lm_scan_conv_sector(&g.plane, &ppi, (fx_bam_t)(i * width), (fx_bam_t)((i + 1) * width),
+                                line, CELLS);
             for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
                 for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
                     const double radius_px = polar_of(&g, x, y).radius_px;
@@ -181,8 +181,8 @@ static void paint_fan(const struct glass *g, const struct lm_ppi *ppi)
         for (int i = 0; i < CELLS; i++) {
             line[i] = (uint8_t)(1 + (n + half + 3 * i) % 255);
         }
-        lm_ppi_paint(&g->plane, ppi, (fx_bam_t)(n * line_bam), (fx_bam_t)((n + 1) * line_bam), line,
-                     CELLS);
+        lm_scan_conv_sector(&g->plane, ppi, (fx_bam_t)(n * line_bam),
+                            (fx_bam_t)((n + 1) * line_bam), line, CELLS);
     }
 }
 
@@ -197,7 +197,7 @@ TEST(a_window_shows_what_it_would_show_in_a_wider_one)
                              .apex_x_px = apex[n][0],
                              .apex_y_px = apex[n][1],
                              .cells_per_px_q16 = 40000,
-                             .near_cell_q8 = 20 * 256};
+                             .near_cells_q8 = 20 * 256};
         paint_fan(&wide, &ppi);
         ppi.clip = (struct lm_frame){203, 140, 120, 97};
         paint_fan(&narrow, &ppi);
@@ -267,7 +267,7 @@ TEST(a_patch_cell_is_a_square_of_pixels_at_its_place)
             for (uint32_t i = 0; i < cells; i++) {
                 grey[i] = patch_grey(line, i);
             }
-            lm_patch_paint(&g.plane, &g.frame, line, grey, cells);
+            lm_scan_conv_patch(&g.plane, &g.frame, line, grey, cells);
         }
         const uint32_t left = g.frame.left_px + (g.frame.width_px - side * cells) / 2;
         const uint32_t bottom = g.frame.top_px + (g.frame.height_px + side * cells) / 2 - 1;
@@ -294,7 +294,7 @@ TEST(a_frame_smaller_than_the_patch_shows_its_middle)
             for (uint32_t i = 0; i < CELLS; i++) {
                 grey[i] = patch_grey(line, i);
             }
-            lm_patch_paint(&g.plane, &g.frame, line, grey, CELLS);
+            lm_scan_conv_patch(&g.plane, &g.frame, line, grey, CELLS);
         }
         const struct lm_frame *f = &g.frame;
         const int32_t x = f->width_px / 2, y = f->height_px / 2;

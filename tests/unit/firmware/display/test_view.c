@@ -24,8 +24,8 @@ static struct lm_view window_of(const struct lm_frame *frame, double azimuth_deg
 {
     struct lm_geo_origin origin;
     const struct lm_view_from from = from_here();
-    lm_geo_set_origin(&origin, from.place);
-    const struct lm_place centre =
+    lm_geo_set_origin(&origin, from.position);
+    const struct lm_position centre =
         lm_geo_direct(&origin, hs_bam(20 + azimuth_deg), (uint32_t)(metres * 256));
     return lm_view_of_window(frame, &from, centre, 2315);
 }
@@ -40,9 +40,9 @@ static void paint(const struct lm_ppi *ppi, int is_by_line, int32_t middle_deg)
             grey[i] = (uint8_t)(is_by_line ? n + 1 : i % 250 + 1);
         }
         const int32_t half_degrees = n - 100 + 2 * middle_deg;
-        lm_ppi_paint(&plane, ppi, (fx_bam_t)(half_degrees * (int32_t)(FX_BAM_DEG(1) / 2)),
-                     (fx_bam_t)((half_degrees + 1) * (int32_t)(FX_BAM_DEG(1) / 2)), grey,
-                     LM_DRAW_FAR);
+        lm_scan_conv_sector(&plane, ppi, (fx_bam_t)(half_degrees * (int32_t)(FX_BAM_DEG(1) / 2)),
+                            (fx_bam_t)((half_degrees + 1) * (int32_t)(FX_BAM_DEG(1) / 2)), grey,
+                            LM_DRAW_FAR);
     }
 }
 
@@ -53,7 +53,7 @@ static void judge_offsets(const struct lm_view *v, const struct lm_frame *frame,
 {
     struct hs_rng rng;
     const struct lm_ppi ppi = lm_view_ppi(v, frame, cell_q8, 0);
-    const double cells_per_px = v->mm_q8_per_px / 1000.0 / cell_q8;
+    const double cells_per_px = v->scale_mm_per_px_q8 / 1000.0 / cell_q8;
     hs_rng_seed(&rng, 3);
     for (int is_by_line = 0; is_by_line < 2; is_by_line++) {
         double right_px = 0, up_px = 0;
@@ -62,8 +62,8 @@ static void judge_offsets(const struct lm_view *v, const struct lm_frame *frame,
         for (int i = 0; i < 20000; i++) {
             const struct lm_offset middle = lm_view_middle(v);
             const struct lm_offset o = {
-                middle.x_q8 + (int32_t)hs_rng_below(&rng, 400 * 256) - 200 * 256,
-                middle.y_q8 + (int32_t)hs_rng_below(&rng, 400 * 256) - 200 * 256};
+                middle.x_px_q8 + (int32_t)hs_rng_below(&rng, 400 * 256) - 200 * 256,
+                middle.y_px_q8 + (int32_t)hs_rng_below(&rng, 400 * 256) - 200 * 256};
             const struct lm_point at = lm_view_point(v, o);
             const struct lm_frame *clip = &ppi.clip;
             const bool is_on_glass = at.x >= clip->left_px &&
@@ -73,7 +73,7 @@ static void judge_offsets(const struct lm_view *v, const struct lm_frame *frame,
                 continue;
             }
             const int painted = pixels[at.y * WIDTH + at.x] - 1;
-            const double right = o.x_q8 / 256.0, up = o.y_q8 / 256.0;
+            const double right = o.x_px_q8 / 256.0, up = o.y_px_q8 / 256.0;
             /* Half a pixel's diagonal each way, and the range's projection on the line. */
             const double azimuth = (atan2(right, up) * 57.29578 - middle_deg) * 2 + 100;
             const double range = hypot(right, up) * cells_per_px;
@@ -128,11 +128,12 @@ TEST(a_symbol_over_a_patch_is_on_the_cell_of_its_place)
     for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
         const struct lm_frame frame = {5, 3, sizes[n][0] / 2, sizes[n][1] / 2};
         const uint32_t cells = 64;
-        const struct lm_view v = lm_view_of_patch(&frame, (struct lm_place){0, 0}, 0, cells, 5000);
+        const struct lm_view v =
+            lm_view_of_patch(&frame, (struct lm_position){0, 0}, 0, cells, 5000);
         for (uint32_t line = 0; line < cells; line++) {
             uint8_t grey[64];
             memset(grey, (int)line + 1, sizeof grey);
-            lm_patch_paint(&plane, &frame, line, grey, cells);
+            lm_scan_conv_patch(&plane, &frame, line, grey, cells);
         }
         const int32_t cell_px = lm_patch_cell_px(&frame, cells);
         for (int32_t line = 0; line < (int32_t)cells; line++) {
@@ -141,7 +142,7 @@ TEST(a_symbol_over_a_patch_is_on_the_cell_of_its_place)
             const struct lm_point at = lm_view_point(&v, o);
             assert_int_equal(pixels[at.y * WIDTH + at.x], line + 1);
             const struct lm_point left =
-                lm_view_point(&v, (struct lm_offset){o.x_q8 - cell_px * 128 + 1, o.y_q8});
+                lm_view_point(&v, (struct lm_offset){o.x_px_q8 - cell_px * 128 + 1, o.y_px_q8});
             assert_int_equal(pixels[left.y * WIDTH + left.x], line + 1);
         }
         for (uint32_t line = 0; line < cells; line++) {
@@ -149,7 +150,7 @@ TEST(a_symbol_over_a_patch_is_on_the_cell_of_its_place)
             for (uint8_t i = 0; i < 64; i++) {
                 grey[i] = i;
             }
-            lm_patch_paint(&plane, &frame, line, grey, cells);
+            lm_scan_conv_patch(&plane, &frame, line, grey, cells);
         }
         for (int32_t cell = 0; cell < (int32_t)cells; cell++) {
             const int32_t low_q8 = (2 * cell - (int32_t)cells) * cell_px * 128;

@@ -117,10 +117,10 @@ TEST(hostile_headers_never_lead_outside_the_flash)
         accepted++;
         assert_true(db.directory_offset + 8u * (uint64_t)db.entry_count <= image.size);
         assert_true(db.records_offset + (uint64_t)db.record_count * LM_TILE_BYTES <= image.size);
-        assert_in_range(db.shift0 + db.level_count, 1, LM_DB_SHIFT_MAX + 1);
+        assert_in_range(db.shift0 + db.lod_count, 1, LM_DB_SHIFT_MAX + 1);
         for (uint32_t i = 0; i < db.band_count; i++) {
             const struct lm_band *b = &db.bands[i];
-            const int64_t entry = lm_db_entry(&db, b->level, b->row0 + b->rows - 1, b->column0);
+            const int64_t entry = lm_db_entry(&db, b->lod, b->row0 + b->rows - 1, b->column0);
             assert_true(entry < (int64_t)db.entry_count);
         }
     }

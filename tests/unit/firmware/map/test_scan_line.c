@@ -103,7 +103,7 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
     const double share = fabs(latitude) / 1073741824.0 * 16;
     const int zone = share < 11 ? 0 : share < 13 ? 1 : share < 15 ? 2 : 3;
     longitude -= floor(longitude / 4294967296.0) * 4294967296.0;
-    for (; level < w->db.level_count; level++) {
+    for (; level < w->db.lod_count; level++) {
         const double high = ldexp(1, w->db.shift0 + (int)level), wide = ldexp(high, zone);
         const double y = from_pole / high, x = longitude / wide;
         const uint32_t row = (uint32_t)floor(y), column = (uint32_t)floor(x);
@@ -118,9 +118,9 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
                      nw = t->points[r + 1][c].post, ne = t->points[r + 1][c + 1].post;
         return (struct ground){.is_known = 1,
                                .cell = t->points[r][c].cell,
-                               .elevation_m =
-                                   t->base_q6 / 64.0 + step_m * ((sw * (1 - u) + se * u) * (1 - v) +
-                                                                 (nw * (1 - u) + ne * u) * v),
+                               .elevation_m = t->base_m_q6 / 64.0 +
+                                              step_m * ((sw * (1 - u) + se * u) * (1 - v) +
+                                                        (nw * (1 - u) + ne * u) * v),
                                .roughness_m = step_m * fmax(fmax(fabs(se - sw), fabs(ne - nw)),
                                                             fmax(fabs(nw - sw), fabs(ne - se))),
                                .doubt = fmin(fmin(u, 1 - u), fmin(v, 1 - v))};
@@ -164,7 +164,7 @@ static uint32_t compare(const struct world *w, uint32_t level, const struct lm_g
             assert_int_equal(w->line.cell[i], g.is_known ? g.cell : LM_CELL_NONE);
             /* Weights are cut to 1/256, each way. */
             const double allowed_m = g.roughness_m * (2.0 / 256 + 2.0 / 1024) + 10.0 / 16384;
-            assert_true(fabs(w->line.elevation_q14[i] / 16384.0 - g.elevation_m) <= allowed_m);
+            assert_true(fabs(w->line.elevation_m_q14[i] / 16384.0 - g.elevation_m) <= allowed_m);
         }
     }
     assert_true(doubtful <= 2 + cells / 50);
@@ -210,7 +210,7 @@ TEST(lines_of_every_direction_level_and_step_agree_with_the_image)
     for (int n = 0; n < 5; n++) {
         open_world(&w, places[n][0], places[n][1]);
         for (int i = 0; i < 120; i++) {
-            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.level_count);
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.lod_count);
             const double step_m = 4.8 * (1 << level) * 2.5 * hs_rng_uniform(&rng);
             const double off_deg = 0.012 * (hs_rng_uniform(&rng) - 0.5);
             const double bend_m = 0.001 * (hs_rng_uniform(&rng) - 0.5);
@@ -302,7 +302,7 @@ TEST(lines_near_the_poles_do_no_harm)
         spec.rows = spec.columns = 4;
         open_world_with(&w, spec);
         for (int i = 0; i < 200; i++) {
-            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.level_count);
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.lod_count);
             const struct lm_ground_path p = {
                 .latitude = (uint64_t)(w.db.centre_latitude + hs_rng_below(&rng, 1 << 21)) << 32,
                 .longitude = hs_rng_u64(&rng),
@@ -342,7 +342,7 @@ TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
-    const uint8_t coarsest = (uint8_t)(w.db.level_count - 1);
+    const uint8_t coarsest = (uint8_t)(w.db.lod_count - 1);
     /* Nothing but the coarsest level has been read. */
     lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
     assert_true(compare(&w, coarsest, &p, 150) == 150);
@@ -395,7 +395,7 @@ TEST(beyond_the_map_there_is_no_data_at_sea_level)
     lm_scan_line_run(&w.line, &w.tiles, 0, &p, 100);
     for (int i = 0; i < 100; i++) {
         assert_int_equal(w.line.cell[i], LM_CELL_NONE);
-        assert_int_equal(w.line.elevation_q14[i], 0);
+        assert_int_equal(w.line.elevation_m_q14[i], 0);
     }
     close_world(&w);
 }
@@ -406,14 +406,15 @@ TEST(one_elevation_is_that_of_a_line)
     open_world(&w, 46, 11);
     for (int i = 0; i < 100; i++) {
         const struct lm_ground_path p = path_from(46 + i * 1e-5, 11 - i * 2e-5, 0, 1, 0);
-        const struct lm_place place = {(fx_bam_t)(p.latitude >> 32), (fx_bam_t)(p.longitude >> 32)};
+        const struct lm_position position = {(fx_bam_t)(p.latitude >> 32),
+                                             (fx_bam_t)(p.longitude >> 32)};
         lm_scan_line_run(&w.line, &w.tiles, 0, &p, 1);
-        const int32_t q10 = lm_scan_elevation(&w.tiles, 0, place, -99);
+        const int32_t q10 = lm_scan_elevation(&w.tiles, 0, position, -99);
         /* A place is whole BAM: a fraction of a weight's step. */
-        assert_true(abs(q10 - (w.line.elevation_q14[0] >> 4)) < 64);
+        assert_true(abs(q10 - (w.line.elevation_m_q14[0] >> 4)) < 64);
         read_what_is_wanted(&w);
     }
-    const struct lm_place nowhere = {FX_BAM_DEG(10), FX_BAM_DEG(10)};
+    const struct lm_position nowhere = {FX_BAM_DEG(10), FX_BAM_DEG(10)};
     assert_int_equal(lm_scan_elevation(&w.tiles, 0, nowhere, -99), -99);
     close_world(&w);
 }
@@ -423,9 +424,9 @@ TEST(the_level_is_the_largest_cell_that_is_not_longer)
     static struct world w;
     open_world(&w, 46, 11);
     for (uint32_t cell_mm = 100; cell_mm < 3000000; cell_mm = cell_mm * 9 / 8) {
-        const uint8_t level = lm_scan_level(&w.db, cell_mm);
+        const uint8_t level = lm_scan_lod(&w.db, cell_mm);
         assert_true(level == 0 || lm_db_cell_mm(&w.db, level) <= cell_mm);
-        assert_true(level + 1 == w.db.level_count ||
+        assert_true(level + 1 == w.db.lod_count ||
                     lm_db_cell_mm(&w.db, (uint8_t)(level + 1)) > cell_mm);
     }
     close_world(&w);

@@ -55,7 +55,7 @@ static void free_fixture(struct fixture *f)
 static const struct lm_band *finest_band(const struct fixture *f)
 {
     for (uint32_t i = 0; i < f->db.band_count; i++) {
-        if (f->db.bands[i].level == 0) {
+        if (f->db.bands[i].lod == 0) {
             return &f->db.bands[i];
         }
     }
@@ -93,7 +93,7 @@ TEST(the_coarsest_level_is_resident_from_the_start)
     struct fixture *f = make_fixture();
     const struct lm_tile *tile = get(f, 3, 3);
     assert_non_null(tile);
-    assert_int_equal(tile->level, f->db.level_count - 1);
+    assert_int_equal(tile->lod, f->db.lod_count - 1);
     assert_int_equal(f->cache.count.substituted, 1);
     free_fixture(f);
 }
@@ -105,7 +105,7 @@ TEST(a_tile_that_was_asked_for_is_the_tile_itself_later)
         get(f, i, SIDE - 1 - i);
         serve(f, 0);
         const struct lm_tile *tile = get(f, i, SIDE - 1 - i);
-        assert_int_equal(tile->level, 0);
+        assert_int_equal(tile->lod, 0);
         assert_int_equal(tile->row, finest_band(f)->row0 + i);
         assert_int_equal(tile->column, finest_band(f)->column0 + SIDE - 1 - i);
     }
@@ -121,10 +121,10 @@ TEST(a_lookup_never_waits_for_a_late_read)
         lm_tile_cache_service(&f->cache, 0, 8);
         const struct lm_tile *tile = get(f, 0, 0);
         assert_non_null(tile);
-        assert_true(tile->level > 0 || i > 10);
+        assert_true(tile->lod > 0 || i > 10);
     }
     serve(f, 0);
-    assert_int_equal(get(f, 0, 0)->level, 0);
+    assert_int_equal(get(f, 0, 0)->lod, 0);
     free_fixture(f);
 }
 
@@ -138,14 +138,14 @@ TEST(every_read_that_fails_is_counted_and_answered_by_an_ancestor)
         assert_int_equal(f->cache.count.io_errors, 1);
         const struct lm_tile *tile = get(f, 2, 2);
         assert_non_null(tile);
-        assert_true(tile->level > 0);
+        assert_true(tile->lod > 0);
         /* Not tried again at once, but after a while, and then all is well. */
         serve(f, 2);
-        assert_true(get(f, 2, 2)->level > 0);
+        assert_true(get(f, 2, 2)->lod > 0);
         serve(f, 2 + 2 * LM_TILE_RETRY_US);
         get(f, 2, 2);
         serve(f, 3 + 2 * LM_TILE_RETRY_US);
-        assert_int_equal(get(f, 2, 2)->level, 0);
+        assert_int_equal(get(f, 2, 2)->lod, 0);
         free_fixture(f);
     }
 }
@@ -172,7 +172,7 @@ TEST(any_flipped_bit_in_a_record_or_entry_is_caught)
         const struct lm_tile *tile = get(f, 1, 1);
         faults += f->cache.count.corrupt;
         assert_int_equal(f->cache.count.corrupt, 1);
-        assert_true(tile->level > 0);
+        assert_true(tile->lod > 0);
         *byte = (uint8_t)(*byte ^ 1u << bit % 8);
     }
     assert_int_equal(faults, 264);
@@ -193,7 +193,7 @@ TEST(a_record_that_answers_for_another_tile_is_refused)
     get(f, 1, 1);
     serve(f, 0);
     assert_int_equal(f->cache.count.corrupt, 1);
-    assert_true(get(f, 1, 1)->level > 0);
+    assert_true(get(f, 1, 1)->lod > 0);
     free_fixture(f);
 }
 
@@ -224,7 +224,7 @@ TEST(a_tile_the_image_leaves_out_is_no_fault)
         get(f, 2, 5);
         serve(f, 0);
     }
-    assert_int_equal(get(f, 2, 5)->level, 1); /* its parent, which was asked for in its place */
+    assert_int_equal(get(f, 2, 5)->lod, 1); /* its parent, which was asked for in its place */
     assert_int_equal(f->cache.count.misses, misses);
     assert_int_equal(f->flash.reads, reads);
     assert_int_equal(f->cache.count.corrupt, 0);
@@ -240,9 +240,9 @@ TEST(the_tile_used_longest_ago_leaves_first)
         serve(f, 0);
     }
     assert_true(f->cache.count.evicted > 0);
-    assert_int_equal(get(f, 0, 0)->level, 0);
-    assert_int_equal(get(f, SIDE - 1, SIDE - 1)->level, 0);
-    assert_true(get(f, 0, 1)->level > 0);
+    assert_int_equal(get(f, 0, 0)->lod, 0);
+    assert_int_equal(get(f, SIDE - 1, SIDE - 1)->lod, 0);
+    assert_true(get(f, 0, 1)->lod > 0);
     free_fixture(f);
 }
 
@@ -255,21 +255,21 @@ TEST(a_look_finds_what_a_get_would_answer_or_nothing)
         const uint32_t n = i / 3; /* asked for, come, found */
         const uint32_t row = b->row0 + n * 5 % SIDE, column = b->column0 + n * 4 % (SIDE + 1);
         const uint32_t hits = lm_tile_cache_hits(&f->cache);
-        const struct lm_tile_slot *slot = lm_tile_cache_look(&f->cache, 0, row, column);
+        const struct lm_tile_slot *slot = lm_tile_cache_peek(&f->cache, 0, row, column);
         assert_int_equal(lm_tile_cache_hits(&f->cache), hits + (slot != NULL));
         assert_true(!slot || slot->last_use == f->cache.clock);
         const struct lm_tile *tile = lm_tile_cache_get(&f->cache, 0, row, column);
         if (slot) {
             found++;
             const struct lm_tile_base base = lm_tile_base_of(f->pool, tile);
-            assert_int_equal(tile->level, 0);
+            assert_int_equal(tile->lod, 0);
             assert_ptr_equal(f->cache.slots + (tile - (const struct lm_tile *)f->pool), slot);
             assert_memory_equal(&slot->base, &base, sizeof base);
         }
-        late += !slot && tile && tile->level == 0;
+        late += !slot && tile && tile->lod == 0;
         serve(f, 0);
     }
-    assert_null(lm_tile_cache_look(&f->cache, 0, 0, 0)); /* at the pole */
+    assert_null(lm_tile_cache_peek(&f->cache, 0, 0, 0)); /* at the pole */
     print_message("# %u found, %u not the first of their chain\n", found, late);
     assert_true(found > 10 * SIDE && late == 0 && f->cache.count.evicted > 0);
     free_fixture(f);
@@ -318,7 +318,7 @@ TEST(a_full_queue_drops_requests_and_counts_them)
     serve(f, 0);
     get(f, 7, 7);
     serve(f, 0);
-    assert_int_equal(get(f, 7, 7)->level, 0);
+    assert_int_equal(get(f, 7, 7)->lod, 0);
     free_fixture(f);
 }
 
@@ -326,20 +326,21 @@ TEST(a_guest_reads_between_two_tiles_and_one_at_a_time)
 {
     struct fixture *f = make_fixture();
     uint8_t header[512];
-    struct lm_guest_read guest = {.destination = header, .length = sizeof header}, second = guest;
+    struct lm_flash_request request = {.destination = header, .length = sizeof header},
+                            second = request;
     for (uint32_t i = 0; i < SIDE; i++) {
         get(f, i, i);
     }
     lm_tile_cache_service(&f->cache, 0, 1); /* a tile is being read */
-    assert_true(lm_tile_cache_read(&f->cache, &guest));
+    assert_true(lm_tile_cache_read(&f->cache, &request));
     assert_false(lm_tile_cache_read(&f->cache, &second));
     assert_false(lm_tile_cache_is_idle(&f->cache));
     int polls = 0;
-    for (; guest.status == LM_BUSY && polls < 100; polls++) {
+    for (; request.status == LM_BUSY && polls < 100; polls++) {
         lm_tile_cache_service(&f->cache, 0, 1);
     }
     assert_true(polls < 8); /* before the other tiles */
-    assert_int_equal(guest.status, LM_OK);
+    assert_int_equal(request.status, LM_OK);
     assert_memory_equal(header, f->image.bytes, sizeof header);
     assert_true(lm_tile_cache_read(&f->cache, &second));
     f->flash.fail_read = f->flash.reads + 1;
@@ -347,9 +348,9 @@ TEST(a_guest_reads_between_two_tiles_and_one_at_a_time)
     assert_int_equal(second.status, LM_ERR_IO);
     assert_int_equal(f->cache.count.io_errors, 1);
     for (uint32_t i = 0; i < SIDE; i++) {
-        assert_int_equal(get(f, i, i)->level, 0);
+        assert_int_equal(get(f, i, i)->lod, 0);
     }
-    struct lm_guest_read beyond = {
+    struct lm_flash_request beyond = {
         .offset = f->image.size, .destination = header, .length = sizeof header};
     assert_true(lm_tile_cache_read(&f->cache, &beyond));
     serve(f, 0);

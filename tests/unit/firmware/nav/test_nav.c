@@ -228,14 +228,14 @@ TEST(the_best_height_that_lives_is_used_and_moved_on)
     hear_float(&ear, LM_BUS_ALTITUDE_RATE, 10, 0);
     struct lm_ownship o = at(&ear, 500000);
     assert_int_equal(o.height_source, LM_BUS_BARO_ALTITUDE);
-    assert_int_equal(o.height_q6, 1005 * 64);
+    assert_int_equal(o.height_m_q6, 1005 * 64);
     hear_float(&ear, LM_BUS_TRUE_ALTITUDE, 1100, 500000);
     assert_int_equal(at(&ear, 500000).height_source, LM_BUS_TRUE_ALTITUDE);
     hear_float(&ear, LM_BUS_ELLIPSOID_HEIGHT, 1150, 600000);
     hear_float(&ear, LM_BUS_UP_VELOCITY, -20, 600000);
     o = at(&ear, 1100000);
     assert_int_equal(o.height_source, LM_BUS_ELLIPSOID_HEIGHT);
-    assert_int_equal(o.height_q6, 1140 * 64);
+    assert_int_equal(o.height_m_q6, 1140 * 64);
     hear_float(&ear, LM_BUS_TRUE_ALTITUDE, 1100, 5600000);
     assert_int_equal(at(&ear, 5600000).height_source, LM_BUS_ELLIPSOID_HEIGHT);
     assert_int_equal(at(&ear, 5600000).height_quality, LM_NAV_STALE);
@@ -648,7 +648,7 @@ TEST(every_quality_changes_at_the_microsecond_the_table_says)
     assert_ages(&ear, t + 5000001, (struct ages){D, D, D, D, D, S});
     assert_ages(&ear, t + 10000001, (struct ages){D, D, D, D, D, D});
     const struct lm_ownship o = at(&ear, t + 10000001);
-    assert_true(o.latitude == 0 && o.longitude == 0 && o.height_q6 == 0 && o.heading == 0 &&
+    assert_true(o.latitude == 0 && o.longitude == 0 && o.height_m_q6 == 0 && o.heading == 0 &&
                 o.pitch == 0 && o.roll == 0 && o.ground_speed_mm_s == 0 && o.utc_s == 0);
 }
 

@@ -83,9 +83,9 @@ TEST(four_frames_make_a_circle_and_three_a_jammer)
     assert_int_equal(ear.e.rain[0].centre.longitude, hs_bam(11));
     assert_int_equal(ear.e.rain[0].radius_m, 5000);
     assert_int_equal(ear.e.rain[0].mm_per_h, 30);
-    assert_int_equal(ear.e.jammer[0].place.latitude, hs_bam(-46));
-    assert_int_equal(ear.e.jammer[0].place.longitude, hs_bam(-170));
-    assert_int_equal(ear.e.jammer[0].ratio_q8, 24 * 256 + 128);
+    assert_int_equal(ear.e.jammer[0].position.latitude, hs_bam(-46));
+    assert_int_equal(ear.e.jammer[0].position.longitude, hs_bam(-170));
+    assert_int_equal(ear.e.jammer[0].noise_ratio_db_q8, 24 * 256 + 128);
     assert_int_equal(ear.weather.count.sets, 2);
     assert_false(ear.is_stale);
 }
@@ -220,7 +220,7 @@ TEST(clearing_takes_what_its_bits_say)
     assert_int_equal(ear.e.rain[0].centre.latitude, hs_bam(41));
     assert_int_equal(ear.e.rain[1].centre.latitude, hs_bam(43));
     assert_int_equal(ear.e.jammer_count, 3);
-    assert_int_equal(ear.e.jammer[2].ratio_q8, 2 * 256);
+    assert_int_equal(ear.e.jammer[2].noise_ratio_db_q8, 2 * 256);
     hear_clear(&ear, 0xff, 0);
     look(&ear, 0);
     assert_int_equal(ear.e.rain_count + ear.e.jammer_count, 0);

@@ -130,20 +130,20 @@ TEST(osb_2_lets_the_range_follow_the_cursor)
     press(r, 2);
     assert_true(r->unit.page.is_auto_range);
     assert_true(labelled(r, 2, "AUTO", 0));
-    assert_int_equal(r->unit.page.range, scale_of(10));
+    assert_int_equal(r->unit.page.range_index, scale_of(10));
     /* From half of 10 nm up to where 20 nm is due. */
     command(r, lm_control_slew(0, 1000));
     run(r, 0.55);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    assert_int_equal(r->unit.page.range, scale_of(20));
+    assert_int_equal(r->unit.page.range_index, scale_of(20));
     assert_true(says(r, "20"));
     /* And back: below 0.425 of 20 nm. */
     command(r, lm_control_slew(0, -1000));
     run(r, 0.2);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    assert_int_equal(r->unit.page.range, scale_of(10));
+    assert_int_equal(r->unit.page.range_index, scale_of(10));
     press(r, 2);
     assert_true(labelled(r, 2, "MAN", 0));
     free_rig(r);
@@ -157,7 +157,7 @@ TEST(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture)
     for (int i = 0; i < 4; i++) {
         press(r, 3);
         assert_true(labelled(r, 3, fields[i], 0));
-        assert_int_equal(r->unit.picture.sector.command.field, (i + 1) % LM_FIELDS);
+        assert_int_equal(r->unit.picture.sector.command.fov, (i + 1) % LM_FOVS);
         struct lm_label label; /* a window has no scan of its own */
         assert_int_equal(lm_page_label(&r->unit.page, 18, &label), i == 3);
         run(r, 4);
@@ -237,7 +237,7 @@ TEST(osb_6_flies_by_the_barometric_height)
     run(r, 2.5);
     assert_true(labelled(r, 6, "BARO", 1));
     assert_int_equal(r->unit.ownship.height_source, LM_BUS_BARO_ALTITUDE);
-    assert_int_equal(r->unit.ownship.height_q6, 2300 * 64);
+    assert_int_equal(r->unit.ownship.height_m_q6, 2300 * 64);
     assert_true(plane_sum(r) != before); /* the hole is wider from higher up */
     press(r, 6);
     run(r, 0.1);
@@ -446,21 +446,21 @@ TEST(osb_8_and_10_choose_snowplow_or_a_held_cursor)
     struct rig *r = fly();
     press(r, 8);
     assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
-    const struct lm_place start = r->unit.cursor.place;
+    const struct lm_position start = r->unit.cursor.position;
     const uint32_t half = lm_radar_default.range[scale_of(10)].range_m / 2;
     run(r, 10);
-    assert_true(r->unit.cursor.place.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
+    assert_true(r->unit.cursor.position.latitude - start.latitude > 150000); /* 1,500 m: 161,000 */
     assert_in_range(r->unit.cursor.range_m, half - 20, half + 20);
     command(r, lm_control_designate()); /* stabilises, and no more */
     run(r, 0.05);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    const struct lm_place held = r->unit.cursor.place;
+    const struct lm_position held = r->unit.cursor.position;
     run(r, 10);
-    assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+    assert_memory_equal(&r->unit.cursor.position, &held, sizeof held);
     press(r, 10);
     assert_true(labelled(r, 8, "SP", 0) && labelled(r, 10, "STP", 1));
     run(r, 1);
-    assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+    assert_memory_equal(&r->unit.cursor.position, &held, sizeof held);
     free_rig(r);
 }
 
@@ -471,10 +471,10 @@ TEST(osb_9_brings_the_cursor_home)
     run(r, 0.4);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
-    assert_true(r->unit.cursor.offset.x_q8 > 80 * 256);
+    assert_true(r->unit.cursor.offset.x_px_q8 > 80 * 256);
     press(r, 9);
     const uint32_t half = lm_radar_default.range[scale_of(10)].range_m / 2;
-    assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512);
+    assert_in_range(r->unit.cursor.offset.x_px_q8 + 256, 0, 512);
     assert_in_range(r->unit.cursor.range_m, half - 60, half + 20);
     free_rig(r);
 }
@@ -506,7 +506,7 @@ TEST(osb_11_held_opens_the_choice_of_labels)
     press(r, 1);
     press(r, 19);
     assert_true(labelled(r, 9, "CZ", 0) && labelled(r, 1, "GM", 1));
-    assert_int_equal(r->unit.page.range, scale_of(10)); /* the keys only choose */
+    assert_int_equal(r->unit.page.range_index, scale_of(10)); /* the keys only choose */
     press(r, 11);
     assert_int_equal(r->unit.page.format, LM_FORMAT_RADAR);
     press(r, 11);
@@ -566,7 +566,7 @@ TEST(osb_16_chooses_the_cell_and_draws_the_patch_again)
     run(r, 1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_int_equal(r->unit.picture.sar.command.cell_mm, 10000);
-    const struct lm_place centre = r->unit.picture.sar.command.centre;
+    const struct lm_position centre = r->unit.picture.sar.command.centre;
     press(r, 16);
     assert_int_equal(r->unit.picture.sar.command.cell_mm, 20000);
     assert_memory_equal(&r->unit.picture.sar.command.centre, &centre, sizeof centre);
@@ -598,8 +598,8 @@ TEST(osb_18_goes_through_the_azimuths)
     const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
     for (int i = 0; i < 3; i++) {
         press(r, 18);
-        assert_int_equal(lm_radar_default.azimuth_half[r->unit.picture.sector.command.azimuth],
-                         halves[i]);
+        assert_int_equal(
+            lm_radar_default.azimuth_half[r->unit.picture.sector.command.azimuth_index], halves[i]);
         struct lm_label label;
         assert_true(lm_page_label(&r->unit.page, 18, &label));
         assert_string_equal(label.line[0], "A");
@@ -619,17 +619,17 @@ TEST(osb_19_and_20_step_the_range_and_end_automatic_range)
     press(r, 2);
     for (int range = scale_of(10) + 1; range < lm_radar_default.ranges; range++) {
         press(r, 20);
-        assert_int_equal(r->unit.picture.sector.command.range, range);
+        assert_int_equal(r->unit.picture.sector.command.range_index, range);
         snprintf(words, sizeof words, "%d", lm_radar_default.range[range].range_nm);
         assert_true(says(r, words));
         assert_false(r->unit.page.is_auto_range);
     }
     assert_false(says(r, LM_GLYPH_UP)); /* no further */
     press(r, 20);
-    assert_int_equal(r->unit.picture.sector.command.range, lm_radar_default.ranges - 1);
+    assert_int_equal(r->unit.picture.sector.command.range_index, lm_radar_default.ranges - 1);
     for (int range = lm_radar_default.ranges - 2; range >= 0; range--) {
         press(r, 19);
-        assert_int_equal(r->unit.picture.sector.command.range, range);
+        assert_int_equal(r->unit.picture.sector.command.range_index, range);
         snprintf(words, sizeof words, "%d", lm_radar_default.range[range].range_nm);
         assert_true(says(r, words));
     }
@@ -650,7 +650,7 @@ TEST(rockers_and_the_range_knob_change_gain_and_glass)
     const struct lm_tone_config table = lm_radar_default.mode[LM_SECTOR_GM].tone;
     const struct lm_tone_config config = lm_page_tone(&r->unit.page, &table);
     /* 20 % of amplitude: 20 log10 1.2 = 1.584 dB */
-    assert_true(fabs((table.black_q8 - config.black_q8) / 256.0 - 1.584) < 0.01);
+    assert_true(fabs((table.black_db_q8 - config.black_db_q8) / 256.0 - 1.584) < 0.01);
     command(r, lm_control_knob(0));
     run(r, 0.01);
     assert_memory_equal(&r->unit.picture.tone[LM_PICTURE_SECTOR], &tone, sizeof tone);
@@ -701,7 +701,7 @@ TEST(the_cursors_numbers_are_right)
     press(r, 9);
     run(r, 0.1);
     const double flown = 150 * (double)r->now_us / 1e6;
-    const double lat = hs_degrees(r->unit.cursor.place.latitude);
+    const double lat = hs_degrees(r->unit.cursor.position.latitude);
     const double own = 46 - 0.05 + flown / 111132.0;
     assert_true(fabs((lat - own) * 111149 - 9260) < 60); /* a degree at 46 N: 111,149 m */
     char words[32];
@@ -711,7 +711,7 @@ TEST(the_cursors_numbers_are_right)
     assert_true(says(r, "E011" LM_GLYPH_DEGREE "00.00"));
     assert_true(says(r, "000" LM_GLYPH_DEGREE "/05.0"));
     /* hills(): 100 m + 50 sin(0) = 100 m = 328 ft at the meridian of the image's centre. */
-    const double feet = r->unit.cursor_elevation_q10 / 1024.0 * 3.28084;
+    const double feet = r->unit.cursor_elevation_m_q10 / 1024.0 * 3.28084;
     assert_true(feet > 150 && feet < 500);
     snprintf(words, sizeof words, "ELV +%.0fFT", feet);
     assert_true(says(r, words));
@@ -725,12 +725,12 @@ TEST(the_cursor_stays_over_its_place_through_turns_of_the_page)
     run(r, 0.2);
     command(r, lm_control_slew(0, 0));
     run(r, 0.8);
-    const struct lm_place held = r->unit.cursor.place;
+    const struct lm_position held = r->unit.cursor.position;
     const int keys[] = {20, 18, 7, 7, 5, 5, 12, 13, 19, 4, 4};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         press(r, keys[i]);
         run(r, 0.5);
-        assert_memory_equal(&r->unit.cursor.place, &held, sizeof held);
+        assert_memory_equal(&r->unit.cursor.position, &held, sizeof held);
     }
     free_rig(r);
 }
@@ -742,14 +742,14 @@ TEST(designate_looks_closely_at_the_cursor_and_drop_comes_back)
     command(r, lm_control_designate());
     run(r, 4);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    assert_memory_equal(&r->unit.picture.sar.command.centre, &r->unit.cursor.place,
-                        sizeof(struct lm_place));
+    assert_memory_equal(&r->unit.picture.sar.command.centre, &r->unit.cursor.position,
+                        sizeof(struct lm_position));
     assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
     char look[16];
     snprintf(look, sizeof look, "LOOK %03.0f",
              r->unit.picture.sar.command.look_azimuth * 360.0 / 4294967296.0);
     assert_true(says(r, "100%") && says(r, "CELL 5.0M") && says(r, look));
-    assert_in_range(r->unit.cursor.offset.x_q8 + 256, 0, 512); /* in the middle of the patch */
+    assert_in_range(r->unit.cursor.offset.x_px_q8 + 256, 0, 512); /* in the middle of the patch */
     command(r, lm_control_drop());
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
@@ -842,7 +842,7 @@ TEST(the_bit_page_says_what_the_counters_say)
                     {"SIG LOST %u", 34},
                     {"STUCK    %u", u->keys.count.stuck},
                     {"SWAPS    %u", u->count.swaps},
-                    {"LEVELS   %u", u->map.db.level_count},
+                    {"LEVELS   %u", u->map.db.lod_count},
                     {"RECORDS  %u", u->map.db.record_count}};
     assert_true(u->count.bus_errors > 1000 && u->count.commands_refused == 1);
     for (size_t i = 0; i < sizeof counters / sizeof *counters; i++) {
@@ -932,15 +932,15 @@ TEST(a_cursor_that_nobody_moved_goes_with_the_scale)
     assert_true(r->unit.cursor.is_on_glass);
     press(r, 20); /* up */
     run(r, 0.3);
-    assert_int_equal(r->unit.page.range, scale_of(20));
+    assert_int_equal(r->unit.page.range_index, scale_of(20));
     assert_true(fabs(cursor_nm(r) - 10) < 0.1);
     /* A window opens about the new place. */
-    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FIELD_EXP}});
+    command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FOV_EXP}});
     command(r, range_10);
     run(r, 0.3);
     assert_true(fabs(cursor_nm(r) - 5) < 0.1);
-    assert_memory_equal(&r->unit.picture.sector.command.centre, &r->unit.cursor.place,
-                        sizeof r->unit.cursor.place);
+    assert_memory_equal(&r->unit.picture.sector.command.centre, &r->unit.cursor.position,
+                        sizeof r->unit.cursor.position);
     free_rig(r);
 }
 
@@ -963,11 +963,11 @@ TEST(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes)
             command(r, lm_control_slew(0, 0));
         }
         run(r, 0.1);
-        const struct lm_place before = r->unit.cursor.place;
+        const struct lm_position before = r->unit.cursor.position;
         press(r, 20);
         run(r, 0.3);
-        assert_int_equal(r->unit.page.range, scale_of(20));
-        assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
+        assert_int_equal(r->unit.page.range_index, scale_of(20));
+        assert_memory_equal(&r->unit.cursor.position, &before, sizeof before);
         free_rig(r);
     }
 }
@@ -978,11 +978,11 @@ TEST(a_cursor_that_the_range_follows_is_left_where_it_is)
     press(r, 20);
     run(r, 0.3);
     press(r, 2); /* AUTO at 20 nm, the cursor 10 nm away: 8.5 nm are 18 s on */
-    const struct lm_place before = r->unit.cursor.place;
+    const struct lm_position before = r->unit.cursor.position;
     assert_true(r->unit.cursor.is_home);
     run(r, 20);
-    assert_int_equal(r->unit.page.range, scale_of(10));
-    assert_memory_equal(&r->unit.cursor.place, &before, sizeof before);
+    assert_int_equal(r->unit.page.range_index, scale_of(10));
+    assert_memory_equal(&r->unit.cursor.position, &before, sizeof before);
     free_rig(r);
 }
 
@@ -1021,9 +1021,9 @@ static int corners_at(const struct rig *r, int32_t x, int32_t y)
  */
 static bool is_marked(const struct rig *r, double latitude_deg, double longitude_deg)
 {
-    const struct lm_place place = {hs_bam(latitude_deg), hs_bam(longitude_deg)};
+    const struct lm_position position = {hs_bam(latitude_deg), hs_bam(longitude_deg)};
     struct lm_offset o;
-    assert_true(lm_view_find(&r->unit.picture.view, place, &o));
+    assert_true(lm_view_find(&r->unit.picture.view, position, &o));
     const struct lm_point at = lm_view_point(&r->unit.picture.view, o);
     return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
 }
@@ -1079,7 +1079,7 @@ TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
     assert_true(is_marked(r, 46.05, 11.02));
     const uint32_t refused = r->unit.count.commands_refused;
     steer.steerpoint.is_set = true;
-    steer.steerpoint.place.latitude = FX_BAM_90 + 1;
+    steer.steerpoint.position.latitude = FX_BAM_90 + 1;
     command(r, steer);
     run(r, 0.1);
     assert_int_equal(r->unit.count.commands_refused, refused + 1);
@@ -1096,8 +1096,8 @@ TEST(a_selection_out_of_range_is_refused_and_changes_nothing)
     assert_int_equal(lm_page_select_range(&page, 39), 0);
     assert_int_equal(lm_page_select_range(&page, 160), 0);
     assert_int_equal(lm_page_select_azimuth(&page, LM_AZIMUTHS), 0);
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_MODES, LM_FIELD_NORM), 0);
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FIELD_DBS2), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_MODES, LM_FOV_NORM), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FOV_DBS2), 0);
     assert_int_equal(lm_page_set_gain(&page, LM_GAIN_MAX_DB + 1), 0);
     assert_int_equal(lm_page_set_knob(&page, -LM_FULL_DEFLECTION - 1), 0);
     assert_memory_equal(&page, &before, sizeof before);
@@ -1107,10 +1107,10 @@ TEST(a_selection_out_of_range_is_refused_and_changes_nothing)
     assert_int_equal(lm_page_select_range(&page, 80), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
     /* Neither sharpening nor moving targets have a scale so large. */
     const struct lm_page far = page;
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1), 0);
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FIELD_NORM), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FOV_DBS1), 0);
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GMT, LM_FOV_NORM), 0);
     assert_memory_equal(&page, &far, sizeof far);
     assert_int_equal(lm_page_select_range(&page, 40), LM_EFFECT_SECTOR | LM_EFFECT_RANGE);
-    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FIELD_DBS1),
+    assert_int_equal(lm_page_select_sector(&page, LM_SECTOR_GM, LM_FOV_DBS1),
                      LM_EFFECT_SECTOR | LM_EFFECT_TONE);
 }

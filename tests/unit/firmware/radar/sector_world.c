@@ -61,11 +61,11 @@ void draw_sweep(struct sector_world *w)
     } while (!lm_sector_is_at_edge(&w->sector));
 }
 
-struct lm_place place_at(const struct sector_world *w, double azimuth_deg, double distance_m)
+struct lm_position place_at(const struct sector_world *w, double azimuth_deg, double distance_m)
 {
     struct lm_geo_origin origin;
     const fx_bam_t azimuth = hs_bam(azimuth_deg);
-    lm_geo_set_origin(&origin, w->platform.place);
+    lm_geo_set_origin(&origin, w->platform.position);
     return lm_geo_direct(&origin, azimuth, (uint32_t)lround(distance_m * 256));
 }
 

@@ -35,7 +35,7 @@ uint32_t draw_line(struct sector_world *w);
 void draw_sweep(struct sector_world *w);
 
 /* The place at a distance and azimuth from the platform. */
-struct lm_place place_at(const struct sector_world *w, double azimuth_deg, double distance_m);
+struct lm_position place_at(const struct sector_world *w, double azimuth_deg, double distance_m);
 
 /* Azimuth of the middle of a line, degrees from the sector's middle. */
 double line_azimuth_deg(const struct lm_sector *s, uint32_t line);

@@ -42,7 +42,7 @@ struct score {
 static void set_params(struct world *w)
 {
     const struct lm_sar_table *sar = &w->radar.sar;
-    w->params = params_of(&w->radar, decibels(sar->noise_floor_q8), &sar->tone, &sar->speckle);
+    w->params = params_of(&w->radar, decibels(sar->noise_floor_db_q8), &sar->tone, &sar->speckle);
     ref_speckle_table(w->params.looks, w->table_db);
     ref_texture_tables(&w->texture, &w->params);
     assert_int_equal(lm_tone_set(&w->tone, &sar->tone), LM_OK);
@@ -140,9 +140,9 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .cell_mm = cell_mm,
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
-        .height_q6 = height_m * 64};
+        .height_m_q6 = height_m * 64};
     set_params(w);
-    const struct lm_sar_scene scene = {.reference_q10 = (int32_t)lround(reference_m * 1024),
+    const struct lm_sar_scene scene = {.reference_m_q10 = (int32_t)lround(reference_m * 1024),
                                        .sea_state = LM_SEA_STATE_OF_IMAGE,
                                        .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);
@@ -157,7 +157,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
 static void make_rain(struct world *w, struct ref_sar *wanted)
 {
     const struct lm_antenna_table *antenna = &w->radar.antenna;
-    const struct lm_place centre = {w->db.centre_latitude, w->db.centre_longitude};
+    const struct lm_position centre = {w->db.centre_latitude, w->db.centre_longitude};
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, centre);
     const fx_bam_t look = hs_bam(wanted->azimuth_deg);
@@ -174,7 +174,7 @@ static void make_rain(struct world *w, struct ref_sar *wanted)
                                 .azimuth_beam_deg = hs_degrees(antenna->azimuth_beam),
                                 .elevation_beam_deg = hs_degrees(antenna->elevation_beam)};
     for (int n = 0; n < 2; n++) {
-        const struct lm_place at = w->environment.rain[n].centre;
+        const struct lm_position at = w->environment.rain[n].centre;
         wanted->rain_centre[n] =
             (struct ref_place){hs_degrees(at.latitude), hs_degrees(at.longitude)};
     }
@@ -187,13 +187,14 @@ struct patch_scores {
 };
 
 /* The horizon that a line starts with by EQUATIONS.md: run-ups are traced for one line in
- * LM_SAR_RUNUP_LINES, and between them the horizon changes evenly. */
+ * LM_SAR_FOREGROUND_LINES, and between them the horizon changes evenly. */
 static double start_horizon(const struct world *w, const struct ref_sar *sar, uint32_t line)
 {
-    const uint32_t past = line % LM_SAR_RUNUP_LINES, left = line - past;
+    const uint32_t past = line % LM_SAR_FOREGROUND_LINES, left = line - past;
     const double at_left = ref_sar_horizon(&w->ref, sar, &w->params, left);
-    const double at_right = ref_sar_horizon(&w->ref, sar, &w->params, left + LM_SAR_RUNUP_LINES);
-    return at_left + (at_right - at_left) * past / LM_SAR_RUNUP_LINES;
+    const double at_right =
+        ref_sar_horizon(&w->ref, sar, &w->params, left + LM_SAR_FOREGROUND_LINES);
+    return at_left + (at_right - at_left) * past / LM_SAR_FOREGROUND_LINES;
 }
 
 /* Compare a sampled line with one of the reference, of which copy has room for the bins. */

@@ -16,15 +16,15 @@ TEST(the_smear_is_as_wide_as_the_quadratic_phase_makes_it)
     double worst = 0;
     for (uint32_t lateral = 0; lateral < 60000; lateral = lateral * 3 / 2 + 1) {
         for (uint32_t dwell_us = 20000; dwell_us < 70000000; dwell_us = dwell_us * 5 / 3) {
-            const uint32_t width_q8 = lm_defocus_q8(lateral, 10, 31228, dwell_us);
+            const uint32_t width_q8 = lm_defocus_lines_q8(lateral, 10, 31228, dwell_us);
             const double width = ref_mocomp_cells(31228e-6, lateral * 1e-5, dwell_us * 1e-6);
             worst = fmax(worst, fabs(width_q8 / 256.0 - fmin(width, LINES)) / fmin(width, LINES));
         }
     }
     print_message("# width of the smear: within %.2f %%\n", 100 * worst);
     assert_true(worst < 0.02);
-    assert_int_equal(lm_defocus_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), 256 * LINES);
-    assert_int_equal(lm_defocus_q8(50000, 0, 31228, 60000000), 256);
+    assert_int_equal(lm_defocus_lines_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), 256 * LINES);
+    assert_int_equal(lm_defocus_lines_q8(50000, 0, 31228, 60000000), 256);
 }
 
 TEST(shares_are_those_of_a_box_and_make_one)
@@ -83,21 +83,21 @@ TEST(tops_appear_where_the_reference_puts_them)
     double power[CELLS], top_m[CELLS], laid[CELLS];
     for (int n = 0; n < 200; n++) {
         const double lean = 0.05 + hs_rng_uniform(&rng), cell_m = 1 + 9 * hs_rng_uniform(&rng);
-        const struct lm_layover l = {.reference_q10 = 100 * 1024,
+        const struct lm_layover l = {.reference_m_q10 = 100 * 1024,
                                      .lean_q16 = (int32_t)lround(lean * 65536),
-                                     .cell_q8 = (uint32_t)lround(cell_m * 256),
+                                     .cell_m_q8 = (uint32_t)lround(cell_m * 256),
                                      .cells = CELLS};
         for (uint32_t i = 0; i < CELLS; i++) {
             const double hill_m = 100 + 20 * sin(i / 9.0 + n);
             const uint32_t height_code = hs_rng_below(&rng, 6) ? 0 : hs_rng_below(&rng, 16);
             ground.cell[i] = 120u << 8 | TINY_STRUCTURE << 4 | height_code;
-            ground.elevation_q14[i] = (int32_t)lround(hill_m * 16384);
+            ground.elevation_m_q14[i] = (int32_t)lround(hill_m * 16384);
             level[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 40 * 256;
             power[i] = pow(10, level[i] / 2560.0);
             top_m[i] = hill_m + tiny_classes()->height_dm[height_code] / 10.0 - 100;
         }
         lm_layover_run(&l, tiny_classes(), &ground, level, scratch);
-        ref_layover(power, top_m, CELLS, l.lean_q16 / 65536.0 / (l.cell_q8 / 256.0), laid);
+        ref_layover(power, top_m, CELLS, l.lean_q16 / 65536.0 / (l.cell_m_q8 / 256.0), laid);
         for (uint32_t i = 0; i < CELLS; i++) {
             /* Places are known to 1/256 of a cell, so to that part of the neighbours' power. */
             const double beside =

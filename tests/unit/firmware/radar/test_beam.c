@@ -38,8 +38,8 @@ TEST(weights_are_those_of_the_pattern)
         const uint32_t ratio_q8 = 256u << (n % 3 ? hs_rng_below(&rng, 7) : 0);
         const int32_t azimuth = bam(120 * hs_rng_uniform(&rng) - 60);
         struct ref_beam ref = ref_of(ratio_q8);
-        struct lm_beam_look look;
-        lm_beam_aim(&beam, radar, azimuth, ratio_q8, &look);
+        struct lm_beam_taps taps;
+        lm_beam_set_taps(&beam, radar, azimuth, ratio_q8, &taps);
         /* A spacing is a whole number of BAM. */
         ref.line_deg = (double)(lm_beam_spacing(&beam, radar) << beam.fineness) * degrees_per_bam;
         const struct ref_beam_look wanted = ref_beam_look(&ref, azimuth * degrees_per_bam);
@@ -48,12 +48,12 @@ TEST(weights_are_those_of_the_pattern)
             continue; /* on the border between two */
         }
         uint32_t sum = 0;
-        assert_int_equal(look.first, wanted.first);
+        assert_int_equal(taps.first, wanted.first);
         for (int j = 0; j < LM_BEAM_TAPS; j++) {
-            sum += look.weight_q16[j];
-            worst = fmax(worst, fabs(look.weight_q16[j] / 65536.0 - wanted.weight[j]));
-            const double off_deg = lm_beam_azimuth(&beam, radar, look.first + j) * degrees_per_bam -
-                                   ref_beam_azimuth_deg(&ref, look.first + j);
+            sum += taps.weight_q16[j];
+            worst = fmax(worst, fabs(taps.weight_q16[j] / 65536.0 - wanted.weight[j]));
+            const double off_deg = lm_beam_azimuth(&beam, radar, taps.first + j) * degrees_per_bam -
+                                   ref_beam_azimuth_deg(&ref, taps.first + j);
             assert_true(fabs(off_deg) < 0.001);
         }
         assert_int_equal(sum, 65536);
@@ -70,22 +70,22 @@ TEST(a_line_is_the_weighted_sum_of_its_samples)
     static uint32_t sum[LM_CELLS_ROOM];
     const double *lines[LM_BEAM_TAPS];
     for (int n = 0; n < 50; n++) {
-        struct lm_beam_look look;
+        struct lm_beam_taps taps;
         struct ref_beam_look ref;
         lm_beam_clear(&beam);
-        lm_beam_aim(&beam, radar, bam(120 * hs_rng_uniform(&rng) - 60), 256u << n % 7, &look);
+        lm_beam_set_taps(&beam, radar, bam(120 * hs_rng_uniform(&rng) - 60), 256u << n % 7, &taps);
         for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-            assert_false(lm_beam_has(&beam, look.first + j));
-            uint32_t *room = lm_beam_room(&beam, look.first + j);
-            assert_true(lm_beam_has(&beam, look.first + j));
+            assert_false(lm_beam_has(&beam, taps.first + j));
+            uint32_t *room = lm_beam_slot(&beam, taps.first + j);
+            assert_true(lm_beam_has(&beam, taps.first + j));
             for (int i = 0; i < CELLS; i++) {
                 room[i] = n % 5 ? (uint32_t)hs_rng_u64(&rng) >> hs_rng_below(&rng, 32) : UINT32_MAX;
                 power[j][i] = room[i];
             }
             lines[j] = power[j];
-            ref.weight[j] = look.weight_q16[j] / 65536.0;
+            ref.weight[j] = taps.weight_q16[j] / 65536.0;
         }
-        lm_beam_sum(&beam, &look, sum, CELLS);
+        lm_beam_sum(&beam, &taps, sum, CELLS);
         ref_beam_sum(&ref, lines, wanted, CELLS);
         for (int i = 0; i < CELLS; i++) {
             assert_true(wanted[i] - sum[i] >= -1e-6 * wanted[i] && wanted[i] - sum[i] < 1.001);
@@ -96,9 +96,9 @@ TEST(a_line_is_the_weighted_sum_of_its_samples)
 /* A point in one sample, drawn at every azimuth around it. */
 static double response(uint32_t ratio_q8, int32_t azimuth)
 {
-    struct lm_beam_look look;
-    lm_beam_aim(&beam, radar, azimuth, ratio_q8, &look);
-    return look.first <= 0 && look.first + LM_BEAM_TAPS > 0 ? look.weight_q16[-look.first] : 0;
+    struct lm_beam_taps taps;
+    lm_beam_set_taps(&beam, radar, azimuth, ratio_q8, &taps);
+    return taps.first <= 0 && taps.first + LM_BEAM_TAPS > 0 ? taps.weight_q16[-taps.first] : 0;
 }
 
 TEST(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio)
@@ -127,41 +127,41 @@ TEST(a_point_is_as_wide_as_the_beam_over_root_two_and_the_ratio)
 TEST(a_look_takes_what_it_lacks_and_no_more)
 {
     struct hs_rng rng;
-    struct lm_beam_look look = {.first = -1000};
+    struct lm_beam_taps taps = {.first = -1000};
     hs_rng_seed(&rng, 33);
     lm_beam_clear(&beam);
     for (int n = 0; n < 5000; n++) {
         const int32_t step = (int32_t)hs_rng_below(&rng, n % 7 == 0 ? 20 : 4);
-        look.first += n / 500 % 2 ? -step : step;
+        taps.first += n / 500 % 2 ? -step : step;
         int32_t missing = 0, sample;
         for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-            missing += !lm_beam_has(&beam, look.first + j);
+            missing += !lm_beam_has(&beam, taps.first + j);
         }
-        while (lm_beam_lacks(&beam, &look, &sample)) {
-            assert_in_range(sample - look.first, 0, LM_BEAM_TAPS - 1);
+        while (lm_beam_next_missing(&beam, &taps, &sample)) {
+            assert_in_range(sample - taps.first, 0, LM_BEAM_TAPS - 1);
             assert_false(lm_beam_has(&beam, sample));
-            lm_beam_room(&beam, sample)[0] = (uint32_t)sample;
+            lm_beam_slot(&beam, sample)[0] = (uint32_t)sample;
             missing--;
         }
         assert_int_equal(missing, 0);
         for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
-            const uint32_t slot = (uint32_t)(look.first + j) % LM_BEAM_TAPS;
-            assert_true(lm_beam_has(&beam, look.first + j));
-            assert_int_equal(beam.power_q24[slot][0], (uint32_t)(look.first + j));
+            const uint32_t slot = (uint32_t)(taps.first + j) % LM_BEAM_TAPS;
+            assert_true(lm_beam_has(&beam, taps.first + j));
+            assert_int_equal(beam.power_q24[slot][0], (uint32_t)(taps.first + j));
         }
     }
 }
 
 TEST(a_sample_of_another_fineness_is_dropped)
 {
-    struct lm_beam_look look;
+    struct lm_beam_taps taps;
     lm_beam_clear(&beam);
-    lm_beam_aim(&beam, radar, 0, 256, &look);
-    lm_beam_room(&beam, look.first + 3);
-    lm_beam_aim(&beam, radar, 0, 511, &look);
-    assert_true(lm_beam_has(&beam, look.first + 3));
-    assert_false(lm_beam_has(&beam, look.first + 3 + LM_BEAM_TAPS)); /* the same slot */
-    lm_beam_aim(&beam, radar, 0, 512, &look);
+    lm_beam_set_taps(&beam, radar, 0, 256, &taps);
+    lm_beam_slot(&beam, taps.first + 3);
+    lm_beam_set_taps(&beam, radar, 0, 511, &taps);
+    assert_true(lm_beam_has(&beam, taps.first + 3));
+    assert_false(lm_beam_has(&beam, taps.first + 3 + LM_BEAM_TAPS)); /* the same slot */
+    lm_beam_set_taps(&beam, radar, 0, 512, &taps);
     for (int32_t n = -100; n < 100; n++) {
         assert_false(lm_beam_has(&beam, n));
     }
@@ -193,36 +193,36 @@ TEST(the_notch_opens_where_the_formula_says)
 {
     static const uint32_t speeds_mm_s[] = {150000, 250000, 400000};
     static const struct {
-        enum lm_field field;
+        enum lm_fov field;
         uint32_t rate_deg_s;
-    } cases[] = {{LM_FIELD_DBS1, 15}, {LM_FIELD_DBS1, 60}, {LM_FIELD_DBS2, 3}, {LM_FIELD_DBS2, 15}};
+    } cases[] = {{LM_FOV_DBS1, 15}, {LM_FOV_DBS1, 60}, {LM_FOV_DBS2, 3}, {LM_FOV_DBS2, 15}};
     for (int n = 0; n < 12; n++) {
-        const struct lm_field_row *field = &radar->field[cases[n / 3].field];
+        const struct lm_fov_row *fov = &radar->fov[cases[n / 3].field];
         const uint32_t rate_deg_s = cases[n / 3].rate_deg_s, speed_mm_s = speeds_mm_s[n % 3];
         const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
         double full_deg = NAN, notch_deg = NAN;
         for (double off_deg = 0; off_deg < 90; off_deg += 0.01) {
             const uint32_t had_q8 =
                 lm_dbs_ratio_q8(radar, FX_BAM_DEG(rate_deg_s), speed_mm_s, (fx_bam_t)bam(off_deg));
-            const uint32_t used_q8 = lm_dbs_sharpening_q8(field, had_q8);
-            const double used = ref_dbs_used(ref_dbs_ratio(&ref, off_deg), field->sharpening,
-                                             field->sharpening_least);
+            const uint32_t used_q8 = lm_dbs_sharpening_q8(fov, had_q8);
+            const double used =
+                ref_dbs_used(ref_dbs_ratio(&ref, off_deg), fov->sharpening, fov->sharpening_least);
             if (isnan(notch_deg) && used_q8 > 256) {
                 notch_deg = off_deg;
             }
-            if (isnan(full_deg) && used_q8 == field->sharpening * 256u) {
+            if (isnan(full_deg) && used_q8 == fov->sharpening * 256u) {
                 full_deg = off_deg;
             }
             /* Outside of the notch cells are within a tenth of what they should be. */
-            if (fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening_least)) > 0.1 &&
-                fabs(off_deg - ref_dbs_notch_deg(&ref, field->sharpening)) > 0.1) {
+            if (fabs(off_deg - ref_dbs_notch_deg(&ref, fov->sharpening_least)) > 0.1 &&
+                fabs(off_deg - ref_dbs_notch_deg(&ref, fov->sharpening)) > 0.1) {
                 assert_true(fabs(used_q8 / 256.0 / used - 1) < 0.1);
             }
         }
-        const double wanted_notch_deg = ref_dbs_notch_deg(&ref, field->sharpening_least);
-        const double wanted_full_deg = ref_dbs_notch_deg(&ref, field->sharpening);
+        const double wanted_notch_deg = ref_dbs_notch_deg(&ref, fov->sharpening_least);
+        const double wanted_full_deg = ref_dbs_notch_deg(&ref, fov->sharpening);
         print_message("# %2u:1 at %2u deg/s and %3u m/s: from %.2f degrees, notch below %.2f\n",
-                      field->sharpening, rate_deg_s, speed_mm_s / 1000, full_deg, notch_deg);
+                      fov->sharpening, rate_deg_s, speed_mm_s / 1000, full_deg, notch_deg);
         assert_int_equal(isnan(full_deg) != 0, isnan(wanted_full_deg) != 0);
         assert_false(fabs(notch_deg - wanted_notch_deg) > 0.5);
         assert_false(fabs(full_deg - wanted_full_deg) > 0.5);
@@ -232,32 +232,32 @@ TEST(the_notch_opens_where_the_formula_says)
 TEST(each_look_is_weighed_at_its_own_tangent)
 {
     static struct lm_range_grid grid;
-    static struct lm_sight sight;
-    struct lm_elevation elevation;
+    static struct lm_lit_line lit;
+    struct lm_antenna_pattern pattern;
     const struct ref_antenna ref = {radar->antenna.elevation_beam * degrees_per_bam,
                                     radar->antenna.fan * degrees_per_bam,
                                     radar->antenna.bar_spacing * degrees_per_bam};
-    lm_elevation_set(&elevation, &radar->antenna);
+    lm_antenna_pattern_set(&pattern, &radar->antenna);
     double worst_db = 0;
     for (double height_m = 300; height_m < 12000; height_m *= 2) {
-        lm_range_grid_set(&grid, &radar->aspect, 256 * 36, 256 * 72, 256,
+        lm_range_grid_set(&grid, &radar->illumination, 256 * 36, 256 * 72, 256,
                           (int32_t)lround(height_m * 1024), 0);
         for (double tilt_deg = -35; tilt_deg <= 25; tilt_deg += 2.3) {
-            const struct lm_fan fan = lm_fan_at(bam(tilt_deg), radar->antenna.fan);
+            const struct lm_antenna_fan fan = lm_antenna_fan_at(bam(tilt_deg), radar->antenna.fan);
             for (uint32_t i = 0; i < 256; i++) {
                 const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
-                sight.level_q8[i] = 0;
-                sight.horizon[i + 1] =
+                lit.level_db_q8[i] = 0;
+                lit.horizon[i + 1] =
                     (int32_t)fmax(ldexp(tangent, (int)grid.tangent_bits), INT32_MIN);
             }
-            lm_elevation_run(&elevation, &fan, &grid, &sight);
+            lm_antenna_pattern_apply(&pattern, &fan, &grid, &lit);
             for (uint32_t i = grid.first; i < 256; i++) {
                 const double tangent = ref_tangent(height_m, 36 + 72.0 * i, 0);
                 /* On a step's edge either is right. */
                 const double a = ref_elevation_db(&ref, tilt_deg, tangent - 1.2e-5);
                 const double b = ref_elevation_db(&ref, tilt_deg, tangent + 1.2e-5);
                 const double least_db = fmax(fmin(a, b), -96), most_db = fmax(fmax(a, b), -96);
-                const double shown_db = sight.level_q8[i] / 256.0;
+                const double shown_db = lit.level_db_q8[i] / 256.0;
                 worst_db = fmax(worst_db, fmax(shown_db - most_db, least_db - shown_db));
             }
         }
@@ -270,7 +270,7 @@ TEST(auto_tilt_is_that_of_the_reference)
 {
     for (int32_t height_m = -200; height_m < 15000; height_m += 379) {
         for (uint32_t range_m = 2000; range_m < 200000; range_m = range_m * 4 / 3) {
-            const double tilt_deg = lm_auto_tilt(height_m, range_m) * degrees_per_bam;
+            const double tilt_deg = lm_antenna_auto_tilt(height_m, range_m) * degrees_per_bam;
             assert_true(fabs(tilt_deg - ref_auto_tilt_deg(height_m, range_m)) < 0.03);
         }
     }

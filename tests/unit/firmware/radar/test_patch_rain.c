@@ -24,7 +24,7 @@ struct world {
     struct lm_patch_geometry geometry;
     struct lm_patch_rain rain;
     struct lm_environment environment;
-    struct lm_place antenna;
+    struct lm_position antenna;
     struct lm_geo_origin origin;
     struct ref_patch_rain ref;
     struct ref_view view;
@@ -35,16 +35,16 @@ static struct world *make_world(double range_m, double height_m, double cell_m)
     struct world *w = calloc(1, sizeof *w);
     assert_non_null(w);
     w->radar = lm_radar_default;
-    w->antenna = (struct lm_place){FX_BAM_DEG(46), FX_BAM_DEG(11)};
+    w->antenna = (struct lm_position){FX_BAM_DEG(46), FX_BAM_DEG(11)};
     lm_geo_set_origin(&w->origin, w->antenna);
     w->geometry = (struct lm_patch_geometry){
         .centre = lm_geo_direct(&w->origin, 0, (uint32_t)lround(range_m * 256)),
-        .centre_q8 = (uint32_t)lround(range_m * 256),
-        .cell_q8 = (uint32_t)lround(cell_m * 256),
+        .centre_m_q8 = (uint32_t)lround(range_m * 256),
+        .cell_m_q8 = (uint32_t)lround(cell_m * 256),
         .lines = LINES,
         .cells = CELLS,
         .guard = LM_SAR_GUARD,
-        .heights = {.antenna_q10 = (int32_t)lround(height_m * 1024)},
+        .heights = {.antenna_m_q10 = (int32_t)lround(height_m * 1024)},
         .wavelength_um = w->radar.wavelength_um,
     };
     w->view = (struct ref_view){height_m, 0, cell_m};
@@ -60,7 +60,7 @@ static struct world *make_world(double range_m, double height_m, double cell_m)
 static void add_rain(struct world *w, double distance_m, double off_deg, double radius_m,
                      double mm_per_h)
 {
-    const struct lm_place centre =
+    const struct lm_position centre =
         lm_geo_direct(&w->origin, hs_bam(off_deg), (uint32_t)lround(distance_m * 256));
     w->environment.rain[w->environment.rain_count++] =
         (struct lm_rain){centre, (uint32_t)lround(radius_m), (uint16_t)lround(mm_per_h)};
@@ -71,7 +71,7 @@ static void add_rain(struct world *w, double distance_m, double off_deg, double 
 static void look(struct world *w)
 {
     lm_patch_rain_find(&w->rain, &w->environment, &w->radar, w->antenna, 0);
-    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, w->radar.sar.noise_floor_q8);
+    lm_patch_rain_set(&w->rain, &w->radar, &w->geometry, w->radar.sar.noise_floor_db_q8);
 }
 
 static double across_m(const struct world *w, uint32_t line)
@@ -81,7 +81,7 @@ static double across_m(const struct world *w, uint32_t line)
 
 static double range_m(const struct world *w, uint32_t cell)
 {
-    return w->geometry.centre_q8 / 256.0 +
+    return w->geometry.centre_m_q8 / 256.0 +
            (cell + 0.5 - LINES / 2.0 - LM_SAR_GUARD) * w->view.cell_m;
 }
 
@@ -167,7 +167,7 @@ TEST(the_veil_is_what_the_drops_in_the_upper_half_of_the_beam_scatter)
         add_rain(w, 32000, 0, 6000, mm_per_h); /* from 26 km on */
         look(w);
         look_into_the_dark(w, LINES / 2, level_db);
-        const double noise = pow(10, w->radar.sar.noise_floor_q8 / 2560.0);
+        const double noise = pow(10, w->radar.sar.noise_floor_db_q8 / 2560.0);
         for (uint32_t i = 0; i < CELLS; i += 17) {
             const double s = range_m(w, i), g = 5000 / s - s / (2 * REF_EFFECTIVE_EARTH_M);
             const double eta =
@@ -197,9 +197,9 @@ struct apart {
 static void compare_line(struct world *w, uint32_t line_number, struct apart *apart)
 {
     static double loss_db[LM_CELLS_ROOM], dark_db[LM_CELLS_ROOM];
-    const double noise = pow(10, w->radar.sar.noise_floor_q8 / 2560.0);
+    const double noise = pow(10, w->radar.sar.noise_floor_db_q8 / 2560.0);
     const double aside_deg =
-        atan2(across_m(w, line_number), w->geometry.centre_q8 / 256.0) * 180 / acos(-1.0);
+        atan2(across_m(w, line_number), w->geometry.centre_m_q8 / 256.0) * 180 / acos(-1.0);
     look_at_line(w, line_number, loss_db);
     look_into_the_dark(w, line_number, dark_db);
     for (uint32_t i = 0; i < CELLS; i += 13) {
@@ -254,7 +254,7 @@ TEST(the_veil_ends_as_softly_as_the_beam_is_wide)
     struct world *w = make_world(30000, 5000, 15);
     add_rain(w, hypot(30000, 40000), atan2(40000, 30000) * 180 / acos(-1.0), 40000, 1);
     look(w);
-    const double noise = pow(10, w->radar.sar.noise_floor_q8 / 2560.0);
+    const double noise = pow(10, w->radar.sar.noise_floor_db_q8 / 2560.0);
     for (uint32_t k = 0; k < LINES; k++) {
         look_into_the_dark(w, k, level_db);
         look_at_line(w, k, loss_db);
@@ -288,9 +288,9 @@ TEST(rain_behind_beside_and_far_from_a_patch_is_not_there)
     look(w);
     assert_int_equal(w->rain.count, 0);
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
-        assert_int_equal((uint32_t)w->rain.veil[0].level_q8[i], 0xa5a5a5a5);
-        assert_int_equal((uint32_t)w->rain.volume_q8[i], 0xa5a5a5a5);
-        assert_int_equal((uint32_t)w->rain.loss_q8[i], 0xa5a5a5a5);
+        assert_int_equal((uint32_t)w->rain.veil[0].level_db_q8[i], 0xa5a5a5a5);
+        assert_int_equal((uint32_t)w->rain.volume_db_q8[i], 0xa5a5a5a5);
+        assert_int_equal((uint32_t)w->rain.loss_db_q8[i], 0xa5a5a5a5);
     }
     lm_patch_rain_find(&w->rain, NULL, &w->radar, w->antenna, 0);
     assert_int_equal(w->rain.count, 0);
@@ -313,7 +313,7 @@ TEST(no_rain_within_its_limits_makes_levels_of_no_meaning)
             look_at_line(w, line, loss_db);
             look_into_the_dark(w, line, dark_db);
             for (uint32_t i = 0; i < CELLS; i++) {
-                assert_true(dark_db[i] * 256 >= w->radar.sar.noise_floor_q8 && dark_db[i] < 80);
+                assert_true(dark_db[i] * 256 >= w->radar.sar.noise_floor_db_q8 && dark_db[i] < 80);
                 assert_true(loss_db[i] >= 0);
             }
         }
@@ -344,7 +344,7 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
     const struct lm_sar_command command = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(11)},
                                            .cell_mm = 5000,
                                            .range_m = 20000,
-                                           .height_q6 = 4000 * 64};
+                                           .height_m_q6 = 4000 * 64};
     struct lm_target t = point_at(46, 11, 0, 40);
     const struct lm_target_set set = {.items = &t, .count = 1};
     const struct lm_sar_scene scene = {
@@ -384,7 +384,7 @@ TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
     assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
     struct lm_geo_origin centre;
-    lm_geo_set_origin(&centre, (struct lm_place){FX_BAM_DEG(46), FX_BAM_DEG(11)});
+    lm_geo_set_origin(&centre, (struct lm_position){FX_BAM_DEG(46), FX_BAM_DEG(11)});
     double fair_db, rainy_db, fair_sea_db, rainy_sea_db;
     struct lm_environment e = {.sea_state = LM_SEA_STATE_OF_IMAGE};
     draw(&e, &fair_db, &fair_sea_db);
@@ -399,7 +399,7 @@ TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
     /* 4 km of light rain over it. */
     e.rain[0] = (struct lm_rain){{FX_BAM_DEG(46), FX_BAM_DEG(11)}, 4000, 25};
     draw(&e, &rainy_db, &rainy_sea_db);
-    const double veil_db = sar.rain.veil[0].level_q8[CELLS / 2] / 256.0;
+    const double veil_db = sar.rain.veil[0].level_db_q8[CELLS / 2] / 256.0;
     print_message("# sea %.1f dB, in rain %.1f dB, the veil is %.1f dB in the middle\n",
                   fair_sea_db, rainy_sea_db, veil_db);
     assert_true(rainy_sea_db > fair_sea_db + 5);

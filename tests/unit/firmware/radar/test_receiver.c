@@ -29,15 +29,15 @@ static void set_world(struct world *w, uint8_t range, double near_m, double cell
     const uint32_t cell_q8 = (uint32_t)lround(cell_m * 256);
     const uint32_t first_q8 = (uint32_t)lround(near_m * 256) + cell_q8 / 2;
     const int32_t height_q10 = (int32_t)lround(height_m * 1024);
-    lm_range_grid_set(&w->grid, &w->radar.aspect, first_q8, cell_q8, cells, height_q10, 0);
+    lm_range_grid_set(&w->grid, &w->radar.illumination, first_q8, cell_q8, cells, height_q10, 0);
     lm_slant_set(&w->slant, first_q8, cell_q8, cells, &w->grid, first_q8);
     lm_receiver_set(&w->receiver, &w->radar, &w->slant, height_q10, range, pulse_ns);
     w->ref = (struct ref_receiver){.bins = {first_q8 / 256.0, cell_q8 / 256.0, cells},
                                    .height_m = height_m,
                                    .end_m = w->radar.range[range].range_m,
-                                   .noise_end_db = w->radar.range[range].noise_end_q8 / 256.0,
+                                   .noise_end_db = w->radar.range[range].noise_end_db_q8 / 256.0,
                                    .noise_table_db = w->noise_table_db,
-                                   .stc_m = w->radar.range[range].stc_m,
+                                   .stc_m = w->radar.range[range].stc_end_m,
                                    .pulse_s = pulse_ns * 1e-9};
 }
 
@@ -94,7 +94,7 @@ TEST(a_bin_takes_the_cell_that_its_slant_range_lies_over)
         const double height_m = 15000 * hs_rng_uniform(&rng);
         w->radar = lm_radar_default;
         set_world(w, 3, near_m, cell_m, CELLS, height_m, 400);
-        const double edge_m = (w->slant.first_q8 - w->grid.cell_q8 / 2) / 256.0;
+        const double edge_m = (w->slant.first_m_q8 - w->grid.cell_m_q8 / 2) / 256.0;
         for (uint32_t i = 0; i < CELLS; i++) {
             /* Heights and ranges are rounded to 1/256 m. */
             const double least_m = ref_ground_of_slant(bin_m(w, i), height_m + 0.005) - 0.005;
@@ -118,9 +118,9 @@ TEST(slant_and_ground_range_are_each_others_inverse)
         for (double ground_m = 300; ground_m < 300000; ground_m *= 1.1) {
             const int32_t height_q10 = (int32_t)lround(height_m * 1024);
             const uint32_t slant_q8 =
-                lm_slant_of_ground((uint32_t)lround(ground_m * 256), height_q10);
+                lm_slant_of_ground_m_q8((uint32_t)lround(ground_m * 256), height_q10);
             assert_true(fabs(slant_q8 / 256.0 - hypot(ground_m, height_m)) < 0.02);
-            const uint32_t ground_q8 = lm_ground_of_slant(slant_q8, height_q10);
+            const uint32_t ground_q8 = lm_ground_of_slant_m_q8(slant_q8, height_q10);
             /* A slant range cut by 1/256 m is worth r / s times as much on the ground. */
             assert_true(fabs(ground_q8 / 256.0 - ground_m) <
                         0.02 * hypot(ground_m, height_m) / ground_m);
@@ -137,14 +137,15 @@ TEST(the_mean_noise_is_that_of_the_cube_of_range_over_flat_grounds_grazing)
             set_scale(w, range, height_m, 400);
             for (uint32_t i = 0; i < CELLS; i++) {
                 const double expected_db = ref_noise_db(&w->ref, bin_m(w, i));
-                worst_db = fmax(worst_db, fabs(w->receiver.noise_q8[i] / 256.0 - expected_db));
+                worst_db = fmax(worst_db, fabs(w->receiver.noise_db_q8[i] / 256.0 - expected_db));
             }
         }
         /* From a metre up g is 1/256 all the way, and what is left is 30 dB a decade. */
         set_scale(w, range, 1, 400);
-        const double decade_db = (w->receiver.noise_q8[254] - w->receiver.noise_q8[25]) / 256.0;
+        const double decade_db =
+            (w->receiver.noise_db_q8[254] - w->receiver.noise_db_q8[25]) / 256.0;
         assert_true(fabs(decade_db - 30 * log10(254.5 / 25.5)) < 0.02);
-        assert_true(fabs(w->receiver.noise_q8[255] / 256.0 - w->ref.noise_end_db) < 0.05);
+        assert_true(fabs(w->receiver.noise_db_q8[255] / 256.0 - w->ref.noise_end_db) < 0.05);
     }
     print_message("# mean noise: worst error %.4f dB\n", worst_db);
     assert_true(worst_db < 0.01);
@@ -159,7 +160,7 @@ TEST(the_noise_has_its_mean_and_its_number_of_looks)
     for (uint8_t looks_log2 = 0; looks_log2 <= LM_NOISE_LOOKS_LOG2_MAX; looks_log2++) {
         w->radar = lm_radar_default;
         w->radar.receiver.noise_looks_log2 = looks_log2;
-        w->radar.range[0].stc_m = 100000;
+        w->radar.range[0].stc_end_m = 100000;
         set_world(w, 0, 0, 72, CELLS, 3000, 400);
         double sum = 0, squares = 0, pairs = 0, columns = 0, before[CELLS] = {0};
         for (uint32_t line = 0; line < LINES; line++) {
@@ -167,7 +168,7 @@ TEST(the_noise_has_its_mean_and_its_number_of_looks)
             memset(w->power, 0, sizeof w->power);
             lm_receiver_run(&w->receiver, NULL, line, 17, w->power, w->level);
             for (uint32_t i = 0; i < CELLS; i++) {
-                const double x = pow(10, (w->level[i] - w->receiver.noise_q8[i]) / 2560.0);
+                const double x = pow(10, (w->level[i] - w->receiver.noise_db_q8[i]) / 2560.0);
                 sum += x;
                 squares += x * x;
                 pairs += x * last;
@@ -212,8 +213,8 @@ TEST(another_sweep_has_other_noise_and_the_same_one_the_same)
 static void set_pulse_only(struct world *w, double cell_m, uint32_t pulse_ns)
 {
     w->radar = lm_radar_default;
-    w->radar.range[3].noise_end_q8 = -120 * 256;
-    w->radar.range[3].stc_m = 400000;
+    w->radar.range[3].noise_end_db_q8 = -120 * 256;
+    w->radar.range[3].stc_end_m = 400000;
     set_world(w, 3, 0, cell_m, CELLS, 3000, pulse_ns);
 }
 
@@ -281,15 +282,15 @@ TEST(behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade)
     struct world *w = make_world();
     for (uint8_t range = 0; range < lm_radar_default.ranges; range++) {
         set_scale(w, range, 4000, 100); /* shorter than any bin */
-        const double stc_m = lm_radar_default.range[range].stc_m;
+        const double stc_m = lm_radar_default.range[range].stc_end_m;
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = 1 << 24;
         }
         lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
         for (uint32_t i = 0; i < CELLS; i++) {
             const double fall_db = fmax(0, 30 * log10(bin_m(w, i) / stc_m));
-            assert_true(fabs(w->receiver.fall_q8[i] / 256.0 - fall_db) < 0.005);
-            assert_true(bin_m(w, i) > stc_m || w->receiver.fall_q8[i] == 0);
+            assert_true(fabs(w->receiver.stc_rolloff_db_q8[i] / 256.0 - fall_db) < 0.005);
+            assert_true(bin_m(w, i) > stc_m || w->receiver.stc_rolloff_db_q8[i] == 0);
             assert_true(fabs(w->level[i] / 256.0 + fall_db) < 0.05);
         }
     }
@@ -309,17 +310,17 @@ TEST(levels_are_those_of_the_reference)
     for (uint32_t line = 0; line < 64; line++) {
         const uint8_t range = (uint8_t)(line % lm_radar_default.ranges);
         set_scale(w, range, 200 + 10000 * hs_rng_uniform(&rng),
-                  lm_radar_default.range[range].pulse_ns[LM_FIELD_NORM]);
+                  lm_radar_default.range[range].pulse_ns[LM_FOV_NORM]);
         weather.has_rain = line % 3 == 0;
-        weather.noise_rise_q8 = (int32_t)hs_rng_below(&rng, 40 * 256);
-        ref_weather.jam = pow(10, weather.noise_rise_q8 / 2560.0) - 1;
+        weather.noise_rise_db_q8 = (int32_t)hs_rng_below(&rng, 40 * 256);
+        ref_weather.jam = pow(10, weather.noise_rise_db_q8 / 2560.0) - 1;
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = (uint32_t)(hs_rng_u64(&rng) >> (32 + hs_rng_below(&rng, 30)));
             power[i] = ldexp(w->power[i], -24);
-            weather.loss_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256);
-            weather.rain_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 60 * 256;
-            ref_weather.pass[i] = weather.has_rain ? pow(10, -weather.loss_q8[i] / 2560.0) : 1;
-            ref_weather.rain[i] = weather.has_rain ? pow(10, weather.rain_q8[i] / 2560.0) : 0;
+            weather.loss_db_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256);
+            weather.rain_db_q8[i] = (int32_t)hs_rng_below(&rng, 60 * 256) - 60 * 256;
+            ref_weather.pass[i] = weather.has_rain ? pow(10, -weather.loss_db_q8[i] / 2560.0) : 1;
+            ref_weather.rain[i] = weather.has_rain ? pow(10, weather.rain_db_q8[i] / 2560.0) : 0;
         }
         lm_receiver_run(&w->receiver, &weather, line, 5, w->power, w->level);
         ref_receive(&w->ref, &ref_weather, line, 5, power, level_db);
@@ -349,8 +350,8 @@ TEST(whatever_the_table_says_levels_stay_in_their_bounds)
     static const uint32_t pulses_ns[] = {0, 1, 1000, 60000, UINT32_MAX};
     for (int n = 0; n < 400; n++) {
         w->radar = lm_radar_default;
-        w->radar.range[3].noise_end_q8 = n % 2 ? INT16_MAX : INT16_MIN;
-        w->radar.range[3].stc_m = n % 3 ? hs_rng_below(&rng, 400000) : 0;
+        w->radar.range[3].noise_end_db_q8 = n % 2 ? INT16_MAX : INT16_MIN;
+        w->radar.range[3].stc_end_m = n % 3 ? hs_rng_below(&rng, 400000) : 0;
         w->radar.receiver.noise_looks_log2 = (uint8_t)hs_rng_below(&rng, 256);
         w->radar.antenna.elevation_beam = n % 5 ? (fx_bam_t)hs_rng_u64(&rng) : 0;
         const uint32_t cells = hs_rng_below(&rng, LM_CELLS_MAX + 1);

@@ -150,7 +150,7 @@ TEST(a_commanded_geometry_has_no_limits_and_the_reference_pace)
     struct lm_control control = patch_at(r, 0, 20000, 1);
     control.sar.is_from_ownship = false;
     control.sar.range_m = 20000;
-    control.sar.height_q6 = 3000 * 64;
+    control.sar.height_m_q6 = 3000 * 64;
     const double exact_s = wavelength_m * hypot(20000, 2900) / (2 * 250 * 1);
     assert_true(fabs(seconds_of_patch(r, control) / exact_s - 1) < 0.02);
     free_rig(r);

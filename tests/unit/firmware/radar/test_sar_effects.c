@@ -25,16 +25,16 @@ static double power_of(int32_t level_q8)
 static struct lm_scan_line ground;
 static uint64_t scratch[LM_CELLS_ROOM];
 
-static const struct lm_layover lean = {.reference_q10 = 100 * 1024,
+static const struct lm_layover lean = {.reference_m_q10 = 100 * 1024,
                                        .lean_q16 = 19661, /* 0.3 */
-                                       .cell_q8 = 5 * 256,
+                                       .cell_m_q8 = 5 * 256,
                                        .cells = CELLS};
 
 static void flat_ground(double elevation_m)
 {
     for (int i = 0; i < LM_CELLS_ROOM; i++) {
         ground.cell[i] = 0;
-        ground.elevation_q14[i] = (int32_t)lround(elevation_m * 16384);
+        ground.elevation_m_q14[i] = (int32_t)lround(elevation_m * 16384);
     }
 }
 
@@ -72,7 +72,7 @@ TEST(layover_of_any_line_is_the_sum_of_shared_powers)
         double expected[CELLS] = {0}, around[CELLS] = {0};
         for (int i = 0; i < CELLS; i++) {
             const double top_m = 60 + 90 * hs_rng_uniform(&rng);
-            ground.elevation_q14[i] = (int32_t)lround(top_m * 16384);
+            ground.elevation_m_q14[i] = (int32_t)lround(top_m * 16384);
             ground.cell[i] = 0;
             level_q8[i] = (int32_t)hs_rng_below(&rng, 80 * 256) - 50 * 256;
             const double at = i - (top_m - 100) * 0.3 / 5, part = at - floor(at);
@@ -148,7 +148,7 @@ static void draw(const struct lm_sar_command *command, const struct lm_sar_scene
 static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), FX_BAM_DEG(11)},
                                                      .cell_mm = 5000,
                                                      .range_m = 9000,
-                                                     .height_q6 = 3000 * 64};
+                                                     .height_m_q6 = 3000 * 64};
 
 static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
 {
@@ -222,13 +222,13 @@ TEST(the_blur_is_as_wide_as_the_quadratic_phase_makes_it)
         const double dwell_s = pow(10, 2.7 * hs_rng_uniform(&rng) - 1), wavelength = 0.031228;
         const double f = pi * lateral * permille / 1000 * dwell_s * dwell_s / (2 * wavelength);
         const double q = fmin(sqrt(1 + pow(0.42 * f, 2)), LINES);
-        const uint32_t got = lm_defocus_q8((uint32_t)lround(lateral * 1000), (uint32_t)permille,
-                                           31228, (uint64_t)(dwell_s * 1e6));
+        const uint32_t got = lm_defocus_lines_q8(
+            (uint32_t)lround(lateral * 1000), (uint32_t)permille, 31228, (uint64_t)(dwell_s * 1e6));
         assert_true(fabs(got / 256.0 - q) < 0.02 * q + 0.01);
     }
-    assert_int_equal(lm_defocus_q8(0, 10, 31228, 60000000), 256);
-    assert_int_equal(lm_defocus_q8(20000, 0, 31228, 60000000), 256);
-    assert_int_equal(lm_defocus_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), LINES * 256);
+    assert_int_equal(lm_defocus_lines_q8(0, 10, 31228, 60000000), 256);
+    assert_int_equal(lm_defocus_lines_q8(20000, 0, 31228, 60000000), 256);
+    assert_int_equal(lm_defocus_lines_q8(UINT32_MAX >> 8, 1000, 1000, UINT64_MAX), LINES * 256);
 }
 
 TEST(the_shares_are_those_of_a_smear_of_that_width_and_add_up_to_one)
@@ -351,21 +351,21 @@ TEST(a_turning_aircraft_blurs_its_patch_and_a_commanded_place_does_not)
         const double dwell_s = (double)(r->unit.picture.sar.line_us * CELLS) / 1e6;
         const double f = pi * lateral * 0.01 * dwell_s * dwell_s / (2 * 0.031228);
         const double q = fmin(sqrt(1 + pow(0.42 * f, 2)), LINES);
-        const double width = r->unit.picture.sar.defocus_q8 / 256.0;
+        const double width = r->unit.picture.sar.defocus_lines_q8 / 256.0;
         assert_true(is_turning ? q > 1.3 && fabs(width - q) < 0.03 * q : width == 1);
         control.sar.is_from_ownship = false;
         control.sar.range_m = 20000;
-        control.sar.height_q6 = 2000 * 64;
+        control.sar.height_m_q6 = 2000 * 64;
         command(r, control);
         run(r, 0.1);
-        assert_int_equal(r->unit.picture.sar.defocus_q8, 256);
+        assert_int_equal(r->unit.picture.sar.defocus_lines_q8, 256);
         free_rig(r);
     }
 }
 
 /* ---- jammers ---- */
 
-static struct lm_place place_from(struct lm_place from, double azimuth_deg, double metres)
+static struct lm_position place_from(struct lm_position from, double azimuth_deg, double metres)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, from);
@@ -387,8 +387,8 @@ TEST(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing)
     command.is_from_ownship = false;
     command.look_azimuth = hs_bam(30);
     command.range_m = 12000;
-    command.height_q6 = 2000 * 64;
-    const struct lm_place antenna = place_from(command.centre, 210, 12000);
+    command.height_m_q6 = 2000 * 64;
+    const struct lm_position antenna = place_from(command.centre, 210, 12000);
     uint32_t distance_q8;
     fx_bam_t bearing;
     lm_geo_inverse(antenna, command.centre, &distance_q8, &bearing);
@@ -404,13 +404,14 @@ TEST(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing)
         const double beams = cases[i].off_deg / hs_degrees(radar->antenna.azimuth_beam);
         const double jam_db = cases[i].ratio_db - 20 * log10(cases[i].distance_m / 18520) -
                               40 * log10(2) * beams * beams;
-        const double rise_db = (r->unit.picture.sar.floor_q8 - radar->sar.noise_floor_q8) / 256.0;
+        const double rise_db =
+            (r->unit.picture.sar.floor_db_q8 - radar->sar.noise_floor_db_q8) / 256.0;
         assert_true(fabs(rise_db - 10 * log10(1 + pow(10, jam_db / 10))) < 0.1);
     }
     const struct lm_sar_scene fair = {.environment = NULL};
     assert_int_equal(lm_sar_start(&r->unit.picture.sar, radar, &r->unit.map.db, &command, &fair),
                      LM_OK);
-    assert_int_equal(r->unit.picture.sar.floor_q8, radar->sar.noise_floor_q8);
+    assert_int_equal(r->unit.picture.sar.floor_db_q8, radar->sar.noise_floor_db_q8);
     free_rig(r);
 }
 

@@ -43,7 +43,7 @@ static void step(struct rig *r)
     run(r, STEP_US / 1e6);
 }
 
-static void show(struct rig *r, enum lm_sector_mode mode, enum lm_field field)
+static void show(struct rig *r, enum lm_sector_mode mode, enum lm_fov field)
 {
     command(r, (struct lm_control){.kind = LM_CONTROL_SECTOR,
                                    .sector = {(int32_t)mode, (int32_t)field}});
@@ -58,25 +58,26 @@ static void finish_sweep(struct rig *r)
     }
 }
 
-static struct ref_place ref_of(struct lm_place place)
+static struct ref_place ref_of(struct lm_position position)
 {
-    return (struct ref_place){hs_degrees(place.latitude), hs_degrees(place.longitude)};
+    return (struct ref_place){hs_degrees(position.latitude), hs_degrees(position.longitude)};
 }
 
 /* Put the cursor somewhere from the ownship. */
 static void put_cursor(struct rig *r, double azimuth_deg, double ground_m)
 {
     const struct lm_ownship *own = &r->unit.ownship;
-    const struct lm_place from = {own->latitude, own->longitude};
+    const struct lm_position from = {own->latitude, own->longitude};
     const struct ref_place at = ref_geo_direct(ref_of(from), azimuth_deg, ground_m);
-    r->unit.cursor.place = (struct lm_place){hs_bam(at.latitude_deg), hs_bam(at.longitude_deg)};
+    r->unit.cursor.position =
+        (struct lm_position){hs_bam(at.latitude_deg), hs_bam(at.longitude_deg)};
 }
 
 /* ---- from where it is seen ---- */
 
 TEST(the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_place)
 {
-    static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP};
+    static const uint8_t fields[] = {LM_FOV_NORM, LM_FOV_EXP};
     struct rig *r = start_over_sea(3000, 250);
     const struct lm_sector *s = &r->unit.picture.sector;
     put_cursor(r, 5, 14000);
@@ -84,14 +85,14 @@ TEST(the_whole_sector_is_seen_from_where_the_aircraft_is_and_a_window_from_one_p
         show(r, LM_SECTOR_GM, fields[is_window]);
         finish_sweep(r);
         uint32_t sweep = s->sweep - 1, moves = 0; /* within a sweep */
-        struct lm_place last = s->origin.place;
+        struct lm_position last = s->origin.position;
         for (int k = 0; k < 400; k++) {
             const uint32_t samples = s->samples;
             step(r);
             if (s->samples != samples && s->is_begun) {
-                assert_memory_equal(&s->origin.place, &s->platform.place, sizeof last);
-                moves += s->sweep == sweep && memcmp(&s->origin.place, &last, sizeof last) != 0;
-                last = s->origin.place;
+                assert_memory_equal(&s->origin.position, &s->platform.position, sizeof last);
+                moves += s->sweep == sweep && memcmp(&s->origin.position, &last, sizeof last) != 0;
+                last = s->origin.position;
                 sweep = s->sweep;
             }
         }
@@ -136,11 +137,10 @@ TEST(the_whole_sector_is_swept_at_the_rate_of_the_table_and_no_line_is_lost)
 TEST(windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen)
 {
     const struct {
-        enum lm_field field;
+        enum lm_fov field;
         double rate, half_window, half_max_deg;
-    } cases[] = {{LM_FIELD_EXP, 120, 0.125, 60},
-                 {LM_FIELD_DBS1, 15, 0.125, 15},
-                 {LM_FIELD_DBS2, 3, 0.03, 5}};
+    } cases[] = {
+        {LM_FOV_EXP, 120, 0.125, 60}, {LM_FOV_DBS1, 15, 0.125, 15}, {LM_FOV_DBS2, 3, 0.03, 5}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct rig *r = start_rig();
         command(r, range_10);
@@ -151,8 +151,8 @@ TEST(windows_are_swept_at_the_rate_of_the_table_and_as_wide_as_they_are_seen)
         const double swept_deg =
             hs_degrees(r->unit.picture.sector.width) * r->unit.picture.sector.lines;
         double ground_m, bearing_deg;
-        ref_geo_inverse(ref_of(r->unit.picture.sector.platform.place), ref_of(r->unit.cursor.place),
-                        &bearing_deg, &ground_m);
+        ref_geo_inverse(ref_of(r->unit.picture.sector.platform.position),
+                        ref_of(r->unit.cursor.position), &bearing_deg, &ground_m);
         const double seen_deg =
             hs_degrees(hs_bam(asin(1.5 * cases[i].half_window * 18520 / ground_m) * 57.29578));
         print_message("# field %d: %.3f degrees a second over %.2f degrees\n", cases[i].field, rate,
@@ -207,20 +207,21 @@ static bool is_near(struct pixel a, struct pixel b, double slack_px)
 }
 
 /* Slant range rightwards and upwards, metres, of a place on the sea as the window sees it. */
-static struct pixel slant_offset(const struct rig *r, struct lm_place place)
+static struct pixel slant_offset(const struct rig *r, struct lm_position position)
 {
     const struct lm_platform *from = &r->unit.picture.sector.platform;
     double azimuth_deg, ground_m;
-    ref_geo_inverse(ref_of(from->place), ref_of(place), &azimuth_deg, &ground_m);
-    const double slant_m = hypot(ground_m, from->height_q10 / 1024.0);
+    ref_geo_inverse(ref_of(from->position), ref_of(position), &azimuth_deg, &ground_m);
+    const double slant_m = hypot(ground_m, from->height_m_q10 / 1024.0);
     const double turn = (azimuth_deg - hs_degrees(r->unit.picture.sector.up)) / 57.29577951;
     return (struct pixel){slant_m * sin(turn), slant_m * cos(turn)};
 }
 
 /* Where a place belongs when the cursor's is in the middle. */
-static struct pixel wanted_at(const struct rig *r, struct lm_place place)
+static struct pixel wanted_at(const struct rig *r, struct lm_position position)
 {
-    const struct pixel at = slant_offset(r, place), centre = slant_offset(r, r->unit.cursor.place);
+    const struct pixel at = slant_offset(r, position),
+                       centre = slant_offset(r, r->unit.cursor.position);
     const struct lm_frame square = lm_frame_square(&r->unit.picture.frame);
     const double px_per_m = square.width_px / (2.0 * r->unit.picture.sector.half_m);
     const struct pixel middle = middle_of(r);
@@ -228,10 +229,10 @@ static struct pixel wanted_at(const struct rig *r, struct lm_place place)
                           middle.y - (at.y - centre.y) * px_per_m};
 }
 
-static void put_target(struct rig *r, struct lm_place place, double rcs_db)
+static void put_target(struct rig *r, struct lm_position position, double rcs_db)
 {
     r->unit.map.targets[0] =
-        point_at(hs_degrees(place.latitude), hs_degrees(place.longitude), 10, rcs_db);
+        point_at(hs_degrees(position.latitude), hs_degrees(position.longitude), 10, rcs_db);
     r->unit.map.target_set = (struct lm_target_set){.items = r->unit.map.targets, .count = 1};
 }
 
@@ -239,7 +240,7 @@ static void put_target(struct rig *r, struct lm_place place, double rcs_db)
  * is sampled every 15/16 of a degree from the nose, and a point is put on the nearest sample: in
  * EXP the aircraft stands still and the point lies on one, 21 1/2 samples off the nose. */
 struct view_case {
-    enum lm_field field;
+    enum lm_fov field;
     double speed_m_s, height_m, azimuth_deg, ground_m, rcs_db;
 };
 
@@ -259,7 +260,7 @@ static void judge_window(const struct view_case *c)
 {
     struct rig *r = start_over_sea(c->height_m, c->speed_m_s);
     put_cursor(r, c->azimuth_deg, c->ground_m);
-    const struct lm_place first = r->unit.cursor.place;
+    const struct lm_position first = r->unit.cursor.position;
     put_target(r, first, c->rcs_db);
     show(r, LM_SECTOR_GM, c->field);
     finish_sweep(r);
@@ -281,7 +282,7 @@ static void judge_window(const struct view_case *c)
     assert_true(is_near(bright_spot(r), moved, 3));
     finish_sweep(r);
     assert_true(is_near(bright_spot(r), wanted_at(r, first), 3));
-    put_target(r, r->unit.cursor.place, c->rcs_db);
+    put_target(r, r->unit.cursor.position, c->rcs_db);
     finish_sweep(r);
     finish_sweep(r);
     assert_true(is_near(bright_spot(r), middle_of(r), 2));
@@ -290,9 +291,9 @@ static void judge_window(const struct view_case *c)
 
 TEST(a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window)
 {
-    const struct view_case cases[] = {{LM_FIELD_EXP, 0, 2000, on_a_sample_deg, 14000, 29},
-                                      {LM_FIELD_DBS1, 150, 2000, 40, 14000, 20},
-                                      {LM_FIELD_DBS2, 150, 2000, 40, 14000, 11}};
+    const struct view_case cases[] = {{LM_FOV_EXP, 0, 2000, on_a_sample_deg, 14000, 29},
+                                      {LM_FOV_DBS1, 150, 2000, 40, 14000, 20},
+                                      {LM_FOV_DBS2, 150, 2000, 40, 14000, 11}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         judge_window(&cases[i]);
     }
@@ -302,9 +303,9 @@ TEST(a_point_at_the_cursor_is_drawn_in_the_middle_of_the_window)
 TEST(a_point_close_below_is_drawn_in_the_middle_of_the_window_too)
 {
     const double ground_m = sqrt(9260.0 * 9260 - 6000.0 * 6000);
-    const struct view_case cases[] = {{LM_FIELD_EXP, 0, 6000, on_a_sample_deg, ground_m, 33},
-                                      {LM_FIELD_DBS1, 150, 6000, 40, ground_m, 24},
-                                      {LM_FIELD_DBS2, 150, 6000, 40, ground_m, 15}};
+    const struct view_case cases[] = {{LM_FOV_EXP, 0, 6000, on_a_sample_deg, ground_m, 33},
+                                      {LM_FOV_DBS1, 150, 6000, 40, ground_m, 24},
+                                      {LM_FOV_DBS2, 150, 6000, 40, ground_m, 15}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         judge_window(&cases[i]);
     }
@@ -349,7 +350,7 @@ static bool is_swept(const struct rig *r, int x, int y)
         x >= f.left_px && x < f.left_px + f.width_px && y >= f.top_px && y < f.top_px + f.height_px;
     return is_inside && azimuth_deg > edge_deg + slack_deg &&
            azimuth_deg < edge_deg + width_deg - slack_deg &&
-           length_px * v->mm_q8_per_px / 256e3 > 5500 &&
+           length_px * v->scale_mm_per_px_q8 / 256e3 > 5500 &&
            (is_window || length_px < v->radius_px - 1);
 }
 
@@ -373,11 +374,11 @@ TEST(a_change_of_picture_leaves_nothing_behind_and_takes_one_sweep)
 {
     const struct {
         enum lm_sector_mode mode;
-        enum lm_field field;
-    } cases[] = {{LM_SECTOR_GM, LM_FIELD_EXP},   {LM_SECTOR_GM, LM_FIELD_DBS1},
-                 {LM_SECTOR_GM, LM_FIELD_DBS2},  {LM_SECTOR_GM, LM_FIELD_NORM},
-                 {LM_SECTOR_SEA, LM_FIELD_NORM}, {LM_SECTOR_SEA, LM_FIELD_EXP},
-                 {LM_SECTOR_GMT, LM_FIELD_EXP},  {LM_SECTOR_GMT, LM_FIELD_NORM}};
+        enum lm_fov field;
+    } cases[] = {{LM_SECTOR_GM, LM_FOV_EXP},   {LM_SECTOR_GM, LM_FOV_DBS1},
+                 {LM_SECTOR_GM, LM_FOV_DBS2},  {LM_SECTOR_GM, LM_FOV_NORM},
+                 {LM_SECTOR_SEA, LM_FOV_NORM}, {LM_SECTOR_SEA, LM_FOV_EXP},
+                 {LM_SECTOR_GMT, LM_FOV_EXP},  {LM_SECTOR_GMT, LM_FOV_NORM}};
     struct rig *r = start_rig();
     command(r, range_10);
     command(r, (struct lm_control){.kind = LM_CONTROL_GAIN, .gain_db = 30});
@@ -411,7 +412,7 @@ TEST(a_patch_drawn_twice_is_the_same)
     patch.sar.is_from_ownship = false;
     patch.sar.look_azimuth = FX_BAM_DEG(30);
     patch.sar.range_m = 20000;
-    patch.sar.height_q6 = 3000 * 64;
+    patch.sar.height_m_q6 = 3000 * 64;
     uint32_t sums[3];
     run(r, 0.5);
     for (int i = 0; i < 3; i++) {
@@ -431,8 +432,8 @@ TEST(a_patch_drawn_twice_is_the_same)
 /* Through fields of view, there and back. */
 TEST(a_look_that_was_kept_is_what_the_beam_would_see_anew)
 {
-    static const uint8_t fields[] = {LM_FIELD_NORM, LM_FIELD_EXP, LM_FIELD_NORM, LM_FIELD_DBS1,
-                                     LM_FIELD_NORM};
+    static const uint8_t fields[] = {LM_FOV_NORM, LM_FOV_EXP, LM_FOV_NORM, LM_FOV_DBS1,
+                                     LM_FOV_NORM};
     struct rig *r = start_rig();
     const struct lm_sector *s = &r->unit.picture.sector;
     uint32_t kept = 0;
@@ -445,9 +446,9 @@ TEST(a_look_that_was_kept_is_what_the_beam_would_see_anew)
             for (int parity = 0; parity < 2; parity++) {
                 const struct lm_sector_aim *aim = &s->aims[parity];
                 struct lm_beam beam = {.fineness = 0};
-                struct lm_beam_look anew;
-                lm_beam_aim(&beam, s->radar, aim->azimuth, 256, &anew);
-                assert_true(!aim->is_kept || memcmp(&anew, &aim->look, sizeof anew) == 0);
+                struct lm_beam_taps anew;
+                lm_beam_set_taps(&beam, s->radar, aim->azimuth, 256, &anew);
+                assert_true(!aim->is_kept || memcmp(&anew, &aim->taps, sizeof anew) == 0);
                 kept += aim->is_kept;
             }
         }

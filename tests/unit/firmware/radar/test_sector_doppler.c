@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-enum { POINTS_MAX = LM_TARGETS_NEAR, LINES_MAX = LM_SECTOR_LINES_MAX };
+enum { POINTS_MAX = LM_TARGET_CANDIDATES_MAX, LINES_MAX = LM_SECTOR_LINES_MAX };
 
 static struct tiny_cell sea(void *ctx, const struct tiny_place *p)
 {
@@ -27,8 +27,8 @@ static struct sector_world *make_flat(bool is_sea)
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
     w->platform = (struct lm_platform){
-        .place = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
-        .height_q10 = 2000 * 1024};
+        .position = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .height_m_q10 = 2000 * 1024};
     return w;
 }
 
@@ -42,7 +42,7 @@ struct points {
 static struct lm_target *add_point(struct points *p, const struct sector_world *w,
                                    double azimuth_deg, double ground_m, double rcs_db)
 {
-    const struct lm_place at = place_at(w, azimuth_deg, ground_m);
+    const struct lm_position at = place_at(w, azimuth_deg, ground_m);
     assert_true(p->count < POINTS_MAX);
     p->azimuth_deg[p->count] = azimuth_deg;
     p->items[p->count] = point_at(hs_degrees(at.latitude), hs_degrees(at.longitude), 10, rcs_db);
@@ -58,13 +58,13 @@ static struct lm_target_set set_of(const struct points *p)
 static double level_near(const struct sector_world *w, double ground_m)
 {
     const struct lm_sector *s = &w->sector;
-    const double slant_m = hypot(ground_m, w->platform.height_q10 / 1024.0);
+    const double slant_m = hypot(ground_m, w->platform.height_m_q10 / 1024.0);
     const int32_t bin =
-        (int32_t)lround((slant_m - s->slant.first_q8 / 256.0) * 256 / s->slant.cell_q8);
+        (int32_t)lround((slant_m - s->slant.first_m_q8 / 256.0) * 256 / s->slant.cell_m_q8);
     int32_t level_q8 = INT32_MIN;
     assert_true(bin >= 2 && bin + 2 < (int32_t)s->slant.cells);
     for (int32_t i = bin - 2; i <= bin + 2; i++) {
-        level_q8 = s->level_q8[i] > level_q8 ? s->level_q8[i] : level_q8;
+        level_q8 = s->level_db_q8[i] > level_q8 ? s->level_db_q8[i] : level_q8;
     }
     return level_q8 / 256.0;
 }
@@ -100,7 +100,7 @@ static double width_at(const struct sector_world *w, const double *level_db, uin
 
 /* A point between two samples is made of two beams side by side, by theory up to 13 % less curved
  * at its top than one. */
-static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, double spacing_deg,
+static void judge_width(enum lm_fov field, double azimuth_deg, double rcs_db, double spacing_deg,
                         uint32_t points, uint32_t speed_m_s, double ratio)
 {
     const double ground_m = 15000;
@@ -111,9 +111,8 @@ static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, 
         add_point(&p, w, azimuth_deg + (i - (points - 1) / 2.0) * spacing_deg, ground_m, rcs_db);
     }
     const struct lm_target_set set = set_of(&p);
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
-                                              .field = (uint8_t)field,
-                                              .centre = place_at(w, azimuth_deg, ground_m)};
+    const struct lm_sector_command command = {
+        .mode = LM_SECTOR_GM, .fov = (uint8_t)field, .centre = place_at(w, azimuth_deg, ground_m)};
     start_sector(w, &command, NULL, &set);
     static double level_db[LINES_MAX];
     do {
@@ -137,12 +136,12 @@ static void judge_width(enum lm_field field, double azimuth_deg, double rcs_db, 
 
 TEST(a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch)
 {
-    judge_width(LM_FIELD_DBS1, 45, 20, 0.71, 16, 180, 8);
-    judge_width(LM_FIELD_DBS1, -30, 20, 0.71, 16, 180, 8);
-    judge_width(LM_FIELD_DBS2, 45, 10, 0.31, 16, 180, 64);
+    judge_width(LM_FOV_DBS1, 45, 20, 0.71, 16, 180, 8);
+    judge_width(LM_FOV_DBS1, -30, 20, 0.71, 16, 180, 8);
+    judge_width(LM_FOV_DBS2, 45, 10, 0.31, 16, 180, 64);
     /* On a sampled azimuth: half a sample right of the nose. */
-    judge_width(LM_FIELD_DBS1, 0.46875, 30, 0, 1, 60, 1);
-    judge_width(LM_FIELD_DBS2, 0.46875, 30, 0, 1, 60, 1);
+    judge_width(LM_FOV_DBS1, 0.46875, 30, 0, 1, 60, 1);
+    judge_width(LM_FOV_DBS2, 0.46875, 30, 0, 1, 60, 1);
 }
 
 /* ---- where ---- */
@@ -153,11 +152,11 @@ enum { SWEEPS_OF_OFFSETS = 4 };
 static double power_near(const struct sector_world *w, double ground_m)
 {
     const struct lm_slant *slant = &w->sector.slant;
-    const double slant_m = hypot(ground_m, w->platform.height_q10 / 1024.0);
-    const int32_t bin = (int32_t)lround((slant_m * 256 - slant->first_q8) / slant->cell_q8);
+    const double slant_m = hypot(ground_m, w->platform.height_m_q10 / 1024.0);
+    const int32_t bin = (int32_t)lround((slant_m * 256 - slant->first_m_q8) / slant->cell_m_q8);
     double power = 0;
     for (int32_t i = bin - 8; i <= bin + 8; i++) {
-        power += pow(10, w->sector.level_q8[i] / 2560.0);
+        power += pow(10, w->sector.level_db_q8[i] / 2560.0);
     }
     return power;
 }
@@ -174,7 +173,7 @@ static void take_powers(struct sector_world *w, const struct lm_sector_command *
 }
 
 struct spread {
-    enum lm_field field;
+    enum lm_fov field;
     double azimuth_deg, ratio; /* of the middle; how much sharper than the beam */
     double spacing_deg, rcs_db;
     uint32_t points;
@@ -207,7 +206,7 @@ static void judge_places(struct sector_world *w, const struct spread *s, double 
     const double ground_m = s->ground_m;
     static double with[LINES_MAX], without[LINES_MAX];
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
-                                              .field = (uint8_t)s->field,
+                                              .fov = (uint8_t)s->field,
                                               .centre = place_at(w, s->azimuth_deg, ground_m)};
     struct points p = {.count = 0};
     for (uint32_t i = 0; i < s->points; i++) {
@@ -231,9 +230,9 @@ static void judge_places(struct sector_world *w, const struct spread *s, double 
 TEST(a_point_stands_where_it_is_between_any_two_samples)
 {
     const struct spread cases[] = {
-        {LM_FIELD_NORM, 0, 1, 10.17, 40, 10, 16000}, {LM_FIELD_EXP, 30, 1, 8, 32, 1, 16000},
-        {LM_FIELD_DBS1, 45, 8, 1.53, 25, 9, 16000},  {LM_FIELD_DBS2, 45, 64, 0.31, 12, 12, 16000},
-        {LM_FIELD_DBS2, 45, 64, 0.57, 8, 12, 9000},  {LM_FIELD_DBS2, 45, 64, 0.57, 6, 12, 6000}};
+        {LM_FOV_NORM, 0, 1, 10.17, 40, 10, 16000}, {LM_FOV_EXP, 30, 1, 8, 32, 1, 16000},
+        {LM_FOV_DBS1, 45, 8, 1.53, 25, 9, 16000},  {LM_FOV_DBS2, 45, 64, 0.31, 12, 12, 16000},
+        {LM_FOV_DBS2, 45, 64, 0.57, 8, 12, 9000},  {LM_FOV_DBS2, 45, 64, 0.57, 6, 12, 6000}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct sector_world *w = make_flat(true);
         const double sample_deg = hs_degrees(w->radar.sample) / cases[i].ratio;
@@ -309,14 +308,14 @@ static void measure_notch(struct sector_world *w, double ground_m, double apart_
 TEST(the_notch_ends_where_the_formula_says)
 {
     const struct {
-        enum lm_field field;
+        enum lm_fov field;
         double rate_deg_s, least;
         uint32_t speed_m_s;
         double ground_m, apart_m, rcs_db;
     } cases[] = {
-        {LM_FIELD_DBS1, 15, 4, 60, 14500, 300, 22},  {LM_FIELD_DBS1, 15, 4, 100, 14500, 300, 22},
-        {LM_FIELD_DBS1, 15, 4, 200, 14500, 300, 22}, {LM_FIELD_DBS2, 3, 32, 120, 9200, 100, 12},
-        {LM_FIELD_DBS2, 3, 32, 150, 9200, 100, 12},  {LM_FIELD_DBS2, 3, 32, 250, 9200, 100, 12}};
+        {LM_FOV_DBS1, 15, 4, 60, 14500, 300, 22},  {LM_FOV_DBS1, 15, 4, 100, 14500, 300, 22},
+        {LM_FOV_DBS1, 15, 4, 200, 14500, 300, 22}, {LM_FOV_DBS2, 3, 32, 120, 9200, 100, 12},
+        {LM_FOV_DBS2, 3, 32, 150, 9200, 100, 12},  {LM_FOV_DBS2, 3, 32, 250, 9200, 100, 12}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct sector_world *w = make_flat(true);
         struct points p = {.count = 0};
@@ -325,7 +324,7 @@ TEST(the_notch_ends_where_the_formula_says)
         add_rings(&p, w, cases[i].ground_m, cases[i].apart_m, cases[i].rcs_db);
         const struct lm_target_set set = set_of(&p);
         const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
-                                                  .field = (uint8_t)cases[i].field,
+                                                  .fov = (uint8_t)cases[i].field,
                                                   .centre = place_at(w, 0, cases[i].ground_m)};
         start_sector(w, &command, NULL, &set);
         measure_notch(w, cases[i].ground_m, cases[i].apart_m, &left_deg, &right_deg);
@@ -349,7 +348,7 @@ static void take_sweep(struct sector_world *w, double level_db[SECTOR_LINES][END
     do {
         const uint32_t line = draw_line(w);
         for (int i = FIRST_BIN; i < END_BIN; i++) {
-            level_db[line][i] = w->sector.level_q8[i] / 256.0;
+            level_db[line][i] = w->sector.level_db_q8[i] / 256.0;
         }
     } while (!lm_sector_is_at_edge(&w->sector));
     for (int i = FIRST_BIN; i < END_BIN; i++) {
@@ -454,9 +453,10 @@ static double mean_sea_db(struct sector_world *w)
     do {
         draw_line(w);
         for (uint32_t i = 0; i < w->sector.slant.cells; i++) {
-            const double slant_m = (w->sector.slant.first_q8 + i * w->sector.slant.cell_q8) / 256.0;
+            const double slant_m =
+                (w->sector.slant.first_m_q8 + i * w->sector.slant.cell_m_q8) / 256.0;
             if (slant_m > 3000 && slant_m < 5000) {
-                sum += pow(10, w->sector.level_q8[i] / 2560.0);
+                sum += pow(10, w->sector.level_db_q8[i] / 2560.0);
                 count++;
             }
         }
@@ -466,7 +466,7 @@ static double mean_sea_db(struct sector_world *w)
 
 TEST(the_sea_brightens_by_5_dB_a_state)
 {
-    const struct lm_sector_command command = {.mode = LM_SECTOR_SEA, .azimuth = 1};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_SEA, .azimuth_index = 1};
     struct sector_world *w = make_flat(true);
     double before_db = 0;
     for (uint8_t sea_state = 0; sea_state <= LM_SEA_STATE_MAX; sea_state++) {

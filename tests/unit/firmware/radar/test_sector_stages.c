@@ -65,7 +65,7 @@ static void note_power(struct score *s, double power, double wanted, int steps)
 
 static double height_m(const struct lm_sector *s)
 {
-    return (s->grid.height_q10 - s->grid.reference_q10) / 1024.0;
+    return (s->grid.height_m_q10 - s->grid.reference_m_q10) / 1024.0;
 }
 
 /* ---- what a sample shows ---- */
@@ -74,8 +74,8 @@ static double horizon_of(const struct lm_sector *s, const struct ref_bin *bins, 
                          const struct ref_view *view)
 {
     const size_t first = ref_first_shown(bins, cells, view);
-    const bool is_open = s->runup.grid.cells == 0 || s->runup_horizon == LM_HORIZON_OPEN;
-    return is_open ? ref_gm_horizon(&bins[first], view) : ldexp((double)s->runup_horizon, -40);
+    const bool is_open = s->foreground.grid.cells == 0 || s->foreground_horizon == LM_HORIZON_OPEN;
+    return is_open ? ref_gm_horizon(&bins[first], view) : ldexp((double)s->foreground_horizon, -40);
 }
 
 static struct ref_antenna antenna_of(const struct lm_radar *radar)
@@ -91,7 +91,7 @@ static void take_draws(const struct sector_world *w, int32_t sample, uint32_t sw
     const struct lm_sector *s = &w->sector;
     const int32_t off = lm_beam_azimuth(&s->beam, s->radar, sample);
     const double azimuth_deg = hs_degrees(s->up + (fx_bam_t)off);
-    const double edge_m = metres(s->ground_edge_q8), cell_m = metres(s->grid.cell_q8);
+    const double edge_m = metres(s->ground_edge_m_q8), cell_m = metres(s->grid.cell_m_q8);
     for (uint32_t i = 0; i < cells; i++) {
         const uint32_t column = ref_ground_column(azimuth_deg, edge_m, cell_m, i);
         bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, sweep);
@@ -104,10 +104,11 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
 {
     const struct sector_world *w = t->w;
     const struct lm_sector *s = &w->sector;
-    const struct ref_view view = {s->grid.height_q10 / 1024.0, s->grid.reference_q10 / 1024.0,
-                                  metres(s->grid.cell_q8)};
+    const struct ref_view view = {s->grid.height_m_q10 / 1024.0, s->grid.reference_m_q10 / 1024.0,
+                                  metres(s->grid.cell_m_q8)};
     for (uint32_t i = 0; i < cells; i++) {
-        bins[i].range_m = metres(s->ground_edge_q8 + s->grid.cell_q8 / 2 + i * s->grid.cell_q8);
+        bins[i].range_m =
+            metres(s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2 + i * s->grid.cell_m_q8);
     }
     take_ground(&w->line.ground, &w->db.classes, bins, cells);
     ref_aspect(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
@@ -122,15 +123,15 @@ static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
     const struct lm_sector *s = &w->sector;
     const uint32_t cells = s->grid.cells;
     struct ref_bin bins[LM_CELLS_MAX] = {0};
-    struct lm_sight gain = w->line.sight;
-    memset(gain.level_q8, 0, sizeof gain.level_q8);
-    lm_elevation_run(&s->elevation, &s->fan, &s->grid, &gain);
+    struct lm_lit_line gain = w->line.lit;
+    memset(gain.level_db_q8, 0, sizeof gain.level_db_q8);
+    lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &gain);
     take_draws(w, sample, sweep, bins, cells);
     see(t, bins, cells);
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
-        const int32_t level_q8 = w->line.sight.level_q8[i];
-        const double before_db = decibels(level_q8 - gain.level_q8[i]);
+        const int32_t level_q8 = w->line.lit.level_db_q8[i];
+        const double before_db = decibels(level_q8 - gain.level_db_q8[i]);
         const double tangent = ldexp(gain.horizon[i + 1], -(int)s->grid.tangent_bits);
         const double left_db = ref_elevation_db(&antenna, hs_degrees((fx_bam_t)s->tilt), tangent);
         note(&t->score[SAMPLE], shown(before_db) - shown(bins[i].echo_db));
@@ -142,7 +143,8 @@ static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
 
 static struct ref_bins bins_of(const struct lm_sector *s)
 {
-    return (struct ref_bins){metres(s->slant.first_q8), metres(s->slant.cell_q8), s->slant.cells};
+    return (struct ref_bins){metres(s->slant.first_m_q8), metres(s->slant.cell_m_q8),
+                             s->slant.cells};
 }
 
 /* The slant range of the sample taken last, `sample`. */
@@ -152,10 +154,10 @@ static void judge_slant(struct trial *t, long sample)
     const struct ref_bins bins = bins_of(s);
     double ground[REF_CELLS_MAX], power[REF_CELLS_MAX];
     for (uint32_t i = 0; i < s->grid.cells; i++) {
-        ground[i] = pow(10, decibels(t->w->line.sight.level_q8[i]) / 10);
+        ground[i] = pow(10, decibels(t->w->line.lit.level_db_q8[i]) / 10);
     }
-    ref_slant_power(&bins, height_m(s), metres(s->ground_edge_q8), metres(s->grid.cell_q8), ground,
-                    s->grid.cells, power);
+    ref_slant_power(&bins, height_m(s), metres(s->ground_edge_m_q8), metres(s->grid.cell_m_q8),
+                    ground, s->grid.cells, power);
     for (uint32_t i = 0; i < s->slant.cells; i++) {
         const uint32_t slot = (uint32_t)sample % LM_BEAM_TAPS;
         note_power(&t->score[SLANT], ldexp(s->beam.power_q24[slot][i], -24), fmin(power[i], 255),
@@ -165,19 +167,19 @@ static void judge_slant(struct trial *t, long sample)
 
 static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
 {
-    const struct lm_field_row *field = &s->radar->field[s->command.field];
-    const uint32_t rate = field->bam_per_s ? field->bam_per_s : s->radar->mode[0].bam_per_s;
+    const struct lm_fov_row *fov = &s->radar->fov[s->command.fov];
+    const uint32_t rate = fov->bam_per_s ? fov->bam_per_s : s->radar->mode[0].bam_per_s;
     const struct ref_dbs dbs = {.speed_m_s = s->platform.speed_mm_s / 1000.0,
                                 .beam_deg = hs_degrees(s->radar->antenna.azimuth_beam),
                                 .wavelength_m = s->radar->wavelength_um * 1e-6,
                                 .rate_deg_s = hs_degrees(rate)};
     const double off_deg = hs_degrees(s->up - s->platform.track) + azimuth_deg;
     const double had = ref_dbs_ratio(&dbs, off_deg);
-    return (struct ref_beam){.beam_deg = dbs.beam_deg,
-                             .line_deg = hs_degrees(s->radar->sample),
-                             .ratio = field->sharpening > 1 ? ref_dbs_used(had, field->sharpening,
-                                                                           field->sharpening_least)
-                                                            : 1};
+    return (struct ref_beam){
+        .beam_deg = dbs.beam_deg,
+        .line_deg = hs_degrees(s->radar->sample),
+        .ratio =
+            fov->sharpening > 1 ? ref_dbs_used(had, fov->sharpening, fov->sharpening_least) : 1};
 }
 
 /* The firmware's line behind the beam is made once more: the receiver has changed its own. */
@@ -198,9 +200,10 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
         samples[j] = power[j];
     }
     ref_beam_sum(&look, samples, sum, s->slant.cells);
-    struct lm_beam_look own;
-    lm_beam_aim(&t->w->sector.beam, s->radar, (int32_t)lround(azimuth_deg / 360 * 4294967296.0),
-                (uint32_t)lround(beam.ratio * 256), &own);
+    struct lm_beam_taps own;
+    lm_beam_set_taps(&t->w->sector.beam, s->radar,
+                     (int32_t)lround(azimuth_deg / 360 * 4294967296.0),
+                     (uint32_t)lround(beam.ratio * 256), &own);
     lm_beam_sum(&s->beam, &own, drawn_q24, s->slant.cells);
     for (uint32_t i = 0; i < s->slant.cells; i++) {
         note_power(&t->score[BEAM], ldexp(drawn_q24[i], -24), sum[i], 1);
@@ -216,15 +219,14 @@ static uint8_t scale_of(int32_t range_nm)
 static struct ref_receiver receiver_of(const struct trial *t)
 {
     const struct lm_sector *s = &t->w->sector;
-    const uint8_t range = s->command.range;
+    const uint8_t range = s->command.range_index;
     return (struct ref_receiver){.bins = bins_of(s),
                                  .height_m = height_m(s),
                                  .end_m = s->radar->range[range].range_m,
-                                 .noise_end_db = decibels(s->radar->range[range].noise_end_q8),
+                                 .noise_end_db = decibels(s->radar->range[range].noise_end_db_q8),
                                  .noise_table_db = t->noise_db,
-                                 .stc_m = s->radar->range[range].stc_m,
-                                 .pulse_s =
-                                     s->radar->range[range].pulse_ns[s->command.field] * 1e-9};
+                                 .stc_m = s->radar->range[range].stc_end_m,
+                                 .pulse_s = s->radar->range[range].pulse_ns[s->command.fov] * 1e-9};
 }
 
 /* The environment as the line at an azimuth from north meets it. */
@@ -233,13 +235,13 @@ static void look_at_weather(struct trial *t, const struct ref_receiver *r, doubl
 {
     const struct lm_environment *e = t->weather;
     struct ref_environment *ref = &t->environment;
-    const struct lm_place *own = &t->w->platform.place;
+    const struct lm_position *own = &t->w->platform.position;
     const struct ref_place from = {hs_degrees(own->latitude), hs_degrees(own->longitude)};
     double bearing_deg;
     ref->rain_count = e->rain_count;
     ref->jammer_count = e->jammer_count;
     for (size_t n = 0; n < e->rain_count; n++) {
-        const struct lm_place *at = &e->rain[n].centre;
+        const struct lm_position *at = &e->rain[n].centre;
         ref_geo_inverse(from,
                         (struct ref_place){hs_degrees(at->latitude), hs_degrees(at->longitude)},
                         &bearing_deg, &ref->rain[n].distance_m);
@@ -248,12 +250,12 @@ static void look_at_weather(struct trial *t, const struct ref_receiver *r, doubl
         ref->rain[n].mm_per_h = e->rain[n].mm_per_h;
     }
     for (size_t n = 0; n < e->jammer_count; n++) {
-        const struct lm_place *at = &e->jammer[n].place;
+        const struct lm_position *at = &e->jammer[n].position;
         ref_geo_inverse(from,
                         (struct ref_place){hs_degrees(at->latitude), hs_degrees(at->longitude)},
                         &bearing_deg, &ref->jammer[n].distance_m);
         ref->jammer[n].off_deg = remainder(bearing_deg - azimuth_deg, 360);
-        ref->jammer[n].ratio_db = decibels(e->jammer[n].ratio_q8);
+        ref->jammer[n].ratio_db = decibels(e->jammer[n].noise_ratio_db_q8);
     }
     const struct lm_radar *radar = &t->w->radar;
     ref_weather(ref, radar->wavelength_um * 1e-6, hs_degrees(radar->antenna.azimuth_beam),
@@ -278,7 +280,7 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
         const double brightness = ref_brightness(level_db[i], &t->params);
         const double fall_db =
             ref_stc_fall_db(&receiver, receiver.bins.first_m + i * receiver.bins.step_m);
-        note_power(&t->score[RECEIVER], pow(10, (decibels(s->level_q8[i]) + fall_db) / 10),
+        note_power(&t->score[RECEIVER], pow(10, (decibels(s->level_db_q8[i]) + fall_db) / 10),
                    pow(10, (level_db[i] + fall_db) / 10), PULSE_STEPS);
         t->pixels++;
         t->beyond_1_grey += abs(t->w->line.grey[i] - ref_grey(brightness, &t->params)) > 1;
@@ -360,12 +362,12 @@ static struct sector_world *make_country(void)
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
     /* The mean across a sample is test_footprint's: here a sample is the azimuth in the line. */
-    for (int field = 0; field < LM_FIELDS; field++) {
-        w->radar.field[field].azimuths_log2 = 0;
+    for (int field = 0; field < LM_FOVS; field++) {
+        w->radar.fov[field].azimuths_log2 = 0;
     }
     w->platform = (struct lm_platform){
-        .place = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
-        .height_q10 = 2500 * 1024,
+        .position = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .height_m_q10 = 2500 * 1024,
         .heading = FX_BAM_DEG(7),
         .speed_mm_s = 180000};
     return w;
@@ -374,9 +376,9 @@ static struct sector_world *make_country(void)
 TEST(real_beam_sweeps_agree_with_the_reference_at_every_stage)
 {
     struct sector_world *w = make_country();
-    struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = scale_of(10)};
+    struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range_index = scale_of(10)};
     judge_sweep(w, "GM, 10 nm", &command, NULL);
-    command.range = scale_of(40);
+    command.range_index = scale_of(40);
     judge_sweep(w, "GM, 40 nm", &command, NULL);
     free_sector_world(w);
 }
@@ -384,7 +386,7 @@ TEST(real_beam_sweeps_agree_with_the_reference_at_every_stage)
 TEST(rain_jammer_and_sea_agree_with_the_reference)
 {
     struct sector_world *w = make_country();
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range = scale_of(20)};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range_index = scale_of(20)};
     const struct lm_environment e = {
         .rain = {{place_at(w, 12, 17000), 5000, 25}, {place_at(w, -20, 24000), 7000, 4}},
         .jammer = {{place_at(w, 30, 50000), 25 * 256}},
@@ -399,11 +401,11 @@ TEST(windows_agree_with_the_reference_at_every_stage)
 {
     struct sector_world *w = make_country();
     struct lm_sector_command command = {.mode = LM_SECTOR_GM,
-                                        .field = LM_FIELD_EXP,
-                                        .range = scale_of(20),
+                                        .fov = LM_FOV_EXP,
+                                        .range_index = scale_of(20),
                                         .centre = place_at(w, 25, 25000)};
     judge_sweep(w, "EXP, 20 nm", &command, NULL);
-    command.field = LM_FIELD_DBS1;
+    command.fov = LM_FOV_DBS1;
     command.centre = place_at(w, 45, 25000);
     judge_sweep(w, "DBS1, 20 nm", &command, NULL);
     free_sector_world(w);

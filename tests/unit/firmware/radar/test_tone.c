@@ -26,7 +26,7 @@ static uint8_t grey_of(const struct lm_tone *tone, int32_t level_q8)
 
 static double exact_grey(const struct lm_tone_config *c, double level_q8)
 {
-    const double v = (level_q8 - c->black_q8) / (c->white_q8 - c->black_q8);
+    const double v = (level_q8 - c->black_db_q8) / (c->white_db_q8 - c->black_db_q8);
     return 255 * pow(fmin(fmax(v, 0), 1), c->gamma_q8 / 256.0);
 }
 
@@ -41,7 +41,7 @@ static struct errors errors_of(const struct lm_tone_config *c)
     struct lm_tone tone;
     struct errors e = {0};
     assert_int_equal(lm_tone_set(&tone, c), LM_OK);
-    for (int32_t level_q8 = c->black_q8; level_q8 <= c->white_q8; level_q8++) {
+    for (int32_t level_q8 = c->black_db_q8; level_q8 <= c->white_db_q8; level_q8++) {
         const double exact = exact_grey(c, level_q8);
         const int grey = grey_of(&tone, level_q8);
         e.worst = fmax(e.worst, fabs(grey - exact));
@@ -98,9 +98,9 @@ TEST(below_gamma_1_a_level_gets_the_grey_of_the_nearest_step)
         struct lm_tone tone;
         assert_int_equal(lm_tone_set(&tone, c), LM_OK);
         const double step_q8 = 1 << tone.step_log2;
-        for (int32_t level = c->black_q8; level < c->white_q8 - step_q8; level++) {
-            const double step = floor((level - c->black_q8) / step_q8 + 0.5);
-            const double exact = exact_grey(c, c->black_q8 + step * step_q8);
+        for (int32_t level = c->black_db_q8; level < c->white_db_q8 - step_q8; level++) {
+            const double step = floor((level - c->black_db_q8) / step_q8 + 0.5);
+            const double exact = exact_grey(c, c->black_db_q8 + step * step_q8);
             assert_true(fabs(grey_of(&tone, level) - exact) <= 0.501);
         }
     }
@@ -112,13 +112,13 @@ TEST(black_and_below_is_black_white_and_above_is_white)
         const struct lm_tone_config *c = &configs[n];
         struct lm_tone tone;
         assert_int_equal(lm_tone_set(&tone, c), LM_OK);
-        assert_int_equal(grey_of(&tone, c->black_q8), 0);
-        assert_int_equal(grey_of(&tone, c->black_q8 - 1), 0);
+        assert_int_equal(grey_of(&tone, c->black_db_q8), 0);
+        assert_int_equal(grey_of(&tone, c->black_db_q8 - 1), 0);
         assert_int_equal(grey_of(&tone, -1000 * 256), 0);
-        assert_int_equal(grey_of(&tone, c->white_q8), 255);
-        assert_int_equal(grey_of(&tone, c->white_q8 + 1), 255);
+        assert_int_equal(grey_of(&tone, c->white_db_q8), 255);
+        assert_int_equal(grey_of(&tone, c->white_db_q8 + 1), 255);
         assert_int_equal(grey_of(&tone, 1000 * 256), 255);
-        assert_true(grey_of(&tone, (c->black_q8 + c->white_q8) / 2) < 255);
+        assert_true(grey_of(&tone, (c->black_db_q8 + c->white_db_q8) / 2) < 255);
     }
 }
 

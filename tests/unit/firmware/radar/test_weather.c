@@ -21,7 +21,7 @@ struct world {
     struct lm_receiver receiver;
     struct lm_environment environment;
     struct lm_weather weather;
-    struct lm_place antenna;
+    struct lm_position antenna;
     struct lm_geo_origin origin;
     struct ref_bins bins;
     struct ref_environment ref;
@@ -37,12 +37,13 @@ static struct world *make_world(void)
     struct lm_range_grid *grid = calloc(1, sizeof *grid);
     assert_non_null(grid);
     w->radar = lm_radar_default;
-    lm_range_grid_set(grid, &w->radar.aspect, cell_q8 / 2, cell_q8, CELLS, HEIGHT_M * 1024, 0);
+    lm_range_grid_set(grid, &w->radar.illumination, cell_q8 / 2, cell_q8, CELLS, HEIGHT_M * 1024,
+                      0);
     lm_slant_set(&w->slant, cell_q8 / 2, cell_q8, CELLS, grid, cell_q8 / 2);
     lm_receiver_set(&w->receiver, &w->radar, &w->slant, HEIGHT_M * 1024, 2, 1000);
     free(grid);
     w->bins = (struct ref_bins){cell_q8 / 512.0, cell_q8 / 256.0, CELLS};
-    w->antenna = (struct lm_place){FX_BAM_DEG(46), FX_BAM_DEG(11)};
+    w->antenna = (struct lm_position){FX_BAM_DEG(46), FX_BAM_DEG(11)};
     lm_geo_set_origin(&w->origin, w->antenna);
     w->environment.sea_state = 3;
     return w;
@@ -53,7 +54,7 @@ static double bin_m(const struct world *w, uint32_t i)
     return w->bins.first_m + i * w->bins.step_m;
 }
 
-static struct lm_place place_at(const struct world *w, double distance_m, double azimuth_deg)
+static struct lm_position place_at(const struct world *w, double distance_m, double azimuth_deg)
 {
     return lm_geo_direct(&w->origin, hs_bam(azimuth_deg), (uint32_t)lround(distance_m * 256));
 }
@@ -92,7 +93,7 @@ static void clear(struct world *w)
 
 static double pass_db(const struct world *w, uint32_t i)
 {
-    return -w->weather.loss_q8[i] / 256.0;
+    return -w->weather.loss_db_q8[i] / 256.0;
 }
 
 TEST(fair_weather_has_no_rain_and_costs_no_bin)
@@ -101,10 +102,10 @@ TEST(fair_weather_has_no_rain_and_costs_no_bin)
     memset(&w->weather, 0xa5, sizeof w->weather);
     look(w);
     assert_false(w->weather.has_rain);
-    assert_int_equal(w->weather.noise_rise_q8, 0);
+    assert_int_equal(w->weather.noise_rise_db_q8, 0);
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
-        assert_int_equal((uint32_t)w->weather.loss_q8[i], 0xa5a5a5a5);
-        assert_int_equal((uint32_t)w->weather.rain_q8[i], 0xa5a5a5a5);
+        assert_int_equal((uint32_t)w->weather.loss_db_q8[i], 0xa5a5a5a5);
+        assert_int_equal((uint32_t)w->weather.rain_db_q8[i], 0xa5a5a5a5);
     }
     free(w);
 }
@@ -123,7 +124,7 @@ TEST(rain_weakens_what_lies_behind_it_by_the_recommendations_rate)
         for (uint32_t i = 0; i < CELLS; i++) {
             const double r = bin_m(w, i);
             if (r < 25800) {
-                assert_int_equal(w->weather.loss_q8[i], 0);
+                assert_int_equal(w->weather.loss_db_q8[i], 0);
             } else if (r > 34200) {
                 assert_true(fabs(pass_db(w, i) + behind_db) < 0.02 + 0.002 * behind_db);
             } else if (r > 26400 && r < 33600) {
@@ -147,7 +148,7 @@ TEST(rain_returns_what_its_drops_scatter)
         for (uint32_t i = 0; i < CELLS; i++) {
             const double r = bin_m(w, i), s = sqrt(r * r - 1.0 * HEIGHT_M * HEIGHT_M);
             if (r < 25500 || r > 34500) {
-                assert_true(w->weather.rain_q8[i] < -150 * 256);
+                assert_true(w->weather.rain_db_q8[i] < -150 * 256);
                 continue;
             }
             if (r < 26400 || r > 33600) {
@@ -157,7 +158,7 @@ TEST(rain_returns_what_its_drops_scatter)
                 pow(pi, 5) * 0.93 * 200e-18 * pow(mm_per_h, 1.6) / pow(wavelength_m, 4);
             const double g = HEIGHT_M / s - s / (2 * REF_EFFECTIVE_EARTH_M);
             const double fresh_db = 10 * log10(eta * r * 4.6 * pi / 180 / g);
-            const double returned_db = w->weather.rain_q8[i] / 256.0;
+            const double returned_db = w->weather.rain_db_q8[i] / 256.0;
             assert_true(fabs(returned_db - fresh_db - pass_db(w, i)) < 0.03);
         }
     }
@@ -183,7 +184,8 @@ TEST(any_circles_do_to_a_line_what_the_reference_says)
         double last = 0;
         for (uint32_t i = 0; i < CELLS; i++) {
             const double pass = w->weather.has_rain ? pow(10, pass_db(w, i) / 10) : 1;
-            const double rain = w->weather.has_rain ? pow(10, w->weather.rain_q8[i] / 2560.0) : 0;
+            const double rain =
+                w->weather.has_rain ? pow(10, w->weather.rain_db_q8[i] / 2560.0) : 0;
             /* Edges are known to 0.2 % of the distance, which is less than a bin (289 m). What a
              * bin returns lies between the neighbours' then. */
             double least = INFINITY, most = last;
@@ -212,7 +214,7 @@ TEST(who_flies_in_the_rain_is_in_it_from_the_first_bin)
         if (fabs(bin_m(w, i) - 8000) > 300) {
             assert_true(fabs(pass_db(w, i) + rate_db * within_m) < 0.02);
         }
-        assert_true((w->weather.rain_q8[i] > -150 * 256) == (bin_m(w, i) < 8150));
+        assert_true((w->weather.rain_db_q8[i] > -150 * 256) == (bin_m(w, i) < 8150));
     }
     free(w);
 }
@@ -244,7 +246,7 @@ TEST(a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range)
             const double rise_db = 10 * log10(1 + pow(10, jam_db / 10));
             /* Bearings are known to a twentieth of a degree at these distances. */
             const double slope = 2 * 40 * log10(2) * fabs(x) / 3.3;
-            assert_true(fabs(w->weather.noise_rise_q8 / 256.0 - rise_db) < 0.05 + 0.05 * slope);
+            assert_true(fabs(w->weather.noise_rise_db_q8 / 256.0 - rise_db) < 0.05 + 0.05 * slope);
             assert_true(fabs(10 * log10(1 + w->ref_weather.jam) - rise_db) < 1e-5);
         }
     }
@@ -252,11 +254,11 @@ TEST(a_strobe_has_the_one_way_pattern_and_falls_with_the_square_of_range)
     clear(w);
     add_jammer(w, 18520, 0, 50);
     look(w);
-    assert_true(fabs(w->weather.noise_rise_q8 / 256.0 - 50) < 0.05);
+    assert_true(fabs(w->weather.noise_rise_db_q8 / 256.0 - 50) < 0.05);
     clear(w);
     add_jammer(w, 18520, 1.65, 50);
     look(w);
-    assert_true(fabs(w->weather.noise_rise_q8 / 256.0 - (50 - 10 * log10(2))) < 0.05);
+    assert_true(fabs(w->weather.noise_rise_db_q8 / 256.0 - (50 - 10 * log10(2))) < 0.05);
     free(w);
 }
 
@@ -266,7 +268,7 @@ TEST(jammers_add_their_powers)
     for (uint32_t n = 1; n <= LM_JAMMERS_MAX; n++) {
         add_jammer(w, 18520, 0, 10);
         look(w);
-        assert_true(fabs(w->weather.noise_rise_q8 / 256.0 - 10 * log10(1 + 10.0 * n)) < 0.08);
+        assert_true(fabs(w->weather.noise_rise_db_q8 / 256.0 - 10 * log10(1 + 10.0 * n)) < 0.08);
     }
     free(w);
 }
@@ -282,7 +284,7 @@ TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
     lm_receiver_run(&w->receiver, NULL, 1, 1, power, quiet);
     lm_receiver_run(&w->receiver, &w->weather, 1, 1, power, jammed);
     for (uint32_t i = 0; i < CELLS; i++) {
-        assert_true(abs(jammed[i] - quiet[i] - w->weather.noise_rise_q8) <= 1);
+        assert_true(abs(jammed[i] - quiet[i] - w->weather.noise_rise_db_q8) <= 1);
     }
     free(w);
 }
@@ -294,15 +296,15 @@ TEST(what_is_far_away_is_not_there)
     e->rain_count = LM_RAINS_MAX;
     e->jammer_count = LM_JAMMERS_MAX;
     for (uint32_t n = 0; n < 4; n++) {
-        const struct lm_place far = {FX_BAM_DEG(46) + (n & 1 ? hs_bam(11.3) : 0),
-                                     FX_BAM_DEG(11) + (n & 2 ? hs_bam(-170) : hs_bam(11.3))};
+        const struct lm_position far = {FX_BAM_DEG(46) + (n & 1 ? hs_bam(11.3) : 0),
+                                        FX_BAM_DEG(11) + (n & 2 ? hs_bam(-170) : hs_bam(11.3))};
         e->rain[n] = (struct lm_rain){far, 100000, 150};
         e->jammer[n] = (struct lm_jammer){far, 80 * 256};
     }
     assert_int_equal(lm_environment_check(e), LM_OK);
     lm_weather_line(&w->weather, e, &w->receiver, &w->radar, w->antenna, hs_bam(90));
     assert_false(w->weather.has_rain);
-    assert_int_equal(w->weather.noise_rise_q8, 0);
+    assert_int_equal(w->weather.noise_rise_db_q8, 0);
     free(w);
 }
 
@@ -317,13 +319,13 @@ TEST(no_environment_in_range_leaves_the_bounds)
     static int32_t level[LM_CELLS_ROOM];
     for (int n = 0; n < 2000; n++) {
         struct lm_environment *e = &w->environment;
-        w->antenna = (struct lm_place){hs_bam(180 * hs_rng_uniform(&rng) - 90),
-                                       hs_bam(360 * hs_rng_uniform(&rng))};
+        w->antenna = (struct lm_position){hs_bam(180 * hs_rng_uniform(&rng) - 90),
+                                          hs_bam(360 * hs_rng_uniform(&rng))};
         e->rain_count = (uint8_t)hs_rng_below(&rng, LM_RAINS_MAX + 1);
         e->jammer_count = (uint8_t)hs_rng_below(&rng, LM_JAMMERS_MAX + 1);
         for (int k = 0; k < 4; k++) {
             const double spread = n % 3 ? 1 : 0;
-            const struct lm_place near = {
+            const struct lm_position near = {
                 w->antenna.latitude + hs_bam(spread * hs_rng_normal(&rng)) / 4,
                 w->antenna.longitude + hs_bam(spread * hs_rng_normal(&rng))};
             e->rain[k] = (struct lm_rain){near, 100 + hs_rng_below(&rng, 99901),
@@ -333,9 +335,9 @@ TEST(no_environment_in_range_leaves_the_bounds)
         }
         lm_weather_line(&w->weather, e, &w->receiver, &w->radar, w->antenna,
                         (fx_bam_t)hs_rng_u64(&rng));
-        assert_in_range(w->weather.noise_rise_q8, 0, 180 * 256);
+        assert_in_range(w->weather.noise_rise_db_q8, 0, 180 * 256);
         for (uint32_t i = 0; i < CELLS; i++) {
-            assert_true(!w->weather.has_rain || w->weather.loss_q8[i] >= 0);
+            assert_true(!w->weather.has_rain || w->weather.loss_db_q8[i] >= 0);
             power[i] = UINT32_MAX;
         }
         lm_receiver_run(&w->receiver, &w->weather, 0, 0, power, level);
@@ -356,7 +358,7 @@ static int checked(const struct lm_environment *e, struct lm_rain rain, struct l
 
 TEST(an_environment_out_of_its_ranges_is_refused)
 {
-    const struct lm_place here = {FX_BAM_DEG(46), FX_BAM_DEG(11)};
+    const struct lm_position here = {FX_BAM_DEG(46), FX_BAM_DEG(11)};
     const struct lm_rain rain = {here, 5000, 10};
     const struct lm_jammer jammer = {here, 256};
     const struct lm_environment good = {.rain = {rain, rain},
@@ -381,7 +383,7 @@ TEST(an_environment_out_of_its_ranges_is_refused)
         assert_int_equal(checked(&good, r, jammer), rains[n].status);
     }
     const int16_t ratios[] = {-20 * 256, 80 * 256, -20 * 256 - 1, 80 * 256 + 1};
-    const struct lm_place off_earth = {FX_BAM_90 + 1, 0}, below = {(fx_bam_t)-FX_BAM_90 - 1, 0};
+    const struct lm_position off_earth = {FX_BAM_90 + 1, 0}, below = {(fx_bam_t)-FX_BAM_90 - 1, 0};
     for (int n = 0; n < 4; n++) {
         assert_int_equal(checked(&good, rain, (struct lm_jammer){here, ratios[n]}),
                          n < 2 ? LM_OK : LM_ERR_RANGE);

@@ -75,9 +75,9 @@ TEST(every_byte_of_the_table_belongs_to_a_field)
                    offsetof(struct lm_sector_mode_row, name),
                true, LM_NAME_SIZE);
     }
-    for (size_t i = 0; i < LM_FIELDS; i++) {
-        memset(is_known + offsetof(struct lm_radar, field) + i * sizeof(struct lm_field_row) +
-                   offsetof(struct lm_field_row, name),
+    for (size_t i = 0; i < LM_FOVS; i++) {
+        memset(is_known + offsetof(struct lm_radar, fov) + i * sizeof(struct lm_fov_row) +
+                   offsetof(struct lm_fov_row, name),
                true, LM_NAME_SIZE);
     }
     for (uint32_t n = 0; lm_radar_field(n); n++) {
@@ -120,7 +120,7 @@ static void a_mode_lacks_the_smallest_scale(struct lm_radar *r)
 
 static void a_field_lacks_the_smallest_scale(struct lm_radar *r)
 {
-    r->field[LM_FIELD_DBS2].range_max_nm = (uint16_t)(r->range[0].range_nm - 1);
+    r->fov[LM_FOV_DBS2].range_max_nm = (uint16_t)(r->range[0].range_nm - 1);
 }
 
 static void the_start_is_no_scale(struct lm_radar *r)
@@ -150,12 +150,12 @@ static void two_modes_share_a_name(struct lm_radar *r)
 
 static void two_fields_share_a_name(struct lm_radar *r)
 {
-    memcpy(r->field[LM_FIELD_DBS2].name, "exp", 4);
+    memcpy(r->fov[LM_FOV_DBS2].name, "exp", 4);
 }
 
 static void a_field_s_name_has_a_blank(struct lm_radar *r)
 {
-    memcpy(r->field[LM_FIELD_EXP].name, "E P", 4);
+    memcpy(r->fov[LM_FOV_EXP].name, "E P", 4);
 }
 
 static void a_sector_is_wider_than_the_antenna_turns(struct lm_radar *r)
@@ -185,38 +185,39 @@ static void a_gate_is_upside_down(struct lm_radar *r)
 
 static void white_is_hardly_above_black(struct lm_radar *r)
 {
-    r->mode[LM_SECTOR_SEA].tone.white_q8 = (int16_t)(r->mode[LM_SECTOR_SEA].tone.black_q8 + 255);
+    r->mode[LM_SECTOR_SEA].tone.white_db_q8 =
+        (int16_t)(r->mode[LM_SECTOR_SEA].tone.black_db_q8 + 255);
 }
 
 static void a_patch_s_white_is_below_black(struct lm_radar *r)
 {
-    r->sar.tone.white_q8 = (int16_t)(r->sar.tone.black_q8 - 1);
+    r->sar.tone.white_db_q8 = (int16_t)(r->sar.tone.black_db_q8 - 1);
 }
 
 static void a_field_s_rate_is_too_slow(struct lm_radar *r)
 {
-    r->field[LM_FIELD_DBS1].bam_per_s = LM_RADAR_RATE_MIN - 1;
+    r->fov[LM_FOV_DBS1].bam_per_s = LM_RADAR_RATE_MIN - 1;
 }
 
 static void a_window_s_cells_are_too_short(struct lm_radar *r)
 {
     r->range[0].range_m = 1852;
-    r->field[LM_FIELD_DBS2].window_permille = 5;
+    r->fov[LM_FOV_DBS2].window_permille = 5;
 }
 
 static void a_window_is_narrower_than_a_line(struct lm_radar *r)
 {
-    r->field[LM_FIELD_EXP].azimuth_half_max = r->line - 1;
+    r->fov[LM_FOV_EXP].azimuth_half_max = r->line - 1;
 }
 
 static void a_sharpening_is_no_power_of_two(struct lm_radar *r)
 {
-    r->field[LM_FIELD_DBS2].sharpening = 96;
+    r->fov[LM_FOV_DBS2].sharpening = 96;
 }
 
 static void more_sharpening_is_asked_for_than_used(struct lm_radar *r)
 {
-    r->field[LM_FIELD_DBS1].sharpening_least = 9;
+    r->fov[LM_FOV_DBS1].sharpening_least = 9;
 }
 
 static void the_largest_cell_is_smaller_than_the_smallest(struct lm_radar *r)
@@ -235,26 +236,26 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
         {names_of_scales_fall, "range.range_m", 3},
         {a_row_is_not_counted, "ranges", 0},
         {a_mode_lacks_the_smallest_scale, "mode.range_max_nm", LM_SECTOR_SEA},
-        {a_field_lacks_the_smallest_scale, "field.range_max_nm", LM_FIELD_DBS2},
+        {a_field_lacks_the_smallest_scale, "fov.range_max_nm", LM_FOV_DBS2},
         {the_start_is_no_scale, "range_start_nm", 0},
         {the_start_is_beyond_the_mode, "range_start_nm", 0},
         {a_mode_has_no_name, "mode.name", LM_SECTOR_GM},
         {a_mode_s_name_does_not_end, "mode.name", LM_SECTOR_GMT},
         {two_modes_share_a_name, "mode.name", LM_SECTOR_SEA},
-        {two_fields_share_a_name, "field.name", LM_FIELD_DBS2},
-        {a_field_s_name_has_a_blank, "field.name", LM_FIELD_EXP},
+        {two_fields_share_a_name, "fov.name", LM_FOV_DBS2},
+        {a_field_s_name_has_a_blank, "fov.name", LM_FOV_EXP},
         {a_sector_is_wider_than_the_antenna_turns, "azimuth_half", 0},
         {a_sector_is_narrower_than_a_line, "azimuth_half", 2},
         {samples_are_too_far_apart, "sample", 0},
         {samples_are_too_close, "sample", 0},
         {a_gate_is_upside_down, "mode.gate_mm_s[1]", LM_SECTOR_GMT},
-        {white_is_hardly_above_black, "mode.tone.white_q8", LM_SECTOR_SEA},
-        {a_patch_s_white_is_below_black, "sar.tone.white_q8", 0},
-        {a_field_s_rate_is_too_slow, "field.bam_per_s", LM_FIELD_DBS1},
-        {a_window_s_cells_are_too_short, "field.window_permille", LM_FIELD_DBS2},
-        {a_window_is_narrower_than_a_line, "field.azimuth_half_max", LM_FIELD_EXP},
-        {a_sharpening_is_no_power_of_two, "field.sharpening", LM_FIELD_DBS2},
-        {more_sharpening_is_asked_for_than_used, "field.sharpening_least", LM_FIELD_DBS1},
+        {white_is_hardly_above_black, "mode.tone.white_db_q8", LM_SECTOR_SEA},
+        {a_patch_s_white_is_below_black, "sar.tone.white_db_q8", 0},
+        {a_field_s_rate_is_too_slow, "fov.bam_per_s", LM_FOV_DBS1},
+        {a_window_s_cells_are_too_short, "fov.window_permille", LM_FOV_DBS2},
+        {a_window_is_narrower_than_a_line, "fov.azimuth_half_max", LM_FOV_EXP},
+        {a_sharpening_is_no_power_of_two, "fov.sharpening", LM_FOV_DBS2},
+        {more_sharpening_is_asked_for_than_used, "fov.sharpening_least", LM_FOV_DBS1},
         {the_largest_cell_is_smaller_than_the_smallest, "sar.cell_max_mm", 0},
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {

@@ -4,7 +4,7 @@
 #include "lm/target_line.h"
 
 #include "check.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "memory_flash.h"
 #include "target_support.h"
 #include "tiny_image.h"
@@ -23,7 +23,7 @@ static void destination(double lat, double lon, double azimuth, double metres, d
     geod_direct(&earth, lat, lon, azimuth, metres, &to[0], &to[1], NULL);
 }
 
-static double metres_apart(const double a[2], struct lm_place b)
+static double metres_apart(const double a[2], struct lm_position b)
 {
     struct geod_geodesic earth;
     double metres;
@@ -55,8 +55,8 @@ TEST(a_mover_goes_to_the_end_of_its_leg_and_back)
         const double way = gone > 5000 ? 10000 - gone : gone;
         double to[2];
         destination(46, 11, 30, way, to);
-        const struct lm_pose pose = lm_target_pose(&t, (uint64_t)(times_s[i] * 1e6));
-        assert_true(metres_apart(to, pose.place) < 0.05);
+        const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)(times_s[i] * 1e6));
+        assert_true(metres_apart(to, pose.position) < 0.05);
         assert_int_equal(pose.heading, gone > 5000 ? hs_bam(210) : hs_bam(30));
     }
 }
@@ -76,8 +76,8 @@ TEST(the_slowest_the_fastest_and_the_longest_stay_on_their_leg)
         assert_int_equal(lm_target_check(&t), LM_OK);
         for (size_t k = 0; k < sizeof times_us / sizeof *times_us; k++) {
             const double from[2] = {46, 11};
-            const struct lm_pose pose = lm_target_pose(&t, times_us[k]);
-            assert_true(metres_apart(from, pose.place) < cases[i].leg_m + 0.1);
+            const struct lm_pose pose = lm_mover_pose(&t, times_us[k]);
+            assert_true(metres_apart(from, pose.position) < cases[i].leg_m + 0.1);
         }
     }
 }
@@ -85,9 +85,9 @@ TEST(the_slowest_the_fastest_and_the_longest_stay_on_their_leg)
 TEST(a_target_without_speed_stays)
 {
     const struct lm_target t = point_at(46, 11, 0, 10);
-    const struct lm_pose pose = lm_target_pose(&t, UINT64_MAX);
-    assert_int_equal(pose.place.latitude, t.latitude);
-    assert_int_equal(pose.place.longitude, t.longitude);
+    const struct lm_pose pose = lm_mover_pose(&t, UINT64_MAX);
+    assert_int_equal(pose.position.latitude, t.latitude);
+    assert_int_equal(pose.position.longitude, t.longitude);
     assert_int_equal(pose.heading, t.heading);
 }
 
@@ -134,8 +134,8 @@ TEST(a_mover_on_a_path_goes_through_its_places_and_back_or_round)
             }
             const fx_bam_t heading = t.path[leg].heading;
             destination(places[leg][0], places[leg][1], hs_degrees(heading), way, to);
-            const struct lm_pose pose = lm_target_pose(&t, (uint64_t)(seconds * 1e6));
-            assert_true(metres_apart(to, pose.place) < 0.05);
+            const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)(seconds * 1e6));
+            assert_true(metres_apart(to, pose.position) < 0.05);
             assert_int_equal(pose.heading, heading + (is_back ? FX_BAM_180 : 0));
         }
     }
@@ -156,8 +156,9 @@ TEST(the_longest_path_and_the_shortest_are_gone_at_any_time)
         seal_target(&t);
         assert_int_equal(lm_target_check(&t), LM_OK);
         for (uint64_t time = 1; time != 0; time <<= 1) {
-            const struct lm_pose pose = lm_target_pose(&t, time - 1);
-            assert_true(metres_apart(places[0], pose.place) < t.path[0].length_mm / 1000.0 + 0.1);
+            const struct lm_pose pose = lm_mover_pose(&t, time - 1);
+            assert_true(metres_apart(places[0], pose.position) <
+                        t.path[0].length_mm / 1000.0 + 0.1);
         }
     }
 }
@@ -273,25 +274,25 @@ static struct lm_target_line sector_line(uint32_t line)
     const fx_bam_t width = FX_BAM_DEG(120) / LINES;
     const uint32_t cell_q8 = (uint32_t)(cell_m * 256);
     return (struct lm_target_line){
-        .place = {hs_bam(46), hs_bam(11)},
+        .position = {hs_bam(46), hs_bam(11)},
         .azimuth = (fx_bam_t)(((int32_t)line - LINES / 2) * (int32_t)width) + width / 2,
         .width = width,
-        .first_q8 = cell_q8 / 2,
-        .cell_q8 = cell_q8,
+        .first_m_q8 = cell_q8 / 2,
+        .cell_m_q8 = cell_q8,
         .cells = CELLS,
-        .height_q10 = (int32_t)(height_m * 1024),
+        .height_m_q10 = (int32_t)(height_m * 1024),
         .wavelength_um = X_BAND_UM};
 }
 
 /* The power of the target in all lines, and its middle, degrees. */
 static double power_of(const struct lm_target *t, const struct lm_target_line *how, double *at_deg)
 {
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = t, .count = 1};
-    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
+    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     int32_t level_q8[LM_CELLS_MAX];
     double power = 0, moment = 0;
-    lm_targets_select(&near, &set, &scene);
+    lm_target_candidates_select(&candidates, &set, &scene);
     for (uint32_t i = 0; i < LINES; i++) {
         struct lm_target_line line = sector_line(i);
         line.is_doppler = how->is_doppler;
@@ -303,7 +304,7 @@ static double power_of(const struct lm_target *t, const struct lm_target_line *h
         for (int k = 0; k < LM_CELLS_MAX; k++) {
             level_q8[k] = LM_LEVEL_SHADOW;
         }
-        (void)lm_target_add(&near, &line, NULL, level_q8);
+        (void)lm_target_line_add(&candidates, &line, NULL, level_q8);
         for (int k = 0; k < CELLS; k++) {
             const double cell_power =
                 level_q8[k] == LM_LEVEL_SHADOW ? 0 : pow(10, level_q8[k] / 2560.0);
@@ -381,18 +382,18 @@ TEST(movers_are_placed_anew_for_every_sweep_and_not_for_every_line)
 {
     const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
     const struct lm_target_set set = {.items = &t, .count = 1};
-    struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
-    struct lm_targets_near near = {0};
-    lm_targets_refresh(&near, &set, &scene);
-    const struct lm_place first = near.item[0].pose.place;
-    scene.place.latitude += 1000; /* the antenna moves on, in the same sweep */
-    lm_targets_refresh(&near, &set, &scene);
-    assert_memory_equal(&near.item[0].pose.place, &first, sizeof first);
+    struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
+    struct lm_target_candidates candidates = {0};
+    lm_target_candidates_refresh(&candidates, &set, &scene);
+    const struct lm_position first = candidates.candidate[0].pose.position;
+    scene.position.latitude += 1000; /* the antenna moves on, in the same sweep */
+    lm_target_candidates_refresh(&candidates, &set, &scene);
+    assert_memory_equal(&candidates.candidate[0].pose.position, &first, sizeof first);
     scene.time_us = 8000000; /* the next sweep */
-    lm_targets_refresh(&near, &set, &scene);
+    lm_target_candidates_refresh(&candidates, &set, &scene);
     double to[2];
     destination(46.1, 11, 90, 400, to);
-    assert_true(metres_apart(to, near.item[0].pose.place) < 0.05);
+    assert_true(metres_apart(to, candidates.candidate[0].pose.position) < 0.05);
 }
 
 /* ---- how high ---- */
@@ -419,24 +420,24 @@ TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
     assert_int_equal(lm_db_open(&db, &flash.port, 16), LM_OK);
     assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
     struct lm_target t = moving_point(46, 11, 90, 10, 2000);
-    t.elevation_q6 = 25 * 64;
+    t.elevation_m_q6 = 25 * 64;
     t.flags = LM_TARGET_ABOVE_GROUND;
     seal_target(&t);
     const struct lm_target_set set = {.items = &t, .count = 1};
     for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
-        const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)},
+        const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)},
                                               .reach_m = 5000,
                                               .time_us = seconds * 1000000,
                                               .tiles = &tiles};
-        struct lm_targets_near near = {0};
-        lm_targets_refresh(&near, &set, &scene); /* asks for the tile */
+        struct lm_target_candidates candidates = {0};
+        lm_target_candidates_refresh(&candidates, &set, &scene); /* asks for the tile */
         for (int i = 0; i < 100; i++) {
             lm_tile_cache_service(&tiles, 0, 16);
         }
-        near.is_chosen = false;
-        lm_targets_refresh(&near, &set, &scene);
+        candidates.is_chosen = false;
+        lm_target_candidates_refresh(&candidates, &set, &scene);
         const double expected_m = 325 + (double)seconds * 10 / 20;
-        assert_true(fabs(near.item[0].elevation_q6 / 64.0 - expected_m) < 1);
+        assert_true(fabs(candidates.candidate[0].elevation_m_q6 / 64.0 - expected_m) < 1);
     }
     tiny_image_free(&image);
 }

@@ -34,7 +34,7 @@ static struct ref_vector direction_near_axis(struct hs_rng *r, double spread_deg
 
 static double rcs_db(const struct lm_shape *s, double wavelength_m, struct ref_vector v)
 {
-    return lm_rcs_q8(s, (uint32_t)lround(wavelength_m * 1e6), fixed_of(v)) / 256.0;
+    return lm_rcs_dbsm_q8(s, (uint32_t)lround(wavelength_m * 1e6), fixed_of(v)) / 256.0;
 }
 
 static double ref_db(const struct lm_shape *s, double wavelength_m, struct ref_vector v)
@@ -177,13 +177,13 @@ TEST(a_face_answers_on_its_side_only_unless_it_has_two)
 {
     struct lm_shape plate = {LM_SHAPE_PLATE, false, {300, 300}};
     const double front = rcs_db(&plate, x_band_m, at(1, 1));
-    assert_true(rcs_db(&plate, x_band_m, at(181, 1)) <= LM_RCS_NONE_Q8 / 256.0);
+    assert_true(rcs_db(&plate, x_band_m, at(181, 1)) <= LM_RCS_NONE_DBSM_Q8 / 256.0);
     plate.is_two_sided = true;
     assert_true(fabs(rcs_db(&plate, x_band_m, at(181, 1)) - front) < 0.01);
     for (int kind = LM_SHAPE_DIHEDRAL; kind <= LM_SHAPE_TRIHEDRAL; kind++) {
         const struct lm_shape corner = {(uint8_t)kind, false, {300, 300}};
-        assert_true(rcs_db(&corner, x_band_m, at(180, 0)) <= LM_RCS_NONE_Q8 / 256.0);
-        assert_true(rcs_db(&corner, x_band_m, at(90, 0)) <= LM_RCS_NONE_Q8 / 256.0);
+        assert_true(rcs_db(&corner, x_band_m, at(180, 0)) <= LM_RCS_NONE_DBSM_Q8 / 256.0);
+        assert_true(rcs_db(&corner, x_band_m, at(90, 0)) <= LM_RCS_NONE_DBSM_Q8 / 256.0);
     }
 }
 
@@ -200,13 +200,13 @@ TEST(the_limits_of_size_and_wavelength_are_inside_the_arithmetic)
         const struct lm_direction dirs[] = {{one, 0, 0},  {-one, 0, 0}, {0, one, 0},
                                             {0, 0, -one}, {0, 0, one},  {one - 1, 46340, 0}};
         for (size_t d = 0; d < sizeof dirs / sizeof dirs[0]; d++) {
-            const int32_t q8 = lm_rcs_q8(&s, wave, dirs[d]);
-            assert_in_range(q8 - LM_RCS_NONE_Q8, 0, 300 * 256);
+            const int32_t q8 = lm_rcs_dbsm_q8(&s, wave, dirs[d]);
+            assert_in_range(q8 - LM_RCS_NONE_DBSM_Q8, 0, 300 * 256);
         }
         const double area = s.size_mm[0] * 1e-3 * s.size_mm[0] * 1e-3;
         if (kind == LM_SHAPE_PLATE) {
             const double expected = 10 * log10(4 * pi * area * area / (wave * 1e-6 * wave * 1e-6));
-            const double found = lm_rcs_q8(&s, wave, dirs[0]) / 256.0;
+            const double found = lm_rcs_dbsm_q8(&s, wave, dirs[0]) / 256.0;
             assert_true(fabs(found - fmax(expected, -100)) < 0.01);
         }
     }

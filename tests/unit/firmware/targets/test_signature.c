@@ -4,7 +4,7 @@
 #include "reference/chip.h"
 #include "signature_image.h"
 
-#include "lm/chip_lay.h"
+#include "lm/chip_patch.h"
 
 #include <stdlib.h>
 
@@ -128,20 +128,20 @@ TEST_WITH(a_head_that_does_not_hold_makes_the_image_unsound, set_up, tear_down)
 /* Targets with the signature near the centre, each turned another way, and the scene of a patch
  * seen from the west. */
 static void choose(struct signature_world *f, const struct lm_target *targets, uint32_t count,
-                   uint32_t cell_mm, struct lm_targets_near *near)
+                   uint32_t cell_mm, struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(f, targets, count);
-    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
-    const struct lm_chip_scene chips = {.centre = scene.place,
+    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
+    const struct lm_chip_scene chips = {.centre = scene.position,
                                         .reach_m = scene.reach_m,
                                         .is_parallel = true,
                                         .look = FX_BAM_90,
-                                        .range_q8 = 20000 * 256,
+                                        .range_m_q8 = 20000 * 256,
                                         .heights = {6000 * 1024, 0},
                                         .cell_mm = cell_mm,
                                         .side_most = LM_CHIP_SIDE};
-    lm_targets_select(near, &set, &scene);
-    lm_chips_choose(&f->chips, near, &chips);
+    lm_target_candidates_select(candidates, &set, &scene);
+    lm_chips_choose(&f->chips, candidates, &chips);
 }
 
 TEST_WITH(a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_up, tear_down)
@@ -150,17 +150,17 @@ TEST_WITH(a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_u
     const struct lm_target t = target_with_signature(46, 11, 30);
     static const uint32_t cells_mm[] = {500, 999, 1000, 2000, 4000, 7999};
     for (int k = 0; k < 6; k++) {
-        struct lm_targets_near near;
+        struct lm_target_candidates candidates;
         lm_chips_init(&f->chips, &f->db, &f->signature);
-        choose(f, &t, 1, cells_mm[k], &near);
-        assert_null(lm_chip_of(&near.item[0]));
+        choose(f, &t, 1, cells_mm[k], &candidates);
+        assert_null(lm_chip_of(&candidates.candidate[0]));
         assert_true(serve_chips(f));
-        const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
+        const struct lm_chip_slot *slot = lm_chip_of(&candidates.candidate[0]);
         assert_non_null(slot);
         /* The radar stands to the west, 240 degrees from its nose; 16.7 degrees up. */
         const struct lm_chip chip = make_chip(240 * ASPECTS / 360, 0);
         const double total_db = 10 * log10(ref_chip_total_m2(&chip));
-        assert_true(fabs(slot->total_q8 / 256.0 - total_db) < 0.05);
+        assert_true(fabs(slot->total_dbsm_q8 / 256.0 - total_db) < 0.05);
         assert_true(slot->pixel_mm <= cells_mm[k] && 2 * slot->pixel_mm > cells_mm[k]);
         double power = 0, dark = 0;
         for (uint32_t i = 0; i < (uint32_t)slot->side * slot->side; i++) {
@@ -170,54 +170,54 @@ TEST_WITH(a_chip_is_read_and_holds_the_power_and_the_shadow_of_its_pixels, set_u
         assert_true(fabs(10 * log10(power)) < 0.05);
         assert_true(fabs(dark * pow(slot->pixel_mm / 1000.0, 2) / (22 * 12 * 0.25) - 1) < 0.02);
     }
-    struct lm_targets_near near;
-    choose(f, &t, 1, 8100, &near); /* 32 m of chip in less than four cells */
-    assert_null(near.item[0].chip);
+    struct lm_target_candidates candidates;
+    choose(f, &t, 1, 8100, &candidates); /* 32 m of chip in less than four cells */
+    assert_null(candidates.candidate[0].chip);
 }
 
 TEST_WITH(damage_and_failure_leave_a_target_without_chip_and_are_counted, set_up, tear_down)
 {
     struct signature_world *f = *state;
     const struct lm_target t = target_with_signature(46, 11, 30);
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     uint8_t *chip = f->with.bytes + f->with.chips_at + 16 * LM_CHIP_BYTES;
     chip[100] ^= 1;
-    choose(f, &t, 1, 1000, &near);
+    choose(f, &t, 1, 1000, &candidates);
     assert_true(serve_chips(f));
-    assert_null(lm_chip_of(&near.item[0]));
+    assert_null(lm_chip_of(&candidates.candidate[0]));
     assert_int_equal(f->chips.count.corrupt, 1);
     chip[100] ^= 1;
     f->flash.fail_read = f->flash.reads + 1;
-    choose(f, &t, 1, 1000, &near); /* tried again */
+    choose(f, &t, 1, 1000, &candidates); /* tried again */
     assert_true(serve_chips(f));
-    assert_null(lm_chip_of(&near.item[0]));
+    assert_null(lm_chip_of(&candidates.candidate[0]));
     assert_int_equal(f->chips.count.io_errors, 1);
-    choose(f, &t, 1, 1000, &near);
+    choose(f, &t, 1, 1000, &candidates);
     assert_true(serve_chips(f));
-    assert_non_null(lm_chip_of(&near.item[0]));
+    assert_non_null(lm_chip_of(&candidates.candidate[0]));
 }
 
 TEST_WITH(chips_are_shared_kept_and_bounded, set_up, tear_down)
 {
     struct signature_world *f = *state;
     struct lm_target t[ASPECTS + 1];
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     for (int k = 0; k <= ASPECTS; k++) {
         t[k] = target_with_signature(46, 11, k * 360.0 / ASPECTS);
     }
-    choose(f, t, 8, 1000, &near);
+    choose(f, t, 8, 1000, &candidates);
     assert_true(serve_chips(f));
     assert_int_equal(f->chips.count.read, 8);
     t[1] = t[0];
-    choose(f, t, 8, 1000, &near);
+    choose(f, t, 8, 1000, &candidates);
     assert_true(serve_chips(f));
     assert_int_equal(f->chips.count.read, 8);
-    assert_ptr_equal(near.item[0].chip, near.item[1].chip);
-    choose(f, t + 1, ASPECTS, 1000, &near);
+    assert_ptr_equal(candidates.candidate[0].chip, candidates.candidate[1].chip);
+    choose(f, t + 1, ASPECTS, 1000, &candidates);
     assert_true(serve_chips(f));
     uint32_t with_chip = 0;
-    for (uint32_t i = 0; i < near.count; i++) {
-        with_chip += lm_chip_of(&near.item[i]) != NULL;
+    for (uint32_t i = 0; i < candidates.count; i++) {
+        with_chip += lm_chip_of(&candidates.candidate[i]) != NULL;
     }
     /* The first and the last of them look alike. */
     assert_int_equal(with_chip, LM_CHIPS_MAX + 1);
@@ -238,7 +238,7 @@ static bool is_in(const struct lm_chip_reach *r, int32_t right, int32_t beyond)
 
 /* Every cell around the origin against the reference, the grid shifted by up to half a cell. Beyond
  * the lay's reach, nothing is taken from it. */
-static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref, int block,
+static void score_lay(const struct lm_chip_patch *chip, const struct ref_chip *ref, int block,
                       double cell_m, int32_t shift_q8, struct score *s)
 {
     double fixed = 0, exact = 0, dark = 0, exact_dark = 0;
@@ -248,16 +248,18 @@ static void score_lay(const struct lm_chip_lay *lay, const struct ref_chip *ref,
             const int32_t right_q8 = k * 256 + shift_q8, beyond_q8 = i * 256 - shift_q8;
             const double right_m = right_q8 * cell_m / 256, beyond_m = beyond_q8 * cell_m / 256;
             const double truth = ref_chip_cell_m2(ref, block, right_m, beyond_m, cell_m);
-            const int32_t q8 =
-                is_in(&lay->lit, k, i) ? lm_chip_cell_q8(lay, right_q8, beyond_q8) : LM_RCS_NONE_Q8;
-            const double got = q8 <= LM_RCS_NONE_Q8 ? 0 : pow(10, q8 / 2560.0);
+            const int32_t q8 = is_in(&chip->lit, k, i)
+                                   ? lm_chip_patch_rcs_dbsm_q8(chip, right_q8, beyond_q8)
+                                   : LM_RCS_NONE_DBSM_Q8;
+            const double got = q8 <= LM_RCS_NONE_DBSM_Q8 ? 0 : pow(10, q8 / 2560.0);
             fixed += got;
             exact += truth;
             s->cross += got * truth;
             s->squares[0] += got * got;
             s->squares[1] += truth * truth;
-            if (is_in(&lay->dark, k, i)) {
-                dark += lm_chip_cell_shadow(lay, right_q8, beyond_q8) / (double)LM_CHIP_SHADOW_ALL;
+            if (is_in(&chip->dark, k, i)) {
+                dark +=
+                    lm_chip_patch_shadow(chip, right_q8, beyond_q8) / (double)LM_CHIP_SHADOW_ALL;
             }
             exact_dark += ref_chip_cell_shadow(ref, right_m, beyond_m, cell_m);
         }
@@ -274,21 +276,21 @@ TEST_WITH(a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference,
     hs_rng_seed(&r, 3);
     struct score s = {0};
     for (int k = 0; k < 60; k++) {
-        struct lm_targets_near near;
+        struct lm_target_candidates candidates;
         const double heading = 360 * hs_rng_uniform(&r);
         const double cell_m = 0.25 + (k % 12) * 0.34;
         const struct lm_target t = target_with_signature(46, 11, heading);
-        choose(f, &t, 1, (uint32_t)lround(cell_m * 1000), &near);
+        choose(f, &t, 1, (uint32_t)lround(cell_m * 1000), &candidates);
         assert_true(serve_chips(f));
-        const struct lm_chip_slot *slot = lm_chip_of(&near.item[0]);
+        const struct lm_chip_slot *slot = lm_chip_of(&candidates.candidate[0]);
         const struct lm_smear still = lm_smear_of(0, 0);
-        struct lm_chip_lay lay;
-        lm_chip_lay_set(&lay, slot, near.item[0].chip_turn, (uint32_t)lround(cell_m * 1000),
-                        &still);
+        struct lm_chip_patch lay;
+        lm_chip_patch_set(&lay, slot, candidates.candidate[0].chip_turn,
+                          (uint32_t)lround(cell_m * 1000), &still);
         const struct lm_chip chip = make_chip(slot->key.aspect, slot->key.depression);
         const struct ref_chip ref = {&chip, PIXEL_MM / 1000.0, ORIGIN_ROW,
-                                     (int32_t)near.item[0].chip_turn * 360.0 / 4294967296.0 *
-                                         degree};
+                                     (int32_t)candidates.candidate[0].chip_turn * 360.0 /
+                                         4294967296.0 * degree};
         score_lay(&lay, &ref, 1 << slot->key.shift, cell_m, (int32_t)hs_rng_below(&r, 256) - 128,
                   &s);
     }

@@ -30,7 +30,7 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
 {
     const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
                                            .range_m = (uint32_t)range_m,
-                                           .height_q6 = (int32_t)(height_m * 64),
+                                           .height_m_q6 = (int32_t)(height_m * 64),
                                            .look_azimuth = hs_bam(90),
                                            .cell_mm = f->cell_mm};
     const struct lm_sar_scene scene = {
@@ -169,7 +169,7 @@ TEST_WITH(a_target_behind_the_horizon_shows_neither_itself_nor_its_shadow, set_u
     const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     draw_patch(f, &none, f->bare);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
-        t.elevation_q6 = is_hidden ? -4 * 64 : -2 * 64; /* it is 3 m high */
+        t.elevation_m_q6 = is_hidden ? -4 * 64 : -2 * 64; /* it is 3 m high */
         seal_target(&t);
         draw_patch(f, &set, f->picture);
         assert_int_equal(memcmp(f->bare, f->picture, sizeof f->bare) == 0, is_hidden);
@@ -197,18 +197,18 @@ TEST_WITH(a_line_with_too_much_of_chips_leaves_whole_ones_out_and_counts_their_c
           tear_down)
 {
     struct fixture *f = *state;
-    struct lm_target crowd[LM_TARGETS_NEAR];
+    struct lm_target crowd[LM_TARGET_CANDIDATES_MAX];
     f->radar.sar.cell_min_mm = f->cell_mm = 300; /* finer than the table: the chip spans more */
-    for (uint32_t i = 0; i < LM_TARGETS_NEAR; i++) {
+    for (uint32_t i = 0; i < LM_TARGET_CANDIDATES_MAX; i++) {
         crowd[i] = target_with_signature(46, 11, 270);
     }
     const struct lm_target_set few = set_with_signature(&f->world, crowd, 2);
     draw_patch(f, &few, f->bare);
     assert_int_equal(f->world.chips.count.cells_left_out, 0);
-    const struct lm_target_set all = set_with_signature(&f->world, crowd, LM_TARGETS_NEAR);
+    const struct lm_target_set all = set_with_signature(&f->world, crowd, LM_TARGET_CANDIDATES_MAX);
     draw_patch(f, &all, f->picture);
     const uint32_t once = f->world.chips.count.cells_left_out;
-    print_message("# %u cells of %d targets left out\n", once, LM_TARGETS_NEAR);
+    print_message("# %u cells of %d targets left out\n", once, LM_TARGET_CANDIDATES_MAX);
     assert_true(once > 0);
     draw_patch(f, &all, f->picture);
     assert_int_equal(f->world.chips.count.cells_left_out, 2 * once);
@@ -223,32 +223,32 @@ static struct lm_target_line line_of(int k)
 {
     const double width = spacing_m / range_m * 4294967296.0 / (360 * degree);
     return (struct lm_target_line){
-        .place = {hs_bam(46), hs_bam(11)},
+        .position = {hs_bam(46), hs_bam(11)},
         .azimuth = hs_bam(90) + (fx_bam_t)(int32_t)lround(width * (k - LINES / 2)),
         .width = (fx_bam_t)lround(width),
-        .first_q8 = (uint32_t)lround((range_m - CELLS / 2 * cell_m) * 256),
-        .cell_q8 = (uint32_t)(cell_m * 256),
+        .first_m_q8 = (uint32_t)lround((range_m - CELLS / 2 * cell_m) * 256),
+        .cell_m_q8 = (uint32_t)(cell_m * 256),
         .cells = CELLS,
-        .height_q10 = (int32_t)(height_m * 1024),
+        .height_m_q10 = (int32_t)(height_m * 1024),
         .wavelength_um = X_BAND_UM};
 }
 
 static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips,
-                    struct lm_targets_near *near)
+                    struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(&f->world, t, 1);
-    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
+    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
     const struct lm_chip_scene chips = {.centre = {t->latitude, t->longitude},
                                         .reach_m = 500,
-                                        .radar = scene.place,
+                                        .radar = scene.position,
                                         .heights = {(int32_t)(height_m * 1024), 0},
                                         .cell_mm = PIXEL_MM, /* not reduced: places are exact */
                                         .side_most = LM_CHIP_SIDE};
-    lm_targets_select(near, &set, &scene);
+    lm_target_candidates_select(candidates, &set, &scene);
     if (has_chips) {
-        lm_chips_choose(&f->world.chips, near, &chips);
+        lm_chips_choose(&f->world.chips, candidates, &chips);
         assert_true(serve_chips(&f->world));
-        assert_non_null(lm_chip_of(&near->item[0]));
+        assert_non_null(lm_chip_of(&candidates->candidate[0]));
     }
 }
 
@@ -256,8 +256,8 @@ static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips
 static struct lm_target target_beyond(double east_m, double south_m, double heading)
 {
     struct lm_geo_origin o;
-    lm_geo_set_origin(&o, (struct lm_place){hs_bam(46), hs_bam(11)});
-    const struct lm_place p = lm_geo_direct(
+    lm_geo_set_origin(&o, (struct lm_position){hs_bam(46), hs_bam(11)});
+    const struct lm_position p = lm_geo_direct(
         &o, hs_bam(90) + (fx_bam_t)(int32_t)lround(south_m / east_m / degree * 4294967296.0 / 360),
         (uint32_t)lround(east_m * 256));
     struct lm_target t = target_with_signature(0, 0, heading);
@@ -274,9 +274,9 @@ TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
     for (int k = 0; k < 24; k++) {
         const double heading = k * 31, right_m = -20 + 1.7 * k, beyond_m = 1.3 * k - 15;
         const struct lm_target t = target_beyond(range_m + beyond_m, right_m, heading);
-        struct lm_targets_near near;
+        struct lm_target_candidates candidates;
         double power = 0, across = 0, along = 0, dark_m2 = 0, truth[3] = {0};
-        near_of(f, &t, true, &near);
+        near_of(f, &t, true, &candidates);
         for (int l = 0; l < LINES; l++) {
             const struct lm_target_line line = line_of(l);
             int32_t level_q8[CELLS], bright_q8[CELLS];
@@ -284,8 +284,8 @@ TEST_WITH(the_lines_of_a_window_share_a_chip_without_loss, set_up, tear_down)
                 level_q8[c] = -100 * 256;
                 bright_q8[c] = 80 * 256; /* beside which the target is nothing */
             }
-            lm_target_add(&near, &line, NULL, level_q8);
-            lm_target_add(&near, &line, NULL, bright_q8);
+            lm_target_line_add(&candidates, &line, NULL, level_q8);
+            lm_target_line_add(&candidates, &line, NULL, bright_q8);
             for (int c = 0; c < CELLS; c++) {
                 const double p = pow(10, level_q8[c] / 2560.0);
                 power += p;
@@ -321,29 +321,30 @@ TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 0);
-    const struct lm_target_scene scene = {.place = {t.latitude, t.longitude}, .reach_m = 1000};
+    const struct lm_target_scene scene = {.position = {t.latitude, t.longitude}, .reach_m = 1000};
     struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     struct lm_signature large = set.signatures[0];
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     large.pixel_mm = LM_SIGNATURE_PIXEL_MAX_MM;
     set.signatures = &large;
-    lm_targets_select(&near, &set, &scene);
-    assert_true(near.item[0].slack_q8 >
+    lm_target_candidates_select(&candidates, &set, &scene);
+    assert_true(candidates.candidate[0].slack_m_q8 >
                 hypot(LM_CHIP_SIDE / 2, LM_CHIP_SIDE) * large.pixel_mm / 1000 * 256);
 }
 
 enum { DRAWS = 3000 };
 
 /* Power that the target adds to a line without echo, with each cell's speckle. */
-static void draw_line(const struct lm_targets_near *near, struct lm_target_line line,
-                      uint32_t looks_log2, const struct lm_raster *raster, int32_t level_q8[CELLS])
+static void draw_line(const struct lm_target_candidates *candidates, struct lm_target_line line,
+                      uint32_t looks_log2, const struct lm_noise_key *noise_key,
+                      int32_t level_q8[CELLS])
 {
     for (int c = 0; c < CELLS; c++) {
         level_q8[c] = -100 * 256;
     }
-    line.raster = raster;
+    line.noise_key = noise_key;
     line.speckle.looks_log2 = (uint8_t)looks_log2;
-    (void)lm_target_add(near, &line, NULL, level_q8);
+    (void)lm_target_line_add(candidates, &line, NULL, level_q8);
 }
 
 /* Gamma(L): the mean is that without speckle and the variance an L-th of its square, in each cell
@@ -353,17 +354,18 @@ TEST_WITH(the_chip_in_a_line_has_the_speckle_of_its_looks_cell_by_cell, set_up, 
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);
     const struct lm_target_line line = line_of(LINES / 2);
-    struct lm_targets_near near;
-    near_of(f, &t, true, &near);
+    struct lm_target_candidates candidates;
+    near_of(f, &t, true, &candidates);
     for (uint32_t looks_log2 = 0; looks_log2 <= 4; looks_log2 += 2) {
         int32_t bare_q8[CELLS], level_q8[CELLS];
         double sum = 0, squares = 0, products = 0;
         int cells = 0, pairs = 0;
-        draw_line(&near, line, looks_log2, NULL, bare_q8);
+        draw_line(&candidates, line, looks_log2, NULL, bare_q8);
         for (int k = 0; k < DRAWS; k++) {
             double before = -1;
-            const struct lm_raster raster = lm_raster_of(LM_NOISE_SPECKLE, (uint32_t)k, looks_log2);
-            draw_line(&near, line, looks_log2, &raster, level_q8);
+            const struct lm_noise_key noise_key =
+                lm_noise_key_of(LM_NOISE_SPECKLE, (uint32_t)k, looks_log2);
+            draw_line(&candidates, line, looks_log2, &noise_key, level_q8);
             for (int c = 0; c < CELLS; c++) {
                 const double x = pow(10, (level_q8[c] - bare_q8[c]) / 2560.0);
                 if (bare_q8[c] < -40 * 256) { /* nothing of the chip */
@@ -394,12 +396,12 @@ static double boiling(struct fixture *f, struct lm_chips *chips)
     enum { SWEEPS = 100, BINS = 600 };
     const struct lm_target t = target_with_signature(46, 11, 77);
     const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
-    const struct lm_sector_command command = {.field = LM_FIELD_DBS2,
+    const struct lm_sector_command command = {.fov = LM_FOV_DBS2,
                                               .centre = {t.latitude, t.longitude}};
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, command.centre);
-    const struct lm_platform platform = {.place = lm_geo_direct(&o, hs_bam(270), 15000 * 256),
-                                         .height_q10 = (int32_t)(height_m * 1024),
+    const struct lm_platform platform = {.position = lm_geo_direct(&o, hs_bam(270), 15000 * 256),
+                                         .height_m_q10 = (int32_t)(height_m * 1024),
                                          .heading = hs_bam(50),
                                          .track = hs_bam(50),
                                          .speed_mm_s = 250000};
@@ -446,16 +448,16 @@ TEST_WITH(without_its_chip_a_target_is_a_point_of_its_cross_section, set_up, tea
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 77);
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     double power = 0;
-    near_of(f, &t, false, &near);
+    near_of(f, &t, false, &candidates);
     for (int l = 0; l < LINES; l++) {
         const struct lm_target_line line = line_of(l);
         int32_t level_q8[CELLS];
         for (int c = 0; c < CELLS; c++) {
             level_q8[c] = -100 * 256;
         }
-        (void)lm_target_add(&near, &line, NULL, level_q8);
+        (void)lm_target_line_add(&candidates, &line, NULL, level_q8);
         for (int c = 0; c < CELLS; c++) {
             power += pow(10, level_q8[c] / 2560.0);
         }

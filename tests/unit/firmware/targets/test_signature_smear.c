@@ -16,7 +16,7 @@ static const double middle = (LINES - 1) / 2.0, degree = 3.14159265358979323846 
 
 struct fixture {
     struct signature_world world;
-    struct lm_patch_points points;
+    struct lm_target_patch points;
     double found[LINES][CELLS], wanted[LINES][CELLS];
 };
 
@@ -52,9 +52,9 @@ static double heading_of(const struct motion *m)
 static struct lm_target mover(const struct motion *m)
 {
     struct lm_geo_origin o;
-    lm_geo_set_origin(&o, (struct lm_place){hs_bam(46), hs_bam(11)});
+    lm_geo_set_origin(&o, (struct lm_position){hs_bam(46), hs_bam(11)});
     const double shift_m = range_m * m->closing_m_s / flies_m_s;
-    const struct lm_place p =
+    const struct lm_position p =
         lm_geo_direct(&o, hs_bam(shift_m > 0 ? 0 : 180), (uint32_t)lround(fabs(shift_m) * 256));
     struct lm_target t = target_with_signature(0, 0, heading_of(m));
     t.latitude = p.latitude;
@@ -67,30 +67,31 @@ static struct lm_target mover(const struct motion *m)
 
 static const struct lm_target_heights heights = {6000 * 1024, 0};
 
-static void choose_chip(struct fixture *f, const struct lm_target *t, struct lm_targets_near *near)
+static void choose_chip(struct fixture *f, const struct lm_target *t,
+                        struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(&f->world, t, 1);
-    const struct lm_target_scene scene = {.place = {hs_bam(46), hs_bam(11)}, .reach_m = 20000};
-    const struct lm_chip_scene chips = {.centre = scene.place,
+    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 20000};
+    const struct lm_chip_scene chips = {.centre = scene.position,
                                         .reach_m = scene.reach_m,
                                         .is_parallel = true,
                                         .look = FX_BAM_90,
-                                        .range_q8 = (uint32_t)range_m * 256,
+                                        .range_m_q8 = (uint32_t)range_m * 256,
                                         .heights = heights,
                                         .cell_mm = 1000,
                                         .side_most = LM_CHIP_SIDE};
-    lm_targets_select(near, &set, &scene);
-    lm_chips_choose(&f->world.chips, near, &chips);
+    lm_target_candidates_select(candidates, &set, &scene);
+    lm_chips_choose(&f->world.chips, candidates, &chips);
     assert_true(serve_chips(&f->world));
-    assert_non_null(lm_chip_of(&near->item[0]));
+    assert_non_null(lm_chip_of(&candidates->candidate[0]));
 }
 
 static void draw(struct fixture *f, const struct lm_target *t)
 {
     const struct lm_patch_geometry g = {.centre = {hs_bam(46), hs_bam(11)},
                                         .look = FX_BAM_90,
-                                        .centre_q8 = (uint32_t)range_m * 256,
-                                        .cell_q8 = 256,
+                                        .centre_m_q8 = (uint32_t)range_m * 256,
+                                        .cell_m_q8 = 256,
                                         .lines = LINES,
                                         .cells = CELLS,
                                         .guard = GUARD,
@@ -98,15 +99,15 @@ static void draw(struct fixture *f, const struct lm_target *t)
                                         .wavelength_um = X_BAND_UM,
                                         .across_mm_s = (int32_t)flies_m_s * 1000,
                                         .dwell_ms = (uint32_t)(dwell_s * 1000)};
-    struct lm_targets_near near;
-    choose_chip(f, t, &near);
-    lm_patch_points_set(&f->points, &near, &g);
+    struct lm_target_candidates candidates;
+    choose_chip(f, t, &candidates);
+    lm_target_patch_set(&f->points, &candidates, &g);
     for (uint32_t k = 0; k < LINES; k++) {
         int32_t level_q8[LM_CELLS_ROOM];
         for (uint32_t i = 0; i < CELLS; i++) {
             level_q8[i] = NOTHING_Q8;
         }
-        assert_int_equal(lm_patch_chips_add(&f->points, k, &g, level_q8), 0);
+        assert_int_equal(lm_target_patch_add_chips(&f->points, k, &g, level_q8), 0);
         for (uint32_t i = 0; i < CELLS; i++) {
             f->found[k][i] = level_q8[i] > NOTHING_Q8 ? pow(10, level_q8[i] / 2560.0) : 0;
         }

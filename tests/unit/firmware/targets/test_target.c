@@ -43,10 +43,10 @@ TEST(a_number_out_of_range_is_refused_under_a_right_checksum)
 {
     struct lm_target t = sound_target();
     refused((t.latitude = hs_bam(90.001), t));
-    refused((t = sound_target(), t.elevation_q6 = (1 << 20) + 1, t));
+    refused((t = sound_target(), t.elevation_m_q6 = (1 << 20) + 1, t));
     refused((t = sound_target(), t.scatterer_count = LM_SCATTERERS_MAX + 1, t));
     refused((t = sound_target(), t.swerling = 5, t));
-    refused((t = sound_target(), t.mean_rcs_q8 = INT32_MIN, t));
+    refused((t = sound_target(), t.mean_rcs_dbsm_q8 = INT32_MIN, t));
     refused((t = sound_target(), t.scatterers[0].kind = 0, t));
     refused((t = sound_target(), t.scatterers[0].kind = LM_SHAPE_KINDS, t));
     refused((t = sound_target(), t.scatterers[0].is_two_sided = 2, t));
@@ -217,7 +217,7 @@ static double sum_db(const struct lm_target *t, const struct lm_target_view *v, 
 {
     struct lm_return r[LM_SCATTERERS_MAX];
     lm_target_returns(t, v, X_BAND_UM, r);
-    return lm_returns_sum_q8(r, mask) / 256.0;
+    return lm_returns_sum_dbsm_q8(r, mask) / 256.0;
 }
 
 static double strongest_db(const struct lm_target *t, const struct lm_target_view *v)
@@ -258,16 +258,17 @@ TEST(sums_are_those_of_the_phasors)
 
 TEST(no_return_sums_to_nothing_and_opposite_ones_cancel)
 {
-    const struct lm_return pair[2] = {{.rcs_q8 = 2560, .phase = 0},
-                                      {.rcs_q8 = 2560, .phase = FX_BAM_180}};
-    assert_int_equal(lm_returns_sum_q8(pair, 0), LM_RCS_NONE_Q8);
-    assert_int_equal(lm_returns_sum_q8(pair, 1), 2560);
-    assert_true(lm_returns_sum_q8(pair, 3) < -60 * 256);
+    const struct lm_return pair[2] = {{.rcs_dbsm_q8 = 2560, .phase = 0},
+                                      {.rcs_dbsm_q8 = 2560, .phase = FX_BAM_180}};
+    assert_int_equal(lm_returns_sum_dbsm_q8(pair, 0), LM_RCS_NONE_DBSM_Q8);
+    assert_int_equal(lm_returns_sum_dbsm_q8(pair, 1), 2560);
+    assert_true(lm_returns_sum_dbsm_q8(pair, 3) < -60 * 256);
     struct lm_return same[LM_SCATTERERS_MAX];
     for (int i = 0; i < LM_SCATTERERS_MAX; i++) {
-        same[i] = (struct lm_return){.rcs_q8 = 2560, .phase = 12345};
+        same[i] = (struct lm_return){.rcs_dbsm_q8 = 2560, .phase = 12345};
     }
-    assert_true(abs(lm_returns_sum_q8(same, 0xFFFF) - 2560 - (int)(20 * log10(16) * 256)) <= 3);
+    assert_true(abs(lm_returns_sum_dbsm_q8(same, 0xFFFF) - 2560 - (int)(20 * log10(16) * 256)) <=
+                3);
 }
 
 /* Figure 1 of [Heaton] as a test. Nine corner reflectors of one metre, metres apart, all facing the
@@ -319,7 +320,8 @@ static double (*draw_all(uint8_t swerling))[PULSES]
     assert_non_null(power);
     for (uint32_t s = 0; s < SCANS; s++) {
         for (uint32_t p = 0; p < PULSES; p++) {
-            power[s][p] = pow(10, (lm_swerling_q8(swerling, 3072, 41, s, p) / 256.0 - 12) / 10);
+            power[s][p] =
+                pow(10, (lm_swerling_dbsm_q8(swerling, 3072, 41, s, p) / 256.0 - 12) / 10);
         }
     }
     return power;
@@ -382,8 +384,9 @@ TEST(odd_cases_keep_their_draw_for_a_scan_and_even_ones_for_a_pulse)
 TEST(a_steady_point_is_steady_and_draws_repeat)
 {
     for (uint32_t i = 0; i < 1000; i++) {
-        assert_int_equal(lm_swerling_q8(0, -700, i, i * 3, i * 7), -700);
-        assert_int_equal(lm_swerling_q8(2, 500, i, 3, 9), lm_swerling_q8(2, 500, i, 3, 9));
+        assert_int_equal(lm_swerling_dbsm_q8(0, -700, i, i * 3, i * 7), -700);
+        assert_int_equal(lm_swerling_dbsm_q8(2, 500, i, 3, 9),
+                         lm_swerling_dbsm_q8(2, 500, i, 3, 9));
     }
-    assert_true(lm_swerling_q8(1, 500, 1, 3, 0) != lm_swerling_q8(1, 500, 2, 3, 0));
+    assert_true(lm_swerling_dbsm_q8(1, 500, 1, 3, 0) != lm_swerling_dbsm_q8(1, 500, 2, 3, 0));
 }

@@ -5,7 +5,7 @@
 #include "lm/target_line.h"
 
 #include "check.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "reference/rcs.h"
 #include "reference/reference.h"
 #include "target_support.h"
@@ -31,25 +31,25 @@ static struct lm_target_line sector_line(double lat, double lon, double heading,
     const fx_bam_t width = FX_BAM_DEG(120) / LINES;
     const int32_t from_middle = (int32_t)line - LINES / 2;
     const uint32_t cell_q8 = (uint32_t)(range_m * 256 / CELLS);
-    return (struct lm_target_line){.place = {hs_bam(lat), hs_bam(lon)},
+    return (struct lm_target_line){.position = {hs_bam(lat), hs_bam(lon)},
                                    .azimuth = hs_bam(heading) +
                                               (fx_bam_t)(from_middle * (int32_t)width) + width / 2,
                                    .width = width,
-                                   .first_q8 = cell_q8 / 2,
-                                   .cell_q8 = cell_q8,
+                                   .first_m_q8 = cell_q8 / 2,
+                                   .cell_m_q8 = cell_q8,
                                    .cells = CELLS,
-                                   .height_q10 = (int32_t)(height_m * 1024),
+                                   .height_m_q10 = (int32_t)(height_m * 1024),
                                    .wavelength_um = X_BAND_UM};
 }
 
-static struct lm_targets_near near_of(const struct lm_target *targets, uint32_t count,
-                                      struct lm_place place, uint32_t reach_m)
+static struct lm_target_candidates near_of(const struct lm_target *targets, uint32_t count,
+                                           struct lm_position position, uint32_t reach_m)
 {
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = targets, .count = count};
-    const struct lm_target_scene scene = {.place = place, .reach_m = reach_m};
-    lm_targets_select(&near, &set, &scene);
-    return near;
+    const struct lm_target_scene scene = {.position = position, .reach_m = reach_m};
+    lm_target_candidates_select(&candidates, &set, &scene);
+    return candidates;
 }
 
 static void clear(int32_t *level_q8)
@@ -78,15 +78,16 @@ struct found {
 static struct found sweep(const struct lm_target *targets, uint32_t count, double lat, double lon,
                           double heading)
 {
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     struct found f = {0};
     double power = 0;
     int32_t level_q8[LM_CELLS_MAX];
-    near = near_of(targets, count, (struct lm_place){hs_bam(lat), hs_bam(lon)}, (uint32_t)range_m);
+    candidates =
+        near_of(targets, count, (struct lm_position){hs_bam(lat), hs_bam(lon)}, (uint32_t)range_m);
     for (uint32_t i = 0; i < LINES; i++) {
         const struct lm_target_line line = sector_line(lat, lon, heading, i);
         clear(level_q8);
-        const uint32_t given = lm_target_add(&near, &line, NULL, level_q8);
+        const uint32_t given = lm_target_line_add(&candidates, &line, NULL, level_q8);
         uint32_t changed = 0;
         for (uint32_t k = 0; k < CELLS; k++) {
             if (level_q8[k] != LM_LEVEL_SHADOW) {
@@ -147,15 +148,15 @@ TEST(a_target_is_where_the_geodesic_puts_it_within_a_metre)
         destination(lat, 11, azimuth, 70000, to);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_target_line l = sector_line(lat, 11, azimuth, 0);
-        struct lm_targets_near near;
+        struct lm_target_candidates candidates;
         int32_t level_q8[LM_CELLS_MAX];
         l.azimuth = hs_bam(azimuth);
         l.width = hs_bam(1.0 / 70000 * 180 / pi);
-        l.cell_q8 = 2 * 256;
-        l.first_q8 = (70000 - 200) * 256;
+        l.cell_m_q8 = 2 * 256;
+        l.first_m_q8 = (70000 - 200) * 256;
         clear(level_q8);
-        near = near_of(&t, 1, l.place, 70000);
-        assert_int_equal(lm_target_add(&near, &l, NULL, level_q8), 1);
+        candidates = near_of(&t, 1, l.position, 70000);
+        assert_int_equal(lm_target_line_add(&candidates, &l, NULL, level_q8), 1);
         assert_true(level_q8[100] != LM_LEVEL_SHADOW);
     }
 }
@@ -217,16 +218,17 @@ TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
         const struct lm_target t = point_at(to[0], to[1], up_m, 30);
         const struct lm_target_line l = sector_line(46, 11, 0, 100);
         const double at = ref_tangent(height_m, 140.5 * cell_m, up_m);
-        const struct lm_targets_near near = near_of(&t, 1, l.place, (uint32_t)range_m);
+        const struct lm_target_candidates candidates =
+            near_of(&t, 1, l.position, (uint32_t)range_m);
         for (int i = -1; i <= 1; i += 2) {
             int32_t level_q8[LM_CELLS_MAX];
             int32_t horizon[LM_CELLS_MAX];
             for (int k = 0; k < LM_CELLS_MAX; k++) {
                 horizon[k] = (int32_t)ldexp(k > 140 ? 1 : at + i * 1e-6, BITS);
             }
-            const struct lm_target_sight sight = {horizon, BITS};
+            const struct lm_target_horizon sight = {horizon, BITS};
             clear(level_q8);
-            assert_int_equal(lm_target_add(&near, &l, &sight, level_q8), i < 0);
+            assert_int_equal(lm_target_line_add(&candidates, &l, &sight, level_q8), i < 0);
         }
     }
 }
@@ -235,17 +237,17 @@ TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
 
 TEST(no_more_are_chosen_than_there_is_room_for_and_the_rest_is_counted)
 {
-    enum { MANY = LM_TARGETS_NEAR + 9 };
+    enum { MANY = LM_TARGET_CANDIDATES_MAX + 9 };
     struct lm_target t[MANY + 1];
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     t[0] = point_at(46.6, 11, 0, 0); /* 67 km: out of reach */
     for (int i = 1; i <= MANY; i++) {
         t[i] = point_at(46 + i * 0.001, 11, 0, 0);
     }
-    near = near_of(t, MANY + 1, (struct lm_place){hs_bam(46), hs_bam(11)}, 37040);
-    assert_int_equal(near.count, LM_TARGETS_NEAR);
-    assert_int_equal(near.left_out, 9);
-    assert_int_equal(near.item[0].index, 1);
+    candidates = near_of(t, MANY + 1, (struct lm_position){hs_bam(46), hs_bam(11)}, 37040);
+    assert_int_equal(candidates.count, LM_TARGET_CANDIDATES_MAX);
+    assert_int_equal(candidates.left_out, 9);
+    assert_int_equal(candidates.candidate[0].index, 1);
 }
 
 /* An antenna that has flown on since the choice finds the same targets as one that has just chosen.
@@ -260,16 +262,16 @@ TEST(a_choice_holds_for_a_kilometre_of_flight)
         destination(46, 11, 360 * hs_rng_uniform(&rng), to_m, to);
         destination(46, 11, 360 * hs_rng_uniform(&rng), 1020, from);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
-        struct lm_targets_near before, now;
+        struct lm_target_candidates before, now;
         int32_t level_q8[LM_CELLS_MAX];
-        const struct lm_place here = {hs_bam(from[0]), hs_bam(from[1])};
-        before = near_of(&t, 1, (struct lm_place){hs_bam(46), hs_bam(11)}, 37040);
+        const struct lm_position here = {hs_bam(from[0]), hs_bam(from[1])};
+        before = near_of(&t, 1, (struct lm_position){hs_bam(46), hs_bam(11)}, 37040);
         now = near_of(&t, 1, here, 37040);
         struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
-        l.azimuth = fx_atan2(now.item[0].east_q8, now.item[0].north_q8);
+        l.azimuth = fx_atan2(now.candidate[0].east_m_q8, now.candidate[0].north_m_q8);
         clear(level_q8);
-        assert_int_equal(lm_target_add(&before, &l, NULL, level_q8),
-                         lm_target_add(&now, &l, NULL, level_q8));
+        assert_int_equal(lm_target_line_add(&before, &l, NULL, level_q8),
+                         lm_target_line_add(&now, &l, NULL, level_q8));
     }
 }
 
@@ -315,13 +317,13 @@ TEST(a_target_that_is_passed_over_would_have_given_the_line_nothing)
             t.speed_mm_s = 15000, t.leg_m = 1;
         }
         const struct lm_target_line l = line_beside(&rng, lat, azimuth, at_m);
-        struct lm_targets_near near =
-            near_of(&t, 1, (struct lm_place){hs_bam(lat), hs_bam(11)}, (uint32_t)range_m);
+        struct lm_target_candidates candidates =
+            near_of(&t, 1, (struct lm_position){hs_bam(lat), hs_bam(11)}, (uint32_t)range_m);
         int32_t quick_q8[LM_CELLS_MAX], all_q8[LM_CELLS_MAX];
         clear(quick_q8), clear(all_q8);
-        lm_target_add(&near, &l, NULL, quick_q8);
-        near.item[0].slack_q8 = 1u << 31;
-        given += lm_target_add(&near, &l, NULL, all_q8) != 0;
+        lm_target_line_add(&candidates, &l, NULL, quick_q8);
+        candidates.candidate[0].slack_m_q8 = 1u << 31;
+        given += lm_target_line_add(&candidates, &l, NULL, all_q8) != 0;
         assert_memory_equal(quick_q8, all_q8, sizeof all_q8);
     }
     print_message("# %u of 40000 lines were given something\n", given);
@@ -355,22 +357,23 @@ TEST(a_record_that_passes_the_check_can_be_used)
         passed++;
         const bool is_here = hs_rng_below(&rng, 2) != 0;
         struct lm_target_line l = sector_line(46, 11, 0, 1);
-        l.place = is_here ? (struct lm_place){t.latitude + hs_rng_below(&rng, 9000), t.longitude}
-                          : (struct lm_place){(fx_bam_t)((int64_t)hs_rng_u64(&rng) >> 34),
-                                              (fx_bam_t)hs_rng_u64(&rng)};
+        l.position = is_here
+                         ? (struct lm_position){t.latitude + hs_rng_below(&rng, 9000), t.longitude}
+                         : (struct lm_position){(fx_bam_t)((int64_t)hs_rng_u64(&rng) >> 34),
+                                                (fx_bam_t)hs_rng_u64(&rng)};
         l.azimuth = (fx_bam_t)hs_rng_u64(&rng);
         l.width = FX_BAM_180;
         l.is_doppler = i % 2;
         l.track = (fx_bam_t)hs_rng_u64(&rng);
         l.speed_mm_s = hs_rng_below(&rng, 1 << 21);
         l.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
-        struct lm_targets_near near;
+        struct lm_target_candidates candidates;
         int32_t level_q8[LM_CELLS_MAX];
         int32_t horizon[LM_CELLS_MAX] = {0};
-        const struct lm_target_sight sight = {horizon, 20};
+        const struct lm_target_horizon sight = {horizon, 20};
         clear(level_q8);
-        near = near_of(&t, 1, l.place, 250000);
-        given += lm_target_add(&near, &l, i % 5 ? NULL : &sight, level_q8);
+        candidates = near_of(&t, 1, l.position, 250000);
+        given += lm_target_line_add(&candidates, &l, i % 5 ? NULL : &sight, level_q8);
     }
     print_message("# %u records passed, %u cells were given something\n", passed, given);
     assert_true(passed > 2000 && given > 500);

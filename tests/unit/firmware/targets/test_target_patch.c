@@ -6,7 +6,7 @@
 
 #include "check.h"
 #include "extent.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "reference/reference.h"
 #include "target_support.h"
 
@@ -21,15 +21,15 @@ enum { LINES = 128, GUARD = 4, CELLS = LINES + GUARD, NOTHING_Q8 = -120 * 256 };
 static const double height_m = 6000, cell_m = 2, range_m = 20000;
 
 /* Large, and only one is used at a time. */
-static struct lm_patch_points points;
+static struct lm_target_patch points;
 static int32_t picture[LINES][LM_CELLS_ROOM];
 
 static struct lm_patch_geometry geometry(double lat, double lon, double look)
 {
     return (struct lm_patch_geometry){.centre = {hs_bam(lat), hs_bam(lon)},
                                       .look = hs_bam(look),
-                                      .centre_q8 = (uint32_t)(range_m * 256),
-                                      .cell_q8 = (uint32_t)(cell_m * 256),
+                                      .centre_m_q8 = (uint32_t)(range_m * 256),
+                                      .cell_m_q8 = (uint32_t)(cell_m * 256),
                                       .lines = LINES,
                                       .cells = CELLS,
                                       .guard = GUARD,
@@ -40,11 +40,12 @@ static struct lm_patch_geometry geometry(double lat, double lon, double look)
 static void find_points(const struct lm_target *t, uint32_t count,
                         const struct lm_patch_geometry *g, uint64_t time_us)
 {
-    struct lm_targets_near near;
+    struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = t, .count = count};
-    const struct lm_target_scene scene = {.place = g->centre, .reach_m = 20000, .time_us = time_us};
-    lm_targets_select(&near, &set, &scene);
-    lm_patch_points_set(&points, &near, g);
+    const struct lm_target_scene scene = {
+        .position = g->centre, .reach_m = 20000, .time_us = time_us};
+    lm_target_candidates_select(&candidates, &set, &scene);
+    lm_target_patch_set(&points, &candidates, g);
 }
 
 static void draw(const struct lm_patch_geometry *g, int32_t least_q8)
@@ -53,7 +54,7 @@ static void draw(const struct lm_patch_geometry *g, int32_t least_q8)
         for (uint32_t i = 0; i < CELLS; i++) {
             picture[k][i] = NOTHING_Q8;
         }
-        lm_patch_points_add(&points, k, least_q8, g, picture[k]);
+        lm_target_patch_add_points(&points, k, least_q8, g, picture[k]);
     }
 }
 
@@ -163,7 +164,7 @@ TEST(the_table_is_taylors_response)
         const int whole = abs(x_q8) / 256;
         for (int n = 0; n <= whole; n++) {
             assert_true(20 * log10(fabs(taylor(x_q8 / 256.0)) + 1e-9) <=
-                        lm_response_envelope_q8[n] / 256.0 + 0.01);
+                        lm_response_envelope_db_q8[n] / 256.0 + 0.01);
         }
     }
     print_message("# worst response off by %.5f of one, energy %.5f\n", worst, energy);
@@ -231,10 +232,11 @@ static double expected_power(uint32_t line, uint32_t cell)
         const uint8_t target = points.item[i].target;
         for (; i < points.count && points.item[i].target == target; i++) {
             const struct lm_patch_point *p = &points.item[i];
-            const double dx = line - p->across_q8 / 256.0, dy = cell - p->along_q8 / 256.0;
+            const double dx = line - p->across_cells_q8 / 256.0,
+                         dy = cell - p->along_cells_q8 / 256.0;
             /* Seven cells to either side of the one that holds it: of two, the farther. */
             if (fabs(dx) < 8 && dy > -7.5 && dy <= 7.5) {
-                sum += pow(10, p->level_q8 / 5120.0) * taylor(dx) * taylor(dy) *
+                sum += pow(10, p->level_db_q8 / 5120.0) * taylor(dx) * taylor(dy) *
                        cexp(I * (double)p->phase * (2 * pi / 4294967296.0));
             }
         }
@@ -326,8 +328,8 @@ TEST(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell)
         find_points(&t, 1, &g, 0);
         const double closing = -speed * cos(heading * pi / 180);
         const double expected = 64 + (range_m + middle_of(70)) * closing / across_m_s / cell_m;
-        assert_true(fabs(points.item[0].across_q8 / 256.0 - expected) < 1);
-        assert_true(fabs(points.item[0].along_q8 / 256.0 - (GUARD + 70)) < 0.1);
+        assert_true(fabs(points.item[0].across_cells_q8 / 256.0 - expected) < 1);
+        assert_true(fabs(points.item[0].along_cells_q8 / 256.0 - (GUARD + 70)) < 0.1);
     }
 }
 
@@ -429,7 +431,7 @@ TEST(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines)
     for (int up_m = 0; up_m < 20; up_m++) {
         for (int is_before = 0; is_before < 2; is_before++) {
             struct lm_target t = point_in(64, WALL - GUARD + (is_before ? -4 : 33), 30);
-            t.elevation_q6 = up_m * 64;
+            t.elevation_m_q6 = up_m * 64;
             seal_target(&t);
             const double at_m = range_m + middle_of(WALL - GUARD);
             const bool is_seen = is_before || ref_tangent(height_m, at_m + 66, up_m) >
@@ -437,7 +439,7 @@ TEST(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines)
             assert_true(is_before || is_seen == (up_m >= 11));
             find_points(&t, 1, &g, 0);
             for (uint32_t k = 0; k < LINES; k++) {
-                lm_patch_points_hide(&points, k, horizon, BITS, CELLS - 1);
+                lm_target_patch_hide(&points, k, horizon, BITS, CELLS - 1);
             }
             draw(&g, NOTHING_Q8);
             int lines = 0;
@@ -459,7 +461,8 @@ TEST(layover_brings_a_body_nearer_by_its_height_times_the_lean)
     struct lm_patch_geometry g = geometry(46, 11, 0);
     g.lean_q16 = (int32_t)lround(0.3 * 65536);
     find_points(&t, 1, &g, 0);
-    assert_true(fabs(points.item[0].along_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) < 0.1);
+    assert_true(fabs(points.item[0].along_cells_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) <
+                0.1);
 }
 
 /* ---- hostile records ---- */
@@ -488,12 +491,12 @@ TEST(a_record_that_passes_the_check_can_be_used_in_a_patch)
         }
         passed++;
         struct lm_patch_geometry g = geometry(46, 11, 0);
-        const struct lm_pose pose = lm_target_pose(&t, (uint64_t)i << 30);
-        g.centre =
-            (struct lm_place){pose.place.latitude + hs_rng_below(&rng, 9000), pose.place.longitude};
+        const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)i << 30);
+        g.centre = (struct lm_position){pose.position.latitude + hs_rng_below(&rng, 9000),
+                                        pose.position.longitude};
         g.look = (fx_bam_t)hs_rng_u64(&rng);
         g.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
-        g.cell_q8 = i % 2 ? 128 : 10240;
+        g.cell_m_q8 = i % 2 ? 128 : 10240;
         g.across_mm_s = (int32_t)hs_rng_below(&rng, 9) - 4;
         g.dwell_ms = hs_rng_below(&rng, 1 << 17);
         g.lean_q16 = (int32_t)hs_rng_below(&rng, 1 << 22);

@@ -34,7 +34,7 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
     static struct lm_sar sar;
     const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
                                            .range_m = 20000,
-                                           .height_q6 = 6000 * 64,
+                                           .height_m_q6 = 6000 * 64,
                                            .look_azimuth = hs_bam(90),
                                            .cell_mm = 4000};
     const struct lm_sar_scene scene = {
@@ -125,14 +125,14 @@ TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
 {
     static struct lm_sector sector;
-    const struct lm_platform platform = {.place = {hs_bam(45.95), hs_bam(11)},
-                                         .height_q10 = 3000 * 1024};
+    const struct lm_platform platform = {.position = {hs_bam(45.95), hs_bam(11)},
+                                         .height_m_q10 = 3000 * 1024};
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
     lm_sector_start(&sector, &lm_radar_default, &command, 5);
     sector.targets = set;
     for (uint32_t k = 0; k < SIDE; k++) {
         const uint32_t drawn = lm_sector_draw_line(&sector, &tiles, &platform, &tone, &line);
-        memcpy(level_q8[drawn], sector.level_q8, sizeof level_q8[drawn]);
+        memcpy(level_q8[drawn], sector.level_db_q8, sizeof level_q8[drawn]);
     }
 }
 

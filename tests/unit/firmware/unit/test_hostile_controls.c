@@ -30,7 +30,7 @@ static void set_numbers(struct lm_control *c, int32_t value, int32_t other)
         break;
     case LM_CONTROL_STEERPOINT:
         c->steerpoint.is_set = value & 1;
-        c->steerpoint.place.latitude = (fx_bam_t)other;
+        c->steerpoint.position.latitude = (fx_bam_t)other;
         break;
     case LM_CONTROL_RANGE:
         c->range_nm = value > 0 && value < 10 ? 10 * value : value;
@@ -72,11 +72,11 @@ static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u
                             (int32_t)hs_rng_below(rng, 2001) - 1000);
     }
     if (c.kind == LM_CONTROL_SAR) {
-        c.sar = (struct lm_sar_command){.centre = u->cursor.place,
+        c.sar = (struct lm_sar_command){.centre = u->cursor.position,
                                         .cell_mm = hs_rng_below(rng, 50000),
                                         .is_from_ownship = hs_rng_below(rng, 2),
                                         .range_m = hs_rng_below(rng, 300000),
-                                        .height_q6 = any_value(rng)};
+                                        .height_m_q6 = any_value(rng)};
         c.sar.centre.latitude += hs_rng_below(rng, 2) ? (uint32_t)any_value(rng) : 0;
     }
     return c;
@@ -85,10 +85,10 @@ static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u
 static void check_bounds(const struct rig *r)
 {
     const struct lm_page *p = &r->unit.page;
-    assert_true(p->range < lm_radar_default.ranges && p->azimuth < LM_AZIMUTHS);
+    assert_true(p->range_index < lm_radar_default.ranges && p->azimuth_index < LM_AZIMUTHS);
     assert_true(p->format <= LM_FORMAT_TEST && p->mode < LM_SECTOR_MODES);
-    assert_true(p->field < LM_FIELDS && p->range <= lm_page_range_last(p) &&
-                p->cell < LM_SAR_CELLS_OFFERED);
+    assert_true(p->fov < LM_FOVS && p->range_index <= lm_page_range_last(p) &&
+                p->cell_index < LM_SAR_CELLS_OFFERED);
     assert_true(abs(p->gain_db) <= LM_GAIN_MAX_DB && abs(p->knob) <= LM_FULL_DEFLECTION);
     assert_true(abs(p->black_db) <= LM_WINDOW_MAX_DB && abs(p->white_db) <= LM_WINDOW_MAX_DB);
     assert_true(abs(p->gamma_tenths) <= LM_GAMMA_MAX);
@@ -97,13 +97,13 @@ static void check_bounds(const struct rig *r)
     assert_true(abs(p->palette.symbology) <= LM_ROCKER_STEPS);
     assert_true(p->hidden < 1u << LM_OSBS && r->unit.keys.down < 1u << LM_BUTTONS);
     assert_true(r->unit.picture.sar.line <= lm_radar_default.sar.cells);
-    assert_int_equal(r->unit.picture.sector.command.range < lm_radar_default.ranges, 1);
+    assert_int_equal(r->unit.picture.sector.command.range_index < lm_radar_default.ranges, 1);
     const struct lm_cursor *c = &r->unit.cursor;
     assert_true(abs(c->slew_x) <= LM_FULL_DEFLECTION && abs(c->slew_y) <= LM_FULL_DEFLECTION);
     const int32_t reach_q8 = (r->unit.picture.view.radius_px + 2) * 256;
     const struct lm_offset middle = lm_view_middle(&r->unit.picture.view);
-    assert_true(!c->is_on_glass || (abs(c->offset.x_q8 - middle.x_q8) <= reach_q8 &&
-                                    abs(c->offset.y_q8 - middle.y_q8) <= reach_q8));
+    assert_true(!c->is_on_glass || (abs(c->offset.x_px_q8 - middle.x_px_q8) <= reach_q8 &&
+                                    abs(c->offset.y_px_q8 - middle.y_px_q8) <= reach_q8));
     for (uint8_t osb = 1; osb <= LM_OSBS; osb++) {
         struct lm_label label;
         assert_true(!lm_page_label(p, osb, &label) || (!label.line[0][5] && !label.line[1][5]));

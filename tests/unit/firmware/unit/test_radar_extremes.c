@@ -65,8 +65,8 @@ static void repair_scales(struct lm_radar *r)
     for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
         r->mode[i].range_max_nm = (uint16_t)most(r->mode[i].range_max_nm, r->range_start_nm);
     }
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        r->field[i].range_max_nm = (uint16_t)most(r->field[i].range_max_nm, r->range_start_nm);
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        r->fov[i].range_max_nm = (uint16_t)most(r->fov[i].range_max_nm, r->range_start_nm);
     }
 }
 
@@ -80,14 +80,14 @@ static void repair_angles(struct lm_radar *r)
     }
 }
 
-static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_field_row *f)
+static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_fov_row *f)
 {
     f->bam_per_s = f->bam_per_s ? most(f->bam_per_s, LM_RADAR_RATE_MIN) : 0;
     while ((f->sharpening & (f->sharpening - 1)) != 0) {
         f->sharpening--;
     }
     f->sharpening_least = (uint16_t)least(f->sharpening_least, f->sharpening);
-    if (number != LM_FIELD_NORM) {
+    if (number != LM_FOV_NORM) {
         f->azimuth_half_max = most(f->azimuth_half_max, r->line);
         while (r->range[0].range_m * f->window_permille / 1000 * 8 < r->cells) {
             f->window_permille++;
@@ -97,9 +97,9 @@ static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_fi
 
 static void repair_tone(struct lm_tone_config *tone)
 {
-    if (tone->white_q8 < tone->black_q8 + 256) {
-        tone->black_q8 = (int16_t)(tone->black_q8 > 63 * 256 ? 63 * 256 : tone->black_q8);
-        tone->white_q8 = (int16_t)(tone->black_q8 + 256);
+    if (tone->white_db_q8 < tone->black_db_q8 + 256) {
+        tone->black_db_q8 = (int16_t)(tone->black_db_q8 > 63 * 256 ? 63 * 256 : tone->black_db_q8);
+        tone->white_db_q8 = (int16_t)(tone->black_db_q8 + 256);
     }
 }
 
@@ -108,8 +108,8 @@ static void repair(struct lm_radar *r)
 {
     repair_scales(r);
     repair_angles(r);
-    for (uint32_t i = 0; i < LM_FIELDS; i++) {
-        repair_field(r, i, &r->field[i]);
+    for (uint32_t i = 0; i < LM_FOVS; i++) {
+        repair_field(r, i, &r->fov[i]);
     }
     for (uint32_t i = 0; i < LM_SECTOR_MODES; i++) {
         struct lm_sector_mode_row *m = &r->mode[i];
@@ -125,10 +125,10 @@ static void repair(struct lm_radar *r)
 static void draw_mode(struct rig *r, uint32_t mode)
 {
     const struct lm_radar *radar = r->board.radar;
-    for (uint32_t n = 0; n < 2 * LM_FIELDS; n++) {
+    for (uint32_t n = 0; n < 2 * LM_FOVS; n++) {
         const uint32_t field = n / 2;
         const uint32_t scale = n % 2 ? lm_radar_range_last(radar, mode, field) : 0;
-        if (field <= radar->mode[mode].field_last) {
+        if (field <= radar->mode[mode].fov_last) {
             const uint32_t lines = r->unit.count.lines;
             const int32_t smallest = radar->range[0].range_nm, nm = radar->range[scale].range_nm;
             command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = smallest});
@@ -136,8 +136,8 @@ static void draw_mode(struct rig *r, uint32_t mode)
                                            .sector = {(int32_t)mode, (int32_t)field}});
             command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = nm});
             run(r, FLIGHT_S);
-            assert_int_equal(r->unit.picture.sector.command.field, field);
-            assert_int_equal(r->unit.picture.sector.command.range, scale);
+            assert_int_equal(r->unit.picture.sector.command.fov, field);
+            assert_int_equal(r->unit.picture.sector.command.range_index, scale);
             assert_true(r->unit.count.lines > lines);
         }
     }
@@ -150,7 +150,7 @@ static void draw_patch(struct rig *r, uint32_t cell_mm)
                                           .cell_mm = cell_mm,
                                           .has_layover = true,
                                           .range_m = 60000,
-                                          .height_q6 = 8000 * 64};
+                                          .height_m_q6 = 8000 * 64};
     const uint32_t refused = r->unit.count.commands_refused;
     command(r, control);
     run(r, 0.55); /* tiles are read for half a second at most */

@@ -184,7 +184,7 @@ static const struct lm_control patch_from_afar = {
             .cell_mm = 5000,
             .look_azimuth = FX_BAM_DEG(30),
             .range_m = 12000,
-            .height_q6 = 2000 * 64,
+            .height_m_q6 = 2000 * 64,
             .has_layover = true}};
 
 /* The patch goes when navigation does, whether or not the display takes a frame. */
@@ -236,15 +236,15 @@ TEST(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read)
     run(cold, 1.0 * STEP_US / 1e6);
     assert_true(cold->unit.page.picture == LM_PICTURE_PATCH &&
                 cold->unit.picture.acquire.is_reading);
-    const int32_t guessed_q10 = cold->unit.picture.sar.grid.reference_q10;
+    const int32_t guessed_q10 = cold->unit.picture.sar.grid.reference_m_q10;
     run(cold, 4);
     command(warm, patch_from_afar);
     run(warm, 4);
     command(warm, patch_from_afar); /* all its tiles have been read */
     run(warm, 1.0 * STEP_US / 1e6);
-    assert_int_equal(warm->unit.picture.sar.grid.reference_q10,
-                     cold->unit.picture.sar.grid.reference_q10);
-    assert_int_not_equal(guessed_q10, cold->unit.picture.sar.grid.reference_q10);
+    assert_int_equal(warm->unit.picture.sar.grid.reference_m_q10,
+                     cold->unit.picture.sar.grid.reference_m_q10);
+    assert_int_not_equal(guessed_q10, cold->unit.picture.sar.grid.reference_m_q10);
     run(warm, 4);
     assert_int_equal(cold->unit.picture.sar.line, 256);
     assert_int_equal(plane_sum(warm), plane_sum(cold));
@@ -358,12 +358,12 @@ TEST(hostile_commands_are_refused_and_counted)
         {.kind = LM_CONTROL_SECTOR, .sector = {.mode = -1}},
         {.kind = LM_CONTROL_SECTOR, .sector = {.mode = LM_SECTOR_MODES}},
         {.kind = LM_CONTROL_SECTOR, .sector = {.fov = -1}},
-        {.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FIELDS}},
+        {.kind = LM_CONTROL_SECTOR, .sector = {.fov = LM_FOVS}},
         {.kind = (enum lm_control_kind)99},
         {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 1, .range_m = 20000}},
         {.kind = LM_CONTROL_SAR, .sar = {.cell_mm = 5000, .range_m = 0xFFFFFFFF}},
         {.kind = LM_CONTROL_SAR,
-         .sar = {.cell_mm = 5000, .range_m = 20000, .height_q6 = INT32_MIN}},
+         .sar = {.cell_mm = 5000, .range_m = 20000, .height_m_q6 = INT32_MIN}},
         {.kind = LM_CONTROL_SAR,
          .sar = {.centre = {0xE0000000, 0}, .cell_mm = 5000, .is_from_ownship = true}},
     };

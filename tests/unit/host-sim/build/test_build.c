@@ -36,7 +36,7 @@ static void open_sound_image(struct image *image, const char *name)
 static void centre_of(const struct image *image, const struct lm_tile *t, int r, int c,
                       double *latitude, double *longitude)
 {
-    const uint8_t shift = (uint8_t)(image->header.shift0 + t->level);
+    const uint8_t shift = (uint8_t)(image->header.shift0 + t->lod);
     const struct image_frame f = image_frame_of(shift, t->zone, t->row, t->column);
     *latitude = image_degrees(f.south) + (r + 0.5) * image_degrees(f.latitude_step);
     *longitude = image_longitude_degrees(f.west) + (c + 0.5) * image_degrees(f.longitude_step);
@@ -149,7 +149,7 @@ static long compare_cover(const struct image *image)
     long compared = 0;
     for (uint32_t i = 0; i < image->header.record_count; i++) {
         const struct lm_tile *t = &image->tiles[i];
-        for (int k = 0; t->level == 0 && k < CELLS * CELLS; k++) {
+        for (int k = 0; t->lod == 0 && k < CELLS * CELLS; k++) {
             double x, y, z = 0;
             int ok = 0;
             centre_of(image, t, k / CELLS, k % CELLS, &y, &x);
@@ -190,7 +190,7 @@ static void compare_waves(const struct image *image, const double area[4], doubl
     long compared = 0;
     for (uint32_t i = 0; i < image->header.record_count; i++) {
         const struct lm_tile *t = &image->tiles[i];
-        const uint8_t shift = (uint8_t)(image->header.shift0 + t->level);
+        const uint8_t shift = (uint8_t)(image->header.shift0 + t->lod);
         const struct image_frame f = image_frame_of(shift, t->zone, t->row, t->column);
         for (int k = 0; k < CELLS * CELLS; k++) {
             const double y = image_degrees(f.south + k / CELLS * f.latitude_step);
@@ -318,7 +318,7 @@ TEST(dted_tiles_on_both_sides_of_the_antimeridian_become_one_surface)
         0);
     struct image image;
     open_sound_image(&image, "a.lmdb");
-    assert_true(image.header.level_count <= 5);
+    assert_true(image.header.lod_count <= 5);
     compare_waves(&image, (const double[4]){179.8, -17.2, 0.4, 0.2}, 0.001);
     image_close(&image);
 }
@@ -345,11 +345,11 @@ TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
     assert_int_equal(cell_at(&image, 2, 47.3, 8.3), IMAGE_CELL_NONE);
     for (int k = 0; k < 97 * 97; k++) {
         const double y = 46.51 + 0.01 * (k / 97), x = 7.51 + 0.01 * (k % 97);
-        for (uint8_t level = 3; level < image.header.level_count; level++) {
+        for (uint8_t level = 3; level < image.header.lod_count; level++) {
             assert_int_not_equal(cell_at(&image, level, y, x), IMAGE_CELL_NONE);
         }
     }
-    for (uint8_t level = 3; level < image.header.level_count; level++) {
+    for (uint8_t level = 3; level < image.header.lod_count; level++) {
         assert_int_equal(image_cell_class(cell_at(&image, level, 47.3, 8.3)), 5);
         assert_int_equal(image_cell_class(cell_at(&image, level, 47.1, 8.12)), 4);
         assert_int_equal(image_cell_class(cell_at(&image, level, 46.78, 8.0)),
@@ -359,7 +359,7 @@ TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
         const struct lm_tile *t = &image.tiles[i];
         double latitude, longitude;
         centre_of(&image, t, 32, 32, &latitude, &longitude);
-        if (t->level < 3) {
+        if (t->lod < 3) {
             assert_true(fabs(latitude - 47) < 0.08 && fabs(longitude - 8) < 0.08);
         }
     }
@@ -370,7 +370,7 @@ TEST(outside_the_class_raster_the_terrain_gives_the_class_at_its_own_level)
         for (int k = 0; k < CELLS * CELLS; k++) {
             double latitude, longitude;
             centre_of(&image, t, k / CELLS, k % CELLS, &latitude, &longitude);
-            if (t->level < 4 && hypot(longitude - 8.0, latitude - 47.0) > 0.26) {
+            if (t->lod < 4 && hypot(longitude - 8.0, latitude - 47.0) > 0.26) {
                 assert_true(post_m(t, k / CELLS, k % CELLS) == 0.0);
                 sea++;
             }
@@ -415,8 +415,8 @@ TEST(the_mean_elevation_is_that_of_the_land)
     struct image image;
     open_sound_image(&image, "a.lmdb");
     /* A cone of 200 m: a third of its height. */
-    assert_true(fabs(image.header.mean_elevation_q6 / 64.0 - 200.0 / 3) < 1.0);
-    assert_int_equal(image.header.geoid_q6, lround(48.5 * 64));
+    assert_true(fabs(image.header.mean_elevation_m_q6 / 64.0 - 200.0 / 3) < 1.0);
+    assert_int_equal(image.header.geoid_m_q6, lround(48.5 * 64));
     assert_string_equal(image.header.title, "Island");
     assert_true(fabs(image_degrees((int32_t)image.header.centre_latitude) - 47.0) < 1e-6);
     assert_true(fabs(image_longitude_degrees(image.header.centre_longitude) - 8.0) < 1e-6);
@@ -559,7 +559,7 @@ TEST(the_firmware_opens_the_image_and_accepts_every_tile)
     assert_int_equal(lm_db_open(&db, &flash.port, 4), LM_OK);
     for (uint32_t i = 0; i < image.header.record_count; i++) {
         const struct lm_tile *t = &image.tiles[i];
-        const int64_t entry = lm_db_entry(&db, t->level, t->row, t->column);
+        const int64_t entry = lm_db_entry(&db, t->lod, t->row, t->column);
         uint32_t record;
         assert_true(entry >= 0);
         assert_int_equal(lm_db_entry_check(&db, (uint32_t)entry,
@@ -567,7 +567,7 @@ TEST(the_firmware_opens_the_image_and_accepts_every_tile)
                                            &record),
                          LM_OK);
         assert_int_equal(record, i);
-        assert_int_equal(lm_tile_check(t, t->level, t->row, t->column), LM_OK);
+        assert_int_equal(lm_tile_check(t, t->lod, t->row, t->column), LM_OK);
     }
     image_close(&image);
 }

@@ -422,7 +422,7 @@ TEST(a_lie_in_an_image_under_right_checksums_is_found)
         } else if (lie == LIES) {
             t[0].signature = 2;
         } else if (lie == LIES + 1) {
-            t[0].mean_rcs_q8 = 1;
+            t[0].mean_rcs_dbsm_q8 = 1;
         } else {
             p.signatures[1].chip0 = 0; /* the chips of the other one */
         }

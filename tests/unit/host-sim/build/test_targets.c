@@ -48,7 +48,7 @@ TEST(a_file_says_all_that_a_record_holds)
     assert_string_equal(c->name, "corners");
     assert_true(fabs(hs_degrees(c->latitude) - 47.01) < 1e-7);
     assert_true(fabs(hs_degrees(c->longitude) - 8.02) < 1e-7);
-    assert_int_equal(c->elevation_q6, 451.5 * 64);
+    assert_int_equal(c->elevation_m_q6, 451.5 * 64);
     assert_true(fabs(hs_degrees(c->heading) - 30) < 1e-7);
     assert_int_equal(c->scatterer_count, 4);
     const struct lm_scatterer *plate = &c->scatterers[1];
@@ -63,16 +63,16 @@ TEST(a_file_says_all_that_a_record_holds)
     assert_int_equal(c->scatterers[3].offset_mm[1], -LM_TARGET_OFFSET_MAX_MM);
     assert_int_equal(t.items[1].scatterer_count, 0);
     assert_int_equal(t.items[1].swerling, 3);
-    assert_int_equal(t.items[1].mean_rcs_q8, 12.5 * 256);
+    assert_int_equal(t.items[1].mean_rcs_dbsm_q8, 12.5 * 256);
     assert_memory_equal(t.items[2].name, "sixteen_letters_", 16);
     assert_int_equal(t.items[2].flags, 0);
     assert_int_equal(t.items[2].speed_mm_s, 0);
     assert_int_equal(t.items[3].flags, LM_TARGET_ABOVE_GROUND);
-    assert_int_equal(t.items[3].elevation_q6, 160);
+    assert_int_equal(t.items[3].elevation_m_q6, 160);
     assert_int_equal(t.items[3].speed_mm_s, 7500);
     assert_int_equal(t.items[3].leg_m, 4000);
     assert_int_equal(t.items[4].flags, LM_TARGET_ABOVE_GROUND);
-    assert_int_equal(t.items[4].elevation_q6, 0);
+    assert_int_equal(t.items[4].elevation_m_q6, 0);
     assert_int_equal(t.items[4].speed_mm_s, 16000);
     assert_int_equal(t.items[4].leg_m, LM_TARGET_LEG_MAX_M);
     assert_int_equal(t.items[4].scatterer_count, 1);
@@ -105,7 +105,7 @@ TEST(a_path_leads_to_its_places)
     scene_text("path.targets", list);
     assert_int_equal(build_targets_read(&t, scene_path("path.targets")), 0);
     for (int i = 0; i < 4; i++) {
-        const struct lm_place to = {hs_bam(places[i + 1][0]), hs_bam(places[i + 1][1])};
+        const struct lm_position to = {hs_bam(places[i + 1][0]), hs_bam(places[i + 1][1])};
         assert_true(image_path_apart_m(image_path_end(&t.items[0].path[i]), to) <= 0.1);
     }
     build_targets_free(&t);

@@ -421,7 +421,7 @@ static void lift_a_corner(struct tiny_image *i)
 }
 static void raise_the_base(struct tiny_image *i)
 {
-    record_of(i, 0)->base_q6 = (1 << 20) + 1;
+    record_of(i, 0)->base_m_q6 = (1 << 20) + 1;
 }
 static void widen_the_step(struct tiny_image *i)
 {
@@ -489,11 +489,11 @@ TEST(a_tile_written_is_a_tile_the_firmware_reads)
     assert_int_equal(support_run("mkdir -p %s/tmp", support_build_dir()), 0);
     static struct lm_tile tile, read_back;
     tile = (struct lm_tile){
-        .level = 0, .zone = 1, .row = image_row_of(12, image_bam(65.0)), .column = 5};
+        .lod = 0, .zone = 1, .row = image_row_of(12, image_bam(65.0)), .column = 5};
     const struct lm_band band = {
-        .level = 0, .zone = 1, .row0 = tile.row, .rows = 1, .column0 = 4, .columns = 3};
+        .lod = 0, .zone = 1, .row0 = tile.row, .rows = 1, .column0 = 4, .columns = 3};
     const struct lm_image_header header = {
-        .shift0 = 12, .level_count = 1, .band_count = 1, .entry_count = 3};
+        .shift0 = 12, .lod_count = 1, .band_count = 1, .entry_count = 3};
     struct image_writer w;
     unlink(path);
     assert_int_equal(image_writer_begin(&w, path, &header, tiny_classes(), &band), 0);

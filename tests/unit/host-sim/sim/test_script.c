@@ -144,12 +144,12 @@ TEST(a_mode_takes_any_of_its_fields_and_without_one_the_whole_sector)
         const struct lm_control plain = at(&s, 0);
         assert_int_equal(plain.kind, LM_CONTROL_SECTOR);
         assert_int_equal(plain.sector.mode, mode);
-        assert_int_equal(plain.sector.fov, LM_FIELD_NORM);
+        assert_int_equal(plain.sector.fov, LM_FOV_NORM);
         script_free(&s);
-        for (int field = 0; field < LM_FIELDS; field++) {
+        for (int field = 0; field < LM_FOVS; field++) {
             snprintf(text, sizeof text, "0 %s %s\n", radar->mode[mode].name,
-                     radar->field[field].name);
-            const bool has_field = field <= radar->mode[mode].field_last;
+                     radar->fov[field].name);
+            const bool has_field = field <= radar->mode[mode].fov_last;
             assert_int_equal(read_text(&s, text), has_field ? 0 : -1);
             if (has_field) {
                 const struct lm_control c = at(&s, 0);
@@ -165,7 +165,7 @@ TEST(words_of_the_table_are_taken_in_small_letters)
 {
     struct script s;
     assert_int_equal(read_text(&s, "0 gm dbs1\n1 GMT exp\n"), 0);
-    assert_int_equal(at(&s, 0).sector.fov, LM_FIELD_DBS1);
+    assert_int_equal(at(&s, 0).sector.fov, LM_FOV_DBS1);
     assert_int_equal(at(&s, 1).sector.mode, LM_SECTOR_GMT);
     script_free(&s);
 }
@@ -210,8 +210,8 @@ TEST(a_steerpoint_is_a_place_or_off)
     struct lm_control c = at(&s, 1);
     assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
     assert_true(c.steerpoint.is_set);
-    assert_int_equal(c.steerpoint.place.latitude, hs_bam(45));
-    assert_int_equal(c.steerpoint.place.longitude, hs_bam(-90.5));
+    assert_int_equal(c.steerpoint.position.latitude, hs_bam(45));
+    assert_int_equal(c.steerpoint.position.longitude, hs_bam(-90.5));
     c = at(&s, 2);
     assert_int_equal(c.kind, LM_CONTROL_STEERPOINT);
     assert_false(c.steerpoint.is_set);
@@ -236,9 +236,9 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     e = at(&s, 2).environment;
     assert_int_equal(e.rain_count, 1);
     assert_int_equal(e.jammer_count, 1);
-    assert_int_equal(e.jammer[0].place.latitude, hs_bam(-45));
-    assert_int_equal(e.jammer[0].place.longitude, hs_bam(90));
-    assert_int_equal(e.jammer[0].ratio_q8, 3200);
+    assert_int_equal(e.jammer[0].position.latitude, hs_bam(-45));
+    assert_int_equal(e.jammer[0].position.longitude, hs_bam(90));
+    assert_int_equal(e.jammer[0].noise_ratio_db_q8, 3200);
     e = at(&s, 3).environment;
     assert_int_equal(e.rain_count, 2);
     assert_int_equal(e.rain[1].radius_m, 100);
@@ -250,7 +250,7 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     assert_int_equal(e.sea_state, 6); /* the sea outlasts the weather */
     e = at(&s, 6).environment;
     assert_int_equal(e.jammer_count, 1);
-    assert_int_equal(e.jammer[0].ratio_q8, -5120);
+    assert_int_equal(e.jammer[0].noise_ratio_db_q8, -5120);
     assert_int_equal(lm_environment_check(&e), LM_OK);
     script_free(&s);
 }

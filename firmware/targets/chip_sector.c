@@ -1,10 +1,10 @@
-#include "lm/chip_line.h"
+#include "lm/chip_sector.h"
 
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 
 enum { RADIAN_BAM = 683565276 };
 
@@ -12,52 +12,56 @@ enum { RADIAN_BAM = 683565276 };
  * more add. Places across are BAM to the right of the line; along, cells * 65536 from cell
  * `first`. */
 struct raster {
-    int64_t across[3], along_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
+    int64_t across[3], along_cells_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
     int32_t first;
     uint32_t cells; /* from there: 0..LM_CHIP_SPAN */
 };
 
 /* Lengths of a pixel's step: at most 16 m << 4 in Q8, 2^16, by sines and cosines. */
 static struct raster raster_of(const struct lm_chip_slot *slot, fx_bam_t turn,
-                               const struct lm_chip_spot *spot, const struct lm_target_line *line)
+                               const struct lm_chip_sector_place *spot,
+                               const struct lm_target_line *line)
 {
-    const int64_t pixel_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
-    const int64_t cos_q24 = pixel_q24 * fx_cos_q30(turn) >> 30;
-    const int64_t sin_q24 = pixel_q24 * fx_sin_q30(turn) >> 30;
+    const int64_t pixel_m_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
+    const int64_t cos_q24 = pixel_m_q24 * fx_cos_q30(turn) >> 30;
+    const int64_t sin_q24 = pixel_m_q24 * fx_sin_q30(turn) >> 30;
     /* x = x0 cos - y0 sin, y = x0 sin + y0 cos, for steps of a column and of a row. Metres in Q24,
      * below 2^32, times 2^29.3 over metres in Q8. */
     const int64_t x_q24[3] = {0, cos_q24, -sin_q24}, y_q24[3] = {0, sin_q24, cos_q24};
-    const int64_t range_q8 = fx_max_u32(spot->range_q8, LM_RANGE_MIN_M * 256u);
+    const int64_t range_m_q8 = fx_max_u32(spot->range_m_q8, LM_RANGE_MIN_M * 256u);
     /* Half pixels from the origin to the middle of pixel (0, 0), before the reduction. */
     const int64_t columns = ((int64_t)1 - slot->side) * (1 << slot->key.shift);
     const int64_t rows = (1 << slot->key.shift) - 2 * (int64_t)slot->origin_row;
     struct raster r;
     for (int i = 1; i < 3; i++) {
-        r.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_q8 >> 4;
-        r.along_q16[i] = y_q24[i] / line->cell_q8;
+        r.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_m_q8 >> 4;
+        r.along_cells_q16[i] = y_q24[i] / line->cell_m_q8;
     }
     const uint32_t halves = slot->key.shift + 1u;
     r.across[0] = (columns * r.across[1] + rows * r.across[2]) >> halves;
-    r.along_q16[0] = (columns * r.along_q16[1] + rows * r.along_q16[2]) >> halves;
+    r.along_cells_q16[0] = (columns * r.along_cells_q16[1] + rows * r.along_cells_q16[2]) >> halves;
     /* From the middle of cell 0 of the line to that of its first cell under the chip. */
-    const int64_t origin_q16 = ((int64_t)spot->range_q8 - line->first_q8) * 65536 / line->cell_q8;
-    const int64_t reach_q16 =
-        (int64_t)slot->side * 3 / 2 * (int64_t)(fx_abs_u32((int32_t)(pixel_q24 / line->cell_q8)));
-    const int64_t near = (origin_q16 - reach_q16) >> 16, far = ((origin_q16 + reach_q16) >> 16) + 2;
+    const int64_t origin_cells_q16 =
+        ((int64_t)spot->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
+    const int64_t reach_m_q16 = (int64_t)slot->side * 3 / 2 *
+                                (int64_t)(fx_abs_u32((int32_t)(pixel_m_q24 / line->cell_m_q8)));
+    const int64_t near = (origin_cells_q16 - reach_m_q16) >> 16,
+                  far = ((origin_cells_q16 + reach_m_q16) >> 16) + 2;
     const int64_t first = near < (int64_t)line->first ? (int64_t)line->first : near;
     const int64_t end = far > (int64_t)line->cells ? (int64_t)line->cells : far;
     r.first = (int32_t)first;
     r.cells = end > first ? (uint32_t)(end - first < LM_CHIP_SPAN ? end - first : LM_CHIP_SPAN) : 0;
-    r.along_q16[0] += origin_q16 - first * 65536;
+    r.along_cells_q16[0] += origin_cells_q16 - first * 65536;
     return r;
 }
 
 /* Share `amount` between the two cells that a place lies between. */
-static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along_q16,
+static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along_cells_q16,
                   uint32_t amount)
 {
-    const int64_t whole = along_q16 >> 16;
-    const uint32_t beyond = (uint32_t)((uint64_t)amount * ((uint64_t)along_q16 & 65535u) >> 16);
+    const int64_t whole = along_cells_q16 >> 16;
+    const uint32_t beyond =
+        (uint32_t)((uint64_t)amount * ((uint64_t)along_cells_q16 & 65535u) >> 16);
     if (whole >= 0 && whole < (int64_t)cells) {
         cell[whole] += amount - beyond;
     }
@@ -88,40 +92,42 @@ static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *bo
     memset(cell, 0, (LM_CHIP_SPAN + 1) * sizeof *cell);
     for (uint32_t row = box->row; row < box->row_end; row++) {
         int64_t across = r->across[0] + row * r->across[2] + box->column * r->across[1] - off;
-        int64_t along_q16 = r->along_q16[0] + row * r->along_q16[2] + box->column * r->along_q16[1];
+        int64_t along_cells_q16 = r->along_cells_q16[0] + row * r->along_cells_q16[2] +
+                                  box->column * r->along_cells_q16[1];
         for (uint32_t column = box->column; column < box->column_end; column++) {
             const int64_t aside = across < 0 ? -across : across;
             const uint32_t amount = aside < (int64_t)width ? count(slot, row, column) : 0;
             if (amount != 0) {
                 const uint64_t near = width - (uint64_t)aside;
-                share(cell, r->cells, along_q16, (uint32_t)(amount * near / width));
+                share(cell, r->cells, along_cells_q16, (uint32_t)(amount * near / width));
             }
             across += r->across[1];
-            along_q16 += r->along_q16[1];
+            along_cells_q16 += r->along_cells_q16[1];
         }
     }
 }
 
 /* Area of a pixel of the chip over that of a cell of the line, Q16, and 2^24 when it is larger: a
  * pixel of at most 256 m, whose square is 2^32 in Q16. */
-static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot, const struct lm_chip_spot *spot,
+static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
+                                  const struct lm_chip_sector_place *spot,
                                   const struct lm_target_line *line)
 {
-    const uint64_t pixel_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
-    const uint64_t arc_q8 = lm_arc_q8(spot->range_q8, line->width);
-    const uint64_t ratio_q16 = (pixel_q8 * pixel_q8 << 16) / ((arc_q8 + 1) * line->cell_q8);
+    const uint64_t pixel_m_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
+    const uint64_t arc_m_q8 = lm_arc_m_q8(spot->range_m_q8, line->width);
+    const uint64_t ratio_q16 = (pixel_m_q8 * pixel_m_q8 << 16) / ((arc_m_q8 + 1) * line->cell_m_q8);
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
 }
 
 static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1],
-                   uint32_t ratio_q16, int32_t *level_q8)
+                   uint32_t ratio_q16, int32_t *level_db_q8)
 {
     for (uint32_t i = 0; i < r->cells; i++) {
         const uint64_t dark_q16 = (uint64_t)cell[i] * ratio_q16 >> 20;
         if (dark_q16 >= 65536) {
-            level_q8[r->first + (int32_t)i] = LM_LEVEL_SHADOW;
+            level_db_q8[r->first + (int32_t)i] = LM_LEVEL_SHADOW;
         } else if (dark_q16 != 0) {
-            level_q8[r->first + (int32_t)i] +=
+            level_db_q8[r->first + (int32_t)i] +=
                 fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536);
         }
     }
@@ -131,31 +137,35 @@ static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1]
  * has its own already, so the chip takes the same factor by itself. */
 static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r,
                          const uint32_t cell[LM_CHIP_SPAN + 1], const struct lm_target_line *line,
-                         int32_t clutter_q8, int32_t *level_q8)
+                         int32_t clutter_db_q8, int32_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
     for (uint32_t i = 0; i < r->cells; i++) {
         if (cell[i] != 0) {
             const uint32_t at = (uint32_t)r->first + i;
-            const int32_t speckle_q8 =
-                line->raster ? lm_noise_of_q8(line->speckle.looks_log2, line->raster, at) : 0;
-            const int32_t chip_q8 = slot->total_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_q8;
-            level_q8[at] = fx_db_q8_sum_of_many(level_q8[at], chip_q8 + speckle_q8);
+            const int32_t speckle_db_q8 =
+                line->noise_key ? lm_noise_cell_db_q8(line->speckle.looks_log2, line->noise_key, at)
+                                : 0;
+            const int32_t chip_db_q8 =
+                slot->total_dbsm_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_db_q8;
+            level_db_q8[at] = fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8 + speckle_db_q8);
             given++;
         }
     }
     return given;
 }
 
-uint32_t lm_chip_line_add(const struct lm_target_item *item, const struct lm_chip_spot *spot,
-                          const struct lm_target_line *line, int32_t clutter_q8, int32_t *level_q8)
+uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
+                            const struct lm_chip_sector_place *spot,
+                            const struct lm_target_line *line, int32_t clutter_db_q8,
+                            int32_t *level_db_q8)
 {
     uint32_t cell[LM_CHIP_SPAN + 1];
-    const struct lm_chip_slot *slot = item->chip;
-    const struct raster r = raster_of(slot, item->chip_turn, spot, line);
+    const struct lm_chip_slot *slot = candidate->chip;
+    const struct raster r = raster_of(slot, candidate->chip_turn, spot, line);
     gather(slot, &slot->dark, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
-    darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_q8);
+    darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_db_q8);
     gather(slot, &slot->lit, &r, power_q31, spot->off_bam, line->width, cell);
-    return brighten(slot, &r, cell, line, clutter_q8, level_q8);
+    return brighten(slot, &r, cell, line, clutter_db_q8, level_db_q8);
 }

@@ -1,4 +1,4 @@
-#include "glass.h"
+#include "display.h"
 
 #include "report.h"
 

@@ -1,4 +1,4 @@
-#include "hand.h"
+#include "hand_controller.h"
 
 #include "report.h"
 

@@ -1,6 +1,6 @@
 /* What overlay.c, symbols.c and test_pattern.c share. */
-#ifndef LM_MARKS_H
-#define LM_MARKS_H
+#ifndef LM_OVERLAY_INTERNAL_H
+#define LM_OVERLAY_INTERNAL_H
 
 #include "lm/draw.h"
 #include "lm/overlay.h"

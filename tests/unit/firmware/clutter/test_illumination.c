@@ -3,7 +3,7 @@
  */
 #include "check.h"
 #include "hs/rng.h"
-#include "lm/aspect.h"
+#include "lm/illumination.h"
 #include "tiny_image.h"
 
 #include <math.h>
@@ -13,10 +13,10 @@
 static const double effective_earth_m = 4.0 / 3 * 6371000;
 
 struct scene {
-    struct lm_aspect_config config;
+    struct lm_illumination_config config;
     struct lm_range_grid grid;
     struct lm_scan_line line;
-    struct lm_sight sight;
+    struct lm_lit_line lit;
 };
 
 static uint32_t cell_of(double gamma_db, uint32_t class_index, uint32_t height_code)
@@ -31,7 +31,7 @@ static double height_m_of(uint32_t cell)
 
 static double range_m(const struct scene *s, uint32_t i, double first_m)
 {
-    return first_m + i * (s->grid.cell_q8 / 256.0);
+    return first_m + i * (s->grid.cell_m_q8 / 256.0);
 }
 
 /* Flat soil of -20 dB at z_m everywhere. */
@@ -40,7 +40,7 @@ static void make_flat(struct scene *s, double z_m)
     memset(&s->line, 0, sizeof s->line);
     for (uint32_t i = 0; i < LM_CELLS_MAX; i++) {
         s->line.cell[i] = cell_of(-20, TINY_SOIL, 0);
-        s->line.elevation_q14[i] = (int32_t)lround(z_m * 16384);
+        s->line.elevation_m_q14[i] = (int32_t)lround(z_m * 16384);
     }
 }
 
@@ -54,9 +54,9 @@ static void set_grid(struct scene *s, double first_m, double cell_m, uint32_t ce
 
 static lm_horizon_q40_t run(struct scene *s, lm_horizon_q40_t horizon)
 {
-    struct lm_legend legend;
-    lm_legend_set(&legend, &s->config, tiny_classes());
-    return lm_aspect_run(&s->grid, &legend, &s->line, horizon, &s->sight);
+    struct lm_class_lut class_lut;
+    lm_class_lut_set(&class_lut, &s->config, tiny_classes());
+    return lm_illuminate(&s->grid, &class_lut, &s->line, horizon, &s->lit);
 }
 
 static double tangent(double antenna_m, double top_m, double s_m)
@@ -66,7 +66,7 @@ static double tangent(double antenna_m, double top_m, double s_m)
 
 static int is_lit(const struct scene *s, uint32_t i)
 {
-    return s->sight.level_q8[i] != LM_LEVEL_SHADOW;
+    return s->lit.level_db_q8[i] != LM_LEVEL_SHADOW;
 }
 
 /* A ground-map line of `cells` from the antenna. */
@@ -87,14 +87,14 @@ TEST(flat_ground_shows_its_gamma_at_every_range_of_a_ground_map)
             set_gm(&s, ranges_nm[r], heights_m[h], 100);
             run(&s, LM_HORIZON_OPEN);
             for (uint32_t i = 0; i < 256; i++) {
-                const double s_m = (i + 0.5) * (s.grid.cell_q8 / 256.0);
+                const double s_m = (i + 0.5) * (s.grid.cell_m_q8 / 256.0);
                 const double slope = (heights_m[h] - 100) / s_m - s_m / (2 * effective_earth_m);
                 if (i < s.grid.first) {
                     assert_true(s_m < fmax(256, heights_m[h] / 2) + 0.01);
                     assert_false(is_lit(&s, i));
                 } else if (slope > 1.0 / 256 + 1e-4) {
                     assert_true(s_m >= fmax(256, heights_m[h] / 2) - 0.01);
-                    worst = fmax(worst, fabs(s.sight.level_q8[i] / 256.0 + 20));
+                    worst = fmax(worst, fabs(s.lit.level_db_q8[i] / 256.0 + 20));
                 }
             }
         }
@@ -114,7 +114,7 @@ TEST(flat_ground_shows_its_gamma_in_patches_of_every_cell_and_range)
             set_grid(&s, ranges_m[r] - 130 * cells_m[c], cells_m[c], 260, 3000, 40);
             run(&s, LM_HORIZON_OPEN);
             for (uint32_t i = 0; i < 260; i++) {
-                worst = fmax(worst, fabs(s.sight.level_q8[i] / 256.0 + 20));
+                worst = fmax(worst, fabs(s.lit.level_db_q8[i] / 256.0 + 20));
             }
         }
     }
@@ -174,7 +174,7 @@ static void find_truth(const struct scene *s, double first_m, double antenna_m, 
                        struct truth *t)
 {
     for (uint32_t i = 0; i < s->grid.cells; i++) {
-        const double top_m = s->line.elevation_q14[i] / 16384.0 + height_m_of(s->line.cell[i]);
+        const double top_m = s->line.elevation_m_q14[i] / 16384.0 + height_m_of(s->line.cell[i]);
         t->tangent[i] = tangent(antenna_m, top_m, range_m(s, i, first_m));
         t->rise[i] = i < s->grid.first ? 0 : t->tangent[i] - horizon;
         horizon = i < s->grid.first ? horizon : fmax(horizon, t->tangent[i]);
@@ -190,7 +190,7 @@ static double flat_rise(double height_m, double s_m, double cell_m)
 static double level_db(const struct scene *s, const struct truth *t, uint32_t i, double first_m,
                        double height_m)
 {
-    const double cell_m = s->grid.cell_q8 / 256.0, s_m = range_m(s, i, first_m);
+    const double cell_m = s->grid.cell_m_q8 / 256.0, s_m = range_m(s, i, first_m);
     const double flat =
         height_m * cell_m / (s_m * (s_m - cell_m)) - cell_m / (2 * effective_earth_m);
     const double least = cell_m / (s_m - cell_m) / 256;
@@ -215,10 +215,10 @@ TEST(rough_ground_is_lit_and_hidden_as_the_equations_say)
             z_m = 0.99 * z_m + rough_m * (hs_rng_uniform(&rng) - 0.5);
             s.line.cell[i] = cell_of(-20, TINY_SOIL,
                                      hs_rng_below(&rng, 8) ? 0 : (uint32_t)hs_rng_below(&rng, 16));
-            s.line.elevation_q14[i] = (int32_t)lround(z_m * 16384);
+            s.line.elevation_m_q14[i] = (int32_t)lround(z_m * 16384);
         }
         run(&s, LM_HORIZON_OPEN);
-        const double top_m = s.line.elevation_q14[0] / 16384.0 + height_m_of(s.line.cell[0]);
+        const double top_m = s.line.elevation_m_q14[0] / 16384.0 + height_m_of(s.line.cell[0]);
         const double first_q8_m = round(first_m * 256) / 256;
         const double antenna_m = round(height_m * 1024) / 1024;
         find_truth(&s, first_q8_m, antenna_m,
@@ -232,7 +232,7 @@ TEST(rough_ground_is_lit_and_hidden_as_the_equations_say)
             }
             if (truth.rise[i] > flat / 4) {
                 const double want_db = level_db(&s, &truth, i, first_q8_m, antenna_m);
-                worst = fmax(worst, fabs(s.sight.level_q8[i] / 256.0 - want_db));
+                worst = fmax(worst, fabs(s.lit.level_db_q8[i] / 256.0 - want_db));
             }
         }
     }
@@ -249,7 +249,7 @@ TEST(a_hill_hides_what_lies_behind_it)
     set_grid(&s, first_m, cell_m, 400, antenna_m, 0);
     for (int i = 100; i <= 140; i++) {
         /* A cone of 100 m, steeper behind than the ray. */
-        s.line.elevation_q14[i] = (100 - 5 * abs(i - 120)) * 16384;
+        s.line.elevation_m_q14[i] = (100 - 5 * abs(i - 120)) * 16384;
     }
     run(&s, LM_HORIZON_OPEN);
     find_truth(&s, first_m, antenna_m,
@@ -264,7 +264,7 @@ TEST(a_hill_hides_what_lies_behind_it)
     const double length = 100 / (1900.0 / 16200) / cell_m;
     assert_true(fabs(dark - length) <= 1 + 0.01 * length);
     /* The slope towards the radar, 1 in 2, is brighter than flat ground by its share of the ray. */
-    assert_true(s.sight.level_q8[110] > s.sight.level_q8[50] + 6 * 256);
+    assert_true(s.lit.level_db_q8[110] > s.lit.level_db_q8[50] + 6 * 256);
 }
 
 TEST(the_horizon_never_falls_and_goes_on_from_line_to_line)
@@ -278,10 +278,10 @@ TEST(the_horizon_never_falls_and_goes_on_from_line_to_line)
     set_grid(&far, first_m + 150 * cell_m, cell_m, 250, 1500, 0);
     for (uint32_t i = 0; i < 400; i++) {
         whole.line.cell[i] = cell_of(-20, TINY_SOIL, 0);
-        whole.line.elevation_q14[i] = (int32_t)hs_rng_below(&rng, 4 * 16384);
+        whole.line.elevation_m_q14[i] = (int32_t)hs_rng_below(&rng, 4 * 16384);
         struct lm_scan_line *part = i < 150 ? &near.line : &far.line;
         part->cell[i % 150 + (i >= 300 ? 150 : 0)] = whole.line.cell[i];
-        part->elevation_q14[i < 150 ? i : i - 150] = whole.line.elevation_q14[i];
+        part->elevation_m_q14[i < 150 ? i : i - 150] = whole.line.elevation_m_q14[i];
     }
     for (uint32_t i = 0; i < 250; i++) {
         far.line.cell[i] = cell_of(-20, TINY_SOIL, 0);
@@ -290,7 +290,7 @@ TEST(the_horizon_never_falls_and_goes_on_from_line_to_line)
     const lm_horizon_q40_t middle = run(&near, LM_HORIZON_OPEN);
     const lm_horizon_q40_t end_in_two = run(&far, middle);
     for (uint32_t i = 0; i < 400; i++) {
-        assert_true(whole.sight.horizon[i + 1] >= whole.sight.horizon[i]);
+        assert_true(whole.lit.horizon[i + 1] >= whole.lit.horizon[i]);
         const struct scene *part = i < 150 ? &near : &far;
         assert_int_equal(is_lit(&whole, i), is_lit(part, i < 150 ? i : i - 150));
     }
@@ -327,10 +327,10 @@ TEST(a_line_that_is_too_near_throughout_is_dark_and_keeps_its_horizon)
 
 /* ---- edges ---- */
 
-static const struct lm_aspect_config edges = {.edge_structure_q8 = 6 * 256,
-                                              .edge_trees_q8 = 2 * 256,
-                                              .shore_q8 = 5 * 256,
-                                              .shore_width_m = 60};
+static const struct lm_illumination_config edges = {.edge_structure_db_q8 = 6 * 256,
+                                                    .edge_trees_db_q8 = 2 * 256,
+                                                    .shore_db_q8 = 5 * 256,
+                                                    .shore_width_m = 60};
 
 /* What the edges add to each cell of a line of classes, written as letters: s soil, t trees,
  * b buildings, w water, a asphalt (ground, like soil). */
@@ -350,7 +350,7 @@ static void edges_of(const char *classes, double cell_m, int32_t *added_q8)
     run(&with, LM_HORIZON_OPEN);
     run(&without, LM_HORIZON_OPEN);
     for (uint32_t i = 0; i < cells; i++) {
-        added_q8[i] = with.sight.level_q8[i] - without.sight.level_q8[i];
+        added_q8[i] = with.lit.level_db_q8[i] - without.lit.level_db_q8[i];
     }
 }
 
@@ -379,16 +379,16 @@ TEST(an_edge_beyond_the_range_counts_as_the_last_of_it)
 {
     static struct scene s;
     make_flat(&s, 0);
-    s.config.edge_structure_q8 = INT16_MAX;
-    s.config.edge_trees_q8 = -1;
+    s.config.edge_structure_db_q8 = INT16_MAX;
+    s.config.edge_trees_db_q8 = -1;
     s.line.cell[3] = cell_of(-20, TINY_STRUCTURE, 0);
     s.line.cell[7] = cell_of(-20, TINY_TREES, 0);
     s.line.cell[9] = 0xFF00 | cell_of(-20, TINY_STRUCTURE, 0);
     set_grid(&s, 20000, 10, 12, 3000, 0);
     run(&s, LM_HORIZON_OPEN);
-    assert_true(abs(s.sight.level_q8[3] - (-20 * 256 + LM_EDGE_MAX_Q8)) < 64);
-    assert_true(abs(s.sight.level_q8[7] - -20 * 256) < 64);
-    assert_true(abs(s.sight.level_q8[9] - (255 * 128 - 80 * 256 + LM_EDGE_MAX_Q8)) < 64);
+    assert_true(abs(s.lit.level_db_q8[3] - (-20 * 256 + LM_EDGE_MAX_DB_Q8)) < 64);
+    assert_true(abs(s.lit.level_db_q8[7] - -20 * 256) < 64);
+    assert_true(abs(s.lit.level_db_q8[9] - (255 * 128 - 80 * 256 + LM_EDGE_MAX_DB_Q8)) < 64);
 }
 
 TEST(the_first_cell_enters_nothing)
@@ -406,13 +406,13 @@ TEST(the_first_cell_enters_nothing)
     set_grid(&s, 1450, 10, 20, 3000, 0);
     assert_int_equal(s.grid.first, 5);
     run(&s, LM_HORIZON_OPEN);
-    assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
+    assert_true(abs(s.lit.level_db_q8[5] + 20 * 256) < 64);
     /* Water that is not shown has no far shore. */
     for (uint32_t i = 0; i < 4; i++) {
         s.line.cell[i] = cell_of(-40, TINY_WATER, 0);
     }
     run(&s, LM_HORIZON_OPEN);
-    assert_true(abs(s.sight.level_q8[5] + 20 * 256) < 64);
+    assert_true(abs(s.lit.level_db_q8[5] + 20 * 256) < 64);
 }
 
 TEST(the_far_shore_fades_over_its_width)
@@ -478,7 +478,7 @@ TEST(edges_run_on_in_shadow_and_show_where_it_ends)
     assert_false(is_lit(&s, 24)); /* the shore itself */
     const uint32_t lit = 40;
     assert_true(is_lit(&s, lit));
-    assert_int_equal(s.sight.level_q8[lit] - without.sight.level_q8[lit],
+    assert_int_equal(s.lit.level_db_q8[lit] - without.lit.level_db_q8[lit],
                      5 * 256 - (int32_t)(lit - 24) * (5 * 256 / 60));
 }
 
@@ -488,12 +488,12 @@ TEST(no_data_is_darker_than_any_noise_floor)
     make_flat(&s, 0);
     for (uint32_t i = 50; i < 100; i++) {
         s.line.cell[i] = LM_CELL_NONE;
-        s.line.elevation_q14[i] = 0;
+        s.line.elevation_m_q14[i] = 0;
     }
     set_grid(&s, 20000, 10, 150, 3000, 0);
     run(&s, LM_HORIZON_OPEN);
     for (uint32_t i = 50; i < 100; i++) {
-        assert_true(abs(s.sight.level_q8[i] + 80 * 256) < 64);
+        assert_true(abs(s.lit.level_db_q8[i] + 80 * 256) < 64);
     }
-    assert_true(abs(s.sight.level_q8[100] + 20 * 256) < 64);
+    assert_true(abs(s.lit.level_db_q8[100] + 20 * 256) < 64);
 }

@@ -1,4 +1,4 @@
-#include "lm/chip_lay.h"
+#include "lm/chip_patch.h"
 
 #include "fx/log.h"
 #include "fx/sat.h"
@@ -18,13 +18,13 @@ struct rotation {
 /* Where a corner of a box lies, in pixels * 65536 from the origin, turned back: to the right and
  * beyond. */
 struct corner_place {
-    int32_t right_q16, beyond_q16;
+    int32_t right_px_q16, beyond_px_q16;
 };
 
-static struct corner_place turned(const struct lm_chip_lay *lay, const struct rotation *r,
+static struct corner_place turned(const struct lm_chip_patch *chip, const struct rotation *r,
                                   int32_t column_q16, int32_t row_q16)
 {
-    const int32_t x = column_q16 - lay->origin_q16[0], y = row_q16 - lay->origin_q16[1];
+    const int32_t x = column_q16 - chip->origin_px_q16[0], y = row_q16 - chip->origin_px_q16[1];
     return (struct corner_place){part(x, r->cos_q30) - part(y, r->sin_q30),
                                  part(x, r->sin_q30) + part(y, r->cos_q30)};
 }
@@ -43,8 +43,9 @@ static int32_t more_of(uint32_t stretch_q8)
 
 /* The cells that show something of a box of pixels: they take half a pixel more, or half a cell,
  * all around. */
-static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct lm_chip_box *box,
-                                     const struct rotation *turn, uint32_t scale_q16)
+static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
+                                     const struct lm_chip_box *box, const struct rotation *turn,
+                                     uint32_t scale_q16)
 {
     struct lm_chip_reach r = {INT32_MAX, 0, INT32_MAX, 0};
     if (box->row_end == 0) {
@@ -55,11 +56,11 @@ static struct lm_chip_reach reach_of(const struct lm_chip_lay *lay, const struct
         const int32_t column_q16 =
             i % 2 ? box->column_end * 65536 + 32768 : box->column * 65536 - 32768;
         const int32_t row_q16 = i / 2 ? box->row_end * 65536 + 32768 : box->row * 65536 - 32768;
-        const struct corner_place c = turned(lay, turn, column_q16, row_q16);
-        r.right = fx_min_i32(r.right, cells_of(c.right_q16, scale_q16, -1));
-        r.right_end = fx_max_i32(r.right_end, cells_of(c.right_q16, scale_q16, 2));
-        r.beyond = fx_min_i32(r.beyond, cells_of(c.beyond_q16, scale_q16, -1));
-        r.beyond_end = fx_max_i32(r.beyond_end, cells_of(c.beyond_q16, scale_q16, 2));
+        const struct corner_place c = turned(chip, turn, column_q16, row_q16);
+        r.right = fx_min_i32(r.right, cells_of(c.right_px_q16, scale_q16, -1));
+        r.right_end = fx_max_i32(r.right_end, cells_of(c.right_px_q16, scale_q16, 2));
+        r.beyond = fx_min_i32(r.beyond, cells_of(c.beyond_px_q16, scale_q16, -1));
+        r.beyond_end = fx_max_i32(r.beyond_end, cells_of(c.beyond_px_q16, scale_q16, 2));
     }
     return r;
 }
@@ -74,39 +75,39 @@ static void widen(struct lm_chip_reach *r, const struct lm_smear *smear)
 
 /* Half of what cells stretched so take of the chip, in pixels * 256: scale below 2^18, a stretch
  * below 2^16. */
-static int32_t half_q8_of(uint32_t scale_q16, uint32_t stretch_q8)
+static int32_t half_px_q8_of(uint32_t scale_q16, uint32_t stretch_q8)
 {
     const uint32_t side_q8 = (uint32_t)((uint64_t)scale_q16 * stretch_q8 >> 16);
     return (int32_t)(fx_max_u32(side_q8, 256) / 2);
 }
 
 /* Of a stretched cell's side over that of its box: less than 1 where a pixel is larger. */
-static int32_t side_gain_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t half_q8)
+static int32_t side_gain_db_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t half_px_q8)
 {
-    return fx_db_q8(scale_q16) + fx_db_q8(stretch_q8) - fx_db_q8(2 * (uint32_t)half_q8) -
+    return fx_db_q8(scale_q16) + fx_db_q8(stretch_q8) - fx_db_q8(2 * (uint32_t)half_px_q8) -
            fx_db_q8(65536);
 }
 
-void lm_chip_lay_set(struct lm_chip_lay *lay, const struct lm_chip_slot *slot, fx_bam_t turn,
-                     uint32_t cell_mm, const struct lm_smear *smear)
+void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *slot, fx_bam_t turn,
+                       uint32_t cell_mm, const struct lm_smear *smear)
 {
     /* A chip is reduced to pixels of half a cell or more: below 2^18. */
     const uint32_t scale_q16 = (uint32_t)(((uint64_t)cell_mm << 16) / slot->pixel_mm);
     const struct rotation r = {fx_cos_q30(turn), fx_sin_q30(turn)};
-    lay->slot = slot;
-    lay->right_q16[0] = lay->beyond_q16[1] = part(scale_q16, r.cos_q30);
-    lay->beyond_q16[0] = part(scale_q16, r.sin_q30);
-    lay->right_q16[1] = -lay->beyond_q16[0];
-    lay->origin_q16[0] = (int32_t)slot->side << 15;
-    lay->origin_q16[1] = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
-    lay->lit = reach_of(lay, &slot->lit, &r, scale_q16);
-    lay->dark = reach_of(lay, &slot->dark, &r, scale_q16);
-    widen(&lay->lit, smear);
-    lay->half_q8[0] = half_q8_of(scale_q16, smear->wide_q8);
-    lay->half_q8[1] = half_q8_of(scale_q16, smear->deep_q8);
-    lay->dark_half_q8 = half_q8_of(scale_q16, 256);
-    lay->gain_q8 = side_gain_q8(scale_q16, smear->wide_q8, lay->half_q8[0]) +
-                   side_gain_q8(scale_q16, smear->deep_q8, lay->half_q8[1]);
+    chip->slot = slot;
+    chip->right_px_q16[0] = chip->beyond_px_q16[1] = part(scale_q16, r.cos_q30);
+    chip->beyond_px_q16[0] = part(scale_q16, r.sin_q30);
+    chip->right_px_q16[1] = -chip->beyond_px_q16[0];
+    chip->origin_px_q16[0] = (int32_t)slot->side << 15;
+    chip->origin_px_q16[1] = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
+    chip->lit = reach_of(chip, &slot->lit, &r, scale_q16);
+    chip->dark = reach_of(chip, &slot->dark, &r, scale_q16);
+    widen(&chip->lit, smear);
+    chip->half_px_q8[0] = half_px_q8_of(scale_q16, smear->wide_q8);
+    chip->half_px_q8[1] = half_px_q8_of(scale_q16, smear->deep_q8);
+    chip->dark_half_px_q8 = half_px_q8_of(scale_q16, 256);
+    chip->gain_db_q8 = side_gain_db_q8(scale_q16, smear->wide_q8, chip->half_px_q8[0]) +
+                       side_gain_db_q8(scale_q16, smear->deep_q8, chip->half_px_q8[1]);
 }
 
 /* A box on the chip, pixels * 256: from edge [0] to edge [1]. */
@@ -116,15 +117,15 @@ struct box {
 
 /* The box around a place, as far as it lies on the chip. Within the reach, places are below 2^26 in
  * Q16: some hundreds of pixels. */
-static struct box box_at(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8,
-                         int32_t half_columns_q8, int32_t half_rows_q8)
+static struct box box_at(const struct lm_chip_patch *chip, int32_t right_cells_q8,
+                         int32_t beyond_cells_q8, int32_t half_columns_q8, int32_t half_rows_q8)
 {
-    const int32_t end_q8 = lay->slot->side * 256;
+    const int32_t end_q8 = chip->slot->side * 256;
     int32_t at_q8[2];
     for (int i = 0; i < 2; i++) {
-        const int64_t away_q24 =
-            (int64_t)right_q8 * lay->right_q16[i] + (int64_t)beyond_q8 * lay->beyond_q16[i];
-        at_q8[i] = (int32_t)((lay->origin_q16[i] + (away_q24 >> 8)) >> 8);
+        const int64_t away_q24 = (int64_t)right_cells_q8 * chip->right_px_q16[i] +
+                                 (int64_t)beyond_cells_q8 * chip->beyond_px_q16[i];
+        at_q8[i] = (int32_t)((chip->origin_px_q16[i] + (away_q24 >> 8)) >> 8);
     }
     struct box b;
     for (int i = 0; i < 2; i++) {
@@ -158,19 +159,22 @@ static uint64_t within(const uint32_t sum[][LM_CHIP_ROOM], const struct box *b)
     return before_row(sum, b, b->row_q8[1]) - before_row(sum, b, b->row_q8[0]);
 }
 
-int32_t lm_chip_cell_q8(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8)
+int32_t lm_chip_patch_rcs_dbsm_q8(const struct lm_chip_patch *chip, int32_t right_cells_q8,
+                                  int32_t beyond_cells_q8)
 {
-    const struct box b = box_at(lay, right_q8, beyond_q8, lay->half_q8[0], lay->half_q8[1]);
-    const uint64_t power_q47 = within(lay->slot->power_q31, &b);
-    return power_q47 == 0 ? LM_RCS_NONE_Q8
-                          : lay->slot->total_q8 + lay->gain_q8 + fx_db_q8_u64(power_q47) -
+    const struct box b =
+        box_at(chip, right_cells_q8, beyond_cells_q8, chip->half_px_q8[0], chip->half_px_q8[1]);
+    const uint64_t power_q47 = within(chip->slot->power_q31, &b);
+    return power_q47 == 0 ? LM_RCS_NONE_DBSM_Q8
+                          : chip->slot->total_dbsm_q8 + chip->gain_db_q8 + fx_db_q8_u64(power_q47) -
                                 fx_db_q8_u64((uint64_t)1 << 47);
 }
 
-uint32_t lm_chip_cell_shadow(const struct lm_chip_lay *lay, int32_t right_q8, int32_t beyond_q8)
+uint32_t lm_chip_patch_shadow(const struct lm_chip_patch *chip, int32_t right_cells_q8,
+                              int32_t beyond_cells_q8)
 {
-    const int32_t half_q8 = lay->dark_half_q8;
-    const struct box b = box_at(lay, right_q8, beyond_q8, half_q8, half_q8);
-    const uint32_t area_q16 = 4 * (uint32_t)half_q8 * (uint32_t)half_q8;
-    return (uint32_t)(4 * within(lay->slot->shadow, &b) / area_q16);
+    const int32_t half_px_q8 = chip->dark_half_px_q8;
+    const struct box b = box_at(chip, right_cells_q8, beyond_cells_q8, half_px_q8, half_px_q8);
+    const uint32_t area_q16 = 4 * (uint32_t)half_px_q8 * (uint32_t)half_px_q8;
+    return (uint32_t)(4 * within(chip->slot->shadow, &b) / area_q16);
 }

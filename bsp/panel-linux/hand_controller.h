@@ -1,7 +1,7 @@
 /* The panel's USB hand controller: it lives on the USB driver's thread, and speaks to the loop
  * through a ring only. */
-#ifndef PANEL_HAND_H
-#define PANEL_HAND_H
+#ifndef PANEL_HAND_CONTROLLER_H
+#define PANEL_HAND_CONTROLLER_H
 
 #include "config.h"
 #include "drv/control_ring.h"

@@ -1,6 +1,6 @@
 /* The panel's glass: a DRM screen, a frame buffer, or nothing, behind the firmware's display. */
-#ifndef PANEL_GLASS_H
-#define PANEL_GLASS_H
+#ifndef PANEL_DISPLAY_H
+#define PANEL_DISPLAY_H
 
 #include "config.h"
 #include "drv/drm.h"

@@ -1,7 +1,7 @@
 /* The ground across a sample: how well a few azimuths stand for all that the beam sees, against the
  * double-precision reference sampled 32 times as densely, and against theory where strips of ground
  * run along the line of sight. */
-#include "lm/footprint.h"
+#include "lm/azimuth_average.h"
 
 #include "check.h"
 #include "hs/angle.h"
@@ -18,11 +18,11 @@
 TEST(the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_middle)
 {
     const fx_bam_t spacing = FX_BAM_DEG(120) / 128;
-    for (uint32_t log2 = 0; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
+    for (uint32_t log2 = 0; log2 <= LM_AZIMUTH_AVERAGE_LOG2_MAX; log2++) {
         const uint32_t azimuths = 1u << log2;
         uint32_t met = 0;
         for (uint32_t turn = 0; turn < azimuths; turn++) {
-            const double off = (double)lm_footprint_offset(spacing, log2, turn) / spacing;
+            const double off = (double)lm_azimuth_average_offset(spacing, log2, turn) / spacing;
             const double part = (off + 0.5) * azimuths - 0.5;
             assert_true(fabs(part - round(part)) < 1e-6);
             assert_in_range((uint32_t)lround(part), 0, azimuths - 1);
@@ -35,11 +35,11 @@ TEST(the_azimuths_are_the_middles_of_equal_parts_and_the_last_is_next_to_the_mid
 
 TEST(the_mean_is_that_of_the_powers)
 {
-    static struct lm_footprint f;
+    static struct lm_azimuth_average f;
     static int32_t level_q8[8][LM_CELLS_ROOM], mean_q8[LM_CELLS_ROOM];
     struct hs_rng rng;
     hs_rng_seed(&rng, 4);
-    for (uint32_t log2 = 1; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
+    for (uint32_t log2 = 1; log2 <= LM_AZIMUTH_AVERAGE_LOG2_MAX; log2++) {
         for (uint32_t k = 0; k < 1u << log2; k++) {
             for (uint32_t i = 0; i < LM_CELLS_MAX; i++) {
                 const bool is_dark = i < 10 || hs_rng_below(&rng, 4) == 0;
@@ -47,13 +47,13 @@ TEST(the_mean_is_that_of_the_powers)
                     is_dark ? LM_LEVEL_SHADOW : (int32_t)hs_rng_below(&rng, 70 * 256) - 50 * 256;
             }
             if (k == 0) {
-                lm_footprint_begin(&f, level_q8[k], LM_CELLS_MAX);
+                lm_azimuth_average_begin(&f, level_q8[k], LM_CELLS_MAX);
             } else if (k + 1 < 1u << log2) {
-                lm_footprint_add(&f, level_q8[k], LM_CELLS_MAX);
+                lm_azimuth_average_add(&f, level_q8[k], LM_CELLS_MAX);
             }
         }
         memcpy(mean_q8, level_q8[(1u << log2) - 1], sizeof mean_q8);
-        lm_footprint_mean(&f, log2, mean_q8, LM_CELLS_MAX);
+        lm_azimuth_average_mean(&f, log2, mean_q8, LM_CELLS_MAX);
         for (uint32_t i = 0; i < LM_CELLS_MAX; i++) {
             double power = 0;
             for (uint32_t k = 0; k < 1u << log2; k++) {
@@ -79,9 +79,9 @@ static struct sector_world *make_country(const struct tiny_spec *content)
     spec.rows = spec.columns = 12;
     struct sector_world *w = make_sector_world(&spec);
     w->platform = (struct lm_platform){
-        .place = {w->db.centre_latitude - (fx_bam_t)lround(0.11 / 360 * 0x1p32),
-                  w->db.centre_longitude},
-        .height_q10 = 4000 * 1024,
+        .position = {w->db.centre_latitude - (fx_bam_t)lround(0.11 / 360 * 0x1p32),
+                     w->db.centre_longitude},
+        .height_m_q10 = 4000 * 1024,
         .speed_mm_s = 180000};
     /* As little speckle as there is. */
     w->radar.mode[LM_SECTOR_GM].speckle.looks_log2 = LM_NOISE_LOOKS_LOG2_MAX;
@@ -94,15 +94,15 @@ static void look_along(const struct sector_world *w, const struct ref_db *db, do
 {
     const struct lm_sector *s = &w->sector;
     const uint32_t cells = s->grid.cells;
-    const struct ref_place from = {hs_degrees(w->platform.place.latitude),
-                                   hs_degrees(w->platform.place.longitude)};
-    const double cell_m = s->grid.cell_q8 / 256.0, edge_m = s->ground_edge_q8 / 256.0;
-    const struct ref_view view = {s->grid.height_q10 / 1024.0, s->grid.reference_q10 / 1024.0,
+    const struct ref_place from = {hs_degrees(w->platform.position.latitude),
+                                   hs_degrees(w->platform.position.longitude)};
+    const double cell_m = s->grid.cell_m_q8 / 256.0, edge_m = s->ground_edge_m_q8 / 256.0;
+    const struct ref_view view = {s->grid.height_m_q10 / 1024.0, s->grid.reference_m_q10 / 1024.0,
                                   cell_m};
     const struct ref_antenna antenna = {.elevation_beam_deg =
                                             hs_degrees(w->radar.antenna.elevation_beam),
                                         .fan_deg = hs_degrees(w->radar.antenna.fan)};
-    const struct ref_bins bins = {s->slant.first_q8 / 256.0, s->slant.cell_q8 / 256.0,
+    const struct ref_bins bins = {s->slant.first_m_q8 / 256.0, s->slant.cell_m_q8 / 256.0,
                                   s->slant.cells};
     struct ref_bin ground[LM_CELLS_MAX] = {0};
     double of_cells[LM_CELLS_MAX];
@@ -110,8 +110,8 @@ static void look_along(const struct sector_world *w, const struct ref_db *db, do
         struct ref_bin *g = &ground[i];
         g->range_m = edge_m + (i + 0.5) * cell_m;
         g->place = ref_geo_direct(from, hs_degrees(s->up) + azimuth_deg, g->range_m);
-        ref_db_cell(db, s->level, g->place, g);
-        (void)ref_db_elevation(db, s->level, g->place, true, &g->elevation_m);
+        ref_db_cell(db, s->lod, g->place, g);
+        (void)ref_db_elevation(db, s->lod, g->place, true, &g->elevation_m);
     }
     const size_t first = ref_first_shown(ground, cells, &view);
     ref_aspect(ground, cells, &view, params, ref_gm_horizon(&ground[first], &view));
@@ -156,8 +156,8 @@ static void see_all(const struct sector_world *w, const struct ref_db *db,
             seen[k][i] /= weights[k];
         }
         ref_pulse(seen[k], s->slant.cells,
-                  ref_pulse_m(w->radar.range[0].pulse_ns[s->command.field] * 1e-9) /
-                      (s->slant.cell_q8 / 256.0));
+                  ref_pulse_m(w->radar.range[0].pulse_ns[s->command.fov] * 1e-9) /
+                      (s->slant.cell_m_q8 / 256.0));
     }
 }
 
@@ -167,7 +167,7 @@ static double rms_of_sweep(struct sector_world *w, const struct lm_sector_comman
                            uint8_t azimuths_log2, double seen[LINES_MAX][LM_CELLS_MAX])
 {
     double squares = 0, values = 0;
-    w->radar.field[command->field].azimuths_log2 = azimuths_log2;
+    w->radar.fov[command->fov].azimuths_log2 = azimuths_log2;
     start_sector(w, command, NULL, NULL);
     do {
         const uint32_t line = draw_line(w);
@@ -193,14 +193,14 @@ TEST(the_table_brings_samples_near_to_what_the_beam_sees)
     spec.ctx = &scale;
     struct sector_world *w = make_country(&spec);
     const struct lm_sector_command commands[] = {
-        {.mode = LM_SECTOR_GM, .azimuth = 2},
-        {.mode = LM_SECTOR_GM, .field = LM_FIELD_EXP, .centre = place_at(w, 0, 14000)}};
+        {.mode = LM_SECTOR_GM, .azimuth_index = 2},
+        {.mode = LM_SECTOR_GM, .fov = LM_FOV_EXP, .centre = place_at(w, 0, 14000)}};
     struct ref_db db;
     assert_int_equal(ref_db_open_memory(&db, w->image.bytes, w->image.size, "country"), 0);
     static double seen[LINES_MAX][LM_CELLS_MAX];
     for (size_t i = 0; i < 2; i++) {
         const struct lm_sector_command *command = &commands[i];
-        const uint8_t table = lm_radar_default.field[command->field].azimuths_log2;
+        const uint8_t table = lm_radar_default.fov[command->fov].azimuths_log2;
         struct ref_params params =
             params_of(&w->radar, -INFINITY, &w->radar.mode[0].tone, &w->radar.mode[0].speckle);
         start_sector(w, command, NULL, NULL);
@@ -209,12 +209,12 @@ TEST(the_table_brings_samples_near_to_what_the_beam_sees)
         for (int kind = 0; kind < LM_KINDS; kind++) {
             w->radar.texture.shape_log2[kind] = LM_TEXTURE_NONE;
         }
-        double rms_db[LM_FOOTPRINT_LOG2_MAX + 1];
-        for (int log2 = 0; log2 <= LM_FOOTPRINT_LOG2_MAX; log2++) {
+        double rms_db[LM_AZIMUTH_AVERAGE_LOG2_MAX + 1];
+        for (int log2 = 0; log2 <= LM_AZIMUTH_AVERAGE_LOG2_MAX; log2++) {
             rms_db[log2] = rms_of_sweep(w, command, (uint8_t)log2, seen);
         }
         print_message("# field %d: rms %.2f, %.2f, %.2f, %.2f dB by 1, 2, 4, 8 azimuths a sample\n",
-                      command->field, rms_db[0], rms_db[1], rms_db[2], rms_db[3]);
+                      command->fov, rms_db[0], rms_db[1], rms_db[2], rms_db[3]);
         assert_true(rms_db[table] < 0.6 * rms_db[0]);
     }
     ref_db_close(&db);
@@ -243,14 +243,15 @@ static double worth_of_strip(double off_m, uint8_t azimuths_log2)
     spec.ctx = &strips;
     struct sector_world *w = make_country(&spec);
     const struct lm_sector_command command = {
-        .mode = LM_SECTOR_GM, .field = LM_FIELD_EXP, .centre = place_at(w, 0, 15000)};
+        .mode = LM_SECTOR_GM, .fov = LM_FOV_EXP, .centre = place_at(w, 0, 15000)};
     double sum = 0, expected = 0;
-    w->radar.field[LM_FIELD_EXP].azimuths_log2 = azimuths_log2;
+    w->radar.fov[LM_FOV_EXP].azimuths_log2 = azimuths_log2;
     start_sector(w, &command, NULL, NULL);
     do {
         draw_line(w);
         for (uint32_t i = 180; i < 200; i++) { /* 350 m about the middle */
-            const double slant_m = (w->sector.slant.first_q8 + i * w->sector.slant.cell_q8) / 256.0;
+            const double slant_m =
+                (w->sector.slant.first_m_q8 + i * w->sector.slant.cell_m_q8) / 256.0;
             sum += (ldexp(w->sector.power_q24[i], -24) - 1e-4) * hs_degrees(w->sector.width);
             expected += strips.wide_m / sqrt(slant_m * slant_m - 16e6) * 57.29578 / w->sector.lines;
         }
@@ -267,7 +268,7 @@ TEST(a_strip_along_the_line_of_sight_counts_by_its_width_wherever_it_lies)
 {
     enum { PLACES = 8 };
     double least[2] = {INFINITY, INFINITY}, most[2] = {0, 0};
-    const uint8_t log2[2] = {0, lm_radar_default.field[LM_FIELD_EXP].azimuths_log2};
+    const uint8_t log2[2] = {0, lm_radar_default.fov[LM_FOV_EXP].azimuths_log2};
     for (int k = 0; k < PLACES; k++) {
         for (int i = 0; i < 2; i++) {
             const double worth = worth_of_strip(31 * k, log2[i]);

@@ -1,0 +1,155 @@
+#include "lm/illumination.h"
+
+#include "fx/log.h"
+#include "fx/sat.h"
+#include "lm/kernels_clutter.h"
+#include "tops.h"
+
+_Static_assert((int)LM_LEGEND_CODES == LM_K_CODES && (int)LM_SIGHT_WORK >= LM_K_LIGHT_WORK,
+               "lm/aspect.h has what lm/kernels_clutter.h wants");
+
+enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
+
+/* g of the equations, Q24: the rise of flat ground from the cell before, at before_m_q8, to cell i,
+ * as tan of a grazing angle. */
+static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t before_m_q8)
+{
+    /* Height difference below 2^26, inverse range below 2^31 in Q(17 + bits). */
+    const int64_t above_m_q10 = (int64_t)g->height_m_q10 - g->reference_m_q10;
+    const int64_t grazing = (above_m_q10 * g->inverse_range[i] >> (3 + g->tangent_bits)) -
+                            ((int64_t)before_m_q8 * LM_CURVATURE_Q48 >> 32);
+    return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
+}
+
+/* `scale_q16`: what all cells have in common of K, as a binary logarithm. */
+static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_m_q8, int32_t scale_q16)
+{
+    /* range < 400 km = 2^26.6 in Q8: squared, in units of 16 m^2, 2^33.2; times the curvature
+     * 2^57.2. */
+    const int64_t drop_m_q14 =
+        ((((int64_t)range_m_q8 * range_m_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
+    g->fall_m_q14[i] = (int32_t)drop_m_q14 + g->height_m_q10 * 16;
+    /* No cell that is set lies nearer than LM_RANGE_MIN_M: 2^57 at most, over 2^(tangent_bits - 6).
+     * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+    const uint64_t inverse =
+        (((uint64_t)1 << (25 + g->tangent_bits)) + range_m_q8 / 2) / range_m_q8;
+    g->inverse_range[i] = inverse < INT32_MAX ? (int32_t)inverse : INT32_MAX;
+
+    /* K = s / (ds g) with the range of the cell before, and the rise comes times 2^bits. */
+    const uint32_t before_m_q8 = i == g->first ? range_m_q8 : range_m_q8 - g->cell_m_q8;
+    const int32_t log2_q16 = fx_log2_q16(before_m_q8) + scale_q16 -
+                             fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_m_q8));
+    g->gain_db_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_DB_Q8;
+}
+
+static uint32_t first_shown(const struct lm_range_grid *g, uint32_t first_m_q8)
+{
+    const uint32_t nearest_m = LM_RANGE_MIN_M;
+    const int32_t half_height_m_q8 = g->height_m_q10 / 8;
+    const uint32_t nearest_m_q8 =
+        half_height_m_q8 > (int32_t)(nearest_m << 8) ? (uint32_t)half_height_m_q8 : nearest_m << 8;
+    if (first_m_q8 >= nearest_m_q8) {
+        return 0;
+    }
+    const uint32_t before = (nearest_m_q8 - first_m_q8 + g->cell_m_q8 - 1) / g->cell_m_q8;
+    return before < g->cells ? before : g->cells;
+}
+
+void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_config *config,
+                       uint32_t first_m_q8, uint32_t cell_m_q8, uint32_t cells,
+                       int32_t height_m_q10, int32_t reference_m_q10)
+{
+    g->cells = cells;
+    g->cell_m_q8 = cell_m_q8;
+    g->height_m_q10 = height_m_q10;
+    g->reference_m_q10 = reference_m_q10;
+    g->first = first_shown(g, first_m_q8);
+    const uint32_t width_m_q8 = (uint32_t)config->shore_width_m << 8;
+    const uint32_t shore_cells = (width_m_q8 + cell_m_q8 / 2) / cell_m_q8;
+    g->shore_fall_db_q8 = config->shore_db_q8 / (int32_t)(shore_cells ? shore_cells : 1);
+    /* The largest inverse, that of the first cell shown, takes 31 bits. Where none is shown, any
+     * format does. */
+    const uint32_t nearest_m_q8 =
+        fx_max_u32(first_m_q8 + g->first * cell_m_q8, LM_RANGE_MIN_M << 8);
+    g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_m_q8)) + 6;
+    for (uint32_t i = 0; i < g->first; i++) {
+        g->fall_m_q14[i] = g->inverse_range[i] = g->gain_db_q8[i] = 0; /* read, but not shown */
+    }
+    const int32_t scale_q16 = (24 - (int32_t)g->tangent_bits) * 65536 - fx_log2_q16(cell_m_q8);
+    for (uint32_t i = g->first; i < cells; i++) {
+        set_cell(g, i, first_m_q8 + i * cell_m_q8, scale_q16);
+    }
+    if (g->first < cells) {
+        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(17 + bits) - 49. It is g ds / s, and
+         * so no more than the tangent of 90 degrees less a little; beyond the format, all is lit.
+         */
+        const int64_t rise_q32 = grazing_q24(g, g->first, nearest_m_q8) * cell_m_q8;
+        const int64_t rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 9) >> 30;
+        g->flat_rise = rise < INT32_MAX ? (int32_t)rise : INT32_MAX;
+    }
+}
+
+static uint8_t eighths_of(int32_t edge_db_q8)
+{
+    return (uint8_t)(fx_clamp_i32(edge_db_q8, 0, LM_EDGE_MAX_DB_Q8) / 32);
+}
+
+void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illumination_config *config,
+                      const struct lm_classes *classes)
+{
+    const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = LM_K_WATER,
+                                       [LM_KIND_STRUCTURE] = LM_K_STRUCTURE,
+                                       [LM_KIND_TREES] = LM_K_TREES};
+    for (uint32_t n = 0; n < LM_LEGEND_CODES; n++) {
+        class_lut->height_dm[n] = classes->height_dm[n];
+        class_lut->mark[n] = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
+    }
+    class_lut->edge_structure_db_q3 = eighths_of(config->edge_structure_db_q8);
+    class_lut->edge_trees_db_q3 = eighths_of(config->edge_trees_db_q8);
+    class_lut->shore_db_q8 = config->shore_db_q8;
+}
+
+/* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
+ * as far beyond. No rise takes 31 bits: tangents are apparent heights times s_0 / s, in steps of
+ * 2^-14 m. Ground is -16..33 km high, structures 6.6 km, the antenna within 30 km, and the Earth
+ * drops by 9.4 km in 400: any two are less than 70 km apart, 2^30.1. */
+static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
+                        lm_horizon_q40_t horizon)
+{
+    const int64_t start = horizon == LM_HORIZON_OPEN ? (int64_t)first_tangent - grid->flat_rise
+                                                     : horizon >> (40 - grid->tangent_bits);
+    const int64_t lowest = (int64_t)first_tangent - (1 << 30);
+    return fx_sat_i32(start < lowest ? lowest : start);
+}
+
+static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_class_lut *class_lut,
+                             const struct lm_scan_line *line)
+{
+    const struct lm_k_tops tops = tops_of(grid, class_lut, line);
+    const uint32_t code = line->cell[grid->first] % LM_LEGEND_CODES;
+    return lm_k_tangent(&tops, grid->first, lm_k_height_m_q14(class_lut->height_dm[code]));
+}
+
+lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
+                               const struct lm_class_lut *class_lut,
+                               const struct lm_scan_line *line, lm_horizon_q40_t horizon,
+                               struct lm_lit_line *sight)
+{
+    const struct lm_k_lit_line lit = {
+        .tops = tops_of(grid, class_lut, line),
+        .gain_db_q8 = grid->gain_db_q8,
+        .mark_of_class = class_lut->mark,
+        .edge_structure_db_q3 = class_lut->edge_structure_db_q3,
+        .edge_trees_db_q3 = class_lut->edge_trees_db_q3,
+        .shore_db_q8 = class_lut->shore_db_q8,
+        .shore_fall_db_q8 = grid->shore_fall_db_q8,
+        .start = start_of(grid, first_tangent(grid, class_lut, line), horizon),
+        .horizon = sight->horizon,
+        .level_db_q8 = sight->level_db_q8,
+        .work = sight->work,
+    };
+    lm_k_light(&lit);
+    return grid->first < grid->cells
+               ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
+               : horizon;
+}

@@ -1,0 +1,103 @@
+#include "lm/target_candidates.h"
+
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/scan_line.h"
+
+const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
+                                               const struct lm_target *t)
+{
+    const bool has_one = (t->flags & LM_TARGET_HAS_SIGNATURE) &&
+                         t->signature < set->signature_count &&
+                         set->signatures[t->signature].aspects != 0;
+    return has_one ? &set->signatures[t->signature] : NULL;
+}
+
+static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_position position,
+                                     const struct lm_target_scene *scene)
+{
+    if (!(t->flags & LM_TARGET_ABOVE_GROUND)) {
+        return t->elevation_m_q6;
+    }
+    /* Ground within 2^20, as the tiles are held to, and so is the height above it. */
+    const int32_t ground_m_q10 = scene->tiles
+                                     ? lm_scan_elevation(scene->tiles, scene->lod, position,
+                                                         scene->tiles->db->mean_elevation_m_q6 * 16)
+                                     : 0;
+    return t->elevation_m_q6 + ground_m_q10 / 16;
+}
+
+/* How well the place of a target is known to whoever looks for it: lm_geo_inverse and a plane are
+ * right within this part of the distance, up to 75 degrees of latitude and then up to 88; and so
+ * is a plane, within 16 m, for the way that the antenna has gone since. */
+static uint32_t position_error_m_q8(struct lm_position from, uint32_t distance_m_q8)
+{
+    const bool is_polar = fx_abs_u32((int32_t)from.latitude) > FX_BAM_DEG(75);
+    return distance_m_q8 / (is_polar ? 64 : 256) + 16 * 256;
+}
+
+/* A circle that holds the target, metres * 256: bodies by both of their axes together, below 2^19
+ * mm; a chip by its far corners, which are up to 32 columns and 64 rows away. */
+static uint32_t extent_m_q8(const struct lm_target_set *set, const struct lm_target *t)
+{
+    const struct lm_signature *s = lm_target_signature(set, t);
+    uint32_t most_mm = s ? s->pixel_mm * (LM_CHIP_SIDE * 9 / 8) : 0;
+    for (uint32_t i = 0; i < t->scatterer_count; i++) {
+        const int32_t *o = t->scatterers[i].offset_mm;
+        most_mm = fx_max_u32(most_mm, fx_abs_u32(o[0]) + fx_abs_u32(o[1]));
+    }
+    return most_mm / 1000 * 256 + 256;
+}
+
+void lm_target_candidates_select(struct lm_target_candidates *candidates,
+                                 const struct lm_target_set *set,
+                                 const struct lm_target_scene *scene)
+{
+    candidates->set = *set;
+    candidates->is_chosen = true;
+    candidates->position = scene->position;
+    candidates->time_us = scene->time_us;
+    candidates->count = candidates->left_out = 0;
+    const uint32_t reach_m_q8 = (scene->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256;
+    for (uint32_t i = 0; i < set->count; i++) {
+        const struct lm_target *t = &set->items[i];
+        struct lm_target_candidate candidate = {.index = (uint16_t)i,
+                                                .is_mover = t->speed_mm_s != 0,
+                                                .pose = lm_mover_pose(t, scene->time_us)};
+        fx_bam_t azimuth;
+        lm_geo_inverse(scene->position, candidate.pose.position, &candidate.distance_m_q8,
+                       &azimuth);
+        if (candidate.distance_m_q8 > reach_m_q8) {
+            continue;
+        }
+        if (candidates->count == LM_TARGET_CANDIDATES_MAX) {
+            candidates->left_out++;
+            continue;
+        }
+        /* Within 2^26, by sines of 2^15. */
+        candidate.north_m_q8 =
+            (int32_t)((int64_t)candidate.distance_m_q8 * fx_cos_q15(azimuth) >> 15);
+        candidate.east_m_q8 =
+            (int32_t)((int64_t)candidate.distance_m_q8 * fx_sin_q15(azimuth) >> 15);
+        candidate.slack_m_q8 =
+            extent_m_q8(set, t) + position_error_m_q8(scene->position, candidate.distance_m_q8);
+        candidate.elevation_m_q6 = origin_elevation_m_q6(t, candidate.pose.position, scene);
+        candidates->candidate[candidates->count++] = candidate;
+    }
+}
+
+bool lm_target_candidates_refresh(struct lm_target_candidates *candidates,
+                                  const struct lm_target_set *set,
+                                  const struct lm_target_scene *scene)
+{
+    /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
+    const uint32_t limit = 77000;
+    const struct lm_position *from = &candidates->position, *to = &scene->position;
+    const bool holds = candidates->is_chosen && candidates->time_us == scene->time_us &&
+                       fx_abs_u32((int32_t)(to->latitude - from->latitude)) < limit &&
+                       fx_abs_u32((int32_t)(to->longitude - from->longitude)) < limit;
+    if (!holds) {
+        lm_target_candidates_select(candidates, set, scene);
+    }
+    return !holds;
+}
