@@ -46,7 +46,7 @@ check: deps ## Build and run every test; ends in "N passed, N failed, N skipped"
 
 # The program test_NAME, or else all that have NAME in folder or name.
 TESTS_named = $(strip $(or $(filter %/$(NAME) %/test_$(NAME),$(TESTS)), \
-    $(foreach t,$(TESTS),$(if $(findstring $(NAME),$(t:$(O)/bin/tests/%=%)),$t))))
+    $(foreach t,$(TESTS:$(O)/bin/tests/%=%),$(if $(findstring $(NAME),$t $(subst /test_,/,$t)),$(O)/bin/tests/$t))))
 .PHONY: test
 test: $(if $(NAME),$(TESTS_named)) ## Build and run the tests of one name or folder: NAME=page, NAME=firmware/bus
 	@$(if $(and $(NAME),$(TESTS_named)),sh tests/run.sh $(O) $(TESTS_named),\
