@@ -83,11 +83,17 @@ static bool ends_in(const char *name, const char *end)
     return length >= end_length && memcmp(name + length - end_length, end, end_length) == 0;
 }
 
+static bool begins_with(const char *name, const char *begin)
+{
+    const size_t length = length_of(begin);
+    return length_of(name) >= length && memcmp(name, begin, length) == 0;
+}
+
 static void find_lines(void)
 {
     for (uint32_t i = 0; i < instrument_stages; i++) {
         state.draws |= (uint32_t)ends_in(instrument_names[i], "_draw_line") << i;
-        state.paints |= (uint32_t)ends_in(instrument_names[i], "_paint") << i;
+        state.paints |= (uint32_t)begins_with(instrument_names[i], "lm_scan_conv_") << i;
     }
 }
 

@@ -16,7 +16,7 @@ struct instrument_sum {
 struct instrument {
     struct instrument_sum sums[INSTRUMENT_MODES][INSTRUMENT_STAGES_MAX];
     struct instrument_sum
-        lines[INSTRUMENT_MODES]; /* a stage *_draw_line and the *_paint behind it */
+        lines[INSTRUMENT_MODES]; /* a stage *_draw_line and the lm_scan_conv_* behind it */
 };
 
 extern const uint32_t instrument_stages;
