@@ -11,7 +11,7 @@ enum {
     ECCENTRICITY2_Q30 = 7188035, /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
     FLATTENING_Q30 = (1 << 30) - ECCENTRICITY2_Q30,
     BAM_PER_RADIAN = 683565276, /* 2^32 / (2 pi) = 683,565,275.6 */
-    FARTHEST_Q8 = 300000 * 256
+    DISTANCE_MAX_M_Q8 = 300000 * 256
 };
 
 static const int64_t one_q32 = 1LL << 32;
@@ -43,7 +43,7 @@ void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position)
     const int64_t m_q8 = mul_q30(n_q8, FLATTENING_Q30) * one_q30 / w2_q30;
     o->prime_vertical_radius_m_q8 = (uint32_t)n_q8;
     o->meridian_radius_m_q8 = (uint32_t)m_q8;
-    o->axis_m_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
+    o->axis_distance_m_q8 = (int32_t)mul_q30(n_q8, o->cos_q30);
 }
 
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth)
@@ -72,7 +72,7 @@ static inline fx_bam_t small_angle(int64_t t_q32)
 
 /* The longitude of a point (x, east) in the plane of the equator, and how far it is from the
  * Earth's axis. |x| < 2^35, |east| < 2^31. */
-static inline fx_bam_t turn_of(int64_t x_q12, int64_t east_m_q12, int64_t *axis_q12)
+static inline fx_bam_t longitude_in_plane(int64_t x_q12, int64_t east_m_q12, int64_t *axis_q12)
 {
     if ((east_m_q12 < 0 ? -east_m_q12 : east_m_q12) >= x_q12 / 16) { /* near a pole */
         const int32_t x_q8 = (int32_t)(x_q12 >> 4), east_m_q8 = (int32_t)(east_m_q12 >> 4);
@@ -96,7 +96,7 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
     const int64_t sixth_q32 = 715827883, twentieth_q32 = 214748365;
     /* The arc a = s / R, below 0.05: 2^27 * 2^31.4 before the shift, 2^28 behind it. Forward is
      * R sin a = s - s a^2 / 6 (1 - a^2 / 20), down R (1 - cos a) = s a / 2 (1 - a^2 / 12). */
-    const int64_t s_m_q8 = fx_min_u32(distance_m_q8, FARTHEST_Q8), s_m_q12 = s_m_q8 * 16;
+    const int64_t s_m_q8 = fx_min_u32(distance_m_q8, DISTANCE_MAX_M_Q8), s_m_q12 = s_m_q8 * 16;
     const int64_t arc_q32 = s_m_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
     const int64_t sixth_square_q32 = square_q32 * sixth_q32 >> 32;
     const int64_t bend_q32 =
@@ -107,11 +107,11 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
     const int64_t north_m_q12 = mul_q30(forward_q12, r->cos_q30);
     const int64_t east_m_q12 = mul_q30(forward_q12, r->sin_q30);
 
-    const int64_t x0_q12 = o->axis_m_q8 * 16LL;
+    const int64_t x0_q12 = o->axis_distance_m_q8 * 16LL;
     const int64_t x_q12 = x0_q12 - ((north_m_q12 * sin_q30 + down_q12 * cos_q30) >> 30);
     const int64_t up_q12 = (north_m_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
     int64_t axis_q12;
-    const fx_bam_t east = turn_of(x_q12, east_m_q12, &axis_q12);
+    const fx_bam_t east = longitude_in_plane(x_q12, east_m_q12, &axis_q12);
     /* The latitude's tangent is z / (1 - e2) axis, and the origin's that of its own two. Seen from
      * the origin's direction, in which (1 - e2) N is as far as the origin, the difference is small.
      */
@@ -165,9 +165,9 @@ void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_position point
                    &p->longitude, &p->longitude_step, &p->longitude_bend);
 }
 
-static struct lm_ground_arch arch_of(fx_bam_t left, fx_bam_t middle, fx_bam_t right)
+static struct lm_ground_parabola parabola_of(fx_bam_t left, fx_bam_t middle, fx_bam_t right)
 {
-    return (struct lm_ground_arch){
+    return (struct lm_ground_parabola){
         .middle = middle,
         .twice_slope = (int32_t)(right - left),
         .bend = (int32_t)(right - middle) + (int64_t)(int32_t)(left - middle),
@@ -189,13 +189,13 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position,
             q[column] = lm_geo_direct(&o, azimuth + fx_atan2(across_m_q8, along_m_q8),
                                       fx_hypot_u32(across_m_q8, along_m_q8));
         }
-        p->row[row].latitude = arch_of(q[0].latitude, q[1].latitude, q[2].latitude);
-        p->row[row].longitude = arch_of(q[0].longitude, q[1].longitude, q[2].longitude);
+        p->row[row].latitude = parabola_of(q[0].latitude, q[1].latitude, q[2].latitude);
+        p->row[row].longitude = parabola_of(q[0].longitude, q[1].longitude, q[2].longitude);
     }
 }
 
 /* At x in Q16 from the middle, the edges being 1 away; |x| up to 64. */
-static inline fx_bam_t arch_at(const struct lm_ground_arch *a, int32_t x_q16)
+static inline fx_bam_t parabola_at(const struct lm_ground_parabola *a, int32_t x_q16)
 {
     /* Twice the slope is below 2^31, the bend below 2^32 and |x| <= 2^22: |bent| <= 2^38, and the
      * last product < 2^61. */
@@ -208,8 +208,8 @@ void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32
 {
     const int32_t x_q16 = (int32_t)(((int64_t)(2 * line + 1) << 16) / lines) - (1 << 16);
     for (int row = 0; row < 3; row++) {
-        points[row].latitude = arch_at(&p->row[row].latitude, x_q16);
-        points[row].longitude = arch_at(&p->row[row].longitude, x_q16);
+        points[row].latitude = parabola_at(&p->row[row].latitude, x_q16);
+        points[row].longitude = parabola_at(&p->row[row].longitude, x_q16);
     }
 }
 

@@ -2,7 +2,7 @@
 
 #include "fx/sat.h"
 
-static void add_one(struct lm_text *t, char c)
+static void add_char(struct lm_text *t, char c)
 {
     if (t->length < LM_TEXT_MAX) {
         t->words[t->length++] = c;
@@ -13,7 +13,7 @@ static void add_one(struct lm_text *t, char c)
 void lm_text_add(struct lm_text *t, const char *words)
 {
     while (*words) {
-        add_one(t, *words++);
+        add_char(t, *words++);
     }
 }
 
@@ -26,14 +26,14 @@ void lm_text_number(struct lm_text *t, uint32_t value, uint32_t digits)
         value /= 10;
     } while (count < sizeof reversed && (value != 0 || count < digits));
     while (count > 0) {
-        add_one(t, reversed[--count]);
+        add_char(t, reversed[--count]);
     }
 }
 
 void lm_text_signed(struct lm_text *t, int32_t value)
 {
     if (value != 0) {
-        add_one(t, value < 0 ? '-' : '+');
+        add_char(t, value < 0 ? '-' : '+');
     }
     lm_text_number(t, fx_abs_u32(value), 1);
 }
@@ -41,6 +41,6 @@ void lm_text_signed(struct lm_text *t, int32_t value)
 void lm_text_tab(struct lm_text *t, uint32_t column)
 {
     while (t->length < column && t->length < LM_TEXT_MAX) {
-        add_one(t, ' ');
+        add_char(t, ' ');
     }
 }

@@ -5,7 +5,7 @@
 #include "lm/kernels_clutter.h"
 #include "tops.h"
 
-_Static_assert((int)LM_LEGEND_CODES == LM_K_CODES && (int)LM_SIGHT_WORK >= LM_K_LIGHT_WORK,
+_Static_assert((int)LM_CLASS_LUT_CODES == LM_K_CODES && (int)LM_LIT_SCRATCH >= LM_K_LIGHT_WORK,
                "lm/aspect.h has what lm/kernels_clutter.h wants");
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
@@ -89,7 +89,7 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_con
     }
 }
 
-static uint8_t eighths_of(int32_t edge_db_q8)
+static uint8_t edge_db_q3_of(int32_t edge_db_q8)
 {
     return (uint8_t)(fx_clamp_i32(edge_db_q8, 0, LM_EDGE_MAX_DB_Q8) / 32);
 }
@@ -100,12 +100,12 @@ void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illuminati
     const uint8_t mark_of[LM_KINDS] = {[LM_KIND_WATER] = LM_K_WATER,
                                        [LM_KIND_STRUCTURE] = LM_K_STRUCTURE,
                                        [LM_KIND_TREES] = LM_K_TREES};
-    for (uint32_t n = 0; n < LM_LEGEND_CODES; n++) {
+    for (uint32_t n = 0; n < LM_CLASS_LUT_CODES; n++) {
         class_lut->height_dm[n] = classes->height_dm[n];
         class_lut->mark[n] = mark_of[classes->entry[n].kind & (LM_KINDS - 1)];
     }
-    class_lut->edge_structure_db_q3 = eighths_of(config->edge_structure_db_q8);
-    class_lut->edge_trees_db_q3 = eighths_of(config->edge_trees_db_q8);
+    class_lut->edge_structure_db_q3 = edge_db_q3_of(config->edge_structure_db_q8);
+    class_lut->edge_trees_db_q3 = edge_db_q3_of(config->edge_trees_db_q8);
     class_lut->shore_db_q8 = config->shore_db_q8;
 }
 
@@ -113,8 +113,8 @@ void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illuminati
  * as far beyond. No rise takes 31 bits: tangents are apparent heights times s_0 / s, in steps of
  * 2^-14 m. Ground is -16..33 km high, structures 6.6 km, the antenna within 30 km, and the Earth
  * drops by 9.4 km in 400: any two are less than 70 km apart, 2^30.1. */
-static int32_t start_of(const struct lm_range_grid *grid, int32_t first_tangent,
-                        lm_horizon_q40_t horizon)
+static int32_t start_tangent(const struct lm_range_grid *grid, int32_t first_tangent,
+                             lm_horizon_q40_t horizon)
 {
     const int64_t start = horizon == LM_HORIZON_OPEN ? (int64_t)first_tangent - grid->flat_rise
                                                      : horizon >> (40 - grid->tangent_bits);
@@ -126,16 +126,16 @@ static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_c
                              const struct lm_scan_line *line)
 {
     const struct lm_k_tops tops = tops_of(grid, class_lut, line);
-    const uint32_t code = line->cell[grid->first] % LM_LEGEND_CODES;
+    const uint32_t code = line->cell[grid->first] % LM_CLASS_LUT_CODES;
     return lm_k_tangent(&tops, grid->first, lm_k_height_m_q14(class_lut->height_dm[code]));
 }
 
 lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
                                const struct lm_class_lut *class_lut,
                                const struct lm_scan_line *line, lm_horizon_q40_t horizon,
-                               struct lm_lit_line *sight)
+                               struct lm_lit_line *lit)
 {
-    const struct lm_k_lit_line lit = {
+    const struct lm_k_lit_line kernel_line = {
         .tops = tops_of(grid, class_lut, line),
         .gain_db_q8 = grid->gain_db_q8,
         .mark_of_class = class_lut->mark,
@@ -143,13 +143,13 @@ lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
         .edge_trees_db_q3 = class_lut->edge_trees_db_q3,
         .shore_db_q8 = class_lut->shore_db_q8,
         .shore_fall_db_q8 = grid->shore_fall_db_q8,
-        .start = start_of(grid, first_tangent(grid, class_lut, line), horizon),
-        .horizon = sight->horizon,
-        .level_db_q8 = sight->level_db_q8,
-        .work = sight->work,
+        .start = start_tangent(grid, first_tangent(grid, class_lut, line), horizon),
+        .horizon = lit->horizon,
+        .level_db_q8 = lit->level_db_q8,
+        .work = lit->scratch,
     };
-    lm_k_light(&lit);
+    lm_k_light(&kernel_line);
     return grid->first < grid->cells
-               ? sight->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
+               ? lit->horizon[grid->cells] * ((int64_t)1 << (40 - grid->tangent_bits))
                : horizon;
 }

@@ -3,7 +3,7 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 
-static int32_t within(int64_t cells_q8, int32_t most)
+static int32_t clamp_cells_q8(int64_t cells_q8, int32_t most)
 {
     const int64_t most_cells_q8 = (int64_t)most * 256;
     return (int32_t)(cells_q8 > most_cells_q8    ? most_cells_q8
@@ -13,8 +13,8 @@ static int32_t within(int64_t cells_q8, int32_t most)
 
 struct lm_smear lm_smear_of(int64_t across_cells_q8, int64_t along_cells_q8)
 {
-    const int32_t right_cells_q8 = within(across_cells_q8, LM_SMEAR_ACROSS_MOST);
-    const int32_t beyond_cells_q8 = within(along_cells_q8, LM_SMEAR_ALONG_MOST);
+    const int32_t right_cells_q8 = clamp_cells_q8(across_cells_q8, LM_SMEAR_ACROSS_MAX);
+    const int32_t beyond_cells_q8 = clamp_cells_q8(along_cells_q8, LM_SMEAR_ALONG_MAX);
     const uint32_t wide_q8 = fx_abs_u32(right_cells_q8), deep_q8 = fx_abs_u32(beyond_cells_q8);
     struct lm_smear s = {.slices = 1};
     while (s.slices < LM_SMEAR_SLICES && s.slices * 256 < fx_max_u32(wide_q8, deep_q8)) {
@@ -22,11 +22,11 @@ struct lm_smear lm_smear_of(int64_t across_cells_q8, int64_t along_cells_q8)
     }
     s.across_cells_q8 = right_cells_q8 / (int32_t)s.slices;
     s.along_cells_q8 = beyond_cells_q8 / (int32_t)s.slices;
-    s.deep_q8 = fx_max_u32(deep_q8 / s.slices, 256);
+    s.along_stretch_q8 = fx_max_u32(deep_q8 / s.slices, 256);
     /* A range cell that it leaves after a part of the dwell has but that part's resolution, w cells
      * of w walked through, in the shape of the weights: half as wide as the response stretched w
      * times (tests/unit/firmware/targets/test_target_patch.c). */
-    s.wide_q8 = fx_max_u32(fx_max_u32(wide_q8 / s.slices, deep_q8 / 2), 256);
+    s.across_stretch_q8 = fx_max_u32(fx_max_u32(wide_q8 / s.slices, deep_q8 / 2), 256);
     return s;
 }
 
@@ -36,7 +36,8 @@ int32_t lm_smear_share_db_q8(const struct lm_smear *s, uint32_t slice)
      * its middle: in halves, quarters and eighths. */
     static const int16_t share_db_q8[] = {-771, -2864, -954, -4754, -3088, -2005, -1501};
     const uint32_t from_end = slice < s->slices / 2 ? slice : s->slices - 1 - slice;
-    const int32_t stretch_q8 = fx_db_q8(s->wide_q8) + fx_db_q8(s->deep_q8) - 2 * fx_db_q8(256);
+    const int32_t stretch_q8 =
+        fx_db_q8(s->across_stretch_q8) + fx_db_q8(s->along_stretch_q8) - 2 * fx_db_q8(256);
     /* Of n slices, n / 2 entries begin at n / 2 - 1. */
     return (s->slices == 1 ? 0 : share_db_q8[s->slices / 2 - 1 + from_end]) - stretch_q8;
 }

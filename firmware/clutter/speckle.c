@@ -6,7 +6,7 @@
 _Static_assert((int)LM_NOISE_LOOKS_LOG2_MAX == (int)LM_LOOKS_LOG2_MAX,
                "what the table may ask for");
 
-enum { SEA_STATE_STEP_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
+enum { SEA_STATE_STEP_DB_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
 _Static_assert((int)LM_TEXTURE_SHAPE_BITS == LM_K_SHAPE_BITS && (int)LM_DB_CLASSES == LM_K_CODES &&
                    (int)LM_NOISE_BLOCK == LM_LANES,
@@ -33,7 +33,7 @@ void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_
 /* Which shapes the classes have, and whether some gain. */
 static void summarize(struct lm_texture *t)
 {
-    t->shapes = 0;
+    t->shape_count = 0;
     t->has_gain = false;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         t->has_gain |= t->of_class[i] >> LM_TEXTURE_SHAPE_BITS != 0;
@@ -44,7 +44,7 @@ static void summarize(struct lm_texture *t)
             is_used |= lm_texture_shape(t->of_class[i]) == log2;
         }
         if (is_used) {
-            t->shape_log2[t->shapes++] = (uint8_t)log2;
+            t->shape_log2[t->shape_count++] = (uint8_t)log2;
         }
     }
 }
@@ -58,7 +58,7 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
         const uint8_t kind = classes->entry[i].kind & (LM_KINDS - 1);
         const int32_t shape = fx_min_i32(config->shape_log2[kind], LM_TEXTURE_NONE);
         const int32_t gain_db_q8 =
-            (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_Q8 : 0) - off_db_q8;
+            (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_DB_Q8 : 0) - off_db_q8;
         t->of_class[i] = gain_db_q8 * (1 << LM_TEXTURE_SHAPE_BITS) + shape;
     }
     summarize(t);
@@ -72,7 +72,7 @@ void lm_texture_run(const struct lm_texture *t, const struct lm_noise_key *noise
         lm_k_class_gain(t->of_class, cell, level_db_q8, cells);
     }
     lm_noise_line_set(&noise, noise_key, cells);
-    for (uint32_t n = 0; n < t->shapes; n++) {
+    for (uint32_t n = 0; n < t->shape_count; n++) {
         const uint8_t shape = t->shape_log2[n];
         lm_k_class_noise(t->of_class, shape, lm_noise_db_q8[shape], noise.entry, cell, level_db_q8,
                          cells);

@@ -8,7 +8,7 @@
 #error "records are used in place: landmass needs a little-endian machine"
 #endif
 
-enum { HEIGHT_MAX_Q6 = 1 << 20 };
+enum { HEIGHT_MAX_M_Q6 = 1 << 20 };
 
 int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination, uint32_t length,
                uint32_t poll_limit)
@@ -30,7 +30,7 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
  * record's are. */
 static bool is_height(int32_t height_m_q6)
 {
-    return height_m_q6 >= -HEIGHT_MAX_Q6 && height_m_q6 <= HEIGHT_MAX_Q6;
+    return height_m_q6 >= -HEIGHT_MAX_M_Q6 && height_m_q6 <= HEIGHT_MAX_M_Q6;
 }
 
 static bool header_is_sound(const struct lm_image_header *h, uint64_t flash_bytes)

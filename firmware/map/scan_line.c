@@ -5,16 +5,16 @@
 /* One coordinate of a line, cell k being at `at + k (step + k half_bend)`. The unit is 2^-32 of a
  * tile's side, so that the upper half is the tile's row or column and the lower half the place in
  * it. */
-struct way {
+struct coordinate {
     uint64_t at, step, half_bend;
 };
 
 /* One coordinate of a walk along a line. */
-struct axis {
-    struct way way;
+struct map_axis {
+    struct coordinate coordinate;
     uint64_t fastest;   /* every step of the line is shorter */
     uint32_t direction; /* all ones where none goes back */
-    bool turns;         /* some may go back and some not */
+    bool is_turning;    /* some may go back and some not */
     uint32_t round;     /* tiles around the Earth, a power of two, less one */
     uint32_t tile;      /* row or column where the walk stands */
     uint32_t end;       /* the first cell that may lie in the next one, or is behind the line */
@@ -22,12 +22,12 @@ struct axis {
 
 /* What is done once a line, or seldom, takes no registers from the loop of runs: on the Cortex-A53
  * that is 140 instructions a line. */
-#define APART __attribute__((noinline))
+#define OUT_OF_LINE __attribute__((noinline))
 
 /* The way of a line through the tiles of one level. A run is a stretch of cells in one tile. */
 struct walk {
     const struct lm_ground_path *path; /* borrowed */
-    struct axis north, east;
+    struct map_axis north, east;
     uint32_t cells;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
     uint32_t sixteenth; /* of the row where the walk stands, see below */
@@ -47,25 +47,27 @@ static inline uint64_t magnitude(int64_t x)
     return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
 }
 
-static inline uint64_t way_at(const struct way *w, uint32_t k)
+static inline uint64_t coordinate_at(const struct coordinate *w, uint32_t k)
 {
     return w->at + k * (w->step + k * w->half_bend);
 }
 
 /* A way by where it is at cell k and how fast it goes there. */
-static inline struct way way_through(uint32_t k, uint64_t at, uint64_t slope, uint64_t half_bend)
+static inline struct coordinate coordinate_through(uint32_t k, uint64_t at, uint64_t slope,
+                                                   uint64_t half_bend)
 {
-    return (struct way){at - k * (slope - k * half_bend), slope - 2 * k * half_bend, half_bend};
+    return (struct coordinate){at - k * (slope - k * half_bend), slope - 2 * k * half_bend,
+                               half_bend};
 }
 
 /* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
  * that the axis heads for, or to the nearer one if it turns round, at the fastest that it goes. The
  * border may turn out to be one cell farther, which then is a run of its own. */
-static inline void enter(struct axis *a, uint32_t k, uint32_t cells)
+static inline void start_run(struct map_axis *a, uint32_t k, uint32_t cells)
 {
-    const uint64_t at = way_at(&a->way, k);
+    const uint64_t at = coordinate_at(&a->coordinate, k);
     uint32_t room = (uint32_t)at ^ a->direction;
-    if (a->turns && ~room < room) {
+    if (a->is_turning && ~room < room) {
         room = ~room;
     }
     const uint64_t end = k + 1 + room / a->fastest;
@@ -74,7 +76,7 @@ static inline void enter(struct axis *a, uint32_t k, uint32_t cells)
 }
 
 /* A coordinate of a path, in units of 2^-32 BAM, and how it grows. */
-struct growth {
+struct path_coordinate {
     uint64_t value, step, bend;
 };
 
@@ -82,8 +84,8 @@ struct growth {
  * differences are not. Everything is modulo 2^64, so that no path can do more harm than lead
  * astray. The way is exact in the middle of the line: half a unit of the bend moves the ends of the
  * longest one by 528^2 / 8 units, which is 2^-11 of a cell. */
-static inline void start_axis(struct axis *a, struct growth g, uint32_t side_log2, uint32_t k,
-                              uint32_t cells)
+static inline void start_axis(struct map_axis *a, struct path_coordinate g, uint32_t side_log2,
+                              uint32_t k, uint32_t cells)
 {
     const uint32_t middle = cells / 2, pairs = middle * (middle - 1) / 2;
     const uint64_t half = (uint64_t)1 << side_log2;
@@ -94,22 +96,23 @@ static inline void start_axis(struct axis *a, struct growth g, uint32_t side_log
     /* No step of the line differs from the slope by more than its bend all the way. A tile is 2^10
      * BAM high at least, so these are below 2^53 and 2^62. */
     const uint64_t fast = magnitude(slope_there), bent = magnitude(half_bend) * cells;
-    a->way = way_through(middle, at, (uint64_t)slope_there, (uint64_t)half_bend);
+    a->coordinate = coordinate_through(middle, at, (uint64_t)slope_there, (uint64_t)half_bend);
     a->fastest = fast + bent + 1;
     a->direction = slope_there < 0 ? 0 : UINT32_MAX;
-    a->turns = fast <= bent;
+    a->is_turning = fast <= bent;
     a->round = UINT32_MAX >> side_log2;
-    enter(a, k, cells);
+    start_run(a, k, cells);
 }
 
-static APART void start_walk(struct walk *w, const struct lm_db *db, uint8_t lod,
-                             const struct lm_ground_path *path, uint32_t cells)
+static OUT_OF_LINE void start_walk(struct walk *w, const struct lm_db *db, uint8_t lod,
+                                   const struct lm_ground_path *path, uint32_t cells)
 {
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
     w->side_log2 = (uint32_t)db->shift0 + lod + LM_TILE_CELLS_LOG2;
-    start_axis(&w->north, (struct growth){from_pole, path->latitude_step, path->latitude_bend},
+    start_axis(&w->north,
+               (struct path_coordinate){from_pole, path->latitude_step, path->latitude_bend},
                w->side_log2, 0, cells);
 }
 
@@ -124,10 +127,10 @@ static inline uint32_t sixteenth_of_row(const struct walk *w)
 }
 
 /* Begin with the columns of a zone, at cell k. */
-static APART void enter_zone(struct walk *w, uint32_t k)
+static OUT_OF_LINE void enter_zone(struct walk *w, uint32_t k)
 {
     const struct lm_ground_path *p = w->path;
-    const struct growth longitude = {p->longitude, p->longitude_step, p->longitude_bend};
+    const struct path_coordinate longitude = {p->longitude, p->longitude_step, p->longitude_bend};
     w->sixteenth = sixteenth_of_row(w);
     const uint32_t zone = lm_db_zone((w->sixteenth << LM_DB_SIXTEENTH_LOG2) - FX_BAM_90);
     start_axis(&w->east, longitude, w->side_log2 + zone, k, w->cells);
@@ -141,13 +144,13 @@ static inline uint32_t end_of_run(const struct walk *w)
 
 /* Go on to the run that begins with cell k. False where the zone must be entered first, or behind
  * the last cell. */
-static inline bool go_on(struct walk *w, uint32_t k)
+static inline bool next_run(struct walk *w, uint32_t k)
 {
     if (k == w->north.end) {
         if (k == w->cells) {
             return false;
         }
-        enter(&w->north, k, w->cells);
+        start_run(&w->north, k, w->cells);
         if (sixteenth_of_row(w) != w->sixteenth) {
             return false;
         }
@@ -156,12 +159,12 @@ static inline bool go_on(struct walk *w, uint32_t k)
         if (k == w->cells) {
             return false;
         }
-        enter(&w->east, k, w->cells);
+        start_run(&w->east, k, w->cells);
     }
     return true;
 }
 
-static inline struct lm_quadratic track_of(const struct way *w)
+static inline struct lm_quadratic quadratic_of(const struct coordinate *w)
 {
     return (struct lm_quadratic){(uint32_t)w->at, (uint32_t)w->step, (uint32_t)w->half_bend};
 }
@@ -169,14 +172,15 @@ static inline struct lm_quadratic track_of(const struct way *w)
 /* A way in the tiles of an ancestor so many generations up, exact at cell k. Elsewhere in a run
  * about that cell, 264 cells off at the most, it is within 264^2 / 2 + 264 units of 2^-32 of the
  * ancestor's side: 2^-10 of one of its cells. */
-static struct lm_quadratic track_above(const struct way *w, uint32_t k, uint32_t generations)
+static struct lm_quadratic quadratic_in_ancestor(const struct coordinate *w, uint32_t k,
+                                                 uint32_t generations)
 {
     const uint64_t half = (uint64_t)1 << generations >> 1;
-    const struct way up =
-        way_through(k, way_at(w, k) >> generations,
-                    (uint64_t)((int64_t)(w->step + 2 * k * w->half_bend) >> generations),
-                    (uint64_t)((int64_t)(w->half_bend + half) >> generations));
-    return track_of(&up);
+    const struct coordinate up =
+        coordinate_through(k, coordinate_at(w, k) >> generations,
+                           (uint64_t)((int64_t)(w->step + 2 * k * w->half_bend) >> generations),
+                           (uint64_t)((int64_t)(w->half_bend + half) >> generations));
+    return quadratic_of(&up);
 }
 
 /* Tell the cells of a run, and those behind it up to a whole number of LM_LANES, which tile they
@@ -203,8 +207,9 @@ static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_
 }
 
 /* A run in a tile that was not found at once: what answers for it is good for this run only. */
-static APART void read_otherwise(const struct walk *w, struct lm_tile_cache *tiles, uint8_t lod,
-                                 uint32_t first, uint32_t end, struct lm_scan_line *line)
+static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cache *tiles,
+                                        uint8_t lod, uint32_t first, uint32_t end,
+                                        struct lm_scan_line *line)
 {
     const struct lm_tile *tile = lm_tile_cache_get(tiles, lod, w->north.tile, w->east.tile);
     if (!tile) {
@@ -215,18 +220,20 @@ static APART void read_otherwise(const struct walk *w, struct lm_tile_cache *til
         return;
     }
     const uint32_t middle = (first + end) / 2, generations = tile->lod - (uint32_t)lod;
-    const struct lm_tile_coords places = {track_above(&w->north.way, middle, generations),
-                                          track_above(&w->east.way, middle, generations)};
+    const struct lm_tile_coords places = {
+        quadratic_in_ancestor(&w->north.coordinate, middle, generations),
+        quadratic_in_ancestor(&w->east.coordinate, middle, generations)};
     assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
     lm_tile_read(tiles->pool, &places, first, end, line);
 }
 
 /* Read cells of a zone that are laid. */
-static void read_waiting(const struct walk *w, const struct lm_tile *pool, uint32_t first,
-                         uint32_t end, struct lm_scan_line *line)
+static void read_assigned(const struct walk *w, const struct lm_tile *pool, uint32_t first,
+                          uint32_t end, struct lm_scan_line *line)
 {
     if (first != end) {
-        const struct lm_tile_coords places = {track_of(&w->north.way), track_of(&w->east.way)};
+        const struct lm_tile_coords places = {quadratic_of(&w->north.coordinate),
+                                              quadratic_of(&w->east.coordinate)};
         lm_tile_read(pool, &places, first, end, line);
     }
 }
@@ -236,7 +243,7 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
                           struct lm_scan_line *line)
 {
     const struct lm_tile *pool = tiles->pool;
-    uint32_t waiting = k; /* the first cell that is laid and not read */
+    uint32_t assigned = k; /* the first cell that is laid and not read */
     enter_zone(w, k);
     do {
         const uint32_t end = end_of_run(w);
@@ -245,13 +252,13 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
         if (slot) {
             assign_tile(slot->base, k, end, line);
         } else {
-            read_waiting(w, pool, waiting, k, line);
-            read_otherwise(w, tiles, lod, k, end, line);
-            waiting = end;
+            read_assigned(w, pool, assigned, k, line);
+            read_substitute(w, tiles, lod, k, end, line);
+            assigned = end;
         }
         k = end;
-    } while (go_on(w, k));
-    read_waiting(w, pool, waiting, k, line);
+    } while (next_run(w, k));
+    read_assigned(w, pool, assigned, k, line);
     return k;
 }
 
@@ -275,12 +282,12 @@ void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
         do {
             lm_tile_cache_want(tiles, lod, w.north.tile, w.east.tile);
             k = end_of_run(&w);
-        } while (go_on(&w, k));
+        } while (next_run(&w, k));
     }
 }
 
 int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
-                          int32_t otherwise_m_q10)
+                          int32_t fallback_m_q10)
 {
     const uint32_t side_log2 = (uint32_t)tiles->db->shift0 + lod + LM_TILE_CELLS_LOG2;
     const uint64_t from_pole = (uint64_t)(position.latitude + FX_BAM_90) << 32;
@@ -290,7 +297,7 @@ int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_po
     const struct lm_tile *tile =
         lm_tile_cache_get(tiles, lod, (uint32_t)(north >> 32), (uint32_t)(east >> 32));
     if (!tile) {
-        return otherwise_m_q10;
+        return fallback_m_q10;
     }
     const uint32_t generations = tile->lod - (uint32_t)lod;
     return lm_tile_ground(tile, (uint32_t)(north >> generations), (uint32_t)(east >> generations))

@@ -3,7 +3,7 @@
 #include "fx/mem.h"
 
 /* Requests looked through for one that is the same. */
-enum { REMEMBERED = 32 };
+enum { DUPLICATES_SEARCHED = 32 };
 
 static uint16_t *head_of(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
@@ -160,17 +160,17 @@ static void take_record(struct lm_tile_cache *c)
     finish(c, LM_SLOT_RESIDENT);
 }
 
-bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *wanted)
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request)
 {
     if (c->request) {
         return false;
     }
-    wanted->status = LM_BUSY;
-    c->request = wanted;
+    request->status = LM_BUSY;
+    c->request = request;
     return true;
 }
 
-static void finish_guest(struct lm_tile_cache *c, bool is_ok)
+static void finish_request(struct lm_tile_cache *c, bool is_ok)
 {
     c->request->status = is_ok ? LM_OK : LM_ERR_IO;
     c->count.io_errors += !is_ok;
@@ -178,7 +178,7 @@ static void finish_guest(struct lm_tile_cache *c, bool is_ok)
     c->is_reading_request = false;
 }
 
-static void start_guest(struct lm_tile_cache *c)
+static void start_request(struct lm_tile_cache *c)
 {
     const struct lm_flash *flash = c->db->flash;
     const struct lm_flash_request *g = c->request;
@@ -186,15 +186,15 @@ static void start_guest(struct lm_tile_cache *c)
     c->is_reading_request =
         flash->read_start(flash->ctx, g->offset, g->destination, g->length) == LM_OK;
     if (!c->is_reading_request) {
-        finish_guest(c, false);
+        finish_request(c, false);
     }
 }
 
 /* Begin with what is to be read next; false when there is nothing. */
-static bool start_any(struct lm_tile_cache *c)
+static bool start_pending(struct lm_tile_cache *c)
 {
     if (c->request) {
-        start_guest(c);
+        start_request(c);
     } else if (c->wanted_tail != c->wanted_head) {
         start_next(c);
     } else {
@@ -204,10 +204,10 @@ static bool start_any(struct lm_tile_cache *c)
 }
 
 /* What was being read is there, or is not to be had. */
-static void take_read(struct lm_tile_cache *c, bool is_ok)
+static void end_read(struct lm_tile_cache *c, bool is_ok)
 {
     if (c->is_reading_request) {
-        finish_guest(c, is_ok);
+        finish_request(c, is_ok);
     } else if (!is_ok) {
         fail(c, &c->count.io_errors);
     } else if (c->is_reading_entry) {
@@ -228,7 +228,7 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
     c->now_us = now_us;
     for (uint32_t i = 0; i < reads; i++) {
         if (!is_reading(c)) {
-            if (!start_any(c)) {
+            if (!start_pending(c)) {
                 return;
             }
             continue;
@@ -237,15 +237,16 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
         if (status == LM_BUSY) {
             return;
         }
-        take_read(c, status == LM_OK);
+        end_read(c, status == LM_OK);
     }
 }
 
 /* Queue a tile of the image unless it is among the newest requests: neighbouring lines ask for the
  * same tiles. */
-static void request(struct lm_tile_cache *c, const struct lm_tile_key *key)
+static void queue_request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
-    for (uint32_t back = 1; back <= REMEMBERED && back <= c->wanted_head - c->wanted_tail; back++) {
+    for (uint32_t back = 1; back <= DUPLICATES_SEARCHED && back <= c->wanted_head - c->wanted_tail;
+         back++) {
         if (c->wanted[(c->wanted_head - back) % LM_TILE_REQUESTS].entry == key->entry) {
             return;
         }
@@ -276,7 +277,7 @@ static bool want_tile(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32
     if (entry < 0) {
         return false;
     }
-    request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, lod});
+    queue_request(c, &(struct lm_tile_key){row, column, (uint32_t)entry, lod});
     return true;
 }
 
@@ -295,7 +296,7 @@ static bool is_resident(const struct lm_tile_cache *c, uint16_t i)
     return c->slots[i].state == LM_SLOT_RESIDENT;
 }
 
-static const struct lm_tile *answer(struct lm_tile_cache *c, uint16_t i)
+static const struct lm_tile *use_slot(struct lm_tile_cache *c, uint16_t i)
 {
     c->slots[i].last_use = c->clock;
     return &c->pool[i];
@@ -311,9 +312,9 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, ui
     for (uint8_t at = lod; at < c->db->lod_count; at++, row >>= 1, column >>= 1) {
         const uint16_t i = find(c, at, row, column);
         if (is_resident(c, i)) {
-            c->count.otherwise += at != lod;
+            c->count.not_exact += at != lod;
             c->count.substituted += is_missed;
-            return answer(c, i);
+            return use_slot(c, i);
         }
         if (!is_wanted) {
             is_wanted = want_tile(c, at, row, column, i);
@@ -321,7 +322,7 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, ui
             c->count.misses += is_missed;
         }
     }
-    c->count.otherwise++;
+    c->count.not_exact++;
     c->count.off_map++;
     return NULL;
 }

@@ -7,7 +7,7 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
     return lm_k_tile_sample(tile->points[0], 0, lm_tile_base_of(tile, tile).scale, north, east);
 }
 
-void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *places, uint32_t first,
+void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coords, uint32_t first,
                   uint32_t end, struct lm_scan_line *line)
 {
     const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
@@ -17,5 +17,5 @@ void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *place
         cell_behind[lane] = 0; /* not laid, perhaps: any record will do */
         elevation_behind[lane] = 0;
     }
-    lm_k_tile_read(pool->points[0], places, first, groups, line->cell, line->elevation_m_q14);
+    lm_k_tile_read(pool->points[0], coords, first, groups, line->cell, line->elevation_m_q14);
 }

@@ -84,7 +84,7 @@ static void set_runup(struct lm_sar *s, const struct lm_db *db)
     const struct lm_sar_command *c = &s->command;
     struct lm_foreground *r = &s->foreground;
     lm_foreground_set(r, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
-    const int32_t near_m_q8 = (int32_t)r->start_db_q8 - (int32_t)(c->range_m * 256u);
+    const int32_t near_m_q8 = (int32_t)r->start_m_q8 - (int32_t)(c->range_m * 256u);
     const struct lm_ground_extent extent = {
         near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * r->cell_m_q8),
         (int32_t)(s->radar->sar.cells * s->grid.cell_m_q8 / 2)};

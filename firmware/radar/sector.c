@@ -329,7 +329,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
         struct lm_geo_ray ray;
         lm_geo_set_ray(&ray, &s->origin, s->up - FX_BAM_90 + part * width + width / 2);
         const struct lm_ground_path path =
-            path_of(&ray, s->foreground.start_db_q8, s->ground_edge_m_q8, LM_FOREGROUND_CELLS);
+            path_of(&ray, s->foreground.start_m_q8, s->ground_edge_m_q8, LM_FOREGROUND_CELLS);
         s->foreground_horizon =
             lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
         s->foreground_part = part;
@@ -401,9 +401,9 @@ static struct lm_noise_key ground_raster(const struct lm_sector *s, fx_bam_t azi
     const uint64_t two_pi_q28 = 1686629713;
     const uint64_t radians_q32 = azimuth * two_pi_q28 >> 28; /* below 2^34.7 */
     struct lm_noise_key r = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
-    r.growth_q32 = radians_q32 * LM_NOISE_BLOCK;
+    r.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
     /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    r.column_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + r.growth_q32 / 2;
+    r.column_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + r.column_step_q32 / 2;
     return r;
 }
 

@@ -67,10 +67,10 @@ static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
 
 static void widen(struct lm_chip_reach *r, const struct lm_smear *smear)
 {
-    r->right -= more_of(smear->wide_q8);
-    r->right_end += more_of(smear->wide_q8);
-    r->beyond -= more_of(smear->deep_q8);
-    r->beyond_end += more_of(smear->deep_q8);
+    r->right -= more_of(smear->across_stretch_q8);
+    r->right_end += more_of(smear->across_stretch_q8);
+    r->beyond -= more_of(smear->along_stretch_q8);
+    r->beyond_end += more_of(smear->along_stretch_q8);
 }
 
 /* Half of what cells stretched so take of the chip, in pixels * 256: scale below 2^18, a stretch
@@ -103,11 +103,11 @@ void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *sl
     chip->lit = reach_of(chip, &slot->lit, &r, scale_q16);
     chip->dark = reach_of(chip, &slot->dark, &r, scale_q16);
     widen(&chip->lit, smear);
-    chip->half_px_q8[0] = half_px_q8_of(scale_q16, smear->wide_q8);
-    chip->half_px_q8[1] = half_px_q8_of(scale_q16, smear->deep_q8);
+    chip->half_px_q8[0] = half_px_q8_of(scale_q16, smear->across_stretch_q8);
+    chip->half_px_q8[1] = half_px_q8_of(scale_q16, smear->along_stretch_q8);
     chip->dark_half_px_q8 = half_px_q8_of(scale_q16, 256);
-    chip->gain_db_q8 = side_gain_db_q8(scale_q16, smear->wide_q8, chip->half_px_q8[0]) +
-                       side_gain_db_q8(scale_q16, smear->deep_q8, chip->half_px_q8[1]);
+    chip->gain_db_q8 = side_gain_db_q8(scale_q16, smear->across_stretch_q8, chip->half_px_q8[0]) +
+                       side_gain_db_q8(scale_q16, smear->along_stretch_q8, chip->half_px_q8[1]);
 }
 
 /* A box on the chip, pixels * 256: from edge [0] to edge [1]. */

@@ -167,7 +167,7 @@ static void note_points(struct lm_target_patch *p, uint32_t target,
     t->has_points = left_cells_q8 <= right_cells_q8;
     /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
     note_around(p, target, left_cells_q8, right_cells_q8,
-                (LM_RESPONSE_REACH + 1) * t->smear.wide_q8, g);
+                (LM_RESPONSE_REACH + 1) * t->smear.across_stretch_q8, g);
 }
 
 /* Lay the target's chip over its point. */
@@ -264,9 +264,9 @@ static struct slice slice_of(const struct lm_smear *s, uint32_t number)
     return (struct slice){.across_cells_q8 = from_middle * s->across_cells_q8 / 2,
                           .along_cells_q8 = from_middle * s->along_cells_q8 / 2,
                           .share_db_q8 = lm_smear_share_db_q8(s, number),
-                          .thin_q16 = (int32_t)((256u << 16) / s->wide_q8),
-                          .flat_q16 = (int32_t)((256u << 16) / s->deep_q8),
-                          .deep_q8 = s->deep_q8};
+                          .thin_q16 = (int32_t)((256u << 16) / s->across_stretch_q8),
+                          .flat_q16 = (int32_t)((256u << 16) / s->along_stretch_q8),
+                          .deep_q8 = s->along_stretch_q8};
 }
 
 /* A distance in units of the stretched response. */

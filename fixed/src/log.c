@@ -39,9 +39,9 @@ static uint32_t exp2_q16(int64_t whole, uint32_t part_q32)
         return 0;
     }
     const uint64_t y_q32 = (part_q32 & 0xffffffu) * 2977044472ull >> 32; /* ln 2; < 2^23.5 */
-    const uint64_t growth_q32 = y_q32 + (y_q32 * y_q32 >> 33);
+    const uint64_t expm1_q32 = y_q32 + (y_q32 * y_q32 >> 33);
     const uint64_t entry_q31 = fx_table_exp2_q31[part_q32 >> 24]; /* < 2^32 */
-    const uint64_t power_q31 = entry_q31 + (entry_q31 * growth_q32 >> 32);
+    const uint64_t power_q31 = entry_q31 + (entry_q31 * expm1_q32 >> 32);
     const int drop = 15 - (int)whole; /* 0..32 */
     return (uint32_t)((power_q31 + (1ull << drop >> 1)) >> drop);
 }

@@ -6,7 +6,7 @@
 /* One step of Heron's rule with 1/(2s) taken from the inverse root: s + (n - s^2) / (2s). The
  * difference, below 2^50, is right modulo 2^64 whatever the sizes of its parts. Shedding 20 of its
  * bits keeps the product with the inverse root below 2^62 and costs 2^-12 of the result. */
-static inline uint64_t closer(uint64_t s, uint64_t n, uint32_t inverse_q30)
+static inline uint64_t heron_step(uint64_t s, uint64_t n, uint32_t inverse_q30)
 {
     const int64_t miss = (int64_t)(n - s * s);
     return s + (uint64_t)((miss >> 20) * (int64_t)inverse_q30 >> 43);
@@ -33,8 +33,8 @@ uint32_t fx_sqrt_u64(uint64_t x)
      * All 3 * 2^30 values of v_q32 were tried, at both ends of what it leaves out of n, and both
      * sides of all squares above 2^62. */
     uint64_t s = v_q32 * inverse_q30 >> 30;
-    s = closer(s, n, inverse_q30);
-    s = closer(s, n, inverse_q30);
+    s = heron_step(s, n, inverse_q30);
+    s = heron_step(s, n, inverse_q30);
     if (n - s * s > 2 * s) {
         s++;
     }

@@ -38,7 +38,7 @@ static inline int32_t fx_db_q8_u64(uint64_t power)
 }
 
 /* Zeros above the highest bit that is set, in whole groups of four: 0..28; 28 for x = 0. */
-static inline uint32_t fx_leading_nibbles_of_many(uint32_t x)
+static inline uint32_t fx_leading_nibbles_vec(uint32_t x)
 {
     const uint32_t by_16 = x >> 16 == 0 ? 16 : 0, x_16 = x << by_16;
     const uint32_t by_8 = x_16 >> 24 == 0 ? 8 : 0, x_8 = x_16 << by_8;
@@ -51,7 +51,7 @@ static inline uint32_t fx_leading_nibbles_of_many(uint32_t x)
 static inline int32_t fx_db_q8_vec(uint32_t power)
 {
     /* The power is shifted up to 2^28..2^32, where 12 bits are a mantissa of 8 bits or more. */
-    const uint32_t octaves = fx_leading_nibbles_of_many(power);
+    const uint32_t octaves = fx_leading_nibbles_vec(power);
     const int32_t mantissa = (int32_t)(power << octaves >> 20);
     return (fx_table_db_steps_q13[mantissa] + (20 - (int32_t)octaves) * FX_DB_OCTAVE_Q13) >> 5;
 }

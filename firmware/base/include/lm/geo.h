@@ -26,7 +26,7 @@ struct lm_position {
 struct lm_geo_origin {
     struct lm_position position;
     int32_t sin_q30, cos_q30;            /* of the latitude */
-    int32_t axis_m_q8;                   /* from the Earth's axis */
+    int32_t axis_distance_m_q8;          /* from the Earth's axis */
     uint32_t meridian_radius_m_q8;       /* M */
     uint32_t prime_vertical_radius_m_q8; /* N */
 };
@@ -67,7 +67,7 @@ void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_position point
 
 /* One coordinate across a rectangle: the parabola through its values at the left edge, the middle
  * and the right edge. */
-struct lm_ground_arch {
+struct lm_ground_parabola {
     fx_bam_t middle;
     int32_t twice_slope; /* right less left */
     int64_t bend;        /* right and left less twice the middle */
@@ -78,7 +78,7 @@ struct lm_ground_arch {
  * right as seen along the azimuth. */
 struct lm_ground_patch {
     struct {
-        struct lm_ground_arch latitude, longitude;
+        struct lm_ground_parabola latitude, longitude;
     } row[3];
 };
 

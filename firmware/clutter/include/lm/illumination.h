@@ -36,12 +36,12 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_con
                        uint32_t first_m_q8, uint32_t cell_m_q8, uint32_t cells,
                        int32_t height_m_q10, int32_t reference_m_q10);
 
-enum { LM_LEGEND_CODES = 16 }; /* height codes of a map, and classes */
+enum { LM_CLASS_LUT_CODES = 16 }; /* height codes of a map, and classes */
 
 /* What a map's classes and height codes mean here, worked out once for many lines. */
 struct lm_class_lut {
-    uint16_t height_dm[LM_LEGEND_CODES];            /* of the height code */
-    uint8_t mark[LM_LEGEND_CODES];                  /* of the class: lm/kernels_clutter.h */
+    uint16_t height_dm[LM_CLASS_LUT_CODES];         /* of the height code */
+    uint8_t mark[LM_CLASS_LUT_CODES];               /* of the class: lm/kernels_clutter.h */
     uint8_t edge_structure_db_q3, edge_trees_db_q3; /* leading edges, dB * 8 */
     int32_t shore_db_q8;                            /* brightness of a far shore, dB * 256 */
 };
@@ -56,7 +56,7 @@ typedef int64_t lm_horizon_q40_t;
 #define LM_HORIZON_OPEN INT64_MIN
 
 /* Entries that working out the light takes for scratch: too large for a stack. */
-enum { LM_SIGHT_WORK = 4 * (LM_LANES + LM_CELLS_ROOM) + 32 };
+enum { LM_LIT_SCRATCH = 4 * (LM_LANES + LM_CELLS_ROOM) + 32 };
 
 /* What becomes of a line's cells. */
 struct lm_lit_line {
@@ -64,13 +64,13 @@ struct lm_lit_line {
      * so far, in the grid's format. Cells that are not shown leave it alone. */
     int32_t horizon[LM_CELLS_ROOM];
     int32_t level_db_q8[LM_CELLS_ROOM]; /* LM_LEVEL_SHADOW where nothing is lit */
-    int32_t work[LM_SIGHT_WORK];        /* means nothing afterwards */
+    int32_t scratch[LM_LIT_SCRATCH];    /* means nothing afterwards */
 };
 
-/* Fill `sight` for the cells of the grid. Returns the horizon behind the last cell. */
+/* Fill `lit` for the cells of the grid. Returns the horizon behind the last cell. */
 lm_horizon_q40_t lm_illuminate(const struct lm_range_grid *grid,
                                const struct lm_class_lut *class_lut,
                                const struct lm_scan_line *line, lm_horizon_q40_t horizon,
-                               struct lm_lit_line *sight);
+                               struct lm_lit_line *lit);
 
 #endif

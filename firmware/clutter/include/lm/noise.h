@@ -33,8 +33,8 @@ enum lm_noise_kind { LM_NOISE_TEXTURE, LM_NOISE_SPECKLE, LM_NOISE_RECEIVER, LM_N
 /* A line of resolution cells: which column of a raster each block of eight lies in, and the look.
  * Cells of the same block number, column and epoch have the same draws, in whatever line. */
 struct lm_noise_key {
-    uint64_t column_q32; /* of the first block */
-    uint64_t growth_q32; /* what each further block adds, modulo 2^64 as the column is */
+    uint64_t column_q32;      /* of the first block */
+    uint64_t column_step_q32; /* what each further block adds, modulo 2^64 as the column is */
     uint32_t epoch;
 };
 
@@ -53,17 +53,17 @@ static inline uint32_t lm_noise_entry_in(uint64_t column_q32, uint32_t block, ui
 }
 
 /* The same of a block of a line. */
-static inline uint32_t lm_noise_entry(const struct lm_noise_key *r, uint32_t block)
+static inline uint32_t lm_noise_entry(const struct lm_noise_key *key, uint32_t block)
 {
-    return lm_noise_entry_in(r->column_q32 + block * r->growth_q32, block, r->epoch);
+    return lm_noise_entry_in(key->column_q32 + block * key->column_step_q32, block, key->epoch);
 }
 
 /* The draw of one cell. looks_log2 is 0..LM_NOISE_LOOKS_LOG2_MAX. */
-static inline int32_t lm_noise_cell_db_q8(uint32_t looks_log2, const struct lm_noise_key *r,
+static inline int32_t lm_noise_cell_db_q8(uint32_t looks_log2, const struct lm_noise_key *key,
                                           uint32_t cell)
 {
     return lm_noise_db_q8[looks_log2]
-                         [lm_noise_entry(r, cell / LM_NOISE_BLOCK) + cell % LM_NOISE_BLOCK];
+                         [lm_noise_entry(key, cell / LM_NOISE_BLOCK) + cell % LM_NOISE_BLOCK];
 }
 
 /* The entries of a line's blocks: block b's eight cells draw entry[b] and the seven behind it. Room
@@ -73,6 +73,6 @@ struct lm_noise_line {
 };
 
 /* For `cells` <= LM_CELLS_MAX. Cost: half an instruction a cell. */
-void lm_noise_line_set(struct lm_noise_line *n, const struct lm_noise_key *r, uint32_t cells);
+void lm_noise_line_set(struct lm_noise_line *n, const struct lm_noise_key *key, uint32_t cells);
 
 #endif

@@ -5,14 +5,14 @@
 
 #include <stdint.h>
 
-enum { LM_SMEAR_SLICES = 8, LM_SMEAR_ACROSS_MOST = 1024, LM_SMEAR_ALONG_MOST = 256 /* cells */ };
+enum { LM_SMEAR_SLICES = 8, LM_SMEAR_ACROSS_MAX = 1024, LM_SMEAR_ALONG_MAX = 256 /* cells */ };
 
 /* The dwell cut into slices, each a point response: `across` and `along` (cells * 256) from the one
- * before, stretched to wide_q8 and deep_q8 / 256 times its size. */
+ * before, stretched to across_stretch_q8 and along_stretch_q8 / 256 times its size. */
 struct lm_smear {
     uint32_t slices; /* 1, 2, 4 or LM_SMEAR_SLICES */
     int32_t across_cells_q8, along_cells_q8;
-    uint32_t wide_q8, deep_q8; /* from 256 up */
+    uint32_t across_stretch_q8, along_stretch_q8; /* from 256 up */
 };
 
 /* The smear of what goes so far over the whole dwell, cells * 256; what is farther than

@@ -18,7 +18,7 @@ enum { LM_TEXTURE_SHAPE_BITS = 3, LM_TEXTURE_LOSS_MAX_DB_Q8 = 64 * 256 };
 struct lm_texture {
     int32_t of_class[LM_DB_CLASSES];
     uint8_t shape_log2[LM_NOISE_LOOKS_LOG2_MAX + 1]; /* those in use, rising */
-    uint8_t shapes;                                  /* how many */
+    uint8_t shape_count;                             /* how many */
     bool has_gain;                                   /* of some class it is not 0 */
 };
 

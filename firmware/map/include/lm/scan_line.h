@@ -31,9 +31,9 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, ui
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
                            const struct lm_ground_path *path, uint32_t cells);
 
-/* Elevation at one place from whatever is resident, metres * 1024; `otherwise_m_q10` where nothing
+/* Elevation at one place from whatever is resident, metres * 1024; `fallback_m_q10` where nothing
  * is. */
 int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
-                          int32_t otherwise_m_q10);
+                          int32_t fallback_m_q10);
 
 #endif

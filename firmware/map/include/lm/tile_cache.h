@@ -79,7 +79,7 @@ struct lm_tile_cache {
     bool is_reading_request;
 
     struct {
-        uint32_t otherwise;   /* lookups not answered by the tile asked for */
+        uint32_t not_exact;   /* lookups not answered by the tile asked for */
         uint32_t misses;      /* of those: although it exists */
         uint32_t substituted; /* misses answered by an ancestor */
         uint32_t off_map;     /* lookups that nothing answers: no data here */
@@ -107,7 +107,7 @@ const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, ui
 /* Lookups answered by the tile asked for. */
 static inline uint32_t lm_tile_cache_hits(const struct lm_tile_cache *c)
 {
-    return c->clock - c->count.otherwise;
+    return c->clock - c->count.not_exact;
 }
 
 /* A tile of a level in one word. Rows are below 2^22: a tile is 2^10 BAM high at least. */
@@ -154,10 +154,10 @@ static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
  */
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column);
 
-/* Read something else of the image before the next tile. `wanted`, its offset, destination and
+/* Read something else of the image before the next tile. `request`, its offset, destination and
  * length filled in, is borrowed until its status is no longer LM_BUSY. One at a time: false, and
  * nothing is taken, while another one waits. */
-bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *wanted);
+bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request);
 
 /* Go on with the reading: at most `reads` polls or starts. Never waits. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);

@@ -16,7 +16,7 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
  * line->cell[k] is the record and line->elevation_q14[k] the scale of its lm_tile_base. Then cell
  * and elevation of each of first..end - 1 come to stand there; the LM_LANES behind them lose their
  * meaning. None when first is end. */
-void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *places, uint32_t first,
+void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coords, uint32_t first,
                   uint32_t end, struct lm_scan_line *line);
 
 #endif

@@ -124,7 +124,7 @@ TEST(each_class_gains_a_draw_of_its_own_shape)
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
     lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
-    assert_int_equal(texture.shapes, 3);
+    assert_int_equal(texture.shape_count, 3);
     for (uint32_t column = 0; column < 200; column++) {
         const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, column, 9);
         uint32_t cell[48], which[48];
@@ -208,7 +208,7 @@ TEST(a_hostile_table_reads_nothing_but_the_tables)
     memset(&classes, 0xff, sizeof classes);
     struct lm_texture texture;
     lm_texture_set(&texture, &config, &classes, 255, 0);
-    assert_int_equal(texture.shapes, 0);
+    assert_int_equal(texture.shape_count, 0);
     for (uint32_t i = 0; i < 16; i++) {
         assert_int_equal(lm_texture_shape(texture.of_class[i]), LM_TEXTURE_NONE);
         assert_int_equal(gain_q8(&texture, 0xffffff0fu | i << 4, i, 0), 0);
