@@ -1,7 +1,6 @@
 /* The airfield: x along the runway, y towards the apron. */
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 enum { SEED_AIRFIELD = 1400 };
 

@@ -2,8 +2,7 @@
  * farm. */
 #include "district.h"
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

@@ -1,7 +1,6 @@
 /* What would be there without people. */
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

@@ -1,7 +1,6 @@
 /* The port at the head of the bay: x inland, y along the quay. */
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* The roads that lead across the country, and their bridges. */
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

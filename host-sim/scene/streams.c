@@ -1,7 +1,6 @@
 /* Running water and what grows along it. */
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

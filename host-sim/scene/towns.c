@@ -1,8 +1,7 @@
 /* Streets, blocks and buildings. */
 #include "district.h"
 #include "noise.h"
-
-#include "scene/scene.h"
+#include "painters.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include "tracer/projection.h"
 #include "tracer/records.h"
 #include "tracer/scene.h"
-#include "tracer/trace.h"
+#include "tracer/sensor.h"
 
 /* A tile is as many whole rows of the sensor as have about so many rays, at least one. */
 enum { TILE_RAYS = 4096 };
