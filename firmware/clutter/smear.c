@@ -6,9 +6,7 @@
 static int32_t clamp_cells_q8(int64_t cells_q8, int32_t most)
 {
     const int64_t most_cells_q8 = (int64_t)most * 256;
-    return (int32_t)(cells_q8 > most_cells_q8    ? most_cells_q8
-                     : cells_q8 < -most_cells_q8 ? -most_cells_q8
-                                                 : cells_q8);
+    return (int32_t)fx_clamp_i64(cells_q8, -most_cells_q8, most_cells_q8);
 }
 
 struct lm_smear lm_smear_of(int64_t across_cells_q8, int64_t along_cells_q8)

@@ -67,7 +67,7 @@ static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
 static int32_t scale_px(const struct lm_glass *g, int32_t angle)
 {
     const int64_t sixty = (int64_t)FX_BAM_DEG(60);
-    const int64_t clamped = angle > sixty ? sixty : angle < -sixty ? -sixty : angle;
+    const int64_t clamped = fx_clamp_i64(angle, -sixty, sixty);
     return (int32_t)(clamped * part_of_half(g, 720) / sixty);
 }
 

@@ -194,7 +194,7 @@ static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_
     const int64_t moved =
         latitude + arc_bam(v->north_mm_s, age_us, origin->meridian_radius_m_q8 + height_m_q8);
     const int32_t pole = (int32_t)FX_BAM_90;
-    return moved > pole ? pole : moved < -pole ? -pole : (int32_t)moved;
+    return (int32_t)fx_clamp_i64(moved, -pole, pole);
 }
 
 /* A longitude, `age_us` later, by when the latitude is `latitude`. The circle is that of the
@@ -352,7 +352,7 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
                               height_m_q8, &v);
     const int32_t off = (int32_t)((uint32_t)carried - (uint32_t)fix->value);
     const int32_t half = fix->step > INT32_MAX ? INT32_MAX / 2 : (int32_t)(fix->step / 2);
-    const int32_t held = off > half ? half : off < -half ? -half : off;
+    const int32_t held = fx_clamp_i32(off, -half, half);
     return (int32_t)((uint32_t)fix->value + (uint32_t)held);
 }
 

@@ -24,7 +24,7 @@ void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenn
 static int32_t tan_q20(int64_t angle)
 {
     const int64_t steepest = FX_BAM_DEG(89);
-    const int64_t held = angle > steepest ? steepest : angle < -steepest ? -steepest : angle;
+    const int64_t held = fx_clamp_i64(angle, -steepest, steepest);
     return fx_tan_q16((fx_bam_t)held) * 16;
 }
 

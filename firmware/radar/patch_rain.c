@@ -28,7 +28,7 @@ static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
 {
     const int64_t across_m_q8 = (2 * (int64_t)line + 1 - g->lines) * g->cell_m_q8 / 2;
     const int64_t most = RANGE_MOST_Q8;
-    const int64_t held_m_q8 = across_m_q8 > most ? most : across_m_q8 < -most ? -most : across_m_q8;
+    const int64_t held_m_q8 = fx_clamp_i64(across_m_q8, -most, most);
     return fx_atan2((int32_t)held_m_q8, (int32_t)g->centre_m_q8);
 }
 
@@ -118,8 +118,8 @@ static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
     for (uint32_t i = 0; i < reach->cells; i++) {
         const int64_t half = half_angle(s, reach->first_m_q8 + i * reach->cell_m_q8);
         const int64_t left = off - half, right = off + half, most = FX_BAM_90;
-        p->left[i] = (int32_t)(left < -most ? -most : left > most ? most : left);
-        p->right[i] = (int32_t)(right < -most ? -most : right > most ? most : right);
+        p->left[i] = (int32_t)fx_clamp_i64(left, -most, most);
+        p->right[i] = (int32_t)fx_clamp_i64(right, -most, most);
     }
 }
 

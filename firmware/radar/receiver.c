@@ -20,8 +20,7 @@ static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
         grazing_q24 = (int64_t)height_m_q10 * (1 << 22) / (int64_t)ground_m_q8 -
                       ((int64_t)ground_m_q8 * LM_CURVATURE_Q48 >> 32);
     }
-    const int64_t least = GRAZING_MIN_Q24, most = GRAZING_MAX_Q24;
-    grazing_q24 = grazing_q24 < least ? least : grazing_q24 > most ? most : grazing_q24;
+    grazing_q24 = fx_clamp_i64(grazing_q24, GRAZING_MIN_Q24, GRAZING_MAX_Q24);
     return fx_log2_q16((uint32_t)grazing_q24) - (24 << 16);
 }
 

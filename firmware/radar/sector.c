@@ -108,12 +108,8 @@ static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half
     const int32_t half = (int32_t)fx_min_u32(half_angle, field_of(s)->azimuth_half_max);
     const int64_t wanted_left = (int64_t)bearing - half, wanted_right = (int64_t)bearing + half;
     const int32_t least = (int32_t)s->radar->line;
-    s->left = (int32_t)(wanted_left < -limit          ? -limit
-                        : wanted_left > limit - least ? limit - least
-                                                      : wanted_left);
-    const int32_t right = (int32_t)(wanted_right > limit             ? limit
-                                    : wanted_right < s->left + least ? s->left + least
-                                                                     : wanted_right);
+    s->left = (int32_t)fx_clamp_i64(wanted_left, -limit, limit - least);
+    const int32_t right = (int32_t)fx_clamp_i64(wanted_right, s->left + least, limit);
     const uint32_t turn = (uint32_t)(right - s->left);
     s->lines = window_lines(s, turn);
     s->width = turn / s->lines;

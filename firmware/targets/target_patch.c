@@ -29,9 +29,7 @@ static void put_mover(const struct lm_patch_geometry *g, const struct lm_target 
     const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
     const int64_t shift_m_q8 = spot->range_m_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 28;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
-    spot->shift_m_q8 = (int32_t)(shift_m_q8 > limit    ? limit
-                                 : shift_m_q8 < -limit ? -limit
-                                                       : shift_m_q8);
+    spot->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
     spot->smear_across_m_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
     spot->walk_m_q8 = -closing_mm_s * g->dwell_ms / 3906;
 }

@@ -30,6 +30,12 @@ static inline int32_t fx_clamp_i32(int32_t x, int32_t lo, int32_t hi)
     return x < lo ? lo : x > hi ? hi : x;
 }
 
+/* The same of 64 bits. */
+static inline int64_t fx_clamp_i64(int64_t x, int64_t lo, int64_t hi)
+{
+    return x < lo ? lo : x > hi ? hi : x;
+}
+
 /* |x| without the overflow at INT32_MIN, whose magnitude is 2^31. */
 static inline uint32_t fx_abs_u32(int32_t x)
 {

@@ -65,6 +65,11 @@ TEST(clamp_minimum_maximum_and_magnitude_hold_at_the_edges)
     assert_int_equal(fx_clamp_i32(5, -3, 4), 4);
     assert_int_equal(fx_clamp_i32(-5, -3, 4), -3);
     assert_int_equal(fx_clamp_i32(0, -3, 4), 0);
+    assert_int_equal(fx_clamp_i64(INT64_MAX, -3, INT64_MAX - 1), INT64_MAX - 1);
+    assert_int_equal(fx_clamp_i64(INT64_MIN, INT64_MIN + 1, 4), INT64_MIN + 1);
+    assert_int_equal(fx_clamp_i64((int64_t)1 << 32, -3, 4), 4);
+    assert_int_equal(fx_clamp_i64(INT64_MIN, INT64_MIN, INT64_MAX), INT64_MIN);
+    assert_int_equal(fx_clamp_i64(-3, -3, -3), -3);
     assert_int_equal(fx_min_i32(INT32_MIN, INT32_MAX), INT32_MIN);
     assert_int_equal(fx_max_i32(INT32_MIN, INT32_MAX), INT32_MAX);
     assert_int_equal(fx_min_u32(0, UINT32_MAX), 0);
