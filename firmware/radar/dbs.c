@@ -19,11 +19,11 @@ uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, uint32_t bam_per_s, uint3
     return ratio_q8 < UINT16_MAX ? (uint32_t)ratio_q8 : UINT16_MAX;
 }
 
-uint32_t lm_dbs_sharpening_q8(const struct lm_fov_row *fov, uint32_t had_q8)
+uint32_t lm_dbs_sharpening_q8(const struct lm_fov_row *fov, uint32_t available_q8)
 {
-    if (had_q8 < fov->sharpening_least * 256u) {
+    if (available_q8 < fov->sharpening_least * 256u) {
         return 256;
     }
-    const uint32_t ratio = fx_min_u32(had_q8 / 256, fov->sharpening);
+    const uint32_t ratio = fx_min_u32(available_q8 / 256, fov->sharpening);
     return 256u << (31 - fx_clz32(fx_max_u32(ratio, 1)));
 }

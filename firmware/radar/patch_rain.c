@@ -17,10 +17,10 @@ enum {
     RANGE_MOST_Q8 = 1 << 27
 };
 
-static struct lm_reach reach_of(const struct lm_patch_geometry *g)
+static struct lm_shower_cells reach_of(const struct lm_patch_geometry *g)
 {
-    const uint32_t before_db_q8 = (g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
-    return (struct lm_reach){g->centre_m_q8 - before_db_q8, g->cell_m_q8, g->cells};
+    const uint32_t before_m_q8 = (g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
+    return (struct lm_shower_cells){g->centre_m_q8 - before_m_q8, g->cell_m_q8, g->cells};
 }
 
 /* How far the ray through the middle of line `line` is turned from the line of sight. */
@@ -50,7 +50,7 @@ void lm_patch_rain_find(struct lm_patch_rain *p, const struct lm_environment *e,
         struct lm_shower *s = &p->shower[p->count];
         if (lm_bearing_find(antenna, e->rain[n].centre, azimuth, &s->at)) {
             s->radius_m = e->rain[n].radius_m;
-            lm_shower_weigh(s, e->rain[n].mm_per_h, radar->wavelength_um);
+            lm_shower_set_rate(s, e->rain[n].mm_per_h, radar->wavelength_um);
             p->count++;
         }
     }
@@ -58,16 +58,16 @@ void lm_patch_rain_find(struct lm_patch_rain *p, const struct lm_environment *e,
 
 /* Whether a ray within `most` of the line of sight, either way, meets the circle before the patch's
  * far end. If any does, the one nearest to its centre does. */
-static bool is_met(const struct lm_shower *s, int32_t most, const struct lm_reach *reach)
+static bool is_met(const struct lm_shower *s, int32_t most, const struct lm_shower_cells *reach)
 {
     struct lm_chord chord;
     const int32_t nearest = fx_clamp_i32((int32_t)s->at.off, -most, most);
     const uint32_t end_m_q8 = reach->first_m_q8 + reach->cells * reach->cell_m_q8;
-    return lm_shower_meet(s, (fx_bam_t)nearest, &chord) && chord.from_m_q8 < (int32_t)end_m_q8;
+    return lm_shower_chord(s, (fx_bam_t)nearest, &chord) && chord.from_m_q8 < (int32_t)end_m_q8;
 }
 
 static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
-                     const struct lm_reach *reach)
+                     const struct lm_shower_cells *reach)
 {
     const int32_t most = (int32_t)aside_of(g, (int32_t)g->lines) + p->beam / 2 * 3;
     uint32_t kept = 0;
@@ -80,12 +80,12 @@ static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
 }
 
 /* Loss along the ray, in p->loss_db_q8. */
-static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_reach *reach)
+static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_shower_cells *reach)
 {
     struct lm_chord chord;
     memset(p->loss_db_q8, 0, reach->cells * sizeof *p->loss_db_q8);
     for (uint32_t n = 0; n < p->count; n++) {
-        if (lm_shower_meet(&p->shower[n], aside, &chord)) {
+        if (lm_shower_chord(&p->shower[n], aside, &chord)) {
             const struct lm_shower s = slanted(p, n);
             lm_shower_add_loss(&s, &chord, reach, p->loss_db_q8);
         }
@@ -112,7 +112,7 @@ static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
 
 /* Where the circle begins and ends at each range, as angles off the line of sight. */
 static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
-                       const struct lm_reach *reach)
+                       const struct lm_shower_cells *reach)
 {
     const int64_t off = (int32_t)s->at.off;
     for (uint32_t i = 0; i < reach->cells; i++) {
@@ -127,7 +127,7 @@ static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
  * the ray's width at each range, by the two-way pattern in the middle of that, 2^(-8 x^2) with x in
  * beam widths. The pattern's integral, sqrt(pi / (8 ln 2)), is 6.0217 rays wide. */
 static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t axis, int32_t ray,
-                    const struct lm_reach *reach)
+                    const struct lm_shower_cells *reach)
 {
     const int32_t width = p->beam / 8, begin = axis + (ray - RAYS / 2) * width, end = begin + width;
     const int32_t echo_db_q8 = s->echo_db_q8 - 1996 - 32 * FX_DB_OCTAVE_Q14 / 64;
@@ -165,7 +165,7 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
     if (p->count == 0) {
         return;
     }
-    const struct lm_reach reach = reach_of(g);
+    const struct lm_shower_cells reach = reach_of(g);
     p->beam = fx_max_i32((int32_t)radar->antenna.azimuth_beam, BEAM_LEAST);
     p->noise_db_q8 = noise_db_q8;
     keep_met(p, g, &reach);
@@ -185,7 +185,7 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
 /* Noise and the rain's return over the beam about a station, worked out when it is first asked for:
  * lines go from left to right, so that each is asked for in turn. */
 static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
-                              const struct lm_reach *reach)
+                              const struct lm_shower_cells *reach)
 {
     struct lm_rain_veil *v = &p->veil[station & 1];
     if (v->is_set && v->station == station) {
@@ -211,36 +211,38 @@ static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *g, uint32_t line,
                        const int32_t *clutter_db_q8, int32_t *level_db_q8)
 {
-    const struct lm_reach reach = reach_of(g);
+    const struct lm_shower_cells reach = reach_of(g);
     const fx_bam_t aside = aside_of(g, (int32_t)line);
     const int32_t apart = p->beam / STATIONS, rest = (int32_t)aside % apart;
     const int32_t station = (int32_t)aside / apart - (rest < 0);
-    const int32_t part_db_q8 = (int32_t)((int64_t)(rest < 0 ? rest + apart : rest) * 256 / apart);
+    const int32_t part_q8 = (int32_t)((int64_t)(rest < 0 ? rest + apart : rest) * 256 / apart);
     const int32_t *before_db_q8 = veil_at(p, station, &reach);
     const int32_t *after_db_q8 = veil_at(p, station + 1, &reach);
     set_loss(p, aside, &reach);
     for (uint32_t i = 0; i < g->cells; i++) {
         const int32_t veil_db_q8 =
-            before_db_q8[i] + ((after_db_q8[i] - before_db_q8[i]) * part_db_q8 >> 8);
+            before_db_q8[i] + ((after_db_q8[i] - before_db_q8[i]) * part_q8 >> 8);
         level_db_q8[i] = fx_db_q8_sum_vec(clutter_db_q8[i] - p->loss_db_q8[i], veil_db_q8);
     }
 }
 
 void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_geometry *g,
-                          struct lm_target_patch *points)
+                          struct lm_target_patch *target_patch)
 {
-    const struct lm_reach reach = reach_of(g);
+    const struct lm_shower_cells reach = reach_of(g);
     struct lm_chord chord;
     for (uint32_t n = 0; n < p->count; n++) {
         const struct lm_shower s = slanted(p, n);
-        for (uint32_t i = 0; i < points->count; i++) {
-            struct lm_patch_point *point = &points->item[i];
-            const int64_t range_m_q8 = reach.first_m_q8 + (int64_t)point->cell * reach.cell_m_q8;
-            if (lm_shower_meet(&s, aside_of(g, point->line), &chord)) {
+        for (uint32_t i = 0; i < target_patch->scatterer_count; i++) {
+            struct lm_patch_scatterer *scatterer = &target_patch->scatterer[i];
+            const int64_t range_m_q8 =
+                reach.first_m_q8 + (int64_t)scatterer->cell * reach.cell_m_q8;
+            if (lm_shower_chord(&s, aside_of(g, scatterer->line), &chord)) {
                 const int32_t at_m_q8 =
                     range_m_q8 < RANGE_MOST_Q8 ? (int32_t)range_m_q8 : RANGE_MOST_Q8;
-                const uint32_t before_db_q8 = (uint32_t)lm_chord_before_m_q8(chord, at_m_q8);
-                point->level_db_q8 -= (int32_t)((uint64_t)before_db_q8 * s.loss_db_per_m_q32 >> 32);
+                const uint32_t before_m_q8 = (uint32_t)lm_chord_before_m_q8(chord, at_m_q8);
+                scatterer->level_db_q8 -=
+                    (int32_t)((uint64_t)before_m_q8 * s.loss_db_per_m_q32 >> 32);
             }
         }
     }

@@ -79,14 +79,14 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
 }
 
 /* The run-up to the patch's first guard cell. */
-static void set_runup(struct lm_sar *s, const struct lm_db *db)
+static void set_foreground(struct lm_sar *s, const struct lm_db *db)
 {
     const struct lm_sar_command *c = &s->command;
-    struct lm_foreground *r = &s->foreground;
-    lm_foreground_set(r, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
-    const int32_t near_m_q8 = (int32_t)r->start_m_q8 - (int32_t)(c->range_m * 256u);
+    struct lm_foreground *f = &s->foreground;
+    lm_foreground_set(f, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
+    const int32_t near_m_q8 = (int32_t)f->start_m_q8 - (int32_t)(c->range_m * 256u);
     const struct lm_ground_extent extent = {
-        near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * r->cell_m_q8),
+        near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * f->cell_m_q8),
         (int32_t)(s->radar->sar.cells * s->grid.cell_m_q8 / 2)};
     lm_ground_patch_set(&s->foreground_ground, c->centre, c->look_azimuth, &extent);
 }
@@ -158,16 +158,16 @@ static uint32_t noise_epoch_of(const struct lm_sar_command *c, uint32_t epoch)
 }
 
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
-                 const struct lm_sar_command *command, const struct lm_sar_scene *scene)
+                 const struct lm_sar_command *command, const struct lm_sar_setup *setup)
 {
-    const struct lm_sar_flight *flight = scene->flight;
+    const struct lm_sar_flight *flight = setup->flight;
     if (!command_is_sound(radar, command)) {
         return LM_ERR_RANGE;
     }
     const int32_t across_mm_s =
         flight ? speed_across_mm_s(flight) : -(int32_t)radar->sar.reference_speed_mm_s;
     const uint64_t patch_us =
-        dwell_us(radar, command, scene->reference_m_q10, fx_abs_u32(across_mm_s));
+        dwell_us(radar, command, setup->reference_m_q10, fx_abs_u32(across_mm_s));
     if (flight && !can_be_made(radar, flight, patch_us)) {
         return LM_ERR_RANGE;
     }
@@ -175,29 +175,29 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->radar = radar;
     s->command = *command;
     s->line_us = line_us < LM_SAR_LINE_MIN_US ? LM_SAR_LINE_MIN_US : line_us;
-    s->targets = scene->targets;
-    s->chips = scene->chips;
-    s->time_us = scene->time_us;
-    s->epoch = scene->epoch;
-    s->noise_epoch = noise_epoch_of(command, scene->epoch);
+    s->targets = setup->targets;
+    s->chips = setup->chips;
+    s->time_us = setup->time_us;
+    s->epoch = setup->epoch;
+    s->noise_epoch = noise_epoch_of(command, setup->epoch);
     s->across_mm_s = across_mm_s;
-    find_weather(s, scene->environment);
+    find_weather(s, setup->environment);
     s->defocus_lines_q8 =
         flight && !command->is_steady
             ? lm_defocus_lines_q8(flight->lateral_mm_s2, radar->sar.mocomp_residual_permille,
                                   radar->wavelength_um, patch_us)
             : 256;
     lm_class_lut_set(&s->class_lut, &radar->illumination, &db->classes);
-    lm_texture_set(&s->texture, &radar->texture, &db->classes, scene->sea_state, 0);
+    lm_texture_set(&s->texture, &radar->texture, &db->classes, setup->sea_state, 0);
     s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
-    lm_sar_set_reference(s, db, scene->reference_m_q10);
+    lm_sar_set_reference(s, db, setup->reference_m_q10);
     return LM_OK;
 }
 
 void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
 {
     set_grid(s, db, reference_m_q10);
-    set_runup(s, db);
+    set_foreground(s, db);
     set_layover(s);
     set_geometry(s);
     lm_patch_rain_set(&s->rain, s->radar, &s->geometry, s->floor_db_q8);
@@ -216,7 +216,8 @@ static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32
 }
 
 /* The path over the run-up before them. */
-static void set_runup_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t number)
+static void set_foreground_path(struct lm_ground_path *path, const struct lm_sar *s,
+                                uint32_t number)
 {
     lm_ground_patch_path(path, &s->foreground_ground, number * LM_SAR_FOREGROUND_LINES,
                          s->radar->sar.cells, LM_FOREGROUND_CELLS);
@@ -229,7 +230,7 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     set_path(&path, s, line);
     lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
     for (uint32_t number = first; number <= first + 1; number++) {
-        set_runup_path(&path, s, number);
+        set_foreground_path(&path, s, number);
         lm_scan_line_prefetch(tiles, s->foreground.lod, &path, LM_FOREGROUND_CELLS);
     }
 }
@@ -255,42 +256,42 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     }
     /* Half the diagonal: 1.5 is more than the root of 2. */
     const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_m_q8 / 512 * 3 / 2 + 1;
-    const struct lm_target_scene scene = {.position = s->command.centre,
+    const struct lm_target_query query = {.position = s->command.centre,
                                           .reach_m = half_diagonal_m + displaced_most_m(s),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
-    lm_target_candidates_select(&s->candidates, s->targets, &scene);
+    lm_target_candidates_select(&s->candidates, s->targets, &query);
     if (s->chips) {
-        const struct lm_chip_scene chips = {.centre = s->command.centre,
-                                            .reach_m = scene.reach_m,
-                                            .is_parallel = true,
-                                            .look = s->command.look_azimuth,
-                                            .range_m_q8 = s->command.range_m * 256,
-                                            .heights = s->geometry.heights,
-                                            .cell_mm = s->command.cell_mm,
-                                            .side_most = LM_CHIP_SIDE};
-        lm_chips_choose(s->chips, &s->candidates, &chips);
+        const struct lm_chip_query chip_query = {.centre = s->command.centre,
+                                                 .reach_m = query.reach_m,
+                                                 .is_parallel = true,
+                                                 .look = s->command.look_azimuth,
+                                                 .range_m_q8 = s->command.range_m * 256,
+                                                 .heights = s->geometry.heights,
+                                                 .cell_mm = s->command.cell_mm,
+                                                 .side_most = LM_CHIP_SIDE};
+        lm_chips_choose(s->chips, &s->candidates, &chip_query);
     }
 }
 
 /* The points and chips of the targets that the patch may show. */
-static void find_points(struct lm_sar *s, struct lm_tile_cache *tiles)
+static void find_target_patch(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
     lm_sar_prefetch_targets(s, tiles);
     if (s->candidates.count != 0) {
-        lm_target_patch_set(&s->points, &s->candidates, &s->geometry);
-        lm_patch_rain_weaken(&s->rain, &s->geometry, &s->points);
+        lm_target_patch_set(&s->target_patch, &s->candidates, &s->geometry);
+        lm_patch_rain_weaken(&s->rain, &s->geometry, &s->target_patch);
     }
-    s->has_points = true;
+    s->has_target_patch = true;
 }
 
 /* The horizon behind a run-up. */
-static lm_horizon_q40_t trace_runup(const struct lm_sar *s, struct lm_tile_cache *tiles,
-                                    uint32_t number, struct lm_line *line)
+static lm_horizon_q40_t trace_foreground(const struct lm_sar *s, struct lm_tile_cache *tiles,
+                                         uint32_t number, struct lm_line *line)
 {
     struct lm_ground_path path;
-    set_runup_path(&path, s, number);
+    set_foreground_path(&path, s, number);
     return lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
 }
 
@@ -301,8 +302,9 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
     const uint32_t second = number / LM_SAR_FOREGROUND_LINES + 1;
     if (second != s->second_foreground) {
         const bool goes_on = s->second_foreground != 0 && second == s->second_foreground + 1;
-        s->foregrounds[0] = goes_on ? s->foregrounds[1] : trace_runup(s, tiles, second - 1, line);
-        s->foregrounds[1] = trace_runup(s, tiles, second, line);
+        s->foregrounds[0] =
+            goes_on ? s->foregrounds[1] : trace_foreground(s, tiles, second - 1, line);
+        s->foregrounds[1] = trace_foreground(s, tiles, second, line);
         s->second_foreground = second;
     }
     /* Where no cell of the run-up is shown, both are open. */
@@ -316,8 +318,8 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
 }
 
 /* The cells of a line of the patch. */
-static struct lm_noise_key raster_of(const struct lm_sar *s, enum lm_noise_kind kind,
-                                     uint32_t number)
+static struct lm_noise_key line_noise_key(const struct lm_sar *s, enum lm_noise_kind kind,
+                                          uint32_t number)
 {
     return lm_noise_key_of(kind, number, s->noise_epoch);
 }
@@ -328,7 +330,7 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
     const struct lm_line_setup setup = {.grid = &s->grid,
                                         .class_lut = &s->class_lut,
                                         .texture = &s->texture,
-                                        .noise_key = raster_of(s, LM_NOISE_TEXTURE, number),
+                                        .noise_key = line_noise_key(s, LM_NOISE_TEXTURE, number),
                                         .lod = s->lod};
     struct lm_ground_path path;
     set_path(&path, s, number);
@@ -345,12 +347,12 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         lm_layover_run(&s->layover, &tiles->db->classes, &line->ground, clutter_db_q8,
                        s->power_q32);
     }
-    if (s->chips && s->points.on_line[number] != 0) {
-        lm_target_patch_shade(&s->points, number, &s->geometry, clutter_db_q8);
+    if (s->chips && s->target_patch.on_line[number] != 0) {
+        lm_target_patch_shade(&s->target_patch, number, &s->geometry, clutter_db_q8);
         s->chips->count.cells_left_out +=
-            lm_target_patch_add_chips(&s->points, number, &s->geometry, clutter_db_q8);
+            lm_target_patch_add_chips(&s->target_patch, number, &s->geometry, clutter_db_q8);
     }
-    const struct lm_noise_key noise_key = raster_of(s, LM_NOISE_SPECKLE, number);
+    const struct lm_noise_key noise_key = line_noise_key(s, LM_NOISE_SPECKLE, number);
     if (s->rain.count != 0) {
         lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_db_q8, level_db_q8);
         lm_speckle_run(&s->radar->sar.speckle, &noise_key, level_db_q8 + LM_SAR_GUARD,
@@ -363,7 +365,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
 }
 
 /* Whether a point is seen on lines before the one that it stands on. */
-static bool is_early(const struct lm_sar *s, const struct lm_patch_point *p)
+static bool is_early(const struct lm_sar *s, const struct lm_patch_scatterer *p)
 {
     return (p->is_displaced || p->is_chip) && p->line >= 0 &&
            p->line < (int32_t)s->radar->sar.cells;
@@ -371,22 +373,23 @@ static bool is_early(const struct lm_sar *s, const struct lm_patch_point *p)
 
 /* Chips reach far before the line that they stand on, and movers may appear far from it: what hides
  * them is asked before the first line, one after the other. True when all are judged. */
-static bool judge_points(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
-                         struct lm_line *line)
+static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
+                        struct lm_line *line)
 {
     uint32_t traced = 0;
-    for (; s->judged < s->points.count && traced < at_most; s->judged++) {
-        const struct lm_patch_point *p = &s->points.item[s->judged];
-        const bool is_judged = s->judged != 0 && is_early(s, p - 1) && p[-1].line == p->line;
+    for (; s->hidden_known < s->target_patch.scatterer_count && traced < at_most;
+         s->hidden_known++) {
+        const struct lm_patch_scatterer *p = &s->target_patch.scatterer[s->hidden_known];
+        const bool is_judged = s->hidden_known != 0 && is_early(s, p - 1) && p[-1].line == p->line;
         if (is_early(s, p) && !is_judged) {
             const uint32_t number = (uint32_t)p->line;
             trace_line(s, tiles, number, line);
-            lm_target_patch_hide(&s->points, number, line->lit.horizon, s->grid.tangent_bits,
-                                 s->grid.cells);
+            lm_target_patch_mark_hidden(&s->target_patch, number, line->lit.horizon,
+                                        s->grid.tangent_bits, s->grid.cells);
             traced++;
         }
     }
-    return s->judged == s->points.count;
+    return s->hidden_known == s->target_patch.scatterer_count;
 }
 
 static int32_t *ring_line(struct lm_sar *s, uint32_t number)
@@ -400,19 +403,19 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 {
     for (; s->sampled < end; s->sampled++) {
         lm_sar_sample_line(s, tiles, s->sampled, line, ring_line(s, s->sampled));
-        lm_target_patch_hide(&s->points, s->sampled, line->lit.horizon, s->grid.tangent_bits,
-                             s->grid.cells);
+        lm_target_patch_mark_hidden(&s->target_patch, s->sampled, line->lit.horizon,
+                                    s->grid.tangent_bits, s->grid.cells);
     }
 }
 
 /* Add the points to lines up to `end`. Behind speckle and noise, which belong to the clutter: what
  * a target returns is its own. */
-static void add_points(struct lm_sar *s, uint32_t end)
+static void add_scatterers(struct lm_sar *s, uint32_t end)
 {
     const int32_t least_db_q8 = s->radar->sar.noise_floor_db_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
     for (; s->summed < end; s->summed++) {
-        lm_target_patch_add_points(&s->points, s->summed, least_db_q8, &s->geometry,
-                                   ring_line(s, s->summed));
+        lm_target_patch_add_scatterers(&s->target_patch, s->summed, least_db_q8, &s->geometry,
+                                       ring_line(s, s->summed));
     }
 }
 
@@ -439,10 +442,11 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
 static void sample_some(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t end,
                         uint32_t at_most, struct lm_line *line)
 {
-    if (!s->has_points) {
-        find_points(s, tiles);
+    if (!s->has_target_patch) {
+        find_target_patch(s, tiles);
     }
-    if (s->judged == s->points.count || judge_points(s, tiles, at_most, line)) {
+    if (s->hidden_known == s->target_patch.scatterer_count ||
+        find_hidden(s, tiles, at_most, line)) {
         sample_lines(s, tiles, fx_min_u32(s->sampled + at_most, end), line);
     }
 }
@@ -461,8 +465,8 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line)
 {
     const uint32_t lines = s->radar->sar.cells;
-    lm_sar_sample_ahead(s, tiles, LM_PATCH_POINTS_MAX, line);
-    add_points(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
+    lm_sar_sample_ahead(s, tiles, LM_PATCH_SCATTERERS_MAX, line);
+    add_scatterers(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
     const int32_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
     lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, lines);
     s->line++;
@@ -471,7 +475,7 @@ const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
 
 void lm_sar_restart(struct lm_sar *s)
 {
-    s->line = s->sampled = s->summed = s->judged = s->second_foreground = 0;
-    s->has_points = false;
-    lm_target_patch_clear(&s->points);
+    s->line = s->sampled = s->summed = s->hidden_known = s->second_foreground = 0;
+    s->has_target_patch = false;
+    lm_target_patch_clear(&s->target_patch);
 }

@@ -17,11 +17,11 @@ enum {
     LINES_APART = 8,
     CHIP_SIDE_MOST = 32, /* pixels of a target's chip: what one line may cost */
     WINDOW_LINES_MIN = 32,
-    WINDOW_LINES_ENOUGH = 256,  /* where the beam does not ask for more */
-    RUNUP_LEAST_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
+    WINDOW_LINES_ENOUGH = 256,         /* where the beam does not ask for more */
+    FOREGROUND_LEAST_M_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
 };
 
-static const struct lm_fov_row *field_of(const struct lm_sector *s)
+static const struct lm_fov_row *fov_of(const struct lm_sector *s)
 {
     return &s->radar->fov[s->command.fov];
 }
@@ -33,7 +33,7 @@ static const struct lm_sector_mode_row *mode_of(const struct lm_sector *s)
 
 static uint32_t rate_of(const struct lm_sector *s)
 {
-    const uint32_t own = field_of(s)->bam_per_s;
+    const uint32_t own = fov_of(s)->bam_per_s;
     return own ? own : mode_of(s)->bam_per_s;
 }
 
@@ -46,7 +46,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->chips = NULL;
     s->command = *command;
     s->is_begun = s->is_leftward = false;
-    s->aims[0] = s->aims[1] = (struct lm_sector_aim){.is_kept = false};
+    s->taps[0] = s->taps[1] = (struct lm_sector_taps){.is_kept = false};
     s->line = 0;
     s->sweep = epoch;
     s->grid.cells = 0; /* none yet */
@@ -94,7 +94,7 @@ static uint32_t window_lines(const struct lm_sector *s, uint32_t turn)
 {
     /* Turns are below 2^31, rates and beams above 2^23 (0.7 degree), sharpening is 256 at most. */
     const uint64_t in_beams =
-        (uint64_t)turn * 2 * field_of(s)->sharpening / s->radar->antenna.azimuth_beam;
+        (uint64_t)turn * 2 * fov_of(s)->sharpening / s->radar->antenna.azimuth_beam;
     const uint32_t in_time = (uint32_t)((uint64_t)turn * LM_SECTOR_LINES_PER_S / rate_of(s));
     const uint32_t wanted = fx_max_u32((uint32_t)in_beams, WINDOW_LINES_ENOUGH);
     return fx_max_u32(fx_min_u32(fx_min_u32(wanted, in_time), LM_SECTOR_LINES_MAX),
@@ -105,7 +105,7 @@ static uint32_t window_lines(const struct lm_sector *s, uint32_t turn)
 static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half_angle)
 {
     const int32_t limit = (int32_t)s->radar->antenna.azimuth_limit;
-    const int32_t half = (int32_t)fx_min_u32(half_angle, field_of(s)->azimuth_half_max);
+    const int32_t half = (int32_t)fx_min_u32(half_angle, fov_of(s)->azimuth_half_max);
     const int64_t wanted_left = (int64_t)bearing - half, wanted_right = (int64_t)bearing + half;
     const int32_t least = (int32_t)s->radar->line;
     s->left = (int32_t)fx_clamp_i64(wanted_left, -limit, limit - least);
@@ -141,11 +141,11 @@ static int32_t reference_m_q10_of(struct lm_tile_cache *tiles, uint8_t lod,
                       tiles->db->mean_elevation_m_q6 * 16);
 }
 
-static void set_runup(struct lm_sector *s, const struct lm_db *db)
+static void set_foreground(struct lm_sector *s, const struct lm_db *db)
 {
     s->has_foreground = false;
     s->foreground.grid.cells = 0;
-    if (s->ground_edge_m_q8 >= RUNUP_LEAST_Q8) {
+    if (s->ground_edge_m_q8 >= FOREGROUND_LEAST_M_Q8) {
         lm_foreground_set(&s->foreground, db, &s->radar->illumination, s->ground_edge_m_q8,
                           &s->grid);
     }
@@ -170,12 +170,12 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     lm_slant_set(&s->slant, s->edge_m_q8 + bin_m_q8 / 2, bin_m_q8, bins, &s->grid, first_m_q8);
     lm_receiver_set(&s->receiver, s->radar, &s->slant, above_m_q10, s->command.range_index,
                     s->radar->range[s->command.range_index].pulse_ns[s->command.fov]);
-    set_runup(s, tiles->db);
+    set_foreground(s, tiles->db);
     lm_beam_clear(&s->beam);
 }
 
 /* The database is read by the bins of the display. */
-static uint8_t level_of(const struct lm_sector *s, const struct lm_db *db)
+static uint8_t lod_of(const struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m =
         lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range_index].range_m;
@@ -234,9 +234,8 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
     const uint32_t old_edge_m_q8 = s->edge_m_q8, old_half_m = s->half_m;
-    s->half_m =
-        s->radar->range[s->command.range_index].range_m * field_of(s)->window_permille / 1000;
-    s->lod = level_of(s, tiles->db);
+    s->half_m = s->radar->range[s->command.range_index].range_m * fov_of(s)->window_permille / 1000;
+    s->lod = lod_of(s, tiles->db);
     const int32_t reference_m_q10 = reference_m_q10_of(tiles, s->lod, platform->position);
     s->up = platform->heading;
     s->platform = *platform;
@@ -256,12 +255,12 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     set_texture(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
-    s->is_aimed = false;
+    s->has_taps = false;
 }
 
 static void move_on(struct lm_sector *s)
 {
-    s->is_aimed = false;
+    s->has_taps = false;
     const bool at_edge = s->is_leftward ? s->line == 0 : s->line + 1 >= s->lines;
     if (at_edge) {
         s->is_leftward = !s->is_leftward;
@@ -337,17 +336,17 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
 /* The targets in range, and in a window the chips of those that are in it. */
 static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 {
-    const struct lm_target_scene scene = {.position = s->platform.position,
+    const struct lm_target_query query = {.position = s->platform.position,
                                           .reach_m =
                                               s->radar->range[s->command.range_index].range_m,
                                           .time_us = s->platform.time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
-    if (!lm_target_candidates_refresh(&s->candidates, s->targets, &scene) ||
+    if (!lm_target_candidates_refresh(&s->candidates, s->targets, &query) ||
         !lm_sector_is_window(s) || !s->chips) {
         return;
     }
-    const struct lm_chip_scene chips = {
+    const struct lm_chip_query chip_query = {
         .centre = s->command.centre,
         .reach_m = s->half_m * 3 / 2,
         .radar = s->platform.position,
@@ -355,7 +354,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
         .cell_mm = lm_mm_of_m_q8(s->grid.cell_m_q8),
         .side_most = CHIP_SIDE_MOST,
     };
-    lm_chips_choose(s->chips, &s->candidates, &chips);
+    lm_chips_choose(s->chips, &s->candidates, &chip_query);
 }
 
 /* Add the targets that the sampled line meets. */
@@ -392,15 +391,16 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
 /* Texture belongs to the ground: cells as wide as they are long lie side by side at each range, so
  * that azimuths closer than that find the same. Columns are counted from north, by the middle of
  * each block. */
-static struct lm_noise_key ground_raster(const struct lm_sector *s, fx_bam_t azimuth)
+static struct lm_noise_key texture_key(const struct lm_sector *s, fx_bam_t azimuth)
 {
     const uint64_t two_pi_q28 = 1686629713;
     const uint64_t radians_q32 = azimuth * two_pi_q28 >> 28; /* below 2^34.7 */
-    struct lm_noise_key r = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
-    r.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
+    struct lm_noise_key key = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
+    key.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
     /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    r.column_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + r.column_step_q32 / 2;
-    return r;
+    key.column_q32 =
+        radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + key.column_step_q32 / 2;
+    return key;
 }
 
 static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
@@ -409,7 +409,7 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
     const struct lm_line_setup setup = {.grid = &s->grid,
                                         .class_lut = &s->class_lut,
                                         .texture = &s->texture,
-                                        .noise_key = ground_raster(s, azimuth),
+                                        .noise_key = texture_key(s, azimuth),
                                         .lod = s->lod};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
@@ -421,14 +421,14 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
 /* Samples that are closer for sharpness need fewer. */
 static uint32_t azimuths_log2_of(const struct lm_sector *s)
 {
-    const uint32_t log2 = field_of(s)->azimuths_log2, finer_log2 = s->beam.fineness;
+    const uint32_t log2 = fov_of(s)->azimuths_log2, finer_log2 = s->beam.fineness;
     return log2 > finer_log2 ? fx_min_u32(log2 - finer_log2, LM_AZIMUTH_AVERAGE_LOG2_MAX) : 0;
 }
 
 /* Trace the azimuths across a sample: everything in the line is that of the last one, but the
  * levels are of the mean power. */
-static void trace_footprint(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                            struct lm_line *line)
+static void trace_average(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
+                          struct lm_line *line)
 {
     const fx_bam_t spacing = lm_beam_spacing(&s->beam, s->radar);
     const uint32_t log2 = azimuths_log2_of(s);
@@ -466,7 +466,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
     const struct lm_noise_key speckle =
         lm_noise_key_of(LM_NOISE_SPECKLE, (uint32_t)sample, s->sweep);
     follow(s);
-    trace_footprint(s, tiles, azimuth, line);
+    trace_average(s, tiles, azimuth, line);
     lm_speckle_run(&mode_of(s)->speckle, &speckle, line->lit.level_db_q8, s->grid.cells);
     if (s->targets && s->targets->count != 0) {
         add_targets(s, tiles, azimuth, &speckle, line);
@@ -482,7 +482,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
 static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform *platform,
                             int32_t azimuth)
 {
-    const struct lm_fov_row *fov = field_of(s);
+    const struct lm_fov_row *fov = fov_of(s);
     if (fov->sharpening <= 1) {
         return 256;
     }
@@ -492,31 +492,31 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
 }
 
 /* That of the next line, once it is aimed at. */
-static struct lm_sector_aim *aim_of(struct lm_sector *s)
+static struct lm_sector_taps *taps_of_line(struct lm_sector *s)
 {
-    return &s->aims[s->line % 2];
+    return &s->taps[s->line % 2];
 }
 
 /* Look at `azimuth`. In the whole sector a line lies between its samples as the one before the last
  * did, and has the same weights, of samples farther on. */
-static void look_at(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
+static void set_taps(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
 {
-    struct lm_sector_aim *aim = aim_of(s);
-    const int32_t spacing = (int32_t)s->radar->sample, moved = azimuth - aim->azimuth;
+    struct lm_sector_taps *line_taps = taps_of_line(s);
+    const int32_t spacing = (int32_t)s->radar->sample, moved = azimuth - line_taps->azimuth;
     const bool is_sharpened = ratio_q8 != 256 || s->beam.fineness != 0;
-    if (aim->is_kept && !is_sharpened && moved % spacing == 0) {
-        aim->taps.first += moved / spacing;
+    if (line_taps->is_kept && !is_sharpened && moved % spacing == 0) {
+        line_taps->taps.first += moved / spacing;
     } else {
-        lm_beam_set_taps(&s->beam, s->radar, azimuth, ratio_q8, &aim->taps);
+        lm_beam_set_taps(&s->beam, s->radar, azimuth, ratio_q8, &line_taps->taps);
     }
-    aim->azimuth = azimuth;
-    aim->is_kept = ratio_q8 == 256;
+    line_taps->azimuth = azimuth;
+    line_taps->is_kept = ratio_q8 == 256;
 }
 
 /* Begin the sweep if that is due, and look, once, where the next line is. The whole sector is seen
  * from where the aircraft is; a window from where its sweep began. */
-static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
-                const struct lm_platform *platform)
+static void prepare_line(struct lm_sector *s, struct lm_tile_cache *tiles,
+                         const struct lm_platform *platform)
 {
     if (!s->is_begun) {
         lm_sector_begin(s, tiles, platform);
@@ -525,10 +525,10 @@ static void aim(struct lm_sector *s, struct lm_tile_cache *tiles,
         s->up = platform->heading;
         s->platform.position = platform->position;
     }
-    if (!s->is_aimed) {
+    if (!s->has_taps) {
         const int32_t azimuth = middle_of(s, s->line);
-        look_at(s, azimuth, ratio_q8_of(s, platform, azimuth));
-        s->is_aimed = true;
+        set_taps(s, azimuth, ratio_q8_of(s, platform, azimuth));
+        s->has_taps = true;
     }
 }
 
@@ -537,8 +537,8 @@ bool lm_sector_sample_ahead(struct lm_sector *s, struct lm_tile_cache *tiles,
                             struct lm_line *line)
 {
     int32_t sample;
-    aim(s, tiles, platform);
-    while (lm_beam_next_missing(&s->beam, &aim_of(s)->taps, &sample)) {
+    prepare_line(s, tiles, platform);
+    while (lm_beam_next_missing(&s->beam, &taps_of_line(s)->taps, &sample)) {
         if (*azimuths == 0) {
             return false;
         }
@@ -566,7 +566,7 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    lm_beam_sum(&s->beam, &aim_of(s)->taps, s->power_q24, cells);
+    lm_beam_sum(&s->beam, &taps_of_line(s)->taps, s->power_q24, cells);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
         lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,

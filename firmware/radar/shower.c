@@ -19,7 +19,7 @@ bool lm_bearing_find(struct lm_position antenna, struct lm_position position, fx
     return true;
 }
 
-bool lm_shower_meet(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *chord)
+bool lm_shower_chord(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *chord)
 {
     const fx_bam_t off = s->at.off - aside;
     /* Distance below 2^29, radius below 2^24.7. */
@@ -36,7 +36,7 @@ bool lm_shower_meet(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *
     return true;
 }
 
-void lm_shower_weigh(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength_um)
+void lm_shower_set_rate(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength_um)
 {
     /* log2(2 k) with k = 0.01217, and alpha = 1.2571, in Q16; below 2^19.7 dB a kilometre * 65536.
      */
@@ -51,7 +51,7 @@ void lm_shower_weigh(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength
 /* Depths are below 2^27, a loss below 2^31 (2^26 level, 32 times as much on the steepest way down);
  * their product is dB * 256 in Q32. */
 void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
-                        const struct lm_reach *reach, int32_t *restrict loss_db_q8)
+                        const struct lm_shower_cells *reach, int32_t *restrict loss_db_q8)
 {
     const int32_t step_m_q8 = (int32_t)reach->cell_m_q8;
     const int32_t edge_m_q8 = (int32_t)reach->first_m_q8 - step_m_q8 / 2;

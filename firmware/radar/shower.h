@@ -19,19 +19,19 @@ struct lm_chord {
 
 /* The chord of the line that is `aside` of the line of sight (to the right); false when it misses
  * the circle. */
-bool lm_shower_meet(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *chord);
+bool lm_shower_chord(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *chord);
 
 /* Losses of ITU-R P.838-3 at 10 GHz, horizontal, and the echo of Marshall and Palmer's drops. */
-void lm_shower_weigh(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength_um);
+void lm_shower_set_rate(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength_um);
 
 /* Cells of a line, metres * 256. */
-struct lm_reach {
+struct lm_shower_cells {
     uint32_t first_m_q8, cell_m_q8, cells; /* centre of cell 0, and from centre to centre */
 };
 
 /* Add the rain's loss to each cell's: half of its own rain's included. */
 void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
-                        const struct lm_reach *reach, int32_t *restrict loss_db_q8);
+                        const struct lm_shower_cells *reach, int32_t *restrict loss_db_q8);
 
 /* How much of the chord lies before `range_m_q8`. */
 static inline int32_t lm_chord_before_m_q8(struct lm_chord c, int32_t range_m_q8)

@@ -41,8 +41,8 @@ static void set_steps(struct lm_tone *t, const struct window *w)
  * slope may lose by rounding down. */
 static int32_t knot_grey_q8(const struct window *w, int32_t step)
 {
-    const int32_t white_db_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
-    return step < w->last ? (int32_t)(curve_grey_q16(w, step) >> 8) + 128 : white_db_q8;
+    const int32_t white_grey_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
+    return step < w->last ? (int32_t)(curve_grey_q16(w, step) >> 8) + 128 : white_grey_q8;
 }
 
 /* Chords, whose slopes are rounded down: none ends above the start of the next. */

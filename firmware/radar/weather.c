@@ -47,8 +47,8 @@ static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_envir
         struct lm_shower *s = &met[count].shower;
         s->radius_m = e->rain[n].radius_m;
         if (lm_bearing_find(antenna, e->rain[n].centre, azimuth, &s->at) &&
-            lm_shower_meet(s, 0, &met[count].chord)) {
-            lm_shower_weigh(s, e->rain[n].mm_per_h, radar->wavelength_um);
+            lm_shower_chord(s, 0, &met[count].chord)) {
+            lm_shower_set_rate(s, e->rain[n].mm_per_h, radar->wavelength_um);
             count++;
         }
     }
@@ -56,8 +56,8 @@ static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_envir
 }
 
 /* Add the rain's echo, so weakened, by the share of each bin that it fills: at most 1 in Q32. */
-static void add_echo(const struct met *m, const struct lm_reach *reach, const int32_t *loss_db_q8,
-                     int32_t *restrict echo_db_q8)
+static void add_echo(const struct met *m, const struct lm_shower_cells *reach,
+                     const int32_t *loss_db_q8, int32_t *restrict echo_db_q8)
 {
     const int32_t step_m_q8 = (int32_t)reach->cell_m_q8;
     const int32_t edge_m_q8 = (int32_t)reach->first_m_q8 - step_m_q8 / 2;
@@ -79,7 +79,8 @@ void lm_weather_line(struct lm_weather *w, const struct lm_environment *environm
                      struct lm_position antenna, fx_bam_t azimuth)
 {
     struct met met[LM_RAINS_MAX];
-    const struct lm_reach reach = {receiver->first_m_q8, receiver->cell_m_q8, receiver->cells};
+    const struct lm_shower_cells reach = {receiver->first_m_q8, receiver->cell_m_q8,
+                                          receiver->cells};
     w->noise_rise_db_q8 = lm_noise_rise_db_q8(environment, radar, antenna, azimuth);
     const uint32_t count = find_showers(met, environment, radar, antenna, azimuth);
     w->has_rain = count != 0;

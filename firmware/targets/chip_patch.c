@@ -17,16 +17,16 @@ struct rotation {
 
 /* Where a corner of a box lies, in pixels * 65536 from the origin, turned back: to the right and
  * beyond. */
-struct corner_place {
+struct chip_corner {
     int32_t right_px_q16, beyond_px_q16;
 };
 
-static struct corner_place turned(const struct lm_chip_patch *chip, const struct rotation *r,
-                                  int32_t column_q16, int32_t row_q16)
+static struct chip_corner turned(const struct lm_chip_patch *chip, const struct rotation *r,
+                                 int32_t column_q16, int32_t row_q16)
 {
     const int32_t x = column_q16 - chip->origin_px_q16[0], y = row_q16 - chip->origin_px_q16[1];
-    return (struct corner_place){part(x, r->cos_q30) - part(y, r->sin_q30),
-                                 part(x, r->sin_q30) + part(y, r->cos_q30)};
+    return (struct chip_corner){part(x, r->cos_q30) - part(y, r->sin_q30),
+                                part(x, r->sin_q30) + part(y, r->cos_q30)};
 }
 
 /* Whole cells from a place on, or up to it: one more either way for the places within a cell. */
@@ -56,7 +56,7 @@ static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
         const int32_t column_q16 =
             i % 2 ? box->column_end * 65536 + 32768 : box->column * 65536 - 32768;
         const int32_t row_q16 = i / 2 ? box->row_end * 65536 + 32768 : box->row * 65536 - 32768;
-        const struct corner_place c = turned(chip, turn, column_q16, row_q16);
+        const struct chip_corner c = turned(chip, turn, column_q16, row_q16);
         r.right = fx_min_i32(r.right, cells_of(c.right_px_q16, scale_q16, -1));
         r.right_end = fx_max_i32(r.right_end, cells_of(c.right_px_q16, scale_q16, 2));
         r.beyond = fx_min_i32(r.beyond, cells_of(c.beyond_px_q16, scale_q16, -1));

@@ -11,16 +11,16 @@ enum { RADIAN_BAM = 683565276 };
 /* From pixels to lines and cells: what the middle of pixel (0, 0) has, and what a column and a row
  * more add. Places across are BAM to the right of the line; along, cells * 65536 from cell
  * `first`. */
-struct raster {
+struct pixel_map {
     int64_t across[3], along_cells_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
     int32_t first;
     uint32_t cells; /* from there: 0..LM_CHIP_SPAN */
 };
 
 /* Lengths of a pixel's step: at most 16 m << 4 in Q8, 2^16, by sines and cosines. */
-static struct raster raster_of(const struct lm_chip_slot *slot, fx_bam_t turn,
-                               const struct lm_chip_sector_place *spot,
-                               const struct lm_target_line *line)
+static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t turn,
+                                     const struct lm_chip_sector_origin *origin,
+                                     const struct lm_target_line *line)
 {
     const int64_t pixel_m_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
     const int64_t cos_q24 = pixel_m_q24 * fx_cos_q30(turn) >> 30;
@@ -28,31 +28,34 @@ static struct raster raster_of(const struct lm_chip_slot *slot, fx_bam_t turn,
     /* x = x0 cos - y0 sin, y = x0 sin + y0 cos, for steps of a column and of a row. Metres in Q24,
      * below 2^32, times 2^29.3 over metres in Q8. */
     const int64_t x_q24[3] = {0, cos_q24, -sin_q24}, y_q24[3] = {0, sin_q24, cos_q24};
-    const int64_t range_m_q8 = fx_max_u32(spot->range_m_q8, LM_RANGE_MIN_M * 256u);
+    const int64_t range_m_q8 = fx_max_u32(origin->range_m_q8, LM_RANGE_MIN_M * 256u);
     /* Half pixels from the origin to the middle of pixel (0, 0), before the reduction. */
     const int64_t columns = ((int64_t)1 - slot->side) * (1 << slot->key.shift);
     const int64_t rows = (1 << slot->key.shift) - 2 * (int64_t)slot->origin_row;
-    struct raster r;
+    struct pixel_map map;
     for (int i = 1; i < 3; i++) {
-        r.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_m_q8 >> 4;
-        r.along_cells_q16[i] = y_q24[i] / line->cell_m_q8;
+        map.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_m_q8 >> 4;
+        map.along_cells_q16[i] = y_q24[i] / line->cell_m_q8;
     }
     const uint32_t halves = slot->key.shift + 1u;
-    r.across[0] = (columns * r.across[1] + rows * r.across[2]) >> halves;
-    r.along_cells_q16[0] = (columns * r.along_cells_q16[1] + rows * r.along_cells_q16[2]) >> halves;
+    map.across[0] = (columns * map.across[1] + rows * map.across[2]) >> halves;
+    map.along_cells_q16[0] =
+        (columns * map.along_cells_q16[1] + rows * map.along_cells_q16[2]) >> halves;
     /* From the middle of cell 0 of the line to that of its first cell under the chip. */
     const int64_t origin_cells_q16 =
-        ((int64_t)spot->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
+        ((int64_t)origin->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
     const int64_t reach_m_q16 = (int64_t)slot->side * 3 / 2 *
                                 (int64_t)(fx_abs_u32((int32_t)(pixel_m_q24 / line->cell_m_q8)));
-    const int64_t near = (origin_cells_q16 - reach_m_q16) >> 16,
-                  far = ((origin_cells_q16 + reach_m_q16) >> 16) + 2;
-    const int64_t first = near < (int64_t)line->first ? (int64_t)line->first : near;
-    const int64_t end = far > (int64_t)line->cells ? (int64_t)line->cells : far;
-    r.first = (int32_t)first;
-    r.cells = end > first ? (uint32_t)(end - first < LM_CHIP_SPAN ? end - first : LM_CHIP_SPAN) : 0;
-    r.along_cells_q16[0] += origin_cells_q16 - first * 65536;
-    return r;
+    const int64_t first_reached = (origin_cells_q16 - reach_m_q16) >> 16,
+                  end_reached = ((origin_cells_q16 + reach_m_q16) >> 16) + 2;
+    const int64_t first =
+        first_reached < (int64_t)line->first ? (int64_t)line->first : first_reached;
+    const int64_t end = end_reached > (int64_t)line->cells ? (int64_t)line->cells : end_reached;
+    map.first = (int32_t)first;
+    map.cells =
+        end > first ? (uint32_t)(end - first < LM_CHIP_SPAN ? end - first : LM_CHIP_SPAN) : 0;
+    map.along_cells_q16[0] += origin_cells_q16 - first * 65536;
+    return map;
 }
 
 /* Share `amount` between the two cells that a place lies between. */
@@ -85,24 +88,24 @@ static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t
 /* Add up, for each cell, what the pixels of a box count, by their nearness to the line: `off` is
  * the line's azimuth less that of the origin. */
 static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *box,
-                   const struct raster *r,
+                   const struct pixel_map *map,
                    uint32_t (*count)(const struct lm_chip_slot *, uint32_t, uint32_t), int32_t off,
                    uint32_t width, uint32_t cell[LM_CHIP_SPAN + 1])
 {
     memset(cell, 0, (LM_CHIP_SPAN + 1) * sizeof *cell);
     for (uint32_t row = box->row; row < box->row_end; row++) {
-        int64_t across = r->across[0] + row * r->across[2] + box->column * r->across[1] - off;
-        int64_t along_cells_q16 = r->along_cells_q16[0] + row * r->along_cells_q16[2] +
-                                  box->column * r->along_cells_q16[1];
+        int64_t across = map->across[0] + row * map->across[2] + box->column * map->across[1] - off;
+        int64_t along_cells_q16 = map->along_cells_q16[0] + row * map->along_cells_q16[2] +
+                                  box->column * map->along_cells_q16[1];
         for (uint32_t column = box->column; column < box->column_end; column++) {
             const int64_t aside = across < 0 ? -across : across;
             const uint32_t amount = aside < (int64_t)width ? count(slot, row, column) : 0;
             if (amount != 0) {
-                const uint64_t near = width - (uint64_t)aside;
-                share(cell, r->cells, along_cells_q16, (uint32_t)(amount * near / width));
+                const uint64_t weight = width - (uint64_t)aside;
+                share(cell, map->cells, along_cells_q16, (uint32_t)(amount * weight / width));
             }
-            across += r->across[1];
-            along_cells_q16 += r->along_cells_q16[1];
+            across += map->across[1];
+            along_cells_q16 += map->along_cells_q16[1];
         }
     }
 }
@@ -110,24 +113,24 @@ static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *bo
 /* Area of a pixel of the chip over that of a cell of the line, Q16, and 2^24 when it is larger: a
  * pixel of at most 256 m, whose square is 2^32 in Q16. */
 static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
-                                  const struct lm_chip_sector_place *spot,
+                                  const struct lm_chip_sector_origin *origin,
                                   const struct lm_target_line *line)
 {
     const uint64_t pixel_m_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
-    const uint64_t arc_m_q8 = lm_arc_m_q8(spot->range_m_q8, line->width);
+    const uint64_t arc_m_q8 = lm_arc_m_q8(origin->range_m_q8, line->width);
     const uint64_t ratio_q16 = (pixel_m_q8 * pixel_m_q8 << 16) / ((arc_m_q8 + 1) * line->cell_m_q8);
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
 }
 
-static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1],
+static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN + 1],
                    uint32_t ratio_q16, int32_t *level_db_q8)
 {
-    for (uint32_t i = 0; i < r->cells; i++) {
+    for (uint32_t i = 0; i < map->cells; i++) {
         const uint64_t dark_q16 = (uint64_t)cell[i] * ratio_q16 >> 20;
         if (dark_q16 >= 65536) {
-            level_db_q8[r->first + (int32_t)i] = LM_LEVEL_SHADOW;
+            level_db_q8[map->first + (int32_t)i] = LM_LEVEL_SHADOW;
         } else if (dark_q16 != 0) {
-            level_db_q8[r->first + (int32_t)i] +=
+            level_db_q8[map->first + (int32_t)i] +=
                 fx_db_q8((uint32_t)(65536 - dark_q16)) - fx_db_q8(65536);
         }
     }
@@ -135,15 +138,15 @@ static void darken(const struct raster *r, const uint32_t cell[LM_CHIP_SPAN + 1]
 
 /* A chip is the mean of what looks would show, as clutter's level is before its speckle. The ground
  * has its own already, so the chip takes the same factor by itself. */
-static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r,
+static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map *map,
                          const uint32_t cell[LM_CHIP_SPAN + 1], const struct lm_target_line *line,
                          int32_t clutter_db_q8, int32_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
-    for (uint32_t i = 0; i < r->cells; i++) {
+    for (uint32_t i = 0; i < map->cells; i++) {
         if (cell[i] != 0) {
-            const uint32_t at = (uint32_t)r->first + i;
+            const uint32_t at = (uint32_t)map->first + i;
             const int32_t speckle_db_q8 =
                 line->noise_key ? lm_noise_cell_db_q8(line->speckle.looks_log2, line->noise_key, at)
                                 : 0;
@@ -157,15 +160,15 @@ static uint32_t brighten(const struct lm_chip_slot *slot, const struct raster *r
 }
 
 uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
-                            const struct lm_chip_sector_place *spot,
+                            const struct lm_chip_sector_origin *origin,
                             const struct lm_target_line *line, int32_t clutter_db_q8,
                             int32_t *level_db_q8)
 {
     uint32_t cell[LM_CHIP_SPAN + 1];
     const struct lm_chip_slot *slot = candidate->chip;
-    const struct raster r = raster_of(slot, candidate->chip_turn, spot, line);
-    gather(slot, &slot->dark, &r, dark_q20, spot->shadow_off_bam, line->width, cell);
-    darken(&r, cell, pixels_a_cell_q16(slot, spot, line), level_db_q8);
-    gather(slot, &slot->lit, &r, power_q31, spot->off_bam, line->width, cell);
-    return brighten(slot, &r, cell, line, clutter_db_q8, level_db_q8);
+    const struct pixel_map map = pixel_map_of(slot, candidate->chip_turn, origin, line);
+    gather(slot, &slot->dark, &map, dark_q20, origin->shadow_off_bam, line->width, cell);
+    darken(&map, cell, pixels_a_cell_q16(slot, origin, line), level_db_q8);
+    gather(slot, &slot->lit, &map, power_q31, origin->off_bam, line->width, cell);
+    return brighten(slot, &map, cell, line, clutter_db_q8, level_db_q8);
 }

@@ -27,11 +27,11 @@ static bool is_same(const struct lm_chip_key *a, const struct lm_chip_key *b)
 }
 
 /* The reduction: to the largest pixel that is not larger than the cell, and to few enough. */
-static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_scene *scene)
+static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_query *query)
 {
     uint32_t shift = 0;
-    while (shift < SHIFT_MAX && ((s->pixel_mm << (shift + 1)) <= scene->cell_mm ||
-                                 (uint32_t)LM_CHIP_SIDE >> shift > scene->side_most)) {
+    while (shift < SHIFT_MAX && ((s->pixel_mm << (shift + 1)) <= query->cell_mm ||
+                                 (uint32_t)LM_CHIP_SIDE >> shift > query->side_most)) {
         shift++;
     }
     return shift;
@@ -39,25 +39,25 @@ static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_sce
 
 /* Bearing and elevation of the radar, as the target sees it. */
 static void view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
-                    const struct lm_chip_scene *scene)
+                    const struct lm_chip_query *query)
 {
-    uint32_t range_m_q8 = scene->range_m_q8;
-    fx_bam_t back = scene->look + FX_BAM_180;
-    if (!scene->is_parallel) {
-        lm_geo_inverse(candidate->pose.position, scene->radar, &range_m_q8, &back);
+    uint32_t range_m_q8 = query->range_m_q8;
+    fx_bam_t back = query->look + FX_BAM_180;
+    if (!query->is_parallel) {
+        lm_geo_inverse(candidate->state.position, query->radar, &range_m_q8, &back);
     }
-    lm_target_view_of(v, candidate, back, range_m_q8, &scene->heights);
+    lm_target_view_of(v, candidate, back, range_m_q8, &query->heights);
 }
 
 static bool is_large_and_near(const struct lm_signature *s,
                               const struct lm_target_candidate *candidate,
-                              const struct lm_chip_scene *scene)
+                              const struct lm_chip_query *query)
 {
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    lm_geo_inverse(scene->centre, candidate->pose.position, &distance_m_q8, &azimuth);
-    return distance_m_q8 / 256 <= scene->reach_m + LM_TARGET_EXTENT_M &&
-           s->pixel_mm * LM_CHIP_SIDE >= scene->cell_mm * POINT_BELOW_CELLS;
+    lm_geo_inverse(query->centre, candidate->state.position, &distance_m_q8, &azimuth);
+    return distance_m_q8 / 256 <= query->reach_m + LM_TARGET_EXTENT_M &&
+           s->pixel_mm * LM_CHIP_SIDE >= query->cell_mm * POINT_BELOW_CELLS;
 }
 
 /* The slot of a key, or one that is free or holds what nobody uses; NULL when all are in use. */
@@ -98,27 +98,27 @@ static const struct lm_chip_slot *want(struct lm_chips *c, const struct lm_signa
 
 /* The chip that an item is best shown by. False when it has none or needs none. */
 static bool key_of(const struct lm_target_set *set, struct lm_target_candidate *candidate,
-                   const struct lm_chip_scene *scene, struct lm_chip_key *key)
+                   const struct lm_chip_query *query, struct lm_chip_key *key)
 {
     const struct lm_target *t = &set->items[candidate->index];
     const struct lm_signature *s = lm_target_signature(set, t);
     candidate->chip = NULL;
-    if (!s || !is_large_and_near(s, candidate, scene)) {
+    if (!s || !is_large_and_near(s, candidate, query)) {
         return false;
     }
     struct lm_target_view v;
-    view_of(&v, candidate, scene);
+    view_of(&v, candidate, query);
     const struct lm_chip_choice choice = lm_signature_choose(s, v.bearing, v.elevation);
     candidate->chip_turn = choice.turn;
     *key = (struct lm_chip_key){.signature = t->signature,
                                 .aspect = (uint8_t)choice.aspect,
                                 .depression = (uint8_t)choice.depression,
-                                .shift = (uint8_t)shift_for(s, scene)};
+                                .shift = (uint8_t)shift_for(s, query)};
     return true;
 }
 
 void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates,
-                     const struct lm_chip_scene *scene)
+                     const struct lm_chip_query *query)
 {
     const struct lm_target_set *set = &candidates->set;
     struct lm_chip_key key[LM_TARGET_CANDIDATES_MAX];
@@ -128,7 +128,7 @@ void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates
     }
     /* What is there already is spoken for before room is made for the rest. */
     for (uint32_t i = 0; i < candidates->count; i++) {
-        has_key[i] = key_of(set, &candidates->candidate[i], scene, &key[i]);
+        has_key[i] = key_of(set, &candidates->candidate[i], query, &key[i]);
         for (uint32_t k = 0; has_key[i] && k < LM_CHIPS_MAX; k++) {
             struct lm_chip_slot *slot = &c->slots[k];
             slot->is_in_use |= slot->state != LM_CHIP_FREE && is_same(&slot->key, &key[i]);

@@ -17,8 +17,8 @@ static uint32_t path_mm(const struct lm_target *t)
 /* Millimetres along a way of `whole_mm`, 0..whole, and whether it is the way back. There and back
  * takes at most 6.4 * 10^9 mm / (1 mm/s) = 2^52.6 us and at least 1 m / (2^20 mm/s) = 953 us; the
  * way within it, below 6.4 * 10^9 mm, is 2^52.6 before the division. */
-static uint32_t gone_mm(const struct lm_target *t, uint64_t time_us, uint32_t whole_mm,
-                        bool *is_back)
+static uint32_t travelled_mm(const struct lm_target *t, uint64_t time_us, uint32_t whole_mm,
+                             bool *is_back)
 {
     const uint64_t round_mm = t->path_is_round ? whole_mm : (uint64_t)whole_mm * 2;
     const uint64_t round_us = round_mm * 1000000 / t->speed_mm_s;
@@ -28,7 +28,7 @@ static uint32_t gone_mm(const struct lm_target *t, uint64_t time_us, uint32_t wh
 }
 
 /* So far along a leg. */
-static struct lm_position place_on(const struct lm_path_leg *leg, uint32_t mm)
+static struct lm_position position_on_leg(const struct lm_path_leg *leg, uint32_t mm)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, (struct lm_position){leg->latitude, leg->longitude});
@@ -46,17 +46,18 @@ static const struct lm_path_leg *find_leg(const struct lm_target *t, uint32_t *m
     return leg;
 }
 
-struct lm_pose lm_mover_pose(const struct lm_target *t, uint64_t time_us)
+struct lm_mover_state lm_mover_state_at(const struct lm_target *t, uint64_t time_us)
 {
     struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, t->leg_m * 1000};
     if (t->speed_mm_s == 0) {
-        return (struct lm_pose){{t->latitude, t->longitude}, t->heading};
+        return (struct lm_mover_state){{t->latitude, t->longitude}, t->heading};
     }
     const bool has_path = (t->flags & LM_TARGET_HAS_PATH) != 0;
     bool is_back;
-    uint32_t mm = gone_mm(t, time_us, has_path ? path_mm(t) : straight.length_mm, &is_back);
+    uint32_t mm = travelled_mm(t, time_us, has_path ? path_mm(t) : straight.length_mm, &is_back);
     const struct lm_path_leg *leg = has_path ? find_leg(t, &mm) : &straight;
-    return (struct lm_pose){place_on(leg, mm), leg->heading + (is_back ? FX_BAM_180 : 0)};
+    return (struct lm_mover_state){position_on_leg(leg, mm),
+                                   leg->heading + (is_back ? FX_BAM_180 : 0)};
 }
 
 int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t back)

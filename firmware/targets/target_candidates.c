@@ -14,15 +14,15 @@ const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
 }
 
 static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_position position,
-                                     const struct lm_target_scene *scene)
+                                     const struct lm_target_query *query)
 {
     if (!(t->flags & LM_TARGET_ABOVE_GROUND)) {
         return t->elevation_m_q6;
     }
     /* Ground within 2^20, as the tiles are held to, and so is the height above it. */
-    const int32_t ground_m_q10 = scene->tiles
-                                     ? lm_scan_elevation(scene->tiles, scene->lod, position,
-                                                         scene->tiles->db->mean_elevation_m_q6 * 16)
+    const int32_t ground_m_q10 = query->tiles
+                                     ? lm_scan_elevation(query->tiles, query->lod, position,
+                                                         query->tiles->db->mean_elevation_m_q6 * 16)
                                      : 0;
     return t->elevation_m_q6 + ground_m_q10 / 16;
 }
@@ -51,21 +51,21 @@ static uint32_t extent_m_q8(const struct lm_target_set *set, const struct lm_tar
 
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
-                                 const struct lm_target_scene *scene)
+                                 const struct lm_target_query *query)
 {
     candidates->set = *set;
     candidates->is_chosen = true;
-    candidates->position = scene->position;
-    candidates->time_us = scene->time_us;
+    candidates->position = query->position;
+    candidates->time_us = query->time_us;
     candidates->count = candidates->left_out = 0;
-    const uint32_t reach_m_q8 = (scene->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256;
+    const uint32_t reach_m_q8 = (query->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256;
     for (uint32_t i = 0; i < set->count; i++) {
         const struct lm_target *t = &set->items[i];
         struct lm_target_candidate candidate = {.index = (uint16_t)i,
                                                 .is_mover = t->speed_mm_s != 0,
-                                                .pose = lm_mover_pose(t, scene->time_us)};
+                                                .state = lm_mover_state_at(t, query->time_us)};
         fx_bam_t azimuth;
-        lm_geo_inverse(scene->position, candidate.pose.position, &candidate.distance_m_q8,
+        lm_geo_inverse(query->position, candidate.state.position, &candidate.distance_m_q8,
                        &azimuth);
         if (candidate.distance_m_q8 > reach_m_q8) {
             continue;
@@ -80,24 +80,24 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
         candidate.east_m_q8 =
             (int32_t)((int64_t)candidate.distance_m_q8 * fx_sin_q15(azimuth) >> 15);
         candidate.slack_m_q8 =
-            extent_m_q8(set, t) + position_error_m_q8(scene->position, candidate.distance_m_q8);
-        candidate.elevation_m_q6 = origin_elevation_m_q6(t, candidate.pose.position, scene);
+            extent_m_q8(set, t) + position_error_m_q8(query->position, candidate.distance_m_q8);
+        candidate.elevation_m_q6 = origin_elevation_m_q6(t, candidate.state.position, query);
         candidates->candidate[candidates->count++] = candidate;
     }
 }
 
 bool lm_target_candidates_refresh(struct lm_target_candidates *candidates,
                                   const struct lm_target_set *set,
-                                  const struct lm_target_scene *scene)
+                                  const struct lm_target_query *query)
 {
     /* 77,000 BAM are 717 m of latitude, and no more than that of longitude. */
     const uint32_t limit = 77000;
-    const struct lm_position *from = &candidates->position, *to = &scene->position;
-    const bool holds = candidates->is_chosen && candidates->time_us == scene->time_us &&
+    const struct lm_position *from = &candidates->position, *to = &query->position;
+    const bool holds = candidates->is_chosen && candidates->time_us == query->time_us &&
                        fx_abs_u32((int32_t)(to->latitude - from->latitude)) < limit &&
                        fx_abs_u32((int32_t)(to->longitude - from->longitude)) < limit;
     if (!holds) {
-        lm_target_candidates_select(candidates, set, scene);
+        lm_target_candidates_select(candidates, set, query);
     }
     return !holds;
 }

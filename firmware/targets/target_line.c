@@ -83,8 +83,8 @@ _Static_assert(LM_TARGET_CANDIDATES_MAX <= 32, "a bit for each");
 
 /* The targets that the line may meet: bit i for item i. It meets few, and most lines none, so that
  * this loop is most of what they cost. */
-static uint32_t find_near(const struct lm_target_candidates *candidates,
-                          const struct lm_target_line *line)
+static uint32_t find_in_reach(const struct lm_target_candidates *candidates,
+                              const struct lm_target_line *line)
 {
     const struct cover cover = cover_of(line, candidates->position);
     uint32_t found = 0;
@@ -96,7 +96,7 @@ static uint32_t find_near(const struct lm_target_candidates *candidates,
 
 /* ---- where a target is from the line ---- */
 
-struct spot {
+struct apparent_position {
     uint32_t range_m_q8;   /* ground range from the antenna, metres * 256 */
     fx_bam_t azimuth;      /* from the antenna, where it appears */
     fx_bam_t true_azimuth; /* where it is */
@@ -113,18 +113,19 @@ static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
 
 /* Put a target where Doppler has it, with what is left of it by the beam, which points there: the
  * two-way pattern 2^(-8 x^2), x in beams. False when it is nowhere. */
-static bool displace(const struct lm_target_line *line, int32_t closing_mm_s, struct spot *spot)
+static bool displace(const struct lm_target_line *line, int32_t closing_mm_s,
+                     struct apparent_position *seen)
 {
     int32_t shift;
-    const fx_bam_t off = line->track - spot->azimuth;
+    const fx_bam_t off = line->track - seen->azimuth;
     if (!lm_mover_shift(closing_mm_s, line->speed_mm_s, off, &shift) ||
         fx_abs_u32(shift) > shift_most(line)) {
         return false;
     }
     /* x in Q12 is at most 5/4; 80 log10(2) dB are 6165 / 256. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32(shift) << 12) / fx_max_u32(line->beam, 1);
-    spot->azimuth += (fx_bam_t)shift;
-    spot->gain_db_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
+    seen->azimuth += (fx_bam_t)shift;
+    seen->gain_db_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
     return true;
 }
 
@@ -134,7 +135,7 @@ static fx_bam_t back_of(const struct lm_target_line *line,
 {
     uint32_t distance_m_q8;
     fx_bam_t back;
-    lm_geo_inverse(candidate->pose.position, line->position, &distance_m_q8, &back);
+    lm_geo_inverse(candidate->state.position, line->position, &distance_m_q8, &back);
     return back;
 }
 
@@ -144,37 +145,40 @@ static int32_t closing_mm_s(const struct lm_target_line *line, const struct lm_t
 {
     const bool is_asked_for = line->is_doppler || line->gate_mm_s[1] != 0;
     return is_asked_for && t->speed_mm_s != 0
-               ? lm_mover_closing_mm_s(t->speed_mm_s, candidate->pose.heading,
+               ? lm_mover_closing_mm_s(t->speed_mm_s, candidate->state.heading,
                                        back_of(line, candidate))
                : 0;
 }
 
-static bool find_spot(const struct lm_target_line *line, const struct lm_target *t,
-                      const struct lm_target_candidate *candidate, struct spot *spot)
+static bool find_apparent(const struct lm_target_line *line, const struct lm_target *t,
+                          const struct lm_target_candidate *candidate,
+                          struct apparent_position *seen)
 {
     const int32_t closing = closing_mm_s(line, t, candidate);
     if (!is_in_gate(line, closing) ||
-        !lm_target_view_locate(line->position, candidate->pose.position, &spot->range_m_q8,
-                               &spot->azimuth)) {
+        !lm_target_view_locate(line->position, candidate->state.position, &seen->range_m_q8,
+                               &seen->azimuth)) {
         return false;
     }
-    spot->true_azimuth = spot->azimuth;
-    spot->gain_db_q8 = 0;
-    return !line->is_doppler || displace(line, closing, spot);
+    seen->true_azimuth = seen->azimuth;
+    seen->gain_db_q8 = 0;
+    return !line->is_doppler || displace(line, closing, seen);
 }
 
 /* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
-static struct spot beside(const struct spot *target, const struct lm_return *r)
+static struct apparent_position beside(const struct apparent_position *target,
+                                       const struct lm_return *r)
 {
     const int32_t along_m_q8 =
         (int32_t)target->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
     const int32_t across_m_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
-    return (struct spot){.range_m_q8 = fx_hypot_u32(along_m_q8, across_m_q8),
-                         .azimuth = target->azimuth + fx_atan2(across_m_q8, along_m_q8),
-                         .gain_db_q8 = target->gain_db_q8};
+    return (struct apparent_position){.range_m_q8 = fx_hypot_u32(along_m_q8, across_m_q8),
+                                      .azimuth =
+                                          target->azimuth + fx_atan2(across_m_q8, along_m_q8),
+                                      .gain_db_q8 = target->gain_db_q8};
 }
 
-static uint32_t off_line(const struct lm_target_line *line, const struct spot *s)
+static uint32_t off_line(const struct lm_target_line *line, const struct apparent_position *s)
 {
     return fx_abs_u32((int32_t)(s->azimuth - line->azimuth));
 }
@@ -182,13 +186,13 @@ static uint32_t off_line(const struct lm_target_line *line, const struct spot *s
 /* What the line takes of a spot's power, 1/256 dB: a spot is shared by the two lines that it lies
  * between, by its nearness to each, so that what the beam makes of both has its middle at the spot.
  * Only for a spot less than a line's width off. */
-static int32_t share_db_q8(const struct lm_target_line *line, const struct spot *s)
+static int32_t share_db_q8(const struct lm_target_line *line, const struct apparent_position *s)
 {
     return fx_db_q8(line->width - off_line(line, s)) - fx_db_q8(line->width);
 }
 
 /* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two cells share one. */
-static int32_t cell_of(const struct lm_target_line *line, const struct spot *s)
+static int32_t cell_of(const struct lm_target_line *line, const struct apparent_position *s)
 {
     const int32_t half_m_q8 = (int32_t)(line->cell_m_q8 / 2);
     const int64_t past_m_q8 = (int64_t)s->range_m_q8 - line->first_m_q8 + half_m_q8;
@@ -235,8 +239,8 @@ struct echo {
 
 /* The line's cell of a return at a spot, unless something nearer hides it. */
 static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
-                        const struct lm_target_candidate *candidate, const struct spot *s,
-                        int32_t up_mm)
+                        const struct lm_target_candidate *candidate,
+                        const struct apparent_position *s, int32_t up_mm)
 {
     const struct lm_target_heights h = heights_of(line);
     const int32_t cell = cell_of(line, s);
@@ -259,28 +263,30 @@ static int32_t top_mm(const struct lm_signature *s)
 static void make_point_echo(struct echo *e, const struct lm_target_line *line,
                             const struct lm_target_horizon *horizon,
                             const struct lm_target_set *set,
-                            const struct lm_target_candidate *candidate, const struct spot *spot)
+                            const struct lm_target_candidate *candidate,
+                            const struct apparent_position *seen)
 {
     const struct lm_target *t = &set->items[candidate->index];
     e->count = 1;
     e->returns[0] = (struct lm_return){.up_mm = top_mm(lm_target_signature(set, t))};
-    e->cell[0] = lit_cell(line, horizon, candidate, spot, e->returns[0].up_mm);
+    e->cell[0] = lit_cell(line, horizon, candidate, seen, e->returns[0].up_mm);
     if (e->cell[0] != NO_CELL) {
-        const struct lm_target_view v = view_of(line, candidate, spot->range_m_q8);
+        const struct lm_target_view v = view_of(line, candidate, seen->range_m_q8);
         e->returns[0].rcs_dbsm_q8 =
             lm_target_view_rcs_dbsm_q8(set, t, &v, line->scan, line->pulse) +
-            share_db_q8(line, spot) + spot->gain_db_q8;
+            share_db_q8(line, seen) + seen->gain_db_q8;
     }
 }
 
-static void make_bodies_echo(struct echo *e, const struct lm_target_line *line,
-                             const struct lm_target_horizon *horizon, const struct lm_target *t,
-                             const struct lm_target_candidate *candidate, const struct spot *spot)
+static void make_scatterers_echo(struct echo *e, const struct lm_target_line *line,
+                                 const struct lm_target_horizon *horizon, const struct lm_target *t,
+                                 const struct lm_target_candidate *candidate,
+                                 const struct apparent_position *seen)
 {
-    const struct lm_target_view v = view_of(line, candidate, spot->range_m_q8);
+    const struct lm_target_view v = view_of(line, candidate, seen->range_m_q8);
     e->count = lm_target_returns(t, &v, line->wavelength_um, e->returns);
     for (uint32_t i = 0; i < e->count; i++) {
-        const struct spot s = beside(spot, &e->returns[i]);
+        const struct apparent_position s = beside(seen, &e->returns[i]);
         e->cell[i] = lit_cell(line, horizon, candidate, &s, e->returns[i].up_mm);
         if (e->cell[i] != NO_CELL) {
             e->returns[i].rcs_dbsm_q8 += share_db_q8(line, &s) + s.gain_db_q8;
@@ -315,25 +321,26 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
  * on whichever line. */
 static bool sees_top(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
                      const struct lm_target_set *set, const struct lm_target_candidate *candidate,
-                     const struct spot *spot)
+                     const struct apparent_position *seen)
 {
     const int32_t up_mm = top_mm(lm_target_signature(set, &set->items[candidate->index]));
-    const struct spot ahead = {.range_m_q8 = spot->range_m_q8, .azimuth = line->azimuth};
+    const struct apparent_position ahead = {.range_m_q8 = seen->range_m_q8,
+                                            .azimuth = line->azimuth};
     return lit_cell(line, horizon, candidate, &ahead, up_mm) != NO_CELL;
 }
 
 /* Draw a target by its chip. */
 static uint32_t add_chip(const struct lm_target_line *line,
-                         const struct lm_target_candidate *candidate, const struct spot *spot,
-                         int32_t *level_db_q8)
+                         const struct lm_target_candidate *candidate,
+                         const struct apparent_position *seen, int32_t *level_db_q8)
 {
     const uint32_t cell =
-        (spot->range_m_q8 - line->first_m_q8 + line->cell_m_q8 / 2) / line->cell_m_q8;
-    const int32_t clutter_db_q8 = area_dbm2_q8(line, cell) - spot->gain_db_q8;
-    const struct lm_chip_sector_place at = {
-        .range_m_q8 = spot->range_m_q8,
-        .off_bam = (int32_t)(line->azimuth - spot->azimuth),
-        .shadow_off_bam = (int32_t)(line->azimuth - spot->true_azimuth),
+        (seen->range_m_q8 - line->first_m_q8 + line->cell_m_q8 / 2) / line->cell_m_q8;
+    const int32_t clutter_db_q8 = area_dbm2_q8(line, cell) - seen->gain_db_q8;
+    const struct lm_chip_sector_origin at = {
+        .range_m_q8 = seen->range_m_q8,
+        .off_bam = (int32_t)(line->azimuth - seen->azimuth),
+        .shadow_off_bam = (int32_t)(line->azimuth - seen->true_azimuth),
     };
     return lm_chip_sector_add(candidate, &at, line, clutter_db_q8, level_db_q8);
 }
@@ -341,20 +348,20 @@ static uint32_t add_chip(const struct lm_target_line *line,
 static uint32_t add_target(const struct lm_target_candidates *candidates,
                            const struct lm_target_candidate *candidate,
                            const struct lm_target_line *line,
-                           const struct lm_target_horizon *horizon, const struct spot *spot,
-                           int32_t *level_db_q8)
+                           const struct lm_target_horizon *horizon,
+                           const struct apparent_position *seen, int32_t *level_db_q8)
 {
     const struct lm_target *t = &candidates->set.items[candidate->index];
     struct echo echo;
     if (lm_chip_of(candidate)) {
-        return sees_top(line, horizon, &candidates->set, candidate, spot)
-                   ? add_chip(line, candidate, spot, level_db_q8)
+        return sees_top(line, horizon, &candidates->set, candidate, seen)
+                   ? add_chip(line, candidate, seen, level_db_q8)
                    : 0;
     }
     if (t->scatterer_count == 0) {
-        make_point_echo(&echo, line, horizon, &candidates->set, candidate, spot);
+        make_point_echo(&echo, line, horizon, &candidates->set, candidate, seen);
     } else {
-        make_bodies_echo(&echo, line, horizon, t, candidate, spot);
+        make_scatterers_echo(&echo, line, horizon, t, candidate, seen);
     }
     return add_echo(&echo, line, level_db_q8);
 }
@@ -364,12 +371,12 @@ uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
                             const struct lm_target_horizon *horizon, int32_t *level_db_q8)
 {
     uint32_t cells = 0;
-    for (uint32_t left = find_near(candidates, line); left != 0; left &= left - 1) {
+    for (uint32_t left = find_in_reach(candidates, line); left != 0; left &= left - 1) {
         const struct lm_target_candidate *candidate = &candidates->candidate[fx_ctz64(left)];
         const struct lm_target *t = &candidates->set.items[candidate->index];
-        struct spot spot;
-        if (find_spot(line, t, candidate, &spot)) {
-            cells += add_target(candidates, candidate, line, horizon, &spot, level_db_q8);
+        struct apparent_position seen;
+        if (find_apparent(line, t, candidate, &seen)) {
+            cells += add_target(candidates, candidate, line, horizon, &seen, level_db_q8);
         }
     }
     return cells;

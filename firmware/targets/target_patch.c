@@ -11,7 +11,7 @@
 
 /* Of a target in the patch: ground range from the antenna and offset from the line of sight through
  * the centre, metres * 256, and how far Doppler displaces it. */
-struct spot {
+struct patch_position {
     int32_t range_m_q8, across_m_q8, shift_m_q8;
     int64_t smear_across_m_q8, walk_m_q8; /* over the dwell: where it appears, and along */
 };
@@ -20,36 +20,38 @@ struct spot {
  * radar flies on, V' = V - v' is what it flies by a target that goes v' to the right: the place
  * moves by 2 v' - v'^2 / V, and the target itself nearer by v. */
 static void put_mover(const struct lm_patch_geometry *g, const struct lm_target *t,
-                      fx_bam_t heading, struct spot *spot)
+                      fx_bam_t heading, struct patch_position *position)
 {
     /* Speeds below 2^20, ranges below 2^27, the dwell below 2^17; displaced beyond 2^28 it is
      * nowhere near. */
     const int64_t closing_mm_s =
         lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
     const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
-    const int64_t shift_m_q8 = spot->range_m_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 28;
+    const int64_t shift_m_q8 = position->range_m_q8 * closing_mm_s / g->across_mm_s,
+                  limit = 1 << 28;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
-    spot->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
-    spot->smear_across_m_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
-    spot->walk_m_q8 = -closing_mm_s * g->dwell_ms / 3906;
+    position->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
+    position->smear_across_m_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
+    position->walk_m_q8 = -closing_mm_s * g->dwell_ms / 3906;
 }
 
-static bool find_spot(const struct lm_patch_geometry *g, const struct lm_target *t,
-                      const struct lm_target_candidate *candidate, struct spot *spot)
+static bool find_position(const struct lm_patch_geometry *g, const struct lm_target *t,
+                          const struct lm_target_candidate *candidate,
+                          struct patch_position *position)
 {
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
-    if (!lm_target_view_locate(g->centre, candidate->pose.position, &distance_m_q8, &azimuth)) {
+    if (!lm_target_view_locate(g->centre, candidate->state.position, &distance_m_q8, &azimuth)) {
         return false;
     }
     const fx_bam_t off = azimuth - g->look;
     const int64_t along_m_q8 = (int64_t)distance_m_q8 * fx_cos_q30(off) >> 30;
-    spot->range_m_q8 = fx_max_i32((int32_t)(g->centre_m_q8 + along_m_q8), 0);
-    spot->across_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_sin_q30(off) >> 30);
-    spot->shift_m_q8 = 0;
-    spot->smear_across_m_q8 = spot->walk_m_q8 = 0;
+    position->range_m_q8 = fx_max_i32((int32_t)(g->centre_m_q8 + along_m_q8), 0);
+    position->across_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_sin_q30(off) >> 30);
+    position->shift_m_q8 = 0;
+    position->smear_across_m_q8 = position->walk_m_q8 = 0;
     if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
-        put_mover(g, t, candidate->pose.heading, spot);
+        put_mover(g, t, candidate->state.heading, position);
     }
     return true;
 }
@@ -66,12 +68,13 @@ static int32_t cell_at(int32_t place_cells_q8)
     return (place_cells_q8 + 128) >> 8;
 }
 
-static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
-                                      const struct lm_target_candidate *candidate,
-                                      const struct spot *spot, const struct lm_return *r)
+static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
+                                              const struct lm_target_candidate *candidate,
+                                              const struct patch_position *position,
+                                              const struct lm_return *r)
 {
-    const int32_t range_m_q8 = spot->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
-    const int32_t across_m_q8 = spot->across_m_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
+    const int32_t range_m_q8 = position->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
+    const int32_t across_m_q8 = position->across_m_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
     const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + r->up_mm * 128 / 125;
     /* From the middle of the first line, and of the first guard cell. */
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
@@ -79,35 +82,37 @@ static struct lm_patch_point point_of(const struct lm_patch_geometry *g,
         g->centre_m_q8 - ((int64_t)(g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
     const int64_t nearer_m_q8 =
         (int64_t)(top_m_q10 - g->heights.reference_m_q10) * g->lean_q16 >> 18;
-    const uint32_t at_cells_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
-    struct lm_patch_point p = {
-        .across_cells_q8 = in_cells(g, across_m_q8 + spot->shift_m_q8 + left_m_q8),
+    const uint32_t held_m_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
+    struct lm_patch_scatterer p = {
+        .across_cells_q8 = in_cells(g, across_m_q8 + position->shift_m_q8 + left_m_q8),
         .along_cells_q8 = in_cells(g, range_m_q8 - near_m_q8 - nearer_m_q8),
-        .level_db_q8 = r->rcs_dbsm_q8 -
-                       lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, at_cells_q8,
-                                               at_cells_q8 - fx_min_u32(at_cells_q8, g->cell_m_q8),
-                                               &g->heights),
+        .level_db_q8 =
+            r->rcs_dbsm_q8 -
+            lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, held_m_q8,
+                                    held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights),
         .phase = r->phase,
-        .tangent_q38 = lm_target_view_tangent_q38(top_m_q10, at_cells_q8, &g->heights),
+        .tangent_q38 = lm_target_view_tangent_q38(top_m_q10, held_m_q8, &g->heights),
         .line = cell_at(in_cells(g, across_m_q8 + left_m_q8)),
         .cell = cell_at(in_cells(g, range_m_q8 - near_m_q8)),
-        .is_displaced = spot->shift_m_q8 != 0,
+        .is_displaced = position->shift_m_q8 != 0,
     };
     return p;
 }
 
 /* Add a point for each return of a target. All pulses of the dwell make one picture: every kind of
  * fluctuation is drawn once for it. Of a target with a signature, the top is what can be hidden. */
-static void add_points(struct lm_target_patch *p, const struct lm_target_set *set,
-                       const struct lm_target_candidate *candidate,
-                       const struct lm_patch_geometry *g, const struct spot *spot, uint8_t target)
+static void add_returns(struct lm_target_patch *p, const struct lm_target_set *set,
+                        const struct lm_target_candidate *candidate,
+                        const struct lm_patch_geometry *g, const struct patch_position *position,
+                        uint8_t target)
 {
     const struct lm_target *t = &set->items[candidate->index];
     const struct lm_signature *s = lm_target_signature(set, t);
     struct lm_return returns[LM_SCATTERERS_MAX];
     struct lm_target_view v;
     uint32_t count = 1;
-    lm_target_view_of(&v, candidate, g->look + FX_BAM_180, (uint32_t)spot->range_m_q8, &g->heights);
+    lm_target_view_of(&v, candidate, g->look + FX_BAM_180, (uint32_t)position->range_m_q8,
+                      &g->heights);
     if (t->scatterer_count != 0) {
         count = lm_target_returns(t, &v, g->wavelength_um, returns);
     } else {
@@ -115,13 +120,13 @@ static void add_points(struct lm_target_patch *p, const struct lm_target_set *se
             (struct lm_return){.rcs_dbsm_q8 = lm_target_view_rcs_dbsm_q8(set, t, &v, g->epoch, 0)};
     }
     for (uint32_t k = 0; k < count; k++) {
-        struct lm_patch_point *point = &p->item[p->count++];
-        *point = point_of(g, candidate, spot, &returns[k]);
-        point->target = target;
+        struct lm_patch_scatterer *scatterer = &p->scatterer[p->scatterer_count++];
+        *scatterer = scatterer_of(g, candidate, position, &returns[k]);
+        scatterer->target = target;
         if (s) {
-            point->tangent_q38 = lm_target_view_tangent_q38(
+            scatterer->tangent_q38 = lm_target_view_tangent_q38(
                 candidate->elevation_m_q6 * 16 + (int32_t)(s->height_mm * 128 / 125),
-                (uint32_t)fx_max_i32(spot->range_m_q8, 1), &g->heights);
+                (uint32_t)fx_max_i32(position->range_m_q8, 1), &g->heights);
         }
     }
 }
@@ -149,20 +154,20 @@ static void note_around(struct lm_target_patch *p, uint32_t target, int32_t left
 }
 
 /* Lines that the points of a target may touch, and those that they stand on. */
-static void note_points(struct lm_target_patch *p, uint32_t target,
-                        const struct lm_patch_geometry *g)
+static void note_scatterers(struct lm_target_patch *p, uint32_t target,
+                            const struct lm_patch_geometry *g)
 {
     struct lm_patch_target *t = &p->target[target];
     int32_t left_cells_q8 = INT32_MAX, right_cells_q8 = INT32_MIN;
     for (uint32_t i = t->begin; i < t->end; i++) {
-        const struct lm_patch_point *point = &p->item[i];
-        note_lines(p, target, point->line, point->line + 1, g);
-        if (!point->is_chip) {
-            left_cells_q8 = fx_min_i32(left_cells_q8, point->across_cells_q8);
-            right_cells_q8 = fx_max_i32(right_cells_q8, point->across_cells_q8);
+        const struct lm_patch_scatterer *scatterer = &p->scatterer[i];
+        note_lines(p, target, scatterer->line, scatterer->line + 1, g);
+        if (!scatterer->is_chip) {
+            left_cells_q8 = fx_min_i32(left_cells_q8, scatterer->across_cells_q8);
+            right_cells_q8 = fx_max_i32(right_cells_q8, scatterer->across_cells_q8);
         }
     }
-    t->has_points = left_cells_q8 <= right_cells_q8;
+    t->has_scatterers = left_cells_q8 <= right_cells_q8;
     /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
     note_around(p, target, left_cells_q8, right_cells_q8,
                 (LM_RESPONSE_REACH + 1) * t->smear.across_stretch_q8, g);
@@ -170,29 +175,30 @@ static void note_points(struct lm_target_patch *p, uint32_t target,
 
 /* Lay the target's chip over its point. */
 static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot, fx_bam_t turn,
-                     const struct lm_patch_geometry *g, const struct spot *spot)
+                     const struct lm_patch_geometry *g, const struct patch_position *position)
 {
-    struct lm_patch_point *point = &p->item[p->count - 1];
-    struct lm_patch_chip *chip = &p->chip[point->target];
-    const uint32_t at_cells_q8 = (uint32_t)fx_max_i32(spot->range_m_q8, 1);
-    chip->point = p->count - 1;
-    chip->shadow_across_cells_q8 = point->across_cells_q8 - in_cells(g, spot->shift_m_q8);
+    struct lm_patch_scatterer *scatterer = &p->scatterer[p->scatterer_count - 1];
+    struct lm_patch_chip *chip = &p->chip[scatterer->target];
+    const uint32_t held_m_q8 = (uint32_t)fx_max_i32(position->range_m_q8, 1);
+    chip->scatterer = p->scatterer_count - 1;
+    chip->shadow_across_cells_q8 = scatterer->across_cells_q8 - in_cells(g, position->shift_m_q8);
     chip->area_dbm2_q8 =
-        lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, at_cells_q8,
-                                at_cells_q8 - fx_min_u32(at_cells_q8, g->cell_m_q8), &g->heights);
+        lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, held_m_q8,
+                                held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights);
     lm_chip_patch_set(&chip->patch, slot, turn, lm_mm_of_m_q8(g->cell_m_q8),
-                      &p->target[point->target].smear);
-    point->is_chip = p->target[point->target].has_chip = true;
+                      &p->target[scatterer->target].smear);
+    scatterer->is_chip = p->target[scatterer->target].has_chip = true;
     const struct lm_chip_reach *lit = &chip->patch.lit, *dark = &chip->patch.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
     const int32_t shadow = cell_at(chip->shadow_across_cells_q8);
-    note_around(p, point->target, point->across_cells_q8, point->across_cells_q8, cells * 256, g);
-    note_lines(p, point->target, shadow + dark->right, shadow + dark->right_end, g);
+    note_around(p, scatterer->target, scatterer->across_cells_q8, scatterer->across_cells_q8,
+                cells * 256, g);
+    note_lines(p, scatterer->target, shadow + dark->right, shadow + dark->right_end, g);
 }
 
 void lm_target_patch_clear(struct lm_target_patch *p)
 {
-    p->count = p->target_count = 0;
+    p->scatterer_count = p->target_count = 0;
     memset(p->on_line, 0, sizeof p->on_line);
 }
 
@@ -204,17 +210,17 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
         const struct lm_target_candidate *candidate = &candidates->candidate[i];
         const struct lm_chip_slot *slot = lm_chip_of(candidate);
         struct lm_patch_target *t = &p->target[p->target_count];
-        struct spot spot;
-        if (find_spot(g, &candidates->set.items[candidate->index], candidate, &spot)) {
-            t->smear = lm_smear_of(spot.smear_across_m_q8 * 256 / (int64_t)g->cell_m_q8,
-                                   spot.walk_m_q8 * 256 / (int64_t)g->cell_m_q8);
-            t->begin = p->count;
-            add_points(p, &candidates->set, candidate, g, &spot, (uint8_t)p->target_count);
+        struct patch_position position;
+        if (find_position(g, &candidates->set.items[candidate->index], candidate, &position)) {
+            t->smear = lm_smear_of(position.smear_across_m_q8 * 256 / (int64_t)g->cell_m_q8,
+                                   position.walk_m_q8 * 256 / (int64_t)g->cell_m_q8);
+            t->begin = p->scatterer_count;
+            add_returns(p, &candidates->set, candidate, g, &position, (uint8_t)p->target_count);
             if (slot) {
-                add_chip(p, slot, candidate->chip_turn, g, &spot);
+                add_chip(p, slot, candidate->chip_turn, g, &position);
             }
-            t->end = p->count;
-            note_points(p, p->target_count, g);
+            t->end = p->scatterer_count;
+            note_scatterers(p, p->target_count, g);
             p->target_count++;
         }
     }
@@ -231,18 +237,18 @@ static uint32_t take_next(uint32_t *targets)
     return next;
 }
 
-void lm_target_patch_hide(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
-                          uint32_t bits, uint32_t cells)
+void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
+                                 uint32_t bits, uint32_t cells)
 {
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const struct lm_patch_target *t = &p->target[take_next(&left)];
         for (uint32_t i = t->begin; i < t->end; i++) {
-            struct lm_patch_point *point = &p->item[i];
-            if (point->line == (int32_t)line && point->cell >= 0) {
+            struct lm_patch_scatterer *scatterer = &p->scatterer[i];
+            if (scatterer->line == (int32_t)line && scatterer->cell >= 0) {
                 /* Behind the last cell, everything before it may hide. */
-                const uint32_t before = fx_min_u32((uint32_t)point->cell, cells);
-                point->is_hidden =
-                    point->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
+                const uint32_t before = fx_min_u32((uint32_t)scatterer->cell, cells);
+                scatterer->is_hidden =
+                    scatterer->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
             }
         }
     }
@@ -298,7 +304,7 @@ struct span {
 /* Add a slice of a point, its amplitude against `reference_db_q8`, to the cells of line `line`.
  * Amplitudes are at most 2^24, and a target has 16: sums below 2^28. What stays below `least_db_q8`
  * is left out. */
-static void spread(struct lm_target_patch *work, const struct lm_patch_point *p,
+static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer *p,
                    const struct slice *slice, uint32_t line, int32_t least_db_q8,
                    int32_t reference_db_q8, struct span within, struct span *touched)
 {
@@ -353,17 +359,17 @@ static void add_target(struct lm_target_patch *p, const struct lm_patch_target *
                        int32_t least_db_q8, struct span within, int32_t *level_db_q8)
 {
     const struct lm_smear *smear = &t->smear;
-    int32_t strongest_db_q8 = p->item[t->begin].level_db_q8;
+    int32_t strongest_db_q8 = p->scatterer[t->begin].level_db_q8;
     for (uint32_t i = t->begin + 1; i < t->end; i++) {
-        strongest_db_q8 = fx_max_i32(strongest_db_q8, p->item[i].level_db_q8);
+        strongest_db_q8 = fx_max_i32(strongest_db_q8, p->scatterer[i].level_db_q8);
     }
     for (uint32_t number = 0; number < smear->slices; number++) {
         const struct slice slice = slice_of(smear, number);
         struct span touched = {within.end, within.first};
         const int32_t reference_db_q8 = strongest_db_q8 + slice.share_db_q8;
         for (uint32_t i = t->begin; i < t->end; i++) {
-            if (!p->item[i].is_hidden && !p->item[i].is_chip) {
-                spread(p, &p->item[i], &slice, line, least_db_q8, reference_db_q8, within,
+            if (!p->scatterer[i].is_hidden && !p->scatterer[i].is_chip) {
+                spread(p, &p->scatterer[i], &slice, line, least_db_q8, reference_db_q8, within,
                        &touched);
             }
         }
@@ -371,13 +377,13 @@ static void add_target(struct lm_target_patch *p, const struct lm_patch_target *
     }
 }
 
-void lm_target_patch_add_points(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
-                                const struct lm_patch_geometry *g, int32_t *level_db_q8)
+void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
+                                    const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     const struct span within = {(int32_t)g->first, (int32_t)g->cells};
     for (uint32_t left = p->on_line[line]; left != 0;) {
         const struct lm_patch_target *t = &p->target[take_next(&left)];
-        if (t->has_points) {
+        if (t->has_scatterers) {
             add_target(p, t, line, least_db_q8, within, level_db_q8);
         }
     }
@@ -391,9 +397,9 @@ struct origin {
 };
 
 /* The cells of a line that a chip may reach. */
-static struct span cells_under(const struct lm_chip_reach *reach, const struct lm_patch_point *at,
-                               const struct origin *origin, uint32_t line,
-                               const struct lm_patch_geometry *g)
+static struct span cells_under(const struct lm_chip_reach *reach,
+                               const struct lm_patch_scatterer *at, const struct origin *origin,
+                               uint32_t line, const struct lm_patch_geometry *g)
 {
     const int32_t middle = cell_at(origin->along_cells_q8);
     const int32_t aside = (int32_t)line - cell_at(origin->across_cells_q8);
@@ -409,7 +415,7 @@ static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *c
                   const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
     const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
-    const struct lm_patch_point *at = &p->item[chip->point];
+    const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
     const struct origin origin = {chip->shadow_across_cells_q8, at->along_cells_q8};
     const int32_t right_cells_q8 = (int32_t)line * 256 - origin.across_cells_q8;
     const struct span under = cells_under(&chip->patch.dark, at, &origin, line, g);
@@ -435,7 +441,7 @@ void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
 
 /* Add one slice of a chip's smear to a line, if it is not more than `room` cells. Returns how many
  * it is. */
-static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_point *at,
+static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *at,
                           const struct slice *slice, uint32_t line, uint32_t room,
                           const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
@@ -462,7 +468,7 @@ uint32_t lm_target_patch_add_chips(const struct lm_target_patch *p, uint32_t lin
     for (uint32_t targets = p->on_line[line]; targets != 0;) {
         const uint32_t target = take_next(&targets);
         const struct lm_patch_chip *chip = &p->chip[target];
-        const struct lm_patch_point *at = &p->item[chip->point];
+        const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
         const struct lm_smear *smear = &p->target[target].smear;
         const uint32_t slices = p->target[target].has_chip ? smear->slices : 0;
         for (uint32_t number = 0; number < slices; number++) {

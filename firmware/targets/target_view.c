@@ -51,7 +51,7 @@ void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidat
     const int32_t above_m_q10 =
         h->antenna_m_q10 - candidate->elevation_m_q6 * 16 - drop_m_q10((uint32_t)range_m_q10 / 4);
     const uint64_t slant_m_q10 = fx_hypot_u32(range_m_q10, above_m_q10);
-    lm_target_view_set(v, back - candidate->pose.heading, fx_atan2(above_m_q10, range_m_q10),
+    lm_target_view_set(v, back - candidate->state.heading, fx_atan2(above_m_q10, range_m_q10),
                        (uint32_t)(slant_m_q10 * 1000 >> 10));
 }
 

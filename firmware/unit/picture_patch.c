@@ -67,7 +67,7 @@ static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint
     if (!map->is_usable || (is_in_flight && !resolve_command(p, &command, &flight))) {
         return false;
     }
-    const struct lm_sar_scene scene = {.flight = is_in_flight ? &flight : NULL,
+    const struct lm_sar_setup scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &map->target_set,
                                        .chips = &map->chips,
                                        .reference_m_q10 = elevation_q10(p, &command),

@@ -121,7 +121,7 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
                         int count)
 {
     struct lm_sar sar;
-    const struct lm_sar_scene scene = {.targets = targets,
+    const struct lm_sar_setup scene = {.targets = targets,
                                        .chips = &w->chips,
                                        .reference_m_q10 = 60 * 1024,
                                        .sea_state = LM_SEA_STATE_OF_IMAGE};

@@ -67,9 +67,9 @@ static void choose(struct world *w, bool is_window)
 {
     const struct lm_target_set set = {
         .items = &w->target, .count = 1, .signatures = &w->signature, .signature_count = 1};
-    const struct lm_target_scene scene = {.position = {w->target.latitude, w->target.longitude},
+    const struct lm_target_query scene = {.position = {w->target.latitude, w->target.longitude},
                                           .reach_m = 2000};
-    const struct lm_chip_scene chips = {.centre = scene.position,
+    const struct lm_chip_query chips = {.centre = scene.position,
                                         .reach_m = 2000,
                                         .radar = {w->look % FX_BAM_90, w->target.longitude},
                                         .is_parallel = !is_window,
@@ -131,7 +131,7 @@ static void draw_line(struct world *w)
                                         .cell_m_q8 = cell_q8,
                                         .cells = CELLS,
                                         .height_m_q10 = 3000 * 1024};
-    const struct lm_chip_sector_place spot = {
+    const struct lm_chip_sector_origin spot = {
         .range_m_q8 = w->range_q8 + cell_q8 * (w->look % CELLS),
         .off_bam = (int32_t)(w->target.heading >> 8),
         .shadow_off_bam = (int32_t)w->target.heading,

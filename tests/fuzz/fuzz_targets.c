@@ -74,7 +74,7 @@ static void draw_sector(const struct lm_target *t, uint32_t count, const struct 
 {
     struct lm_target_candidates near;
     const struct lm_target_set set = {.items = t, .count = count};
-    const struct lm_target_scene scene = {
+    const struct lm_target_query scene = {
         .position = look->place, .reach_m = 40000, .time_us = (uint64_t)look->time_s * 1000000};
     int32_t level_q8[LM_CELLS_ROOM] = {0};
     lm_target_candidates_select(&near, &set, &scene);
@@ -102,7 +102,7 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
     struct lm_target_patch *points = malloc(sizeof *points);
     struct lm_target_candidates near;
     const struct lm_target_set set = {.items = t, .count = count};
-    const struct lm_target_scene scene = {
+    const struct lm_target_query scene = {
         .position = look->place, .reach_m = 2000, .time_us = (uint64_t)look->time_s * 1000000};
     const struct lm_patch_geometry g = {.centre = look->place,
                                         .look = look->azimuth,
@@ -121,10 +121,10 @@ static void draw_patch(const struct lm_target *t, uint32_t count, const struct l
     FUZZ_ASSERT(points);
     lm_target_candidates_select(&near, &set, &scene);
     lm_target_patch_set(points, &near, &g);
-    FUZZ_ASSERT(points->count <= LM_PATCH_POINTS_MAX);
+    FUZZ_ASSERT(points->scatterer_count <= LM_PATCH_SCATTERERS_MAX);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_target_patch_hide(points, k, horizon, 26, CELLS);
-        lm_target_patch_add_points(points, k, -56 * 256, &g, level_q8);
+        lm_target_patch_mark_hidden(points, k, horizon, 26, CELLS);
+        lm_target_patch_add_scatterers(points, k, -56 * 256, &g, level_q8);
     }
     for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
         FUZZ_ASSERT(points->re_q24[i] == 0 && points->im_q24[i] == 0);

@@ -54,7 +54,7 @@ static struct lm_target_candidates near_of(const struct lm_target_set *set,
                                            struct lm_position place)
 {
     struct lm_target_candidates near;
-    const struct lm_target_scene scene = {.position = place, .reach_m = (uint32_t)range_m + 1000};
+    const struct lm_target_query scene = {.position = place, .reach_m = (uint32_t)range_m + 1000};
     lm_target_candidates_select(&near, set, &scene);
     return near;
 }
@@ -80,7 +80,7 @@ static void look_finely(struct patch *p, const struct lm_target *t, double look_
         for (int i = 0; i < p->cells; i++) {
             level_q8[i] = LM_LEVEL_SHADOW;
         }
-        lm_target_patch_add_points(&points, (uint32_t)k, LM_LEVEL_SHADOW, &g, level_q8);
+        lm_target_patch_add_scatterers(&points, (uint32_t)k, LM_LEVEL_SHADOW, &g, level_q8);
         for (int i = 0; i < p->cells; i++) {
             const double at_m = range_m + (i + 0.5 - p->cells / 2.0) * p->cell_m;
             p->dbsm[k][i] = level_q8[i] / 256.0 + cell_area_db(p->cell_m, at_m);

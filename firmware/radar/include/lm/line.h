@@ -11,7 +11,7 @@
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_speckle_floor_run
  *     speckle                      lm_speckle_run               lm_speckle_run, _floor_run
- *     points of targets            lm_line_add_targets          lm_target_patch_add_points
+ *     points of targets            lm_line_add_targets          lm_target_patch_add_scatterers
  *     elevation pattern            lm_antenna_pattern_apply             -
  *     ground range to slant range  lm_slant_run                 -
  *     azimuth                      lm_beam_sum                  lm_defocus_run

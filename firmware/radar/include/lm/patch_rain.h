@@ -48,6 +48,6 @@ void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *
 
 /* Weaken the points by the rain before them. (Chips are in the lines' levels already.) */
 void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_geometry *geometry,
-                          struct lm_target_patch *points);
+                          struct lm_target_patch *target_patch);
 
 #endif

@@ -47,7 +47,7 @@ struct lm_sar_flight {
 };
 
 /* Surroundings of a patch at its start. */
-struct lm_sar_scene {
+struct lm_sar_setup {
     const struct lm_sar_flight *flight;  /* NULL for a commanded place in the air; read at once */
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: every signature is a point */
@@ -90,9 +90,9 @@ struct lm_sar {
     lm_horizon_q40_t horizon;        /* where the line traced last started */
     uint32_t line;                   /* next to be drawn; done when it is radar->sar.cells */
     uint32_t sampled, summed;        /* lines that are in the ring, and that have the points */
-    bool has_points;                 /* the targets' were found, */
-    uint32_t judged;                 /* and so many of them looked at, whether they are hidden */
-    struct lm_target_patch points;   /* of the targets, from the first line on */
+    bool has_target_patch;           /* the targets' were found, */
+    uint32_t hidden_known;           /* and so many of them looked at, whether they are hidden */
+    struct lm_target_patch target_patch;            /* of the targets, from the first line on */
     int32_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     uint64_t power_q32[LM_CELLS_ROOM];              /* scratch */
 };
@@ -109,7 +109,7 @@ struct lm_sar {
  * that passes at the table's reference speed, with the patch abeam to the right. Cost: a little
  * more than lm_sar_set_reference. */
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
-                 const struct lm_sar_command *command, const struct lm_sar_scene *scene);
+                 const struct lm_sar_command *command, const struct lm_sar_setup *setup);
 
 /* Change the patch's reference elevation (metres * 1024) and restart it. Called when a finer tile
  * arrives after lm_sar_start. Dwell and limits are not recomputed. Cost: about 60 k instructions.

@@ -85,12 +85,12 @@ struct lm_sector {
     struct lm_texture texture;
     struct lm_azimuth_average average; /* of the sample that is being taken */
     struct lm_beam beam;
-    bool is_aimed;         /* at the next line */
-    struct lm_sector_aim { /* of the even and the odd line that was aimed at last */
-        bool is_kept;      /* not sharpened, so that one like it may use it */
+    bool has_taps;          /* at the next line */
+    struct lm_sector_taps { /* of the even and the odd line that was aimed at last */
+        bool is_kept;       /* not sharpened, so that one like it may use it */
         int32_t azimuth;
         struct lm_beam_taps taps;
-    } aims[2];
+    } taps[2];
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_target_candidates candidates;

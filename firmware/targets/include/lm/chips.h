@@ -68,7 +68,7 @@ struct lm_chips {
 };
 
 /* Where the chips of a picture are seen from. */
-struct lm_chip_scene {
+struct lm_chip_query {
     struct lm_position centre; /* of patch or window */
     uint32_t reach_m;          /* half its diagonal: targets beyond it need no chip */
     struct lm_position radar;
@@ -88,7 +88,7 @@ void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
  * `chip_turn` are set; chips that are no longer in use make room. Cost: 2500 instructions for each
  * near target with a signature. */
 void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates,
-                     const struct lm_chip_scene *scene);
+                     const struct lm_chip_query *query);
 
 /* Go on with reading them, through the tile cache, and reduce what has come. Call once a step.
  * Cost: at most 80,000 instructions, for a chip four or five times. */

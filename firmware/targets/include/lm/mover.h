@@ -6,7 +6,7 @@
 #include "lm/target.h"
 
 /* Where a target is and which way it faces. */
-struct lm_pose {
+struct lm_mover_state {
     struct lm_position position;
     fx_bam_t heading;
 };
@@ -16,7 +16,7 @@ struct lm_pose {
  * record. Its heading is that of the leg's beginning all along. The same time gives the same pose
  * on every machine. Cost: 800 instructions for a mover, two divisions of 64 bits among them, and 10
  * for each leg of a path. */
-struct lm_pose lm_mover_pose(const struct lm_target *t, uint64_t time_us);
+struct lm_mover_state lm_mover_state_at(const struct lm_target *t, uint64_t time_us);
 
 /* How fast a mover comes nearer, mm/s, along the ground; `back` is the direction from it to the
  * radar. */

@@ -26,7 +26,7 @@ const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
                                                const struct lm_target *t);
 
 /* From where and when they are looked at. */
-struct lm_target_scene {
+struct lm_target_query {
     struct lm_position position; /* the antenna of a sweep, the centre of a patch */
     uint32_t reach_m;            /* the range, half the diagonal; up to 250 km */
     uint64_t time_us;            /* of the sweep or patch: movers are where they are then */
@@ -50,7 +50,7 @@ struct lm_target_candidates {
         int32_t north_m_q8, east_m_q8; /* and which way: all of it rough, */
         uint32_t
             slack_m_q8; /* but its whole lies within so much of there, up to 88 degrees N or S */
-        struct lm_pose pose;
+        struct lm_mover_state state;
         int32_t elevation_m_q6;          /* of the origin above mean sea level, metres * 64 */
         const struct lm_chip_slot *chip; /* of lm/chips.h; borrowed; NULL: it has none */
         fx_bam_t chip_turn;              /* how far that is to be turned: lm/signature.h */
@@ -62,12 +62,12 @@ struct lm_target_candidates {
  * target, 800 more for a mover, 300 for one above the ground. */
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
-                                 const struct lm_target_scene *scene);
+                                 const struct lm_target_query *query);
 
 /* Choose anew unless that was done for the same time from within LM_TARGET_DRIFT_M of the place.
  * Whether it was done. */
 bool lm_target_candidates_refresh(struct lm_target_candidates *candidates,
                                   const struct lm_target_set *set,
-                                  const struct lm_target_scene *scene);
+                                  const struct lm_target_query *query);
 
 #endif

@@ -10,7 +10,7 @@
 #include "lm/smear.h"
 #include "lm/target_view.h"
 
-enum { LM_PATCH_POINTS_MAX = LM_TARGET_CANDIDATES_MAX * LM_SCATTERERS_MAX };
+enum { LM_PATCH_SCATTERERS_MAX = LM_TARGET_CANDIDATES_MAX * LM_SCATTERERS_MAX };
 
 /* The patch as targets need to know it. Lengths in metres * 256. */
 struct lm_patch_geometry {
@@ -31,7 +31,7 @@ struct lm_patch_geometry {
 };
 
 /* A body in the patch. Places in cells * 256 from the middle of cell 0 of line 0. */
-struct lm_patch_point {
+struct lm_patch_scatterer {
     int32_t across_cells_q8, along_cells_q8;
     int32_t level_db_q8; /* dB of gamma, were all its power in one cell */
     fx_bam_t phase;
@@ -46,14 +46,14 @@ struct lm_patch_point {
 /* A target near the patch. Its bodies add as phasors. */
 struct lm_patch_target {
     struct lm_smear smear;
-    uint32_t begin, end;       /* its points */
-    bool has_points, has_chip; /* to be spread; in their place or beside them */
+    uint32_t begin, end;           /* its points */
+    bool has_scatterers, has_chip; /* to be spread; in their place or beside them */
 };
 
 /* The chip of a target in the patch. */
 struct lm_patch_chip {
     struct lm_chip_patch patch;
-    uint32_t point;                 /* its place, and whether it is hidden */
+    uint32_t scatterer;             /* its place, and whether it is hidden */
     int32_t shadow_across_cells_q8; /* where its shadow lies: Doppler does not displace that */
     int32_t area_dbm2_q8;           /* of a cell of clutter there, dB * 256 of a square metre */
 };
@@ -62,8 +62,8 @@ struct lm_patch_chip {
 enum { LM_CHIP_CELLS_A_LINE = 1024 };
 
 struct lm_target_patch {
-    uint32_t count;
-    struct lm_patch_point item[LM_PATCH_POINTS_MAX];
+    uint32_t scatterer_count;
+    struct lm_patch_scatterer scatterer[LM_PATCH_SCATTERERS_MAX];
     uint32_t target_count;
     struct lm_patch_target target[LM_TARGET_CANDIDATES_MAX];
     struct lm_patch_chip chip[LM_TARGET_CANDIDATES_MAX]; /* of the targets that have one */
@@ -85,15 +85,15 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
 
 /* Note which points something nearer hides: those that stand on line `line`, whose horizons before
  * its cells are `horizon`, times 2^bits (0..38). Points beside the patch are not hidden. */
-void lm_target_patch_hide(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
-                          uint32_t bits, uint32_t cells);
+void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const int32_t *horizon,
+                                 uint32_t bits, uint32_t cells);
 
 /* Add the points to the levels of line `line`, cells first..cells - 1. What stays below
  * `least_db_q8` is left out. Cost: 200 instructions for a point that reaches the line and 25 for
  * each cell that it reaches, at most 17; up to LM_SMEAR_SLICES times as much for one that moves,
  * and for as many more cells as its response is stretched. */
-void lm_target_patch_add_points(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
-                                const struct lm_patch_geometry *g, int32_t *level_db_q8);
+void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, int32_t least_db_q8,
+                                    const struct lm_patch_geometry *g, int32_t *level_db_q8);
 
 /* Put the ground of line `line` that lies in the chips' shadows into the dark: behind layover,
  * before speckle and noise. A hidden target throws none. Cost: 200 instructions for each cell under

@@ -142,7 +142,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
         .range_m = range_m,
         .height_m_q6 = height_m * 64};
     set_params(w);
-    const struct lm_sar_scene scene = {.reference_m_q10 = (int32_t)lround(reference_m * 1024),
+    const struct lm_sar_setup scene = {.reference_m_q10 = (int32_t)lround(reference_m * 1024),
                                        .sea_state = LM_SEA_STATE_OF_IMAGE,
                                        .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);

@@ -347,7 +347,7 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
                                            .height_m_q6 = 4000 * 64};
     struct lm_target t = point_at(46, 11, 0, 40);
     const struct lm_target_set set = {.items = &t, .count = 1};
-    const struct lm_sar_scene scene = {
+    const struct lm_sar_setup scene = {
         .targets = &set, .epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE, .environment = e};
     double sum = 0;
     int32_t peak_q8 = INT32_MIN;

@@ -131,7 +131,7 @@ static void open_image(struct tiny_image *image, struct memory_flash *flash)
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
 }
 
-static void draw(const struct lm_sar_command *command, const struct lm_sar_scene *scene)
+static void draw(const struct lm_sar_command *command, const struct lm_sar_setup *scene)
 {
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, command, scene), LM_OK);
     for (uint32_t k = 0; k < CELLS; k++) {
@@ -152,7 +152,7 @@ static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), 
 
 static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
 {
-    const struct lm_sar_scene scene = {.epoch = epoch, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    const struct lm_sar_setup scene = {.epoch = epoch, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
     return sar.noise_epoch;
 }
@@ -197,7 +197,7 @@ TEST(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on)
 {
     struct tiny_image image;
     struct memory_flash flash;
-    const struct lm_sar_scene scene = {.epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
+    const struct lm_sar_setup scene = {.epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
     struct lm_sar_command command = from_the_south;
     open_image(&image, &flash);
     draw(&command, &scene);
@@ -284,7 +284,7 @@ static double width_of_point(const struct lm_sar_flight *flight, bool is_steady,
     struct lm_target t =
         point_at(46, 11 + 202.5 / 77470, 0, 70); /* 40.5 lines right of the tower */
     const struct lm_target_set set = {.items = &t, .count = 1};
-    const struct lm_sar_scene scene = {
+    const struct lm_sar_setup scene = {
         .flight = flight, .targets = &set, .epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
     struct lm_sar_command command = from_the_south;
     command.is_steady = is_steady;
@@ -398,7 +398,7 @@ TEST(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing)
                                    cases[i].distance_m),
                         (int16_t)(cases[i].ratio_db * 256)}},
             .jammer_count = 1};
-        const struct lm_sar_scene scene = {.environment = &e};
+        const struct lm_sar_setup scene = {.environment = &e};
         assert_int_equal(
             lm_sar_start(&r->unit.picture.sar, radar, &r->unit.map.db, &command, &scene), LM_OK);
         const double beams = cases[i].off_deg / hs_degrees(radar->antenna.azimuth_beam);
@@ -408,7 +408,7 @@ TEST(a_jammer_raises_the_noise_of_a_patch_by_its_distance_and_bearing)
             (r->unit.picture.sar.floor_db_q8 - radar->sar.noise_floor_db_q8) / 256.0;
         assert_true(fabs(rise_db - 10 * log10(1 + pow(10, jam_db / 10))) < 0.1);
     }
-    const struct lm_sar_scene fair = {.environment = NULL};
+    const struct lm_sar_setup fair = {.environment = NULL};
     assert_int_equal(lm_sar_start(&r->unit.picture.sar, radar, &r->unit.map.db, &command, &fair),
                      LM_OK);
     assert_int_equal(r->unit.picture.sar.floor_db_q8, radar->sar.noise_floor_db_q8);

@@ -444,7 +444,7 @@ TEST(a_look_that_was_kept_is_what_the_beam_would_see_anew)
         for (int k = 0; k < 400; k++) {
             step(r);
             for (int parity = 0; parity < 2; parity++) {
-                const struct lm_sector_aim *aim = &s->aims[parity];
+                const struct lm_sector_taps *aim = &s->taps[parity];
                 struct lm_beam beam = {.fineness = 0};
                 struct lm_beam_taps anew;
                 lm_beam_set_taps(&beam, s->radar, aim->azimuth, 256, &anew);

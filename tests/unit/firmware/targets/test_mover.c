@@ -55,9 +55,9 @@ TEST(a_mover_goes_to_the_end_of_its_leg_and_back)
         const double way = gone > 5000 ? 10000 - gone : gone;
         double to[2];
         destination(46, 11, 30, way, to);
-        const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)(times_s[i] * 1e6));
-        assert_true(metres_apart(to, pose.position) < 0.05);
-        assert_int_equal(pose.heading, gone > 5000 ? hs_bam(210) : hs_bam(30));
+        const struct lm_mover_state mover = lm_mover_state_at(&t, (uint64_t)(times_s[i] * 1e6));
+        assert_true(metres_apart(to, mover.position) < 0.05);
+        assert_int_equal(mover.heading, gone > 5000 ? hs_bam(210) : hs_bam(30));
     }
 }
 
@@ -76,8 +76,8 @@ TEST(the_slowest_the_fastest_and_the_longest_stay_on_their_leg)
         assert_int_equal(lm_target_check(&t), LM_OK);
         for (size_t k = 0; k < sizeof times_us / sizeof *times_us; k++) {
             const double from[2] = {46, 11};
-            const struct lm_pose pose = lm_mover_pose(&t, times_us[k]);
-            assert_true(metres_apart(from, pose.position) < cases[i].leg_m + 0.1);
+            const struct lm_mover_state mover = lm_mover_state_at(&t, times_us[k]);
+            assert_true(metres_apart(from, mover.position) < cases[i].leg_m + 0.1);
         }
     }
 }
@@ -85,10 +85,10 @@ TEST(the_slowest_the_fastest_and_the_longest_stay_on_their_leg)
 TEST(a_target_without_speed_stays)
 {
     const struct lm_target t = point_at(46, 11, 0, 10);
-    const struct lm_pose pose = lm_mover_pose(&t, UINT64_MAX);
-    assert_int_equal(pose.position.latitude, t.latitude);
-    assert_int_equal(pose.position.longitude, t.longitude);
-    assert_int_equal(pose.heading, t.heading);
+    const struct lm_mover_state mover = lm_mover_state_at(&t, UINT64_MAX);
+    assert_int_equal(mover.position.latitude, t.latitude);
+    assert_int_equal(mover.position.longitude, t.longitude);
+    assert_int_equal(mover.heading, t.heading);
 }
 
 /* A way by places: legs of 3, 20 and 0.5 km. */
@@ -134,9 +134,9 @@ TEST(a_mover_on_a_path_goes_through_its_places_and_back_or_round)
             }
             const fx_bam_t heading = t.path[leg].heading;
             destination(places[leg][0], places[leg][1], hs_degrees(heading), way, to);
-            const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)(seconds * 1e6));
-            assert_true(metres_apart(to, pose.position) < 0.05);
-            assert_int_equal(pose.heading, heading + (is_back ? FX_BAM_180 : 0));
+            const struct lm_mover_state mover = lm_mover_state_at(&t, (uint64_t)(seconds * 1e6));
+            assert_true(metres_apart(to, mover.position) < 0.05);
+            assert_int_equal(mover.heading, heading + (is_back ? FX_BAM_180 : 0));
         }
     }
 }
@@ -156,8 +156,8 @@ TEST(the_longest_path_and_the_shortest_are_gone_at_any_time)
         seal_target(&t);
         assert_int_equal(lm_target_check(&t), LM_OK);
         for (uint64_t time = 1; time != 0; time <<= 1) {
-            const struct lm_pose pose = lm_mover_pose(&t, time - 1);
-            assert_true(metres_apart(places[0], pose.position) <
+            const struct lm_mover_state mover = lm_mover_state_at(&t, time - 1);
+            assert_true(metres_apart(places[0], mover.position) <
                         t.path[0].length_mm / 1000.0 + 0.1);
         }
     }
@@ -289,7 +289,7 @@ static double power_of(const struct lm_target *t, const struct lm_target_line *h
 {
     struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = t, .count = 1};
-    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     int32_t level_q8[LM_CELLS_MAX];
     double power = 0, moment = 0;
     lm_target_candidates_select(&candidates, &set, &scene);
@@ -382,18 +382,18 @@ TEST(movers_are_placed_anew_for_every_sweep_and_not_for_every_line)
 {
     const struct lm_target t = moving_point(46.1, 11, 90, 50, 50000);
     const struct lm_target_set set = {.items = &t, .count = 1};
-    struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
+    struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
     struct lm_target_candidates candidates = {0};
     lm_target_candidates_refresh(&candidates, &set, &scene);
-    const struct lm_position first = candidates.candidate[0].pose.position;
+    const struct lm_position first = candidates.candidate[0].state.position;
     scene.position.latitude += 1000; /* the antenna moves on, in the same sweep */
     lm_target_candidates_refresh(&candidates, &set, &scene);
-    assert_memory_equal(&candidates.candidate[0].pose.position, &first, sizeof first);
+    assert_memory_equal(&candidates.candidate[0].state.position, &first, sizeof first);
     scene.time_us = 8000000; /* the next sweep */
     lm_target_candidates_refresh(&candidates, &set, &scene);
     double to[2];
     destination(46.1, 11, 90, 400, to);
-    assert_true(metres_apart(to, candidates.candidate[0].pose.position) < 0.05);
+    assert_true(metres_apart(to, candidates.candidate[0].state.position) < 0.05);
 }
 
 /* ---- how high ---- */
@@ -425,7 +425,7 @@ TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
     seal_target(&t);
     const struct lm_target_set set = {.items = &t, .count = 1};
     for (uint64_t seconds = 0; seconds <= 200; seconds += 50) {
-        const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)},
+        const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)},
                                               .reach_m = 5000,
                                               .time_us = seconds * 1000000,
                                               .tiles = &tiles};

@@ -131,8 +131,8 @@ static void choose(struct signature_world *f, const struct lm_target *targets, u
                    uint32_t cell_mm, struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(f, targets, count);
-    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
-    const struct lm_chip_scene chips = {.centre = scene.position,
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
+    const struct lm_chip_query chips = {.centre = scene.position,
                                         .reach_m = scene.reach_m,
                                         .is_parallel = true,
                                         .look = FX_BAM_90,

@@ -33,7 +33,7 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
                                            .height_m_q6 = (int32_t)(height_m * 64),
                                            .look_azimuth = hs_bam(90),
                                            .cell_mm = f->cell_mm};
-    const struct lm_sar_scene scene = {
+    const struct lm_sar_setup scene = {
         .targets = set, .chips = &f->world.chips, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&f->sar, &f->radar, &f->world.db, &command, &scene), LM_OK);
     lm_sar_prefetch_targets(&f->sar, &f->world.tiles);
@@ -237,8 +237,8 @@ static void near_of(struct fixture *f, const struct lm_target *t, bool has_chips
                     struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(&f->world, t, 1);
-    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
-    const struct lm_chip_scene chips = {.centre = {t->latitude, t->longitude},
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 30000};
+    const struct lm_chip_query chips = {.centre = {t->latitude, t->longitude},
                                         .reach_m = 500,
                                         .radar = scene.position,
                                         .heights = {(int32_t)(height_m * 1024), 0},
@@ -321,7 +321,7 @@ TEST_WITH(the_slack_of_a_target_holds_the_corners_of_its_chip, set_up, tear_down
 {
     struct fixture *f = *state;
     const struct lm_target t = target_beyond(range_m, 0, 0);
-    const struct lm_target_scene scene = {.position = {t.latitude, t.longitude}, .reach_m = 1000};
+    const struct lm_target_query scene = {.position = {t.latitude, t.longitude}, .reach_m = 1000};
     struct lm_target_set set = set_with_signature(&f->world, &t, 1);
     struct lm_signature large = set.signatures[0];
     struct lm_target_candidates candidates;

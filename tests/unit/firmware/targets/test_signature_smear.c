@@ -71,8 +71,8 @@ static void choose_chip(struct fixture *f, const struct lm_target *t,
                         struct lm_target_candidates *candidates)
 {
     const struct lm_target_set set = set_with_signature(&f->world, t, 1);
-    const struct lm_target_scene scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 20000};
-    const struct lm_chip_scene chips = {.centre = scene.position,
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 20000};
+    const struct lm_chip_query chips = {.centre = scene.position,
                                         .reach_m = scene.reach_m,
                                         .is_parallel = true,
                                         .look = FX_BAM_90,

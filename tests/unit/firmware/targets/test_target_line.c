@@ -47,7 +47,7 @@ static struct lm_target_candidates near_of(const struct lm_target *targets, uint
 {
     struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = targets, .count = count};
-    const struct lm_target_scene scene = {.position = position, .reach_m = reach_m};
+    const struct lm_target_query scene = {.position = position, .reach_m = reach_m};
     lm_target_candidates_select(&candidates, &set, &scene);
     return candidates;
 }

@@ -42,7 +42,7 @@ static void find_points(const struct lm_target *t, uint32_t count,
 {
     struct lm_target_candidates candidates;
     const struct lm_target_set set = {.items = t, .count = count};
-    const struct lm_target_scene scene = {
+    const struct lm_target_query scene = {
         .position = g->centre, .reach_m = 20000, .time_us = time_us};
     lm_target_candidates_select(&candidates, &set, &scene);
     lm_target_patch_set(&points, &candidates, g);
@@ -54,7 +54,7 @@ static void draw(const struct lm_patch_geometry *g, int32_t least_q8)
         for (uint32_t i = 0; i < CELLS; i++) {
             picture[k][i] = NOTHING_Q8;
         }
-        lm_target_patch_add_points(&points, k, least_q8, g, picture[k]);
+        lm_target_patch_add_scatterers(&points, k, least_q8, g, picture[k]);
     }
 }
 
@@ -227,11 +227,11 @@ TEST(what_is_left_out_lies_below_the_least_level)
 static double expected_power(uint32_t line, uint32_t cell)
 {
     double power = 0;
-    for (uint32_t i = 0; i < points.count;) {
+    for (uint32_t i = 0; i < points.scatterer_count;) {
         double complex sum = 0;
-        const uint8_t target = points.item[i].target;
-        for (; i < points.count && points.item[i].target == target; i++) {
-            const struct lm_patch_point *p = &points.item[i];
+        const uint8_t target = points.scatterer[i].target;
+        for (; i < points.scatterer_count && points.scatterer[i].target == target; i++) {
+            const struct lm_patch_scatterer *p = &points.scatterer[i];
             const double dx = line - p->across_cells_q8 / 256.0,
                          dy = cell - p->along_cells_q8 / 256.0;
             /* Seven cells to either side of the one that holds it: of two, the farther. */
@@ -328,8 +328,8 @@ TEST(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell)
         find_points(&t, 1, &g, 0);
         const double closing = -speed * cos(heading * pi / 180);
         const double expected = 64 + (range_m + middle_of(70)) * closing / across_m_s / cell_m;
-        assert_true(fabs(points.item[0].across_cells_q8 / 256.0 - expected) < 1);
-        assert_true(fabs(points.item[0].along_cells_q8 / 256.0 - (GUARD + 70)) < 0.1);
+        assert_true(fabs(points.scatterer[0].across_cells_q8 / 256.0 - expected) < 1);
+        assert_true(fabs(points.scatterer[0].along_cells_q8 / 256.0 - (GUARD + 70)) < 0.1);
     }
 }
 
@@ -439,7 +439,7 @@ TEST(a_wall_hides_what_is_lower_than_the_ray_over_it_on_all_lines)
             assert_true(is_before || is_seen == (up_m >= 11));
             find_points(&t, 1, &g, 0);
             for (uint32_t k = 0; k < LINES; k++) {
-                lm_target_patch_hide(&points, k, horizon, BITS, CELLS - 1);
+                lm_target_patch_mark_hidden(&points, k, horizon, BITS, CELLS - 1);
             }
             draw(&g, NOTHING_Q8);
             int lines = 0;
@@ -461,8 +461,8 @@ TEST(layover_brings_a_body_nearer_by_its_height_times_the_lean)
     struct lm_patch_geometry g = geometry(46, 11, 0);
     g.lean_q16 = (int32_t)lround(0.3 * 65536);
     find_points(&t, 1, &g, 0);
-    assert_true(fabs(points.item[0].along_cells_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) <
-                0.1);
+    assert_true(
+        fabs(points.scatterer[0].along_cells_q8 / 256.0 - (GUARD + 70 - 0.3 * 40 / cell_m)) < 0.1);
 }
 
 /* ---- hostile records ---- */
@@ -491,9 +491,9 @@ TEST(a_record_that_passes_the_check_can_be_used_in_a_patch)
         }
         passed++;
         struct lm_patch_geometry g = geometry(46, 11, 0);
-        const struct lm_pose pose = lm_mover_pose(&t, (uint64_t)i << 30);
-        g.centre = (struct lm_position){pose.position.latitude + hs_rng_below(&rng, 9000),
-                                        pose.position.longitude};
+        const struct lm_mover_state mover = lm_mover_state_at(&t, (uint64_t)i << 30);
+        g.centre = (struct lm_position){mover.position.latitude + hs_rng_below(&rng, 9000),
+                                        mover.position.longitude};
         g.look = (fx_bam_t)hs_rng_u64(&rng);
         g.wavelength_um = i % 3 ? LM_WAVELENGTH_MIN_UM : LM_WAVELENGTH_MAX_UM;
         g.cell_m_q8 = i % 2 ? 128 : 10240;

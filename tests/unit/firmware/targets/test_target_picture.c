@@ -37,7 +37,7 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
                                            .height_m_q6 = 6000 * 64,
                                            .look_azimuth = hs_bam(90),
                                            .cell_mm = 4000};
-    const struct lm_sar_scene scene = {
+    const struct lm_sar_setup scene = {
         .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
     for (int k = 0; k < SIDE; k++) {
