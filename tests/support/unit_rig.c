@@ -1,5 +1,6 @@
 #include "unit_rig.h"
 #include "check.h"
+#include "glass_text.h"
 
 #include "fx/crc32c.h"
 
@@ -138,6 +139,14 @@ struct rig *start_rig(void)
     return r;
 }
 
+struct rig *fly_rig(void)
+{
+    struct rig *r = start_rig();
+    command(r, range_10);
+    run(r, 1.5);
+    return r;
+}
+
 void run(struct rig *r, double seconds)
 {
     const uint64_t until = r->now_us + (uint64_t)(seconds * 1e6);
@@ -173,6 +182,17 @@ void free_rig(struct rig *r)
 {
     tiny_image_free(&r->image);
     free(r);
+}
+
+struct lm_surface glass_of(const struct rig *r)
+{
+    return (struct lm_surface){(uint32_t *)r->glass, WIDTH, WIDTH, HEIGHT};
+}
+
+bool says(const struct rig *r, const char *words)
+{
+    const struct lm_surface s = glass_of(r);
+    return glass_find(&s, words, r->unit.palette.symbol, r->unit.palette.ink, NULL);
 }
 
 uint32_t plane_sum(const struct rig *r)

@@ -41,9 +41,11 @@ struct rig {
     uint64_t now_us;
 };
 
-/* A rig whose unit is not started yet, and one whose unit is. */
+/* A rig whose unit is not started yet, one whose unit is, and one in good flight at 10 nm with a
+ * picture. */
 struct rig *make_rig(void);
 struct rig *start_rig(void);
+struct rig *fly_rig(void);
 void free_rig(struct rig *r);
 
 /* Fly on. */
@@ -55,6 +57,10 @@ void command(struct rig *r, struct lm_control control);
 /* Press a button (1..LM_BUTTONS) for a tenth of a second, or for as long as said. */
 void press(struct rig *r, int button);
 void hold(struct rig *r, int button, double seconds);
+
+/* The glass, and whether these words stand on it in the symbols' colour. */
+struct lm_surface glass_of(const struct rig *r);
+bool says(const struct rig *r, const char *words);
 
 uint32_t plane_sum(const struct rig *r);
 uint32_t lit_pixels(const struct rig *r);

@@ -13,17 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct lm_surface glass_of(const struct rig *r)
-{
-    return (struct lm_surface){(uint32_t *)r->glass, WIDTH, WIDTH, HEIGHT};
-}
-
-static int says(const struct rig *r, const char *words)
-{
-    const struct lm_surface s = glass_of(r);
-    return glass_find(&s, words, r->unit.palette.symbol, r->unit.palette.ink, NULL);
-}
-
 static int says_inverse(const struct rig *r, const char *words)
 {
     const struct lm_surface s = glass_of(r);
@@ -67,15 +56,6 @@ static int scale_of(int range_nm)
     return lm_radar_find_range(&lm_radar_default, range_nm);
 }
 
-/* A rig in good flight at 10 nm with a picture. */
-static struct rig *fly(void)
-{
-    struct rig *r = start_rig();
-    command(r, range_10);
-    run(r, 1.5);
-    return r;
-}
-
 TEST(the_page_after_power_up_has_the_labels_of_the_key_map)
 {
     struct rig *r = start_rig();
@@ -105,7 +85,7 @@ TEST(the_page_after_power_up_has_the_labels_of_the_key_map)
 TEST(osb_1_goes_round_the_modes_and_leaves_the_patch)
 {
     static const char *const modes[] = {"GMT", "SEA", "GM"};
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     for (int i = 0; i < 3; i++) {
         const uint32_t before = plane_sum(r);
         press(r, 1);
@@ -126,7 +106,7 @@ TEST(osb_1_goes_round_the_modes_and_leaves_the_patch)
 
 TEST(osb_2_lets_the_range_follow_the_cursor)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 2);
     assert_true(r->unit.page.is_auto_range);
     assert_true(labelled(r, 2, "AUTO", 0));
@@ -152,7 +132,7 @@ TEST(osb_2_lets_the_range_follow_the_cursor)
 TEST(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture)
 {
     static const char *const fields[] = {"EXP", "DBS1", "DBS2", "NORM"};
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     uint32_t sums[4];
     for (int i = 0; i < 4; i++) {
         press(r, 3);
@@ -174,7 +154,7 @@ TEST(osb_3_goes_round_the_fields_of_view_and_each_draws_its_own_picture)
 
 TEST(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, (struct lm_control){.kind = LM_CONTROL_RANGE, .range_nm = 80});
     press(r, 3);
     assert_true(labelled(r, 3, "EXP", 0));
@@ -193,7 +173,7 @@ TEST(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt)
 
 TEST(osb_4_stops_the_transmitter_and_the_picture_says_so)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 4);
     const uint32_t lines = r->unit.count.lines, sum = plane_sum(r);
     run(r, 0.5);
@@ -215,7 +195,7 @@ TEST(osb_4_stops_the_transmitter_and_the_picture_says_so)
 
 TEST(osb_5_opens_the_control_page_over_the_picture_and_closes_it)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 5);
     assert_true(labelled(r, 5, "CNTL", 1));
     assert_true(labelled(r, 10, "RESET", 0));
@@ -229,7 +209,7 @@ TEST(osb_5_opens_the_control_page_over_the_picture_and_closes_it)
 
 TEST(osb_6_flies_by_the_barometric_height)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     assert_true(labelled(r, 6, "BARO", 0));
     assert_int_equal(r->unit.ownship.height_source, LM_BUS_ELLIPSOID_HEIGHT);
     const uint32_t before = plane_sum(r);
@@ -247,7 +227,7 @@ TEST(osb_6_flies_by_the_barometric_height)
 
 TEST(osb_17_means_nothing_on_the_radar_page)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const struct lm_page before = r->unit.page;
     press(r, 17);
     assert_memory_equal(&r->unit.page, &before, sizeof before);
@@ -264,7 +244,7 @@ TEST(the_control_pages_keys_change_the_tone_of_the_picture)
         const char *words_up, *words_down;
     } pairs[] = {{20, 19, "1.6", "1.4"}, {18, 17, "+1", "-1"}, {6, 7, "+1", "-1"}};
     for (size_t i = 0; i < 3; i++) {
-        struct rig *r = fly();
+        struct rig *r = fly_rig();
         const struct lm_tone before = r->unit.picture.tone[LM_PICTURE_SECTOR];
         press(r, 5);
         press(r, pairs[i].up);
@@ -296,7 +276,7 @@ static uint64_t brightness(const struct rig *r)
 
 TEST(osb_1_to_4_of_the_control_page_point_and_shape_the_beam)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     run(r, 1.5);
     press(r, 5);
     assert_true(labelled(r, 1, "AUTO", 0));
@@ -331,7 +311,7 @@ TEST(osb_1_to_4_of_the_control_page_point_and_shape_the_beam)
 
 TEST(tilt_by_hand_ends_where_the_antenna_does)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const double end_deg = lm_radar_default.antenna.tilt_max * 360.0 / 4294967296;
     run(r, 1.5);
     press(r, 5);
@@ -348,7 +328,7 @@ TEST(tilt_by_hand_ends_where_the_antenna_does)
 
 TEST(osb_16_of_the_control_page_shows_patches_in_slant_range)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, patch_here);
     run(r, 5);
     assert_false(r->unit.picture.sar.command.has_layover);
@@ -367,7 +347,7 @@ TEST(osb_16_of_the_control_page_shows_patches_in_slant_range)
 
 TEST(osb_8_and_9_of_the_control_page_choose_tint_and_night)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const struct lm_palette day = r->unit.palette;
     press(r, 5);
     assert_true(labelled(r, 8, "GREY", 0));
@@ -407,7 +387,7 @@ static int32_t ownship_top(const struct rig *r)
 
 TEST(osb_7_freezes_the_map_and_the_ownship_moves_over_it)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     /* Out of the way with the cursor's lines. */
     command(r, lm_control_slew(-1000, 0));
     run(r, 0.5);
@@ -432,7 +412,7 @@ TEST(osb_7_freezes_the_map_and_the_ownship_moves_over_it)
 
 TEST(a_new_scale_ends_the_freeze)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 7);
     press(r, 20);
     assert_false(r->unit.page.is_frozen);
@@ -443,7 +423,7 @@ TEST(a_new_scale_ends_the_freeze)
 
 TEST(osb_8_and_10_choose_snowplow_or_a_held_cursor)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 8);
     assert_true(labelled(r, 8, "SP", 1) && labelled(r, 10, "STP", 0));
     const struct lm_position start = r->unit.cursor.position;
@@ -466,7 +446,7 @@ TEST(osb_8_and_10_choose_snowplow_or_a_held_cursor)
 
 TEST(osb_9_brings_the_cursor_home)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, lm_control_slew(1000, -500));
     run(r, 0.4);
     command(r, lm_control_slew(0, 0));
@@ -481,7 +461,7 @@ TEST(osb_9_brings_the_cursor_home)
 
 TEST(osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 11);
     assert_true(labelled(r, 11, "DCLT", 1));
     const char *const gone[] = {"SP", "CZ", "STP", "BIT", "TEST", "SWAP", "CELL"};
@@ -498,7 +478,7 @@ TEST(osb_11_takes_the_chosen_labels_away_and_never_an_unusual_one)
 
 TEST(osb_11_held_opens_the_choice_of_labels)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     hold(r, 11, 1);
     assert_int_equal(r->unit.page.format, LM_FORMAT_DCLT);
     assert_true(labelled(r, 9, "CZ", 1) && labelled(r, 1, "GM", 0));
@@ -517,7 +497,7 @@ TEST(osb_11_held_opens_the_choice_of_labels)
 
 TEST(osb_12_to_14_are_the_direct_access_to_the_formats)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 12);
     assert_int_equal(r->unit.page.format, LM_FORMAT_BIT);
     assert_true(labelled(r, 12, "BIT", 1) && labelled(r, 13, "FCR", 0));
@@ -536,7 +516,7 @@ TEST(osb_12_to_14_are_the_direct_access_to_the_formats)
 
 TEST(osb_15_asks_the_board_to_swap)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 15);
     assert_int_equal(r->unit.count.swaps, 1);
     press(r, 12);
@@ -557,7 +537,7 @@ static void slew_right(struct rig *r)
 
 TEST(osb_16_chooses_the_cell_and_draws_the_patch_again)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     assert_true(says(r, "5M"));
     press(r, 16);
     assert_true(says(r, "10M"));
@@ -593,7 +573,7 @@ static double widest_degrees(const struct rig *r)
 
 TEST(osb_18_goes_through_the_azimuths)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const char *const digits[] = {"3", "1", "6"};
     const fx_bam_t halves[] = {FX_BAM_DEG(30), FX_BAM_DEG(10), FX_BAM_DEG(60)};
     for (int i = 0; i < 3; i++) {
@@ -614,7 +594,7 @@ TEST(osb_18_goes_through_the_azimuths)
 
 TEST(osb_19_and_20_step_the_range_and_end_automatic_range)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     char words[8];
     press(r, 2);
     for (int range = scale_of(10) + 1; range < lm_radar_default.ranges; range++) {
@@ -639,7 +619,7 @@ TEST(osb_19_and_20_step_the_range_and_end_automatic_range)
 
 TEST(rockers_and_the_range_knob_change_gain_and_glass)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const struct lm_tone tone = r->unit.picture.tone[LM_PICTURE_SECTOR];
     press(r, lm_rocker_button(LM_ROCKER_GAIN, true));
     assert_int_equal(r->unit.page.gain_db, 1);
@@ -671,7 +651,7 @@ TEST(rockers_and_the_range_knob_change_gain_and_glass)
 /* The columns of the cursor's vertical and the rows of its horizontal line. */
 TEST(the_cursors_lines_cross_the_whole_frame_at_its_place)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, lm_control_slew(700, 300));
     run(r, 0.3);
     command(r, lm_control_slew(0, 0));
@@ -695,7 +675,7 @@ TEST(the_cursors_lines_cross_the_whole_frame_at_its_place)
 
 TEST(the_cursors_numbers_are_right)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     /* Zero: 5 nm due north of the aircraft at the moment of the press, 46 N 11 E minus 0.05 degree
      * plus what it has flown at 150 m/s. */
     press(r, 9);
@@ -720,7 +700,7 @@ TEST(the_cursors_numbers_are_right)
 
 TEST(the_cursor_stays_over_its_place_through_turns_of_the_page)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, lm_control_slew(300, 0));
     run(r, 0.2);
     command(r, lm_control_slew(0, 0));
@@ -737,7 +717,7 @@ TEST(the_cursor_stays_over_its_place_through_turns_of_the_page)
 
 TEST(designate_looks_closely_at_the_cursor_and_drop_comes_back)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     slew_right(r);
     command(r, lm_control_designate());
     run(r, 4);
@@ -758,7 +738,7 @@ TEST(designate_looks_closely_at_the_cursor_and_drop_comes_back)
 
 TEST(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     /* Too near: under the aircraft. */
     command(r, lm_control_slew(0, -1000));
     run(r, 2);
@@ -775,7 +755,7 @@ TEST(a_patch_that_cannot_be_made_is_refused_on_the_glass_for_two_seconds)
 
 TEST(a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     command(r, lm_control_designate());
     run(r, 0.1);
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
@@ -800,7 +780,7 @@ TEST(a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere)
 
 TEST(the_bit_page_says_what_the_counters_say)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     r->bus.is_down = 1;
     run(r, 2.5);
     r->bus.is_down = 0;
@@ -895,7 +875,7 @@ TEST(a_broken_database_leaves_a_bit_page_that_says_so)
 
 TEST(buttons_and_deflections_that_do_not_exist_are_refused)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     const struct lm_control bad[] = {
         {.kind = LM_CONTROL_DOWN, .button = 0},
         {.kind = LM_CONTROL_DOWN, .button = LM_BUTTONS + 1},
@@ -947,7 +927,7 @@ TEST(a_cursor_that_nobody_moved_goes_with_the_scale)
 TEST(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes)
 {
     for (int is_designated = 0; is_designated < 2; is_designated++) {
-        struct rig *r = fly();
+        struct rig *r = fly_rig();
         if (is_designated) {
             /* At 40 nm the cursor is 36 degrees off the nose, where a patch can be made. */
             r->bus.nose_deg = 50;
@@ -974,7 +954,7 @@ TEST(a_cursor_that_was_moved_or_designated_stays_when_the_scale_changes)
 
 TEST(a_cursor_that_the_range_follows_is_left_where_it_is)
 {
-    struct rig *r = fly();
+    struct rig *r = fly_rig();
     press(r, 20);
     run(r, 0.3);
     press(r, 2); /* AUTO at 20 nm, the cursor 10 nm away: 8.5 nm are 18 s on */
@@ -983,107 +963,6 @@ TEST(a_cursor_that_the_range_follows_is_left_where_it_is)
     run(r, 20);
     assert_int_equal(r->unit.page.range_index, scale_of(10));
     assert_memory_equal(&r->unit.cursor.position, &before, sizeof before);
-    free_rig(r);
-}
-
-/* ---- steerpoint ---- */
-
-/* Whether the glass says how long it is from the aircraft to a place on its meridian, within a
- * second. */
-static bool says_time_to(const struct rig *r, double latitude_deg, double speed_m_s)
-{
-    const double own_deg = hs_degrees(r->unit.ownship.latitude);
-    const double seconds = fabs(latitude_deg - own_deg) * 111150 / speed_m_s; /* at 46 degrees */
-    for (int more = -1; more <= 1; more++) {
-        char words[32];
-        const int whole = (int)lround(seconds) + more;
-        snprintf(words, sizeof words, "TTG %02d:%02d", whole / 60, whole % 60);
-        if (says(r, words)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Corners of a diamond about a pixel that are of the symbols' colour. */
-static int corners_at(const struct rig *r, int32_t x, int32_t y)
-{
-    const int32_t reach = HEIGHT * 65 / 4000;
-    int corners = 0;
-    for (int32_t side = -1; side <= 1; side += 2) {
-        corners += r->glass[y * WIDTH + x + side * reach] == r->unit.palette.symbol;
-        corners += r->glass[(y + side * reach) * WIDTH + x] == r->unit.palette.symbol;
-    }
-    return corners;
-}
-
-/* Whether a diamond stands on the pixel of a place, or on the one above, where it was a frame ago.
- */
-static bool is_marked(const struct rig *r, double latitude_deg, double longitude_deg)
-{
-    const struct lm_position position = {hs_bam(latitude_deg), hs_bam(longitude_deg)};
-    struct lm_offset o;
-    assert_true(lm_view_find(&r->unit.picture.view, position, &o));
-    const struct lm_point at = lm_view_point(&r->unit.picture.view, o);
-    return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
-}
-
-TEST(the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale)
-{
-    struct rig *r = fly();
-    assert_false(says(r, "TTG"));
-    r->bus.has_steerpoint = true;
-    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
-    run(r, 1);
-    assert_true(is_marked(r, 46.05, 11.02));
-    r->bus.steerpoint_deg[1] = 11.001;
-    run(r, 1);
-    assert_true(is_marked(r, 46.05, 11.001));
-    assert_true(says_time_to(r, 46.05, 150));
-    r->bus.steerpoint_deg[0] = 46.6; /* 72 km: off the glass, and 8 minutes */
-    run(r, 1);
-    assert_true(says_time_to(r, 46.6, 150));
-    r->bus.steerpoint_deg[0] = 46.05;
-    run(r, 1);
-    r->bus.has_steerpoint = false;
-    r->bus.queue_next = 0;
-    run(r, 2.8);
-    assert_true(is_marked(r, 46.05, 11.001));
-    run(r, 0.5);
-    assert_false(is_marked(r, 46.05, 11.001));
-    assert_false(says(r, "TTG"));
-    free_rig(r);
-}
-
-TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
-{
-    struct rig *r = fly();
-    struct lm_control steer = {.kind = LM_CONTROL_STEERPOINT,
-                               .steerpoint = {true, {hs_bam(46.03), hs_bam(10.99)}}};
-    r->bus.has_steerpoint = true;
-    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
-    command(r, steer);
-    run(r, 1);
-    assert_true(is_marked(r, 46.03, 10.99));
-    assert_false(is_marked(r, 46.05, 11.02));
-    r->bus.speed_m_s = 0; /* which puts it back to where it began */
-    run(r, 1);
-    assert_true(says(r, "TTG --:--"));
-    r->bus.speed_m_s = 1; /* 148 minutes */
-    run(r, 1);
-    assert_true(says(r, "TTG --:--"));
-    steer.steerpoint.is_set = false;
-    command(r, steer);
-    r->bus.speed_m_s = 150;
-    run(r, 1);
-    assert_true(is_marked(r, 46.05, 11.02));
-    const uint32_t refused = r->unit.count.commands_refused;
-    steer.steerpoint.is_set = true;
-    steer.steerpoint.position.latitude = FX_BAM_90 + 1;
-    command(r, steer);
-    run(r, 0.1);
-    assert_int_equal(r->unit.count.commands_refused, refused + 1);
-    assert_true(is_marked(r, 46.05, 11.02));
     free_rig(r);
 }
 

@@ -1,0 +1,107 @@
+/* What is on the glass above the picture: the steerpoint, where it is marked and how long it is to
+ * it. */
+#include "check.h"
+#include "hs/angle.h"
+#include "unit_rig.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Whether the glass says how long it is from the aircraft to a place on its meridian, within a
+ * second. */
+static bool says_time_to(const struct rig *r, double latitude_deg, double speed_m_s)
+{
+    const double own_deg = hs_degrees(r->unit.ownship.latitude);
+    const double seconds = fabs(latitude_deg - own_deg) * 111150 / speed_m_s; /* at 46 degrees */
+    for (int more = -1; more <= 1; more++) {
+        char words[32];
+        const int whole = (int)lround(seconds) + more;
+        snprintf(words, sizeof words, "TTG %02d:%02d", whole / 60, whole % 60);
+        if (says(r, words)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Corners of a diamond about a pixel that are of the symbols' colour. */
+static int corners_at(const struct rig *r, int32_t x, int32_t y)
+{
+    const int32_t reach = HEIGHT * 65 / 4000;
+    int corners = 0;
+    for (int32_t side = -1; side <= 1; side += 2) {
+        corners += r->glass[y * WIDTH + x + side * reach] == r->unit.palette.symbol;
+        corners += r->glass[(y + side * reach) * WIDTH + x] == r->unit.palette.symbol;
+    }
+    return corners;
+}
+
+/* Whether a diamond stands on the pixel of a place, or on the one above, where it was a frame ago.
+ */
+static bool is_marked(const struct rig *r, double latitude_deg, double longitude_deg)
+{
+    const struct lm_position position = {hs_bam(latitude_deg), hs_bam(longitude_deg)};
+    struct lm_offset o;
+    assert_true(lm_view_find(&r->unit.picture.view, position, &o));
+    const struct lm_point at = lm_view_point(&r->unit.picture.view, o);
+    return corners_at(r, at.x, at.y) == 4 || corners_at(r, at.x, at.y - 1) == 4;
+}
+
+TEST(the_steerpoint_of_the_bus_is_marked_with_its_time_to_go_until_it_is_stale)
+{
+    struct rig *r = fly_rig();
+    assert_false(says(r, "TTG"));
+    r->bus.has_steerpoint = true;
+    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
+    run(r, 1);
+    assert_true(is_marked(r, 46.05, 11.02));
+    r->bus.steerpoint_deg[1] = 11.001;
+    run(r, 1);
+    assert_true(is_marked(r, 46.05, 11.001));
+    assert_true(says_time_to(r, 46.05, 150));
+    r->bus.steerpoint_deg[0] = 46.6; /* 72 km: off the glass, and 8 minutes */
+    run(r, 1);
+    assert_true(says_time_to(r, 46.6, 150));
+    r->bus.steerpoint_deg[0] = 46.05;
+    run(r, 1);
+    r->bus.has_steerpoint = false;
+    r->bus.queue_next = 0;
+    run(r, 2.8);
+    assert_true(is_marked(r, 46.05, 11.001));
+    run(r, 0.5);
+    assert_false(is_marked(r, 46.05, 11.001));
+    assert_false(says(r, "TTG"));
+    free_rig(r);
+}
+
+TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
+{
+    struct rig *r = fly_rig();
+    struct lm_control steer = {.kind = LM_CONTROL_STEERPOINT,
+                               .steerpoint = {true, {hs_bam(46.03), hs_bam(10.99)}}};
+    r->bus.has_steerpoint = true;
+    r->bus.steerpoint_deg[0] = 46.05, r->bus.steerpoint_deg[1] = 11.02;
+    command(r, steer);
+    run(r, 1);
+    assert_true(is_marked(r, 46.03, 10.99));
+    assert_false(is_marked(r, 46.05, 11.02));
+    r->bus.speed_m_s = 0; /* which puts it back to where it began */
+    run(r, 1);
+    assert_true(says(r, "TTG --:--"));
+    r->bus.speed_m_s = 1; /* 148 minutes */
+    run(r, 1);
+    assert_true(says(r, "TTG --:--"));
+    steer.steerpoint.is_set = false;
+    command(r, steer);
+    r->bus.speed_m_s = 150;
+    run(r, 1);
+    assert_true(is_marked(r, 46.05, 11.02));
+    const uint32_t refused = r->unit.count.commands_refused;
+    steer.steerpoint.is_set = true;
+    steer.steerpoint.position.latitude = FX_BAM_90 + 1;
+    command(r, steer);
+    run(r, 0.1);
+    assert_int_equal(r->unit.count.commands_refused, refused + 1);
+    assert_true(is_marked(r, 46.05, 11.02));
+    free_rig(r);
+}
