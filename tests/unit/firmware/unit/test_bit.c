@@ -1,0 +1,54 @@
+/* The rows of the BIT page that tell of the database and of the faults that stand. The rows of
+ * counters are read off the glass in test_page. */
+#include "check.h"
+#include "lm/bit.h"
+#include "lm/overlay.h"
+#include "unit_rig.h"
+
+#include <string.h>
+
+enum { ROW_DATABASE = 1, ROW_NOW = 15 };
+
+TEST(a_row_of_the_bit_page_names_the_database)
+{
+    struct rig *r = start_rig();
+    strcpy(r->unit.map.db.title, "ALPS EAST");
+    assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE).words, "DB ALPS EAST");
+    free_rig(r);
+}
+
+TEST(the_row_of_the_database_says_that_it_failed)
+{
+    struct rig *r = make_rig();
+    r->image.bytes[100] ^= 1;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE).words, "DB FAIL");
+    free_rig(r);
+}
+
+TEST(row_now_names_each_standing_fault)
+{
+    static const struct {
+        uint32_t flags;
+        const char *words;
+    } rows[] = {
+        {0, "NOW  NO FAULT"},
+        {LM_FLAG_NAV_STALE, "NOW  NAV"},
+        {LM_FLAG_NAV_DEAD, "NOW  NAV FAIL"},
+        {LM_FLAG_DB, "NOW  DB FAIL"},
+        {LM_FLAG_TILE, "NOW  TILE"},
+        {LM_FLAG_BUS, "NOW  BUS"},
+        {LM_FLAG_FROZEN, "NOW  FZ"},
+        {LM_FLAG_OFF_MAP, "NOW  OFF MAP"},
+        {LM_FLAG_SILENT, "NOW  NO RAD"},
+        {LM_FLAG_UNABLE, "NOW  UNABLE"},
+        {LM_FLAG_WEATHER, "NOW  WX"},
+        {LM_FLAG_NAV_DEAD | LM_FLAG_BUS | LM_FLAG_WEATHER, "NOW  NAV FAIL  BUS  WX"},
+    };
+    struct rig *r = start_rig();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        r->unit.flags = rows[i].flags;
+        assert_string_equal(lm_bit_row(&r->unit, ROW_NOW).words, rows[i].words);
+    }
+    free_rig(r);
+}
