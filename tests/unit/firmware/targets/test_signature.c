@@ -224,6 +224,34 @@ TEST_WITH(chips_are_shared_kept_and_bounded, set_up, tear_down)
     assert_int_equal(f->chips.count.left_out, ASPECTS - LM_CHIPS_MAX - 1);
 }
 
+/* New ones come first in the list: they must not take the slots of those that are still shown. */
+TEST_WITH(chips_that_are_shown_keep_their_slots_when_new_ones_come, set_up, tear_down)
+{
+    enum { NEW = 6 };
+    struct signature_world *f = *state;
+    struct lm_target t[LM_CHIPS_MAX + NEW];
+    struct lm_target_candidates candidates;
+    for (int k = 0; k < LM_CHIPS_MAX + NEW; k++) {
+        t[k] = target_with_signature(46, 11, k * 360.0 / ASPECTS);
+    }
+    choose(f, t + NEW, LM_CHIPS_MAX, 1000, &candidates);
+    assert_true(serve_chips(f));
+    assert_int_equal(f->chips.count.read, LM_CHIPS_MAX);
+    choose(f, t, LM_CHIPS_MAX, 1000, &candidates);
+    for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
+        assert_int_equal(lm_chip_of(&candidates.candidate[i]) != NULL, i >= NEW);
+    }
+    assert_true(serve_chips(f));
+    assert_int_equal(f->chips.count.read, LM_CHIPS_MAX + NEW);
+    assert_int_equal(f->chips.count.left_out, 0);
+    /* With no slot free, what is there stays and what is new is left out. */
+    choose(f, t, LM_CHIPS_MAX + NEW, 1000, &candidates);
+    for (uint32_t i = 0; i < LM_CHIPS_MAX + NEW; i++) {
+        assert_int_equal(lm_chip_of(&candidates.candidate[i]) != NULL, i < LM_CHIPS_MAX);
+    }
+    assert_int_equal(f->chips.count.left_out, NEW);
+}
+
 /* ---- laying ---- */
 
 struct score {
