@@ -171,6 +171,19 @@ TEST(osb_3_offers_no_sharpening_at_80_nm_and_none_in_gmt)
     free_rig(r);
 }
 
+TEST(osb_3_begins_no_new_sweep_in_a_mode_of_one_field)
+{
+    struct lm_radar table = lm_radar_default;
+    struct lm_page page;
+    lm_page_init(&page, &table);
+    assert_int_equal(lm_page_press(&page, (struct lm_press){.button = 3}), LM_EFFECT_SECTOR);
+    assert_int_equal(page.fov, LM_FOV_EXP);
+    table.mode[LM_SECTOR_GM].fov_last = LM_FOV_NORM;
+    lm_page_init(&page, &table);
+    assert_int_equal(lm_page_press(&page, (struct lm_press){.button = 3}), 0);
+    assert_int_equal(page.fov, LM_FOV_NORM);
+}
+
 TEST(osb_4_stops_the_transmitter_and_the_picture_says_so)
 {
     struct rig *r = fly_rig();
