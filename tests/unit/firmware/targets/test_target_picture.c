@@ -29,14 +29,15 @@ static void open_soil(struct tiny_image *image, struct memory_flash *flash)
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
 }
 
-static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+static void draw_patch_of_cells(const struct lm_target_set *set, uint32_t cell_mm,
+                                uint8_t picture[SIDE][SIDE])
 {
     static struct lm_sar sar;
     const struct lm_sar_command command = {.centre = {hs_bam(46), hs_bam(11)},
                                            .range_m = 20000,
                                            .height_m_q6 = 6000 * 64,
                                            .look_azimuth = hs_bam(90),
-                                           .cell_mm = 4000};
+                                           .cell_mm = cell_mm};
     const struct lm_sar_setup scene = {
         .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
@@ -44,6 +45,11 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
         lm_sar_draw_line(&sar, &tiles, &tone, &line);
         memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
     }
+}
+
+static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SIDE])
+{
+    draw_patch_of_cells(set, 4000, picture);
 }
 
 TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
@@ -89,6 +95,45 @@ TEST(a_patch_has_nothing_of_the_targets_of_the_one_before_it)
     draw_patch(&none, behind);
     assert_memory_not_equal(with, before, sizeof with);
     assert_memory_equal(behind, before, sizeof behind);
+    tiny_image_free(&image);
+}
+
+/* The cell that a target has made brighter by the most grey levels. */
+static int brightest_cell(uint8_t with[SIDE][SIDE], uint8_t without[SIDE][SIDE])
+{
+    int most = 0, cell = 0;
+    for (int k = 0; k < SIDE * SIDE; k++) {
+        const int more = with[k / SIDE][k % SIDE] - without[k / SIDE][k % SIDE];
+        if (more > most) {
+            most = more;
+            cell = k;
+        }
+    }
+    return cell;
+}
+
+/* Its corners are 3.6 km from its centre. It looks east: lines from north to south, cells from west
+ * to east. */
+TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
+{
+    enum { CELL_MM = 20000, OUT_CELLS = 120 };
+    struct tiny_image image;
+    struct memory_flash flash;
+    static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
+    const struct lm_target_set none = {0};
+    open_soil(&image, &flash);
+    draw_patch_of_cells(&none, CELL_MM, without);
+    const double out_deg = OUT_CELLS * CELL_MM * 180 / (acos(-1) * 6371e3 * 1000);
+    for (int corner = 0; corner < 4; corner++) {
+        const int south = corner / 2 * 2 - 1, east = corner % 2 * 2 - 1;
+        const double longitude_deg = 11 + east * out_deg / cos(46 * acos(-1) / 180);
+        const struct lm_target t = point_at(46 - south * out_deg, longitude_deg, 0, 50);
+        const struct lm_target_set set = {.items = &t, .count = 1};
+        draw_patch_of_cells(&set, CELL_MM, with);
+        const int cell = brightest_cell(with, without);
+        assert_true(abs(cell / SIDE - (SIDE / 2 + south * OUT_CELLS)) <= 1);
+        assert_true(abs(cell % SIDE - (SIDE / 2 + east * OUT_CELLS)) <= 1);
+    }
     tiny_image_free(&image);
 }
 
