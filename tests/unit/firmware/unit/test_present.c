@@ -105,3 +105,42 @@ TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
     assert_true(is_marked(r, 46.05, 11.02));
     free_rig(r);
 }
+
+/* A unit that stands still, steered to the place under a pixel. */
+static struct rig *steer_to_pixel(int32_t x, int32_t y)
+{
+    struct rig *r = make_rig();
+    r->bus.speed_m_s = 0;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    command(r, range_10);
+    run(r, 1);
+    const struct lm_view *view = &r->unit.picture.view;
+    const struct lm_offset under = {(x - view->at.x) * 256 + 128, (view->at.y - y) * 256 - 128};
+    const struct lm_position place = lm_view_place(view, under);
+    command(r, (struct lm_control){.kind = LM_CONTROL_STEERPOINT, .steerpoint = {true, place}});
+    run(r, 0.5);
+    assert_true(says(r, "TTG"));
+    return r;
+}
+
+TEST(a_steerpoint_above_below_or_beside_the_frame_is_not_marked)
+{
+    const struct lm_frame f = lm_frame_of_display(WIDTH, HEIGHT);
+    const int32_t left = f.left_px, right = left + f.width_px - 1, middle_x = (left + right) / 2;
+    const int32_t top = f.top_px, bottom = top + f.height_px - 1, middle_y = (top + bottom) / 2;
+    const struct {
+        int32_t x, y, out_x, out_y; /* the last pixel inside on a side, and the way out of it */
+    } sides[] = {{middle_x + 40, top, 0, -1},
+                 {middle_x + 40, bottom, 0, 1},
+                 {left, middle_y, -1, 0},
+                 {right, middle_y, 1, 0}};
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+        for (int32_t out = -2; out <= 3; out++) {
+            const int32_t x = sides[i].x + out * sides[i].out_x;
+            const int32_t y = sides[i].y + out * sides[i].out_y;
+            struct rig *r = steer_to_pixel(x, y);
+            assert_int_equal(corners_at(r, x, y) == 4, out <= 0);
+            free_rig(r);
+        }
+    }
+}
