@@ -162,3 +162,15 @@ TEST(a_symbol_over_a_patch_is_on_the_cell_of_its_place)
         }
     }
 }
+
+TEST(the_place_of_the_origin_is_the_origin)
+{
+    const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
+    const struct lm_view_from from = from_here();
+    const struct lm_view views[] = {lm_view_of_sector(&frame, &from, 18520),
+                                    lm_view_of_patch(&frame, from.position, from.up, 256, 5000)};
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        const struct lm_position place = lm_view_place(&views[i], (struct lm_offset){0, 0});
+        assert_memory_equal(&place, &from.position, sizeof place);
+    }
+}
