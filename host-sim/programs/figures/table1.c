@@ -67,7 +67,7 @@ int table1_draw(const char *path)
             chart_upright(&c, side * asin(1 / (2 * r.wavelengths)) * 180 / pi, INK_BLUE);
         }
     }
-    sheet_text(&sheet, 80, 804, "RED - ONE WAY - DASHED THE NULLS AS PAPER A PRINTS THEM", INK_RED);
+    sheet_text(&sheet, 80, 804, "RED - ONE WAY - DASHED THE NULLS AS HEATON PRINTS THEM", INK_RED);
     sheet_text(&sheet, 80, 822, "BLUE - THE RETURN OUT AND BACK AS THE FIRMWARE HAS IT", INK_BLUE);
     return sheet_close(&sheet, path);
 }

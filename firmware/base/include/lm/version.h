@@ -2,7 +2,7 @@
 #ifndef LM_VERSION_H
 #define LM_VERSION_H
 
-#define LM_VERSION        "0.1"
-#define LM_VERSION_NUMBER 0x01 /* the same as major * 16 + minor, as the bus is told it */
+#define LM_VERSION        "0.2"
+#define LM_VERSION_NUMBER 0x02 /* the same as major * 16 + minor, as the bus is told it */
 
 #endif
