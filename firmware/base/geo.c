@@ -1,18 +1,13 @@
 #include "lm/geo.h"
 
+#include "fx/const.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 
-/* WGS-84 (NIMA TR8350.2, table 3.1): semi-major axis 6,378,137 m, first eccentricity squared
- * 0.00669437999014. */
-static const int64_t semi_major_m_q8 = 6378137LL * 256;
-enum {
-    ECCENTRICITY2_Q30 = 7188035, /* 0.00669437999014 * 2^30 = 7,188,035.7: 1e-10 low */
-    FLATTENING_Q30 = (1 << 30) - ECCENTRICITY2_Q30,
-    BAM_PER_RADIAN = 683565276, /* 2^32 / (2 pi) = 683,565,275.6 */
-    DISTANCE_MAX_M_Q8 = 300000 * 256
-};
+static const int64_t semi_major_m_q8 = LM_SEMI_MAJOR_M * 256LL;
+enum { FLATTENING_Q30 = (1 << 30) - LM_ECCENTRICITY2_Q30, DISTANCE_MAX_M_Q8 = 300000 * 256 };
 
 static const int64_t one_q32 = 1LL << 32;
 
@@ -36,7 +31,7 @@ void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position)
     o->sin_q30 = fx_sin_q30(o->position.latitude);
     o->cos_q30 = fx_cos_q30(o->position.latitude);
     const int64_t sin2_q30 = mul_q30(o->sin_q30, o->sin_q30);
-    const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, ECCENTRICITY2_Q30);
+    const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, LM_ECCENTRICITY2_Q30);
     const int64_t w_q30 = sqrt_q30(w2_q30);
     /* semi_major_m_q8 << 30 is below 2^31 * 2^30 = 2^61. */
     const int64_t n_q8 = (semi_major_m_q8 << 30) / w_q30;
@@ -67,7 +62,7 @@ static inline fx_bam_t small_angle(int64_t t_q32)
     const int64_t square_q32 = t_q32 * t_q32 >> 32;
     const int64_t bend_q32 = square_q32 * (third_q32 - (square_q32 * fifth_q32 >> 32)) >> 32;
     const int64_t radians_q32 = t_q32 - (t_q32 * bend_q32 >> 32);
-    return (fx_bam_t)((radians_q32 * BAM_PER_RADIAN + one_q32 / 2) >> 32);
+    return (fx_bam_t)((radians_q32 * FX_BAM_PER_RADIAN + one_q32 / 2) >> 32);
 }
 
 /* The longitude of a point (x, east) in the plane of the equator, and how far it is from the
@@ -231,9 +226,9 @@ void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *di
     const int32_t dlon = fx_clamp_i32((int32_t)(to.longitude - from.longitude), -far, far);
     const struct lm_position half_way = {from.latitude + (uint32_t)(dlat / 2), from.longitude};
     lm_geo_set_origin(&middle, half_way);
-    /* BAM to metres: angle * 2 pi / 2^32 * radius; 2 pi in Q28 is 1,686,629,713. */
-    const int64_t arc_north = (int64_t)dlat * 1686629713 >> 28;
-    const int64_t arc_east = mul_q30((int64_t)dlon * 1686629713 >> 28, middle.cos_q30);
+    /* BAM to metres: angle * 2 pi / 2^32 * radius. */
+    const int64_t arc_north = (int64_t)dlat * FX_TWO_PI_Q28 >> 28;
+    const int64_t arc_east = mul_q30((int64_t)dlon * FX_TWO_PI_Q28 >> 28, middle.cos_q30);
     const int64_t north_m_q8 = arc_north * middle.meridian_radius_m_q8 >> 32;
     const int64_t east_m_q8 = arc_east * middle.prime_vertical_radius_m_q8 >> 32;
     *distance_m_q8 = fx_hypot_u32((int32_t)north_m_q8, (int32_t)east_m_q8);

@@ -2,6 +2,7 @@
 
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/const.h"
 #include "lm/kernels_clutter.h"
 #include "tops.h"
 

@@ -1,8 +1,9 @@
 #include "fx/sat.h"
+#include "lm/const.h"
 #include "lm/font.h"
 #include "overlay_internal.h"
 
-enum { FEET_PER_M_Q12 = 13438, NM_M = 1852, ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
+enum { ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
 
 /* The symbols' own lengths are parts of half the shorter side of the glass. */
 static int32_t part_of_half(const struct lm_glass *g, int32_t thousandths)
@@ -50,7 +51,8 @@ static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
     const int32_t dot = pen.dot_px;
-    const int32_t length = (int32_t)(1500ull * 304800 * 256 / 1000 / s->view.scale_mm_per_px_q8);
+    const int32_t length =
+        (int32_t)(1500ull * LM_FOOT_UM * 256 / 1000 / s->view.scale_mm_per_px_q8);
     const int32_t x = s->view.middle.x - s->view.radius_px + 4 * dot;
     const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
     line(&pen, x, y, x + length, y);
@@ -210,7 +212,7 @@ static void write_place(const struct lm_glass *g, struct lm_position position)
 /* Bearing and range, elevation, place. */
 static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    const uint32_t tenths = (s->cursor_range_m * 10 + NM_M / 2) / NM_M;
+    const uint32_t tenths = (s->cursor_range_m * 10 + LM_NM_M / 2) / LM_NM_M;
     struct lm_text t = {0};
     lm_text_number(&t, degrees_of(s->cursor_bearing), 3);
     lm_text_add(&t, LM_GLYPH_DEGREE "/");
@@ -219,7 +221,7 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     lm_text_number(&t, tenths % 10, 1);
     write_row(g, 1, ALIGN_LEFT, t.words);
     if (s->has_cursor_elevation) {
-        const int64_t feet_q22 = (int64_t)s->cursor_elevation_m_q10 * FEET_PER_M_Q12;
+        const int64_t feet_q22 = (int64_t)s->cursor_elevation_m_q10 * LM_FEET_PER_M_Q12;
         t = (struct lm_text){0};
         lm_text_add(&t, "ELV ");
         lm_text_signed(&t, (int32_t)((feet_q22 + (1 << 21)) >> 22));

@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "fx/mem.h"
+#include "lm/const.h"
 #include "lm/image.h"
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
@@ -292,6 +293,5 @@ int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_
 
 uint32_t lm_db_cell_mm(const struct lm_db *db, uint8_t lod)
 {
-    /* 40,007,862.917 m of meridian / 2^32 = 9.31506 mm = 610,472 / 65,536 mm. */
-    return (uint32_t)(((uint64_t)610472 << (db->shift0 + lod)) >> 16);
+    return (uint32_t)(((uint64_t)LM_MM_PER_BAM_Q16 << (db->shift0 + lod)) >> 16);
 }

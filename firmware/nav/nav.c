@@ -2,6 +2,7 @@
 
 #include <stddef.h>
 
+#include "fx/const.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -179,12 +180,12 @@ static void set_height(struct lm_ownship *out, const struct lm_nav *n, uint64_t 
 }
 
 /* Angle in BAM that a point moves in `age_us` at `speed_mm_s` on a circle. The way is below 1.5 *
- * 10^6 mm/s * 2 s = 3 * 10^9 um, times 2^32 / (2 pi) = 683,565,276 below 2^61; the radius, 2^31,
- * takes 2^43 as micrometres. */
+ * 10^6 mm/s * 2 s = 3 * 10^9 um, times 2^32 / (2 pi) below 2^61; the radius, 2^31, takes 2^43 as
+ * micrometres. */
 static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_m_q8)
 {
     const int64_t way_um = speed_mm_s * age_us / 1000;
-    return way_um * 683565276 / (radius_m_q8 * 15625 / 4);
+    return way_um * FX_BAM_PER_RADIAN / (radius_m_q8 * 15625 / 4);
 }
 
 /* A latitude, `age_us` later. */

@@ -1,21 +1,21 @@
 #include "lm/antenna.h"
 
+#include "fx/const.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 
-enum { STEP_Q20 = 1 << 9, RADIAN_Q20_OF_CIRCLE = 6588397 /* 2 pi */ };
+enum { STEP_Q20 = 1 << 9 };
 
 void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenna_table *antenna)
 {
     /* b in Q20 radians: a beam is at most half a circle, 2^31 times 2^22.7. */
-    const int64_t beam_q20 =
-        (int64_t)((uint64_t)antenna->elevation_beam * RADIAN_Q20_OF_CIRCLE >> 32);
+    const int64_t beam_q20 = (int64_t)((uint64_t)antenna->elevation_beam * FX_TWO_PI_Q20 >> 32);
     for (int32_t n = 0; n < LM_ANTENNA_PATTERN_STEPS; n++) {
-        /* x = e / b in Q12; 80 log10(2) dB is 6165 / 256. Far beyond the beam everything is as good
-         * as nothing: -96 dB. */
+        /* x = e / b in Q12. Far beyond the beam everything is as good as nothing: -96 dB. */
         const int64_t off_q20 = (int64_t)n * STEP_Q20 + STEP_Q20 / 2;
         const int64_t x_q12 = (off_q20 << 12) / (beam_q20 > 0 ? beam_q20 : 1);
-        const int64_t fall_db_q8 = (x_q12 * x_q12 >> 12) * 6165 >> 12;
+        const int64_t fall_db_q8 = (x_q12 * x_q12 >> 12) * LM_BEAM_TWO_WAY_DB_Q8 >> 12;
         e->gain_db_q8[n] = fall_db_q8 < 96 * 256 ? -(int32_t)fall_db_q8 : -96 * 256;
     }
 }
@@ -36,9 +36,7 @@ struct lm_antenna_fan lm_antenna_fan_at(int32_t tilt, fx_bam_t fan)
 
 int32_t lm_antenna_auto_tilt(int32_t height_m, uint32_t range_m)
 {
-    /* Twice the radius of the Earth, 4/3 as large as it is: what refraction makes of it. */
-    const uint64_t two_radii_m = 16989333;
-    const int32_t drop_m = (int32_t)((uint64_t)range_m * range_m / two_radii_m);
+    const int32_t drop_m = (int32_t)((uint64_t)range_m * range_m / LM_TWO_RADII_M);
     return (int32_t)fx_atan2(-(height_m + drop_m), (int32_t)range_m);
 }
 

@@ -1,5 +1,6 @@
 #include "lm/azimuth_average.h"
 
+#include "fx/const.h"
 #include "fx/mem.h"
 #include "fx/tables.h"
 #include "lm/kernels_radar.h"
@@ -33,6 +34,6 @@ void lm_azimuth_average_add(struct lm_azimuth_average *f, const int32_t *level_d
 void lm_azimuth_average_mean(const struct lm_azimuth_average *f, uint32_t azimuths_log2,
                              int32_t *level_db_q8, uint32_t cells)
 {
-    const int32_t azimuths_db_q8 = ((int32_t)azimuths_log2 * FX_DB_OCTAVE_Q14 + 32) / 64;
+    const int32_t azimuths_db_q8 = ((int32_t)azimuths_log2 * FX_DB_PER_OCTAVE_Q14 + 32) / 64;
     lm_k_levels_mean(f->sum_db_q8, azimuths_db_q8, LM_LEVEL_SHADOW, level_db_q8, cells);
 }

@@ -1,10 +1,12 @@
 #include "lm/patch_rain.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 #include "lm/radar.h"
 #include "shower.h"
 
@@ -130,7 +132,7 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
                     const struct lm_shower_cells *reach)
 {
     const int32_t width = p->beam / 8, begin = axis + (ray - RAYS / 2) * width, end = begin + width;
-    const int32_t echo_db_q8 = s->echo_db_q8 - 1996 - 32 * FX_DB_OCTAVE_Q14 / 64;
+    const int32_t echo_db_q8 = s->echo_db_q8 - 1996 - 32 * FX_DB_PER_OCTAVE_Q14 / 64;
     const uint32_t all_q32 = UINT32_MAX / (uint32_t)width;
     const int64_t in_beams_q40 = ((int64_t)1 << 40) / p->beam;
     set_loss(p, (fx_bam_t)(begin + width / 2), reach);
@@ -138,7 +140,8 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
         const int32_t from = fx_clamp_i32(p->left[i], begin, end);
         const int32_t to = fx_clamp_i32(p->right[i], begin, end);
         const int32_t x_q9 = (int32_t)(((from + to) / 2 - axis) * in_beams_q40 >> 31);
-        const int32_t off_db_q8 = (x_q9 * x_q9 >> 8) * 6165 >> 10; /* 2^10 times 6165: 24.08 dB */
+        /* The square is 2^10 at most. */
+        const int32_t off_db_q8 = (x_q9 * x_q9 >> 8) * LM_BEAM_TWO_WAY_DB_Q8 >> 10;
         const int32_t filled_q8 = fx_db_q8_vec((uint32_t)(to - from) * all_q32);
         const int32_t level_db_q8 =
             p->volume_db_q8[i] + echo_db_q8 + filled_q8 - off_db_q8 - p->loss_db_q8[i];
@@ -147,13 +150,13 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
 }
 
 /* 10 log10 of the volume that a cell of rain fills over its clutter's area, w ds g: s w ds b
- * sqrt(pi / 8 ln 2) / 2. A beam in BAM is 2 pi / 2^32 of it in radians, log2(2 pi) being 173768 /
- * 2^16. */
+ * sqrt(pi / 8 ln 2) / 2. A beam in BAM is 2 pi / 2^32 of it in radians. */
 static int32_t volume_db_q8(const struct lm_radar *radar, const struct lm_patch_geometry *g,
                             uint32_t range_m_q8)
 {
-    const int32_t log2_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - (32 << 16) +
-                             fx_log2_q16(range_m_q8) + 2 * fx_log2_q16(g->cell_m_q8) - (24 << 16);
+    const int32_t log2_q16 = fx_log2_q16(radar->antenna.elevation_beam) + FX_LOG2_TWO_PI_Q16 -
+                             (32 << 16) + fx_log2_q16(range_m_q8) + 2 * fx_log2_q16(g->cell_m_q8) -
+                             (24 << 16);
     return fx_db_q8_of_log2_q16(log2_q16) + HALF_BEAM_Q8 -
            lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, range_m_q8,
                                    range_m_q8 - fx_min_u32(range_m_q8, g->cell_m_q8), &g->heights);

@@ -1,8 +1,10 @@
 #include "lm/receiver.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
+#include "lm/const.h"
 #include "lm/geo.h"
 #include "lm/kernels_radar.h"
 #include "lm/noise.h"
@@ -32,8 +34,9 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
     const uint32_t end_m_q8 = radar->range[range].range_m * 256u;
     const int32_t end_m_q16 = 3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
     const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);
-    /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM; log2(2 pi) is 173768 / 2^16. */
-    const int32_t beam_q16 = fx_log2_q16(radar->antenna.elevation_beam) + 173768 - ((32 + 8) << 16);
+    /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM. */
+    const int32_t beam_q16 =
+        fx_log2_q16(radar->antenna.elevation_beam) + FX_LOG2_TWO_PI_Q16 - ((32 + 8) << 16);
     for (uint32_t i = 0; i < r->cells; i++) {
         const uint32_t slant_m_q8 = r->first_m_q8 + i * r->cell_m_q8;
         const int32_t range_q16 = fx_log2_q16(slant_m_q8);
@@ -74,10 +77,9 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     r->cells = slant->cells;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
     set_bins(r, radar, height_m_q10, range_index);
-    /* Half the speed of light is 149.896 metres a microsecond: 2514841 / 2^16 metres * 256 a
-     * nanosecond. 2^32 times 2^21.3. */
-    const uint64_t pulse_q24 = (uint64_t)pulse_ns * 2514841u;
-    set_pulse(r, pulse_q24 / fx_max_u32(slant->cell_m_q8, 1));
+    /* 2^32 times 2^21.3; over metres in Q8 it is bins in Q16. */
+    const uint64_t pulse_m_q24 = (uint64_t)pulse_ns * LM_HALF_LIGHT_M_PER_NS_Q24;
+    set_pulse(r, pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1));
 }
 
 /* (a + b) w of powers on either side of a bin and a weight of at most 2^15, cut to whole parts of

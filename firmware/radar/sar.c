@@ -4,6 +4,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 #include "lm/weather.h"
 
 _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,

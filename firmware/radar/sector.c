@@ -1,5 +1,6 @@
 #include "lm/sector.h"
 
+#include "fx/const.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -393,8 +394,7 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
  * each block. */
 static struct lm_noise_key texture_key(const struct lm_sector *s, fx_bam_t azimuth)
 {
-    const uint64_t two_pi_q28 = 1686629713;
-    const uint64_t radians_q32 = azimuth * two_pi_q28 >> 28; /* below 2^34.7 */
+    const uint64_t radians_q32 = (uint64_t)azimuth * FX_TWO_PI_Q28 >> 28; /* below 2^34.7 */
     struct lm_noise_key key = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
     key.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
     /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */

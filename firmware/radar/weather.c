@@ -1,20 +1,22 @@
 #include "lm/weather.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/const.h"
 #include "lm/receiver.h"
 #include "shower.h"
 
 /* J - 20 log10(R_j / 18520 m) - 40 log10(2) (o / B)^2: the jammer's noise beside the receiver's. */
 static int32_t jammer_db_q8(const struct lm_jammer *j, const struct lm_bearing *b, fx_bam_t beam)
 {
-    const int32_t ten_miles_q16 = 1453379; /* log2(18520 * 256) */
-    const int32_t spread_db_q8 =
-        fx_db_q8_of_log2_q16(2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, 256)) - ten_miles_q16));
-    /* Sixteen beams off the axis nothing is left. x in Q12: 2^32 and 3083 / 256 dB times 2^8. */
+    const int32_t spread_db_q8 = fx_db_q8_of_log2_q16(
+        2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, 256)) - LM_LOG2_TEN_NM_M_Q8_Q16));
+    /* Sixteen beams off the axis nothing is left. x in Q12: 2^32 and 12 dB in Q8, times 2^8. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32((int32_t)b->off) << 12) / fx_max_u32(beam, 1);
     const uint64_t x = x_q12 < 16u << 12 ? x_q12 : 16u << 12;
-    return j->noise_ratio_db_q8 - spread_db_q8 - (int32_t)((x * x >> 12) * 3083 >> 12);
+    return j->noise_ratio_db_q8 - spread_db_q8 -
+           (int32_t)((x * x >> 12) * LM_BEAM_ONE_WAY_DB_Q8 >> 12);
 }
 
 int32_t lm_noise_rise_db_q8(const struct lm_environment *e, const struct lm_radar *radar,
@@ -68,7 +70,7 @@ static void add_echo(const struct met *m, const struct lm_shower_cells *reach,
         const int32_t filled_q8 =
             lm_chord_before_m_q8(c, near_m_q8 + step_m_q8) - lm_chord_before_m_q8(c, near_m_q8);
         const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
-        const int32_t share_q8 = fx_db_q8_vec(share_q32) - 32 * FX_DB_OCTAVE_Q14 / 64;
+        const int32_t share_q8 = fx_db_q8_vec(share_q32) - 32 * FX_DB_PER_OCTAVE_Q14 / 64;
         echo_db_q8[i] =
             fx_db_q8_sum_vec(echo_db_q8[i], m->shower.echo_db_q8 + share_q8 - loss_db_q8[i]);
     }

@@ -1,12 +1,11 @@
 #include "lm/chip_sector.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/illumination.h"
-
-enum { RADIAN_BAM = 683565276 };
 
 /* From pixels to lines and cells: what the middle of pixel (0, 0) has, and what a column and a row
  * more add. Places across are BAM to the right of the line; along, cells * 65536 from cell
@@ -34,7 +33,7 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
     const int64_t rows = (1 << slot->key.shift) - 2 * (int64_t)slot->origin_row;
     struct pixel_map map;
     for (int i = 1; i < 3; i++) {
-        map.across[i] = (x_q24[i] >> 12) * RADIAN_BAM / range_m_q8 >> 4;
+        map.across[i] = (x_q24[i] >> 12) * FX_BAM_PER_RADIAN / range_m_q8 >> 4;
         map.along_cells_q16[i] = y_q24[i] / line->cell_m_q8;
     }
     const uint32_t halves = slot->key.shift + 1u;

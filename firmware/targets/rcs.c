@@ -1,19 +1,14 @@
 #include "lm/rcs.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 
 /* Powers are added up as binary logarithms in Q16, so a product is a sum and nothing overflows: the
  * largest, a plate of 100 m by 100 m at 1 mm, is 2^50 m2, the smallest factor 2^-62. */
-enum {
-    LOG2_PI = 108232,  /* log2(pi) * 65536 */
-    LOG2_2PI = 173768, /* and so on */
-    LOG2_4PI = 239304,
-    LOG2_MM2 = -1306235, /* a square millimetre in square metres */
-    LOG2_ONE_Q30 = 30 * 65536,
-    LOG2_NONE = -64 * 65536
-};
+enum { LOG2_ONE_Q30 = 30 * 65536, LOG2_NONE = -64 * 65536 };
 
 /* log2 of (length / wavelength) * length, when lengths are in mm and the wavelength in um, is that
  * of metres: the thousands cancel. */
@@ -38,7 +33,7 @@ static int32_t log2_sinc2(uint32_t side_mm, uint32_t wavelength_um, int32_t sine
         return 0; /* 1/4096 of a turn: sinc^2 is one but for 8e-7 */
     }
     const uint32_t sine = fx_abs_u32(fx_sin_q30((fx_bam_t)(turns_q46 >> 14)));
-    const int32_t log2_phase = LOG2_2PI + fx_log2_q16_u64(turns_q46) - 46 * 65536;
+    const int32_t log2_phase = FX_LOG2_TWO_PI_Q16 + fx_log2_q16_u64(turns_q46) - 46 * 65536;
     return 2 * (log2_of_q30(sine) - log2_phase);
 }
 
@@ -47,7 +42,7 @@ static int32_t log2_plate(const struct lm_shape *s, uint32_t wavelength_um, stru
     if (d.ahead_q30 <= 0 && !s->is_two_sided) {
         return LOG2_NONE;
     }
-    return LOG2_4PI + 2 * log2_area(s->size_mm[0], s->size_mm[1], wavelength_um) +
+    return FX_LOG2_FOUR_PI_Q16 + 2 * log2_area(s->size_mm[0], s->size_mm[1], wavelength_um) +
            2 * log2_of_q30(fx_abs_u32(d.ahead_q30)) +
            log2_sinc2(s->size_mm[0], wavelength_um, d.right_q30) +
            log2_sinc2(s->size_mm[1], wavelength_um, d.up_q30);
@@ -60,25 +55,18 @@ static int32_t along(int32_t x_q30, int64_t a_q30, int32_t y_q30, int64_t b_q30)
     return (int32_t)((x_q30 * a_q30 + y_q30 * b_q30 + (1 << 29)) >> 30);
 }
 
-enum {
-    ROOT_1_2_Q30 = 759250125,
-    ROOT_1_3_Q30 = 619925131,
-    ROOT_2_3_Q30 = 876706528,
-    ROOT_1_6_Q30 = 438353264
-};
-
 /* Of the two faces' projections, only what the other one's mirror image covers comes back: twice
  * the smaller one. */
 static int32_t log2_dihedral(const struct lm_shape *s, uint32_t wavelength_um,
                              struct lm_direction d)
 {
-    const int32_t left = along(d.ahead_q30, ROOT_1_2_Q30, d.right_q30, ROOT_1_2_Q30);
-    const int32_t right = along(d.ahead_q30, ROOT_1_2_Q30, d.right_q30, -ROOT_1_2_Q30);
+    const int32_t left = along(d.ahead_q30, FX_ROOT_1_2_Q30, d.right_q30, FX_ROOT_1_2_Q30);
+    const int32_t right = along(d.ahead_q30, FX_ROOT_1_2_Q30, d.right_q30, -FX_ROOT_1_2_Q30);
     const int32_t smaller = fx_min_i32(left, right);
     if (smaller <= 0) {
         return LOG2_NONE;
     }
-    return LOG2_4PI +
+    return FX_LOG2_FOUR_PI_Q16 +
            2 * (log2_area(s->size_mm[0], s->size_mm[1], wavelength_um) + 65536 +
                 log2_of_q30((uint32_t)smaller)) +
            log2_sinc2(s->size_mm[1], wavelength_um, d.up_q30);
@@ -100,10 +88,10 @@ static void sort(int32_t c[3])
 static int32_t log2_trihedral(const struct lm_shape *shape, uint32_t wavelength_um,
                               struct lm_direction d)
 {
-    const int32_t low = along(d.ahead_q30, ROOT_1_3_Q30, d.up_q30, -ROOT_1_6_Q30);
-    int32_t c[3] = {along(low, 1 << 30, d.right_q30, ROOT_1_2_Q30),
-                    along(low, 1 << 30, d.right_q30, -ROOT_1_2_Q30),
-                    along(d.ahead_q30, ROOT_1_3_Q30, d.up_q30, ROOT_2_3_Q30)};
+    const int32_t low = along(d.ahead_q30, FX_ROOT_1_3_Q30, d.up_q30, -FX_ROOT_1_6_Q30);
+    int32_t c[3] = {along(low, 1 << 30, d.right_q30, FX_ROOT_1_2_Q30),
+                    along(low, 1 << 30, d.right_q30, -FX_ROOT_1_2_Q30),
+                    along(d.ahead_q30, FX_ROOT_1_3_Q30, d.up_q30, FX_ROOT_2_3_Q30)};
     sort(c);
     if (c[0] <= 0) {
         return LOG2_NONE;
@@ -120,8 +108,9 @@ static int32_t log2_trihedral(const struct lm_shape *shape, uint32_t wavelength_
         }
         log2_share = fx_log2_q16_u64((uint64_t)hexagon_q60) - 60 * 65536;
     }
-    return LOG2_4PI + 2 * (log2_area(shape->size_mm[0], shape->size_mm[0], wavelength_um) +
-                           log2_share - log2_of_q30(s));
+    return FX_LOG2_FOUR_PI_Q16 +
+           2 * (log2_area(shape->size_mm[0], shape->size_mm[0], wavelength_um) + log2_share -
+                log2_of_q30(s));
 }
 
 static int32_t log2_rcs(const struct lm_shape *shape, uint32_t wavelength_um,
@@ -129,7 +118,7 @@ static int32_t log2_rcs(const struct lm_shape *shape, uint32_t wavelength_um,
 {
     switch (shape->kind) {
     case LM_SHAPE_SPHERE:
-        return LOG2_PI + 2 * fx_log2_q16(shape->size_mm[0]) + LOG2_MM2;
+        return FX_LOG2_PI_Q16 + 2 * fx_log2_q16(shape->size_mm[0]) + LM_LOG2_MM2_Q16;
     case LM_SHAPE_PLATE:
         return log2_plate(shape, wavelength_um, radar);
     case LM_SHAPE_DIHEDRAL:

@@ -1,5 +1,6 @@
 #include "lm/target.h"
 
+#include "fx/const.h"
 #include "fx/crc32c.h"
 #include "fx/hash.h"
 #include "fx/log.h"
@@ -226,7 +227,7 @@ int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask)
 static uint32_t exponential_q16(uint32_t hash)
 {
     const uint32_t minus_log2_q16 = 32u * 65536u - (uint32_t)fx_log2_q16(hash | 1u);
-    return (uint32_t)((uint64_t)minus_log2_q16 * 2977044472u >> 32); /* ln 2 */
+    return (uint32_t)((uint64_t)minus_log2_q16 * FX_LN2_Q32 >> 32);
 }
 
 int32_t lm_swerling_dbsm_q8(uint8_t swerling, int32_t mean_dbsm_q8, uint32_t id, uint32_t scan,

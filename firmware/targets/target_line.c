@@ -6,6 +6,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/chip_sector.h"
+#include "lm/const.h"
 
 enum { NO_CELL = -1 };
 
@@ -122,10 +123,10 @@ static bool displace(const struct lm_target_line *line, int32_t closing_mm_s,
         fx_abs_u32(shift) > shift_most(line)) {
         return false;
     }
-    /* x in Q12 is at most 5/4; 80 log10(2) dB are 6165 / 256. */
+    /* x in Q12 is at most 5/4. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32(shift) << 12) / fx_max_u32(line->beam, 1);
     seen->azimuth += (fx_bam_t)shift;
-    seen->gain_db_q8 = -(int32_t)(x_q12 * x_q12 * 6165 >> 24);
+    seen->gain_db_q8 = -(int32_t)(x_q12 * x_q12 * LM_BEAM_TWO_WAY_DB_Q8 >> 24);
     return true;
 }
 

@@ -1,12 +1,14 @@
 #include "lm/target_view.h"
 
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/const.h"
 #include "lm/illumination.h"
 
-enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */, TWO_PI_Q26 = 421657428 };
+enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */ };
 
 /* The place of a target from an origin, the inverse problem put right by the direct one: the first
  * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
@@ -79,7 +81,7 @@ int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,
 uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width)
 {
     const uint64_t turns_q16 = (uint64_t)range_m_q8 * width >> 24;
-    return turns_q16 * TWO_PI_Q26 >> 34;
+    return turns_q16 * FX_TWO_PI_Q26 >> 34;
 }
 
 int32_t lm_clutter_area_dbm2_q8(uint64_t width_m_q8, uint32_t cell_m_q8, uint32_t range_m_q8,

@@ -1,4 +1,5 @@
 /* The SAR patch as a kind of picture: its tiles are read first, then it is drawn once. */
+#include "fx/const.h"
 #include "fx/sat.h"
 #include "ownship.h"
 #include "picture_kind.h"
@@ -20,7 +21,7 @@ static uint32_t lines_of(const struct lm_picture *p)
 static uint32_t lateral_mm_s2(const struct lm_ownship *own)
 {
     const uint64_t turn_bam_s = fx_abs_u32(own->turn_bam_s);
-    return (uint32_t)(turn_bam_s * (uint32_t)own->ground_speed_mm_s / 683565276u);
+    return (uint32_t)(turn_bam_s * (uint32_t)own->ground_speed_mm_s / FX_BAM_PER_RADIAN);
 }
 
 /* The command with the geometry of this moment, and how the aircraft flies, when the patch is to be

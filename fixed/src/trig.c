@@ -1,5 +1,6 @@
 #include "fx/trig.h"
 
+#include "fx/const.h"
 #include "fx/recip.h"
 #include "fx/sat.h"
 #include "fx/tables.h"
@@ -29,7 +30,7 @@ int32_t fx_sin_q30(fx_bam_t angle)
     const uint32_t i = (q.angle + (1u << 21)) >> 22; /* 0..256 */
     const int64_t d = (int64_t)q.angle - ((int64_t)i << 22);
     /* 2 pi in Q26 takes a count to a radian in Q38; 2^21 * 2^28.7 fits. */
-    const int64_t d_q38 = d * 421657428 >> 20;      /* |.| < 2^29.7 */
+    const int64_t d_q38 = d * FX_TWO_PI_Q26 >> 20;  /* |.| < 2^29.7 */
     const int64_t square_q46 = d_q38 * d_q38 >> 30; /* < 2^29.4 */
     const int64_t sin_d_q38 = d_q38 - (d_q38 * square_q46 >> 46) / 6;
     const int64_t sin_a_q31 = fx_table_sin_q31[i]; /* <= 2^31 */
@@ -89,9 +90,9 @@ static uint32_t atan_of_ratio(uint32_t ratio_q31)
 {
     const uint32_t i = (ratio_q31 + (1u << 22)) >> 23; /* 0..256 */
     const int64_t h_q31 = (int64_t)ratio_q31 - ((int64_t)i << 23);
-    const int64_t t_q40 = h_q31 * fx_table_atan_slope_q31[i] >> 22;      /* |.| <= 2^31 */
-    const int64_t bend_q40 = (t_q40 * t_q40 >> 40) * (int64_t)i >> 8;    /* <= 2^22 */
-    const int64_t step_bam_q2 = (t_q40 - bend_q40) * 2734261102ll >> 40; /* 2^34 / 2 pi */
+    const int64_t t_q40 = h_q31 * fx_table_atan_slope_q31[i] >> 22;   /* |.| <= 2^31 */
+    const int64_t bend_q40 = (t_q40 * t_q40 >> 40) * (int64_t)i >> 8; /* <= 2^22 */
+    const int64_t step_bam_q2 = (t_q40 - bend_q40) * FX_BAM_PER_RADIAN_Q2 >> 40;
     return (uint32_t)((fx_table_atan_bam_q2[i] + step_bam_q2 + 2) >> 2);
 }
 

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "fx/const.h"
 #include "fx/tables.h"
 
 /* The lower halves of sixteen numbers, and the lower bytes of those. */
@@ -61,10 +62,11 @@ static inline int32x4x2_t neon_add_db_q8(int32x4x2_t level_db_q8, uint32x4x2_t p
     const uint8x16_t slope = vqtbl1q_u8(vld1q_u8(fx_table_db_lines[2]), line);
     const uint16x8_t db_q13 = vmlal_u8(base, vget_low_u8(slope), vget_low_u8(mantissa));
     /* Below the 32nd octave, as many as there are zeros. */
-    const uint32x4_t all = vdupq_n_u32(31 * FX_DB_OCTAVE_Q13);
+    const uint32x4_t all = vdupq_n_u32(31 * FX_DB_PER_OCTAVE_Q13);
     const uint32x4_t low =
-        vmlsq_n_u32(vaddw_u16(all, vget_low_u16(db_q13)), zeros[0], FX_DB_OCTAVE_Q13);
-    const uint32x4_t high = vmlsq_n_u32(vaddw_high_u16(all, db_q13), zeros[1], FX_DB_OCTAVE_Q13);
+        vmlsq_n_u32(vaddw_u16(all, vget_low_u16(db_q13)), zeros[0], FX_DB_PER_OCTAVE_Q13);
+    const uint32x4_t high =
+        vmlsq_n_u32(vaddw_high_u16(all, db_q13), zeros[1], FX_DB_PER_OCTAVE_Q13);
     return (int32x4x2_t){{vsraq_n_s32(level_db_q8.val[0], vreinterpretq_s32_u32(low), 5),
                           vsraq_n_s32(level_db_q8.val[1], vreinterpretq_s32_u32(high), 5)}};
 }
@@ -88,9 +90,9 @@ static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32
         const uint16x8_t zeros = vuzp1q_u16(vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n])),
                                             vreinterpretq_u16_u32(vclzq_u32(power.val[2 * n + 1])));
         const uint16x8_t octave = veorq_u16(zeros, vdupq_n_u16(31));
-        const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_OCTAVE_Q13 % 32);
+        const uint16x8_t fine_q13 = vmlaq_n_u16(db_q13[n], octave, FX_DB_PER_OCTAVE_Q13 % 32);
         level_db_q8.val[n] = vmlaq_n_u16(vsraq_n_u16(level_db_q8.val[n], fine_q13, 5), octave,
-                                         FX_DB_OCTAVE_Q13 / 32);
+                                         FX_DB_PER_OCTAVE_Q13 / 32);
     }
     return level_db_q8;
 }
@@ -152,7 +154,8 @@ static inline void neon_store_8_and_8(int32_t *to, int32_t *and_to, int32x4x4_t 
 static inline int16x8_t neon_octaves_q8(int32x4_t low_q8, int32x4_t high_q8)
 {
     const int16x8_t db_q8 = vqmovn_high_s32(vqmovn_s32(low_q8), high_q8);
-    const int16x8_t octaves_q8 = vaddq_s16(vqrdmulhq_n_s16(db_q8, 10885), vdupq_n_s16(-7 * 256));
+    const int16x8_t octaves_q8 =
+        vaddq_s16(vqrdmulhq_n_s16(db_q8, FX_OCTAVES_PER_DB_Q15), vdupq_n_s16(-7 * 256));
     return vminq_s16(vmaxq_s16(octaves_q8, vdupq_n_s16(-31 * 256)), vdupq_n_s16(255));
 }
 

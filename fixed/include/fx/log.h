@@ -3,6 +3,7 @@
 #define FX_LOG_H
 
 #include "fx/bits.h"
+#include "fx/const.h"
 #include "fx/tables.h"
 
 #include <stdint.h>
@@ -26,7 +27,7 @@ static inline int32_t fx_db_q8(uint32_t power)
      * fits 21 bits. When power is 0 the shift is by 0 (32 modulo 32) and the mantissa is 0. */
     const int zeros = fx_clz32(power);
     const uint32_t mantissa = power << ((uint32_t)zeros & 31u);
-    return ((31 - zeros) * FX_DB_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 23 & 255u]) >> 6;
+    return ((31 - zeros) * FX_DB_PER_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 23 & 255u]) >> 6;
 }
 
 /* The same for 64 bits: -768, 2..49319. Worst error 0.012 dB. */
@@ -34,7 +35,7 @@ static inline int32_t fx_db_q8_u64(uint64_t power)
 {
     const int zeros = fx_clz64(power);
     const uint64_t mantissa = power << ((uint32_t)zeros & 63u);
-    return ((63 - zeros) * FX_DB_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 55 & 255u]) >> 6;
+    return ((63 - zeros) * FX_DB_PER_OCTAVE_Q14 + fx_table_db_q14[mantissa >> 55 & 255u]) >> 6;
 }
 
 /* Zeros above the highest bit that is set, in whole groups of four: 0..28; 28 for x = 0. */
@@ -53,7 +54,7 @@ static inline int32_t fx_db_q8_vec(uint32_t power)
     /* The power is shifted up to 2^28..2^32, where 12 bits are a mantissa of 8 bits or more. */
     const uint32_t octaves = fx_leading_nibbles_vec(power);
     const int32_t mantissa = (int32_t)(power << octaves >> 20);
-    return (fx_table_db_steps_q13[mantissa] + (20 - (int32_t)octaves) * FX_DB_OCTAVE_Q13) >> 5;
+    return (fx_table_db_steps_q13[mantissa] + (20 - (int32_t)octaves) * FX_DB_PER_OCTAVE_Q13) >> 5;
 }
 
 /* The same of a power below 2^31, for three quarters of the price: numbers with a sign are compared
@@ -64,7 +65,7 @@ static inline int32_t fx_db_q8_vec_i32(int32_t power)
     const int32_t by_16 = power < 1 << 15 ? 16 : 0, p_16 = power << by_16;
     const int32_t by_8 = p_16 < 1 << 23 ? 8 : 0, p_8 = p_16 << by_8;
     const int32_t down = p_8 < 1 << 27 ? 15 : 19;
-    return (fx_table_db_steps_q13[p_8 >> down] + (down - by_16 - by_8) * FX_DB_OCTAVE_Q13) >> 5;
+    return (fx_table_db_steps_q13[p_8 >> down] + (down - by_16 - by_8) * FX_DB_PER_OCTAVE_Q13) >> 5;
 }
 
 /* 10^(dB / 10) in Q24 without counting or branching, for loops over many: 1 up to -72.25 dB and
@@ -72,8 +73,8 @@ static inline int32_t fx_db_q8_vec_i32(int32_t power)
  * more than 9 bits. */
 static inline uint32_t fx_power_q24_vec(int32_t db_q8)
 {
-    /* Octaves above 2^-24 in Q8: log2(10) / 10 is 10885.3 / 2^15; the product stays below 2^31. */
-    const int32_t octaves_q8 = ((db_q8 * 10885 + 16384) >> 15) + (24 << 8);
+    /* Octaves above 2^-24 in Q8; the product stays below 2^31. */
+    const int32_t octaves_q8 = ((db_q8 * FX_OCTAVES_PER_DB_Q15 + 16384) >> 15) + (24 << 8);
     const int32_t low_q8 = octaves_q8 < 0 ? 0 : octaves_q8;
     const int32_t t_q8 = low_q8 > (32 << 8) - 1 ? (32 << 8) - 1 : low_q8;
     return fx_table_power_q31[t_q8 & 255] >> (31 - (t_q8 >> 8));
@@ -83,7 +84,7 @@ static inline uint32_t fx_power_q24_vec(int32_t db_q8)
  * |dB_q8| < 2^16. Worst error 0.014 dB where the result has more than 9 bits. */
 static inline uint64_t fx_power_q32_vec(int32_t db_q8)
 {
-    const int32_t octaves_q16 = (db_q8 * 21771 >> 8) + (32 << 16) + 128;
+    const int32_t octaves_q16 = (db_q8 * FX_OCTAVES_PER_DB_Q16 >> 8) + (32 << 16) + 128;
     const int32_t low_q16 = octaves_q16 < 0 ? 0 : octaves_q16;
     const uint32_t t_q16 = (uint32_t)(low_q16 > (64 << 16) - 1 ? (64 << 16) - 1 : low_q16);
     return (uint64_t)fx_table_exp2_q31[t_q16 >> 8 & 255u] << 32 >> (63 - (t_q16 >> 16));
@@ -105,8 +106,8 @@ uint32_t fx_power_q16_from_db_q8(int32_t db_q8);
 /* Decibels times 256 of a power whose binary logarithm is given, times 65536. |log2_q16| < 2^25. */
 static inline int32_t fx_db_q8_of_log2_q16(int32_t log2_q16)
 {
-    /* 10 log10(2) * 256 / 65536 in Q32; the product stays below 2^51. */
-    return (int32_t)(((int64_t)log2_q16 * 50504453 + ((int64_t)1 << 31)) >> 32);
+    /* From Q16 and Q24 to Q8; the product stays below 2^51. */
+    return (int32_t)(((int64_t)log2_q16 * FX_DB_PER_OCTAVE_Q24 + ((int64_t)1 << 31)) >> 32);
 }
 
 #endif

@@ -24,12 +24,10 @@ extern const uint32_t fx_table_log2_q31[257];
 extern const uint32_t fx_table_exp2_q31[256];
 
 /* 10 * log10(1 + (i + 0.5) / 256) + 1/512 dB: see fx_db_q8. */
-#define FX_DB_OCTAVE_Q14 49321 /* 10 * log10(2) */
 extern const uint16_t fx_table_db_q14[256];
 
 /* The same in Q13 by straight lines, and for i from those of 8 bits behind its first one; little
  * for i = 0: see fx_db_q8_vec. */
-#define FX_DB_OCTAVE_Q13 24660
 extern const uint8_t fx_table_db_lines[3][16];
 extern const int32_t fx_table_db_steps_q13[4096];
 

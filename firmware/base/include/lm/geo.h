@@ -7,10 +7,6 @@
 
 #include "fx/types.h"
 
-/* How the Earth falls away under 4/3 refraction: the drop at ground range s is s^2 times 1 / (2 *
- * 4/3 * 6,371,000 m), here in Q48. */
-#define LM_CURVATURE_Q48 16567747LL
-
 /* Lengths are metres * 256, but the sizes of cells are told in millimetres, cut to whole ones. */
 static inline uint32_t lm_mm_of_m_q8(uint32_t length_m_q8)
 {

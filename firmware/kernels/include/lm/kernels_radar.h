@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "fx/const.h"
 #include "fx/tables.h"
 
 /* Each bin takes the level of one cell: bin_db_q8[i] = level_db_q8[cell_of[i]]. `cell_of` may hold
@@ -34,7 +35,7 @@ void lm_k_beam_sum(const uint32_t *const power_q24[LM_K_TAPS], const uint32_t *w
                    uint32_t *sum_q24, uint32_t cells);
 
 /* 10 log10 2^24, in 1/256 dB. */
-enum { LM_K_UNIT_Q24_DB_Q8 = 24 * FX_DB_OCTAVE_Q14 / 64 };
+enum { LM_K_UNIT_Q24_DB_Q8 = 24 * FX_DB_PER_OCTAVE_Q14 / 64 };
 
 /* A receiver's noise, and its bins. */
 struct lm_k_receiver {
