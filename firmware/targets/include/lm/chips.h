@@ -1,8 +1,14 @@
-/* The chips that a patch or a window shows: read from flash in the background, reduced to the
- * picture's cell and kept as long as they are wanted. docs/EQUATIONS.md, "Signatures".
+/* Chips of a picture: those that a patch or a window shows. They are read from flash in the
+ * background, reduced to the picture's cell, and kept as long as they are wanted.
  *
- * A target whose chip is not there, late, damaged, or left out because all places are taken, is
- * drawn as a point of its signature's cross section: wrong in shape, not in place or strength. */
+ * A target is drawn as a point of its signature's cross section while its chip is
+ * - not read yet,
+ * - damaged or not readable, or
+ * - left out because all slots are in use.
+ * Its position and strength are then right; its shape is not.
+ *
+ * Order of the calls: lm_chips_init once, lm_chips_choose for each picture, lm_chips_service once a
+ * step. Source: docs/EQUATIONS.md, "Signatures". */
 #ifndef LM_CHIPS_H
 #define LM_CHIPS_H
 
@@ -10,40 +16,44 @@
 #include "lm/target_view.h"
 #include "lm/tile_cache.h"
 
-/* Entries of a row and rows of the sums below: one more than pixels, and one that is read but
- * counts nothing. */
+/* Rows and columns of the summed-area tables below: one more than pixels, and one that is read with
+ * weight 0. */
 enum { LM_CHIP_ROOM = LM_CHIP_SIDE + 2 };
 
 enum lm_chip_state { LM_CHIP_FREE = 0, LM_CHIP_WANTED, LM_CHIP_RESIDENT, LM_CHIP_BAD };
 
-/* The rows and columns of a chip that hold something: up to, and without, the ends; all 0 when
- * nothing does. */
+/* Bounding box of the pixels that are not empty. The ends are exclusive; all 0 if every pixel is
+ * empty. */
 struct lm_chip_box {
     uint8_t row, row_end, column, column_end;
 };
 
-/* A chip with 2^shift pixels made one, either way. */
+/* Slot for one chip, reduced: 2^shift x 2^shift pixels are made one. */
 struct lm_chip_slot {
     uint8_t state; /* enum lm_chip_state */
     bool is_in_use;
     struct lm_chip_key {
-        uint8_t signature, aspect, depression;
-        uint8_t shift; /* the reduction's */
+        uint8_t signature, aspect, depression; /* indices of the chip */
+        uint8_t shift;                         /* of the reduction */
     } key;
-    uint8_t side;                 /* pixels: LM_CHIP_SIDE >> shift */
+    uint8_t side;                 /* pixels of a row after the reduction: LM_CHIP_SIDE >> shift */
     uint8_t origin_row;           /* as in the signature, before the reduction */
-    uint8_t rows_ready;           /* reduced so far */
+    uint8_t rows_ready;           /* rows that are reduced */
     uint32_t pixel_mm;            /* after the reduction */
-    int32_t total_dbsm_q8;        /* cross section of it all, dBsm * 256 */
-    struct lm_chip_box lit, dark; /* pixels with power, and with shadow */
-    /* Sums over the pixels in the rows before `row` and the columns before `column`, at
-     * [row][column]: what lies in any box is had from its four corners. Shares of the total, 2^31
-     * for all of it at the most, and ground in shadow, 255 for all of a pixel. */
+    int32_t total_dbsm_q8;        /* cross section of the whole chip */
+    struct lm_chip_box lit, dark; /* pixels with power; pixels with shadow */
+    /* Summed-area tables: entry [row][column] is the sum over all pixels in rows before `row` and
+     * columns before `column`. The sum over any box is read from its four corners:
+     *
+     *     box = [r1][c1] - [r0][c1] - [r1][c0] + [r0][c0]
+     *
+     * Power is a share of the total, at most 2^31 for all of it. Shadow is 255 for a whole pixel.
+     */
     uint32_t power_q31[LM_CHIP_ROOM][LM_CHIP_ROOM];
     uint32_t shadow[LM_CHIP_ROOM][LM_CHIP_ROOM];
 };
 
-/* What one pixel has of either sum. */
+/* Value of one pixel in a summed-area table. */
 static inline uint32_t lm_chip_pixel(const uint32_t sum[][LM_CHIP_ROOM], uint32_t row,
                                      uint32_t column)
 {
@@ -51,53 +61,59 @@ static inline uint32_t lm_chip_pixel(const uint32_t sum[][LM_CHIP_ROOM], uint32_
            sum[row][column];
 }
 
+/* Cache of chips, and the read that is under way. The caller owns it. */
 struct lm_chips {
     const struct lm_db *db; /* borrowed */
     struct lm_chip_slot slots[LM_CHIPS_MAX];
-    const struct lm_signature *signatures; /* borrowed: those of the targets */
-    struct lm_chip stage;                  /* what was read last, */
-    uint64_t total_m2_q32;                 /* and its cross section, m2 */
+    const struct lm_signature *signatures; /* borrowed: those of the target set */
+    struct lm_chip stage;  /* chip as it was read last, lent to the flash meanwhile */
+    uint64_t total_m2_q32; /* cross section of the chip in `stage`, square metres */
     struct lm_flash_request read;
-    struct lm_chip_slot *busy; /* being read or reduced; NULL when idle */
+    struct lm_chip_slot *busy; /* slot being read or reduced; NULL when idle */
     bool is_reading;
     struct {
-        uint32_t read, io_errors, corrupt;
-        uint32_t left_out;       /* wanted, but there was no room */
-        uint32_t cells_left_out; /* of a patch's lines that had enough of chips */
-    } count;                     /* only ever grow */
+        uint32_t read, io_errors, corrupt; /* chips */
+        uint32_t left_out;                 /* chips that were wanted while all slots were in use */
+        uint32_t cells_left_out;           /* cells of a patch; see lm_target_patch_add_chips */
+    } count;                               /* only ever grow */
 };
 
-/* Where the chips of a picture are seen from. */
+/* Query for chips: the position that a picture is seen from, and its cells. */
 struct lm_chip_query {
-    struct lm_position centre; /* of patch or window */
+    struct lm_position centre; /* of the patch or window */
     uint32_t reach_m;          /* half its diagonal: targets beyond it need no chip */
-    struct lm_position radar;
-    bool is_parallel; /* all is seen along `look`, from range_m_q8: a patch; else from `radar` */
+    struct lm_position radar;  /* read unless is_parallel */
+    bool is_parallel; /* true for a patch: all targets are seen along `look` from range_m_q8;
+                         false for a window: each is seen from `radar` */
     fx_bam_t look;
     uint32_t range_m_q8;
     struct lm_target_heights heights;
-    uint32_t cell_mm;   /* chips are reduced to the largest pixel that is not larger, */
-    uint32_t side_most; /* and to that many of them either way at most */
+    uint32_t cell_mm;   /* of the picture: chips are reduced to the largest pixel not above it */
+    uint32_t side_most; /* most pixels of a row after the reduction */
 };
 
-/* `signatures` are those of the targets that chips will be chosen for, checked. */
+/* Empty the cache. `db` and `signatures` (checked, those of the target set) are borrowed for its
+ * lifetime. */
 void lm_chips_init(struct lm_chips *c, const struct lm_db *db,
                    const struct lm_signature *signatures);
 
-/* Choose chips for the targets near, and want those that are not there. Each item's `chip` and
- * `chip_turn` are set; chips that are no longer in use make room. Cost: 2500 instructions for each
- * near target with a signature. */
+/* Choose chips for the candidates, and want those that are not resident. Sets `chip` and
+ * `chip_turn` of each candidate. Slots that this picture does not use may be taken for others; the
+ * slots that it uses are lent to the candidates until the next call. Cost: 2500 instructions for
+ * each candidate with a signature. */
 void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates,
                      const struct lm_chip_query *query);
 
-/* Go on with reading them, through the tile cache, and reduce what has come. Call once a step.
- * Cost: at most 80,000 instructions, for a chip four or five times. */
+/* Advance the reading by one step: start a read through the tile cache, take one that has ended, or
+ * reduce some rows. Call it once a step of the unit. A chip that
+ * cannot be read is counted, and not tried again before the next lm_chips_choose. Cost: at most
+ * 80,000 instructions, four or five times for a chip. */
 void lm_chips_service(struct lm_chips *c, struct lm_tile_cache *tiles);
 
-/* Whether every chip that is in use is there or will not come. */
+/* True if every chip in use is resident or has failed. */
 bool lm_chips_are_settled(const struct lm_chips *c);
 
-/* The chip of an item when it is there, else NULL. */
+/* Chip of a candidate if it is resident, else NULL. */
 static inline const struct lm_chip_slot *lm_chip_of(const struct lm_target_candidate *candidate)
 {
     return candidate->chip && candidate->chip->state == LM_CHIP_RESIDENT ? candidate->chip : NULL;

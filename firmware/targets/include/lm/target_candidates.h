@@ -1,5 +1,5 @@
-/* Which targets a sweep or a patch may meet, and where each of them is at its time. Chosen once for
- * it, so that a line looks at few. */
+/* Target candidates: the targets that one sweep or patch may meet, with their state at its time.
+ * They are selected once, and each line then looks at few targets. */
 #ifndef LM_TARGET_CANDIDATES_H
 #define LM_TARGET_CANDIDATES_H
 
@@ -8,64 +8,66 @@
 #include "lm/tile_cache.h"
 
 enum {
-    LM_TARGET_CANDIDATES_MAX = 32, /* that one sweep or patch takes up */
-    LM_TARGET_DRIFT_M = 1024,      /* the antenna's way until they are chosen again */
-    LM_TARGET_EXTENT_M = 512       /* more than any scatterer is away from its target's origin */
+    LM_TARGET_CANDIDATES_MAX = 32, /* most candidates of one sweep or patch */
+    LM_TARGET_DRIFT_M = 1024,      /* way of the antenna after which they are selected again */
+    LM_TARGET_EXTENT_M = 512       /* more than any scatterer's distance from its target's origin */
 };
 
-/* The targets of an image, as they were read. */
+/* Targets of an image, as they were read at start-up. */
 struct lm_target_set {
-    const struct lm_target *items;         /* borrowed, checked */
+    const struct lm_target *items;         /* borrowed; checked records */
     uint32_t count;                        /* up to 65535 */
-    const struct lm_signature *signatures; /* borrowed, checked; of no aspects: a lost one */
+    const struct lm_signature *signatures; /* borrowed; checked records, or 0 aspects: a lost one */
     uint32_t signature_count;
 };
 
-/* The signature of a target, or NULL when it has none or that was lost. */
+/* Signature of a target of the set; NULL if it has none or if it was lost. Owned by the set. */
 const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
                                                const struct lm_target *t);
 
-/* From where and when they are looked at. */
+/* Query for candidates: position, reach and time of a sweep or patch. */
 struct lm_target_query {
-    struct lm_position position; /* the antenna of a sweep, the centre of a patch */
-    uint32_t reach_m;            /* the range, half the diagonal; up to 250 km */
-    uint64_t time_us;            /* of the sweep or patch: movers are where they are then */
-    struct lm_tile_cache *tiles; /* the ground below targets that stand on it; NULL: it is at 0 */
-    uint8_t lod;                 /* of the database, that the ground is taken from */
+    struct lm_position position; /* antenna of a sweep, centre of a patch */
+    uint32_t reach_m;            /* range of a sweep, half diagonal of a patch; up to 250 km */
+    uint64_t time_us;            /* of the unit's clock: movers are where they are then */
+    struct lm_tile_cache *tiles; /* borrowed for the call: terrain below targets whose elevation is
+                                    above ground; NULL: that terrain is at 0 */
+    uint8_t lod;                 /* LOD that the terrain is read from */
 };
 
 struct lm_chip_slot;
 
+/* Candidates of a sweep or patch. The caller owns them; the set must outlive them. */
 struct lm_target_candidates {
-    struct lm_target_set set;    /* they are of */
-    bool is_chosen;              /* false: not yet */
-    struct lm_position position; /* from where */
-    uint64_t time_us;
+    struct lm_target_set set;    /* the set that they were selected from */
+    bool is_chosen;              /* true once they were selected */
+    struct lm_position position; /* of the query */
+    uint64_t time_us;            /* of the query */
     uint32_t count;
-    uint32_t left_out; /* in reach, but there was no room */
+    uint32_t left_out; /* targets in reach beyond LM_TARGET_CANDIDATES_MAX */
     struct lm_target_candidate {
         uint16_t index; /* in the set */
         bool is_mover;
-        uint32_t distance_m_q8;        /* from the place that was given, metres * 256, */
-        int32_t north_m_q8, east_m_q8; /* and which way: all of it rough, */
-        uint32_t
-            slack_m_q8; /* but its whole lies within so much of there, up to 88 degrees N or S */
+        uint32_t distance_m_q8;        /* approximate, from the query's position */
+        int32_t north_m_q8, east_m_q8; /* approximate, from the query's position */
+        uint32_t slack_m_q8; /* radius of a circle about there that holds the whole target, up to 88
+                                degrees N or S */
         struct lm_mover_state state;
-        int32_t elevation_m_q6;          /* of the origin above mean sea level, metres * 64 */
-        const struct lm_chip_slot *chip; /* of lm/chips.h; borrowed; NULL: it has none */
-        fx_bam_t chip_turn;              /* how far that is to be turned: lm/signature.h */
+        int32_t elevation_m_q6;          /* of the origin above mean sea level */
+        const struct lm_chip_slot *chip; /* borrowed from lm/chips.h; NULL: it has none */
+        fx_bam_t chip_turn;              /* angle by which the chip is turned; see lm/signature.h */
     } candidate[LM_TARGET_CANDIDATES_MAX];
 };
 
-/* Choose the targets not farther than reach_m + LM_TARGET_DRIFT_M: the first
- * LM_TARGET_CANDIDATES_MAX of them, in their order in the image. Cost: about 600 instructions a
- * target, 800 more for a mover, 300 for one above the ground. */
+/* Select the targets up to reach_m + LM_TARGET_DRIFT_M away: the first LM_TARGET_CANDIDATES_MAX of
+ * them in the order of the image. They have no chips yet (lm_chips_choose). Cost: about 600
+ * instructions a target, 800 more for a mover, 300 more for one above ground. */
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
                                  const struct lm_target_set *set,
                                  const struct lm_target_query *query);
 
-/* Choose anew unless that was done for the same time from within LM_TARGET_DRIFT_M of the place.
- * Whether it was done. */
+/* Select again, unless that was done for the same time within LM_TARGET_DRIFT_M of the query's
+ * position. True if it was done now. */
 bool lm_target_candidates_refresh(struct lm_target_candidates *candidates,
                                   const struct lm_target_set *set,
                                   const struct lm_target_query *query);

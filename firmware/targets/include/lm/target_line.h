@@ -1,45 +1,52 @@
-/* Targets in a line of a sector: which of them a line meets, in which cells, and how bright. Those
- * of a patch: lm/target_patch.h. docs/EQUATIONS.md, "Targets". */
+/* Targets in a line of a sector: which of them the line meets, in which cells, and at what level.
+ * lm/target_patch.h does the same for a patch. Source: docs/EQUATIONS.md, "Targets" and "Movers".
+ */
 #ifndef LM_TARGET_LINE_H
 #define LM_TARGET_LINE_H
 
 #include "lm/speckle.h"
 #include "lm/target_view.h"
 
-/* A line of the sector as targets need to know it. Lengths in metres * 256, heights * 1024. */
+/* Line of a sector: one sampled azimuth, with what targets need to know of it. */
 struct lm_target_line {
-    struct lm_position position;           /* the antenna */
-    fx_bam_t azimuth;                      /* of the line's middle */
+    struct lm_position position;           /* of the antenna */
+    fx_bam_t azimuth;                      /* from north, of the line's middle */
     fx_bam_t width;                        /* from the middle of a line to that of the next */
-    uint32_t first_m_q8, cell_m_q8, cells; /* as lm_range_grid_set has them */
-    uint32_t first;                        /* cells before this are not shown */
-    int32_t height_m_q10, reference_m_q10; /* antenna; flat ground of the time gain */
+    uint32_t first_m_q8, cell_m_q8, cells; /* as given to lm_range_grid_set */
+    uint32_t first;                        /* cells before this one are not displayed */
+    int32_t height_m_q10, reference_m_q10; /* antenna, and flat ground of the receiver's gain */
     uint32_t wavelength_um;
-    bool is_doppler;     /* directions are told by Doppler: movers are displaced */
-    fx_bam_t beam;       /* the antenna's one-way half-power width, likewise */
-    uint32_t speed_mm_s; /* of the antenna over the ground, and which way */
-    fx_bam_t track;
-    uint32_t gate_mm_s[2]; /* closing speeds, either way, that are shown; [1] is 0: all */
-    uint32_t scan, pulse;  /* for what fluctuates: number of the sweep, and of the line */
-    const struct lm_noise_key
-        *noise_key; /* borrowed: of the cells' speckle, for chips; NULL: none */
+    bool is_doppler;       /* true if azimuth is measured by Doppler, which displaces movers */
+    fx_bam_t beam;         /* one-way half-power width of the antenna in azimuth */
+    uint32_t speed_mm_s;   /* speed of the antenna over the ground */
+    fx_bam_t track;        /* direction of that speed */
+    uint32_t gate_mm_s[2]; /* least and greatest closing speed displayed, of either sign; [1] = 0:
+                              every target is displayed */
+    uint32_t scan, pulse;  /* number of the sweep and of the line: they choose random draws */
+    const struct lm_noise_key *noise_key; /* borrowed for the call: speckle of the line's cells, for
+                                             chips; NULL: chips have no speckle */
     struct lm_speckle_config speckle;
 };
 
-/* What hides a target: the horizon before each cell of the line, the largest tangent at which a
- * nearer cell appears, times 2^bits (0..38). */
+/* Horizon of a line, which hides targets. `horizon[i]` is the largest tangent at which a cell
+ * before cell i appears, times 2^bits; `bits` is 0..38. `horizon` is borrowed for the call. */
 struct lm_target_horizon {
     const int32_t *horizon;
     uint32_t bits;
 };
 
-/* Add what the targets return to the levels of a line's cells: a cross section sigma in a cell of
- * width w, length ds and flat-ground grazing g counts as gamma = sigma / (w ds g). The two lines
- * that a scatterer lies between share its power, so that their mean stands where it is. A scatterer
- * below the horizon of the cells before its own is hidden; `horizon` NULL hides nothing; a mover is
- * looked for where it appears. `targets` are checked records, `candidates` was chosen for this
- * sweep or patch. Returns how many times a cell was given something. Cost: 250 instructions, 20 for
- * each target near; some 2000 and 1100 a scatterer for those that the line may touch. */
+/* Add the returns of targets to the levels of a line's cells. Returns the number of additions.
+ *
+ * - A cross section sigma counts as gamma = sigma / (w ds g) in a cell of width w, length ds and
+ *   grazing g of flat ground.
+ * - A scatterer between two lines shares its power between them, so that the beam's mean of both
+ *   has its middle at the scatterer.
+ * - A scatterer is hidden if it appears below the horizon before its own cell. A displaced mover is
+ *   tested where it appears. `horizon` NULL hides nothing.
+ *
+ * `candidates` was selected for this sweep, from a checked set. All pointers are borrowed for the
+ * call. Cost: 250 instructions, and 20 for each candidate; for those that the line may touch, some
+ * 2000 more each and 1100 for each of their scatterers. */
 uint32_t lm_target_line_add(const struct lm_target_candidates *candidates,
                             const struct lm_target_line *line,
                             const struct lm_target_horizon *horizon, int32_t *level_db_q8);
