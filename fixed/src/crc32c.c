@@ -2,8 +2,9 @@
 
 #include "fx/tables.h"
 
-/* Four table look-ups side by side replace four in a row: "slicing" after M. Kounavis and F. Berry,
- * "A Systematic Approach to Building High Performance Software-Based CRC Generators", 2005. */
+/* Slicing by four: four independent table look-ups replace four that wait for each other. After
+ * M. Kounavis and F. Berry, "A Systematic Approach to Building High Performance Software-Based CRC
+ * Generators", 2005. */
 uint32_t fx_crc32c(uint32_t crc, const void *data, size_t len)
 {
     const uint8_t *p = data;

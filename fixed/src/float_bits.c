@@ -2,7 +2,7 @@
 
 #include "fx/bits.h"
 
-/* `size` * 2^shift with its sign, if that fits; `size` is below 2^53. */
+/* *out = `size` * 2^shift with a sign; `size` is below 2^53. False if that does not fit. */
 static bool scale(uint64_t size, int64_t shift, bool is_negative, int64_t *out)
 {
     if (shift < -53) {
@@ -19,13 +19,13 @@ static bool scale(uint64_t size, int64_t shift, bool is_negative, int64_t *out)
     if (size > largest) {
         return false;
     }
-    /* Negating without passing through +2^63, which int64_t does not have. */
+    /* The magnitude of INT64_MIN, 2^63, does not fit int64_t: negate one less, then subtract. */
     *out = is_negative && size != 0 ? -(int64_t)(size - 1) - 1 : (int64_t)size;
     return true;
 }
 
-/* The layout of both formats: sign, `exponent`, `fraction` of `fraction_bits`. An exponent of 0
- * marks zero and the subnormal numbers, which lack the leading one. */
+/* Decode either format from its sign, `exponent` and `fraction` of `fraction_bits`. An exponent of
+ * 0 marks zero and the subnormal numbers, which lack the leading one. */
 static bool decode(uint64_t fraction, int fraction_bits, int exponent, int bias, bool is_negative,
                    int frac_bits, int64_t *out)
 {

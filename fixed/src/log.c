@@ -1,8 +1,10 @@
 #include "fx/log.h"
 
-/* log2 in Q16 of a number 2^31..2^32-1 taken as 1..2. The chord lies below the curve by up to
- * (1/256)^2 / 8 / ln 2 = 2.8e-6, of which half is added with the rounding. A power of two is an
- * entry of the table, zero, and the sum of both, 0.59 lsb, still rounds to it. */
+/* log2 of n = 2^31..2^32 - 1, taken as 1..2, by chords between entries of the table.
+ *
+ * A chord lies below the curve by at most (1/256)^2 / 8 / ln 2 = 2.8e-6. Half of that is added with
+ * the rounding: 0.59 lsb in total. A power of two is entry 0, which is zero, and 0.59 lsb is
+ * less than one. Hence powers of two are exact. */
 static int32_t log2_of_mantissa(uint32_t n)
 {
     const uint32_t half_and_bias_q31 = 16384 + 2956;
@@ -28,8 +30,10 @@ int32_t fx_log2_q16_u64(uint64_t x)
     return (63 - zeros) * 65536 + log2_of_mantissa((uint32_t)(x << zeros >> 32));
 }
 
-/* 2^(whole + part) in Q16, rounded to nearest. The table gives 2^(i/256), and the rest of the part,
- * y = 0..ln 2 / 256, is left to 1 + y + y^2/2, short of e^y by at most y^3/6 = 3.3e-9. */
+/* 2^(whole + part) in Q16, rounded to nearest.
+ *
+ * The table gives 2^(i/256). The rest of the part, y = 0..ln 2 / 256, gives the factor
+ * e^y = 1 + y + y^2/2, which is low by at most y^3/6 = 3.3e-9. */
 static uint32_t exp2_q16(int64_t whole, uint32_t part_q32)
 {
     if (whole >= 16) {
@@ -53,7 +57,7 @@ uint32_t fx_exp2_q16(int32_t x_q16)
 
 uint32_t fx_power_q16_from_db_q8(int32_t db_q8)
 {
-    /* log2(10) / 10 / 256 in Q40; the product stays below 2^31 * 2^30.5. */
+    /* The factor is log2(10) / 10 / 256 in Q40. The product stays below 2^31 * 2^30.5. */
     const int64_t log2_q32 = db_q8 * 1426757253ll >> 8;
     return exp2_q16(log2_q32 >> 32, (uint32_t)log2_q32);
 }

@@ -17,9 +17,10 @@ uint32_t fx_recip_q(uint32_t d, int *s)
     }
     *s = 63 - zeros;
 
-    /* With n taken as 1..2 in Q31, the table's 1/n is right to 2^-9 + 2^-16. Newton's y (2 - n y)
-     * never exceeds 1/n, every shift here rounds down, and so the remainders are not negative:
-     * the first step is short by 2^-17.9 at most, the second by 2^-35.8 and less than one unit. */
+    /* Two steps of Newton, y (2 - n y), with n taken as 1..2 in Q31. The table's 1/n is right to
+     * 2^-9 + 2^-16. A step never exceeds 1/n, and every shift here rounds down. Hence no remainder
+     * is negative. The first step is low by at most 2^-17.9. The second is low by at most 2^-35.8
+     * and less than one unit, which the last line corrects. */
     const uint64_t table_q16 = fx_table_recip_q16[n >> 23 & 255u];
     const uint64_t y_q32 = table_q16 * (((1ull << 48) - n * table_q16) >> 16) >> 15;
     const uint64_t rest = (1ull << 63) - n * y_q32; /* < 2^63 * 2^-17.9 = 2^45.1 */

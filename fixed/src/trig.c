@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-/* The sine of an angle has the size of a first-quadrant one. Both halves of a quadrant fold onto
- * the same angle exactly, which is what makes the symmetries exact. */
+/* An angle folded to the first quadrant, whose sine has the same magnitude. Folding is exact, hence
+ * the symmetries of sine and cosine are exact. */
 struct quadrant {
     uint32_t angle; /* 0..2^30 for 0..90 degrees */
     bool is_negative;
@@ -21,15 +21,16 @@ static inline struct quadrant fold(fx_bam_t angle)
     return (struct quadrant){is_falling ? FX_BAM_90 - into : into, angle >= FX_BAM_180};
 }
 
-/* sin(a + d) = sin a + cos a * sin d - sin a * (1 - cos d), where a is the nearest multiple of
- * 90/256 degrees and so |d| <= 2^21 counts = 0.00307. There d - d^3/6 is sin d to 2.3e-15, and
- * d^2/2 is 1 - cos d to 3.7e-12. */
+/* sin(a + d) = sin a + cos a * sin d - sin a * (1 - cos d)
+ *
+ * a is the nearest multiple of 90/256 degrees, an entry of the table. Then |d| <= 2^21 BAM =
+ * 0.00307 radian. d - d^3/6 is sin d to 2.3e-15, and d^2/2 is 1 - cos d to 3.7e-12. */
 int32_t fx_sin_q30(fx_bam_t angle)
 {
     const struct quadrant q = fold(angle);
     const uint32_t i = (q.angle + (1u << 21)) >> 22; /* 0..256 */
     const int64_t d = (int64_t)q.angle - ((int64_t)i << 22);
-    /* 2 pi in Q26 takes a count to a radian in Q38; 2^21 * 2^28.7 fits. */
+    /* 2 pi converts BAM to radians in Q38. 2^21 * 2^28.7 fits. */
     const int64_t d_q38 = d * FX_TWO_PI_Q26 >> 20;  /* |.| < 2^29.7 */
     const int64_t square_q46 = d_q38 * d_q38 >> 30; /* < 2^29.4 */
     const int64_t sin_d_q38 = d_q38 - (d_q38 * square_q46 >> 46) / 6;
@@ -47,9 +48,11 @@ int32_t fx_cos_q30(fx_bam_t angle)
     return fx_sin_q30(angle + FX_BAM_90);
 }
 
-/* A chord between entries 90/256 degrees apart lies below the sine by at most 1/8 * (pi/512)^2 =
- * 4.7e-6, or 0.154 lsb of Q15. Half of that is given back with the rounding, 0.5 + 0.077 lsb; at 0
- * and at 90 degrees the table is exact and 0.577 still rounds to it. */
+/* Sine by chords between entries 90/256 degrees apart.
+ *
+ * A chord lies below the sine by at most 1/8 * (pi/512)^2 = 4.7e-6, or 0.154 lsb of Q15. Half of
+ * that is added with the rounding: 0.5 + 0.077 lsb. At 0 and 90 degrees the table is exact, and
+ * 0.577 lsb is less than one. Hence both are exact. */
 int32_t fx_sin_q15(fx_bam_t angle)
 {
     const uint32_t half_and_bias_q31 = 37814; /* 0.577 * 65536 */
@@ -74,8 +77,8 @@ int32_t fx_tan_q16(fx_bam_t angle)
     if (cosine_q30 == 0) {
         return INT32_MAX;
     }
-    /* At most 2^30 * 2^32; the shift is 15..46 because |cosine| is 1..2^30, whose reciprocal has
-     * s = 31..61. */
+    /* The product is at most 2^30 * 2^32. |cosine| is 1..2^30, so its reciprocal has s = 31..61 and
+     * the shift below is 15..45. */
     int s = 0;
     const uint32_t recip = fx_recip_q(fx_abs_u32(cosine_q30), &s);
     const uint64_t product = (uint64_t)fx_abs_u32(sine_q30) * recip;
@@ -83,9 +86,10 @@ int32_t fx_tan_q16(fx_bam_t angle)
     return fx_sat_i32((sine_q30 < 0) != (cosine_q30 < 0) ? -size_q16 : size_q16);
 }
 
-/* atan(r0 + h) = atan r0 + t - r0 t^2 + (r0^2 - 1/3) t^3 ..., where t = h / (1 + r0^2). With the
- * nearest of 257 nodes |t| <= |h| <= 1/512, and the cubic term, which is left out, is at most
- * 2.5e-9 radian or 1.7 counts. `ratio_q31` is 0..2^31; the result, 0..2^29, is up to 45 degrees. */
+/* atan(r0 + h) = atan r0 + t - r0 t^2 + (r0^2 - 1/3) t^3 ..., where t = h / (1 + r0^2)
+ *
+ * r0 is the nearest of 257 nodes, so |t| <= |h| <= 1/512. The cubic term is left out. It is at most
+ * 2.5e-9 radian or 1.7 BAM. `ratio_q31` is 0..2^31. The result is 0..2^29, up to 45 degrees. */
 static uint32_t atan_of_ratio(uint32_t ratio_q31)
 {
     const uint32_t i = (ratio_q31 + (1u << 22)) >> 23; /* 0..256 */
@@ -105,8 +109,8 @@ fx_bam_t fx_atan2(int32_t y, int32_t x)
     if (large == 0) {
         return 0;
     }
-    /* small <= large <= 2^31, where the reciprocal of 2^31 itself is 2^31: twice the product stays
-     * below 2^64, and the ratio at or below 2^31 because the reciprocal is rounded down. */
+    /* small <= large <= 2^31, and the reciprocal of 2^31 itself is 2^31. So twice the product stays
+     * below 2^64. The ratio is at most 2^31, because the reciprocal is rounded down. */
     int s = 0;
     const uint64_t product = (uint64_t)small * fx_recip_q(large, &s);
     const uint32_t ratio_q31 = (uint32_t)(((product << 1 >> (s - 31)) + 1) >> 1);

@@ -1,5 +1,7 @@
-/* The functions of <string.h> that a compiler may call by itself. Whoever links an image supplies
- * them: the C library on a hosted board, the board's own start-up files on bare metal. */
+/* Memory functions: the part of <string.h> that a compiler calls by itself, and unaligned access.
+ *
+ * The image's linker supplies the functions: from the C library on a hosted board, from the board's
+ * start-up files on bare metal. They are those of the C standard. */
 #ifndef FX_MEM_H
 #define FX_MEM_H
 
@@ -10,8 +12,8 @@ void *memcpy(void *restrict to, const void *restrict from, size_t len);
 void *memset(void *to, int byte, size_t len);
 int memcmp(const void *a, const void *b, size_t len);
 
-/* Four bytes from any address, as a number of this machine's order of bytes. One load where words
- * need not be aligned, and one gather of many where a loop is made of vectors. */
+/* Load four bytes from any address, in this machine's byte order. Cost: one load where the machine
+ * takes unaligned words. In a vectorized loop the loads become one gather. */
 static inline uint32_t fx_load_u32(const void *from)
 {
     uint32_t word;
@@ -19,14 +21,14 @@ static inline uint32_t fx_load_u32(const void *from)
     return word;
 }
 
-/* The lower two bytes of a number to any address. */
+/* Store the lower 16 bits of a number at any address, in this machine's byte order. */
 static inline void fx_store_u16(void *to, uint32_t number)
 {
     const uint16_t half = (uint16_t)number;
     __builtin_memcpy(to, &half, sizeof half);
 }
 
-/* Eight bytes likewise. */
+/* Load eight bytes from any address, in this machine's byte order. */
 static inline uint64_t fx_load_u64(const void *from)
 {
     uint64_t word;
