@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "lm/status.h"
 
+/* True if the latitude is not beyond a pole. Every longitude is allowed. */
 static bool is_on_earth(struct lm_position position)
 {
     return fx_abs_u32((int32_t)position.latitude) <= FX_BAM_90;

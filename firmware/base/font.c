@@ -8,7 +8,7 @@ static const uint8_t specials[][LM_FONT_HEIGHT] = {
     {0x0c, 0x12, 0x12, 0x0c, 0x00, 0x00, 0x00}, /* LM_GLYPH_DEGREE */
 };
 
-/* From the space to the underscore, in the order of their codes. */
+/* From the space to the underscore, in the order of their codes; small letters map to capitals. */
 static const uint8_t glyphs[LAST - FIRST + 1][LM_FONT_HEIGHT] = {
     {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}, /* space */
     {0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04}, /* ! */

@@ -33,7 +33,8 @@ void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position)
     const int64_t sin2_q30 = mul_q30(o->sin_q30, o->sin_q30);
     const int64_t w2_q30 = one_q30 - mul_q30(sin2_q30, LM_ECCENTRICITY2_Q30);
     const int64_t w_q30 = sqrt_q30(w2_q30);
-    /* semi_major_m_q8 << 30 is below 2^31 * 2^30 = 2^61. */
+    /* W^2 = 1 - e2 sin2, N = a / W, M = N (1 - e2) / W^2. semi_major_m_q8 << 30 is below
+     * 2^31 * 2^30 = 2^61. */
     const int64_t n_q8 = (semi_major_m_q8 << 30) / w_q30;
     const int64_t m_q8 = mul_q30(n_q8, FLATTENING_Q30) * one_q30 / w2_q30;
     o->prime_vertical_radius_m_q8 = (uint32_t)n_q8;
@@ -44,18 +45,18 @@ void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position)
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth)
 {
     const int64_t sin_az = fx_sin_q30(azimuth), cos_az = fx_cos_q30(azimuth);
-    /* Euler: the curvature at an azimuth, from the two principal radii. */
+    /* Euler's radius along the azimuth: 1/R = cos2 A / M + sin2 A / N. */
     const int64_t n_q8 = o->prime_vertical_radius_m_q8, m_q8 = o->meridian_radius_m_q8;
     const int64_t mix_q8 =
         mul_q30(n_q8, mul_q30(cos_az, cos_az)) + mul_q30(m_q8, mul_q30(sin_az, sin_az));
-    const int64_t radius_m_q8 = m_q8 * n_q8 / mix_q8; /* 2^31 * 2^31 */
+    const int64_t radius_m_q8 = m_q8 * n_q8 / mix_q8; /* the product is below 2^31 * 2^31 */
     r->origin = o;
     r->sin_q30 = (int32_t)sin_az;
     r->cos_q30 = (int32_t)cos_az;
-    r->per_radius_q62 = ((int64_t)1 << 62) / radius_m_q8; /* 2^31.4 */
+    r->per_radius_q62 = ((int64_t)1 << 62) / radius_m_q8; /* about 2^31.4 */
 }
 
-/* The angle whose tangent is t, up to 1/16: t - t^3 / 3 + t^5 / 5, short of it by 6e-10 at most. */
+/* atan t = t - t^3 / 3 + t^5 / 5 for |t| up to 1/16, with an error of at most 6e-10. */
 static inline fx_bam_t small_angle(int64_t t_q32)
 {
     const int64_t third_q32 = 1431655765, fifth_q32 = 858993459;
@@ -65,8 +66,8 @@ static inline fx_bam_t small_angle(int64_t t_q32)
     return (fx_bam_t)((radians_q32 * FX_BAM_PER_RADIAN + one_q32 / 2) >> 32);
 }
 
-/* The longitude of a point (x, east) in the plane of the equator, and how far it is from the
- * Earth's axis. |x| < 2^35, |east| < 2^31. */
+/* Longitude, relative to the x axis, of a point (x, east) in the plane of the equator, and its
+ * distance from the Earth's axis. |x| < 2^35, |east| < 2^31. */
 static inline fx_bam_t longitude_in_plane(int64_t x_q12, int64_t east_m_q12, int64_t *axis_q12)
 {
     if ((east_m_q12 < 0 ? -east_m_q12 : east_m_q12) >= x_q12 / 16) { /* near a pole */
@@ -75,22 +76,28 @@ static inline fx_bam_t longitude_in_plane(int64_t x_q12, int64_t east_m_q12, int
         return fx_atan2(east_m_q8, x_q8);
     }
     /* With t = east / x, up to 1/16, the root of x^2 + east^2 is x + east t / 2 (1 - t^2 / 4 +
-     * ...), 2 cm too short at most. */
+     * ...). The terms left out are at most 2 cm. */
     const int64_t t_q32 = east_m_q12 * one_q32 / x_q12, square_q32 = t_q32 * t_q32 >> 32;
     const int64_t more_q12 = east_m_q12 * t_q32 >> 33;
     *axis_q12 = x_q12 + more_q12 - (more_q12 * square_q32 >> 34);
     return small_angle(t_q32);
 }
 
-/* Lengths are counted from the origin, in metres * 4096: up to 300 km, below 2^31, so that a
- * product with a sine in Q30 stays below 2^61, and a sum of two below 2^62. */
+/* The point follows the circle of Euler's radius R in the normal section (docs/EQUATIONS.md,
+ * "Position of a cell"), in Cartesian coordinates with the Earth's axis upwards:
+ *
+ *     forward = R sin(s/R), split into north and east       down = R (1 - cos(s/R))
+ *
+ * Ranges: lengths are relative to the origin, in metres * 4096. 300 km is below 2^31. A product
+ * with a sine in Q30 then stays below 2^61, and a sum of two products below 2^62. */
 struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_q8)
 {
     const struct lm_geo_origin *const o = r->origin;
     const int64_t sin_q30 = o->sin_q30, cos_q30 = o->cos_q30;
     const int64_t sixth_q32 = 715827883, twentieth_q32 = 214748365;
-    /* The arc a = s / R, below 0.05: 2^27 * 2^31.4 before the shift, 2^28 behind it. Forward is
-     * R sin a = s - s a^2 / 6 (1 - a^2 / 20), down R (1 - cos a) = s a / 2 (1 - a^2 / 12). */
+    /* The arc a = s / R is below 0.05: 2^27 * 2^31.4 before the shift, 2^28 after it. Short series
+     * are enough: R sin a = s - s a^2 / 6 (1 - a^2 / 20), R (1 - cos a) = s a / 2 (1 - a^2 / 12).
+     */
     const int64_t s_m_q8 = fx_min_u32(distance_m_q8, DISTANCE_MAX_M_Q8), s_m_q12 = s_m_q8 * 16;
     const int64_t arc_q32 = s_m_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
     const int64_t sixth_square_q32 = square_q32 * sixth_q32 >> 32;
@@ -107,9 +114,10 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
     const int64_t up_q12 = (north_m_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
     int64_t axis_q12;
     const fx_bam_t east = longitude_in_plane(x_q12, east_m_q12, &axis_q12);
-    /* The latitude's tangent is z / (1 - e2) axis, and the origin's that of its own two. Seen from
-     * the origin's direction, in which (1 - e2) N is as far as the origin, the difference is small.
-     */
+    /* tan(latitude) = z / ((1 - e2) axis), for the point and for the origin alike. Scaled so, the
+     * origin is the vector of length (1 - e2) N in the direction of its latitude. The latitude's
+     * difference is the small angle between the two vectors: its tangent is the part of the point's
+     * vector beside that direction over the part along it. */
     const int64_t out_q12 = mul_q30(axis_q12 - x0_q12, FLATTENING_Q30);
     const int64_t beside_q42 = up_q12 * cos_q30 - out_q12 * sin_q30;
     const int64_t along_m_q12 = 16 * mul_q30(o->prime_vertical_radius_m_q8, FLATTENING_Q30) +
@@ -128,15 +136,15 @@ struct lm_position lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth
     return lm_geo_along(&ray, distance_m_q8);
 }
 
-/* difference / cells in units of 2^-32, modulo 2^64: whole part first, so that nothing overflows on
- * the way. */
+/* difference / cells in units of 2^-32, modulo 2^64. The whole part is taken first, because
+ * difference * 2^32 would overflow. */
 static int64_t per_cell(int64_t difference, int64_t cells)
 {
     const int64_t whole = difference / cells, rest = difference % cells;
     return (int64_t)((uint64_t)whole << 32) + rest * one_q32 / cells;
 }
 
-/* One coordinate of the parabola through (0, a), (1/2, b), (1, c), sampled at (i + 1/2) / cells.
+/* Fit one coordinate: the parabola through (0, a), (1/2, b), (1, c), sampled at (i + 1/2) / cells.
  * With u = b - a and v = c - 2b + a it is f(x) = a + (2u - v) x + 2 v x^2. */
 static void fit_coordinate(uint32_t a, uint32_t b, uint32_t c, uint32_t cells, uint64_t *value,
                            uint64_t *step, uint64_t *bend)
@@ -144,8 +152,8 @@ static void fit_coordinate(uint32_t a, uint32_t b, uint32_t c, uint32_t cells, u
     const int64_t u = (int32_t)(b - a), v = (int32_t)(c - b) - u;
     const int64_t slope = per_cell(2 * u - v, (int64_t)cells);
     const int64_t curve = per_cell(2 * v, (int64_t)cells) / (int64_t)cells;
-    /* f((i + 1/2) / n) starts at a + slope / 2 + curve / 4 and grows by slope + 2 curve, then by 2
-     * curve more each. */
+    /* f((i + 1/2) / n) is a + slope / 2 + curve / 4 at i = 0. The first difference is
+     * slope + 2 curve, and the second 2 curve. */
     *value = ((uint64_t)a << 32) + (uint64_t)(slope / 2 + curve / 4);
     *step = (uint64_t)slope + 2 * (uint64_t)curve;
     *bend = 2 * (uint64_t)curve;
@@ -189,11 +197,12 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position,
     }
 }
 
-/* At x in Q16 from the middle, the edges being 1 away; |x| up to 64. */
+/* Value of the parabola at x, where -1 is the left edge and 1 the right edge; |x| up to 64:
+ * middle + (twice_slope / 2) x + (bend / 2) x^2. */
 static inline fx_bam_t parabola_at(const struct lm_ground_parabola *a, int32_t x_q16)
 {
-    /* Twice the slope is below 2^31, the bend below 2^32 and |x| <= 2^22: |bent| <= 2^38, and the
-     * last product < 2^61. */
+    /* twice_slope is below 2^31, bend below 2^32 and |x| <= 2^22. So |bent| <= 2^38, and the last
+     * product is below 2^61. */
     const int64_t bent = a->bend * x_q16 >> 16;
     return a->middle + (uint32_t)(((a->twice_slope + bent) * x_q16 + (1 << 16)) >> 17);
 }
@@ -219,25 +228,28 @@ void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_pa
 void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                     fx_bam_t *azimuth)
 {
+    /* Flat-Earth law about the midpoint: north = M dlat, east = N cos(lat) dlon. The azimuth at
+     * `from` is that at the midpoint less half the convergence of the meridians, dlon sin(lat). */
     struct lm_geo_origin middle;
-    /* 2^27 BAM is 11 degrees, beyond the 300 km promised; more would overflow. */
+    /* Differences are clamped at 2^27 BAM = 11 degrees, beyond the 300 km of the contract, because
+     * more would overflow. */
     const int32_t far = 1 << 27;
     const int32_t dlat = fx_clamp_i32((int32_t)(to.latitude - from.latitude), -far, far);
     const int32_t dlon = fx_clamp_i32((int32_t)(to.longitude - from.longitude), -far, far);
     const struct lm_position half_way = {from.latitude + (uint32_t)(dlat / 2), from.longitude};
     lm_geo_set_origin(&middle, half_way);
-    /* BAM to metres: angle * 2 pi / 2^32 * radius. */
+    /* An arc is angle * 2 pi / 2^32 * radius. */
     const int64_t arc_north = (int64_t)dlat * FX_TWO_PI_Q28 >> 28;
     const int64_t arc_east = mul_q30((int64_t)dlon * FX_TWO_PI_Q28 >> 28, middle.cos_q30);
     const int64_t north_m_q8 = arc_north * middle.meridian_radius_m_q8 >> 32;
     const int64_t east_m_q8 = arc_east * middle.prime_vertical_radius_m_q8 >> 32;
     *distance_m_q8 = fx_hypot_u32((int32_t)north_m_q8, (int32_t)east_m_q8);
-    /* The azimuth at the midpoint, turned back by half the convergence of the meridians. */
     const int64_t convergence = mul_q30(dlon, middle.sin_q30) / 2;
     *azimuth = fx_atan2((int32_t)east_m_q8, (int32_t)north_m_q8) - (uint32_t)convergence;
 }
 
-/* Metres * 256 below 2^26.7 and a height below 2^22.9 of them: squares below 2^54. */
+/* Square of a length in metres * 256. Ranges are below 2^26.7 and heights below 2^22.9, so squares
+ * are below 2^54. */
 static uint64_t square_q16(int64_t q8)
 {
     return (uint64_t)(q8 * q8);

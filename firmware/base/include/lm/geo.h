@@ -1,5 +1,19 @@
-/* Positions on WGS-84: the point at a distance and azimuth, and the path of a scan line over the
- * ground. Equations: docs/EQUATIONS.md, "Position of a cell". */
+/* Geodesy on WGS-84: the point at a distance and azimuth (direct problem), its inverse, and the
+ * path of a range line over the ground. Laws: docs/EQUATIONS.md, "Position of a cell".
+ *
+ * Example: the cells of a line of 512 that starts at the antenna.
+ *
+ *     struct lm_geo_origin origin;
+ *     struct lm_geo_ray ray;
+ *     struct lm_ground_path path;
+ *     lm_geo_set_origin(&origin, antenna);               once a position
+ *     lm_geo_set_ray(&ray, &origin, azimuth);            once a line
+ *     const struct lm_position points[3] = {antenna, lm_geo_along(&ray, length_m_q8 / 2),
+ *                                           lm_geo_along(&ray, length_m_q8)};
+ *     lm_ground_path_fit(&path, points, 512);
+ *
+ * Every pointer is borrowed for the call, but for the origin that a ray keeps. No function fails:
+ * arguments out of range are clamped as stated. */
 #ifndef LM_GEO_H
 #define LM_GEO_H
 
@@ -7,18 +21,19 @@
 
 #include "fx/types.h"
 
-/* Lengths are metres * 256, but the sizes of cells are told in millimetres, cut to whole ones. */
+/* Length in whole millimetres, rounded down. Sizes of map cells are in millimetres. */
 static inline uint32_t lm_mm_of_m_q8(uint32_t length_m_q8)
 {
     return (uint32_t)((uint64_t)length_m_q8 * 1000 / 256);
 }
 
+/* A position: geodetic latitude and longitude. */
 struct lm_position {
-    fx_bam_t latitude; /* signed: +-FX_BAM_90 */
-    fx_bam_t longitude;
+    fx_bam_t latitude;  /* north positive; as int32_t within +-FX_BAM_90 */
+    fx_bam_t longitude; /* east positive; wraps at the antimeridian */
 };
 
-/* What the direct problem needs of its starting point, worked out once. Lengths in metres * 256. */
+/* Starting point of the direct problem, prepared once for many rays. */
 struct lm_geo_origin {
     struct lm_position position;
     int32_t sin_q30, cos_q30;            /* of the latitude */
@@ -27,85 +42,108 @@ struct lm_geo_origin {
     uint32_t prime_vertical_radius_m_q8; /* N */
 };
 
-/* Latitudes beyond a pole count as the pole. Cost: about 150 instructions. */
+/* Prepare an origin. Latitudes beyond a pole count as the pole. Cost: about 150 instructions. */
 void lm_geo_set_origin(struct lm_geo_origin *o, struct lm_position position);
 
-/* A direction from an origin, and what all points along it have in common. */
+/* A direction from an origin, prepared once for many distances. */
 struct lm_geo_ray {
-    const struct lm_geo_origin *origin; /* borrowed */
+    const struct lm_geo_origin *origin; /* borrowed while the ray is in use */
     int32_t sin_q30, cos_q30;           /* of the azimuth */
-    int64_t per_radius_q62;             /* one over the Earth's radius along it, metres * 256 */
+    int64_t per_radius_q62; /* 1 / (R * 256), R in metres being Euler's radius along the azimuth */
 };
 
-/* `azimuth` from north by east. Cost: about 130 instructions. */
+/* Prepare a ray; `azimuth` is from true north, clockwise. Cost: about 130 instructions. */
 void lm_geo_set_ray(struct lm_geo_ray *r, const struct lm_geo_origin *o, fx_bam_t azimuth);
 
-/* The point `distance_m_q8` (metres * 256; beyond 300 km counts as 300 km) away along the ray, and
- * the same for one point.
+/* Point at a distance along the ray. Distances beyond 300 km count as 300 km.
  * Worst distance from the geodesic: 0.05 m at 148 km, at latitudes from 0 to 89
  * (tests/unit/firmware/base/test_geo.c). Cost: about 130 instructions, near a pole 300. */
 struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_q8);
+
+/* Point at an azimuth and a distance, for one point: lm_geo_set_ray, then lm_geo_along. */
 struct lm_position lm_geo_direct(const struct lm_geo_origin *o, fx_bam_t azimuth,
                                  uint32_t distance_m_q8);
 
-/* A path over the ground in equal steps: latitude and longitude are parabolas of the step number,
- * kept as forward differences in units of 2^-32 BAM. Longitudes wrap, as they should. */
+/* Path of a range line over the ground, in equal steps of a cell.
+ *
+ * Latitude and longitude are parabolas of the cell number, stored as forward differences. From cell
+ * to cell, the step is added to the coordinate and then the bend to the step. The unit is 2^-32
+ * BAM, modulo 2^64, hence longitudes wrap at the antimeridian by themselves. */
 struct lm_ground_path {
-    uint64_t latitude, longitude;
-    uint64_t latitude_step, longitude_step;
-    uint64_t latitude_bend, longitude_bend; /* what a step adds to the step */
+    uint64_t latitude, longitude;           /* of the centre of cell 0 */
+    uint64_t latitude_step, longitude_step; /* from cell 0 to cell 1 */
+    uint64_t latitude_bend, longitude_bend; /* added to the step at each cell */
 };
 
-/* The path whose cell i (0..cells-1) is centred (i + 1/2) / cells of the way, through three points
- * at the start, middle and end. cells >= 1. */
+/* Fit a path through three points, at the line's start, middle and end. The centre of cell
+ * i = 0..cells - 1 lies (i + 1/2) / cells of the length behind the start; cells >= 1.
+ *
+ *     points[0]          points[1]          points[2]
+ *        |---.---|---.---|---.---|---.---|---.---|        . centre of a cell
+ *         cell 0                           cell cells - 1
+ *
+ * Cost: less than that of lm_ground_patch_path. */
 void lm_ground_path_fit(struct lm_ground_path *p, const struct lm_position points[3],
                         uint32_t cells);
 
-/* One coordinate across a rectangle: the parabola through its values at the left edge, the middle
- * and the right edge. */
+/* One coordinate across a patch: the parabola through its values at the left edge, the middle and
+ * the right edge. All in BAM. */
 struct lm_ground_parabola {
     fx_bam_t middle;
-    int32_t twice_slope; /* right less left */
-    int64_t bend;        /* right and left less twice the middle */
+    int32_t twice_slope; /* right - left */
+    int64_t bend;        /* right + left - 2 middle */
 };
 
-/* A rectangle of ground whose `along` axis runs at an azimuth through a place: nine points that
- * carry a biquadratic surface in latitude and longitude, rows from near to far, across from left to
- * right as seen along the azimuth. */
+/* Ground patch: a rectangle of ground whose axis runs at an azimuth through a position.
+ *
+ * Nine points carry a biquadratic surface in latitude and longitude.
+ *
+ *     row[2]   +-----+-----+   far_m_q8      ^ azimuth
+ *              |     |     |                 |
+ *     row[1]   +-----+-----+                 |
+ *              |     |     |                 o position
+ *     row[0]   +-----+-----+   near_m_q8
+ *            left        right
+ *            <-----> side_m_q8                                */
 struct lm_ground_patch {
     struct {
         struct lm_ground_parabola latitude, longitude;
     } row[3];
 };
 
-/* How far a rectangle reaches, metres * 256: along its axis from `near_m_q8` to `far_m_q8` ahead of
- * the place (behind it when negative), and to either side. All within 300 km. */
+/* Extent of a ground patch: along its axis from near_m_q8 to far_m_q8 ahead of the position, behind
+ * it if negative, and side_m_q8 to either side. All corners within 300 km. */
 struct lm_ground_extent {
     int32_t near_m_q8, far_m_q8, side_m_q8;
 };
 
-/* Cost: about 4,500 instructions. */
+/* Prepare a patch about `position`, with its axis at `azimuth`. Cost: about 4,500 instructions. */
 void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent);
 
-/* The beginning, middle and end of line `line` of `lines`, whose across offset is (line + 1/2 -
- * lines/2) / lines of the width. The surface goes on beyond the last line: line < lines + 32. */
+/* Start, middle and end of one of `lines` lines along the axis. Line 0 is the leftmost, and line k
+ * is (k + 1/2 - lines/2) / lines of the patch's width right of the axis. The surface continues
+ * beyond the last line: line < lines + 32. */
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
                           struct lm_position points[3]);
 
-/* The path of `cells` cells along that line. Cost: about 130 instructions. */
+/* Path of `cells` cells along a line of the patch: lm_ground_patch_line, then lm_ground_path_fit.
+ * Cost: about 130 instructions. */
 void lm_ground_patch_path(struct lm_ground_path *path, const struct lm_ground_patch *p,
                           uint32_t line, uint32_t lines, uint32_t cells);
 
-/* Great-circle style distance and azimuth of a point up to 300 km away, by the midpoint's radii;
- * error under 0.2 % of the distance below 75 degrees of latitude. For looking at a place, not for
- * navigation. Cost: about 300 instructions. */
+/* Distance and azimuth from one position to another up to 300 km away (inverse problem), by the
+ * radii at the midpoint. The error is under 0.2 % of the distance below 75 degrees of latitude.
+ * That is enough to point the antenna, not for navigation. Cost: about 300 instructions. */
 void lm_geo_inverse(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                     fx_bam_t *azimuth);
 
-/* Ground range of slant range `slant_m_q8`, and back, for flat ground `height_m_q10` (metres *
- * 1024, either sign) below; 0 in the altitude hole. Up to 400 km. Cost: about 150 instructions. */
+/* Ground range of a slant range over flat ground that lies height_m_q10 below, of either sign. 0 in
+ * the altitude hole, where the slant range is shorter than the height. Up to 400 km.
+ * Law: docs/EQUATIONS.md, "Slant range". Cost: about 150 instructions. */
 uint32_t lm_ground_of_slant_m_q8(uint32_t slant_m_q8, int32_t height_m_q10);
+
+/* Slant range of a ground range: the inverse, with the same ranges and cost. */
 uint32_t lm_slant_of_ground_m_q8(uint32_t ground_m_q8, int32_t height_m_q10);
 
 #endif

@@ -1,6 +1,11 @@
-/* Lanes: how long the arrays of a range line are, so that a vector machine can take whole groups of
- * cells. A loop over a line's cells may run on to a whole group; what it leaves behind the last
- * cell means nothing. */
+/* Lanes: length of the arrays of a range line, which holds whole groups of cells for vector
+ * machines.
+ *
+ *     array  |0 1 2 ... cells - 1|    room     |      LM_CELLS_ROOM entries
+ *            |    the line       | for a group |
+ *
+ * A loop over a line's cells may run to the end of the last group. What it leaves behind the last
+ * cell means nothing. Rules of the kernels: lm/kernels_map.h. */
 #ifndef LM_LANES_H
 #define LM_LANES_H
 

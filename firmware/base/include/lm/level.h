@@ -1,8 +1,9 @@
-/* Levels: what a radar cell returns, as reflectivity in 1/256 dB of gamma (`level_db_q8`). */
+/* Level: power of a radar cell's echo in decibels of gamma, `level_db_q8`. Flat ground at the
+ * reference elevation has the level of its gamma at any range: docs/EQUATIONS.md, "Level". */
 #ifndef LM_LEVEL_H
 #define LM_LEVEL_H
 
-/* The level of a cell that nothing lights: -128 dB. */
+/* Level of a cell in shadow, which has no echo: -128 dB. */
 enum { LM_LEVEL_SHADOW = -0x8000 };
 
 #endif

@@ -1,4 +1,6 @@
-/* The request for a SAR patch: where it lies and from where it is seen. */
+/* SAR command: the request for a patch, with its place and the antenna's.
+ *
+ * Limits are checked by lm_sar_start (lm/sar.h). Law: docs/EQUATIONS.md, "Synthetic aperture". */
 #ifndef LM_SAR_COMMAND_H
 #define LM_SAR_COMMAND_H
 
@@ -8,17 +10,24 @@
 #include "fx/types.h"
 #include "lm/geo.h"
 
-/* A patch of cells x cells around a place. Either seen from where the ownship is when the command
- * comes, or, for training and tests, from a commanded range and heading. */
+/* A square patch around a position. The antenna is where the ownship is when the command comes, or,
+ * for training and tests, at a commanded range, azimuth and height.
+ *
+ *            ^ look_azimuth
+ *        +---|---+
+ *        |   o   |  centre
+ *        +---|---+
+ *            |      range_m
+ *            o  antenna, at height_m_q6 */
 struct lm_sar_command {
     struct lm_position centre;
-    uint32_t cell_mm;      /* within the radar table's limits */
-    bool has_layover;      /* what stands high is displayed nearer */
-    bool is_steady;        /* unsteady flight leaves no blur */
-    bool is_from_ownship;  /* then the rest is ignored */
-    fx_bam_t look_azimuth; /* from the radar to the patch */
-    uint32_t range_m;      /* along the ground, 1,000..250,000 */
-    int32_t height_m_q6;   /* of the antenna, metres * 64 above mean sea level, below 30 km */
+    uint32_t cell_mm;      /* side of a cell, within the radar table's limits */
+    bool has_layover;      /* displace high ground and tops of structures (lm/layover.h) */
+    bool is_steady;        /* no defocus from unsteady flight (lm/defocus.h) */
+    bool is_from_ownship;  /* true: ignore the three members below */
+    fx_bam_t look_azimuth; /* from the antenna to the patch */
+    uint32_t range_m;      /* from the antenna to the centre, along the ground: 1,000..250,000 */
+    int32_t height_m_q6;   /* of the antenna above mean sea level, below 30 km */
 };
 
 #endif
