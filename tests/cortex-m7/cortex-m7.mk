@@ -1,6 +1,7 @@
 # The firmware as 32-bit code, on the Cortex-M7 of QEMU's MPS2 board: the golden pictures, and nothing else of a board.
 CORTEX_M7 := $(O)/bin/tests/cortex-m7
-CORTEX_M7_SRC := $(SRC_core) tests/golden/golden_flight.c $(addprefix tests/cortex-m7/,golden.c host.c)
+CORTEX_M7_SRC := $(SRC_core) tests/golden/golden_flight.c $(addprefix tests/support/memory_,board.c flash.c) \
+    $(addprefix tests/cortex-m7/,golden.c host.c)
 CORTEX_M7_FLAGS := -mcpu=cortex-m7 -mthumb -mfloat-abi=soft -O2 -g -ffreestanding -ffunction-sections -fdata-sections
 TESTS += $(CORTEX_M7)/test_golden
 

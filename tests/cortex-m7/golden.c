@@ -1,6 +1,5 @@
 /* The golden pictures on a Cortex-M7: the firmware alone, no drivers. The microcontroller has no
- * room for the images, so the flash is a file of the host's, read a record at a time; it keeps the
- * promises of memory_flash.h. */
+ * room for the images, so the flash is a file of the host's, read a record at a time. */
 #include "fx/crc32c.h"
 #include "golden_flash.h"
 #include "golden_flight.h"
@@ -11,39 +10,12 @@
 int main(void);
 _Noreturn void reset(void);
 
-/* The rig knows its flash by an address, which here stands for an offset in this file. */
 static int image_file;
 
-static int read_start(void *ctx, uint64_t offset, void *destination, uint32_t length)
+/* The rig knows its flash by an address, which here stands for an offset in this file. */
+static bool fetch(void *to, const uint8_t *from, uint32_t length)
 {
-    struct memory_flash *f = ctx;
-    if (offset > f->port.size_bytes || length > f->port.size_bytes - offset) {
-        return LM_ERR_RANGE;
-    }
-    f->reads++;
-    f->now.offset = offset;
-    f->now.to = destination;
-    f->now.length = length;
-    f->now.is_failing = f->fail_every && f->reads % f->fail_every == 0;
-    return LM_OK;
-}
-
-static int read_poll(void *ctx)
-{
-    const struct memory_flash *f = ctx;
-    if (f->now.is_failing) {
-        memset(f->now.to, 0x5A, f->now.length / 2);
-        return LM_ERR_IO;
-    }
-    const uint32_t offset = (uint32_t)((uintptr_t)f->bytes + f->now.offset);
-    return host_read(image_file, offset, f->now.to, f->now.length) ? LM_OK : LM_ERR_IO;
-}
-
-void memory_flash_open(struct memory_flash *f, const uint8_t *bytes, size_t size)
-{
-    *f = (struct memory_flash){
-        .bytes = bytes,
-        .port = {.ctx = f, .size_bytes = size, .read_start = read_start, .read_poll = read_poll}};
+    return host_read(image_file, (uint32_t)(uintptr_t)from, to, length);
 }
 
 int main(void)
@@ -58,9 +30,12 @@ int main(void)
     }
     for (uint32_t i = 0; i < golden_picture_count; i++) {
         const struct golden_picture *p = &golden_pictures[i];
-        const uint8_t *start = (const uint8_t *)(uintptr_t)flash.places[p->place].offset;
-        if (golden_fly(&rig, p, flash.places[p->place].centre, start,
-                       (size_t)flash.places[p->place].size) != LM_OK) {
+        const uint64_t offset = flash.places[p->place].offset;
+        const struct golden_country country = {.centre = flash.places[p->place].centre,
+                                               .image = (const uint8_t *)(uintptr_t)offset,
+                                               .image_bytes = (size_t)flash.places[p->place].size,
+                                               .fetch = fetch};
+        if (golden_fly(&rig, p, &country) != LM_OK) {
             host_say("the unit does not start\n");
             return 1;
         }

@@ -1,9 +1,9 @@
 /* The whole unit in flight over a hostile image with a hostile bus, hostile controls and failing
  * devices. The input is a programme: a choice of place, patches of the image, then what happens
  * step by step (see act). */
+#include "bus_frames.h"
 #include "fuzz.h"
-#include "lm/unit.h"
-#include "memory_flash.h"
+#include "memory_board.h"
 #include "seal.h"
 #include "tiny_image.h"
 
@@ -16,11 +16,7 @@ enum { SIDE = 256, POOL_TILES = 64, QUEUE = 32, STEPS_MAX = 300, PLACES = 4 };
 struct world {
     struct tiny_image image; /* a copy, to be damaged */
     struct lm_position centre;
-    struct memory_flash flash;
-    struct lm_can can;
-    struct lm_controls controls;
-    struct lm_display display;
-    struct lm_board board;
+    struct memory_board board;
     struct lm_unit unit;
     uint64_t now_us;
     uint32_t steps;
@@ -29,8 +25,7 @@ struct world {
     uint32_t frame_head, frame_tail;
     struct lm_control control;
     bool has_control;
-    uint8_t message_code, display_mode;
-    uint32_t *glass; /* blocks of their own, so that writing past their ends is seen */
+    uint8_t message_code;
 };
 
 static int receive(void *ctx, struct lm_can_frame *frame)
@@ -50,19 +45,6 @@ static int next_control(void *ctx, struct lm_control *control)
     const bool had = w->has_control;
     w->has_control = false;
     return had;
-}
-
-static int acquire(void *ctx, struct lm_surface *surface)
-{
-    struct world *w = ctx;
-    *surface = (struct lm_surface){w->glass, SIDE, SIDE, SIDE};
-    return w->display_mode == 1 ? LM_BUSY : w->display_mode == 2 ? LM_ERR_IO : LM_OK;
-}
-
-static int present(void *ctx)
-{
-    const struct world *w = ctx;
-    return w->display_mode == 3 ? LM_ERR_IO : LM_OK;
 }
 
 static struct tiny_cell scene_cell(void *ctx, const struct tiny_place *p)
@@ -127,22 +109,13 @@ static void queue_frame(struct world *w, const struct lm_can_frame *frame)
 
 static void queue_value(struct world *w, uint32_t id, uint8_t type, uint32_t bits)
 {
-    struct lm_can_frame f = {.id = id, .length = 8, .time_us = w->now_us};
-    f.data[0] = 9;
-    f.data[1] = type;
-    f.data[3] = w->message_code;
-    for (unsigned i = 0; i < 4; i++) {
-        f.data[4 + i] = (uint8_t)(bits >> (24 - 8 * i));
-    }
+    const struct lm_can_frame f = bus_frame(id, type, w->message_code, bits, w->now_us);
     queue_frame(w, &f);
 }
 
 static void queue_float(struct world *w, uint32_t id, double value)
 {
-    const float single = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &single, 4);
-    queue_value(w, id, LM_CANAS_FLOAT, bits);
+    queue_value(w, id, LM_CANAS_FLOAT, bus_float_bits(value));
 }
 
 /* A whole, believable position: what it takes before anything is drawn. */
@@ -250,6 +223,13 @@ static void step(struct world *w, uint64_t by_us)
     }
 }
 
+/* As it should be, busy, or broken in one way or the other. */
+static void set_display(struct memory_board *b, unsigned mode)
+{
+    b->acquire_status = mode == 1 ? LM_BUSY : mode == 2 ? LM_ERR_IO : LM_OK;
+    b->present_status = mode == 3 ? LM_ERR_IO : LM_OK;
+}
+
 static void act(struct world *w, struct fuzz_supply *s)
 {
     const uint8_t op = fuzz_u8(s);
@@ -285,11 +265,11 @@ static void act(struct world *w, struct fuzz_supply *s)
         command_patch(w, s);
         break;
     case 10:
-        w->flash.busy_polls = fuzz_u8(s);
-        w->flash.fail_every = fuzz_u8(s);
+        w->board.flash.busy_polls = fuzz_u8(s);
+        w->board.flash.fail_every = fuzz_u8(s);
         break;
     case 11:
-        w->display_mode = op >> 4 & 3;
+        set_display(&w->board, op >> 4 & 3);
         break;
     case 12:
         patch(&w->image, s);
@@ -312,37 +292,36 @@ static void check(const struct world *w)
     FUZZ_ASSERT(u->picture.sar.line <= lm_radar_default.sar.cells);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-        FUZZ_ASSERT(w->glass[i] <= 0x00FFFFFF);
+        FUZZ_ASSERT(w->board.glass[i] <= 0x00FFFFFF);
     }
 }
 
+/* The unit's memory is in blocks of their own, so that writing past their ends is seen. */
 static void fly(struct world *w, struct fuzz_supply *s)
 {
-    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    w->can = (struct lm_can){.ctx = w, .receive = receive};
-    w->controls = (struct lm_controls){w, next_control};
-    w->display = (struct lm_display){w, SIDE, SIDE, acquire, present};
-    w->glass = calloc(SIDE * SIDE, sizeof *w->glass);
-    w->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = &w->flash.port,
-                                 .can = &w->can,
-                                 .controls = &w->controls,
-                                 .display = &w->display,
-                                 .tile_pool = malloc(POOL_TILES * sizeof(struct lm_tile)),
-                                 .tile_pool_bytes = POOL_TILES * sizeof(struct lm_tile),
-                                 .plane = malloc(SIDE * SIDE),
-                                 .flash_poll_limit = 20};
-    FUZZ_ASSERT(w->glass && w->board.tile_pool && w->board.plane);
-    if (lm_unit_init(&w->unit, &w->board) == LM_OK) {
+    const size_t pool_bytes = POOL_TILES * sizeof(struct lm_tile);
+    const struct memory_board_parts parts = {.ctx = w,
+                                             .receive = receive,
+                                             .next_control = next_control,
+                                             .width_px = SIDE,
+                                             .height_px = SIDE,
+                                             .glass = calloc(SIDE * SIDE, sizeof *parts.glass),
+                                             .plane = malloc(SIDE * SIDE),
+                                             .tile_pool = malloc(pool_bytes),
+                                             .tile_pool_bytes = pool_bytes};
+    FUZZ_ASSERT(parts.glass && parts.plane && parts.tile_pool);
+    memory_board_open(&w->board, w->image.bytes, w->image.size, &parts);
+    w->board.lent.flash_poll_limit = 20;
+    if (lm_unit_init(&w->unit, &w->board.lent) == LM_OK) {
         while (s->left > 0 && w->steps < STEPS_MAX) {
             act(w, s);
         }
         step(w, LM_FRAME_US);
         check(w);
     }
-    free(w->board.tile_pool);
-    free(w->board.plane);
-    free(w->glass);
+    free(parts.tile_pool);
+    free(parts.plane);
+    free(parts.glass);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -26,7 +26,7 @@ static bool is_wanted(const char *name, int count, char **names)
 static int write_png(const struct golden_rig *rig, const char *folder)
 {
     char path[1024];
-    const struct lm_display *d = &rig->display;
+    const struct lm_display *d = &rig->board.display;
     snprintf(path, sizeof path, "%s/%s.png", folder, rig->picture->name);
     return hs_png_write_xrgb(path, rig->glass, d->width_px, d->height_px, d->width_px);
 }
@@ -39,13 +39,15 @@ static int fly_over(enum golden_place place, struct golden_rig *rig, const char 
         return hs_error(golden_place_name(place), NULL, "the image cannot be made");
     }
     printf("image-%s %08x\n", golden_place_name(place), fx_crc32c(0, image.bytes, image.size));
+    const struct golden_country country = {
+        .centre = golden_centre(place), .image = image.bytes, .image_bytes = image.size};
     int status = 0;
     for (uint32_t i = 0; status == 0 && i < golden_picture_count; i++) {
         const struct golden_picture *p = &golden_pictures[i];
         if (p->place != place) {
             continue;
         }
-        if (golden_fly(rig, p, golden_centre(place), image.bytes, image.size) != LM_OK) {
+        if (golden_fly(rig, p, &country) != LM_OK) {
             status = hs_error(p->name, NULL, "the unit does not start");
         } else {
             printf("%s %08x %08x\n", p->name, golden_radar_checksum(rig),

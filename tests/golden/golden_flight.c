@@ -1,11 +1,12 @@
 #include "golden_flight.h"
 
+#include "bus_frames.h"
 #include "fx/crc32c.h"
 #include "golden_scene.h"
 
 #include <string.h>
 
-enum { STEP_US = 2000, FIX_US = 100000, START_US = 200000, POLLS = 1000 };
+enum { STEP_US = 2000, FIX_US = 100000, START_US = 200000 };
 /* A place on the runway of golden_scene.c, from the middle. */
 enum { RUNWAY_NORTH_M = -870, RUNWAY_EAST_M = 800 };
 
@@ -211,15 +212,6 @@ static uint64_t duration_us(const struct golden_picture *p)
     return START_US + flown_us;
 }
 
-/* The bits of a whole number as IEEE 754 single; |value| below 2^24. */
-static uint32_t float_bits(int32_t value)
-{
-    const float single = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &single, sizeof bits);
-    return bits;
-}
-
 /* A binary angle as the bus's LONG, 1e-7 degree, rounded down. */
 static uint32_t long_of(fx_bam_t angle)
 {
@@ -240,17 +232,12 @@ static int receive(void *ctx, struct lm_can_frame *frame)
         uint32_t bits;
     } items[] = {{1036, LM_CANAS_LONG, long_of(r->aircraft.latitude)},
                  {1037, LM_CANAS_LONG, long_of(r->aircraft.longitude)},
-                 {1038, LM_CANAS_FLOAT, float_bits(p->height_m)},
-                 {1039, LM_CANAS_FLOAT, float_bits(p->speed_m_s)},
-                 {1040, LM_CANAS_FLOAT, float_bits(p->heading_deg + p->drift_deg)},
-                 {1133, LM_CANAS_FLOAT, float_bits(p->heading_deg)}};
-    const uint32_t bits = items[r->bus_item].bits;
-    *frame = (struct lm_can_frame){.id = items[r->bus_item].id,
-                                   .length = 8,
-                                   .data = {9, items[r->bus_item].type, 0, r->message_code,
-                                            (uint8_t)(bits >> 24), (uint8_t)(bits >> 16),
-                                            (uint8_t)(bits >> 8), (uint8_t)bits},
-                                   .time_us = r->now_us};
+                 {1038, LM_CANAS_FLOAT, bus_float_bits(p->height_m)},
+                 {1039, LM_CANAS_FLOAT, bus_float_bits(p->speed_m_s)},
+                 {1040, LM_CANAS_FLOAT, bus_float_bits(p->heading_deg + p->drift_deg)},
+                 {1133, LM_CANAS_FLOAT, bus_float_bits(p->heading_deg)}};
+    *frame = bus_frame(items[r->bus_item].id, items[r->bus_item].type, r->message_code,
+                       items[r->bus_item].bits, r->now_us);
     if (++r->bus_item == sizeof items / sizeof items[0]) {
         r->bus_item = 0;
         r->message_code++;
@@ -337,41 +324,27 @@ static int next_control(void *ctx, struct lm_control *control)
     return 1;
 }
 
-static int acquire(void *ctx, struct lm_surface *surface)
-{
-    struct golden_rig *r = ctx;
-    *surface = (struct lm_surface){r->glass, r->display.width_px, r->display.width_px,
-                                   r->display.height_px};
-    return LM_OK;
-}
-
-static int present(void *ctx)
-{
-    (void)ctx;
-    return LM_OK;
-}
-
-static void prepare(struct golden_rig *r, const struct golden_picture *p, struct lm_position centre,
-                    const uint8_t *image, size_t image_bytes)
+static void prepare(struct golden_rig *r, const struct golden_picture *p,
+                    const struct golden_country *country)
 {
     memset(r, 0, sizeof *r);
     r->picture = p;
-    r->centre =
-        p->has_parked ? moved(moved(centre, 0, RUNWAY_NORTH_M), FX_BAM_90, RUNWAY_EAST_M) : centre;
+    r->centre = p->has_parked
+                    ? moved(moved(country->centre, 0, RUNWAY_NORTH_M), FX_BAM_90, RUNWAY_EAST_M)
+                    : country->centre;
     r->aircraft = moved(moved(r->centre, 0, p->north_m), FX_BAM_90, p->east_m);
-    memory_flash_open(&r->flash, image, p->fault == GOLDEN_BAD_HEADER ? 511 : image_bytes);
-    r->can = (struct lm_can){.ctx = r, .receive = receive};
-    r->controls = (struct lm_controls){r, next_control};
-    r->display = (struct lm_display){r, p->width_px, p->height_px, acquire, present};
-    r->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = &r->flash.port,
-                                 .can = &r->can,
-                                 .controls = &r->controls,
-                                 .display = &r->display,
-                                 .tile_pool = r->pool,
-                                 .tile_pool_bytes = sizeof r->pool,
-                                 .plane = r->plane,
-                                 .flash_poll_limit = POLLS};
+    const struct memory_board_parts parts = {.ctx = r,
+                                             .receive = receive,
+                                             .next_control = next_control,
+                                             .width_px = p->width_px,
+                                             .height_px = p->height_px,
+                                             .glass = r->glass,
+                                             .plane = r->plane,
+                                             .tile_pool = r->pool,
+                                             .tile_pool_bytes = sizeof r->pool};
+    memory_board_open(&r->board, country->image,
+                      p->fault == GOLDEN_BAD_HEADER ? 511 : country->image_bytes, &parts);
+    r->board.flash.fetch = country->fetch;
 }
 
 /* A vehicle that answers as a whole, driving to and fro over 6 km. */
@@ -415,16 +388,16 @@ static void put_parked(struct golden_rig *r)
     r->unit.map.target_set.count = GOLDEN_TARGETS_MAX;
 }
 
-int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_position centre,
-               const uint8_t *image, size_t image_bytes)
+int golden_fly(struct golden_rig *r, const struct golden_picture *p,
+               const struct golden_country *country)
 {
-    prepare(r, p, centre, image, image_bytes);
-    const int status = lm_unit_init(&r->unit, &r->board);
+    prepare(r, p, country);
+    const int status = lm_unit_init(&r->unit, &r->board.lent);
     if (p->has_movers || p->has_parked) {
         r->unit.map.target_set.items = r->targets;
         (p->has_movers ? put_movers : put_parked)(r);
     }
-    r->flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */
+    r->board.flash.fail_every = p->fault == GOLDEN_BAD_READS ? 3 : 0; /* once the tables are in */
     for (; status == LM_OK && r->now_us <= duration_us(p); r->now_us += STEP_US) {
         lm_unit_step(&r->unit, r->now_us);
     }
@@ -433,7 +406,7 @@ int golden_fly(struct golden_rig *r, const struct golden_picture *p, struct lm_p
 
 static size_t pixels_of(const struct golden_rig *r)
 {
-    return (size_t)r->display.width_px * r->display.height_px;
+    return (size_t)r->board.display.width_px * r->board.display.height_px;
 }
 
 uint32_t golden_radar_checksum(const struct golden_rig *r)

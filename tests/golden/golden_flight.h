@@ -3,8 +3,7 @@
 #ifndef GOLDEN_FLIGHT_H
 #define GOLDEN_FLIGHT_H
 
-#include "lm/unit.h"
-#include "memory_flash.h"
+#include "memory_board.h"
 
 /* What goes wrong, late in the flight. */
 enum golden_fault {
@@ -50,11 +49,7 @@ enum { GOLDEN_POOL_TILES = 256, GOLDEN_PIXELS_MAX = 1024 * 768, GOLDEN_TARGETS_M
 /* Everything a flight needs; the caller owns it, 15 MB. */
 struct golden_rig {
     struct lm_unit unit;
-    struct lm_board board;
-    struct memory_flash flash;
-    struct lm_can can;
-    struct lm_controls controls;
-    struct lm_display display;
+    struct memory_board board;
     const struct golden_picture *picture;
     struct lm_position centre, aircraft;
     struct lm_target targets[GOLDEN_TARGETS_MAX]; /* in place of the image's */
@@ -66,10 +61,17 @@ struct golden_rig {
     _Alignas(8) uint8_t pool[GOLDEN_POOL_TILES * sizeof(struct lm_tile)];
 };
 
-/* Fly until the picture is on rig->glass, over the image, whose middle lies at `centre`. Returns
- * LM_OK or lm_unit_init's answer. */
+/* A country to fly over. */
+struct golden_country {
+    struct lm_position centre;
+    const uint8_t *image; /* borrowed */
+    size_t image_bytes;
+    memory_flash_fetch *fetch; /* NULL: the image is memory */
+};
+
+/* Fly until the picture is on rig->glass. Returns LM_OK or lm_unit_init's answer. */
 int golden_fly(struct golden_rig *rig, const struct golden_picture *picture,
-               struct lm_position centre, const uint8_t *image, size_t image_bytes);
+               const struct golden_country *country);
 
 /* CRC-32C of the radar picture alone: the plane of grey levels before symbols and labels, row by
  * row. A label that changes leaves it as it is. */

@@ -30,7 +30,11 @@ static int read_poll(void *ctx)
         memset(f->now.to, 0x5A, f->now.length / 2);
         return LM_ERR_IO;
     }
-    memcpy(f->now.to, f->bytes + f->now.offset, f->now.length);
+    const uint8_t *from = (const uint8_t *)((uintptr_t)f->bytes + (uintptr_t)f->now.offset);
+    if (f->fetch) {
+        return f->fetch(f->now.to, from, f->now.length) ? LM_OK : LM_ERR_IO;
+    }
+    memcpy(f->now.to, from, f->now.length);
     return LM_OK;
 }
 

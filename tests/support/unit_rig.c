@@ -1,4 +1,5 @@
 #include "unit_rig.h"
+#include "bus_frames.h"
 #include "check.h"
 #include "glass_text.h"
 
@@ -8,26 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void put_float(struct lm_can_frame *f, uint32_t id, double value, uint8_t code)
-{
-    const float v = (float)value;
-    uint32_t bits;
-    memcpy(&bits, &v, 4);
-    const uint8_t data[8] = {9,
-                             2,
-                             0,
-                             code,
-                             (uint8_t)(bits >> 24),
-                             (uint8_t)(bits >> 16),
-                             (uint8_t)(bits >> 8),
-                             (uint8_t)bits};
-    *f = (struct lm_can_frame){.id = id, .length = 8};
-    memcpy(f->data, data, 8);
-}
-
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
-    struct fake_bus *b = ctx;
+    struct rig *r = ctx;
+    struct fake_bus *b = &r->bus;
     if (b->is_down) {
         return LM_ERR_IO;
     }
@@ -57,8 +42,8 @@ static int receive(void *ctx, struct lm_can_frame *frame)
                  {1000, b->steerpoint_deg[0]},
                  {1001, b->steerpoint_deg[1]}};
     const int count = (int)(sizeof items / sizeof *items) - (b->has_steerpoint ? 0 : 2);
-    put_float(frame, items[b->queue_next].id, items[b->queue_next].value, b->code);
-    frame->time_us = b->now_us;
+    *frame = bus_frame(items[b->queue_next].id, LM_CANAS_FLOAT, b->code,
+                       bus_float_bits(items[b->queue_next].value), b->now_us);
     b->queue_next = (b->queue_next + 1) % count;
     return 1;
 }
@@ -71,19 +56,6 @@ static int next_control(void *ctx, struct lm_control *control)
     }
     *control = r->controls_waiting[r->control_next++];
     return 1;
-}
-
-static int acquire(void *ctx, struct lm_surface *s)
-{
-    struct rig *r = ctx;
-    *s = (struct lm_surface){r->glass, WIDTH, WIDTH, HEIGHT};
-    return r->is_display_broken ? LM_ERR_IO : r->is_display_busy ? LM_BUSY : LM_OK;
-}
-
-static int present(void *ctx)
-{
-    (void)ctx;
-    return LM_OK;
 }
 
 static struct tiny_cell scene(void *ctx, const struct tiny_place *p)
@@ -113,29 +85,26 @@ struct rig *make_rig(void)
     spec.shift0 = 11;
     spec.rows = spec.columns = 10;
     assert_int_equal(tiny_image_build(&r->image, &spec), 0);
-    memory_flash_open(&r->flash, r->image.bytes, r->image.size);
+    const struct memory_board_parts parts = {.ctx = r,
+                                             .receive = receive,
+                                             .next_control = next_control,
+                                             .width_px = WIDTH,
+                                             .height_px = HEIGHT,
+                                             .glass = r->glass,
+                                             .plane = r->plane,
+                                             .tile_pool = r->pool,
+                                             .tile_pool_bytes = sizeof r->pool};
+    memory_board_open(&r->board, r->image.bytes, r->image.size, &parts);
     r->bus.stop_us = UINT64_MAX;
     r->bus.speed_m_s = 150;
     r->bus.height_m = 2000;
-    r->can = (struct lm_can){.ctx = &r->bus, .receive = receive};
-    r->controls = (struct lm_controls){r, next_control};
-    r->display = (struct lm_display){r, WIDTH, HEIGHT, acquire, present};
-    r->board = (struct lm_board){.radar = &lm_radar_default,
-                                 .flash = &r->flash.port,
-                                 .can = &r->can,
-                                 .controls = &r->controls,
-                                 .display = &r->display,
-                                 .tile_pool = r->pool,
-                                 .tile_pool_bytes = sizeof r->pool,
-                                 .plane = r->plane,
-                                 .flash_poll_limit = 100};
     return r;
 }
 
 struct rig *start_rig(void)
 {
     struct rig *r = make_rig();
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     return r;
 }
 

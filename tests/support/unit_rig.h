@@ -5,7 +5,7 @@
 
 #include "lm/unit.h"
 
-#include "memory_flash.h"
+#include "memory_board.h"
 #include "tiny_image.h"
 
 enum { WIDTH = 480, HEIGHT = 480, STEP_US = 2000, POOL_TILES = 120, CONTROLS_MAX = 64 };
@@ -25,18 +25,13 @@ struct fake_bus {
 
 struct rig {
     struct tiny_image image;
-    struct memory_flash flash;
+    struct memory_board board;
     struct fake_bus bus;
     struct lm_control controls_waiting[CONTROLS_MAX];
     int control_count, control_next;
     uint32_t glass[WIDTH * HEIGHT];
-    int is_display_busy, is_display_broken;
     uint8_t plane[WIDTH * HEIGHT];
     uint64_t pool[POOL_TILES * sizeof(struct lm_tile) / 8];
-    struct lm_can can;
-    struct lm_controls controls;
-    struct lm_display display;
-    struct lm_board board;
     struct lm_unit unit;
     uint64_t now_us;
 };

@@ -53,8 +53,8 @@ static void show(struct zcu102 *z, const char *name)
                                               .lanes = ZCU102_DISPLAY_LANES,
                                               .now_us = zcu102_now_us,
                                               .clock = &z->timer,
-                                              .width_px = rig.display.width_px,
-                                              .height_px = rig.display.height_px,
+                                              .width_px = rig.board.display.width_px,
+                                              .height_px = rig.board.display.height_px,
                                               .drawn = rig.glass,
                                               .scans = scans};
     drv_display_open(&z->display, &config);
@@ -85,10 +85,11 @@ int main(void)
         zcu102_say(&z.console, " ");
         zcu102_say_hex(&z.console, fx_crc32c(0, image, size), 8);
         zcu102_say(&z.console, "\n");
+        const struct golden_country country = {
+            .centre = flash.places[place].centre, .image = image, .image_bytes = size};
         for (uint32_t i = 0; i < golden_picture_count; i++) {
             const struct golden_picture *p = &golden_pictures[i];
-            if (p->place == place &&
-                golden_fly(&rig, p, flash.places[place].centre, image, size) == LM_OK) {
+            if (p->place == place && golden_fly(&rig, p, &country) == LM_OK) {
                 say_radar_checksum(&z, p->name);
                 show(&z, p->name);
             }

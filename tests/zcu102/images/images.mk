@@ -5,7 +5,8 @@ TEST_IMAGES := $(addprefix $(O)/,golden.elf flight.elf bench.elf devices.elf fau
 PROGRAMS    += $(TEST_IMAGES)
 image_objs   = $(addprefix $(O)/tests/zcu102/images/,$(addsuffix .o,$(1)))
 $(TEST_IMAGES): $(call image_objs,look)
-$(O)/golden.elf: $(call image_objs,golden) $(call objs,tests/golden/golden_flight.c tests/support/memory_flash.c)
+$(O)/golden.elf: $(call image_objs,golden) \
+    $(call objs,tests/golden/golden_flight.c $(addprefix tests/support/memory_,board.c flash.c))
 $(O)/flight.elf: $(call image_objs,flight peer core1 handed)
 $(O)/bench.elf: $(call image_objs,bench handed instrument) $(O)/stages.o $(O)/stages.wrap
 $(O)/bench.elf: LDFLAGS := -Wl,@$(O)/stages.wrap

@@ -80,7 +80,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct flight *f = ctx;
     f->panel.bus.polls++;
-    return f->rig->can.receive(f->rig->can.ctx, frame);
+    return f->rig->board.can.receive(f->rig->board.can.ctx, frame);
 }
 
 static struct flight *take_off(void)

@@ -868,7 +868,7 @@ TEST(the_bit_page_says_why_the_board_restarted)
     struct rig *r = start_rig();
     (void)state;
     assert_string_equal(lm_bit_row(&r->unit, LM_BIT_ROWS - 1).words, "");
-    r->board.restart = "HUNG STEP";
+    r->board.lent.restart = "HUNG STEP";
     press(r, 12);
     assert_true(says(r, "RESTART  HUNG STEP"));
     free_rig(r);
@@ -878,7 +878,7 @@ TEST(a_broken_database_leaves_a_bit_page_that_says_so)
 {
     struct rig *r = make_rig();
     r->image.bytes[100] ^= 1;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     run(r, 0.5);
     press(r, 12);
     assert_true(says(r, "DB FAIL"));

@@ -29,10 +29,10 @@ static struct rig *start_over_sea(double height_m, double speed_m_s)
     spec.rows = spec.columns = 10;
     tiny_image_free(&r->image);
     assert_int_equal(tiny_image_build(&r->image, &spec), 0);
-    memory_flash_open(&r->flash, r->image.bytes, r->image.size);
+    memory_flash_open(&r->board.flash, r->image.bytes, r->image.size);
     r->bus.height_m = height_m;
     r->bus.speed_m_s = speed_m_s;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     command(r, range_10);
     run(r, 0.5);
     return r;

@@ -21,7 +21,7 @@ TEST(the_row_of_the_database_says_that_it_failed)
 {
     struct rig *r = make_rig();
     r->image.bytes[100] ^= 1;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     assert_string_equal(lm_bit_row(&r->unit, ROW_DATABASE).words, "DB FAIL");
     free_rig(r);
 }

@@ -116,8 +116,8 @@ TEST(a_million_hostile_controls_break_no_bound)
     struct hs_rng rng;
     hs_rng_seed(&rng, seed ? strtoul(seed, NULL, 10) : 1);
     struct rig *r = make_rig();
-    r->display.width_px = r->display.height_px = 256;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    r->board.display.width_px = r->board.display.height_px = 256;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     uint32_t formats_seen = 0, modes_seen = 0;
     for (uint32_t i = 0; i < EVENTS; i += A_STEP) {
         for (uint32_t n = 0; n < A_STEP; n++) {

@@ -111,7 +111,7 @@ static struct rig *steer_to_pixel(int32_t x, int32_t y)
 {
     struct rig *r = make_rig();
     r->bus.speed_m_s = 0;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     command(r, range_10);
     run(r, 1);
     const struct lm_view *view = &r->unit.picture.view;

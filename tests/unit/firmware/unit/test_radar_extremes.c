@@ -124,7 +124,7 @@ static void repair(struct lm_radar *r)
 /* Every field of view that the mode has on its smallest scale and on its largest. */
 static void draw_mode(struct rig *r, uint32_t mode)
 {
-    const struct lm_radar *radar = r->board.radar;
+    const struct lm_radar *radar = r->board.lent.radar;
     for (uint32_t n = 0; n < 2 * LM_FOVS; n++) {
         const uint32_t field = n / 2;
         const uint32_t scale = n % 2 ? lm_radar_range_last(radar, mode, field) : 0;
@@ -166,9 +166,9 @@ static void fly(const struct lm_radar *table, double height_m)
         fail_msg("%s, element %u", fault.field, (unsigned)fault.index);
     }
     struct rig *r = make_rig();
-    r->board.radar = table;
+    r->board.lent.radar = table;
     r->bus.height_m = height_m;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     run(r, 0.1);
     for (uint32_t mode = 0; mode < LM_SECTOR_MODES; mode++) {
         draw_mode(r, mode);

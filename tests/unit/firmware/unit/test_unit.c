@@ -39,8 +39,8 @@ TEST(two_runs_give_the_same_pixels)
 TEST(another_seed_gives_other_speckle)
 {
     struct rig *a = start_rig(), *b = make_rig();
-    b->board.noise_seed = 1;
-    assert_int_equal(lm_unit_init(&b->unit, &b->board), LM_OK);
+    b->board.lent.noise_seed = 1;
+    assert_int_equal(lm_unit_init(&b->unit, &b->board.lent), LM_OK);
     run(a, 2);
     run(b, 2);
     assert_memory_not_equal(a->plane, b->plane, sizeof a->plane);
@@ -105,7 +105,7 @@ TEST(an_unusable_database_is_shown_not_hidden)
 {
     struct rig *r = make_rig();
     r->image.bytes[100] ^= 1;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     run(r, 2);
     assert_true(r->unit.flags & LM_FLAG_DB);
     assert_int_equal(lit_pixels(r), 0);
@@ -121,11 +121,11 @@ TEST(every_read_may_fail_once_and_the_sweep_goes_on)
     struct rig *clean = start_rig();
     command(clean, range_10);
     run(clean, 4);
-    const uint32_t reads = clean->flash.reads;
+    const uint32_t reads = clean->board.flash.reads;
     for (uint32_t bad = 4; bad < reads; bad += 3) { /* the first three are the database's tables */
         struct rig *r = make_rig();
-        r->flash.fail_read = bad;
-        assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+        r->board.flash.fail_read = bad;
+        assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
         command(r, range_10);
         run(r, 4);
         assert_int_equal(r->unit.count.lines, clean->unit.count.lines);
@@ -152,7 +152,7 @@ TEST(a_record_damaged_in_flight_is_flagged_counted_and_answered_coarser)
 TEST(late_flash_never_holds_the_sweep)
 {
     struct rig *r = start_rig();
-    r->flash.busy_polls = 200;
+    r->board.flash.busy_polls = 200;
     command(r, range_10);
     run(r, 3);
     assert_int_equal(r->unit.count.lines_dropped, 0);
@@ -195,7 +195,7 @@ TEST(a_patch_that_loses_its_navigation_is_drawn_again_though_no_frame_is_shown)
     command(r, patch_here);
     run(r, 4);
     assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
-    r->is_display_busy = 1;
+    r->board.acquire_status = LM_BUSY;
     r->bus.stop_us = r->now_us;
     run(r, 11);
     assert_true(r->unit.flags & LM_FLAG_NAV_DEAD);
@@ -280,8 +280,8 @@ TEST(a_patch_on_the_smallest_glass_stays_within_its_frame)
     struct rig *r = make_rig();
     const size_t end = 256 * 256;
     memset(r->plane, 0xAA, sizeof r->plane);
-    r->display.width_px = r->display.height_px = 256;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_OK);
+    r->board.display.width_px = r->board.display.height_px = 256;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
     run(r, 1);
     command(r, patch_here);
     run(r, 4);
@@ -393,13 +393,13 @@ TEST(a_busy_or_broken_display_is_counted_and_survived)
 {
     struct rig *r = start_rig();
     run(r, 1);
-    r->is_display_busy = 1;
+    r->board.acquire_status = LM_BUSY;
     run(r, 0.1);
     assert_true(r->unit.count.display_busy > 0);
-    r->is_display_broken = 1;
+    r->board.acquire_status = LM_ERR_IO;
     run(r, 0.1);
     assert_true(r->unit.count.display_errors > 0);
-    r->is_display_busy = r->is_display_broken = 0;
+    r->board.acquire_status = LM_OK;
     const uint32_t frames = r->unit.count.frames;
     run(r, 1);
     assert_in_range(r->unit.count.frames - frames, 28, 32);
@@ -409,10 +409,10 @@ TEST(a_busy_or_broken_display_is_counted_and_survived)
 TEST(a_display_of_a_size_nobody_promised_is_refused)
 {
     struct rig *r = make_rig();
-    r->display.width_px = 255;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_RANGE);
-    r->display.width_px = 1025;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_RANGE);
+    r->board.display.width_px = 255;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
+    r->board.display.width_px = 1025;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_RANGE);
     free_rig(r);
 }
 
@@ -421,7 +421,7 @@ TEST(a_radar_table_that_breaks_its_contract_is_refused)
     struct rig *r = make_rig();
     struct lm_radar radar = lm_radar_default;
     radar.mode[LM_SECTOR_GM].bars = 0;
-    r->board.radar = &radar;
-    assert_int_equal(lm_unit_init(&r->unit, &r->board), LM_ERR_TABLE);
+    r->board.lent.radar = &radar;
+    assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_ERR_TABLE);
     free_rig(r);
 }

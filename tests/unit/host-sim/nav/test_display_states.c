@@ -80,8 +80,8 @@ static void start(struct replay *r, int64_t from_us, double seconds)
     r->now_us = 0;
     r->is_silent = false;
     r->rig = make_rig();
-    r->rig->can = (struct lm_can){.ctx = r, .receive = receive};
-    assert_int_equal(lm_unit_init(&r->rig->unit, &r->rig->board), LM_OK);
+    r->rig->board.can = (struct lm_can){.ctx = r, .receive = receive};
+    assert_int_equal(lm_unit_init(&r->rig->unit, &r->rig->board.lent), LM_OK);
     send_part(r, from_us, seconds);
 }
 
@@ -278,10 +278,10 @@ TEST(the_unit_answers_in_the_step_that_hears_the_request)
 {
     struct rig *rig = make_rig();
     struct talk talk = {.asked = {.id = 128, .length = 4}};
-    rig->can = (struct lm_can){.ctx = &talk, .receive = hear_request, .send = keep_answer};
-    rig->board.bus_node = 33;
-    rig->board.hardware_revision = 2;
-    assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
+    rig->board.can = (struct lm_can){.ctx = &talk, .receive = hear_request, .send = keep_answer};
+    rig->board.lent.bus_node = 33;
+    rig->board.lent.hardware_revision = 2;
+    assert_int_equal(lm_unit_init(&rig->unit, &rig->board.lent), LM_OK);
     lm_unit_step(&rig->unit, 0);
     assert_int_equal(talk.answers, 0);
     talk.is_asked = true;
@@ -290,13 +290,13 @@ TEST(the_unit_answers_in_the_step_that_hears_the_request)
     assert_int_equal(talk.answers, 1);
     assert_true(talk.said.id == 129 && talk.said.data[0] == 33 && talk.said.data[4] == 2);
     /* A bus of another framing has no such services. */
-    rig->board.bus_profile = &lm_bus_generic;
-    assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
+    rig->board.lent.bus_profile = &lm_bus_generic;
+    assert_int_equal(lm_unit_init(&rig->unit, &rig->board.lent), LM_OK);
     talk.is_asked = true;
     lm_unit_step(&rig->unit, 2000);
     assert_int_equal(talk.answers, 1);
-    rig->board.bus_profile = &lm_bus_canas17;
-    assert_int_equal(lm_unit_init(&rig->unit, &rig->board), LM_OK);
+    rig->board.lent.bus_profile = &lm_bus_canas17;
+    assert_int_equal(lm_unit_init(&rig->unit, &rig->board.lent), LM_OK);
     lm_unit_step(&rig->unit, 2900000); /* the state is that of the step before */
     talk.is_asked = true;
     talk.asked.data[2] = LM_CANAS_STS;
