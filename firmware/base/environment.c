@@ -4,6 +4,7 @@
 
 #include "fx/sat.h"
 #include "lm/status.h"
+#include "lm/units.h"
 
 /* True if the latitude is not beyond a pole. Every longitude is allowed. */
 static bool is_on_earth(struct lm_position position)
@@ -19,8 +20,8 @@ static bool is_rain(const struct lm_rain *r)
 
 static bool is_jammer(const struct lm_jammer *j)
 {
-    return is_on_earth(j->position) && j->noise_ratio_db_q8 >= -20 * 256 &&
-           j->noise_ratio_db_q8 <= 80 * 256;
+    return is_on_earth(j->position) && j->noise_ratio_db_q8 >= LM_DB_Q8(-20) &&
+           j->noise_ratio_db_q8 <= LM_DB_Q8(80);
 }
 
 int lm_environment_check(const struct lm_environment *e)

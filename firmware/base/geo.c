@@ -5,9 +5,10 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/const.h"
+#include "lm/units.h"
 
-static const int64_t semi_major_m_q8 = LM_SEMI_MAJOR_M * 256LL;
-enum { FLATTENING_Q30 = (1 << 30) - LM_ECCENTRICITY2_Q30, DISTANCE_MAX_M_Q8 = 300000 * 256 };
+static const int64_t semi_major_m_q8 = LM_M_Q8((int64_t)LM_SEMI_MAJOR_M);
+enum { FLATTENING_Q30 = (1 << 30) - LM_ECCENTRICITY2_Q30, DISTANCE_MAX_M_Q8 = LM_M_Q8(300000) };
 
 static const int64_t one_q32 = 1LL << 32;
 
@@ -71,8 +72,8 @@ static inline fx_bam_t small_angle(int64_t t_q32)
 static inline fx_bam_t longitude_in_plane(int64_t x_q12, int64_t east_m_q12, int64_t *axis_q12)
 {
     if ((east_m_q12 < 0 ? -east_m_q12 : east_m_q12) >= x_q12 / 16) { /* near a pole */
-        const int32_t x_q8 = (int32_t)(x_q12 >> 4), east_m_q8 = (int32_t)(east_m_q12 >> 4);
-        *axis_q12 = (int64_t)fx_hypot_u32(x_q8, east_m_q8) * 16;
+        const int32_t x_q8 = lm_m_q8_of_m_q12(x_q12), east_m_q8 = lm_m_q8_of_m_q12(east_m_q12);
+        *axis_q12 = lm_m_q12_of_m_q8(fx_hypot_u32(x_q8, east_m_q8));
         return fx_atan2(east_m_q8, x_q8);
     }
     /* With t = east / x, up to 1/16, the root of x^2 + east^2 is x + east t / 2 (1 - t^2 / 4 +
@@ -98,7 +99,8 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
     /* The arc a = s / R is below 0.05: 2^27 * 2^31.4 before the shift, 2^28 after it. Short series
      * are enough: R sin a = s - s a^2 / 6 (1 - a^2 / 20), R (1 - cos a) = s a / 2 (1 - a^2 / 12).
      */
-    const int64_t s_m_q8 = fx_min_u32(distance_m_q8, DISTANCE_MAX_M_Q8), s_m_q12 = s_m_q8 * 16;
+    const int64_t s_m_q8 = fx_min_u32(distance_m_q8, DISTANCE_MAX_M_Q8),
+                  s_m_q12 = lm_m_q12_of_m_q8(s_m_q8);
     const int64_t arc_q32 = s_m_q8 * r->per_radius_q62 >> 30, square_q32 = arc_q32 * arc_q32 >> 32;
     const int64_t sixth_square_q32 = square_q32 * sixth_q32 >> 32;
     const int64_t bend_q32 =
@@ -109,7 +111,7 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
     const int64_t north_m_q12 = mul_q30(forward_q12, r->cos_q30);
     const int64_t east_m_q12 = mul_q30(forward_q12, r->sin_q30);
 
-    const int64_t x0_q12 = o->axis_distance_m_q8 * 16LL;
+    const int64_t x0_q12 = lm_m_q12_of_m_q8(o->axis_distance_m_q8);
     const int64_t x_q12 = x0_q12 - ((north_m_q12 * sin_q30 + down_q12 * cos_q30) >> 30);
     const int64_t up_q12 = (north_m_q12 * cos_q30 - down_q12 * sin_q30) >> 30; /* along the axis */
     int64_t axis_q12;
@@ -120,8 +122,9 @@ struct lm_position lm_geo_along(const struct lm_geo_ray *r, uint32_t distance_m_
      * vector beside that direction over the part along it. */
     const int64_t out_q12 = mul_q30(axis_q12 - x0_q12, FLATTENING_Q30);
     const int64_t beside_q42 = up_q12 * cos_q30 - out_q12 * sin_q30;
-    const int64_t along_m_q12 = 16 * mul_q30(o->prime_vertical_radius_m_q8, FLATTENING_Q30) +
-                                ((out_q12 * cos_q30 + up_q12 * sin_q30) >> 30);
+    const int64_t along_m_q12 =
+        lm_m_q12_of_m_q8(mul_q30(o->prime_vertical_radius_m_q8, FLATTENING_Q30)) +
+        ((out_q12 * cos_q30 + up_q12 * sin_q30) >> 30);
     return (struct lm_position){
         .latitude = o->position.latitude + small_angle(beside_q42 / (along_m_q12 >> 2)),
         .longitude = o->position.longitude + east,
@@ -257,11 +260,12 @@ static uint64_t square_q16(int64_t q8)
 
 uint32_t lm_ground_of_slant_m_q8(uint32_t slant_m_q8, int32_t height_m_q10)
 {
-    const uint64_t slant = square_q16(slant_m_q8), height = square_q16(height_m_q10 / 4);
+    const uint64_t slant = square_q16(slant_m_q8),
+                   height = square_q16(lm_m_q8_of_m_q10(height_m_q10));
     return slant > height ? fx_sqrt_u64(slant - height) : 0;
 }
 
 uint32_t lm_slant_of_ground_m_q8(uint32_t ground_m_q8, int32_t height_m_q10)
 {
-    return fx_sqrt_u64(square_q16(ground_m_q8) + square_q16(height_m_q10 / 4));
+    return fx_sqrt_u64(square_q16(ground_m_q8) + square_q16(lm_m_q8_of_m_q10(height_m_q10)));
 }

@@ -1,6 +1,7 @@
 #include "lm/foreground.h"
 
 #include "lm/kernels_clutter.h"
+#include "lm/units.h"
 #include "tops.h"
 
 lm_horizon_q40_t lm_foreground_line_horizon(const struct lm_range_grid *grid,

@@ -2,12 +2,13 @@
 
 #include "fx/root.h"
 #include "fx/sat.h"
+#include "lm/units.h"
 
 void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene)
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, scene->ownship);
-    c->position = lm_geo_direct(&origin, scene->heading, scene->scale_m / 2 * 256);
+    c->position = lm_geo_direct(&origin, scene->heading, lm_m_q8_of_m(scene->scale_m / 2));
     c->is_placed = c->is_home = true;
 }
 
@@ -19,7 +20,7 @@ void lm_cursor_stabilise(struct lm_cursor *c)
 /* The nearest offset within the circle, ahead of the aircraft. */
 static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
 {
-    const int64_t radius_px_q8 = (int64_t)radius_px * 256;
+    const int64_t radius_px_q8 = lm_px_q8_of_px(radius_px);
     o.y_px_q8 = fx_max_i32(o.y_px_q8, 0);
     const int64_t length_px_q8 = fx_hypot_u32(o.x_px_q8, o.y_px_q8);
     if (length_px_q8 > radius_px_q8) {
@@ -32,7 +33,7 @@ static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
 /* The nearest offset within the square around the middle. */
 static struct lm_offset within_square(struct lm_offset o, const struct lm_view *view)
 {
-    const int32_t edge_px_q8 = (view->radius_px - 1) * 256;
+    const int32_t edge_px_q8 = lm_px_q8_of_px(view->radius_px - 1);
     const struct lm_offset middle = lm_view_middle(view);
     return (struct lm_offset){
         middle.x_px_q8 + fx_clamp_i32(o.x_px_q8 - middle.x_px_q8, -edge_px_q8, edge_px_q8),
@@ -49,7 +50,7 @@ static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
 static int32_t way_px_q8(int32_t deflection, int32_t half_px)
 {
     const int32_t full_px_q8 =
-        half_px * 256 * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
+        lm_px_q8_of_px(half_px) * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
     return full_px_q8 * deflection / 1000;
 }
 
@@ -85,7 +86,7 @@ void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
 {
     uint32_t distance_m_q8;
     lm_geo_inverse(scene->ownship, c->position, &distance_m_q8, &c->bearing);
-    c->range_m = distance_m_q8 / 256;
+    c->range_m = lm_m_of_m_q8(distance_m_q8);
     c->offset = (struct lm_offset){0, 0};
     c->is_on_glass = lm_view_find(scene->view, c->position, &c->offset);
     if (c->is_on_glass) {

@@ -1,6 +1,7 @@
 #include "fx/sat.h"
 #include "lm/const.h"
 #include "lm/font.h"
+#include "lm/units.h"
 #include "overlay_internal.h"
 
 enum { ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
@@ -14,7 +15,7 @@ static int32_t part_of_half(const struct lm_glass *g, int32_t thousandths)
 
 static uint32_t degrees_of(fx_bam_t angle)
 {
-    return (uint32_t)(((uint64_t)angle * 360 + (1u << 31)) >> 32) % 360;
+    return lm_deg_of_bam(angle) % 360;
 }
 
 static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
@@ -27,7 +28,7 @@ static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, i
 static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
 {
     struct lm_pen pen = lm_symbol_pen(g);
-    const struct lm_spot apex = {s->view.at.x * 256, s->view.at.y * 256};
+    const struct lm_spot apex = {lm_px_q8_of_px(s->view.at.x), lm_px_q8_of_px(s->view.at.y)};
     const int32_t radius = s->view.radius_px;
     const fx_bam_t half = s->azimuth_half;
     const int32_t first = s->range_nm > 10 ? 1 : 2;

@@ -3,8 +3,9 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/units.h"
 
-enum { FARTHEST_Q8 = 250000 * 256 };
+enum { FARTHEST_Q8 = LM_M_Q8(250000) };
 
 struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_view_from *from,
                                  uint32_t range_m)
@@ -40,7 +41,7 @@ struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_position
         .up = look,
         .at = middle_of(frame),
         .middle = middle_of(frame),
-        .scale_mm_per_px_q8 = cell_mm * 256u / cell_px,
+        .scale_mm_per_px_q8 = (uint32_t)(lm_mm_q8_of_mm(cell_mm) / cell_px),
         .radius_px = cell_px * (int32_t)cells / 2,
     };
 }
@@ -85,19 +86,21 @@ struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_v
         .scale_mm_per_px_q8 = (uint32_t)((uint64_t)half_m * 512000u / square.width_px),
         .radius_px = square.width_px / 2,
     };
+    const int32_t far_px_q8 = lm_px_q8_of_px(LM_VIEW_APEX_FAR_PX);
     struct lm_offset offset = {0, 0};
-    if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_px_q8) > LM_VIEW_APEX_FAR_PX * 256 ||
-        fx_abs_u32(offset.y_px_q8) > LM_VIEW_APEX_FAR_PX * 256) {
-        offset = (struct lm_offset){0, LM_VIEW_APEX_FAR_PX * 256}; /* nothing of it can be seen */
+    if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_px_q8) > (uint32_t)far_px_q8 ||
+        fx_abs_u32(offset.y_px_q8) > (uint32_t)far_px_q8) {
+        offset = (struct lm_offset){0, far_px_q8}; /* nothing of it can be seen */
     }
-    v.at = (struct lm_point){v.middle.x - ((offset.x_px_q8 + 128) >> 8),
-                             v.middle.y + ((offset.y_px_q8 + 128) >> 8)};
+    v.at = (struct lm_point){v.middle.x - lm_px_of_px_q8(offset.x_px_q8),
+                             v.middle.y + lm_px_of_px_q8(offset.y_px_q8)};
     return v;
 }
 
 struct lm_offset lm_view_middle(const struct lm_view *v)
 {
-    return (struct lm_offset){(v->middle.x - v->at.x) * 256, (v->at.y - v->middle.y) * 256};
+    return (struct lm_offset){lm_px_q8_of_px(v->middle.x - v->at.x),
+                              lm_px_q8_of_px(v->at.y - v->middle.y)};
 }
 
 bool lm_view_find(const struct lm_view *v, struct lm_position position, struct lm_offset *offset)
@@ -107,8 +110,9 @@ bool lm_view_find(const struct lm_view *v, struct lm_position position, struct l
         return false;
     }
     const struct lm_offset middle = lm_view_middle(v);
-    if (fx_abs_u32(found.x_px_q8 - middle.x_px_q8) > LM_DRAW_FAR * 256u ||
-        fx_abs_u32(found.y_px_q8 - middle.y_px_q8) > LM_DRAW_FAR * 256u) {
+    const uint32_t far_px_q8 = (uint32_t)lm_px_q8_of_px(LM_DRAW_FAR);
+    if (fx_abs_u32(found.x_px_q8 - middle.x_px_q8) > far_px_q8 ||
+        fx_abs_u32(found.y_px_q8 - middle.y_px_q8) > far_px_q8) {
         return false;
     }
     *offset = found;
@@ -135,8 +139,8 @@ struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame,
         .apex_x_px = v->at.x,
         .apex_y_px = v->at.y,
         .cells_per_px_q16 =
-            (uint32_t)(((uint64_t)v->scale_mm_per_px_q8 << 16) / (cell_m_q8 * 1000ull)),
-        .near_cells_q8 = (int32_t)((uint64_t)edge_m_q8 * 256 / cell_m_q8),
+            (uint32_t)(((uint64_t)v->scale_mm_per_px_q8 << 16) / lm_mm_q8_of_m_q8(cell_m_q8)),
+        .near_cells_q8 = (int32_t)lm_cells_q8_of_m_q8(edge_m_q8, cell_m_q8),
     };
 }
 

@@ -7,6 +7,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/geo.h"
+#include "lm/units.h"
 
 /* A field of one sender as it stands at some moment. */
 struct reading {
@@ -37,7 +38,7 @@ static struct reading read_item(enum lm_bus_field field, const struct lm_nav_ite
     if (!item->has_value) {
         return r;
     }
-    const uint64_t stale_us = item->stale_ms * 1000ull, dead_us = item->dead_ms * 1000ull;
+    const uint64_t stale_us = lm_us_of_ms(item->stale_ms), dead_us = lm_us_of_ms(item->dead_ms);
     const bool is_ahead = item->time_us > now_us;
     const uint64_t age_us = is_ahead ? 0 : now_us - item->time_us;
     if (age_us > dead_us || (is_ahead && item->time_us - now_us > stale_us)) {
@@ -175,8 +176,8 @@ static void set_height(struct lm_ownship *out, const struct lm_nav *n, uint64_t 
     out->height_quality = height.quality;
     out->height_source = height.field;
     out->height_origin = height.origin;
-    /* mm/s * us is 1e-9 m, of which 15,625,000 make a 64th. At most 500,000 * 65,535,000. */
-    out->height_m_q6 = height.value + (int32_t)(rate.value * height.age_us / 15625000);
+    /* mm/s * us are nanometres, at most 500,000 * 65,535,000. */
+    out->height_m_q6 = height.value + lm_m_q6_of_nm(rate.value * height.age_us);
 }
 
 /* Angle in BAM that a point moves in `age_us` at `speed_mm_s` on a circle. The way is below 1.5 *
@@ -184,8 +185,8 @@ static void set_height(struct lm_ownship *out, const struct lm_nav *n, uint64_t 
  * micrometres. */
 static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_m_q8)
 {
-    const int64_t way_um = speed_mm_s * age_us / 1000;
-    return way_um * FX_BAM_PER_RADIAN / (radius_m_q8 * 15625 / 4);
+    const int64_t way_um = lm_um_of_nm(speed_mm_s * age_us);
+    return way_um * FX_BAM_PER_RADIAN / lm_um_of_m_q8(radius_m_q8);
 }
 
 /* A latitude, `age_us` later. */
@@ -204,7 +205,7 @@ static int32_t carry_longitude(int32_t longitude, int64_t age_us, fx_bam_t latit
                                const struct lm_geo_origin *origin, int64_t height_m_q8,
                                const struct velocity *v)
 {
-    const int64_t least_radius_m_q8 = 64000 << 8; /* 0.6 degree from the pole */
+    const int64_t least_radius_m_q8 = LM_M_Q8(64000); /* 0.6 degree from the pole */
     const int64_t meridian_m_q8 = origin->meridian_radius_m_q8 + height_m_q8;
     const fx_bam_t half_way =
         latitude - (fx_bam_t)(arc_bam(v->north_mm_s, age_us, meridian_m_q8) / 2);
@@ -229,7 +230,7 @@ static void set_position(struct lm_ownship *out, const struct lm_nav *n, const s
         out->position_quality = LM_NAV_STALE;
     }
     out->position_origin = origin_of(&p);
-    const int64_t height_m_q8 = (int64_t)out->height_m_q6 * 4;
+    const int64_t height_m_q8 = lm_m_q8_of_m_q6(out->height_m_q6);
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, (struct lm_position){(fx_bam_t)p.first.value, 0});
     out->latitude =
@@ -343,7 +344,7 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
     if (before.quality == LM_NAV_DEAD || v.quality == LM_NAV_DEAD || latitude == NULL) {
         return fix->value;
     }
-    const int64_t height_m_q8 = (int64_t)read_height(n, fix->time_us).value * 4;
+    const int64_t height_m_q8 = lm_m_q8_of_m_q6(read_height(n, fix->time_us).value);
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, (struct lm_position){(fx_bam_t)latitude->value, 0});
     const int32_t carried =
@@ -393,7 +394,7 @@ void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
     }
     const bool is_known = item->has_value && item->rank == rank;
     const bool goes_on = is_known && event->time_us >= item->time_us &&
-                         event->time_us - item->time_us <= item->stale_ms * 1000ull;
+                         event->time_us - item->time_us <= lm_us_of_ms(item->stale_ms);
     if (goes_on && item->node != event->node) {
         n->rivals++;
         return;

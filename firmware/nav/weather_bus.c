@@ -2,6 +2,7 @@
 
 #include "fx/sat.h"
 #include "lm/status.h"
+#include "lm/units.h"
 
 /* Which value of a set a field is. */
 struct part {
@@ -59,7 +60,7 @@ static struct lm_environment meaning_of(const struct lm_weather_slot *s, bool is
         e.jammer[0] =
             (struct lm_jammer){position, (int16_t)fx_clamp_i32(part[2], INT16_MIN, INT16_MAX)};
     } else {
-        e.rain[0] = (struct lm_rain){position, (uint32_t)fx_max_i32(part[2], 0) / 64,
+        e.rain[0] = (struct lm_rain){position, (uint32_t)lm_m_of_m_q6(fx_max_i32(part[2], 0)),
                                      (uint16_t)fx_clamp_i32(part[3], 0, UINT16_MAX)};
     }
     return e;
@@ -123,8 +124,8 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
     if (!part_of((enum lm_bus_field)event->field, &part)) {
         return;
     }
-    w->stale_us = event->stale_ms * 1000u;
-    w->dead_us = event->dead_ms * 1000u;
+    w->stale_us = (uint32_t)lm_us_of_ms(event->stale_ms);
+    w->dead_us = (uint32_t)lm_us_of_ms(event->dead_ms);
     if (event->service >= (part.is_jammer ? LM_JAMMERS_MAX : LM_RAINS_MAX)) {
         w->count.numbers++;
         return;

@@ -1,3 +1,4 @@
+#include "lm/units.h"
 #include "page_table.h"
 
 #include "fx/mem.h"
@@ -128,9 +129,10 @@ void lm_page_init(struct lm_page *p, const struct lm_radar *radar)
 struct lm_tone_config lm_page_tone(const struct lm_page *p, const struct lm_tone_config *table)
 {
     /* |gain| 30, |window| 20, |table| below 64 dB and the knob's 2: below 2^15 / 256 dB. */
-    const int32_t gain_db_q8 = p->gain_db * 256 + p->knob * LM_KNOB_FULL_Q8 / LM_FULL_DEFLECTION;
-    const int32_t black_db_q8 = table->black_db_q8 + p->black_db * 256;
-    const int32_t white_db_q8 = table->white_db_q8 + p->white_db * 256;
+    const int32_t gain_db_q8 =
+        lm_db_q8_of_db(p->gain_db) + p->knob * LM_KNOB_FULL_Q8 / LM_FULL_DEFLECTION;
+    const int32_t black_db_q8 = table->black_db_q8 + lm_db_q8_of_db(p->black_db);
+    const int32_t white_db_q8 = table->white_db_q8 + lm_db_q8_of_db(p->white_db);
     const int32_t gamma_q8 = table->gamma_q8 + p->gamma_tenths * 256 / 10;
     return (struct lm_tone_config){
         .black_db_q8 = (int16_t)(black_db_q8 - gain_db_q8),
@@ -263,7 +265,7 @@ void lm_page_show_picture(struct lm_page *p, enum lm_picture_kind kind)
 void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
 {
     if (!p->is_tilt_manual) {
-        p->tilt_tenths = (int16_t)(((int64_t)tilt * 3600 + (1LL << 31)) >> 32);
+        p->tilt_tenths = (int16_t)lm_deg_tenths_of_bam(tilt);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/font.h"
+#include "lm/units.h"
 #include "page_table.h"
 
 /* ---- the beam ---- */
@@ -28,8 +29,7 @@ static uint32_t press_tilt(struct lm_page *p, int32_t step)
 /* Half a degree up or down, from where the beam is. */
 static uint32_t step_tilt(struct lm_page *p, int32_t step)
 {
-    const int32_t most =
-        (int32_t)(((uint64_t)p->radar->antenna.tilt_max * 3600 + (1u << 31)) >> 32);
+    const int32_t most = lm_deg_tenths_of_bam((int32_t)p->radar->antenna.tilt_max);
     p->is_tilt_manual = true;
     p->tilt_tenths = (int16_t)fx_clamp_i32(p->tilt_tenths + 5 * step, -most, most);
     return LM_EFFECT_BEAM;

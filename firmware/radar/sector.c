@@ -7,6 +7,7 @@
 #include "lm/chips.h"
 #include "lm/dbs.h"
 #include "lm/environment.h"
+#include "lm/units.h"
 
 _Static_assert(LM_RADAR_CELLS_MAX * 23 / 16 <= LM_CELLS_MAX, "the lines of a window");
 

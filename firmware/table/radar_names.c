@@ -2,6 +2,7 @@
 
 #include "fx/sat.h"
 #include "lm/radar.h"
+#include "lm/units.h"
 
 static char small(char letter)
 {
@@ -50,7 +51,7 @@ int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name)
 int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees)
 {
     for (int32_t i = 0; i < LM_AZIMUTHS; i++) {
-        if (((uint64_t)radar->azimuth_half[i] * 360 + (1u << 31)) >> 32 == (uint64_t)degrees) {
+        if (lm_deg_of_bam(radar->azimuth_half[i]) == (uint32_t)degrees) {
             return i;
         }
     }

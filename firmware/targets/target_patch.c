@@ -6,6 +6,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/illumination.h"
+#include "lm/units.h"
 
 /* ---- where the points are ---- */
 

@@ -1,6 +1,7 @@
 /* The SAR patch as a kind of picture: its tiles are read first, then it is drawn once. */
 #include "fx/const.h"
 #include "fx/sat.h"
+#include "lm/units.h"
 #include "ownship.h"
 #include "picture_kind.h"
 
@@ -40,7 +41,7 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
     lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_m_q8, &back);
     lm_geo_inverse(lm_ownship_place(own), command->centre, &distance_m_q8, &bearing);
     command->look_azimuth = back + FX_BAM_180;
-    command->range_m = distance_m_q8 / 256;
+    command->range_m = lm_m_of_m_q8(distance_m_q8);
     command->height_m_q6 = lm_antenna_height_m_q6(own, &p->lent.map->db);
     *flight = (struct lm_sar_flight){.speed_mm_s = (uint32_t)own->ground_speed_mm_s,
                                      .track = own->track,
@@ -56,7 +57,8 @@ static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_com
 {
     struct lm_unit_map *map = p->lent.map;
     const uint8_t lod = lm_scan_lod(&map->db, command->cell_mm);
-    return lm_scan_elevation(&map->tiles, lod, command->centre, map->db.mean_elevation_m_q6 * 16);
+    return lm_scan_elevation(&map->tiles, lod, command->centre,
+                             lm_m_q10_of_m_q6(map->db.mean_elevation_m_q6));
 }
 
 static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)

@@ -1,4 +1,5 @@
 /* The sector as a kind of picture: swept over and over, whole or through a window. */
+#include "lm/units.h"
 #include "ownship.h"
 #include "picture_kind.h"
 
@@ -57,7 +58,7 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
     const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
     return (struct lm_platform){
         .position = lm_ownship_place(own),
-        .height_m_q10 = lm_antenna_height_m_q6(own, &p->lent.map->db) * 16,
+        .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &p->lent.map->db)),
         .heading = own->heading,
         .track = own->track,
         .speed_mm_s = is_moving ? (uint32_t)own->ground_speed_mm_s : 0,
@@ -76,8 +77,8 @@ static void recentre(struct lm_picture *p)
         return;
     }
     if (lm_view_find(&p->view, cursor->position, &at)) {
-        lm_plane_shift(&p->plane, &square, -((at.x_px_q8 - middle.x_px_q8 + 128) >> 8),
-                       (at.y_px_q8 - middle.y_px_q8 + 128) >> 8);
+        lm_plane_shift(&p->plane, &square, -lm_px_of_px_q8(at.x_px_q8 - middle.x_px_q8),
+                       lm_px_of_px_q8(at.y_px_q8 - middle.y_px_q8));
     } else {
         lm_plane_clear(&p->plane, &p->frame);
     }

@@ -2,6 +2,7 @@
 
 #include "flags.h"
 #include "lm/bit.h"
+#include "lm/units.h"
 #include "ownship.h"
 
 static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
@@ -30,7 +31,7 @@ static uint32_t to_go_s(const struct lm_unit *u, struct lm_position position)
     uint32_t distance_m_q8;
     fx_bam_t bearing;
     lm_geo_inverse(lm_ownship_place(&u->ownship), position, &distance_m_q8, &bearing);
-    const uint64_t distance_mm = (uint64_t)distance_m_q8 * 1000 / 256;
+    const uint64_t distance_mm = lm_mm_of_m_q8(distance_m_q8);
     const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
     if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
         return LM_TO_GO_NONE;

@@ -21,12 +21,6 @@
 
 #include "fx/types.h"
 
-/* Length in whole millimetres, rounded down. Sizes of map cells are in millimetres. */
-static inline uint32_t lm_mm_of_m_q8(uint32_t length_m_q8)
-{
-    return (uint32_t)((uint64_t)length_m_q8 * 1000 / 256);
-}
-
 /* A position: geodetic latitude and longitude. */
 struct lm_position {
     fx_bam_t latitude;  /* north positive; as int32_t within +-FX_BAM_90 */

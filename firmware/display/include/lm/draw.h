@@ -6,6 +6,7 @@
 
 #include "fx/types.h"
 #include "lm/port.h"
+#include "lm/units.h"
 
 /* Points may lie off the surface, but within LM_DRAW_FAR of its corner each way. */
 enum { LM_DRAW_FAR = 8191 };
@@ -22,7 +23,7 @@ struct lm_spot {
 
 static inline struct lm_spot lm_pixel_middle(struct lm_point p)
 {
-    return (struct lm_spot){p.x * 256 + 128, p.y * 256 + 128};
+    return (struct lm_spot){lm_px_q8_of_px(p.x) + 128, lm_px_q8_of_px(p.y) + 128};
 }
 
 /* With what is drawn, and on what. */
