@@ -4,7 +4,7 @@
  * Started at EL1 or EL2 by the boot firmware (FSBL and Trusted Firmware-A), which owns EL3 and
  * answers PSCI calls. At EL3 there is nobody to restart the board, so the core waits there. */
 
-        .section .text.start, "ax"
+        .section .init, "ax"
         .global _start
 _start:
         msr     daifset, #15
