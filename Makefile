@@ -25,6 +25,9 @@ $(call archive, $(LIB_firmware), $(SRC_firmware))
 $(call archive, $(LIB_drivers), $(DRIVERS:%=drivers/%.c))
 $(call archive, $(LIB_support), $(wildcard tests/support/*.c))
 
+# A make for another board: what this one was told about compilers and folders is not for it.
+make_board = env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=$(1)
+
 .PHONY: help deps all run check check-clang check-panel panel package bench gallery fuzz rooms lint format clean
 .PHONY: zcu102 run-zcu102 size bench-zcu102 coverage figures
 
@@ -101,7 +104,7 @@ figures: deps ## Print size, stack, instructions and coverage beside those of th
 rooms: $(O)/tests/discipline/flags ## Print which room, library or program may see which, and which does
 	@python3 -B tests/discipline/rooms.py $<
 
-lint: deps ## clang-format, clang-tidy, cppcheck, shellcheck, and CLANG without a warning
+lint: deps ## clang-format, clang-tidy, cppcheck, shellcheck, documents, and CLANG without a warning
 	@CLANG=$(CLANG) sh tests/discipline/lint.sh
 
 format: ## Apply clang-format to every C file

@@ -50,10 +50,15 @@ scripts() {
     git ls-files '*.sh' .ci | xargs shellcheck --severity=warning
 }
 
+documents() {
+    python3 -B tests/discipline/prose.py
+}
+
 step formatting 'clang-format'
 step clang_build "$clang without a warning"
 step mistakes 'cppcheck'
 step tidiness 'clang-tidy'
 step scripts 'shellcheck'
+step documents 'documents'
 echo "$passed passed, $failed failed, 0 skipped"
 [ $failed -eq 0 ]

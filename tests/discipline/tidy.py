@@ -24,8 +24,13 @@ def compilations(lines):
 
 
 def is_known(stamp, target):
-    newest = max(Path(path).stat().st_mtime for path in (target, ".clang-tidy"))
-    return stamp.exists() and stamp.stat().st_mtime >= newest
+    paths = [stamp, Path(target), Path(".clang-tidy")]
+    return all(path.exists() for path in paths) and stamp.stat().st_mtime >= max(p.stat().st_mtime for p in paths)
+
+
+def plain_object(build, source):
+    """A source may be compiled for tests, or for a program that makes sources, once more and in other ways."""
+    return f"{build}/{source[:-len('.c')]}.o"
 
 
 def ask(build, source, target, flags):
@@ -47,8 +52,9 @@ def main():
     build = sys.argv[1]
     jobs = {}
     for job in compilations(sys.stdin.read()):
-        if not job[0].startswith("tests/"):
-            jobs.setdefault(job[0], job)  # the first: a source may be compiled for tests again, in other ways
+        source, target, _ = job
+        if not source.startswith(("tests/", "build/")) and (source not in jobs or target == plain_object(build, source)):
+            jobs[source] = job
     if not jobs:
         print("make names no source to compile")
         return 1

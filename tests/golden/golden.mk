@@ -26,7 +26,7 @@ $(GOLDEN)/test_golden_arm64: tests/golden/test_golden_arm64.sh golden-arm64
 
 .PHONY: golden-arm64
 golden-arm64:
-	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 \
+	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(call make_board,panel-linux) ARCH=arm64 \
 	    O=$(ARM64) $(ARM64)/bin/tests/golden/golden
 endif
 

@@ -12,6 +12,6 @@ $(O)/bin/tests/kernels/test_twins: tests/kernels/test_twins.sh twins-arm64
 
 .PHONY: twins-arm64
 twins-arm64: golden-arm64
-	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 \
+	@! command -v aarch64-linux-gnu-gcc >/dev/null || $(call make_board,panel-linux) ARCH=arm64 \
 	    O=$(ARM64) $(ARM64)/bin/tests/kernels/twins
 endif

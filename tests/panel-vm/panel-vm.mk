@@ -23,11 +23,10 @@ bench-panel: deps ## Measure the panel in QEMU: nav frame to glass, regularity, 
 	@python3 -B tests/panel-vm/bench_panel.py
 
 .PHONY: bench-panel panel-vm-guest panel-vm-programs check-panel-built
-# Another machine's build takes neither compiler nor folder of this one's, as in `make check CC=clang`; `make lint` has none.
 # One after the other, because golden pictures and guest are built in one folder.
 panel-vm-guest: | golden-arm64
-	@env -u MAKEFLAGS $(MAKE) --no-print-directory -j2 BOARD=panel-linux ARCH=amd64 panel-package >/dev/null
-	@env -u MAKEFLAGS $(MAKE) --no-print-directory -j2 BOARD=panel-linux ARCH=arm64 panel-package panel-vm-programs >/dev/null
+	@$(call make_board,panel-linux) ARCH=amd64 panel-package >/dev/null
+	@$(call make_board,panel-linux) ARCH=arm64 panel-package panel-vm-programs >/dev/null
 panel-vm-programs: $(addprefix $(PANEL_VM)/,can_probe can_driver count_malloc.so)
 check-panel-built: $(PANEL_VM_TESTS)
 	@sh tests/run.sh $(O) $(PANEL_VM_TESTS)

@@ -11,11 +11,10 @@ $(ZCU102)/picture_checksum: $(O)/tests/zcu102/picture_checksum.o $(LIB_hs) $(LIB
 $(ZCU102)/picture_checksum: LDLIBS := $(call pkgs,libs,libpng)
 $(ZCU102)/scenario: $(O)/tests/zcu102/scenario.o $(call host_archives,sim drivers)
 
-# Whatever this make was told about compilers and folders is not for the board's.
 .PHONY: zcu102-images
 zcu102-images:
 	@! command -v aarch64-linux-gnu-gcc >/dev/null || \
-	    env -u MAKEFLAGS -u MAKEOVERRIDES $(MAKE) --no-print-directory -j2 BOARD=zcu102 all
+	    $(call make_board,zcu102) all
 
 $(ZCU102_TESTS): $(ZCU102)/%: tests/zcu102/%.py $(ZCU102_TOOLS) $(addprefix $(O)/bin/landmass-,sim nav) | zcu102-images
 	@mkdir -p $(@D)
