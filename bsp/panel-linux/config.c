@@ -128,7 +128,7 @@ static bool take_profile(const char *text, void *value)
 {
     const struct lm_bus_profile *profile = lm_bus_profile_named(lm_bus_profiles, text);
     if (profile != NULL) {
-        memcpy(value, &profile, sizeof profile);
+        *(const struct lm_bus_profile **)value = profile;
     }
     return profile != NULL;
 }

@@ -34,6 +34,7 @@ void lm_k_detect_in_rain(const struct lm_k_receiver *receiver, const struct lm_k
         const int32_t noise_db_q8 =
             fx_db_q8_sum_vec(r.noise_db_q8[i] + r.rise_db_q8, w.rain_db_q8[i]);
         level_db_q8[i] =
+            /* draw() fills every cell. NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage) */
             sum_db_q8(power_q24[i], w.loss_db_q8[i], noise_db_q8, draw_db_q8[i]) - r.fall_db_q8[i];
     }
 }

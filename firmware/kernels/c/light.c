@@ -162,14 +162,14 @@ void lm_k_light(const struct lm_k_lit_line *line)
     line->horizon[cells] = fx_max_i32(w->horizon[last], w->tangent[last]);
 }
 
-int32_t lm_k_highest_tangent(const struct lm_k_tops *line)
+int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
 {
-    const struct lm_k_tops tops = *line;
+    const struct lm_k_tops t = *tops;
     int32_t height_m_q14[LM_K_CODES], highest = INT32_MIN;
-    set_heights(&tops, height_m_q14);
-    for (uint32_t i = tops.first; i < tops.cells; i++) {
-        const int32_t code = (int32_t)(tops.cell[i] % LM_K_CODES);
-        highest = fx_max_i32(highest, lm_k_tangent(&tops, i, height_m_q14[code]));
+    set_heights(&t, height_m_q14);
+    for (uint32_t i = t.first; i < t.cells; i++) {
+        const int32_t code = (int32_t)(t.cell[i] % LM_K_CODES);
+        highest = fx_max_i32(highest, lm_k_tangent(&t, i, height_m_q14[code]));
     }
     return highest;
 }

@@ -43,6 +43,8 @@ void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t f
     int32_t draw_db_q8[LM_CELLS_ROOM];
     draw(row_db_q8, entry, draw_db_q8, cells);
     for (uint32_t i = 0; i < cells; i++) {
+        /* draw() fills every cell.
+         * NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
         noisy_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i], floor_db_q8) + draw_db_q8[i];
     }
 }
