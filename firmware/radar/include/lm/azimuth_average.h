@@ -1,6 +1,9 @@
-/* The ground across a sample: azimuths traced side by side, and the mean of what they show. Without
- * it, what is narrower than samples are apart would be met or missed. docs/EQUATIONS.md, "Real
- * beam".
+/* Azimuth average: mean power of several azimuths traced side by side for one sample. Without it,
+ * an object narrower than the distance between samples would be met or missed by chance.
+ *
+ * Order of the calls for a sample of n = 2^azimuths_log2 azimuths: _begin with the first, _add with
+ * the second to the last but one, _mean with the last. Source: docs/EQUATIONS.md, "Azimuth
+ * average".
  */
 #ifndef LM_AZIMUTH_AVERAGE_H
 #define LM_AZIMUTH_AVERAGE_H
@@ -12,27 +15,33 @@
 
 enum { LM_AZIMUTH_AVERAGE_LOG2_MAX = 3 }; /* eight azimuths */
 
-/* The sum of the powers of the azimuths so far, as levels. */
+/* Sum of the powers of the azimuths so far, as levels. The caller owns it. */
 struct lm_azimuth_average {
     int32_t sum_db_q8[LM_CELLS_ROOM];
 };
 
-/* How far to the right of the middle of a sample (signed BAM) the turn-th of 2^azimuths_log2
- * azimuths lies: the middles of as many equal parts of `spacing`, from the left and then from the
- * right, so that the last is one of those nearest to the sample's middle. */
+/* Offset of an azimuth from the middle of its sample, signed BAM, right positive. The azimuths are
+ * the middles of 2^azimuths_log2 equal parts of `spacing`. `turn` numbers them in the order of
+ * tracing: from the left edge inwards, then from the right edge inwards. For four azimuths:
+ *
+ *     left edge | turn 0 | turn 1 | turn 3 | turn 2 | right edge
+ *
+ * The last one traced is therefore next to the sample's middle. */
 int32_t lm_azimuth_average_offset(fx_bam_t spacing, uint32_t azimuths_log2, uint32_t turn);
 
-/* The levels of the first azimuth. */
+/* Begin with the levels of the first azimuth. */
 void lm_azimuth_average_begin(struct lm_azimuth_average *f, const int32_t *level_db_q8,
                               uint32_t cells);
 
-/* Add those of another; each is good to 0.018 dB. Cost: see docs/benchmarks.md. */
+/* Add the levels of another azimuth. Each addition is good to 0.018 dB. Cost: docs/benchmarks.md.
+ */
 void lm_azimuth_average_add(struct lm_azimuth_average *f, const int32_t *level_db_q8,
                             uint32_t cells);
 
-/* Put the mean of all 2^azimuths_log2, 1..LM_AZIMUTH_AVERAGE_LOG2_MAX, in the place of the last
- * one's levels, which are not added before; LM_LEVEL_SHADOW or hardly more where every one is that.
- */
+/* Replace `level_db_q8`, the levels of the last azimuth, by the mean power of all 2^azimuths_log2.
+ * The last azimuth must not have been added before. azimuths_log2 is
+ * 1..LM_AZIMUTH_AVERAGE_LOG2_MAX. Cells in shadow in every azimuth stay within 1/256 dB of
+ * LM_LEVEL_SHADOW. */
 void lm_azimuth_average_mean(const struct lm_azimuth_average *f, uint32_t azimuths_log2,
                              int32_t *level_db_q8, uint32_t cells);
 

@@ -1,5 +1,18 @@
-/* The beam across the line: a ring of azimuths sampled side by side, and the lines of the display
- * as their mean under the antenna's two-way pattern. docs/EQUATIONS.md, "Real beam". */
+/* Beam: the antenna in azimuth. A ring holds the last samples (azimuths traced side by side), and
+ * each line of the display is their mean under the antenna's two-way pattern.
+ *
+ *     azimuth from the sector's middle
+ *     sample     n-4   n-3   n-2   n-1    n    n+1   n+2   n+3
+ *                 |     |     |     |     |     |     |     |     D apart, sample k at (k + 1/2) D
+ *     weight      .     .     o     O  ^  O     o     .     .     2^(-8 x^2)
+ *                                      azimuth of the display line: 8 taps around it
+ *
+ *     slot       sample mod 8: a new sample beside the held ones takes the slot of the one at the
+ *                other end, so the ring always holds neighbours
+ *
+ * Order of the calls for a line: lm_beam_set_taps; while lm_beam_next_missing, fill
+ * lm_beam_slot(sample); then lm_beam_sum. No call fails.
+ * Source: docs/EQUATIONS.md, "Real beam". */
 #ifndef LM_BEAM_H
 #define LM_BEAM_H
 
@@ -12,48 +25,60 @@
 
 enum {
     LM_BEAM_TAPS = 8,
-    LM_BEAM_FINEST = 8 /* largest k of D = D0 / 2^k */
+    LM_BEAM_FINEST = 8 /* largest k of the spacing D = D0 / 2^k */
 };
 
-/* Sample n lies at azimuth (n + 1/2) D from the sector's middle; its power is in slot n mod 8. */
+/* Ring of samples. Sample n lies at azimuth (n + 1/2) D from the sector's middle, with its power in
+ * slot n mod 8. The caller owns it. */
 struct lm_beam {
-    uint8_t fineness;    /* k */
-    int32_t first, held; /* samples first .. first + held - 1 are held */
+    uint8_t fineness;    /* k of the spacing D = D0 / 2^k; D0 is the table's `sample` */
+    int32_t first, held; /* samples first .. first + held - 1 are held; held is 0..8 */
     uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
 };
 
-/* What one line of the display is made of: samples first .. first + 7, each with its weight. */
+/* Taps of one display line: samples first .. first + 7, each with its weight. */
 struct lm_beam_taps {
     int32_t first;
     uint32_t weight_q16[LM_BEAM_TAPS]; /* of sample first + j; they add up to 65536 */
 };
 
-/* Nothing is held any more: the scene has changed. */
+/* Drop all samples, because what they were traced from has changed. */
 void lm_beam_clear(struct lm_beam *b);
 
-/* Look at `azimuth` (signed BAM from the sector's middle, within +-90 degrees) with the radar's
- * beam sharpened `ratio_q8` / 256 times, a power of two (1..256). The table's `sample` is to be 2/7
- * of the beam or less, and 1/4 or more: eight samples then hold it. Samples of another fineness are
- * dropped. Cost: about 450 instructions. */
+/* Compute the taps of a display line at `azimuth` (signed BAM from the sector's middle, within +-90
+ * degrees).
+ *
+ * - ratio_q8 / 256 is the sharpening ratio, a power of two, 1..256.
+ * - The table's `sample` must be 1/4 to 2/7 of the beam: eight samples then hold the beam.
+ * - Samples of another fineness are dropped.
+ *
+ * Cost: about 450 instructions. */
 void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                       uint32_t ratio_q8, struct lm_beam_taps *taps);
 
-/* Azimuth of a sample, signed BAM, and the distance between two. */
+/* Distance D between two samples. */
 fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar);
+
+/* Azimuth of a sample, signed BAM from the sector's middle. */
 int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, int32_t sample);
 
-/* Whether a sample is held. */
+/* True if a sample is held. */
 bool lm_beam_has(const struct lm_beam *b, int32_t sample);
 
-/* Whether the look lacks a sample, and which is to be taken next: one beside those that are held,
- * where these are of any use, and else the look's first. */
+/* Find the sample to take next for these taps. True if one is missing, with *sample set to
+ * - the first of the taps, if none of the held samples is among them;
+ * - the neighbour of the held samples on the side where one is missing, otherwise.
+ * False, with *sample of no meaning, if all are held. */
 bool lm_beam_next_missing(const struct lm_beam *b, const struct lm_beam_taps *taps,
                           int32_t *sample);
 
-/* The room of a sample, which counts as held from now on; the others only if it is beside them. */
+/* Slot of a sample, which counts as held from now on: the caller fills it with the powers of its
+ * cells. The other samples stay held only if this one is their neighbour. The slot is part of *b.
+ */
 uint32_t *lm_beam_slot(struct lm_beam *b, int32_t sample);
 
-/* The line: all of the look's samples are held. Cost: see docs/benchmarks.md. */
+/* Compute the powers of the display line. All samples of the taps must be held. Cost:
+ * docs/benchmarks.md. */
 void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_taps *taps, uint32_t *power_q24,
                  uint32_t cells);
 

@@ -1,5 +1,6 @@
-/* What unsteady flight leaves of a patch's focus: every point is smeared across lines.
- * docs/EQUATIONS.md, "Unsteady flight". */
+/* Defocus: smear of a whole patch across its lines by unsteady flight. Motion compensation leaves a
+ * part of the lateral acceleration, and each point is spread over several lines.
+ * Source: docs/EQUATIONS.md, "Unsteady flight". */
 #ifndef LM_DEFOCUS_H
 #define LM_DEFOCUS_H
 
@@ -7,16 +8,18 @@
 
 enum { LM_DEFOCUS_REACH = 4 /* lines each way */ };
 
-/* Width of the smear, lines * 256: q = sqrt(1 + (0.42 f)^2), 256 for perfect focus and at most
- * 2 * LM_DEFOCUS_REACH + 1 lines. A lateral acceleration (mm/s2, below 2^24), of which
- * residual_permille (up to 1000) stays uncompensated, over the dwell. */
+/* Width of the smear in lines: q = sqrt(1 + (0.42 f)^2), where f is the quadratic phase at the ends
+ * of the aperture. 256 is perfect focus; the most is 2 * LM_DEFOCUS_REACH + 1 lines. lateral_mm_s2
+ * is below 2^24; residual_permille of it, up to 1000, stays uncompensated over the dwell. */
 uint32_t lm_defocus_lines_q8(uint32_t lateral_mm_s2, uint32_t residual_permille,
                              uint32_t wavelength_um, uint64_t dwell_us);
 
-/* Shares of the lines m - LM_DEFOCUS_REACH.. in line m, Q16, adding up to 65536. */
+/* Compute the shares of lines m - LM_DEFOCUS_REACH .. m + LM_DEFOCUS_REACH in line m. They add up
+ * to 65536. */
 void lm_defocus_shares(uint32_t width_lines_q8, uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1]);
 
-/* The line whose power is that mean of the lines' powers. Levels above 90 dB saturate. Cost: about
+/* Compute a line as the mean of the powers of its neighbours by their shares. Levels above 90 dB
+ * saturate. `level_db_q8` (result) and `power_q32` (work space) have `cells` entries. Cost: about
  * 15 instructions a cell for each line with a share. */
 void lm_defocus_run(const int32_t *const line_db_q8[2 * LM_DEFOCUS_REACH + 1],
                     const uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1], int32_t *level_db_q8,

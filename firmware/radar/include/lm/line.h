@@ -1,4 +1,4 @@
-/* Order of the stages of one line, from the map to grey, for both kinds of picture.
+/* Line: the stages from the map to grey, in the order in which a sector and a patch run them.
  *
  *     stage                        sector (lm_sector_...)       patch (lm_sar_...)
  *     ---------------------------- ---------------------------- -----------------------------
@@ -18,12 +18,11 @@
  *     pulse, noise, rain, jammers  lm_receiver_run              -
  *     level to grey                lm_tone_run                  lm_tone_run
  *
- * Down to the slant range a sector's stages work on one azimuth (a sample); from lm_beam_sum on
- * they work on a line of the display. A patch's targets come behind its speckle because what a
- * target returns is its own; its chips come before because their pixels replace the ground's.
+ * A sector's stages work on one azimuth (a sample) down to the slant range, and on a line of the
+ * display from lm_beam_sum on. A patch's scatterers come after its speckle, because the echo of a
+ * target has its own fluctuation. Its chips come before: like clutter, they are mean powers.
  *
- * lm_line_trace and lm_line_add_targets hold what is the same in both; lm/sector.h and lm/sar.h
- * string the rest together. */
+ * This header holds the stages that both pictures share. lm/sector.h and lm/sar.h call the rest. */
 #ifndef LM_LINE_H
 #define LM_LINE_H
 
@@ -32,40 +31,41 @@
 #include "lm/speckle.h"
 #include "lm/target_line.h"
 
-/* Targets that a line may meet. */
+/* Targets that a line may meet, and the line's own geometry. */
 struct lm_line_targets {
-    const struct lm_target_candidates *candidates; /* borrowed: chosen for this sweep or patch */
+    const struct lm_target_candidates *candidates; /* borrowed; selected for this sweep or patch */
     struct lm_target_line where;
 };
 
-/* Input of the stages that lm_line_trace runs; none of them changes it. Pointers are borrowed. */
+/* Set-up of the stages that lm_line_trace runs. No stage changes it. Pointers are borrowed for the
+ * call. */
 struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_class_lut *class_lut;
     const struct lm_texture *texture;
-    struct lm_noise_key noise_key; /* of the texture */
-    uint8_t lod;                   /* of the database */
+    struct lm_noise_key noise_key; /* chooses the texture */
+    uint8_t lod;                   /* LOD that the map is read from */
 };
 
-/* Work space of a line, and its result. The caller owns it, so that a bench or a test can look at
- * each stage. One is enough for all lines; nothing in it outlives the next call. */
+/* Work space and result of a line. The caller owns it, and a bench or a test can then read each
+ * stage. One serves all lines; its content is valid until the next call that takes it. */
 struct lm_line {
-    struct lm_scan_line ground;  /* cells and elevations, from the map */
-    struct lm_lit_line lit;      /* horizon, and levels as the stages change them in place */
+    struct lm_scan_line ground;  /* cells and elevations, read from the map */
+    struct lm_lit_line lit;      /* horizon, and levels that the stages change in place */
     uint8_t grey[LM_CELLS_ROOM]; /* result: 0..255 for each cell of the display line */
 };
 
-/* Trace the grid's cells along `path`: fill line->ground, and line->sight with texture and sea
- * state in its levels. `horizon` is that of the ground before the first cell. Returns the horizon
- * behind the last cell. Cells whose tile is not resident are read from a coarser one, and the tile
- * is asked for. */
+/* Trace the grid's cells along `path`: fill line->ground, and line->lit with texture and sea state
+ * in its levels. `horizon` is that of the ground before the first cell. Returns the horizon behind
+ * the last cell. A cell whose tile is not resident is read from a coarser tile, and its own tile is
+ * requested. Cost: docs/benchmarks.md. */
 lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,
                                const struct lm_line_setup *setup, const struct lm_ground_path *path,
                                lm_horizon_q40_t horizon);
 
-/* Add to line->sight.level_q8 what targets return, except for those behind the horizon. Call it
- * after speckle: an echo of a target has its own fluctuation, and a chip brings its pixels'
- * speckle. */
+/* Add to line->lit.level_db_q8 the returns of targets that the line's horizon does not hide. Call
+ * it after speckle: the echo of a scatterer has its own fluctuation, and a chip takes the speckle
+ * of its cells by itself. Cost: that of lm_target_line_add. */
 void lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
                          const struct lm_line_targets *targets);
 
