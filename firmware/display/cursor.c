@@ -17,7 +17,7 @@ void lm_cursor_stabilise(struct lm_cursor *c)
     c->is_snowplow = c->is_home = false;
 }
 
-/* The nearest offset within the circle, ahead of the aircraft. */
+/* The nearest offset within the sector's circle and not behind the aircraft. */
 static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
 {
     const int64_t radius_px_q8 = lm_px_q8_of_px(radius_px);
@@ -30,7 +30,7 @@ static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
     return o;
 }
 
-/* The nearest offset within the square around the middle. */
+/* The nearest offset within the window or patch. */
 static struct lm_offset within_square(struct lm_offset o, const struct lm_view *view)
 {
     const int32_t edge_px_q8 = lm_px_q8_of_px(view->radius_px - 1);
@@ -46,7 +46,7 @@ static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
                                          : within_square(o, view);
 }
 
-/* The deflection's way in one step, pixels * 256: at most 512 * 256 / 50. */
+/* Distance that a deflection moves the cursor in one step: at most 512 * 256 / 50. */
 static int32_t way_px_q8(int32_t deflection, int32_t half_px)
 {
     const int32_t full_px_q8 =
@@ -90,7 +90,8 @@ void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     c->offset = (struct lm_offset){0, 0};
     c->is_on_glass = lm_view_find(scene->view, c->position, &c->offset);
     if (c->is_on_glass) {
-        /* A pixel's grace: a place comes back from the ground a little moved. */
+        /* A tolerance of one pixel: a position changes a little on its way from the glass to the
+         * ground and back. */
         const struct lm_offset o = within(c->offset, scene->view);
         c->is_on_glass =
             fx_hypot_u32(o.x_px_q8 - c->offset.x_px_q8, o.y_px_q8 - c->offset.y_px_q8) <= 256;

@@ -30,19 +30,20 @@ void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, 
     }
 }
 
-/* A line's dots, from one end to the other; Q16. */
+/* Dots of a line from one end to the other: `count` of them; coordinates and steps in Q16. */
 struct dots {
     int32_t x, y, step_x, step_y, count;
 };
 
-/* Whether the end of a line and its width lie on the surface. */
+/* True if a dot of the pen's line width at p is on the surface. */
 static bool is_on_surface(const struct lm_pen *pen, struct lm_point p)
 {
     return p.x >= 0 && p.x <= pen->surface.width_px - pen->line_px && p.y >= 0 &&
            p.y <= pen->surface.height_px - pen->line_px;
 }
 
-/* Dots of a pixel or of two by two that all lie on the surface: most lines are made of these. */
+/* Draw dots of one pixel, or two by two, that are all on the surface. Most lines consist of these,
+ * so they are not clipped one by one. */
 static void draw_dots_inside(const struct lm_pen *pen, struct dots d)
 {
     const size_t stride = pen->surface.stride_px;
@@ -66,7 +67,7 @@ void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_poin
                     dx == 0 ? pen->line_px : wide + 1, dy == 0 ? pen->line_px : high + 1);
         return;
     }
-    /* |dx|, |dy| < 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
+    /* |dx| and |dy| are below 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
     struct dots d = {from.x * 65536 + 32768, from.y * 65536 + 32768, dx * 65536 / steps,
                      dy * 65536 / steps, steps + 1};
     if (pen->line_px <= 2 && is_on_surface(pen, from) && is_on_surface(pen, to)) {
@@ -96,7 +97,7 @@ void lm_draw_arc(const struct lm_pen *pen, struct lm_spot centre, int32_t radius
     }
 }
 
-/* The dots of a row that stand side by side are one box. */
+/* Draw a row of a character. Neighbouring dots are drawn as one box. */
 static void draw_dots(const struct lm_pen *pen, int32_t x, int32_t y, uint8_t row)
 {
     for (int32_t column = 0; column < LM_FONT_WIDTH; column++) {

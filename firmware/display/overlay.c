@@ -12,8 +12,8 @@ static bool is_black(const uint8_t grey[BLACK_PX])
             fx_load_u64(grey + 24)) == 0;
 }
 
-/* A table look-up a pixel, but for black: more than half of a picture lies beside the sector or
- * patch. The compiler is told that table and picture do not overlap. */
+/* One table look-up a pixel, except in runs of black: more than half of the glass is beside the
+ * sector or patch. `restrict` tells the compiler that table and picture do not overlap. */
 static void compose_row(uint32_t *restrict out, const uint8_t *restrict grey,
                         const uint32_t *restrict colours, uint32_t pixels)
 {
@@ -63,10 +63,10 @@ void lm_write(const struct lm_pen *pen, int32_t x, int32_t y, const char *words,
 
 /* ---- labels ---- */
 
-/* Where a label's text is aligned. */
+/* Edge of the glass that a label is aligned to. */
 enum side { SIDE_TOP, SIDE_RIGHT, SIDE_BOTTOM, SIDE_LEFT };
 
-/* The middle of key `place` (0..4 along its side): three tenths of half the glass apart. */
+/* Middle of key `place`, 0..4 along its side. Keys are 0.30 of half the glass apart. */
 static int32_t key_middle(int32_t place, int32_t extent_px)
 {
     return extent_px * (50 + (place - 2) * 15) / 100;
@@ -107,7 +107,6 @@ static void draw_label(const struct lm_glass *g, const struct lm_label *label, e
     }
 }
 
-/* Labels and the values between two keys, clockwise from the top left. */
 void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
 {
     struct lm_label label;

@@ -38,9 +38,10 @@ static int32_t tangent_q16_of(fx_bam_t azimuth)
     return (int32_t)((int64_t)fx_sin_q30(azimuth) * 65536 / fx_cos_q30(azimuth));
 }
 
-/* An edge of a wedge, row by row upwards from the apex; row 0 has its centres half a pixel above
- * it. The column is the first one, counted from the apex, whose centre is at or right of the edge:
- * the same edge gives the same column to the lines on both its sides. */
+/* Edge of a wedge, row by row upwards from the apex. The centres of row 0 are half a pixel above
+ * the apex. The edge's column is the first one, counted from the apex, whose centre is on the edge
+ * or right of it. Both lines that share an edge get the same column from it, so they share no
+ * pixel. */
 struct edge {
     int64_t x_q17, step_q17;
 };
@@ -65,7 +66,8 @@ static inline int64_t next_column(struct edge *e)
     return column;
 }
 
-/* The direction of the wedge's middle in cells a pixel: a pixel's projection on it is its range. */
+/* Direction of the wedge's middle, in cells a pixel. The range of a pixel is its projection on this
+ * direction. */
 struct direction {
     int64_t right_q32, up_q32;
 };
@@ -76,12 +78,13 @@ static struct direction direction_of(fx_bam_t azimuth, uint32_t cells_per_px_q16
                               (int64_t)fx_cos_q30(azimuth) * cells_per_px_q16 >> 14};
 }
 
-/* Rows from the apex, first and end. */
+/* Rows, counted from the apex: `first` up to, not including, `end`. */
 struct rows {
     int32_t first, end;
 };
 
-/* Rows of `all` from `first` up to, not including, `end`; where there is none, its end twice. */
+/* The rows from `first` up to, not including, `end` that are in `all`. An empty result is at the
+ * end of `all`. */
 static struct rows clip_rows(const struct rows *all, int64_t first, int64_t end)
 {
     const int64_t from = first > all->first ? first : all->first;
@@ -90,8 +93,8 @@ static struct rows clip_rows(const struct rows *all, int64_t first, int64_t end)
                      : (struct rows){all->end, all->end};
 }
 
-/* Rows of the clip that may hold a pixel in range, and those among them where every pixel is: on
- * neither edge does a row lie nearer or farther than these. */
+/* The rows of the clip that may hold a pixel in range. *sure gets those of them whose pixels are
+ * all in range. A row's nearest and farthest pixels are on the edges, so the edges bound both. */
 static struct rows rows_in_range(const struct lm_ppi *ppi, const struct direction *d,
                                  const struct edge *left, const struct edge *right, uint32_t cells,
                                  struct rows *sure)
@@ -99,7 +102,7 @@ static struct rows rows_in_range(const struct lm_ppi *ppi, const struct directio
     const struct lm_frame *clip = &ppi->clip;
     const int32_t bottom = ppi->apex_y_px - clip->top_px - clip->height_px;
     const struct rows all = {fx_max_i32(bottom, 0), ppi->apex_y_px - clip->top_px};
-    /* Cells a row along each edge, Q32: below 2^37. */
+    /* Cells a row along each edge, in Q32: below 2^37. */
     const int64_t at_left = d->up_q32 + (d->right_q32 * left->step_q17 >> 17);
     const int64_t at_right = d->up_q32 + (d->right_q32 * right->step_q17 >> 17);
     const int64_t least = at_left < at_right ? at_left : at_right;
@@ -111,19 +114,19 @@ static struct rows rows_in_range(const struct lm_ppi *ppi, const struct directio
     const int64_t near_q32 = (int64_t)ppi->near_cells_q8 * (1 << 24);
     const int64_t far_q32 = near_q32 + ((int64_t)cells << 32);
     const struct rows found = clip_rows(&all, near_q32 / most - 2, far_q32 / least + 2);
-    /* A pixel's range is cut by less than 2^-17 of a cell for each column before it: a cell more.
-     */
+    /* Each column before a pixel cuts less than 2^-17 of a cell off its range. A margin of one cell
+     * covers the sum. */
     const int64_t cell_q32 = (int64_t)1 << 32;
     *sure = clip_rows(&found, (near_q32 + cell_q32) / least + 2, (far_q32 - cell_q32) / most - 2);
     return found;
 }
 
-/* Columns from the apex, first and end, of what may be painted of a row. */
+/* Columns that may be painted, counted from the apex: `first` up to, not including, `end`. */
 struct columns {
     int32_t first, end;
 };
 
-/* Leave out rows where a + row b is below 0 for sure. */
+/* Leave out rows where a + row * b is certainly below 0. */
 static void keep_above(struct rows *rows, int64_t a, int64_t b)
 {
     const int64_t crossing = b == 0 ? 0 : -a / b; /* rounded towards row 0 */
@@ -134,7 +137,7 @@ static void keep_above(struct rows *rows, int64_t a, int64_t b)
     }
 }
 
-/* Leave out rows where the wedge lies beside the columns: in a window these are many. */
+/* Leave out rows where the wedge is beside the columns: most rows, in a window. */
 static void keep_meeting(struct rows *rows, const struct edge *left, const struct edge *right,
                          const struct columns *columns)
 {
@@ -142,7 +145,8 @@ static void keep_meeting(struct rows *rows, const struct edge *left, const struc
     keep_above(rows, right->x_q17 - columns->first * (1LL << 17), right->step_q17);
 }
 
-/* Whether no row of a wedge reaches beyond the columns: edges are straight. */
+/* True if no row of the wedge reaches beyond the columns. The edges are straight, so the first and
+ * the last row tell. */
 static bool are_inside(const struct edge *left, const struct edge *right, const struct rows *rows,
                        const struct columns *columns)
 {
@@ -153,9 +157,10 @@ static bool are_inside(const struct edge *left, const struct edge *right, const 
            right->x_q17 >> 17 <= columns->end && right_q17 >> 17 <= columns->end;
 }
 
-/* What is left of a wedge, from its next row on. `apex` is where that row begins in the plane, and
- * `range_q33` the range of its first pixel in cells. Centres lie at odd halves of a pixel: Q33 of
- * two halves. |2 c + 1| < 2^15 and cells a pixel below 2^36 in Q32: below 2^52. */
+/* The part of a wedge that is not painted yet. `apex` is the pixel of the next row above the apex,
+ * and `range_q33` the range in cells of that pixel's centre. Centres are at odd halves of a pixel,
+ * so ranges are sums of half steps: Q32 becomes Q33. They stay below 2^52, as |2 c + 1| < 2^15 and
+ * cells a pixel are below 2^36 in Q32. */
 struct wedge {
     struct edge left, right;
     struct direction along;
@@ -164,7 +169,8 @@ struct wedge {
     int64_t range_q33;
 };
 
-/* What is asked of a pixel before it is painted: constants where this is called. */
+/* Tests of a pixel before it is painted. Callers pass constants, so that the compiler drops the
+ * tests that are not needed. */
 struct asked {
     bool is_in_columns, is_in_range;
 };
@@ -244,7 +250,7 @@ struct lm_frame lm_frame_square(const struct lm_frame *frame)
                              .height_px = side};
 }
 
-/* One row of the picture from another, shifted. */
+/* Copy a row, shifted to the right; the rows may be the same. */
 static void shift_row(uint8_t *to, const uint8_t *from, int32_t width_px, int32_t right_px)
 {
     const int32_t kept = width_px - (int32_t)fx_abs_u32(right_px);
@@ -270,7 +276,7 @@ void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, 
 {
     const int32_t height = frame->height_px;
     uint8_t *top = plane->pixels + frame->top_px * plane->width_px + frame->left_px;
-    /* Rows in the order in which none is overwritten before it is read. */
+    /* In this order no row is overwritten before it is read. */
     for (int32_t n = 0; n < height; n++) {
         const int32_t to = down_px > 0 ? height - 1 - n : n, from = to - down_px;
         uint8_t *const row = top + to * plane->width_px;
@@ -288,7 +294,7 @@ uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
     return (uint16_t)(side >= cells ? side / cells : 1);
 }
 
-/* A cell as a square of pixels, upwards from its lower left corner. */
+/* Paint a cell: a square of pixels, upwards from its lower left corner. */
 static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, uint8_t grey)
 {
     for (int32_t row = 0; row < side_px; row++) {
@@ -300,9 +306,9 @@ static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, ui
 
 enum { AT_ONCE = 8 };
 
-/* Eight cells of two by two pixels, upwards. Pixels side by side are stored as one number; all
- * eight of these are made at once and lie in memory then, for the compiler would make each by
- * itself. */
+/* Paint eight cells of two by two pixels, upwards. Two pixels side by side are stored as one
+ * number. The empty asm statement makes the compiler compute all eight numbers in one vector
+ * operation before the first is stored. */
 static inline void paint_pairs(uint8_t *corner, ptrdiff_t up, const uint8_t *grey)
 {
     uint16_t pair[AT_ONCE];
@@ -316,8 +322,8 @@ static inline void paint_pairs(uint8_t *corner, ptrdiff_t up, const uint8_t *gre
     }
 }
 
-/* Cells upwards, eight at a time, for there is little more to each than counting: where the side is
- * a constant, a compiler leaves nothing of the loops in them. */
+/* Paint cells upwards, eight at a time: for small cells, counting costs as much as painting.
+ * Callers pass a constant side, so that the compiler unrolls the loops inside a cell. */
 static inline void paint_cells(uint8_t *corner, ptrdiff_t up, int32_t side_px, const uint8_t *grey,
                                size_t count)
 {
@@ -343,7 +349,7 @@ void lm_scan_conv_patch(const struct lm_plane *plane, const struct lm_frame *fra
     const int32_t cell_px = lm_patch_cell_px(frame, cells), side_px = cell_px * (int32_t)cells;
     const int32_t left = (frame->width_px - side_px) / 2 + (int32_t)line * cell_px;
     const int32_t bottom = (frame->height_px + side_px) / 2 - 1;
-    /* A frame smaller than the patch shows its middle. Cells are single pixels then. */
+    /* A frame smaller than the patch shows the patch's middle, with cells of one pixel. */
     if (left < 0 || left + cell_px > frame->width_px) {
         return;
     }

@@ -6,7 +6,7 @@
 
 enum { ARCMIN_HUNDREDTHS = 360 * 60 * 100 };
 
-/* The symbols' own lengths are parts of half the shorter side of the glass. */
+/* Length of a symbol, in thousandths of half the shorter side of the glass. */
 static int32_t part_of_half(const struct lm_glass *g, int32_t thousandths)
 {
     const int32_t shorter = fx_min_i32(g->surface.width_px, g->surface.height_px);
@@ -23,8 +23,8 @@ static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, i
     lm_draw_line(pen, (struct lm_point){x0, y0}, (struct lm_point){x1, y1});
 }
 
-/* Range arcs at a quarter, half and three quarters (at 10 nm the half alone), the sector's edges,
- * the beam. */
+/* Range arcs at a quarter, half and three quarters of the range (at 10 nm at the half alone), the
+ * sector's edges, and the beam. */
 static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
 {
     struct lm_pen pen = lm_symbol_pen(g);
@@ -46,8 +46,8 @@ static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
-/* A window: a bracket 1,500 feet long above its left corner, and a small cross where its middle
- * would be on the whole sector. */
+/* Symbols of a window: a bracket 1,500 feet long at its upper left corner, and a small cross where
+ * the cursor would be in the whole sector. */
 static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -66,7 +66,7 @@ static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
-/* Way of an angle along the antenna's scales: 60 degrees are 0.72 of half the glass. */
+/* Length of an angle on the antenna's scales: 60 degrees are 0.72 of half the glass. */
 static int32_t scale_px(const struct lm_glass *g, int32_t angle)
 {
     const int64_t sixty = (int64_t)FX_BAM_DEG(60);
@@ -74,8 +74,8 @@ static int32_t scale_px(const struct lm_glass *g, int32_t angle)
     return (int32_t)(clamped * part_of_half(g, 720) / sixty);
 }
 
-/* Ticks at every ten degrees up to thirty and a T that points at them: azimuth along the bottom of
- * the frame, elevation along its left side. */
+/* The antenna's scales: azimuth along the bottom of the frame, elevation along its left side. Each
+ * has ticks at every ten degrees up to thirty, and a T that points at the antenna's angle. */
 static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -101,7 +101,7 @@ static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
     line(&pen, bar_x, y - stem, bar_x, y + stem);
 }
 
-/* A bracket beside OSB 20 with a caret at the gain. */
+/* The gain: a bracket beside OSB 20 with a caret. */
 static void draw_gain(const struct lm_glass *g, int32_t gain_db)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -115,8 +115,9 @@ static void draw_gain(const struct lm_glass *g, int32_t gain_db)
     line(&pen, x, y, x - 3 * dot, y + 2 * dot);
 }
 
-/* Lines across the whole frame; in a sector also the expansion cue, four ticks an eighth of the
- * range away; in DBS1 the window of DBS2. */
+/* The cursor: lines across the whole frame, and four ticks around the window that the next field of
+ * view would cut out. In a sector these are an eighth of the range away. In a window they are drawn
+ * if a finer one is offered. */
 static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -129,7 +130,8 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     line(&pen, f->left_px, y, right, y);
     int32_t away = s->view.radius_px / 8;
     if (s->view.shape == LM_VIEW_WINDOW && s->is_finer_offered) {
-        away = s->view.radius_px * 6 / 25; /* DBS2's 0.03 of the range in EXP's eighth */
+        away =
+            s->view.radius_px * 6 / 25; /* DBS2 reaches 0.03 of the range, this window an eighth */
     } else if (s->view.shape != LM_VIEW_SECTOR) {
         return;
     }
@@ -140,7 +142,7 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
-/* A diamond. */
+/* The steerpoint: a diamond. */
 static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -151,6 +153,7 @@ static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
     }
 }
 
+/* The ownship: a circle with a line twice its radius long in the direction of its heading. */
 static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
@@ -164,7 +167,8 @@ static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
 
 /* ---- numbers ---- */
 
-/* Row 0 is above the frame, below the keys' labels; rows 1 and 2 are below it, above the labels. */
+/* Top of a row of numbers. Row 0 is between the upper labels and the frame; rows 1 and 2 are
+ * between the frame and the lower labels. */
 static int32_t row_y(const struct lm_glass *g, const struct lm_pen *pen, int32_t row)
 {
     const int32_t bottom = g->surface.height_px - (4 + 3 * 9) * pen->dot_px;
@@ -186,8 +190,8 @@ static void write_row(const struct lm_glass *g, int32_t row, enum align align, c
     lm_write(&pen, x, row_y(g, &pen, row), words, g->palette->ink);
 }
 
-/* Degrees and hundredths of minutes behind the letter of the half: "N46" LM_GLYPH_DEGREE "02.50".
- */
+/* Write the letter of the hemisphere, degrees, and minutes to the hundredth: "N46" LM_GLYPH_DEGREE
+ * "02.50". `digits` is the number of digits of the degrees. */
 static void write_angle(const struct lm_glass *g, int32_t row, const char *letter, uint32_t angle,
                         uint32_t digits)
 {
@@ -210,7 +214,7 @@ static void write_place(const struct lm_glass *g, struct lm_position position)
     write_angle(g, 2, longitude < 0 ? "W" : "E", fx_abs_u32(longitude), 3);
 }
 
-/* Bearing and range, elevation, place. */
+/* The cursor's bearing and range, elevation, and position. */
 static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 {
     const uint32_t tenths = (s->cursor_range_m * 10 + LM_NM_M / 2) / LM_NM_M;
@@ -232,7 +236,7 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
     write_place(g, s->cursor_position);
 }
 
-/* Time to go to the steerpoint, minutes and seconds. */
+/* Time to go to the steerpoint, in minutes and seconds. */
 static void write_to_go(const struct lm_glass *g, uint32_t to_go_s)
 {
     struct lm_text t = {0};

@@ -4,7 +4,7 @@
 
 enum { GREYS = 16, GRID = 10 };
 
-/* Sixteen steps of grey from black to white, and below them every grey there is. */
+/* Sixteen greys from black to white, and below them all 256. */
 static void draw_greys(const struct lm_glass *g, int32_t top, int32_t height)
 {
     struct lm_pen pen = lm_symbol_pen(g);
@@ -32,7 +32,7 @@ static void draw_colours(const struct lm_glass *g, int32_t top, int32_t height)
     }
 }
 
-/* A grid of tenths, the frame of the radar picture, and circles that must be round. */
+/* A grid of tenths of the glass, its diagonals, and circles that must be round. */
 static void draw_geometry(const struct lm_glass *g)
 {
     struct lm_pen pen = lm_pen_for(&g->surface, g->palette->faint);

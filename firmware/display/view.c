@@ -46,17 +46,16 @@ struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_position
     };
 }
 
-/* Length on the glass of a way over the ground from the origin, pixels * 256: a radar's is the
- * slant range. */
+/* Length on the glass of a ground range from the origin. A view from a height shows slant range. */
 static uint64_t length_px_q8_of(const struct lm_view *v, uint32_t ground_m_q8)
 {
     const uint32_t length_px_q8 =
         v->height_m_q10 ? lm_slant_of_ground_m_q8(ground_m_q8, v->height_m_q10) : ground_m_q8;
-    /* metres * 256 -> pixels * 256: times 256,000 / scale_mm_per_px_q8. */
+    /* m q8 to px q8: 1000 mm a metre, and 256 for the scale's own format. */
     return (uint64_t)length_px_q8 * 256000u / v->scale_mm_per_px_q8;
 }
 
-/* Offset of a place not farther than FARTHEST_Q8; false when it is. */
+/* Offset of a position. False, and *offset unchanged, beyond FARTHEST_Q8. */
 static bool offset_of(const struct lm_view *v, struct lm_position position,
                       struct lm_offset *offset)
 {
@@ -90,7 +89,7 @@ struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_v
     struct lm_offset offset = {0, 0};
     if (!offset_of(&v, centre, &offset) || fx_abs_u32(offset.x_px_q8) > (uint32_t)far_px_q8 ||
         fx_abs_u32(offset.y_px_q8) > (uint32_t)far_px_q8) {
-        offset = (struct lm_offset){0, far_px_q8}; /* nothing of it can be seen */
+        offset = (struct lm_offset){0, far_px_q8}; /* nothing of the window is in sight */
     }
     v.at = (struct lm_point){v.middle.x - lm_px_of_px_q8(offset.x_px_q8),
                              v.middle.y + lm_px_of_px_q8(offset.y_px_q8)};

@@ -1,8 +1,15 @@
-/* The cursor: a place on the ground that the operator moves over the glass.
+/* Cursor: a position on the ground that the operator moves over the glass.
  *
- * It holds its place while the aircraft flies. In snowplow it stands half the range straight ahead,
- * moves with the aircraft and cannot be slewed until it is stabilised (lm_cursor_stabilise). At
- * home, it goes with the scale: whoever changes that puts it there anew. */
+ *   state        position                                   left by
+ *   not placed   none; the next step places it              the ownship's position becoming known
+ *   home         half the range scale straight ahead of     slewing, lm_cursor_stabilise
+ *                where the aircraft was when it was placed
+ *   snowplow     half the range scale straight ahead of     lm_cursor_stabilise
+ *                the aircraft, wherever it flies; no slewing
+ *   moved        fixed on the ground
+ *
+ * A cursor at home belongs to the range scale: the caller that changes the scale calls
+ * lm_cursor_zero again. */
 #ifndef LM_CURSOR_H
 #define LM_CURSOR_H
 
@@ -11,52 +18,58 @@
 
 #include "lm/view.h"
 
-/* UNSOURCED: full deflection moves the cursor across half the shorter side of the glass in a
- * second. */
+/* Speed at full deflection, in halves of the glass's shorter side a second, and the time between
+ * two steps. UNSOURCED. */
 enum { LM_CURSOR_HALVES_PER_S = 1, LM_CURSOR_STEP_US = 20000 };
 
+/* All zero is a cursor that is not placed. */
 struct lm_cursor {
     struct lm_position position;
-    bool is_placed;         /* false until the aircraft's position is known */
-    bool is_home;           /* where lm_cursor_zero put it: nobody has moved it since */
-    bool is_snowplow;       /* and not yet stabilised */
-    int32_t slew_x, slew_y; /* deflection, thousandths */
-    uint64_t stepped_us;
-    struct lm_offset offset; /* on the glass, when is_on_glass */
-    bool is_on_glass;        /* within the sector's radius or the patch */
-    /* From the ownship. */
-    uint32_t range_m;
-    fx_bam_t bearing; /* from true north */
+    bool is_placed;         /* false until the ownship's position is known */
+    bool is_home;           /* nobody has moved it since lm_cursor_zero */
+    bool is_snowplow;       /* held ahead of the aircraft until lm_cursor_stabilise */
+    int32_t slew_x, slew_y; /* deflection right and up, -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
+    uint64_t stepped_us;    /* time of the last step */
+
+    /* Results of lm_cursor_locate. */
+    struct lm_offset offset; /* on the glass, if is_on_glass */
+    bool is_on_glass;        /* within the sector's radius, the window or the patch */
+    uint32_t range_m;        /* ground range from the ownship */
+    fx_bam_t bearing;        /* from the ownship, from true north */
 };
 
-/* What the cursor is moved against. */
+/* Surroundings of a cursor: what it is moved against. */
 struct lm_cursor_scene {
-    const struct lm_view *view;
+    const struct lm_view *view; /* borrowed for the call */
     struct lm_position ownship;
     fx_bam_t heading;
     uint32_t scale_m;     /* the display's range scale */
     int32_t half_px;      /* half the shorter side of the glass */
-    int32_t slew_percent; /* of the whole sector's pace over the glass, 1..100 */
+    int32_t slew_percent; /* speed over the glass, in per cent of that in a sector: 1..100 */
 };
 
-/* To its home: straight ahead at half the scale, held there. */
+/* Put the cursor home: straight ahead at half the scale. It stays at that place on the ground. */
 void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene);
 
-/* Hold the place that the cursor has now. */
+/* Hold the cursor at its present place on the ground; ends snowplow. */
 void lm_cursor_stabilise(struct lm_cursor *c);
 
-/* Follow deflection and aircraft. Does something, and says so, every LM_CURSOR_STEP_US; a gap
- * counts as one such step. Slewing stops at the edge of the sector's circle or of the patch; a
- * cursor that was left behind is brought back to that edge when it is slewed. */
+/* Move the cursor by its deflection, and in snowplow with the aircraft. Call in every step of the
+ * unit; it acts every LM_CURSOR_STEP_US and returns true if it did. A longer gap counts as one
+ * step.
+ *
+ * Slewing stops at the edge of the sector, window or patch. A cursor beyond that edge, because the
+ * aircraft flew on, is brought back to the edge when it is slewed. */
 bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us);
 
-/* Where the cursor lies now, on the glass and from the ownship. Whenever the view may have changed.
- * Cost: about 900 instructions. */
+/* Compute offset, is_on_glass, range and bearing. Call when the view may have changed. Cost: about
+ * 900 instructions. */
 void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene);
 
-/* What an automatic range does: 1 to the next larger scale, -1 to the next smaller, 0 to stay. Up
- * from 0.95 of the scale, down below 0.425 (FreeFalcon and FlightGear's APG-68 agree); a cursor
- * behind the aircraft or off the glass sideways changes nothing. */
+/* Range change that the automatic range asks for: 1 for the next larger scale, -1 for the next
+ * smaller, 0 for none. Up from 0.95 of the scale, down below 0.425 of it: FreeFalcon and
+ * FlightGear's APG-68 agree on these. 0 if the cursor is behind the aircraft, or too far for
+ * lm_view_find. */
 int32_t lm_cursor_wants_range(const struct lm_cursor *c, uint32_t scale_m);
 
 #endif

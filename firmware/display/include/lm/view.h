@@ -1,5 +1,21 @@
-/* How a picture on the glass lies over the ground: one point of both, the direction that is up, and
- * the scale. Sector and patch are the same to whoever draws a symbol or moves the cursor. */
+/* View: how a picture lies over the ground: origin, direction of up, and scale. Whoever draws a
+ * symbol or moves the cursor asks the view, and need not know the kind of picture.
+ *
+ *          up                     up
+ *     .     |     .           +----|----+
+ *      .    |    .            |    |    |
+ *       .   +   .  middle     |    +    |  middle = origin
+ *        .  |  .              |         |
+ *         . | .               +---------+
+ *          .|.
+ *           +  origin
+ *     sector: middle = origin    patch
+ *
+ * A window is a square cut out of a sector: its origin is the sector's apex, often far below the
+ * glass, and its middle is the square's.
+ *
+ * Where the sector or window is seen from a height, lengths on the glass are slant ranges; in a
+ * patch they are ground ranges. */
 #ifndef LM_VIEW_H
 #define LM_VIEW_H
 
@@ -10,14 +26,13 @@
 #include "lm/geo.h"
 #include "lm/scan_conv.h"
 
-/* A point of the glass with parts of a pixel, pixels * 256, from the view's origin: x to the right,
- * y up. */
+/* Offset: a point of the glass from the view's origin; x to the right, y up. */
 struct lm_offset {
     int32_t x_px_q8, y_px_q8;
 };
 
 enum lm_view_shape {
-    LM_VIEW_SECTOR, /* a sector around the ownship, the origin */
+    LM_VIEW_SECTOR, /* a sector around the ownship, which is the origin */
     LM_VIEW_WINDOW, /* a square cut out of such a sector, enlarged */
     LM_VIEW_PATCH   /* a square around the origin */
 };
@@ -25,54 +40,57 @@ enum lm_view_shape {
 struct lm_view {
     enum lm_view_shape shape;
     struct lm_position origin;
-    fx_bam_t up;            /* azimuth from north that points up */
-    int32_t height_m_q10;   /* of the antenna above flat ground, metres * 1024: lengths are slant
-                             ranges; 0 in a patch */
-    struct lm_point at;     /* the origin on the glass, or far below it: the upper left corner of
-                               this pixel */
-    struct lm_point middle; /* of the window or patch, likewise; the origin in a sector */
-    uint32_t scale_mm_per_px_q8; /* scale, millimetres * 256 a pixel; below 2^30 */
+    fx_bam_t up;                 /* azimuth from north that points up */
+    int32_t height_m_q10;        /* of the antenna above flat ground; 0 in a patch */
+    struct lm_point at;          /* the origin: the upper left corner of this pixel */
+    struct lm_point middle;      /* of the window or patch: the upper left corner of this pixel; in
+                                    a sector the same as `at` */
+    uint32_t scale_mm_per_px_q8; /* below 2^30 */
     int32_t radius_px;           /* of the sector; half a side of the window or patch */
 };
 
-/* Where a radar looks from. */
+/* Position and direction that a sector or window is seen from. */
 struct lm_view_from {
     struct lm_position position;
-    fx_bam_t up;
-    int32_t height_m_q10; /* above flat ground */
+    fx_bam_t up;          /* azimuth from north that points up */
+    int32_t height_m_q10; /* of the antenna above flat ground */
 };
 
-/* The sector around the ownship: its apex at the bottom centre of the frame. */
+/* The view of a sector of radius `range_m`, its apex at the middle of the frame's lower edge. */
 struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_view_from *from,
                                  uint32_t range_m);
 
-/* The window of half_m to each side around `centre`, in the middle of the frame's square. */
+/* The view of a window that reaches `half_m` to each side of `centre`, in the frame's square. */
 struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_view_from *from,
                                  struct lm_position centre, uint32_t half_m);
 
-/* A patch of cells x cells around `centre`, seen along `look`. */
+/* The view of a patch of cells x cells around `centre`, seen along azimuth `look`. */
 struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_position centre,
                                 fx_bam_t look, uint32_t cells, uint32_t cell_mm);
 
-/* The apex of a window's lines is not farther from its middle, either way. */
+/* Greatest distance, in x and in y, from a window's middle to the apex of its lines. */
 enum { LM_VIEW_APEX_FAR_PX = 16000 };
 
-/* Where the middle lies. */
+/* Offset of the view's middle. */
 struct lm_offset lm_view_middle(const struct lm_view *v);
 
-/* Where a place lies. False, and *offset unchanged, further than 250 km from the origin or further
- * than LM_DRAW_FAR pixels from the view's middle. Cost: about 500 instructions. */
+/* Find the offset of a position. False, and *offset unchanged, iff the position is
+ * - farther than 250 km from the origin, or
+ * - farther than LM_DRAW_FAR pixels from the view's middle, in x or in y.
+ * Cost: about 500 instructions. */
 bool lm_view_find(const struct lm_view *v, struct lm_position position, struct lm_offset *offset);
 
-/* The place under an offset, at most 250 km away. Cost: about 1,000 instructions. */
+/* The position under an offset; one farther than 250 km from the origin is brought to 250 km. Cost:
+ * about 1,000 instructions. */
 struct lm_position lm_view_place(const struct lm_view *v, struct lm_offset offset);
 
-/* How lines whose cells are `cell_m_q8` long (metres * 256) and begin `edge_m_q8` away from the
- * origin lie on the plane. */
+/* Geometry for lm_scan_conv_sector of lines whose cells are `cell_m_q8` long, and whose first cell
+ * begins `edge_m_q8` from the origin. */
 struct lm_ppi lm_view_ppi(const struct lm_view *v, const struct lm_frame *frame, uint32_t cell_m_q8,
                           uint32_t edge_m_q8);
 
-/* The pixel that holds an offset; of two, the upper one on the right. */
+/* The pixel that holds an offset. An offset on the edge between two pixels belongs to the right or
+ * the upper one. */
 struct lm_point lm_view_point(const struct lm_view *v, struct lm_offset offset);
 
 #endif
