@@ -21,7 +21,7 @@ static void add_pair(struct lm_text *t, const char *first, uint32_t value, const
     add_counter(t, second, second_value, COLUMN_SECOND_NUMBER);
 }
 
-/* Frames of the profile's identifiers that could not be believed. */
+/* Frames of the profile's identifiers whose contents were refused. */
 static uint32_t bad_frames(const struct lm_bus *bus)
 {
     uint32_t bad = 0;
@@ -101,7 +101,7 @@ static void add_flags(uint32_t flags, struct lm_text *t)
     }
 }
 
-/* The last fault first: hours, minutes and seconds since the start, and its word. */
+/* A fault: hours, minutes and seconds since the start when it rose, and its word. */
 static void add_fault(const struct lm_unit *u, uint32_t age, struct lm_text *t)
 {
     const struct lm_fault *fault = lm_fault_log_at(&u->faults, age);

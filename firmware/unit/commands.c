@@ -5,8 +5,8 @@
 
 enum { CONTROLS_A_STEP = 8, UNABLE_SHOWN_US = 2000000 };
 
-/* A cursor that nobody has moved belongs to the scale: when the operator changes that, the cursor
- * goes where it would have been put. One that the range follows stays. */
+/* Put a cursor that nobody has moved home again when the operator changes the scale. With an
+ * automatic range the scale follows the cursor, so the cursor stays. */
 static void follow_scale(struct lm_unit *u)
 {
     if (u->cursor.is_placed && u->cursor.is_home && !u->page.is_auto_range &&
@@ -16,7 +16,7 @@ static void follow_scale(struct lm_unit *u)
     }
 }
 
-/* Start a patch, or say on the glass that it cannot be. */
+/* Start a patch, or show LM_FLAG_UNABLE for a while. */
 static bool try_patch(struct lm_unit *u, const struct lm_sar_command *command, uint64_t now_us)
 {
     const bool is_started = lm_picture_start(&u->picture, LM_PICTURE_PATCH, command, now_us);
@@ -59,16 +59,17 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
         u->cursor.is_snowplow = u->page.is_snowplow;
     }
     if (effects & LM_EFFECT_CURSOR_HOME) {
-        u->cursor.is_placed = false; /* the next step puts it where it belongs */
+        u->cursor.is_placed = false; /* the next step places it */
     }
     u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
 }
 
-/* Target management switch up: stabilise a snowplow cursor, else look closely at its place. */
+/* Target management switch up: stabilise a snowplow cursor, otherwise start a patch at the cursor.
+ */
 static bool designate(struct lm_unit *u, uint64_t now_us)
 {
     if (u->page.format == LM_FORMAT_BIT || u->page.format == LM_FORMAT_TEST) {
-        return false; /* there is no cursor to be seen */
+        return false; /* no cursor is shown on these pages */
     }
     if (u->cursor.is_snowplow) {
         lm_cursor_stabilise(&u->cursor);
@@ -82,7 +83,7 @@ static bool designate(struct lm_unit *u, uint64_t now_us)
         u->unable_until_us = now_us + UNABLE_SHOWN_US;
         return false;
     }
-    u->cursor.is_home = false; /* its place is of interest */
+    u->cursor.is_home = false; /* a change of scale must not move it now */
     return try_patch(u, &command, now_us);
 }
 
@@ -91,7 +92,7 @@ static bool is_within(int32_t value, int32_t low, int32_t high)
     return value >= low && value <= high;
 }
 
-/* A command that the page took has effects; one that it refused has none. */
+/* Carry out the effects of a direct command. The page returns none if it refused the command. */
 static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
     lm_apply_effects(u, effects, now_us);

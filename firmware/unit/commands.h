@@ -1,13 +1,14 @@
-/* What the operator wants: keys, hand controls and direct commands, obeyed. */
+/* Commands: keys, hand controls and direct commands of the operator, applied to the unit. */
 #ifndef LM_UNIT_COMMANDS_H
 #define LM_UNIT_COMMANDS_H
 
 #include "lm/unit.h"
 
-/* Do what a press asked for (enum lm_effect). */
+/* Carry out the effects (bits of enum lm_effect) of a press or command. */
 void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us);
 
-/* Take keys and commands that wait. Refused ones are counted. */
+/* Apply the presses that are due and at most 8 controls that wait. Refused controls are counted in
+ * u->count.commands_refused. */
 void lm_take_controls(struct lm_unit *u, uint64_t now_us);
 
 #endif

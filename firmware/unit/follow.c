@@ -4,7 +4,9 @@
 #include "flags.h"
 #include "ownship.h"
 
-enum { ELEVATION_CELL_MM = 30000 /* the map's detail that the cursor's elevation comes from */ };
+enum {
+    ELEVATION_CELL_MM = 30000 /* cell size of the LOD that the cursor's elevation is read from */
+};
 
 static void follow_view(struct lm_unit *u)
 {
@@ -20,7 +22,7 @@ static void read_elevation(struct lm_unit *u)
     }
 }
 
-/* The page's range follows the cursor, when it is to. */
+/* Change the range scale as the cursor asks, if the range is automatic. */
 static void follow_range(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t scale_m = u->board->radar->range[u->page.range_index].range_m;

@@ -1,12 +1,12 @@
-/* Short answers about the ownship that several parts of the unit need. */
+/* Ownship helpers that several parts of the unit use. */
 #ifndef LM_UNIT_OWNSHIP_H
 #define LM_UNIT_OWNSHIP_H
 
 #include "lm/db.h"
 #include "lm/nav.h"
 
-/* Height above mean sea level, metres * 64, as the map's elevations are: satellites measure from
- * the ellipsoid. */
+/* Height above mean sea level, which the map's elevations refer to. Satellite navigation gives the
+ * height above the ellipsoid. */
 static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own, const struct lm_db *db)
 {
     const bool is_ellipsoidal = own->height_source == LM_BUS_ELLIPSOID_HEIGHT;
@@ -18,7 +18,7 @@ static inline struct lm_position lm_ownship_place(const struct lm_ownship *own)
     return (struct lm_position){own->latitude, own->longitude};
 }
 
-/* True when position and heading can be used, however old they are. */
+/* True if position and heading are good or stale. */
 static inline bool lm_ownship_is_known(const struct lm_ownship *own)
 {
     return own->position_quality != LM_NAV_DEAD && own->heading_quality != LM_NAV_DEAD;

@@ -1,18 +1,18 @@
 #include "pacing.h"
 
 enum {
-    AZIMUTHS_A_STEP = 4, /* of a sector; a line that needs more waits for the next step */
+    AZIMUTHS_A_STEP = 4, /* traced for a sector; a line that needs more waits for the next step */
     LATE_MOST_US = 50000
 };
 
-/* True when lines may be drawn now. Time spent in any other state creates no backlog. */
+/* True if lines may be drawn now. Time spent in any other state creates no backlog. */
 static bool is_drawing(struct lm_picture *p, bool may_draw, uint64_t now_us)
 {
     return may_draw && lm_picture_is_ready(p, now_us);
 }
 
-/* Limit the backlog: when drawing is too late, the overdue lines are dropped, and the picture goes
- * on from now. Returns how often that was done. */
+/* Limit the backlog: if drawing is more than LATE_MOST_US late, drop the overdue lines and continue
+ * from now. Returns 1 if lines were dropped, else 0. */
 static uint32_t drop_overdue_lines(struct lm_picture *p, bool may_draw, uint64_t now_us)
 {
     const bool is_late = is_drawing(p, may_draw, now_us);
@@ -25,7 +25,7 @@ static uint32_t drop_overdue_lines(struct lm_picture *p, bool may_draw, uint64_t
 
 struct lm_paced lm_draw_due_lines(struct lm_picture *p, bool may_draw, uint64_t now_us)
 {
-    /* To trace an azimuth is as much work as to draw a line. */
+    /* Tracing an azimuth costs as much as drawing a line. */
     uint32_t azimuths = AZIMUTHS_A_STEP;
     struct lm_paced paced = {0};
     lm_picture_prefetch(p);

@@ -10,7 +10,7 @@ static const struct lm_picture_methods *const methods_of[LM_PICTURES] = {
     [LM_PICTURE_PATCH] = &lm_picture_patch,
 };
 
-/* Those of the picture that is shown. */
+/* The methods of the picture that is shown. */
 static const struct lm_picture_methods *methods(const struct lm_picture *p)
 {
     return methods_of[p->lent.page->picture];

@@ -1,4 +1,4 @@
-/* What a kind of picture has to bring: the functions behind lm/picture.h. */
+/* Picture kind: the functions that a kind of picture implements behind lm/picture.h. */
 #ifndef LM_PICTURE_KIND_H
 #define LM_PICTURE_KIND_H
 
@@ -7,44 +7,45 @@
 enum lm_sweep {
     LM_SWEEP_GOES_ON,
     LM_SWEEP_BEGUN,
-    LM_SWEEP_BEGUN_AT_COST /* its geometry was work enough for a step */
+    LM_SWEEP_BEGUN_AT_COST /* the sweep's geometry took the time of a step */
 };
 
-/* None of these calls back into lm/picture.h: the stack stays bounded. Called once a line, a step
- * or a picture, never for a cell or a pixel. */
+/* Methods. They are called once a line, a step or a picture, never for a cell or a pixel. They must
+ * not call the functions of lm/picture.h, so that the stack stays bounded. */
 struct lm_picture_methods {
-    bool moves; /* as lm_picture_moves says */
+    bool moves; /* result of lm_picture_moves */
 
-    /* Take the request. False: it cannot be made, and *p is unchanged. */
+    /* Take the request, as lm_picture_start says. False: refused, and *p is unchanged. */
     bool (*start)(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us);
 
-    /* Go back to the first line, where the picture has one. */
+    /* Go back to the first line, in a picture that has a first line. */
     void (*restart)(struct lm_picture *p);
 
+    /* As lm_picture_prefetch and lm_picture_is_ready. */
     void (*prefetch)(struct lm_picture *p);
     bool (*is_ready)(struct lm_picture *p, uint64_t now_us);
 
-    /* Begin the sweep that the next line belongs to, where that is due: the view is then another.
-     */
+    /* Begin a sweep if the next line is its first one. The view has then changed. */
     enum lm_sweep (*begin)(struct lm_picture *p, uint64_t now_us);
 
-    /* Take samples that the next line needs. True when it has all; until then next_line_us may be
-     * put off. */
+    /* Trace samples that the next line needs, within *azimuths. True if it has all. False: more are
+     * needed, and next_line_us may have been put off. */
     bool (*sample_ahead)(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths);
 
-    /* Draw the next line into p->line.grey. Returns its number. */
+    /* Draw the next line into p->line.grey. Returns the line's number. */
     uint32_t (*draw_line)(struct lm_picture *p, uint64_t now_us);
 
     /* Paint p->line.grey, line `number`, into the plane. */
     void (*paint)(struct lm_picture *p, uint32_t number);
 
-    /* From a line to the next, microseconds. */
+    /* Time from a line to the next. */
     uint64_t (*line_us)(const struct lm_picture *p);
 
     void (*set_beam)(struct lm_picture *p);
     struct lm_view (*view)(const struct lm_picture *p);
-    const struct lm_tone_config *(*tone)(const struct lm_picture *p); /* of the radar table */
-    uint32_t (*slew_percent)(const struct lm_picture *p); /* lm/cursor.h: lm_cursor_scene */
+    const struct lm_tone_config *(*tone)(
+        const struct lm_picture *p);                      /* borrowed, of the radar table */
+    uint32_t (*slew_percent)(const struct lm_picture *p); /* as in struct lm_cursor_scene */
     bool (*needs_ownship)(const struct lm_picture *p);
     void (*describe)(const struct lm_picture *p, struct lm_symbols *symbols);
 };

@@ -1,4 +1,4 @@
-/* The SAR patch as a kind of picture: its tiles are read first, then it is drawn once. */
+/* Patch: the kind of picture that SAR makes. Its tiles are read first, then it is drawn once. */
 #include "fx/const.h"
 #include "fx/sat.h"
 #include "lm/units.h"
@@ -6,9 +6,9 @@
 #include "picture_kind.h"
 
 enum {
-    ACQUIRE_US = 500000, /* tiles are waited for so long at most */
-    SAMPLES_A_STEP = 3,  /* lines; one that needs more waits for the next step */
-    /* Tiles are asked for by every fourth line, some in a step. */
+    ACQUIRE_US = 500000, /* longest wait for the tiles */
+    SAMPLES_A_STEP = 3,  /* lines sampled a step; one that needs more waits */
+    /* Tiles are requested for every fourth line, eight lines a step. */
     LINES_APART = 4,
     PREFETCHES_A_STEP = 8
 };
@@ -18,15 +18,15 @@ static uint32_t lines_of(const struct lm_picture *p)
     return p->lent.radar->sar.cells;
 }
 
-/* Rate of turn times speed: below 2^31 / 2^29.3 rad/s times 2^21 mm/s. */
+/* Lateral acceleration: rate of turn times speed, below 2^31 / 2^29.3 rad/s times 2^21 mm/s. */
 static uint32_t lateral_mm_s2(const struct lm_ownship *own)
 {
     const uint64_t turn_bam_s = fx_abs_u32(own->turn_bam_s);
     return (uint32_t)(turn_bam_s * (uint32_t)own->ground_speed_mm_s / FX_BAM_PER_RADIAN);
 }
 
-/* The command with the geometry of this moment, and how the aircraft flies, when the patch is to be
- * seen from the ownship. */
+/* Set the geometry of a patch that is seen from the ownship, and the aircraft's flight. False if
+ * navigation is not good enough. */
 static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *command,
                             struct lm_sar_flight *flight)
 {
@@ -35,7 +35,8 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
         own->heading_quality != LM_NAV_GOOD || own->velocity_quality != LM_NAV_GOOD) {
         return false;
     }
-    /* The line of sight turns on its way: at the patch it is the way back, turned round. */
+    /* The azimuth of a geodesic changes along it. At the patch, the line of sight is the azimuth
+     * back to the aircraft, reversed. */
     uint32_t distance_m_q8;
     fx_bam_t back, bearing;
     lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_m_q8, &back);
@@ -51,8 +52,8 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
     return true;
 }
 
-/* Elevation of the map where the patch lies, metres * 1024, from the tiles that are there; asks for
- * the one that knows best. */
+/* Elevation of the map at the patch's centre, from the tiles at hand; requests the finest tile that
+ * the patch uses. */
 static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_command *command)
 {
     struct lm_unit_map *map = p->lent.map;
@@ -94,7 +95,8 @@ static void restart(struct lm_picture *p)
     lm_sar_restart(&p->sar);
 }
 
-/* While tiles are read, ask for those of some more lines: of every fourth one, and of the last. */
+/* While tiles are being read, request those of some more lines: of every fourth, and of the last.
+ */
 static void prefetch(struct lm_picture *p)
 {
     const uint32_t lines = lines_of(p);
@@ -106,8 +108,8 @@ static void prefetch(struct lm_picture *p)
     p->acquire.lines_asked_for = line;
 }
 
-/* What was known of the patch's elevation when it was asked for may have come from a coarse tile:
- * look again when all have been read. True when it is another one, which targets wait for. */
+/* Look up the patch's elevation again when its tiles have been read, as that of the start may be
+ * from a coarser tile. True if it changed: then the targets' tiles are requested once more. */
 static bool refresh_reference(struct lm_picture *p)
 {
     const int32_t reference_m_q10 = elevation_q10(p, &p->sar.command);
@@ -146,7 +148,7 @@ static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimut
     const bool has_all =
         lm_sar_sample_ahead(&p->sar, &p->lent.map->tiles, SAMPLES_A_STEP, &p->line);
     if (!has_all && p->sar.line == 0) {
-        p->next_line_us = now_us; /* nothing is owed yet */
+        p->next_line_us = now_us; /* the first line creates no backlog */
     }
     return has_all;
 }

@@ -1,4 +1,4 @@
-/* The sector as a kind of picture: swept over and over, whole or through a window. */
+/* Sector: the kind of picture that is swept over and over, whole or in a window. */
 #include "lm/units.h"
 #include "ownship.h"
 #include "picture_kind.h"
@@ -12,7 +12,8 @@ static struct lm_beam_setting beam_of(const struct lm_page *page)
     };
 }
 
-/* A window needs a cursor: until there is one, the whole sector. */
+/* Start a sweep. A window is centred on the cursor; until that is placed, the whole sector is
+ * swept. */
 static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
 {
     (void)patch;
@@ -39,7 +40,7 @@ static void sweep_on(struct lm_picture *p)
     (void)p;
 }
 
-/* Tiles are asked for when lines are drawn. */
+/* The sector requests its tiles when it samples. */
 static void prefetch_none(struct lm_picture *p)
 {
     (void)p;
@@ -66,7 +67,7 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
     };
 }
 
-/* A window is put around the cursor anew before each sweep: what is drawn moves with it. */
+/* Centre the window on the cursor before each sweep, and shift what is drawn accordingly. */
 static void recentre(struct lm_picture *p)
 {
     struct lm_offset at;
@@ -143,7 +144,8 @@ static uint32_t scale_m(const struct lm_picture *p)
     return p->lent.radar->range[p->lent.page->range_index].range_m;
 }
 
-/* A window is seen from where its sweep began; the whole sector from where the aircraft is. */
+/* A window keeps the position and heading of its sweep's start; the whole sector moves with the
+ * aircraft. */
 static struct lm_view view(const struct lm_picture *p)
 {
     const struct lm_sector *s = &p->sector;
@@ -163,7 +165,7 @@ static const struct lm_tone_config *tone(const struct lm_picture *p)
     return &p->lent.radar->mode[p->lent.page->mode].tone;
 }
 
-/* Of the field that is swept, which is another than the page's while the cursor is awaited. */
+/* Of the field of view that is swept. It differs from the page's while the cursor is awaited. */
 static uint32_t slew_percent(const struct lm_picture *p)
 {
     return p->lent.radar->fov[p->sector.command.fov].slew_percent;
@@ -175,7 +177,7 @@ static bool needs_ownship(const struct lm_picture *p)
     return true;
 }
 
-/* Where the cursor would be if the whole sector were shown. */
+/* Set the cue: where the cursor would be in the whole sector. */
 static void describe_window(const struct lm_picture *p, struct lm_symbols *symbols)
 {
     const struct lm_view_from from = {lm_ownship_place(p->lent.ownship), p->view.up,

@@ -18,7 +18,7 @@ static void describe_cursor(const struct lm_unit *u, struct lm_symbols *s)
     s->cursor_elevation_m_q10 = u->cursor_elevation_m_q10;
 }
 
-/* Where it is to go: as commanded, or else the bus's steerpoint, while that is not stale. */
+/* Find the steerpoint: the commanded one, or else the bus's while it is good. */
 static bool find_steerpoint(const struct lm_unit *u, struct lm_position *position)
 {
     *position = u->steerpoint.is_commanded ? u->steerpoint.position : u->ownship.steerpoint;
@@ -58,8 +58,8 @@ static void describe_steerpoint(const struct lm_unit *u, struct lm_symbols *s)
     }
 }
 
-/* The aircraft over a picture that stands. It does not stand on the ground that slant ranges are
- * for. */
+/* Locate the aircraft over a picture that stands. Slant ranges are those of points on the ground;
+ * the aircraft is not on the ground, so it is located by ground range. */
 static void describe_ownship(const struct lm_unit *u, struct lm_symbols *s)
 {
     struct lm_view level = u->picture.view;
@@ -109,7 +109,7 @@ static void show_test(const struct lm_unit *u, const struct lm_glass *glass)
     lm_overlay_test_pattern(glass);
 }
 
-/* What each page draws under its labels. */
+/* Drawing function of each page; the labels are drawn over it. */
 static void (*const draw_page[LM_FORMATS])(const struct lm_unit *u,
                                            const struct lm_glass *glass) = {
     [LM_FORMAT_RADAR] = show_radar, [LM_FORMAT_CNTL] = show_radar, [LM_FORMAT_DCLT] = show_radar,
@@ -137,7 +137,7 @@ void lm_show_frame(struct lm_unit *u, uint64_t now_us)
     draw_glass(u, &surface);
     u->count.display_errors += display->present(display->ctx) != LM_OK;
     u->count.frames++;
-    /* Frames that were missed are not made up for. */
+    /* Missed frames are not drawn later. */
     u->next_frame_us += LM_FRAME_US;
     if (u->next_frame_us <= now_us) {
         u->next_frame_us = now_us + LM_FRAME_US;

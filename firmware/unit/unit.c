@@ -85,8 +85,8 @@ static void take_bus(struct lm_unit *u, uint64_t now_us)
     lm_nav_at(&u->nav, now_us, &u->ownship);
 }
 
-/* The aircraft is somewhere else at once: lines drawn from there and from here must not stand side
- * by side. */
+/* After a jump of the position or a change of its sender, start the picture again: lines seen from
+ * two positions must not stand side by side. */
 static void restart_after_jump(struct lm_unit *u, uint64_t now_us)
 {
     const bool is_other_source = u->ownship.position_quality != LM_NAV_DEAD &&

@@ -5,7 +5,7 @@
 
 enum { TILE_READS_A_STEP = 16 };
 
-/* The image's targets, while no tile is being read yet. */
+/* Read the image's targets. No tile is being read yet, so this may wait for the flash. */
 static void read_targets(struct lm_unit_map *m, uint32_t poll_limit)
 {
     uint32_t count = 0;
@@ -19,8 +19,8 @@ static void read_targets(struct lm_unit_map *m, uint32_t poll_limit)
     m->count.targets_lost = m->db.target_count - count;
 }
 
-/* The image's signatures. Targets name them by number, so each stays in its place; one that is lost
- * leaves its targets without a return. */
+/* Read the image's signatures. Targets name them by number, so each keeps its number, and one that
+ * is lost is left empty: its targets return no echo. */
 static void read_signatures(struct lm_unit_map *m, uint32_t poll_limit)
 {
     const uint32_t count = fx_min_u32(m->db.signature_count, LM_SIGNATURES_MAX);

@@ -16,7 +16,7 @@ int lm_unit_weather_command(struct lm_unit_weather *w, const struct lm_environme
         return LM_ERR_RANGE;
     }
     w->commanded = *commanded;
-    lm_unit_weather_at(w, now_us); /* the next line or patch meets it */
+    lm_unit_weather_at(w, now_us); /* lines and patches of this step meet it already */
     return LM_OK;
 }
 

@@ -1,4 +1,4 @@
-/* The BIT page: what the unit knows about itself, a row of text at a time. */
+/* BIT page: the built-in test's versions, counters and faults, as rows of text. */
 #ifndef LM_BIT_H
 #define LM_BIT_H
 
@@ -7,7 +7,14 @@
 
 enum { LM_BIT_ROWS = 21 };
 
-/* Row 0..LM_BIT_ROWS - 1. A number of the unit's counters stands behind each name. */
+/* The text of a row, 0..LM_BIT_ROWS - 1; it may be empty:
+ *
+ *     0..2    version, title and size of the image
+ *     3..14   counters, two in a row, each a name and its number
+ *     15      flags that are raised now
+ *     16..19  the faults that rose last, the latest first
+ *     20      cause of the board's last restart
+ */
 struct lm_text lm_bit_row(const struct lm_unit *u, uint32_t row);
 
 #endif

@@ -1,4 +1,4 @@
-/* Coverage of a picture by the map: how many of its cells lie outside, a cell in sixteen. */
+/* Coverage: how much of a picture the map covers, estimated from every sixteenth cell. */
 #ifndef LM_COVERAGE_H
 #define LM_COVERAGE_H
 
@@ -8,14 +8,15 @@
 #include "lm/scan_line.h"
 
 struct lm_coverage {
-    uint32_t cells_none, cells_seen; /* outside the map, and all that were looked at */
-    bool is_off_map;                 /* as judged last */
+    uint32_t cells_none; /* sampled cells outside the map */
+    uint32_t cells_seen; /* all sampled cells */
+    bool is_off_map;     /* result of lm_coverage_judge */
 };
 
-/* Look at the first `cells` cells of a line. */
+/* Sample the first `cells` cells of a line. */
 void lm_coverage_add(struct lm_coverage *c, const struct lm_scan_line *line, uint32_t cells);
 
-/* Off the map is a picture that has more than half of its cells outside. */
+/* Set is_off_map: true if more than half of the sampled cells are outside the map. */
 void lm_coverage_judge(struct lm_coverage *c);
 
 #endif

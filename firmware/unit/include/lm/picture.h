@@ -1,11 +1,21 @@
-/* The radar picture: a sector or a patch, drawn line by line into the plane.
+/* Picture: the radar picture, a sector or a patch, drawn line by line into the plane.
  *
- * Every kind of picture (enum lm_picture_kind) stands behind the functions below; nobody else asks
- * which kind is shown. A new kind is a file beside picture_sector.c and picture_patch.c, a row of
- * the table in picture.c, its name in lm/radar.h and its state in struct lm_picture.
+ * The functions below are the interface of every kind of picture (enum lm_picture_kind); no other
+ * part of the unit asks which kind is shown. A new kind is a file beside picture_sector.c and
+ * picture_patch.c, a row of the table in picture.c, its name in lm/radar.h and its state in struct
+ * lm_picture.
  *
- * Order of the calls: init, start, and then in each step prefetch, while is_ready: draw_line, and
- * once a frame describe. */
+ * Order of calls:
+ *
+ *     lm_picture_init
+ *     lm_picture_start           whenever the operator selects another picture
+ *     in each step:
+ *         lm_picture_follow_view
+ *         lm_picture_prefetch
+ *         while a line is due and lm_picture_is_ready: lm_picture_draw_line
+ *     in each frame:
+ *         lm_picture_describe
+ */
 #ifndef LM_PICTURE_H
 #define LM_PICTURE_H
 
@@ -22,14 +32,15 @@
 #include "lm/sector.h"
 #include "lm/unit_map.h"
 
-/* What every picture reads. All borrowed, for as long as the picture lives. */
+/* What the picture reads. All pointers stay borrowed as long as the picture is used. */
 struct lm_picture_lent {
     const struct lm_radar *radar;
     struct lm_unit_map *map;
     const struct lm_environment *environment;
     const struct lm_ownship *ownship;
-    struct lm_page *page;     /* what is selected; notes which picture begins and the beam's tilt */
-    struct lm_cursor *cursor; /* where windows and patches lie; located again in a new view */
+    struct lm_page
+        *page; /* the operator's selection; is told of the picture's kind and the beam's tilt */
+    struct lm_cursor *cursor; /* centre of windows and patches; is located again in a new view */
     uint32_t noise_seed;
 };
 
@@ -37,77 +48,77 @@ struct lm_picture {
     struct lm_picture_lent lent;
 
     struct lm_sector sector;
-    bool is_cursor_awaited; /* by a window: the whole sector is swept until the cursor is placed */
+    bool is_cursor_awaited; /* a window is selected, but swept as NORM until the cursor is placed */
 
     struct lm_sar sar;
     struct {
-        bool is_reading;          /* tiles of the patch are being read, and no line is drawn */
-        uint32_t lines_asked_for; /* lines whose tiles were asked for */
-        uint64_t until_us;        /* then lines are drawn with the tiles that have come */
+        bool is_reading;          /* the patch's tiles are being read; no line is drawn */
+        uint32_t lines_asked_for; /* the tiles of lines below this one were requested */
+        uint64_t until_us;        /* end of the wait: lines are then drawn with the tiles at hand */
     } acquire;
 
     struct lm_tone tone[LM_PICTURES];
-    struct lm_line line; /* work */
+    struct lm_line line; /* work space */
     struct lm_coverage coverage;
     uint64_t next_line_us; /* when the next line is due */
 
-    struct lm_plane plane; /* the pixels are the board's */
-    struct lm_frame frame; /* where radar is drawn in it */
-    struct lm_view view;   /* how the picture in the plane lies over the ground */
-    bool is_view_held;     /* the picture stands, and the aircraft moves over it */
+    struct lm_plane plane; /* the pixels are lent by the board */
+    struct lm_frame frame; /* part of the plane that shows radar */
+    struct lm_view view;   /* of the picture in the plane */
+    bool is_view_held;     /* the picture stands and the aircraft moves over it */
 };
 
-/* Nothing is shown yet: the plane is black, and lm_picture_start comes next. */
+/* Begin with a black plane; *lent and *plane are copied. lm_picture_start must be the next call. */
 void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
                      const struct lm_plane *plane);
 
-/* Begin a picture, as the page has it selected, on a black plane; the page notes its kind. `patch`
- * is the request for a patch, and NULL for any other kind. False, with the picture at hand going on
- * unchanged, when
- * - there is no map that a patch could be made from;
- * - the patch is to be seen from the ownship, and navigation is not good (enum lm_nav_quality);
- * - lm_sar_start refuses it.
- * A sector always begins. */
+/* Begin a picture of the page's settings on a black plane. Its kind becomes the page's. `patch` is
+ * the request for a patch, copied, and NULL for any other kind. A sector always begins. Returns
+ * false, and the present picture goes on unchanged, iff
+ * - a patch is asked for and there is no usable map;
+ * - the patch is seen from the ownship, and navigation is not good (enum lm_nav_quality);
+ * - lm_sar_start refuses the patch. */
 bool lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
                       const struct lm_sar_command *patch, uint64_t now_us);
 
-/* Remove what is drawn, because the glass may not show it any longer. A patch then begins again
- * from its first line; a sector sweeps on. */
+/* Make the plane black, because what it shows is no longer true. A patch begins again from its
+ * first line; a sector sweeps on. */
 void lm_picture_remove(struct lm_picture *p);
 
-/* Take the page's gain and tone, for every kind of picture. */
+/* Take the page's gain and tone settings, for every kind of picture. */
 void lm_picture_set_tone(struct lm_picture *p);
 
-/* Point the beam as the page says. A patch's beam is not the operator's: nothing happens. */
+/* Take the page's tilt and beam shape. No effect on a patch, whose beam the operator does not
+ * point. */
 void lm_picture_set_beam(struct lm_picture *p);
 
-/* Ask for some tiles that lines to come will need. Once a step. */
+/* Request some tiles of lines to come. Call once a step. Never waits. */
 void lm_picture_prefetch(struct lm_picture *p);
 
-/* True when lines may be drawn at `now_us`; false while tiles are awaited and once the picture is
- * complete. */
+/* True if lines may be drawn at `now_us`: no tiles are awaited, and the picture is not complete. */
 bool lm_picture_is_ready(struct lm_picture *p, uint64_t now_us);
 
-/* Draw the next line into the plane and say when the one after is due (next_line_us). Takes off
- * `*azimuths` what it traced of the azimuths that this step may still trace. False when the line
- * needs more samples than that: call again in the next step. */
+/* Draw the next line into the plane, and advance next_line_us to when the line after it is due.
+ * *azimuths is the number of azimuths that this step may still trace; those traced are subtracted.
+ * False if the line needs more samples than that, or a sweep began: call again in the next step. */
 bool lm_picture_draw_line(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths);
 
-/* Put the view where the picture lies now, and the cursor in it. A picture that moves with the
- * aircraft keeps the view it was drawn with while it `is_standing`. */
+/* Update the view, and locate the cursor in it. A picture that moves with the aircraft keeps the
+ * view it was drawn with while it `is_standing`. */
 void lm_picture_follow_view(struct lm_picture *p, bool is_standing);
 
-/* True for a picture that is drawn around the aircraft and moves with it, at the page's range
- * scale: it begins again when the aircraft's position jumps. */
+/* True if the picture is drawn around the aircraft, at the page's range scale, and moves with it.
+ * Such a picture must be started again when the aircraft's position jumps. */
 bool lm_picture_moves(const struct lm_picture *p);
 
-/* True when the picture cannot go on without the ownship. */
+/* True if the picture cannot be continued without the ownship's position. */
 bool lm_picture_needs_ownship(const struct lm_picture *p);
 
-/* What the cursor is moved against; good until the picture changes. */
+/* Surroundings of the cursor; the view in it is borrowed from *p. */
 struct lm_cursor_scene lm_picture_cursor_scene(const struct lm_picture *p);
 
-/* Fill in the symbols that belong to the kind of picture: scales and antenna, window, patch. */
+/* Set the members of *symbols that belong to the kind of picture: those of sector, window, antenna
+ * or patch. */
 void lm_picture_describe(const struct lm_picture *p, struct lm_symbols *symbols);
 
 #endif

@@ -1,12 +1,28 @@
 /* Display unit: bus frames and controls in, pictures out.
  *
  * A board fills struct lm_board, calls lm_unit_init once, and then lm_unit_step for ever, from one
- * thread; drivers are called back from inside these two. The unit allocates nothing and keeps all
- * of its state in struct lm_unit, so that two units do not disturb each other.
+ * thread. Drivers are called back from inside these two. The unit allocates nothing and keeps all
+ * of its state in struct lm_unit; two units in one program do not disturb each other. A board's
+ * main loop:
  *
- * Its parts call one way: unit.c -> follow.c -> commands.c -> picture.c, unit.c -> pacing.c ->
- * picture.c, unit.c -> flags.c, unit.c -> present.c. When a board may feed its watchdog:
- * lm/liveness.h. What counts as a fault: lm/fault_log.h. */
+ *     static struct lm_unit unit;
+ *     static _Alignas(8) uint8_t tiles[384 * sizeof(struct lm_tile)];
+ *     static uint8_t plane[768 * 768];
+ *     const struct lm_board board = {
+ *         .radar = &lm_radar_default, .flash = &flash, .can = &can, .controls = &controls,
+ *         .display = &display, .tile_pool = tiles, .tile_pool_bytes = sizeof tiles,
+ *         .plane = plane, .flash_poll_limit = 1000000};
+ *     if (lm_unit_init(&unit, &board) != LM_OK) { stop(); }
+ *     for (;;) { lm_unit_step(&unit, clock_us()); sleep_ms(2); }
+ *
+ * Its parts call each other in one direction:
+ *
+ *     unit.c -+-> follow.c ---> commands.c -+
+ *             +-> pacing.c -----------------+-> picture.c -> picture_sector.c, picture_patch.c
+ *             +-> flags.c
+ *             +-> present.c
+ *
+ * lm/liveness.h says when a board may feed its watchdog, lm/fault_log.h which flags are faults. */
 #ifndef LM_UNIT_H
 #define LM_UNIT_H
 
@@ -24,96 +40,103 @@
 #include "lm/unit_map.h"
 #include "lm/unit_weather.h"
 
-/* Ports and memory that a board lends. All pointers stay valid as long as the unit lives; none may
- * be NULL unless that is said. */
+/* Board: the ports and memory that it lends. All pointers stay borrowed as long as the unit lives.
+ * None may be NULL unless its remark says so. */
 struct lm_board {
     const struct lm_radar *radar;
     const struct lm_flash *flash;
     const struct lm_can *can;
     const struct lm_bus_profile *bus_profile; /* NULL: lm_bus_canas17 */
-    uint8_t bus_node;          /* of CANaerospace, its own; 0: it takes no part in node services */
-    uint8_t hardware_revision; /* told to whoever asks on the bus */
+    uint8_t bus_node;          /* the unit's CANaerospace node, 1..255; 0: no node services */
+    uint8_t hardware_revision; /* told on the bus on request */
     const struct lm_controls *controls;
     const struct lm_display *display;
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
-    uint8_t *plane;            /* display width * height bytes */
-    uint32_t noise_seed;       /* another one gives other speckle, everything else the same */
-    uint32_t flash_poll_limit; /* polls after which a read at start-up is given up */
-    const char *restart; /* why the board restarted, in 20 capitals; NULL: it was switched on */
+    uint8_t *plane;            /* one byte for each pixel of the display */
+    uint32_t noise_seed;       /* chooses the draws of speckle and noise, and nothing else */
+    uint32_t flash_poll_limit; /* polls after which a read at the start is given up */
+    const char *restart;       /* cause of the board's restart, at most 20 capitals; NULL: power was
+                                  switched on */
 };
 
+/* Time between two frames, and the silence on the bus after which LM_FLAG_BUS rises. */
 enum { LM_FRAME_US = 33333, LM_BUS_SILENT_US = 1000000 };
 
+/* Elevation of a position outside the map. */
 #define LM_NO_ELEVATION INT32_MIN
 
-/* The unit's state. Every part is written by its own functions alone; boards and tests may read. */
+/* State of the unit. Each part is written by its own functions alone; boards and tests may read it.
+ */
 struct lm_unit {
     const struct lm_board *board; /* borrowed */
 
     struct lm_bus bus;
     struct lm_nav nav;
     struct lm_canas_service service;
-    uint64_t last_bus_us; /* when a frame last came */
+    uint64_t last_bus_us; /* arrival of the last frame that was no error report */
     struct {
-        uint32_t jumps; /* of the nav */
-        uint16_t rank;  /* of the sender of the position */
+        uint32_t jumps; /* nav.position_jumps as of the last step */
+        uint16_t rank;  /* rank of the position's sender (struct lm_nav_origin) as of then */
     } position_seen;
     struct lm_ownship ownship; /* extrapolated to the last step */
     struct lm_unit_weather weather;
 
     struct lm_unit_map map;
     struct {
-        uint32_t seen; /* reads that failed and records that did not check */
-        uint64_t grew_us;
+        uint32_t seen;    /* reads that failed and records with a wrong CRC */
+        uint64_t grew_us; /* when `seen` last grew */
     } tile_faults;
 
     struct lm_keys keys;
     struct lm_page page;
     struct lm_palette palette;
     struct lm_cursor cursor;
-    int32_t cursor_elevation_m_q10; /* metres * 1024, or LM_NO_ELEVATION */
+    int32_t cursor_elevation_m_q10; /* of the map under the cursor, or LM_NO_ELEVATION */
     struct {
-        bool is_commanded; /* before the bus's steerpoint */
+        bool is_commanded; /* a controller set one; it takes precedence over the bus's */
         struct lm_position position;
     } steerpoint;
-    uint64_t unable_until_us; /* the glass says LM_FLAG_UNABLE until then */
+    uint64_t unable_until_us; /* LM_FLAG_UNABLE is shown until then */
 
     struct lm_picture picture;
     uint64_t next_frame_us;
 
-    uint32_t flags; /* enum lm_flag, of the last step */
+    uint32_t flags; /* enum lm_flag, as of the last step */
     struct lm_fault_log faults;
 
     struct {
         uint32_t frames, lines, bus_frames;
-        uint32_t lines_dropped; /* due, but the step had its fill */
-        uint32_t bus_errors;    /* the driver reported the bus down */
-        uint32_t display_errors, display_busy;
-        uint32_t commands_refused;
+        uint32_t lines_dropped;    /* times that overdue lines were dropped (unit/pacing.h) */
+        uint32_t bus_errors;       /* the driver reported the bus down */
+        uint32_t display_errors;   /* acquire or present failed */
+        uint32_t display_busy;     /* no surface was free when a frame was due */
+        uint32_t commands_refused; /* controls with a value out of range, or not possible now */
         uint32_t swaps; /* SWAP presses: a board with two displays exchanges their pages */
     } count;            /* only ever grow */
 };
 
-/* Put the unit in its first state: ground map, A6, 40 nm. Reads the database's tables and coarsest
- * level. LM_OK also when the database cannot be used: the unit then runs and says so on the glass.
+/* Put the unit in its first state: ground map, +-60 degrees, 40 nm. Reads the image's tables and
+ * its coarsest LOD, and waits for the flash meanwhile. Returns LM_OK also if the image cannot be
+ * used: the unit then runs and shows LM_FLAG_DB.
  *
- * Fails, and the unit must not be stepped, with
- *  - LM_ERR_TABLE iff the board's radar table breaks its contract; lm_radar_check
- * (lm/radar_check.h) then names the field, which the board tells whoever installs it;
- *  - LM_ERR_RANGE iff the display has less than 256 or more than 1024 pixels either way;
- *  - LM_ERR_NO_MEMORY iff the tile pool is too small for the database's coarsest level. */
+ * Fails iff one of these holds; the unit must then not be stepped:
+ *  - LM_ERR_TABLE: the board's radar table breaks its contract; lm_radar_check
+ *    (lm/radar_check.h) names the field, for the board to report;
+ *  - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
+ *  - LM_ERR_NO_MEMORY: the tile pool is too small for the image's coarsest LOD and 16 tiles. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
-/* Do what is due at `now_us`, microseconds since the start, which never goes back. In this order:
+/* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
+ * this order:
  *  - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
  *  - take at most 8 controls;
- *  - judge the flags, and remove the picture when navigation is lost;
- *  - move view, cursor and range on;
+ *  - update the flags, and remove the picture if navigation or the image is lost;
+ *  - move view and cursor, and the range scale if it follows the cursor;
  *  - start and finish reads of tiles, without waiting;
  *  - draw at most LM_STEP_LINES lines;
  *  - draw and show the glass, every LM_FRAME_US.
- * Call at least every 4 ms for a smooth sweep. Never waits and never fails: what goes wrong is in
+ * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in
  * u->flags and u->count. Cost: docs/benchmarks.md. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
 

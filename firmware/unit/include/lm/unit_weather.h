@@ -1,5 +1,5 @@
-/* Weather that the radar meets: what was commanded, and behind it, where there is room, what the
- * bus tells. */
+/* Unit weather: the environment that the radar meets. It is the commanded one, followed by that of
+ * the bus as far as there is room. */
 #ifndef LM_UNIT_WEATHER_H
 #define LM_UNIT_WEATHER_H
 
@@ -12,19 +12,19 @@
 struct lm_unit_weather {
     struct lm_environment commanded; /* by a script or an instructor */
     struct lm_weather_bus bus;
-    struct lm_environment now; /* of both, as sweeps and patches meet it */
-    bool is_stale;             /* the bus's part was not told anew and will be removed */
+    struct lm_environment now; /* both together: sweeps and patches read this one */
+    bool is_stale;             /* the bus has not repeated its part, which will be removed */
 };
 
-/* Fair weather, and the sea of the image. */
+/* Begin with fair weather and the sea state of the image. */
 void lm_unit_weather_init(struct lm_unit_weather *w);
 
-/* Take what is commanded. LM_OK; LM_ERR_RANGE, and *w unchanged, when lm_environment_check refuses
- * it. */
+/* Take a commanded environment, which is copied, and update w->now. Returns LM_OK; or LM_ERR_RANGE,
+ * and *w is unchanged, iff lm_environment_check refuses it. */
 int lm_unit_weather_command(struct lm_unit_weather *w, const struct lm_environment *commanded,
                             uint64_t now_us);
 
-/* Put w->now together as of `now_us`. */
+/* Update w->now and w->is_stale as of `now_us`. Call in every step. */
 void lm_unit_weather_at(struct lm_unit_weather *w, uint64_t now_us);
 
 #endif
