@@ -1,7 +1,7 @@
-/* Bus fields: what the display takes from the avionics bus, and the unit in which it keeps each.
+/* Bus fields: the quantities that the display takes from the avionics bus, and their units.
  *
- * A field is a quantity (latitude, roll, rain rate). How it travels is the profile's business
- * (lm/bus_profile.h); what it is used for is that of lm/nav.h and lm/weather_bus.h. */
+ * A field is a quantity such as latitude, roll or rain rate. A profile (lm/bus_profile.h) says how
+ * it travels; lm/nav.h and lm/weather_bus.h use it. */
 #ifndef LM_BUS_FIELDS_H
 #define LM_BUS_FIELDS_H
 
@@ -20,7 +20,7 @@ enum lm_bus_field {
     LM_BUS_ROLL,
     LM_BUS_HEADING, /* true or magnetic: CANaerospace does not say */
     LM_BUS_TRUE_HEADING,
-    LM_BUS_BARO_ALTITUDE, /* corrected by the altimeter setting: about above mean sea level */
+    LM_BUS_BARO_ALTITUDE, /* corrected by the altimeter setting: nearly above mean sea level */
     LM_BUS_TRUE_ALTITUDE, /* above mean sea level */
     LM_BUS_ALTITUDE_RATE,
     LM_BUS_EAST_VELOCITY,
@@ -28,7 +28,7 @@ enum lm_bus_field {
     LM_BUS_UP_VELOCITY,
     LM_BUS_PITCH_RATE,
     LM_BUS_YAW_RATE,
-    LM_BUS_STEERPOINT_LATITUDE, /* of the place to fly to; the active waypoint of CANaerospace */
+    LM_BUS_STEERPOINT_LATITUDE, /* the active waypoint of CANaerospace */
     LM_BUS_STEERPOINT_LONGITUDE,
     LM_BUS_UTC,
     LM_BUS_NAV_FIELDS, /* the fields above belong to lm/nav.h, those below to lm/weather_bus.h */
@@ -40,7 +40,7 @@ enum lm_bus_field {
     LM_BUS_JAMMER_LATITUDE,
     LM_BUS_JAMMER_LONGITUDE,
     LM_BUS_JAMMER_RATIO,  /* jammer to noise, on the antenna's axis at ten nautical miles */
-    LM_BUS_WEATHER_CLEAR, /* takes weather away: bits 0..3 circles of rain, bits 4..7 jammers */
+    LM_BUS_WEATHER_CLEAR, /* removes weather: bits 0..3 circles of rain, bits 4..7 jammers */
     LM_BUS_FIELDS
 };
 
@@ -57,17 +57,18 @@ enum lm_bus_unit {
     LM_BUS_UNITS
 };
 
-/* From the unit on the bus to the unit kept. A decoder holds a number in the unit of the bus with
- * `frac_bits` binary places; the value kept is that number * multiplier / divisor. */
+/* Scale: conversion from a field's unit on the bus to the unit kept. The decoder holds a number in
+ * the unit of the bus, times 2^frac_bits. The value kept is that number * multiplier / divisor. */
 struct lm_bus_scale {
     const char *bus_unit; /* on the bus: "deg" */
-    const char *kept_as;  /* in words, for documents: "BAM" */
+    const char *kept_as;  /* the unit kept, in words for documents: "BAM" */
     int32_t multiplier, divisor;
     uint8_t frac_bits;
 };
 
 extern const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS];
 
+/* Name and unit of a field. */
 struct lm_bus_field_info {
     const char *name; /* its word in text tables: "true-heading" */
     uint8_t unit;     /* enum lm_bus_unit */
@@ -75,16 +76,18 @@ struct lm_bus_field_info {
 
 extern const struct lm_bus_field_info lm_bus_fields[LM_BUS_FIELDS];
 
+/* The scale of a field, in static memory. */
 static inline const struct lm_bus_scale *lm_bus_scale_of(enum lm_bus_field field)
 {
     return &lm_bus_scales[lm_bus_fields[field].unit];
 }
 
-/* Convert `amount`, in the field's unit on the bus, to the unit kept, to the nearest. An angle is
- * not wrapped: 360 degrees give 2^32. */
+/* Convert `amount` from the field's unit on the bus to the unit kept, rounded to the nearest. An
+ * angle does not wrap: 360 degrees give 2^32. */
 int64_t lm_bus_counts(enum lm_bus_field field, int32_t amount);
 
-/* n / divisor to the nearest, halves away from zero. divisor > 0, and |n| + divisor below 2^63. */
+/* n / divisor, rounded to the nearest, halves away from zero. divisor > 0; |n| + divisor below
+ * 2^63. */
 int64_t lm_bus_divide(int64_t n, int64_t divisor);
 
 #endif
