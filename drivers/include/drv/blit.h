@@ -1,4 +1,5 @@
-/* From the firmware's picture to the pixels of a panel: format, rotation and centring. Pure. */
+/* Blit: copy of the firmware's picture to the pixels of a panel, with format, rotation and
+ * centring. Pure; nothing fails. */
 #ifndef DRV_BLIT_H
 #define DRV_BLIT_H
 
@@ -11,10 +12,10 @@ enum drv_format {
     DRV_RGB565    /* 16 bits, blue in the lowest five; each colour is cut, not rounded */
 };
 
-/* How far the picture is turned clockwise, as the operator sees it. */
+/* Clockwise rotation of the picture, as the operator sees it. */
 enum drv_turn { DRV_TURN_0, DRV_TURN_90, DRV_TURN_180, DRV_TURN_270 };
 
-/* Memory that a panel shows, row 0 on top. */
+/* Target: memory that a panel shows, the top row first. */
 struct drv_target {
     void *bytes;           /* borrowed; aligned to its pixels */
     uint32_t stride_bytes; /* distance between rows, a multiple of the pixel's size */
@@ -22,9 +23,9 @@ struct drv_target {
     enum drv_format format;
 };
 
-/* Put the picture in the middle of the target. What is larger than the target loses the same on
- * both sides (one pixel more at the right and at the bottom where the difference is odd); what is
- * smaller leaves a border, which is not touched. */
+/* Copy the picture to the middle of the target. A larger picture is cut equally on both sides, with
+ * an odd pixel at the right and at the bottom. A smaller one leaves a border, which is not changed.
+ */
 void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn);
 
 /* Make the whole target black. */

@@ -1,4 +1,4 @@
-/* Controls on their way from a driver's thread to the loop: one writer, one reader, no lock. All
+/* Control ring: controls from a driver's thread to the loop. One writer, one reader, no lock. All
  * zero is an empty ring. */
 #ifndef DRV_CONTROL_RING_H
 #define DRV_CONTROL_RING_H
@@ -12,10 +12,10 @@ enum { DRV_CONTROL_RING = 64 };
 
 struct drv_control_ring {
     struct lm_control control[DRV_CONTROL_RING];
-    atomic_uint head, tail; /* how many were ever put in, and taken out */
+    atomic_uint head, tail; /* controls put in, and taken out, since the start */
 };
 
-/* False when the ring is full: nothing was put in. */
+/* Put in a control, which is copied. False, and the ring is unchanged, if it is full. */
 static inline bool drv_control_ring_put(struct drv_control_ring *r, struct lm_control control)
 {
     const unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
@@ -27,7 +27,7 @@ static inline bool drv_control_ring_put(struct drv_control_ring *r, struct lm_co
     return true;
 }
 
-/* False when it is empty. */
+/* Take out the oldest control. False, and *control is unchanged, if the ring is empty. */
 static inline bool drv_control_ring_take(struct drv_control_ring *r, struct lm_control *control)
 {
     const unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);

@@ -1,16 +1,17 @@
-/* A panel behind Linux's Direct Rendering Manager: two buffers in the card's memory and a flip for
- * each picture, so that no picture is ever seen half drawn.
+/* DRM display: a panel behind Linux's Direct Rendering Manager. It has two buffers in the card's
+ * memory and a flip for each picture, so no picture is shown half drawn.
  *
- * The kernel is spoken to directly (linux/drm.h): nothing here allocates memory after the opening,
- * which libdrm cannot promise, and a screen that was unplugged comes back in the loop.
+ * It uses the kernel's interface (linux/drm.h) without libdrm, which allocates memory: nothing is
+ * allocated here after drv_drm_open. A screen that was unplugged is set up again in the loop.
  *
- *   dark     no screen is connected, or it was lost; looked after once a second
- *   idle     the other buffer may be drawn in
- *   due      it is drawn; the kernel was busy and is asked again
- *   flipping the kernel has it; no other picture is taken until it says that it is on the screen
+ *   state     meaning
+ *   dark      no screen is connected, or it was lost; it is looked for once a second
+ *   idle      the buffer that is not shown may be drawn in
+ *   due       that buffer is drawn, and the kernel was busy: the flip is asked for again
+ *   flipping  the kernel has the flip; no picture is taken until it reports it done
  *
- * A flip that is not reported within DRV_DRM_FLIP_US is given up and counted, and a kernel that
- * stays busy that long is told the mode anew: the picture goes on whatever gets lost. */
+ * A flip that is not reported within DRV_DRM_FLIP_US is given up and counted. If the kernel stays
+ * busy for that long, the mode is set again. So a lost report does not stop the picture. */
 #ifndef DRV_DRM_H
 #define DRV_DRM_H
 
@@ -33,56 +34,57 @@ struct drv_drm_config {
 enum drv_drm_state { DRV_DRM_DARK, DRV_DRM_IDLE, DRV_DRM_DUE, DRV_DRM_FLIPPING };
 
 struct drv_drm_buffer {
-    uint32_t handle, framebuffer; /* of the kernel; 0: none */
+    uint32_t handle, framebuffer; /* names that the kernel gave; 0: none */
     size_t size_bytes;
     struct drv_target target;
 };
 
 struct drv_drm {
-    int fd; /* -1: closed. For poll(): readable when a flip was reported */
+    int fd; /* -1: closed; else for poll(): readable when a flip was reported */
     struct drv_drm_config config;
     enum drv_drm_state state;
-    uint16_t width_px, height_px; /* of the screen; 0 until one was there */
-    char connector[32];           /* the name of the one in use */
+    uint16_t width_px, height_px; /* of the screen; 0 until one was connected */
+    char connector[32];           /* name of the connector in use */
     uint32_t connector_id, crtc_id;
     struct drv_drm_buffer buffer[DRV_DRM_BUFFERS];
     uint8_t front;     /* the buffer that is shown */
-    uint32_t sequence; /* of the last flip, to know a report that comes too late */
-    uint64_t since_us; /* since when it is due or flipping */
-    uint64_t look_us;  /* when to look after the screen again */
+    uint32_t sequence; /* number of the last flip, to recognise late reports */
+    uint64_t since_us; /* time since when the state is due or flipping */
+    uint64_t look_us;  /* time of the next look for a screen */
     struct {
         uint32_t crtc_id, framebuffer, x, y;
         bool has_mode;
         char mode[68]; /* struct drm_mode_modeinfo */
-    } before;          /* what the screen showed, for the end */
+    } before;          /* what the screen showed at the start; drv_drm_close restores it */
     char error[160];
 
     struct {
-        uint32_t flips;         /* pictures that the kernel reported on the screen */
-        uint32_t busy;          /* times that it was asked in vain */
+        uint32_t flips;         /* flips that the kernel reported done */
+        uint32_t busy;          /* flips that a busy kernel refused */
         uint32_t lost;          /* flips never reported */
         uint32_t late;          /* reports of flips that were given up */
         uint32_t errors;        /* flips refused for another cause */
-        uint32_t lit, darkened; /* times that a screen was set up, and lost */
+        uint32_t lit, darkened; /* times that a screen was set up, and was lost */
     } count;
 };
 
-/* Open the device and light a screen if one is connected. LM_OK also when none is: then d->state
- * is dark and the rest comes about in drv_drm_service. LM_ERR_IO with d->error saying why and
- * nothing open. The strings of the config stay borrowed. */
+/* Open the device, and set up a screen if one is connected. The config is copied; its strings stay
+ * borrowed. Returns
+ * - LM_OK, also if no screen is connected: d->state is then dark;
+ * - LM_ERR_IO: the cause is in d->error, and nothing is open. */
 int drv_drm_open(struct drv_drm *d, const struct drv_drm_config *config, uint64_t now_us);
 
-/* Give the screen back to whoever had it, and everything to the kernel. Safe on one that is
- * closed. */
+/* Restore what the screen showed before, and free everything. Safe on one that is closed. */
 void drv_drm_close(struct drv_drm *d);
 
-/* Take the reports of the kernel, give up what takes too long, look after the screen. Never waits,
- * but for the mode of a screen that was plugged in: the kernel reads its description (some 10 ms).
- */
+/* Take the kernel's reports, give up overdue flips, and look for the screen. Call in every step.
+ * Never waits, except some 10 ms when a screen is plugged in: the kernel reads its description. */
 void drv_drm_service(struct drv_drm *d, uint64_t now_us);
 
-/* Copy the picture and ask for the flip. LM_OK: taken (or seen by nobody, when the screen is dark);
- * LM_BUSY: the last one is not on the screen yet; LM_ERR_IO: the kernel refused it. */
+/* Copy the picture and ask for the flip. Returns
+ * - LM_OK: taken; or dropped, because the state is dark;
+ * - LM_BUSY: the last picture is not shown yet, and this one was not taken;
+ * - LM_ERR_IO: the kernel refused the flip. */
 int drv_drm_present(struct drv_drm *d, const struct lm_surface *picture, uint64_t now_us);
 
 #endif

@@ -1,4 +1,5 @@
-/* A panel behind the older frame buffer device: for kernels whose display has no DRM driver. */
+/* Frame buffer: a panel behind Linux's older frame buffer device, for displays without a DRM
+ * driver. */
 #ifndef DRV_FBDEV_H
 #define DRV_FBDEV_H
 
@@ -12,9 +13,9 @@ struct drv_fbdev {
     int fd; /* -1: closed */
     void *bytes;
     size_t size_bytes;
-    struct drv_target target; /* all of the visible screen */
-    bool can_pan;             /* the memory holds two pictures: no picture is seen half drawn */
-    uint32_t shown;           /* 0 or 1: the picture that is visible */
+    struct drv_target target; /* the visible screen */
+    bool can_pan;             /* the memory holds two pictures; none is shown half drawn */
+    uint32_t shown;           /* 0 or 1: the picture that is shown */
     enum drv_turn turn;
     char error[160];
 
@@ -24,13 +25,14 @@ struct drv_fbdev {
     } count;
 };
 
-/* Map the screen of `device` ("/dev/fb0") and make it black; the format is the device's own. LM_OK,
- * or LM_ERR_IO with f->error saying why and nothing open. */
+/* Map the screen of `device` ("/dev/fb0") and make it black. The format is the device's. Returns
+ * LM_OK; or LM_ERR_IO, with the cause in f->error and nothing open. */
 int drv_fbdev_open(struct drv_fbdev *f, const char *device, enum drv_turn turn);
+/* Unmap and close. Safe on one that is closed. */
 void drv_fbdev_close(struct drv_fbdev *f);
 
-/* Copy the picture to the screen. Waits for no vertical blank: some drivers never report one.
- * LM_OK or LM_ERR_IO. */
+/* Copy the picture to the screen. Does not wait for the vertical blank, which some drivers
+ * never report. Returns LM_OK; or LM_ERR_IO: the kernel refused to show the other picture. */
 int drv_fbdev_present(struct drv_fbdev *f, const struct lm_surface *picture);
 
 #endif

@@ -1,4 +1,5 @@
-/* Flash that is a file: the bench's image, or an MTD device that can be read as one. */
+/* File flash: an image in a file, or an MTD device that can be read as a file, as struct lm_flash.
+ * read_start waits for the file. */
 #ifndef DRV_FLASH_FILE_H
 #define DRV_FLASH_FILE_H
 
@@ -6,12 +7,12 @@
 
 struct drv_flash_file {
     int descriptor;
-    int last_status; /* of the read that read_poll will report */
+    int last_status; /* result that read_poll returns */
     struct lm_flash
         port; /* hand this to the firmware; its ctx is this struct, which must not move */
 };
 
-/* Open `path` for reading. Returns 0, or the errno of what failed with nothing open. */
+/* Open `path` for reading. Returns 0; or the errno of the failure, with nothing open. */
 int drv_flash_file_open(struct drv_flash_file *f, const char *path);
 void drv_flash_file_close(struct drv_flash_file *f);
 

@@ -1,17 +1,17 @@
-/* Serial flash behind the generic quad-SPI controller of Zynq UltraScale+ as struct lm_flash, read
- * by the controller's DMA. Registers and sequences: UG1085, chapter 24, and UG1087, module QSPI;
- * commands: data sheet of the N25Q512A (Micron), "quad output fast read, 4-byte address" (6Ch) and
- * "read identification" (9Fh).
+/* Quad-SPI flash: serial flash behind the generic quad-SPI controller of Zynq UltraScale+, as
+ * struct lm_flash, read by the controller's DMA. Registers and sequences: UG1085, chapter 24, and
+ * UG1087, module QSPI; commands: data sheet of the N25Q512A (Micron), "quad output fast read,
+ * 4-byte address" (6Ch) and "read identification" (9Fh).
  *
- * One device on the lower bus, or two of a kind on both, read as one: the first half of the image
- * is in the lower one.
+ * There is one device on the lower bus, or two of one kind on both buses, which are read as one.
+ * The lower device then holds the first half of the image.
  *
- * A read goes through a buffer that DMA and core share uncached: the firmware's destination may lie
- * anywhere and be of any length. Nothing ever waits: read_start queues one command for up to
- * DRV_FLASH_PIECE bytes, read_poll looks whether it is done, copies, and queues the next.
+ * A read goes through a buffer that DMA and core share uncached, so the firmware's destination may
+ * be anywhere and of any length. Nothing waits: read_start queues one command for up to
+ * DRV_FLASH_PIECE bytes; read_poll copies them when they have come, and queues the next command.
  *
  * Tested in QEMU: contents, lengths and offsets of all kinds, the end of the device, an absent
- * device. Its DMA takes no time, so that a read that stays busy is tested on registers in memory
+ * device. Its DMA takes no time, so a read that stays busy is tested on registers in memory
  * (tests/unit/drivers/test_zynqmp_devices.c). NOT tested: clock phases on a real board. */
 #ifndef DRV_FLASH_GQSPI_H
 #define DRV_FLASH_GQSPI_H
@@ -23,7 +23,7 @@
 
 enum {
     DRV_FLASH_PIECE = 32768,
-    DRV_FLASH_TIMEOUT_US = 100000 /* a piece takes 2 ms at the slowest clock in use */
+    DRV_FLASH_TIMEOUT_US = 100000 /* for a piece, which takes 2 ms at the slowest clock in use */
 };
 
 struct drv_flash {
@@ -35,9 +35,9 @@ struct drv_flash {
     struct {
         uint8_t *to;
         uint64_t offset;
-        uint32_t left;  /* bytes to come, those of the piece under way included */
-        uint32_t piece; /* bytes of the piece under way */
-        uint32_t skip;  /* of them, before the first that was asked for */
+        uint32_t left;  /* bytes still to come, including the present piece */
+        uint32_t piece; /* bytes of the present piece */
+        uint32_t skip;  /* bytes of the piece before the first that was asked for */
         uint64_t deadline_us;
     } now;
     struct lm_flash
@@ -54,8 +54,9 @@ struct drv_flash_config {
     const void *clock;
 };
 
-/* Ask the devices for their identification. LM_OK; LM_ERR_IO when none answers on the lower bus or
- * it is of another kind: the port then has size 0, and every read fails with LM_ERR_RANGE. */
+/* Identify the devices. Buffer and clock of the config stay borrowed. Returns LM_OK; or LM_ERR_IO
+ * iff no device answers on the lower bus, or it is of another kind. The port then has size 0, and
+ * every read fails with LM_ERR_RANGE. */
 int drv_flash_open(struct drv_flash *f, const struct drv_flash_config *config);
 
 #endif

@@ -1,7 +1,7 @@
-/* Flash behind Linux's MTD character device ("/dev/mtd0"), read only, NOR or NAND.
+/* MTD flash: NOR or NAND flash behind Linux's MTD character device ("/dev/mtd0"), read only.
  *
- * On NAND an image lies as nandwrite leaves it: blocks that are marked bad are left out, and the
- * image goes on in the next good one. The map of good blocks is made when the device is opened. */
+ * On NAND the image must be stored as nandwrite stores it: bad blocks are skipped, and the image
+ * continues in the next good block. The map of good blocks is made when the device is opened. */
 #ifndef DRV_FLASH_MTD_H
 #define DRV_FLASH_MTD_H
 
@@ -12,19 +12,19 @@
 
 struct drv_flash_mtd {
     int fd;               /* -1: closed */
-    uint32_t block_bytes; /* of an erase block */
-    uint32_t *blocks;     /* owned: number of the good block that is n-th in the image */
-    uint32_t block_count; /* good ones */
-    bool has_ecc;         /* the device corrects errors and counts those it could not */
-    int last_status;      /* of the read that read_poll will report */
-    struct lm_flash port; /* its ctx is this struct, which must not move. Reading waits for the
-                             device: put a drv_flash_reader in front of it for a loop */
+    uint32_t block_bytes; /* size of an erase block */
+    uint32_t *blocks; /* owned; blocks[n] is the device's block that holds block n of the image */
+    uint32_t block_count; /* good blocks */
+    bool has_ecc;    /* the device corrects errors, and counts those that it could not correct */
+    int last_status; /* result that read_poll returns */
+    struct lm_flash port; /* its ctx is this struct, which must not move. Reads wait for the
+                             device; a loop reads through a drv_flash_reader */
 
     struct {
         uint32_t bad_blocks;
-        uint32_t corrected;     /* reads in which bits were put right */
-        uint32_t uncorrectable; /* reads in which they could not be */
-        uint32_t errors;        /* reads that failed otherwise */
+        uint32_t corrected;     /* reads with corrected bits */
+        uint32_t uncorrectable; /* reads with bits that could not be corrected */
+        uint32_t errors;        /* reads that failed for another cause */
     } count;
 };
 

@@ -1,5 +1,5 @@
-/* Devices that a board does not have. The unit says on the glass what follows from it: DB FAIL
- * without flash, BUS without a bus. */
+/* Ports of devices that a board does not have. The glass then shows DB FAIL without flash, and BUS
+ * without a bus. */
 #ifndef DRV_NOT_FITTED_H
 #define DRV_NOT_FITTED_H
 

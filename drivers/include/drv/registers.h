@@ -19,9 +19,9 @@ static inline void drv_write(drv_registers base, uint32_t offset, uint32_t value
     base[offset / 4] = value;
 }
 
-/* Read a register until its bits under `mask` are `value`. True when they are; false after `polls`
- * reads in vain, polls >= 1. Waits actively, without a clock: the limit is for a device that does
- * not answer, not for timing. */
+/* Read a register until its bits under `mask` are `value`. True if they are; false after `polls`
+ * reads, at least 1. Waits actively and without a clock: `polls` is a limit for a device that does
+ * not answer, and no timing. */
 static inline bool drv_wait_for(drv_registers base, uint32_t offset, uint32_t mask, uint32_t value,
                                 uint32_t polls)
 {

@@ -1,5 +1,5 @@
-/* A hand controller as the operator's hands: which axis slews the cursor, which turns the range
- * knob, what each button means. Bytes in, controls out; knows nothing of USB. */
+/* Hand controller: reports of a HID device in, controls out. The configuration says which axis
+ * slews the cursor, which turns the knob, and what each button does. It does not use USB itself. */
 #ifndef DRV_STICK_H
 #define DRV_STICK_H
 
@@ -13,8 +13,8 @@
 
 enum { DRV_STICK_BUTTONS = 32, DRV_STICK_NONE = 0 };
 
-/* An axis by HID's page and usage, page << 8 | usage. The usages X to wheel follow each other; a
- * hat switch is two axes, and the second direction's number is above all pages. */
+/* Axes, by HID's page and usage: page << 8 | usage. The usages from X to wheel are consecutive. A
+ * hat switch counts as two axes; the number of the second is above all pages. */
 enum {
     DRV_STICK_X = DRV_HID_PAGE_DESKTOP << 8 | DRV_HID_X,
     DRV_STICK_HAT_X = DRV_HID_PAGE_DESKTOP << 8 | DRV_HID_HAT,
@@ -39,7 +39,7 @@ struct drv_stick_config {
     struct drv_stick_button button[DRV_STICK_BUTTONS];
 };
 
-/* How the controls stand. */
+/* Positions of the controls. */
 struct drv_stick_state {
     int16_t right, up, knob; /* -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */
     uint32_t buttons;        /* bit n - 1: the device's button n is held */
@@ -47,31 +47,32 @@ struct drv_stick_state {
 
 struct drv_stick {
     struct drv_stick_config config;
-    struct drv_hid_map map; /* of the device that is attached */
+    struct drv_hid_map map; /* of the attached device */
     bool is_attached;
-    struct drv_stick_state now, told; /* as the device says, as the firmware has been told */
+    struct drv_stick_state now, told; /* as the device reported, and as put into the ring */
 
     struct {
         uint32_t reports;
-        uint32_t odd; /* reports that are too short for what they should hold */
+        uint32_t odd; /* reports that are too short for their fields */
     } count;
 };
 
+/* Begin without a device. The config is copied. */
 void drv_stick_init(struct drv_stick *s, const struct drv_stick_config *config);
 
-/* A device came: read what its descriptor says about its reports. `is_named`: it was asked for by
- * name, so that anything with the right axes will do; otherwise it must call itself a hand
- * controller. NULL, or the cause why it is none that the config can use. */
+/* Attach a device with this report descriptor. A device that the configuration names (`is_named`)
+ * needs only the right axes; any other must declare itself a hand controller. Returns NULL; or the
+ * cause, in static memory, why the configuration cannot use it. */
 const char *drv_stick_attach(struct drv_stick *s, const uint8_t *descriptor, size_t size,
                              bool is_named);
 
-/* A report came. */
+/* Take a report. */
 void drv_stick_report(struct drv_stick *s, const uint8_t *report, size_t size);
 
-/* The device has gone: everything is let go. */
+/* Detach the device: all axes return to the middle and all buttons are released. */
 void drv_stick_detach(struct drv_stick *s);
 
-/* Put what has changed into the ring; what finds no room is told next time. */
+/* Put what changed into the ring. A change that finds the ring full is put in by a later call. */
 void drv_stick_tell(struct drv_stick *s, struct drv_control_ring *ring);
 
 #endif

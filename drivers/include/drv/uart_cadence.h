@@ -1,8 +1,8 @@
-/* The UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085,
+/* UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085,
  * chapter 21, and register reference UG1087, module UART. Sending waits for room in the transmit
  * FIFO of 64 bytes; receiving is by interrupt into a ring.
  *
- * QEMU's model has no bit rate: what is written has gone out at once. */
+ * QEMU's model has no bit rate: a byte that is written is sent at once. */
 #ifndef DRV_UART_CADENCE_H
 #define DRV_UART_CADENCE_H
 
@@ -15,28 +15,29 @@ enum { DRV_UART_RING = 256 }; /* a power of two */
 struct drv_uart {
     drv_registers base;
     uint8_t ring[DRV_UART_RING];
-    volatile uint32_t head, tail; /* written by the interrupt, by the reader */
+    volatile uint32_t head; /* bytes put in; written by the interrupt */
+    volatile uint32_t tail; /* bytes taken out; written by the reader */
     struct {
         uint32_t overflowed; /* bytes lost because the ring or the FIFO was full */
-        uint32_t damaged;    /* framing or parity error, or a break */
+        uint32_t damaged;    /* bytes with a framing or parity error, or a break */
     } count;
 };
 
-/* 8 data bits, no parity, one stop bit at `baud` from a reference clock of `clock_hz`; the rate is
- * met within 1 % for 9600..921600 baud at 100 MHz. Interrupts of the receiver are enabled; what was
- * received before is dropped. */
+/* Set 8 data bits, no parity and one stop bit at `baud`, from a reference clock of `clock_hz`. The
+ * rate is met within 1 % for 9600..921600 baud at 100 MHz. Enables the receiver's interrupts and
+ * drops what was received before. */
 void drv_uart_init(struct drv_uart *u, drv_registers base, uint32_t clock_hz, uint32_t baud);
 
-/* Wait for room, and send. */
+/* Wait for room in the FIFO, and send. */
 void drv_uart_put(struct drv_uart *u, char c);
 
-/* Wait until the last bit has left. */
+/* Wait until the last bit is sent. */
 void drv_uart_drain(struct drv_uart *u);
 
 /* The next byte received, or -1. */
 int drv_uart_get(struct drv_uart *u);
 
-/* The interrupt handler. */
+/* Interrupt handler; `uart` is the struct drv_uart. */
 void drv_uart_interrupt(void *uart);
 
 #endif
