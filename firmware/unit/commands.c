@@ -64,8 +64,8 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
     u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
 }
 
-/* Target management switch up: stabilise a snowplow cursor, otherwise start a patch at the cursor.
- */
+/* Target management switch up: stabilise a snowplow cursor, otherwise start a patch at the
+ * cursor. */
 static bool designate(struct lm_unit *u, uint64_t now_us)
 {
     if (u->page.format == LM_FORMAT_BIT || u->page.format == LM_FORMAT_TEST) {

@@ -95,8 +95,8 @@ static void restart(struct lm_picture *p)
     lm_sar_restart(&p->sar);
 }
 
-/* While tiles are being read, request those of some more lines: of every fourth, and of the last.
- */
+/* While tiles are being read, request those of some more lines: of every fourth, and of the
+ * last. */
 static void prefetch(struct lm_picture *p)
 {
     const uint32_t lines = lines_of(p);

@@ -1,5 +1,5 @@
-/* Presentation: the glass: the radar picture with its symbols, or a page of text, and the labels.
- */
+/* Presentation: the glass: the radar picture with its symbols, or a page of text, and the
+ * labels. */
 #ifndef LM_UNIT_PRESENT_H
 #define LM_UNIT_PRESENT_H
 

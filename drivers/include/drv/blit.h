@@ -24,8 +24,8 @@ struct drv_target {
 };
 
 /* Copy the picture to the middle of the target. A larger picture is cut equally on both sides, with
- * an odd pixel at the right and at the bottom. A smaller one leaves a border, which is not changed.
- */
+ * an odd pixel at the right and at the bottom. A smaller one leaves a border, which is not
+ * changed. */
 void drv_blit(const struct drv_target *to, const struct lm_surface *from, enum drv_turn turn);
 
 /* Make the whole target black. */

@@ -44,8 +44,8 @@ struct drv_can_log {
  * stays the caller's and must stay open while the log is used. Nothing is read yet. */
 void drv_can_log_init(struct drv_can_log *log, FILE *lines, drv_can_log_report *report, void *ctx);
 
-/* Set the time: receive delivers frames up to and including it. 0 is the time of the first frame.
- */
+/* Set the time: receive delivers frames up to and including it. 0 is the time of the first
+ * frame. */
 void drv_can_log_set_now(struct drv_can_log *log, uint64_t now_us);
 
 /* The log as the firmware's bus; `log` must outlive it. Time stamps never go back. receive returns

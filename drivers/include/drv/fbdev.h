@@ -31,8 +31,8 @@ int drv_fbdev_open(struct drv_fbdev *f, const char *device, enum drv_turn turn);
 /* Unmap and close. Safe on one that is closed. */
 void drv_fbdev_close(struct drv_fbdev *f);
 
-/* Copy the picture to the screen. Does not wait for the vertical blank, which some drivers
- * never report. Returns LM_OK; or LM_ERR_IO: the kernel refused to show the other picture. */
+/* Copy the picture to the screen. Does not wait for the vertical blank, which some drivers never
+ * report. Returns LM_OK; or LM_ERR_IO: the kernel refused to show the other picture. */
 int drv_fbdev_present(struct drv_fbdev *f, const struct lm_surface *picture);
 
 #endif

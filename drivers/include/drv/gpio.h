@@ -1,5 +1,5 @@
-/* GPIO: lines of GPIO chips through libgpiod: keys in, lamps out. lines_gpiod1.c is for
- * libgpiod 1.6, lines_gpiod2.c for 2.x; the build takes the one whose library is installed.
+/* GPIO: lines of GPIO chips through libgpiod: keys in, lamps out. lines_gpiod1.c is for libgpiod
+ * 1.6, lines_gpiod2.c for 2.x; the build takes the one whose library is installed.
  *
  * Events only wake the loop. The kernel keeps 16 of them for a line, and then drops the newest
  * (1.6) or the oldest (2.x). A lost event would leave a wrong state for ever, so the level is read

@@ -29,8 +29,8 @@ struct drv_irq {
  * mask is not changed. */
 void drv_irq_init(struct drv_irq *q, drv_registers distributor, drv_registers core);
 
-/* Let the calling core take interrupts of its own lines (0..31). Each further core calls it itself.
- */
+/* Let the calling core take interrupts of its own lines (0..31). Each further core calls it
+ * itself. */
 void drv_irq_init_core(const struct drv_irq *q);
 
 /* Call `handle(ctx)` in interrupt context, on core 0, when `line` (0..DRV_IRQ_LINES - 1,

@@ -25,8 +25,8 @@ void drv_timer_alarm(const struct drv_timer *t, uint64_t time_us);
 /* Stop the calling core's alarm. */
 void drv_timer_stop(void);
 
-/* Wait until an interrupt is pending for this core, whether or not the core takes interrupts now.
- */
+/* Wait until an interrupt is pending for this core, whether or not the core takes interrupts
+ * now. */
 void drv_timer_wait(void);
 
 #endif

@@ -1,6 +1,6 @@
-/* UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085,
- * chapter 21, and register reference UG1087, module UART. Sending waits for room in the transmit
- * FIFO of 64 bytes; receiving is by interrupt into a ring.
+/* UART of Zynq devices (Cadence). Registers and bits: Zynq UltraScale+ Device TRM UG1085, chapter
+ * 21, and register reference UG1087, module UART. Sending waits for room in the transmit FIFO of 64
+ * bytes; receiving is by interrupt into a ring.
  *
  * QEMU's model has no bit rate: a byte that is written is sent at once. */
 #ifndef DRV_UART_CADENCE_H

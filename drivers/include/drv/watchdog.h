@@ -40,8 +40,8 @@ bool drv_watchdog_service(struct drv_watchdog *w, struct lm_liveness now, uint64
 /* Send a message to systemd, such as "READY=1" or "STATUS=...": at most 512 bytes. Never waits. */
 void drv_watchdog_notify(struct drv_watchdog *w, const char *text);
 
-/* Stop the board's watchdog and close both. A program that ends in any other way leaves it running.
- */
+/* Stop the board's watchdog and close both. A program that ends in any other way leaves it
+ * running. */
 void drv_watchdog_close(struct drv_watchdog *w);
 
 #endif

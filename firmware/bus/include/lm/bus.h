@@ -18,8 +18,8 @@ struct lm_bus {
 void lm_bus_init(struct lm_bus *b, const struct lm_bus_profile *profile);
 
 /* Decode a frame into `events`. Returns how many were filled, 0..LM_BUS_EVENTS; most often 0 or 1.
- * Any contents of *frame are safe; a refused frame is counted by its outcome.
- * Cost: 340 instructions for a value of CANaerospace (x86-64, gcc -O2, counted). */
+ * Any contents of *frame are safe; a refused frame is counted by its outcome. Cost: 340
+ * instructions for a value of CANaerospace (x86-64, gcc -O2, counted). */
 uint32_t lm_bus_take(struct lm_bus *b, const struct lm_can_frame *frame,
                      struct lm_bus_event events[LM_BUS_EVENTS]);
 

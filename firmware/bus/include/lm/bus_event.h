@@ -1,5 +1,5 @@
-/* Bus event: one value of one field, decoded from a frame. Navigation and weather see
- * nothing else of the bus. */
+/* Bus event: one value of one field, decoded from a frame. Navigation and weather see nothing else
+ * of the bus. */
 #ifndef LM_BUS_EVENT_H
 #define LM_BUS_EVENT_H
 

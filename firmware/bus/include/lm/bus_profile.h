@@ -60,8 +60,7 @@ struct lm_bus_profile {
     uint8_t row_count; /* 1..LM_BUS_ROWS_MAX */
     uint8_t framing;   /* enum lm_bus_framing */
     /* CANaerospace: the data type in byte 1 is ignored; each row has the one type that it is read
-     * as.
-     */
+     * as. */
     bool are_types_assumed;
     /* Packed: bits of the identifier. */
     uint32_t channel_mask; /* number of the redundant sender; 0: there is only one */

@@ -60,8 +60,8 @@ enum {
     LM_CANAS_LOW_SERVICE_LAST = 2031
 };
 
-/* Pair: a half of a DOUBLE that waits for the other, and the order in which its sender sends them.
- */
+/* Pair: a half of a DOUBLE that waits for the other, and the order in which its sender sends
+ * them. */
 struct lm_canas_pair {
     enum { LM_CANAS_EMPTY, LM_CANAS_WAITING, LM_CANAS_JOINED } state;
     uint8_t type, node, code; /* of the last half received */
@@ -86,8 +86,8 @@ struct lm_canas {
     } count;
 };
 
-/* Decode a frame by a profile of framing LM_BUS_CANAEROSPACE. LM_BUS_VALUE: *event holds what
- * the frame says, and the row's number. lm_bus_take adds what the profile says of that row: field,
+/* Decode a frame by a profile of framing LM_BUS_CANAEROSPACE. LM_BUS_VALUE: *event holds what the
+ * frame says, and the row's number. lm_bus_take adds what the profile says of that row: field,
  * priority, period and ages. Any other outcome: *event is unchanged. Any contents of *frame are
  * safe.
  *

@@ -76,8 +76,8 @@ struct lm_page {
 };
 
 /* Set the page as after power-up: the first mode, NORM, the radar table's initial scale and first
- * sector width, manual range, automatic tilt. `radar` stays borrowed as long as the page is used.
- */
+ * sector width, manual range, automatic tilt. `radar` stays borrowed as long as the page is
+ * used. */
 void lm_page_init(struct lm_page *p, const struct lm_radar *radar);
 
 /* The style of button 1..LM_BUTTONS on the page that is shown. */

@@ -1,5 +1,5 @@
-/* Palette: colours of greys and symbols on the glass, set by tint, day or night, and three rockers.
- */
+/* Palette: colours of greys and symbols on the glass, set by tint, day or night, and three
+ * rockers. */
 #ifndef LM_PALETTE_H
 #define LM_PALETTE_H
 

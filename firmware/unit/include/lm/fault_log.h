@@ -31,8 +31,8 @@ struct lm_fault_log {
     uint32_t count;                       /* faults that ever rose; only grows */
 };
 
-/* Add those of the flags `risen` that are faults, the lowest bit first. The oldest are overwritten.
- */
+/* Add those of the flags `risen` that are faults, the lowest bit first. The oldest are
+ * overwritten. */
 void lm_fault_log_add(struct lm_fault_log *log, uint32_t risen, uint64_t now_us);
 
 /* The fault that rose last (age 0), or the one `age` before it. NULL iff there was none or it is no

@@ -66,8 +66,8 @@ enum { LM_FRAME_US = 33333, LM_BUS_SILENT_US = 1000000 };
 /* Elevation of a position outside the map. */
 #define LM_NO_ELEVATION INT32_MIN
 
-/* State of the unit. Each part is written by its own functions alone; boards and tests may read it.
- */
+/* State of the unit. Each part is written by its own functions alone; boards and tests may read
+ * it. */
 struct lm_unit {
     const struct lm_board *board; /* borrowed */
 
@@ -121,23 +121,23 @@ struct lm_unit {
  * used: the unit then runs and shows LM_FLAG_DB.
  *
  * Fails iff one of these holds; the unit must then not be stepped:
- *  - LM_ERR_TABLE: the board's radar table breaks its contract; lm_radar_check
- *    (lm/radar_check.h) names the field, for the board to report;
- *  - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
- *  - LM_ERR_NO_MEMORY: the tile pool is too small for the image's coarsest LOD and 16 tiles. */
+ * - LM_ERR_TABLE: the board's radar table breaks its contract; lm_radar_check (lm/radar_check.h)
+ *   names the field, for the board to report;
+ * - LM_ERR_RANGE: the display has less than 256 or more than 1024 pixels either way;
+ * - LM_ERR_NO_MEMORY: the tile pool is too small for the image's coarsest LOD and 16 tiles. */
 int lm_unit_init(struct lm_unit *u, const struct lm_board *board);
 
 /* Do what is due at `now_us`: microseconds since the start, never less than in the call before. In
  * this order:
- *  - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
- *  - take at most 8 controls;
- *  - update the flags, and remove the picture if navigation or the image is lost;
- *  - move view and cursor, and the range scale if it follows the cursor;
- *  - start and finish reads of tiles, without waiting;
- *  - draw at most LM_STEP_LINES lines;
- *  - draw and show the glass, every LM_FRAME_US.
- * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in
- * u->flags and u->count. Cost: docs/benchmarks.md. */
+ * - take at most LM_STEP_FRAMES frames from the bus, and extrapolate the ownship to now;
+ * - take at most 8 controls;
+ * - update the flags, and remove the picture if navigation or the image is lost;
+ * - move view and cursor, and the range scale if it follows the cursor;
+ * - start and finish reads of tiles, without waiting;
+ * - draw at most LM_STEP_LINES lines;
+ * - draw and show the glass, every LM_FRAME_US.
+ * Call at least every 4 ms for a smooth sweep. Never waits and never fails: errors show in u->flags
+ * and u->count. Cost: docs/benchmarks.md. */
 void lm_unit_step(struct lm_unit *u, uint64_t now_us);
 
 #endif
