@@ -1,5 +1,5 @@
-/* The panel's avionics bus: the SocketCAN driver, which mends itself, with its state in words for
- * the log. */
+/* Bus of the panel: the SocketCAN driver, which reopens its interface by itself, and reports of its
+ * state for the log. */
 #ifndef PANEL_BUS_H
 #define PANEL_BUS_H
 
@@ -12,19 +12,20 @@
 
 struct bus {
     struct drv_can_socket socket;
-    struct lm_can driver; /* the socket's, or one that is not fitted */
-    struct lm_can port;   /* the firmware's */
-    bool is_lost;         /* reported, and no frame came since */
+    struct lm_can driver; /* the socket's port, or one that is not fitted */
+    struct lm_can port;   /* port for the firmware */
+    bool is_lost;         /* a loss was reported, and no frame came since */
     uint32_t polls;       /* times that the firmware asked for frames */
 };
 
-/* Never fails: an interface that is not there is reported, and looked for from then on. An empty
- * name: no bus. `zero_us` is where the firmware's clock has its 0; *b must not move. */
+/* Open the interface; an empty name means no bus. Never fails: an interface that is missing is
+ * reported and looked for from then on. `zero_us` is the time of CLOCK_MONOTONIC at which the
+ * firmware's clock is 0. *b must not move until bus_close. */
 void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile *profile,
               uint64_t zero_us);
 void bus_close(struct bus *b);
 
-/* For poll(): readable when a frame waits; -1: there is none now. */
+/* File descriptor for poll(): readable when a frame waits; -1: the bus is not open now. */
 int bus_fd(const struct bus *b);
 
 #endif

@@ -1,6 +1,6 @@
-/* The panel's configuration: one text file of "option = value" lines. The table of options in
- * config.c is the only place where an option is described; the help, the delivered file and the
- * checks all come from it or are compared with it. */
+/* Configuration of the panel: one text file of "option = value" lines. Each option is described
+ * once, in the table of config_table.h. The help, the delivered file and the checks come from that
+ * table or are compared with it. */
 #ifndef PANEL_CONFIG_H
 #define PANEL_CONFIG_H
 
@@ -19,7 +19,7 @@ enum {
     CONFIG_NAME = 64
 };
 
-/* What the bezel's inputs are: the buttons 1..LM_BUTTONS, then these. */
+/* Inputs of the bezel: the buttons 1..LM_BUTTONS, then these. */
 enum { CONFIG_KEY_DESIGNATE = LM_BUTTONS, CONFIG_KEY_DROP, CONFIG_KEYS };
 enum { CONFIG_LED_ALIVE, CONFIG_LED_FAULT, CONFIG_LED_NIGHT, CONFIG_LEDS };
 enum config_glass { CONFIG_GLASS_AUTO, CONFIG_GLASS_DRM, CONFIG_GLASS_FBDEV, CONFIG_GLASS_NONE };
@@ -28,14 +28,14 @@ struct config_size {
     uint16_t width_px, height_px; /* 0, 0: not chosen */
 };
 
-/* Which USB device is the hand controller. */
+/* Hand controller: the USB device to use. */
 struct config_stick {
     enum { CONFIG_STICK_NONE, CONFIG_STICK_AUTO, CONFIG_STICK_NAMED } choice;
     uint16_t vendor, product;
     char serial[CONFIG_NAME]; /* empty: any */
 };
 
-/* Names that are empty mean: none, or the driver's choice. */
+/* Values of the options. An empty name means none, or the driver's choice. */
 struct config {
     char database[CONFIG_PATH];
     char can[CONFIG_NAME];
@@ -50,7 +50,7 @@ struct config {
     uint32_t glass_turn;   /* enum drv_turn */
     uint32_t glass_format; /* enum drv_format */
 
-    char key[CONFIG_KEYS][CONFIG_NAME]; /* lines; [0] is button 1 */
+    char key[CONFIG_KEYS][CONFIG_NAME]; /* names of lines; [0] is button 1 */
     uint32_t key_active_low;
     uint32_t debounce_ms;
     char led[CONFIG_LEDS][CONFIG_NAME];
@@ -67,23 +67,23 @@ struct config {
     uint32_t watchdog_s;
 };
 
-/* Every option as it is when the file does not name it. */
+/* Set every option to its default. */
 void config_defaults(struct config *c);
 
-/* Told of each line that is wrong; lines count from 1. The option keeps the value it had. */
+/* Receiver of a report on each wrong line; lines count from 1. Its option keeps its value. */
 typedef void config_report(void *ctx, uint32_t line, const char *cause);
 
-/* Read a whole file on top of what *c holds; an option may be given once. Returns the number of
- * wrong lines. Pure: looks at nothing but the text, which need not end in a zero or be text at
- * all. */
+/* Read a whole file into *c. An option that it does not name keeps its value; an option may be
+ * given once. Returns the number of wrong lines. Pure. Any bytes are safe; no zero is needed at the
+ * end. */
 uint32_t config_read(struct config *c, const char *text, size_t size, config_report *report,
                      void *ctx);
 
-/* One option of the table, for those who print or check it. */
+/* Option: a row of the table, for help and checks. Its strings are in static memory. */
 struct config_option {
     const char *name;
-    const char *values;  /* what it takes: "0..90", "auto | drm | fbdev | none" */
-    const char *initial; /* its default, as it would stand in a file */
+    const char *values;  /* accepted values: "0..90", "auto | drm | fbdev | none" */
+    const char *initial; /* default, as written in a file */
     const char *help;
 };
 

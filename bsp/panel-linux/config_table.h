@@ -1,4 +1,4 @@
-/* The options of the configuration file, one row each: the only place where they are described.
+/* Option table of the configuration file, one row an option. Options are described nowhere else.
  * Private to config.c. */
 #ifndef CONFIG_TABLE_H
 #define CONFIG_TABLE_H
@@ -10,7 +10,7 @@ enum config_kind {
     CONFIG_PATH_TO, /* a text that begins with '/' */
     CONFIG_NUMBER,
     CONFIG_CHOICE,  /* stored as the number of the word */
-    CONFIG_PROFILE, /* of the bus, by its name in lm_bus_profiles; stored as a pointer */
+    CONFIG_PROFILE, /* a bus profile, by its name in lm_bus_profiles; stored as a pointer */
     CONFIG_SIZE,
     CONFIG_DEVICE,
     CONFIG_AXIS,
@@ -21,8 +21,8 @@ struct config_row {
     struct config_option is;
     enum config_kind kind;
     size_t offset; /* of the value in struct config */
-    /* NUMBER and SIZE: what is allowed. TEXT and PATH_TO: `high` bytes hold it, its end included.
-     */
+    /* NUMBER and SIZE: accepted range. TEXT and PATH_TO: `high` is the room in bytes, including the
+     * zero at the end. */
     uint32_t low, high;
     const char *words; /* CHOICE: its words; TEXT, PATH_TO, SIZE: the word for an empty one */
 };

@@ -1,4 +1,4 @@
-/* The panel's glass: a DRM screen, a frame buffer, or nothing, behind the firmware's display. */
+/* Display of the panel: a DRM screen, a frame buffer, or nothing, behind struct lm_display. */
 #ifndef PANEL_DISPLAY_H
 #define PANEL_DISPLAY_H
 
@@ -14,32 +14,35 @@ struct glass {
     enum glass_kind kind;
     struct drv_drm drm;
     struct drv_fbdev fbdev;
-    struct lm_surface picture; /* what the firmware draws in; its pixels are owned */
-    struct lm_display port;
-    uint64_t now_us;
-    uint64_t retry_us; /* when to look for a device again */
-    bool was_lit;      /* as it was reported last */
+    struct lm_surface picture; /* memory that the firmware draws in; its pixels are owned */
+    struct lm_display port;    /* port for the firmware */
+    uint64_t now_us;           /* time of the present step */
+    uint64_t retry_us;         /* time of the next look for a device */
+    bool was_lit;              /* glass_is_lit as reported last */
 
     struct {
-        uint32_t pictures; /* that the firmware handed over */
-        uint32_t renders;  /* of them on the glass, or seen by nobody because there is no glass */
+        uint32_t pictures; /* frames that the firmware presented */
+        uint32_t renders;  /* frames shown, or dropped because there is no display */
     } count;
 };
 
-/* Open the glass that the config names, and decide the size of the picture. A glass that is not
- * there is reported and looked for again once a second. 0, or -1 without memory. */
+/* Open the display that the config names, and choose the size of the picture. A display that is
+ * missing is reported and looked for once a second. Returns 0; or -1 if there is no memory. */
 int glass_open(struct glass *g, const struct config *config, uint64_t now_us);
+
+/* Close the display and free the picture. */
 void glass_close(struct glass *g);
 
-/* At every step, before the firmware's. */
+/* Look for the device, and take its reports. Call before each step of the firmware. */
 void glass_service(struct glass *g, uint64_t now_us);
 
-/* For poll(): readable when a picture has come to be seen; -1: no such thing. */
+/* File descriptor for poll(): readable when a frame was shown; -1: the device has no reports. */
 int glass_fd(const struct glass *g);
 
-/* Whether somebody could see a picture. */
+/* True if a frame would be seen. */
 bool glass_is_lit(const struct glass *g);
 
+/* Count of frames shown, for lm/liveness.h. */
 uint32_t glass_renders(const struct glass *g);
 
 #endif

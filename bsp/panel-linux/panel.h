@@ -1,5 +1,5 @@
-/* The cockpit panel as a board: every device behind the firmware's ports, and the loop around
- * lm_unit_step. */
+/* Panel: the cockpit panel as a board: every device behind the firmware's ports, and the loop
+ * around lm_unit_step. */
 #ifndef PANEL_H
 #define PANEL_H
 
@@ -15,13 +15,13 @@
 #include "lm/unit.h"
 
 enum {
-    PANEL_TICK_US = 2000, /* between steps: a line is due every 2 ms at the fastest scale */
-    PANEL_STEP_US = 500   /* at least this between steps, however often a device wakes the loop */
+    PANEL_TICK_US = 2000, /* time between steps: at the fastest scale a line is due every 2 ms */
+    PANEL_STEP_US = 500   /* least time between steps, however often a device wakes the loop */
 };
 
 struct panel {
     const struct config *config; /* borrowed */
-    uint64_t zero_us;            /* of CLOCK_MONOTONIC, where the panel's clock has its 0 */
+    uint64_t zero_us;            /* time of CLOCK_MONOTONIC at which the panel's clock is 0 */
     struct drv_flash_file file;
     struct drv_flash_mtd mtd;
     struct drv_flash_reader flash;
@@ -31,11 +31,11 @@ struct panel {
     struct hand hand;
     struct lm_controls controls;
     struct drv_watchdog watchdog;
-    int signals; /* of signalfd */
+    int signals; /* file descriptor of signalfd */
     struct lm_board board;
     struct lm_unit *unit; /* owned */
-    uint32_t flags_told;  /* enum lm_flag, as they were reported last */
-    uint64_t tell_us;
+    uint32_t flags_told;  /* enum lm_flag, as reported last */
+    uint64_t tell_us;     /* time of the next report */
 
     struct {
         uint32_t steps;
@@ -44,19 +44,23 @@ struct panel {
     } count;
 };
 
-/* Open every device that the config names and start the firmware. Only a lack of memory is fatal: a
- * device that is missing is reported, shown on the glass where there is one, and looked for again.
- * 0, or -1 with the cause reported and nothing left open. */
+/* Open every device that the config names, and start the firmware. A device that is missing is
+ * reported, shown on the glass if there is one, and looked for again. The config stays borrowed
+ * until panel_close. Returns 0; or -1 if there is no memory, with the cause reported and nothing
+ * open. */
 int panel_open(struct panel *p, const struct config *config);
 
 /* Make the process real-time as the config says, then step until SIGTERM, SIGINT or SIGHUP comes.
  * SIGUSR1 reports the counters. From here on nothing is allocated by this thread. */
 void panel_run(struct panel *p);
 
-/* One step at the time of the panel's clock; panel_run is this and waiting. */
+/* Do one step at `now_us` of the panel's clock. panel_run repeats this, and waits between steps. */
 void panel_step(struct panel *p, uint64_t now_us);
+
+/* Time of the panel's clock. */
 uint64_t panel_now_us(const struct panel *p);
 
+/* Close every device and free the unit. */
 void panel_close(struct panel *p);
 
 #endif

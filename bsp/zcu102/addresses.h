@@ -1,5 +1,5 @@
-/* Where things are in the XCZU9EG: Zynq UltraScale+ Device TRM UG1085, table 10-1 (addresses) and
- * table 13-1 (interrupt lines), and what the ZCU102 board makes of the clocks. */
+/* Addresses and interrupt lines of the XCZU9EG, and clocks of the ZCU102 board. Source: Zynq
+ * UltraScale+ Device TRM UG1085, table 10-1 (addresses) and table 13-1 (interrupt lines). */
 #ifndef ZCU102_ADDRESSES_H
 #define ZCU102_ADDRESSES_H
 

@@ -1,4 +1,4 @@
-/* The board: its devices, and the unit that runs on them. */
+/* Board ZCU102: its devices, and the unit that runs on them. */
 #ifndef ZCU102_BOARD_H
 #define ZCU102_BOARD_H
 
@@ -20,8 +20,8 @@ enum {
     ZCU102_HEIGHT_PX = 768,
     ZCU102_DISPLAY_LANES = 2,
     ZCU102_TILES = 384,
-    ZCU102_STEP_US = 2000,   /* as often as a line is due at the fastest scale */
-    ZCU102_LATE_US = 100000, /* steps later than that are left out */
+    ZCU102_STEP_US = 2000,   /* at the fastest scale a line is due every 2 ms */
+    ZCU102_LATE_US = 100000, /* steps that are later than this are skipped */
     ZCU102_BAUD = 115200,
     ZCU102_BUS_BIT_RATE = 1000000
 };
@@ -39,29 +39,30 @@ struct zcu102 {
     struct zcu102_supervisor supervisor;
     struct zcu102_restart last_restart;
 
-    struct lm_board lent; /* a test may exchange a port before zcu102_start */
+    struct lm_board lent; /* the unit's ports; a test may replace one before zcu102_start */
     struct lm_unit unit;
 
-    uint64_t tick_us; /* of the next timer interrupt */
-    uint64_t step_us; /* the time that the unit's next step is for */
+    uint64_t tick_us; /* time of the next timer interrupt */
+    uint64_t step_us; /* time of the unit's next step */
     volatile uint32_t steps;
     volatile bool is_supervised;
     uint32_t steps_left_out;
 };
 
-/* Bring up every device; the rest of *z is ready for zcu102_start. A device that does not answer is
- * said on the console, and the unit shows what it shows without it. */
+/* Initialise *z and every device. A device that does not answer is reported on the console, and the
+ * unit runs without it. *z must not move. */
 void zcu102_open(struct zcu102 *z);
 
-/* Start the unit, whose time begins at 0. lm_unit_init's answer. */
+/* Start the unit, whose time begins at 0. Returns the result of lm_unit_init. */
 int zcu102_start(struct zcu102 *z);
 
-/* Wait until the unit's next step is due, and do it. The unit's clock goes in steps of
- * ZCU102_STEP_US, and each step sees the bus as it was at its own time: a step that waited for a
- * long one before it comes later and not different. */
+/* Wait until the unit's next step is due, and do it. The unit's clock advances by ZCU102_STEP_US,
+ * and each step sees the bus as of its own time. So a step that runs late because of a long one
+ * before it has the same result. */
 void zcu102_step(struct zcu102 *z);
 
-/* Microseconds since zcu102_open, and from zcu102_start on since then. */
+/* Microseconds since zcu102_open; after zcu102_start, since that. `timer` is the struct
+ * drv_timer. */
 uint64_t zcu102_now_us(const void *timer);
 
 #endif

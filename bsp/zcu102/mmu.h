@@ -1,14 +1,19 @@
-/* Translation tables of the board (linker/zcu102.ld): every address maps to itself, or to nothing.
- * Mapped are code (read-only), constants (read-only, never run), variables and stacks with unmapped
- * pages between them, bulk memory, memory shared with devices (not cached), and the registers of
- * the devices in use. Anything else faults, so that a stray pointer is found. */
+/* MMU: translation tables of the board (linker/zcu102.ld). An address is mapped to itself or not at
+ * all. Mapped are
+ * - code: read-only;
+ * - constants: read-only, not executable;
+ * - variables and stacks, with unmapped pages between them;
+ * - bulk memory;
+ * - memory shared with devices: not cached;
+ * - registers of the devices in use.
+ * Any other access faults, so that a stray pointer is found. */
 #ifndef ZCU102_MMU_H
 #define ZCU102_MMU_H
 
-/* Write the tables and return the first; called from start.S with the MMU still off. */
+/* Write the tables and return the first one. Called by start.S with the MMU off. */
 const void *zcu102_mmu_build(void);
 
-/* Turn MMU and caches on (start.S). */
+/* Enable MMU and caches. Implemented in start.S. */
 void zcu102_mmu_enable(const void *table);
 
 #endif

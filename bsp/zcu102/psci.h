@@ -1,4 +1,4 @@
-/* Power State Coordination Interface (Arm DEN0022): what the boot firmware at EL3 does for us. */
+/* Power State Coordination Interface (PSCI, Arm DEN0022): services of the boot firmware at EL3. */
 #ifndef ZCU102_PSCI_H
 #define ZCU102_PSCI_H
 
@@ -7,7 +7,8 @@
 _Noreturn void zcu102_power_off(void);
 _Noreturn void zcu102_reset(void);
 
-/* Start another core at `entry` with the MMU off and `context` in x0. 0, or a negative error. */
+/* Start another core at `entry`, with the MMU off and `context` in x0. Returns 0 or a negative
+ * error. */
 int64_t zcu102_core_on(uint64_t core, uint64_t entry, uint64_t context);
 
 #endif

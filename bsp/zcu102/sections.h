@@ -1,14 +1,14 @@
-/* Where a large variable lies (linker/zcu102.ld). None of them is cleared at the start. */
+/* Memory sections for large variables (linker/zcu102.ld). None of them is cleared at the start. */
 #ifndef ZCU102_SECTIONS_H
 #define ZCU102_SECTIONS_H
 
-/* Cached memory for tiles and pictures. */
+/* Bulk memory, cached: tiles and pictures. */
 #define ZCU102_BULK __attribute__((section(".bss._bulk"), aligned(64)))
 
-/* Not cached: what devices read and write. */
+/* Memory that devices read and write: not cached. */
 #define ZCU102_SHARED __attribute__((section(".bss._shared"), aligned(256)))
 
-/* Keeps its contents across a reset. */
+/* Memory that keeps its contents across a reset. */
 #define ZCU102_KEPT __attribute__((section(".bss._kept"), aligned(64)))
 
 #endif

@@ -1,6 +1,6 @@
-/* Watches that the unit lives by the rule of lm/liveness.h, from the timer interrupt. Where it is
- * broken in a period, the board restarts and says on its BIT page why. While all is well the
- * hardware's watchdog is fed, which in turn watches the interrupt. */
+/* Supervisor: checks from the timer interrupt that the unit is alive by the rule of lm/liveness.h.
+ * If it is not during a period, the board restarts, and its BIT page shows the cause. While it is,
+ * the supervisor feeds the hardware's watchdog, which in turn supervises the interrupt. */
 #ifndef ZCU102_SUPERVISOR_H
 #define ZCU102_SUPERVISOR_H
 
@@ -18,13 +18,13 @@ struct zcu102_supervisor {
     struct lm_liveness last;
 };
 
-/* What has happened so far. The bus counts as asked when nothing waits in its ring; a picture that
- * was drawn counts as shown, for the display controller does not tell. */
+/* Liveness so far. The bus counts as polled if nothing waits in its ring. A frame that was drawn
+ * counts as shown, because the display controller does not report it. */
 struct lm_liveness zcu102_life_of(const struct lm_unit *unit, uint32_t steps,
                                   const struct drv_can *can, const struct lm_liveness *last);
 
-/* From the timer interrupt: ZCU102_POWER_ON when all is well or it is not time to look, else the
- * cause to restart for. */
+/* Check the unit and feed the watchdog. Called by the timer interrupt. Returns ZCU102_POWER_ON if
+ * the unit is alive or no check is due, else the cause to restart for. */
 enum zcu102_cause zcu102_supervise(struct zcu102_supervisor *s, uint64_t now_us,
                                    const struct lm_liveness *now);
 
