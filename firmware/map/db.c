@@ -27,8 +27,7 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
     return LM_ERR_IO;
 }
 
-/* Heights in the header go into sums as large as an int: believed up to 16 km either way, as a
- * record's are. */
+/* True if a height is within 16 km. Heights of the header and of records are added in 32 bits. */
 static bool is_height(int32_t height_m_q6)
 {
     return height_m_q6 >= -HEIGHT_MAX_M_Q6 && height_m_q6 <= HEIGHT_MAX_M_Q6;
@@ -61,8 +60,7 @@ static bool is_inside(const struct lm_image_header *h, const struct lm_image_sec
            s->offset <= h->image_bytes - s->bytes;
 }
 
-/* The section of a type when it lies wholly inside the image and is as long as it must be, or NULL.
- */
+/* The section of a type if it lies inside the image and has this length, or NULL. */
 static const struct lm_image_section *find_section(const struct lm_image_header *h, uint32_t type,
                                                    uint64_t bytes)
 {
@@ -81,12 +79,14 @@ static int read_section(struct lm_db *db, const struct lm_image_section *s, void
     return fx_crc32c(0, destination, length) == s->crc ? LM_OK : LM_ERR_CORRUPT;
 }
 
-/* Columns that go once round the Earth at this shift and zone. */
+/* Number of tile columns around the Earth at this shift and zone. */
 static uint32_t columns_round(uint8_t shift, uint8_t zone)
 {
     return 1u << (32 - LM_TILE_CELLS_LOG2 - shift - zone);
 }
 
+/* True if a band lies on the Earth and its directory entries exist. Shifts are at most
+ * 20 and zones 3, so there are at least 32 rows and 8 columns. */
 static bool band_is_sound(const struct lm_db *db, const struct lm_band *b)
 {
     if (b->lod >= db->lod_count || b->zone > 3 || b->rows == 0 || b->columns == 0) {
@@ -118,8 +118,8 @@ static bool classes_are_sound(const struct lm_classes *c)
     return c->height_dm[0] == 0;
 }
 
-/* The head of a section of records, which an image need not have: its bytes, sealed by a CRC in the
- * last four. LM_OK and *s NULL when there is none. */
+/* Read the head of an optional section of records. Its last four bytes are the CRC of those before.
+ * LM_OK with *s NULL if the image has no such section. */
 static int read_head(const struct lm_db *db, const struct lm_image_header *h, uint32_t type,
                      void *head, uint32_t head_bytes, const struct lm_image_section **s,
                      uint32_t poll_limit)
@@ -140,7 +140,7 @@ static int read_head(const struct lm_db *db, const struct lm_image_header *h, ui
     return fx_crc32c(0, bytes, crc_at) == fx_load_u32(bytes + crc_at) ? LM_OK : LM_ERR_CORRUPT;
 }
 
-/* The records of targets and signatures are checked when they are read. */
+/* Targets and signatures: the head is checked here, each record when it is read. */
 static int read_targets_head(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     struct lm_targets_head head;

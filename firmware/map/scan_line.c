@@ -2,35 +2,44 @@
 
 #include "lm/tile_read.h"
 
-/* One coordinate of a line, cell k being at `at + k (step + k half_bend)`. The unit is 2^-32 of a
- * tile's side, so that the upper half is the tile's row or column and the lower half the place in
- * it. */
+/* A line is walked from run to run. A run is a stretch of cells in one tile.
+ *
+ *     tile     |    r, c     |   r, c+1   |   r+1, c+1
+ *     cell   k |.............|............|......
+ *              run           run          run
+ *
+ * read_zone assigns a tile to each run, and then reads all cells in one call. The columns change
+ * their width with the zone, so that a line is read zone by zone. */
+
+/* One coordinate of a line as a quadratic: cell k is at `at + k (step + k half_bend)`, modulo 2^64.
+ * The unit is 2^-32 of a tile's side. Hence the upper half is the tile's row or column, and the
+ * lower half the point in the tile. */
 struct coordinate {
     uint64_t at, step, half_bend;
 };
 
-/* One coordinate of a walk along a line. */
+/* One axis of the map, row or column, during a walk along a line. */
 struct map_axis {
     struct coordinate coordinate;
-    uint64_t fastest;   /* every step of the line is shorter */
-    uint32_t direction; /* all ones where none goes back */
-    bool is_turning;    /* some may go back and some not */
-    uint32_t round;     /* tiles around the Earth, a power of two, less one */
-    uint32_t tile;      /* row or column where the walk stands */
-    uint32_t end;       /* the first cell that may lie in the next one, or is behind the line */
+    uint64_t fastest;   /* longer than every step of the line */
+    uint32_t direction; /* all ones if the coordinate grows, 0 if it falls */
+    bool is_turning;    /* true if it may do both */
+    uint32_t round;     /* mask of rows or columns: a power of two less one */
+    uint32_t tile;      /* row or column of the current run */
+    uint32_t end;       /* first cell that may lie in the next tile, or `cells` */
 };
 
-/* What is done once a line, or seldom, takes no registers from the loop of runs: on the Cortex-A53
- * that is 140 instructions a line. */
+/* Keep code that runs once a line, or seldom, out of line. It then takes no registers from the loop
+ * of runs, which saves 140 instructions a line on the Cortex-A53. */
 #define OUT_OF_LINE __attribute__((noinline))
 
-/* The way of a line through the tiles of one level. A run is a stretch of cells in one tile. */
+/* Walk of a line through the tiles of one LOD. */
 struct walk {
     const struct lm_ground_path *path; /* borrowed */
     struct map_axis north, east;
     uint32_t cells;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
-    uint32_t sixteenth; /* of the row where the walk stands, see below */
+    uint32_t sixteenth; /* of the current row: sixteenth_of_row */
 };
 
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
@@ -52,7 +61,7 @@ static inline uint64_t coordinate_at(const struct coordinate *w, uint32_t k)
     return w->at + k * (w->step + k * w->half_bend);
 }
 
-/* A way by where it is at cell k and how fast it goes there. */
+/* The quadratic that has the value `at` and the derivative `slope` at cell k. */
 static inline struct coordinate coordinate_through(uint32_t k, uint64_t at, uint64_t slope,
                                                    uint64_t half_bend)
 {
@@ -60,9 +69,11 @@ static inline struct coordinate coordinate_through(uint32_t k, uint64_t at, uint
                                half_bend};
 }
 
-/* Where cell k is, and how many from there on surely lie in the same tile: the way to the border
- * that the axis heads for, or to the nearer one if it turns round, at the fastest that it goes. The
- * border may turn out to be one cell farther, which then is a run of its own. */
+/* Start a run at cell k: find its tile and how many cells surely lie in it.
+ *
+ * The distance to the border ahead, or to the nearer border if the axis may turn, is divided by a
+ * bound of the steps. The true border may be farther. Then the next run continues in the same
+ * tile. */
 static inline void start_run(struct map_axis *a, uint32_t k, uint32_t cells)
 {
     const uint64_t at = coordinate_at(&a->coordinate, k);
@@ -75,15 +86,20 @@ static inline void start_run(struct map_axis *a, uint32_t k, uint32_t cells)
     a->end = end < cells ? (uint32_t)end : cells;
 }
 
-/* A coordinate of a path, in units of 2^-32 BAM, and how it grows. */
+/* One coordinate of a path with its differences, in units of 2^-32 BAM: struct lm_ground_path. */
 struct path_coordinate {
     uint64_t value, step, bend;
 };
 
-/* Begin to walk along a coordinate, in the tile of cell k. The angle itself is unsigned, its
- * differences are not. Everything is modulo 2^64, so that no path can do more harm than lead
- * astray. The way is exact in the middle of the line: half a unit of the bend moves the ends of the
- * longest one by 528^2 / 8 units, which is 2^-11 of a cell. */
+/* Start to walk along an axis, in the tile of cell k. Converts the path's forward differences, in
+ * units of 2^-32 BAM, to a quadratic in units of 2^-32 of a tile's side.
+ *
+ * With m the middle cell, value m is value + m step + m (m - 1) / 2 bend. The derivative there is
+ * step + m bend - bend / 2. The quadratic is exact at m. The bend is rounded to half a unit, which
+ * moves the ends of a line of 528 cells by 528^2 / 8 units: 2^-11 of a cell.
+ *
+ * The angle itself is unsigned, its differences are signed. Everything is modulo 2^64, so a bad
+ * path leads to a wrong tile, never to an overflow. */
 static inline void start_axis(struct map_axis *a, struct path_coordinate g, uint32_t side_log2,
                               uint32_t k, uint32_t cells)
 {
@@ -93,8 +109,8 @@ static inline void start_axis(struct map_axis *a, struct path_coordinate g, uint
     const uint64_t slope = g.step + middle * g.bend - (uint64_t)((int64_t)g.bend >> 1);
     const int64_t slope_there = (int64_t)slope >> side_log2;
     const int64_t half_bend = (int64_t)(g.bend + half) >> side_log2 >> 1;
-    /* No step of the line differs from the slope by more than its bend all the way. A tile is 2^10
-     * BAM high at least, so these are below 2^53 and 2^62. */
+    /* No step of the line differs from the slope by more than the bend of all cells. A tile is at
+     * least 2^10 BAM high, so these are below 2^53 and 2^62. */
     const uint64_t fast = magnitude(slope_there), bent = magnitude(half_bend) * cells;
     a->coordinate = coordinate_through(middle, at, (uint64_t)slope_there, (uint64_t)half_bend);
     a->fastest = fast + bent + 1;
@@ -119,14 +135,14 @@ static OUT_OF_LINE void start_walk(struct walk *w, const struct lm_db *db, uint8
 _Static_assert(LM_DB_SHIFT_MAX + LM_TILE_CELLS_LOG2 <= LM_DB_SIXTEENTH_LOG2,
                "a tile lies in one zone");
 
-/* Zones change with a sixteenth of the way from the equator to a pole, whose borders are borders of
- * tiles. */
+/* The sixteenth of a quarter turn that the current row lies in, from the south pole. Zones begin
+ * and end at sixteenths, and these at borders of tiles. */
 static inline uint32_t sixteenth_of_row(const struct walk *w)
 {
     return w->north.tile >> (LM_DB_SIXTEENTH_LOG2 - w->side_log2);
 }
 
-/* Begin with the columns of a zone, at cell k. */
+/* Enter a zone at cell k: start to walk along its columns. */
 static OUT_OF_LINE void enter_zone(struct walk *w, uint32_t k)
 {
     const struct lm_ground_path *p = w->path;
@@ -136,14 +152,14 @@ static OUT_OF_LINE void enter_zone(struct walk *w, uint32_t k)
     start_axis(&w->east, longitude, w->side_log2 + zone, k, w->cells);
 }
 
-/* The end of the run where the walk stands. */
+/* First cell behind the current run. */
 static inline uint32_t end_of_run(const struct walk *w)
 {
     return w->north.end < w->east.end ? w->north.end : w->east.end;
 }
 
-/* Go on to the run that begins with cell k. False where the zone must be entered first, or behind
- * the last cell. */
+/* Advance to the run that begins at cell k. False if k lies in another zone, which must be entered
+ * first, or behind the last cell. */
 static inline bool next_run(struct walk *w, uint32_t k)
 {
     if (k == w->north.end) {
@@ -169,9 +185,9 @@ static inline struct lm_quadratic quadratic_of(const struct coordinate *w)
     return (struct lm_quadratic){(uint32_t)w->at, (uint32_t)w->step, (uint32_t)w->half_bend};
 }
 
-/* A way in the tiles of an ancestor so many generations up, exact at cell k. Elsewhere in a run
- * about that cell, 264 cells off at the most, it is within 264^2 / 2 + 264 units of 2^-32 of the
- * ancestor's side: 2^-10 of one of its cells. */
+/* The coordinate in the tiles of an ancestor that many generations up, exact at cell k. A run about
+ * that cell reaches at most 264 cells to either side. There the error is within 264^2 / 2 + 264
+ * units of 2^-32 of the ancestor's side: 2^-10 of one of its cells. */
 static struct lm_quadratic quadratic_in_ancestor(const struct coordinate *w, uint32_t k,
                                                  uint32_t generations)
 {
@@ -183,8 +199,8 @@ static struct lm_quadratic quadratic_in_ancestor(const struct coordinate *w, uin
     return quadratic_of(&up);
 }
 
-/* Tell the cells of a run, and those behind it up to a whole number of LM_LANES, which tile they
- * lie in. */
+/* Assign a tile to the cells of a run, and to those behind it up to a whole number of LM_LANES.
+ * Pass one of lm/tile_read.h. */
 static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_t end,
                                struct lm_scan_line *line)
 {
@@ -200,13 +216,14 @@ static inline void assign_tile(struct lm_tile_base tile, uint32_t first, uint32_
         }
         cell += LM_LANES;
         elevation += LM_LANES;
-        /* Else the compiler would add up one distance, which costs more before the loop and in it.
-         */
+        /* Keep two pointers: the compiler would replace them by one offset, which costs more before
+         * the loop and in it. */
         __asm__("" : "+r"(cell), "+r"(elevation));
     } while (cell < behind);
 }
 
-/* A run in a tile that was not found at once: what answers for it is good for this run only. */
+/* Read a run whose tile was not found by lm_tile_cache_peek: from the tile, an ancestor, or
+ * nothing. It is read at once, because an ancestor's coordinates are good for this run alone. */
 static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cache *tiles,
                                         uint8_t lod, uint32_t first, uint32_t end,
                                         struct lm_scan_line *line)
@@ -220,30 +237,30 @@ static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cac
         return;
     }
     const uint32_t middle = (first + end) / 2, generations = tile->lod - (uint32_t)lod;
-    const struct lm_tile_coords places = {
+    const struct lm_tile_coords coords = {
         quadratic_in_ancestor(&w->north.coordinate, middle, generations),
         quadratic_in_ancestor(&w->east.coordinate, middle, generations)};
     assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
-    lm_tile_read(tiles->pool, &places, first, end, line);
+    lm_tile_read(tiles->pool, &coords, first, end, line);
 }
 
-/* Read cells of a zone that are laid. */
+/* Read cells of a zone that have a tile assigned. Pass two. */
 static void read_assigned(const struct walk *w, const struct lm_tile *pool, uint32_t first,
                           uint32_t end, struct lm_scan_line *line)
 {
     if (first != end) {
-        const struct lm_tile_coords places = {quadratic_of(&w->north.coordinate),
+        const struct lm_tile_coords coords = {quadratic_of(&w->north.coordinate),
                                               quadratic_of(&w->east.coordinate)};
-        lm_tile_read(pool, &places, first, end, line);
+        lm_tile_read(pool, &coords, first, end, line);
     }
 }
 
-/* Read the cells of a zone, from cell k on. Returns the first one behind them. */
+/* Read the cells of a zone, from cell k on. Returns the first cell behind them. */
 static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t lod, uint32_t k,
                           struct lm_scan_line *line)
 {
     const struct lm_tile *pool = tiles->pool;
-    uint32_t assigned = k; /* the first cell that is laid and not read */
+    uint32_t assigned = k; /* the first cell that is assigned and not read */
     enter_zone(w, k);
     do {
         const uint32_t end = end_of_run(w);

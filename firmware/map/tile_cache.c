@@ -2,7 +2,7 @@
 
 #include "fx/mem.h"
 
-/* Requests looked through for one that is the same. */
+/* Newest requests that are searched for a duplicate. */
 enum { DUPLICATES_SEARCHED = 32 };
 
 static uint16_t *head_of(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
@@ -34,9 +34,9 @@ static void unlink_slot(struct lm_tile_cache *c, uint16_t victim)
     *link = s->next;
 }
 
-/* A free slot, or the one that was used longest ago. The coarsest level and the slot being read
- * stay; lm_tile_cache_init leaves at least 16 that are neither, so LM_SLOT_NONE does not happen,
- * but nothing is written if it does. */
+/* A free slot, or the one that was used longest ago, unlinked from its chain. The coarsest LOD and
+ * the slot being read stay. lm_tile_cache_init leaves at least 16 slots that are neither, so
+ * LM_SLOT_NONE does not happen. If it did, nothing would be written. */
 static uint16_t take_slot(struct lm_tile_cache *c)
 {
     const uint8_t coarsest = (uint8_t)(c->db->lod_count - 1);
@@ -61,7 +61,7 @@ static uint16_t take_slot(struct lm_tile_cache *c)
     return best;
 }
 
-/* Make a slot for a tile and note that it is being read; LM_SLOT_NONE when there is none. */
+/* Assign a slot to a tile and put it first in its chain. LM_SLOT_NONE if there is none. */
 static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
     const uint16_t i = take_slot(c);
@@ -79,6 +79,7 @@ static uint16_t claim_slot(struct lm_tile_cache *c, const struct lm_tile_key *ke
     return i;
 }
 
+/* End the read under way; its slot gets a state. */
 static void finish(struct lm_tile_cache *c, enum lm_slot_state state)
 {
     struct lm_tile_slot *s = &c->slots[c->reading_slot];
@@ -94,6 +95,7 @@ static void fail(struct lm_tile_cache *c, uint32_t *counter)
     finish(c, LM_SLOT_BAD);
 }
 
+/* Start to read a part of a tile. A refusal counts as a failed read. */
 static void start_read(struct lm_tile_cache *c, uint64_t offset, void *to, uint32_t length)
 {
     const struct lm_flash *flash = c->db->flash;
@@ -103,13 +105,15 @@ static void start_read(struct lm_tile_cache *c, uint64_t offset, void *to, uint3
     }
 }
 
+/* True if a slot needs no read now: all states but BAD, and BAD until the retry is due. */
 static bool is_settled(const struct lm_tile_cache *c, uint16_t i)
 {
     const struct lm_tile_slot *s = &c->slots[i];
     return s->state != LM_SLOT_BAD || c->now_us - s->failed_us < LM_TILE_RETRY_US;
 }
 
-/* Begin with the next tile that is wanted and not there yet. */
+/* Begin to read the oldest requested tile. It may have become resident since it was requested; then
+ * nothing is read. */
 static void start_next(struct lm_tile_cache *c)
 {
     const struct lm_tile_key key = c->wanted[c->wanted_tail % LM_TILE_REQUESTS];
@@ -131,6 +135,7 @@ static void start_next(struct lm_tile_cache *c)
     start_read(c, c->db->directory_offset + 8u * (uint64_t)key.entry, c->entry_bytes, 8);
 }
 
+/* The directory entry was read: begin to read the record that it names. */
 static void take_entry(struct lm_tile_cache *c)
 {
     uint32_t record = 0;
@@ -140,7 +145,7 @@ static void take_entry(struct lm_tile_cache *c)
     } else if (record == UINT32_MAX) {
         const struct lm_tile_slot absent = c->slots[c->reading_slot];
         finish(c, LM_SLOT_ABSENT);
-        lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* its parent will do */
+        lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* requests its parent */
     } else {
         c->is_reading_entry = false;
         start_read(c, c->db->records_offset + (uint64_t)record * LM_TILE_BYTES,
@@ -148,6 +153,7 @@ static void take_entry(struct lm_tile_cache *c)
     }
 }
 
+/* The record was read: make it resident if it passes its check. */
 static void take_record(struct lm_tile_cache *c)
 {
     const struct lm_tile_slot *s = &c->slots[c->reading_slot];
@@ -190,7 +196,7 @@ static void start_request(struct lm_tile_cache *c)
     }
 }
 
-/* Begin with what is to be read next; false when there is nothing. */
+/* Begin the next read: the other part's request first, then tiles. False if there is none. */
 static bool start_pending(struct lm_tile_cache *c)
 {
     if (c->request) {
@@ -203,7 +209,7 @@ static bool start_pending(struct lm_tile_cache *c)
     return true;
 }
 
-/* What was being read is there, or is not to be had. */
+/* The read under way has ended, well or not. */
 static void end_read(struct lm_tile_cache *c, bool is_ok)
 {
     if (c->is_reading_request) {
@@ -241,8 +247,8 @@ void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t re
     }
 }
 
-/* Queue a tile of the image unless it is among the newest requests: neighbouring lines ask for the
- * same tiles. */
+/* Queue a tile of the image unless it is among the newest requests. Neighbouring lines request the
+ * same tiles, so the search is short and finds most duplicates. */
 static void queue_request(struct lm_tile_cache *c, const struct lm_tile_key *key)
 {
     for (uint32_t back = 1; back <= DUPLICATES_SEARCHED && back <= c->wanted_head - c->wanted_tail;
@@ -259,8 +265,8 @@ static void queue_request(struct lm_tile_cache *c, const struct lm_tile_key *key
     c->wanted_head++;
 }
 
-/* Ask for a tile that is not resident or, when it is, note that it is in use; `i` is its slot, or
- * LM_SLOT_NONE. False when the image has no such tile. */
+/* Request a tile, or mark it as used if it needs no read. `i` is its slot or LM_SLOT_NONE. False if
+ * the image has no such tile. */
 static bool want_tile(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column,
                       uint16_t i)
 {
@@ -283,7 +289,7 @@ static bool want_tile(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32
 
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column)
 {
-    /* What the image leaves out is answered by the first ancestor that it has. */
+    /* For a tile that the image leaves out, the first ancestor that it has is read. */
     for (; lod < c->db->lod_count; lod++, row >>= 1, column >>= 1) {
         if (want_tile(c, lod, row, column, find(c, lod, row, column))) {
             return;
@@ -302,8 +308,8 @@ static const struct lm_tile *use_slot(struct lm_tile_cache *c, uint16_t i)
     return &c->pool[i];
 }
 
-/* The tile or its first ancestor that is resident answers; the first of them that the image has is
- * wanted. */
+/* Walk from the tile to its ancestors. The first that the image has is requested, and the first
+ * that is resident answers. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column)
 {
@@ -332,7 +338,7 @@ bool lm_tile_cache_is_idle(const struct lm_tile_cache *c)
     return !is_reading(c) && !c->request && c->wanted_head == c->wanted_tail;
 }
 
-/* Read every tile of the coarsest level, waiting for each: this happens once, before the first
+/* Read every tile of the coarsest LOD and wait for each. This happens once, before the first
  * picture. */
 static int read_coarsest(struct lm_tile_cache *c, uint32_t poll_limit)
 {

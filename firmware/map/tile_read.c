@@ -14,7 +14,7 @@ void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coord
     uint32_t *const cell_behind = line->cell + end;
     int32_t *const elevation_behind = line->elevation_m_q14 + end;
     for (int lane = 0; lane < LM_LANES; lane++) {
-        cell_behind[lane] = 0; /* not laid, perhaps: any record will do */
+        cell_behind[lane] = 0; /* the last group reads these too: any tile of the pool will do */
         elevation_behind[lane] = 0;
     }
     lm_k_tile_read(pool->points[0], coords, first, groups, line->cell, line->elevation_m_q14);

@@ -1,5 +1,18 @@
-/* What stands along one azimuth line: a cell of the map and its elevation for every range cell.
- * docs/EQUATIONS.md, "Ground in a cell". */
+/* Scan line: the map's cell and the terrain's elevation for every cell of a range line.
+ * Law: docs/EQUATIONS.md, "Ground in a cell".
+ *
+ *     antenna                                                       far
+ *        o----|-----|-----|-----|-----|- path, in cells of the line -->
+ *             cell[0]                       gamma code, class, height code
+ *             elevation_m_q14[0]            terrain
+ *
+ * Example: the ground along a path (lm/geo.h), from tiles that are resident.
+ *
+ *     static struct lm_scan_line line;
+ *     const uint8_t lod = lm_scan_lod(cache.db, cell_mm);
+ *     lm_scan_line_run(&line, &cache, lod, &path, 512);
+ *
+ * No function waits for the flash, and none fails. Pointers are borrowed for the call. */
 #ifndef LM_SCAN_LINE_H
 #define LM_SCAN_LINE_H
 
@@ -9,30 +22,36 @@
 #include "lm/lanes.h"
 #include "lm/tile_cache.h"
 
-enum { LM_CELL_NONE = 0x00F0 }; /* no data: class 15, reflectivity code 0 */
+/* A cell without data: class 15, reflectivity code 0, height code 0. */
+enum { LM_CELL_NONE = 0x00F0 };
 
 struct lm_scan_line {
-    uint32_t cell[LM_CELLS_ROOM];           /* as in the tile record, or LM_CELL_NONE */
-    int32_t elevation_m_q14[LM_CELLS_ROOM]; /* terrain, metres * 16384; 0 where there is no data */
+    uint32_t cell[LM_CELLS_ROOM];           /* as in struct lm_tile_point, or LM_CELL_NONE */
+    int32_t elevation_m_q14[LM_CELLS_ROOM]; /* above mean sea level; 0 where there is no data */
 };
 
-/* The level that a line of cells of cell_mm reads: the one whose cell is the largest not longer
- * than that (level 0 when all are). */
+/* LOD for a line whose cells are cell_mm long: the LOD whose cell is the largest that is not
+ * longer. 0 if all are longer. */
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 
-/* Fill the first `cells` (1..LM_CELLS_MAX) entries along the path. Tiles that are not resident are
- * answered by an ancestor and asked for (tile_cache.h counts them). Places differ from the path's
- * by at most 2^-10 of a cell of the tile that answers, 2^-9 in lines of 1024. Cost: see
- * docs/benchmarks.md; some 75 instructions for each tile that is crossed. */
+/* Read the first `cells` (1..LM_CELLS_MAX) entries along the path.
+ *
+ * - A tile that is not resident is requested. Its nearest resident ancestor answers for it; where
+ *   there is none, the cells are LM_CELL_NONE. lm/tile_cache.h counts both.
+ * - Points lie within 2^-10 of a cell of the path's, in lines of 1024 cells within 2^-9. The cell
+ * is one of the tile that answers.
+ *
+ * `tiles` is changed: its clock, requests and counts. Cost: see docs/benchmarks.md; some 75
+ * instructions for each tile that the line crosses. */
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t lod,
                       const struct lm_ground_path *path, uint32_t cells);
 
-/* Ask for the tiles that lm_scan_line_run would use, without reading a cell. */
+/* Request the tiles that lm_scan_line_run would use, without reading a cell. */
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,
                            const struct lm_ground_path *path, uint32_t cells);
 
-/* Elevation at one place from whatever is resident, metres * 1024; `fallback_m_q10` where nothing
- * is. */
+/* Elevation at one position, in metres * 1024, from the resident tile or its nearest resident
+ * ancestor. fallback_m_q10 if neither is resident. A tile that is missing is requested. */
 int32_t lm_scan_elevation(struct lm_tile_cache *tiles, uint8_t lod, struct lm_position position,
                           int32_t fallback_m_q10);
 

@@ -1,10 +1,40 @@
-/* A fixed pool of tiles between the flash and the scan line. The sweep never waits for it: a lookup
- * answers at once from what is resident, and what is missing is read in the background, one record
- * at a time.
+/* Tile cache: a fixed pool of tiles between the flash and the scan lines.
  *
- * A tile that is late, lost or corrupt is answered by its nearest resident ancestor and counted;
- * the coarsest level is read at the start and never leaves, so there is always one inside the map.
- */
+ * A look-up never waits. It answers at once from a resident tile, and a missing tile is read in the
+ * background, one record at a time. For a tile that is late, lost or corrupt the nearest resident
+ * ancestor answers, and the substitution is counted. Tiles of the coarsest LOD are read at the
+ * start and never evicted, so that an ancestor is resident wherever the image has a map.
+ *
+ * States of a slot (enum lm_slot_state):
+ *
+ *               want                  entry and record are good
+ *       FREE ---------> READING ----------------------------------> RESIDENT
+ *         |              ^ |  |
+ *         |              | |  +--- the image has no such tile ----> ABSENT
+ *         |   want, 1 s  | |
+ *         |    or later  | v
+ *         |             BAD  (a read failed, or a check)
+ *         |
+ *     The slot used longest ago gets the next tile: RESIDENT, ABSENT or BAD, never READING and
+ *     never a resident tile of the coarsest LOD.
+ *
+ * Flow of a request:
+ *
+ *     lm_tile_cache_get, _want --> ring of requests --> lm_tile_cache_service --> slot
+ *                                                         | entry, record
+ *                                                         v
+ *                                                       flash
+ *
+ * Example: a step that draws from the cache.
+ *
+ *     lm_tile_cache_service(&cache, now_us, 8);                       goes on with the reading
+ *     const struct lm_tile *tile = lm_tile_cache_get(&cache, lod, row, column);
+ *     if (tile) {                                                     or an ancestor of it
+ *         draw(tile);
+ *     }
+ *
+ * The caller owns struct lm_tile_cache and the pool, and may read `count`. One thread calls all
+ * functions. */
 #ifndef LM_TILE_CACHE_H
 #define LM_TILE_CACHE_H
 
@@ -15,118 +45,133 @@
 #include "lm/config.h"
 #include "lm/db.h"
 
+/* State of a slot. */
 enum lm_slot_state {
     LM_SLOT_FREE = 0,
-    LM_SLOT_READING,
+    LM_SLOT_READING,  /* its directory entry or its record is being read */
     LM_SLOT_RESIDENT, /* checked and usable */
-    LM_SLOT_ABSENT, /* the image has no such tile: remembered, so that it is not looked up each line
-                     */
-    LM_SLOT_BAD     /* could not be read or checked; tried again after LM_TILE_RETRY_US */
+    LM_SLOT_ABSENT,   /* the image has no such tile; remembered to spare a read for each line */
+    LM_SLOT_BAD       /* could not be read or checked; tried again after LM_TILE_RETRY_US */
 };
 
 enum { LM_TILE_RETRY_US = 1000000 };
 
-/* What the cells of a tile need to be read by lm_tile_read. */
+/* Start of a tile's points and elevations, as lm_tile_read needs them: lm_tile_base_of. */
 struct lm_tile_base {
-    uint32_t record; /* points from the pool's first record to its own */
-    int32_t scale;   /* lm_tile_base_of */
+    uint32_t record; /* from the pool's first point to the tile's first point, in points */
+    int32_t scale;   /* base elevation and shift of the posts */
 };
 
+/* Slot: the tile in one record of the pool. */
 struct lm_tile_slot {
-    uint64_t resident; /* lm_tile_name of the tile that it answers with, or LM_TILE_NO_NAME */
-    struct lm_tile_base base;
-    uint64_t failed_us;
-    uint32_t last_use; /* the cache's clock when it was last answered from or asked for */
+    uint64_t resident;        /* lm_tile_name of the resident tile, or LM_TILE_NO_NAME */
+    struct lm_tile_base base; /* of the resident tile */
+    uint64_t failed_us;       /* time of the failure, in state LM_SLOT_BAD */
+    uint32_t last_use;        /* the cache's clock when the tile was last used or requested */
     uint32_t row, column;
-    uint16_t next; /* in its chain, or LM_SLOT_NONE */
+    uint16_t next; /* slot in its chain, or LM_SLOT_NONE */
     uint8_t lod, state;
 };
 
+/* LM_SLOT_NONE is the index that ends a chain. Chains are per LOD. */
 enum { LM_SLOT_NONE = LM_TILE_SLOTS_MAX, LM_TILE_CHAINS = 1024 };
 
+/* A requested tile. */
 struct lm_tile_key {
-    uint32_t row, column, entry; /* entry: in the directory */
+    uint32_t row, column;
+    uint32_t entry; /* in the directory */
     uint8_t lod;
 };
 
-/* A read of somebody else's, taken between two tiles: the flash does one at a time. */
+/* Another part's read of the flash, done between two tiles because the flash does one at a time. */
 struct lm_flash_request {
-    uint64_t offset;
-    void *destination;
-    uint32_t length;
-    int status; /* LM_BUSY until it is done; then LM_OK or LM_ERR_IO */
+    uint64_t offset;   /* in the flash, bytes */
+    void *destination; /* borrowed until the read is done */
+    uint32_t length;   /* bytes */
+    int status;        /* LM_BUSY until it is done, then LM_OK or LM_ERR_IO */
 };
 
+/* Tile cache. All members but `count` are private. */
 struct lm_tile_cache {
-    const struct lm_db *db; /* borrowed */
-    struct lm_tile *pool;   /* borrowed: one record a slot */
-    uint32_t slot_count;
-    uint32_t clock;  /* look-ups so far */
-    uint64_t now_us; /* of the last service */
+    const struct lm_db *db; /* borrowed as long as the cache is in use */
+    struct lm_tile *pool;   /* borrowed likewise: one record a slot */
+    uint32_t slot_count;    /* of the pool; at most LM_TILE_SLOTS_MAX */
+    uint32_t clock;         /* look-ups so far */
+    uint64_t now_us;        /* of the last service */
 
     struct lm_tile_slot
         slots[LM_TILE_SLOTS_MAX + 1];               /* the last one, at which chains end, is free */
-    uint16_t heads[LM_DB_LODS_MAX][LM_TILE_CHAINS]; /* first slots of the chains of each level */
-    struct lm_tile_key wanted[LM_TILE_REQUESTS];    /* ring */
-    uint32_t wanted_head, wanted_tail;
+    uint16_t heads[LM_DB_LODS_MAX][LM_TILE_CHAINS]; /* first slot of each chain, by LOD */
+    struct lm_tile_key wanted[LM_TILE_REQUESTS];    /* ring of requests */
+    uint32_t wanted_head, wanted_tail; /* requests taken and requests begun, modulo 2^32 */
 
     /* The read under way. */
     uint16_t reading_slot; /* LM_SLOT_NONE when idle */
     bool is_reading_entry; /* first the directory entry, then the record */
     uint32_t reading_entry;
     uint32_t entry_bytes[2];
-    struct lm_flash_request *request; /* borrowed: waits or is being read; NULL: none */
+    struct lm_flash_request *request; /* borrowed while it waits or is being read; NULL if none */
     bool is_reading_request;
 
+    /* Counts since the start. They only grow, modulo their size. */
     struct {
         uint32_t not_exact;   /* lookups not answered by the tile asked for */
-        uint32_t misses;      /* of those: although it exists */
+        uint32_t misses;      /* those of `not_exact` whose tile is in the image */
         uint32_t substituted; /* misses answered by an ancestor */
-        uint32_t off_map;     /* lookups that nothing answers: no data here */
+        uint32_t off_map;     /* lookups without a resident ancestor: no data there */
         uint32_t tiles_read;
-        uint32_t io_errors, corrupt; /* reads that failed, records or entries that did not check */
-        uint32_t requests_dropped;   /* ring full */
-        uint32_t evicted;
+        uint32_t io_errors;        /* reads that failed */
+        uint32_t corrupt;          /* records or directory entries that failed their check */
+        uint32_t requests_dropped; /* requests lost because the ring was full */
+        uint32_t evicted;          /* tiles that lost their slot to another */
         uint64_t bytes_read;
-    } count; /* only ever grow */
+    } count;
 };
 
-/* Lend `pool_bytes` at `pool` (8-byte aligned) and read the coarsest level into it, which stays.
- * LM_OK; LM_ERR_NO_MEMORY when the pool cannot hold the coarsest level and 16 more tiles; tiles of
- * the coarsest level that fail are counted, not fatal. Polls each read at most `poll_limit` times.
- */
+/* Start a cache with a pool of `pool_bytes` at `pool`, 8-byte aligned, and read the coarsest LOD
+ * into it. For start-up only: it waits for the flash, at most `poll_limit` steps a tile. The cache
+ * keeps `db` and `pool`. At most LM_TILE_SLOTS_MAX tiles of the pool are used.
+ *
+ * Returns LM_OK, or LM_ERR_NO_MEMORY if the pool cannot hold the coarsest LOD and 16 more tiles;
+ * the cache is then not usable. A tile of the coarsest LOD that fails is counted, not fatal. */
 int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *pool,
                        size_t pool_bytes, uint32_t poll_limit);
 
-/* The tile itself when it is resident; otherwise asks for it and answers its nearest resident
- * ancestor, or NULL where the map has nothing. The pointer is good until the next
- * lm_tile_cache_service. Cost: one chain a level tried. */
+/* Look up a tile. Returns
+ * - the tile, if it is resident,
+ * - else its nearest resident ancestor: see its `lod`,
+ * - NULL where the map has nothing.
+ *
+ * A tile that is in the image and not resident is requested. The pointer is valid until the next
+ * lm_tile_cache_service. Cost: one chain for each LOD that is tried. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column);
 
-/* Lookups answered by the tile asked for. */
+/* Number of look-ups that found the very tile. */
 static inline uint32_t lm_tile_cache_hits(const struct lm_tile_cache *c)
 {
     return c->clock - c->count.not_exact;
 }
 
-/* A tile of a level in one word. Rows are below 2^22: a tile is 2^10 BAM high at least. */
+/* Name of a tile: row and column in one word. Rows are below 2^22, because a tile is at least 2^10
+ * BAM high, so that no tile has LM_TILE_NO_NAME. */
 #define LM_TILE_NO_NAME UINT64_MAX
 static inline uint64_t lm_tile_name(uint32_t row, uint32_t column)
 {
     return (uint64_t)row << 32 | column;
 }
 
-/* The chain of a tile: those of one chain are 34 tiles apart, so that the tiles about an aircraft
- * are the first of theirs. */
+/* Chain of a tile, 0..LM_TILE_CHAINS - 1. Tiles of one chain are at least 34 tiles apart. Hence the
+ * tiles around an aircraft are usually each the first of its chain. */
 static inline uint32_t lm_tile_chain(uint32_t row, uint32_t column)
 {
     return (row * 271 + column) % LM_TILE_CHAINS;
 }
 
-/* The same as lm_tile_cache_get for one who mostly finds: the slot of the tile if it is resident
- * and the first of its chain; NULL otherwise, and nothing is counted. Cost: some 12 instructions.
- */
+/* Look up a tile without requesting it: the fast path of lm_tile_cache_get. Returns the slot if the
+ * tile is resident and the first of its chain, which is a look-up. Otherwise returns NULL and
+ * counts nothing: call lm_tile_cache_get. The pointer is valid until the next
+ * lm_tile_cache_service. Cost: some 12 instructions. */
 static inline const struct lm_tile_slot *lm_tile_cache_peek(struct lm_tile_cache *c, uint8_t lod,
                                                             uint32_t row, uint32_t column)
 {
@@ -138,10 +183,16 @@ static inline const struct lm_tile_slot *lm_tile_cache_peek(struct lm_tile_cache
     return s;
 }
 
-/* A tile's base, metres * 16384, with the shift that brings the Q16 of a post there in its lowest
- * byte, less than 0 as it goes to the right: a post step is 2^post_shift / 64 m, so that its Q16 is
- * Q22 of 2^post_shift m. The byte is left in where elevations are added up: it takes half a
- * millimetre from them. lm_tile_check holds |base| to 2^20 in Q6 and post_shift to 4. */
+/* Start and scale of a tile of the pool; the tile has passed lm_tile_check.
+ *
+ *     scale = base elevation, metres * 16384, a multiple of 256
+ *           - right shift from posts to metres * 16384, 4..8
+ *
+ * An interpolated post is Q16 in steps of 2^post_shift / 64 metres, which is Q22 of 2^post_shift
+ * metres. Hence the shift to Q14 is 8 - post_shift. Readers take it from the lowest byte. They
+ * leave it in where they add the base, which lowers elevations by at most half a millimetre.
+ * Ranges: lm_tile_check limits |base_m_q6| to 2^20 and post_shift to 4, so |scale| is at most 2^28
+ * + 8. */
 static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
                                                   const struct lm_tile *tile)
 {
@@ -150,19 +201,21 @@ static inline struct lm_tile_base lm_tile_base_of(const struct lm_tile *pool,
                                  .scale = tile->base_m_q6 * 256 + (tile->post_shift - 8)};
 }
 
-/* Ask for a tile that will be needed soon. Does nothing when it is resident or already asked for.
- */
+/* Request a tile that will be needed soon, or the first ancestor that the image has. Does nothing
+ * if it is resident or requested already. A full ring drops the request and counts it. */
 void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint32_t column);
 
-/* Read something else of the image before the next tile. `request`, its offset, destination and
- * length filled in, is borrowed until its status is no longer LM_BUSY. One at a time: false, and
- * nothing is taken, while another one waits. */
+/* Read something else of the image before the next tile. The caller fills offset, destination and
+ * length. True if taken: the cache borrows `request` until its status is no longer LM_BUSY. False,
+ * with nothing taken, while another request waits or is being read. */
 bool lm_tile_cache_read(struct lm_tile_cache *c, struct lm_flash_request *request);
 
-/* Go on with the reading: at most `reads` polls or starts. Never waits. */
+/* Continue reading, with at most `reads` polls or starts of the flash. Never waits. Tiles that
+ * lm_tile_cache_get returned before may be evicted. Cost: the check of a record for each tile that
+ * is complete, and a pass over the slots for each tile that is begun. */
 void lm_tile_cache_service(struct lm_tile_cache *c, uint64_t now_us, uint32_t reads);
 
-/* True when nothing is wanted and nothing is being read. */
+/* True if no request waits and nothing is being read. */
 bool lm_tile_cache_is_idle(const struct lm_tile_cache *c);
 
 #endif
