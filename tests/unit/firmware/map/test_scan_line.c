@@ -3,8 +3,7 @@
 #include "check.h"
 #include "hs/rng.h"
 #include "lm/scan_line.h"
-#include "memory_flash.h"
-#include "tiny_image.h"
+#include "tiny_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +12,7 @@
 static const double bam_per_degree = 4294967296.0 / 360;
 
 struct world {
-    struct tiny_image image;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_tile_cache tiles;
-    struct lm_tile *pool;
+    struct tiny_map map;
     struct lm_scan_line line;
 };
 
@@ -43,12 +38,7 @@ static void open_world_with(struct world *w, struct tiny_spec spec)
     memset(w, 0, sizeof *w);
     spec.cell = speckled;
     spec.elevation_m = hills;
-    assert_int_equal(tiny_image_build(&w->image, &spec), 0);
-    w->pool = malloc(SLOTS * sizeof *w->pool);
-    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    assert_int_equal(lm_db_open(&w->db, &w->flash.port, 10), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&w->tiles, &w->db, w->pool, SLOTS * sizeof *w->pool, 10),
-                     LM_OK);
+    tiny_map_open(&w->map, &spec, SLOTS);
 }
 
 /* Square of 6 x 6 tiles of 64 cells of 4.8 m. */
@@ -59,32 +49,19 @@ static void open_world(struct world *w, double latitude_deg, double longitude_de
     open_world_with(w, spec);
 }
 
-static void close_world(struct world *w)
-{
-    tiny_image_free(&w->image);
-    free(w->pool);
-}
-
-static void read_what_is_wanted(struct world *w)
-{
-    for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&w->tiles); i++) {
-        lm_tile_cache_service(&w->tiles, 0, 1);
-    }
-    assert_true(lm_tile_cache_is_idle(&w->tiles));
-}
-
 /* The record of a tile, or NULL where the image has none. */
 static const struct lm_tile *find_tile(const struct world *w, uint32_t level, uint32_t row,
                                        uint32_t column)
 {
-    const int64_t entry = lm_db_entry(&w->db, (uint8_t)level, row, column);
+    const int64_t entry = lm_db_entry(&w->map.db, (uint8_t)level, row, column);
     uint32_t record = UINT32_MAX;
     if (entry >= 0) {
-        memcpy(&record, w->image.bytes + w->image.directory_offset + (size_t)entry * 8, 4);
+        memcpy(&record, w->map.image.bytes + w->map.image.directory_offset + (size_t)entry * 8, 4);
     }
     return record == UINT32_MAX
                ? NULL
-               : (const struct lm_tile *)(const void *)(w->image.bytes + w->image.tiles_offset +
+               : (const struct lm_tile *)(const void *)(w->map.image.bytes +
+                                                        w->map.image.tiles_offset +
                                                         (size_t)record * LM_TILE_BYTES);
 }
 
@@ -103,8 +80,8 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
     const double share = fabs(latitude) / 1073741824.0 * 16;
     const int zone = share < 11 ? 0 : share < 13 ? 1 : share < 15 ? 2 : 3;
     longitude -= floor(longitude / 4294967296.0) * 4294967296.0;
-    for (; level < w->db.lod_count; level++) {
-        const double high = ldexp(1, w->db.shift0 + (int)level), wide = ldexp(high, zone);
+    for (; level < w->map.db.lod_count; level++) {
+        const double high = ldexp(1, w->map.db.shift0 + (int)level), wide = ldexp(high, zone);
         const double y = from_pole / high, x = longitude / wide;
         const uint32_t row = (uint32_t)floor(y), column = (uint32_t)floor(x);
         const struct lm_tile *t = find_tile(w, level, row / 64, column / 64);
@@ -191,11 +168,11 @@ static struct lm_ground_path path_from(double latitude_deg, double longitude_deg
 static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm_ground_path *p,
                                  uint32_t cells)
 {
-    lm_scan_line_prefetch(&w->tiles, level, p, cells);
-    read_what_is_wanted(w);
-    const uint32_t misses = w->tiles.count.misses;
-    lm_scan_line_run(&w->line, &w->tiles, level, p, cells);
-    assert_int_equal(w->tiles.count.misses, misses);
+    lm_scan_line_prefetch(&w->map.tiles, level, p, cells);
+    tiny_map_read_tiles(&w->map);
+    const uint32_t misses = w->map.tiles.count.misses;
+    lm_scan_line_run(&w->line, &w->map.tiles, level, p, cells);
+    assert_int_equal(w->map.tiles.count.misses, misses);
     return compare(w, level, p, cells);
 }
 
@@ -210,7 +187,7 @@ TEST(lines_of_every_direction_level_and_step_agree_with_the_image)
     for (int n = 0; n < 5; n++) {
         open_world(&w, places[n][0], places[n][1]);
         for (int i = 0; i < 120; i++) {
-            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.lod_count);
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.map.db.lod_count);
             const double step_m = 4.8 * (1 << level) * 2.5 * hs_rng_uniform(&rng);
             const double off_deg = 0.012 * (hs_rng_uniform(&rng) - 0.5);
             const double bend_m = 0.001 * (hs_rng_uniform(&rng) - 0.5);
@@ -220,7 +197,7 @@ TEST(lines_of_every_direction_level_and_step_agree_with_the_image)
                 path_from(places[n][0] + off_deg, longitude_deg, azimuth_deg, step_m, bend_m);
             known += scan_and_compare(&w, level, &p, 1 + hs_rng_below(&rng, LM_CELLS_MAX));
         }
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
     assert_true(known > 20000);
 }
@@ -235,7 +212,7 @@ TEST(every_step_of_elevation_that_a_tile_may_have_is_read)
         open_world_with(&w, spec);
         const struct lm_ground_path p = path_from(45.998, 10.998, 45, 5, 0);
         assert_true(scan_and_compare(&w, 0, &p, 80) > 40);
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
 }
 
@@ -254,7 +231,7 @@ TEST(a_line_that_turns_round_at_a_border_stays_right)
         p.latitude_bend = (uint64_t)(int64_t)(2000.0 * 4294967296.0 / 20 / 100 * (1 + n % 7));
         scan_and_compare(&w, 0, &p, 400);
     }
-    close_world(&w);
+    tiny_map_close(&w.map);
 }
 
 TEST(lines_agree_across_the_border_of_a_zone)
@@ -270,7 +247,7 @@ TEST(lines_agree_across_the_border_of_a_zone)
             known += scan_and_compare(&w, 0, &p, 300);
         }
         assert_true(known > 1500);
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
 }
 
@@ -287,7 +264,7 @@ TEST(lines_agree_across_the_antimeridian_and_greenwich)
             p.longitude = (uint64_t)(uint32_t)(int64_t)start << 32;
             assert_true(scan_and_compare(&w, 0, &p, 200) > 150);
         }
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
 }
 
@@ -302,15 +279,16 @@ TEST(lines_near_the_poles_do_no_harm)
         spec.rows = spec.columns = 4;
         open_world_with(&w, spec);
         for (int i = 0; i < 200; i++) {
-            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.db.lod_count);
+            const uint8_t level = (uint8_t)hs_rng_below(&rng, w.map.db.lod_count);
             const struct lm_ground_path p = {
-                .latitude = (uint64_t)(w.db.centre_latitude + hs_rng_below(&rng, 1 << 21)) << 32,
+                .latitude = (uint64_t)(w.map.db.centre_latitude + hs_rng_below(&rng, 1 << 21))
+                            << 32,
                 .longitude = hs_rng_u64(&rng),
                 .latitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
                 .longitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
                 .latitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40)),
                 .longitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40))};
-            lm_scan_line_run(&w.line, &w.tiles, level, &p, LM_CELLS_MAX);
+            lm_scan_line_run(&w.line, &w.map.tiles, level, &p, LM_CELLS_MAX);
             for (uint32_t k = 0; k < LM_CELLS_MAX; k++) {
                 assert_in_range(w.line.cell[k], 0, 0xFFFF);
             }
@@ -319,7 +297,7 @@ TEST(lines_near_the_poles_do_no_harm)
             const struct lm_ground_path p = path_from(latitudes_deg[n], 100, azimuth, 5, 0);
             scan_and_compare(&w, 0, &p, 150);
         }
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
 }
 
@@ -334,7 +312,7 @@ TEST(steps_over_whole_tiles_find_the_right_ones)
             assert_true(scan_and_compare(&w, 0, &p, 20) >= 1);
         }
     }
-    close_world(&w);
+    tiny_map_close(&w.map);
 }
 
 TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
@@ -342,24 +320,24 @@ TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
-    const uint8_t coarsest = (uint8_t)(w.db.lod_count - 1);
+    const uint8_t coarsest = (uint8_t)(w.map.db.lod_count - 1);
     /* Nothing but the coarsest level has been read. */
-    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
     assert_true(compare(&w, coarsest, &p, 150) == 150);
-    assert_true(w.tiles.count.substituted > 0);
+    assert_true(w.map.tiles.count.substituted > 0);
     /* It has asked for what it missed; with the parents there too, they are not used. */
-    read_what_is_wanted(&w);
-    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
+    tiny_map_read_tiles(&w.map);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
     assert_true(compare(&w, 0, &p, 150) == 150);
-    close_world(&w);
+    tiny_map_close(&w.map);
     /* Each level in turn is the finest that is there. */
     for (uint8_t level = 1; level < coarsest; level++) {
         open_world(&w, 46, 11);
-        lm_scan_line_prefetch(&w.tiles, level, &p, 150);
-        read_what_is_wanted(&w);
-        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
+        lm_scan_line_prefetch(&w.map.tiles, level, &p, 150);
+        tiny_map_read_tiles(&w.map);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
         assert_true(compare(&w, level, &p, 150) == 150);
-        close_world(&w);
+        tiny_map_close(&w.map);
     }
 }
 
@@ -378,13 +356,13 @@ TEST(tiles_that_the_image_leaves_out_are_answered_by_their_parents)
     open_world_with(&w, spec);
     for (int azimuth = 0; azimuth < 360; azimuth += 24) {
         const struct lm_ground_path p = path_from(46, 11, azimuth, 5, 0);
-        lm_scan_line_prefetch(&w.tiles, 1, &p, 150);
-        lm_scan_line_prefetch(&w.tiles, 0, &p, 150);
-        read_what_is_wanted(&w);
-        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 150);
+        lm_scan_line_prefetch(&w.map.tiles, 1, &p, 150);
+        lm_scan_line_prefetch(&w.map.tiles, 0, &p, 150);
+        tiny_map_read_tiles(&w.map);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
         assert_true(compare(&w, 0, &p, 150) > 100);
     }
-    close_world(&w);
+    tiny_map_close(&w.map);
 }
 
 TEST(beyond_the_map_there_is_no_data_at_sea_level)
@@ -392,12 +370,12 @@ TEST(beyond_the_map_there_is_no_data_at_sea_level)
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(10, 50, 45, 5, 0);
-    lm_scan_line_run(&w.line, &w.tiles, 0, &p, 100);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 100);
     for (int i = 0; i < 100; i++) {
         assert_int_equal(w.line.cell[i], LM_CELL_NONE);
         assert_int_equal(w.line.elevation_m_q14[i], 0);
     }
-    close_world(&w);
+    tiny_map_close(&w.map);
 }
 
 TEST(one_elevation_is_that_of_a_line)
@@ -408,15 +386,15 @@ TEST(one_elevation_is_that_of_a_line)
         const struct lm_ground_path p = path_from(46 + i * 1e-5, 11 - i * 2e-5, 0, 1, 0);
         const struct lm_position position = {(fx_bam_t)(p.latitude >> 32),
                                              (fx_bam_t)(p.longitude >> 32)};
-        lm_scan_line_run(&w.line, &w.tiles, 0, &p, 1);
-        const int32_t q10 = lm_scan_elevation(&w.tiles, 0, position, -99);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 1);
+        const int32_t q10 = lm_scan_elevation(&w.map.tiles, 0, position, -99);
         /* A place is whole BAM: a fraction of a weight's step. */
         assert_true(abs(q10 - (w.line.elevation_m_q14[0] >> 4)) < 64);
-        read_what_is_wanted(&w);
+        tiny_map_read_tiles(&w.map);
     }
     const struct lm_position nowhere = {FX_BAM_DEG(10), FX_BAM_DEG(10)};
-    assert_int_equal(lm_scan_elevation(&w.tiles, 0, nowhere, -99), -99);
-    close_world(&w);
+    assert_int_equal(lm_scan_elevation(&w.map.tiles, 0, nowhere, -99), -99);
+    tiny_map_close(&w.map);
 }
 
 TEST(the_level_is_the_largest_cell_that_is_not_longer)
@@ -424,10 +402,10 @@ TEST(the_level_is_the_largest_cell_that_is_not_longer)
     static struct world w;
     open_world(&w, 46, 11);
     for (uint32_t cell_mm = 100; cell_mm < 3000000; cell_mm = cell_mm * 9 / 8) {
-        const uint8_t level = lm_scan_lod(&w.db, cell_mm);
-        assert_true(level == 0 || lm_db_cell_mm(&w.db, level) <= cell_mm);
-        assert_true(level + 1 == w.db.lod_count ||
-                    lm_db_cell_mm(&w.db, (uint8_t)(level + 1)) > cell_mm);
+        const uint8_t level = lm_scan_lod(&w.map.db, cell_mm);
+        assert_true(level == 0 || lm_db_cell_mm(&w.map.db, level) <= cell_mm);
+        assert_true(level + 1 == w.map.db.lod_count ||
+                    lm_db_cell_mm(&w.map.db, (uint8_t)(level + 1)) > cell_mm);
     }
-    close_world(&w);
+    tiny_map_close(&w.map);
 }

@@ -11,29 +11,16 @@ enum { POOL_TILES = 400 };
 struct sector_world *make_sector_world(const struct tiny_spec *spec)
 {
     struct sector_world *w = calloc(1, sizeof *w);
-    const size_t pool_bytes = POOL_TILES * sizeof(struct lm_tile);
     w->radar = lm_radar_default;
-    assert_int_equal(tiny_image_build(&w->image, spec), 0);
-    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    w->pool = malloc(pool_bytes);
-    assert_int_equal(lm_db_open(&w->db, &w->flash.port, 10), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&w->tiles, &w->db, w->pool, pool_bytes, 10), LM_OK);
+    tiny_map_open(&w->map, spec, POOL_TILES);
     assert_int_equal(lm_tone_set(&w->tone, &w->radar.mode[LM_SECTOR_GM].tone), LM_OK);
     return w;
 }
 
 void free_sector_world(struct sector_world *w)
 {
-    tiny_image_free(&w->image);
-    free(w->pool);
+    tiny_map_close(&w->map);
     free(w);
-}
-
-static void read_tiles(struct sector_world *w)
-{
-    do {
-        lm_tile_cache_service(&w->tiles, 0, 1);
-    } while (!lm_tile_cache_is_idle(&w->tiles));
 }
 
 void start_sector(struct sector_world *w, const struct lm_sector_command *command,
@@ -49,8 +36,8 @@ void start_sector(struct sector_world *w, const struct lm_sector_command *comman
 uint32_t draw_line(struct sector_world *w)
 {
     const uint32_t drawn =
-        lm_sector_draw_line(&w->sector, &w->tiles, &w->platform, &w->tone, &w->line);
-    read_tiles(w);
+        lm_sector_draw_line(&w->sector, &w->map.tiles, &w->platform, &w->tone, &w->line);
+    tiny_map_read_tiles(&w->map);
     return drawn;
 }
 

@@ -5,15 +5,10 @@
 
 #include "lm/sector.h"
 
-#include "memory_flash.h"
-#include "tiny_image.h"
+#include "tiny_map.h"
 
 struct sector_world {
-    struct tiny_image image;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_tile_cache tiles;
-    void *pool;
+    struct tiny_map map;
     struct lm_radar radar; /* the default table; a test may change it before it starts a sector */
     struct lm_tone tone;
     struct lm_line line;

@@ -5,9 +5,8 @@
 #include "lm/sar.h"
 
 #include "check.h"
-#include "memory_flash.h"
 #include "reference_support.h"
-#include "tiny_image.h"
+#include "tiny_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,11 +15,7 @@
 enum { CELLS = 256, POOL_TILES = 400 };
 
 struct world {
-    struct tiny_image image;
-    struct memory_flash flash;
-    struct lm_db db;
-    struct lm_tile_cache tiles;
-    void *pool;
+    struct tiny_map map;
     struct ref_db ref;
     struct lm_tone tone;
     struct lm_line line;
@@ -58,30 +53,17 @@ static struct world *make_world(uint8_t shift0, double scale, double latitude, d
     spec.ctx = &scale;
     spec.shift0 = shift0;
     spec.rows = spec.columns = 9;
-    assert_int_equal(tiny_image_build(&w->image, &spec), 0);
-    memory_flash_open(&w->flash, w->image.bytes, w->image.size);
-    w->pool = malloc(POOL_TILES * sizeof(struct lm_tile));
-    assert_int_equal(lm_db_open(&w->db, &w->flash.port, 10), LM_OK);
-    assert_int_equal(
-        lm_tile_cache_init(&w->tiles, &w->db, w->pool, POOL_TILES * sizeof(struct lm_tile), 10),
-        LM_OK);
-    assert_int_equal(ref_db_open_memory(&w->ref, w->image.bytes, w->image.size, "scene"), 0);
+    tiny_map_open(&w->map, &spec, POOL_TILES);
+    assert_int_equal(ref_db_open_memory(&w->ref, w->map.image.bytes, w->map.image.size, "scene"),
+                     0);
     return w;
 }
 
 static void free_world(struct world *w)
 {
     ref_db_close(&w->ref);
-    tiny_image_free(&w->image);
-    free(w->pool);
+    tiny_map_close(&w->map);
     free(w);
-}
-
-static void make_resident(struct world *w)
-{
-    do {
-        lm_tile_cache_service(&w->tiles, 0, 1);
-    } while (!lm_tile_cache_is_idle(&w->tiles));
 }
 
 /* What the cells of a patch's line draw, guard cells first. */
@@ -136,7 +118,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
 {
     struct lm_sar sar;
     const struct lm_sar_command command = {
-        .centre = {w->db.centre_latitude, w->db.centre_longitude},
+        .centre = {w->map.db.centre_latitude, w->map.db.centre_longitude},
         .cell_mm = cell_mm,
         .look_azimuth = FX_BAM_DEG(look_deg),
         .range_m = range_m,
@@ -145,10 +127,10 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
     const struct lm_sar_setup scene = {.reference_m_q10 = (int32_t)lround(reference_m * 1024),
                                        .sea_state = LM_SEA_STATE_OF_IMAGE,
                                        .environment = w->is_rainy ? &w->environment : NULL};
-    assert_int_equal(lm_sar_start(&sar, &w->radar, &w->db, &command, &scene), LM_OK);
+    assert_int_equal(lm_sar_start(&sar, &w->radar, &w->map.db, &command, &scene), LM_OK);
     for (uint32_t line = 0; line < CELLS; line += 4) {
-        lm_sar_prefetch(&sar, &w->tiles, line);
-        make_resident(w);
+        lm_sar_prefetch(&sar, &w->map.tiles, line);
+        tiny_map_read_tiles(&w->map);
     }
     return sar;
 }
@@ -157,7 +139,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
 static void make_rain(struct world *w, struct ref_sar *wanted)
 {
     const struct lm_antenna_table *antenna = &w->radar.antenna;
-    const struct lm_position centre = {w->db.centre_latitude, w->db.centre_longitude};
+    const struct lm_position centre = {w->map.db.centre_latitude, w->map.db.centre_longitude};
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, centre);
     const fx_bam_t look = hs_bam(wanted->azimuth_deg);
@@ -212,7 +194,7 @@ static void score_patch_line(struct world *w, const struct ref_sar *wanted,
     memcpy(copy, bins, cells * sizeof *copy);
     ref_aspect(copy, cells, &picture->view, &w->params, wanted_horizon);
     compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->whole);
-    take_ground(&w->line.ground, &w->db.classes, copy, cells);
+    take_ground(&w->line.ground, &w->map.db.classes, copy, cells);
     ref_aspect(copy, cells, &picture->view, &w->params, horizon);
     compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->stage);
     compare_line(w, bins, REF_GUARD_CELLS, cells, &scores->runups);
@@ -237,7 +219,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
                                     (int32_t)height_m, picture.view.reference_m);
     struct ref_bin *copy = calloc(CELLS + REF_GUARD_CELLS, sizeof *copy);
     for (uint32_t k = 0; k < CELLS; k++) {
-        lm_sar_sample_line(&sar, &w->tiles, k, &w->line, w->level_q8);
+        lm_sar_sample_line(&sar, &w->map.tiles, k, &w->line, w->level_q8);
         lm_tone_run(&w->tone, w->level_q8, w->line.grey, CELLS + REF_GUARD_CELLS);
         score_patch_line(w, &wanted, &picture, k, &sar, copy, scores);
     }

@@ -79,8 +79,8 @@ static struct sector_world *make_country(const struct tiny_spec *content)
     spec.rows = spec.columns = 12;
     struct sector_world *w = make_sector_world(&spec);
     w->platform = (struct lm_platform){
-        .position = {w->db.centre_latitude - (fx_bam_t)lround(0.11 / 360 * 0x1p32),
-                     w->db.centre_longitude},
+        .position = {w->map.db.centre_latitude - (fx_bam_t)lround(0.11 / 360 * 0x1p32),
+                     w->map.db.centre_longitude},
         .height_m_q10 = 4000 * 1024,
         .speed_mm_s = 180000};
     /* As little speckle as there is. */
@@ -196,7 +196,7 @@ TEST(the_table_brings_samples_near_to_what_the_beam_sees)
         {.mode = LM_SECTOR_GM, .azimuth_index = 2},
         {.mode = LM_SECTOR_GM, .fov = LM_FOV_EXP, .centre = place_at(w, 0, 14000)}};
     struct ref_db db;
-    assert_int_equal(ref_db_open_memory(&db, w->image.bytes, w->image.size, "country"), 0);
+    assert_int_equal(ref_db_open_memory(&db, w->map.image.bytes, w->map.image.size, "country"), 0);
     static double seen[LINES_MAX][LM_CELLS_MAX];
     for (size_t i = 0; i < 2; i++) {
         const struct lm_sector_command *command = &commands[i];

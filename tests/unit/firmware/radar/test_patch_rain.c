@@ -6,9 +6,9 @@
 #include "lm/sar.h"
 
 #include "check.h"
-#include "memory_flash.h"
 #include "reference_support.h"
 #include "target_support.h"
+#include "tiny_map.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -323,12 +323,10 @@ TEST(no_rain_within_its_limits_makes_levels_of_no_meaning)
 
 /* ---- in a patch ---- */
 
-static struct lm_tile_cache tiles;
-static struct lm_db db;
+static struct tiny_map map;
 static struct lm_sar sar;
 static struct lm_line line;
 static struct lm_tone tone;
-static uint8_t pool[200 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
 
 static struct tiny_cell sea(void *ctx, const struct tiny_place *p)
 {
@@ -351,15 +349,13 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
         .targets = &set, .epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE, .environment = e};
     double sum = 0;
     int32_t peak_q8 = INT32_MIN;
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
     for (uint32_t k = 0; k < LINES; k++) {
-        lm_sar_prefetch(&sar, &tiles, k);
-        for (int i = 0; i < 100 && !lm_tile_cache_is_idle(&tiles); i++) {
-            lm_tile_cache_service(&tiles, 0, 16);
-        }
+        lm_sar_prefetch(&sar, &map.tiles, k);
+        tiny_map_read_tiles(&map);
     }
     for (uint32_t k = 0; k < LINES; k++) {
-        const int32_t *drawn_q8 = lm_sar_draw_line(&sar, &tiles, &tone, &line);
+        const int32_t *drawn_q8 = lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         for (uint32_t i = LM_SAR_GUARD; i < CELLS; i++) {
             const int32_t level_q8 = drawn_q8[i];
             peak_q8 = level_q8 > peak_q8 ? level_q8 : peak_q8;
@@ -372,16 +368,11 @@ static void draw(const struct lm_environment *e, double *peak_db, double *mean_d
 
 TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 9;
     spec.rows = spec.columns = 6;
     spec.cell = sea;
-    assert_int_equal(tiny_image_build(&image, &spec), 0);
-    memory_flash_open(&flash, image.bytes, image.size);
-    assert_int_equal(lm_db_open(&db, &flash.port, 16), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
+    tiny_map_open(&map, &spec, 200);
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
     struct lm_geo_origin centre;
     lm_geo_set_origin(&centre, (struct lm_position){FX_BAM_DEG(46), FX_BAM_DEG(11)});
@@ -404,5 +395,5 @@ TEST(bodies_in_a_patch_are_weakened_and_the_veil_lies_on_the_sea)
                   fair_sea_db, rainy_sea_db, veil_db);
     assert_true(rainy_sea_db > fair_sea_db + 5);
     assert_true(fabs(rainy_sea_db - veil_db) < 1);
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }

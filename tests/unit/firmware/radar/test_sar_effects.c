@@ -1,5 +1,6 @@
 /* The effects of a patch that can be switched: layover and the blur of unsteady flight, against
  * theory in double precision. */
+#include "tiny_map.h"
 #include "unit_rig.h"
 
 #include "check.h"
@@ -101,12 +102,10 @@ TEST(layover_of_any_line_is_the_sum_of_shared_powers)
 
 /* ---- layover in a patch ---- */
 
-static struct lm_tile_cache tiles;
-static struct lm_db db;
+static struct tiny_map map;
 static struct lm_sar sar;
 static struct lm_line line;
 static struct lm_tone tone;
-static uint8_t pool[200 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
 static int32_t picture[CELLS][LM_CELLS_ROOM];
 
 /* Soil, and in its middle a tower of 80 m. */
@@ -118,30 +117,25 @@ static struct tiny_cell tower(void *ctx, const struct tiny_place *p)
                     : (struct tiny_cell){-20, TINY_SOIL, 0};
 }
 
-static void open_image(struct tiny_image *image, struct memory_flash *flash)
+static void open_map(void)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 9;
     spec.rows = spec.columns = 6;
     spec.cell = tower;
-    assert_int_equal(tiny_image_build(image, &spec), 0);
-    memory_flash_open(flash, image->bytes, image->size);
-    assert_int_equal(lm_db_open(&db, &flash->port, 16), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
+    tiny_map_open(&map, &spec, 200);
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
 }
 
 static void draw(const struct lm_sar_command *command, const struct lm_sar_setup *scene)
 {
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, command, scene), LM_OK);
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, command, scene), LM_OK);
     for (uint32_t k = 0; k < CELLS; k++) {
-        lm_sar_prefetch(&sar, &tiles, k);
-        for (int i = 0; i < 100 && !lm_tile_cache_is_idle(&tiles); i++) {
-            lm_tile_cache_service(&tiles, 0, 16);
-        }
+        lm_sar_prefetch(&sar, &map.tiles, k);
+        tiny_map_read_tiles(&map);
     }
     for (uint32_t k = 0; k < CELLS; k++) {
-        memcpy(picture[k], lm_sar_draw_line(&sar, &tiles, &tone, &line), sizeof picture[k]);
+        memcpy(picture[k], lm_sar_draw_line(&sar, &map.tiles, &tone, &line), sizeof picture[k]);
     }
 }
 
@@ -153,15 +147,13 @@ static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), 
 static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
 {
     const struct lm_sar_setup scene = {.epoch = epoch, .sea_state = LM_SEA_STATE_OF_IMAGE};
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
     return sar.noise_epoch;
 }
 
 TEST(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
-    open_image(&image, &flash);
+    open_map();
     struct lm_sar_command c[5];
     for (int i = 0; i < 5; i++) {
         c[i] = from_the_south;
@@ -176,7 +168,7 @@ TEST(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again)
     }
     assert_int_not_equal(noise_epoch_of(c[0], 6), grain);
     assert_int_equal(noise_epoch_of(c[0], 5), grain);
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* Middle of what is brighter than soil ever is on the lines of the tower, cells. */
@@ -195,11 +187,9 @@ static double middle_of_the_bright(void)
 
 TEST(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     const struct lm_sar_setup scene = {.epoch = 3, .sea_state = LM_SEA_STATE_OF_IMAGE};
     struct lm_sar_command command = from_the_south;
-    open_image(&image, &flash);
+    open_map();
     draw(&command, &scene);
     const double upright = middle_of_the_bright();
     command.has_layover = true;
@@ -207,7 +197,7 @@ TEST(a_tower_in_a_patch_leans_towards_the_radar_when_layover_is_on)
     const double tan_psi = 3000.0 / 9000 - 9000 / (2 * 4.0 / 3 * 6371000);
     print_message("# the tower leans by %.2f cells\n", upright - middle_of_the_bright());
     assert_true(fabs(upright - middle_of_the_bright() - 80 * tan_psi / 5) < 1);
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* ---- unsteady flight ---- */
@@ -309,9 +299,7 @@ static double width_of_point(const struct lm_sar_flight *flight, bool is_steady,
 
 TEST(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
-    open_image(&image, &flash);
+    open_map();
     const struct lm_sar_flight straight = {
         .speed_mm_s = 100000, .track = FX_BAM_DEG(45), .heading = FX_BAM_DEG(45)};
     double sharp_power, power;
@@ -331,7 +319,7 @@ TEST(a_point_in_a_turn_is_q_lines_wide_and_keeps_its_power)
         assert_true(width_of_point(&turning, true, &power) == sharp); /* switched off */
     }
     assert_true(sharp < 2);
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* ---- in flight ---- */

@@ -27,7 +27,7 @@ static struct sector_world *make_flat(bool is_sea)
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
     w->platform = (struct lm_platform){
-        .position = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .position = {w->map.db.centre_latitude - FX_BAM_DEG(1) / 4, w->map.db.centre_longitude},
         .height_m_q10 = 2000 * 1024};
     return w;
 }

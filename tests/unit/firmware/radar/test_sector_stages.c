@@ -110,7 +110,7 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
         bins[i].range_m =
             metres(s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2 + i * s->grid.cell_m_q8);
     }
-    take_ground(&w->line.ground, &w->db.classes, bins, cells);
+    take_ground(&w->line.ground, &w->map.db.classes, bins, cells);
     ref_aspect(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
     ref_texture(bins, cells, &t->texture, &t->params);
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
@@ -366,7 +366,7 @@ static struct sector_world *make_country(void)
         w->radar.fov[field].azimuths_log2 = 0;
     }
     w->platform = (struct lm_platform){
-        .position = {w->db.centre_latitude - FX_BAM_DEG(1) / 4, w->db.centre_longitude},
+        .position = {w->map.db.centre_latitude - FX_BAM_DEG(1) / 4, w->map.db.centre_longitude},
         .height_m_q10 = 2500 * 1024,
         .heading = FX_BAM_DEG(7),
         .speed_mm_s = 180000};

@@ -5,9 +5,8 @@
 
 #include "check.h"
 #include "lm/illumination.h"
-#include "memory_flash.h"
 #include "target_support.h"
-#include "tiny_image.h"
+#include "tiny_map.h"
 
 #include <geodesic.h>
 
@@ -406,19 +405,12 @@ static double hill(void *ctx, const struct tiny_place *p)
 
 TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
 {
-    static uint8_t pool[32 * sizeof(struct lm_tile)] __attribute__((aligned(8)));
-    static struct lm_tile_cache tiles;
-    static struct lm_db db;
-    struct tiny_image image;
-    struct memory_flash flash;
+    struct tiny_map map;
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 11;
     spec.rows = spec.columns = 4;
     spec.elevation_m = hill;
-    assert_int_equal(tiny_image_build(&image, &spec), 0);
-    memory_flash_open(&flash, image.bytes, image.size);
-    assert_int_equal(lm_db_open(&db, &flash.port, 16), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, 16), LM_OK);
+    tiny_map_open(&map, &spec, 32);
     struct lm_target t = moving_point(46, 11, 90, 10, 2000);
     t.elevation_m_q6 = 25 * 64;
     t.flags = LM_TARGET_ABOVE_GROUND;
@@ -428,16 +420,14 @@ TEST(a_target_above_the_ground_stands_on_the_map_wherever_it_has_gone)
         const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)},
                                               .reach_m = 5000,
                                               .time_us = seconds * 1000000,
-                                              .tiles = &tiles};
+                                              .tiles = &map.tiles};
         struct lm_target_candidates candidates = {0};
         lm_target_candidates_refresh(&candidates, &set, &scene); /* asks for the tile */
-        for (int i = 0; i < 100; i++) {
-            lm_tile_cache_service(&tiles, 0, 16);
-        }
+        tiny_map_read_tiles(&map);
         candidates.is_chosen = false;
         lm_target_candidates_refresh(&candidates, &set, &scene);
         const double expected_m = 325 + (double)seconds * 10 / 20;
         assert_true(fabs(candidates.candidate[0].elevation_m_q6 / 64.0 - expected_m) < 1);
     }
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }

@@ -5,27 +5,24 @@
 #include "check.h"
 #include "memory_flash.h"
 #include "target_image.h"
+#include "tiny_map.h"
 
 #include <stdlib.h>
 
 enum { POLLS = 16, SLOTS = 32, SIDE = 256 };
 
 static uint8_t pool[SLOTS * sizeof(struct lm_tile)] __attribute__((aligned(8)));
-static struct lm_tile_cache tiles;
-static struct lm_db db;
+static struct tiny_map map;
 static struct lm_line line;
 static struct lm_tone tone;
 
 /* Flat soil for 5 km around 46 N 11 E, all of it read. */
-static void open_soil(struct tiny_image *image, struct memory_flash *flash)
+static void open_soil(void)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.shift0 = 12;
     spec.rows = spec.columns = 4;
-    assert_int_equal(tiny_image_build(image, &spec), 0);
-    memory_flash_open(flash, image->bytes, image->size);
-    assert_int_equal(lm_db_open(&db, &flash->port, POLLS), LM_OK);
-    assert_int_equal(lm_tile_cache_init(&tiles, &db, pool, sizeof pool, POLLS), LM_OK);
+    tiny_map_open(&map, &spec, SLOTS);
     assert_int_equal(lm_tone_set(&tone, &lm_radar_default.sar.tone), LM_OK);
 }
 
@@ -40,9 +37,9 @@ static void draw_patch_of_cells(const struct lm_target_set *set, uint32_t cell_m
                                            .cell_mm = cell_mm};
     const struct lm_sar_setup scene = {
         .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
-    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &db, &command, &scene), LM_OK);
+    assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
     for (int k = 0; k < SIDE; k++) {
-        lm_sar_draw_line(&sar, &tiles, &tone, &line);
+        lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
         memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
     }
 }
@@ -54,10 +51,8 @@ static void draw_patch(const struct lm_target_set *set, uint8_t picture[SIDE][SI
 
 TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
-    open_soil(&image, &flash);
+    open_soil();
     /* 202 m north and 122 m east of the centre, looking east: line 128 - 50.5 to the left, cell
      * 158.
      */
@@ -79,15 +74,13 @@ TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
             assert_int_equal(with[l][c], without[l][c]);
         }
     }
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 TEST(a_patch_has_nothing_of_the_targets_of_the_one_before_it)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     static uint8_t before[SIDE][SIDE], with[SIDE][SIDE], behind[SIDE][SIDE];
-    open_soil(&image, &flash);
+    open_soil();
     struct lm_target t = point_at(46, 11, 3, 45);
     const struct lm_target_set set = {.items = &t, .count = 1}, none = {0};
     draw_patch(&none, before);
@@ -95,7 +88,7 @@ TEST(a_patch_has_nothing_of_the_targets_of_the_one_before_it)
     draw_patch(&none, behind);
     assert_memory_not_equal(with, before, sizeof with);
     assert_memory_equal(behind, before, sizeof behind);
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* The cell that a target has made brighter by the most grey levels. */
@@ -117,11 +110,9 @@ static int brightest_cell(uint8_t with[SIDE][SIDE], uint8_t without[SIDE][SIDE])
 TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
 {
     enum { CELL_MM = 20000, OUT_CELLS = 120 };
-    struct tiny_image image;
-    struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     const struct lm_target_set none = {0};
-    open_soil(&image, &flash);
+    open_soil();
     draw_patch_of_cells(&none, CELL_MM, without);
     const double out_deg = OUT_CELLS * CELL_MM * 180 / (acos(-1) * 6371e3 * 1000);
     for (int corner = 0; corner < 4; corner++) {
@@ -134,17 +125,15 @@ TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
         assert_true(abs(cell / SIDE - (SIDE / 2 + south * OUT_CELLS)) <= 1);
         assert_true(abs(cell % SIDE - (SIDE / 2 + east * OUT_CELLS)) <= 1);
     }
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* Forty lines to the left of where it is, so that its line comes long after it has been shown. */
 TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     const struct lm_target_set none = {0};
-    open_soil(&image, &flash);
+    open_soil();
     draw_patch(&none, without);
     for (int is_hidden = 0; is_hidden < 2; is_hidden++) {
         struct lm_target t = point_at(46, 11, is_hidden ? -3 : 3, 45);
@@ -163,7 +152,7 @@ TEST(a_mover_that_is_hidden_where_it_stands_shows_nowhere_in_a_patch)
         }
         assert_int_equal(changed > 0, !is_hidden);
     }
-    tiny_image_free(&image);
+    tiny_map_close(&map);
 }
 
 /* A sweep over the target, from the right height and place: levels of each line and bin. */
@@ -176,7 +165,7 @@ static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
     lm_sector_start(&sector, &lm_radar_default, &command, 5);
     sector.targets = set;
     for (uint32_t k = 0; k < SIDE; k++) {
-        const uint32_t drawn = lm_sector_draw_line(&sector, &tiles, &platform, &tone, &line);
+        const uint32_t drawn = lm_sector_draw_line(&sector, &map.tiles, &platform, &tone, &line);
         memcpy(level_q8[drawn], sector.level_db_q8, sizeof level_q8[drawn]);
     }
 }
@@ -202,10 +191,8 @@ static int changed_bins(int32_t with[SIDE][SIDE], int32_t without[SIDE][SIDE], i
 
 TEST(a_target_shows_in_one_bin_over_the_beam_and_a_hidden_one_nowhere)
 {
-    struct tiny_image image;
-    struct memory_flash flash;
     static int32_t with[SIDE][SIDE], without[SIDE][SIDE];
-    open_soil(&image, &flash);
+    open_soil();
     const struct lm_target_set none = {0};
     sweep(&none, without);
     const struct lm_target shown = point_at(46, 11, 1, 60), hidden = point_at(46, 11, -100, 60);
