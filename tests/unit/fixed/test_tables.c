@@ -13,7 +13,7 @@
 static const struct {
     const char *set;
     uint32_t sum;
-} known[] = {{"fixed", 0xd8236599}, {"noise", 0x1e4a6858}, {"response", 0x0ad3eea2}};
+} known[] = {{"fixed", 0xd8236599}, {"noise", 0x1e4a6858}, {"response", 0x0f490b48}};
 
 static char *whole_file(const char *path)
 {
