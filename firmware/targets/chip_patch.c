@@ -4,19 +4,18 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* a b / 2^30 for a below 2^23 (a place on the chip) and b a sine or cosine. */
+/* a b / 2^30, for a position on the chip below 2^23 and a sine or cosine: below 2^53. */
 static int32_t part(int64_t a, int32_t b_q30)
 {
     return (int32_t)(a * b_q30 >> 30);
 }
 
-/* How far the chip is turned from the line of sight. */
+/* Angle by which the chip is turned. */
 struct rotation {
     int32_t cos_q30, sin_q30;
 };
 
-/* Where a corner of a box lies, in pixels * 65536 from the origin, turned back: to the right and
- * beyond. */
+/* Corner of a box of pixels, relative to the origin and turned by the chip's angle. */
 struct chip_corner {
     int32_t right_px_q16, beyond_px_q16;
 };
@@ -29,20 +28,21 @@ static struct chip_corner turned(const struct lm_chip_patch *chip, const struct 
                                 part(x, r->sin_q30) + part(y, r->cos_q30)};
 }
 
-/* Whole cells from a place on, or up to it: one more either way for the places within a cell. */
+/* Whole cells from the origin to a coordinate in pixels, with `more` for what lies within a cell.
+ */
 static int32_t cells_of(int32_t pixels_q16, uint32_t pixels_a_cell_q16, int32_t more)
 {
     return pixels_q16 / (int32_t)fx_max_u32(pixels_a_cell_q16, 1) + more;
 }
 
-/* Whole cells that a stretch of the box adds to either side. */
+/* Whole cells that a stretched box covers more on either side, rounded up. */
 static int32_t more_of(uint32_t stretch_q8)
 {
     return (int32_t)((stretch_q8 - 256 + 511) / 512);
 }
 
-/* The cells that show something of a box of pixels: they take half a pixel more, or half a cell,
- * all around. */
+/* Cells that show any pixel of a box: the box of pixels grows by half a pixel, and the cells by
+ * one, all around. */
 static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
                                      const struct lm_chip_box *box, const struct rotation *turn,
                                      uint32_t scale_q16)
@@ -73,15 +73,16 @@ static void widen(struct lm_chip_reach *r, const struct lm_smear *smear)
     r->beyond_end += more_of(smear->along_stretch_q8);
 }
 
-/* Half of what cells stretched so take of the chip, in pixels * 256: scale below 2^18, a stretch
- * below 2^16. */
+/* Half the side of a stretched cell on the chip, and at least half a pixel. scale_q16 is below 2^18
+ * and stretch_q8 below 2^16: the product is below 2^34, held in 64 bits. */
 static int32_t half_px_q8_of(uint32_t scale_q16, uint32_t stretch_q8)
 {
     const uint32_t side_q8 = (uint32_t)((uint64_t)scale_q16 * stretch_q8 >> 16);
     return (int32_t)(fx_max_u32(side_q8, 256) / 2);
 }
 
-/* Of a stretched cell's side over that of its box: less than 1 where a pixel is larger. */
+/* Side of a stretched cell over that of its box. It is less than 1 if a pixel is larger than the
+ * cell. */
 static int32_t side_gain_db_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t half_px_q8)
 {
     return fx_db_q8(scale_q16) + fx_db_q8(stretch_q8) - fx_db_q8(2 * (uint32_t)half_px_q8) -
@@ -91,7 +92,8 @@ static int32_t side_gain_db_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t 
 void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *slot, fx_bam_t turn,
                        uint32_t cell_mm, const struct lm_smear *smear)
 {
-    /* A chip is reduced to pixels of half a cell or more: below 2^18. */
+    /* Pixels of a cell. A chip is reduced to pixels of half a cell or more, so this is below 2^18.
+     */
     const uint32_t scale_q16 = (uint32_t)(((uint64_t)cell_mm << 16) / slot->pixel_mm);
     const struct rotation r = {fx_cos_q30(turn), fx_sin_q30(turn)};
     chip->slot = slot;
@@ -110,13 +112,13 @@ void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *sl
                        side_gain_db_q8(scale_q16, smear->along_stretch_q8, chip->half_px_q8[1]);
 }
 
-/* A box on the chip, pixels * 256: from edge [0] to edge [1]. */
+/* Box on the chip, from edge [0] to edge [1]. */
 struct box {
     uint32_t column_q8[2], row_q8[2];
 };
 
-/* The box around a place, as far as it lies on the chip. Within the reach, places are below 2^26 in
- * Q16: some hundreds of pixels. */
+/* Box around a cell, as far as it lies on the chip. Within the reach a cell is some hundreds of
+ * pixels from the origin: below 2^26 in Q16. */
 static struct box box_at(const struct lm_chip_patch *chip, int32_t right_cells_q8,
                          int32_t beyond_cells_q8, int32_t half_columns_q8, int32_t half_rows_q8)
 {
@@ -136,14 +138,14 @@ static struct box box_at(const struct lm_chip_patch *chip, int32_t right_cells_q
     return b;
 }
 
-/* A row of sums at a column, times 256: up to 2^39. */
+/* Sum before a column in one row of the table, linear within a pixel, times 256: up to 2^39. */
 static uint64_t at_column(const uint32_t row[LM_CHIP_ROOM], uint32_t column_q8)
 {
     const uint32_t column = column_q8 >> 8, on = column_q8 & 255;
     return (uint64_t)row[column] * (256 - on) + (uint64_t)row[column + 1] * on;
 }
 
-/* What lies between the box's columns and before a row, times 65536: up to 2^47. */
+/* Sum between the box's columns and before a row, times 65536: up to 2^47. */
 static uint64_t before_row(const uint32_t sum[][LM_CHIP_ROOM], const struct box *b, uint32_t row_q8)
 {
     const uint32_t row = row_q8 >> 8, on = row_q8 & 255;
@@ -154,6 +156,7 @@ static uint64_t before_row(const uint32_t sum[][LM_CHIP_ROOM], const struct box 
     return near * (256 - on) + far * on;
 }
 
+/* Sum in the box, times 65536: the difference of the sums before its two rows. */
 static uint64_t within(const uint32_t sum[][LM_CHIP_ROOM], const struct box *b)
 {
     return before_row(sum, b, b->row_q8[1]) - before_row(sum, b, b->row_q8[0]);

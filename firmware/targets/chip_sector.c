@@ -7,16 +7,22 @@
 #include "fx/trig.h"
 #include "lm/illumination.h"
 
-/* From pixels to lines and cells: what the middle of pixel (0, 0) has, and what a column and a row
- * more add. Places across are BAM to the right of the line; along, cells * 65536 from cell
+/* Map from pixels to lines and cells. Entry [0] is the middle of pixel (0, 0), [1] is the step of a
+ * column, [2] the step of a row. `across` is BAM to the right of the line; `along` is from cell
  * `first`. */
 struct pixel_map {
     int64_t across[3], along_cells_q16[3]; /* [0] the first pixel, [1] a column, [2] a row */
     int32_t first;
-    uint32_t cells; /* from there: 0..LM_CHIP_SPAN */
+    uint32_t cells; /* cells from there, 0..LM_CHIP_SPAN */
 };
 
-/* Lengths of a pixel's step: at most 16 m << 4 in Q8, 2^16, by sines and cosines. */
+/* Compute the map of a chip turned by `turn` about its origin:
+ *
+ *     x = x0 cos - y0 sin, y = x0 sin + y0 cos      for the steps of a column and of a row
+ *     across = x / range                            in BAM
+ *     along  = y / cell                             in cells
+ *
+ * A pixel is at most 16 m << 4: 2^32 in Q24. A product with a sine in Q30 is below 2^62. */
 static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t turn,
                                      const struct lm_chip_sector_origin *origin,
                                      const struct lm_target_line *line)
@@ -24,8 +30,7 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
     const int64_t pixel_m_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
     const int64_t cos_q24 = pixel_m_q24 * fx_cos_q30(turn) >> 30;
     const int64_t sin_q24 = pixel_m_q24 * fx_sin_q30(turn) >> 30;
-    /* x = x0 cos - y0 sin, y = x0 sin + y0 cos, for steps of a column and of a row. Metres in Q24,
-     * below 2^32, times 2^29.3 over metres in Q8. */
+    /* Metres in Q24, below 2^32. Cut to Q12, times 2^29.3 BAM a radian, over metres in Q8. */
     const int64_t x_q24[3] = {0, cos_q24, -sin_q24}, y_q24[3] = {0, sin_q24, cos_q24};
     const int64_t range_m_q8 = fx_max_u32(origin->range_m_q8, LM_RANGE_MIN_M * 256u);
     /* Half pixels from the origin to the middle of pixel (0, 0), before the reduction. */
@@ -40,7 +45,8 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
     map.across[0] = (columns * map.across[1] + rows * map.across[2]) >> halves;
     map.along_cells_q16[0] =
         (columns * map.along_cells_q16[1] + rows * map.along_cells_q16[2]) >> halves;
-    /* From the middle of cell 0 of the line to that of its first cell under the chip. */
+    /* Cells from the middle of the line's cell 0 to the chip's origin. The chip's corner is at most
+     * 1.5 sides from it, whatever the turn and the origin's row. */
     const int64_t origin_cells_q16 =
         ((int64_t)origin->range_m_q8 - line->first_m_q8) * 65536 / line->cell_m_q8;
     const int64_t reach_m_q16 = (int64_t)slot->side * 3 / 2 *
@@ -57,7 +63,7 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
     return map;
 }
 
-/* Share `amount` between the two cells that a place lies between. */
+/* Share `amount` between the two cells that a pixel lies between, by nearness. */
 static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along_cells_q16,
                   uint32_t amount)
 {
@@ -72,8 +78,8 @@ static void share(uint32_t cell[LM_CHIP_SPAN + 1], uint32_t cells, int64_t along
     }
 }
 
-/* What a pixel counts: its share of the target's power, Q31, or of its pixel's ground in the dark,
- * Q20: the sum of either over a chip fits 32 bits. */
+/* Weight of a pixel: its share of the target's power, Q31, or the dark part of its ground, Q20. The
+ * sum over a chip of at most 32 x 32 pixels fits 32 bits: 2^31, or 2^10 * 2^20. */
 static uint32_t power_q31(const struct lm_chip_slot *slot, uint32_t row, uint32_t column)
 {
     return lm_chip_pixel(slot->power_q31, row, column);
@@ -84,8 +90,8 @@ static uint32_t dark_q20(const struct lm_chip_slot *slot, uint32_t row, uint32_t
     return lm_chip_pixel(slot->shadow, row, column) * 4112u;
 }
 
-/* Add up, for each cell, what the pixels of a box count, by their nearness to the line: `off` is
- * the line's azimuth less that of the origin. */
+/* Sum the weights of the pixels in a box into the cells, by nearness to the line. `off` is the
+ * line's azimuth less that of the origin. */
 static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *box,
                    const struct pixel_map *map,
                    uint32_t (*count)(const struct lm_chip_slot *, uint32_t, uint32_t), int32_t off,
@@ -109,8 +115,8 @@ static void gather(const struct lm_chip_slot *slot, const struct lm_chip_box *bo
     }
 }
 
-/* Area of a pixel of the chip over that of a cell of the line, Q16, and 2^24 when it is larger: a
- * pixel of at most 256 m, whose square is 2^32 in Q16. */
+/* Area of a pixel over that of a cell of the line, at most 2^24 in Q16. A pixel is at most 256 m;
+ * its square is 2^32 in Q16, and 2^48 when shifted. */
 static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
                                   const struct lm_chip_sector_origin *origin,
                                   const struct lm_target_line *line)
@@ -121,6 +127,8 @@ static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;
 }
 
+/* Take from each cell the part of its level that lies in shadow. A cell's dark pixels add up to Q20
+ * of pixels; by area they become a part of the cell. */
 static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN + 1],
                    uint32_t ratio_q16, int32_t *level_db_q8)
 {
@@ -135,8 +143,9 @@ static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN
     }
 }
 
-/* A chip is the mean of what looks would show, as clutter's level is before its speckle. The ground
- * has its own already, so the chip takes the same factor by itself. */
+/* A chip is the mean over many looks, as the clutter's level is before its speckle. The ground has
+ * its speckle already, so the chip is multiplied by the same draw of each cell before it is added.
+ */
 static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map *map,
                          const uint32_t cell[LM_CHIP_SPAN + 1], const struct lm_target_line *line,
                          int32_t clutter_db_q8, int32_t *level_db_q8)

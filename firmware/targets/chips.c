@@ -5,8 +5,8 @@
 #include "fx/sat.h"
 
 enum {
-    ROWS_A_STEP = 16, /* of the chip as it was read, reduced in one step */
-    SHIFT_MAX = 4,    /* what would be less than 4 x 4 pixels is a point */
+    ROWS_A_STEP = 16, /* rows of the chip before the reduction that one step reduces */
+    SHIFT_MAX = 4,    /* smaller chips than 4 x 4 pixels are drawn as a point */
     POINT_BELOW_CELLS = 4
 };
 
@@ -26,7 +26,8 @@ static bool is_same(const struct lm_chip_key *a, const struct lm_chip_key *b)
            a->depression == b->depression && a->shift == b->shift;
 }
 
-/* The reduction: to the largest pixel that is not larger than the cell, and to few enough. */
+/* Reduction of a chip: to the largest pixel that is not larger than the cell, and to at most
+ * side_most pixels a row. */
 static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_query *query)
 {
     uint32_t shift = 0;
@@ -37,7 +38,7 @@ static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_que
     return shift;
 }
 
-/* Bearing and elevation of the radar, as the target sees it. */
+/* View of the radar from a candidate. */
 static void view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
                     const struct lm_chip_query *query)
 {
@@ -60,7 +61,8 @@ static bool is_large_and_near(const struct lm_signature *s,
            s->pixel_mm * LM_CHIP_SIDE >= query->cell_mm * POINT_BELOW_CELLS;
 }
 
-/* The slot of a key, or one that is free or holds what nobody uses; NULL when all are in use. */
+/* Slot of a key; else one that is free or not in use; NULL if all are in use. The slot that is
+ * being read or reduced is not given away. */
 static struct lm_chip_slot *find_slot(struct lm_chips *c, const struct lm_chip_key *key)
 {
     struct lm_chip_slot *unused = NULL;
@@ -96,7 +98,8 @@ static const struct lm_chip_slot *want(struct lm_chips *c, const struct lm_signa
     return slot;
 }
 
-/* The chip that an item is best shown by. False when it has none or needs none. */
+/* Key of the chip that shows a candidate best. False if it has no signature, is out of reach, or is
+ * so small that a point will do. */
 static bool key_of(const struct lm_target_set *set, struct lm_target_candidate *candidate,
                    const struct lm_chip_query *query, struct lm_chip_key *key)
 {
@@ -126,7 +129,8 @@ void lm_chips_choose(struct lm_chips *c, struct lm_target_candidates *candidates
     for (uint32_t i = 0; i < LM_CHIPS_MAX; i++) {
         c->slots[i].is_in_use = false;
     }
-    /* What is there already is spoken for before room is made for the rest. */
+    /* Mark resident chips as in use first: the second loop then gives away only slots that nobody
+     * needs. */
     for (uint32_t i = 0; i < candidates->count; i++) {
         has_key[i] = key_of(set, &candidates->candidate[i], query, &key[i]);
         for (uint32_t k = 0; has_key[i] && k < LM_CHIPS_MAX; k++) {
@@ -181,7 +185,8 @@ static void start_next(struct lm_chips *c, struct lm_tile_cache *tiles)
 
 /* ---- reducing ---- */
 
-/* Cross section of a pixel, m2 in Q32: below 2^47.9, and the sum of a chip's below 2^60. */
+/* Cross section of a pixel, m2: below 2^47.9 in Q32. The sum over a chip of 2^12 pixels is below
+ * 2^60. */
 static uint64_t rcs_m2_q32(uint8_t code)
 {
     return code == 0 ? 0
@@ -189,7 +194,7 @@ static uint64_t rcs_m2_q32(uint8_t code)
                                         code * LM_SIGNATURE_CODE_STEP_DB_Q8);
 }
 
-/* dBsm * 256 of such a sum. */
+/* Level of such a sum, dBsm. */
 static int32_t level_dbsm_q8(uint64_t sum_q32)
 {
     return sum_q32 == 0 ? LM_SIGNATURE_CODE_ZERO_DBSM_Q8
@@ -207,7 +212,8 @@ static uint64_t total_m2_q32(const struct lm_chip *chip)
     return sum_q32;
 }
 
-/* A part of the total, Q31, to 2^-31 of it: both below 2^60, and cut alike until they fit. */
+/* Share of the total. Both are below 2^60; they are shifted alike until the total fits 32 bits, and
+ * part << 31 fits 64. The error is below 2^-31 of the total. */
 static uint32_t share_q31(uint64_t part_m2_q32, uint64_t total_m2_q32)
 {
     const uint32_t cut = total_m2_q32 >> 32 == 0 ? 0 : 32 - (uint32_t)fx_clz64(total_m2_q32);
@@ -223,12 +229,13 @@ static void widen(struct lm_chip_box *box, uint32_t row, uint32_t column)
     box->column_end = (uint8_t)fx_max_u32(box->column_end, column + 1);
 }
 
-/* What a pixel has, or the pixels of its row before it. */
+/* Power and shadow of one pixel, or of the pixels before it in its row. */
 struct amount {
     uint32_t power_q31, shadow;
 };
 
-/* One pixel of the reduced chip from those of the chip that it takes the place of. */
+/* Reduce one pixel: sum its 2^shift x 2^shift pixels of the chip. Shadow is 255 times the part of
+ * them that is dark. */
 static struct amount reduce_pixel(const struct lm_chips *c, uint32_t row, uint32_t column)
 {
     const struct lm_chip *chip = &c->stage;
@@ -244,6 +251,8 @@ static struct amount reduce_pixel(const struct lm_chips *c, uint32_t row, uint32
     return (struct amount){share_q31(sum_q32, c->total_m2_q32), dark * 255 >> 2 * shift};
 }
 
+/* Reduce one row into the summed-area tables: S[row + 1][column + 1] = S[row][column + 1] + the
+ * row's pixels up to this column. Power adds up to at most 2^31, shadow to 255 * 2^12. */
 static void reduce_row(struct lm_chips *c, uint32_t row)
 {
     struct lm_chip_slot *slot = c->busy;
@@ -263,7 +272,7 @@ static void reduce_row(struct lm_chips *c, uint32_t row)
     }
 }
 
-/* Some rows of the chip that has come; it is there when all are done. */
+/* Reduce some rows of the chip that was read. It is resident when all are done. */
 static void reduce_rows(struct lm_chips *c)
 {
     struct lm_chip_slot *slot = c->busy;

@@ -4,7 +4,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* Of all legs: at most 32 * 10^8 mm, below 2^32. */
+/* Length of all legs. At most 32 * 10^8 mm, below 2^32. */
 static uint32_t path_mm(const struct lm_target *t)
 {
     uint32_t sum_mm = t->path[0].length_mm;
@@ -14,9 +14,11 @@ static uint32_t path_mm(const struct lm_target *t)
     return sum_mm;
 }
 
-/* Millimetres along a way of `whole_mm`, 0..whole, and whether it is the way back. There and back
- * takes at most 6.4 * 10^9 mm / (1 mm/s) = 2^52.6 us and at least 1 m / (2^20 mm/s) = 953 us; the
- * way within it, below 6.4 * 10^9 mm, is 2^52.6 before the division. */
+/* Distance travelled along a way of `whole_mm`, 0..whole_mm, and whether it is the way back.
+ *
+ * A round trip takes at most 6.4 * 10^9 mm / (1 mm/s) = 2^52.6 us. It takes at least 1 m / (2^20
+ * mm/s) = 953 us, so the division is safe. The product before the last division is the distance in
+ * a round trip, below 6.4 * 10^9 mm, times 10^6: 2^52.6. */
 static uint32_t travelled_mm(const struct lm_target *t, uint64_t time_us, uint32_t whole_mm,
                              bool *is_back)
 {
@@ -27,7 +29,7 @@ static uint32_t travelled_mm(const struct lm_target *t, uint64_t time_us, uint32
     return (uint32_t)(*is_back ? round_mm - mm : mm);
 }
 
-/* So far along a leg. */
+/* Position at `mm` along a leg. */
 static struct lm_position position_on_leg(const struct lm_path_leg *leg, uint32_t mm)
 {
     struct lm_geo_origin origin;
@@ -35,7 +37,7 @@ static struct lm_position position_on_leg(const struct lm_path_leg *leg, uint32_
     return lm_geo_direct(&origin, leg->heading, (uint32_t)((uint64_t)mm * 32 / 125));
 }
 
-/* The leg on which a mover is so far along its path, and how far it is from the leg's beginning. */
+/* Leg of a path at the distance *mm, which becomes the distance from the beginning of that leg. */
 static const struct lm_path_leg *find_leg(const struct lm_target *t, uint32_t *mm)
 {
     const struct lm_path_leg *leg = t->path;
@@ -71,7 +73,8 @@ bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int
     if (closing_mm_s == 0 || speed_mm_s == 0) {
         return true;
     }
-    /* At most 2^30 and 2^21 * 2^30; what is kept is a cosine, its square 2^60. */
+    /* V cos(o') = V cos(o) + v, so the cosine grows by v / V. The numerator is below 2^21 * 2^30. A
+     * cosine that passes the test is within 2^30, its square within 2^60. */
     const int64_t one_q30 = 1 << 30;
     const int64_t cos_q30 = fx_cos_q30(off) + closing_mm_s * one_q30 / (int64_t)speed_mm_s;
     if (cos_q30 > one_q30 || cos_q30 < -one_q30) {

@@ -6,12 +6,12 @@
 #include "fx/trig.h"
 #include "lm/const.h"
 
-/* Powers are added up as binary logarithms in Q16, so a product is a sum and nothing overflows: the
- * largest, a plate of 100 m by 100 m at 1 mm, is 2^50 m2, the smallest factor 2^-62. */
+/* Powers are binary logarithms in Q16: a product is a sum, and nothing overflows. The largest, a
+ * plate of 100 m by 100 m at 1 mm, is 2^50 m2; the smallest factor is 2^-62. */
 enum { LOG2_ONE_Q30 = 30 * 65536, LOG2_NONE = -64 * 65536 };
 
-/* log2 of (length / wavelength) * length, when lengths are in mm and the wavelength in um, is that
- * of metres: the thousands cancel. */
+/* log2 of (a / wavelength) * b in metres. Lengths are in mm and the wavelength in um, so the
+ * thousands cancel. */
 static int32_t log2_area(uint32_t a_mm, uint32_t b_mm, uint32_t wavelength_um)
 {
     return fx_log2_q16(a_mm) + fx_log2_q16(b_mm) - fx_log2_q16(wavelength_um);
@@ -22,8 +22,8 @@ static int32_t log2_of_q30(uint32_t x_q30)
     return fx_log2_q16(x_q30) - LOG2_ONE_Q30;
 }
 
-/* log2 of sinc^2 of the phase that runs over a side on the way out and back: 2 pi (side / lambda)
- * sine, to either side of its middle. */
+/* log2 of sinc^2(x), with x = 2 pi (side / lambda) sine: half the phase that runs over a side, out
+ * and back. */
 static int32_t log2_sinc2(uint32_t side_mm, uint32_t wavelength_um, int32_t sine_q30)
 {
     /* At most 10^8 um / 10^3 um = 10^5, 2^33 in Q16; times a sine of 2^30: below 2^63. */
@@ -37,6 +37,8 @@ static int32_t log2_sinc2(uint32_t side_mm, uint32_t wavelength_um, int32_t sine
     return 2 * (log2_of_q30(sine) - log2_phase);
 }
 
+/* Physical optics: 4 pi (A / lambda)^2 cos^2 sinc^2(right) sinc^2(up), where cos is the component
+ * ahead. */
 static int32_t log2_plate(const struct lm_shape *s, uint32_t wavelength_um, struct lm_direction d)
 {
     if (d.ahead_q30 <= 0 && !s->is_two_sided) {
@@ -48,15 +50,16 @@ static int32_t log2_plate(const struct lm_shape *s, uint32_t wavelength_um, stru
            log2_sinc2(s->size_mm[1], wavelength_um, d.up_q30);
 }
 
-/* A vector component along an axis that has `a` of x and `b` of y. Components of a unit vector and
- * of unit axes: the sum is at most 2^60. */
+/* Component of a vector (x, y) along an axis that has `a` of x and `b` of y. Both are of length
+ * one, so the sum is at most 2^60. */
 static int32_t along(int32_t x_q30, int64_t a_q30, int32_t y_q30, int64_t b_q30)
 {
     return (int32_t)((x_q30 * a_q30 + y_q30 * b_q30 + (1 << 29)) >> 30);
 }
 
-/* Of the two faces' projections, only what the other one's mirror image covers comes back: twice
- * the smaller one. */
+/* Double reflection: only the part of each face's projection that the mirror image of the other one
+ * covers returns. That is twice the smaller projection. On the axis both are a / sqrt 2, and the
+ * law is 4 pi (2 a h m)^2 / lambda^2 with m = (b - |r|) / sqrt 2. */
 static int32_t log2_dihedral(const struct lm_shape *s, uint32_t wavelength_um,
                              struct lm_direction d)
 {
@@ -81,10 +84,12 @@ static void sort(int32_t c[3])
     }
 }
 
-/* The triple reflection leaves mirrored at the apex, so the area that answers is what the corner's
- * outline shares with its mirror image (Spencer 1944; Keen 1983). With the direction cosines p <= q
- * <= r towards the legs and s = p + q + r, it is 4 p q / s of the leg's square when p + q <= r: the
- * shared area is then a parallelogram; and s - 2 / s when not: a hexagon. */
+/* The triple reflection leaves mirrored at the apex. The area that returns is what the corner's
+ * outline shares with its mirror image [Spencer; Keen]. With the direction cosines p <= q <= r
+ * towards the legs and s = p + q + r, it is, over the square of the leg,
+ *
+ *     4 p q / s    if p + q <= r: the shared area is a parallelogram
+ *     s - 2 / s    otherwise: a hexagon */
 static int32_t log2_trihedral(const struct lm_shape *shape, uint32_t wavelength_um,
                               struct lm_direction d)
 {
@@ -96,7 +101,8 @@ static int32_t log2_trihedral(const struct lm_shape *shape, uint32_t wavelength_
     if (c[0] <= 0) {
         return LOG2_NONE;
     }
-    /* s is at most the root of 3: 2^30.8, and its square 2^61.6. */
+    /* s is at most the root of 3: 2^30.8, its square 2^61.6. The hexagon is (s^2 - 2) / s; the
+     * division by s is in the sum below. */
     const uint32_t s = (uint32_t)c[0] + (uint32_t)c[1] + (uint32_t)c[2];
     int32_t log2_share = 0;
     if (c[0] + c[1] <= c[2]) {

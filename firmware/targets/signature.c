@@ -48,7 +48,7 @@ int lm_signature_read(const struct lm_db *db, uint32_t index, struct lm_signatur
     return status == LM_OK ? lm_signature_check(s, db->chip_count) : status;
 }
 
-/* The depression nearest to an elevation. */
+/* Index of the depression nearest to an elevation. */
 static uint32_t nearest_depression(const struct lm_signature *s, fx_bam_t elevation)
 {
     uint32_t best = 0, best_off = UINT32_MAX;
@@ -65,7 +65,7 @@ static uint32_t nearest_depression(const struct lm_signature *s, fx_bam_t elevat
 struct lm_chip_choice lm_signature_choose(const struct lm_signature *s, fx_bam_t bearing,
                                           fx_bam_t elevation)
 {
-    /* Half an aspect more, so that what is cut off leaves the nearest one; below 2^40. */
+    /* Rounded to the nearest aspect; the product is below 2^40. */
     const uint64_t aspects = ((uint64_t)bearing * s->aspects + (1u << 31)) >> 32;
     const fx_bam_t seen_from = (fx_bam_t)((aspects << 32) / s->aspects);
     return (struct lm_chip_choice){

@@ -57,7 +57,7 @@ static bool motion_is_sound(const struct lm_target *t)
     return is_leg_sound && t->path_legs == 0 && t->path_is_round == 0;
 }
 
-/* What gives the target its return: bodies, a signature, or neither. */
+/* Scatterers, a signature, or neither (a fluctuating point): not two of them. */
 static bool kind_is_sound(const struct lm_target *t)
 {
     const bool has_signature = (t->flags & LM_TARGET_HAS_SIGNATURE) != 0;
@@ -102,7 +102,7 @@ struct lm_shape lm_scatterer_shape(const struct lm_scatterer *s)
 
 enum { RANGE_MIN_MM = 1000000 };
 
-/* a cos + b sin; of vectors of length one, so at most 2^60. */
+/* a cos + b sin, for components of vectors of length one: at most 2^60. */
 static int32_t turn(int64_t a_q30, int64_t cos_q30, int64_t b_q30, int64_t sin_q30)
 {
     return (int32_t)((a_q30 * cos_q30 + b_q30 * sin_q30 + (1 << 29)) >> 30);
@@ -120,7 +120,8 @@ void lm_target_view_set(struct lm_target_view *v, fx_bam_t bearing, fx_bam_t ele
     v->toward_q30[2] = fx_sin_q30(elevation);
 }
 
-/* The direction to the radar in the scatterer's axes: by azimuth, elevation and roll in turn. */
+/* Direction to the radar in the scatterer's axes: turned by azimuth, elevation and roll, in this
+ * order. */
 static struct lm_direction in_axes_of(const struct lm_scatterer *s, const int32_t toward_q30[3])
 {
     const int32_t cos_az = fx_cos_q30(s->azimuth), sin_az = fx_sin_q30(s->azimuth);
@@ -136,15 +137,16 @@ static struct lm_direction in_axes_of(const struct lm_scatterer *s, const int32_
     };
 }
 
-/* How much longer the way to a scatterer is than to the origin, mm * 256.
+/* Extra length of the way to a scatterer, compared with the origin, mm * 256.
  *
- * With o its offset, s its part towards the radar and D the answer, (R + D)^2 = R^2 - 2 R s + o^2,
- * so D = e - s with e^2 + 2 (R - s) e = o^2 - s^2. Newton's rule solves that: R - s is more than
- * 546,000 mm, e at most 189,000 mm, and an error of d leaves one of d^2 / (2 (R - s)), so that
- * three rounds from the linear answer leave less than the unit even at 1 km.
+ * Let o be the scatterer's offset, s its component towards the radar, R the range and D the answer.
+ * Then (R + D)^2 = R^2 - 2 R s + o^2, so D = e - s with e^2 + 2 (R - s) e = o^2 - s^2. Newton's
+ * method solves that. R - s is more than 546,000 mm and e at most 189,000 mm. An error of d leaves
+ * one of d^2 / (2 (R - s)). Three rounds from the linear answer leave less than the unit even at 1
+ * km.
  *
- * s is at most 3 * 2^18 * 2^30 in Q30 and 2^28 in Q8, o^2 at most 3 * 2^36 mm2 and both squares
- * below 2^56 in Q16. */
+ * Range: s is at most 3 * 2^18 * 2^30 in Q30, and 2^28 in Q8. o^2 is at most 3 * 2^36 mm2. Both
+ * squares are below 2^56 in Q16. */
 static int64_t path_q8(const struct lm_target_view *v, const int32_t offset_mm[3])
 {
     int64_t part_q30 = 0, square_mm2 = 0;
@@ -163,14 +165,14 @@ static int64_t path_q8(const struct lm_target_view *v, const int32_t offset_mm[3
     return bend_q8 - part_q8;
 }
 
-/* Turns of phase on a way out and back that is path_q8 mm * 256 longer: 2 path / wavelength. The
- * path is below 2^27 (454 m), so 2^27 * 1000 * 2^25 is below 2^62. */
+/* Phase of a way out and back that is longer by path_q8, mm * 256: 2 path / wavelength turns. The
+ * path is below 2^27 (454 m); 2^27 * 1000 * 2^25 is below 2^62. */
 static fx_bam_t phase_of(int64_t path_q8, uint32_t wavelength_um)
 {
     return (fx_bam_t)(path_q8 * (1000LL << 25) / (int64_t)wavelength_um);
 }
 
-/* a cos + b sin of offsets, mm: below 2^19. */
+/* a cos + b sin of offsets: below 2^19 mm. */
 static int32_t turn_mm(int32_t a_mm, int32_t cos_q30, int32_t b_mm, int32_t sin_q30)
 {
     return (int32_t)(((int64_t)a_mm * cos_q30 + (int64_t)b_mm * sin_q30 + (1 << 29)) >> 30);
@@ -205,8 +207,8 @@ int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask)
             strongest_dbsm_q8 = fx_max_i32(strongest_dbsm_q8, returns[i].rcs_dbsm_q8);
         }
     }
-    /* Amplitudes against the strongest, at most 2^16, are half the decibels; 16 of them times 2^30:
-     * below 2^50. Cut to Q20, their squares are below 2^49. */
+    /* Amplitudes relative to the strongest return have half its decibels, and are at most 2^16. 16
+     * of them times 2^30 are below 2^50. Cut to Q20, their squares are below 2^49. */
     int64_t re_q46 = 0, im_q46 = 0;
     for (uint32_t i = 0; mask >> i != 0; i++) {
         if (mask >> i & 1) {
@@ -223,13 +225,16 @@ int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask)
     return mask == 0 ? LM_RCS_NONE_DBSM_Q8 : fx_max_i32(sum_dbsm_q8, LM_RCS_NONE_DBSM_Q8);
 }
 
-/* -ln of a uniform draw of (0, 1), Q16: below 22.2 * 65536. */
+/* Exponential variable: -ln of a uniform draw of (0, 1), below 22.2 * 65536. */
 static uint32_t exponential_q16(uint32_t hash)
 {
     const uint32_t minus_log2_q16 = 32u * 65536u - (uint32_t)fx_log2_q16(hash | 1u);
     return (uint32_t)((uint64_t)minus_log2_q16 * FX_LN2_Q32 >> 32);
 }
 
+/* Cases 3 and 4 are the mean of two exponential variables: chi-square of four degrees of freedom.
+ * Even cases take a hash of the pulse as well. Each pulse owns two draws, 2 pulse and 2 pulse + 1.
+ */
 int32_t lm_swerling_dbsm_q8(uint8_t swerling, int32_t mean_dbsm_q8, uint32_t id, uint32_t scan,
                             uint32_t pulse)
 {

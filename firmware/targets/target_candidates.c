@@ -19,7 +19,8 @@ static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_positi
     if (!(t->flags & LM_TARGET_ABOVE_GROUND)) {
         return t->elevation_m_q6;
     }
-    /* Ground within 2^20, as the tiles are held to, and so is the height above it. */
+    /* Both are within 2^20 in Q6: the terrain because tiles are checked, the height above it
+     * because the record is. */
     const int32_t ground_m_q10 = query->tiles
                                      ? lm_scan_elevation(query->tiles, query->lod, position,
                                                          query->tiles->db->mean_elevation_m_q6 * 16)
@@ -27,17 +28,18 @@ static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_positi
     return t->elevation_m_q6 + ground_m_q10 / 16;
 }
 
-/* How well the place of a target is known to whoever looks for it: lm_geo_inverse and a plane are
- * right within this part of the distance, up to 75 degrees of latitude and then up to 88; and so
- * is a plane, within 16 m, for the way that the antenna has gone since. */
+/* Error of an approximate position. lm_geo_inverse and a plane are right within 1/256 of the
+ * distance up to 75 degrees of latitude, and within 1/64 up to 88. A plane is right within 16 m for
+ * the way that the antenna has gone since the selection. */
 static uint32_t position_error_m_q8(struct lm_position from, uint32_t distance_m_q8)
 {
     const bool is_polar = fx_abs_u32((int32_t)from.latitude) > FX_BAM_DEG(75);
     return distance_m_q8 / (is_polar ? 64 : 256) + 16 * 256;
 }
 
-/* A circle that holds the target, metres * 256: bodies by both of their axes together, below 2^19
- * mm; a chip by its far corners, which are up to 32 columns and 64 rows away. */
+/* Radius of a circle that holds the target. A scatterer lies within the sum of its two level
+ * offsets, below 2^19 mm. A chip's far corner is up to 32 columns and 64 rows away, less than 72
+ * pixels. */
 static uint32_t extent_m_q8(const struct lm_target_set *set, const struct lm_target *t)
 {
     const struct lm_signature *s = lm_target_signature(set, t);
@@ -74,7 +76,7 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
             candidates->left_out++;
             continue;
         }
-        /* Within 2^26, by sines of 2^15. */
+        /* Distances are within 2^26, times sines of 2^15: below 2^41. */
         candidate.north_m_q8 =
             (int32_t)((int64_t)candidate.distance_m_q8 * fx_cos_q15(azimuth) >> 15);
         candidate.east_m_q8 =

@@ -10,8 +10,8 @@
 
 enum { NO_CELL = -1 };
 
-/* The farthest that a mover is displaced: beyond, the beam that points where it appears leaves less
- * than -37 dB of it. */
+/* Greatest displacement of a mover, 5/4 of the beam. The beam that points where it would appear
+ * leaves less than -37 dB of it. */
 static uint32_t shift_most(const struct lm_target_line *line)
 {
     return line->beam + line->beam / 4;
@@ -19,13 +19,13 @@ static uint32_t shift_most(const struct lm_target_line *line)
 
 /* ---- which targets the line may meet ---- */
 
-/* The ground between two azimuths, on a plane: the sines and cosines of the azimuths. */
+/* Ground between two azimuths on a plane, as the sines and cosines of the azimuths. */
 struct wedge {
     int32_t left_sin_q15, left_cos_q15, right_sin_q15, right_cos_q15;
 };
 
-/* From `half` to the left of an azimuth to as much to the right. Nothing lies beyond the edges of
- * one that is all zeros. */
+/* Wedge from `half` left of an azimuth to `half` right of it. With a right angle or more it is all
+ * zeros, which excludes nothing. */
 static struct wedge wedge_of(fx_bam_t azimuth, uint64_t half)
 {
     const fx_bam_t left = azimuth - (fx_bam_t)half, right = azimuth + (fx_bam_t)half;
@@ -37,12 +37,12 @@ static struct wedge wedge_of(fx_bam_t azimuth, uint64_t half)
     return w;
 }
 
-/* What the line covers, on a plane around the place that the targets were chosen from. Lengths in
- * metres * 256. */
+/* Ground that a line covers, on a plane around the position that the candidates were selected from.
+ */
 struct cover {
     int32_t north_m_q8, east_m_q8; /* the antenna */
-    uint32_t begin_m_q8, end_m_q8; /* ranges of the line's cells, as they may be from that place */
-    struct wedge still, mover;     /* in which targets are, or are displaced from */
+    uint32_t begin_m_q8, end_m_q8; /* ranges of the line's cells, seen from that position */
+    struct wedge still, mover; /* azimuths of still targets, and of movers before displacement */
 };
 
 static struct cover cover_of(const struct lm_target_line *line, struct lm_position from)
@@ -67,7 +67,9 @@ static struct cover cover_of(const struct lm_target_line *line, struct lm_positi
     return c;
 }
 
-/* Can the line meet the target at all? Places are within 2^27, by sines of 2^15. */
+/* True if the line may meet the candidate: if its circle touches the wedge and the ranges. It is on
+ * the left edge's side if the cross product of edge and position is not above the slack. Positions
+ * are within 2^27, times sines of 2^15. */
 static inline bool may_meet(const struct cover *c, const struct lm_target_candidate *candidate)
 {
     const struct wedge *w = candidate->is_mover ? &c->mover : &c->still;
@@ -82,8 +84,8 @@ static inline bool may_meet(const struct cover *c, const struct lm_target_candid
 
 _Static_assert(LM_TARGET_CANDIDATES_MAX <= 32, "a bit for each");
 
-/* The targets that the line may meet: bit i for item i. It meets few, and most lines none, so that
- * this loop is most of what they cost. */
+/* Candidates that the line may meet: bit i for candidate i. Most lines meet none, so this loop is
+ * most of what targets cost. */
 static uint32_t find_in_reach(const struct lm_target_candidates *candidates,
                               const struct lm_target_line *line)
 {
@@ -95,16 +97,16 @@ static uint32_t find_in_reach(const struct lm_target_candidates *candidates,
     return found;
 }
 
-/* ---- where a target is from the line ---- */
+/* ---- apparent position of a target ---- */
 
 struct apparent_position {
-    uint32_t range_m_q8;   /* ground range from the antenna, metres * 256 */
-    fx_bam_t azimuth;      /* from the antenna, where it appears */
-    fx_bam_t true_azimuth; /* where it is */
-    int32_t gain_db_q8;    /* of the beam, dB: 0 or less */
+    uint32_t range_m_q8;   /* ground range from the antenna */
+    fx_bam_t azimuth;      /* from the antenna, where the target appears */
+    fx_bam_t true_azimuth; /* azimuth where the target is */
+    int32_t gain_db_q8;    /* loss by the beam; 0 or less */
 };
 
-/* Whether a closing speed is one of those that are shown. */
+/* True if a closing speed is within the mode's gates. */
 static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
 {
     const uint32_t either_way_mm_s = fx_abs_u32(closing_mm_s);
@@ -112,8 +114,8 @@ static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
            (either_way_mm_s >= line->gate_mm_s[0] && either_way_mm_s <= line->gate_mm_s[1]);
 }
 
-/* Put a target where Doppler has it, with what is left of it by the beam, which points there: the
- * two-way pattern 2^(-8 x^2), x in beams. False when it is nowhere. */
+/* Displace a target by Doppler, and attenuate it by the beam, which points at where it appears: the
+ * two-way pattern 2^(-8 x^2), x in beam widths. False if it appears nowhere. */
 static bool displace(const struct lm_target_line *line, int32_t closing_mm_s,
                      struct apparent_position *seen)
 {
@@ -130,7 +132,7 @@ static bool displace(const struct lm_target_line *line, int32_t closing_mm_s,
     return true;
 }
 
-/* The direction from the target to the antenna. */
+/* Direction from the target to the antenna. */
 static fx_bam_t back_of(const struct lm_target_line *line,
                         const struct lm_target_candidate *candidate)
 {
@@ -140,7 +142,7 @@ static fx_bam_t back_of(const struct lm_target_line *line,
     return back;
 }
 
-/* How fast the target comes nearer, if anything depends on that. */
+/* Closing speed of a target; 0 if nothing depends on it. */
 static int32_t closing_mm_s(const struct lm_target_line *line, const struct lm_target *t,
                             const struct lm_target_candidate *candidate)
 {
@@ -166,7 +168,8 @@ static bool find_apparent(const struct lm_target_line *line, const struct lm_tar
     return !line->is_doppler || displace(line, closing, seen);
 }
 
-/* The spot of a scatterer, `along_mm` farther and `across_mm` to the right. */
+/* Apparent position of a scatterer, `along_mm` beyond the target's origin and `across_mm` to the
+ * right. It moves with its target. */
 static struct apparent_position beside(const struct apparent_position *target,
                                        const struct lm_return *r)
 {
@@ -184,15 +187,16 @@ static uint32_t off_line(const struct lm_target_line *line, const struct apparen
     return fx_abs_u32((int32_t)(s->azimuth - line->azimuth));
 }
 
-/* What the line takes of a spot's power, 1/256 dB: a spot is shared by the two lines that it lies
- * between, by its nearness to each, so that what the beam makes of both has its middle at the spot.
- * Only for a spot less than a line's width off. */
+/* Share of a line in the power at an apparent position. The two lines that it lies between share
+ * the power by nearness, and the beam's mean of both has its middle there. Only for a position less
+ * than a line's width off. */
 static int32_t share_db_q8(const struct lm_target_line *line, const struct apparent_position *s)
 {
     return fx_db_q8(line->width - off_line(line, s)) - fx_db_q8(line->width);
 }
 
-/* The cell of the line that holds a spot, or NO_CELL. Half-open, so that no two cells share one. */
+/* Cell of the line that holds an apparent position, or NO_CELL. Cells are half-open, so no two
+ * cells share a position. */
 static int32_t cell_of(const struct lm_target_line *line, const struct apparent_position *s)
 {
     const int32_t half_m_q8 = (int32_t)(line->cell_m_q8 / 2);
@@ -204,7 +208,7 @@ static int32_t cell_of(const struct lm_target_line *line, const struct apparent_
     return cell >= line->first && cell < line->cells ? (int32_t)cell : NO_CELL;
 }
 
-/* ---- how it is seen ---- */
+/* ---- echo of a target ---- */
 
 static struct lm_target_heights heights_of(const struct lm_target_line *line)
 {
@@ -221,7 +225,7 @@ static struct lm_target_view view_of(const struct lm_target_line *line,
     return v;
 }
 
-/* 10 log10 of the cell's area; the line is as wide as its arc. */
+/* Area of a clutter cell, as 10 log10; it is as wide as the line's arc. */
 static int32_t area_dbm2_q8(const struct lm_target_line *line, uint32_t cell)
 {
     const struct lm_target_heights h = heights_of(line);
@@ -231,14 +235,14 @@ static int32_t area_dbm2_q8(const struct lm_target_line *line, uint32_t cell)
                                    range_m_q8, before_m_q8, &h);
 }
 
-/* What becomes of the scatterers of one target in one line. */
+/* Echo of one target in one line: the returns of its scatterers and their cells. */
 struct echo {
     struct lm_return returns[LM_SCATTERERS_MAX];
     int32_t cell[LM_SCATTERERS_MAX]; /* or NO_CELL */
     uint32_t count;
 };
 
-/* The line's cell of a return at a spot, unless something nearer hides it. */
+/* Cell of a return, or NO_CELL if terrain before that cell hides it. */
 static int32_t lit_cell(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
                         const struct lm_target_candidate *candidate,
                         const struct apparent_position *s, int32_t up_mm)
@@ -253,14 +257,14 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
     return lm_target_view_tangent_q38(top_m_q10, s->range_m_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }
 
-/* What of a target without bodies can be hidden last: the top of its signature. */
+/* Top of a target without scatterers, above its origin: it is hidden when its top is. */
 static int32_t top_mm(const struct lm_signature *s)
 {
     return s ? (int32_t)s->height_mm : 0;
 }
 
-/* A target without bodies, looked at where it can be seen only: few of those that the line may meet
- * are in it. */
+/* Echo of a target without scatterers. Its cross section is computed only if the line holds it: few
+ * of the candidates that the line may meet are in it. */
 static void make_point_echo(struct echo *e, const struct lm_target_line *line,
                             const struct lm_target_horizon *horizon,
                             const struct lm_target_set *set,
@@ -295,7 +299,7 @@ static void make_scatterers_echo(struct echo *e, const struct lm_target_line *li
     }
 }
 
-/* One phasor sum for each cell that has some of the returns. */
+/* Add a phasor sum to each cell that holds some of the returns. */
 static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line,
                          int32_t *level_db_q8)
 {
@@ -318,8 +322,8 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
     return cells;
 }
 
-/* Whether the line sees the top of a target that is shown by its chip: over the cell of its range,
- * on whichever line. */
+/* True if the line sees the top of a target that is drawn by its chip. The test is at the cell of
+ * the target's range, on any of the lines that the chip covers. */
 static bool sees_top(const struct lm_target_line *line, const struct lm_target_horizon *horizon,
                      const struct lm_target_set *set, const struct lm_target_candidate *candidate,
                      const struct apparent_position *seen)

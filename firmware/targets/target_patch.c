@@ -8,23 +8,29 @@
 #include "lm/illumination.h"
 #include "lm/units.h"
 
-/* ---- where the points are ---- */
+/* ---- positions of the scatterers ---- */
 
-/* Of a target in the patch: ground range from the antenna and offset from the line of sight through
- * the centre, metres * 256, and how far Doppler displaces it. */
+/* Position of a target in the patch: ground range from the antenna, and offset to the right of the
+ * line of sight through the centre. `shift` is its displacement by Doppler. */
 struct patch_position {
     int32_t range_m_q8, across_m_q8, shift_m_q8;
-    int64_t smear_across_m_q8, walk_m_q8; /* over the dwell: where it appears, and along */
+    int64_t smear_across_m_q8,
+        walk_m_q8; /* change over the dwell: across where it appears, and along */
 };
 
-/* Doppler displaces a mover by s v / V across, v the speed with which it comes nearer. While the
- * radar flies on, V' = V - v' is what it flies by a target that goes v' to the right: the place
- * moves by 2 v' - v'^2 / V, and the target itself nearer by v. */
+/* Displace a mover and compute its smear. With v the closing speed, v' its speed to the right, V
+ * the radar's speed across and s the range:
+ *
+ *     displacement          s v / V across
+ *     smear over the dwell  (2 v' - v'^2 / V) T across, -v T along
+ *
+ * The radar flies by it at V - v' instead of V, so its displacement drifts while the dwell lasts.
+ */
 static void put_mover(const struct lm_patch_geometry *g, const struct lm_target *t,
                       fx_bam_t heading, struct patch_position *position)
 {
-    /* Speeds below 2^20, ranges below 2^27, the dwell below 2^17; displaced beyond 2^28 it is
-     * nowhere near. */
+    /* Speeds are below 2^20, ranges below 2^27, the dwell below 2^17: products are below 2^58. A
+     * displacement beyond 2^28 is far outside of any patch. */
     const int64_t closing_mm_s =
         lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
     const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
@@ -63,7 +69,7 @@ static int32_t in_cells(const struct lm_patch_geometry *g, int64_t length_m_q8)
     return (int32_t)(length_m_q8 * 256 / (int64_t)g->cell_m_q8);
 }
 
-/* The whole cell that holds a place. */
+/* Cell that holds a coordinate, rounded to the nearest middle. */
 static int32_t cell_at(int32_t place_cells_q8)
 {
     return (place_cells_q8 + 128) >> 8;
@@ -77,7 +83,7 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
     const int32_t range_m_q8 = position->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
     const int32_t across_m_q8 = position->across_m_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
     const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + r->up_mm * 128 / 125;
-    /* From the middle of the first line, and of the first guard cell. */
+    /* Coordinates count from the middle of the first line and of the first guard cell. */
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
     const int64_t near_m_q8 =
         g->centre_m_q8 - ((int64_t)(g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
@@ -100,8 +106,8 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
     return p;
 }
 
-/* Add a point for each return of a target. All pulses of the dwell make one picture: every kind of
- * fluctuation is drawn once for it. Of a target with a signature, the top is what can be hidden. */
+/* Add a scatterer for each return of a target. All pulses of the dwell make one picture, so every
+ * Swerling case is drawn once for it. A target with a signature is hidden when its top is. */
 static void add_returns(struct lm_target_patch *p, const struct lm_target_set *set,
                         const struct lm_target_candidate *candidate,
                         const struct lm_patch_geometry *g, const struct patch_position *position,
@@ -132,7 +138,7 @@ static void add_returns(struct lm_target_patch *p, const struct lm_target_set *s
     }
 }
 
-/* Note that a target has something to do on lines first..end - 1, as many of them as there are. */
+/* Mark lines first..end - 1, as far as they exist, as touched by a target. */
 static void note_lines(struct lm_target_patch *p, uint32_t target, int32_t first, int32_t end,
                        const struct lm_patch_geometry *g)
 {
@@ -142,7 +148,8 @@ static void note_lines(struct lm_target_patch *p, uint32_t target, int32_t first
     }
 }
 
-/* Lines from one place to another and up to `reach_cells_q8` beyond the ends of their smear. */
+/* Mark the lines from one coordinate to another, and up to `reach_cells_q8` beyond the ends of the
+ * smear. */
 static void note_around(struct lm_target_patch *p, uint32_t target, int32_t left_cells_q8,
                         int32_t right_cells_q8, uint32_t reach_cells_q8,
                         const struct lm_patch_geometry *g)
@@ -154,7 +161,7 @@ static void note_around(struct lm_target_patch *p, uint32_t target, int32_t left
                ((right_cells_q8 + aside_cells_q8) >> 8) + 1, g);
 }
 
-/* Lines that the points of a target may touch, and those that they stand on. */
+/* Mark the lines that a target's scatterers may touch, and those that hold their true positions. */
 static void note_scatterers(struct lm_target_patch *p, uint32_t target,
                             const struct lm_patch_geometry *g)
 {
@@ -169,12 +176,12 @@ static void note_scatterers(struct lm_target_patch *p, uint32_t target,
         }
     }
     t->has_scatterers = left_cells_q8 <= right_cells_q8;
-    /* A response's width is rounded by 1/256 at the most, less than a cell of it in all. */
+    /* The response's width is rounded by at most 1/256, less than a cell in all. */
     note_around(p, target, left_cells_q8, right_cells_q8,
                 (LM_RESPONSE_REACH + 1) * t->smear.across_stretch_q8, g);
 }
 
-/* Lay the target's chip over its point. */
+/* Replace the target's single scatterer by its chip. */
 static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot, fx_bam_t turn,
                      const struct lm_patch_geometry *g, const struct patch_position *position)
 {
@@ -227,10 +234,9 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
     }
 }
 
-/* ---- one line of them ---- */
+/* ---- one line ---- */
 
-/* The targets of a line, one after the other: a set of their numbers, the next of which is taken
- * out of it. */
+/* Next target of a set of bits, which is taken out of it. */
 static uint32_t take_next(uint32_t *targets)
 {
     const uint32_t next = (uint32_t)fx_ctz64(*targets);
@@ -246,7 +252,7 @@ void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const
         for (uint32_t i = t->begin; i < t->end; i++) {
             struct lm_patch_scatterer *scatterer = &p->scatterer[i];
             if (scatterer->line == (int32_t)line && scatterer->cell >= 0) {
-                /* Behind the last cell, everything before it may hide. */
+                /* Behind the last cell, the whole line may hide it. */
                 const uint32_t before = fx_min_u32((uint32_t)scatterer->cell, cells);
                 scatterer->is_hidden =
                     scatterer->tangent_q38 <= horizon[before] * ((int64_t)1 << (38 - bits));
@@ -255,8 +261,8 @@ void lm_target_patch_mark_hidden(struct lm_target_patch *p, uint32_t line, const
     }
 }
 
-/* One slice of the dwell: how far it lies from its point, cells * 256, what of the point's power it
- * has, and its stretch, inverted. */
+/* Slice of the dwell: its offset from the scatterer, its share of the power, and its stretch.
+ * thin_q16 and flat_q16 are the inverse stretch across and along. */
 struct slice {
     int32_t across_cells_q8, along_cells_q8, share_db_q8;
     int32_t thin_q16, flat_q16;
@@ -274,14 +280,15 @@ static struct slice slice_of(const struct lm_smear *s, uint32_t number)
                           .deep_q8 = s->along_stretch_q8};
 }
 
-/* A distance in units of the stretched response. */
+/* Distance in units of the stretched response. */
 static int32_t squeezed(int32_t x_cells_q8, int32_t inverse_q16)
 {
     return (int32_t)((int64_t)x_cells_q8 * inverse_q16 >> 16);
 }
 
-/* Cells of the response each way that a point of this level reaches on a line `dx_cells_q8` beside
- * it; -1: not even the line. */
+/* Cells of the response on either side that a scatterer of this level reaches, on a line
+ * `dx_cells_q8` beside it. -1 if it does not reach the line. The envelope is the peak of the
+ * response within each cell. */
 static int32_t reach_of(int32_t level_db_q8, int32_t dx_cells_q8, int32_t least_db_q8)
 {
     const uint32_t away_cells_q8 = fx_abs_u32(dx_cells_q8);
@@ -290,21 +297,21 @@ static int32_t reach_of(int32_t level_db_q8, int32_t dx_cells_q8, int32_t least_
     }
     const int32_t most_db_q8 = level_db_q8 + lm_response_envelope_db_q8[away_cells_q8 / 256];
     int32_t reach = LM_RESPONSE_REACH - 1;
-    /* The cell `reach` cells on is at least half a cell nearer than that. */
+    /* The cell `reach` cells away is at least half a cell nearer than that. */
     while (reach > 0 && most_db_q8 + lm_response_envelope_db_q8[reach - 1] < least_db_q8) {
         reach--;
     }
     return most_db_q8 + lm_response_envelope_db_q8[0] < least_db_q8 ? -1 : reach;
 }
 
-/* Cells that hold something, first..end - 1. */
+/* Cells of a line, first..end - 1. */
 struct span {
     int32_t first, end;
 };
 
-/* Add a slice of a point, its amplitude against `reference_db_q8`, to the cells of line `line`.
- * Amplitudes are at most 2^24, and a target has 16: sums below 2^28. What stays below `least_db_q8`
- * is left out. */
+/* Add a slice of a scatterer to the cells of line `line`: A h(x) h(y) exp(j phi), with h the point
+ * response and A relative to `reference_db_q8`. Amplitudes are at most 2^24 and a target has 16
+ * scatterers: sums are below 2^28. What stays below `least_db_q8` is left out. */
 static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer *p,
                    const struct slice *slice, uint32_t line, int32_t least_db_q8,
                    int32_t reference_db_q8, struct span within, struct span *touched)
@@ -338,7 +345,7 @@ static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer
     }
 }
 
-/* Turn the sums into levels and clear them. */
+/* Add the sums to the levels, and clear them. */
 static void collect(struct lm_target_patch *work, struct span touched, int32_t reference_db_q8,
                     int32_t *level_db_q8)
 {
@@ -354,8 +361,8 @@ static void collect(struct lm_target_patch *work, struct span touched, int32_t r
     }
 }
 
-/* Its bodies add as phasors, the slices of its dwell, whose phases run away from each other, as
- * powers. */
+/* Add one target: its scatterers as phasors, and the slices of its dwell as powers, because their
+ * phases drift apart. */
 static void add_target(struct lm_target_patch *p, const struct lm_patch_target *t, uint32_t line,
                        int32_t least_db_q8, struct span within, int32_t *level_db_q8)
 {
@@ -392,12 +399,12 @@ void lm_target_patch_add_scatterers(struct lm_target_patch *p, uint32_t line, in
 
 /* ---- chips ---- */
 
-/* Where a chip's origin lies, cells * 256. */
+/* Origin of a chip in the patch. */
 struct origin {
     int32_t across_cells_q8, along_cells_q8;
 };
 
-/* The cells of a line that a chip may reach. */
+/* Cells of a line that a chip may reach; none if its target is hidden. */
 static struct span cells_under(const struct lm_chip_reach *reach,
                                const struct lm_patch_scatterer *at, const struct origin *origin,
                                uint32_t line, const struct lm_patch_geometry *g)
@@ -411,7 +418,7 @@ static struct span cells_under(const struct lm_chip_reach *reach,
                          fx_min_i32(middle + reach->beyond_end, (int32_t)g->cells)};
 }
 
-/* Put the cells of a line that a chip's shadow reaches into the dark. */
+/* Darken the cells of a line that a chip's shadow reaches. */
 static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *chip, uint32_t line,
                   const struct lm_patch_geometry *g, int32_t *level_db_q8)
 {
@@ -440,8 +447,8 @@ void lm_target_patch_shade(const struct lm_target_patch *p, uint32_t line,
     }
 }
 
-/* Add one slice of a chip's smear to a line, if it is not more than `room` cells. Returns how many
- * it is. */
+/* Add one slice of a chip's smear to a line, unless it is more than `room` cells. Returns the
+ * number of its cells. */
 static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patch_scatterer *at,
                           const struct slice *slice, uint32_t line, uint32_t room,
                           const struct lm_patch_geometry *g, int32_t *level_db_q8)

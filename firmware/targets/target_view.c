@@ -10,9 +10,9 @@
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */ };
 
-/* The place of a target from an origin, the inverse problem put right by the direct one: the first
- * is good to 0.2 %, and what it misses by is so short that its own error does not count. False when
- * they do not agree, near a pole or half a world away. */
+/* Two steps: the inverse problem on a plane, then a correction by the direct problem. The first is
+ * good to 0.2 % of the distance. What it misses by is so short that its own error does not count.
+ * Near a pole the steps do not agree, and the target has no position. */
 bool lm_target_view_locate(struct lm_position from, struct lm_position to, uint32_t *distance_m_q8,
                            fx_bam_t *azimuth)
 {
@@ -38,8 +38,8 @@ bool lm_target_view_locate(struct lm_position from, struct lm_position to, uint3
     return true;
 }
 
-/* The Earth's drop at a ground range, metres * 1024; a range of 400 km, 2^26.6, squared in units of
- * 16 m2 times the curvature: 2^57.2. */
+/* Drop of the curved Earth below the horizontal at a ground range, r^2 / 2a. A range of 400 km is
+ * 2^26.6. Its square in units of 16 m2 times the curvature is 2^57.2. */
 static int32_t drop_m_q10(uint32_t range_m_q8)
 {
     return (int32_t)(((((int64_t)range_m_q8 * range_m_q8) >> 20) * LM_CURVATURE_Q48) >> 34);
@@ -48,7 +48,8 @@ static int32_t drop_m_q10(uint32_t range_m_q8)
 void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
                        fx_bam_t back, uint32_t range_m_q8, const struct lm_target_heights *h)
 {
-    /* Heights within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all below 2^29 in Q10. */
+    /* Heights are within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all lengths are below
+     * 2^29 in Q10. */
     const int32_t range_m_q10 = (int32_t)(fx_min_u32(range_m_q8, 400000u * 256u) * 4);
     const int32_t above_m_q10 =
         h->antenna_m_q10 - candidate->elevation_m_q6 * 16 - drop_m_q10((uint32_t)range_m_q10 / 4);
@@ -77,7 +78,7 @@ int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,
            (int64_t)fx_max_u32(range_m_q8, LM_RANGE_MIN_M * 256u);
 }
 
-/* 2^26.6 * 2^32 turns, to Q16, times 2 pi in Q26. */
+/* Range times turns, 2^26.6 * 2^32, cut to Q16; times 2 pi in Q26 it is below 2^63. */
 uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width)
 {
     const uint64_t turns_q16 = (uint64_t)range_m_q8 * width >> 24;
@@ -87,8 +88,8 @@ uint64_t lm_arc_m_q8(uint32_t range_m_q8, fx_bam_t width)
 int32_t lm_clutter_area_dbm2_q8(uint64_t width_m_q8, uint32_t cell_m_q8, uint32_t range_m_q8,
                                 uint32_t before_m_q8, const struct lm_target_heights *h)
 {
-    /* g, as the time gain has it: a height of 2^26 in Q10, times 2^22, over metres in Q8, less the
-     * range of the cell before over 2a. */
+    /* Grazing of the flat ground, as in the receiver's gain: g = h / s - s' / 2a, with s' the range
+     * of the cell before. The height is below 2^26 in Q10; times 2^22 it is below 2^48. */
     const int64_t above_m_q10 = (int64_t)h->antenna_m_q10 - h->reference_m_q10;
     const int64_t grazing_q24 = above_m_q10 * (1 << 22) / (int64_t)fx_max_u32(range_m_q8, 1) -
                                 ((int64_t)before_m_q8 * LM_CURVATURE_Q48 >> 32);
