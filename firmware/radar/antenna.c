@@ -9,10 +9,11 @@ enum { STEP_Q20 = 1 << 9 };
 
 void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenna_table *antenna)
 {
-    /* b in Q20 radians: a beam is at most half a circle, 2^31 times 2^22.7. */
+    /* b in radians, Q20. A beam is at most half a circle: 2^31 * 2^22.7. */
     const int64_t beam_q20 = (int64_t)((uint64_t)antenna->elevation_beam * FX_TWO_PI_Q20 >> 32);
     for (int32_t n = 0; n < LM_ANTENNA_PATTERN_STEPS; n++) {
-        /* x = e / b in Q12. Far beyond the beam everything is as good as nothing: -96 dB. */
+        /* x = e / b in Q12; the gain is -80 log10(2) x^2 dB. The pattern ends at -96 dB, where
+         * nothing is left. */
         const int64_t off_q20 = (int64_t)n * STEP_Q20 + STEP_Q20 / 2;
         const int64_t x_q12 = (off_q20 << 12) / (beam_q20 > 0 ? beam_q20 : 1);
         const int64_t fall_db_q8 = (x_q12 * x_q12 >> 12) * LM_BEAM_TWO_WAY_DB_Q8 >> 12;
@@ -20,7 +21,7 @@ void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenn
     }
 }
 
-/* Tangents of steeper angles than 89 degrees, 57, count as that. */
+/* Tangent of an angle, held within 89 degrees, where it is 57. */
 static int32_t tan_q20(int64_t angle)
 {
     const int64_t steepest = FX_BAM_DEG(89);
@@ -40,8 +41,8 @@ int32_t lm_antenna_auto_tilt(int32_t height_m, uint32_t range_m)
     return (int32_t)fx_atan2(-(height_m + drop_m), (int32_t)range_m);
 }
 
-/* Weigh what is outside of the fan. Tangents come with 22 bits of fraction or more; 20 are asked
- * for. */
+/* Attenuate cells outside of the fan. Tangents have at least 22 fractional bits; `down` leaves 20.
+ */
 static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down,
                   struct lm_antenna_fan fan, const int32_t *restrict gain_db_q8,
                   int32_t *restrict level_db_q8)
@@ -53,8 +54,8 @@ static void weigh(const int32_t *restrict tangent, uint32_t cells, uint32_t down
     }
 }
 
-/* The first of the cells from `first` to `end` that appears at `t_q20` or above; `end` if none
- * does. */
+/* First of the cells from `first` to before `end` that appears at `t_q20` or above, by bisection:
+ * tangents never fall along a line. `end` if none does. */
 static uint32_t first_at(const int32_t *tangent, uint32_t down, int32_t t_q20, uint32_t first,
                          uint32_t end)
 {

@@ -14,7 +14,7 @@ int32_t lm_azimuth_average_offset(fx_bam_t spacing, uint32_t azimuths_log2, uint
 {
     const uint32_t azimuths = 1u << azimuths_log2, half = azimuths / 2;
     const uint32_t part = turn < half ? turn : azimuths - 1 - (turn - half);
-    /* A spacing of at most a circle times an odd number below 16. */
+    /* The spacing is below 2^32, and the odd number below 16: the product is below 2^36. */
     const uint64_t from_left = (uint64_t)spacing * (2 * part + 1) >> (azimuths_log2 + 1);
     return (int32_t)((int64_t)from_left - spacing / 2);
 }

@@ -37,19 +37,19 @@ static uint8_t fineness_of(uint32_t ratio_q8)
     return ratio ? (uint8_t)fx_min_u32((uint32_t)(31 - fx_clz32(ratio)), LM_BEAM_FINEST) : 0;
 }
 
-/* 2^(-8 x^2) in Q16 for x in Q12, cut at 4, where nothing is left. */
+/* Two-way pattern 2^(-8 x^2) in Q16 for x in Q12. It is cut at x = 4, where nothing is left. */
 static uint32_t pattern_q16(uint64_t x_q12)
 {
     const int32_t x = x_q12 < 4 << 12 ? (int32_t)x_q12 : 4 << 12;
     return fx_exp2_q16(-(x * x >> 5));
 }
 
-/* x = off * ratio / beam for the samples of a look: their pattern, and what all of it is, at most
- * 2^19. */
+/* Compute the unscaled weights of the taps, 2^(-8 x^2) with x = offset * ratio / beam. Returns
+ * their sum, at most 2^19. */
 static uint32_t weigh(const struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                       uint32_t ratio_q8, struct lm_beam_taps *taps)
 {
-    /* A ratio of 2^16 at the most; beams of less than 1/200 degree count as that. */
+    /* The ratio is at most 2^16 in Q8. Beams of less than 1/200 degree count as that. */
     const fx_bam_t beam = fx_max_u32(radar->antenna.azimuth_beam, 1u << 16);
     const uint64_t x_per_bam_q44 = ((uint64_t)ratio_q8 << 36) / beam;
     int32_t off = azimuth - lm_beam_azimuth(b, radar, taps->first);
@@ -71,7 +71,8 @@ void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t a
         b->fineness = fineness;
         b->held = 0;
     }
-    /* Floor of azimuth / spacing + 1/2, for either sign. */
+    /* The taps are the four samples on either side of the azimuth: floor(azimuth / spacing + 1/2) -
+     * 4 and on. The division rounds down for either sign. */
     const int64_t spacing = lm_beam_spacing(b, radar), shifted = (int64_t)azimuth + spacing / 2;
     const int64_t nearest = (shifted - (shifted < 0 ? spacing - 1 : 0)) / spacing;
     taps->first = (int32_t)nearest - LM_BEAM_TAPS / 2;
@@ -82,7 +83,7 @@ void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t a
         taps->weight_q16[j] = (uint32_t)(taps->weight_q16[j] * share_q48 >> 32);
         left -= taps->weight_q16[j];
     }
-    taps->weight_q16[LM_BEAM_TAPS / 2] += left; /* what rounding left goes to the middle */
+    taps->weight_q16[LM_BEAM_TAPS / 2] += left; /* the rest by rounding goes to a middle tap */
 }
 
 bool lm_beam_has(const struct lm_beam *b, int32_t sample)

@@ -7,9 +7,9 @@
 uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, uint32_t bam_per_s, uint32_t speed_mm_s,
                          fx_bam_t off)
 {
-    /* N = 2 V B^2 sin o / (l w), with B and w in BAM, so that a radian, 2^32 / 2 pi, divides once.
-     * B^2 is below 2^56 for a beam of 20 degrees; over w, above 2^23 (0.7 degree a second), below
-     * 2^33; times 2 V, 2^22, and the sine, 2^15: cut by 15 in between. */
+    /* N = 2 V B^2 sin o / (l w), with B and w in BAM: a radian, 2^32 / 2 pi, then divides once. B^2
+     * is below 2^56 for a beam of 20 degrees. Over w, above 2^23 (0.7 degree a second), it is below
+     * 2^33. Times 2 V, 2^22, it is below 2^55; 15 bits are cut before the sine, 2^15. */
     const uint64_t beam = radar->antenna.azimuth_beam;
     const uint64_t dwell_bam = beam * beam / fx_max_u32(bam_per_s, LM_RADAR_RATE_MIN);
     const uint32_t sine_q15 = fx_abs_u32(fx_sin_q15(off));

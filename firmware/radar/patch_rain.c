@@ -11,8 +11,8 @@
 #include "shower.h"
 
 enum {
-    RAYS = 20,            /* that stand for the beam, an eighth of its width apart */
-    STATIONS = 16,        /* in a beam's width, at which the veil is worked out */
+    RAYS = 20,            /* rays that sample the beam, an eighth of its width apart */
+    STATIONS = 16,        /* in a beam's width, where the veil is computed */
     HALF_BEAM_Q8 = -1086, /* 10 log10(sqrt(pi / (8 ln 2)) / 2) */
     BEAM_LEAST = 1 << 16,
     NOTHING_Q8 = -100 * 256,
@@ -25,7 +25,8 @@ static struct lm_shower_cells reach_of(const struct lm_patch_geometry *g)
     return (struct lm_shower_cells){g->centre_m_q8 - before_m_q8, g->cell_m_q8, g->cells};
 }
 
-/* How far the ray through the middle of line `line` is turned from the line of sight. */
+/* Azimuth of the ray through the middle of line `line`, from the line of sight to the centre, right
+ * positive. */
 static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
 {
     const int64_t across_m_q8 = (2 * (int64_t)line + 1 - g->lines) * g->cell_m_q8 / 2;
@@ -34,8 +35,8 @@ static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
     return fx_atan2((int32_t)held_m_q8, (int32_t)g->centre_m_q8);
 }
 
-/* The circle with its loss for each metre along the ground. The loss of a level way is below 2^26,
- * and no way to a patch is 32 times as long as it is on the ground: 30 km down over 1 km. */
+/* Shower with its loss for each metre along the ground. The loss of a level ray is below 2^26. No
+ * ray to a patch is 32 times as long as its way on the ground: 30 km down over 1 km. */
 static struct lm_shower slanted(const struct lm_patch_rain *p, uint32_t n)
 {
     struct lm_shower s = p->shower[n];
@@ -58,8 +59,8 @@ void lm_patch_rain_find(struct lm_patch_rain *p, const struct lm_environment *e,
     }
 }
 
-/* Whether a ray within `most` of the line of sight, either way, meets the circle before the patch's
- * far end. If any does, the one nearest to its centre does. */
+/* True if a ray within `most` of the line of sight, on either side, meets the circle before the
+ * patch's far end. If any does, the one nearest to its centre does. */
 static bool is_met(const struct lm_shower *s, int32_t most, const struct lm_shower_cells *reach)
 {
     struct lm_chord chord;
@@ -81,7 +82,7 @@ static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
     p->count = kept;
 }
 
-/* Loss along the ray, in p->loss_db_q8. */
+/* Compute the loss along a ray, into p->loss_db_q8. */
 static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_shower_cells *reach)
 {
     struct lm_chord chord;
@@ -94,8 +95,8 @@ static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_sh
     }
 }
 
-/* Half the angle under which the antenna sees the part of a ring at `range_m_q8` that lies in the
- * circle: cos = (D^2 + r^2 - rho^2) / 2 D r. Squares are below 2^58. */
+/* Half the angle of the part of a ring at `range_m_q8` that lies in the circle: cos = (D^2 + r^2 -
+ * rho^2) / 2 D r. Squares are below 2^58. */
 static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
 {
     const int64_t d = s->at.distance_m_q8, r = range_m_q8, radius = (int64_t)s->radius_m * 256;
@@ -103,7 +104,7 @@ static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
     if (x >= one || x <= -one) {
         return x >= one ? 0 : FX_BAM_180;
     }
-    while (one >= (int64_t)1 << 31) { /* 26 times at most */
+    while (one >= (int64_t)1 << 31) { /* at most 26 times */
         one /= 2;
         x /= 2;
     }
@@ -112,7 +113,7 @@ static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
     return fx_atan2((int32_t)y, (int32_t)x);
 }
 
-/* Where the circle begins and ends at each range, as angles off the line of sight. */
+/* Compute where the circle begins and ends at each range, as angles off the line of sight. */
 static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
                        const struct lm_shower_cells *reach)
 {
@@ -125,9 +126,11 @@ static void find_edges(struct lm_patch_rain *p, const struct lm_shower *s,
     }
 }
 
-/* Add what a circle returns along one of the rays about `axis` to the power: as much as it fills of
- * the ray's width at each range, by the two-way pattern in the middle of that, 2^(-8 x^2) with x in
- * beam widths. The pattern's integral, sqrt(pi / (8 ln 2)), is 6.0217 rays wide. */
+/* Add the echo of a circle along one ray of the beam around `axis`. It is weighted by
+ * - the part of the ray's width that the circle fills, and
+ * - the two-way pattern 2^(-8 x^2) at the middle of that part, x in beam widths.
+ *
+ * The pattern's integral, sqrt(pi / (8 ln 2)), is 6.0217 rays wide: 1996 is that in dB * 256. */
 static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t axis, int32_t ray,
                     const struct lm_shower_cells *reach)
 {
@@ -149,8 +152,8 @@ static void add_ray(struct lm_patch_rain *p, const struct lm_shower *s, int32_t 
     }
 }
 
-/* 10 log10 of the volume that a cell of rain fills over its clutter's area, w ds g: s w ds b
- * sqrt(pi / 8 ln 2) / 2. A beam in BAM is 2 pi / 2^32 of it in radians. */
+/* Volume of a cell's rain over its clutter area w ds g, as 10 log10: s w ds b sqrt(pi / 8 ln 2) /
+ * 2. A beam in BAM is 2 pi / 2^32 of it in radians. */
 static int32_t volume_db_q8(const struct lm_radar *radar, const struct lm_patch_geometry *g,
                             uint32_t range_m_q8)
 {
@@ -175,7 +178,7 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
     if (p->count == 0) {
         return;
     }
-    /* Heights are below 2^26 in Q10, so 2^24 in Q8; a way below 2^28 times 2^16. */
+    /* Heights are below 2^26 in Q10, so 2^24 in Q8. A ray is below 2^28, times 2^16. */
     const int32_t above_m_q8 = (g->heights.antenna_m_q10 - g->heights.reference_m_q10) / 4;
     p->slant_q16 = (uint32_t)(((uint64_t)fx_hypot_u32((int32_t)g->centre_m_q8, above_m_q8) << 16) /
                               g->centre_m_q8);
@@ -185,8 +188,8 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
     p->veil[0].is_set = p->veil[1].is_set = false;
 }
 
-/* Noise and the rain's return over the beam about a station, worked out when it is first asked for:
- * lines go from left to right, so that each is asked for in turn. */
+/* Veil at a station, computed when it is first asked for. Lines go from left to right, so two
+ * stations are kept: the even and the odd one. */
 static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
                               const struct lm_shower_cells *reach)
 {

@@ -11,14 +11,15 @@
 
 enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
 
-/* log2 of g of the equations for a slant range, Q16: flat ground's grazing there, between 1/256 and
- * 2, steeper than which the beam does not look. */
+/* log2 of the grazing g at a slant range, Q16: g = h / s - s / 2a, within 1/256 and 2. The beam
+ * does not look steeper than that. */
 static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
 {
     const uint32_t ground_m_q8 = lm_ground_of_slant_m_q8(slant_m_q8, height_m_q10);
     int64_t grazing_q24 = height_m_q10 > 0 ? GRAZING_MAX_Q24 : GRAZING_MIN_Q24;
     if (ground_m_q8 != 0) {
-        /* |height| < 2^26, so 2^48; range < 2^27 times 2^24. */
+        /* The numerator is below 2^26 * 2^22 = 2^48. The curvature's is a range below 2^27, times
+         * 2^24. */
         grazing_q24 = (int64_t)height_m_q10 * (1 << 22) / (int64_t)ground_m_q8 -
                       ((int64_t)ground_m_q8 * LM_CURVATURE_Q48 >> 32);
     }
@@ -26,8 +27,14 @@ static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
     return fx_log2_q16((uint32_t)grazing_q24) - (24 << 16);
 }
 
-/* What depends on slant range alone. Logarithms are below 32 in Q16, so 2^21, and three times that.
- */
+/* Compute noise, roll-off and rain volume of each bin, with r its slant range and R the end of the
+ * scale:
+ *
+ *     noise    noise_end + 30 log10(r / R) - 10 log10(g(r) / g(R))
+ *     roll-off max(0, 30 log10(r / r_s)), r_s the end of the STC
+ *     volume   10 log10(r b / g(r))
+ *
+ * Logarithms are below 32 in Q16, 2^21, and three times that. */
 static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_m_q10,
                      uint8_t range)
 {
@@ -48,16 +55,16 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
     }
 }
 
-/* Shares of a pulse of `length_q16` bins: those that it covers whole, and the two that it ends in.
- */
+/* Compute the weights of a pulse of `length_q16` bins: equal for bins that it covers wholly, less
+ * for the two bins that it ends in. */
 static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
 {
     const uint32_t one = 1 << 16, longest = (2 * LM_PULSE_REACH_MAX + 1) * one;
     const uint32_t length = length_q16 < longest ? (uint32_t)length_q16 : longest;
-    /* The end, length / 2, lies in bin `last`, which begins at last - 1/2. */
+    /* The pulse ends at length / 2, in bin `last`, which begins at last - 1/2. */
     const uint32_t last = length > one ? (length - one + 2 * one - 1) / (2 * one) : 0;
     const uint32_t whole_q16 = length > one ? (uint32_t)(((uint64_t)one << 16) / length) : one;
-    /* Length + 1 - 2 last is twice the share of the last bin that is covered, up to 2. */
+    /* length + 1 - 2 last is twice the covered share of the last bin, up to 2. */
     const uint64_t covered_q17 = length + one - 2 * last * one;
     const uint32_t end_m_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
     uint32_t left_q16 = one;
@@ -65,7 +72,7 @@ static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
         r->weight_q16[m] = m > last ? 0 : m == last ? end_m_q16 : whole_q16;
         left_q16 -= 2 * r->weight_q16[m];
     }
-    r->weight_q16[0] = left_q16; /* with what rounding left */
+    r->weight_q16[0] = left_q16; /* and the rest by rounding */
 }
 
 void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
@@ -82,8 +89,8 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     set_pulse(r, pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1));
 }
 
-/* (a + b) w of powers on either side of a bin and a weight of at most 2^15, cut to whole parts of
- * 2^24: upper and lower halves apart, so that 32 bits do. */
+/* (a + b) w, for the powers of two bins and a weight of at most 2^15, in whole parts of 2^24. Upper
+ * and lower halves are multiplied separately, and 32 bits suffice. */
 static inline uint32_t share_q24(uint32_t a, uint32_t b, uint32_t weight_q16)
 {
     const uint32_t high = ((a >> 16) + (b >> 16)) * weight_q16;
@@ -91,8 +98,8 @@ static inline uint32_t share_q24(uint32_t a, uint32_t b, uint32_t weight_q16)
     return high + (low >> 16);
 }
 
-/* The mean over a pulse that reaches so many bins to either side: a constant where this is called.
- */
+/* Mean over a pulse that reaches `reach` bins to either side. `reach` is a constant in each call,
+ * so the compiler unrolls the loop over it. */
 static inline void smear_by(uint32_t reach, const uint32_t weight_q16[], const uint32_t *padded,
                             uint32_t *restrict power_q24, uint32_t cells)
 {
@@ -112,8 +119,9 @@ static inline void smear_by(uint32_t reach, const uint32_t weight_q16[], const u
     }
 }
 
-/* Each bin's power becomes the mean over the pulse, at most 9 / 2^24 less for the halves that are
- * cut. Beyond the line's ends there is none. The weights add up to 2^16, so that the sum fits. */
+/* Replace each bin's power by the mean over the pulse. It is at most 9 / 2^24 too low, by the
+ * halves that are cut. Beyond the ends of the line there is no power. The weights add up to 2^16,
+ * so the sum fits. */
 static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
 {
     enum { REACH = LM_PULSE_REACH_MAX, SHORT = REACH / 2 };

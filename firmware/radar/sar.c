@@ -17,14 +17,14 @@ static uint32_t m_q8_of_mm(uint32_t mm)
     return (uint32_t)(((uint64_t)mm * 256 + 500) / 1000);
 }
 
-/* The part of the velocity that lies across the line of sight, to the right of it, mm/s. */
+/* Component of the velocity across the line of sight, to the right. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
 {
     return (int32_t)((int64_t)f->speed_mm_s * fx_sin_q30(f->track - f->bearing) >> 30);
 }
 
-/* T = l R / (2 V d sin o), R the slant range, V sin o the speed across. In these units the
- * numerator is below 2^20 * 2^18.1 * 10^6 = 2^58. */
+/* Dwell T = l R / (2 V d sin o), with R the slant range and V sin o the speed across. In these
+ * units the numerator is below 2^20 * 2^18.1 * 10^6 = 2^58. */
 static uint64_t dwell_us(const struct lm_radar *radar, const struct lm_sar_command *c,
                          int32_t reference_m_q10, uint32_t across_mm_s)
 {
@@ -39,7 +39,7 @@ static bool is_within(fx_bam_t angle, fx_bam_t limit)
     return fx_abs_u32((int32_t)angle) <= limit;
 }
 
-/* Whether an aircraft in flight can make a patch there in that time. */
+/* True if an aircraft in flight can make a patch there in that time. */
 static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight *f,
                         uint64_t patch_us)
 {
@@ -50,7 +50,7 @@ static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight
            patch_us <= (uint64_t)radar->sar.dwell_max_ms * 1000;
 }
 
-/* Where the guard cells begin, if they do ahead of the antenna: metres * 256 of ground range. */
+/* Ground range where the guard cells begin; below 0 if that is behind the antenna. */
 static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const uint32_t before_centre = radar->sar.cells / 2u + LM_SAR_GUARD;
@@ -79,7 +79,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
                       cells + LM_SAR_GUARD, c->height_m_q6 * 16, reference_m_q10);
 }
 
-/* The run-up to the patch's first guard cell. */
+/* Set the foreground: the terrain before the first guard cell. */
 static void set_foreground(struct lm_sar *s, const struct lm_db *db)
 {
     const struct lm_sar_command *c = &s->command;
@@ -92,12 +92,13 @@ static void set_foreground(struct lm_sar *s, const struct lm_db *db)
     lm_ground_patch_set(&s->foreground_ground, c->centre, c->look_azimuth, &extent);
 }
 
-/* The grazing angle of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
+/* Set the layover by the grazing of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
 static void set_layover(struct lm_sar *s)
 {
     const uint32_t range_m_q8 = s->command.range_m * 256u;
     const int64_t above_m_q10 = (int64_t)s->grid.height_m_q10 - s->grid.reference_m_q10;
-    /* 2^26 * 2^14 over a range in Q8; at 1 km, 2^22. */
+    /* The height is below 2^26 in Q10, times 2^14, over a range in Q8; at 1 km the tangent is below
+     * 2^22. */
     const int64_t grazing_q16 =
         above_m_q10 * (1 << 14) / range_m_q8 - ((int64_t)range_m_q8 * LM_CURVATURE_Q48 >> 40);
     s->layover = (struct lm_layover){
@@ -129,8 +130,8 @@ static void set_geometry(struct lm_sar *s)
     };
 }
 
-/* Noise and rain of a patch as an antenna meets them that points at its centre all along, so that a
- * jammer raises the noise everywhere alike. */
+/* Compute noise and rain of a patch for an antenna that points at its centre all along. A jammer
+ * therefore raises the noise of the whole patch alike. */
 static void find_weather(struct lm_sar *s, const struct lm_environment *environment)
 {
     const struct lm_sar_command *c = &s->command;
@@ -150,8 +151,8 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
 }
 
-/* Another patch has another noise, so that it does not look like a dirty glass; the same one that
- * is made again has its own. */
+/* Epoch of the patch's noise: a hash of centre and command. Without it every patch would show the
+ * same grain, like a dirty glass. The same patch made again shows the same grain. */
 static uint32_t noise_epoch_of(const struct lm_sar_command *c, uint32_t epoch)
 {
     const uint32_t of_place = fx_hash3(c->centre.latitude, c->centre.longitude, epoch);
@@ -210,13 +211,13 @@ uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)
     return (s->radar->sar.cells - s->line) * s->line_us;
 }
 
-/* The path of a line over the guard cells and the patch. */
+/* Path of a line over the guard cells and the patch. */
 static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t line)
 {
     lm_ground_patch_path(path, &s->ground, line, s->radar->sar.cells, s->grid.cells);
 }
 
-/* The path over the run-up before them. */
+/* Path of a line over the foreground. */
 static void set_foreground_path(struct lm_ground_path *path, const struct lm_sar *s,
                                 uint32_t number)
 {
@@ -236,8 +237,8 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     }
 }
 
-/* How far Doppler may bring a target into the patch from outside: s v / (V sin o) for the fastest.
- */
+/* Greatest displacement by Doppler, s v / (V sin o) for the fastest target. Targets outside of the
+ * patch may appear in it. */
 static uint32_t displaced_most_m(const struct lm_sar *s)
 {
     uint32_t fastest_mm_s = 0;
@@ -255,7 +256,7 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     if (!s->targets || s->targets->count == 0) {
         return;
     }
-    /* Half the diagonal: 1.5 is more than the root of 2. */
+    /* Half the diagonal; 1.5 is more than the root of 2. */
     const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_m_q8 / 512 * 3 / 2 + 1;
     const struct lm_target_query query = {.position = s->command.centre,
                                           .reach_m = half_diagonal_m + displaced_most_m(s),
@@ -276,7 +277,7 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     }
 }
 
-/* The points and chips of the targets that the patch may show. */
+/* Compute the scatterers and chips of the targets that the patch may show. */
 static void find_target_patch(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
     lm_sar_prefetch_targets(s, tiles);
@@ -287,7 +288,7 @@ static void find_target_patch(struct lm_sar *s, struct lm_tile_cache *tiles)
     s->has_target_patch = true;
 }
 
-/* The horizon behind a run-up. */
+/* Horizon behind the foreground of one line in LM_SAR_FOREGROUND_LINES. */
 static lm_horizon_q40_t trace_foreground(const struct lm_sar *s, struct lm_tile_cache *tiles,
                                          uint32_t number, struct lm_line *line)
 {
@@ -296,7 +297,8 @@ static lm_horizon_q40_t trace_foreground(const struct lm_sar *s, struct lm_tile_
     return lm_foreground_horizon(&s->foreground, &s->class_lut, tiles, &path, &line->ground);
 }
 
-/* The horizon that a line starts with: between those behind the run-ups to its left and right. */
+/* Horizon at the start of a line: linear between those of the foregrounds traced to its left and
+ * right. */
 static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *tiles,
                                       uint32_t number, struct lm_line *line)
 {
@@ -308,17 +310,17 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
         s->foregrounds[1] = trace_foreground(s, tiles, second, line);
         s->second_foreground = second;
     }
-    /* Where no cell of the run-up is shown, both are open. */
+    /* If no cell of the foreground is traced, both are open. */
     if (s->foregrounds[0] == LM_HORIZON_OPEN) {
         return LM_HORIZON_OPEN;
     }
-    /* Tangents of 32 bits with at least 22 behind the point: below 2^49, and times 16 lines. */
+    /* Tangents have 32 bits, at least 22 of them fractional: below 2^49, times 16 lines. */
     const int64_t rise_q40 = s->foregrounds[1] - s->foregrounds[0];
     return s->foregrounds[0] +
            rise_q40 * (int64_t)(number % LM_SAR_FOREGROUND_LINES) / LM_SAR_FOREGROUND_LINES;
 }
 
-/* The cells of a line of the patch. */
+/* Noise key of a line of the patch. */
 static struct lm_noise_key line_noise_key(const struct lm_sar *s, enum lm_noise_kind kind,
                                           uint32_t number)
 {
@@ -365,15 +367,16 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
                          s->radar->sar.cells);
 }
 
-/* Whether a point is seen on lines before the one that it stands on. */
+/* True if a scatterer may be displayed on lines before the one that holds its position. */
 static bool is_early(const struct lm_sar *s, const struct lm_patch_scatterer *p)
 {
     return (p->is_displaced || p->is_chip) && p->line >= 0 &&
            p->line < (int32_t)s->radar->sar.cells;
 }
 
-/* Chips reach far before the line that they stand on, and movers may appear far from it: what hides
- * them is asked before the first line, one after the other. True when all are judged. */
+/* Test which chips and displaced movers are hidden before the first line is sampled: they are
+ * displayed on earlier lines than the one that holds their position. Traces at most `at_most`
+ * lines. True when all are tested. */
 static bool find_hidden(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                         struct lm_line *line)
 {
@@ -398,7 +401,7 @@ static int32_t *ring_line(struct lm_sar *s, uint32_t number)
     return s->ring_db_q8[number % LM_SAR_RING];
 }
 
-/* Sample lines up to `end`. */
+/* Sample lines until `end` are sampled. */
 static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t end,
                          struct lm_line *line)
 {
@@ -409,8 +412,8 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
     }
 }
 
-/* Add the points to lines up to `end`. Behind speckle and noise, which belong to the clutter: what
- * a target returns is its own. */
+/* Add the scatterers to lines until `end` have them. It is done after speckle and noise, which
+ * belong to the clutter: the echo of a target has its own fluctuation. */
 static void add_scatterers(struct lm_sar *s, uint32_t end)
 {
     const int32_t least_db_q8 = s->radar->sar.noise_floor_db_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
@@ -420,7 +423,8 @@ static void add_scatterers(struct lm_sar *s, uint32_t end)
     }
 }
 
-/* The levels of the line at hand: as they are, or out of focus, in smeared_db_q8. */
+/* Levels of the line to be drawn: as sampled, or out of focus, in smeared_db_q8. The patch's first
+ * and last lines are repeated beyond its edges. */
 static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
 {
     if (s->defocus_lines_q8 <= 256) {
@@ -439,7 +443,7 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
     return smeared_db_q8;
 }
 
-/* Samples up to `end`, at most so many. */
+/* Take at most `at_most` samples, up to line `end`. */
 static void sample_some(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t end,
                         uint32_t at_most, struct lm_line *line)
 {

@@ -12,14 +12,14 @@
 _Static_assert(LM_RADAR_CELLS_MAX * 23 / 16 <= LM_CELLS_MAX, "the lines of a window");
 
 enum {
-    /* Tiles are asked for this many display lines ahead of the beam, and for every eighth line
-     * only: between two of those lie 17 cells at the most, where a tile has 64; one of which they
-     * leave out no more than a corner is asked for when it is missed. */
+    /* Tiles are requested this many display lines ahead of the beam, and for every eighth line
+     * only. Two such lines are at most 17 cells apart, and a tile has 64. A tile of which they miss
+     * a corner is requested when it is read. */
     LINES_AHEAD = 32,
     LINES_APART = 8,
-    CHIP_SIDE_MOST = 32, /* pixels of a target's chip: what one line may cost */
+    CHIP_SIDE_MOST = 32, /* most pixels of a row of a chip: it bounds the cost of a line */
     WINDOW_LINES_MIN = 32,
-    WINDOW_LINES_ENOUGH = 256,         /* where the beam does not ask for more */
+    WINDOW_LINES_ENOUGH = 256,         /* for beams that need no more */
     FOREGROUND_LEAST_M_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
 };
 
@@ -51,7 +51,7 @@ void lm_sector_start(struct lm_sector *s, const struct lm_radar *radar,
     s->taps[0] = s->taps[1] = (struct lm_sector_taps){.is_kept = false};
     s->line = 0;
     s->sweep = epoch;
-    s->grid.cells = 0; /* none yet */
+    s->grid.cells = 0; /* no geometry yet */
     s->candidates.is_chosen = false;
     s->samples = 0;
     lm_antenna_pattern_set(&s->pattern, &radar->antenna);
@@ -70,7 +70,7 @@ int32_t lm_sector_edge_bam(const struct lm_sector *s, uint32_t line)
 
 /* ---- what a sweep looks at ---- */
 
-/* The whole sector, in lines of the table. */
+/* Set the edges of the whole sector, in lines of the table's width. */
 static void set_sector(struct lm_sector *s)
 {
     const uint32_t half_lines = s->radar->azimuth_half[s->command.azimuth_index] / s->radar->line;
@@ -80,7 +80,8 @@ static void set_sector(struct lm_sector *s)
     s->edge_m_q8 = 0;
 }
 
-/* The angle at which half the diagonal of a window is seen, from outside of it. */
+/* Half the angle under which a window is seen: asin of half its diagonal over the range. A right
+ * angle from inside it. */
 static fx_bam_t half_angle_of(uint32_t half_m, uint32_t range_m)
 {
     const uint32_t diagonal_m = half_m * 3 / 2; /* 1.5 for the root of 2 */
@@ -89,12 +90,13 @@ static fx_bam_t half_angle_of(uint32_t half_m, uint32_t range_m)
                           : fx_atan2((int32_t)diagonal_m, (int32_t)fx_sqrt_u64(range2 - off2));
 }
 
-/* Lines over a turn of the antenna: two across the beam, as sharp as the field makes it, so that
- * none of what it sees falls between them (two-way, it is seven tenths as wide); and not more than
- * are drawn in that time. */
+/* Number of lines over a turn of the antenna. Two lines across the beam, as sharp as the field of
+ * view makes it, miss nothing: the two-way beam is seven tenths as wide. There are no more than can
+ * be drawn in the time of the turn. */
 static uint32_t window_lines(const struct lm_sector *s, uint32_t turn)
 {
-    /* Turns are below 2^31, rates and beams above 2^23 (0.7 degree), sharpening is 256 at most. */
+    /* Turns are below 2^31, rates and beams above 2^23 (0.7 degree), and sharpening is at most 256:
+     * products are below 2^41. */
     const uint64_t in_beams =
         (uint64_t)turn * 2 * fov_of(s)->sharpening / s->radar->antenna.azimuth_beam;
     const uint32_t in_time = (uint32_t)((uint64_t)turn * LM_SECTOR_LINES_PER_S / rate_of(s));
@@ -103,7 +105,7 @@ static uint32_t window_lines(const struct lm_sector *s, uint32_t turn)
                       WINDOW_LINES_MIN);
 }
 
-/* Lines over the window, as far as the antenna turns. */
+/* Set the edges of a window's lines, as far as the antenna turns. */
 static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half_angle)
 {
     const int32_t limit = (int32_t)s->radar->antenna.azimuth_limit;
@@ -117,14 +119,15 @@ static void set_window_lines(struct lm_sector *s, int32_t bearing, fx_bam_t half
     s->width = turn / s->lines;
 }
 
-/* A window: what lies within half the diagonal of its centre. */
+/* Set the edges of a window: all that lies within half its diagonal of its centre. */
 static void set_window(struct lm_sector *s, const struct lm_platform *platform, int32_t above_m_q10)
 {
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
     lm_geo_inverse(platform->position, s->command.centre, &distance_m_q8, &azimuth);
-    const uint32_t reach_m_q8 = s->half_m * 256u / 16 * 23; /* a little more than the root of 2 */
-    /* Places farther than any radar looks count as that far: the window is empty there. */
+    const uint32_t reach_m_q8 =
+        s->half_m * 256u / 16 * 23; /* 23/16 is a little more than the root of 2 */
+    /* Centres farther than any radar range count as 250 km: the window is empty there. */
     const uint32_t ground_m_q8 = fx_min_u32(distance_m_q8, 250000u * 256u);
     const uint32_t slant_m_q8 = lm_slant_of_ground_m_q8(ground_m_q8, above_m_q10);
     s->edge_m_q8 = slant_m_q8 > reach_m_q8 ? slant_m_q8 - reach_m_q8 : 0;
@@ -133,9 +136,9 @@ static void set_window(struct lm_sector *s, const struct lm_platform *platform, 
 
 /* ---- its geometry in range ---- */
 
-/* Elevation of the flat ground that the time gain assumes: what lies below the aircraft, but not
- * above the mean of the map's land, so that a mountain below does not turn up the plains around it.
- */
+/* Elevation of the flat ground that the receiver's gain assumes. It is the terrain below the
+ * aircraft, but at most the mean of the map's land: a mountain below must not raise the gain over
+ * the plains around it. */
 static int32_t reference_m_q10_of(struct lm_tile_cache *tiles, uint8_t lod,
                                   struct lm_position position)
 {
@@ -153,7 +156,7 @@ static void set_foreground(struct lm_sector *s, const struct lm_db *db)
     }
 }
 
-/* Bins of slant range, the cells of ground under them, and everything that depends on both. */
+/* Set the bins of slant range, the cells of ground under them, and all that depends on both. */
 static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
                        int32_t reference_m_q10)
 {
@@ -176,7 +179,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     lm_beam_clear(&s->beam);
 }
 
-/* The database is read by the bins of the display. */
+/* LOD of the sector: map cells about as large as the bins of the display. */
 static uint8_t lod_of(const struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m =
@@ -189,8 +192,8 @@ static bool differs(int32_t a_m_q10, int32_t b_m_q10)
     return fx_abs_u32(a_m_q10 - b_m_q10) > fx_abs_u32(a_m_q10) / 128 + 1024;
 }
 
-/* The geometry depends on the height: it is made again when that has changed by a hundredth and a
- * metre. Until then all of it stays that of the old height, gain and horizon alike. */
+/* Recompute the ranges if the height has changed by a hundredth and a metre, or the window has
+ * changed. Until then all stages keep the old height, gain and horizon alike. */
 static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t height_m_q10,
                            int32_t reference_m_q10, uint32_t old_edge_m_q8, uint32_t old_half_m)
 {
@@ -204,7 +207,8 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
 
 /* ---- sweeps ---- */
 
-/* Where the beam's axis points: as commanded, or at the far end of what is shown; then its bar. */
+/* Set the tilt of the beam's axis: as commanded, or at the far end of the display; then the offset
+ * of its bar. */
 static void set_tilt(struct lm_sector *s)
 {
     const struct lm_antenna_table *antenna = &s->radar->antenna;
@@ -250,7 +254,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     refresh_ranges(s, tiles, platform->height_m_q10, reference_m_q10, old_edge_m_q8, old_half_m);
     if (lm_sector_is_window(s)) {
         s->has_foreground = false;
-        lm_beam_clear(&s->beam); /* its samples were seen from somewhere else */
+        lm_beam_clear(&s->beam); /* its samples were traced from another position */
     }
     set_tilt(s);
     lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
@@ -273,7 +277,8 @@ static void move_on(struct lm_sector *s)
     }
 }
 
-/* The line that the beam will be on `ahead` lines from now; ahead is less than a sweep. */
+/* Line that the beam will be on `ahead` lines from now, after a turn at the edge if there is one.
+ * `ahead` is less than a sweep. */
 static uint32_t line_ahead(const struct lm_sector *s, uint32_t ahead)
 {
     const uint32_t last = s->lines - 1;
@@ -292,7 +297,7 @@ static int32_t middle_of(const struct lm_sector *s, uint32_t line)
 
 /* ---- samples ---- */
 
-/* A path of `cells` equal cells outwards from `from_m_q8` to `to_m_q8`. */
+/* Path of `cells` equal cells outwards from `from_m_q8` to `to_m_q8`. */
 static struct lm_ground_path path_of(const struct lm_geo_ray *ray, uint32_t from_m_q8,
                                      uint32_t to_m_q8, uint32_t cells)
 {
@@ -312,8 +317,8 @@ static struct lm_ground_path sample_path(const struct lm_sector *s, const struct
                    s->ground_edge_m_q8 + s->grid.cells * s->grid.cell_m_q8, s->grid.cells);
 }
 
-/* The horizon that the ground before a window makes: all azimuths within a line of the table share
- * that of its middle, in whatever order they are taken. */
+/* Horizon behind the foreground of a window. All azimuths within one line of the table share that
+ * of its middle, and the order in which they are traced does not matter. */
 static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *tiles,
                                    fx_bam_t azimuth, struct lm_line *line)
 {
@@ -335,7 +340,7 @@ static lm_horizon_q40_t horizon_at(struct lm_sector *s, struct lm_tile_cache *ti
     return s->foreground_horizon;
 }
 
-/* The targets in range, and in a window the chips of those that are in it. */
+/* Select the targets in range, and for a window their chips. */
 static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
 {
     const struct lm_target_query query = {.position = s->platform.position,
@@ -359,7 +364,7 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
     lm_chips_choose(s->chips, &s->candidates, &chip_query);
 }
 
-/* Add the targets that the sampled line meets. */
+/* Add the targets that the sample meets. */
 static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                         const struct lm_noise_key *speckle, struct lm_line *line)
 {
@@ -377,7 +382,8 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .height_m_q10 = s->grid.height_m_q10,
                   .reference_m_q10 = s->grid.reference_m_q10,
                   .wavelength_um = s->radar->wavelength_um,
-                  .is_doppler = s->beam.fineness != 0, /* sharpened */
+                  .is_doppler =
+                      s->beam.fineness != 0, /* sharpened: azimuth is measured by Doppler */
                   .beam = s->radar->antenna.azimuth_beam,
                   .speed_mm_s = s->platform.speed_mm_s,
                   .track = s->platform.track,
@@ -390,17 +396,18 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
     lm_line_add_targets(line, &s->grid, &targets);
 }
 
-/* Texture belongs to the ground: cells as wide as they are long lie side by side at each range, so
- * that azimuths closer than that find the same. Columns are counted from north, by the middle of
- * each block. */
+/* Noise key of the texture, which belongs to the ground. Its cells are as wide as they are long,
+ * side by side at each range: azimuths closer than that draw the same texture. Columns are counted
+ * from north, at the middle of each block: column = azimuth range / cell. */
 static struct lm_noise_key texture_key(const struct lm_sector *s, fx_bam_t azimuth)
 {
     const uint64_t radians_q32 = (uint64_t)azimuth * FX_TWO_PI_Q28 >> 28; /* below 2^34.7 */
     struct lm_noise_key key = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
     key.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
-    /* Ranges are below 400 km, 2^26.7. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    key.column_q32 =
-        radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8 + key.column_step_q32 / 2;
+    /* Ranges are below 400 km, 2^26.7: the product is below 2^61.4.
+     * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+    const uint64_t edge_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8;
+    key.column_q32 = edge_q32 + key.column_step_q32 / 2;
     return key;
 }
 
@@ -419,15 +426,15 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
     lm_line_trace(line, tiles, &setup, &path, horizon);
 }
 
-/* Samples that are closer for sharpness need fewer. */
+/* Azimuths of a sample. Sharpened samples lie closer together and need fewer. */
 static uint32_t azimuths_log2_of(const struct lm_sector *s)
 {
     const uint32_t log2 = fov_of(s)->azimuths_log2, finer_log2 = s->beam.fineness;
     return log2 > finer_log2 ? fx_min_u32(log2 - finer_log2, LM_AZIMUTH_AVERAGE_LOG2_MAX) : 0;
 }
 
-/* Trace the azimuths across a sample: everything in the line is that of the last one, but the
- * levels are of the mean power. */
+/* Trace the azimuths of a sample. The line's levels become those of the mean power; everything else
+ * in it is that of the last azimuth. */
 static void trace_average(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                           struct lm_line *line)
 {
@@ -450,7 +457,7 @@ static void trace_average(struct lm_sector *s, struct lm_tile_cache *tiles, fx_b
     lm_azimuth_average_mean(&s->average, log2, line->lit.level_db_q8, s->grid.cells);
 }
 
-/* Put the origin where the aircraft is by now. */
+/* Move the origin to the present position of the aircraft. */
 static void follow(struct lm_sector *s)
 {
     const struct lm_position position = s->platform.position, old = s->origin.position;
@@ -459,7 +466,7 @@ static void follow(struct lm_sector *s)
     }
 }
 
-/* What lies about one azimuth, into its place in the beam's ring. */
+/* Take one sample, from the map to the power of the bins, into its slot of the ring. */
 static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t sample,
                         struct lm_line *line)
 {
@@ -479,7 +486,7 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
 
 /* ---- lines of the display ---- */
 
-/* How much sharper than the beam the picture is at this azimuth. */
+/* Sharpening ratio at an azimuth. */
 static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform *platform,
                             int32_t azimuth)
 {
@@ -492,14 +499,14 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
                                 lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
 }
 
-/* That of the next line, once it is aimed at. */
+/* Taps of the next line, once has_taps is true. */
 static struct lm_sector_taps *taps_of_line(struct lm_sector *s)
 {
     return &s->taps[s->line % 2];
 }
 
-/* Look at `azimuth`. In the whole sector a line lies between its samples as the one before the last
- * did, and has the same weights, of samples farther on. */
+/* Set the next line's taps. In NORM a line lies between its samples as the line before the last
+ * did: its taps are the same, of samples further on. */
 static void set_taps(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
 {
     struct lm_sector_taps *line_taps = taps_of_line(s);
@@ -514,8 +521,8 @@ static void set_taps(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
     line_taps->is_kept = ratio_q8 == 256;
 }
 
-/* Begin the sweep if that is due, and look, once, where the next line is. The whole sector is seen
- * from where the aircraft is; a window from where its sweep began. */
+/* Begin the sweep if it is due, and set the next line's taps once. NORM is seen from the present
+ * position of the aircraft; a window is seen from where its sweep began. */
 static void prepare_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                          const struct lm_platform *platform)
 {

@@ -22,7 +22,7 @@ bool lm_bearing_find(struct lm_position antenna, struct lm_position position, fx
 bool lm_shower_chord(const struct lm_shower *s, fx_bam_t aside, struct lm_chord *chord)
 {
     const fx_bam_t off = s->at.off - aside;
-    /* Distance below 2^29, radius below 2^24.7. */
+    /* Distances are below 2^29, radii below 2^24.7: the squares fit. */
     const int64_t along_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_cos_q30(off)) >> 30;
     const int64_t across_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_sin_q30(off)) >> 30;
     const int64_t radius_m_q8 = (int64_t)s->radius_m * 256;
@@ -38,18 +38,20 @@ bool lm_shower_chord(const struct lm_shower *s, fx_bam_t aside, struct lm_chord 
 
 void lm_shower_set_rate(struct lm_shower *s, uint32_t mm_per_h, uint32_t wavelength_um)
 {
-    /* log2(2 k) with k = 0.01217, and alpha = 1.2571, in Q16; below 2^19.7 dB a kilometre * 65536.
-     */
+    /* Loss 2 k R^alpha with k = 0.01217 and alpha = 1.2571, as log2 in Q16; below 2^19.7 dB a
+     * kilometre * 65536. */
     const int32_t rate_q16 = fx_log2_q16(fx_max_u32(mm_per_h, 1));
     const uint32_t loss_q16 = fx_exp2_q16((int32_t)((int64_t)rate_q16 * 82385 >> 16) - 351307);
     s->loss_db_per_m_q32 = (uint32_t)(((uint64_t)loss_q16 << 16) / 1000);
-    /* pi^5 |K|^2 200 10^-18 / l^4: -132.4479 dB, and 240 dB for the micrometres; 16 log10 R. */
+    /* Echo pi^5 |K|^2 Z / l^4 with Z = 200 R^1.6: the constants are -132.4479 dB, with 240 dB for
+     * the wavelength in micrometres. */
     s->echo_db_q8 = 27533 + fx_db_q8_of_log2_q16((int32_t)((int64_t)rate_q16 * 8 / 5)) -
                     fx_db_q8_of_log2_q16(4 * fx_log2_q16(wavelength_um));
 }
 
-/* Depths are below 2^27, a loss below 2^31 (2^26 level, 32 times as much on the steepest way down);
- * their product is dB * 256 in Q32. */
+/* The rain before a cell's middle is the mean of that before its two edges. Depths are below 2^27.
+ * A loss is below 2^31 a metre: 2^26 on the level, and at most 32 times as much on the steepest
+ * ray. The product is dB * 256 in Q32. */
 void lm_shower_add_loss(const struct lm_shower *s, const struct lm_chord *chord,
                         const struct lm_shower_cells *reach, int32_t *restrict loss_db_q8)
 {

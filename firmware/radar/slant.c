@@ -6,6 +6,9 @@
 #include "lm/geo.h"
 #include "lm/kernels_radar.h"
 
+/* Bin r shows the ground at s = sqrt(r^2 - h^2), in cell floor((s - edge) / cell). LM_LANES entries
+ * behind the last bin are set too, because kernels read whole vectors. A pair is added where the
+ * next bin's cell is more than one further on. Ranges are below 400 km, 2^26.6 in Q8. */
 void lm_slant_set(struct lm_slant *s, uint32_t first_m_q8, uint32_t cell_m_q8, uint32_t cells,
                   const struct lm_range_grid *grid, uint32_t ground_first_m_q8)
 {
@@ -44,7 +47,7 @@ void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, in
         const struct lm_slant_pair *pair = &s->pair[k];
         bin_db_q8[pair->bin] = fx_max_i32(bin_db_q8[pair->bin], level_db_q8[pair->last]);
     }
-    /* Within 2^17: at the lowest -195 dB of a cell hardly lit, -113 of texture, -33 of speckle, -48
-     * of a chip's shadow, -96 of the elevation pattern. */
+    /* Levels are within 2^17. The lowest is a cell hardly lit, -195 dB, with texture -113, speckle
+     * -33, a chip's shadow -48 and the elevation pattern -96. */
     lm_k_powers_of_levels(power_q24, s->cells);
 }

@@ -11,19 +11,19 @@ _Static_assert((int)LM_TONE_LINES == LM_K_TONE_LINES &&
                    (int)LM_TONE_PLACES_LOG2 == LM_K_TONE_PLACES_LOG2,
                "a curve has what lm/kernels_radar.h wants");
 
-/* White lies `span_db_q8` above black, at step `last`. */
+/* Window from black to white: white lies `span_db_q8` above black, at step `last`. */
 struct window {
     int32_t span_db_q8, last, step_log2, gamma_q8;
 };
 
-/* 255 v^gamma in Q16 at a step below white. */
+/* Law of the curve: 255 v^gamma in Q16 at a step below white. */
 static uint32_t curve_grey_q16(const struct window *w, int32_t step)
 {
     if (step == 0) {
         return 0;
     }
-    /* log2 v is -11..0 in Q16, for only white's own step may lie above it, by half a step; times
-     * gamma up to 4: above -2^22. */
+    /* log2 v is -11..0 in Q16: only white's own step may lie above 0, by half a step. Times gamma
+     * up to 4 it is above -2^22. */
     const int32_t log2_q16 =
         fx_log2_q16((uint32_t)step << w->step_log2) - fx_log2_q16((uint32_t)w->span_db_q8);
     return 255u * fx_exp2_q16((int32_t)((int64_t)log2_q16 * w->gamma_q8 / 256));
@@ -37,15 +37,16 @@ static void set_steps(struct lm_tone *t, const struct window *w)
     t->grey[w->last] = 255;
 }
 
-/* Where lines meet: grey in Q8, with the half for rounding. White has as much more as its line's
- * slope may lose by rounding down. */
+/* Curve at a joint of two straight pieces, in Q8 with the half for rounding. White is higher by as
+ * much as its piece's slope may lose by rounding down. */
 static int32_t knot_grey_q8(const struct window *w, int32_t step)
 {
     const int32_t white_grey_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
     return step < w->last ? (int32_t)(curve_grey_q16(w, step) >> 8) + 128 : white_grey_q8;
 }
 
-/* Chords, whose slopes are rounded down: none ends above the start of the next. */
+/* Replace the curve by chords of LM_TONE_PLACES steps. Slopes are rounded down, so no chord ends
+ * above the start of the next. */
 static void set_lines(struct lm_tone *t, const struct window *w)
 {
     int32_t base = knot_grey_q8(w, 0);
@@ -64,8 +65,8 @@ static void set_lines(struct lm_tone *t, const struct window *w)
     }
 }
 
-/* At gamma 3 the last of 1024 steps is 255 * 3 / 1024 of a grey, 191 in Q8; with the 31 more of
- * white a slope still fits a byte. Below gamma 1 the first steps are higher than that. */
+/* True if every slope fits a byte. At gamma 3 the last of 1024 steps is 255 * 3 / 1024 of a grey,
+ * 191 in Q8; the 31 more of white still fit. Below gamma 1 the first steps are higher than that. */
 static bool is_gentle(const struct window *w)
 {
     return w->last >= LM_TONE_STEPS / 2 && w->gamma_q8 >= 256 && w->gamma_q8 <= 3 * 256;

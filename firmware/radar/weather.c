@@ -7,12 +7,13 @@
 #include "lm/receiver.h"
 #include "shower.h"
 
-/* J - 20 log10(R_j / 18520 m) - 40 log10(2) (o / B)^2: the jammer's noise beside the receiver's. */
+/* Noise of a jammer relative to the receiver's: J - 20 log10(R_j / 18520 m) - 40 log10(2) (o /
+ * B)^2. J is given on the axis at ten nautical miles, 18520 m. */
 static int32_t jammer_db_q8(const struct lm_jammer *j, const struct lm_bearing *b, fx_bam_t beam)
 {
     const int32_t spread_db_q8 = fx_db_q8_of_log2_q16(
         2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, 256)) - LM_LOG2_TEN_NM_M_Q8_Q16));
-    /* Sixteen beams off the axis nothing is left. x in Q12: 2^32 and 12 dB in Q8, times 2^8. */
+    /* Sixteen beams off the axis nothing is left. x is in Q12, its square below 2^32. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32((int32_t)b->off) << 12) / fx_max_u32(beam, 1);
     const uint64_t x = x_q12 < 16u << 12 ? x_q12 : 16u << 12;
     return j->noise_ratio_db_q8 - spread_db_q8 -
@@ -34,7 +35,7 @@ int32_t lm_noise_rise_db_q8(const struct lm_environment *e, const struct lm_rada
     return rise_db_q8;
 }
 
-/* A circle of rain that the line meets. */
+/* Shower that the line meets, and its chord. */
 struct met {
     struct lm_shower shower;
     struct lm_chord chord;
@@ -57,7 +58,8 @@ static uint32_t find_showers(struct met met[LM_RAINS_MAX], const struct lm_envir
     return count;
 }
 
-/* Add the rain's echo, so weakened, by the share of each bin that it fills: at most 1 in Q32. */
+/* Add the echo of a shower after its loss, by the share of each bin that the rain fills: at most 1
+ * in Q32. */
 static void add_echo(const struct met *m, const struct lm_shower_cells *reach,
                      const int32_t *loss_db_q8, int32_t *restrict echo_db_q8)
 {
