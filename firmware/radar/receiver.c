@@ -39,7 +39,7 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
                      uint8_t range)
 {
     const uint32_t end_m_q8 = radar->range[range].range_m * 256u;
-    const int32_t end_m_q16 = 3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
+    const int32_t end_log2_q16 = 3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
     const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);
     /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM. */
     const int32_t beam_q16 =
@@ -49,7 +49,7 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
         const int32_t range_q16 = fx_log2_q16(slant_m_q8);
         const int32_t grazing_q16 = log2_grazing_q16(slant_m_q8, height_m_q10);
         r->noise_db_q8[i] = radar->range[range].noise_end_db_q8 +
-                            fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_m_q16);
+                            fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_log2_q16);
         r->stc_rolloff_db_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
         r->volume_db_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);
     }
@@ -66,10 +66,10 @@ static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
     const uint32_t whole_q16 = length > one ? (uint32_t)(((uint64_t)one << 16) / length) : one;
     /* length + 1 - 2 last is twice the covered share of the last bin, up to 2. */
     const uint64_t covered_q17 = length + one - 2 * last * one;
-    const uint32_t end_m_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
+    const uint32_t end_share_q16 = (uint32_t)(covered_q17 * whole_q16 >> 17);
     uint32_t left_q16 = one;
     for (uint32_t m = LM_PULSE_REACH_MAX; m > 0; m--) {
-        r->weight_q16[m] = m > last ? 0 : m == last ? end_m_q16 : whole_q16;
+        r->weight_q16[m] = m > last ? 0 : m == last ? end_share_q16 : whole_q16;
         left_q16 -= 2 * r->weight_q16[m];
     }
     r->weight_q16[0] = left_q16; /* and the rest by rounding */

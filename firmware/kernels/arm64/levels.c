@@ -6,10 +6,10 @@ static inline int32x4x4_t neon_load_16(const int32_t *from)
     return neon_load_8_and_8(from, from + 8);
 }
 
-/* The sums of both, less `less_q8` and not below `least_db_q8`, into `to_m_q8`, which may be
+/* The sums of both, less `less_q8` and not below `least_db_q8`, into `to_db_q8`, which may be
  * either. Returns how many cells these are: whole sixteens. */
 static inline uint32_t neon_sum(const int32_t *sum_q8, const int32_t *level_db_q8, int32_t less_q8,
-                                int32_t least_db_q8, int32_t *to_m_q8, uint32_t cells)
+                                int32_t least_db_q8, int32_t *to_db_q8, uint32_t cells)
 {
     const uint32_t whole = cells & ~15u;
     const int32x4_t less = vdupq_n_s32(less_q8), least = vdupq_n_s32(least_db_q8);
@@ -22,7 +22,7 @@ static inline uint32_t neon_sum(const int32_t *sum_q8, const int32_t *level_db_q
         for (size_t k = 0; k < 4; k++) {
             sum.val[k] = vmaxq_s32(vsubq_s32(sum.val[k], less), least);
         }
-        neon_store_8_and_8(to_m_q8 + i, to_m_q8 + i + 8, sum);
+        neon_store_8_and_8(to_db_q8 + i, to_db_q8 + i + 8, sum);
     }
     return whole;
 }

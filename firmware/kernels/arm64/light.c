@@ -14,7 +14,7 @@ _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
 /* Heights of the codes, lower bytes and upper bytes; edges of the marks, marks of the classes. */
 struct neon_legend {
-    uint8x16_t height_dm[2], edge_m_q3, mark;
+    uint8x16_t height_dm[2], edge_db_q3, mark;
 };
 
 /* What a turn takes over from the one before it. */
@@ -49,8 +49,8 @@ static inline struct neon_legend neon_legend_of(const struct lm_k_lit_line *line
 {
     struct neon_legend l;
     neon_set_heights(&l, &line->tops);
-    l.edge_m_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
-    l.edge_m_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_m_q3, LM_K_TREES);
+    l.edge_db_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
+    l.edge_db_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_db_q3, LM_K_TREES);
     l.mark = vld1q_u8(line->mark_of_class);
     return l;
 }
@@ -103,13 +103,13 @@ static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_bef
     const uint8x16_t before = vextq_u8(b->mark, mark, 15);
     b->mark = mark;
     *left = vbicq_u8(before, mark);
-    return vqtbl1q_u8(l->edge_m_q3, vbicq_u8(mark, before));
+    return vqtbl1q_u8(l->edge_db_q3, vbicq_u8(mark, before));
 }
 
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
-static inline uint16x8x2_t neon_shown(uint8x16_t edge_m_q3, uint16x8x2_t cells, uint32x4x4_t rise)
+static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells, uint32x4x4_t rise)
 {
-    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_m_q3), 5), vshll_high_n_u8(edge_m_q3, 5)}};
+    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
     /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
      * it takes 16 bits: 32640 + 8160 + 24659. */
     for (size_t n = 0; n < 2; n++) {
@@ -134,9 +134,9 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_l
         vst1q_s32(at->horizon + 4 * n, b->horizon);
     }
     uint8x16_t left;
-    const uint8x16_t edge_m_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
+    const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
     vst1q_u8(at->behind_shore, left);
-    const uint16x8x2_t shown_q8 = neon_shown(edge_m_q3, cells, rise);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_db_q3, cells, rise);
     const uint32x4x4_t gain_db_q8 = vld1q_u32_x4(at->gain_db_q8);
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_q8 = shown_q8.val[n / 2];
@@ -197,16 +197,16 @@ static inline void neon_brighten(int32_t *level_db_q8, int32x4_t shore_db_q8)
 static inline void neon_add_shore(const struct lm_k_lit_line *line, uint32_t i)
 {
     static const int32_t number[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const int32_t fall_m_q8 = line->shore_fall_db_q8;
+    const int32_t fall_db_q8 = line->shore_fall_db_q8;
     int32_t shore_db_q8 = line->shore_db_q8;
-    for (; i + 8 <= line->tops.cells && shore_db_q8 > 0; i += 8, shore_db_q8 -= 8 * fall_m_q8) {
+    for (; i + 8 <= line->tops.cells && shore_db_q8 > 0; i += 8, shore_db_q8 -= 8 * fall_db_q8) {
         if ((neon_marks(line, i) & EACH_IS_WATER) != 0) {
             break;
         }
         const int32x4_t all_q8 = vdupq_n_s32(shore_db_q8);
         for (size_t k = 0; k < 8; k += 4) {
             neon_brighten(line->level_db_q8 + i + k,
-                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_m_q8));
+                          vmlsq_n_s32(all_q8, vld1q_s32(number + k), fall_db_q8));
         }
     }
     add_shore(line, i, shore_db_q8);
