@@ -39,7 +39,8 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
                      uint8_t range)
 {
     const uint32_t end_m_q8 = radar->range[range].range_m * 256u;
-    const int32_t end_log2_q16 = 3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
+    const int32_t end_log2_q16 =
+        3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
     const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);
     /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM. */
     const int32_t beam_q16 =

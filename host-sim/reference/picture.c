@@ -51,7 +51,7 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
     }
     const size_t first = ref_first_shown(bins, gm->cell_count, &view);
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
-    ref_aspect(bins, gm->cell_count, &view, params, horizon);
+    ref_illuminate(bins, gm->cell_count, &view, params, horizon);
     for (uint32_t i = 0; i < gm->cell_count; i++) {
         const uint32_t column = ref_ground_column(azimuth_deg, 0, gm->cell_m, i);
         bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, gm->epoch);
@@ -155,8 +155,9 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
         bin->place = ref_surface_at(surface, sar_offset_m(sar, (int)line), along_m);
         sample(db, picture->level, params, bin);
     }
-    ref_aspect(ref_picture_bin(picture, line, -REF_GUARD_CELLS), REF_GUARD_CELLS + sar->cell_count,
-               &picture->view, params, picture->start_horizons[line]);
+    ref_illuminate(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
+                   REF_GUARD_CELLS + sar->cell_count, &picture->view, params,
+                   picture->start_horizons[line]);
 }
 
 /* Texture is drawn for the guard cells, too; speckle for those that are shown. */

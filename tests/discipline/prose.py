@@ -7,7 +7,7 @@ A finding is one line, "place: what is wrong":
 - a line of more than LONGEST_LINE characters, tables and code excepted,
 - a link, or a path in code type, that leads to no file of the repository,
 - a name in code type with a prefix of ours (lm_, fx_, drv_, hs_) that no source has,
-- a comment of a source that names a document that is not there.
+- a comment of a source that names a document, a header or a source of ours that is not there.
 Ends with 1 if there is a finding.
 """
 import re
@@ -19,6 +19,8 @@ LONGEST_SENTENCE = 32  # words: "some 30"
 LONGEST_LINE = 100
 TOP = ("fixed", "firmware", "drivers", "bsp", "linker", "host-sim", "tests", "docs", "make")
 SOURCES = (".c", ".h", ".S", ".ld", ".mk", ".py", ".sh")
+# Made by the build.
+MADE = {"tables.c", "noise_table.c", "response_table.c", "bus_generic.c"}
 ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|cf|vs|no|Fig|Eq|eq|pp|p|ch|sec|approx)\.$")
 
 
@@ -84,12 +86,16 @@ def names(path, text, known):
                     yield f"{path}:{number}: names {name}, which no source has"
 
 
-def documents_named(path, text, files):
-    """Comments may send the reader to a document, which must be there."""
-    names = {file.name for file in files if file.suffix == ".md"}
+def files_named(path, text, files):
+    """Comments may send the reader to a document, a header or a source, which must be there."""
+    present = {file.name for file in files} | MADE
     for number, line in enumerate(text.splitlines(), 1):
-        for name in re.findall(r"\b([\w-]+\.md)\b", line):
-            if name not in names:
+        found = re.findall(r"\b([\w-]+\.md)\b", line)
+        if path.suffix in (".c", ".h"):
+            found += re.findall(r"\b(?:lm|fx|drv|hs)/(\w+\.h)\b", line)
+            found += re.findall(r"\b(?:see|of|in|and) (\w+\.[ch])\b", line)
+        for name in found:
+            if name not in present:
                 yield f"{path}:{number}: names {name}, which is not there"
 
 
@@ -104,7 +110,7 @@ def findings(paths, files):
             yield from links(path, text, files, folders)
             yield from names(path, text, known)
         elif path.suffix in SOURCES and path.name != "prose.py":
-            yield from documents_named(path, path.read_text(), files)
+            yield from files_named(path, path.read_text(), files)
 
 
 def main():

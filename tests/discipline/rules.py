@@ -287,6 +287,8 @@ def call_graph(tree):
     """The graph, and what the compiler complained of."""
     objects, bad = tree.objects("call-graph", "-fcallgraph-info=su", "-ffunction-sections", "-fdata-sections")
     graph = CallGraph()
+    if not bad and not all(path.with_suffix(".ci").exists() for path in objects):
+        bad = [f"{tree.flags['CC'][0]} left no .ci file beside its object: is it a compiler cache? Run without it"]
     if not bad:
         for path in objects:
             graph.read(path)

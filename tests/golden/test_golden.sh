@@ -10,6 +10,7 @@ mkdir -p "$work"
 number=0
 failed=0
 different=
+radar_pictures=0 labels_alone=0
 
 result() { # STATUS STATEMENT
     number=$((number + 1))
@@ -31,8 +32,10 @@ while read -r name radar glass; do
     if [ $status -ne 0 ]; then
         different="$different $name"
         if [ -n "$glass" ] && grep -q "^$name $radar " "$work/pictures"; then
+            labels_alone=$((labels_alone + 1))
             echo "# only symbols, labels or warnings of $name differ: its radar picture is as it was"
         else
+            radar_pictures=$((radar_pictures + 1))
             echo "# the radar picture of $name differs"
         fi
     fi
@@ -42,6 +45,7 @@ result $? 'there are as many as before'
 if [ -n "$different" ]; then
     # shellcheck disable=SC2086 # a list of names
     "$bin"/golden --png "$work" $different >/dev/null
+    echo "# of $(wc -l <"$golden") situations $radar_pictures differ in the radar picture, $labels_alone in symbols or labels alone"
     echo "# what is drawn now is in $work; when it is right, make golden-update and commit before and after"
 fi
 for variant in "$bin"/golden-*; do

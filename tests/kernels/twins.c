@@ -30,7 +30,7 @@ struct input {
     struct lm_tile_coords places;
     struct lm_scan_line ground;
     struct lm_range_grid grid;
-    struct lm_class_lut legend;
+    struct lm_class_lut class_lut;
     struct lm_tone tone;
 };
 
@@ -186,7 +186,7 @@ static void draw_ground(struct input *in, uint32_t cell_q8)
     }
 }
 
-static void draw_legend(struct input *in, struct lm_illumination_config *config)
+static void draw_class_lut(struct input *in, struct lm_illumination_config *config)
 {
     static struct lm_classes classes;
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
@@ -197,7 +197,7 @@ static void draw_legend(struct input *in, struct lm_illumination_config *config)
     config->edge_trees_db_q8 = (int16_t)hs_rng_below(&in->rng, 32768);
     config->shore_db_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
     config->shore_width_m = (uint16_t)hs_rng_below(&in->rng, 2000);
-    lm_class_lut_set(&in->legend, config, &classes);
+    lm_class_lut_set(&in->class_lut, config, &classes);
 }
 
 static void draw_light(struct input *in)
@@ -205,7 +205,7 @@ static void draw_light(struct input *in)
     struct lm_illumination_config config;
     const uint32_t cell_q8 = 128u << hs_rng_below(&in->rng, 10);
     const uint32_t first_q8 = cell_q8 + hs_rng_below(&in->rng, 60000 * 256);
-    draw_legend(in, &config);
+    draw_class_lut(in, &config);
     draw_ground(in, cell_q8);
     memset(&in->grid, 0, sizeof in->grid);
     lm_range_grid_set(&in->grid, &config, first_q8, cell_q8, in->cells, within(in, 30000 * 1024),
@@ -261,10 +261,10 @@ static void run_tile_read(const struct input *in, struct output *out, bool is_pl
 
 static struct lm_k_tops tops_of(const struct input *in)
 {
-    return (struct lm_k_tops){in->grid.first,      in->cells,
-                              in->ground.cell,     in->ground.elevation_m_q14,
-                              in->grid.fall_m_q14, in->grid.inverse_range,
-                              in->legend.height_dm};
+    return (struct lm_k_tops){in->grid.first,         in->cells,
+                              in->ground.cell,        in->ground.elevation_m_q14,
+                              in->grid.fall_m_q14,    in->grid.inverse_range,
+                              in->class_lut.height_dm};
 }
 
 static void run_light(const struct input *in, struct output *out, bool is_plain)
@@ -275,10 +275,10 @@ static void run_light(const struct input *in, struct output *out, bool is_plain)
     const struct lm_k_lit_line line = {
         .tops = tops,
         .gain_db_q8 = in->grid.gain_db_q8,
-        .mark_of_class = in->legend.mark,
-        .edge_structure_db_q3 = in->legend.edge_structure_db_q3,
-        .edge_trees_db_q3 = in->legend.edge_trees_db_q3,
-        .shore_db_q8 = in->legend.shore_db_q8,
+        .mark_of_class = in->class_lut.mark,
+        .edge_structure_db_q3 = in->class_lut.edge_structure_db_q3,
+        .edge_trees_db_q3 = in->class_lut.edge_trees_db_q3,
+        .shore_db_q8 = in->class_lut.shore_db_q8,
         .shore_fall_db_q8 = in->grid.shore_fall_db_q8,
         .start = fx_sat_i32(tangent + in->number[0]),
         .horizon = signed_line(out->line[0]),

@@ -13,7 +13,7 @@ _Static_assert(LM_CELLS_MAX % NEON_CELLS == 0, "a whole number of turns fits in 
 _Static_assert(LM_K_CODES == 16, "a vector looks up all codes at once");
 
 /* Heights of the codes, lower bytes and upper bytes; edges of the marks, marks of the classes. */
-struct neon_legend {
+struct neon_class_lut {
     uint8x16_t height_dm[2], edge_db_q3, mark;
 };
 
@@ -37,7 +37,7 @@ struct neon_place {
     uint8_t *behind_shore;
 };
 
-static inline void neon_set_heights(struct neon_legend *l, const struct lm_k_tops *tops)
+static inline void neon_set_heights(struct neon_class_lut *l, const struct lm_k_tops *tops)
 {
     const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code));
     const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(tops->height_dm_of_code + 8));
@@ -45,9 +45,9 @@ static inline void neon_set_heights(struct neon_legend *l, const struct lm_k_top
     l->height_dm[1] = vuzp2q_u8(low, high);
 }
 
-static inline struct neon_legend neon_legend_of(const struct lm_k_lit_line *line)
+static inline struct neon_class_lut neon_class_lut_of(const struct lm_k_lit_line *line)
 {
-    struct neon_legend l;
+    struct neon_class_lut l;
     neon_set_heights(&l, &line->tops);
     l.edge_db_q3 = vsetq_lane_u8(line->edge_structure_db_q3, vdupq_n_u8(0), LM_K_STRUCTURE);
     l.edge_db_q3 = vsetq_lane_u8(line->edge_trees_db_q3, l.edge_db_q3, LM_K_TREES);
@@ -56,7 +56,7 @@ static inline struct neon_legend neon_legend_of(const struct lm_k_lit_line *line
 }
 
 /* lm_k_tangent of sixteen cells whose height codes are given. */
-static inline int32x4x4_t neon_tangents(const struct neon_legend *l, const struct neon_place *at,
+static inline int32x4x4_t neon_tangents(const struct neon_class_lut *l, const struct neon_place *at,
                                         uint8x16_t code)
 {
     const uint16x8x2_t height_dm = neon_words_of_16(l->height_dm, code);
@@ -96,7 +96,7 @@ static inline uint32x4_t neon_rise(struct neon_before *b, int32x4_t tangent)
 
 /* Brightness of the leading edges of cells whose classes are given, of which the hidden ones change
  * nothing; *left gets the mark of water behind a shore. */
-static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_before *b,
+static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_before *b,
                                     uint8x16_t hidden, uint8x16_t class_index, uint8x16_t *left)
 {
     const uint8x16_t mark = vbslq_u8(hidden, b->mark, vqtbl1q_u8(l->mark, class_index));
@@ -109,7 +109,8 @@ static inline uint8x16_t neon_edges(const struct neon_legend *l, struct neon_bef
 /* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
 static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells, uint32x4x4_t rise)
 {
-    uint16x8x2_t own_q8 = {{vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
+    uint16x8x2_t own_q8 = {
+        {vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
     /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
      * it takes 16 bits: 32640 + 8160 + 24659. */
     for (size_t n = 0; n < 2; n++) {
@@ -119,7 +120,7 @@ static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
 }
 
 /* Sixteen cells; their horizon, level and whether they are behind a shore are stored. */
-static inline __attribute__((always_inline)) void neon_cells(const struct neon_legend *l,
+static inline __attribute__((always_inline)) void neon_cells(const struct neon_class_lut *l,
                                                              const struct neon_hidden *hidden,
                                                              struct neon_before *b,
                                                              struct neon_place *at)
@@ -259,7 +260,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
         horizon[k + 1] = line->start;
         level_db_q8[k] = LM_LEVEL_SHADOW;
     }
-    const struct neon_legend l = neon_legend_of(line);
+    const struct neon_class_lut l = neon_class_lut_of(line);
     struct neon_before before = neon_before_of(line);
     struct neon_place at = {.cell = tops->cell + first,
                             .elevation_m_q14 = (const uint32_t *)tops->elevation_m_q14 + first,
@@ -296,7 +297,7 @@ int32_t lm_k_highest_tangent(const struct lm_k_tops *tops)
         return lm_k_highest_tangent_c(tops);
     }
     const uint32_t last = tops->cells - NEON_CELLS;
-    struct neon_legend l;
+    struct neon_class_lut l;
     neon_set_heights(&l, tops);
     int32x4_t highest = vdupq_n_s32(INT32_MIN);
     for (uint32_t i = tops->first, end = 0; end < tops->cells; i = end) {

@@ -44,11 +44,11 @@ void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t
         const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
         const uint8x16_t slope = vqtbl4q_u8(slopes, line);
         const uint16x8_t first_grey_q8 = vmlal_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)),
-                                               vget_low_u8(slope), vget_low_u8(place));
+                                                  vget_low_u8(slope), vget_low_u8(place));
         const uint16x8_t second_grey_q8 =
             vmlal_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), slope, place);
-        vst1q_u8(grey + i,
-                 vuzp2q_u8(vreinterpretq_u8_u16(first_grey_q8), vreinterpretq_u8_u16(second_grey_q8)));
+        vst1q_u8(grey + i, vuzp2q_u8(vreinterpretq_u8_u16(first_grey_q8),
+                                     vreinterpretq_u8_u16(second_grey_q8)));
     }
     if (whole < cells) {
         lm_k_tone_c(t, level_q8 + whole, grey + whole, cells - whole);

@@ -123,7 +123,7 @@ struct lm_fov_row {
     uint16_t sharpening;       /* azimuth cells in a beam width; 1 (real beam) ..
                                 * LM_RADAR_SHARPENING_MAX */
     uint16_t sharpening_least; /* real beam where there is less than this; 1.. */
-    uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/footprint.h); 0..
+    uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/azimuth_average.h); 0..
                                 * LM_RADAR_AZIMUTHS_LOG2_MAX */
 };
 

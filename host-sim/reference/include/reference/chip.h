@@ -1,4 +1,4 @@
-/* A target's chip over the cells of a patch, in double precision: the judge of lm/chip_lay.h. */
+/* A target's chip over the cells of a patch, in double precision: the judge of lm/chip_patch.h. */
 #ifndef REFERENCE_CHIP_H
 #define REFERENCE_CHIP_H
 

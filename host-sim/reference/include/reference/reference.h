@@ -141,7 +141,7 @@ struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, d
 struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, double half_side_m);
 struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m);
 
-/* ---- aspect (aspect.c) ---- */
+/* ---- illumination (illumination.c) ---- */
 
 struct ref_view {
     double antenna_m;   /* H, above mean sea level */
@@ -169,8 +169,8 @@ double ref_highest_tangent(const struct ref_bin *bins, size_t count, double ante
 /* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
  * The first bin shown enters nothing and follows no water; a bin without data is ground of -80 dB.
  */
-void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
-                const struct ref_params *params, double horizon);
+void ref_illuminate(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                    const struct ref_params *params, double horizon);
 
 /* ---- speckle (speckle.c) ---- */
 

@@ -165,9 +165,9 @@ TEST(patch_lines_lie_where_across_and_along_offsets_say)
 
 TEST(the_lines_before_a_patch_80_miles_away_are_within_a_tenth_of_their_cells)
 {
-    const struct lm_ground_extent runup = {-138600 * 256, -1320 * 256, 128 * 2560};
-    const double worst = worst_patch_cell(61.8, 179.99, &runup, 128);
-    print_message("# run-up of 1,072 m cells: worst cell %.1f m off\n", worst);
+    const struct lm_ground_extent foreground = {-138600 * 256, -1320 * 256, 128 * 2560};
+    const double worst = worst_patch_cell(61.8, 179.99, &foreground, 128);
+    print_message("# foreground of 1,072 m cells: worst cell %.1f m off\n", worst);
     assert_true(worst < 107);
 }
 

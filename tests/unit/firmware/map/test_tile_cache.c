@@ -322,7 +322,7 @@ TEST(a_full_queue_drops_requests_and_counts_them)
     free_fixture(f);
 }
 
-TEST(a_guest_reads_between_two_tiles_and_one_at_a_time)
+TEST(a_flash_request_is_read_between_two_tiles_and_one_at_a_time)
 {
     struct fixture *f = make_fixture();
     uint8_t header[512];

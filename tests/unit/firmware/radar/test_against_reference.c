@@ -163,12 +163,12 @@ static void make_rain(struct world *w, struct ref_sar *wanted)
 }
 
 /* How far apart aspect to tone are on the same ground; whole pictures; and pictures of which one
- * traces a run-up for every line, as the reference does. */
+ * traces the foreground for every line, as the reference does. */
 struct patch_scores {
-    struct score stage, whole, runups;
+    struct score stage, whole, foregrounds;
 };
 
-/* The horizon that a line starts with by EQUATIONS.md: run-ups are traced for one line in
+/* The horizon that a line starts with by EQUATIONS.md: the foreground is traced for one line in
  * LM_SAR_FOREGROUND_LINES, and between them the horizon changes evenly. */
 static double start_horizon(const struct world *w, const struct ref_sar *sar, uint32_t line)
 {
@@ -192,12 +192,12 @@ static void score_patch_line(struct world *w, const struct ref_sar *wanted,
     assert_true(fabs(horizon - wanted_horizon) < 1e-5); /* 9 cm at 9 km */
     take_draws(sar, line, bins);
     memcpy(copy, bins, cells * sizeof *copy);
-    ref_aspect(copy, cells, &picture->view, &w->params, wanted_horizon);
+    ref_illuminate(copy, cells, &picture->view, &w->params, wanted_horizon);
     compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->whole);
     take_ground(&w->line.ground, &w->map.db.classes, copy, cells);
-    ref_aspect(copy, cells, &picture->view, &w->params, horizon);
+    ref_illuminate(copy, cells, &picture->view, &w->params, horizon);
     compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->stage);
-    compare_line(w, bins, REF_GUARD_CELLS, cells, &scores->runups);
+    compare_line(w, bins, REF_GUARD_CELLS, cells, &scores->foregrounds);
 }
 
 static void score_patch(struct world *w, int look_deg, double cell_m, double range_m,
@@ -230,7 +230,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
 TEST(patches_agree_with_the_reference)
 {
     struct patch_scores scores = {0};
-    const struct score *whole = &scores.whole, *runups = &scores.runups;
+    const struct score *whole = &scores.whole, *foregrounds = &scores.foregrounds;
     struct world *w = make_world(9, 1, 46, 11);
     score_patch(w, 0, 5, 20000, 3000, &scores);
     score_patch(w, 37, 5, 20000, 3000, &scores);
@@ -242,7 +242,7 @@ TEST(patches_agree_with_the_reference)
     free_world(w);
     report("patches, aspect to tone on the same ground", &scores.stage);
     report("patches, whole", whole);
-    report("patches, whole, with a run-up for every line", runups);
+    report("patches, whole, with a foreground for every line", foregrounds);
     judge_stages(&scores.stage);
     /* The firmware's sample points lie up to 3 cm beside the reference's (test_geo.c): one in two
      * hundred so falls into the neighbouring cell of the map, and where that is of another class
@@ -250,8 +250,8 @@ TEST(patches_agree_with_the_reference)
     assert_true(whole->beyond_half_db * 200 <= whole->pixels);
     assert_true(whole->beyond_1_grey * 200 <= whole->pixels);
     /* Three in a thousand more where a shadow that begins before the patch ends elsewhere. */
-    assert_true(runups->beyond_half_db * 125 <= runups->pixels);
-    assert_true(runups->beyond_1_grey * 125 <= runups->pixels);
+    assert_true(foregrounds->beyond_half_db * 125 <= foregrounds->pixels);
+    assert_true(foregrounds->beyond_1_grey * 125 <= foregrounds->pixels);
 }
 
 /* The same through rain, whose edge runs through each picture. */

@@ -114,7 +114,7 @@ static void look_along(const struct sector_world *w, const struct ref_db *db, do
         (void)ref_db_elevation(db, s->lod, g->place, true, &g->elevation_m);
     }
     const size_t first = ref_first_shown(ground, cells, &view);
-    ref_aspect(ground, cells, &view, params, ref_gm_horizon(&ground[first], &view));
+    ref_illuminate(ground, cells, &view, params, ref_gm_horizon(&ground[first], &view));
     for (uint32_t i = 0; i < cells; i++) {
         ground[i].echo_db = ground[i].level_db;
     }

@@ -111,7 +111,7 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
             metres(s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2 + i * s->grid.cell_m_q8);
     }
     take_ground(&w->line.ground, &w->map.db.classes, bins, cells);
-    ref_aspect(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
+    ref_illuminate(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
     ref_texture(bins, cells, &t->texture, &t->params);
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
 }
@@ -361,7 +361,8 @@ static struct sector_world *make_country(void)
     spec.shift0 = 13;
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
-    /* The mean across a sample is test_footprint's: here a sample is the azimuth in the line. */
+    /* The mean across a sample is proved by test_azimuth_average: here a sample is the azimuth in
+     * the line. */
     for (int field = 0; field < LM_FOVS; field++) {
         w->radar.fov[field].azimuths_log2 = 0;
     }

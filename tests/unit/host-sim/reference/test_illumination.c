@@ -48,7 +48,7 @@ static void look(struct ref_bin *bins, size_t count, double antenna_m, double ce
                  const struct ref_params *params)
 {
     const struct ref_view view = {antenna_m, 0, cell_m};
-    ref_aspect(bins, count, &view, params, ref_tangent(antenna_m, bins[0].range_m - cell_m, 0));
+    ref_illuminate(bins, count, &view, params, ref_tangent(antenna_m, bins[0].range_m - cell_m, 0));
 }
 
 static size_t dark_run(const struct ref_bin *bins, size_t count, size_t first)
@@ -182,7 +182,7 @@ TEST(flat_ground_shows_its_gamma_at_all_ranges)
         struct ref_bin *bins = flat_line(256, 0, cell_m);
         const size_t first = ref_first_shown(bins, 256, &view);
         assert_true(bins[first].range_m >= 3000 && bins[first].range_m < 3000 + cell_m);
-        ref_aspect(bins, 256, &view, &params, ref_gm_horizon(&bins[first], &view));
+        ref_illuminate(bins, 256, &view, &params, ref_gm_horizon(&bins[first], &view));
         for (size_t i = 0; i < 256; i++) {
             assert_near(bins[i].level_db, i < first ? params.noise_floor_db : -20, 1e-6);
         }
@@ -237,7 +237,7 @@ TEST(the_sea_ends_at_the_radar_horizon)
         const double cell_m = horizon_nm[i] * nautical_mile_m / 2000;
         struct ref_bin *bins = flat_line(CELLS, 0, cell_m);
         const struct ref_view view = {feet[i] * foot_m, 0, cell_m};
-        ref_aspect(bins, CELLS, &view, &params, ref_gm_horizon(&bins[0], &view));
+        ref_illuminate(bins, CELLS, &view, &params, ref_gm_horizon(&bins[0], &view));
         int last = 0;
         for (int k = 0; k < CELLS; k++) {
             last = bins[k].is_lit ? k : last;

@@ -88,8 +88,8 @@ static double leading_edge_db(const struct ref_bin *before, const struct ref_bin
                                           : 0;
 }
 
-void ref_aspect(struct ref_bin *bins, size_t count, const struct ref_view *view,
-                const struct ref_params *params, double horizon)
+void ref_illuminate(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                    const struct ref_params *params, double horizon)
 {
     struct shore shore = {-1, false};
     const size_t first = ref_first_shown(bins, count, view);
