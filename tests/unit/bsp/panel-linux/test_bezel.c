@@ -55,143 +55,141 @@ static int brightness(void)
 
 static struct fake_line *const osb1 = &fake_chips[1].line[3];
 static struct fake_line *const osb2 = &fake_chips[1].line[4];
+static struct fake_line *const designate = &fake_chips[0].line[0];
 static struct fake_line *const alive = &fake_chips[1].line[9];
 
+static struct bezel b;
+static struct config c;
+static uint64_t now_us;
+
 /* Keys on OSB1 (button 1), OSB2 (button 20) and a line without a name (designate), all at rest. */
-static void set_up(struct bezel *b, struct config *c)
+static int set_up(void **state)
 {
-    config_defaults(c);
-    snprintf(c->key[0], CONFIG_NAME, "OSB1");
-    snprintf(c->key[19], CONFIG_NAME, "OSB2");
-    snprintf(c->key[CONFIG_KEY_DESIGNATE], CONFIG_NAME, "9030000.pl061:0");
-    snprintf(c->led[CONFIG_LED_ALIVE], CONFIG_NAME, "ALIVE");
+    (void)state;
+    now_us = 0;
+    config_defaults(&c);
+    snprintf(c.key[0], CONFIG_NAME, "OSB1");
+    snprintf(c.key[19], CONFIG_NAME, "OSB2");
+    snprintf(c.key[CONFIG_KEY_DESIGNATE], CONFIG_NAME, "9030000.pl061:0");
+    snprintf(c.led[CONFIG_LED_ALIVE], CONFIG_NAME, "ALIVE");
     fake_gpio_reset();
-    osb1->level = osb2->level = fake_chips[0].line[0].level = true;
-    bezel_open(b, c, 0);
-    assert_int_equal(b->gpio.input_count, 3);
+    osb1->level = osb2->level = designate->level = true;
+    bezel_open(&b, &c, 0);
+    return b.gpio.input_count == 3 ? 0 : -1;
 }
 
-static void wait_us(struct bezel *b, uint64_t *now_us, uint64_t us)
+static int tear_down(void **state)
 {
-    for (const uint64_t end = *now_us + us; *now_us < end; *now_us += STEP_US) {
-        bezel_service(b, *now_us);
+    (void)state;
+    bezel_close(&b);
+    return 0;
+}
+
+/* With what a test has changed of the configuration or of the lines at the start. */
+static void open_again(void)
+{
+    bezel_close(&b);
+    bezel_open(&b, &c, 0);
+}
+
+static void wait_us(uint64_t us)
+{
+    for (const uint64_t end_us = now_us + us; now_us < end_us; now_us += STEP_US) {
+        bezel_service(&b, now_us);
     }
 }
 
-static void expect(struct bezel *b, struct lm_control expected)
+/* A key pulls its line down; then wait until it is debounced. */
+static void press(struct fake_line *line)
 {
-    struct lm_control c = {0};
-    assert_true(drv_control_ring_take(&b->ring, &c));
-    assert_same_control(&c, expected);
+    fake_gpio_drive(line, false);
+    wait_us(50000);
 }
 
-static void expect_nothing(struct bezel *b)
+static void let_go(struct fake_line *line)
 {
-    struct lm_control c;
-    assert_false(drv_control_ring_take(&b->ring, &c));
+    fake_gpio_drive(line, true);
+    wait_us(50000);
 }
 
-TEST(each_key_is_the_button_that_the_configuration_says)
+static void expect(struct lm_control expected)
 {
-    static struct bezel b;
-    static struct config c;
-    uint64_t now = 0;
-    set_up(&b, &c);
-    fake_gpio_drive(osb2, false);
-    wait_us(&b, &now, 50000);
-    expect(&b, lm_control_button(true, 20));
+    struct lm_control control = {0};
+    assert_true(drv_control_ring_take(&b.ring, &control));
+    assert_same_control(&control, expected);
+}
+
+static void expect_nothing(void)
+{
+    struct lm_control control;
+    assert_false(drv_control_ring_take(&b.ring, &control));
+}
+
+TEST_WITH(each_key_is_the_button_that_the_configuration_says, set_up, tear_down)
+{
+    press(osb2);
+    expect(lm_control_button(true, 20));
     fake_gpio_drive(osb1, false);
-    fake_gpio_drive(osb2, true);
-    wait_us(&b, &now, 50000);
-    expect(&b, lm_control_button(true, 1));
-    expect(&b, lm_control_button(false, 20));
-    fake_gpio_drive(&fake_chips[0].line[0], false);
-    wait_us(&b, &now, 50000);
-    fake_gpio_drive(&fake_chips[0].line[0], true);
-    wait_us(&b, &now, 50000);
-    expect(&b, lm_control_designate());
-    expect_nothing(&b);
-    bezel_close(&b);
+    let_go(osb2);
+    expect(lm_control_button(true, 1));
+    expect(lm_control_button(false, 20));
+    press(designate);
+    let_go(designate);
+    expect(lm_control_designate());
+    expect_nothing();
 }
 
 /* The kernel's event is lost: the level is noticed all the same. */
-TEST(a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second)
+TEST_WITH(a_press_whose_event_was_lost_is_noticed_within_a_tenth_of_a_second, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
-    uint64_t now = 0;
-    set_up(&b, &c);
     osb1->level = false;
-    wait_us(&b, &now, 100000 + 1000 * c.debounce_ms + 2 * STEP_US);
-    expect(&b, lm_control_button(true, 1));
-    bezel_close(&b);
+    wait_us(100000 + 1000 * c.debounce_ms + 2 * STEP_US);
+    expect(lm_control_button(true, 1));
 }
 
-TEST(a_key_that_is_down_at_the_start_is_stuck_and_means_nothing)
+TEST_WITH(a_key_that_is_down_at_the_start_is_stuck_and_means_nothing, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
-    uint64_t now = 0;
-    set_up(&b, &c);
-    bezel_close(&b);
-    fake_chips[1].line[3].level = false;
-    bezel_open(&b, &c, 0);
+    osb1->level = false;
+    open_again();
     assert_true(bezel_is_stuck(&b));
-    wait_us(&b, &now, 500000);
-    expect_nothing(&b);
+    wait_us(500000);
+    expect_nothing();
     fake_gpio_drive(osb1, true);
-    wait_us(&b, &now, 500000);
+    wait_us(500000);
     assert_false(bezel_is_stuck(&b));
-    expect_nothing(&b);
+    expect_nothing();
     fake_gpio_drive(osb1, false);
-    wait_us(&b, &now, 500000);
-    expect(&b, lm_control_button(true, 1));
-    bezel_close(&b);
+    wait_us(500000);
+    expect(lm_control_button(true, 1));
 }
 
-TEST(a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go)
+TEST_WITH(a_key_that_is_held_for_fifteen_seconds_is_stuck_until_it_is_let_go, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
-    uint64_t now = 0;
-    set_up(&b, &c);
     fake_gpio_drive(osb1, false);
-    wait_us(&b, &now, 14900000);
+    wait_us(14900000);
     assert_false(bezel_is_stuck(&b));
-    wait_us(&b, &now, 300000);
+    wait_us(300000);
     assert_true(bezel_is_stuck(&b));
     fake_gpio_drive(osb1, true);
-    wait_us(&b, &now, 200000);
+    wait_us(200000);
     assert_false(bezel_is_stuck(&b));
-    bezel_close(&b);
 }
 
-TEST(a_line_that_is_missing_does_not_stop_the_others)
+TEST_WITH(a_line_that_is_missing_does_not_stop_the_others, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
-    uint64_t now = 0;
-    set_up(&b, &c);
-    bezel_close(&b);
     snprintf(c.key[4], CONFIG_NAME, "NOBODY");
-    bezel_open(&b, &c, 0);
+    open_again();
     assert_int_equal(b.gpio.input_count, 3);
-    fake_gpio_drive(osb2, false);
-    wait_us(&b, &now, 50000);
-    expect(&b, lm_control_button(true, 20));
-    bezel_close(&b);
+    press(osb2);
+    expect(lm_control_button(true, 20));
 }
 
-TEST(lamps_and_backlight_follow_and_go_out_at_the_end)
+TEST_WITH(lamps_and_backlight_follow_and_go_out_at_the_end, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
     make_backlight(200);
-    set_up(&b, &c);
-    bezel_close(&b);
     snprintf(c.backlight, CONFIG_NAME, "glass");
     c.backlight_night = 15;
-    bezel_open(&b, &c, 0);
+    open_again();
     assert_int_equal(brightness(), 200);
     struct bezel_lamps lamps = {.is_lit = {[CONFIG_LED_ALIVE] = true}, .is_night = true};
     bezel_show(&b, &lamps);
@@ -204,16 +202,11 @@ TEST(lamps_and_backlight_follow_and_go_out_at_the_end)
     assert_false(alive->level);
 }
 
-TEST(a_backlight_that_is_not_there_is_done_without)
+TEST_WITH(a_backlight_that_is_not_there_is_done_without, set_up, tear_down)
 {
-    static struct bezel b;
-    static struct config c;
-    set_up(&b, &c);
-    bezel_close(&b);
     snprintf(c.backlight, CONFIG_NAME, "nobody");
-    bezel_open(&b, &c, 0);
+    open_again();
     assert_int_equal(b.backlight_fd, -1);
     const struct bezel_lamps night = {.is_night = true};
     bezel_show(&b, &night);
-    bezel_close(&b);
 }
