@@ -1,24 +1,10 @@
 /* The radar table's contract: a value past either end of any field is refused by its name, and so
  * is a table that breaks a rule between fields. */
 #include "check.h"
-#include "lm/radar_check.h"
 #include "lm/status.h"
+#include "radar_fields.h"
 
 #include <string.h>
-
-static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t index,
-                int64_t value)
-{
-    uint8_t *at = (uint8_t *)radar + f->offset + (size_t)index * f->stride;
-    const uint8_t one = (uint8_t)value;
-    const uint16_t two = (uint16_t)value;
-    const uint32_t four = (uint32_t)value;
-    memcpy(at,
-           f->size == 1   ? (const void *)&one
-           : f->size == 2 ? (const void *)&two
-                          : &four,
-           f->size);
-}
 
 static void expect_refused(const struct lm_radar *radar, const char *field, uint32_t index)
 {
@@ -54,7 +40,7 @@ TEST(a_value_past_either_end_is_refused_by_its_field_s_name)
                 const int64_t past = end == 0 ? f->min - 1 : f->max + 1;
                 struct lm_radar radar = lm_radar_default;
                 if (can_hold(f, past)) {
-                    put(&radar, f, i, past);
+                    radar_field_set(&radar, f, i, past);
                     assert_int_equal(lm_radar_field_value(&radar, f, i), past);
                     expect_refused(&radar, f->name, i);
                     tried++;

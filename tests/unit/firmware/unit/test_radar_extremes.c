@@ -1,7 +1,7 @@
 /* A unit with tables at the ends of what the contract allows, under the address and undefined-
  * behaviour sanitizers: every field of view and a patch are drawn, and nothing overflows. */
 #include "check.h"
-#include "lm/radar_check.h"
+#include "radar_fields.h"
 #include "unit_rig.h"
 
 #include "hs/rng.h"
@@ -11,20 +11,6 @@
 
 enum { RANDOM_TABLES = 24 };
 static const double FLIGHT_S = 0.06;
-
-static void put(struct lm_radar *radar, const struct lm_radar_field *f, uint32_t index,
-                int64_t value)
-{
-    uint8_t *at = (uint8_t *)radar + f->offset + (size_t)index * f->stride;
-    const uint8_t one = (uint8_t)value;
-    const uint16_t two = (uint16_t)value;
-    const uint32_t four = (uint32_t)value;
-    memcpy(at,
-           f->size == 1   ? (const void *)&one
-           : f->size == 2 ? (const void *)&two
-                          : &four,
-           f->size);
-}
 
 /* The default table with all the rows that there is room for. */
 static struct lm_radar full_table(void)
@@ -186,7 +172,7 @@ TEST(a_table_with_one_field_at_its_end_is_drawn)
         for (uint32_t end = 0; end < 2; end++) {
             struct lm_radar table = full_table();
             for (uint32_t i = 0; i < f->count; i++) {
-                put(&table, f, i, end == 0 ? f->min : f->max);
+                radar_field_set(&table, f, i, end == 0 ? f->min : f->max);
             }
             repair(&table);
             fly(&table, n % 2 ? 2000 : 12000);
@@ -206,7 +192,7 @@ TEST(tables_with_many_fields_at_their_ends_are_drawn)
             for (uint32_t i = 0; i < f->count; i++) {
                 const uint32_t pick = hs_rng_below(&rng, turn < 2 ? 1 : 4);
                 if (pick < 2) {
-                    put(&table, f, i, (turn < 2 ? turn : pick) ? f->max : f->min);
+                    radar_field_set(&table, f, i, (turn < 2 ? turn : pick) ? f->max : f->min);
                 }
             }
         }
