@@ -65,4 +65,17 @@ static inline struct lm_target random_target(struct hs_rng *r, int32_t extent_mm
     return t;
 }
 
+/* Change one to six of its bytes and seal it again, as a hostile image might have it. Whether it
+ * still passes the check. */
+static inline bool damage_target(struct hs_rng *r, struct lm_target *t)
+{
+    uint8_t *bytes = (uint8_t *)t;
+    for (uint32_t k = 1 + hs_rng_below(r, 6); k > 0; k--) {
+        const uint32_t place = 4 + hs_rng_below(r, LM_TARGET_BYTES - 4);
+        bytes[place] = (uint8_t)hs_rng_u64(r);
+    }
+    seal_target(t);
+    return lm_target_check(t) == LM_OK;
+}
+
 #endif

@@ -344,13 +344,7 @@ TEST(a_record_that_passes_the_check_can_be_used)
         if (i % 10 == 0) {
             t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
         }
-        uint8_t *bytes = (uint8_t *)&t;
-        for (uint32_t k = 1 + hs_rng_below(&rng, 6); k > 0; k--) {
-            const uint32_t place = 4 + hs_rng_below(&rng, LM_TARGET_BYTES - 4);
-            bytes[place] = (uint8_t)hs_rng_u64(&rng);
-        }
-        seal_target(&t);
-        if (lm_target_check(&t) != LM_OK) {
+        if (!damage_target(&rng, &t)) {
             t = random_target(&rng, LM_TARGET_OFFSET_MAX_MM);
             continue;
         }
