@@ -7,42 +7,47 @@
 #include "tops.h"
 
 _Static_assert((int)LM_CLASS_LUT_CODES == LM_K_CODES && (int)LM_LIT_SCRATCH >= LM_K_LIGHT_WORK,
-               "lm/aspect.h has what lm/kernels_clutter.h wants");
+               "lm/illumination.h has what lm/kernels_clutter.h wants");
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256 */ };
 
-/* g of the equations, Q24: the rise of flat ground from the cell before, at before_m_q8, to cell i,
- * as tan of a grazing angle. */
+/* g of the equations for cell i in Q24: the grazing angle's tangent of flat ground at the reference
+ * elevation, (H - z0)/s_i - s_(i-1)/(2a), at least 1/256. `before_m_q8` is s_(i-1). */
 static int64_t grazing_q24(const struct lm_range_grid *g, uint32_t i, uint32_t before_m_q8)
 {
-    /* Height difference below 2^26, inverse range below 2^31 in Q(17 + bits). */
+    /* The height difference is below 2^26, the inverse range below 2^31 in Q(17 + bits): products
+     * are below 2^57. */
     const int64_t above_m_q10 = (int64_t)g->height_m_q10 - g->reference_m_q10;
     const int64_t grazing = (above_m_q10 * g->inverse_range[i] >> (3 + g->tangent_bits)) -
                             ((int64_t)before_m_q8 * LM_CURVATURE_Q48 >> 32);
     return grazing < GRAZING_MIN_Q24 ? GRAZING_MIN_Q24 : grazing;
 }
 
-/* `scale_q16`: what all cells have in common of K, as a binary logarithm. */
+/* Fall, inverse range and gain of a cell. `scale_q16` is the part of K that all cells share, as a
+ * binary logarithm. */
 static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_m_q8, int32_t scale_q16)
 {
-    /* range < 400 km = 2^26.6 in Q8: squared, in units of 16 m^2, 2^33.2; times the curvature
-     * 2^57.2. */
+    /* Drop of the Earth: s^2 / (2a). The range is below 400 km = 2^26.6 in Q8. Its square is below
+     * 2^33.2 in units of 16 m^2, and times the curvature below 2^57.2. */
     const int64_t drop_m_q14 =
         ((((int64_t)range_m_q8 * range_m_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
     g->fall_m_q14[i] = (int32_t)drop_m_q14 + g->height_m_q10 * 16;
-    /* No cell that is set lies nearer than LM_RANGE_MIN_M: 2^57 at most, over 2^(tangent_bits - 6).
-     * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
+    /* No cell that is set lies nearer than LM_RANGE_MIN_M. The dividend is at most 2^57, the
+     * divisor at least 2^(tangent_bits - 6). NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     const uint64_t inverse =
         (((uint64_t)1 << (25 + g->tangent_bits)) + range_m_q8 / 2) / range_m_q8;
     g->inverse_range[i] = inverse < INT32_MAX ? (int32_t)inverse : INT32_MAX;
 
-    /* K = s / (ds g) with the range of the cell before, and the rise comes times 2^bits. */
+    /* K = s / (ds g), s being the range of the cell before. Tangents are times 2^tangent_bits,
+     * which scale_q16 takes out again. */
     const uint32_t before_m_q8 = i == g->first ? range_m_q8 : range_m_q8 - g->cell_m_q8;
     const int32_t log2_q16 = fx_log2_q16(before_m_q8) + scale_q16 -
                              fx_log2_q16_u64((uint64_t)grazing_q24(g, i, before_m_q8));
     g->gain_db_q8[i] = fx_db_q8_of_log2_q16(log2_q16) + LM_GAMMA_CODE_ZERO_DB_Q8;
 }
 
+/* First cell that is at LM_RANGE_MIN_M and at half the antenna's height, or beyond. `cells` if none
+ * is. */
 static uint32_t first_shown(const struct lm_range_grid *g, uint32_t first_m_q8)
 {
     const uint32_t nearest_m = LM_RANGE_MIN_M;
@@ -68,22 +73,23 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_con
     const uint32_t width_m_q8 = (uint32_t)config->shore_width_m << 8;
     const uint32_t shore_cells = (width_m_q8 + cell_m_q8 / 2) / cell_m_q8;
     g->shore_fall_db_q8 = config->shore_db_q8 / (int32_t)(shore_cells ? shore_cells : 1);
-    /* The largest inverse, that of the first cell shown, takes 31 bits. Where none is shown, any
-     * format does. */
+    /* Choose the format of tangents: the largest inverse, that of the first displayed cell, takes
+     * 31 bits. If no cell is displayed, any format will do. */
     const uint32_t nearest_m_q8 =
         fx_max_u32(first_m_q8 + g->first * cell_m_q8, LM_RANGE_MIN_M << 8);
     g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_m_q8)) + 6;
     for (uint32_t i = 0; i < g->first; i++) {
-        g->fall_m_q14[i] = g->inverse_range[i] = g->gain_db_q8[i] = 0; /* read, but not shown */
+        g->fall_m_q14[i] = g->inverse_range[i] = g->gain_db_q8[i] =
+            0; /* read by kernels, not displayed */
     }
     const int32_t scale_q16 = (24 - (int32_t)g->tangent_bits) * 65536 - fx_log2_q16(cell_m_q8);
     for (uint32_t i = g->first; i < cells; i++) {
         set_cell(g, i, first_m_q8 + i * cell_m_q8, scale_q16);
     }
     if (g->first < cells) {
-        /* g below 2^26, ds below 2^20: 2^36 and 2^22; Q32 + Q(17 + bits) - 49. It is g ds / s, and
-         * so no more than the tangent of 90 degrees less a little; beyond the format, all is lit.
-         */
+        /* The rise over flat ground is g ds / s. g is below 2^26 and ds below 2^20, so the factors
+         * are below 2^36 and 2^22. Formats: Q32 + Q(17 + bits) - 49 shifts. A rise beyond the
+         * format saturates: then the first cell is lit whatever it is. */
         const int64_t rise_q32 = grazing_q24(g, g->first, nearest_m_q8) * cell_m_q8;
         const int64_t rise = (rise_q32 >> 10) * (g->inverse_range[g->first] >> 9) >> 30;
         g->flat_rise = rise < INT32_MAX ? (int32_t)rise : INT32_MAX;
@@ -110,10 +116,14 @@ void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illuminati
     class_lut->shore_db_q8 = config->shore_db_q8;
 }
 
-/* The horizon that a line starts with in its grid's format; what is beyond every tangent is as good
- * as far beyond. No rise takes 31 bits: tangents are apparent heights times s_0 / s, in steps of
- * 2^-14 m. Ground is -16..33 km high, structures 6.6 km, the antenna within 30 km, and the Earth
- * drops by 9.4 km in 400: any two are less than 70 km apart, 2^30.1. */
+/* Horizon at the start of a line, in its grid's format.
+ *
+ * It is limited to 2^30 below the first tangent, so that the rise of the first cell fits 32 bits. A
+ * horizon that is lower makes no difference to what is lit.
+ *
+ * Range: tangents are apparent heights times s_0 / s, in steps of 2^-14 m. Ground is -16..33 km
+ * high, structures 6.6 km, the antenna is within 30 km, and the Earth drops by 9.4 km in 400 km.
+ * Any two heights are less than 70 km = 2^30.1 steps apart, so that no rise takes 31 bits. */
 static int32_t start_tangent(const struct lm_range_grid *grid, int32_t first_tangent,
                              lm_horizon_q40_t horizon)
 {
@@ -123,6 +133,7 @@ static int32_t start_tangent(const struct lm_range_grid *grid, int32_t first_tan
     return fx_sat_i32(start < lowest ? lowest : start);
 }
 
+/* Tangent of the first displayed cell's top. */
 static int32_t first_tangent(const struct lm_range_grid *grid, const struct lm_class_lut *class_lut,
                              const struct lm_scan_line *line)
 {

@@ -2,8 +2,8 @@
 
 #include "fx/log.h"
 
-/* Where the top of a cell appears, cells * 256. Tops are below 2^29.3 in Q14, and lean below 2^17.
- */
+/* Coordinate along the line at which the top of cell i is displayed: i less (top - z0) tan psi /
+ * ds. Tops are below 2^29.3 and the lean is below 2^17: products are below 2^47. */
 static int64_t appears_at_cells_q8(const struct lm_layover *l, uint32_t i, int32_t top_m_q14)
 {
     const int64_t above_m_q14 = top_m_q14 - (int64_t)l->reference_m_q10 * 16;
@@ -11,6 +11,7 @@ static int64_t appears_at_cells_q8(const struct lm_layover *l, uint32_t i, int32
     return (int64_t)i * 256 - nearer_m_q8 * 256 / (int64_t)l->cell_m_q8;
 }
 
+/* Add power to a cell. A sum beyond 64 bits saturates, and power outside the line is lost. */
 static void add(const struct lm_layover *l, uint64_t *power_q32, int64_t cell, uint64_t share_q32)
 {
     if (cell >= (int64_t)l->first && cell < (int64_t)l->cells) {
@@ -23,6 +24,9 @@ void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes
                     const struct lm_scan_line *ground, int32_t *level_db_q8,
                     uint64_t power_q32[LM_CELLS_ROOM])
 {
+    /* Power in Q32 is split between the two cells around the displaced coordinate, in proportion to
+     * its 8 bits of fraction. The parts sum to the whole exactly: no power is lost inside the
+     * line. */
     const int32_t unit_q8 = fx_db_q8_u64((uint64_t)1 << 32);
     for (uint32_t i = l->first; i < l->cells; i++) {
         power_q32[i] = 0;

@@ -21,21 +21,22 @@ struct lm_smear lm_smear_of(int64_t across_cells_q8, int64_t along_cells_q8)
     s.across_cells_q8 = right_cells_q8 / (int32_t)s.slices;
     s.along_cells_q8 = beyond_cells_q8 / (int32_t)s.slices;
     s.along_stretch_q8 = fx_max_u32(deep_q8 / s.slices, 256);
-    /* A range cell that it leaves after a part of the dwell has but that part's resolution, w cells
-     * of w walked through, in the shape of the weights: half as wide as the response stretched w
-     * times (tests/unit/firmware/targets/test_target_patch.c). */
+    /* Range walk also widens the response across. A target that moves through w range cells stays
+     * in each for 1/w of the dwell, which has that part's azimuth resolution alone. In the shape of
+     * the weights that is half as wide as the response stretched w times
+     * (tests/unit/firmware/targets/test_target_patch.c). */
     s.across_stretch_q8 = fx_max_u32(fx_max_u32(wide_q8 / s.slices, deep_q8 / 2), 256);
     return s;
 }
 
 int32_t lm_smear_share_db_q8(const struct lm_smear *s, uint32_t slice)
 {
-    /* The squared weights of lm/response.h over the parts of the dwell, 10 log10, from its end to
-     * its middle: in halves, quarters and eighths. */
+    /* 10 log10 of the share of each part of the dwell under the squared weights of lm/response.h,
+     * from its end to its middle: of halves, quarters and eighths. The second half is symmetric. */
     static const int16_t share_db_q8[] = {-771, -2864, -954, -4754, -3088, -2005, -1501};
     const uint32_t from_end = slice < s->slices / 2 ? slice : s->slices - 1 - slice;
     const int32_t stretch_q8 =
         fx_db_q8(s->across_stretch_q8) + fx_db_q8(s->along_stretch_q8) - 2 * fx_db_q8(256);
-    /* Of n slices, n / 2 entries begin at n / 2 - 1. */
+    /* The n / 2 entries of n slices begin at n / 2 - 1. */
     return (s->slices == 1 ? 0 : share_db_q8[s->slices / 2 - 1 + from_end]) - stretch_q8;
 }

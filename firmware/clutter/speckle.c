@@ -4,7 +4,7 @@
 #include "lm/kernels_clutter.h"
 
 _Static_assert((int)LM_NOISE_LOOKS_LOG2_MAX == (int)LM_LOOKS_LOG2_MAX,
-               "what the table may ask for");
+               "looks of the noise table and of the radar table");
 
 enum { SEA_STATE_STEP_DB_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
@@ -30,7 +30,7 @@ void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_
                      speckled_db_q8, cells);
 }
 
-/* Which shapes the classes have, and whether some gain. */
+/* List the shapes in use, and note whether a class has a gain. */
 static void summarize(struct lm_texture *t)
 {
     t->shape_count = 0;

@@ -1,10 +1,11 @@
-/* Tops of a line's cells as the kernels take them, for lm/aspect.h and lm/horizon.h. */
+/* Tops of a line's cells, in the form of the kernels: shared by illumination.c and foreground.c. */
 #ifndef TOPS_H
 #define TOPS_H
 
 #include "lm/illumination.h"
 #include "lm/kernels_clutter.h"
 
+/* View of grid, table and line as the kernels' argument. It borrows the arrays of all three. */
 static inline struct lm_k_tops tops_of(const struct lm_range_grid *grid,
                                        const struct lm_class_lut *class_lut,
                                        const struct lm_scan_line *line)

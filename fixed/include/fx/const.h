@@ -1,10 +1,12 @@
-/* Constants of mathematics in fixed point, each once. Beside each stands its formula with more
- * digits; all are rounded to the nearest, so that the error is half a unit of the last place at
- * most. tests/unit/fixed/test_const.c works each one out again in double precision. */
+/* Constants of mathematics in fixed point, each defined once.
+ *
+ * Beside each is its formula with more digits. All are rounded to nearest: the error is at most
+ * half a unit of the last place. tests/unit/fixed/test_const.c computes each one again in double
+ * precision. Constants of the Earth and of units are in lm/const.h. */
 #ifndef FX_CONST_H
 #define FX_CONST_H
 
-/* Angles: counts of fx_bam_t in a radian, and radians in a circle. */
+/* Angles: BAM in a radian, and radians in a full turn. */
 #define FX_BAM_PER_RADIAN    683565276   /* 2^32 / (2 pi) = 683565275.58: 6.2e-10 too much */
 #define FX_BAM_PER_RADIAN_Q2 2734261102u /* 2^34 / (2 pi) = 2734261102.31: 1.1e-10 too little */
 #define FX_TWO_PI_Q20        6588397     /* 2 pi 2^20 = 6588397.32: 4.8e-8 too little */

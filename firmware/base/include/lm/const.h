@@ -1,6 +1,7 @@
-/* Constants of the Earth, of waves and of units in fixed point, each once. Beside each stands its
- * formula with more digits; all but one are rounded to the nearest.
- * tests/unit/firmware/base/test_const.c works each one out again in double precision. Those of
+/* Constants of the Earth, of waves and of units in fixed point, each defined once.
+ *
+ * Beside each is its formula with more digits. All but one are rounded to nearest.
+ * tests/unit/firmware/base/test_const.c computes each one again in double precision. Constants of
  * mathematics are in fx/const.h. */
 #ifndef LM_CONST_H
 #define LM_CONST_H
@@ -10,19 +11,19 @@
 #define LM_SEMI_MAJOR_M      6378137
 #define LM_ECCENTRICITY2_Q30 7188035 /* 0.00669437999014 2^30 = 7188035.78: 1.1e-7 too little */
 
-/* Height of a count of latitude: a meridian of 40,007,862.917 m over 2^32 is 9.31506 mm. */
+/* Length of one BAM of latitude: a meridian of 40,007,862.917 m over 2^32 is 9.31506 mm. */
 #define LM_MM_PER_BAM_Q16 610472 /* 610471.54: 7.5e-7 too much */
 
-/* How the Earth falls away under refraction, which makes of its mean radius of 6,371,000 m 4/3 as
- * much: the drop at ground range s is s^2 / (2 * 4/3 radius). */
+/* Curvature of the Earth under standard refraction, which makes its mean radius of 6,371,000 m 4/3
+ * as large. The ground at ground range s is s^2 / (2 * 4/3 radius) below the horizontal plane. */
 #define LM_TWO_RADII_M   16989333   /* 8/3 6371000 m = 16989333.33: 2.0e-8 too little */
 #define LM_CURVATURE_Q48 16567747LL /* 2^48 / (8/3 6371000 m) = 16567747.02: 1.2e-9 too little */
 
 /* Half the speed of light, metres a nanosecond: the range of an echo over its delay. */
 #define LM_HALF_LIGHT_M_PER_NS_Q24 2514841u /* 0.149896229 2^24 = 2514841.41: 1.6e-7 too little */
 
-/* A Gaussian beam's loss at a beam width off its axis. Half the power is left at half a beam width,
- * hence 2^(-4 x^2) at x beam widths one way and 2^(-8 x^2) both ways. */
+/* Loss of a Gaussian beam at one beam width off its axis. At half a beam width half the power is
+ * left. Hence the gain at x beam widths is 2^(-4 x^2) one way and 2^(-8 x^2) both ways. */
 #define LM_BEAM_ONE_WAY_DB_Q8 3083 /* 40 log10(2) 2^8 = 3082.55: 1.5e-4 too much */
 #define LM_BEAM_TWO_WAY_DB_Q8 6165 /* 80 log10(2) 2^8 = 6165.09: 1.5e-5 too little */
 

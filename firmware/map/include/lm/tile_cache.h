@@ -94,7 +94,7 @@ struct lm_flash_request {
 /* Tile cache. All members but `count` are private. */
 struct lm_tile_cache {
     const struct lm_db *db; /* borrowed as long as the cache is in use */
-    struct lm_tile *pool;   /* borrowed likewise: one record a slot */
+    struct lm_tile *pool;   /* borrowed as long, too: one record a slot */
     uint32_t slot_count;    /* of the pool; at most LM_TILE_SLOTS_MAX */
     uint32_t clock;         /* look-ups so far */
     uint64_t now_us;        /* of the last service */
@@ -147,7 +147,7 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column);
 
-/* Number of look-ups that found the very tile. */
+/* Number of look-ups that found the tile itself. */
 static inline uint32_t lm_tile_cache_hits(const struct lm_tile_cache *c)
 {
     return c->clock - c->count.not_exact;
