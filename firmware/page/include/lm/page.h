@@ -1,6 +1,6 @@
 /* Page: what the operator has selected, what each button means, and what its label says. It does
  * not draw. docs/guide.md, "The page", shows the keys; each page is a table of keys in
- * firmware/page/page_*.c. The numbers of the keys around the glass are drawn in lm/overlay.h. */
+ * firmware/page/page_*.c. lm/controls.h draws the numbers of the keys around the glass. */
 #ifndef LM_PAGE_H
 #define LM_PAGE_H
 
