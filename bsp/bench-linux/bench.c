@@ -35,7 +35,7 @@ static int lend_memory(struct bench *b)
 }
 
 /* Why the unit refuses to start, into b->error. */
-static void say_refusal(struct bench *b, const struct lm_radar *radar, int status)
+static void report_refusal(struct bench *b, const struct lm_radar *radar, int status)
 {
     struct lm_radar_fault fault;
     if (status == LM_ERR_TABLE && lm_radar_check(radar, &fault) != LM_OK) {
@@ -77,7 +77,7 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
     if (status != LM_OK) {
         const struct lm_radar *const radar = b->board.radar;
         bench_close(b);
-        say_refusal(b, radar, status);
+        report_refusal(b, radar, status);
         return -1;
     }
     return 0;

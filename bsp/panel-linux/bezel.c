@@ -78,7 +78,7 @@ static void set_backlight(struct bezel *b, bool is_night)
     }
 }
 
-static void tell_stuck(const struct bezel *b, uint64_t keys, const char *what)
+static void report_stuck(const struct bezel *b, uint64_t keys, const char *what)
 {
     for (uint32_t i = 0; i < b->gpio.input_count; i++) {
         if ((keys >> i & 1) != 0) {
@@ -104,7 +104,7 @@ void bezel_open(struct bezel *b, const struct config *config, uint64_t now_us)
     }
     drv_debounce_init(&b->debounce, config->debounce_ms * 1000, drv_gpio_levels(&b->gpio));
     b->stuck = b->debounce.at_start;
-    tell_stuck(b, b->stuck, "is down at the start; it counts once it has been let go");
+    report_stuck(b, b->stuck, "is down at the start; it counts once it has been let go");
     b->resync_us = now_us + RESYNC_US;
 }
 
@@ -131,12 +131,12 @@ static void put(struct bezel *b, uint32_t key, bool is_down)
     b->missed += !is_put;
 }
 
-static void heed_stuck(struct bezel *b, uint64_t now_us)
+static void update_stuck(struct bezel *b, uint64_t now_us)
 {
     const uint64_t stuck = drv_debounce_stuck(&b->debounce, now_us, STUCK_US);
     if (stuck != b->stuck) {
-        tell_stuck(b, stuck & ~b->stuck, "has been down for 15 s: stuck");
-        tell_stuck(b, b->stuck & ~stuck, "is let go again");
+        report_stuck(b, stuck & ~b->stuck, "has been down for 15 s: stuck");
+        report_stuck(b, b->stuck & ~stuck, "is let go again");
         b->stuck = stuck;
     }
 }
@@ -158,7 +158,7 @@ void bezel_service(struct bezel *b, uint64_t now_us)
             put(b, b->key_of_input[i], (b->debounce.down >> i & 1) != 0);
         }
     }
-    heed_stuck(b, now_us);
+    update_stuck(b, now_us);
 }
 
 void bezel_show(struct bezel *b, const struct bezel_lamps *lamps)

@@ -6,7 +6,7 @@
 
 /* The driver tells each loss once; what is said here is said once for a loss and once when it is
  * over. */
-static void heed(struct bus *b, int status)
+static void report_loss(struct bus *b, int status)
 {
     if (status < 0 && !b->is_lost) {
         b->is_lost = true;
@@ -22,7 +22,7 @@ static int receive(void *ctx, struct lm_can_frame *frame)
     struct bus *b = ctx;
     b->polls++;
     const int status = b->driver.receive(b->driver.ctx, frame);
-    heed(b, status);
+    report_loss(b, status);
     return status;
 }
 
@@ -42,7 +42,7 @@ void bus_open(struct bus *b, const char *interface, const struct lm_bus_profile 
     }
     struct lm_can_filter filters[LM_BUS_FILTERS_MAX];
     const uint32_t count = lm_bus_filters(profile, filters);
-    heed(b, drv_can_socket_open(&b->socket, interface, filters, count, zero_us));
+    report_loss(b, drv_can_socket_open(&b->socket, interface, filters, count, zero_us));
     b->driver = drv_can_socket_port(&b->socket);
     b->port.send = send_frame;
 }

@@ -67,7 +67,7 @@ static struct config_size screen_size(const struct glass *g)
     return (struct config_size){0, 0};
 }
 
-static void tell_state(const struct glass *g)
+static void report_state(const struct glass *g)
 {
     const struct config_size s = screen_size(g);
     if (!glass_is_lit(g)) {
@@ -135,7 +135,7 @@ int glass_open(struct glass *g, const struct config *config, uint64_t now_us)
                                   .present = present};
     g->was_lit = glass_is_lit(g);
     if (config->glass != CONFIG_GLASS_NONE) {
-        tell_state(g);
+        report_state(g);
     }
     return 0;
 }
@@ -160,7 +160,7 @@ void glass_service(struct glass *g, uint64_t now_us)
     }
     if (glass_is_lit(g) != g->was_lit) {
         g->was_lit = !g->was_lit;
-        tell_state(g);
+        report_state(g);
     }
 }
 

@@ -49,7 +49,7 @@ static void become_realtime(const struct config *c)
     }
 }
 
-static void tell_counters(const struct panel *p)
+static void report_counters(const struct panel *p)
 {
     const struct lm_unit *u = p->unit;
     report(REPORT_INFO, "frames %u, lines %u (%u dropped), steps %u, longest %u us, latest %u us",
@@ -90,7 +90,7 @@ static bool take_signals(struct panel *p)
             report(REPORT_NOTICE, "stopping: signal %u", signal.ssi_signo);
             return false;
         }
-        tell_counters(p);
+        report_counters(p);
     }
     return true;
 }
@@ -109,7 +109,7 @@ static void name_flags(uint32_t flags, char *text, size_t size)
 }
 
 /* Once a second at most: what the glass says, to the journal and to systemd. */
-static void tell_flags(struct panel *p, uint64_t now_us)
+static void report_flags(struct panel *p, uint64_t now_us)
 {
     const uint32_t flags = p->unit->flags;
     if (now_us < p->tell_us || (flags == p->flags_told && p->count.steps > 1)) {
@@ -144,7 +144,7 @@ void panel_step(struct panel *p, uint64_t now_us)
     lm_unit_step(p->unit, now_us);
     p->count.steps++;
     show_lamps(p);
-    tell_flags(p, now_us);
+    report_flags(p, now_us);
     const struct lm_liveness life = {.steps = p->count.steps,
                                      .frames = p->unit->count.frames,
                                      .bus = p->bus.polls,

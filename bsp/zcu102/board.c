@@ -54,16 +54,16 @@ static void open_console(struct zcu102 *z)
     drv_irq_attach(&z->irq, DRV_TIMER_LINE, tick, z);
     zcu102_take_interrupts(&z->core);
     z->last_restart = zcu102_last_restart();
-    zcu102_say(&z->console, "\nlandmass on ZCU102, started after ");
-    zcu102_say(&z->console, zcu102_cause_words(z->last_restart.cause));
-    zcu102_say(&z->console, "\n");
+    zcu102_print(&z->console, "\nlandmass on ZCU102, started after ");
+    zcu102_print(&z->console, zcu102_cause_words(z->last_restart.cause));
+    zcu102_print(&z->console, "\n");
 }
 
 static void complain_if(struct zcu102 *z, int status, const char *device_name)
 {
     if (status != LM_OK) {
-        zcu102_say(&z->console, device_name);
-        zcu102_say(&z->console, ": does not answer\n");
+        zcu102_print(&z->console, device_name);
+        zcu102_print(&z->console, ": does not answer\n");
     }
 }
 

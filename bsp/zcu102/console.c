@@ -1,6 +1,6 @@
 #include "console.h"
 
-void zcu102_say(struct drv_uart *u, const char *words)
+void zcu102_print(struct drv_uart *u, const char *words)
 {
     for (; *words; words++) {
         if (*words == '\n') {
@@ -10,7 +10,7 @@ void zcu102_say(struct drv_uart *u, const char *words)
     }
 }
 
-void zcu102_say_number(struct drv_uart *u, uint64_t value)
+void zcu102_print_number(struct drv_uart *u, uint64_t value)
 {
     char digits[20]; /* of 2^64 */
     uint32_t count = 0;
@@ -23,7 +23,7 @@ void zcu102_say_number(struct drv_uart *u, uint64_t value)
     }
 }
 
-void zcu102_say_hex(struct drv_uart *u, uint64_t value, uint32_t digits)
+void zcu102_print_hex(struct drv_uart *u, uint64_t value, uint32_t digits)
 {
     while (digits > 0) {
         digits--;
@@ -31,10 +31,10 @@ void zcu102_say_hex(struct drv_uart *u, uint64_t value, uint32_t digits)
     }
 }
 
-void zcu102_say_value(struct drv_uart *u, const char *name, uint64_t value)
+void zcu102_print_value(struct drv_uart *u, const char *name, uint64_t value)
 {
-    zcu102_say(u, name);
-    zcu102_say(u, " ");
-    zcu102_say_number(u, value);
-    zcu102_say(u, "\n");
+    zcu102_print(u, name);
+    zcu102_print(u, " ");
+    zcu102_print_number(u, value);
+    zcu102_print(u, "\n");
 }

@@ -110,31 +110,31 @@ static void report(struct drv_uart *u, uint64_t kind, const struct zcu102_frame 
                                         "from a lower level"};
     const uint64_t class = syndrome >> 26 & 0x3F;
     const bool is_abort = class == 0x21 || class == 0x25;
-    zcu102_say(u, "\n*** ");
-    zcu102_say(u, kinds[kind < sizeof kinds / sizeof kinds[0] ? kind : 0]);
-    zcu102_say(u, ": ");
-    zcu102_say(u, class_words(syndrome));
-    zcu102_say(u, is_abort ? abort_words(syndrome) : "");
-    zcu102_say(u, class == 0x25 && (syndrome >> 6 & 1) ? ", on writing" : "");
-    zcu102_say(u, "\npc ");
-    zcu102_say_hex(u, frame->pc, 16);
-    zcu102_say(u, " address ");
-    zcu102_say_hex(u, address, 16);
-    zcu102_say(u, " esr ");
-    zcu102_say_hex(u, syndrome, 8);
-    zcu102_say(u, " pstate ");
-    zcu102_say_hex(u, frame->pstate, 8);
+    zcu102_print(u, "\n*** ");
+    zcu102_print(u, kinds[kind < sizeof kinds / sizeof kinds[0] ? kind : 0]);
+    zcu102_print(u, ": ");
+    zcu102_print(u, class_words(syndrome));
+    zcu102_print(u, is_abort ? abort_words(syndrome) : "");
+    zcu102_print(u, class == 0x25 && (syndrome >> 6 & 1) ? ", on writing" : "");
+    zcu102_print(u, "\npc ");
+    zcu102_print_hex(u, frame->pc, 16);
+    zcu102_print(u, " address ");
+    zcu102_print_hex(u, address, 16);
+    zcu102_print(u, " esr ");
+    zcu102_print_hex(u, syndrome, 8);
+    zcu102_print(u, " pstate ");
+    zcu102_print_hex(u, frame->pstate, 8);
     for (uint32_t i = 0; i < 31; i++) {
-        zcu102_say(u, i % 4 == 0 ? "\nx" : "  x");
-        zcu102_say_number(u, i);
-        zcu102_say(u, " ");
-        zcu102_say_hex(u, frame->x[i], 16);
+        zcu102_print(u, i % 4 == 0 ? "\nx" : "  x");
+        zcu102_print_number(u, i);
+        zcu102_print(u, " ");
+        zcu102_print_hex(u, frame->x[i], 16);
     }
-    zcu102_say(u, "\nstack used ");
-    zcu102_say_number(u, zcu102_stack_used());
-    zcu102_say(u, " of ");
-    zcu102_say_number(u, zcu102_stack_size());
-    zcu102_say(u, "\n");
+    zcu102_print(u, "\nstack used ");
+    zcu102_print_number(u, zcu102_stack_used());
+    zcu102_print(u, " of ");
+    zcu102_print_number(u, zcu102_stack_size());
+    zcu102_print(u, "\n");
     drv_uart_drain(u);
 }
 

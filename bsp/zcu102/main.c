@@ -5,14 +5,14 @@
 
 int main(void);
 
-static void say_refusal(struct zcu102 *z, int status)
+static void report_refusal(struct zcu102 *z, int status)
 {
     struct lm_radar_fault fault;
     if (status == LM_ERR_TABLE && lm_radar_check(z->lent.radar, &fault) != LM_OK) {
-        zcu102_say(&z->console, "the radar table breaks its contract\n");
-        zcu102_say_value(&z->console, fault.field, fault.index);
+        zcu102_print(&z->console, "the radar table breaks its contract\n");
+        zcu102_print_value(&z->console, fault.field, fault.index);
     } else {
-        zcu102_say(&z->console, "the database's coarsest level does not fit the tile memory\n");
+        zcu102_print(&z->console, "the database's coarsest level does not fit the tile memory\n");
     }
 }
 
@@ -22,10 +22,10 @@ int main(void)
     zcu102_open(&board);
     const int status = zcu102_start(&board);
     if (status != LM_OK) {
-        say_refusal(&board, status);
+        report_refusal(&board, status);
         return 1;
     }
-    zcu102_say(&board.console, board.unit.map.is_usable ? "flying\n" : "no usable database\n");
+    zcu102_print(&board.console, board.unit.map.is_usable ? "flying\n" : "no usable database\n");
     for (;;) {
         zcu102_step(&board);
     }

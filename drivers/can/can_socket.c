@@ -155,7 +155,7 @@ static void empty_queue(struct drv_can_socket *s)
 }
 
 /* Heed errno. LM_OK when the call is only to be made again later. */
-static int heed_failure(struct drv_can_socket *s, int cause)
+static int handle_failure(struct drv_can_socket *s, int cause)
 {
     if (cause == EAGAIN || cause == EWOULDBLOCK || cause == EINTR || cause == ENOBUFS) {
         return LM_OK;
@@ -174,7 +174,7 @@ static int heed_failure(struct drv_can_socket *s, int cause)
 }
 
 /* The controller's report: <linux/can/error.h>. */
-static void heed_report(struct drv_can_socket *s, const struct lm_can_frame *report)
+static void handle_report(struct drv_can_socket *s, const struct lm_can_frame *report)
 {
     const uint8_t controller = (report->id & CAN_ERR_CRTL) != 0 ? report->data[1] : 0;
     s->count.no_ack += (report->id & CAN_ERR_ACK) != 0;
@@ -224,7 +224,7 @@ static void add_to_batch(struct drv_can_socket *s, const struct can_frame *raw, 
     }
     frame->time_us = arrival_us > s->time_zero_us ? arrival_us - s->time_zero_us : 0;
     if (frame->is_error) {
-        heed_report(s, frame);
+        handle_report(s, frame);
     } else {
         s->is_bus_off = false; /* what is on the bus is heard */
     }
@@ -249,7 +249,7 @@ static int fetch(struct drv_can_socket *s)
     s->batch_next = s->batch_count = 0;
     const int count = recvmmsg(s->fd, messages, DRV_CAN_SOCKET_BATCH, MSG_DONTWAIT, NULL);
     if (count < 0) {
-        return heed_failure(s, errno);
+        return handle_failure(s, errno);
     }
     const uint64_t realtime_us = clock_us(CLOCK_REALTIME), monotonic_us = clock_us(CLOCK_MONOTONIC);
     for (int i = 0; i < count; i++) {
@@ -270,7 +270,7 @@ static int flush(struct drv_can_socket *s)
     while (s->queue_count > 0) {
         const struct can_frame *next = &s->queue[s->queue_first];
         if (send(s->fd, next, sizeof *next, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
-            return heed_failure(s, errno);
+            return handle_failure(s, errno);
         }
         s->queue_first = (s->queue_first + 1) % DRV_CAN_SOCKET_QUEUE;
         s->queue_count--;

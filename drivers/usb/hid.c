@@ -109,7 +109,7 @@ static bool is_wanted(uint32_t page, uint32_t usage)
            page == DRV_HID_PAGE_BUTTON;
 }
 
-static void keep_field(struct parser *p, uint32_t usage, uint32_t bit, uint32_t flags)
+static void store_field(struct parser *p, uint32_t usage, uint32_t bit, uint32_t flags)
 {
     struct drv_hid_map *m = p->map;
     if (m->count == DRV_HID_FIELDS || !is_wanted(usage >> 16, usage & 0xffff)) {
@@ -149,7 +149,7 @@ static const char *take_input(struct parser *p, uint32_t flags)
         return "a field whose minimum is above its maximum";
     }
     for (uint32_t n = 0; n < g->count; n++) {
-        keep_field(p, nth_usage(&p->local, n), begin + n * g->size_bits, flags);
+        store_field(p, nth_usage(&p->local, n), begin + n * g->size_bits, flags);
     }
     return NULL;
 }

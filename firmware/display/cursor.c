@@ -47,7 +47,7 @@ static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
 }
 
 /* Distance that a deflection moves the cursor in one step: at most 512 * 256 / 50. */
-static int32_t way_px_q8(int32_t deflection, int32_t half_px)
+static int32_t step_px_q8(int32_t deflection, int32_t half_px)
 {
     const int32_t full_px_q8 =
         lm_px_q8_of_px(half_px) * LM_CURSOR_HALVES_PER_S / (1000000 / LM_CURSOR_STEP_US);
@@ -61,9 +61,9 @@ static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
         lm_cursor_zero(c, scene);
         return;
     }
-    o.x_px_q8 += way_px_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
-    o.y_px_q8 += way_px_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
-    c->position = lm_view_place(scene->view, within(o, scene->view));
+    o.x_px_q8 += step_px_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
+    o.y_px_q8 += step_px_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
+    c->position = lm_view_position(scene->view, within(o, scene->view));
     c->is_home = false;
 }
 

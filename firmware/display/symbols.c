@@ -207,7 +207,7 @@ static void write_angle(const struct lm_glass *g, int32_t row, const char *lette
     write_row(g, row, ALIGN_RIGHT, t.words);
 }
 
-static void write_place(const struct lm_glass *g, struct lm_position position)
+static void write_position(const struct lm_glass *g, struct lm_position position)
 {
     const int32_t latitude = (int32_t)position.latitude, longitude = (int32_t)position.longitude;
     write_angle(g, 1, latitude < 0 ? "S" : "N", fx_abs_u32(latitude), 2);
@@ -233,7 +233,7 @@ static void write_cursor(const struct lm_glass *g, const struct lm_symbols *s)
         lm_text_add(&t, "FT");
         write_row(g, 2, ALIGN_LEFT, t.words);
     }
-    write_place(g, s->cursor_position);
+    write_position(g, s->cursor_position);
 }
 
 /* Time to go to the steerpoint, in minutes and seconds. */

@@ -118,7 +118,7 @@ bool lm_view_find(const struct lm_view *v, struct lm_position position, struct l
     return true;
 }
 
-struct lm_position lm_view_place(const struct lm_view *v, struct lm_offset offset)
+struct lm_position lm_view_position(const struct lm_view *v, struct lm_offset offset)
 {
     struct lm_geo_origin origin;
     const uint64_t length_px_q8 = fx_hypot_u32(offset.x_px_q8, offset.y_px_q8);

@@ -360,8 +360,8 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
 
 /* Where a sender's value is kept: its own place, or an empty one, or that of the worst other sender
  * when that one is dead or of a higher rank. NULL when there is none. */
-static struct lm_nav_item *place_for(struct lm_nav *n, const struct lm_bus_event *event,
-                                     uint16_t rank)
+static struct lm_nav_item *slot_for(struct lm_nav *n, const struct lm_bus_event *event,
+                                    uint16_t rank)
 {
     const enum lm_bus_field field = (enum lm_bus_field)event->field;
     struct lm_nav_item *worst = &n->item[field][0];
@@ -387,7 +387,7 @@ void lm_nav_take(struct lm_nav *n, const struct lm_bus_event *event)
         return;
     }
     const uint16_t rank = (uint16_t)(event->priority << 8 | event->channel);
-    struct lm_nav_item *item = place_for(n, event, rank);
+    struct lm_nav_item *item = slot_for(n, event, rank);
     if (item == NULL) {
         n->crowded++;
         return;

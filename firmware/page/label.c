@@ -2,7 +2,7 @@
 #include "lm/text.h"
 #include "page_table.h"
 
-void lm_label_say(struct lm_label *label, const char *first, const char *second)
+void lm_label_set(struct lm_label *label, const char *first, const char *second)
 {
     struct lm_text lines[2] = {0};
     lm_text_add(&lines[0], first);
@@ -13,12 +13,12 @@ void lm_label_say(struct lm_label *label, const char *first, const char *second)
     }
 }
 
-static void say_under(struct lm_label *label, const char *name, const char *words)
+static void set_under(struct lm_label *label, const char *name, const char *words)
 {
     if (*name) {
-        lm_label_say(label, name, words);
+        lm_label_set(label, name, words);
     } else {
-        lm_label_say(label, words, "");
+        lm_label_set(label, words, "");
     }
 }
 
@@ -30,7 +30,7 @@ void lm_label_number(struct lm_label *label, const char *name, int32_t value, bo
     } else {
         lm_text_number(&t, (uint32_t)value, 1);
     }
-    say_under(label, name, t.words);
+    set_under(label, name, t.words);
 }
 
 void lm_label_tenths(struct lm_label *label, const char *name, const char *sign, uint32_t tenths)
@@ -40,5 +40,5 @@ void lm_label_tenths(struct lm_label *label, const char *name, const char *sign,
     lm_text_number(&t, tenths / 10, 1);
     lm_text_add(&t, ".");
     lm_text_number(&t, tenths % 10, 1);
-    say_under(label, name, t.words);
+    set_under(label, name, t.words);
 }

@@ -221,15 +221,15 @@ uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
     return LM_EFFECT_SECTOR;
 }
 
-uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field)
+uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t fov)
 {
     if (!is_within(mode, 0, LM_SECTOR_MODES - 1) ||
-        !is_within(field, 0, p->radar->mode[mode].fov_last) ||
-        p->range_index > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)field)) {
+        !is_within(fov, 0, p->radar->mode[mode].fov_last) ||
+        p->range_index > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)fov)) {
         return 0;
     }
     p->mode = (uint8_t)mode;
-    p->fov = (uint8_t)field;
+    p->fov = (uint8_t)fov;
     return LM_EFFECT_SECTOR | LM_EFFECT_TONE;
 }
 
@@ -271,7 +271,8 @@ void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
 
 /* ---- what keys do and say ---- */
 
-static bool say_key(const struct lm_page *p, const struct lm_page_key *key, struct lm_label *label)
+static bool label_of_key(const struct lm_page *p, const struct lm_page_key *key,
+                         struct lm_label *label)
 {
     if (!key || (!key->words && !key->text) || (key->is_shown && !key->is_shown(p))) {
         return false;
@@ -279,7 +280,7 @@ static bool say_key(const struct lm_page *p, const struct lm_page_key *key, stru
     if (key->text) {
         key->text(p, label);
     } else {
-        lm_label_say(label, key->words, "");
+        lm_label_set(label, key->words, "");
     }
     label->is_inverse = key->is_on && key->is_on(p);
     return true;
@@ -301,7 +302,7 @@ bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
 {
     const struct lm_page_table *table = table_of(p);
     const struct lm_page_key *key = find_key(table, osb);
-    if (!key || is_taken_away(p, key) || !say_key(p, key, label)) {
+    if (!key || is_taken_away(p, key) || !label_of_key(p, key, label)) {
         return false;
     }
     if (table->chooses_for) { /* inverse is what declutter takes away */

@@ -13,7 +13,7 @@ static bool is_tilt_manual(const struct lm_page *p)
 }
 
 /* Degrees up of the beam's axis, and who points it. */
-static void say_tilt(const struct lm_page *p, struct lm_label *label)
+static void label_tilt(const struct lm_page *p, struct lm_label *label)
 {
     lm_label_tenths(label, p->is_tilt_manual ? "TILT" : "AUTO", p->tilt_tenths < 0 ? "-" : "+",
                     fx_abs_u32(p->tilt_tenths));
@@ -40,9 +40,9 @@ static bool is_pencil(const struct lm_page *p)
     return p->is_pencil;
 }
 
-static void say_beam(const struct lm_page *p, struct lm_label *label)
+static void label_beam(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, "BEAM", p->is_pencil ? "PNCL" : "FAN");
+    lm_label_set(label, "BEAM", p->is_pencil ? "PNCL" : "FAN");
 }
 
 static uint32_t press_beam(struct lm_page *p, int32_t step)
@@ -57,9 +57,9 @@ static bool is_slant(const struct lm_page *p)
     return p->is_slant;
 }
 
-static void say_slant(const struct lm_page *p, struct lm_label *label)
+static void label_slant(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, "SAR", p->is_slant ? "SLNT" : "PLAN");
+    lm_label_set(label, "SAR", p->is_slant ? "SLNT" : "PLAN");
 }
 
 static uint32_t press_slant(struct lm_page *p, int32_t step)
@@ -71,7 +71,7 @@ static uint32_t press_slant(struct lm_page *p, int32_t step)
 
 /* ---- tone ---- */
 
-static void say_black(const struct lm_page *p, struct lm_label *value)
+static void label_black(const struct lm_page *p, struct lm_label *value)
 {
     lm_label_number(value, "BLACK", p->black_db, true);
 }
@@ -81,7 +81,7 @@ static uint32_t step_black(struct lm_page *p, int32_t step)
     return lm_page_step(&p->black_db, step, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
 }
 
-static void say_white(const struct lm_page *p, struct lm_label *value)
+static void label_white(const struct lm_page *p, struct lm_label *value)
 {
     lm_label_number(value, "WHITE", p->white_db, true);
 }
@@ -91,7 +91,7 @@ static uint32_t step_white(struct lm_page *p, int32_t step)
     return lm_page_step(&p->white_db, step, LM_WINDOW_MAX_DB, LM_EFFECT_TONE);
 }
 
-static void say_gamma(const struct lm_page *p, struct lm_label *value)
+static void label_gamma(const struct lm_page *p, struct lm_label *value)
 {
     const uint32_t gamma_q8 = lm_page_tone(p, &p->radar->mode[p->mode].tone).gamma_q8;
     lm_label_tenths(value, "GAMMA", "", (gamma_q8 * 10u + 128u) / 256u);
@@ -104,10 +104,10 @@ static uint32_t step_gamma(struct lm_page *p, int32_t step)
 
 /* ---- colours ---- */
 
-static void say_tint(const struct lm_page *p, struct lm_label *label)
+static void label_tint(const struct lm_page *p, struct lm_label *label)
 {
     static const char tints[LM_TINTS][6] = {"GREY", "GREEN", "AMBER"};
-    lm_label_say(label, tints[p->palette.tint], "");
+    lm_label_set(label, tints[p->palette.tint], "");
 }
 
 static uint32_t press_tint(struct lm_page *p, int32_t step)
@@ -121,9 +121,9 @@ static bool is_night(const struct lm_page *p)
     return p->palette.is_night;
 }
 
-static void say_night(const struct lm_page *p, struct lm_label *label)
+static void label_night(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, p->palette.is_night ? "NIGHT" : "DAY", "");
+    lm_label_set(label, p->palette.is_night ? "NIGHT" : "DAY", "");
 }
 
 static uint32_t press_night(struct lm_page *p, int32_t step)
@@ -159,21 +159,21 @@ static uint32_t press_declutter(struct lm_page *p, int32_t step)
     .osb = (number), .words = LM_GLYPH_DOWN, .press = (function), .step = -1, .repeats = true
 
 static const struct lm_page_key keys[] = {
-    {.osb = 1, .text = say_tilt, .is_on = is_tilt_manual, .press = press_tilt},
+    {.osb = 1, .text = label_tilt, .is_on = is_tilt_manual, .press = press_tilt},
     {UP(2, step_tilt)},
     {DOWN(3, step_tilt)},
-    {.osb = 4, .text = say_beam, .is_on = is_pencil, .press = press_beam},
-    {UP(6, step_black), .value = say_black},
+    {.osb = 4, .text = label_beam, .is_on = is_pencil, .press = press_beam},
+    {UP(6, step_black), .value = label_black},
     {DOWN(7, step_black)},
-    {.osb = 8, .text = say_tint, .press = press_tint, .step = 1},
-    {.osb = 9, .text = say_night, .is_on = is_night, .press = press_night},
+    {.osb = 8, .text = label_tint, .press = press_tint, .step = 1},
+    {.osb = 9, .text = label_night, .is_on = is_night, .press = press_night},
     {.osb = 10, .words = "RESET", .press = press_reset},
     {.osb = LM_OSB_DECLUTTER, .words = "DCLT", .press = press_declutter},
-    {.osb = 16, .text = say_slant, .is_on = is_slant, .press = press_slant},
+    {.osb = 16, .text = label_slant, .is_on = is_slant, .press = press_slant},
     {DOWN(17, step_white)},
-    {UP(18, step_white), .value = say_white},
+    {UP(18, step_white), .value = label_white},
     {DOWN(19, step_gamma)},
-    {UP(20, step_gamma), .value = say_gamma},
+    {UP(20, step_gamma), .value = label_gamma},
 };
 
 const struct lm_page_table lm_page_cntl = {.keys = keys, .count = sizeof keys / sizeof *keys};

@@ -26,9 +26,9 @@ static bool is_sector(const struct lm_page *p)
 
 /* ---- mode, field of view ---- */
 
-static void say_mode(const struct lm_page *p, struct lm_label *label)
+static void label_mode(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, p->radar->mode[p->mode].name, "");
+    lm_label_set(label, p->radar->mode[p->mode].name, "");
 }
 
 /* The next mode of the rotary, with a field and a scale that it has. In a patch: back to the
@@ -43,13 +43,13 @@ static uint32_t press_mode(struct lm_page *p, int32_t step)
     return lm_page_fit_range(p) | LM_EFFECT_TONE;
 }
 
-static void say_field(const struct lm_page *p, struct lm_label *label)
+static void label_fov(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, is_patch(p) ? "SAR" : p->radar->fov[p->fov].name, "");
+    lm_label_set(label, is_patch(p) ? "SAR" : p->radar->fov[p->fov].name, "");
 }
 
 /* The next field of view that this mode has at this range. In a patch: the whole sector. */
-static uint32_t press_field(struct lm_page *p, int32_t step)
+static uint32_t press_fov(struct lm_page *p, int32_t step)
 {
     const uint8_t before = p->fov;
     if (!is_sector(p)) {
@@ -65,9 +65,9 @@ static uint32_t press_field(struct lm_page *p, int32_t step)
     return p->fov != before ? LM_EFFECT_SECTOR : 0;
 }
 
-static void say_cell(const struct lm_page *p, struct lm_label *label)
+static void label_cell(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, "CELL", cells[p->cell_index].words);
+    lm_label_set(label, "CELL", cells[p->cell_index].words);
 }
 
 static uint32_t press_cell(struct lm_page *p, int32_t step)
@@ -78,9 +78,9 @@ static uint32_t press_cell(struct lm_page *p, int32_t step)
 
 /* ---- scales ---- */
 
-static void say_auto(const struct lm_page *p, struct lm_label *label)
+static void label_auto(const struct lm_page *p, struct lm_label *label)
 {
-    lm_label_say(label, p->is_auto_range ? "AUTO" : "MAN", "");
+    lm_label_set(label, p->is_auto_range ? "AUTO" : "MAN", "");
 }
 
 static uint32_t press_auto(struct lm_page *p, int32_t step)
@@ -97,11 +97,11 @@ static bool has_azimuth(const struct lm_page *p)
 }
 
 /* The sector's half angle in tens of degrees, under an A. */
-static void say_azimuth(const struct lm_page *p, struct lm_label *label)
+static void label_azimuth(const struct lm_page *p, struct lm_label *label)
 {
     const fx_bam_t half = p->radar->azimuth_half[p->azimuth_index];
     const char digit[2] = {(char)('0' + (((uint64_t)half * 36 + (1u << 31)) >> 32) % 10), 0};
-    lm_label_say(label, "A", digit);
+    lm_label_set(label, "A", digit);
 }
 
 static uint32_t press_azimuth(struct lm_page *p, int32_t step)
@@ -123,7 +123,7 @@ static bool has_larger(const struct lm_page *p)
     return is_sector(p) && p->range_index < lm_page_range_last(p);
 }
 
-static void say_range(const struct lm_page *p, struct lm_label *value)
+static void label_range(const struct lm_page *p, struct lm_label *value)
 {
     lm_label_number(value, "", p->radar->range[p->range_index].range_nm, false);
 }
@@ -233,9 +233,9 @@ static uint32_t open_choice(struct lm_page *p)
 }
 
 static const struct lm_page_key keys[] = {
-    {.osb = 1, .text = say_mode, .press = press_mode, .step = 1},
-    {.osb = 2, .text = say_auto, .is_shown = is_sector, .press = press_auto},
-    {.osb = 3, .text = say_field, .press = press_field, .step = 1},
+    {.osb = 1, .text = label_mode, .press = press_mode, .step = 1},
+    {.osb = 2, .text = label_auto, .is_shown = is_sector, .press = press_auto},
+    {.osb = 3, .text = label_fov, .press = press_fov, .step = 1},
     {.osb = 4,
      .words = "OVRD",
      .is_on = is_override,
@@ -266,14 +266,14 @@ static const struct lm_page_key keys[] = {
      .is_on = is_decluttered,
      .press = press_declutter,
      .hold = open_choice},
-    {.osb = 16, .text = say_cell, .starts_hidden = true, .press = press_cell, .step = 1},
+    {.osb = 16, .text = label_cell, .starts_hidden = true, .press = press_cell, .step = 1},
     {.osb = 17}, /* free */
-    {.osb = 18, .text = say_azimuth, .is_shown = has_azimuth, .press = press_azimuth, .step = 1},
+    {.osb = 18, .text = label_azimuth, .is_shown = has_azimuth, .press = press_azimuth, .step = 1},
     {.osb = 19, .words = LM_GLYPH_DOWN, .is_shown = has_smaller, .press = press_range, .step = -1},
     {.osb = 20,
      .words = LM_GLYPH_UP,
      .is_shown = has_larger,
-     .value = say_range,
+     .value = label_range,
      .has_value = is_sector,
      .press = press_range,
      .step = 1},

@@ -47,7 +47,7 @@ struct lm_page_table {
 extern const struct lm_page_table lm_page_radar, lm_page_cntl, lm_page_dclt;
 
 /* Set the two lines of a label; either may be empty, and is cut off after five characters. */
-void lm_label_say(struct lm_label *label, const char *first, const char *second);
+void lm_label_set(struct lm_label *label, const char *first, const char *second);
 
 /* Set a label to a number below a name, or to a number alone if the name is empty. */
 void lm_label_number(struct lm_label *label, const char *name, int32_t value, bool is_signed);

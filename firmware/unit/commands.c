@@ -99,7 +99,7 @@ static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
     return effects != 0;
 }
 
-static bool obey_steerpoint(struct lm_unit *u, const struct lm_control *control)
+static bool apply_steerpoint(struct lm_unit *u, const struct lm_control *control)
 {
     if (fx_abs_u32((int32_t)control->steerpoint.position.latitude) > FX_BAM_90) {
         return false;
@@ -109,7 +109,7 @@ static bool obey_steerpoint(struct lm_unit *u, const struct lm_control *control)
     return true;
 }
 
-static bool obey_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+static bool apply_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
     if (!is_within(control->button, 1, LM_BUTTONS)) {
         return false;
@@ -130,7 +130,7 @@ static bool is_deflection(int32_t value)
     return is_within(value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION);
 }
 
-static bool obey_slew(struct lm_unit *u, const struct lm_control *control)
+static bool apply_slew(struct lm_unit *u, const struct lm_control *control)
 {
     if (!is_deflection(control->slew.x) || !is_deflection(control->slew.y)) {
         return false;
@@ -149,7 +149,7 @@ static bool apply_control(struct lm_unit *u, const struct lm_control *control, u
     case LM_CONTROL_ENVIRONMENT:
         return lm_unit_weather_command(&u->weather, &control->environment, now_us) == LM_OK;
     case LM_CONTROL_STEERPOINT:
-        return obey_steerpoint(u, control);
+        return apply_steerpoint(u, control);
     case LM_CONTROL_DROP:
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
         return true;
@@ -166,11 +166,11 @@ static bool apply_control(struct lm_unit *u, const struct lm_control *control, u
         return true;
     case LM_CONTROL_DOWN:
     case LM_CONTROL_UP:
-        return obey_button(u, control, now_us);
+        return apply_button(u, control, now_us);
     case LM_CONTROL_KNOB:
         return apply_any(u, lm_page_set_knob(&u->page, control->knob), now_us);
     case LM_CONTROL_SLEW:
-        return obey_slew(u, control);
+        return apply_slew(u, control);
     case LM_CONTROL_DESIGNATE:
         return designate(u, now_us);
     }

@@ -2,7 +2,7 @@
 
 enum { TILE_FAULT_SHOWN_US = 3000000 };
 
-static uint32_t judge_map(struct lm_unit *u, uint64_t now_us)
+static uint32_t map_flags(struct lm_unit *u, uint64_t now_us)
 {
     const uint32_t faults = u->map.tiles.count.io_errors + lm_unit_map_corrupt_records(&u->map);
     if (faults != u->tile_faults.seen) {
@@ -13,7 +13,7 @@ static uint32_t judge_map(struct lm_unit *u, uint64_t now_us)
     return (u->map.is_usable ? 0u : LM_FLAG_DB) | (is_fault ? LM_FLAG_TILE : 0u);
 }
 
-static uint32_t judge_nav(const struct lm_unit *u)
+static uint32_t nav_flags(const struct lm_unit *u)
 {
     const struct lm_ownship *own = &u->ownship;
     if (!lm_picture_needs_ownship(&u->picture)) {
@@ -28,9 +28,9 @@ static uint32_t judge_nav(const struct lm_unit *u)
     return is_good ? 0 : LM_FLAG_NAV_STALE;
 }
 
-uint32_t lm_judge_flags(struct lm_unit *u, uint64_t now_us)
+uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t flags = judge_map(u, now_us) | judge_nav(u) |
+    const uint32_t flags = map_flags(u, now_us) | nav_flags(u) |
                            (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) |
                            (u->page.is_override ? LM_FLAG_SILENT : 0u) |
                            (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |

@@ -15,6 +15,6 @@ enum {
 
 /* Update u->flags as of `now_us` and log new faults. Returns the flags that rose since the call
  * before. */
-uint32_t lm_judge_flags(struct lm_unit *u, uint64_t now_us);
+uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us);
 
 #endif

@@ -13,7 +13,7 @@ static inline int32_t lm_antenna_height_m_q6(const struct lm_ownship *own, const
     return own->height_m_q6 - (is_ellipsoidal ? db->geoid_m_q6 : 0);
 }
 
-static inline struct lm_position lm_ownship_place(const struct lm_ownship *own)
+static inline struct lm_position lm_ownship_position(const struct lm_ownship *own)
 {
     return (struct lm_position){own->latitude, own->longitude};
 }

@@ -74,7 +74,7 @@ struct lm_cursor_scene lm_picture_cursor_scene(const struct lm_picture *p)
     const struct lm_ownship *own = p->lent.ownship;
     return (struct lm_cursor_scene){
         .view = &p->view,
-        .ownship = lm_ownship_place(own),
+        .ownship = lm_ownship_position(own),
         .heading = own->heading,
         .scale_m = p->lent.radar->range[p->lent.page->range_index].range_m,
         .half_px = (int32_t)fx_min_u32(p->plane.width_px, p->plane.height_px) / 2,

@@ -39,8 +39,8 @@ static bool resolve_command(const struct lm_picture *p, struct lm_sar_command *c
      * back to the aircraft, reversed. */
     uint32_t distance_m_q8;
     fx_bam_t back, bearing;
-    lm_geo_inverse(command->centre, lm_ownship_place(own), &distance_m_q8, &back);
-    lm_geo_inverse(lm_ownship_place(own), command->centre, &distance_m_q8, &bearing);
+    lm_geo_inverse(command->centre, lm_ownship_position(own), &distance_m_q8, &back);
+    lm_geo_inverse(lm_ownship_position(own), command->centre, &distance_m_q8, &bearing);
     command->look_azimuth = back + FX_BAM_180;
     command->range_m = lm_m_of_m_q8(distance_m_q8);
     command->height_m_q6 = lm_antenna_height_m_q6(own, &p->lent.map->db);

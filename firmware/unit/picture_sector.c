@@ -58,7 +58,7 @@ static struct lm_platform platform_of(const struct lm_picture *p, uint64_t now_u
     const struct lm_ownship *own = p->lent.ownship;
     const bool is_moving = own->velocity_quality != LM_NAV_DEAD;
     return (struct lm_platform){
-        .position = lm_ownship_place(own),
+        .position = lm_ownship_position(own),
         .height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &p->lent.map->db)),
         .heading = own->heading,
         .track = own->track,
@@ -152,7 +152,7 @@ static struct lm_view view(const struct lm_picture *p)
     const bool has_geometry = s->grid.cells != 0;
     const bool is_window = has_geometry && lm_sector_is_window(s);
     const struct lm_view_from from = {
-        .position = is_window ? s->platform.position : lm_ownship_place(p->lent.ownship),
+        .position = is_window ? s->platform.position : lm_ownship_position(p->lent.ownship),
         .up = is_window ? s->up : p->lent.ownship->heading,
         .height_m_q10 = has_geometry ? s->grid.height_m_q10 - s->grid.reference_m_q10 : 0,
     };
@@ -180,7 +180,7 @@ static bool needs_ownship(const struct lm_picture *p)
 /* Set the cue: where the cursor would be in the whole sector. */
 static void describe_window(const struct lm_picture *p, struct lm_symbols *symbols)
 {
-    const struct lm_view_from from = {lm_ownship_place(p->lent.ownship), p->view.up,
+    const struct lm_view_from from = {lm_ownship_position(p->lent.ownship), p->view.up,
                                       p->view.height_m_q10};
     const struct lm_view whole = lm_view_of_sector(&p->frame, &from, scale_m(p));
     struct lm_offset at;

@@ -30,7 +30,7 @@ static uint32_t to_go_s(const struct lm_unit *u, struct lm_position position)
 {
     uint32_t distance_m_q8;
     fx_bam_t bearing;
-    lm_geo_inverse(lm_ownship_place(&u->ownship), position, &distance_m_q8, &bearing);
+    lm_geo_inverse(lm_ownship_position(&u->ownship), position, &distance_m_q8, &bearing);
     const uint64_t distance_mm = lm_mm_of_m_q8(distance_m_q8);
     const uint32_t speed_mm_s = (uint32_t)u->ownship.ground_speed_mm_s;
     if (u->ownship.velocity_quality == LM_NAV_DEAD || speed_mm_s == 0) {
@@ -64,7 +64,7 @@ static void describe_ownship(const struct lm_unit *u, struct lm_symbols *s)
 {
     struct lm_view level = u->picture.view;
     level.height_m_q10 = 0;
-    s->is_ownship_shown = lm_view_find(&level, lm_ownship_place(&u->ownship), &s->ownship);
+    s->is_ownship_shown = lm_view_find(&level, lm_ownship_position(&u->ownship), &s->ownship);
     s->ownship_heading = u->ownship.heading - u->picture.view.up;
 }
 

@@ -117,7 +117,7 @@ void lm_unit_step(struct lm_unit *u, uint64_t now_us)
     restart_after_jump(u, now_us);
     lm_unit_weather_at(&u->weather, now_us);
     lm_take_controls(u, now_us);
-    if (lm_judge_flags(u, now_us) & LM_FLAGS_REMOVING) {
+    if (lm_update_flags(u, now_us) & LM_FLAGS_REMOVING) {
         lm_picture_remove(&u->picture);
     }
     lm_follow_cursor(u, now_us);

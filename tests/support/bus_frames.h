@@ -48,7 +48,7 @@ static inline double bus_counts_per_unit(enum lm_bus_field field)
     static const double counts[] = {
         [LM_BUS_BAM] = 4294967296.0 / 360.0,
         [LM_BUS_BAM_A_SECOND] = 4294967296.0 / 360.0,
-        [LM_BUS_Q6] = 64.0,
+        [LM_BUS_M_Q6] = 64.0,
         [LM_BUS_MM_S] = 1000.0,
         [LM_BUS_SECONDS] = 1.0,
         [LM_BUS_MM_H] = 1.0,

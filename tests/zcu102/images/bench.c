@@ -65,17 +65,17 @@ static void print(struct drv_uart *u, uint32_t mode, const char *name,
     if (sum->calls == 0) {
         return;
     }
-    zcu102_say(u, "stage ");
-    zcu102_say_number(u, mode);
-    zcu102_say(u, " ");
-    zcu102_say(u, name);
-    zcu102_say(u, " ");
-    zcu102_say_number(u, sum->calls);
-    zcu102_say(u, " ");
-    zcu102_say_number(u, sum->instructions);
-    zcu102_say(u, " ");
-    zcu102_say_number(u, sum->most);
-    zcu102_say(u, "\n");
+    zcu102_print(u, "stage ");
+    zcu102_print_number(u, mode);
+    zcu102_print(u, " ");
+    zcu102_print(u, name);
+    zcu102_print(u, " ");
+    zcu102_print_number(u, sum->calls);
+    zcu102_print(u, " ");
+    zcu102_print_number(u, sum->instructions);
+    zcu102_print(u, " ");
+    zcu102_print_number(u, sum->most);
+    zcu102_print(u, "\n");
 }
 
 static void report(struct bench *b)
@@ -90,8 +90,8 @@ static void report(struct bench *b)
         print(u, mode, "step", &b->steps[mode]);
         print(u, mode, "frame-step", &b->frame_steps[mode]);
     }
-    zcu102_say_value(u, "first-picture-us", b->first_picture_us);
-    zcu102_say_value(u, "stack-used", zcu102_stack_used());
+    zcu102_print_value(u, "first-picture-us", b->first_picture_us);
+    zcu102_print_value(u, "stack-used", zcu102_stack_used());
 }
 
 int main(void)
@@ -99,7 +99,7 @@ int main(void)
     static struct bench b;
     zcu102_open(&b.z);
     if (!handed_open(&b.handed, &b.z.step_us)) {
-        zcu102_say(&b.z.console, "there is no scenario in memory\n");
+        zcu102_print(&b.z.console, "there is no scenario in memory\n");
         zcu102_power_off();
     }
     b.can = (struct lm_can){.ctx = &b.handed, .receive = handed_receive};

@@ -20,9 +20,9 @@ struct devices {
 
 static void claim(struct devices *d, const char *statement, bool is_true)
 {
-    zcu102_say(&d->z.console, is_true ? "ok " : "not ok ");
-    zcu102_say(&d->z.console, statement);
-    zcu102_say(&d->z.console, "\n");
+    zcu102_print(&d->z.console, is_true ? "ok " : "not ok ");
+    zcu102_print(&d->z.console, statement);
+    zcu102_print(&d->z.console, "\n");
 }
 
 /* ---- bus ---- */
@@ -278,7 +278,7 @@ static void check_registers(struct devices *d)
 
 static void check_console(struct devices *d)
 {
-    zcu102_say(&d->z.console, "TYPE\n"); /* the host types abc */
+    zcu102_print(&d->z.console, "TYPE\n"); /* the host types abc */
     char got[3];
     for (uint32_t i = 0; i < sizeof got; i++) {
         int byte;
@@ -306,6 +306,6 @@ int main(void)
     check_registers(&d);
     check_console(&d);
     claim(&d, "no interrupt came that nobody had asked for", d.z.irq.count.strange == 0);
-    zcu102_say(&d.z.console, "all done\n");
+    zcu102_print(&d.z.console, "all done\n");
     zcu102_power_off();
 }

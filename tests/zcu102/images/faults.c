@@ -52,7 +52,7 @@ int main(void)
     static struct zcu102 z;
     extern const char __text_start[];
     zcu102_open(&z);
-    zcu102_say_value(&z.console, "restarts", z.last_restart.count);
+    zcu102_print_value(&z.console, "restarts", z.last_restart.count);
     switch (z.last_restart.count) {
     case 0:
         touch(8, false);
@@ -76,9 +76,9 @@ int main(void)
         cause_interrupt(&z);
         break;
     default:
-        zcu102_say(&z.console, "all done\n");
+        zcu102_print(&z.console, "all done\n");
         zcu102_power_off();
     }
-    zcu102_say(&z.console, "nothing happened\n");
+    zcu102_print(&z.console, "nothing happened\n");
     zcu102_power_off();
 }

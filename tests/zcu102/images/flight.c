@@ -128,23 +128,23 @@ static void report(struct flight *f)
 {
     struct drv_uart *u = &f->z.console;
     const struct lm_unit *unit = &f->z.unit;
-    zcu102_say_value(u, "first-picture-us", f->first_picture_us);
-    zcu102_say_value(u, "sent", f->peer.sent);
-    zcu102_say_value(u, "refused", f->peer.refused);
-    zcu102_say_value(u, "received", f->received_count);
-    zcu102_say_value(u, "early", f->early);
-    zcu102_say_value(u, "ring-overflowed", f->z.can.count.overflowed);
-    zcu102_say_value(u, "fifo-overflowed", f->z.can.count.fifo_overflowed);
-    zcu102_say_value(u, "frames", unit->count.frames);
-    zcu102_say_value(u, "lines", unit->count.lines);
-    zcu102_say_value(u, "lines-dropped", unit->count.lines_dropped);
-    zcu102_say_value(u, "steps-left-out", f->z.steps_left_out);
-    zcu102_say_value(u, "tiles-read", unit->map.tiles.count.tiles_read);
-    zcu102_say_value(u, "read-errors", unit->map.tiles.count.io_errors);
-    zcu102_say_value(u, "tiles-corrupt", unit->map.tiles.count.corrupt);
-    zcu102_say_value(u, "flags", unit->flags);
-    zcu102_say_value(u, "interrupts", f->z.irq.count.taken);
-    zcu102_say_value(u, "stack-used", zcu102_stack_used());
+    zcu102_print_value(u, "first-picture-us", f->first_picture_us);
+    zcu102_print_value(u, "sent", f->peer.sent);
+    zcu102_print_value(u, "refused", f->peer.refused);
+    zcu102_print_value(u, "received", f->received_count);
+    zcu102_print_value(u, "early", f->early);
+    zcu102_print_value(u, "ring-overflowed", f->z.can.count.overflowed);
+    zcu102_print_value(u, "fifo-overflowed", f->z.can.count.fifo_overflowed);
+    zcu102_print_value(u, "frames", unit->count.frames);
+    zcu102_print_value(u, "lines", unit->count.lines);
+    zcu102_print_value(u, "lines-dropped", unit->count.lines_dropped);
+    zcu102_print_value(u, "steps-left-out", f->z.steps_left_out);
+    zcu102_print_value(u, "tiles-read", unit->map.tiles.count.tiles_read);
+    zcu102_print_value(u, "read-errors", unit->map.tiles.count.io_errors);
+    zcu102_print_value(u, "tiles-corrupt", unit->map.tiles.count.corrupt);
+    zcu102_print_value(u, "flags", unit->flags);
+    zcu102_print_value(u, "interrupts", f->z.irq.count.taken);
+    zcu102_print_value(u, "stack-used", zcu102_stack_used());
 }
 
 static void fly(struct flight *f)
@@ -179,7 +179,7 @@ int main(void)
     static struct flight f;
     zcu102_open(&f.z);
     if (!handed_open(&f.handed, &f.z.step_us)) {
-        zcu102_say(&f.z.console, "there is no scenario in memory\n");
+        zcu102_print(&f.z.console, "there is no scenario in memory\n");
         zcu102_power_off();
     }
     f.peer.board = &f.z;
@@ -187,13 +187,13 @@ int main(void)
     f.peer.count = f.handed.header->frames;
     put_between(&f);
     if (zcu102_start(&f.z) != LM_OK) {
-        zcu102_say(&f.z.console, "the unit does not start\n");
+        zcu102_print(&f.z.console, "the unit does not start\n");
         zcu102_power_off();
     }
     if (f.z.last_restart.cause != ZCU102_POWER_ON) {
         show_restart(&f);
     } else if (f.peer.count > 0 && !peer_start(&f.peer)) {
-        zcu102_say(&f.z.console, "the second core does not start\n");
+        zcu102_print(&f.z.console, "the second core does not start\n");
     } else {
         fly(&f);
     }

@@ -19,8 +19,8 @@ static ZCU102_SHARED struct drv_display_scan scans[DRV_DISPLAY_BUFFERS];
 
 static _Noreturn void fail(struct zcu102 *z, const char *words)
 {
-    zcu102_say(&z->console, words);
-    zcu102_say(&z->console, "\n");
+    zcu102_print(&z->console, words);
+    zcu102_print(&z->console, "\n");
     zcu102_power_off();
 }
 
@@ -39,11 +39,11 @@ static void read_flash(struct zcu102 *z, uint64_t offset, void *to, uint64_t len
 /* Print "RADAR name checksum". */
 static void say_radar_checksum(struct zcu102 *z, const char *name)
 {
-    zcu102_say(&z->console, "RADAR ");
-    zcu102_say(&z->console, name);
-    zcu102_say(&z->console, " ");
-    zcu102_say_hex(&z->console, golden_radar_checksum(&rig), 8);
-    zcu102_say(&z->console, "\n");
+    zcu102_print(&z->console, "RADAR ");
+    zcu102_print(&z->console, name);
+    zcu102_print(&z->console, " ");
+    zcu102_print_hex(&z->console, golden_radar_checksum(&rig), 8);
+    zcu102_print(&z->console, "\n");
 }
 
 static void show(struct zcu102 *z, const char *name)
@@ -80,11 +80,11 @@ int main(void)
             fail(&z, "an image is too large");
         }
         read_flash(&z, flash.places[place].offset, image, size);
-        zcu102_say(&z.console, "image-");
-        zcu102_say(&z.console, flash.places[place].name);
-        zcu102_say(&z.console, " ");
-        zcu102_say_hex(&z.console, fx_crc32c(0, image, size), 8);
-        zcu102_say(&z.console, "\n");
+        zcu102_print(&z.console, "image-");
+        zcu102_print(&z.console, flash.places[place].name);
+        zcu102_print(&z.console, " ");
+        zcu102_print_hex(&z.console, fx_crc32c(0, image, size), 8);
+        zcu102_print(&z.console, "\n");
         const struct golden_country country = {
             .centre = flash.places[place].centre, .image = image, .image_bytes = size};
         for (uint32_t i = 0; i < golden_picture_count; i++) {
@@ -95,6 +95,6 @@ int main(void)
             }
         }
     }
-    zcu102_say_value(&z.console, "stack-used", zcu102_stack_used());
+    zcu102_print_value(&z.console, "stack-used", zcu102_stack_used());
     zcu102_power_off();
 }

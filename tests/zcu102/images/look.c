@@ -13,11 +13,11 @@ uint32_t look_checksum(const struct drv_display *display)
 
 void look(struct drv_uart *console, const struct drv_display *display, const char *name)
 {
-    zcu102_say(console, "LOOK ");
-    zcu102_say(console, name);
-    zcu102_say(console, " ");
-    zcu102_say_hex(console, look_checksum(display), 8);
-    zcu102_say(console, "\n");
+    zcu102_print(console, "LOOK ");
+    zcu102_print(console, name);
+    zcu102_print(console, " ");
+    zcu102_print_hex(console, look_checksum(display), 8);
+    zcu102_print(console, "\n");
     zcu102_mask_interrupts();
     while (drv_uart_get(console) < 0) {
         drv_timer_wait();

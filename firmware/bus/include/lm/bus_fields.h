@@ -48,7 +48,7 @@ enum lm_bus_field {
 enum lm_bus_unit {
     LM_BUS_BAM,          /* angle, 2^32 a turn: cast to fx_bam_t, or keep it signed */
     LM_BUS_BAM_A_SECOND, /* rate of an angle, signed */
-    LM_BUS_Q6,           /* metres * 64 */
+    LM_BUS_M_Q6,         /* metres * 64 */
     LM_BUS_MM_S,         /* millimetres a second */
     LM_BUS_SECONDS,      /* since midnight; 86,400 is a leap second */
     LM_BUS_MM_H,         /* millimetres an hour */

@@ -82,7 +82,7 @@ bool lm_view_find(const struct lm_view *v, struct lm_position position, struct l
 
 /* The position under an offset; one farther than 250 km from the origin is brought to 250 km. Cost:
  * about 1,000 instructions. */
-struct lm_position lm_view_place(const struct lm_view *v, struct lm_offset offset);
+struct lm_position lm_view_position(const struct lm_view *v, struct lm_offset offset);
 
 /* Geometry for lm_scan_conv_sector of lines whose cells are `cell_m_q8` long, and whose first cell
  * begins `edge_m_q8` from the origin. */

@@ -104,7 +104,7 @@ uint32_t lm_page_step_range(struct lm_page *p, int32_t step);
  * - set_knob: -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION. */
 uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm);
 uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth);
-uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t field);
+uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t fov);
 uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db);
 uint32_t lm_page_set_knob(struct lm_page *p, int32_t knob);
 

@@ -339,9 +339,9 @@ TEST(both_ends_of_every_range_are_taken_and_the_next_float_is_not)
         const float low = (float)row->low, high = (float)row->high;
         /* The resolution of the metres inside is 1/64: a float beside the end may round onto it. */
         const float above =
-            lm_bus_fields[row->field].unit == LM_BUS_Q6 ? high + 1 : nextafterf(high, INFINITY);
+            lm_bus_fields[row->field].unit == LM_BUS_M_Q6 ? high + 1 : nextafterf(high, INFINITY);
         const float below = low == 0 ? -0.001f
-                            : lm_bus_fields[row->field].unit == LM_BUS_Q6
+                            : lm_bus_fields[row->field].unit == LM_BUS_M_Q6
                                 ? low - 1
                                 : nextafterf(low, -INFINITY);
         assert_int_equal(take(&c, bus_float(field, low, 0), &event), LM_BUS_VALUE);

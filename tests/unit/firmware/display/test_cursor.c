@@ -76,7 +76,7 @@ TEST(the_place_under_the_origin_is_the_origin)
     for (size_t o = 0; o < 3; o++) {
         struct scene s = {0};
         look_from(&s, origins[o], 30);
-        const struct lm_position there = lm_view_place(&s.view, (struct lm_offset){0, 0});
+        const struct lm_position there = lm_view_position(&s.view, (struct lm_offset){0, 0});
         assert_true(distance(there, origins[o]) < 0.1);
     }
 }
@@ -95,7 +95,7 @@ TEST(a_place_is_where_geodesics_put_it_within_a_pixel)
                 /* lm_geo_inverse: 0.2 % of the distance; 210 pixels of it are half a pixel. */
                 assert_true(fabs(found.x_px_q8 - r * sin(turn * pi / 180)) < 128);
                 assert_true(fabs(found.y_px_q8 - r * cos(turn * pi / 180)) < 128);
-                const struct lm_position back = lm_view_place(&s.view, found);
+                const struct lm_position back = lm_view_position(&s.view, found);
                 assert_true(distance(back, there) < 0.003 * part * RANGE_M + 2);
             }
         }

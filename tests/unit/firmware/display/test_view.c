@@ -170,7 +170,7 @@ TEST(the_place_of_the_origin_is_the_origin)
     const struct lm_view views[] = {lm_view_of_sector(&frame, &from, 18520),
                                     lm_view_of_patch(&frame, from.position, from.up, 256, 5000)};
     for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
-        const struct lm_position place = lm_view_place(&views[i], (struct lm_offset){0, 0});
+        const struct lm_position place = lm_view_position(&views[i], (struct lm_offset){0, 0});
         assert_memory_equal(&place, &from.position, sizeof place);
     }
 }

@@ -116,7 +116,7 @@ static struct rig *steer_to_pixel(int32_t x, int32_t y)
     run(r, 1);
     const struct lm_view *view = &r->unit.picture.view;
     const struct lm_offset under = {(x - view->at.x) * 256 + 128, (view->at.y - y) * 256 - 128};
-    const struct lm_position place = lm_view_place(view, under);
+    const struct lm_position place = lm_view_position(view, under);
     command(r, (struct lm_control){.kind = LM_CONTROL_STEERPOINT, .steerpoint = {true, place}});
     run(r, 0.5);
     assert_true(says(r, "TTG"));
