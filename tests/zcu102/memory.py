@@ -103,6 +103,12 @@ def sizes(image=IMAGE):
     return rows
 
 
+def unpadded(image=IMAGE):
+    """Bytes of text and rodata without what fills their last pages."""
+    at = symbols(image)
+    return sum(at[f"__{name}_last"] - at[f"__{name}_start"] for name in ("text", "rodata"))
+
+
 def budgets(rows, main):
     """(what, bytes, most) of docs/EQUATIONS.md's memory budgets."""
     apart = ("tile cache", "framebuffer, drawn", "framebuffers, scanned out", "text", "rodata")
@@ -128,7 +134,8 @@ def main():
     for what, size, most in fits:
         failed |= size > most
         print(f"{what:48}{size:12,} of {most:12,}  {'OVER BUDGET' if size > most else 'fits'}")
-    figures.record("size", [(size, "bytes", what) for what, size, _ in fits])
+    figures.record("size", [(size, "bytes", what) for what, size, _ in fits] +
+                   [(unpadded(), "bytes", "text + rodata, last pages without padding")])
     return 1 if failed else 0
 
 
