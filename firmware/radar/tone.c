@@ -7,8 +7,8 @@
 #include "lm/kernels_radar.h"
 #include "lm/status.h"
 
-_Static_assert((int)LM_TONE_LINES == LM_K_TONE_LINES &&
-                   (int)LM_TONE_PLACES_LOG2 == LM_K_TONE_PLACES_LOG2,
+_Static_assert((int)LM_TONE_PIECES == LM_K_TONE_PIECES &&
+                   (int)LM_TONE_PIECE_STEPS_LOG2 == LM_K_TONE_PIECE_STEPS_LOG2,
                "a curve has what lm/kernels_radar.h wants");
 
 /* Window from black to white: white lies `span_db_q8` above black, at step `last`. */
@@ -41,24 +41,25 @@ static void set_steps(struct lm_tone *t, const struct window *w)
  * much as its piece's slope may lose by rounding down. */
 static int32_t knot_grey_q8(const struct window *w, int32_t step)
 {
-    const int32_t white_grey_q8 = 255 * 256 + 128 + LM_TONE_PLACES - 1;
+    const int32_t white_grey_q8 = 255 * 256 + 128 + LM_TONE_PIECE_STEPS - 1;
     return step < w->last ? (int32_t)(curve_grey_q16(w, step) >> 8) + 128 : white_grey_q8;
 }
 
-/* Replace the curve by chords of LM_TONE_PLACES steps. Slopes are rounded down, so no chord ends
- * above the start of the next. */
-static void set_lines(struct lm_tone *t, const struct window *w)
+/* Replace the curve by chords of LM_TONE_PIECE_STEPS steps. Slopes are rounded down, so no chord
+ * ends above the start of the next. */
+static void set_pieces(struct lm_tone *t, const struct window *w)
 {
     int32_t base = knot_grey_q8(w, 0);
-    for (int32_t n = 0; n < LM_TONE_LINES; n++) {
-        const int32_t first = n * LM_TONE_PLACES, next = knot_grey_q8(w, first + LM_TONE_PLACES);
-        const int32_t steps = fx_clamp_i32(w->last - first, 1, LM_TONE_PLACES);
+    for (int32_t n = 0; n < LM_TONE_PIECES; n++) {
+        const int32_t first = n * LM_TONE_PIECE_STEPS,
+                      next = knot_grey_q8(w, first + LM_TONE_PIECE_STEPS);
+        const int32_t steps = fx_clamp_i32(w->last - first, 1, LM_TONE_PIECE_STEPS);
         const int32_t slope = (next - base) / steps;
-        const int32_t shifted = base - n % 8 * LM_TONE_PLACES * slope;
-        t->lines[0][n] = (uint8_t)shifted;
-        t->lines[1][n] = (uint8_t)(shifted >> 8);
-        t->lines[2][n] = (uint8_t)slope;
-        for (int32_t k = 0; k < LM_TONE_PLACES; k++) {
+        const int32_t shifted = base - n % 8 * LM_TONE_PIECE_STEPS * slope;
+        t->pieces[0][n] = (uint8_t)shifted;
+        t->pieces[1][n] = (uint8_t)(shifted >> 8);
+        t->pieces[2][n] = (uint8_t)slope;
+        for (int32_t k = 0; k < LM_TONE_PIECE_STEPS; k++) {
             t->grey[first + k] = (base + k * slope) >> 8;
         }
         base = next;
@@ -87,9 +88,9 @@ int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
     t->black_db_q8 = config->black_db_q8;
     t->white_db_q8 = config->white_db_q8;
     t->step_log2 = (uint8_t)w.step_log2;
-    t->has_lines = is_gentle(&w);
-    if (t->has_lines) {
-        set_lines(t, &w);
+    t->has_pieces = is_gentle(&w);
+    if (t->has_pieces) {
+        set_pieces(t, &w);
     } else {
         set_steps(t, &w);
     }
@@ -102,6 +103,6 @@ void lm_tone_run(const struct lm_tone *t, const int32_t *level_db_q8, uint8_t *g
                                           .white_db_q8 = t->white_db_q8,
                                           .step_log2 = t->step_log2,
                                           .grey_of_step = t->grey,
-                                          .lines = t->has_lines ? t->lines : NULL};
+                                          .pieces = t->has_pieces ? t->pieces : NULL};
     lm_k_tone(&curve, level_db_q8, grey, cells);
 }

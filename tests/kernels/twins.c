@@ -387,7 +387,7 @@ static void run_tone(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_tone_curve curve = {in->tone.black_db_q8, in->tone.white_db_q8,
                                           in->tone.step_log2, in->tone.grey,
-                                          in->tone.has_lines ? in->tone.lines : NULL};
+                                          in->tone.has_pieces ? in->tone.pieces : NULL};
     uint8_t grey[ROOM];
     memset(grey, UNTOUCHED & 0xff, sizeof grey);
     TWIN(lm_k_tone)(&curve, in->level_db_q8, grey, in->cells);

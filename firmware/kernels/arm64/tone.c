@@ -23,7 +23,7 @@ static inline uint16x8_t neon_step(const struct tone_window *w, const int32_t *l
 void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t *restrict grey,
                uint32_t cells)
 {
-    if (!t->lines) {
+    if (!t->pieces) {
         lm_k_tone_c(t, level_q8, grey, cells);
         return;
     }
@@ -31,14 +31,14 @@ void lm_k_tone(const struct lm_k_tone_curve *t, const int32_t *level_q8, uint8_t
     const struct tone_window window = {
         vdupq_n_s16((int16_t)t->black_db_q8), vdupq_n_s16((int16_t)t->white_db_q8),
         vdupq_n_u16((uint16_t)start_q8), vdupq_n_s16((int16_t)-t->step_log2)};
-    const uint8x16x4_t lows = vld1q_u8_x4(t->lines[0]), highs = vld1q_u8_x4(t->lines[1]);
-    const uint8x16x4_t slopes = vld1q_u8_x4(t->lines[2]);
+    const uint8x16x4_t lows = vld1q_u8_x4(t->pieces[0]), highs = vld1q_u8_x4(t->pieces[1]);
+    const uint8x16x4_t slopes = vld1q_u8_x4(t->pieces[2]);
     const uint32_t whole = cells & ~15u;
     for (size_t i = 0; i < whole; i += 16) {
         const uint16x8_t first = neon_step(&window, level_q8 + i);
         const uint16x8_t second = neon_step(&window, level_q8 + i + 8);
-        const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(first, LM_K_TONE_PLACES_LOG2), second,
-                                                 LM_K_TONE_PLACES_LOG2);
+        const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(first, LM_K_TONE_PIECE_STEPS_LOG2),
+                                                 second, LM_K_TONE_PIECE_STEPS_LOG2);
         const uint8x16_t place =
             vuzp1q_u8(vreinterpretq_u8_u16(first), vreinterpretq_u8_u16(second));
         const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);

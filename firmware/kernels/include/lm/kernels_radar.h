@@ -63,7 +63,7 @@ void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32
 void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
                          const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
 
-enum { LM_K_TONE_LINES = 64, LM_K_TONE_PLACES_LOG2 = 5 };
+enum { LM_K_TONE_PIECES = 64, LM_K_TONE_PIECE_STEPS_LOG2 = 5 };
 
 /* A tone curve from black to white. */
 struct lm_k_tone_curve {
@@ -71,10 +71,10 @@ struct lm_k_tone_curve {
     int32_t step_log2;                /* 0..5: a step is 2^step_log2 of 1/256 dB */
     const int32_t *grey_of_step;      /* 0..255 of each step from black, step 0, to white */
 
-    /* NULL, or the same curve in LM_K_TONE_LINES straight lines, for machines that look up 64 bytes
-     * at once. Step 32 n + k has (base[n] + k slope[n]) / 256, rounded down. Rows: lower byte and
-     * upper byte of base[n] - 32 (n mod 8) slope[n], modulo 2^16; slope[n]. */
-    const uint8_t (*lines)[LM_K_TONE_LINES];
+    /* NULL, or the same curve in LM_K_TONE_PIECES straight lines, for machines that look up 64
+     * bytes at once. Step 32 n + k has (base[n] + k slope[n]) / 256, rounded down. Rows: lower byte
+     * and upper byte of base[n] - 32 (n mod 8) slope[n], modulo 2^16; slope[n]. */
+    const uint8_t (*pieces)[LM_K_TONE_PIECES];
 };
 
 /* Grey of each level; any level is allowed. Writes no entry behind the last cell. Cost: 2 a cell,

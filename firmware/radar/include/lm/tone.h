@@ -8,12 +8,12 @@
 
 #include "lm/radar.h"
 
-/* Size of the curve's table, and of its straight pieces (code: lines). */
+/* Size of the curve's table, and of its straight pieces. */
 enum {
-    LM_TONE_LINES = 64,
-    LM_TONE_PLACES_LOG2 = 5,
-    LM_TONE_PLACES = 1 << LM_TONE_PLACES_LOG2, /* steps in a straight piece */
-    LM_TONE_STEPS = LM_TONE_LINES * LM_TONE_PLACES
+    LM_TONE_PIECES = 64,
+    LM_TONE_PIECE_STEPS_LOG2 = 5,
+    LM_TONE_PIECE_STEPS = 1 << LM_TONE_PIECE_STEPS_LOG2, /* steps in a straight piece */
+    LM_TONE_STEPS = LM_TONE_PIECES * LM_TONE_PIECE_STEPS
 };
 
 /* Curve from black, step 0, to white, step 256..2047. White is at step 1024 or above if the curve
@@ -21,7 +21,7 @@ enum {
 struct lm_tone {
     int16_t black_db_q8, white_db_q8;
     uint8_t step_log2; /* 0..5: a step is 2^step_log2 / 256 dB */
-    bool has_lines;    /* true if `lines` holds the curve too */
+    bool has_pieces;   /* true if `pieces` holds the curve too */
     /* Grey of each step up to white. The entries are 32 bits wide because vector machines gather
      * 32-bit words. */
     int32_t grey[LM_TONE_STEPS];
@@ -29,7 +29,7 @@ struct lm_tone {
      * has the grey (base[n] + k slope[n]) / 256, rounded down. Rows 0 and 1 are the low and the
      * high byte of base[n] - 32 (n mod 8) slope[n], modulo 2^16; row 2 is slope[n]. Only curves of
      * 4 dB or more with gammas of 1 to 3 have them: others are too steep at one of their ends. */
-    uint8_t lines[3][LM_TONE_LINES];
+    uint8_t pieces[3][LM_TONE_PIECES];
 };
 
 /* Compute the curve. Returns LM_OK, or LM_ERR_RANGE with *t unchanged if
