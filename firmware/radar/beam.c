@@ -63,6 +63,9 @@ static uint32_t weigh(const struct lm_beam *b, const struct lm_radar *radar, int
     return sum;
 }
 
+/* w_n = 2^(-8 x^2) / sum, x = N (a - a_n) / B, over the eight samples around the azimuth. They are
+ * scaled by 2^48 / sum; a weight is at most the sum, so no product is above 2^48. What rounding
+ * leaves of 65536 goes to a middle tap. */
 void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                       uint32_t ratio_q8, struct lm_beam_taps *taps)
 {

@@ -232,6 +232,8 @@ void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *
     }
 }
 
+/* Loss of a scatterer: the rain on the ray of its line before its true range, in metres * 256,
+ * times the loss a metre in Q32. */
 void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_geometry *g,
                           struct lm_target_patch *target_patch)
 {

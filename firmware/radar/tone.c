@@ -73,6 +73,8 @@ static bool is_gentle(const struct window *w)
     return w->last >= LM_TONE_STEPS / 2 && w->gamma_q8 >= 256 && w->gamma_q8 <= 3 * 256;
 }
 
+/* The step is the smallest power of two times 1/256 dB with which the window fits LM_TONE_STEPS;
+ * white lies at the nearest step. A window of 255 dB, below 2^16, needs steps of 2^5. */
 int lm_tone_set(struct lm_tone *t, const struct lm_tone_config *config)
 {
     const int32_t span_db_q8 = config->white_db_q8 - config->black_db_q8;

@@ -78,6 +78,8 @@ static void add_echo(const struct met *m, const struct lm_shower_cells *reach,
     }
 }
 
+/* All showers add their losses before any echo is added: the echo of one is weakened by the rain of
+ * another before it. Echoes are volumes; the receiver's volume turns them into gamma. */
 void lm_weather_line(struct lm_weather *w, const struct lm_environment *environment,
                      const struct lm_receiver *receiver, const struct lm_radar *radar,
                      struct lm_position antenna, fx_bam_t azimuth)

@@ -89,6 +89,11 @@ static int32_t side_gain_db_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t 
            fx_db_q8(65536);
 }
 
+/* Column and row of a cell `right` and `beyond` of the target's origin, with k pixels to a cell and
+ * the chip turned by d:
+ *
+ *     column = column0 + k ( right cos d + beyond sin d)
+ *     row    = row0    + k (-right sin d + beyond cos d) */
 void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *slot, fx_bam_t turn,
                        uint32_t cell_mm, const struct lm_smear *smear)
 {

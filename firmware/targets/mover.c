@@ -67,6 +67,9 @@ int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t ba
     return (int32_t)((int64_t)speed_mm_s * fx_cos_q30(heading - back) >> 30);
 }
 
+/* o' = acos(cos o + v / V), on the same side of the velocity as o; the shift is |o| - o', with the
+ * sign of o. The sine of o' is sqrt(1 - cos^2 o'), and an arc tangent of both is exact near 0 and
+ * 180 degrees. */
 bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int32_t *shift)
 {
     *shift = 0;

@@ -199,6 +199,8 @@ uint32_t lm_target_returns(const struct lm_target *t, const struct lm_target_vie
 
 /* ---- sums and draws ---- */
 
+/* |sum of a_i exp(j phi_i)|^2 with a_i = sqrt(sigma_i / sigma_max), then times sigma_max. Relative
+ * to the strongest return no sum can overflow, and the weak ones keep what counts. */
 int32_t lm_returns_sum_dbsm_q8(const struct lm_return *returns, uint32_t mask)
 {
     int32_t strongest_dbsm_q8 = LM_RCS_NONE_DBSM_Q8;

@@ -45,6 +45,10 @@ struct cover {
     struct wedge still, mover; /* azimuths of still targets, and of movers before displacement */
 };
 
+/* The candidates' positions are relative to where they were selected, and the antenna has moved
+ * since. A BAM of latitude is 2 pi a / 2^32 metres; one of longitude is that times the cosine of
+ * the latitude. Ranges are widened by the way gone, and by a cell at the near end. dlat and dlon
+ * are within 2^24; the products are below 2^51. */
 static struct cover cover_of(const struct lm_target_line *line, struct lm_position from)
 {
     /* 2 pi * 6,371 km / 2^32 in metres * 256, with an error of 0.6 %. */

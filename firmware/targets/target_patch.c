@@ -75,6 +75,14 @@ static int32_t cell_at(int32_t place_cells_q8)
     return (place_cells_q8 + 128) >> 8;
 }
 
+/* Scatterer of one return. s is its ground range, x its offset across, y its height above the
+ * reference, v the displacement by Doppler. In cells from the middle of cell 0 of line 0:
+ *
+ *     across = x + v + half the lines
+ *     along  = s - near end - y tan(psi)        the last term is layover
+ *
+ * Its level is its cross section over the area of a clutter cell. Lengths are below 2^29; times 256
+ * they need 64 bits. */
 static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
                                               const struct lm_target_candidate *candidate,
                                               const struct patch_position *position,

@@ -2,17 +2,17 @@
  *
  *     stage                        sector (lm_sector_...)       patch (lm_sar_...)
  *     ---------------------------- ---------------------------- -----------------------------
- *     ground before the picture    lm_foreground_horizon               lm_foreground_horizon
+ *     foreground                   lm_foreground_horizon        lm_foreground_horizon
  *     tiles to cells               lm_line_trace                lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     texture and sea state        lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
- *     chips of targets             with the points below        lm_target_patch_shade, _add
+ *     chips of targets             with the scatterers below    lm_target_patch_shade, _add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_speckle_floor_run
  *     speckle                      lm_speckle_run               lm_speckle_run, _floor_run
- *     points of targets            lm_line_add_targets          lm_target_patch_add_scatterers
- *     elevation pattern            lm_antenna_pattern_apply             -
+ *     scatterers of targets        lm_line_add_targets          lm_target_patch_add_scatterers
+ *     elevation pattern            lm_antenna_pattern_apply     -
  *     ground range to slant range  lm_slant_run                 -
  *     azimuth                      lm_beam_sum                  lm_defocus_run
  *     pulse, noise, rain, jammers  lm_receiver_run              -
