@@ -183,6 +183,7 @@ static struct lm_ground_parabola parabola_of(fx_bam_t left, fx_bam_t middle, fx_
 void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent)
 {
+    /* Each of the nine points is found by its own azimuth and distance from the position. */
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, position);
     for (int row = 0; row < 3; row++) {

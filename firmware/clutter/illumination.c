@@ -118,12 +118,11 @@ void lm_class_lut_set(struct lm_class_lut *class_lut, const struct lm_illuminati
 
 /* Horizon at the start of a line, in its grid's format.
  *
- * It is limited to 2^30 below the first tangent, so that the rise of the first cell fits 32 bits. A
- * horizon that is lower makes no difference to what is lit.
- *
  * Range: tangents are apparent heights times s_0 / s, in steps of 2^-14 m. Ground is -16..33 km
  * high, structures 6.6 km, the antenna is within 30 km, and the Earth drops by 9.4 km in 400 km.
- * Any two heights are less than 70 km = 2^30.1 steps apart, so that no rise takes 31 bits. */
+ * Any two heights are less than 70 km = 2^30.1 steps apart, so that the rise between two cells fits
+ * 32 bits. The start is limited to 2^30 below the first tangent, so that the first rise fits, too.
+ */
 static int32_t start_tangent(const struct lm_range_grid *grid, int32_t first_tangent,
                              lm_horizon_q40_t horizon)
 {

@@ -3,8 +3,8 @@
  *     power -> dB                    fx_db_q8, fx_db_q8_u64; fx_db_q8_vec, fx_db_q8_vec_i32
  *     dB -> power                    fx_power_q16_from_db_q8; fx_power_q24_vec, fx_power_q32_vec
  *     sum of two powers, all in dB   fx_db_q8_sum_vec
- *     base 2                         fx_log2_q16, fx_log2_q16_u64, fx_exp2_q16,
- * fx_db_q8_of_log2_q16
+ *     base 2                         fx_log2_q16, fx_log2_q16_u64, fx_exp2_q16
+ *     base 2 -> dB                   fx_db_q8_of_log2_q16
  *
  * Functions that end in _vec are for loops over many numbers. They neither branch nor count zeros,
  * so that a compiler can make vectors of the loop. They are a little less exact than the others.

@@ -44,7 +44,7 @@ extern const int32_t fx_table_db_steps_q13[4096];
 extern const uint8_t fx_table_power_lines[3][16];
 extern const uint32_t fx_table_power_q31[256];
 
-/* What the smaller of two powers adds to the larger, d = (i + 0.5) / 16 dB below it:
+/* Decibels that a power adds to a larger one, d = (i + 0.5) / 16 dB above it:
  * 10 * log10(1 + 10^(-d / 10)) dB. Pieces in Q13, values in Q8: see fx_db_q8_sum_vec. */
 extern const uint8_t fx_table_db_sum_lines[3][64];
 extern const int32_t fx_table_db_sum_q8[512];

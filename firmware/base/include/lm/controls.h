@@ -32,7 +32,6 @@ enum lm_rocker { LM_ROCKER_GAIN, LM_ROCKER_SYM, LM_ROCKER_BRT, LM_ROCKER_CON, LM
 enum { LM_OSBS = 20, LM_BUTTONS = LM_OSBS + 2 * LM_ROCKERS };
 
 /* Number of a rocker's key for more or less, LM_OSBS + 1..LM_BUTTONS. */
-
 static inline int32_t lm_rocker_button(enum lm_rocker rocker, bool is_more)
 {
     return LM_OSBS + 1 + 2 * (int32_t)rocker + !is_more;

@@ -1,15 +1,13 @@
 /* Noise table: random draws of Gamma variables in decibels, for speckle, texture and receiver
  * noise. Law: docs/EQUATIONS.md, "Speckle and texture", under "Draws".
  *
- * A line draws block by block, eight neighbouring cells at a time. One hash chooses where a block
- * starts in the table, and its cells take eight neighbouring entries:
+ * A line draws block by block, eight neighbouring cells at a time. A hash of column, block and
+ * epoch chooses where a block starts in the table. Its cells take eight neighbouring entries:
  *
- *     cells of a line      |0 1 2 3 4 5 6 7|8 9 ...       |16 ...
- *                               block 0         block 1       block 2
- *     hash of column, block, epoch   \              |              |
- *                                     v             v              v
- *     a row of the table   [0 ....... e0 .......... e1 ... 1023][0 .. 7 repeated]
- *                                     |<- 8 ->|
+ *                    block 0: hash = 3            block 1: hash = 1020
+ *                    v                            v
+ *     entries |0 1 2 3 4 5 6 7 8 9 10 11 ... 1019 1020 1021 1022 1023|0 1 2 3 4 5 6 7|
+ *                    |<-cells 0..7->|             |<----- cells 8..15 ----->|
  *
  * The entries form a ring: the first ones are repeated behind the last, so that a block may start
  * at any entry. */

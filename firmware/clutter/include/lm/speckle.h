@@ -48,8 +48,9 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
                     const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_db_q8);
 
 /* The stages below work on whole pairs of blocks, of LM_NOISE_BLOCK cells each. Arrays of levels
- * and cells have LM_CELLS_ROOM entries, and those behind the last cell mean nothing afterwards.
- * Pointers are borrowed for the call. Costs: see docs/benchmarks.md. */
+ * and cells have room for whole pairs, and what is written behind the last cell means nothing.
+ * `cells` is at most LM_CELLS_MAX. Pointers are borrowed for the call. Costs: see
+ * docs/benchmarks.md. */
 
 /* Multiply the power of each cell by the texture of its class, in place. `cell` is that of struct
  * lm_scan_line. A level changes by -113..34 dB, of which -64 is for a loss. Hence LM_LEVEL_SHADOW

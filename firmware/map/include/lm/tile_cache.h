@@ -7,16 +7,18 @@
  *
  * States of a slot (enum lm_slot_state):
  *
- *               want                  entry and record are good
- *       FREE ---------> READING ----------------------------------> RESIDENT
- *         |              ^ |  |
- *         |              | |  +--- the image has no such tile ----> ABSENT
- *         |   want, 1 s  | |
- *         |    or later  | v
- *         |             BAD  (a read failed, or a check)
- *         |
- *     The slot used longest ago gets the next tile: RESIDENT, ABSENT or BAD, never READING and
- *     never a resident tile of the coarsest LOD.
+ *               want  +---------+  entry and record are good
+ *      FREE --------->|         |---------------------------------> RESIDENT
+ *                     |         |  the image has no such tile
+ *                     | READING |---------------------------------> ABSENT
+ *                     |         |  a read or a check failed
+ *                     |         |---------------------------------> BAD
+ *                     +---------+                                    |
+ *                          ^         want, LM_TILE_RETRY_US later    |
+ *                          +-----------------------------------------+
+ *
+ * If no slot is free, the one used longest ago gets the next tile. That may be RESIDENT, ABSENT or
+ * BAD, but not READING, and not a resident tile of the coarsest LOD.
  *
  * Flow of a request:
  *
@@ -115,10 +117,10 @@ struct lm_tile_cache {
 
     /* Counts since the start. They only grow, modulo their size. */
     struct {
-        uint32_t not_exact;   /* lookups not answered by the tile asked for */
+        uint32_t not_exact;   /* look-ups not answered by the tile itself */
         uint32_t misses;      /* those of `not_exact` whose tile is in the image */
         uint32_t substituted; /* misses answered by an ancestor */
-        uint32_t off_map;     /* lookups without a resident ancestor: no data there */
+        uint32_t off_map;     /* look-ups without a resident ancestor: no data there */
         uint32_t tiles_read;
         uint32_t io_errors;        /* reads that failed */
         uint32_t corrupt;          /* records or directory entries that failed their check */
