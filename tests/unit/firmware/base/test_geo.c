@@ -2,31 +2,14 @@
 #include "check.h"
 #include "hs/angle.h"
 #include "lm/geo.h"
+#include "wgs84.h"
 
-#include <geodesic.h>
 #include <math.h>
 #include <stdlib.h>
 
 static struct lm_position place_of(double latitude, double longitude)
 {
     return (struct lm_position){hs_bam(latitude), hs_bam(longitude)};
-}
-
-static double metres_between(double lat1, double lon1, double lat2, double lon2)
-{
-    struct geod_geodesic earth;
-    double distance;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_inverse(&earth, lat1, lon1, lat2, lon2, &distance, NULL, NULL);
-    return distance;
-}
-
-static void geodesic_direct(double lat, double lon, double azimuth, double metres, double *to_lat,
-                            double *to_lon)
-{
-    struct geod_geodesic earth;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, lat, lon, azimuth, metres, to_lat, to_lon, NULL);
 }
 
 /* Worst distance between our direct problem and the geodesic, over azimuths. */
@@ -39,10 +22,10 @@ static double worst_direct(double lat, double lon, double metres)
     for (int deg = 0; deg < 360; deg += 7) {
         const struct lm_position p = lm_geo_direct(&o, FX_BAM_DEG(deg), (uint32_t)(metres * 256));
         double to_lat, to_lon;
-        geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg, metres,
-                        &to_lat, &to_lon);
+        wgs84_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg, metres, &to_lat,
+                     &to_lon);
         const double miss =
-            metres_between(to_lat, to_lon, hs_degrees(p.latitude), hs_degrees(p.longitude));
+            wgs84_metres(to_lat, to_lon, hs_degrees(p.latitude), hs_degrees(p.longitude));
         worst = fmax(worst, miss);
     }
     return worst;
@@ -103,10 +86,10 @@ static double worst_cell(double lat, double lon, double metres, uint32_t cells)
             const struct lm_position p = {(fx_bam_t)(path.latitude >> 32),
                                           (fx_bam_t)(path.longitude >> 32)};
             double to_lat, to_lon;
-            geodesic_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg,
-                            (i + 0.5) * metres / cells, &to_lat, &to_lon);
-            worst = fmax(worst, metres_between(to_lat, to_lon, hs_degrees(p.latitude),
-                                               hs_degrees(p.longitude)));
+            wgs84_direct(hs_degrees(start.latitude), hs_degrees(start.longitude), deg,
+                         (i + 0.5) * metres / cells, &to_lat, &to_lon);
+            worst = fmax(worst, wgs84_metres(to_lat, to_lon, hs_degrees(p.latitude),
+                                             hs_degrees(p.longitude)));
         }
     }
     return worst;
@@ -143,13 +126,13 @@ static double worst_patch_cell(double lat, double lon, const struct lm_ground_ex
             const double across = (line + 0.5 - 128) * side_m / 128,
                          along = near_m + (i + 0.5) * cell_m;
             double to_lat, to_lon;
-            geodesic_direct(hs_degrees(centre.latitude), hs_degrees(centre.longitude),
-                            azimuth + atan2(across, along) * 180 / 3.14159265358979,
-                            hypot(across, along), &to_lat, &to_lon);
+            wgs84_direct(hs_degrees(centre.latitude), hs_degrees(centre.longitude),
+                         azimuth + atan2(across, along) * 180 / 3.14159265358979,
+                         hypot(across, along), &to_lat, &to_lon);
             const struct lm_position p = {(fx_bam_t)(path.latitude >> 32),
                                           (fx_bam_t)(path.longitude >> 32)};
-            worst = fmax(worst, metres_between(to_lat, to_lon, hs_degrees(p.latitude),
-                                               hs_degrees(p.longitude)));
+            worst = fmax(worst, wgs84_metres(to_lat, to_lon, hs_degrees(p.latitude),
+                                             hs_degrees(p.longitude)));
         }
     }
     return worst;
@@ -175,7 +158,7 @@ TEST(the_inverse_problem_finds_distance_and_azimuth)
 {
     for (int deg = 0; deg < 360; deg += 13) {
         double to_lat, to_lon;
-        geodesic_direct(52, 179.9, deg, 60000, &to_lat, &to_lon);
+        wgs84_direct(52, 179.9, deg, 60000, &to_lat, &to_lon);
         uint32_t distance_q8;
         fx_bam_t azimuth;
         lm_geo_inverse(place_of(52, 179.9), place_of(to_lat, to_lon), &distance_q8, &azimuth);

@@ -2,8 +2,8 @@
 #include "check.h"
 #include "hs/angle.h"
 #include "lm/cursor.h"
+#include "wgs84.h"
 
-#include <geodesic.h>
 #include <math.h>
 
 enum { SIDE = 480, RANGE_M = 37040 };
@@ -17,22 +17,16 @@ static struct lm_position place_at(double lat, double lon)
 
 static struct lm_position moved(struct lm_position from, double azimuth, double metres)
 {
-    struct geod_geodesic earth;
-    double lat, lon, back;
-    geod_init(&earth, 6378137, 1 / 298.257223563);
-    geod_direct(&earth, hs_degrees(from.latitude), hs_degrees(from.longitude), azimuth, metres,
-                &lat, &lon, &back);
+    double lat, lon;
+    wgs84_direct(hs_degrees(from.latitude), hs_degrees(from.longitude), azimuth, metres, &lat,
+                 &lon);
     return place_at(lat, lon);
 }
 
 static double distance(struct lm_position a, struct lm_position b)
 {
-    struct geod_geodesic earth;
-    double metres, there, back;
-    geod_init(&earth, 6378137, 1 / 298.257223563);
-    geod_inverse(&earth, hs_degrees(a.latitude), hs_degrees(a.longitude), hs_degrees(b.latitude),
-                 hs_degrees(b.longitude), &metres, &there, &back);
-    return metres;
+    return wgs84_metres(hs_degrees(a.latitude), hs_degrees(a.longitude), hs_degrees(b.latitude),
+                        hs_degrees(b.longitude));
 }
 
 /* A cursor, the aircraft it is moved against, and the sector on the glass. */

@@ -4,8 +4,8 @@
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/nav.h"
+#include "wgs84.h"
 
-#include <geodesic.h>
 #include <stdio.h>
 
 static const double semi_major = 6378137.0, flattening = 1 / 298.257223563;
@@ -81,16 +81,6 @@ static void fly_in_doubles(const struct course *c, double seconds, double *latit
     *longitude = lambda / radian;
 }
 
-static double metres_between(double latitude_a, double longitude_a, double latitude_b,
-                             double longitude_b)
-{
-    struct geod_geodesic earth;
-    geod_init(&earth, semi_major, flattening);
-    double metres;
-    geod_inverse(&earth, latitude_a, longitude_a, latitude_b, longitude_b, &metres, NULL, NULL);
-    return metres;
-}
-
 /* The unit's answer after `seconds`, and the velocity and start that it believes, which the bus
  * rounded. */
 static struct lm_ownship fly_in_firmware(struct course *c, uint64_t age_us)
@@ -127,8 +117,8 @@ TEST(two_seconds_of_constant_velocity_are_within_2_cm)
             double latitude_deg, longitude_deg;
             fly_in_doubles(&c, 2, &latitude_deg, &longitude_deg);
             const double error =
-                metres_between(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
-                               hs_degrees(ownship.longitude));
+                wgs84_metres(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
+                             hs_degrees(ownship.longitude));
             worst = fmax(worst, error);
         }
     }
@@ -138,8 +128,6 @@ TEST(two_seconds_of_constant_velocity_are_within_2_cm)
 
 TEST(two_seconds_are_within_17_cm_of_the_geodesic)
 {
-    struct geod_geodesic earth;
-    geod_init(&earth, semi_major, flattening);
     double worst = 0, worst_below_60 = 0;
     for (int latitude = -80; latitude <= 80; latitude += 5) {
         for (int azimuth = 0; azimuth < 360; azimuth += 5) {
@@ -151,11 +139,10 @@ TEST(two_seconds_are_within_17_cm_of_the_geodesic)
             };
             const struct lm_ownship ownship = fly_in_firmware(&c, 2000000);
             double latitude_deg, longitude_deg;
-            geod_direct(&earth, latitude, 179.999, azimuth, 600, &latitude_deg, &longitude_deg,
-                        NULL);
+            wgs84_direct(latitude, 179.999, azimuth, 600, &latitude_deg, &longitude_deg);
             const double error =
-                metres_between(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
-                               hs_degrees(ownship.longitude));
+                wgs84_metres(latitude_deg, longitude_deg, hs_degrees(ownship.latitude),
+                             hs_degrees(ownship.longitude));
             worst = fmax(worst, error);
             worst_below_60 =
                 latitude >= -60 && latitude <= 60 ? fmax(worst_below_60, error) : worst_below_60;
@@ -515,14 +502,14 @@ static struct ride fly_on_floats(double latitude, double north_m_s, double east_
         if (t >= 1000000) {
             ride.worst_hop_m =
                 fmax(ride.worst_hop_m,
-                     metres_between(hs_degrees(before.latitude), hs_degrees(before.longitude),
-                                    hs_degrees(now.latitude), hs_degrees(now.longitude)));
+                     wgs84_metres(hs_degrees(before.latitude), hs_degrees(before.longitude),
+                                  hs_degrees(now.latitude), hs_degrees(now.longitude)));
             /* What the last fix, carried on for 100 ms, would have been. */
             const struct course leg = {told_latitude, told_longitude, 0, north_m_s, east_m_s};
             double carried_latitude, carried_longitude;
             fly_in_doubles(&leg, 0.1, &carried_latitude, &carried_longitude);
-            ride.worst_raw_hop_m = fmax(
-                ride.worst_raw_hop_m, metres_between(carried_latitude, carried_longitude,
+            ride.worst_raw_hop_m = fmax(ride.worst_raw_hop_m,
+                                        wgs84_metres(carried_latitude, carried_longitude,
                                                      (float)true_latitude, (float)true_longitude));
         }
         told_latitude = (float)true_latitude;

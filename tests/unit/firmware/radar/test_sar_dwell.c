@@ -4,8 +4,8 @@
 #include "unit_rig.h"
 
 #include "hs/angle.h"
+#include "wgs84.h"
 
-#include <geodesic.h>
 #include <math.h>
 
 enum { CELLS = 256 };
@@ -17,11 +17,9 @@ static const double wavelength_m = 0.031228; /* 9.6 GHz */
 static struct lm_control patch_at(const struct rig *r, double bearing_deg, double range_m,
                                   double cell_m)
 {
-    struct geod_geodesic earth;
     double lat, lon;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, hs_degrees(r->unit.ownship.latitude), hs_degrees(r->unit.ownship.longitude),
-                bearing_deg, range_m, &lat, &lon, NULL);
+    wgs84_direct(hs_degrees(r->unit.ownship.latitude), hs_degrees(r->unit.ownship.longitude),
+                 bearing_deg, range_m, &lat, &lon);
     return (struct lm_control){.kind = LM_CONTROL_SAR,
                                .sar = {.centre = {hs_bam(lat), hs_bam(lon)},
                                        .cell_mm = (uint32_t)lround(cell_m * 1000),

@@ -7,29 +7,16 @@
 #include "lm/illumination.h"
 #include "target_support.h"
 #include "tiny_map.h"
-
-#include <geodesic.h>
+#include "wgs84.h"
 
 static const double pi = 3.14159265358979323846;
 
 enum { CELLS = 256, LINES = 4096, RANGE_M = 37040 };
 static const double height_m = 6000, cell_m = (double)RANGE_M / CELLS;
 
-static void destination(double lat, double lon, double azimuth, double metres, double to[2])
-{
-    struct geod_geodesic earth;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, lat, lon, azimuth, metres, &to[0], &to[1], NULL);
-}
-
 static double metres_apart(const double a[2], struct lm_position b)
 {
-    struct geod_geodesic earth;
-    double metres;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_inverse(&earth, a[0], a[1], hs_degrees(b.latitude), hs_degrees(b.longitude), &metres, NULL,
-                 NULL);
-    return metres;
+    return wgs84_metres(a[0], a[1], hs_degrees(b.latitude), hs_degrees(b.longitude));
 }
 
 static struct lm_target moving_point(double lat, double lon, double heading, double speed_m_s,
@@ -53,7 +40,7 @@ TEST(a_mover_goes_to_the_end_of_its_leg_and_back)
         const double gone = fmod(times_s[i] * 20, 10000);
         const double way = gone > 5000 ? 10000 - gone : gone;
         double to[2];
-        destination(46, 11, 30, way, to);
+        wgs84_direct(46, 11, 30, way, &to[0], &to[1]);
         const struct lm_mover_state mover = lm_mover_state_at(&t, (uint64_t)(times_s[i] * 1e6));
         assert_true(metres_apart(to, mover.position) < 0.05);
         assert_int_equal(mover.heading, gone > 5000 ? hs_bam(210) : hs_bam(30));
@@ -96,9 +83,8 @@ static const double places[4][2] = {{46, 11}, {46.02, 11.026}, {46.19, 11.1}, {4
 /* The first `legs` legs, by PROJ. */
 static struct lm_target path_target(uint8_t legs, double speed_m_s, double length_m[])
 {
-    struct geod_geodesic earth;
+    const struct geod_geodesic earth = wgs84();
     struct lm_target t = point_at(places[0][0], places[0][1], 0, 40);
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
     for (uint8_t i = 0; i < legs; i++) {
         const double *from = places[i], *to = places[i + 1];
         double heading;
@@ -132,7 +118,7 @@ TEST(a_mover_on_a_path_goes_through_its_places_and_back_or_round)
                 way -= length_m[leg++];
             }
             const fx_bam_t heading = t.path[leg].heading;
-            destination(places[leg][0], places[leg][1], hs_degrees(heading), way, to);
+            wgs84_direct(places[leg][0], places[leg][1], hs_degrees(heading), way, &to[0], &to[1]);
             const struct lm_mover_state mover = lm_mover_state_at(&t, (uint64_t)(seconds * 1e6));
             assert_true(metres_apart(to, mover.position) < 0.05);
             assert_int_equal(mover.heading, heading + (is_back ? FX_BAM_180 : 0));
@@ -331,7 +317,7 @@ TEST(a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_see
         const double azimuth = 80 * hs_rng_uniform(&rng) - 40, heading = 360 * hs_rng_uniform(&rng);
         const double speed = 12 * hs_rng_uniform(&rng), track = i % 2 ? 55 : -55;
         double to[2], at_deg = 0, moved_deg;
-        destination(46, 11, azimuth, 20000 + 10000 * hs_rng_uniform(&rng), to);
+        wgs84_direct(46, 11, azimuth, 20000 + 10000 * hs_rng_uniform(&rng), &to[0], &to[1]);
         const struct lm_target t = moving_point(to[0], to[1], heading, speed, 1000);
         const struct lm_target_line how = {.is_doppler = true,
                                            .speed_mm_s = 250000,
@@ -391,7 +377,7 @@ TEST(movers_are_placed_anew_for_every_sweep_and_not_for_every_line)
     scene.time_us = 8000000; /* the next sweep */
     lm_target_candidates_refresh(&candidates, &set, &scene);
     double to[2];
-    destination(46.1, 11, 90, 400, to);
+    wgs84_direct(46.1, 11, 90, 400, &to[0], &to[1]);
     assert_true(metres_apart(to, candidates.candidate[0].state.position) < 0.05);
 }
 

@@ -9,21 +9,14 @@
 #include "reference/rcs.h"
 #include "reference/reference.h"
 #include "target_support.h"
+#include "wgs84.h"
 
-#include <geodesic.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 
 enum { CELLS = 256, LINES = 256 };
 static const double height_m = 6000, range_m = 37040, cell_m = 37040.0 / CELLS;
-
-static void destination(double lat, double lon, double azimuth, double metres, double to[2])
-{
-    struct geod_geodesic earth;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, lat, lon, azimuth, metres, &to[0], &to[1], NULL);
-}
 
 /* Line `line` of a sector of 120 degrees around `heading`. */
 static struct lm_target_line sector_line(double lat, double lon, double heading, uint32_t line)
@@ -121,7 +114,7 @@ TEST(a_target_is_in_the_right_cell_of_two_lines_that_share_it)
         const double azimuth = heading + (line + off - LINES / 2) * 120 / LINES;
         const double at_m = (cell + off) * cell_m, rcs = 60 * hs_rng_uniform(&rng) - 10;
         double to[2];
-        destination(p[0], p[1], azimuth, at_m, to);
+        wgs84_direct(p[0], p[1], azimuth, at_m, &to[0], &to[1]);
         const struct lm_target t = point_at(to[0], to[1], 0, rcs);
         const struct found f = sweep(&t, 1, p[0], p[1], heading);
         assert_int_equal(f.times, 2);
@@ -145,7 +138,7 @@ TEST(a_target_is_where_the_geodesic_puts_it_within_a_metre)
         const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1),
                      azimuth = 360 * hs_rng_uniform(&rng);
         double to[2];
-        destination(lat, 11, azimuth, 70000, to);
+        wgs84_direct(lat, 11, azimuth, 70000, &to[0], &to[1]);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_target_line l = sector_line(lat, 11, azimuth, 0);
         struct lm_target_candidates candidates;
@@ -165,7 +158,7 @@ TEST(no_target_is_lost_or_doubled_between_two_lines_and_two_cells)
 {
     for (int i = 0; i < 200; i++) {
         double to[2];
-        destination(46, 11, 30 + i * 1e-6, 20000 + i * 0.7, to);
+        wgs84_direct(46, 11, 30 + i * 1e-6, 20000 + i * 0.7, &to[0], &to[1]);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         const struct found f = sweep(&t, 1, 46, 11, 30);
         assert_in_range(f.times, 1, 2);
@@ -178,7 +171,7 @@ TEST(no_target_is_lost_or_doubled_between_two_lines_and_two_cells)
 TEST(different_targets_in_one_cell_add_their_powers)
 {
     double to[2];
-    destination(46, 11, 1.3, 20000, to);
+    wgs84_direct(46, 11, 1.3, 20000, &to[0], &to[1]);
     const struct lm_target t[2] = {point_at(to[0], to[1], 0, 20), point_at(to[0], to[1], 0, 20)};
     const struct found one = sweep(t, 1, 46, 11, 0), both = sweep(t, 2, 46, 11, 0);
     assert_true(fabs(both.level - one.level - 10 * log10(2)) < 0.02);
@@ -195,7 +188,7 @@ TEST(scatterers_of_one_target_in_one_cell_add_as_phasors)
     for (int i = 0; i < 200; i++) {
         double from[2];
         /* In the middle of a cell and, a fifth of a degree off the heading, of a line. */
-        destination(46, 11, 200 + i * 0.01, 138.5 * cell_m, from);
+        wgs84_direct(46, 11, 200 + i * 0.01, 138.5 * cell_m, &from[0], &from[1]);
         const struct found f = sweep(&t, 1, from[0], from[1], 20 + i * 0.01 + 0.2);
         assert_in_range(f.times, 1, 3);
         lowest = fmin(lowest, f.level), highest = fmax(highest, f.level);
@@ -213,7 +206,7 @@ TEST(what_lies_below_the_horizon_of_the_cells_before_is_hidden)
 {
     double to[2];
     const double azimuth = (100.5 - LINES / 2) * 120 / LINES;
-    destination(46, 11, azimuth, 140.5 * cell_m, to);
+    wgs84_direct(46, 11, azimuth, 140.5 * cell_m, &to[0], &to[1]);
     for (int up_m = -50; up_m <= 50; up_m += 10) {
         const struct lm_target t = point_at(to[0], to[1], up_m, 30);
         const struct lm_target_line l = sector_line(46, 11, 0, 100);
@@ -259,8 +252,8 @@ TEST(a_choice_holds_for_a_kilometre_of_flight)
     for (int i = 0; i < 3000; i++) {
         double to[2], from[2];
         const double to_m = 300 + 36000 * hs_rng_uniform(&rng);
-        destination(46, 11, 360 * hs_rng_uniform(&rng), to_m, to);
-        destination(46, 11, 360 * hs_rng_uniform(&rng), 1020, from);
+        wgs84_direct(46, 11, 360 * hs_rng_uniform(&rng), to_m, &to[0], &to[1]);
+        wgs84_direct(46, 11, 360 * hs_rng_uniform(&rng), 1020, &from[0], &from[1]);
         const struct lm_target t = point_at(to[0], to[1], 0, 10);
         struct lm_target_candidates before, now;
         int32_t level_q8[LM_CELLS_MAX];
@@ -282,7 +275,7 @@ static struct lm_target_line line_beside(struct hs_rng *rng, double lat, double 
 {
     double from[2];
     const double away_m = 1000 * hs_rng_uniform(rng);
-    destination(lat, 11, 360 * hs_rng_uniform(rng), away_m, from);
+    wgs84_direct(lat, 11, 360 * hs_rng_uniform(rng), away_m, &from[0], &from[1]);
     struct lm_target_line l = sector_line(from[0], from[1], 0, 0);
     const double off = pow(hs_rng_uniform(rng), 3) * (hs_rng_below(rng, 2) ? 1 : -1);
     l.azimuth = hs_bam(to_azimuth + off * (5 + 90 * fmin(1, 2500 / at_m)));
@@ -309,7 +302,7 @@ TEST(a_target_that_is_passed_over_would_have_given_the_line_nothing)
         double to[2];
         const double lat = latitudes[i % 4], azimuth = 360 * hs_rng_uniform(&rng);
         const double at_m = 300 + 36000 * pow(hs_rng_uniform(&rng), 2);
-        destination(lat, 11, azimuth, at_m, to);
+        wgs84_direct(lat, 11, azimuth, at_m, &to[0], &to[1]);
         struct lm_target t = i % 3 ? point_at(0, 0, 0, 10) : random_target(&rng, 1 << 18);
         t.latitude = hs_bam(to[0]), t.longitude = hs_bam(to[1]);
         if (i % 3 == 1) {

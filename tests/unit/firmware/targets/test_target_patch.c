@@ -9,9 +9,9 @@
 #include "lm/illumination.h"
 #include "reference/reference.h"
 #include "target_support.h"
+#include "wgs84.h"
 
 #include <complex.h>
-#include <geodesic.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
@@ -61,10 +61,8 @@ static void draw(const struct lm_patch_geometry *g, int32_t least_q8)
 /* The place `across`, `along` metres from the centre as the radar looks. */
 static void place_at(double lat, double lon, double look, double across, double along, double to[2])
 {
-    struct geod_geodesic earth;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_direct(&earth, lat, lon, look + atan2(across, along) * 180 / pi, hypot(across, along),
-                &to[0], &to[1], NULL);
+    wgs84_direct(lat, lon, look + atan2(across, along) * 180 / pi, hypot(across, along), &to[0],
+                 &to[1]);
 }
 
 /* Middle of a line or of a cell that is shown, from the centre. */

@@ -7,6 +7,7 @@
 #include "nav/send.h"
 #include "support.h"
 #include "unit_rig.h"
+#include "wgs84.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -109,13 +110,9 @@ static uint32_t nav_flags(const struct replay *r)
 static double metres_to(const struct replay *r, const struct nav_fix *fix)
 {
     const struct lm_ownship *o = &r->rig->unit.ownship;
-    struct geod_geodesic earth;
-    double metres;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_inverse(&earth, (int32_t)o->latitude * (360 / 0x1p32),
-                 (int32_t)o->longitude * (360 / 0x1p32), fix->latitude_deg, fix->longitude_deg,
-                 &metres, NULL, NULL);
-    return metres;
+    return wgs84_metres((int32_t)o->latitude * (360 / 0x1p32),
+                        (int32_t)o->longitude * (360 / 0x1p32), fix->latitude_deg,
+                        fix->longitude_deg);
 }
 
 /* Each fifth of the flight's jumps, from two seconds before it. */

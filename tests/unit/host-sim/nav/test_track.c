@@ -4,6 +4,7 @@
 #include "nav/read_track.h"
 #include "nav/track.h"
 #include "support.h"
+#include "wgs84.h"
 
 #include <math.h>
 
@@ -26,15 +27,6 @@ static void add(struct nav_track *t, double seconds, double latitude, double lon
     assert_int_equal(nav_track_add(t, &f), 0);
 }
 
-static double metres(double latitude_a, double longitude_a, double latitude_b, double longitude_b)
-{
-    struct geod_geodesic earth;
-    double m;
-    geod_init(&earth, 6378137.0, 1 / 298.257223563);
-    geod_inverse(&earth, latitude_a, longitude_a, latitude_b, longitude_b, &m, NULL, NULL);
-    return m;
-}
-
 /* Against the direct and inverse problems of PROJ's geodesic library: at a share of the time the
  * aircraft has done that share of the way and not left the geodesic, anywhere on the globe. */
 TEST(the_position_follows_the_geodesic_at_constant_speed)
@@ -54,11 +46,11 @@ TEST(the_position_follows_the_geodesic_at_constant_speed)
         add(&t, 10, e[2], e[3]);
         nav_track_complete(&t, &(struct nav_limits){0, 1e9}, &found);
         nav_motion_init(&m, &t);
-        const double whole = metres(e[0], e[1], e[2], e[3]);
+        const double whole = wgs84_metres(e[0], e[1], e[2], e[3]);
         for (int k = 0; k <= 10; k++) {
             nav_motion_position(&m, t.fix[0].time_us + k * 1000000, &s);
-            const double done = metres(e[0], e[1], s.latitude_deg, s.longitude_deg);
-            const double left = metres(s.latitude_deg, s.longitude_deg, e[2], e[3]);
+            const double done = wgs84_metres(e[0], e[1], s.latitude_deg, s.longitude_deg);
+            const double left = wgs84_metres(s.latitude_deg, s.longitude_deg, e[2], e[3]);
             assert_near(done, whole * k / 10, 1e-6);
             assert_near(done + left, whole, 1e-6);
             assert_near(s.height_m, 500 + 10 * k, 1e-9);
@@ -213,7 +205,7 @@ TEST(a_circle_is_a_circle_and_is_flown_banked)
     for (int64_t at = 0; at <= 220 * INT64_C(1000000); at += 12500) {
         nav_motion_position(&m, at, &s);
         nav_motion_kinematics(&m, at, &s);
-        assert_near(metres(42, -30, s.latitude_deg, s.longitude_deg), 5000, 0.01);
+        assert_near(wgs84_metres(42, -30, s.latitude_deg, s.longitude_deg), 5000, 0.01);
         assert_near(s.roll_deg, bank / degree, 1e-9);
         assert_near(hypot(s.east_ms, s.north_ms), 150, 1e-9);
         if (at < 220000000) {
@@ -235,7 +227,7 @@ TEST(a_straight_line_covers_its_distance)
     assert_int_equal(nav_make_straight(&line, 0, 300, &t), 0);
     assert_int_equal(t.count, 3001);
     const struct nav_fix *last = &t.fix[3000];
-    assert_near(metres(60, 179.5, last->latitude_deg, last->longitude_deg), 60000, 1e-3);
+    assert_near(wgs84_metres(60, 179.5, last->latitude_deg, last->longitude_deg), 60000, 1e-3);
     assert_true(last->longitude_deg < 0);
     nav_track_free(&t);
 }
