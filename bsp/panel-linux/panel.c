@@ -70,7 +70,7 @@ static int next_control(void *ctx, struct lm_control *control)
            drv_control_ring_take(&p->hand.ring, control);
 }
 
-/* A database that cannot be used is said on the glass: better than no glass. */
+/* A database that cannot be used is no reason to stop: the glass shows DB FAIL. */
 static void start_with_flash(struct panel *p, const struct lm_flash *flash)
 {
     if (lm_unit_init(p->unit, &p->board) != LM_OK) {

@@ -15,8 +15,8 @@ static int begin(char *line, size_t size, enum report_level level)
                                             : snprintf(line, size, "%s", name);
 }
 
-/* The journal is a socket: a journal that does not read must not stop the loop. When nothing can be
- * printed, nobody is left to be told. */
+/* The journal is a socket: a journal that does not read must not stop the loop. An error of
+ * printing cannot be reported anywhere. */
 static void print_line(const char *line, size_t size)
 {
     if (send(STDERR_FILENO, line, size, MSG_DONTWAIT | MSG_NOSIGNAL) < 0 && errno == ENOTSOCK &&

@@ -67,7 +67,7 @@ static uint64_t clock_us(clockid_t clock)
 
 /* ---- opening ---- */
 
-/* Only the filter is needed; without the others the bus works, only with less to tell. */
+/* Only the filter is necessary. Without the other options the bus works, but is counted less. */
 static int set_options(struct drv_can_socket *s)
 {
     if (setsockopt(s->fd, SOL_CAN_RAW, CAN_RAW_FILTER, s->filters,
@@ -80,8 +80,8 @@ static int set_options(struct drv_can_socket *s)
     const int on = 1, bytes = RECEIVE_BUFFER_BYTES;
     (void)setsockopt(s->fd, SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
     (void)setsockopt(s->fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    /* The first passes the system's limit but needs CAP_NET_ADMIN; the second is cut to the limit.
-     */
+    /* The first passes the system's limit but needs CAP_NET_ADMIN; the second is cut to the
+     * limit. */
     if (setsockopt(s->fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) != 0) {
         (void)setsockopt(s->fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
     }
@@ -154,7 +154,7 @@ static void empty_queue(struct drv_can_socket *s)
     s->queue_count = 0;
 }
 
-/* Heed errno. LM_OK when the call is only to be made again later. */
+/* Handle errno. LM_OK if the call need only be repeated later. */
 static int handle_failure(struct drv_can_socket *s, int cause)
 {
     if (cause == EAGAIN || cause == EWOULDBLOCK || cause == EINTR || cause == ENOBUFS) {
@@ -226,12 +226,12 @@ static void add_to_batch(struct drv_can_socket *s, const struct can_frame *raw, 
     if (frame->is_error) {
         handle_report(s, frame);
     } else {
-        s->is_bus_off = false; /* what is on the bus is heard */
+        s->is_bus_off = false; /* a frame was received, so the controller is on the bus */
     }
     s->batch_count++;
 }
 
-/* Fill the empty batch with what waits in the kernel. */
+/* Fill the empty batch with the frames that wait in the kernel. */
 static int fetch(struct drv_can_socket *s)
 {
     struct can_frame raw[DRV_CAN_SOCKET_BATCH];
@@ -264,7 +264,7 @@ static int fetch(struct drv_can_socket *s)
     return LM_OK;
 }
 
-/* Give the kernel what it has room for. */
+/* Send the frames that the kernel has room for. */
 static int flush(struct drv_can_socket *s)
 {
     while (s->queue_count > 0) {

@@ -88,7 +88,7 @@ static bool is_answered(const struct drv_dp_link *l)
     return false;
 }
 
-/* A panel may ask for patience; the standard has it tried seven times. */
+/* A panel may defer its answer; the standard demands seven attempts. */
 static int request(struct drv_dp_link *l, uint32_t command, uint32_t address, uint8_t *bytes,
                    uint32_t count)
 {
@@ -158,7 +158,7 @@ static bool all_lanes(const struct drv_dp_link *l, const uint8_t status[STATUS_B
     return true;
 }
 
-/* Send a training pattern until the panel is content on all lanes with `bits`. */
+/* Send a training pattern until the panel reports `bits` on all lanes. */
 static int train_with(struct drv_dp_link *l, uint32_t pattern, uint32_t wait, uint32_t bits)
 {
     uint8_t status[STATUS_BYTES];
@@ -166,8 +166,8 @@ static int train_with(struct drv_dp_link *l, uint32_t pattern, uint32_t wait, ui
     if (write_byte(l, DPCD_TRAINING_PATTERN_SET, pattern | SCRAMBLING_OFF) != LM_OK) {
         return LM_ERR_IO;
     }
-    /* Five times at each swing, of which there are four; a panel may not ask to and fro for ever.
-     */
+    /* Five times at each swing, of which there are four; a panel may not ask to and fro for
+     * ever. */
     for (uint32_t all = 0, tries = 0; all < 4 * TRIES && tries < TRIES; all++, tries++) {
         if (set_drive(l) != LM_OK) {
             return LM_ERR_IO;

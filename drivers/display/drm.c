@@ -246,7 +246,7 @@ static void take_reports(struct drv_drm *d)
     }
 }
 
-/* Once a second: is the screen still there, or there again? */
+/* Look once a second whether the screen is still, or again, connected. */
 static void look(struct drv_drm *d, uint64_t now_us)
 {
     d->look_us = now_us + DRV_DRM_LOOK_US;

@@ -45,7 +45,7 @@ struct place {
 };
 
 struct drv_usb {
-    libusb_context *context; /* NULL: not to be had yet */
+    libusb_context *context; /* NULL: not available yet */
     pthread_t thread;
     atomic_bool is_over;
     struct slot slot[DRV_USB_CLIENTS];
@@ -328,7 +328,7 @@ static void renew_context(struct drv_usb *u)
     }
 }
 
-/* Every client without a device looks at every device. */
+/* Offer every device to every client that has none. */
 static void look(struct drv_usb *u)
 {
     libusb_device **list;

@@ -132,7 +132,7 @@ void drv_watchdog_notify(struct drv_watchdog *w, const char *text)
 void drv_watchdog_close(struct drv_watchdog *w)
 {
     if (w->fd >= 0) {
-        /* The character is the kernel's agreement for "I mean it" (watchdog-api.rst). */
+        /* The kernel stops the watchdog only after this character (watchdog-api.rst). */
         if (write(w->fd, "V", 1) != 1) {
             fail(w, "watchdog", strerror(errno));
         }

@@ -7,7 +7,8 @@ void lm_bus_init(struct lm_bus *b, const struct lm_bus_profile *profile)
     *b = (struct lm_bus){.profile = profile};
 }
 
-/* Which of several redundant senders: the bits of the mask, moved together to the right. */
+/* Number of a redundant sender: the identifier's bits under the mask, moved together to the
+ * right. */
 static uint32_t channel_of(uint32_t id, uint32_t mask)
 {
     uint32_t channel = 0, place = 0;
@@ -19,7 +20,7 @@ static uint32_t channel_of(uint32_t id, uint32_t mask)
     return channel;
 }
 
-/* What the profile says of a value. */
+/* Complete an event with what the profile says of its row. */
 static void add_row(struct lm_bus_event *event, const struct lm_bus_row *row)
 {
     event->field = row->field;
@@ -29,7 +30,7 @@ static void add_row(struct lm_bus_event *event, const struct lm_bus_row *row)
     event->dead_ms = row->dead_ms;
 }
 
-/* A number of each row that takes the frame. */
+/* Read a number for each row that takes the frame. */
 static uint32_t take_packed(struct lm_bus *b, const struct lm_can_frame *frame,
                             struct lm_bus_event events[LM_BUS_EVENTS])
 {

@@ -54,8 +54,8 @@ static enum lm_bus_outcome read_number(const struct lm_bus_packing *p, uint64_t 
     return LM_BUS_VALUE;
 }
 
-/* How far apart two neighbouring numbers of this kind lie, as counts of the field: one of the
- * integer's, or one of the last place of a single float. 2^30 * 2^63 at most is cut to 2^32. */
+/* Resolution of a number, in units of the field: that of one count of the integer, or of the last
+ * place of a single float. The product, at most 2^30 * 2^63, is clamped to 2^32. */
 static uint32_t step_of(const struct lm_bus_packing *p, uint64_t raw)
 {
     int32_t up = -(int32_t)p->shift;

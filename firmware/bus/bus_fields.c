@@ -1,6 +1,6 @@
 #include "lm/bus_fields.h"
 
-/* A BAM is 360 / 2^32 deg, hence 2^31 / 180. No product passes 2^62: 360 deg * 2^31 is 2^40,
+/* A BAM is 360 / 2^32 deg, hence 2^31 / 180. No product exceeds 2^62: 360 deg * 2^31 is 2^40,
  * 1500 m/s * 2^20 * 1000 is 2^41. */
 const struct lm_bus_scale lm_bus_scales[LM_BUS_UNITS] = {
     [LM_BUS_BAM] = {"deg", "BAM", 1, 180, 31},

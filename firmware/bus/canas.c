@@ -65,8 +65,8 @@ static uint32_t row_of(const struct lm_bus_profile *profile, uint32_t id)
     return i;
 }
 
-/* LM_BUS_VALUE, *row and *channel when a row takes the frame's identifier. Channel 0 has 11 bits,
- * channel n has 29 and adds 65536 * n; bits 11..15 are never set. */
+/* LM_BUS_VALUE, with *row and *channel, if a row takes the frame's identifier. Channel 0 has 11
+ * bits, channel n has 29 and adds 65536 * n; bits 11..15 are never set. */
 static enum lm_bus_outcome find_row(const struct lm_bus_profile *profile,
                                     const struct lm_can_frame *frame, uint32_t *row,
                                     uint32_t *channel)
@@ -93,7 +93,7 @@ static uint8_t bytes_of(uint8_t type)
     return (uint8_t)(lm_canas_types[type].element_bytes * lm_canas_types[type].elements);
 }
 
-/* LM_BUS_VALUE when node, type and length are what the row allows. */
+/* LM_BUS_VALUE if the row allows node, type and length. */
 static enum lm_bus_outcome check_header(const struct lm_bus_row *row,
                                         const struct lm_can_frame *frame)
 {
@@ -114,7 +114,7 @@ static enum lm_bus_outcome check_header(const struct lm_bus_row *row,
     return says_no_data ? LM_BUS_NO_DATA : LM_BUS_VALUE;
 }
 
-/* The same where byte 1 says nothing: as many bytes as the row's one type has, or more. */
+/* The same for assumed types, where byte 1 is ignored: the data must hold the row's one type. */
 static enum lm_bus_outcome check_assumed(uint8_t type, const struct lm_can_frame *frame)
 {
     return frame->length > 8 || frame->length < 4 + bytes_of(type) ? LM_BUS_BAD_LENGTH
@@ -122,8 +122,8 @@ static enum lm_bus_outcome check_assumed(uint8_t type, const struct lm_can_frame
                                                                    : LM_BUS_VALUE;
 }
 
-/* Count a message code that does not follow the sender's last one. The first frame of a node cannot
- * break anything. */
+/* Count a message code that does not follow the sender's last one. The first frame of a node
+ * counts as no break. */
 static void follow_sequence(struct lm_canas *c, uint32_t row, uint32_t channel,
                             const struct lm_can_frame *frame)
 {
@@ -144,14 +144,14 @@ static void drop_half(struct lm_canas *c, struct lm_canas_pair *p)
     p->state = LM_CANAS_EMPTY;
 }
 
-/* Are two halves mates that are arranged by this habit? Learns on the way: of two ways to pair a
- * run of halves, the one that leaves less time between mates is right. A factor of two keeps jitter
- * from turning an evenly spaced sender over and over. */
+/* True if two halves belong together by the sender's habit. It also learns the habit: of the two
+ * ways to pair a run of halves, the one with less time between two halves is right. The factor of
+ * two keeps jitter from changing the habit of an evenly spaced sender again and again. */
 static bool are_mates(struct lm_canas_pair *p, int8_t habit, uint64_t gap_us, uint32_t period_us)
 {
     if (gap_us > period_us) {
         if (p->habit == habit) {
-            p->habit = 0; /* what ought to be mates is not: learn the habit anew */
+            p->habit = 0; /* the habit no longer fits: learn it again */
         }
         return false;
     }
@@ -166,7 +166,7 @@ static bool are_mates(struct lm_canas_pair *p, int8_t habit, uint64_t gap_us, ui
     return true;
 }
 
-/* Does a half complete the one that is held? */
+/* True if a half completes the one that waits. */
 static bool completes(struct lm_canas_pair *p, const struct lm_can_frame *half, uint32_t period_us)
 {
     const uint8_t type = half->data[1], code = half->data[3];
@@ -182,8 +182,8 @@ static bool completes(struct lm_canas_pair *p, const struct lm_can_frame *half, 
     return are_mates(p, (int8_t)habit, half->time_us - p->time_us, period_us);
 }
 
-/* Take a half. True when it completes a value: *bits is the double, *time_us when its first half
- * came. */
+/* Take a half. True if it completes a value: *bits is the double, *time_us the arrival of its first
+ * half. */
 static bool take_half(struct lm_canas *c, struct lm_canas_pair *p, uint32_t period_us,
                       const struct lm_can_frame *frame, uint64_t *bits, uint64_t *time_us)
 {
@@ -223,14 +223,14 @@ static enum lm_bus_outcome read_clock(const uint8_t *data, int64_t *seconds)
     return LM_BUS_VALUE;
 }
 
-/* A number being read: in the unit of the bus with the scale's frac_bits, and the step between
- * neighbours as counts of the field. */
+/* A number that is being read: in the unit of the bus times 2^frac_bits of the scale; and its
+ * resolution in units of the field. */
 struct number {
     int64_t q;
     uint32_t step;
 };
 
-/* Counts of the field in one unit of the bus: below 2^24. */
+/* One unit of the bus in units of the field: below 2^24. */
 static int64_t one_unit(const struct lm_bus_scale *scale)
 {
     return ((int64_t)scale->multiplier << scale->frac_bits) / scale->divisor;
@@ -272,7 +272,7 @@ static enum lm_bus_outcome read_double(uint64_t bits, const struct lm_bus_scale 
                                                                 : LM_BUS_OUT_OF_RANGE;
 }
 
-/* A whole number of 1, 2 or 4 bytes. |integer * 2^frac_bits| is at most 2^63 - 2^31, and half of
+/* An integer of 1, 2 or 4 bytes. |integer * 2^frac_bits| is at most 2^63 - 2^31, and half of
  * per_unit below 2^31. */
 static void read_integer(const uint8_t *data, const struct lm_canas_type *type, int32_t per_unit,
                          const struct lm_bus_scale *scale, struct number *number)
@@ -286,11 +286,11 @@ static void read_integer(const uint8_t *data, const struct lm_canas_type *type, 
     number->step = (uint32_t)(one_unit(scale) / per_unit);
 }
 
-/* A frame whose row, channel and type are known to be right. */
+/* A frame whose row, channel and type are checked. */
 struct accepted {
     const struct lm_can_frame *frame;
     const struct lm_bus_row *row;
-    struct lm_canas_pair *pair; /* of rows that take halves, which are those of coordinates */
+    struct lm_canas_pair *pair; /* NULL for rows that take no halves; only coordinates do */
     uint8_t type;
 };
 
@@ -319,8 +319,8 @@ static enum lm_bus_outcome read_number(struct lm_canas *c, const struct accepted
     return LM_BUS_VALUE;
 }
 
-/* In the row's range, as a value of the field. An angle of 180 degrees or more wraps, as angles do.
- * |q| is below 2^62 / multiplier once it is in range. */
+/* Check a number against the row's range, and convert it to the field's unit. An angle of 180
+ * degrees or more wraps. |q| is below 2^62 / multiplier once it is in range. */
 static enum lm_bus_outcome scale_number(const struct lm_bus_row *row, int64_t q, int32_t *value)
 {
     const struct lm_bus_scale *scale = lm_bus_scale_of((enum lm_bus_field)row->field);

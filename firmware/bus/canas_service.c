@@ -39,7 +39,7 @@ static void take_sync(struct lm_canas_service *s, const struct lm_can_frame *fra
     s->has_sync = true;
 }
 
-/* A request without data: some senders fill such a frame up to 8 bytes. */
+/* True for a request without data. Some senders fill such a frame up to 8 bytes. */
 static bool is_plain(const struct lm_can_frame *frame)
 {
     return frame->data[1] == LM_CANAS_NODATA;
@@ -87,7 +87,8 @@ void lm_canas_service_take(struct lm_canas_service *s, const struct lm_can_frame
     }
 }
 
-/* Give up a request that waits for too long, or that comes from a clock that was set back. */
+/* Drop a request that has waited too long, or whose time is ahead because the clock was set
+ * back. */
 static void expire(struct lm_canas_service *s, bool *is_asked, uint64_t *asked_us, uint64_t now_us)
 {
     if (*is_asked &&

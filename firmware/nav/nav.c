@@ -9,7 +9,7 @@
 #include "lm/geo.h"
 #include "lm/units.h"
 
-/* A field of one sender as it stands at some moment. */
+/* A field of one sender at a given time. */
 struct reading {
     enum lm_bus_field field;
     enum lm_nav_quality quality;
@@ -53,13 +53,13 @@ static struct reading read_item(enum lm_bus_field field, const struct lm_nav_ite
     return r;
 }
 
-/* What makes one sender better than another: good and settled, good, stale, dead. */
+/* Order of preference of senders: good and settled, good, stale, dead. */
 static uint32_t merit_of(const struct reading *r)
 {
     return r->quality == LM_NAV_GOOD ? (r->is_settled ? 3 : 2) : r->quality;
 }
 
-/* What a sender said of a field; NULL when nothing. Items are filled from the first on. */
+/* A sender's last value of a field; NULL if there is none. Items are filled from the first on. */
 static const struct lm_nav_item *find_item(const struct lm_nav *n, enum lm_bus_field field,
                                            uint16_t rank)
 {
@@ -72,12 +72,12 @@ static const struct lm_nav_item *find_item(const struct lm_nav *n, enum lm_bus_f
     return NULL;
 }
 
-/* Two fields of one sender. */
+/* Values of two fields from one sender. */
 struct pair {
     struct reading first, second;
 };
 
-/* Those of the best sender that has both. They may be the same field. */
+/* Read both fields from the best sender that has both. They may be the same field. */
 static struct pair read_pair(const struct lm_nav *n, enum lm_bus_field first,
                              enum lm_bus_field second, uint64_t now_us)
 {
@@ -189,7 +189,7 @@ static int64_t arc_bam(int32_t speed_mm_s, int64_t age_us, int64_t radius_m_q8)
     return way_um * FX_BAM_PER_RADIAN / lm_um_of_m_q8(radius_m_q8);
 }
 
-/* A latitude, `age_us` later. */
+/* Extrapolate a latitude by `age_us`. */
 static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_geo_origin *origin,
                               int64_t height_m_q8, const struct velocity *v)
 {
@@ -199,8 +199,8 @@ static int32_t carry_latitude(int32_t latitude, int64_t age_us, const struct lm_
     return (int32_t)fx_clamp_i64(moved, -pole, pole);
 }
 
-/* A longitude, `age_us` later, by when the latitude is `latitude`. The circle is that of the
- * latitude half way along, which makes a course of constant velocity right to second order. */
+/* Extrapolate a longitude by `age_us`; `latitude` is the latitude at the end. The circle is that of
+ * the latitude half way, which is exact to second order for a course of constant velocity. */
 static int32_t carry_longitude(int32_t longitude, int64_t age_us, fx_bam_t latitude,
                                const struct lm_geo_origin *origin, int64_t height_m_q8,
                                const struct velocity *v)
@@ -216,7 +216,7 @@ static int32_t carry_longitude(int32_t longitude, int64_t age_us, fx_bam_t latit
     return (int32_t)((uint32_t)longitude + (uint32_t)moved);
 }
 
-/* Both coordinates from their own times. */
+/* Extrapolate both coordinates, each from its own time. */
 static void set_position(struct lm_ownship *out, const struct lm_nav *n, const struct velocity *v,
                          uint64_t now_us)
 {
@@ -248,10 +248,10 @@ static void set_attitude(struct lm_ownship *out, const struct lm_nav *n, uint64_
     out->roll = p.second.value;
 }
 
-/* How fast the nose turns about the vertical, BAM a second: (q sin(roll) + r cos(roll)) /
- * cos(pitch), the third of Euler's kinematic equations. 0 when a number that it needs is not good,
- * and beyond 80 degrees of pitch, where heading loses its meaning. Rates are below 2^31, so their
- * mix is below 2^32 and the quotient below 2^35. */
+/* Rate of turn of the heading, BAM a second: (q sin(roll) + r cos(roll)) / cos(pitch), the third of
+ * Euler's kinematic equations. 0 if a number that it needs is not good, and beyond 80 degrees of
+ * pitch, where heading has no meaning. Rates are below 2^31, so their mix is below 2^32 and the
+ * quotient below 2^35. */
 static int64_t heading_rate(const struct lm_ownship *out, const struct lm_nav *n, uint64_t now_us)
 {
     const int32_t cos_80_q30 = 186453111; /* cos(80 degrees) * 2^30 */
@@ -313,8 +313,8 @@ void lm_nav_init(struct lm_nav *n)
     *n = (struct lm_nav){0};
 }
 
-/* Is a new fix of this coordinate further from the sender's last one than an aircraft could have
- * come? A count of latitude is 9.31 to 9.36 mm, one of longitude 9.33 mm times the cosine of
+/* True if a new value of this coordinate is farther from the sender's last one than an aircraft can
+ * have flown. A count of latitude is 9.31 to 9.36 mm, one of longitude 9.33 mm times the cosine of
  * latitude. */
 static bool is_jump(const struct lm_nav *n, const struct lm_nav_item *last,
                     const struct lm_bus_event *fix)
@@ -332,8 +332,8 @@ static bool is_jump(const struct lm_nav *n, const struct lm_nav_item *last,
     return way_mm > (int64_t)(time_us * LM_NAV_JUMP_M_S / 1000);
 }
 
-/* A coordinate that is known to within half a step: the last one carried on, moved into that half
- * step. Differences of angles below half a circle survive the wrap. */
+/* Smooth a coordinate that is known to within half a step: the last one extrapolated, then moved
+ * into that half step. Differences of angles below half a circle survive the wrap. */
 static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
                       const struct lm_bus_event *fix)
 {
@@ -358,8 +358,8 @@ static int32_t smooth(const struct lm_nav *n, const struct lm_nav_item *last,
     return (int32_t)((uint32_t)fix->value + (uint32_t)held);
 }
 
-/* Where a sender's value is kept: its own place, or an empty one, or that of the worst other sender
- * when that one is dead or of a higher rank. NULL when there is none. */
+/* Item for a sender's value: its own, or an empty one, or that of the worst other sender if that
+ * one is dead or of a higher rank. NULL if there is none. */
 static struct lm_nav_item *slot_for(struct lm_nav *n, const struct lm_bus_event *event,
                                     uint16_t rank)
 {

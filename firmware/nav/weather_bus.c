@@ -4,7 +4,7 @@
 #include "lm/status.h"
 #include "lm/units.h"
 
-/* Which value of a set a field is. */
+/* Number of a field in its set. */
 struct part {
     bool is_jammer;
     uint8_t number;
@@ -27,8 +27,8 @@ static bool part_of(enum lm_bus_field field, struct part *part)
 
 enum age { GOOD, STALE, DEAD };
 
-/* One ahead of the clock by up to its stale age has just been heard; further ahead, the clock was
- * set back. */
+/* A time up to the stale age ahead of the clock counts as now. Further ahead, the clock was set
+ * back. */
 static enum age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
 {
     if (time_us > now_us) {
@@ -49,8 +49,8 @@ static void clear(struct lm_weather_bus *w, uint32_t mask)
     }
 }
 
-/* A set as what it says. Numbers are held to what their types hold, beyond every limit of
- * lm_environment_check; radii come in 64ths of a metre. */
+/* Convert a set to rain or jammer. Numbers are clamped to their types, which exceed every limit of
+ * lm_environment_check. Radii are in 64ths of a metre. */
 static struct lm_environment meaning_of(const struct lm_weather_slot *s, bool is_jammer)
 {
     struct lm_environment e = {.rain_count = !is_jammer, .jammer_count = is_jammer};
@@ -85,7 +85,7 @@ static void finish_set(struct lm_weather_bus *w, struct lm_weather_slot *s, bool
     w->count.sets++;
 }
 
-/* Whether the value goes on with the set that is under way. */
+/* True if the value belongs to the set that is being received. */
 static bool goes_on(const struct lm_weather_slot *s, const struct lm_bus_event *event,
                     uint32_t number)
 {
@@ -115,7 +115,7 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
 {
     struct part part;
     if (event->channel != 0) {
-        return; /* frames of two channels would tear each other's sets */
+        return; /* frames of two channels would break each other's sets */
     }
     if (event->field == LM_BUS_WEATHER_CLEAR) {
         clear(w, (uint32_t)event->value);

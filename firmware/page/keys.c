@@ -26,7 +26,7 @@ bool lm_keys_up(struct lm_keys *k, uint8_t button, uint64_t now_us)
     return was_open && key->style == LM_KEY_HAS_LONG && now_us - key->down_us < LM_KEY_LONG_US;
 }
 
-/* What button `button`, which is held and not spent, does now. */
+/* True, and *press, if a press of a held button is due. Marks a button that is stuck. */
 static bool act(struct lm_keys *k, uint8_t button, uint64_t now_us, struct lm_press *press)
 {
     struct lm_key *key = &k->key[button - 1];

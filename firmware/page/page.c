@@ -69,7 +69,7 @@ static uint32_t press_swap(struct lm_page *p, int32_t step)
     return LM_EFFECT_SWAP;
 }
 
-/* Keys that mean the same on every page. */
+/* Keys that do the same on every page. */
 static const struct lm_page_key common[] = {
     {.osb = LM_OSB_CNTL, .words = "CNTL", .is_on = is_on_cntl, .press = press_cntl},
     {.osb = 12, .words = "BIT", .is_on = is_on_bit, .starts_hidden = true, .press = press_bit},
@@ -104,7 +104,7 @@ static const struct lm_page_key *find_in(const struct lm_page_key *keys, uint32_
     return NULL;
 }
 
-/* The key that a page shows: its own, or a common one; NULL where there is none. */
+/* The key of a page: its own, or a common one; NULL if there is none. */
 static const struct lm_page_key *find_key(const struct lm_page_table *table, uint8_t osb)
 {
     const struct lm_page_table *shown = table->chooses_for ? table->chooses_for : table;
@@ -178,7 +178,7 @@ uint8_t lm_page_range_last(const struct lm_page *p)
     return (uint8_t)lm_radar_range_last(p->radar, p->mode, p->fov);
 }
 
-/* Begin the sector with this scale. */
+/* Select a scale, and start the sector with it. */
 static uint32_t take_range(struct lm_page *p, uint32_t range)
 {
     const bool is_other = range != p->range_index;
@@ -269,7 +269,7 @@ void lm_page_note_tilt(struct lm_page *p, int32_t tilt)
     }
 }
 
-/* ---- what keys do and say ---- */
+/* ---- presses, labels and values of keys ---- */
 
 static bool label_of_key(const struct lm_page *p, const struct lm_page_key *key,
                          struct lm_label *label)
@@ -291,7 +291,7 @@ static bool is_hidden(const struct lm_page *p, uint8_t osb)
     return (p->hidden & OSB_BIT(osb)) != 0;
 }
 
-/* Whether declutter takes the label away. What is out of the ordinary stays. */
+/* True if declutter hides the label. The label of an unusual setting stays. */
 static bool is_taken_away(const struct lm_page *p, const struct lm_page_key *key)
 {
     const bool stays = key->stays_when_on && key->is_on && key->is_on(p);
@@ -305,7 +305,7 @@ bool lm_page_label(const struct lm_page *p, uint8_t osb, struct lm_label *label)
     if (!key || is_taken_away(p, key) || !label_of_key(p, key, label)) {
         return false;
     }
-    if (table->chooses_for) { /* inverse is what declutter takes away */
+    if (table->chooses_for) { /* labels that declutter hides are inverse */
         label->is_inverse = osb == LM_OSB_DECLUTTER || is_hidden(p, osb);
     }
     return true;
@@ -322,7 +322,7 @@ bool lm_page_value(const struct lm_page *p, uint8_t osb, struct lm_label *value)
     return true;
 }
 
-/* Whether declutter is to take the label of this key away, from now on. */
+/* Switch whether declutter hides the label of this key. */
 static uint32_t choose(struct lm_page *p, uint8_t osb)
 {
     struct lm_label label;

@@ -1,4 +1,4 @@
-/* The control page: beam, tone and colours. */
+/* Control page: beam, tone and colours. */
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/font.h"
@@ -12,7 +12,7 @@ static bool is_tilt_manual(const struct lm_page *p)
     return p->is_tilt_manual;
 }
 
-/* Degrees up of the beam's axis, and who points it. */
+/* Tilt in degrees, and whether the operator or the radar sets it. */
 static void label_tilt(const struct lm_page *p, struct lm_label *label)
 {
     lm_label_tenths(label, p->is_tilt_manual ? "TILT" : "AUTO", p->tilt_tenths < 0 ? "-" : "+",
@@ -26,7 +26,7 @@ static uint32_t press_tilt(struct lm_page *p, int32_t step)
     return LM_EFFECT_BEAM;
 }
 
-/* Half a degree up or down, from where the beam is. */
+/* Change the tilt by half a degree, starting from the present one. */
 static uint32_t step_tilt(struct lm_page *p, int32_t step)
 {
     const int32_t most = lm_deg_tenths_of_bam((int32_t)p->radar->antenna.tilt_max);

@@ -1,4 +1,4 @@
-/* The radar page: mode, field of view and scales of the picture, the cursor, declutter. */
+/* Radar page: mode, field of view and scales of the picture, cursor, declutter. */
 #include "lm/font.h"
 #include "page_table.h"
 
@@ -31,7 +31,7 @@ static void label_mode(const struct lm_page *p, struct lm_label *label)
     lm_label_set(label, p->radar->mode[p->mode].name, "");
 }
 
-/* The next mode of the rotary, with a field and a scale that it has. In a patch: back to the
+/* Select the next mode, with a field of view and a scale that it has. In a patch: return to the
  * sector. */
 static uint32_t press_mode(struct lm_page *p, int32_t step)
 {
@@ -48,7 +48,7 @@ static void label_fov(const struct lm_page *p, struct lm_label *label)
     lm_label_set(label, is_patch(p) ? "SAR" : p->radar->fov[p->fov].name, "");
 }
 
-/* The next field of view that this mode has at this range. In a patch: the whole sector. */
+/* Select the next field of view that this mode has at this range. In a patch: NORM. */
 static uint32_t press_fov(struct lm_page *p, int32_t step)
 {
     const uint8_t before = p->fov;
@@ -282,5 +282,5 @@ static const struct lm_page_key keys[] = {
 const struct lm_page_table lm_page_radar = {
     .keys = keys, .count = sizeof keys / sizeof *keys, .is_decluttered = true};
 
-/* The page on which the operator chooses what declutter takes away. */
+/* Declutter page, on which the operator chooses the labels that declutter hides. */
 const struct lm_page_table lm_page_dclt = {.chooses_for = &lm_page_radar};

@@ -3,8 +3,8 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 
-/* UNSOURCED, chosen by eye: symbols keep apart from the picture by hue where it has one, and
- * warnings from both. By night three eighths of the light. */
+/* UNSOURCED, chosen by eye: symbols differ from the picture in hue if it has one, and warnings from
+ * both. By night three eighths of the light. */
 static const struct tint {
     uint32_t white, symbol, warning;
 } tints[LM_TINTS] = {
