@@ -183,8 +183,10 @@ static void draw_sweeps(struct world *w, const struct sector_case *what, int cou
         .speed_mm_s = 250000,
     };
     const struct lm_environment fair = {.sea_state = LM_SEA_STATE_OF_IMAGE};
+    const uint8_t range_index = (uint8_t)lm_radar_find_range(&lm_radar_default, 10);
     const struct lm_sector_command command = {
         .mode = what->mode,
+        .range_index = range_index,
         .fov = what->field,
         .centre = {w->db.centre_latitude, w->db.centre_longitude}};
     lm_sector_start(&sector, &lm_radar_default, &command, 0);
@@ -193,8 +195,9 @@ static void draw_sweeps(struct world *w, const struct sector_case *what, int cou
         lm_sector_begin(&sector, &w->tiles, &platform);
         const struct lm_view_from from = {platform.position, platform.heading, 3000 * 1024};
         const struct lm_view view =
-            sector.half_m ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
-                          : lm_view_of_sector(&w->frame, &from, lm_radar_default.range[0].range_m);
+            sector.half_m
+                ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
+                : lm_view_of_sector(&w->frame, &from, lm_radar_default.range[range_index].range_m);
         const struct lm_ppi ppi =
             lm_view_ppi(&view, &w->frame, sector.slant.cell_m_q8, sector.edge_m_q8);
         const uint32_t lines = sector.lines;

@@ -6,6 +6,7 @@
 #include "hs/angle.h"
 #include "lm/bit.h"
 #include "lm/font.h"
+#include "scales.h"
 #include "unit_rig.h"
 
 #include <math.h>
@@ -48,12 +49,6 @@ static int labelled(const struct rig *r, int osb, const char *words, int is_inve
     default:
         return at.x < 10 && fabs(at.y + 7 - middle) < 12;
     }
-}
-
-/* The index of a scale, nautical miles. */
-static int scale_of(int range_nm)
-{
-    return lm_radar_find_range(&lm_radar_default, range_nm);
 }
 
 TEST(the_page_after_power_up_has_the_labels_of_the_key_map)

@@ -7,6 +7,7 @@
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "reference_support.h"
+#include "scales.h"
 #include "sector_world.h"
 
 #include <math.h>
@@ -155,9 +156,10 @@ static void see_all(const struct sector_world *w, const struct ref_db *db,
         for (uint32_t i = 0; i < s->slant.cells; i++) {
             seen[k][i] /= weights[k];
         }
-        ref_pulse(seen[k], s->slant.cells,
-                  ref_pulse_m(w->radar.range[0].pulse_ns[s->command.fov] * 1e-9) /
-                      (s->slant.cell_m_q8 / 256.0));
+        ref_pulse(
+            seen[k], s->slant.cells,
+            ref_pulse_m(w->radar.range[s->command.range_index].pulse_ns[s->command.fov] * 1e-9) /
+                (s->slant.cell_m_q8 / 256.0));
     }
 }
 
@@ -193,8 +195,11 @@ TEST(the_table_brings_samples_near_to_what_the_beam_sees)
     spec.ctx = &scale;
     struct sector_world *w = make_country(&spec);
     const struct lm_sector_command commands[] = {
-        {.mode = LM_SECTOR_GM, .azimuth_index = 2},
-        {.mode = LM_SECTOR_GM, .fov = LM_FOV_EXP, .centre = place_at(w, 0, 14000)}};
+        {.mode = LM_SECTOR_GM, .range_index = scale_of(10), .azimuth_index = 2},
+        {.mode = LM_SECTOR_GM,
+         .range_index = scale_of(10),
+         .fov = LM_FOV_EXP,
+         .centre = place_at(w, 0, 14000)}};
     struct ref_db db;
     assert_int_equal(ref_db_open_memory(&db, w->map.image.bytes, w->map.image.size, "country"), 0);
     static double seen[LINES_MAX][LM_CELLS_MAX];
@@ -242,8 +247,10 @@ static double worth_of_strip(double off_m, uint8_t azimuths_log2)
     spec.cell = strip_cell;
     spec.ctx = &strips;
     struct sector_world *w = make_country(&spec);
-    const struct lm_sector_command command = {
-        .mode = LM_SECTOR_GM, .fov = LM_FOV_EXP, .centre = place_at(w, 0, 15000)};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .range_index = scale_of(10),
+                                              .fov = LM_FOV_EXP,
+                                              .centre = place_at(w, 0, 15000)};
     double sum = 0, expected = 0;
     w->radar.fov[LM_FOV_EXP].azimuths_log2 = azimuths_log2;
     start_sector(w, &command, NULL, NULL);

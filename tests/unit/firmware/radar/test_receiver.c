@@ -4,6 +4,7 @@
 #include "hs/rng.h"
 #include "lm/receiver.h"
 #include "reference/reference.h"
+#include "scales.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,7 +94,7 @@ TEST(a_bin_takes_the_cell_that_its_slant_range_lies_over)
         const double near_m = n % 2 ? 60000 * hs_rng_uniform(&rng) : 0;
         const double height_m = 15000 * hs_rng_uniform(&rng);
         w->radar = lm_radar_default;
-        set_world(w, 3, near_m, cell_m, CELLS, height_m, 400);
+        set_world(w, scale_of(80), near_m, cell_m, CELLS, height_m, 400);
         const double edge_m = (w->slant.first_m_q8 - w->grid.cell_m_q8 / 2) / 256.0;
         for (uint32_t i = 0; i < CELLS; i++) {
             /* Heights and ranges are rounded to 1/256 m. */
@@ -160,8 +161,8 @@ TEST(the_noise_has_its_mean_and_its_number_of_looks)
     for (uint8_t looks_log2 = 0; looks_log2 <= LM_NOISE_LOOKS_LOG2_MAX; looks_log2++) {
         w->radar = lm_radar_default;
         w->radar.receiver.noise_looks_log2 = looks_log2;
-        w->radar.range[0].stc_end_m = 100000;
-        set_world(w, 0, 0, 72, CELLS, 3000, 400);
+        w->radar.range[scale_of(10)].stc_end_m = 100000;
+        set_world(w, scale_of(10), 0, 72, CELLS, 3000, 400);
         double sum = 0, squares = 0, pairs = 0, columns = 0, before[CELLS] = {0};
         for (uint32_t line = 0; line < LINES; line++) {
             double last = 0;
@@ -213,9 +214,9 @@ TEST(another_sweep_has_other_noise_and_the_same_one_the_same)
 static void set_pulse_only(struct world *w, double cell_m, uint32_t pulse_ns)
 {
     w->radar = lm_radar_default;
-    w->radar.range[3].noise_end_db_q8 = -120 * 256;
-    w->radar.range[3].stc_end_m = 400000;
-    set_world(w, 3, 0, cell_m, CELLS, 3000, pulse_ns);
+    w->radar.range[scale_of(80)].noise_end_db_q8 = -120 * 256;
+    w->radar.range[scale_of(80)].stc_end_m = 400000;
+    set_world(w, scale_of(80), 0, cell_m, CELLS, 3000, pulse_ns);
 }
 
 TEST(a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long)
@@ -350,15 +351,15 @@ TEST(whatever_the_table_says_levels_stay_in_their_bounds)
     static const uint32_t pulses_ns[] = {0, 1, 1000, 60000, UINT32_MAX};
     for (int n = 0; n < 400; n++) {
         w->radar = lm_radar_default;
-        w->radar.range[3].noise_end_db_q8 = n % 2 ? INT16_MAX : INT16_MIN;
-        w->radar.range[3].stc_end_m = n % 3 ? hs_rng_below(&rng, 400000) : 0;
+        w->radar.range[scale_of(80)].noise_end_db_q8 = n % 2 ? INT16_MAX : INT16_MIN;
+        w->radar.range[scale_of(80)].stc_end_m = n % 3 ? hs_rng_below(&rng, 400000) : 0;
         w->radar.receiver.noise_looks_log2 = (uint8_t)hs_rng_below(&rng, 256);
         w->radar.antenna.elevation_beam = n % 5 ? (fx_bam_t)hs_rng_u64(&rng) : 0;
         const uint32_t cells = hs_rng_below(&rng, LM_CELLS_MAX + 1);
         const double cell_m = n % 7 ? 700 * hs_rng_uniform(&rng) + 0.01 : 0.004;
         const double height_m = 60000 * hs_rng_uniform(&rng) - 30000;
         const double near_m = n % 2 ? 0 : 20000 * hs_rng_uniform(&rng);
-        set_world(w, 3, near_m, cell_m, cells, height_m, pulses_ns[n % 5]);
+        set_world(w, scale_of(80), near_m, cell_m, cells, height_m, pulses_ns[n % 5]);
         uint32_t total = w->receiver.weight_q16[0];
         for (int m = 1; m <= LM_PULSE_REACH_MAX; m++) {
             total += 2 * w->receiver.weight_q16[m];

@@ -6,6 +6,7 @@
 #include "target_support.h"
 
 #include "hs/angle.h"
+#include "scales.h"
 
 #include <math.h>
 
@@ -111,8 +112,10 @@ static void judge_width(enum lm_fov field, double azimuth_deg, double rcs_db, do
         add_point(&p, w, azimuth_deg + (i - (points - 1) / 2.0) * spacing_deg, ground_m, rcs_db);
     }
     const struct lm_target_set set = set_of(&p);
-    const struct lm_sector_command command = {
-        .mode = LM_SECTOR_GM, .fov = (uint8_t)field, .centre = place_at(w, azimuth_deg, ground_m)};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .range_index = scale_of(10),
+                                              .fov = (uint8_t)field,
+                                              .centre = place_at(w, azimuth_deg, ground_m)};
     start_sector(w, &command, NULL, &set);
     static double level_db[LINES_MAX];
     do {
@@ -206,6 +209,7 @@ static void judge_places(struct sector_world *w, const struct spread *s, double 
     const double ground_m = s->ground_m;
     static double with[LINES_MAX], without[LINES_MAX];
     const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .range_index = scale_of(10),
                                               .fov = (uint8_t)s->field,
                                               .centre = place_at(w, s->azimuth_deg, ground_m)};
     struct points p = {.count = 0};
@@ -324,6 +328,7 @@ TEST(the_notch_ends_where_the_formula_says)
         add_rings(&p, w, cases[i].ground_m, cases[i].apart_m, cases[i].rcs_db);
         const struct lm_target_set set = set_of(&p);
         const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                                  .range_index = scale_of(10),
                                                   .fov = (uint8_t)cases[i].field,
                                                   .centre = place_at(w, 0, cases[i].ground_m)};
         start_sector(w, &command, NULL, &set);
@@ -380,7 +385,7 @@ TEST(speckle_is_another_one_in_each_sweep_of_real_beam)
 {
     static double first[SECTOR_LINES][END_BIN], second[SECTOR_LINES][END_BIN];
     struct sector_world *w = make_flat(false);
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range_index = scale_of(10)};
     start_sector(w, &command, NULL, NULL);
     take_sweep(w, first);
     assert_int_equal(w->sector.lines, SECTOR_LINES);
@@ -436,7 +441,7 @@ TEST(gmt_shows_what_moves_within_its_gates_and_nothing_else)
                       cases[i].speed_mm_s);
     }
     const struct lm_target_set set = set_of(&p);
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GMT};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GMT, .range_index = scale_of(10)};
     start_sector(w, &command, NULL, &set);
     for (uint32_t i = 0; i < count; i++) {
         const double level_db = brightest_of_bars(w, cases[i].azimuth_deg, 9000 + 700.0 * i);
@@ -466,7 +471,8 @@ static double mean_sea_db(struct sector_world *w)
 
 TEST(the_sea_brightens_by_5_dB_a_state)
 {
-    const struct lm_sector_command command = {.mode = LM_SECTOR_SEA, .azimuth_index = 1};
+    const struct lm_sector_command command = {
+        .mode = LM_SECTOR_SEA, .range_index = scale_of(10), .azimuth_index = 1};
     struct sector_world *w = make_flat(true);
     double before_db = 0;
     for (uint8_t sea_state = 0; sea_state <= LM_SEA_STATE_MAX; sea_state++) {

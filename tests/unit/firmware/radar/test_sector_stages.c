@@ -6,6 +6,7 @@
 #include "sector_world.h"
 
 #include "hs/angle.h"
+#include "scales.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -208,12 +209,6 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
     for (uint32_t i = 0; i < s->slant.cells; i++) {
         note_power(&t->score[BEAM], ldexp(drawn_q24[i], -24), sum[i], 1);
     }
-}
-
-/* The index of a scale, nautical miles. */
-static uint8_t scale_of(int32_t range_nm)
-{
-    return (uint8_t)lm_radar_find_range(&lm_radar_default, range_nm);
 }
 
 static struct ref_receiver receiver_of(const struct trial *t)

@@ -6,6 +6,7 @@
 #include "lm/sar.h"
 #include "lm/sector.h"
 #include "lm/target_line.h"
+#include "scales.h"
 
 #include <stdlib.h>
 
@@ -396,8 +397,8 @@ static double boiling(struct fixture *f, struct lm_chips *chips)
     enum { SWEEPS = 100, BINS = 600 };
     const struct lm_target t = target_with_signature(46, 11, 77);
     const struct lm_target_set set = set_with_signature(&f->world, &t, 1);
-    const struct lm_sector_command command = {.fov = LM_FOV_DBS2,
-                                              .centre = {t.latitude, t.longitude}};
+    const struct lm_sector_command command = {
+        .range_index = scale_of(10), .fov = LM_FOV_DBS2, .centre = {t.latitude, t.longitude}};
     struct lm_geo_origin o;
     lm_geo_set_origin(&o, command.centre);
     const struct lm_platform platform = {.position = lm_geo_direct(&o, hs_bam(270), 15000 * 256),

@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "memory_flash.h"
+#include "scales.h"
 #include "target_image.h"
 #include "tiny_map.h"
 
@@ -161,7 +162,7 @@ static void sweep(const struct lm_target_set *set, int32_t level_q8[SIDE][SIDE])
     static struct lm_sector sector;
     const struct lm_platform platform = {.position = {hs_bam(45.95), hs_bam(11)},
                                          .height_m_q10 = 3000 * 1024};
-    const struct lm_sector_command command = {.mode = LM_SECTOR_GM};
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM, .range_index = scale_of(10)};
     lm_sector_start(&sector, &lm_radar_default, &command, 5);
     sector.targets = set;
     for (uint32_t k = 0; k < SIDE; k++) {
