@@ -2,15 +2,18 @@
 # Run every test program given, in TAP form, and add up. Usage: run.sh BUILD-DIR TEST...
 # A test program prints "ok N - name", "not ok N - name", or "ok N # SKIP name" (cmocka says "not ok" there too).
 # A program that dies, or prints no result at all, counts as one failure.
+# Tests in emulated machines (panel-vm, zcu102) run beside the others, one after the other as those; their results are
+# printed at the end.
 set -u
 o=$1
 shift
-mkdir -p "$o/test-logs"
-passed=0 failed=0 skipped=0
-for test in "$@"; do
-    name=${test#"$o"/bin/}
-    log=$o/test-logs/$(echo "$name" | tr / -).tap
-    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o timeout -k 5 "${TEST_TIMEOUT:-900}" "$test" >"$log" 2>&1
+logs=$o/test-logs
+mkdir -p "$logs"
+
+run_test() { # PROGRAM
+    name=${1#"$o"/bin/}
+    log=$logs/$(echo "$name" | tr / -).tap
+    CMOCKA_MESSAGE_OUTPUT=TAP BUILD=$o timeout -k 5 "${TEST_TIMEOUT:-900}" "$1" >"$log" 2>&1 </dev/null
     status=$?
     s=$(grep -cE '^(not )?ok .*# SKIP' "$log")
     p=$(grep -E '^ok ' "$log" | grep -vc '# SKIP')
@@ -24,6 +27,25 @@ for test in "$@"; do
     [ "$s" -eq 0 ] || sed -n 's/^# skipped: /    skipped: /p' "$log"
     [ "$f" -eq 0 ] || { sed 's/^/    /' "$log" | tail -n 60; }
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
-done
+}
+
+# The tests of standard input, one a line; their sum goes to a file.
+lane() { # FILE
+    passed=0 failed=0 skipped=0
+    while read -r test; do
+        run_test "$test"
+    done
+    echo "$passed $failed $skipped" >"$1"
+}
+
+is_emulated='/bin/tests/(panel-vm|zcu102)/'
+rm -f "$logs"/lane-*
+printf '%s\n' "$@" | grep -E "$is_emulated" | lane "$logs/lane-emulated" >"$logs/emulated.out" 2>&1 &
+printf '%s\n' "$@" | grep -vE "$is_emulated" | lane "$logs/lane-plain"
+wait
+cat "$logs/emulated.out"
+read -r passed failed skipped <"$logs/lane-plain"
+read -r p f s <"$logs/lane-emulated"
+passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed -eq 0 ]
