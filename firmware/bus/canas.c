@@ -290,7 +290,7 @@ static void read_integer(const uint8_t *data, const struct lm_canas_type *type, 
 struct accepted {
     const struct lm_can_frame *frame;
     const struct lm_bus_row *row;
-    struct lm_canas_pair *pair; /* NULL for rows that take no halves; only coordinates do */
+    struct lm_canas_pair *pair; /* used only by rows that take halves: those of coordinates */
     uint8_t type;
 };
 

@@ -12,7 +12,7 @@
 struct point district_site(uint64_t seed, int i, int j, double spacing_m);
 struct shape district_shape(uint64_t seed, int i, int j, double spacing_m);
 
-/* How land is cut. */
+/* Division of land into parcels. */
 struct division {
     double largest_m2; /* parcels are cut until they are smaller than once or twice this */
     double gap_m[3];   /* left between the halves of the first cut, the second, all others */

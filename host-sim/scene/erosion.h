@@ -29,7 +29,7 @@ void erosion_free(struct erosion *e);
  * Cost: about 60 ns a node and step. */
 void erosion_run(struct erosion *e, int steps, double pace, double talus);
 
-/* Where each node drains and how much drains through it, for the elevations as they are. */
+/* Find each node's receiver, and the area that drains through it, from the present elevations. */
 void erosion_route(struct erosion *e);
 
 #endif

@@ -16,7 +16,7 @@
 /* Of a flight of which nobody has asked yet what it meets. */
 #define TILE_NOT_ASKED (SCENE_MISS - 1)
 
-/* A ray under way. */
+/* Flight: a ray that has not ended. */
 struct flight {
     struct vec from, along;
     struct vec start; /* `from`, lifted off its surface: where Embree's ray begins */
@@ -42,7 +42,7 @@ struct packet {
     uint32_t asker[SCENE_PACKET];
 };
 
-/* Returns true when the packet is full. */
+/* Add a ray to the packet. True if the packet is then full. */
 static inline bool packet_add(struct packet *p, struct vec from, struct vec along, uint32_t asker)
 {
     p->asker[p->rays.count] = asker;
@@ -69,7 +69,8 @@ static inline float angle_of_turns(double turns)
     return (float)(2 * 3.14159265358979323846 * (turns - (double)lrint(turns)));
 }
 
-/* What a reflection owes to its plane and the direction of the ray alone: neighbours share it. */
+/* Angles of a reflection: what depends on its plane and the ray's direction alone. Neighbours share
+ * them. */
 struct ray_angles {
     const struct scene_facet *plane;
     struct vec normal, along;   /* on the side that the ray comes from; of the specular ray */
@@ -116,8 +117,7 @@ static inline double ground_depth_m(const struct trace_tiles *t, uint32_t row)
     return -up_of(t, row) * t->axes.rise.z / t->axes.sight.z;
 }
 
-/* Where a primary ray begins: outside the model, and above the ground where the plane dips below
- * it. */
+/* Start of a primary ray: outside the model, and above the ground where the plane dips below it. */
 static inline struct vec primary_start(const struct trace_tiles *t, uint32_t column, uint32_t row)
 {
     const struct vec on_plane =

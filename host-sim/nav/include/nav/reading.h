@@ -1,5 +1,5 @@
-/* Reading of a track file: which fixes are accepted, and what becomes of lines that cannot be used.
- */
+/* Reading of a track file: which fixes are accepted, and what becomes of lines that cannot be
+ * used. */
 #ifndef NAV_READING_H
 #define NAV_READING_H
 
@@ -7,7 +7,7 @@
 
 enum { NAV_WARNINGS_SHOWN = 5 };
 
-/* How the reading went. A line that is malformed or not later than the one before is left out,
+/* Result of a reading. A line that is malformed or not later than the one before is left out,
  * counted, and (the first NAV_WARNINGS_SHOWN) warned about with its line number. */
 struct nav_reading {
     const char *name;   /* for messages; borrowed */

@@ -39,7 +39,7 @@ struct nav_limits {
     double max_speed_ms; /* a faster step is a jump */
 };
 
-/* What nav_track_complete found. */
+/* Result of nav_track_complete. */
 struct nav_findings {
     double span_s, median_interval_s, max_gap_s; /* the last as it was applied */
     size_t gaps;                                 /* pauses, each beginning a new leg */

@@ -5,7 +5,7 @@
 
 #include "netem/network.h"
 
-/* What a network is told of one reflection, each within -1..1: material, incident angle, angle of
+/* Inputs of a network for one reflection, each within -1..1: material, incident angle, angle of
  * the way out to the normal, angle between the ways in and out (Table I; paths.h makes them). */
 enum { NM_INPUTS = 4 };
 

@@ -21,8 +21,8 @@ struct nm_chip {
  * nothing to close; close the picture when done. */
 int nm_chip_read(struct nm_chip *chip, const char *path);
 
-/* Whether a file seems to be a chip: by its name's ending, or because it begins as raw MSTAR does.
- */
+/* True if a file seems to be a chip: by its name's ending, or because it begins as raw MSTAR
+ * does. */
 int nm_chip_seems(const char *path);
 
 /* A raw MSTAR chip in memory: an ASCII header of lines "Key= value" from "[PhoenixHeaderVer..." to

@@ -37,7 +37,7 @@ struct nm_pix_values {
 };
 enum { NM_PIX_SIZE = sizeof(struct nm_pix_values) / sizeof(double) };
 
-/* What a picture leaves behind for its derivative. */
+/* Intermediate results of a picture, kept for its derivative. */
 struct nm_netpix {
     struct nm_convolver convolver;
     int side;                                     /* cells of the picture, either way; even */

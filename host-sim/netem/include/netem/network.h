@@ -20,11 +20,11 @@ struct nm_network {
     enum nm_unit last;
 };
 
-/* How many numbers the weights are: for each layer a matrix of width x previous width, row-major,
- * then one bias a unit. */
+/* Number of weights: for each layer a matrix of width x previous width, row-major, then one bias a
+ * unit. */
 size_t nm_network_size(const struct nm_network *net);
 
-/* How many activities `rows` rays have, all layers together. */
+/* Number of activities of `rows` rays, all layers together. */
 size_t nm_network_activity_size(const struct nm_network *net, int rows);
 
 /* Width of the output layer. */
@@ -46,7 +46,7 @@ const double *nm_network_forward(const struct nm_network *net, const double *wei
 void nm_network_backward(const struct nm_network *net, const double *weights, const double *inputs,
                          int rows, const double *activity, double *delta, double *gradient);
 
-/* Where the outputs begin in an array laid out as the activities. */
+/* Index of the first output in an array laid out as the activities. */
 size_t nm_network_output_offset(const struct nm_network *net, int rows);
 
 #endif

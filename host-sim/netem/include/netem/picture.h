@@ -15,7 +15,7 @@ struct nm_picture {
 int nm_picture_open(struct nm_picture *p, int width, int height);
 void nm_picture_close(struct nm_picture *p);
 
-/* Where the simulated picture's pixel (0, 0) lies on a real one. */
+/* Position of the simulated picture's pixel (0, 0) on a real one. */
 struct nm_origin {
     int x, y;
 };

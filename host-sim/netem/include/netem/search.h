@@ -29,8 +29,7 @@ struct nm_match {
 };
 
 /* Take memory for the scores of so many views. Returns 0, or -1 with the error reported (no
- * memory).
- */
+ * memory). */
 int nm_match_open(struct nm_match *match, int views);
 void nm_match_close(struct nm_match *match);
 
@@ -63,7 +62,7 @@ void nm_choose_alone(const struct nm_match *matches, int count, int views, int *
 int nm_choose_in_order(const struct nm_match *matches, int count, int views, int *chosen,
                        double *step_deg);
 
-/* How much better the chosen view is than the best one more than 30 degrees away. Small or
+/* Margin of the chosen view over the best one that is more than 30 degrees away. Small or
  * negative: ambiguous. */
 double nm_search_margin(const struct nm_match *match, int views, int chosen);
 

@@ -6,7 +6,7 @@
 #include "netem/netem.h"
 #include "netem/netpix.h"
 
-/* What is learned, and what it needs besides. */
+/* Simulator: what is learned, and what it needs besides. */
 struct nm_model {
     const struct nm_architecture *architecture; /* borrowed */
     bool is_pix_trainable;                      /* Fig. 15 instead of the fixed kernel */

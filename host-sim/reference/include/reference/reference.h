@@ -112,8 +112,8 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
 
 /* ---- geometry (geo.c) ---- */
 
-/* The place at a distance and azimuth (clockwise from north) on WGS-84, by EQUATIONS.md's formula.
- */
+/* The place at a distance and azimuth (clockwise from north) on WGS-84, by EQUATIONS.md's
+ * formula. */
 struct ref_place ref_geo_direct(struct ref_place from, double azimuth_deg, double distance_m);
 
 /* The other way round: azimuth and distance that lead from one place to another, up to 300 km away,
@@ -128,10 +128,10 @@ struct ref_path {
 struct ref_path ref_gm_path(struct ref_place antenna, double azimuth_deg, double length_m);
 struct ref_place ref_path_at(const struct ref_path *path, double u);
 
-/* The biquadratic surface through nine points of a patch: [across][along] at -w, 0, +w.
- * Assumed: `azimuth_deg` is the line of sight's at the centre, pointing away from the radar; the
- * point at across x and along y lies at azimuth + atan2(x, y) and distance hypot(x, y) from the
- * centre; w is half the side of the patch. */
+/* The biquadratic surface through nine points of a patch: [across][along] at -w, 0, +w. Assumed:
+ * `azimuth_deg` is the line of sight's at the centre, pointing away from the radar; the point at
+ * across x and along y lies at azimuth + atan2(x, y) and distance hypot(x, y) from the centre; w is
+ * half the side of the patch. */
 struct ref_surface {
     double half_side_m;
     double latitude_deg[3][3], longitude_deg[3][3];
@@ -167,8 +167,8 @@ double ref_gm_horizon(const struct ref_bin *first, const struct ref_view *view);
 double ref_highest_tangent(const struct ref_bin *bins, size_t count, double antenna_m);
 
 /* Fill the aspect fields from range and scan_line fields, near to far, starting below `horizon`.
- * The first bin shown enters nothing and follows no water; a bin without data is ground of -80 dB.
- */
+ * The first bin shown enters nothing and follows no water; a bin without data is ground of -80
+ * dB. */
 void ref_illuminate(struct ref_bin *bins, size_t count, const struct ref_view *view,
                     const struct ref_params *params, double horizon);
 
@@ -191,7 +191,7 @@ struct ref_texture {
 };
 void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params);
 
-/* What a state of the sea (0..8) adds to water. */
+/* Level that a sea state (0..8) adds to water. */
 double ref_sea_db(int state);
 
 /* Fill `texture_db` from `kind` and `texture_slice`: what the roughness of the class and, over
@@ -231,7 +231,7 @@ struct ref_receiver {
     double pulse_s;
 };
 
-/* What the weather does to each bin of a line. */
+/* Effect of the weather on each bin of a line. */
 struct ref_weather_line {
     double jam; /* what jammers add to the noise, in units of it */
     double pass[REF_CELLS_MAX], rain[REF_CELLS_MAX];
@@ -240,8 +240,8 @@ struct ref_weather_line {
 /* s of a slant range r over flat ground `height_m` below; 0 in the altitude hole. */
 double ref_ground_of_slant(double slant_m, double height_m);
 
-/* The sampled cell of a bin, of `cells` that begin at `near_edge_m`; `cells` where there is none.
- */
+/* The sampled cell of a bin, of `cells` that begin at `near_edge_m`; `cells` where there is
+ * none. */
 size_t ref_slant_cell(double slant_m, double height_m, double near_edge_m, double cell_m,
                       size_t cells);
 
@@ -290,7 +290,7 @@ double ref_rain_eta(double mm_per_h, double wavelength_m);
 /* The jammer's noise beside the receiver's. */
 double ref_jam(const struct ref_jammer *j, double beam_deg);
 
-/* Where a line is in the rain; false: nowhere, with 0 or nonsense in both. */
+/* Part of a line that is in the rain. False if none is; both results are then meaningless. */
 bool ref_rain_chord(const struct ref_rain *rain, double *from_m, double *to_m);
 
 /* Weather of bin i: share of the power that passes, and the rain's own as gamma, weakened. */
@@ -310,12 +310,12 @@ struct ref_patch_rain {
     double slant; /* metres of the way for each metre along the ground */
 };
 
-/* What rain takes of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line
+/* Loss by rain of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line
  * whose middle appears `aside_deg` to the right of the line of sight. */
 double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
                          double cell_m);
 
-/* What rain adds to the cells at `range_m`, as gamma: veil[n] on the line `aside_deg[n]` of the
+/* Echo of rain in the cells at `range_m`, as gamma: veil[n] on the line `aside_deg[n]` of the
  * line of sight. These grow with n, within 40 degrees or ten beams of their middle. */
 void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
                     const double *aside_deg, double *veil, size_t count);
@@ -355,8 +355,8 @@ struct ref_antenna {
     double bar_spacing_deg;
 };
 
-/* What the elevation pattern leaves of a look at a tangent; 0 within the fan. Tilts are positive
- * upwards. */
+/* Elevation pattern at a tangent, in dB: at most 0, which is its value within the fan. Tilts are
+ * positive upwards. */
 double ref_elevation_db(const struct ref_antenna *a, double tilt_deg, double tangent);
 
 /* Tilt towards flat ground `height_m` below at `range_m`, and that of bar 0..bars-1. */
@@ -511,8 +511,8 @@ double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
 /* Room for the picture's lines and cells, all zero. Returns 0, or -1 with the error reported. */
 int ref_picture_allocate(struct ref_picture *picture);
 
-/* Whole pictures. Return 0, or -1 with the error reported (no memory); ref_picture_free afterwards.
- */
+/* Whole pictures. Return 0, or -1 with the error reported (no memory); ref_picture_free
+ * afterwards. */
 int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const struct ref_gm *gm,
                  const struct ref_params *params);
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,

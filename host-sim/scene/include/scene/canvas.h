@@ -19,7 +19,7 @@ struct canvas {
     uint8_t *height_hm; /* of what stands there, in half metres */
 };
 
-/* What to paint with. */
+/* Brush: the paint and where it takes. */
 struct brush {
     enum material material;
     uint8_t variant;

@@ -18,7 +18,7 @@ int output_truth(const struct scene *s, const struct picture *p, const char *pat
 int output_heights(const struct scene *s, const struct picture *p, const char *path);
 int output_terrain(const struct scene *s, const char *path);
 
-/* What the scene is and where its places lie. */
+/* Description of the scene, with the positions of its places. */
 int output_description(const struct scene *s, const char *path);
 
 /* Three pictures to look at: colours as the eye sees them, classes, and the terrain in the sun. */

@@ -21,7 +21,7 @@ struct bezel_box {
     int32_t x, y, width, height;
 };
 
-/* Where button 1..LM_BUTTONS is. */
+/* Position of button 1..LM_BUTTONS. */
 struct bezel_box bezel_box_of(const struct bezel *b, int32_t button);
 
 /* The button at a point, or 0. */

@@ -83,8 +83,8 @@ struct trace_grid {
 };
 
 /* Ray (column, row) crosses the plane through the origin that is square to the line of sight at
- * low_across_m + (column + 1/2) step_across_m to the right and low_up_m + (row + 1/2) step_up_m up.
- */
+ * low_across_m + (column + 1/2) step_across_m to the right and low_up_m + (row + 1/2) step_up_m
+ * up. */
 struct trace_sensor {
     uint32_t columns, rows;
     double step_across_m, step_up_m, low_across_m, low_up_m;
@@ -100,11 +100,11 @@ struct trace_records {
     struct trace_bounce bounces[TRACE_BOUNCES_MAX];
 };
 
-/* Index row * cells_across + column of the cell in which an echo lies, or -1 outside the picture.
- */
+/* Index row * cells_across + column of the cell in which an echo lies, or -1 outside the
+ * picture. */
 int32_t trace_cell(const struct trace_grid *grid, float across_m, float range_m);
 
-/* What a channel of the paper's Table I holds; TRACE_MATERIAL and TRACE_IS_BLOCKED as numbers. */
+/* Contents of a channel of the paper's Table I; TRACE_MATERIAL and TRACE_IS_BLOCKED as numbers. */
 enum trace_channel {
     TRACE_IS_BLOCKED,
     TRACE_MATERIAL,

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a ray meets: its plane, and of what it is made. */
+/* Facet that a ray meets: its plane and its material. */
 struct scene_facet {
     struct vec normal; /* unit, on the outer side */
     double offset_m;   /* normal . p of the points p of the plane */
