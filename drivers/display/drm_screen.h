@@ -23,7 +23,7 @@ struct drm_screen {
  * reads the screen's description: some 10 ms. NULL, or the cause why there is none. */
 const char *drm_screen_find(int fd, const struct drv_drm_config *config, struct drm_screen *screen);
 
-/* Whether the connector still has a screen, as far as the kernel has noticed. Costs nothing. */
+/* True if the connector still has a screen, as far as the kernel has noticed. Costs nothing. */
 bool drm_screen_is_there(int fd, uint32_t connector_id);
 
 #endif

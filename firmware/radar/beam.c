@@ -5,7 +5,7 @@
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
 
-_Static_assert((int)LM_BEAM_TAPS == LM_K_TAPS, "a look has what lm/kernels_radar.h wants");
+_Static_assert((int)LM_BEAM_TAPS == LM_K_TAPS, "as many taps as lm/kernels_radar.h sums");
 
 _Static_assert(1 << LM_BEAM_FINEST == LM_RADAR_SHARPENING_MAX, "what the table may ask for");
 

@@ -27,7 +27,7 @@ struct drv_stick_axis {
     bool is_inverted;
 };
 
-/* What a button does. */
+/* Action of a button. */
 struct drv_stick_button {
     enum { DRV_STICK_NOTHING, DRV_STICK_PRESS, DRV_STICK_DESIGNATE, DRV_STICK_DROP } act;
     uint8_t button; /* of the bezel, for DRV_STICK_PRESS */

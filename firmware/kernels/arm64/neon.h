@@ -1,4 +1,4 @@
-/* What several kernels make of the vectors of 64-bit Arm (NEON, Advanced SIMD): tables of 16 and 64
+/* Vectors of 64-bit Arm (NEON, Advanced SIMD) that several kernels share: tables of 16 and 64
  * bytes looked up at once, decibels and powers. Each is equal to the bit to the function of
  * fx/log.h that it names. */
 #ifndef NEON_H
@@ -97,7 +97,7 @@ static inline uint16x8x2_t neon_add_db_q8_of_16(uint16x8x2_t level_db_q8, uint32
     return level_db_q8;
 }
 
-/* How far apart eight levels are, in steps of the table. */
+/* Distance of eight levels, in steps of the table. */
 static inline uint16x8_t neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int32x4_t b0_q8,
                                           int32x4_t b1_q8)
 {

@@ -47,8 +47,8 @@ static void set_words(const struct lm_k_lit_line *line, struct words *words)
 
 /* What a cell shows by itself; its level but for the horizon's rise and the edges. Indices are
  * signed: then a loop of this becomes vector gathers. */
-static void look(const struct lm_k_lit_line *line, uint32_t end, struct work *restrict w,
-                 int32_t *restrict level_db_q8)
+static void take_tops(const struct lm_k_lit_line *line, uint32_t end, struct work *restrict w,
+                      int32_t *restrict level_db_q8)
 {
     const struct lm_k_tops tops = line->tops;
     const int32_t *gain_db_q8 = line->gain_db_q8;
@@ -152,7 +152,7 @@ void lm_k_light(const struct lm_k_lit_line *line)
 {
     const uint32_t cells = line->tops.cells, end = (cells + LM_LANES - 1) / LM_LANES * LM_LANES;
     struct work *w = (struct work *)line->work;
-    look(line, end, w, line->level_db_q8);
+    take_tops(line, end, w, line->level_db_q8);
     set_ends(line, w);
     max_of_four(end, w);
     if (light(end, w, line->horizon, line->level_db_q8)) {

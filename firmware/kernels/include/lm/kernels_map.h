@@ -23,7 +23,7 @@
 #include "lm/quadratic.h"
 #include "lm/tile_point.h"
 
-/* Where the cells of a line lie in their tiles, as fractions of a tile's side times 2^32: no place
+/* Coordinates of a line's cells in their tiles, as fractions of a tile's side times 2^32: no place
  * lies outside a tile, and the way from one tile into the next is a sum that overflows.
  *
  *     2^32 +---------------+      bits 31..26  row or column of the cell, 0..63
@@ -36,7 +36,7 @@ struct lm_tile_coords {
     struct lm_quadratic north, east;
 };
 
-/* What a tile has at one place. */
+/* Ground at one position of a tile. */
 struct lm_ground {
     uint32_t cell; /* as in the record */
     int32_t

@@ -22,8 +22,9 @@ void lm_k_powers_of_levels(uint32_t *line, uint32_t cells);
  * 0.018 dB. Writes no entry behind the last cell. Cost: 3 a cell. */
 void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t cells);
 
-/* Likewise, less `less_db_q8` and not below `least_db_q8`, with the result in `level_db_q8`. Writes
- * no entry behind the last cell. Cost: 3 a cell. */
+/* Mean of powers, as levels: the sum of `sum_db_q8` and `level_db_q8`, less `less_db_q8`, and not
+ * below `least_db_q8`. The result stands in `level_db_q8`. Writes no entry behind the last cell.
+ * Cost: 3 a cell. */
 void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
                       int32_t *level_db_q8, uint32_t cells);
 
@@ -40,7 +41,7 @@ enum { LM_K_UNIT_Q24_DB_Q8 = 24 * FX_DB_PER_OCTAVE_Q14 / 64 };
 /* A receiver's noise, and its bins. */
 struct lm_k_receiver {
     const int32_t *noise_db_q8; /* mean of each bin, dB of gamma */
-    const int32_t *fall_db_q8;  /* by how much each bin is darker in the end */
+    const int32_t *fall_db_q8;  /* STC roll-off of each bin */
     int32_t rise_db_q8;         /* of the noise, in all bins */
     const int16_t *row_db_q8;   /* draws of the noise, as in lm/kernels_clutter.h */
     const uint32_t *entry;
@@ -58,8 +59,8 @@ struct lm_k_rain {
 void lm_k_detect(const struct lm_k_receiver *r, const uint32_t *power_q24, int32_t *level_db_q8,
                  uint32_t cells);
 
-/* Likewise in rain: the signal is weaker by the loss; noise and rain add before the draw, because
- * drops move and so fluctuate as the noise does. Cost: 12 a cell. */
+/* Level of each bin in rain. The signal is weaker by the loss. Noise and rain add before the draw,
+ * because drops move and fluctuate as the noise does. All else as lm_k_detect. Cost: 12 a cell. */
 void lm_k_detect_in_rain(const struct lm_k_receiver *r, const struct lm_k_rain *rain,
                          const uint32_t *power_q24, int32_t *level_db_q8, uint32_t cells);
 

@@ -1,5 +1,6 @@
-/* Track: one coordinate of the cells along a line that bends a little, as a quadratic in the cell's
- * number. Everything is modulo 2^32, so that no overflow is an error; the unit is the user's. */
+/* Quadratic: one coordinate of the cells along a line that bends a little, as a polynomial of the
+ * cell's number. All sums are modulo 2^32, and overflow is no error. The caller chooses the unit.
+ */
 #ifndef LM_QUADRATIC_H
 #define LM_QUADRATIC_H
 
@@ -10,9 +11,9 @@ struct lm_quadratic {
     uint32_t at, step, half_bend;
 };
 
-static inline uint32_t lm_quadratic_at(const struct lm_quadratic *t, uint32_t k)
+static inline uint32_t lm_quadratic_at(const struct lm_quadratic *q, uint32_t k)
 {
-    return t->at + k * (t->step + k * t->half_bend);
+    return q->at + k * (q->step + k * q->half_bend);
 }
 
 #endif

@@ -140,7 +140,7 @@ struct lm_range_row {
 /* The antenna and its gimbals. */
 struct lm_antenna_table {
     fx_bam_t azimuth_beam;   /* one-way half-power width; LM_RADAR_BEAM_MIN..20 degrees */
-    fx_bam_t elevation_beam; /* likewise; LM_RADAR_BEAM_MIN..60 degrees */
+    fx_bam_t elevation_beam; /* one-way half-power width; LM_RADAR_BEAM_MIN..60 degrees */
     fx_bam_t fan;            /* the beam is spoiled so far below its axis; 0..60 degrees */
     fx_bam_t bar_spacing;    /* 0..10 degrees */
     fx_bam_t azimuth_limit;  /* off the nose, either way; 2^20..LM_RADAR_AZIMUTH_MAX */

@@ -32,7 +32,7 @@
 #include "lm/sector.h"
 #include "lm/unit_map.h"
 
-/* What the picture reads. All pointers stay borrowed as long as the picture is used. */
+/* Inputs of a picture. All pointers stay borrowed as long as the picture is used. */
 struct lm_picture_lent {
     const struct lm_radar *radar;
     struct lm_unit_map *map;
