@@ -4,6 +4,7 @@
 #include "fx/sat.h"
 #include "lm/const.h"
 #include "lm/kernels_clutter.h"
+#include "lm/units.h"
 #include "tops.h"
 
 _Static_assert((int)LM_CLASS_LUT_CODES == LM_K_CODES && (int)LM_LIT_SCRATCH >= LM_K_LIGHT_WORK,
@@ -31,7 +32,7 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_m_q8, i
      * 2^33.2 in units of 16 m^2, and times the curvature below 2^57.2. */
     const int64_t drop_m_q14 =
         ((((int64_t)range_m_q8 * range_m_q8) >> 20) * LM_CURVATURE_Q48) >> 30;
-    g->fall_m_q14[i] = (int32_t)drop_m_q14 + g->height_m_q10 * 16;
+    g->fall_m_q14[i] = (int32_t)(drop_m_q14 + lm_m_q14_of_m_q10(g->height_m_q10));
     /* No cell that is set lies nearer than LM_RANGE_MIN_M. The dividend is at most 2^57, the
      * divisor at least 2^(tangent_bits - 6). NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
     const uint64_t inverse =
@@ -50,10 +51,8 @@ static void set_cell(struct lm_range_grid *g, uint32_t i, uint32_t range_m_q8, i
  * is. */
 static uint32_t first_shown(const struct lm_range_grid *g, uint32_t first_m_q8)
 {
-    const uint32_t nearest_m = LM_RANGE_MIN_M;
     const int32_t half_height_m_q8 = g->height_m_q10 / 8;
-    const uint32_t nearest_m_q8 =
-        half_height_m_q8 > (int32_t)(nearest_m << 8) ? (uint32_t)half_height_m_q8 : nearest_m << 8;
+    const uint32_t nearest_m_q8 = (uint32_t)fx_max_i32(half_height_m_q8, LM_M_Q8(LM_RANGE_MIN_M));
     if (first_m_q8 >= nearest_m_q8) {
         return 0;
     }
@@ -70,13 +69,13 @@ void lm_range_grid_set(struct lm_range_grid *g, const struct lm_illumination_con
     g->height_m_q10 = height_m_q10;
     g->reference_m_q10 = reference_m_q10;
     g->first = first_shown(g, first_m_q8);
-    const uint32_t width_m_q8 = (uint32_t)config->shore_width_m << 8;
+    const uint32_t width_m_q8 = lm_m_q8_of_m(config->shore_width_m);
     const uint32_t shore_cells = (width_m_q8 + cell_m_q8 / 2) / cell_m_q8;
     g->shore_fall_db_q8 = config->shore_db_q8 / (int32_t)(shore_cells ? shore_cells : 1);
     /* Choose the format of tangents: the largest inverse, that of the first displayed cell, takes
      * 31 bits. If no cell is displayed, any format will do. */
     const uint32_t nearest_m_q8 =
-        fx_max_u32(first_m_q8 + g->first * cell_m_q8, LM_RANGE_MIN_M << 8);
+        fx_max_u32(first_m_q8 + g->first * cell_m_q8, LM_M_Q8(LM_RANGE_MIN_M));
     g->tangent_bits = (uint32_t)(31 - fx_clz32(nearest_m_q8)) + 6;
     for (uint32_t i = 0; i < g->first; i++) {
         g->fall_m_q14[i] = g->inverse_range[i] = g->gain_db_q8[i] =

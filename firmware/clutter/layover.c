@@ -1,14 +1,15 @@
 #include "lm/layover.h"
 
 #include "fx/log.h"
+#include "lm/units.h"
 
 /* Coordinate along the line at which the top of cell i is displayed: i less (top - z0) tan psi /
  * ds. Tops are below 2^29.3 and the lean is below 2^17: products are below 2^47. */
 static int64_t appears_at_cells_q8(const struct lm_layover *l, uint32_t i, int32_t top_m_q14)
 {
-    const int64_t above_m_q14 = top_m_q14 - (int64_t)l->reference_m_q10 * 16;
+    const int64_t above_m_q14 = top_m_q14 - lm_m_q14_of_m_q10(l->reference_m_q10);
     const int64_t nearer_m_q8 = above_m_q14 * l->lean_q16 >> 22;
-    return (int64_t)i * 256 - nearer_m_q8 * 256 / (int64_t)l->cell_m_q8;
+    return lm_cells_q8_of_cells((int32_t)i) - lm_cells_q8_of_m_q8(nearer_m_q8, l->cell_m_q8);
 }
 
 /* Add power to a cell. A sum beyond 64 bits saturates, and power outside the line is lost. */
@@ -35,7 +36,7 @@ void lm_layover_run(const struct lm_layover *l, const struct lm_classes *classes
         if (level_db_q8[i] <= LM_LEVEL_SHADOW / 2) {
             continue;
         }
-        const int32_t height_m_q14 = classes->height_dm[ground->cell[i] & 15] * 8192 / 5;
+        const int32_t height_m_q14 = lm_m_q14_of_dm(classes->height_dm[ground->cell[i] & 15]);
         const int64_t at_cells_q8 =
             appears_at_cells_q8(l, i, ground->elevation_m_q14[i] + height_m_q14);
         const uint64_t whole_q32 = fx_power_q32_vec(level_db_q8[i]);

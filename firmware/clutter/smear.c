@@ -2,10 +2,11 @@
 
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/units.h"
 
 static int32_t clamp_cells_q8(int64_t cells_q8, int32_t most)
 {
-    const int64_t most_cells_q8 = (int64_t)most * 256;
+    const int64_t most_cells_q8 = lm_cells_q8_of_cells(most);
     return (int32_t)fx_clamp_i64(cells_q8, -most_cells_q8, most_cells_q8);
 }
 

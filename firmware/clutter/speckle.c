@@ -2,11 +2,12 @@
 
 #include "fx/sat.h"
 #include "lm/kernels_clutter.h"
+#include "lm/units.h"
 
 _Static_assert((int)LM_NOISE_LOOKS_LOG2_MAX == (int)LM_LOOKS_LOG2_MAX,
                "looks of the noise table and of the radar table");
 
-enum { SEA_STATE_STEP_DB_Q8 = 5 * 256 }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
+enum { SEA_STATE_STEP_DB_Q8 = LM_DB_Q8(5) }; /* Nathanson: -40 dB in state 3, -30 dB in state 5 */
 
 _Static_assert((int)LM_TEXTURE_SHAPE_BITS == LM_K_SHAPE_BITS && (int)LM_DB_CLASSES == LM_K_CODES &&
                    (int)LM_NOISE_BLOCK == LM_LANES,

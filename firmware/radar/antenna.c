@@ -4,6 +4,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/const.h"
+#include "lm/units.h"
 
 enum { STEP_Q20 = 1 << 9 };
 
@@ -17,7 +18,7 @@ void lm_antenna_pattern_set(struct lm_antenna_pattern *e, const struct lm_antenn
         const int64_t off_q20 = (int64_t)n * STEP_Q20 + STEP_Q20 / 2;
         const int64_t x_q12 = (off_q20 << 12) / (beam_q20 > 0 ? beam_q20 : 1);
         const int64_t fall_db_q8 = (x_q12 * x_q12 >> 12) * LM_BEAM_TWO_WAY_DB_Q8 >> 12;
-        e->gain_db_q8[n] = fall_db_q8 < 96 * 256 ? -(int32_t)fall_db_q8 : -96 * 256;
+        e->gain_db_q8[n] = fall_db_q8 < LM_DB_Q8(96) ? -(int32_t)fall_db_q8 : LM_DB_Q8(-96);
     }
 }
 

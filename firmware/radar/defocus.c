@@ -2,6 +2,7 @@
 
 #include "fx/log.h"
 #include "fx/root.h"
+#include "lm/units.h"
 
 enum { LINES = 2 * LM_DEFOCUS_REACH + 1, WIDTH_MAX_Q8 = LINES * 256 };
 
@@ -13,7 +14,8 @@ uint32_t lm_defocus_lines_q8(uint32_t lateral_mm_s2, uint32_t residual_permille,
      * Range: A' in um/s2 is below 2^34. T is cut to 2^17 ms, and its square is at most 2^34 ms2.
      * Their product could be 2^68, so A' is cut to 2^29. A dwell of half a second with that is out
      * of focus altogether. */
-    const uint64_t dwell_ms = dwell_us / 1000 < 1 << 17 ? dwell_us / 1000 : 1 << 17;
+    const uint64_t whole_ms = lm_ms_of_us(dwell_us);
+    const uint64_t dwell_ms = whole_ms < 1 << 17 ? whole_ms : 1 << 17;
     uint64_t residual_um_s2 = (uint64_t)lateral_mm_s2 * residual_permille;
     residual_um_s2 = residual_um_s2 < 1 << 29 ? residual_um_s2 : 1 << 29;
     /* The unit um/s2 ms2 / um is 10^-6. The quotient is below 2^53 for a wavelength of a

@@ -8,6 +8,7 @@
 #include "fx/trig.h"
 #include "lm/const.h"
 #include "lm/radar.h"
+#include "lm/units.h"
 #include "shower.h"
 
 enum {
@@ -15,7 +16,7 @@ enum {
     STATIONS = 16,        /* in a beam's width, where the veil is computed */
     HALF_BEAM_Q8 = -1086, /* 10 log10(sqrt(pi / (8 ln 2)) / 2) */
     BEAM_LEAST = 1 << 16,
-    NOTHING_Q8 = -100 * 256,
+    NOTHING_Q8 = LM_DB_Q8(-100),
     RANGE_MOST_Q8 = 1 << 27
 };
 
@@ -99,7 +100,7 @@ static void set_loss(struct lm_patch_rain *p, fx_bam_t aside, const struct lm_sh
  * rho^2) / 2 D r. Squares are below 2^58. */
 static fx_bam_t half_angle(const struct lm_shower *s, uint32_t range_m_q8)
 {
-    const int64_t d = s->at.distance_m_q8, r = range_m_q8, radius = (int64_t)s->radius_m * 256;
+    const int64_t d = s->at.distance_m_q8, r = range_m_q8, radius = lm_m_q8_of_m(s->radius_m);
     int64_t x = d * d + r * r - radius * radius, one = 2 * d * r;
     if (x >= one || x <= -one) {
         return x >= one ? 0 : FX_BAM_180;
@@ -179,7 +180,8 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
         return;
     }
     /* Heights are below 2^26 in Q10, so 2^24 in Q8. A ray is below 2^28, times 2^16. */
-    const int32_t above_m_q8 = (g->heights.antenna_m_q10 - g->heights.reference_m_q10) / 4;
+    const int32_t above_m_q8 =
+        lm_m_q8_of_m_q10(g->heights.antenna_m_q10 - g->heights.reference_m_q10);
     p->slant_q16 = (uint32_t)(((uint64_t)fx_hypot_u32((int32_t)g->centre_m_q8, above_m_q8) << 16) /
                               g->centre_m_q8);
     for (uint32_t i = 0; i < g->cells; i++) {

@@ -8,6 +8,7 @@
 #include "lm/geo.h"
 #include "lm/kernels_radar.h"
 #include "lm/noise.h"
+#include "lm/units.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16, GRAZING_MAX_Q24 = 1 << 25 };
 
@@ -38,7 +39,7 @@ static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
 static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_m_q10,
                      uint8_t range)
 {
-    const uint32_t end_m_q8 = radar->range[range].range_m * 256u;
+    const uint32_t end_m_q8 = lm_m_q8_of_m(radar->range[range].range_m);
     const int32_t end_log2_q16 =
         3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
     const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);

@@ -5,17 +5,13 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/const.h"
+#include "lm/units.h"
 #include "lm/weather.h"
 
 _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
                "the table leaves room for the guard cells");
 
-enum { LEFT_OUT_BELOW_FLOOR_Q8 = 10 * 256, DWELL_MOST_MS = (1 << 17) - 1 };
-
-static uint32_t m_q8_of_mm(uint32_t mm)
-{
-    return (uint32_t)(((uint64_t)mm * 256 + 500) / 1000);
-}
+enum { LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10), DWELL_MOST_MS = (1 << 17) - 1 };
 
 /* Component of the velocity across the line of sight, to the right. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
@@ -28,7 +24,7 @@ static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
 static uint64_t dwell_us(const struct lm_radar *radar, const struct lm_sar_command *c,
                          int32_t reference_m_q10, uint32_t across_mm_s)
 {
-    const int32_t above_m = c->height_m_q6 / 64 - reference_m_q10 / 1024;
+    const int32_t above_m = lm_m_of_m_q6(c->height_m_q6) - lm_m_of_m_q10(reference_m_q10);
     const uint64_t slant_m = fx_hypot_u32((int32_t)c->range_m, above_m);
     return (uint64_t)radar->wavelength_um * slant_m * 1000000u /
            ((uint64_t)2 * c->cell_mm * fx_max_u32(across_mm_s, 1));
@@ -47,28 +43,29 @@ static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight
     const bool is_off_the_track =
         fx_abs_u32((int32_t)squint) >= least && fx_abs_u32((int32_t)(squint + FX_BAM_180)) >= least;
     return is_off_the_track && is_within(f->bearing - f->heading, radar->antenna.azimuth_limit) &&
-           patch_us <= (uint64_t)radar->sar.dwell_max_ms * 1000;
+           patch_us <= lm_us_of_ms(radar->sar.dwell_max_ms);
 }
 
 /* Ground range where the guard cells begin; below 0 if that is behind the antenna. */
 static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const uint32_t before_centre = radar->sar.cells / 2u + LM_SAR_GUARD;
-    return (int64_t)c->range_m * 256 - (int64_t)before_centre * m_q8_of_mm(c->cell_mm);
+    return (int64_t)lm_m_q8_of_m(c->range_m) -
+           (int64_t)before_centre * lm_m_q8_of_mm_nearest(c->cell_mm);
 }
 
 static bool command_is_sound(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
-    const int32_t highest_m_q6 = 30000 * 64;
+    const int32_t highest_m_q6 = lm_m_q6_of_m(30000);
     return c->cell_mm >= radar->sar.cell_min_mm && c->cell_mm <= radar->sar.cell_max_mm &&
            c->range_m >= 1000 && c->range_m <= 250000 && c->height_m_q6 >= -highest_m_q6 &&
-           c->height_m_q6 <= highest_m_q6 && guard_m_q8(radar, c) >= LM_RANGE_MIN_M << 12;
+           c->height_m_q6 <= highest_m_q6 && guard_m_q8(radar, c) >= LM_M_Q8(16 * LM_RANGE_MIN_M);
 }
 
 static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
 {
     const struct lm_sar_command *c = &s->command;
-    const uint32_t cells = s->radar->sar.cells, cell_m_q8 = m_q8_of_mm(c->cell_mm);
+    const uint32_t cells = s->radar->sar.cells, cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm);
     const uint32_t near_m_q8 = (uint32_t)guard_m_q8(s->radar, c);
     const int32_t half_m_q8 = (int32_t)(cells * cell_m_q8 / 2);
     const struct lm_ground_extent extent = {-half_m_q8 - LM_SAR_GUARD * (int32_t)cell_m_q8,
@@ -76,7 +73,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->lod = lm_scan_lod(db, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
-                      cells + LM_SAR_GUARD, c->height_m_q6 * 16, reference_m_q10);
+                      cells + LM_SAR_GUARD, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
 }
 
 /* Set the foreground: the terrain before the first guard cell. */
@@ -85,7 +82,7 @@ static void set_foreground(struct lm_sar *s, const struct lm_db *db)
     const struct lm_sar_command *c = &s->command;
     struct lm_foreground *f = &s->foreground;
     lm_foreground_set(f, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
-    const int32_t near_m_q8 = (int32_t)f->start_m_q8 - (int32_t)(c->range_m * 256u);
+    const int32_t near_m_q8 = (int32_t)f->start_m_q8 - (int32_t)lm_m_q8_of_m(c->range_m);
     const struct lm_ground_extent extent = {
         near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * f->cell_m_q8),
         (int32_t)(s->radar->sar.cells * s->grid.cell_m_q8 / 2)};
@@ -95,7 +92,7 @@ static void set_foreground(struct lm_sar *s, const struct lm_db *db)
 /* Set the layover by the grazing of flat ground at the centre: tan psi = (H - z0) / S - S / 2a. */
 static void set_layover(struct lm_sar *s)
 {
-    const uint32_t range_m_q8 = s->command.range_m * 256u;
+    const uint32_t range_m_q8 = lm_m_q8_of_m(s->command.range_m);
     const int64_t above_m_q10 = (int64_t)s->grid.height_m_q10 - s->grid.reference_m_q10;
     /* The height is below 2^26 in Q10, times 2^14, over a range in Q8; at 1 km the tangent is below
      * 2^22. */
@@ -115,7 +112,7 @@ static void set_geometry(struct lm_sar *s)
     s->geometry = (struct lm_patch_geometry){
         .centre = s->command.centre,
         .look = s->command.look_azimuth,
-        .centre_m_q8 = s->command.range_m * 256u,
+        .centre_m_q8 = lm_m_q8_of_m(s->command.range_m),
         .cell_m_q8 = s->grid.cell_m_q8,
         .lines = s->radar->sar.cells,
         .cells = s->grid.cells,
@@ -145,7 +142,7 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     }
     lm_geo_set_origin(&centre, c->centre);
     const struct lm_position antenna =
-        lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, c->range_m * 256);
+        lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, lm_m_q8_of_m(c->range_m));
     lm_geo_inverse(antenna, c->centre, &distance_m_q8, &azimuth);
     s->floor_db_q8 += lm_noise_rise_db_q8(environment, s->radar, antenna, azimuth);
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
@@ -191,7 +188,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
             : 256;
     lm_class_lut_set(&s->class_lut, &radar->illumination, &db->classes);
     lm_texture_set(&s->texture, &radar->texture, &db->classes, setup->sea_state, 0);
-    s->dwell_ms = (uint32_t)(patch_us / 1000 < DWELL_MOST_MS ? patch_us / 1000 : DWELL_MOST_MS);
+    const uint64_t patch_ms = lm_ms_of_us(patch_us);
+    s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, setup->reference_m_q10);
     return LM_OK;
 }
@@ -269,7 +267,7 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
                                                  .reach_m = query.reach_m,
                                                  .is_parallel = true,
                                                  .look = s->command.look_azimuth,
-                                                 .range_m_q8 = s->command.range_m * 256,
+                                                 .range_m_q8 = lm_m_q8_of_m(s->command.range_m),
                                                  .heights = s->geometry.heights,
                                                  .cell_mm = s->command.cell_mm,
                                                  .side_most = LM_CHIP_SIDE};

@@ -19,8 +19,8 @@ enum {
     LINES_APART = 8,
     CHIP_SIDE_MOST = 32, /* most pixels of a row of a chip: it bounds the cost of a line */
     WINDOW_LINES_MIN = 32,
-    WINDOW_LINES_ENOUGH = 256,         /* for beams that need no more */
-    FOREGROUND_LEAST_M_Q8 = 2000 * 256 /* a window that begins nearer starts at the antenna */
+    WINDOW_LINES_ENOUGH = 256,            /* for beams that need no more */
+    FOREGROUND_LEAST_M_Q8 = LM_M_Q8(2000) /* a window that begins nearer starts at the antenna */
 };
 
 static const struct lm_fov_row *fov_of(const struct lm_sector *s)
@@ -126,12 +126,13 @@ static void set_window(struct lm_sector *s, const struct lm_platform *platform, 
     fx_bam_t azimuth;
     lm_geo_inverse(platform->position, s->command.centre, &distance_m_q8, &azimuth);
     const uint32_t reach_m_q8 =
-        s->half_m * 256u / 16 * 23; /* 23/16 is a little more than the root of 2 */
+        lm_m_q8_of_m(s->half_m) / 16 * 23; /* 23/16 is a little more than the root of 2 */
     /* Centres farther than any radar range count as 250 km: the window is empty there. */
-    const uint32_t ground_m_q8 = fx_min_u32(distance_m_q8, 250000u * 256u);
+    const uint32_t ground_m_q8 = fx_min_u32(distance_m_q8, LM_M_Q8(250000u));
     const uint32_t slant_m_q8 = lm_slant_of_ground_m_q8(ground_m_q8, above_m_q10);
     s->edge_m_q8 = slant_m_q8 > reach_m_q8 ? slant_m_q8 - reach_m_q8 : 0;
-    set_window_lines(s, (int32_t)(azimuth - s->up), half_angle_of(s->half_m, ground_m_q8 / 256));
+    set_window_lines(s, (int32_t)(azimuth - s->up),
+                     half_angle_of(s->half_m, lm_m_of_m_q8(ground_m_q8)));
 }
 
 /* ---- its geometry in range ---- */
@@ -143,7 +144,7 @@ static int32_t reference_m_q10_of(struct lm_tile_cache *tiles, uint8_t lod,
                                   struct lm_position position)
 {
     return fx_min_i32(lm_scan_elevation(tiles, lod, position, 0),
-                      tiles->db->mean_elevation_m_q6 * 16);
+                      lm_m_q10_of_m_q6(tiles->db->mean_elevation_m_q6));
 }
 
 static void set_foreground(struct lm_sector *s, const struct lm_db *db)
@@ -163,7 +164,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     const uint32_t range_m = s->radar->range[s->command.range_index].range_m;
     const uint32_t bins = lm_sector_is_window(s) ? s->radar->cells * 23u / 16 : s->radar->cells;
     const uint32_t bin_m_q8 =
-        (lm_sector_is_window(s) ? 2 * s->half_m : range_m) * 256u / s->radar->cells;
+        lm_m_q8_of_m(lm_sector_is_window(s) ? 2 * s->half_m : range_m) / s->radar->cells;
     const int32_t above_m_q10 = height_m_q10 - reference_m_q10;
     const uint32_t end_m_q8 = lm_ground_of_slant_m_q8(s->edge_m_q8 + bins * bin_m_q8, above_m_q10);
     s->ground_edge_m_q8 = lm_ground_of_slant_m_q8(s->edge_m_q8, above_m_q10);
@@ -184,7 +185,7 @@ static uint8_t lod_of(const struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m =
         lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range_index].range_m;
-    return lm_scan_lod(db, side_m * 1000u / s->radar->cells);
+    return lm_scan_lod(db, lm_mm_of_m(side_m) / s->radar->cells);
 }
 
 static bool differs(int32_t a_m_q10, int32_t b_m_q10)
@@ -212,8 +213,8 @@ static void refresh_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int
 static void set_tilt(struct lm_sector *s)
 {
     const struct lm_antenna_table *antenna = &s->radar->antenna;
-    const int32_t above_m = (s->grid.height_m_q10 - s->grid.reference_m_q10) / 1024;
-    const uint32_t far_m = (s->edge_m_q8 + s->slant.cells * s->slant.cell_m_q8) / 256;
+    const int32_t above_m = lm_m_of_m_q10(s->grid.height_m_q10 - s->grid.reference_m_q10);
+    const uint32_t far_m = lm_m_of_m_q8(s->edge_m_q8 + s->slant.cells * s->slant.cell_m_q8);
     const struct lm_beam_setting *set = &s->command.beam;
     const int32_t axis =
         set->is_tilt_manual ? set->tilt : lm_antenna_auto_tilt(above_m, fx_max_u32(far_m, 1));

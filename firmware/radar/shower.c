@@ -4,6 +4,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/units.h"
 
 bool lm_bearing_find(struct lm_position antenna, struct lm_position position, fx_bam_t azimuth,
                      struct lm_bearing *b)
@@ -25,7 +26,7 @@ bool lm_shower_chord(const struct lm_shower *s, fx_bam_t aside, struct lm_chord 
     /* Distances are below 2^29, radii below 2^24.7: the squares fit. */
     const int64_t along_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_cos_q30(off)) >> 30;
     const int64_t across_m_q8 = ((int64_t)s->at.distance_m_q8 * fx_sin_q30(off)) >> 30;
-    const int64_t radius_m_q8 = (int64_t)s->radius_m * 256;
+    const int64_t radius_m_q8 = lm_m_q8_of_m(s->radius_m);
     const int64_t square = radius_m_q8 * radius_m_q8 - across_m_q8 * across_m_q8;
     const int64_t half_m_q8 = square > 0 ? (int64_t)fx_sqrt_u64((uint64_t)square) : 0;
     if (half_m_q8 == 0 || along_m_q8 + half_m_q8 <= 0) {

@@ -9,9 +9,10 @@
 #ifndef LM_SHOWER_H
 #define LM_SHOWER_H
 
+#include "lm/units.h"
 #include "lm/weather.h"
 
-enum { LM_NO_RAIN_Q8 = -300 * 256 }; /* level of a cell without rain, dB */
+enum { LM_NO_RAIN_Q8 = LM_DB_Q8(-300) }; /* level of a cell without rain, dB */
 
 /* Find distance and direction of a position, from a line of sight along `azimuth` (from north).
  * False, with *b unchanged, if it is 11.25 degrees of latitude or longitude away or more. That is

@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "lm/const.h"
 #include "lm/receiver.h"
+#include "lm/units.h"
 #include "shower.h"
 
 /* Noise of a jammer relative to the receiver's: J - 20 log10(R_j / 18520 m) - 40 log10(2) (o /
@@ -12,7 +13,7 @@
 static int32_t jammer_db_q8(const struct lm_jammer *j, const struct lm_bearing *b, fx_bam_t beam)
 {
     const int32_t spread_db_q8 = fx_db_q8_of_log2_q16(
-        2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, 256)) - LM_LOG2_TEN_NM_M_Q8_Q16));
+        2 * (fx_log2_q16(fx_max_u32(b->distance_m_q8, LM_M_Q8(1))) - LM_LOG2_TEN_NM_M_Q8_Q16));
     /* Sixteen beams off the axis nothing is left. x is in Q12, its square below 2^32. */
     const uint64_t x_q12 = ((uint64_t)fx_abs_u32((int32_t)b->off) << 12) / fx_max_u32(beam, 1);
     const uint64_t x = x_q12 < 16u << 12 ? x_q12 : 16u << 12;

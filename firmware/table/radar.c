@@ -1,7 +1,8 @@
 #include "lm/radar.h"
 
+#include "lm/units.h"
+
 /* Decibels as the table's 1/256. */
-#define DB(d) ((d)*256)
 
 const struct lm_radar lm_radar_default = {
     /* Keys in brackets are those of docs/EQUATIONS.md, Sources; what has no public source is called
@@ -16,10 +17,10 @@ const struct lm_radar lm_radar_default = {
      * in NORM, EXP, DBS1 and DBS2 in nanoseconds. UNSOURCED: noise a little below the grass at the
      * end of each scale, time control that ends at three quarters of it, pulses that resolve 15 m
      * to 960 m. */
-    .range = {{18520, 10, DB(-40), 13890, {400, 100, 100, 100}},
-              {37040, 20, DB(-38), 27780, {1000, 400, 100, 100}},
-              {74080, 40, DB(-36), 55560, {3200, 1000, 400, 100}},
-              {148160, 80, DB(-34), 111120, {6400, 3200, 400, 100}}},
+    .range = {{18520, 10, LM_DB_Q8(-40), 13890, {400, 100, 100, 100}},
+              {37040, 20, LM_DB_Q8(-38), 27780, {1000, 400, 100, 100}},
+              {74080, 40, LM_DB_Q8(-36), 55560, {3200, 1000, 400, 100}},
+              {148160, 80, LM_DB_Q8(-34), 111120, {6400, 3200, 400, 100}}},
     .range_start_nm = 40,
     .azimuth_half = {FX_BAM_DEG(60), FX_BAM_DEG(30), FX_BAM_DEG(10)},
     /* X band, as [Heaton] and [Niu]; neither gives the frequency. 9.6 GHz: UNSOURCED. */
@@ -50,23 +51,23 @@ const struct lm_radar lm_radar_default = {
                                .fov_last = LM_FOV_DBS2,
                                .bars = 1,
                                .speckle = {.looks_log2 = 2},
-                               .tone = {DB(-42), DB(6), 384}},
+                               .tone = {LM_DB_Q8(-42), LM_DB_Q8(6), 384}},
              [LM_SECTOR_GMT] = {.name = "GMT",
                                 .bam_per_s = FX_BAM_DEG(60),
                                 .range_max_nm = 40,
                                 .fov_last = LM_FOV_EXP,
                                 .bars = 4,
-                                .clutter_db_q8 = DB(35),
+                                .clutter_db_q8 = LM_DB_Q8(35),
                                 .gate_mm_s = {1543, 51444},
                                 .speckle = {.looks_log2 = 2},
-                                .tone = {DB(-36), DB(0), 256}},
+                                .tone = {LM_DB_Q8(-36), LM_DB_Q8(0), 256}},
              [LM_SECTOR_SEA] = {.name = "SEA",
                                 .bam_per_s = FX_BAM_DEG(60),
                                 .range_max_nm = 40,
                                 .fov_last = LM_FOV_EXP,
                                 .bars = 1,
                                 .speckle = {.looks_log2 = 0},
-                                .tone = {DB(-48), DB(-6), 320}}},
+                                .tone = {LM_DB_Q8(-48), LM_DB_Q8(-6), 320}}},
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
      * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and real beam below half of that: UNSOURCED.
      * Azimuths across a sample: enough for the ground to err less than the speckle does
@@ -113,15 +114,15 @@ const struct lm_radar lm_radar_default = {
             .dwell_max_ms = 60000,
             .reference_speed_mm_s = 250000,
             .mocomp_residual_permille = 10,
-            .noise_floor_db_q8 = DB(-46),
+            .noise_floor_db_q8 = LM_DB_Q8(-46),
             .speckle = {.looks_log2 = 2},
-            .tone = {DB(-42), DB(12), 384}},
+            .tone = {LM_DB_Q8(-42), LM_DB_Q8(12), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall
      * alone, a tree line 2 dB; far shores 5 dB over 60 m ([Heaton] names the effects and gives no
      * figures). */
-    .illumination = {.edge_structure_db_q8 = DB(6),
-                     .edge_trees_db_q8 = DB(2),
-                     .shore_db_q8 = DB(5),
+    .illumination = {.edge_structure_db_q8 = LM_DB_Q8(6),
+                     .edge_trees_db_q8 = LM_DB_Q8(2),
+                     .shore_db_q8 = LM_DB_Q8(5),
                      .shore_width_m = 60},
     /* Shapes nu of 1 to 3 are usual for towns and forest, none for farmland: UNSOURCED, tunable. */
     .texture = {.shape_log2 = {[LM_KIND_GROUND] = LM_TEXTURE_NONE,

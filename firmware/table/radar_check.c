@@ -5,8 +5,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/status.h"
-
-#define DB(d) ((d)*256)
+#include "lm/units.h"
 
 /* A number, an array of numbers, and the same member of all rows of an array. */
 #define SIZE_OF(member) sizeof(((const struct lm_radar *)0)->member)
@@ -27,7 +26,8 @@ static const struct lm_radar_field fields[] = {
     {"ranges", ONE(ranges), BETWEEN(1, LM_RANGES_MAX)},
     {"range.range_m", OF_SCALES(range_m), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
     {"range.range_nm", OF_SCALES(range_nm), BETWEEN(1, 999)},
-    {"range.noise_end_db_q8", OF_SCALES(noise_end_db_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"range.noise_end_db_q8", OF_SCALES(noise_end_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-100), LM_DB_Q8(20))},
     {"range.stc_end_m", OF_SCALES(stc_end_m), BETWEEN(100, 400000)},
     {"range.pulse_ns[NORM]", OF_SCALES(pulse_ns[LM_FOV_NORM]), BETWEEN(10, 100000)},
     {"range.pulse_ns[EXP]", OF_SCALES(pulse_ns[LM_FOV_EXP]), BETWEEN(10, 100000)},
@@ -51,12 +51,14 @@ static const struct lm_radar_field fields[] = {
     {"mode.range_max_nm", OF_MODES(range_max_nm), BETWEEN(1, 999)},
     {"mode.fov_last", OF_MODES(fov_last), BETWEEN(0, LM_FOVS - 1)},
     {"mode.bars", OF_MODES(bars), BETWEEN(1, 8)},
-    {"mode.clutter_db_q8", OF_MODES(clutter_db_q8), BETWEEN(0, DB(64))},
+    {"mode.clutter_db_q8", OF_MODES(clutter_db_q8), BETWEEN(0, LM_DB_Q8(64))},
     {"mode.gate_mm_s[0]", OF_MODES(gate_mm_s[0]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.gate_mm_s[1]", OF_MODES(gate_mm_s[1]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.speckle.looks_log2", OF_MODES(speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
-    {"mode.tone.black_db_q8", OF_MODES(tone.black_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
-    {"mode.tone.white_db_q8", OF_MODES(tone.white_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"mode.tone.black_db_q8", OF_MODES(tone.black_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},
+    {"mode.tone.white_db_q8", OF_MODES(tone.white_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},
     {"mode.tone.gamma_q8", OF_MODES(tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
     {"fov.bam_per_s", OF_FIELDS(bam_per_s), BETWEEN(0, LM_RADAR_RATE_MAX)},
     {"fov.range_max_nm", OF_FIELDS(range_max_nm), BETWEEN(1, 999)},
@@ -75,10 +77,13 @@ static const struct lm_radar_field fields[] = {
     {"sar.reference_speed_mm_s", ONE(sar.reference_speed_mm_s),
      BETWEEN(1000, LM_RADAR_SPEED_MAX_MM_S)},
     {"sar.mocomp_residual_permille", ONE(sar.mocomp_residual_permille), BETWEEN(0, 1000)},
-    {"sar.noise_floor_db_q8", ONE(sar.noise_floor_db_q8), SIGNED_BETWEEN(DB(-100), DB(20))},
+    {"sar.noise_floor_db_q8", ONE(sar.noise_floor_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-100), LM_DB_Q8(20))},
     {"sar.speckle.looks_log2", ONE(sar.speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
-    {"sar.tone.black_db_q8", ONE(sar.tone.black_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
-    {"sar.tone.white_db_q8", ONE(sar.tone.white_db_q8), SIGNED_BETWEEN(DB(-64), DB(64))},
+    {"sar.tone.black_db_q8", ONE(sar.tone.black_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},
+    {"sar.tone.white_db_q8", ONE(sar.tone.white_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},
     {"sar.tone.gamma_q8", ONE(sar.tone.gamma_q8), BETWEEN(64, LM_TONE_GAMMA_MAX_Q8)},
     {"illumination.edge_structure_db_q8", ONE(illumination.edge_structure_db_q8),
      SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
@@ -250,7 +255,7 @@ static uint32_t check_gates(const struct lm_radar *r)
 
 static bool is_window_of_tone(const struct lm_tone_config *tone)
 {
-    return tone->white_db_q8 - tone->black_db_q8 >= DB(1);
+    return tone->white_db_q8 - tone->black_db_q8 >= LM_DB_Q8(1);
 }
 
 static uint32_t check_tones(const struct lm_radar *r)

@@ -6,6 +6,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/illumination.h"
+#include "lm/units.h"
 
 /* Map from pixels to lines and cells. Entry [0] is the middle of pixel (0, 0), [1] is the step of a
  * column, [2] the step of a row. `across` is BAM to the right of the line; `along` is from cell
@@ -27,12 +28,12 @@ static struct pixel_map pixel_map_of(const struct lm_chip_slot *slot, fx_bam_t t
                                      const struct lm_chip_sector_origin *origin,
                                      const struct lm_target_line *line)
 {
-    const int64_t pixel_m_q24 = (int64_t)slot->pixel_mm * (1 << 24) / 1000;
+    const int64_t pixel_m_q24 = lm_m_q24_of_mm(slot->pixel_mm);
     const int64_t cos_q24 = pixel_m_q24 * fx_cos_q30(turn) >> 30;
     const int64_t sin_q24 = pixel_m_q24 * fx_sin_q30(turn) >> 30;
     /* Metres in Q24, below 2^32. Cut to Q12, times 2^29.3 BAM a radian, over metres in Q8. */
     const int64_t x_q24[3] = {0, cos_q24, -sin_q24}, y_q24[3] = {0, sin_q24, cos_q24};
-    const int64_t range_m_q8 = fx_max_u32(origin->range_m_q8, LM_RANGE_MIN_M * 256u);
+    const int64_t range_m_q8 = fx_max_u32(origin->range_m_q8, LM_M_Q8(LM_RANGE_MIN_M));
     /* Half pixels from the origin to the middle of pixel (0, 0), before the reduction. */
     const int64_t columns = ((int64_t)1 - slot->side) * (1 << slot->key.shift);
     const int64_t rows = (1 << slot->key.shift) - 2 * (int64_t)slot->origin_row;
@@ -121,7 +122,7 @@ static uint32_t pixels_a_cell_q16(const struct lm_chip_slot *slot,
                                   const struct lm_chip_sector_origin *origin,
                                   const struct lm_target_line *line)
 {
-    const uint64_t pixel_m_q8 = (uint64_t)slot->pixel_mm * 256 / 1000;
+    const uint64_t pixel_m_q8 = lm_m_q8_of_mm_u32(slot->pixel_mm);
     const uint64_t arc_m_q8 = lm_arc_m_q8(origin->range_m_q8, line->width);
     const uint64_t ratio_q16 = (pixel_m_q8 * pixel_m_q8 << 16) / ((arc_m_q8 + 1) * line->cell_m_q8);
     return ratio_q16 < 1u << 24 ? (uint32_t)ratio_q16 : 1u << 24;

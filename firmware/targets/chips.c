@@ -3,6 +3,7 @@
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
+#include "lm/units.h"
 
 enum {
     ROWS_A_STEP = 16, /* rows of the chip before the reduction that one step reduces */
@@ -57,7 +58,7 @@ static bool is_large_and_near(const struct lm_signature *s,
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
     lm_geo_inverse(query->centre, candidate->state.position, &distance_m_q8, &azimuth);
-    return distance_m_q8 / 256 <= query->reach_m + LM_TARGET_EXTENT_M &&
+    return lm_m_of_m_q8(distance_m_q8) <= query->reach_m + LM_TARGET_EXTENT_M &&
            s->pixel_mm * LM_CHIP_SIDE >= query->cell_mm * POINT_BELOW_CELLS;
 }
 

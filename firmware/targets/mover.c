@@ -3,6 +3,7 @@
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/units.h"
 
 /* Length of all legs. At most 32 * 10^8 mm, below 2^32. */
 static uint32_t path_mm(const struct lm_target *t)
@@ -34,7 +35,7 @@ static struct lm_position position_on_leg(const struct lm_path_leg *leg, uint32_
 {
     struct lm_geo_origin origin;
     lm_geo_set_origin(&origin, (struct lm_position){leg->latitude, leg->longitude});
-    return lm_geo_direct(&origin, leg->heading, (uint32_t)((uint64_t)mm * 32 / 125));
+    return lm_geo_direct(&origin, leg->heading, lm_m_q8_of_mm_u32(mm));
 }
 
 /* Leg of a path at the distance *mm, which becomes the distance from the beginning of that leg. */
@@ -50,7 +51,7 @@ static const struct lm_path_leg *find_leg(const struct lm_target *t, uint32_t *m
 
 struct lm_mover_state lm_mover_state_at(const struct lm_target *t, uint64_t time_us)
 {
-    struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, t->leg_m * 1000};
+    struct lm_path_leg straight = {t->latitude, t->longitude, t->heading, lm_mm_of_m(t->leg_m)};
     if (t->speed_mm_s == 0) {
         return (struct lm_mover_state){{t->latitude, t->longitude}, t->heading};
     }

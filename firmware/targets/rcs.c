@@ -5,6 +5,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/const.h"
+#include "lm/units.h"
 
 /* Powers are binary logarithms in Q16: a product is a sum, and nothing overflows. The largest, a
  * plate of 100 m by 100 m at 1 mm, is 2^50 m2; the smallest factor is 2^-62. */
@@ -27,7 +28,7 @@ static int32_t log2_of_q30(uint32_t x_q30)
 static int32_t log2_sinc2(uint32_t side_mm, uint32_t wavelength_um, int32_t sine_q30)
 {
     /* At most 10^8 um / 10^3 um = 10^5, 2^33 in Q16; times a sine of 2^30: below 2^63. */
-    const uint64_t side_q16 = ((uint64_t)side_mm * 1000u << 16) / wavelength_um;
+    const uint64_t side_q16 = (lm_um_of_mm(side_mm) << 16) / wavelength_um;
     const uint64_t turns_q46 = side_q16 * fx_abs_u32(sine_q30);
     if (turns_q46 < (uint64_t)1 << 34) {
         return 0; /* 1/4096 of a turn: sinc^2 is one but for 8e-7 */

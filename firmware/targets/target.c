@@ -6,6 +6,7 @@
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/units.h"
 
 /* ---- records ---- */
 
@@ -40,7 +41,7 @@ static bool path_is_sound(const struct lm_target *t)
     for (uint32_t i = 0; is_sound && i < t->path_legs; i++) {
         const struct lm_path_leg *leg = &t->path[i];
         is_sound = fx_abs_u32((int32_t)leg->latitude) <= FX_BAM_90 && leg->length_mm >= 1000 &&
-                   leg->length_mm <= LM_TARGET_LEG_MAX_M * 1000u;
+                   leg->length_mm <= lm_mm_of_m(LM_TARGET_LEG_MAX_M);
     }
     return is_sound;
 }
@@ -156,7 +157,7 @@ static int64_t path_q8(const struct lm_target_view *v, const int32_t offset_mm[3
     }
     const int64_t part_q8 = (part_q30 + (1 << 21)) >> 22;
     const int64_t across_q16 = square_mm2 * 65536 - part_q8 * part_q8;
-    const int64_t twice_q8 = 2 * ((int64_t)v->range_mm * 256 - part_q8);
+    const int64_t twice_q8 = 2 * (lm_mm_q8_of_mm(v->range_mm) - part_q8);
     int64_t bend_q8 = across_q16 / twice_q8;
     for (int i = 0; i < 3; i++) {
         const int64_t divisor_q8 = twice_q8 + 2 * bend_q8;

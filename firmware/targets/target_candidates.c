@@ -3,6 +3,7 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/scan_line.h"
+#include "lm/units.h"
 
 const struct lm_signature *lm_target_signature(const struct lm_target_set *set,
                                                const struct lm_target *t)
@@ -21,11 +22,11 @@ static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_positi
     }
     /* Both are within 2^20 in Q6: the terrain because tiles are checked, the height above it
      * because the record is. */
-    const int32_t ground_m_q10 = query->tiles
-                                     ? lm_scan_elevation(query->tiles, query->lod, position,
-                                                         query->tiles->db->mean_elevation_m_q6 * 16)
-                                     : 0;
-    return t->elevation_m_q6 + ground_m_q10 / 16;
+    const int32_t ground_m_q10 =
+        query->tiles ? lm_scan_elevation(query->tiles, query->lod, position,
+                                         lm_m_q10_of_m_q6(query->tiles->db->mean_elevation_m_q6))
+                     : 0;
+    return t->elevation_m_q6 + lm_m_q6_of_m_q10(ground_m_q10);
 }
 
 /* Error of an approximate position. lm_geo_inverse and a plane are right within 1/256 of the
@@ -34,7 +35,7 @@ static int32_t origin_elevation_m_q6(const struct lm_target *t, struct lm_positi
 static uint32_t position_error_m_q8(struct lm_position from, uint32_t distance_m_q8)
 {
     const bool is_polar = fx_abs_u32((int32_t)from.latitude) > FX_BAM_DEG(75);
-    return distance_m_q8 / (is_polar ? 64 : 256) + 16 * 256;
+    return distance_m_q8 / (is_polar ? 64 : 256) + LM_M_Q8(16);
 }
 
 /* Radius of a circle that holds the target. A scatterer lies within the sum of its two level
@@ -48,7 +49,7 @@ static uint32_t extent_m_q8(const struct lm_target_set *set, const struct lm_tar
         const int32_t *o = t->scatterers[i].offset_mm;
         most_mm = fx_max_u32(most_mm, fx_abs_u32(o[0]) + fx_abs_u32(o[1]));
     }
-    return most_mm / 1000 * 256 + 256;
+    return lm_m_q8_of_m(most_mm / 1000 + 1);
 }
 
 void lm_target_candidates_select(struct lm_target_candidates *candidates,
@@ -60,7 +61,8 @@ void lm_target_candidates_select(struct lm_target_candidates *candidates,
     candidates->position = query->position;
     candidates->time_us = query->time_us;
     candidates->count = candidates->left_out = 0;
-    const uint32_t reach_m_q8 = (query->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M) * 256;
+    const uint32_t reach_m_q8 =
+        lm_m_q8_of_m(query->reach_m + LM_TARGET_DRIFT_M + LM_TARGET_EXTENT_M);
     for (uint32_t i = 0; i < set->count; i++) {
         const struct lm_target *t = &set->items[i];
         struct lm_target_candidate candidate = {.index = (uint16_t)i,

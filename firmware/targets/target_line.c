@@ -7,6 +7,7 @@
 #include "fx/trig.h"
 #include "lm/chip_sector.h"
 #include "lm/const.h"
+#include "lm/units.h"
 
 enum { NO_CELL = -1 };
 
@@ -177,9 +178,8 @@ static bool find_apparent(const struct lm_target_line *line, const struct lm_tar
 static struct apparent_position beside(const struct apparent_position *target,
                                        const struct lm_return *r)
 {
-    const int32_t along_m_q8 =
-        (int32_t)target->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
-    const int32_t across_m_q8 = (int32_t)((int64_t)r->across_mm * 32 / 125);
+    const int32_t along_m_q8 = (int32_t)target->range_m_q8 + lm_m_q8_of_mm(r->along_mm);
+    const int32_t across_m_q8 = lm_m_q8_of_mm(r->across_mm);
     return (struct apparent_position){.range_m_q8 = fx_hypot_u32(along_m_q8, across_m_q8),
                                       .azimuth =
                                           target->azimuth + fx_atan2(across_m_q8, along_m_q8),
@@ -256,7 +256,7 @@ static int32_t lit_cell(const struct lm_target_line *line, const struct lm_targe
     if (cell == NO_CELL || horizon == NULL) {
         return cell;
     }
-    const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + up_mm * 128 / 125;
+    const int32_t top_m_q10 = lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm(up_mm);
     const int64_t horizon_q38 = horizon->horizon[cell] * ((int64_t)1 << (38 - horizon->bits));
     return lm_target_view_tangent_q38(top_m_q10, s->range_m_q8, &h) > horizon_q38 ? cell : NO_CELL;
 }

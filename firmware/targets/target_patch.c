@@ -38,8 +38,8 @@ static void put_mover(const struct lm_patch_geometry *g, const struct lm_target 
                   limit = 1 << 28;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
     position->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
-    position->smear_across_m_q8 = drift_mm_s * g->dwell_ms / 3906; /* 10^6 / 256 */
-    position->walk_m_q8 = -closing_mm_s * g->dwell_ms / 3906;
+    position->smear_across_m_q8 = lm_m_q8_of_um(drift_mm_s * g->dwell_ms);
+    position->walk_m_q8 = lm_m_q8_of_um(-closing_mm_s * g->dwell_ms);
 }
 
 static bool find_position(const struct lm_patch_geometry *g, const struct lm_target *t,
@@ -66,13 +66,7 @@ static bool find_position(const struct lm_patch_geometry *g, const struct lm_tar
 /* Metres * 256 in cells * 256. */
 static int32_t in_cells(const struct lm_patch_geometry *g, int64_t length_m_q8)
 {
-    return (int32_t)(length_m_q8 * 256 / (int64_t)g->cell_m_q8);
-}
-
-/* Cell that holds a coordinate, rounded to the nearest middle. */
-static int32_t cell_at(int32_t place_cells_q8)
-{
-    return (place_cells_q8 + 128) >> 8;
+    return (int32_t)lm_cells_q8_of_m_q8(length_m_q8, g->cell_m_q8);
 }
 
 /* Scatterer of one return. s is its ground range, x its offset across, y its height above the
@@ -88,9 +82,10 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
                                               const struct patch_position *position,
                                               const struct lm_return *r)
 {
-    const int32_t range_m_q8 = position->range_m_q8 + (int32_t)((int64_t)r->along_mm * 32 / 125);
-    const int32_t across_m_q8 = position->across_m_q8 + (int32_t)((int64_t)r->across_mm * 32 / 125);
-    const int32_t top_m_q10 = candidate->elevation_m_q6 * 16 + r->up_mm * 128 / 125;
+    const int32_t range_m_q8 = position->range_m_q8 + lm_m_q8_of_mm(r->along_mm);
+    const int32_t across_m_q8 = position->across_m_q8 + lm_m_q8_of_mm(r->across_mm);
+    const int32_t top_m_q10 =
+        lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm(r->up_mm);
     /* Coordinates count from the middle of the first line and of the first guard cell. */
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
     const int64_t near_m_q8 =
@@ -107,8 +102,8 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
                                     held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights),
         .phase = r->phase,
         .tangent_q38 = lm_target_view_tangent_q38(top_m_q10, held_m_q8, &g->heights),
-        .line = cell_at(in_cells(g, across_m_q8 + left_m_q8)),
-        .cell = cell_at(in_cells(g, range_m_q8 - near_m_q8)),
+        .line = lm_cells_of_cells_q8(in_cells(g, across_m_q8 + left_m_q8)),
+        .cell = lm_cells_of_cells_q8(in_cells(g, range_m_q8 - near_m_q8)),
         .is_displaced = position->shift_m_q8 != 0,
     };
     return p;
@@ -140,7 +135,7 @@ static void add_returns(struct lm_target_patch *p, const struct lm_target_set *s
         scatterer->target = target;
         if (s) {
             scatterer->tangent_q38 = lm_target_view_tangent_q38(
-                candidate->elevation_m_q6 * 16 + (int32_t)(s->height_mm * 128 / 125),
+                lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm((int32_t)s->height_mm),
                 (uint32_t)fx_max_i32(position->range_m_q8, 1), &g->heights);
         }
     }
@@ -206,9 +201,9 @@ static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot,
     scatterer->is_chip = p->target[scatterer->target].has_chip = true;
     const struct lm_chip_reach *lit = &chip->patch.lit, *dark = &chip->patch.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;
-    const int32_t shadow = cell_at(chip->shadow_across_cells_q8);
+    const int32_t shadow = lm_cells_of_cells_q8(chip->shadow_across_cells_q8);
     note_around(p, scatterer->target, scatterer->across_cells_q8, scatterer->across_cells_q8,
-                cells * 256, g);
+                (uint32_t)lm_cells_q8_of_cells((int32_t)cells), g);
     note_lines(p, scatterer->target, shadow + dark->right, shadow + dark->right_end, g);
 }
 
@@ -228,8 +223,8 @@ void lm_target_patch_set(struct lm_target_patch *p, const struct lm_target_candi
         struct lm_patch_target *t = &p->target[p->target_count];
         struct patch_position position;
         if (find_position(g, &candidates->set.items[candidate->index], candidate, &position)) {
-            t->smear = lm_smear_of(position.smear_across_m_q8 * 256 / (int64_t)g->cell_m_q8,
-                                   position.walk_m_q8 * 256 / (int64_t)g->cell_m_q8);
+            t->smear = lm_smear_of(lm_cells_q8_of_m_q8(position.smear_across_m_q8, g->cell_m_q8),
+                                   lm_cells_q8_of_m_q8(position.walk_m_q8, g->cell_m_q8));
             t->begin = p->scatterer_count;
             add_returns(p, &candidates->set, candidate, g, &position, (uint8_t)p->target_count);
             if (slot) {
@@ -300,7 +295,7 @@ static int32_t squeezed(int32_t x_cells_q8, int32_t inverse_q16)
 static int32_t reach_of(int32_t level_db_q8, int32_t dx_cells_q8, int32_t least_db_q8)
 {
     const uint32_t away_cells_q8 = fx_abs_u32(dx_cells_q8);
-    if (away_cells_q8 >= LM_RESPONSE_REACH * 256u) {
+    if (away_cells_q8 >= (uint32_t)lm_cells_q8_of_cells(LM_RESPONSE_REACH)) {
         return -1;
     }
     const int32_t most_db_q8 = level_db_q8 + lm_response_envelope_db_q8[away_cells_q8 / 256];
@@ -324,8 +319,9 @@ static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer
                    const struct slice *slice, uint32_t line, int32_t least_db_q8,
                    int32_t reference_db_q8, struct span within, struct span *touched)
 {
-    const int32_t dx_cells_q8 = squeezed(
-        (int32_t)line * 256 - p->across_cells_q8 - slice->across_cells_q8, slice->thin_q16);
+    const int32_t dx_cells_q8 =
+        squeezed(lm_cells_q8_of_cells((int32_t)line) - p->across_cells_q8 - slice->across_cells_q8,
+                 slice->thin_q16);
     const int32_t level_db_q8 = p->level_db_q8 + slice->share_db_q8;
     const int32_t reach = reach_of(level_db_q8, dx_cells_q8, least_db_q8);
     if (reach < 0) {
@@ -337,13 +333,13 @@ static void spread(struct lm_target_patch *work, const struct lm_patch_scatterer
     const int64_t re_q24 = line_q24 * fx_cos_q30(p->phase) >> 30;
     const int64_t im_q24 = line_q24 * fx_sin_q30(p->phase) >> 30;
     const int32_t along_cells_q8 = p->along_cells_q8 + slice->along_cells_q8,
-                  middle = cell_at(along_cells_q8);
+                  middle = lm_cells_of_cells_q8(along_cells_q8);
     const int32_t cells = (int32_t)((uint32_t)reach * slice->deep_q8 / 256);
     const int32_t first = fx_max_i32(middle - cells, within.first);
     const int32_t end = fx_min_i32(middle + cells + 1, within.end);
     for (int32_t i = first; i < end; i++) {
         const int32_t response_q15 =
-            lm_response(squeezed(i * 256 - along_cells_q8, slice->flat_q16));
+            lm_response(squeezed(lm_cells_q8_of_cells(i) - along_cells_q8, slice->flat_q16));
         work->re_q24[i] += (int32_t)(re_q24 * response_q15 >> 15);
         work->im_q24[i] += (int32_t)(im_q24 * response_q15 >> 15);
     }
@@ -417,8 +413,8 @@ static struct span cells_under(const struct lm_chip_reach *reach,
                                const struct lm_patch_scatterer *at, const struct origin *origin,
                                uint32_t line, const struct lm_patch_geometry *g)
 {
-    const int32_t middle = cell_at(origin->along_cells_q8);
-    const int32_t aside = (int32_t)line - cell_at(origin->across_cells_q8);
+    const int32_t middle = lm_cells_of_cells_q8(origin->along_cells_q8);
+    const int32_t aside = (int32_t)line - lm_cells_of_cells_q8(origin->across_cells_q8);
     if (at->is_hidden || aside < reach->right || aside >= reach->right_end) {
         return (struct span){0, 0};
     }
@@ -433,11 +429,11 @@ static void shade(const struct lm_target_patch *p, const struct lm_patch_chip *c
     const int32_t lit_q8 = fx_db_q8(LM_CHIP_SHADOW_ALL);
     const struct lm_patch_scatterer *at = &p->scatterer[chip->scatterer];
     const struct origin origin = {chip->shadow_across_cells_q8, at->along_cells_q8};
-    const int32_t right_cells_q8 = (int32_t)line * 256 - origin.across_cells_q8;
+    const int32_t right_cells_q8 = lm_cells_q8_of_cells((int32_t)line) - origin.across_cells_q8;
     const struct span under = cells_under(&chip->patch.dark, at, &origin, line, g);
     for (int32_t i = under.first; i < under.end; i++) {
-        const uint32_t dark =
-            lm_chip_patch_shadow(&chip->patch, right_cells_q8, i * 256 - origin.along_cells_q8);
+        const uint32_t dark = lm_chip_patch_shadow(&chip->patch, right_cells_q8,
+                                                   lm_cells_q8_of_cells(i) - origin.along_cells_q8);
         level_db_q8[i] = dark == LM_CHIP_SHADOW_ALL
                              ? LM_LEVEL_SHADOW
                              : level_db_q8[i] + fx_db_q8(LM_CHIP_SHADOW_ALL - dark) - lit_q8;
@@ -465,10 +461,10 @@ static uint32_t add_slice(const struct lm_patch_chip *chip, const struct lm_patc
                                   at->along_cells_q8 + slice->along_cells_q8};
     const struct span under = cells_under(&chip->patch.lit, at, &origin, line, g);
     const uint32_t cells = (uint32_t)fx_max_i32(under.end - under.first, 0);
-    const int32_t right_cells_q8 = (int32_t)line * 256 - origin.across_cells_q8;
+    const int32_t right_cells_q8 = lm_cells_q8_of_cells((int32_t)line) - origin.across_cells_q8;
     for (int32_t i = under.first; i < under.end && cells <= room; i++) {
-        const int32_t rcs_dbsm_q8 = lm_chip_patch_rcs_dbsm_q8(&chip->patch, right_cells_q8,
-                                                              i * 256 - origin.along_cells_q8);
+        const int32_t rcs_dbsm_q8 = lm_chip_patch_rcs_dbsm_q8(
+            &chip->patch, right_cells_q8, lm_cells_q8_of_cells(i) - origin.along_cells_q8);
         if (rcs_dbsm_q8 > LM_RCS_NONE_DBSM_Q8) {
             level_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i], rcs_dbsm_q8 + slice->share_db_q8 -
                                                                   chip->area_dbm2_q8);

@@ -7,6 +7,7 @@
 #include "fx/trig.h"
 #include "lm/const.h"
 #include "lm/illumination.h"
+#include "lm/units.h"
 
 enum { GRAZING_MIN_Q24 = 1 << 16 /* 1/256, as in the range grid */ };
 
@@ -20,13 +21,13 @@ bool lm_target_view_locate(struct lm_position from, struct lm_position to, uint3
     uint32_t miss_m_q8;
     fx_bam_t miss_azimuth;
     lm_geo_inverse(from, to, distance_m_q8, azimuth);
-    if (*distance_m_q8 > 300000u * 256u) {
+    if (*distance_m_q8 > LM_M_Q8(300000u)) {
         return false;
     }
     lm_geo_set_origin(&origin, from);
     const struct lm_position reached = lm_geo_direct(&origin, *azimuth, *distance_m_q8);
     lm_geo_inverse(reached, to, &miss_m_q8, &miss_azimuth);
-    if (miss_m_q8 > *distance_m_q8 / 16 + 256) {
+    if (miss_m_q8 > *distance_m_q8 / 16 + LM_M_Q8(1)) {
         return false;
     }
     const fx_bam_t turn = miss_azimuth - *azimuth;
@@ -50,12 +51,13 @@ void lm_target_view_of(struct lm_target_view *v, const struct lm_target_candidat
 {
     /* Heights are within 2^25.9 and 2^24 in Q10, ranges below 2^27 in Q8: all lengths are below
      * 2^29 in Q10. */
-    const int32_t range_m_q10 = (int32_t)(fx_min_u32(range_m_q8, 400000u * 256u) * 4);
+    const uint32_t held_m_q8 = fx_min_u32(range_m_q8, LM_M_Q8(400000u));
+    const int32_t range_m_q10 = lm_m_q10_of_m_q8((int32_t)held_m_q8);
     const int32_t above_m_q10 =
-        h->antenna_m_q10 - candidate->elevation_m_q6 * 16 - drop_m_q10((uint32_t)range_m_q10 / 4);
+        h->antenna_m_q10 - lm_m_q10_of_m_q6(candidate->elevation_m_q6) - drop_m_q10(held_m_q8);
     const uint64_t slant_m_q10 = fx_hypot_u32(range_m_q10, above_m_q10);
     lm_target_view_set(v, back - candidate->state.heading, fx_atan2(above_m_q10, range_m_q10),
-                       (uint32_t)(slant_m_q10 * 1000 >> 10));
+                       lm_mm_of_m_q10(slant_m_q10));
 }
 
 int32_t lm_target_view_rcs_dbsm_q8(const struct lm_target_set *set, const struct lm_target *t,
@@ -75,7 +77,7 @@ int64_t lm_target_view_tangent_q38(int32_t top_m_q10, uint32_t range_m_q8,
 {
     const int64_t apparent_m_q10 = (int64_t)top_m_q10 - h->antenna_m_q10 - drop_m_q10(range_m_q8);
     return apparent_m_q10 * ((int64_t)1 << 36) /
-           (int64_t)fx_max_u32(range_m_q8, LM_RANGE_MIN_M * 256u);
+           (int64_t)fx_max_u32(range_m_q8, LM_M_Q8(LM_RANGE_MIN_M));
 }
 
 /* Range times turns, 2^26.6 * 2^32, cut to Q16; times 2 pi in Q26 it is below 2^63. */

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "lm/units.h"
+
 /* Sides of a tile, in cells and in posts.
  *
  *     post 64 p---p---p-   -p       Posts lie at the corners of cells. Post (r, c) is the
@@ -16,7 +18,7 @@
 enum { LM_TILE_CELLS = 64, LM_TILE_CELLS_LOG2 = 6, LM_TILE_POSTS = 65 };
 
 /* Reflectivity codes of cells: gamma in dB = code / 2 - 80, which is -80.0..+47.5 dB. */
-enum { LM_GAMMA_CODE_STEP_DB_Q8 = 128, LM_GAMMA_CODE_ZERO_DB_Q8 = -80 * 256 };
+enum { LM_GAMMA_CODE_STEP_DB_Q8 = 128, LM_GAMMA_CODE_ZERO_DB_Q8 = LM_DB_Q8(-80) };
 
 /* A cell and the elevation post at its south-west corner. They are stored side by side because
  * every reader needs both: one little-endian word, with the cell in its low half. */

@@ -79,6 +79,12 @@ static inline uint32_t lm_m_of_m_q8(uint32_t length_m_q8)
     return length_m_q8 / 256u;
 }
 
+/* Exact. |height| < 2^25 m. */
+static inline int32_t lm_m_q6_of_m(int32_t height_m)
+{
+    return height_m * 64;
+}
+
 /* Cut; any height. */
 static inline int32_t lm_m_of_m_q6(int32_t height_m_q6)
 {

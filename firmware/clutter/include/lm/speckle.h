@@ -14,8 +14,9 @@
 #include "lm/environment.h"
 #include "lm/noise.h"
 #include "lm/radar.h"
+#include "lm/units.h"
 
-enum { LM_TEXTURE_SHAPE_BITS = 3, LM_TEXTURE_LOSS_MAX_DB_Q8 = 64 * 256 };
+enum { LM_TEXTURE_SHAPE_BITS = 3, LM_TEXTURE_LOSS_MAX_DB_Q8 = LM_DB_Q8(64) };
 
 /* Texture: gain and shape of each class. Prepared once a sector or patch.
  *

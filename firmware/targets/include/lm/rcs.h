@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "lm/radar.h"
+#include "lm/units.h"
 
 /* Shapes, and what their sizes mean. Axes are those of struct lm_direction. */
 enum lm_shape_kind {
@@ -24,7 +25,8 @@ enum lm_shape_kind {
 
 enum {
     LM_SHAPE_SIZE_MAX_MM = 100000,
-    LM_RCS_NONE_DBSM_Q8 = -100 * 256 /* no return at all; every cross section is at least this */
+    LM_RCS_NONE_DBSM_Q8 =
+        LM_DB_Q8(-100) /* no return at all; every cross section is at least this */
 };
 
 /* A shape. `size_mm` is 1..LM_SHAPE_SIZE_MAX_MM each, where the kind uses it. */

@@ -23,6 +23,7 @@
 #include "fx/types.h"
 #include "lm/db.h"
 #include "lm/rcs.h"
+#include "lm/units.h"
 
 enum {
     LM_CHIP_SIDE = 64, /* rows, and columns, of a chip */
@@ -34,7 +35,7 @@ enum {
 };
 
 /* Code of a cross section: dBsm = code / 2 - 80, so -79.5 .. +47.5. Code 0 is no return. */
-enum { LM_SIGNATURE_CODE_STEP_DB_Q8 = 128, LM_SIGNATURE_CODE_ZERO_DBSM_Q8 = -80 * 256 };
+enum { LM_SIGNATURE_CODE_STEP_DB_Q8 = 128, LM_SIGNATURE_CODE_ZERO_DBSM_Q8 = LM_DB_Q8(-80) };
 
 /* Record of one signature. */
 struct lm_signature {

@@ -23,12 +23,13 @@
 #include "lm/db.h"
 #include "lm/geo.h"
 #include "lm/rcs.h"
+#include "lm/units.h"
 
 enum {
     LM_SCATTERERS_MAX = 16,
     LM_TARGET_OFFSET_MAX_MM = 1 << 18, /* 262 m on each axis: at most 454 m from the origin */
     LM_TARGET_SWERLING_MAX = 4,
-    LM_TARGET_RCS_MAX_Q8 = 100 * 256, /* greatest mean; the least is its negative */
+    LM_TARGET_RCS_MAX_Q8 = LM_DB_Q8(100), /* greatest mean; the least is its negative */
     LM_TARGET_SPEED_MAX_MM_S = 1 << 20,
     LM_TARGET_LEG_MAX_M = 100000,
     LM_TARGET_LEGS_MAX = 32

@@ -56,6 +56,7 @@ TEST(whole_metres_come_and_go)
 {
     CHECK(lm_m_q8_of_m, uint32_t, 0, P(24) - 1, exact(x * 256));
     CHECK(lm_m_of_m_q8, uint32_t, 0, U32, trunc(x / 256));
+    CHECK(lm_m_q6_of_m, int32_t, 1 - P(25), P(25) - 1, exact(x * 64));
     CHECK(lm_m_of_m_q6, int32_t, -S31, S31, trunc(x / 64));
     CHECK(lm_m_of_m_q10, int32_t, -S31, S31, trunc(x / 1024));
     assert_int_equal(LM_M_Q8(300 + 1), 301 * 256);
