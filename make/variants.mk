@@ -26,6 +26,6 @@ sanitized = $(patsubst $(O)/%,$(O)/sanitized/%,$(1))
 # number has, so that it would warn of conversions that the plain build shows to be fine.
 SANITIZED_CFLAGS := -O1 -fsanitize=$(SANITIZERS)$(if $(FUZZER),$(comma)fuzzer-no-link) -fno-sanitize-recover=all \
     -fno-omit-frame-pointer -Wno-conversion
-$(O)/clang/%.o: CC := clang
+$(O)/clang/%.o: override CC := clang
 $(call compile, sanitized/,, $$(VARIANT_CFLAGS) $$(SANITIZED_CFLAGS), sanitizers)
 $(call compile, clang/,,     $$(VARIANT_CFLAGS) -O3, clang)
