@@ -73,9 +73,9 @@ static void add_echo(const struct met *m, const struct lm_shower_cells *reach,
         const int32_t filled_q8 =
             lm_chord_before_m_q8(c, near_m_q8 + step_m_q8) - lm_chord_before_m_q8(c, near_m_q8);
         const uint32_t share_q32 = (uint32_t)filled_q8 * per_step_q32;
-        const int32_t share_q8 = fx_db_q8_vec(share_q32) - 32 * FX_DB_PER_OCTAVE_Q14 / 64;
+        const int32_t share_db_q8 = fx_db_q8_vec(share_q32) - 32 * FX_DB_PER_OCTAVE_Q14 / 64;
         echo_db_q8[i] =
-            fx_db_q8_sum_vec(echo_db_q8[i], m->shower.echo_db_q8 + share_q8 - loss_db_q8[i]);
+            fx_db_q8_sum_vec(echo_db_q8[i], m->shower.echo_db_q8 + share_db_q8 - loss_db_q8[i]);
     }
 }
 

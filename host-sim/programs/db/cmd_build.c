@@ -59,8 +59,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("class-raster", DB_TEXT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
         OPTION("reflectivity", DB_TEXT, reflectivity, 0, 0, "FILE",
-               "reflectivity (gamma, dB) on the class raster's grid\nleft out: the class table's "
-               "mean"),
+               "reflectivity (gamma, dB) on the class raster's grid\nleft out: drawn from "
+               "the class's distribution"),
         OPTION(
             "heights", DB_TEXT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
