@@ -197,15 +197,10 @@ uint32_t lm_page_step_range(struct lm_page *p, int32_t step)
     return range != p->range_index ? take_range(p, (uint32_t)range) : 0;
 }
 
-static bool is_within(int32_t value, int32_t low, int32_t high)
-{
-    return value >= low && value <= high;
-}
-
 uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm)
 {
     const int32_t range = lm_radar_find_range(p->radar, range_nm);
-    if (!is_within(range, 0, lm_page_range_last(p))) {
+    if (!fx_is_within_i32(range, 0, lm_page_range_last(p))) {
         return 0;
     }
     p->is_auto_range = false;
@@ -214,7 +209,7 @@ uint32_t lm_page_select_range(struct lm_page *p, int32_t range_nm)
 
 uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
 {
-    if (!is_within(azimuth, 0, LM_AZIMUTHS - 1)) {
+    if (!fx_is_within_i32(azimuth, 0, LM_AZIMUTHS - 1)) {
         return 0;
     }
     p->azimuth_index = (uint8_t)azimuth;
@@ -223,8 +218,8 @@ uint32_t lm_page_select_azimuth(struct lm_page *p, int32_t azimuth)
 
 uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t fov)
 {
-    if (!is_within(mode, 0, LM_SECTOR_MODES - 1) ||
-        !is_within(fov, 0, p->radar->mode[mode].fov_last) ||
+    if (!fx_is_within_i32(mode, 0, LM_SECTOR_MODES - 1) ||
+        !fx_is_within_i32(fov, 0, p->radar->mode[mode].fov_last) ||
         p->range_index > lm_radar_range_last(p->radar, (uint32_t)mode, (uint32_t)fov)) {
         return 0;
     }
@@ -235,7 +230,7 @@ uint32_t lm_page_select_sector(struct lm_page *p, int32_t mode, int32_t fov)
 
 uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db)
 {
-    if (!is_within(gain_db, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
+    if (!fx_is_within_i32(gain_db, -LM_GAIN_MAX_DB, LM_GAIN_MAX_DB)) {
         return 0;
     }
     p->gain_db = (int16_t)gain_db;
@@ -244,7 +239,7 @@ uint32_t lm_page_set_gain(struct lm_page *p, int32_t gain_db)
 
 uint32_t lm_page_set_knob(struct lm_page *p, int32_t knob)
 {
-    if (!is_within(knob, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
+    if (!fx_is_within_i32(knob, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION)) {
         return 0;
     }
     p->knob = (int16_t)knob;

@@ -87,11 +87,6 @@ static bool designate(struct lm_unit *u, uint64_t now_us)
     return try_patch(u, &command, now_us);
 }
 
-static bool is_within(int32_t value, int32_t low, int32_t high)
-{
-    return value >= low && value <= high;
-}
-
 /* Carry out the effects of a direct command. The page returns none if it refused the command. */
 static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
@@ -111,7 +106,7 @@ static bool apply_steerpoint(struct lm_unit *u, const struct lm_control *control
 
 static bool apply_button(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
 {
-    if (!is_within(control->button, 1, LM_BUTTONS)) {
+    if (!fx_is_within_i32(control->button, 1, LM_BUTTONS)) {
         return false;
     }
     const uint8_t button = (uint8_t)control->button;
@@ -127,7 +122,7 @@ static bool apply_button(struct lm_unit *u, const struct lm_control *control, ui
 
 static bool is_deflection(int32_t value)
 {
-    return is_within(value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION);
+    return fx_is_within_i32(value, -LM_FULL_DEFLECTION, LM_FULL_DEFLECTION);
 }
 
 static bool apply_slew(struct lm_unit *u, const struct lm_control *control)

@@ -2,6 +2,7 @@
 #ifndef FX_SAT_H
 #define FX_SAT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* The smaller of two signed numbers. */
@@ -32,6 +33,12 @@ static inline uint32_t fx_max_u32(uint32_t a, uint32_t b)
 static inline int32_t fx_clamp_i32(int32_t x, int32_t lo, int32_t hi)
 {
     return x < lo ? lo : x > hi ? hi : x;
+}
+
+/* True if x is one of lo..hi, both included. */
+static inline bool fx_is_within_i32(int32_t x, int32_t lo, int32_t hi)
+{
+    return x >= lo && x <= hi;
 }
 
 /* Clamp x of 64 bits to lo..hi, both included; lo <= hi. */

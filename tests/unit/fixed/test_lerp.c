@@ -70,6 +70,9 @@ TEST(clamp_minimum_maximum_and_magnitude_hold_at_the_edges)
     assert_int_equal(fx_clamp_i64((int64_t)1 << 32, -3, 4), 4);
     assert_int_equal(fx_clamp_i64(INT64_MIN, INT64_MIN, INT64_MAX), INT64_MIN);
     assert_int_equal(fx_clamp_i64(-3, -3, -3), -3);
+    assert_true(fx_is_within_i32(-3, -3, 4) && fx_is_within_i32(4, -3, 4));
+    assert_false(fx_is_within_i32(-4, -3, 4) || fx_is_within_i32(5, -3, 4));
+    assert_true(fx_is_within_i32(INT32_MIN, INT32_MIN, INT32_MAX));
     assert_int_equal(fx_min_i32(INT32_MIN, INT32_MAX), INT32_MIN);
     assert_int_equal(fx_max_i32(INT32_MIN, INT32_MAX), INT32_MAX);
     assert_int_equal(fx_min_u32(0, UINT32_MAX), 0);
