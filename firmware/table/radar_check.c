@@ -208,7 +208,7 @@ static uint32_t check_mode_names(const struct lm_radar *r)
 static uint32_t check_field_names(const struct lm_radar *r)
 {
     for (uint32_t i = 0; i < LM_FOVS; i++) {
-        if (!is_name(r->fov[i].name) || lm_radar_find_field(r, r->fov[i].name) != (int32_t)i) {
+        if (!is_name(r->fov[i].name) || lm_radar_find_fov(r, r->fov[i].name) != (int32_t)i) {
             return i;
         }
     }

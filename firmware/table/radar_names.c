@@ -38,7 +38,7 @@ int32_t lm_radar_find_mode(const struct lm_radar *radar, const char *name)
     return -1;
 }
 
-int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name)
+int32_t lm_radar_find_fov(const struct lm_radar *radar, const char *name)
 {
     for (int32_t i = 0; i < LM_FOVS; i++) {
         if (is_same(radar->fov[i].name, name)) {
@@ -58,10 +58,10 @@ int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees)
     return -1;
 }
 
-uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t field)
+uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t fov)
 {
     const uint32_t most_nm =
-        fx_min_u32(radar->mode[mode].range_max_nm, radar->fov[field].range_max_nm);
+        fx_min_u32(radar->mode[mode].range_max_nm, radar->fov[fov].range_max_nm);
     uint32_t last = 0;
     while (last + 1 < radar->ranges && radar->range[last + 1].range_nm <= most_nm) {
         last++;

@@ -222,7 +222,7 @@ static bool parse_sector(struct script *s, char **words, int count, struct line_
 {
     const struct lm_radar *radar = s->radar;
     const int32_t mode = lm_radar_find_mode(radar, words[1]);
-    const int32_t field = count == 3 ? lm_radar_find_field(radar, words[2]) : LM_FOV_NORM;
+    const int32_t field = count == 3 ? lm_radar_find_fov(radar, words[2]) : LM_FOV_NORM;
     if (count > 3 || field < 0) {
         return false;
     }

@@ -2,18 +2,7 @@
  * and pages of text. It remembers nothing and nothing fails. All pointers are borrowed for the
  * call.
  *
- * The option select buttons stand around the glass, clockwise from the top left; OSB 1 to 5 are
- * above it, 6 to 10 at its right, 11 to 15 below, 16 to 20 at its left:
- *
- *             1    2    3    4    5
- *          +--------------------------+
- *       20 |                          | 6
- *       19 |                          | 7
- *       18 |          frame           | 8
- *       17 |                          | 9
- *       16 |                          | 10
- *          +--------------------------+
- *            15   14   13   12   11
+ * lm/controls.h draws where the option select buttons (OSB) stand around the glass.
  */
 #ifndef LM_OVERLAY_H
 #define LM_OVERLAY_H

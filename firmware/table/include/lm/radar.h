@@ -194,10 +194,10 @@ extern const struct lm_radar lm_radar_default;
  * either case), and of the sector of so many degrees to each side; -1 when the table has none. */
 int32_t lm_radar_find_range(const struct lm_radar *radar, int32_t range_nm);
 int32_t lm_radar_find_mode(const struct lm_radar *radar, const char *name);
-int32_t lm_radar_find_field(const struct lm_radar *radar, const char *name);
+int32_t lm_radar_find_fov(const struct lm_radar *radar, const char *name);
 int32_t lm_radar_find_azimuth(const struct lm_radar *radar, int32_t degrees);
 
 /* Index of the largest scale that both a mode and a field of view have. */
-uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t field);
+uint32_t lm_radar_range_last(const struct lm_radar *radar, uint32_t mode, uint32_t fov);
 
 #endif
