@@ -1,5 +1,6 @@
 #include "lm/mover.h"
 
+#include "fx/const.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -89,4 +90,13 @@ bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int
     const fx_bam_t nearer = fx_abs_u32((int32_t)off) - appears;
     *shift = (int32_t)((int32_t)off < 0 ? 0 - nearer : nearer);
     return true;
+}
+
+/* V B is below 2^21 * 2^27.9. A BAM is 2 pi / 2^32 radian: V B is cut by 20 bits and times 2 pi,
+ * 2^30.7, is below 2^59.6; in Q14 of mm/s it is below 2^33.6, and times a sine below 2^48.6. */
+uint32_t lm_mover_clutter_mm_s(uint32_t speed_mm_s, fx_bam_t beam, fx_bam_t off)
+{
+    const uint64_t product = (uint64_t)speed_mm_s * beam >> 20;
+    const uint64_t spread_mm_s_q14 = product * FX_TWO_PI_Q28 >> 26;
+    return (uint32_t)(spread_mm_s_q14 * fx_abs_u32(fx_sin_q15(off)) >> (14 + 15 + 1));
 }

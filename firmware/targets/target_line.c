@@ -111,12 +111,19 @@ struct apparent_position {
     int32_t gain_db_q8;    /* loss by the beam; 0 or less */
 };
 
-/* True if a closing speed is within the mode's gates. */
-static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s)
+/* True if a closing speed is within the mode's gates. The lower gate is never finer than the
+ * spread of the ground beside the target. */
+static bool is_in_gate(const struct lm_target_line *line, int32_t closing_mm_s,
+                       fx_bam_t target_azimuth)
 {
+    if (line->gate_mm_s[1] == 0) {
+        return true;
+    }
     const uint32_t either_way_mm_s = fx_abs_u32(closing_mm_s);
-    return line->gate_mm_s[1] == 0 ||
-           (either_way_mm_s >= line->gate_mm_s[0] && either_way_mm_s <= line->gate_mm_s[1]);
+    const uint32_t clutter_mm_s =
+        lm_mover_clutter_mm_s(line->speed_mm_s, line->beam, line->track - target_azimuth);
+    return either_way_mm_s >= fx_max_u32(line->gate_mm_s[0], clutter_mm_s) &&
+           either_way_mm_s <= line->gate_mm_s[1];
 }
 
 /* Displace a target by Doppler, and attenuate it by the beam, which points at where it appears: the
@@ -163,9 +170,9 @@ static bool find_apparent(const struct lm_target_line *line, const struct lm_tar
                           struct apparent_position *seen)
 {
     const int32_t closing = closing_mm_s(line, t, candidate);
-    if (!is_in_gate(line, closing) ||
-        !lm_target_view_locate(line->position, candidate->state.position, &seen->range_m_q8,
-                               &seen->azimuth)) {
+    if (!lm_target_view_locate(line->position, candidate->state.position, &seen->range_m_q8,
+                               &seen->azimuth) ||
+        !is_in_gate(line, closing, seen->azimuth)) {
         return false;
     }
     seen->true_azimuth = seen->azimuth;

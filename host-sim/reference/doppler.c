@@ -30,3 +30,8 @@ double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, d
 {
     return range_m * closing_m_s / (speed_m_s * fabs(sin(off_deg * rad)));
 }
+
+double ref_gmt_least_m_s(double gate_m_s, double speed_m_s, double beam_deg, double off_deg)
+{
+    return fmax(gate_m_s, speed_m_s * beam_deg * rad * fabs(sin(off_deg * rad)) / 2);
+}

@@ -38,4 +38,11 @@ int32_t lm_mover_closing_mm_s(uint32_t speed_mm_s, fx_bam_t heading, fx_bam_t ba
  * (tests/unit/firmware/targets/test_mover.c). Cost: 300 instructions and one 64-bit division. */
 bool lm_mover_shift(int32_t closing_mm_s, uint32_t speed_mm_s, fx_bam_t off, int32_t *shift);
 
+/* Half the spread of closing speeds that still ground has within the beam: V B sin(o) / 2. What
+ * moves more slowly cannot be told from the clutter beside it.
+ *
+ * `beam` is the one-way half-power width, at most 20 degrees; `speed_mm_s` is at most 2,000,000;
+ * the velocity points `off` from the line of sight. Worst error 1 mm/s and 2^-14 of the result. */
+uint32_t lm_mover_clutter_mm_s(uint32_t speed_mm_s, fx_bam_t beam, fx_bam_t off);
+
 #endif

@@ -20,8 +20,9 @@ struct lm_target_line {
     fx_bam_t beam;         /* one-way half-power width of the antenna in azimuth */
     uint32_t speed_mm_s;   /* speed of the antenna over the ground */
     fx_bam_t track;        /* direction of that speed */
-    uint32_t gate_mm_s[2]; /* least and greatest closing speed displayed, of either sign; [1] = 0:
-                              every target is displayed */
+    uint32_t gate_mm_s[2]; /* least and greatest closing speed displayed, of either sign; the least
+                              is lm_mover_clutter_mm_s where that is more; [1] = 0: every target is
+                              displayed */
     uint32_t scan, pulse;  /* number of the sweep and of the line: they choose random draws */
     const struct lm_noise_key *noise_key; /* borrowed for the call: speckle of the line's cells, for
                                              chips; NULL: chips have no speckle */

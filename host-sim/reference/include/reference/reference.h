@@ -409,6 +409,9 @@ double ref_dbs_used(double had, double wanted, double least);
 double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg);
 double ref_mover_shift_m(double closing_m_s, double speed_m_s, double off_deg, double range_m);
 
+/* The least closing speed, either way, that GMT shows `off_deg` from the velocity. */
+double ref_gmt_least_m_s(double gate_m_s, double speed_m_s, double beam_deg, double off_deg);
+
 /* ---- synthetic aperture (aperture.c) ---- */
 
 double ref_sar_dwell_s(double wavelength_m, double slant_m, double speed_m_s, double cell_m,

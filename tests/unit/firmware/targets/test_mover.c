@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "lm/illumination.h"
+#include "reference/reference.h"
 #include "target_support.h"
 #include "tiny_map.h"
 #include "wgs84.h"
@@ -359,6 +360,49 @@ TEST(the_gates_show_only_closing_speeds_within_them_either_way)
     /* Across the line of sight it has none. */
     const struct lm_target t = moving_point(46.2, 11, 90, 15, 1000);
     assert_true(power_of(&t, &how, &at_deg) == 0);
+}
+
+/* Theory: the beam sees still ground at closing speeds from V cos(o + B/2) to V cos(o - B/2). */
+TEST(the_clutter_of_the_beam_spreads_by_the_cosines_of_its_edges)
+{
+    struct hs_rng rng;
+    double worst = 0;
+    hs_rng_seed(&rng, 23);
+    for (int i = 0; i < 20000; i++) {
+        const double off_deg = 360 * hs_rng_uniform(&rng) - 180;
+        const double beam_deg = 0.8 + 19.2 * hs_rng_uniform(&rng);
+        const uint32_t speed_mm_s = hs_rng_below(&rng, 2000001);
+        const double near = cos((off_deg - beam_deg / 2) * pi / 180),
+                     far = cos((off_deg + beam_deg / 2) * pi / 180);
+        const uint32_t spread_mm_s =
+            lm_mover_clutter_mm_s(speed_mm_s, hs_bam(beam_deg), hs_bam(off_deg));
+        const double wanted_mm_s =
+            1000 * ref_gmt_least_m_s(0, speed_mm_s / 1000.0, beam_deg, off_deg);
+        /* V B sin o / 2 is the first term of the difference: the next is B^2 / 24 of it. */
+        const double exact_mm_s = fabs(near - far) / 2 * speed_mm_s;
+        assert_true(fabs(wanted_mm_s / exact_mm_s - 1) < 0.006 || exact_mm_s < 1);
+        assert_true(fabs(spread_mm_s - wanted_mm_s) < 2 + wanted_mm_s / 4096 + speed_mm_s / 32768.);
+        worst = fmax(worst, fabs(spread_mm_s - wanted_mm_s));
+    }
+    print_message("# clutter's spread: worst error %.0f mm/s at up to 2 km/s\n", worst);
+    assert_int_equal(lm_mover_clutter_mm_s(250000, hs_bam(3.3), 0), 0);
+    assert_int_equal(lm_mover_clutter_mm_s(0, hs_bam(3.3), hs_bam(90)), 0);
+}
+
+/* Movers that come nearer at speeds a little below and above the gate, at any angle off the
+ * velocity. */
+TEST(the_gate_is_never_finer_than_the_clutter_of_the_beam)
+{
+    double at_deg;
+    for (int off_deg = -170; off_deg <= 170; off_deg += 20) {
+        const struct lm_target_line how = {
+            .gate_mm_s = {1543, 51444}, .speed_mm_s = 180000, .track = hs_bam(off_deg)};
+        const double least = ref_gmt_least_m_s(1.543, 180, 3.3, off_deg);
+        const struct lm_target slow = moving_point(46.2, 11, 180, least - 0.02, 1000);
+        const struct lm_target fast = moving_point(46.2, 11, 180, least + 0.02, 1000);
+        assert_true(power_of(&slow, &how, &at_deg) == 0);
+        assert_true(power_of(&fast, &how, &at_deg) > 0);
+    }
 }
 
 /* ---- when ---- */

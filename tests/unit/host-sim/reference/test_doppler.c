@@ -69,6 +69,15 @@ TEST(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch)
     assert_true(ref_dbs_used(3.99, 8, 4) == 1);
 }
 
+/* By hand: 180 m/s, 3.3 degrees, 60 off: 180 * 0.0576 * 0.866 / 2 = 4.49 m/s, 8.7 knots. */
+TEST(the_gate_is_half_the_spread_of_the_clutter_where_that_is_more)
+{
+    assert_true(fabs(ref_gmt_least_m_s(1.543, 180, 3.3, 60) - 4.489) < 0.001);
+    assert_true(fabs(ref_gmt_least_m_s(1.543, 180, 3.3, -90) - 5.184) < 0.001);
+    assert_true(ref_gmt_least_m_s(1.543, 180, 3.3, 10) == 1.543);
+    assert_true(ref_gmt_least_m_s(1.543, 0, 3.3, 60) == 1.543);
+}
+
 /* A target at o that closes with v has the Doppler frequency of ground at o - d. */
 TEST(a_mover_lies_where_still_ground_has_its_frequency)
 {
