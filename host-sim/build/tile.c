@@ -62,16 +62,17 @@ static uint16_t encode(const struct build_context *b, int class_number, double g
 }
 
 /* The random reflectivity of a cell, or of one of the `parts` x `parts` of one: by where it lies
- * alone. Of a coarse cell it is that of all the finest ones that it stands for, as that of a cell
- * made from below is. */
+ * alone, whatever the level. */
 static double assigned_gamma_db(const struct build_context *b, int class_number,
                                 const struct image_frame *f, int parts, int r, int c)
 {
-    const uint64_t level_seed = b->seed + ((uint64_t)f->shift << 32);
-    const uint32_t side = (uint32_t)(CELLS * parts);
-    return db_reflect_assign_coarse(&b->laws[class_number], level_seed,
-                                    (int)(f->column * side + (uint32_t)c),
-                                    (int)(f->row * side + (uint32_t)r), f->shift - b->plan.shift0);
+    const double radians = 3.14159265358979323846 / 2147483648.0;
+    const double north = (r + 0.5) / parts * (double)f->latitude_step;
+    const double east = (c + 0.5) / parts * (double)f->longitude_step;
+    return db_reflect_assign_cell(&b->laws[class_number], b->seed,
+                                  radians * ((double)f->south + north),
+                                  radians * ((double)f->west + east),
+                                  (double)f->latitude_step * IMAGE_METRES_PER_BAM / parts);
 }
 
 static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s,

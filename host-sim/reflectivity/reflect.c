@@ -1,14 +1,10 @@
 #include "reflectivity/reflect.h"
 
-#include "hs/rng.h"
-
 #include <math.h>
+#include <stdbool.h>
 
 /* dB of a natural logarithm of power. */
 static const double db_per_neper = 4.342944819032518;
-/* Digamma and trigamma of 1: the mean and variance of the logarithm of an exponential variate. */
-static const double digamma_1 = -0.5772156649015329;
-static const double trigamma_1 = 1.6449340668482264;
 
 /* Both by the recurrence up to 10, then the asymptotic series (Abramowitz and Stegun, 6.3.18
  * and 6.4.12). */
@@ -32,86 +28,201 @@ static double trigamma(double x)
     return sum + 1 / x + r / 2 + r / x * (1.0 / 6 - r * (1.0 / 30 - r / 42));
 }
 
-/* A Gamma variate of the given order and mean 1 (Marsaglia and Tsang, ACM TOMS 26, 2000, p. 363;
- * orders below 1 through their remark on p. 371), as its natural logarithm. */
-static double draw_log_gamma(struct hs_rng *rng, double order)
+/* Lattices of the patterns in metres, and how much of the cell's there may be. UNSOURCED: chosen so
+ * that soil and towns are correlated over 10 to 80 m as in a Sentinel-1 scene (docs/database.md).
+ */
+static const double parcel_m = 110, smooth_m = 75, tens_m = 34, cell_m = 4;
+static const double object_share = 0.57; /* of the variance that the cell's leaves */
+static const double cell_spread_db = 1, cell_share_max = 0.15;
+
+/* Spots of structures. UNSOURCED, after the same scene: share of the ground, and in spreads the
+ * mean of their exponential distribution and its end. */
+static const double spot_share = 0.04, spot_mean_spreads = 1.6, spot_end_spreads = 5;
+
+/* Density of the unscaled texture at x dB, but for a factor. */
+static double density(const struct db_class *c, double x)
 {
-    const double raised = order < 1 ? order + 1 : order;
-    const double d = raised - 1.0 / 3, c = 1 / sqrt(9 * d);
-    double v, x, u;
-    do {
-        x = hs_rng_normal(rng);
-        v = 1 + c * x;
-        v = v * v * v;
-        u = 1 - hs_rng_uniform(rng);
-    } while (v <= 0 || log(u) >= 0.5 * x * x + d - d * v + d * log(v));
-    double result = log(d * v);
-    if (order < 1) {
-        result += log(1 - hs_rng_uniform(rng)) / order;
+    if (c->texture == DB_TEXTURE_GAUSSIAN) {
+        return exp(-0.5 * x * x);
     }
-    return result - log(order);
+    const double order = c->texture == DB_TEXTURE_K ? c->texture_shape : 1;
+    const double neper = x / db_per_neper;
+    return exp(order * (neper - exp(neper) + 1));
 }
 
-static double draw_shape_db(const struct db_reflect_law *law, struct hs_rng *rng)
+/* Mean and deviation of the unscaled texture, dB. */
+static void texture_moments(const struct db_class *c, double *mean, double *deviation)
 {
-    if (law->c->texture == DB_TEXTURE_GAUSSIAN) {
-        return hs_rng_normal(rng);
+    *mean = 0;
+    *deviation = 1;
+    if (c->texture != DB_TEXTURE_GAUSSIAN) {
+        const double order = c->texture == DB_TEXTURE_K ? c->texture_shape : 1;
+        *mean = db_per_neper * (digamma(order) - log(order));
+        *deviation = db_per_neper * sqrt(trigamma(order));
     }
-    if (law->c->texture == DB_TEXTURE_RAYLEIGH) {
-        const double i = hs_rng_normal(rng), q = hs_rng_normal(rng);
-        return db_per_neper * log(fmax(0.5 * (i * i + q * q), 1e-30));
-    }
-    return db_per_neper * draw_log_gamma(rng, law->c->texture_shape);
 }
 
-double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, int x, int y)
+/* Share of the standard normal distribution below a rank. */
+static double below(double rank)
 {
-    enum { DRAWS = 64 };
+    return 0.5 * erfc(-rank * 0.70710678118654752);
+}
+
+static double rank_of_step(int step)
+{
+    return DB_REFLECT_RANK_MAX * (2.0 * step / DB_REFLECT_STEPS - 1);
+}
+
+enum { BINS = 1 << 14 };
+
+/* Fill value_db: the value below which there is as much of the texture, cut at the limits, as there
+ * is of a normal variable below the rank. */
+static void fill_values(struct db_reflect_law *law, double low_db, double high_db)
+{
+    static const double reach = 14; /* deviations; the tail of the exponential ends at 1e-6 */
     const struct db_class *c = law->c;
-    struct hs_rng rng;
-    const uint64_t place = (uint64_t)(uint32_t)y << 32 | (uint32_t)x;
-    /* Two odd factors, neither of them that of the generator's own seeding. */
-    hs_rng_seed(&rng, place * 0xd1342543de82ef95u + seed * 0xaef17502108ef2d9u);
-    double value = c->gamma_db;
-    for (int i = 0; i < DRAWS; i++) {
-        const double shape = (draw_shape_db(law, &rng) - law->shape_mean) / law->shape_dev;
-        value = c->gamma_db + c->spread_db * shape;
-        if (value >= c->low_db && value <= c->high_db) {
-            return value;
-        }
+    double mean, deviation;
+    texture_moments(c, &mean, &deviation);
+    const double scale = deviation / c->spread_db;
+    const double from = fmax(low_db, c->gamma_db - reach * c->spread_db);
+    const double to = fmin(high_db, c->gamma_db + reach * c->spread_db);
+    const double width = (to - from) / BINS;
+    double whole = 0;
+    for (int i = 0; i < BINS; i++) {
+        whole += density(c, mean + (from + (i + 0.5) * width - c->gamma_db) * scale);
     }
-    return fmin(c->high_db, fmax(c->low_db, value));
+    double sum = 0;
+    int bin = 0;
+    for (int step = 0; step <= DB_REFLECT_STEPS; step++) {
+        const double wanted = whole * below(rank_of_step(step));
+        double part = 0;
+        while (bin < BINS) {
+            part = density(c, mean + (from + (bin + 0.5) * width - c->gamma_db) * scale);
+            if (sum + part > wanted) {
+                break;
+            }
+            sum += part;
+            bin++;
+        }
+        const double into = bin < BINS && part > 0 ? (wanted - sum) / part : 0;
+        law->value_db[step] = (float)(from + (bin + into) * width);
+    }
 }
 
-/* Of a sample: limits leave no closed form. */
-static double mean_power_db(const struct db_reflect_law *law)
+/* A spot of number u in [0, 1) stands out by this many dB. */
+static double spot_db(const struct db_reflect_law *law, double u)
 {
-    enum { SAMPLE = 4096 };
-    double sum = 0;
-    for (int i = 0; i < SAMPLE; i++) {
-        sum += pow(10, db_reflect_assign(law, 1, i, 0) / 10);
+    const double end = 1 - exp(-spot_end_spreads / spot_mean_spreads);
+    return -law->spot_db * log(1 - u * end);
+}
+
+/* Structures alone have spots. What these add to the variance the rest must do without. */
+static void add_spots(struct db_reflect_law *law)
+{
+    enum { PARTS = 4096 };
+    const struct db_class *c = law->c;
+    if (c->kind != DB_KIND_STRUCTURE) {
+        return;
     }
-    return 10 * log10(sum / SAMPLE);
+    law->spot_share = spot_share;
+    law->spot_db = spot_mean_spreads * c->spread_db;
+    double mean = 0, square = 0, power = 0;
+    for (int i = 0; i < PARTS; i++) {
+        const double db = spot_db(law, (i + 0.5) / PARTS);
+        mean += spot_share * db / PARTS;
+        square += spot_share * db * db / PARTS;
+        power += pow(10, db / 10) / PARTS;
+    }
+    const double kept = sqrt(1 - (square - mean * mean) / (c->spread_db * c->spread_db));
+    for (int i = 0; i <= DB_REFLECT_STEPS; i++) {
+        law->value_db[i] =
+            (float)(c->gamma_db - mean + kept * ((double)law->value_db[i] - c->gamma_db));
+    }
+    law->mean_db = 10 * log10(1 + spot_share * (power - 1));
+}
+
+static double value_of_rank(const struct db_reflect_law *law, double rank)
+{
+    const double step = (rank / DB_REFLECT_RANK_MAX + 1) * (DB_REFLECT_STEPS / 2.0);
+    const double within = fmin(fmax(step, 0), DB_REFLECT_STEPS - 1e-6);
+    const int i = (int)within;
+    const double low = (double)law->value_db[i], high = (double)law->value_db[i + 1];
+    return low + (high - low) * (within - i);
+}
+
+static uint64_t seed_of_name(const char *name)
+{
+    uint64_t h = 0xcbf29ce484222325u; /* FNV-1a */
+    for (; *name; name++) {
+        h = (h ^ (uint8_t)*name) * 0x100000001b3u;
+    }
+    return h;
 }
 
 void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
 {
-    *law = (struct db_reflect_law){.c = c, .shape_mean = 0, .shape_dev = 1};
-    if (c->texture == DB_TEXTURE_RAYLEIGH) {
-        law->shape_mean = db_per_neper * digamma_1;
-        law->shape_dev = db_per_neper * sqrt(trigamma_1);
-    } else if (c->texture == DB_TEXTURE_K) {
-        law->shape_mean = db_per_neper * (digamma(c->texture_shape) - log(c->texture_shape));
-        law->shape_dev = db_per_neper * sqrt(trigamma(c->texture_shape));
+    *law = (struct db_reflect_law){.c = c, .seed = seed_of_name(c->name), .mean_db = c->gamma_db};
+    if (c->spread_db <= 0) {
+        return;
     }
-    law->mean_db = mean_power_db(law);
+    const double cell = fmin(cell_share_max, pow(cell_spread_db / c->spread_db, 2));
+    law->weight[0] = sqrt((1 - cell) * object_share);
+    law->weight[1] = sqrt((1 - cell) * (1 - object_share));
+    law->weight[2] = sqrt(cell);
+    fill_values(law, c->low_db, c->high_db);
+    law->mean_db = 0;
+    add_spots(law);
+    double power = 0;
+    for (int i = 0; i < DB_REFLECT_STEPS; i++) {
+        const double share = below(rank_of_step(i + 1)) - below(rank_of_step(i));
+        const double middle = 0.5 * (rank_of_step(i) + rank_of_step(i + 1));
+        power += share * pow(10, value_of_rank(law, middle) / 10);
+    }
+    law->mean_db += 10 * log10(power);
 }
 
-double db_reflect_assign_coarse(const struct db_reflect_law *law, uint64_t seed, int x, int y,
-                                int halvings)
+double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
 {
-    const double pixel_db = db_reflect_assign(law, seed, x, y);
-    return halvings == 0 ? pixel_db : law->mean_db + ldexp(pixel_db - law->c->gamma_db, -halvings);
+    const struct db_class *c = law->c;
+    if (c->spread_db <= 0) {
+        return c->gamma_db;
+    }
+    const uint64_t own = seed * 0x9fb21c651e98df25u + law->seed;
+    const bool grows = c->kind == DB_KIND_WATER || c->kind == DB_KIND_TREES;
+    const double object = grows ? reflect_pattern_smooth(own, p, smooth_m)
+                                : reflect_pattern_parcels(own, p, parcel_m);
+    const double rank = law->weight[0] * object +
+                        law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
+                        law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m);
+    const double value = value_of_rank(law, rank);
+    if (law->spot_share <= 0) {
+        return value;
+    }
+    const double spot = reflect_pattern_spots(own + 3, p, law->spot_share);
+    return spot < 0 ? value : value + spot_db(law, spot);
+}
+
+double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, double latitude,
+                              double longitude, double width_m)
+{
+    static const double fine_m = 5, apart_m = 40;
+    const struct reflect_place middle = reflect_place_at(latitude, longitude);
+    if (width_m <= fine_m || law->c->spread_db <= 0) {
+        return db_reflect_assign(law, seed, middle);
+    }
+    const int side = width_m <= apart_m ? 2 : (int)fmin(4, ceil(width_m / apart_m));
+    double power = 0;
+    for (int i = 0; i < side * side; i++) {
+        const double east = ((i % side + 0.5) / side - 0.5) * width_m;
+        const double north = ((i / side + 0.5) / side - 0.5) * width_m;
+        const struct reflect_place p =
+            reflect_place_beside(middle, latitude, longitude, east, north);
+        power += exp(db_reflect_assign(law, seed, p) / db_per_neper);
+    }
+    /* Where the places are farther apart than what they stand for is wide, their mean varies more
+     * than that of all the ground. */
+    const double value_db = db_per_neper * log(power / (side * side));
+    return law->mean_db + fmin(1, side * apart_m / width_m) * (value_db - law->mean_db);
 }
 
 void db_brightness_add(struct db_brightness *b, int class_index, double brightness)

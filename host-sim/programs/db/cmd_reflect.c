@@ -1,5 +1,6 @@
 /* landmass-db reflect: a class raster in, a reflectivity raster out. */
 #include "commands.h"
+#include "pixel_places.h"
 #include "source_options.h"
 
 #include "gis/class_raster.h"
@@ -26,7 +27,8 @@ static const struct db_usage usage = {
         "and borders\n"
         "          between classes soften where their limits overlap. The value depends on the "
         "seed and the\n"
-        "          pixel's place alone.\n"
+        "          pixel's place on the ground alone: other rasters and levels have the same "
+        "there.\n"
         "  adjust  the image's brightness is kept as detail: the mean and spread of each class's "
         "brightness\n"
         "          are moved to its gamma_db and spread_db. Water becomes uniform. More detailed, "
@@ -91,6 +93,7 @@ struct work {
     int bands_used;
     struct db_raster_out out;
     struct db_preview preview;
+    struct pixel_places places;
     struct db_brightness brightness;
     struct outcome outcome;
     struct block block;
@@ -159,7 +162,8 @@ static int prepare(struct work *w)
     const struct options *o = w->options;
     if (db_class_table_read(&w->table, o->classes) != 0 ||
         db_class_raster_open(&w->classes, o->class_raster) != 0 || open_image(w) != 0 ||
-        alloc_block(w) != 0) {
+        alloc_block(w) != 0 ||
+        pixel_places_open(&w->places, &w->classes.grid, o->class_raster) != 0) {
         return -1;
     }
     for (int i = 0; i < w->table.count; i++) {
@@ -213,10 +217,10 @@ static int measure_block(struct work *w)
 static double value_of(const struct work *w, size_t i)
 {
     const struct block *b = &w->block;
-    const int c = b->classes[i], width = w->classes.grid.width;
+    const int c = b->classes[i];
     if (!w->adjusts) {
-        return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed, (int)(i % (size_t)width),
-                                 b->y + (int)(i / (size_t)width));
+        return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed,
+                                 w->places.row[i % (size_t)w->classes.grid.width]);
     }
     return isnan(b->values[i])
                ? w->table.items[c].gamma_db
@@ -237,6 +241,9 @@ static int reflect_block(struct work *w)
     struct block *b = &w->block;
     const int width = w->classes.grid.width;
     for (size_t i = 0; i < (size_t)b->rows * (size_t)width; i++) {
+        if (!w->adjusts && i % (size_t)width == 0) {
+            pixel_places_row(&w->places, b->y + (int)(i / (size_t)width));
+        }
         if (b->classes[i] == DB_CLASS_NODATA) {
             b->values[i] = NODATA_DB;
             continue;
@@ -358,6 +365,7 @@ int db_cmd_reflect(int argc, char **argv)
     free(w->block.class_valid);
     free(w->block.classes);
     db_preview_free(&w->preview);
+    pixel_places_close(&w->places);
     db_raster_close(&w->classes);
     db_raster_close(&w->image);
     db_list_free(&options.image.paths);

@@ -7,36 +7,55 @@
 #define REFLECTIVITY_REFLECT_H
 
 #include "hs/class_table.h"
+#include "reflectivity/place.h"
 
 #include <stdint.h>
 
-/* Law of one class: how its values are distributed in dB, prepared once.
+enum { DB_REFLECT_STEPS = 1024 };
+
+/* Law of one class: how its values are distributed in dB, and over the ground. Prepared once.
  *
  * Each texture is a shape in dB, shifted and scaled so that its mean is gamma_db and its standard
- * deviation spread_db, and drawn again while it falls outside the limits. Limits nearer than about
- * two spreads narrow the distribution and may move its mean. The shapes:
+ * deviation spread_db, and cut at the limits. Limits nearer than about two spreads narrow the
+ * distribution and may move its mean. The shapes:
  * - gaussian: normal in dB, log-normal in power,
  * - rayleigh: power of two Gaussian components, whose amplitude is Rayleigh: many scatterers in a
  *   cell. Its deviation before scaling is 5.57 dB,
  * - k: power Gamma distributed with order texture_shape. With the display's single-look speckle its
  *   amplitude is K distributed: a compound of few scatterers. Its deviation before scaling is
- *   4.34 sqrt(trigamma(order)) dB. */
+ *   4.34 sqrt(trigamma(order)) dB.
+ *
+ * Values next to each other are alike, as they are in real pictures. A normal variable of variance
+ * 1 stands for the rank of a value in its distribution. It is the sum of three patterns, each of
+ * the place alone (reflectivity/place.h):
+ * - object: what differs between fields, buildings or districts. Parcels for ground and structures,
+ *   smooth for trees and water,
+ * - tens of metres: smooth,
+ * - cell: smooth over a few metres, 1 dB or less.
+ *
+ * Structures are a mixture: on 4 % of their ground lie bright spots, exponential in dB up to five
+ * spreads above the rest, which they may lift above the limits. Mean and deviation in dB are those
+ * of the table with them. */
 struct db_reflect_law {
-    const struct db_class *c;     /* borrowed */
-    double shape_mean, shape_dev; /* of the unscaled texture, dB */
-    double mean_db;               /* of the power of many pixels */
+    const struct db_class *c; /* borrowed */
+    uint64_t seed;            /* of the class: hash of its name */
+    double weight[3];         /* of the patterns; their squares sum to 1 */
+    double spot_share, spot_db, spot_shift_db;
+    double mean_db;                       /* of the power of all ground of the class */
+    float value_db[DB_REFLECT_STEPS + 1]; /* over the rank, -DB_REFLECT_RANK_MAX to .. MAX */
 };
+
+#define DB_REFLECT_RANK_MAX 4.5
 
 void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c);
 
-/* The value of the pixel at column x, row y: the same for the same seed and place in whatever order
- * pixels come. */
-double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, int x, int y);
+/* The value at a place: the same for the same seed and place. */
+double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p);
 
-/* The value of a cell as wide and high as 2^halvings pixels, about as the mean power of so many has
- * it: with the mean of their powers, and a 2^halvings-th of their spread. */
-double db_reflect_assign_coarse(const struct db_reflect_law *law, uint64_t seed, int x, int y,
-                                int halvings);
+/* The value of a cell of `width_m` a side around a place, as the mean power of its ground has it:
+ * up to 5 m the value at its middle; beyond, the mean power at up to 4 x 4 places of it. */
+double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, double latitude,
+                              double longitude, double width_m);
 
 /* Brightness of the pixels of each class, gathered in a first pass over the image. */
 struct db_brightness {

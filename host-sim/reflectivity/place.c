@@ -1,0 +1,114 @@
+#include "reflectivity/place.h"
+
+#include <math.h>
+
+/* WGS-84 (EQUATIONS.md, [NIMA]). */
+static const double semi_major_m = 6378137.0, eccentricity2 = 0.00669437999014;
+
+struct reflect_place reflect_place_at(double latitude, double longitude)
+{
+    const double s = sin(latitude), c = cos(latitude);
+    const double normal = semi_major_m / sqrt(1 - eccentricity2 * s * s);
+    return (struct reflect_place){normal * c * cos(longitude), normal * c * sin(longitude),
+                                  normal * (1 - eccentricity2) * s};
+}
+
+struct reflect_place reflect_place_beside(struct reflect_place p, double latitude, double longitude,
+                                          double east_m, double north_m)
+{
+    const double inward = -sin(latitude) * north_m;
+    return (struct reflect_place){p.x - sin(longitude) * east_m + cos(longitude) * inward,
+                                  p.y + cos(longitude) * east_m + sin(longitude) * inward,
+                                  p.z + cos(latitude) * north_m};
+}
+
+/* Corner of the lattice, and the place in its cube, 0..1. */
+struct cube {
+    int64_t x, y, z;
+    double in_x, in_y, in_z;
+};
+
+static struct cube cube_of(struct reflect_place p, double step_m)
+{
+    const double x = p.x / step_m, y = p.y / step_m, z = p.z / step_m;
+    const double fx = floor(x), fy = floor(y), fz = floor(z);
+    return (struct cube){(int64_t)fx, (int64_t)fy, (int64_t)fz, x - fx, y - fy, z - fz};
+}
+
+/* The finishing steps of splitmix64 over a sum of multiples of odd numbers. */
+static uint64_t hash(uint64_t seed, int64_t x, int64_t y, int64_t z)
+{
+    uint64_t h = seed * 0xaef17502108ef2d9u + (uint64_t)x * 0xd1342543de82ef95u +
+                 (uint64_t)y * 0x9e3779b97f4a7c15u + (uint64_t)z * 0xc2b2ae3d27d4eb4fu;
+    h = (h ^ h >> 30) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ h >> 27) * 0x94d049bb133111ebu;
+    return h ^ h >> 31;
+}
+
+/* Nearly normal, mean 0 and variance 1: how many of 64 bits are set, which is binomial, and a step
+ * of the width of one. */
+static double normal_of(uint64_t bits)
+{
+    const double step = (double)(bits * 0xd6e8feb86659fd93u >> 32) * (1.0 / 4294967296.0);
+    return (__builtin_popcountll(bits) + step - 32.5) * 0.24935;
+}
+
+static double smooth_step(double t)
+{
+    return t * t * (3 - 2 * t);
+}
+
+double reflect_pattern_smooth(uint64_t seed, struct reflect_place p, double step_m)
+{
+    const struct cube c = cube_of(p, step_m);
+    const double u = smooth_step(c.in_x), v = smooth_step(c.in_y), w = smooth_step(c.in_z);
+    double sum = 0, square = 0;
+    for (int i = 0; i < 8; i++) {
+        const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+        const double weight = (x ? u : 1 - u) * (y ? v : 1 - v) * (z ? w : 1 - w);
+        sum += weight * normal_of(hash(seed, c.x + x, c.y + y, c.z + z));
+        square += weight * weight;
+    }
+    return sum / sqrt(square);
+}
+
+/* A point within a quarter of a step of each corner; the nearest of the eight around counts. One
+ * farther off may be nearer still: then the parcel ends at the face of the cube, as good a border
+ * as any. */
+double reflect_pattern_parcels(uint64_t seed, struct reflect_place p, double step_m)
+{
+    const struct cube c = cube_of(p, step_m);
+    double nearest = HUGE_VAL;
+    uint64_t parcel = 0;
+    for (int i = 0; i < 8; i++) {
+        const int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+        const uint64_t h = hash(seed, c.x + x, c.y + y, c.z + z);
+        const double quarter = 1.0 / (1 << 21) / 2;
+        const double dx = x + (double)(h & 0xfffff) * quarter - 0.25 - c.in_x;
+        const double dy = y + (double)(h >> 20 & 0xfffff) * quarter - 0.25 - c.in_y;
+        const double dz = z + (double)(h >> 40 & 0xfffff) * quarter - 0.25 - c.in_z;
+        const double distance = dx * dx + dy * dy + dz * dz;
+        parcel = distance < nearest ? h : parcel;
+        nearest = distance < nearest ? distance : nearest;
+    }
+    return normal_of(hash(parcel, 1, 2, 3));
+}
+
+double reflect_pattern_spots(uint64_t seed, struct reflect_place p, double share)
+{
+    /* A ball that lies inside its cube and is met by the ground in a disc. It has
+     * 4/3 pi 0.3^3 = 0.1131 of the cube. */
+    const double step_m = 8, radius = 0.3, whole = 0.113097;
+    const struct cube c = cube_of(p, step_m);
+    const uint64_t h = hash(seed, c.x, c.y, c.z);
+    const double part = (1 - 2 * radius) / 65535;
+    const double dx = radius + part * (double)(h & 0xffff) - c.in_x;
+    const double dy = radius + part * (double)(h >> 16 & 0xffff) - c.in_y;
+    const double dz = radius + part * (double)(h >> 32 & 0xffff) - c.in_z;
+    if (dx * dx + dy * dy + dz * dz > radius * radius) {
+        return -1;
+    }
+    const uint64_t drawn = hash(h, 4, 5, 6);
+    const double unit = 1.0 / 4294967296.0;
+    return (double)(drawn >> 32) * unit < share / whole ? (double)(drawn & 0xffffffff) * unit : -1;
+}
