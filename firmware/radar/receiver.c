@@ -28,21 +28,40 @@ static int32_t log2_grazing_q16(uint32_t slant_m_q8, int32_t height_m_q10)
     return fx_log2_q16((uint32_t)grazing_q24) - (24 << 16);
 }
 
-/* Compute noise, roll-off and rain volume of each bin, with r its slant range and R the end of the
- * scale:
+/* Noise of a pulse and field where r^3 / g(r), r in m * 256, is 1: the anchor's, less r^3 / g and
+ * twice the pulse's length. A simple pulse that is longer by a factor illuminates as much more
+ * ground, and its receiver is as much narrower. */
+static int32_t noise_at_one_db_q8(const struct lm_receiver_table *receiver,
+                                  const struct lm_range_row *range, enum lm_fov fov)
+{
+    const uint32_t anchor_m_q8 = lm_m_q8_of_m(receiver->noise_range_m);
+    const int32_t grazing_q16 =
+        log2_grazing_q16(anchor_m_q8, lm_m_q10_of_m_q6(lm_m_q6_of_m(receiver->noise_height_m)));
+    const int32_t longer_q16 = fx_log2_q16(fx_max_u32(range->pulse_ns[fov], 1)) -
+                               fx_log2_q16(fx_max_u32(receiver->noise_pulse_ns, 1));
+    return receiver->noise_db_q8 - range->code_gain_db_q8[fov] -
+           fx_db_q8_of_log2_q16(3 * fx_log2_q16(anchor_m_q8) - grazing_q16 + 2 * longer_q16);
+}
+
+/* Loss of clear air to a slant range and back. Ranges are below 2^27, the loss is below 2^16. */
+static int32_t air_loss_db_q8(const struct lm_receiver_table *receiver, uint32_t slant_m_q8)
+{
+    return (int32_t)(((uint64_t)slant_m_q8 * receiver->air_loss_db_per_km_q16 / 1000) >> 16);
+}
+
+/* Compute noise, fall and rain volume of each bin, with r its slant range:
  *
- *     noise    noise_end + 30 log10(r / R) - 10 log10(g(r) / g(R))
- *     roll-off max(0, 30 log10(r / r_s)), r_s the end of the STC
+ *     noise    anchor + 30 log10(r / R) - 10 log10(g(r) / g(R)) - 20 log10(tau / tau_a) + air(r)
+ *     fall     max(0, 30 log10(r / r_s)) + air(r), r_s the end of the STC
  *     volume   10 log10(r b / g(r))
  *
- * Logarithms are below 32 in Q16, 2^21, and three times that. */
+ * The air weakens what returns and not the noise. That is a stronger noise and a fall of both: it
+ * costs nothing in a line. Logarithms are below 32 in Q16, 2^21, and three times that. */
 static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_t height_m_q10,
-                     uint8_t range)
+                     const struct lm_range_row *range, enum lm_fov fov)
 {
-    const uint32_t end_m_q8 = lm_m_q8_of_m(radar->range[range].range_m);
-    const int32_t end_log2_q16 =
-        3 * fx_log2_q16(end_m_q8) - log2_grazing_q16(end_m_q8, height_m_q10);
-    const int32_t break_q16 = fx_log2_q16(radar->range[range].stc_end_m) + (8 << 16);
+    const int32_t noise_db_q8 = noise_at_one_db_q8(&radar->receiver, range, fov);
+    const int32_t break_q16 = fx_log2_q16(range->stc_end_m) + (8 << 16);
     /* r in metres, and the beam in radians: 2 pi / 2^32 of a BAM. */
     const int32_t beam_q16 =
         fx_log2_q16(radar->antenna.elevation_beam) + FX_LOG2_TWO_PI_Q16 - ((32 + 8) << 16);
@@ -50,9 +69,11 @@ static void set_bins(struct lm_receiver *r, const struct lm_radar *radar, int32_
         const uint32_t slant_m_q8 = r->first_m_q8 + i * r->cell_m_q8;
         const int32_t range_q16 = fx_log2_q16(slant_m_q8);
         const int32_t grazing_q16 = log2_grazing_q16(slant_m_q8, height_m_q10);
-        r->noise_db_q8[i] = radar->range[range].noise_end_db_q8 +
-                            fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16 - end_log2_q16);
-        r->stc_rolloff_db_q8[i] = fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0);
+        const int32_t air_db_q8 = air_loss_db_q8(&radar->receiver, slant_m_q8);
+        r->noise_db_q8[i] =
+            noise_db_q8 + fx_db_q8_of_log2_q16(3 * range_q16 - grazing_q16) + air_db_q8;
+        r->fall_db_q8[i] =
+            fx_max_i32(fx_db_q8_of_log2_q16(3 * (range_q16 - break_q16)), 0) + air_db_q8;
         r->volume_db_q8[i] = fx_db_q8_of_log2_q16(range_q16 + beam_q16 - grazing_q16);
     }
 }
@@ -79,15 +100,16 @@ static void set_pulse(struct lm_receiver *r, uint64_t length_q16)
 
 void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
                      const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
-                     uint32_t pulse_ns)
+                     enum lm_fov fov)
 {
+    const struct lm_range_row *range = &radar->range[range_index];
     r->first_m_q8 = slant->first_m_q8;
     r->cell_m_q8 = slant->cell_m_q8;
     r->cells = slant->cells;
     r->looks_log2 = fx_min_u32(radar->receiver.noise_looks_log2, LM_NOISE_LOOKS_LOG2_MAX);
-    set_bins(r, radar, height_m_q10, range_index);
+    set_bins(r, radar, height_m_q10, range, fov);
     /* 2^32 times 2^21.3; over metres in Q8 it is bins in Q16. */
-    const uint64_t pulse_m_q24 = (uint64_t)pulse_ns * LM_HALF_LIGHT_M_PER_NS_Q24;
+    const uint64_t pulse_m_q24 = (uint64_t)range->pulse_ns[fov] * LM_HALF_LIGHT_M_PER_NS_Q24;
     set_pulse(r, pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1));
 }
 
@@ -149,7 +171,7 @@ void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weath
         smear(r, power_q24);
     }
     const struct lm_k_receiver k = {.noise_db_q8 = r->noise_db_q8,
-                                    .fall_db_q8 = r->stc_rolloff_db_q8,
+                                    .fall_db_q8 = r->fall_db_q8,
                                     .rise_db_q8 = weather ? weather->noise_rise_db_q8 : 0,
                                     .row_db_q8 = lm_noise_db_q8[r->looks_log2],
                                     .entry = noise.entry};

@@ -175,7 +175,7 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
                       reference_m_q10);
     lm_slant_set(&s->slant, s->edge_m_q8 + bin_m_q8 / 2, bin_m_q8, bins, &s->grid, first_m_q8);
     lm_receiver_set(&s->receiver, s->radar, &s->slant, above_m_q10, s->command.range_index,
-                    s->radar->range[s->command.range_index].pulse_ns[s->command.fov]);
+                    (enum lm_fov)s->command.fov);
     set_foreground(s, tiles->db);
     lm_beam_clear(&s->beam);
 }

@@ -4,6 +4,11 @@
 
 /* Decibels as the table's 1/256. */
 
+#define CODE_GAINS(norm, exp, dbs1, dbs2)                                                          \
+    {                                                                                              \
+        LM_DB_Q8(norm), LM_DB_Q8(exp), LM_DB_Q8(dbs1), LM_DB_Q8(dbs2)                              \
+    }
+
 const struct lm_radar lm_radar_default = {
     /* Keys in brackets are those of docs/EQUATIONS.md, Sources; what has no public source is called
      * UNSOURCED.
@@ -13,14 +18,16 @@ const struct lm_radar lm_radar_default = {
      * [FlightGear] agree on scales and sectors; the rate is [FreeFalcon]'s, a base of 60 degrees a
      * second and twice that in GM. */
     .ranges = 4,
-    /* Metres, nautical miles, noise at the end, end of sensitivity time control in metres, pulses
-     * in NORM, EXP, DBS1 and DBS2 in nanoseconds. UNSOURCED: noise a little below the grass at the
-     * end of each scale, time control that ends at three quarters of it, pulses that resolve 15 m
-     * to 960 m. */
-    .range = {{18520, 10, LM_DB_Q8(-40), 13890, {400, 100, 100, 100}},
-              {37040, 20, LM_DB_Q8(-38), 27780, {1000, 400, 100, 100}},
-              {74080, 40, LM_DB_Q8(-36), 55560, {3200, 1000, 400, 100}},
-              {148160, 80, LM_DB_Q8(-34), 111120, {6400, 3200, 400, 100}}},
+    /* Metres, nautical miles, end of sensitivity time control in metres; pulses in NORM, EXP, DBS1
+     * and DBS2 in nanoseconds, and their code gains. UNSOURCED: time control that ends at three
+     * quarters of a scale, and pulses that resolve 15 m to 960 m. So are the gains: pulses of NORM
+     * are simple, and the shorter ones of a scale are coded and sent with the same energy. DBS adds
+     * up coherently what a thousand pulses a second return from its dwell: 12 dB more than its
+     * narrower cells lose. */
+    .range = {{18520, 10, 13890, {400, 100, 100, 100}, CODE_GAINS(0, 6, 18, 18)},
+              {37040, 20, 27780, {1000, 400, 100, 100}, CODE_GAINS(0, 4, 22, 22)},
+              {74080, 40, 55560, {3200, 1000, 400, 100}, CODE_GAINS(0, 5, 21, 27)},
+              {148160, 80, 111120, {6400, 3200, 400, 100}, CODE_GAINS(0, 3, 24, 30)}},
     .range_start_nm = 40,
     .azimuth_half = {FX_BAM_DEG(60), FX_BAM_DEG(30), FX_BAM_DEG(10)},
     /* X band, as [Heaton] and [Niu]; neither gives the frequency. 9.6 GHz: UNSOURCED. */
@@ -40,7 +47,14 @@ const struct lm_radar lm_radar_default = {
                 .bar_spacing = FX_BAM_DEG(22) / 10,
                 .azimuth_limit = FX_BAM_DEG(60),
                 .tilt_max = FX_BAM_DEG(30)},
-    .receiver = {.noise_looks_log2 = 4},
+    /* UNSOURCED: the anchor, a little below water at the end of the shortest scale with its pulse
+     * in NORM; 3.6 dB of clear air, there and back, at 80 nautical miles. */
+    .receiver = {.noise_looks_log2 = 4,
+                 .noise_db_q8 = LM_DB_Q8(-40),
+                 .noise_range_m = 18520,
+                 .noise_height_m = 3000,
+                 .noise_pulse_ns = 400,
+                 .air_loss_db_per_km_q16 = 1592},
     /* Rates: [FreeFalcon], as above: base 60 degrees a second, twice that in GM; bars: one in
      * GM and four in GMT [FlightGear]. Gates: [FreeFalcon]'s 3 to 100, here knots. No 80 nm scale
      * in GMT and SEA. UNSOURCED: looks (many pulses within a beam width average in real beam), 35

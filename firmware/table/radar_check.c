@@ -22,17 +22,21 @@
 #define BETWEEN(low, high)        .min = (low), .max = (high)
 #define SIGNED_BETWEEN(low, high) .is_signed = true, .min = (low), .max = (high)
 
+#define CODE_GAIN BETWEEN(0, LM_DB_Q8(40))
+
 static const struct lm_radar_field fields[] = {
     {"ranges", ONE(ranges), BETWEEN(1, LM_RANGES_MAX)},
     {"range.range_m", OF_SCALES(range_m), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
     {"range.range_nm", OF_SCALES(range_nm), BETWEEN(1, 999)},
-    {"range.noise_end_db_q8", OF_SCALES(noise_end_db_q8),
-     SIGNED_BETWEEN(LM_DB_Q8(-100), LM_DB_Q8(20))},
     {"range.stc_end_m", OF_SCALES(stc_end_m), BETWEEN(100, 400000)},
     {"range.pulse_ns[NORM]", OF_SCALES(pulse_ns[LM_FOV_NORM]), BETWEEN(10, 100000)},
     {"range.pulse_ns[EXP]", OF_SCALES(pulse_ns[LM_FOV_EXP]), BETWEEN(10, 100000)},
     {"range.pulse_ns[DBS1]", OF_SCALES(pulse_ns[LM_FOV_DBS1]), BETWEEN(10, 100000)},
     {"range.pulse_ns[DBS2]", OF_SCALES(pulse_ns[LM_FOV_DBS2]), BETWEEN(10, 100000)},
+    {"range.code_gain_db_q8[NORM]", OF_SCALES(code_gain_db_q8[LM_FOV_NORM]), CODE_GAIN},
+    {"range.code_gain_db_q8[EXP]", OF_SCALES(code_gain_db_q8[LM_FOV_EXP]), CODE_GAIN},
+    {"range.code_gain_db_q8[DBS1]", OF_SCALES(code_gain_db_q8[LM_FOV_DBS1]), CODE_GAIN},
+    {"range.code_gain_db_q8[DBS2]", OF_SCALES(code_gain_db_q8[LM_FOV_DBS2]), CODE_GAIN},
     {"range_start_nm", ONE(range_start_nm), BETWEEN(1, 999)},
     {"azimuth_half", EACH(azimuth_half[0], LM_AZIMUTHS), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"wavelength_um", ONE(wavelength_um), BETWEEN(LM_WAVELENGTH_MIN_UM, LM_WAVELENGTH_MAX_UM)},
@@ -47,6 +51,12 @@ static const struct lm_radar_field fields[] = {
     {"antenna.azimuth_limit", ONE(antenna.azimuth_limit), BETWEEN(1 << 20, LM_RADAR_AZIMUTH_MAX)},
     {"antenna.tilt_max", ONE(antenna.tilt_max), BETWEEN(0, FX_BAM_DEG(60))},
     {"receiver.noise_looks_log2", ONE(receiver.noise_looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
+    {"receiver.noise_db_q8", ONE(receiver.noise_db_q8),
+     SIGNED_BETWEEN(LM_DB_Q8(-100), LM_DB_Q8(20))},
+    {"receiver.noise_range_m", ONE(receiver.noise_range_m), BETWEEN(1852, LM_RADAR_RANGE_MAX_M)},
+    {"receiver.noise_height_m", ONE(receiver.noise_height_m), BETWEEN(0, 30000)},
+    {"receiver.noise_pulse_ns", ONE(receiver.noise_pulse_ns), BETWEEN(10, 100000)},
+    {"receiver.air_loss_db_per_km_q16", ONE(receiver.air_loss_db_per_km_q16), BETWEEN(0, 1 << 14)},
     {"mode.bam_per_s", OF_MODES(bam_per_s), BETWEEN(LM_RADAR_RATE_MIN, LM_RADAR_RATE_MAX)},
     {"mode.range_max_nm", OF_MODES(range_max_nm), BETWEEN(1, 999)},
     {"mode.fov_last", OF_MODES(fov_last), BETWEEN(0, LM_FOVS - 1)},

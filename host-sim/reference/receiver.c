@@ -30,9 +30,11 @@ double ref_slant_grazing(double slant_m, double height_m)
 
 double ref_noise_db(const struct ref_receiver *r, double slant_m)
 {
-    return r->noise_end_db + 30 * log10(slant_m / r->end_m) -
+    const struct ref_noise_anchor *a = &r->noise;
+    return a->gamma_db + 30 * log10(slant_m / a->range_m) -
            10 * log10(ref_slant_grazing(slant_m, r->height_m) /
-                      ref_slant_grazing(r->end_m, r->height_m));
+                      ref_slant_grazing(a->range_m, a->height_m)) -
+           20 * log10(r->pulse_s / a->pulse_s) - r->code_gain_db;
 }
 
 double ref_stc_fall_db(const struct ref_receiver *r, double slant_m)
@@ -76,8 +78,9 @@ void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *we
     ref_pulse(power, r->bins.count, ref_pulse_m(r->pulse_s) / r->bins.step_m);
     for (size_t i = 0; i < r->bins.count; i++) {
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
-        const double signal = weather != NULL ? power[i] * weather->pass[i] : power[i];
-        const double rain = weather != NULL ? weather->rain[i] : 0;
+        const double air = pow(10, -r->air_loss_db_km * slant_m / 1000 / 10);
+        const double signal = air * (weather != NULL ? power[i] * weather->pass[i] : power[i]);
+        const double rain = weather != NULL ? air * weather->rain[i] : 0;
         const unsigned slice = ref_draw(LM_NOISE_RECEIVER, line, (uint32_t)i, sweep);
         const double fluctuation = pow(10, r->noise_table_db[slice] / 10);
         const double noise =

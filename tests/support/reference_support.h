@@ -39,6 +39,24 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
     return params;
 }
 
+/* The receiver of a scale and a field of view, `height_m` above flat ground. */
+static inline struct ref_receiver ref_receiver_of(const struct lm_radar *radar, uint8_t range,
+                                                  enum lm_fov fov, struct ref_bins bins,
+                                                  double height_m, const double *noise_table_db)
+{
+    const struct lm_receiver_table *t = &radar->receiver;
+    const struct lm_range_row *row = &radar->range[range];
+    return (struct ref_receiver){.bins = bins,
+                                 .height_m = height_m,
+                                 .noise = {decibels(t->noise_db_q8), t->noise_range_m,
+                                           t->noise_height_m, t->noise_pulse_ns * 1e-9},
+                                 .code_gain_db = decibels(row->code_gain_db_q8[fov]),
+                                 .air_loss_db_km = t->air_loss_db_per_km_q16 / 65536.0,
+                                 .noise_table_db = noise_table_db,
+                                 .stc_m = row->stc_end_m,
+                                 .pulse_s = row->pulse_ns[fov] * 1e-9};
+}
+
 /* The reference's bins filled with what the firmware found on the ground. */
 static inline void take_ground(const struct lm_scan_line *ground, const struct lm_classes *classes,
                                struct ref_bin *bins, uint32_t cells)

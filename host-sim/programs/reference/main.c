@@ -23,7 +23,7 @@ struct request {
     bool has_exact_weights;
     double latitude_deg, longitude_deg, antenna_m, azimuth_deg, range_m, cell_m, cells;
     double half_angle_deg, lines, size_px, scale, epoch, looks;
-    double beam_deg, tilt_deg, pulse_us, noise_db, noise_looks, stc_m;
+    double beam_deg, tilt_deg, pulse_us, noise_db, code_gain_db, air_db_km, noise_looks, stc_m;
     double sharpening, rate_deg_s, speed_m_s, track_deg;
     double rain_mm_h, rain_radius_m, rain_distance_m, rain_bearing_deg;
     double jam_db, jam_distance_m, jam_bearing_deg;
@@ -65,9 +65,13 @@ static const struct option options[] = {
      AZIMUTH_BEAM_DEG, false},
     {"tilt", "degrees of the antenna upwards; AUTO by default", AT(tilt_deg), FOR_SECTOR, -60, 60,
      NAN, false},
-    {"pulse", "microseconds of the pulse", AT(pulse_us), FOR_SECTOR, 0, 100, 1, false},
-    {"noise", "dB of gamma that the noise is worth at the far end", AT(noise_db), FOR_SECTOR, -200,
-     60, -38, false},
+    {"pulse", "microseconds of the pulse", AT(pulse_us), FOR_SECTOR, 0.01, 100, 1, false},
+    {"noise", "dB of gamma that it is worth 18,520 m away, from 3,000 m, with a pulse of 0.4 us",
+     AT(noise_db), FOR_SECTOR, -200, 60, -40, false},
+    {"code-gain", "dB of a coded pulse over a simple one", AT(code_gain_db), FOR_SECTOR, 0, 60, 0,
+     false},
+    {"air", "dB of loss in clear air for a kilometre, there and back", AT(air_db_km), FOR_SECTOR, 0,
+     1, 0.0243, false},
     {"noise-looks", "independent looks of the noise", AT(noise_looks), FOR_SECTOR, 1, 64, 16, true},
     {"stc", "metres of slant range where the time gain ends", AT(stc_m), FOR_SECTOR, 1, 1e6, 27780,
      false},
@@ -396,8 +400,9 @@ static int render_sector(const struct request *request, const struct ref_db *db)
         .dbs = {request->speed_m_s, request->beam_deg, WAVELENGTH_M, request->rate_deg_s},
         .track_deg = request->track_deg,
         .antenna = {ELEVATION_BEAM_DEG, 30, 2.2},
-        .receiver = {.end_m = request->range_m,
-                     .noise_end_db = request->noise_db,
+        .receiver = {.noise = {request->noise_db, 18520, 3000, 400e-9},
+                     .code_gain_db = request->code_gain_db,
+                     .air_loss_db_km = request->air_db_km,
                      .noise_table_db = noise_table_db,
                      .stc_m = request->stc_m,
                      .pulse_s = request->pulse_us * 1e-6}};

@@ -20,19 +20,19 @@ struct lm_receiver {
     /* Pulse: weight of each bin m to either side in a bin's power. weight_q16[0] plus twice the
      * others is 65536. weight_q16[0] is all of it if the pulse is not longer than a bin. */
     uint32_t weight_q16[LM_PULSE_REACH_MAX + 1];
-    int32_t noise_db_q8[LM_CELLS_ROOM];       /* mean noise of each bin, dB of gamma */
-    int32_t stc_rolloff_db_q8[LM_CELLS_ROOM]; /* loss behind the STC's end; 0 or more */
+    int32_t noise_db_q8[LM_CELLS_ROOM];  /* mean noise of each bin before the fall, dB of gamma */
+    int32_t fall_db_q8[LM_CELLS_ROOM];   /* loss of clear air and behind the STC's end; 0 or more */
     int32_t volume_db_q8[LM_CELLS_ROOM]; /* 10 log10(r b / g): gamma of scatterers that fill the
                                             beam with a cross section of 1 m2/m3 */
 };
 
 /* Compute the settings for the bins of `slant`, over flat ground `height_m_q10` below the antenna
- * (within 30 km). `range_index` is an index into radar->range. `pulse_ns` may be any; a pulse
- * longer than 9 bins counts as 9. Pointers are borrowed for the call. Cost: about 170 instructions
- * a bin. */
+ * (within 30 km). `range_index` is an index into radar->range; its row has the pulse of `fov`, and
+ * a pulse longer than 9 bins smears over 9. Pointers are borrowed for the call. Cost: about 180
+ * instructions a bin. */
 void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
                      const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
-                     uint32_t pulse_ns);
+                     enum lm_fov fov);
 
 /* Compute the level of each bin from its power; 1.0 in Q24 is 0 dB of gamma. `power_q24` is
  * changed. `weather` is NULL in fair weather without jammers. `line` and `sweep` choose the noise.

@@ -132,9 +132,10 @@ struct lm_fov_row {
 struct lm_range_row {
     uint32_t range_m;           /* 1,852..LM_RADAR_RANGE_MAX_M */
     uint16_t range_nm;          /* 1..999 */
-    int16_t noise_end_db_q8;    /* noise-equivalent gamma at the scale's end; -100..20 dB */
     uint32_t stc_end_m;         /* slant range where sensitivity time control ends; 100..400,000 */
-    uint32_t pulse_ns[LM_FOVS]; /* by field of view; 10..100,000 */
+    uint32_t pulse_ns[LM_FOVS]; /* by field of view, compressed; 10..100,000 */
+    uint16_t code_gain_db_q8[LM_FOVS]; /* of a coded pulse, and of what a sharpened field adds up,
+                                        * over one simple pulse as long as pulse_ns; 0..40 dB */
 };
 
 /* The antenna and its gimbals. */
@@ -147,9 +148,16 @@ struct lm_antenna_table {
     fx_bam_t tilt_max;       /* manual, up or down; 0..60 degrees */
 };
 
-/* The receiver. */
+/* The receiver. Its noise at any range, height and pulse follows from one anchor: the gamma of flat
+ * ground whose echo is as strong as the noise, seen from a height, at a slant range, with a simple
+ * pulse (docs/EQUATIONS.md, "Noise"). */
 struct lm_receiver_table {
-    uint8_t noise_looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
+    uint8_t noise_looks_log2;        /* 0..LM_LOOKS_LOG2_MAX */
+    int16_t noise_db_q8;             /* dB of gamma; -100..20 dB */
+    uint32_t noise_range_m;          /* 1,852..LM_RADAR_RANGE_MAX_M */
+    uint16_t noise_height_m;         /* above the ground; 0..30,000 */
+    uint32_t noise_pulse_ns;         /* 10..100,000 */
+    uint16_t air_loss_db_per_km_q16; /* of clear air, there and back; 0..1/4 dB */
 };
 
 /* SAR patches. */

@@ -221,11 +221,18 @@ struct ref_bins {
     size_t count;           /* up to REF_CELLS_MAX */
 };
 
+/* Noise that is as strong as the echo of flat ground of `gamma_db`, seen `height_m` above it at a
+ * slant range with a simple pulse. */
+struct ref_noise_anchor {
+    double gamma_db, range_m, height_m, pulse_s;
+};
+
 struct ref_receiver {
     struct ref_bins bins;
-    double height_m;              /* h = H - z0 */
-    double end_m;                 /* R, the far end of the display's range */
-    double noise_end_db;          /* there */
+    double height_m; /* h = H - z0 */
+    struct ref_noise_anchor noise;
+    double code_gain_db;          /* C */
+    double air_loss_db_km;        /* there and back */
     const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
     double stc_m;                 /* r_s */
     double pulse_s;

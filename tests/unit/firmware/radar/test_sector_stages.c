@@ -214,14 +214,8 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
 static struct ref_receiver receiver_of(const struct trial *t)
 {
     const struct lm_sector *s = &t->w->sector;
-    const uint8_t range = s->command.range_index;
-    return (struct ref_receiver){.bins = bins_of(s),
-                                 .height_m = height_m(s),
-                                 .end_m = s->radar->range[range].range_m,
-                                 .noise_end_db = decibels(s->radar->range[range].noise_end_db_q8),
-                                 .noise_table_db = t->noise_db,
-                                 .stc_m = s->radar->range[range].stc_end_m,
-                                 .pulse_s = s->radar->range[range].pulse_ns[s->command.fov] * 1e-9};
+    return ref_receiver_of(s->radar, s->command.range_index, (enum lm_fov)s->command.fov,
+                           bins_of(s), height_m(s), t->noise_db);
 }
 
 /* The environment as the line at an azimuth from north meets it. */

@@ -41,7 +41,7 @@ static struct world *make_world(void)
     lm_range_grid_set(grid, &w->radar.illumination, cell_q8 / 2, cell_q8, CELLS, HEIGHT_M * 1024,
                       0);
     lm_slant_set(&w->slant, cell_q8 / 2, cell_q8, CELLS, grid, cell_q8 / 2);
-    lm_receiver_set(&w->receiver, &w->radar, &w->slant, HEIGHT_M * 1024, scale_of(40), 1000);
+    lm_receiver_set(&w->receiver, &w->radar, &w->slant, HEIGHT_M * 1024, scale_of(40), LM_FOV_EXP);
     free(grid);
     w->bins = (struct ref_bins){cell_q8 / 512.0, cell_q8 / 256.0, CELLS};
     w->antenna = (struct lm_position){FX_BAM_DEG(46), FX_BAM_DEG(11)};

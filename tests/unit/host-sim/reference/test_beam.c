@@ -157,8 +157,7 @@ TEST(a_line_over_flat_ground_has_its_hole_and_its_level)
                                    .cell_m = ds,
                                    .receiver = {.bins = {ds / 2, ds, CELLS},
                                                 .height_m = height_m,
-                                                .end_m = 18520,
-                                                .noise_end_db = -60,
+                                                .noise = {-60, 18520, height_m, 400e-9},
                                                 .noise_table_db = steady,
                                                 .stc_m = 13890,
                                                 .pulse_s = 400e-9}};

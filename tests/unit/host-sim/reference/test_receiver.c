@@ -11,8 +11,7 @@ static struct ref_receiver receiver_at(double height_m)
 {
     return (struct ref_receiver){.bins = {36, 72, 256},
                                  .height_m = height_m,
-                                 .end_m = 18520,
-                                 .noise_end_db = -40,
+                                 .noise = {-40, 18520, height_m, 400e-9},
                                  .stc_m = 13890,
                                  .pulse_s = 400e-9};
 }

@@ -71,8 +71,7 @@ static struct ref_sector sector_of(const struct world *w, double half_deg)
         .dbs = {250, 3.3, 0.0313, 15},
         .antenna = {4.6, 60, 2.2},
         .tilt_deg = ref_auto_tilt_deg(height_m, 18520),
-        .receiver = {.end_m = 18520,
-                     .noise_end_db = -50,
+        .receiver = {.noise = {-50, 18520, height_m, 400e-9},
                      .noise_table_db = w->noise_table_db,
                      .stc_m = 20000,
                      .pulse_s = 400e-9}};
