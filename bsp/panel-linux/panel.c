@@ -78,6 +78,10 @@ static void start_with_flash(struct panel *p, const struct lm_flash *flash)
                p->config->database);
         p->board.flash = &drv_no_flash;
         (void)lm_unit_init(p->unit, &p->board);
+    } else if (p->unit->map.open_status == LM_ERR_VERSION) {
+        report(REPORT_ERROR,
+               "%s: an image of another version; `landmass-db convert` renews old ones",
+               p->config->database);
     } else if (!p->unit->map.is_usable && flash != &drv_no_flash) {
         report(REPORT_ERROR, "%s: not a database for this firmware; landmass-db verify tells why",
                p->config->database);

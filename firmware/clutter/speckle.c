@@ -51,15 +51,19 @@ static void summarize(struct lm_texture *t)
 }
 
 void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
-                    const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_db_q8)
+                    const struct lm_classes *classes, uint8_t lod, uint8_t sea_state,
+                    uint16_t loss_db_q8)
 {
     const int32_t above = fx_min_i32(sea_state, LM_SEA_STATE_MAX) - LM_SEA_STATE_OF_IMAGE;
     const int32_t off_db_q8 = fx_min_i32(loss_db_q8, LM_TEXTURE_LOSS_MAX_DB_Q8);
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         const uint8_t kind = classes->entry[i].kind & (LM_KINDS - 1);
         const int32_t shape = fx_min_i32(config->shape_log2[kind], LM_TEXTURE_NONE);
+        const int32_t sea_db_q8 = kind == LM_KIND_WATER ? above * SEA_STATE_STEP_DB_Q8 : 0;
         const int32_t gain_db_q8 =
-            (kind == LM_KIND_WATER ? above * SEA_STATE_STEP_DB_Q8 : 0) - off_db_q8;
+            fx_clamp_i32(sea_db_q8 + classes->entry[i].lod_gain_db_q8[lod & (LM_DB_LODS_MAX - 1)],
+                         -LM_CLASS_GAIN_MAX_DB_Q8, LM_CLASS_GAIN_MAX_DB_Q8) -
+            off_db_q8;
         t->of_class[i] = gain_db_q8 * (1 << LM_TEXTURE_SHAPE_BITS) + shape;
     }
     summarize(t);

@@ -106,7 +106,7 @@ static bool band_is_sound(const struct lm_db *db, const struct lm_band *b)
 static bool classes_are_sound(const struct lm_classes *c)
 {
     for (int i = 0; i < LM_DB_CLASSES; i++) {
-        if (c->entry[i].kind > LM_KIND_TREES) {
+        if (c->entry[i].kind > LM_KIND_TREES || c->entry[i].facing > LM_FACINGS) {
             return false;
         }
     }
@@ -184,20 +184,41 @@ static int read_signatures_head(struct lm_db *db, const struct lm_image_header *
     return LM_OK;
 }
 
+/* Size of a section that the directory counts in units, or UINT32_MAX if it cannot be one. */
+static uint32_t size_in_units(const struct lm_image_header *h, const struct lm_image_section *s)
+{
+    const uint64_t units = s->bytes / LM_DB_PLACE_BYTES;
+    const bool is_sound =
+        is_inside(h, s) && s->bytes % LM_DB_PLACE_BYTES == 0 && units < UINT32_MAX;
+    return is_sound ? (uint32_t)units : UINT32_MAX;
+}
+
+/* The sections that the directory leads to: tiles, and vector detail, which is optional. */
+static int find_tiles(struct lm_db *db, const struct lm_image_header *h)
+{
+    const struct lm_image_section *tiles = section_of_type(h, LM_IMAGE_TILES);
+    const struct lm_image_section *detail = section_of_type(h, LM_IMAGE_DETAIL);
+    if (tiles == NULL) {
+        return LM_ERR_CORRUPT;
+    }
+    db->records_offset = tiles->offset;
+    db->tiles_size = size_in_units(h, tiles);
+    db->detail_offset = detail ? detail->offset : 0;
+    db->detail_size = detail ? size_in_units(h, detail) : 0;
+    return db->tiles_size != UINT32_MAX && db->detail_size != UINT32_MAX ? LM_OK : LM_ERR_CORRUPT;
+}
+
 static int read_tables(struct lm_db *db, const struct lm_image_header *h, uint32_t poll_limit)
 {
     const uint64_t band_bytes = (uint64_t)db->band_count * sizeof(struct lm_band);
     const struct lm_image_section *classes = find_section(h, LM_IMAGE_CLASSES, sizeof db->classes);
     const struct lm_image_section *bands = find_section(h, LM_IMAGE_BANDS, band_bytes);
     const struct lm_image_section *directory =
-        find_section(h, LM_IMAGE_DIRECTORY, (uint64_t)db->entry_count * 8);
-    const struct lm_image_section *tiles =
-        find_section(h, LM_IMAGE_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
-    if (!classes || !bands || !directory || !tiles) {
+        find_section(h, LM_IMAGE_DIRECTORY, db->entry_count * sizeof(struct lm_tile_entry));
+    if (!classes || !bands || !directory) {
         return LM_ERR_CORRUPT;
     }
     db->directory_offset = directory->offset;
-    db->records_offset = tiles->offset;
     int status = read_section(db, classes, &db->classes, poll_limit);
     if (status == LM_OK) {
         status = read_section(db, bands, db->bands, poll_limit);
@@ -223,10 +244,16 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     if (status != LM_OK) {
         return status;
     }
-    if (memcmp(h.magic, "LANDMASS", 8) != 0 || fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
+    if (memcmp(h.magic, "LANDMASS", 8) != 0) {
         return LM_ERR_CORRUPT;
     }
     if (h.version != LM_DB_VERSION) {
+        return LM_ERR_VERSION; /* its checksum may lie elsewhere */
+    }
+    if (fx_crc32c(0, &h, sizeof h - sizeof h.crc) != h.crc) {
+        return LM_ERR_CORRUPT;
+    }
+    if (h.top != LM_IMAGE_TOP_RESIDENT) {
         return LM_ERR_VERSION;
     }
     if (!header_is_sound(&h, flash->size_bytes)) {
@@ -245,6 +272,9 @@ int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_lim
     memcpy(db->title, h.title, sizeof h.title);
     db->title[sizeof h.title] = 0;
     int tables = read_tables(db, &h, poll_limit);
+    if (tables == LM_OK) {
+        tables = find_tiles(db, &h);
+    }
     if (tables == LM_OK) {
         tables = read_targets_head(db, &h, poll_limit);
     }
@@ -267,18 +297,35 @@ int64_t lm_db_entry(const struct lm_db *db, uint8_t lod, uint32_t row, uint32_t 
     return -1;
 }
 
-int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t bytes[8],
-                      uint32_t *record)
+/* True if `size` units from `place` on lie in a section of that many units. No sum overflows. */
+static bool lies_in(uint32_t place, uint32_t size, uint32_t section_size)
 {
-    uint32_t stored[2];
-    memcpy(stored, bytes, sizeof stored);
-    const uint32_t covered[2] = {entry, stored[0]};
-    if (fx_crc32c(0, covered, sizeof covered) != stored[1] ||
-        (stored[0] != UINT32_MAX && stored[0] >= db->record_count)) {
+    return size <= section_size && place <= section_size - size;
+}
+
+static bool detail_is_sound(const struct lm_db *db, const struct lm_tile_entry *e)
+{
+    return e->detail_place == LM_TILE_ABSENT
+               ? e->detail_size == 0
+               : e->detail_size > 0 && lies_in(e->detail_place, e->detail_size, db->detail_size);
+}
+
+int lm_db_entry_check(const struct lm_db *db, uint32_t number, const struct lm_tile_entry *entry)
+{
+    const uint32_t crc = fx_crc32c(0, &number, sizeof number);
+    if (fx_crc32c(crc, entry, offsetof(struct lm_tile_entry, crc)) != entry->crc) {
         return LM_ERR_CORRUPT;
     }
-    *record = stored[0];
-    return LM_OK;
+    if (entry->place == LM_TILE_ABSENT) {
+        return LM_OK;
+    }
+    if (entry->encoding != LM_TILE_RAW) {
+        return LM_ERR_VERSION;
+    }
+    const bool is_sound = entry->size == LM_TILE_BYTES / LM_DB_PLACE_BYTES &&
+                          lies_in(entry->place, entry->size, db->tiles_size) &&
+                          detail_is_sound(db, entry);
+    return is_sound ? LM_OK : LM_ERR_CORRUPT;
 }
 
 int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_t column)
@@ -286,7 +333,7 @@ int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_
     const uint8_t *bytes = (const uint8_t *)tile;
     const bool is_sound = tile->lod == lod && tile->row == row && tile->column == column &&
                           tile->post_shift <= LM_TILE_POST_SHIFT_MAX &&
-                          is_height(tile->base_m_q6) &&
+                          is_height(tile->base_m_q6) && (tile->under & 15) == 0 &&
                           fx_crc32c(0, bytes + 4, LM_TILE_BYTES - 4) == tile->crc;
     return is_sound ? LM_OK : LM_ERR_CORRUPT;
 }

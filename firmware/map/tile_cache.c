@@ -132,24 +132,24 @@ static void start_next(struct lm_tile_cache *c)
     c->reading_slot = slot;
     c->reading_entry = key.entry;
     c->is_reading_entry = true;
-    start_read(c, c->db->directory_offset + 8u * (uint64_t)key.entry, c->entry_bytes, 8);
+    start_read(c, lm_db_entry_offset(c->db, key.entry), &c->entry, sizeof c->entry);
 }
 
 /* The directory entry was read: begin to read the record that it names. */
 static void take_entry(struct lm_tile_cache *c)
 {
-    uint32_t record = 0;
-    const uint8_t *bytes = (const uint8_t *)c->entry_bytes;
-    if (lm_db_entry_check(c->db, c->reading_entry, bytes, &record) != LM_OK) {
+    const struct lm_tile_entry *entry = &c->entry;
+    const int status = lm_db_entry_check(c->db, c->reading_entry, entry);
+    if (status != LM_OK) {
+        c->count.encodings += status == LM_ERR_VERSION;
         fail(c, &c->count.corrupt);
-    } else if (record == UINT32_MAX) {
+    } else if (entry->place == LM_TILE_ABSENT) {
         const struct lm_tile_slot absent = c->slots[c->reading_slot];
         finish(c, LM_SLOT_ABSENT);
         lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* requests its parent */
     } else {
         c->is_reading_entry = false;
-        start_read(c, c->db->records_offset + (uint64_t)record * LM_TILE_BYTES,
-                   &c->pool[c->reading_slot], LM_TILE_BYTES);
+        start_read(c, lm_db_tile_offset(c->db, entry), &c->pool[c->reading_slot], LM_TILE_BYTES);
     }
 }
 

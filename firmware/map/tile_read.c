@@ -4,7 +4,8 @@
 
 struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint32_t east)
 {
-    return lm_k_tile_sample(tile->points[0], 0, lm_tile_base_of(tile, tile).scale, north, east);
+    return lm_k_tile_sample(lm_tile_origin(tile), 0, lm_tile_base_of(tile, tile).scale, north,
+                            east);
 }
 
 void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coords, uint32_t first,
@@ -17,5 +18,5 @@ void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coord
         cell_behind[lane] = 0; /* the last group reads these too: any tile of the pool will do */
         elevation_behind[lane] = 0;
     }
-    lm_k_tile_read(pool->points[0], coords, first, groups, line->cell, line->elevation_m_q14);
+    lm_k_tile_read(lm_tile_origin(pool), coords, first, groups, line->cell, line->elevation_m_q14);
 }

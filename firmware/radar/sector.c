@@ -234,7 +234,8 @@ void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setti
 static void set_texture(struct lm_sector *s, const struct lm_classes *classes)
 {
     const uint8_t sea_state = s->environment ? s->environment->sea_state : LM_SEA_STATE_OF_IMAGE;
-    lm_texture_set(&s->texture, &s->radar->texture, classes, sea_state, mode_of(s)->clutter_db_q8);
+    lm_texture_set(&s->texture, &s->radar->texture, classes, s->lod, sea_state,
+                   mode_of(s)->clutter_db_q8);
 }
 
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,

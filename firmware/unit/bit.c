@@ -83,7 +83,9 @@ static void add_database(const struct lm_unit *u, uint32_t row, struct lm_text *
         lm_text_number(t, LM_DB_VERSION, 1);
     } else if (row == 1) {
         lm_text_add(t, "DB ");
-        lm_text_add(t, u->map.is_usable ? u->map.db.title : "FAIL");
+        lm_text_add(t, u->map.is_usable                       ? u->map.db.title
+                       : u->map.open_status == LM_ERR_VERSION ? "OTHER VERSION"
+                                                              : "FAIL");
     } else {
         add_pair(t, "LEVELS", u->map.is_usable ? u->map.db.lod_count : 0, "RECORDS",
                  u->map.is_usable ? u->map.db.record_count : 0);

@@ -39,7 +39,8 @@ static void read_signatures(struct lm_unit_map *m, uint32_t poll_limit)
 int lm_unit_map_open(struct lm_unit_map *m, const struct lm_unit_map_lent *lent)
 {
     memset(m, 0, sizeof *m);
-    m->is_usable = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit) == LM_OK;
+    m->open_status = lm_db_open(&m->db, lent->flash, lent->flash_poll_limit);
+    m->is_usable = m->open_status == LM_OK;
     if (!m->is_usable) {
         return LM_OK;
     }

@@ -15,7 +15,7 @@ void build_manifest_head(FILE *out, const struct build_manifest *m)
 {
     static const char *const kinds[] = {"ground", "water", "structure", "trees"};
     fprintf(out,
-            "format: landmass flash image, version 1\nbuilder: landmass-db build\nseed: %" PRIu32
+            "format: landmass flash image, version 3\nbuilder: landmass-db build\nseed: %" PRIu32
             "\n",
             m->seed);
     fputs(m->text_of_options, out);

@@ -104,7 +104,7 @@ void image_cells_encode(uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], struct lm_
 {
     for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
         const int r = i / LM_TILE_CELLS, c = i % LM_TILE_CELLS;
-        tile->points[r][c].cell = cells[r][c];
+        tile->points[r + LM_TILE_BORDER][c + LM_TILE_BORDER].cell = cells[r][c];
     }
 }
 
@@ -112,7 +112,7 @@ void image_cells_decode(const struct lm_tile *tile, uint16_t cells[LM_TILE_CELLS
 {
     for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
         const int r = i / LM_TILE_CELLS, c = i % LM_TILE_CELLS;
-        cells[r][c] = tile->points[r][c].cell;
+        cells[r][c] = image_tile_cell(tile, r, c);
     }
 }
 
@@ -134,7 +134,8 @@ void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], st
     for (int r = 0; r < LM_TILE_POSTS; r++) {
         for (int c = 0; c < LM_TILE_POSTS; c++) {
             const int32_t above = posts_q6[r][c] - tile->base_m_q6;
-            tile->points[r][c].post = (uint16_t)((above + (1 << shift) / 2) >> shift);
+            tile->points[r + LM_TILE_BORDER][c + LM_TILE_BORDER].post =
+                (uint16_t)((above + (1 << shift) / 2) >> shift);
         }
     }
 }

@@ -2,15 +2,18 @@
 
 #include "fx/crc32c.h"
 
-uint32_t image_entry_crc(uint32_t entry, uint32_t record)
+#include <stddef.h>
+
+uint32_t image_entry_crc(uint32_t number, const struct lm_tile_entry *entry)
 {
-    const uint32_t covered[2] = {entry, record};
-    return fx_crc32c(0, covered, sizeof covered);
+    const uint32_t crc = fx_crc32c(0, &number, sizeof number);
+    return fx_crc32c(crc, entry, offsetof(struct lm_tile_entry, crc));
 }
 
 const char *image_section_name(uint32_t type)
 {
     static const char *const names[LM_IMAGE_SECTION_TYPES] = {
-        "unknown", "CLASSES", "BANDS", "DIRECTORY", "TILES", "MANIFEST", "TARGETS", "SIGNATURES"};
+        "unknown", "CLASSES",    "BANDS", "DIRECTORY", "TILES",  "MANIFEST",
+        "TARGETS", "SIGNATURES", "GEOID", "DETAIL",    "SENSOR", "SEAL"};
     return type < LM_IMAGE_SECTION_TYPES ? names[type] : names[0];
 }

@@ -76,20 +76,22 @@ int image_view_fit(const struct image *image, struct image_view *v, int level, i
 /* What a drawing remembers of the tiles it has met. */
 struct look {
     const struct image *image;
-    uint8_t *checked; /* of each record: 0 not yet, 1 sound, 2 damaged */
+    uint8_t *checked; /* of each entry: 0 not yet, 1 sound, 2 damaged, 3 without a tile */
     unsigned damaged;
 };
 
-static const struct lm_tile *sound_tile(struct look *l, uint32_t record, uint8_t level,
-                                        uint32_t row, uint32_t column)
+static const struct lm_tile *sound_tile(struct look *l, uint32_t entry, uint8_t level, uint32_t row,
+                                        uint32_t column)
 {
-    const struct lm_tile *t = &l->image->tiles[record];
-    if (l->checked[record] == 0) {
+    const struct lm_tile *t = image_entry_tile(l->image, entry);
+    if (l->checked[entry] == 0 && !t) {
+        l->checked[entry] = 3;
+    } else if (l->checked[entry] == 0) {
         const bool is_sound = lm_tile_check(t, level, row, column) == LM_OK;
-        l->checked[record] = is_sound ? 1 : 2;
+        l->checked[entry] = is_sound ? 1 : 2;
         l->damaged += !is_sound;
     }
-    return l->checked[record] == 1 ? t : NULL;
+    return l->checked[entry] == 1 ? t : NULL;
 }
 
 /* A place in the image: the tile and the cell, at the finest level that has it from `level` up. */
@@ -110,8 +112,8 @@ static bool find_spot(struct look *l, int level, int64_t latitude, uint32_t long
         s->zone = image_row_zone(s->shift, row);
         const int east_shift = s->shift + s->zone;
         const uint32_t column = longitude >> (east_shift + LM_TILE_CELLS_LOG2);
-        const uint32_t record = image_record(image, (uint8_t)k, row, column);
-        s->tile = record == UINT32_MAX ? NULL : sound_tile(l, record, (uint8_t)k, row, column);
+        const int64_t entry = lm_db_entry(&image->db, (uint8_t)k, row, column);
+        s->tile = entry < 0 ? NULL : sound_tile(l, (uint32_t)entry, (uint8_t)k, row, column);
         if (s->tile) {
             const uint32_t up = (uint32_t)(latitude + IMAGE_BAM_QUARTER);
             s->row = (int)(up >> s->shift & (LM_TILE_CELLS - 1));
@@ -159,7 +161,7 @@ static double spot_shade(const struct spot *s, int64_t latitude)
 static double spot_value(const struct image *image, enum image_plane plane, const struct spot *s,
                          int64_t latitude)
 {
-    const uint16_t cell = s->tile->points[s->row][s->column].cell;
+    const uint16_t cell = image_tile_cell(s->tile, s->row, s->column);
     if (image_cell_class(cell) == LM_DB_CLASS_NONE) {
         return (double)NAN;
     }
@@ -261,7 +263,7 @@ static void paint(const struct image *image, const struct image_view *v, const f
 
 int image_view_draw(const struct image *image, struct image_view *v, uint8_t *pixels)
 {
-    struct look l = {.image = image, .checked = calloc(image->header.record_count + 1u, 1)};
+    struct look l = {.image = image, .checked = calloc(image->header.entry_count + 1u, 1)};
     float *values = malloc((size_t)v->width * (size_t)v->height * sizeof *values);
     int result = l.checked && values
                      ? 0

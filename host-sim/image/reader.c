@@ -76,7 +76,8 @@ static int check_header(const struct image *image, struct image_findings *f)
         return -1;
     }
     if (h->version != LM_DB_VERSION) {
-        image_find(f, 8, "version %" PRIu32 " instead of %d", h->version, LM_DB_VERSION);
+        image_find(f, 8, "version %" PRIu32 " instead of %d: %s", h->version, LM_DB_VERSION,
+                   IMAGE_OTHER_VERSION_REMEDY);
         return -1;
     }
     if (fx_crc32c(0, h, offsetof(struct lm_image_header, crc)) != h->crc) {
@@ -87,8 +88,16 @@ static int check_header(const struct image *image, struct image_findings *f)
         image_find(f, 16, "the header says %" PRIu64 " bytes, the file has %" PRIu64,
                    h->image_bytes, image->size_bytes);
     }
-    if (h->reserved0 != 0 || !db_is_zero(h->reserved1, sizeof h->reserved1)) {
+    if (!db_is_zero(h->reserved0, sizeof h->reserved0) ||
+        !db_is_zero(h->reserved1, sizeof h->reserved1)) {
         image_find(f, 60, "unused bytes of the header are not zero");
+    }
+    if (h->top != LM_IMAGE_TOP_RESIDENT) {
+        image_find(f, offsetof(struct lm_image_header, top),
+                   "its coarsest level is not to be resident whole (top %u): no program here can "
+                   "read it",
+                   h->top);
+        return -1;
     }
     const bool is_sound =
         h->header_bytes == LM_DB_HEADER_BYTES && h->record_bytes == LM_TILE_BYTES &&
@@ -110,9 +119,7 @@ static uint64_t expected_bytes(const struct lm_image_header *h, uint32_t type)
     case LM_IMAGE_BANDS:
         return (uint64_t)h->band_count * sizeof(struct lm_band);
     case LM_IMAGE_DIRECTORY:
-        return (uint64_t)h->entry_count * sizeof(struct image_entry);
-    case LM_IMAGE_TILES:
-        return (uint64_t)h->record_count * LM_TILE_BYTES;
+        return (uint64_t)h->entry_count * sizeof(struct lm_tile_entry);
     default:
         return UINT64_MAX; /* as long as it says */
     }
@@ -131,6 +138,13 @@ static int check_section(struct image *image, uint32_t index, struct image_findi
     if (expected != UINT64_MAX && s->bytes != expected) {
         image_find(f, at, "section %s has %" PRIu64 " bytes instead of %" PRIu64,
                    image_section_name(s->type), s->bytes, expected);
+        return -1;
+    }
+    const bool has_places = s->type == LM_IMAGE_TILES || s->type == LM_IMAGE_DETAIL;
+    if (has_places &&
+        (s->bytes % LM_DB_PLACE_BYTES != 0 || s->bytes / LM_DB_PLACE_BYTES >= LM_TILE_ABSENT)) {
+        image_find(f, at, "section %s has %" PRIu64 " bytes, which is no number of units of %d",
+                   image_section_name(s->type), s->bytes, LM_DB_PLACE_BYTES);
         return -1;
     }
     if (s->type >= LM_IMAGE_SECTION_TYPES || s->type == 0) {
@@ -207,9 +221,16 @@ static int check_bands(const struct image *image, struct image_findings *f)
     return result;
 }
 
+/* Below LM_TILE_ABSENT: check_section. */
+static uint32_t units_of(const struct lm_image_section *s)
+{
+    return (uint32_t)(s->bytes / LM_DB_PLACE_BYTES);
+}
+
 static void fill_db(struct image *image)
 {
     const struct lm_image_header *h = &image->header;
+    const struct lm_image_section *detail = image->sections[LM_IMAGE_DETAIL];
     image->db = (struct lm_db){
         .lod_count = h->lod_count,
         .shift0 = h->shift0,
@@ -218,6 +239,9 @@ static void fill_db(struct image *image)
         .record_count = h->record_count,
         .directory_offset = image->sections[LM_IMAGE_DIRECTORY]->offset,
         .records_offset = image->sections[LM_IMAGE_TILES]->offset,
+        .tiles_size = units_of(image->sections[LM_IMAGE_TILES]),
+        .detail_offset = detail ? detail->offset : 0,
+        .detail_size = detail ? units_of(detail) : 0,
         .mean_elevation_m_q6 = h->mean_elevation_m_q6,
         .geoid_m_q6 = h->geoid_m_q6,
         .centre_latitude = h->centre_latitude,
@@ -311,27 +335,38 @@ int image_open(struct image *image, const char *path)
     }
     struct image_findings findings = {stderr, 0, 4};
     if (image_read_tables(image, &findings) != 0 || findings.count > 0) {
+        const bool is_other_version = image->header.version != LM_DB_VERSION &&
+                                      memcmp(image->header.magic, "LANDMASS", 8) == 0;
         image_close(image);
-        return hs_error(path, "`landmass-db verify` says more; build the image again",
-                        "is not a sound image");
+        return hs_error(path,
+                        is_other_version ? IMAGE_OTHER_VERSION_REMEDY
+                                         : "`landmass-db verify` says more; build the image "
+                                           "again",
+                        is_other_version ? "is an image of another version"
+                                         : "is not a sound image");
     }
     return 0;
 }
 
-uint32_t image_record(const struct image *image, uint8_t level, uint32_t row, uint32_t column)
+const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry)
 {
-    const int64_t entry = lm_db_entry(&image->db, level, row, column);
-    if (entry < 0) {
-        return UINT32_MAX;
+    const struct lm_tile_entry *e = &image->entries[entry];
+    if (lm_db_entry_check(&image->db, entry, e) != LM_OK || e->place == LM_TILE_ABSENT) {
+        return NULL;
     }
-    const struct image_entry e = image->entries[entry];
-    const bool is_sound = image_entry_crc((uint32_t)entry, e.record) == e.crc;
-    return is_sound && e.record < image->header.record_count ? e.record : UINT32_MAX;
+    return (const void *)(image->bytes + image_record_offset(image, entry));
 }
 
-uint64_t image_record_offset(const struct image *image, uint32_t record)
+const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, uint32_t row,
+                                      uint32_t column)
 {
-    return image->db.records_offset + (uint64_t)record * LM_TILE_BYTES;
+    const int64_t entry = lm_db_entry(&image->db, level, row, column);
+    return entry < 0 ? NULL : image_entry_tile(image, (uint32_t)entry);
+}
+
+uint64_t image_record_offset(const struct image *image, uint32_t entry)
+{
+    return lm_db_tile_offset(&image->db, &image->entries[entry]);
 }
 
 const struct lm_band *image_band(const struct image *image, uint8_t level, uint32_t row)

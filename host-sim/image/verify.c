@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "hs/progress.h"
+#include "image/border.h"
 #include "image/codes.h"
 #include "image/grid.h"
 #include "image/signatures.h"
@@ -16,7 +17,8 @@ struct verify {
     struct image *image;
     struct image_findings *findings;
     struct image_verify_counts *counts;
-    uint32_t *entry_of; /* of each record; UINT32_MAX while none is known */
+    uint32_t *entries;    /* those that have a record, by its place */
+    uint32_t entry_count; /* of them */
 };
 
 /* ---- sections ---- */
@@ -86,15 +88,14 @@ static void check_class(struct verify *v, int number)
         return;
     }
     bool has_remains = false;
-    for (size_t i = 0; i < sizeof c->reserved; i++) {
-        has_remains |= c->reserved[i] != 0;
-    }
+    has_remains |= (c->reserved0 | c->reserved1[0] | c->reserved1[1]) != 0;
     for (size_t i = strnlen(c->name, sizeof c->name); i < sizeof c->name; i++) {
         has_remains |= c->name[i] != 0;
     }
-    if (c->kind > LM_KIND_TREES || c->name[0] == '\0' || c->looks == 0 || has_remains) {
-        image_find(v->findings, at, "class %d: its kind, name, looks or unused bytes are wrong",
-                   number);
+    if (c->kind > LM_KIND_TREES || c->name[0] == '\0' || c->looks == 0 || c->facing > LM_FACINGS ||
+        has_remains) {
+        image_find(v->findings, at,
+                   "class %d: its kind, name, looks, facing or unused bytes are wrong", number);
     }
 }
 
@@ -159,28 +160,85 @@ static int check_bands(struct verify *v)
 
 /* ---- directory ---- */
 
-static void check_directory(struct verify *v)
+/* What one entry says, apart from the record. Returns whether it has one that can be read. */
+static bool check_entry(struct verify *v, uint32_t number)
 {
     const struct image *image = v->image;
-    const uint64_t at = image->db.directory_offset;
-    for (uint32_t i = 0; i < image->header.entry_count; i++) {
-        const struct image_entry e = image->entries[i];
-        const uint64_t offset = at + (uint64_t)i * sizeof e;
+    const struct lm_tile_entry *e = &image->entries[number];
+    const uint64_t at = lm_db_entry_offset(&image->db, number);
+    if (image_entry_crc(number, e) != e->crc) {
+        image_find(v->findings, at, "entry %" PRIu32 ": its checksum does not fit it", number);
+        return false;
+    }
+    if (e->place == LM_TILE_ABSENT) {
+        if (e->size || e->encoding || e->detail_size || e->detail_place != LM_TILE_ABSENT) {
+            image_find(v->findings, at, "entry %" PRIu32 ": has no tile, but a size or detail",
+                       number);
+        }
+        return false;
+    }
+    if (e->encoding != LM_TILE_RAW) {
+        image_find(v->findings, at, "entry %" PRIu32 ": encoding %u is not known here", number,
+                   e->encoding);
+        return false;
+    }
+    if (lm_db_entry_check(&image->db, number, e) != LM_OK) {
+        image_find(v->findings, at,
+                   "entry %" PRIu32 ": %u units from %" PRIu32
+                   " are no raw record inside TILES, "
+                   "or its detail lies outside DETAIL",
+                   number, e->size, e->place);
+        return false;
+    }
+    return true;
+}
+
+static int by_place(const void *a, const void *b, void *entries)
+{
+    const struct lm_tile_entry *all = entries;
+    const uint32_t x = all[*(const uint32_t *)a].place, y = all[*(const uint32_t *)b].place;
+    return (x > y) - (x < y);
+}
+
+/* Records must share no byte, and leave none of TILES to nobody. */
+static void check_places(struct verify *v)
+{
+    const struct image *image = v->image;
+    const uint64_t tiles_at = image->db.records_offset;
+    uint32_t end = 0;
+    for (uint32_t i = 0; i < v->entry_count; i++) {
+        const struct lm_tile_entry *e = &image->entries[v->entries[i]];
+        if (e->place < end) {
+            image_find(v->findings, lm_db_entry_offset(&image->db, v->entries[i]),
+                       "entry %" PRIu32 " points into the record of entry %" PRIu32, v->entries[i],
+                       v->entries[i - 1]);
+        } else if (e->place > end) {
+            image_find(v->findings, tiles_at + (uint64_t)end * LM_DB_PLACE_BYTES,
+                       "no directory entry points to these bytes");
+        }
+        end = e->place + e->size > end ? e->place + e->size : end;
+    }
+    if (end != image->db.tiles_size) {
+        image_find(v->findings, tiles_at + (uint64_t)end * LM_DB_PLACE_BYTES,
+                   "no directory entry points to these bytes");
+    }
+    if (v->entry_count != image->header.record_count) {
+        image_find(v->findings, offsetof(struct lm_image_header, record_count),
+                   "the header says %" PRIu32 " records, the directory has %" PRIu32,
+                   image->header.record_count, v->entry_count);
+    }
+}
+
+static void check_directory(struct verify *v)
+{
+    for (uint32_t i = 0; i < v->image->header.entry_count; i++) {
         v->counts->entries++;
-        if (image_entry_crc(i, e.record) != e.crc) {
-            image_find(v->findings, offset, "entry %" PRIu32 ": its checksum does not fit it", i);
-        } else if (e.record != UINT32_MAX && e.record >= image->header.record_count) {
-            image_find(v->findings, offset,
-                       "entry %" PRIu32 " points to record %" PRIu32 " of %" PRIu32, i, e.record,
-                       image->header.record_count);
-        } else if (e.record != UINT32_MAX && v->entry_of[e.record] != UINT32_MAX) {
-            image_find(v->findings, offset,
-                       "entry %" PRIu32 " points to the record of entry %" PRIu32, i,
-                       v->entry_of[e.record]);
-        } else if (e.record != UINT32_MAX) {
-            v->entry_of[e.record] = i;
+        if (check_entry(v, i)) {
+            v->entries[v->entry_count++] = i;
         }
     }
+    qsort_r(v->entries, v->entry_count, sizeof *v->entries, by_place, (void *)v->image->entries);
+    check_places(v);
 }
 
 /* ---- tiles ---- */
@@ -188,68 +246,82 @@ static void check_directory(struct verify *v)
 static bool posts_are_in_bounds(const struct lm_tile *t)
 {
     uint16_t highest = 0;
-    for (int i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
-        const uint16_t p = t->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS].post;
+    for (int i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
+        const uint16_t p = t->points[i / LM_TILE_POINTS][i % LM_TILE_POINTS].post;
         highest = p > highest ? p : highest;
     }
     return t->base_m_q6 + ((int64_t)highest << t->post_shift) <= IMAGE_ELEVATION_LIMIT_Q6;
+}
+
+static bool is_bad_cell(const struct image *image, uint16_t cell)
+{
+    const uint8_t k = image_cell_class(cell);
+    return k == LM_DB_CLASS_NONE ? cell != IMAGE_CELL_NONE : is_unused(&image->db.classes.entry[k]);
+}
+
+/* Zero, or a sound cell without a height. */
+static bool under_is_bad(const struct image *image, uint16_t under)
+{
+    return under != 0 && (image_cell_height(under) != 0 || is_bad_cell(image, under));
 }
 
 static int count_bad_cells(const struct image *image, const struct lm_tile *t)
 {
     int bad = 0;
     for (int i = 0; i < LM_TILE_CELLS * LM_TILE_CELLS; i++) {
-        const uint16_t cell = t->points[i / LM_TILE_CELLS][i % LM_TILE_CELLS].cell;
-        const uint8_t k = image_cell_class(cell);
-        bad += k == LM_DB_CLASS_NONE ? cell != IMAGE_CELL_NONE
-                                     : is_unused(&image->db.classes.entry[k]);
+        bad += is_bad_cell(image, image_tile_cell(t, i / LM_TILE_CELLS, i % LM_TILE_CELLS));
     }
     return bad;
 }
 
 static bool tile_reserved_is_zero(const struct lm_tile *t)
 {
-    uint32_t any = t->reserved0;
-    for (int i = 0; i < LM_TILE_POSTS; i++) {
-        any |= (uint32_t)t->points[i][LM_TILE_CELLS].cell | t->points[LM_TILE_CELLS][i].cell;
-    }
-    for (size_t i = 0; i < sizeof t->reserved1; i++) {
-        any |= t->reserved1[i];
-    }
+    uint32_t any = t->reserved0 | (uint32_t)t->reserved1;
     for (size_t i = 0; i < sizeof t->reserved2; i++) {
         any |= t->reserved2[i];
+    }
+    for (size_t i = 0; i < sizeof t->reserved3; i++) {
+        any |= t->reserved3[i];
     }
     return any == 0;
 }
 
 /* What the record says of itself. Returns whether its identity can be used further on. */
-static bool check_tile(struct verify *v, uint32_t record, const struct lm_tile *t)
+static bool check_tile(struct verify *v, uint32_t number, const struct lm_tile *t)
 {
     const struct image *image = v->image;
-    const uint64_t at = image_record_offset(image, record);
+    const uint64_t at = image_record_offset(image, number);
     const uint64_t before = v->findings->count;
     if (fx_crc32c(0, &t->lod, LM_TILE_BYTES - sizeof t->crc) != t->crc) {
-        image_find(v->findings, at, "record %" PRIu32 ": its checksum does not fit it", record);
+        image_find(v->findings, at, "tile of entry %" PRIu32 ": its checksum does not fit it",
+                   number);
     }
     if (!tile_reserved_is_zero(t)) {
-        image_find(v->findings, at, "record %" PRIu32 ": unused bytes are not zero", record);
+        image_find(v->findings, at, "tile of entry %" PRIu32 ": unused bytes are not zero", number);
     }
     if (t->base_m_q6 < -IMAGE_ELEVATION_LIMIT_Q6 || t->base_m_q6 > IMAGE_ELEVATION_LIMIT_Q6 ||
         t->post_shift > LM_TILE_POST_SHIFT_MAX || !posts_are_in_bounds(t)) {
-        image_find(v->findings, at, "record %" PRIu32 ": elevations out of range", record);
+        image_find(v->findings, at, "tile of entry %" PRIu32 ": elevations out of range", number);
     }
     const int bad_cells = count_bad_cells(image, t);
     if (bad_cells > 0) {
-        image_find(v->findings, at, "record %" PRIu32 ": %d cells of a class that is not described",
-                   record, bad_cells);
+        image_find(v->findings, at,
+                   "tile of entry %" PRIu32 ": %d cells of a class that is not described", number,
+                   bad_cells);
+    }
+    if (under_is_bad(image, t->under)) {
+        image_find(v->findings, at,
+                   "tile of entry %" PRIu32
+                   ": the cell under its structures has a height or no class",
+                   number);
     }
     const int64_t entry = lm_db_entry(&image->db, t->lod, t->row, t->column);
     const struct lm_band *band = entry >= 0 ? image_band(image, t->lod, t->row) : NULL;
-    if (entry < 0 || (uint32_t)entry != v->entry_of[record] || band->zone != t->zone) {
+    if (entry < 0 || (uint32_t)entry != number || band->zone != t->zone) {
         image_find(v->findings, at,
-                   "record %" PRIu32 ": says it is level %u zone %u row %" PRIu32 " column %" PRIu32
-                   ", which is not what the directory takes it for",
-                   record, t->lod, t->zone, t->row, t->column);
+                   "tile of entry %" PRIu32 ": says it is level %u zone %u row %" PRIu32
+                   " column %" PRIu32 ", which is not what the directory takes it for",
+                   number, t->lod, t->zone, t->row, t->column);
         return false;
     }
     return v->findings->count == before;
@@ -272,21 +344,20 @@ static bool posts_agree(const struct lm_tile *a, int ra, int ca, const struct lm
 static const struct lm_tile *find_tile(const struct image *image, uint8_t level, uint32_t row,
                                        uint32_t column)
 {
-    const uint32_t record = image_record(image, level, row, column);
-    const struct lm_tile *t = record == UINT32_MAX ? NULL : &image->tiles[record];
+    const struct lm_tile *t = image_find_tile(image, level, row, column);
     return t && t->post_shift <= LM_TILE_POST_SHIFT_MAX ? t : NULL;
 }
 
-static void report_edge(struct verify *v, uint32_t record, const char *side, int bad)
+static void report_edge(struct verify *v, uint32_t number, const char *side, int bad)
 {
     if (bad > 0) {
-        image_find(v->findings, image_record_offset(v->image, record),
-                   "record %" PRIu32 ": %d posts of its %s edge differ from the neighbour's",
-                   record, bad, side);
+        image_find(v->findings, image_record_offset(v->image, number),
+                   "tile of entry %" PRIu32 ": %d posts of its %s edge differ from the neighbour's",
+                   number, bad, side);
     }
 }
 
-static void check_east_edge(struct verify *v, uint32_t record, const struct lm_tile *t)
+static void check_east_edge(struct verify *v, uint32_t number, const struct lm_tile *t)
 {
     const uint8_t shift = (uint8_t)(v->image->header.shift0 + t->lod);
     const uint32_t mask = image_columns_round(shift, t->zone) - 1;
@@ -296,11 +367,11 @@ static void check_east_edge(struct verify *v, uint32_t record, const struct lm_t
         bad += !posts_agree(t, r, LM_TILE_CELLS, east, r, 0);
     }
     v->counts->edges += east != NULL;
-    report_edge(v, record, "east", bad);
+    report_edge(v, number, "east", bad);
 }
 
 /* The row north of a tile may be in another zone, with tiles twice as wide or half as wide. */
-static void check_north_edge(struct verify *v, uint32_t record, const struct lm_tile *t)
+static void check_north_edge(struct verify *v, uint32_t number, const struct lm_tile *t)
 {
     const struct image *image = v->image;
     const struct lm_band *band = image_band(image, t->lod, t->row + 1);
@@ -327,7 +398,49 @@ static void check_north_edge(struct verify *v, uint32_t record, const struct lm_
         const int north_post = (int)(longitude >> cell_shift & (LM_TILE_CELLS - 1));
         bad += north && !posts_agree(t, LM_TILE_CELLS, c, north, 0, north_post);
     }
-    report_edge(v, record, "north", bad);
+    report_edge(v, number, "north", bad);
+}
+
+/* ---- borders ---- */
+
+static const struct lm_tile *find_neighbour(void *ctx, uint8_t level, uint32_t row, uint32_t column)
+{
+    return find_tile(ctx, level, row, column);
+}
+
+/* Does a border post to the south or west hold the neighbour's, as far as codes go? */
+static bool border_post_fits(const struct image_neighbours *n, const struct lm_tile *t, int row,
+                             int column)
+{
+    const struct image_border_post wanted = image_border_post(n, t, row, column);
+    const uint16_t code = t->points[row][column].post;
+    const int64_t step = (int64_t)1 << t->post_shift;
+    const int64_t difference =
+        image_post_q6(t, row - LM_TILE_BORDER, column - LM_TILE_BORDER) - wanted.q6;
+    return !wanted.is_neighbours || (difference >= -2 * step && difference <= 2 * step) ||
+           (code == 0 && difference > 0) || (code == UINT16_MAX && difference < 0);
+}
+
+static void check_border(struct verify *v, uint32_t number, const struct lm_tile *t)
+{
+    enum { LAST = LM_TILE_POINTS - 1 };
+    const struct image_neighbours n = {find_neighbour, v->image, v->image->header.shift0};
+    int cells = 0, posts = 0;
+    for (int i = 0; i < LM_TILE_POINTS; i++) {
+        const int points[4][2] = {{0, i}, {LAST, i}, {i, 0}, {i, LAST}};
+        for (int side = 0; side < 4; side++) {
+            const int r = points[side][0], c = points[side][1];
+            cells += t->points[r][c].cell != image_border_cell(&n, t, r, c);
+            posts += (r == 0 || c == 0) && !border_post_fits(&n, t, r, c);
+        }
+    }
+    if (cells + posts > 0) {
+        image_find(v->findings, image_record_offset(v->image, number),
+                   "tile of entry %" PRIu32
+                   ": %d cells and %d posts of its border are not the "
+                   "neighbours'",
+                   number, cells, posts);
+    }
 }
 
 /* ---- levels ---- */
@@ -359,40 +472,38 @@ static bool child_fits(const struct image *image, const struct lm_tile *parent,
     return true;
 }
 
-static void check_parent(struct verify *v, uint32_t record, const struct lm_tile *t)
+static void check_parent(struct verify *v, uint32_t number, const struct lm_tile *t)
 {
     if (t->lod + 1 >= v->image->header.lod_count) {
         return;
     }
-    const uint64_t at = image_record_offset(v->image, record);
+    const uint64_t at = image_record_offset(v->image, number);
     const struct lm_tile *parent =
         find_tile(v->image, (uint8_t)(t->lod + 1), t->row >> 1, t->column >> 1);
     if (!parent) {
-        image_find(v->findings, at, "record %" PRIu32 ": there is no tile above it", record);
+        image_find(v->findings, at, "tile of entry %" PRIu32 ": there is no tile above it", number);
         return;
     }
     v->counts->children++;
     if (!child_fits(v->image, parent, t)) {
-        image_find(v->findings, at, "record %" PRIu32 ": the tile above it does not hold its mean",
-                   record);
+        image_find(v->findings, at,
+                   "tile of entry %" PRIu32 ": the tile above it does not hold its mean", number);
     }
 }
 
 static void check_tiles(struct verify *v)
 {
-    const struct image *image = v->image;
     struct hs_progress progress;
-    hs_progress_begin(&progress, "verifying", image->header.record_count);
-    for (uint32_t i = 0; i < image->header.record_count; i++) {
+    hs_progress_begin(&progress, "verifying", v->entry_count);
+    for (uint32_t i = 0; i < v->entry_count; i++) {
+        const uint32_t number = v->entries[i];
+        const struct lm_tile *t = image_entry_tile(v->image, number);
         v->counts->tiles++;
-        /* All were set before. NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
-        if (v->entry_of[i] == UINT32_MAX) {
-            image_find(v->findings, image_record_offset(image, i),
-                       "record %" PRIu32 ": no directory entry points to it", i);
-        } else if (check_tile(v, i, &image->tiles[i])) {
-            check_east_edge(v, i, &image->tiles[i]);
-            check_north_edge(v, i, &image->tiles[i]);
-            check_parent(v, i, &image->tiles[i]);
+        if (check_tile(v, number, t)) {
+            check_east_edge(v, number, t);
+            check_north_edge(v, number, t);
+            check_border(v, number, t);
+            check_parent(v, number, t);
         }
         hs_progress_update(&progress, i + 1);
     }
@@ -402,7 +513,7 @@ static void check_tiles(struct verify *v)
 int image_verify(struct image *image, struct image_findings *findings,
                  struct image_verify_counts *counts)
 {
-    struct verify v = {image, findings, counts, NULL};
+    struct verify v = {.image = image, .findings = findings, .counts = counts};
     *counts = (struct image_verify_counts){0};
     if (image_read_tables(image, findings) != 0) {
         return -1;
@@ -415,15 +526,14 @@ int image_verify(struct image *image, struct image_findings *findings,
     if (check_bands(&v) != 0) {
         return -1;
     }
-    const size_t records = image->header.record_count;
-    v.entry_of = malloc((records ? records : 1) * sizeof *v.entry_of);
-    if (!v.entry_of) {
-        image_find(findings, image->db.records_offset, "not enough memory to check the records");
+    v.entries = malloc(((size_t)image->header.entry_count + 1) * sizeof *v.entries);
+    if (!v.entries) {
+        image_find(findings, image->db.directory_offset,
+                   "not enough memory to check the directory");
         return -1;
     }
-    memset(v.entry_of, 0xff, records * sizeof *v.entry_of);
     check_directory(&v);
     check_tiles(&v);
-    free(v.entry_of);
+    free(v.entries);
     return 0;
 }

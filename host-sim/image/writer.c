@@ -1,11 +1,15 @@
 #include "image/writer.h"
 
+#include "image/border.h"
+
 #include "fx/crc32c.h"
 #include "hs/error.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 static uint64_t aligned(uint64_t offset)
 {
@@ -46,7 +50,7 @@ static void place_sections(struct image_writer *w)
     const uint64_t bytes[LM_IMAGE_SECTION_TYPES] = {
         [LM_IMAGE_CLASSES] = sizeof w->classes,
         [LM_IMAGE_BANDS] = (uint64_t)w->header.band_count * sizeof(struct lm_band),
-        [LM_IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct image_entry),
+        [LM_IMAGE_DIRECTORY] = (uint64_t)w->header.entry_count * sizeof(struct lm_tile_entry),
     };
     uint64_t offset = sizeof w->header;
     for (uint32_t type = LM_IMAGE_CLASSES; type <= LM_IMAGE_MANIFEST; type++) {
@@ -81,7 +85,9 @@ int image_writer_begin(struct image_writer *w, const char *path,
     place_sections(w);
     image_sha256_begin(&w->tiles_sha256);
     w->records = malloc((size_t)header->entry_count * sizeof *w->records);
-    if (!w->records) {
+    w->entry_of = malloc((size_t)header->entry_count * sizeof *w->entry_of);
+    if (!w->records || !w->entry_of) {
+        image_writer_abort(w);
         return hs_error(path, "choose larger cells or a smaller area", "out of memory");
     }
     memset(w->records, 0xff, (size_t)header->entry_count * sizeof *w->records);
@@ -92,11 +98,9 @@ int image_writer_begin(struct image_writer *w, const char *path,
     return 0;
 }
 
-int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile)
+int image_writer_tile(struct image_writer *w, uint32_t entry, const struct lm_tile *tile)
 {
-    tile->crc = fx_crc32c(0, &tile->lod, LM_TILE_BYTES - sizeof tile->crc);
-    w->tiles_crc = fx_crc32c(w->tiles_crc, tile, LM_TILE_BYTES);
-    image_sha256_add(&w->tiles_sha256, tile, LM_TILE_BYTES);
+    w->entry_of[w->header.record_count] = entry;
     w->records[entry] = w->header.record_count++;
     return put(w, tile, LM_TILE_BYTES);
 }
@@ -124,17 +128,86 @@ static int put_section(struct image_writer *w, enum lm_image_section_type type, 
 static int put_directory(struct image_writer *w, FILE *manifest)
 {
     const uint32_t count = w->header.entry_count;
-    struct image_entry *entries = malloc(count * sizeof *entries);
+    enum { RECORD_SIZE = LM_TILE_BYTES / LM_DB_PLACE_BYTES };
+    struct lm_tile_entry *entries = malloc(count * sizeof *entries);
     if (!entries) {
         return hs_error(w->file.path, "choose larger cells or a smaller area", "out of memory");
     }
     for (uint32_t i = 0; i < count; i++) {
-        entries[i] =
-            (struct image_entry){.record = w->records[i], .crc = image_entry_crc(i, w->records[i])};
+        const bool has_tile = w->records[i] != LM_TILE_ABSENT;
+        entries[i] = (struct lm_tile_entry){
+            .place = has_tile ? w->records[i] * RECORD_SIZE : LM_TILE_ABSENT,
+            .size = has_tile ? RECORD_SIZE : 0,
+            .encoding = LM_TILE_RAW,
+            .detail_place = LM_TILE_ABSENT,
+        };
+        entries[i].crc = image_entry_crc(i, &entries[i]);
     }
     const int result = put_section(w, LM_IMAGE_DIRECTORY, entries, manifest);
     free(entries);
     return result;
+}
+
+/* The tiles, mapped from the unfinished file: they are as large as the image. */
+struct mapped_tiles {
+    struct image_writer *w;
+    struct lm_db db; /* grid and bands alone */
+    struct lm_tile *tiles;
+};
+
+static const struct lm_tile *find_written(void *ctx, uint8_t lod, uint32_t row, uint32_t column)
+{
+    const struct mapped_tiles *m = ctx;
+    const int64_t entry = lm_db_entry(&m->db, lod, row, column);
+    const uint32_t record = entry < 0 ? LM_TILE_ABSENT : m->w->records[entry];
+    return record == LM_TILE_ABSENT ? NULL : &m->tiles[record];
+}
+
+/* A border takes nothing but own points of neighbours, and leaves those as they are: the order of
+ * the tiles does not matter. */
+static void fill_and_seal(struct mapped_tiles *m, uint8_t *map, size_t map_bytes)
+{
+    enum { RELEASE_RECORDS = 4096 }; /* 72 MB: what the process holds of the file at a time */
+    struct image_writer *w = m->w;
+    const struct image_neighbours n = {find_written, m, w->header.shift0};
+    for (uint32_t i = 0; i < w->header.record_count; i++) {
+        struct lm_tile *tile = &m->tiles[i];
+        image_border_fill(&n, tile);
+        tile->crc = fx_crc32c(0, &tile->lod, LM_TILE_BYTES - sizeof tile->crc);
+        w->tiles_crc = fx_crc32c(w->tiles_crc, tile, LM_TILE_BYTES);
+        image_sha256_add(&w->tiles_sha256, tile, LM_TILE_BYTES);
+        if (i % RELEASE_RECORDS == RELEASE_RECORDS - 1) {
+            (void)madvise(map, map_bytes, MADV_DONTNEED); /* a shared map loses nothing */
+        }
+    }
+}
+
+static int fill_borders(struct image_writer *w)
+{
+    struct mapped_tiles m = {.w = w,
+                             .db = {.lod_count = w->header.lod_count,
+                                    .shift0 = w->header.shift0,
+                                    .band_count = w->header.band_count}};
+    memcpy(m.db.bands, w->bands, sizeof m.db.bands);
+    /* The map begins at a page. */
+    const uint64_t offset = section(w, LM_IMAGE_TILES)->offset;
+    const uint64_t page = offset % (uint64_t)sysconf(_SC_PAGESIZE);
+    const size_t bytes = page + (size_t)w->header.record_count * LM_TILE_BYTES;
+    if (w->header.record_count == 0) {
+        return 0;
+    }
+    if (fflush(w->file.stream) != 0) {
+        return write_failed(w);
+    }
+    uint8_t *map = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(w->file.stream),
+                        (off_t)(offset - page));
+    if (map == MAP_FAILED) {
+        return write_failed(w);
+    }
+    m.tiles = (void *)(map + page);
+    fill_and_seal(&m, map, bytes);
+    munmap(map, bytes);
+    return 0;
 }
 
 static int put_tables(struct image_writer *w, FILE *manifest)
@@ -195,7 +268,7 @@ static int finish(struct image_writer *w, const char *manifest)
         return hs_error(w->file.path, NULL, "out of memory");
     }
     fputs(manifest, stream);
-    int result = put_tables(w, stream);
+    int result = fill_borders(w) == 0 ? put_tables(w, stream) : -1;
     const struct lm_image_section *tiles = section(w, LM_IMAGE_TILES);
     uint64_t end = tiles->offset + tiles->bytes;
     if (result == 0) {
@@ -226,5 +299,6 @@ void image_writer_abort(struct image_writer *w)
 {
     hs_atomic_abort(&w->file);
     free(w->records);
-    w->records = NULL;
+    free(w->entry_of);
+    w->records = w->entry_of = NULL;
 }

@@ -13,6 +13,9 @@ enum { TILE_LOG2 = 6, POST_SHIFT_MAX = 4 };
 enum { SECTION_CLASSES = 1, SECTION_BANDS, SECTION_DIRECTORY, SECTION_TILES };
 enum verdict { UNKNOWN = 0, GOOD, BAD };
 
+enum { HEADER_BYTES = 1024, HEADER_CRC_AT = 1020, TOP_AT = 60, SECTIONS_MAX = 32 };
+enum { ENTRY_BYTES = 16, ENTRY_CRC_AT = 12, UNIT_BYTES = 64 };
+
 static const char rebuild[] = "build the image again with landmass-db";
 
 static uint32_t get_u32(const uint8_t *at)
@@ -46,6 +49,19 @@ static const uint8_t *find_section(const struct ref_db *db, uint32_t type, uint6
     return NULL;
 }
 
+/* How long a section says it is; 0 when it is absent. */
+static uint64_t section_bytes(const struct ref_db *db, uint32_t type)
+{
+    const uint32_t count = get_u32(db->bytes + 56);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint8_t *entry = db->bytes + 64 + (size_t)24 * i;
+        if (get_u32(entry) == type) {
+            return get_u64(entry + 16);
+        }
+    }
+    return 0;
+}
+
 static bool has_good_section_crc(const struct ref_db *db, uint32_t type, const uint8_t *at,
                                  uint64_t bytes)
 {
@@ -62,15 +78,18 @@ static bool has_good_section_crc(const struct ref_db *db, uint32_t type, const u
 static int read_header(struct ref_db *db, const char *name)
 {
     const uint8_t *h = db->bytes;
-    if (db->size < LM_DB_HEADER_BYTES || memcmp(h, "LANDMASS", 8) != 0) {
+    if (db->size < HEADER_BYTES || memcmp(h, "LANDMASS", 8) != 0) {
         return hs_error(name, "give an image made by landmass-db", "this is no landmass image");
     }
-    if (get_u32(h + 508) != fx_crc32c(0, h, 508)) {
+    if (get_u32(h + 8) != LM_DB_VERSION) {
+        return hs_error(name, "`landmass-db convert OLD NEW` makes a new image of one of version 2",
+                        "version %u, this program knows %d", get_u32(h + 8), LM_DB_VERSION);
+    }
+    if (get_u32(h + HEADER_CRC_AT) != fx_crc32c(0, h, HEADER_CRC_AT)) {
         return hs_error(name, rebuild, "the header's checksum does not hold");
     }
-    if (get_u32(h + 8) != LM_DB_VERSION) {
-        return hs_error(name, rebuild, "version %u, this program knows %d", get_u32(h + 8),
-                        LM_DB_VERSION);
+    if (h[TOP_AT] != 0) {
+        return hs_error(name, "use a newer program", "its coarsest level is not resident whole");
     }
     db->shift0 = h[24];
     db->level_count = h[25];
@@ -82,7 +101,7 @@ static int read_header(struct ref_db *db, const char *name)
                           db->shift0 + db->level_count - 1 <= LM_DB_SHIFT_MAX &&
                           db->band_count >= 1 && db->band_count <= LM_DB_BANDS_MAX &&
                           get_u32(h + 36) == LM_TILE_BYTES && get_u64(h + 16) <= db->size &&
-                          get_u32(h + 56) >= 5 && get_u32(h + 56) <= 16;
+                          get_u32(h + 56) >= 5 && get_u32(h + 56) <= SECTIONS_MAX;
     if (!is_sound) {
         return hs_error(name, rebuild, "a number of the header is out of its range");
     }
@@ -107,8 +126,9 @@ static int find_sections(struct ref_db *db, const char *name)
     const uint64_t bands_bytes = db->band_count * sizeof(struct lm_band);
     const uint8_t *classes = find_section(db, SECTION_CLASSES, classes_bytes);
     const uint8_t *bands = find_section(db, SECTION_BANDS, bands_bytes);
-    db->directory = find_section(db, SECTION_DIRECTORY, (uint64_t)db->entry_count * 8);
-    db->records = find_section(db, SECTION_TILES, (uint64_t)db->record_count * LM_TILE_BYTES);
+    db->directory = find_section(db, SECTION_DIRECTORY, (uint64_t)db->entry_count * ENTRY_BYTES);
+    db->tiles_bytes = section_bytes(db, SECTION_TILES);
+    db->records = find_section(db, SECTION_TILES, db->tiles_bytes);
     if (!classes || !bands || !db->directory || !db->records) {
         return hs_error(name, rebuild, "a section is missing or lies outside the file");
     }
@@ -130,7 +150,7 @@ static int find_sections(struct ref_db *db, const char *name)
 static int open_bytes(struct ref_db *db, const char *name)
 {
     if (read_header(db, name) == 0 && find_sections(db, name) == 0) {
-        db->verdicts = calloc((size_t)db->record_count + 1, 1);
+        db->verdicts = calloc((size_t)db->entry_count + 1, 1);
         if (db->verdicts != NULL) {
             return 0;
         }
@@ -234,33 +254,36 @@ static struct grid_place locate(const struct ref_db *db, unsigned level, struct 
     return g;
 }
 
-static bool is_good_record(const struct ref_db *db, uint32_t record, const struct lm_tile *tile)
+static bool is_good_record(const struct ref_db *db, uint32_t entry, const struct lm_tile *tile)
 {
-    if (db->verdicts[record] == UNKNOWN) {
+    if (db->verdicts[entry] == UNKNOWN) {
         const uint8_t *checked = (const uint8_t *)tile + sizeof tile->crc;
         const bool is_good = tile->crc == fx_crc32c(0, checked, LM_TILE_BYTES - sizeof tile->crc);
-        db->verdicts[record] = is_good ? GOOD : BAD;
+        db->verdicts[entry] = is_good ? GOOD : BAD;
     }
-    return db->verdicts[record] == GOOD;
+    return db->verdicts[entry] == GOOD;
 }
 
 /* The record of a directory entry, or NULL: no such tile, or something is wrong with it. */
 static const struct lm_tile *entry_tile(const struct ref_db *db, uint32_t entry, unsigned level,
                                         const struct grid_place *g)
 {
-    const uint8_t *at = db->directory + (size_t)entry * 8;
-    uint8_t checked[8];
+    const uint8_t *at = db->directory + (size_t)entry * ENTRY_BYTES;
+    uint8_t checked[4 + ENTRY_CRC_AT];
     memcpy(checked, &entry, 4);
-    memcpy(checked + 4, at, 4);
-    const uint32_t record = get_u32(at);
-    if (get_u32(at + 4) != fx_crc32c(0, checked, 8) || record >= db->record_count) {
+    memcpy(checked + 4, at, ENTRY_CRC_AT);
+    const uint32_t place = get_u32(at);
+    const uint32_t size = (uint32_t)(at[4] | at[5] << 8);
+    const bool is_raw = at[6] == 0 && size * UNIT_BYTES == LM_TILE_BYTES;
+    if (get_u32(at + ENTRY_CRC_AT) != fx_crc32c(0, checked, sizeof checked) ||
+        place == UINT32_MAX || !is_raw || ((uint64_t)place + size) * UNIT_BYTES > db->tiles_bytes) {
         return NULL;
     }
     const struct lm_tile *tile =
-        (const struct lm_tile *)(const void *)(db->records + (size_t)record * LM_TILE_BYTES);
+        (const struct lm_tile *)(const void *)(db->records + (size_t)place * UNIT_BYTES);
     const bool is_asked_for = tile->lod == level && tile->zone == g->zone && tile->row == g->row &&
                               tile->column == g->column;
-    return is_good_record(db, record, tile) && is_asked_for && tile->post_shift <= POST_SHIFT_MAX
+    return is_good_record(db, entry, tile) && is_asked_for && tile->post_shift <= POST_SHIFT_MAX
                ? tile
                : NULL;
 }
@@ -300,11 +323,12 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
 {
     struct grid_place g;
     const struct lm_tile *tile = find_nearest(db, level, place, &g);
-    const uint32_t cell = tile ? tile->points[g.r][g.c].cell : LM_DB_CLASS_NONE << 4;
+    const uint32_t cell = tile ? tile->points[1 + g.r][1 + g.c].cell : LM_DB_CLASS_NONE << 4;
     bin->class_index = (int)(cell >> 4 & 15);
     bin->has_data = bin->class_index != LM_DB_CLASS_NONE;
     bin->kind = db->classes->entry[bin->class_index].kind;
-    bin->gamma_db = (cell >> 8) / 2.0 - 80;
+    bin->gamma_db =
+        (cell >> 8) / 2.0 - 80 + db->classes->entry[bin->class_index].lod_gain_db_q8[level] / 256.0;
     bin->height_m = db->classes->height_dm[cell & 15] / 10.0;
 }
 
@@ -319,7 +343,8 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
     }
     const double north = is_exact ? g.north : floor(g.north * 256) / 256;
     const double east = is_exact ? g.east : floor(g.east * 256) / 256;
-    const struct lm_tile_point *low = &tile->points[g.r][g.c], *high = &tile->points[g.r + 1][g.c];
+    const struct lm_tile_point *low = &tile->points[1 + g.r][1 + g.c];
+    const struct lm_tile_point *high = &tile->points[2 + g.r][1 + g.c];
     const double south_side = low[0].post * (1 - east) + low[1].post * east;
     const double north_side = high[0].post * (1 - east) + high[1].post * east;
     const double code = south_side * (1 - north) + north_side * north;

@@ -20,7 +20,7 @@ enum {
     SECTION_COUNT_AT = 56,
     SECTIONS_AT = 64,
     SECTION_BYTES = 24,
-    CRC_AT = 508
+    CRC_AT = 1020
 };
 
 /* How they are looked at. */

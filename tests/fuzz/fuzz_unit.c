@@ -90,8 +90,9 @@ static void patch(struct tiny_image *image, struct fuzz_supply *s)
     const size_t starts[] = {0, image->classes_offset, image->bands_offset, image->directory_offset,
                              image->tiles_offset +
                                  (size_t)LM_TILE_BYTES * ((region >> 5) % image->record_count)};
-    const size_t lengths[] = {512, sizeof(struct lm_classes), image->band_count * 24u,
-                              image->entry_count * 8u, LM_TILE_BYTES};
+    const size_t lengths[] = {LM_DB_HEADER_BYTES, sizeof(struct lm_classes),
+                              image->band_count * 24u,
+                              image->entry_count * sizeof(struct lm_tile_entry), LM_TILE_BYTES};
     const unsigned which = region % 5;
     const size_t width = (size_t)1 << (region >> 3 & 3) & 7;
     if (width) {

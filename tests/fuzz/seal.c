@@ -7,7 +7,8 @@
 
 enum {
     SECTION_ENTRY = 24,
-    SECTIONS_MAX = 16,
+    SECTIONS_MAX = 32,
+    ENTRY = 16,
     CLASSES = 1,
     BANDS,
     DIRECTORY,
@@ -24,12 +25,12 @@ static uint64_t get(const uint8_t *at, size_t bytes)
 
 static void seal_directory(uint8_t *directory, size_t bytes)
 {
-    for (uint32_t i = 0; i < bytes / 8 && i < ENTRIES_MAX; i++) {
-        uint8_t covered[8];
+    for (uint32_t i = 0; i < bytes / ENTRY && i < ENTRIES_MAX; i++) {
+        uint8_t *entry = directory + ENTRY * (size_t)i, covered[ENTRY];
         memcpy(covered, &i, 4);
-        memcpy(covered + 4, directory + 8 * (size_t)i, 4);
+        memcpy(covered + 4, entry, ENTRY - 4);
         const uint32_t crc = fx_crc32c(0, covered, sizeof covered);
-        memcpy(directory + 8 * (size_t)i + 4, &crc, 4);
+        memcpy(entry + ENTRY - 4, &crc, 4);
     }
 }
 

@@ -137,9 +137,9 @@ static void draw_classes(struct input *in)
 /* A tile of whatever numbers lm_tile_check lets pass. */
 static void draw_tile(struct input *in, struct lm_tile *tile)
 {
-    for (int i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
+    for (int i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
         const uint16_t any = (uint16_t)hs_rng_u64(&in->rng);
-        struct lm_tile_point *point = &tile->points[i / LM_TILE_POSTS][i % LM_TILE_POSTS];
+        struct lm_tile_point *point = &tile->points[i / LM_TILE_POINTS][i % LM_TILE_POINTS];
         point->post = any % 16 == 0 ? 0 : any % 16 == 1 ? UINT16_MAX : any;
         point->cell = (uint16_t)hs_rng_u64(&in->rng);
     }
@@ -252,7 +252,7 @@ static void run_tile_read(const struct input *in, struct output *out, bool is_pl
     copy_cells(out->line[0], in->ground.cell);
     copy_cells(out->line[1], in->ground.elevation_m_q14);
     TWIN(lm_k_tile_read)
-    (in->pool[0].points[0], &in->places, in->first, groups, out->line[0],
+    (lm_tile_origin(&in->pool[0]), &in->places, in->first, groups, out->line[0],
      signed_line(out->line[1]));
     out->first = in->first;
     out->end[0] = out->end[1] = in->first + groups * LM_LANES;

@@ -13,7 +13,12 @@ enum {
     TILE = 64,
     SECTION_COUNT = 5,
     SECTION_ENTRY = 24,
-    NO_RECORD = -1
+    HEADER_BYTES = 1024,
+    TITLE_AT = 832,
+    CRC_AT = HEADER_BYTES - 4,
+    UNIT = 64, /* of places and sizes in the directory */
+    ENTRY = 16,
+    NONE = -1 /* place of what there is not */
 };
 
 static const double semi_axis_m = 6378137.0, e2 = 0.00669437999014;
@@ -33,14 +38,20 @@ struct builder {
 static const struct lm_classes built_in = {
     .entry =
         {
-            [TINY_SOIL] = {"soil", LM_KIND_GROUND, {150, 110, 70}, -20 * 256, 768, 0, 1, {0}},
-            [TINY_ASPHALT] = {"asphalt", LM_KIND_GROUND, {80, 80, 80}, -30 * 256, 768, 0, 1, {0}},
+            [TINY_SOIL] =
+                {"soil", LM_KIND_GROUND, {150, 110, 70}, -20 * 256, 768, 0, 1, 0, 0, {0}, {0}},
+            [TINY_ASPHALT] =
+                {"asphalt", LM_KIND_GROUND, {80, 80, 80}, -30 * 256, 768, 0, 1, 0, 0, {0}, {0}},
             [TINY_CONCRETE] =
-                {"concrete", LM_KIND_GROUND, {180, 180, 180}, -28 * 256, 768, 0, 1, {0}},
-            [TINY_STRUCTURE] = {"structure", LM_KIND_STRUCTURE, {200, 60, 60}, 0, 768, 100, 1, {0}},
-            [TINY_TREES] = {"trees", LM_KIND_TREES, {30, 120, 40}, -15 * 256, 768, 150, 1, {0}},
-            [TINY_WATER] = {"water", LM_KIND_WATER, {40, 70, 160}, -40 * 256, 768, 0, 1, {0}},
-            [TINY_NONE] = {"no data", LM_KIND_GROUND, {0, 0, 0}, -80 * 256, 0, 0, 1, {0}},
+                {"concrete", LM_KIND_GROUND, {180, 180, 180}, -28 * 256, 768, 0, 1, 0, 0, {0}, {0}},
+            [TINY_STRUCTURE] =
+                {"structure", LM_KIND_STRUCTURE, {200, 60, 60}, 0, 768, 100, 1, 0, 0, {0}, {0}},
+            [TINY_TREES] =
+                {"trees", LM_KIND_TREES, {30, 120, 40}, -15 * 256, 768, 150, 1, 0, 0, {0}, {0}},
+            [TINY_WATER] =
+                {"water", LM_KIND_WATER, {40, 70, 160}, -40 * 256, 768, 0, 1, 0, 0, {0}, {0}},
+            [TINY_NONE] =
+                {"no data", LM_KIND_GROUND, {0, 0, 0}, -80 * 256, 0, 0, 1, 0, 0, {0}, {0}},
         },
     .height_dm = {0, 20, 40, 60, 80, 100, 120, 150, 200, 250, 300, 400, 500, 600, 800, 1000},
 };
@@ -261,8 +272,14 @@ static uint16_t mean_of_four(const struct builder *b, const uint16_t four[4])
         (struct tiny_cell){10 * log10(power), winner, nearest_height_code(b->classes, dm)});
 }
 
-static const struct lm_tile *find_tile(const struct builder *b, uint8_t level, uint32_t row,
-                                       uint32_t column)
+/* A tile's own point; row 0 and column 0 are the southernmost and the westernmost. */
+static struct lm_tile_point *point(struct lm_tile *tile, uint32_t r, uint32_t c)
+{
+    return &tile->points[1 + r][1 + c];
+}
+
+static struct lm_tile *find_tile(const struct builder *b, uint8_t level, uint32_t row,
+                                 uint32_t column)
 {
     for (uint32_t i = 0; i < b->band_count; i++) {
         const struct lm_band *band = &b->bands[i];
@@ -279,13 +296,13 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
                           uint32_t c)
 {
     if (tile->lod > 0) {
-        const struct lm_tile *child = find_tile(b, (uint8_t)(tile->lod - 1), tile->row * 2 + r / 32,
-                                                tile->column * 2 + c / 32);
+        struct lm_tile *child = find_tile(b, (uint8_t)(tile->lod - 1), tile->row * 2 + r / 32,
+                                          tile->column * 2 + c / 32);
         if (child != NULL) {
             const uint32_t y = r * 2 % TILE, x = c * 2 % TILE;
-            const uint16_t four[4] = {child->points[y][x].cell, child->points[y][x + 1].cell,
-                                      child->points[y + 1][x].cell,
-                                      child->points[y + 1][x + 1].cell};
+            const uint16_t four[4] = {point(child, y, x)->cell, point(child, y, x + 1)->cell,
+                                      point(child, y + 1, x)->cell,
+                                      point(child, y + 1, x + 1)->cell};
             return mean_of_four(b, four);
         }
     }
@@ -297,14 +314,14 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
 }
 
 static void sample_posts(const struct builder *b, const struct lm_tile *tile,
-                         double posts_m[LM_TILE_POSTS][LM_TILE_POSTS])
+                         double posts_m[LM_TILE_POINTS][LM_TILE_POINTS])
 {
     const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
-    for (uint32_t r = 0; r < LM_TILE_POSTS; r++) {
-        for (uint32_t c = 0; c < LM_TILE_POSTS; c++) {
+    for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
+        for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
             const struct tiny_place place =
-                place_at(b, ((int64_t)tile->row * TILE + r) * (1 << high),
-                         ((int64_t)tile->column * TILE + c) * (1 << wide));
+                place_at(b, ((int64_t)tile->row * TILE + r - 1) * (1 << high),
+                         ((int64_t)tile->column * TILE + c - 1) * (1 << wide));
             posts_m[r][c] = b->spec->elevation_m ? b->spec->elevation_m(b->spec->ctx, &place) : 0;
         }
     }
@@ -313,12 +330,12 @@ static void sample_posts(const struct builder *b, const struct lm_tile *tile,
 /* The base is a whole number of post steps, so that posts shared by tiles of one step agree. */
 static int make_posts(struct builder *b, struct lm_tile *tile)
 {
-    double posts_m[LM_TILE_POSTS][LM_TILE_POSTS];
+    double posts_m[LM_TILE_POINTS][LM_TILE_POINTS];
     sample_posts(b, tile, posts_m);
     double low = posts_m[0][0], high = low;
-    for (uint32_t i = 0; i < LM_TILE_POSTS * LM_TILE_POSTS; i++) {
-        low = fmin(low, posts_m[i / LM_TILE_POSTS][i % LM_TILE_POSTS]);
-        high = fmax(high, posts_m[i / LM_TILE_POSTS][i % LM_TILE_POSTS]);
+    for (uint32_t i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
+        low = fmin(low, posts_m[i / LM_TILE_POINTS][i % LM_TILE_POINTS]);
+        high = fmax(high, posts_m[i / LM_TILE_POINTS][i % LM_TILE_POINTS]);
     }
     uint8_t shift = b->spec->post_shift;
     while ((high - low) * 64 / (1 << shift) > 65534) {
@@ -327,8 +344,8 @@ static int make_posts(struct builder *b, struct lm_tile *tile)
     const double step = 1 << shift;
     tile->post_shift = shift;
     tile->base_m_q6 = (int32_t)(floor(low * 64 / step) * step);
-    for (uint32_t r = 0; r < LM_TILE_POSTS; r++) {
-        for (uint32_t c = 0; c < LM_TILE_POSTS; c++) {
+    for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
+        for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
             tile->points[r][c].post =
                 (uint16_t)lround((posts_m[r][c] * 64 - tile->base_m_q6) / step);
         }
@@ -337,15 +354,15 @@ static int make_posts(struct builder *b, struct lm_tile *tile)
 }
 
 /* Posts of land count towards the mean elevation of the header. */
-static void count_land(struct builder *b, const struct lm_tile *tile)
+static void count_land(struct builder *b, struct lm_tile *tile)
 {
     for (uint32_t r = 0; r < TILE; r++) {
         for (uint32_t c = 0; c < TILE; c++) {
-            const uint8_t class_index = unpack_cell(tile->points[r][c].cell).class_index;
+            const uint8_t class_index = unpack_cell(point(tile, r, c)->cell).class_index;
             if (class_index != LM_DB_CLASS_NONE &&
                 b->classes->entry[class_index].kind != LM_KIND_WATER) {
                 b->land_sum_m +=
-                    (tile->base_m_q6 + tile->points[r][c].post * (1 << tile->post_shift)) / 64.0;
+                    (tile->base_m_q6 + point(tile, r, c)->post * (1 << tile->post_shift)) / 64.0;
                 b->land_count++;
             }
         }
@@ -371,13 +388,48 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
     tile->row = row;
     tile->column = column;
     for (uint32_t i = 0; i < TILE * TILE; i++) {
-        tile->points[i / TILE][i % TILE].cell = make_cell(b, tile, i / TILE, i % TILE);
+        point(tile, i / TILE, i % TILE)->cell = make_cell(b, tile, i / TILE, i % TILE);
     }
     const int status = make_posts(b, tile);
     if (band->lod == 0) {
         count_land(b, tile);
     }
     return status;
+}
+
+/* FORMATS.md 1.6: the neighbour's cell at the middle of this one, or the tile's nearest. */
+static uint16_t border_cell(const struct builder *b, struct lm_tile *tile, uint32_t r, uint32_t c)
+{
+    const uint32_t shift = b->spec->shift0 + tile->lod, wide = shift + tile->zone;
+    const int64_t row = (int64_t)tile->row * TILE + r - 1;
+    const int64_t middle =
+        ((int64_t)tile->column * TILE + c - 1) * (INT64_C(1) << wide) + (INT64_C(1) << (wide - 1));
+    struct lm_tile *neighbour = NULL;
+    uint32_t column = 0;
+    if (row >= 0 && row < INT64_C(1) << (31 - shift)) {
+        const uint8_t zone = zone_of_row((uint32_t)(row / TILE), shift);
+        column = (uint32_t)middle >> (shift + zone);
+        neighbour = find_tile(b, tile->lod, (uint32_t)(row / TILE), column / TILE);
+    }
+    if (neighbour) {
+        return point(neighbour, (uint32_t)(row % TILE), column % TILE)->cell;
+    }
+    const uint32_t y = r < 1 ? 1 : r > TILE ? TILE : r, x = c < 1 ? 1 : c > TILE ? TILE : c;
+    return tile->points[y][x].cell;
+}
+
+static void fill_borders(struct builder *b)
+{
+    enum { LAST = LM_TILE_POINTS - 1 };
+    for (uint32_t entry = 0; entry < b->entry_count; entry++) {
+        struct lm_tile *tile = b->tiles[entry];
+        for (uint32_t i = 0; tile && i <= LAST; i++) {
+            tile->points[0][i].cell = border_cell(b, tile, 0, i);
+            tile->points[LAST][i].cell = border_cell(b, tile, LAST, i);
+            tile->points[i][0].cell = border_cell(b, tile, i, 0);
+            tile->points[i][LAST].cell = border_cell(b, tile, i, LAST);
+        }
+    }
 }
 
 static int make_tiles(struct builder *b)
@@ -394,6 +446,7 @@ static int make_tiles(struct builder *b)
             }
         }
     }
+    fill_borders(b);
     return 0;
 }
 
@@ -419,7 +472,7 @@ static void put_header(const struct builder *b, struct tiny_image *image, size_t
     uint8_t *h = image->bytes;
     memcpy(h, "LANDMASS", 8);
     put_u32(h + 8, LM_DB_VERSION);
-    put_u32(h + 12, LM_DB_HEADER_BYTES);
+    put_u32(h + 12, HEADER_BYTES);
     put_u64(h + 16, image->size);
     h[24] = b->spec->shift0;
     h[25] = b->level_count;
@@ -436,7 +489,7 @@ static void put_header(const struct builder *b, struct tiny_image *image, size_t
     const size_t sections[SECTION_COUNT][2] = {
         {image->classes_offset, sizeof(struct lm_classes)},
         {image->bands_offset, b->band_count * sizeof(struct lm_band)},
-        {image->directory_offset, (size_t)b->entry_count * 8},
+        {image->directory_offset, (size_t)b->entry_count * ENTRY},
         {image->tiles_offset, (size_t)b->record_count * LM_TILE_BYTES},
         {image->manifest_offset, manifest_bytes}};
     for (uint32_t i = 0; i < SECTION_COUNT; i++) {
@@ -445,7 +498,7 @@ static void put_header(const struct builder *b, struct tiny_image *image, size_t
         put_u64(entry + 8, sections[i][0]);
         put_u64(entry + 16, sections[i][1]);
     }
-    memcpy(h + 448, "tiny image of the tests", 23);
+    memcpy(h + TITLE_AT, "tiny image of the tests", 23);
 }
 
 static void put_tiles(const struct builder *b, struct tiny_image *image)
@@ -453,8 +506,10 @@ static void put_tiles(const struct builder *b, struct tiny_image *image)
     uint32_t record = 0;
     for (uint32_t entry = 0; entry < b->entry_count; entry++) {
         const struct lm_tile *tile = b->tiles[entry];
-        put_u32(image->bytes + image->directory_offset + (size_t)entry * 8,
-                tile ? record : (uint32_t)NO_RECORD);
+        uint8_t *at = image->bytes + image->directory_offset + (size_t)entry * ENTRY;
+        put_u32(at, tile ? record * (LM_TILE_BYTES / UNIT) : (uint32_t)NONE);
+        put_u32(at + 4, tile ? LM_TILE_BYTES / UNIT : 0); /* encoding 0, no detail */
+        put_u32(at + 8, (uint32_t)NONE);
         if (tile) {
             memcpy(image->bytes + image->tiles_offset + (size_t)record * LM_TILE_BYTES, tile,
                    LM_TILE_BYTES);
@@ -469,10 +524,10 @@ static int assemble(const struct builder *b, struct tiny_image *image)
     image->band_count = b->band_count;
     image->entry_count = b->entry_count;
     image->record_count = b->record_count;
-    image->classes_offset = LM_DB_HEADER_BYTES;
+    image->classes_offset = HEADER_BYTES;
     image->bands_offset = to_64(image->classes_offset + sizeof(struct lm_classes));
     image->directory_offset = to_64(image->bands_offset + b->band_count * sizeof(struct lm_band));
-    image->tiles_offset = to_64(image->directory_offset + (size_t)b->entry_count * 8);
+    image->tiles_offset = to_64(image->directory_offset + (size_t)b->entry_count * ENTRY);
     image->manifest_offset = to_64(image->tiles_offset + (size_t)b->record_count * LM_TILE_BYTES);
     image->size = image->manifest_offset + sizeof manifest - 1;
     image->bytes = calloc(1, image->size);
@@ -514,11 +569,11 @@ void tiny_image_seal(struct tiny_image *image)
         put_u32(record, fx_crc32c(0, record + 4, LM_TILE_BYTES - 4));
     }
     for (uint32_t i = 0; i < image->entry_count; i++) {
-        uint8_t *entry = image->bytes + image->directory_offset + (size_t)i * 8;
-        uint8_t checked[8];
+        uint8_t *entry = image->bytes + image->directory_offset + (size_t)i * ENTRY;
+        uint8_t checked[ENTRY];
         put_u32(checked, i);
-        memcpy(checked + 4, entry, 4);
-        put_u32(entry + 4, fx_crc32c(0, checked, sizeof checked));
+        memcpy(checked + 4, entry, ENTRY - 4);
+        put_u32(entry + ENTRY - 4, fx_crc32c(0, checked, sizeof checked));
     }
     for (uint32_t i = 0; i < SECTION_COUNT; i++) {
         uint8_t *section = image->bytes + 64 + (size_t)i * SECTION_ENTRY;
@@ -527,7 +582,7 @@ void tiny_image_seal(struct tiny_image *image)
         memcpy(&bytes, section + 16, sizeof bytes);
         put_u32(section + 4, fx_crc32c(0, image->bytes + offset, bytes));
     }
-    put_u32(image->bytes + 508, fx_crc32c(0, image->bytes, 508));
+    put_u32(image->bytes + CRC_AT, fx_crc32c(0, image->bytes, CRC_AT));
 }
 
 int tiny_image_write(const struct tiny_image *image, const char *path)

@@ -229,21 +229,18 @@ static unsigned class_at(const struct lm_db *db, struct real_place place)
     const uint32_t row = latitude >> (down + LM_TILE_CELLS_LOG2),
                    column = longitude >> (across + LM_TILE_CELLS_LOG2);
     const int64_t entry = lm_db_entry(db, 0, row, column);
-    uint8_t bytes[8];
-    uint32_t record;
+    struct lm_tile_entry e;
     struct lm_tile tile;
     if (entry < 0 ||
-        read_flash(db->flash, db->directory_offset + 8 * (uint64_t)entry, bytes, sizeof bytes) !=
-            0 ||
-        lm_db_entry_check(db, (uint32_t)entry, bytes, &record) != LM_OK || record == UINT32_MAX ||
-        read_flash(db->flash, db->records_offset + (uint64_t)LM_TILE_BYTES * record, &tile,
-                   sizeof tile) != 0 ||
+        read_flash(db->flash, lm_db_entry_offset(db, (uint32_t)entry), &e, sizeof e) != 0 ||
+        lm_db_entry_check(db, (uint32_t)entry, &e) != LM_OK || e.place == LM_TILE_ABSENT ||
+        read_flash(db->flash, lm_db_tile_offset(db, &e), &tile, sizeof tile) != 0 ||
         lm_tile_check(&tile, 0, row, column) != LM_OK) {
         return LM_DB_CLASS_NONE;
     }
-    const struct lm_tile_point *point = &tile.points[latitude >> down & (LM_TILE_CELLS - 1)]
-                                                    [longitude >> across & (LM_TILE_CELLS - 1)];
-    return point->cell >> 4 & 15u;
+    const uint32_t r = latitude >> down & (LM_TILE_CELLS - 1);
+    const uint32_t c = longitude >> across & (LM_TILE_CELLS - 1);
+    return tile.points[r + LM_TILE_BORDER][c + LM_TILE_BORDER].cell >> 4 & 15u;
 }
 
 const char *real_image_class(const struct real_scene *scene, struct real_place place, char name[17])

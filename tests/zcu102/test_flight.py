@@ -23,8 +23,8 @@ SCRIPT = """\
 2   sar 46.0 11.0 5
 4.9 picture sar
 """
-SECTION_TILES = 4
-RECORD_BYTES = 16960
+SECTION_TILES, SECTIONS_MAX = 4, 32
+RECORD_BYTES = 17472
 
 
 def country():
@@ -50,7 +50,7 @@ def complaints(log):
 def damage_tiles(image):
     """One bit of every third record (docs/FORMATS.md, 1.1 and 1.5)."""
     damaged = bytearray(image)
-    for section in range(16):
+    for section in range(SECTIONS_MAX):
         kind, _, offset, size = struct.unpack_from("<IIQQ", image, 64 + 24 * section)
         if kind == SECTION_TILES:
             for record in range(0, size // RECORD_BYTES, 3):

@@ -15,23 +15,23 @@ static inline uint16x8_t neon_weights(uint32x4_t low, uint32x4_t high)
     return vshrq_n_u16(vshlq_n_u16(upper, 6), 8);
 }
 
-/* Where the points of four places are, in bytes from those of the pool's first record. */
+/* Where the points of four places are, in bytes from the own ones of the pool's first record. */
 static inline uint32x4_t neon_offsets(uint32x4_t record, uint32x4_t north, uint32x4_t east)
 {
     const uint32x4_t across = vsraq_n_u32(record, east, 26);
-    const uint32x4_t at = vmlaq_n_u32(across, vshrq_n_u32(north, 26), LM_TILE_POSTS);
+    const uint32x4_t at = vmlaq_n_u32(across, vshrq_n_u32(north, 26), LM_TILE_POINTS);
     return vshlq_n_u32(at, 2);
 }
 
 struct neon_source {
-    const uint8_t *south, *north; /* the first record's points in the southernmost row, the next */
+    const uint8_t *south, *north; /* the first record's own points: southernmost row, the next */
 };
 
 /* The compiler must not see that the two are a constant apart: it would add it for each place
  * instead of keeping two registers. */
 static inline struct neon_source neon_source_of(const struct lm_tile_point *points)
 {
-    struct neon_source s = {(const uint8_t *)points, (const uint8_t *)(points + LM_TILE_POSTS)};
+    struct neon_source s = {(const uint8_t *)points, (const uint8_t *)(points + LM_TILE_POINTS)};
     __asm__("" : "+r"(s.south), "+r"(s.north));
     return s;
 }

@@ -60,7 +60,7 @@ static uint32_t count_tiles(const struct image *image, const struct lm_band *b)
     uint32_t tiles = 0;
     const uint32_t end = b->entry0 + b->rows * b->columns;
     for (uint32_t entry = b->entry0; entry < end; entry++) {
-        tiles += image->entries[entry].record < image->header.record_count;
+        tiles += image->entries[entry].place != LM_TILE_ABSENT;
     }
     return tiles;
 }

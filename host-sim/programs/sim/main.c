@@ -272,7 +272,10 @@ static int run(struct sim *s)
                    &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
-    if (!s->bench.unit->map.is_usable) {
+    if (s->bench.unit->map.open_status == LM_ERR_VERSION) {
+        hs_warn(o->database, "`landmass-db convert OLD NEW` makes a new image of an old one",
+                "is a flash image of another version");
+    } else if (!s->bench.unit->map.is_usable) {
         hs_warn(o->database, "landmass-db verify tells what is wrong", "is no usable flash image");
     }
     if (open_bezel(s) != 0) {

@@ -10,7 +10,7 @@ enum lm_status {
     LM_BUSY = 1,           /* not an error: not done yet, ask again later */
     LM_ERR_IO = -1,        /* the device failed */
     LM_ERR_CORRUPT = -2,   /* a checksum or a bound does not hold */
-    LM_ERR_VERSION = -3,   /* a format newer than this firmware */
+    LM_ERR_VERSION = -3,   /* a format that this firmware does not know */
     LM_ERR_RANGE = -4,     /* a number outside the range that the header states */
     LM_ERR_NO_MEMORY = -5, /* the board lent too little memory */
     LM_ERR_TABLE = -6      /* the radar table breaks its contract: lm_radar_check names the field */

@@ -7,15 +7,24 @@
 
 #include "lm/units.h"
 
-/* Sides of a tile, in cells and in posts.
+/* Sides of a tile, in cells, in posts and in points of its record.
  *
- *     post 64 p---p---p-   -p       Posts lie at the corners of cells. Post (r, c) is the
- *     cell 63 |   |   |     |       south-west corner of cell (r, c). Posts 64 repeat posts 0 of
- *             :   :   :     :       the neighbours to the north and the east.
- *     post 1  p---p---p-   -p
- *     cell 0  |   |   |     |
- *     post 0  p---p---p-   -p                                                       */
-enum { LM_TILE_CELLS = 64, LM_TILE_CELLS_LOG2 = 6, LM_TILE_POSTS = 65 };
+ *     row 65   .   p---p---p-   -p       A point is a cell and the post at its south-west corner.
+ *     row 64   .   |   |   |     |       Rows and columns 1..64 are the tile's own. Row 0 and
+ *              :   :   :   :     :       column 0 repeat the neighbours to the south and the west,
+ *     row 1    .   p---p---p-   -p       row 65 and column 65 those to the north and the east.
+ *     row 0    .   .   .   .     .
+ *     column   0   1   2   3     65
+ *
+ * Posts at the corners of the tile's own cells are those of rows and columns 1..65. What blends the
+ * four cells around a place, whose middles lie half a cell in, never leaves the record. */
+enum {
+    LM_TILE_CELLS = 64,
+    LM_TILE_CELLS_LOG2 = 6,
+    LM_TILE_POSTS = 65,
+    LM_TILE_POINTS = 66,
+    LM_TILE_BORDER = 1 /* row and column of the tile's own south-west point */
+};
 
 /* Reflectivity codes of cells: gamma in dB = code / 2 - 80, which is -80.0..+47.5 dB. */
 enum { LM_GAMMA_CODE_STEP_DB_Q8 = 128, LM_GAMMA_CODE_ZERO_DB_Q8 = LM_DB_Q8(-80) };

@@ -16,7 +16,11 @@
 #include "lm/radar.h"
 #include "lm/units.h"
 
-enum { LM_TEXTURE_SHAPE_BITS = 3, LM_TEXTURE_LOSS_MAX_DB_Q8 = LM_DB_Q8(64) };
+enum {
+    LM_TEXTURE_SHAPE_BITS = 3,
+    LM_TEXTURE_LOSS_MAX_DB_Q8 = LM_DB_Q8(64),
+    LM_CLASS_GAIN_MAX_DB_Q8 = LM_DB_Q8(25) /* what the highest sea state gives water */
+};
 
 /* Texture: gain and shape of each class. Prepared once a sector or patch.
  *
@@ -37,16 +41,19 @@ static inline int32_t lm_texture_shape(int32_t of_class)
     return of_class & ((1 << LM_TEXTURE_SHAPE_BITS) - 1);
 }
 
-/* Prepare the texture. The shape follows the kind of each class. The gain is that of the sea state
- * for water and 0 for other kinds, less loss_db_q8 for all.
+/* Prepare the texture. The shape follows the kind of each class. The gain is that of the class in
+ * the LOD that the map is read from, plus that of the sea state for water, less loss_db_q8 for all.
  *
+ * - An LOD is below LM_DB_LODS_MAX.
+ * - A gain of class and sea state beyond LM_CLASS_GAIN_MAX_DB_Q8 either way counts as that.
  * - A sea state above LM_SEA_STATE_MAX counts as that.
  * - A shape above LM_TEXTURE_NONE counts as none.
  * - A loss above LM_TEXTURE_LOSS_MAX_DB_Q8 counts as that.
  *
- * `config` and `classes` are borrowed for the call. Cost: 150 instructions. */
+ * `config` and `classes` are borrowed for the call. Cost: 250 instructions. */
 void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config,
-                    const struct lm_classes *classes, uint8_t sea_state, uint16_t loss_db_q8);
+                    const struct lm_classes *classes, uint8_t lod, uint8_t sea_state,
+                    uint16_t loss_db_q8);
 
 /* The stages below work on whole pairs of blocks, of LM_NOISE_BLOCK cells each. Arrays of levels
  * and cells have room for whole pairs, and what is written behind the last cell means nothing.
@@ -54,7 +61,7 @@ void lm_texture_set(struct lm_texture *t, const struct lm_texture_config *config
  * docs/benchmarks.md. */
 
 /* Multiply the power of each cell by the texture of its class, in place. `cell` is that of struct
- * lm_scan_line. A level changes by -113..34 dB, of which -64 is for a loss. Hence LM_LEVEL_SHADOW
+ * lm_scan_line. A level changes by -123..34 dB, of which -64 is for a loss. Hence LM_LEVEL_SHADOW
  * stays below -80 dB, also after speckle. */
 void lm_texture_run(const struct lm_texture *t, const struct lm_noise_key *noise_key,
                     const uint32_t *cell, int32_t *level_db_q8, uint32_t cells);

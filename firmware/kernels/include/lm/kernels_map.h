@@ -45,9 +45,10 @@ struct lm_ground {
 
 /* One cell of lm_k_tile_read, for those who look at a single place.
  *
- * `points`: the points of the first tile of a pool. `record`: from there to the points of the tile
- * in question, counted in points. `scale`: elevation of the tile's base in Q14, a multiple of 256,
- * less the number of bits (4..8) by which a post in Q16 is shifted down to metres in Q14.
+ * `points`: the first tile's own south-west point in a pool (lm_tile_origin). `record`: from there
+ * to that of the tile in question, counted in points. `scale`: elevation of the tile's base in Q14,
+ * a multiple of 256, less the number of bits (4..8) by which a post in Q16 is shifted down to
+ * metres in Q14.
  *
  * The four posts around the place are blended (fx/lerp.h). The post's part and the base are below
  * 2^29. Indices are signed, because then a loop of this becomes vector gathers. */
@@ -55,10 +56,10 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
                                                 int32_t scale, uint32_t north, uint32_t east)
 {
     const int32_t row = (int32_t)(north >> 26), column = (int32_t)(east >> 26);
-    const int32_t at = (int32_t)record + row * LM_TILE_POSTS + column;
+    const int32_t at = (int32_t)record + row * LM_TILE_POINTS + column;
     const uint32_t south_west = fx_load_u32(points + at), south_east = fx_load_u32(points + at + 1);
-    const uint32_t north_west = fx_load_u32(points + at + LM_TILE_POSTS);
-    const uint32_t north_east = fx_load_u32(points + at + LM_TILE_POSTS + 1);
+    const uint32_t north_west = fx_load_u32(points + at + LM_TILE_POINTS);
+    const uint32_t north_east = fx_load_u32(points + at + LM_TILE_POINTS + 1);
     const uint32_t post_q16 = fx_bilerp_u16_q16(
         (uint16_t)(south_west >> 16), (uint16_t)(south_east >> 16), (uint16_t)(north_west >> 16),
         (uint16_t)(north_east >> 16), east << 6 >> 24, north << 6 >> 24);

@@ -44,9 +44,9 @@
 #include "lm/tile_point.h"
 
 enum {
-    LM_DB_VERSION = 2,
-    LM_DB_HEADER_BYTES = 512,
-    LM_DB_LODS_MAX = 12,
+    LM_DB_VERSION = 3,
+    LM_DB_HEADER_BYTES = 1024,
+    LM_DB_LODS_MAX = 16,
     LM_DB_BANDS_MAX = 64,
     LM_DB_SHIFT_MIN = 4,  /* a cell of 0.15 m */
     LM_DB_SHIFT_MAX = 20, /* a cell of 9.8 km */
@@ -55,8 +55,11 @@ enum {
     LM_DB_CLASSES = 16,
     LM_DB_CLASS_NONE = 15,      /* no data: drawn as nothing */
     LM_TILE_POST_SHIFT_MAX = 4, /* relief in one tile: 16.4 km */
-    LM_TILE_BYTES = 16960,
-    LM_TARGET_BYTES = 640, /* a record of TARGETS: lm/target.h */
+    LM_DB_PLACE_BYTES = 64,     /* unit of places and sizes in the directory */
+    LM_TILE_BYTES = 17472,      /* a raw record: 273 units */
+    LM_TILE_RAW = 0,            /* encoding of a record: the only one so far */
+    LM_FACINGS = 8,             /* facings of walls: struct lm_class */
+    LM_TARGET_BYTES = 640,      /* a record of TARGETS: lm/target.h */
     LM_DB_TARGETS_MAX = 1024,
     LM_SIGNATURE_BYTES = 1152, /* a record of SIGNATURES: lm/signature.h */
     LM_CHIP_BYTES = 4672,      /* a chip of SIGNATURES: lm/signature.h */
@@ -64,7 +67,7 @@ enum {
     LM_DB_CHIPS_MAX = LM_DB_SIGNATURES_MAX * 128 * 8
 };
 
-/* Tile record, in flash and in the cache alike: 16,960 bytes. */
+/* Tile record, in flash and in the cache alike: 17,472 bytes. */
 struct lm_tile {
     uint32_t crc; /* CRC-32C of all bytes after this field */
     uint8_t lod, zone;
@@ -72,13 +75,31 @@ struct lm_tile {
     uint32_t row, column; /* with lod the tile's identity: lm_tile_check refuses another tile */
     int32_t base_m_q6;    /* elevation of post 0 above mean sea level; within 2^20 */
     uint8_t post_shift;   /* one post step is 2^post_shift / 64 metres; 0..LM_TILE_POST_SHIFT_MAX */
-    uint8_t reserved1[11];
-    /* Row 0 is the southernmost, column 0 the westernmost. Row 64 and column 64 hold no cells, only
-     * copies of the posts of the neighbours' row 0 and column 0. */
-    struct lm_tile_point points[LM_TILE_POSTS][LM_TILE_POSTS];
-    uint8_t reserved2[28];
+    uint8_t reserved1;
+    uint16_t under; /* cell that stands for structure cells where vector detail is drawn; height
+                       code 0 */
+    uint8_t reserved2[8];
+    /* Row 0 is the southernmost, column 0 the westernmost. Rows and columns 1..64 are the tile's
+     * own, the others repeat the neighbours': lm/tile_point.h. */
+    struct lm_tile_point points[LM_TILE_POINTS][LM_TILE_POINTS];
+    uint8_t reserved3[16];
 };
 _Static_assert(sizeof(struct lm_tile) == LM_TILE_BYTES, "the record must be what FORMATS.md says");
+_Static_assert(LM_TILE_BYTES % LM_DB_PLACE_BYTES == 0, "records are counted in these units");
+
+/* Directory entry: where a tile's record and its vector detail lie. */
+struct lm_tile_entry {
+    uint32_t place;        /* of the record from the start of TILES; LM_TILE_ABSENT: no such tile */
+    uint16_t size;         /* of the record. Places and sizes are in units of LM_DB_PLACE_BYTES */
+    uint8_t encoding;      /* of the record: LM_TILE_RAW */
+    uint8_t detail_size;   /* of the detail; 0 if there is none */
+    uint32_t detail_place; /* from the start of DETAIL; LM_TILE_ABSENT: none */
+    uint32_t crc;          /* CRC-32C of u32 entry number and the bytes before this field */
+};
+_Static_assert(sizeof(struct lm_tile_entry) == 16, "the record must be what FORMATS.md says");
+
+/* Place of what the image leaves out. */
+#define LM_TILE_ABSENT UINT32_MAX
 
 /* Band: a rectangle of tiles of one LOD in one zone, with its part of the directory. */
 struct lm_band {
@@ -100,7 +121,11 @@ struct lm_class {
     uint16_t spread_db_q8; /* of the reflectivity; host tools alone use it */
     uint16_t height_dm;    /* typical height; host tools alone use it */
     uint16_t looks;        /* independent looks of a texture sample, from 1; host tools use it */
-    uint8_t reserved[36];
+    uint8_t facing;        /* of walls: 0 none; n = 1..LM_FACINGS: (n - 1) * 11.25 degrees from
+                              north, modulo 90 */
+    uint8_t reserved0;
+    int16_t lod_gain_db_q8[LM_DB_LODS_MAX]; /* added to the reflectivity of its cells, by LOD */
+    uint8_t reserved1[2];
 };
 _Static_assert(sizeof(struct lm_class) == 64, "the record must be what FORMATS.md says");
 
@@ -119,10 +144,11 @@ struct lm_db {
     uint8_t lod_count, shift0;    /* LODs are 0..lod_count - 1, finest to coarsest */
     uint16_t band_count;
     uint32_t entry_count, record_count;   /* directory entries; tile records */
+    uint32_t tiles_size, detail_size;     /* of TILES and DETAIL, in units of LM_DB_PLACE_BYTES */
     uint32_t target_count;                /* 0 if the image has no section TARGETS */
     uint32_t signature_count, chip_count; /* 0 if the image has no section SIGNATURES */
     /* Places in the flash, in bytes: of the first directory entry, tile, target, ... */
-    uint64_t directory_offset, records_offset, targets_offset;
+    uint64_t directory_offset, records_offset, detail_offset, targets_offset;
     uint64_t signatures_offset, chips_offset;
     int32_t mean_elevation_m_q6; /* of the land in the image; within 2^20 */
     int32_t geoid_m_q6; /* mean sea level above the ellipsoid, in the image's area; within 2^20 */
@@ -167,9 +193,10 @@ int lm_db_read(const struct lm_flash *flash, uint64_t offset, void *destination,
  * - LM_ERR_IO: a read failed or took more than `poll_limit` polls.
  * - LM_ERR_CORRUPT: a checksum, a number out of its range, or a section that is missing or does not
  *   lie inside the image.
- * - LM_ERR_VERSION: the image has another version than LM_DB_VERSION.
+ * - LM_ERR_VERSION: the image has another version than LM_DB_VERSION, or needs what this firmware
+ *   does not have (`top` of struct lm_image_header).
  *
- * `db` keeps `flash`. Cost: some reads of the flash, and 512 bytes of stack for the header. */
+ * `db` keeps `flash`. Cost: some reads of the flash, and 1 KiB of stack for the header. */
 int lm_db_open(struct lm_db *db, const struct lm_flash *flash, uint32_t poll_limit);
 
 /* Zone of a latitude, 0..3: cells are 2^zone wider in longitude. Borders are at 61.875, 73.125 and
@@ -187,17 +214,35 @@ static inline uint32_t lm_db_zone(fx_bam_t latitude)
  * over the bands. */
 int64_t lm_db_entry(const struct lm_db *db, uint8_t lod, uint32_t row, uint32_t column);
 
-/* Check the 8 bytes of a directory entry that were read from flash. Returns
- * - LM_OK: *record is the tile's record, or UINT32_MAX for a tile that the image leaves out.
- * - LM_ERR_CORRUPT: the checksum does not match this entry, or there is no such record. *record is
- *   unchanged. */
-int lm_db_entry_check(const struct lm_db *db, uint32_t entry, const uint8_t bytes[8],
-                      uint32_t *record);
+/* Place of a directory entry in the flash, bytes. */
+static inline uint64_t lm_db_entry_offset(const struct lm_db *db, uint32_t entry)
+{
+    return db->directory_offset + sizeof(struct lm_tile_entry) * (uint64_t)entry;
+}
+
+/* Check directory entry number `number` that was read from flash. Returns
+ * - LM_OK: the tile is absent, or its record and its detail lie inside TILES and DETAIL.
+ * - LM_ERR_CORRUPT: the checksum does not match this entry, a place or size reaches outside its
+ *   section, or a raw record has not LM_TILE_BYTES.
+ * - LM_ERR_VERSION: the record has an encoding that this firmware does not know. */
+int lm_db_entry_check(const struct lm_db *db, uint32_t number, const struct lm_tile_entry *entry);
+
+/* Place in the flash, bytes, of the record of an entry that has passed lm_db_entry_check. */
+static inline uint64_t lm_db_tile_offset(const struct lm_db *db, const struct lm_tile_entry *entry)
+{
+    return db->records_offset + (uint64_t)LM_DB_PLACE_BYTES * entry->place;
+}
+
+/* The tile's own south-west point, from which readers count (lm/kernels_map.h). */
+static inline const struct lm_tile_point *lm_tile_origin(const struct lm_tile *tile)
+{
+    return &tile->points[LM_TILE_BORDER][LM_TILE_BORDER];
+}
 
 /* Check a tile record that was read from flash. Returns LM_OK, or LM_ERR_CORRUPT if
  * - its checksum does not match,
  * - it is another tile than (lod, row, column),
- * - its base or post_shift is out of range.
+ * - its base or post_shift is out of range, or `under` has a height.
  *
  * Cost: one CRC over 17 kB. */
 int lm_tile_check(const struct lm_tile *tile, uint8_t lod, uint32_t row, uint32_t column);

@@ -1,6 +1,6 @@
-/* Image header: the first 512 bytes of the flash image. Format: docs/FORMATS.md, 1.1.
+/* Image header: the first 1024 bytes of the flash image. Format: docs/FORMATS.md, 1.1.
  *
- *     0                512
+ *     0               1024
  *     +----------------+---------+------- ------+---------+
  *     | header         | section |     ...      | section |     sections lie in any order, at
  *     +----------------+---------+------- ------+---------+     multiples of 64 bytes
@@ -24,14 +24,19 @@ enum lm_image_section_type {
     LM_IMAGE_TILES,
     LM_IMAGE_MANIFEST,   /* the last one that every image must have */
     LM_IMAGE_TARGETS,    /* optional */
-    LM_IMAGE_SIGNATURES, /* optional */
+    LM_IMAGE_SIGNATURES, /* optional, as all that follow */
+    LM_IMAGE_GEOID,      /* grid of heights of mean sea level */
+    LM_IMAGE_DETAIL,     /* vector detail of tiles */
+    LM_IMAGE_SENSOR,     /* radar table */
+    LM_IMAGE_SEAL,       /* cryptographic signature */
     LM_IMAGE_SECTION_TYPES
 };
 
 enum {
-    LM_IMAGE_SECTIONS_MAX = 16,
+    LM_IMAGE_SECTIONS_MAX = 32,
     LM_IMAGE_SECTION_ALIGNMENT = 64, /* bytes */
     LM_IMAGE_TITLE_BYTES = 32,
+    LM_IMAGE_TOP_RESIDENT = 0, /* the coarsest LOD is resident whole */
 };
 
 /* Place of a section. */
@@ -50,10 +55,12 @@ struct lm_image_header {
     uint32_t entry_count, record_count, record_bytes; /* record_bytes is LM_TILE_BYTES */
     int32_t mean_elevation_m_q6, geoid_m_q6;          /* as in struct lm_db */
     uint32_t centre_latitude, centre_longitude;       /* BAM */
-    uint32_t section_count, reserved0;                /* 0..LM_IMAGE_SECTIONS_MAX; 0 */
+    uint32_t section_count;                           /* 0..LM_IMAGE_SECTIONS_MAX */
+    uint8_t top;                                      /* LM_IMAGE_TOP_RESIDENT */
+    uint8_t reserved0[3];
     struct lm_image_section sections[LM_IMAGE_SECTIONS_MAX];
     char title[LM_IMAGE_TITLE_BYTES]; /* zero-padded; may fill all 32 */
-    uint8_t reserved1[28];
+    uint8_t reserved1[156];
     uint32_t crc; /* CRC-32C of all bytes before it */
 };
 _Static_assert(sizeof(struct lm_image_header) == LM_DB_HEADER_BYTES,

@@ -60,7 +60,7 @@ enum { LM_TILE_RETRY_US = 1000000 };
 
 /* Start of a tile's points and elevations, as lm_tile_read needs them: lm_tile_base_of. */
 struct lm_tile_base {
-    uint32_t record; /* from the pool's first point to the tile's first point, in points */
+    uint32_t record; /* from the pool's first point to the tile's, in points */
     int32_t scale;   /* base elevation and shift of the posts */
 };
 
@@ -111,7 +111,7 @@ struct lm_tile_cache {
     uint16_t reading_slot; /* LM_SLOT_NONE when idle */
     bool is_reading_entry; /* first the directory entry, then the record */
     uint32_t reading_entry;
-    uint32_t entry_bytes[2];
+    struct lm_tile_entry entry;
     struct lm_flash_request *request; /* borrowed while it waits or is being read; NULL if none */
     bool is_reading_request;
 
@@ -124,6 +124,7 @@ struct lm_tile_cache {
         uint32_t tiles_read;
         uint32_t io_errors;        /* reads that failed */
         uint32_t corrupt;          /* records or directory entries that failed their check */
+        uint32_t encodings;        /* those of `corrupt` that are of an unknown encoding */
         uint32_t requests_dropped; /* requests lost because the ring was full */
         uint32_t evicted;          /* tiles that lost their slot to another */
         uint64_t bytes_read;

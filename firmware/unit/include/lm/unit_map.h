@@ -10,7 +10,8 @@
 #include "lm/tile_cache.h"
 
 struct lm_unit_map {
-    bool is_usable; /* false: the image could not be opened; nothing below may be used */
+    int open_status; /* of lm_db_open: enum lm_status */
+    bool is_usable;  /* false: the image could not be opened; nothing below may be used */
     struct lm_db db;
     struct lm_tile_cache tiles;
     struct lm_target targets[LM_TARGETS_MAX];

@@ -49,19 +49,28 @@ static inline uint8_t image_cell_height(uint16_t cell)
 void image_reduce(const uint16_t *fine, size_t fine_stride, int factor, uint16_t *coarse,
                   size_t coarse_stride, int coarse_side, const uint16_t heights_dm[16]);
 
-/* The cells of a tile, into its record and out of it. */
+/* The tile's own cells, into its record and out of it. */
 void image_cells_encode(uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], struct lm_tile *tile);
 void image_cells_decode(const struct lm_tile *tile, uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS]);
 
-/* Elevations of 65 x 65 posts, metres x 64, into base, post_shift and posts of `tile`. The step is
+/* Elevations of the 65 x 65 posts at corners of own cells, metres x 64, into base, post_shift and
+ * posts of `tile`. The step is
  * the smallest that spans them, and the base a multiple of it: sea level stays exactly 0.
  * Elevations must be within IMAGE_ELEVATION_LIMIT_Q6. */
 void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], struct lm_tile *tile);
 
-/* One post of a tile, metres x 64. */
+/* One cell of a tile. Row 0 and column 0 are its own southernmost and westernmost; -1 and 64 are
+ * the border's. */
+static inline uint16_t image_tile_cell(const struct lm_tile *tile, int row, int column)
+{
+    return tile->points[row + LM_TILE_BORDER][column + LM_TILE_BORDER].cell;
+}
+
+/* One post of a tile, metres x 64: that at the south-west corner of the same cell. */
 static inline int64_t image_post_q6(const struct lm_tile *tile, int row, int column)
 {
-    return tile->base_m_q6 + ((int64_t)tile->points[row][column].post << tile->post_shift);
+    const uint16_t post = tile->points[row + LM_TILE_BORDER][column + LM_TILE_BORDER].post;
+    return tile->base_m_q6 + ((int64_t)post << tile->post_shift);
 }
 
 #endif

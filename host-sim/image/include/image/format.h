@@ -7,13 +7,12 @@
 
 #include <stdint.h>
 
-struct image_entry {
-    uint32_t record; /* UINT32_MAX: the image has no such tile */
-    uint32_t crc;    /* CRC-32C of entry number and record */
-};
+/* What every program says of an image of another version. */
+#define IMAGE_OTHER_VERSION_REMEDY                                                                 \
+    "`landmass-db convert OLD NEW` makes an image of this version from one of version 2"
 
-/* CRC-32C that belongs to directory entry `entry` when it holds `record`. */
-uint32_t image_entry_crc(uint32_t entry, uint32_t record);
+/* CRC-32C that belongs to a directory entry as number `number`. */
+uint32_t image_entry_crc(uint32_t number, const struct lm_tile_entry *entry);
 
 /* "CLASSES" and so on; "unknown" for a type of a later version. */
 const char *image_section_name(uint32_t type);

@@ -29,8 +29,8 @@ struct image {
     struct lm_db db; /* as the firmware holds it, without a flash */
     const struct lm_image_section
         *sections[LM_IMAGE_SECTION_TYPES]; /* in `header`; by type, [0] unused; NULL: not there */
-    const struct image_entry *entries;
-    const struct lm_tile *tiles;
+    const struct lm_tile_entry *entries;
+    const struct lm_tile *tiles; /* the first; the builder puts them one after the other */
     /* db.target_count, signature_count and chip_count of them, their contents not yet checked */
     const struct lm_target *targets;
     const struct lm_signature *signatures;
@@ -56,12 +56,16 @@ int image_open(struct image *image, const char *path);
 /* Unmap the file. What the pointers led to is gone; a lent image stays the caller's. */
 void image_close(struct image *image);
 
-/* The directory's record number for a tile, after checking the entry's CRC and bound; UINT32_MAX
- * when the image has no such tile or the entry is damaged. */
-uint32_t image_record(const struct image *image, uint8_t level, uint32_t row, uint32_t column);
+/* The record of a directory entry, its bounds checked as lm_db_entry_check does and nothing else;
+ * NULL when the image has no such tile or the entry is damaged. */
+const struct lm_tile *image_entry_tile(const struct image *image, uint32_t entry);
 
-/* Offset of a record in the image. */
-uint64_t image_record_offset(const struct image *image, uint32_t record);
+/* The same of the tile at a place of the grid. */
+const struct lm_tile *image_find_tile(const struct image *image, uint8_t level, uint32_t row,
+                                      uint32_t column);
+
+/* Offset in the image of the record of an entry that has one. */
+uint64_t image_record_offset(const struct image *image, uint32_t entry);
 
 /* Does a band hold this tile, and which zone is it in? Returns the band or NULL. */
 const struct lm_band *image_band(const struct image *image, uint8_t level, uint32_t row);

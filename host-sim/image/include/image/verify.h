@@ -11,7 +11,7 @@ struct image_verify_counts {
 /* Check an image that was mapped or lent, noting each fault. A single flipped bit anywhere is
  * always noted. Returns 0 when every check could be made (with or without findings), -1 when the
  * tables are too damaged to go on or memory ran out, with a finding for it. Cost: each byte is read
- * about three times; 4 bytes of memory an entry and a record. */
+ * about three times; 4 bytes of memory an entry. */
 int image_verify(struct image *image, struct image_findings *findings,
                  struct image_verify_counts *counts);
 

@@ -22,6 +22,7 @@ struct image_writer {
     struct lm_classes classes;
     struct lm_band bands[LM_DB_BANDS_MAX];
     uint32_t *records;                      /* record number of each directory entry; owned */
+    uint32_t *entry_of;                     /* and of each record its entry; owned */
     struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
@@ -33,14 +34,16 @@ int image_writer_begin(struct image_writer *w, const char *path,
                        const struct lm_image_header *header, const struct lm_classes *classes,
                        const struct lm_band *bands);
 
-/* Append a tile and enter it as directory entry `entry`, which must not have been used. Fills in
- * tile->crc and `w->header.record_count`. Returns 0, or -1 with the error reported. */
-int image_writer_tile(struct image_writer *w, uint32_t entry, struct lm_tile *tile);
+/* Append a tile and enter it as directory entry `entry`, which must not have been used. Counts it
+ * in `w->header.record_count`. Border and checksum are made at the end, when all neighbours are
+ * known; cells of the border and posts of row 0 and column 0 may hold anything. Returns 0, or -1
+ * with the error reported. */
+int image_writer_tile(struct image_writer *w, uint32_t entry, const struct lm_tile *tile);
 
-/* Finish: directory, manifest and header. `manifest` is text to which the SHA-256 of the other
- * sections is added. Title, centre, mean elevation and geoid are taken from w->header, targets and
- * signatures from w->targets and w->signatures, where the caller has put them. Returns 0, or -1
- * with the error reported; either way the writer is done with. */
+/* Finish: borders of tiles, directory, manifest and header. `manifest` is text to which the SHA-256
+ * of the other sections is added. Title, centre, mean elevation and geoid are taken from w->header,
+ * targets and signatures from w->targets and w->signatures, where the caller has put them. Returns
+ * 0, or -1 with the error reported; either way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 
 /* Give up: nothing is left of the file. Harmless after image_writer_end. */

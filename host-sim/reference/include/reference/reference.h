@@ -78,10 +78,11 @@ struct ref_db {
     const struct lm_classes *classes;
     const struct lm_band *bands;
     const uint8_t *directory, *records;
+    uint64_t tiles_bytes; /* of `records` */
     uint32_t band_count, entry_count, record_count, level_count, shift0;
     double mean_elevation_m, geoid_m;
     struct ref_place centre;
-    uint8_t *verdicts; /* owned: by record, whether its checksum was found good */
+    uint8_t *verdicts; /* owned: by entry, whether its record's checksum was found good */
 };
 
 /* Read and check header, classes, bands and the bounds of everything. Records are checked when

@@ -43,7 +43,7 @@ static void fill_powers(double *power, uint8_t shape_log2, uint8_t looks_log2)
     struct lm_texture_config config = all_none;
     config.shape_log2[LM_KIND_STRUCTURE] = shape_log2;
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
+    lm_texture_set(&texture, &config, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE, 0);
     for (uint32_t row = 0; row < SIDE; row++) {
         const struct lm_noise_key rough = lm_noise_key_of(LM_NOISE_TEXTURE, row, 77);
         const struct lm_noise_key speckle = lm_noise_key_of(LM_NOISE_SPECKLE, row, 77);
@@ -99,7 +99,8 @@ static int32_t gain_q8(const struct lm_texture *texture, uint32_t cell, uint32_t
 TEST(kinds_without_texture_keep_their_level_to_the_bit)
 {
     struct lm_texture texture;
-    lm_texture_set(&texture, &lm_radar_default.texture, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
+    lm_texture_set(&texture, &lm_radar_default.texture, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE,
+                   0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
         const uint8_t kind = tiny_classes()->entry[class_index].kind;
         if (lm_radar_default.texture.shape_log2[kind] != LM_TEXTURE_NONE) {
@@ -123,7 +124,7 @@ TEST(each_class_gains_a_draw_of_its_own_shape)
     struct lm_texture texture;
     struct hs_rng rng;
     hs_rng_seed(&rng, 8);
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_OF_IMAGE, 0);
+    lm_texture_set(&texture, &config, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE, 0);
     assert_int_equal(texture.shape_count, 3);
     for (uint32_t column = 0; column < 200; column++) {
         const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, column, 9);
@@ -147,7 +148,7 @@ TEST(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each)
 {
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_texture texture;
-        lm_texture_set(&texture, &all_none, tiny_classes(), (uint8_t)sea, 0);
+        lm_texture_set(&texture, &all_none, tiny_classes(), 0, (uint8_t)sea, 0);
         const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_TEXTURE, (uint32_t)sea, 1);
         const uint32_t cell[ROOM] = {cell_of(TINY_WATER), cell_of(TINY_SOIL),
                                      cell_of(TINY_STRUCTURE), cell_of(TINY_TREES)};
@@ -167,8 +168,8 @@ TEST(a_loss_is_taken_off_every_class)
     static const uint16_t losses_q8[] = {35 * 256, LM_TEXTURE_LOSS_MAX_DB_Q8, UINT16_MAX};
     for (size_t n = 0; n < 3; n++) {
         struct lm_texture whole, less;
-        lm_texture_set(&whole, &config, tiny_classes(), 0, 0);
-        lm_texture_set(&less, &config, tiny_classes(), 0, losses_q8[n]);
+        lm_texture_set(&whole, &config, tiny_classes(), 0, 0, 0);
+        lm_texture_set(&less, &config, tiny_classes(), 0, 0, losses_q8[n]);
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
             const int32_t lost =
                 gain_q8(&whole, cell_of(i), i, 0) - gain_q8(&less, cell_of(i), i, 0);
@@ -189,7 +190,7 @@ TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
     }
     const struct lm_texture_config config = {{0, 0, 0, 0}};
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, tiny_classes(), LM_SEA_STATE_MAX, 0);
+    lm_texture_set(&texture, &config, tiny_classes(), 0, LM_SEA_STATE_MAX, 0);
     for (uint32_t class_index = 0; class_index < LM_DB_CLASSES; class_index++) {
         for (uint32_t n = 0; n < 4000; n++) {
             const int32_t level =
@@ -200,6 +201,23 @@ TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
     }
 }
 
+TEST(a_class_has_its_gain_in_the_lod_that_the_map_is_read_from)
+{
+    struct lm_classes classes = *tiny_classes();
+    classes.entry[TINY_STRUCTURE].lod_gain_db_q8[3] = 5 * 256;
+    classes.entry[TINY_WATER].lod_gain_db_q8[3] = -2 * 256;
+    classes.entry[TINY_SOIL].lod_gain_db_q8[15] = INT16_MAX; /* more than a gain may be */
+    for (uint8_t lod = 0; lod < LM_DB_LODS_MAX; lod++) {
+        struct lm_texture t;
+        lm_texture_set(&t, &all_none, &classes, lod, LM_SEA_STATE_OF_IMAGE + 1, 256);
+        const int32_t on = lod == 3;
+        assert_int_equal(gain_q8(&t, TINY_STRUCTURE << 4, 0, 0), on * 5 * 256 - 256);
+        assert_int_equal(gain_q8(&t, TINY_WATER << 4, 0, 0), 5 * 256 - on * 2 * 256 - 256);
+        assert_int_equal(gain_q8(&t, TINY_SOIL << 4, 0, 0),
+                         (lod == 15) * LM_CLASS_GAIN_MAX_DB_Q8 - 256);
+    }
+}
+
 TEST(a_hostile_table_reads_nothing_but_the_tables)
 {
     struct lm_texture_config config;
@@ -207,11 +225,12 @@ TEST(a_hostile_table_reads_nothing_but_the_tables)
     memset(&config, 0xff, sizeof config);
     memset(&classes, 0xff, sizeof classes);
     struct lm_texture texture;
-    lm_texture_set(&texture, &config, &classes, 255, 0);
+    lm_texture_set(&texture, &config, &classes, 0, 255, 0);
     assert_int_equal(texture.shape_count, 0);
     for (uint32_t i = 0; i < 16; i++) {
         assert_int_equal(lm_texture_shape(texture.of_class[i]), LM_TEXTURE_NONE);
-        assert_int_equal(gain_q8(&texture, 0xffffff0fu | i << 4, i, 0), 0);
+        /* The class's gain in the LOD, 0xffff, is -1/256 dB. */
+        assert_int_equal(gain_q8(&texture, 0xffffff0fu | i << 4, i, 0), -1);
     }
 }
 

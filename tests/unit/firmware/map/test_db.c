@@ -1,5 +1,6 @@
 /* Nothing in the image is believed before it was checked. */
 #include "lm/db.h"
+#include "lm/image.h"
 
 #include "check.h"
 #include "fx/crc32c.h"
@@ -92,7 +93,7 @@ TEST(hostile_headers_never_lead_outside_the_flash)
         memcpy(copy, image.bytes, image.size);
         for (int n = 0; n < 3; n++) {
             const uint32_t at = hs_rng_below(&rng, 3)
-                                    ? hs_rng_below(&rng, 508)
+                                    ? hs_rng_below(&rng, LM_DB_HEADER_BYTES - 4)
                                     : (uint32_t)image.bands_offset + hs_rng_below(&rng, 24);
             const uint64_t value = hs_rng_u64(&rng) >> hs_rng_below(&rng, 64);
             memcpy(copy + at, &value, 1u << hs_rng_below(&rng, 3));
@@ -108,15 +109,16 @@ TEST(hostile_headers_never_lead_outside_the_flash)
                 memcpy(copy + 64 + 24 * s + 4, &crc, 4);
             }
         }
-        const uint32_t crc = fx_crc32c(0, copy, 508);
-        memcpy(copy + 508, &crc, 4);
+        const uint32_t crc = fx_crc32c(0, copy, LM_DB_HEADER_BYTES - 4);
+        memcpy(copy + LM_DB_HEADER_BYTES - 4, &crc, 4);
         struct lm_db db;
         if (open_bytes(&db, copy, image.size) != LM_OK) {
             continue;
         }
         accepted++;
-        assert_true(db.directory_offset + 8u * (uint64_t)db.entry_count <= image.size);
-        assert_true(db.records_offset + (uint64_t)db.record_count * LM_TILE_BYTES <= image.size);
+        assert_true(lm_db_entry_offset(&db, db.entry_count) <= image.size);
+        assert_true(db.records_offset + (uint64_t)db.tiles_size * LM_DB_PLACE_BYTES <= image.size);
+        assert_true(db.detail_offset + (uint64_t)db.detail_size * LM_DB_PLACE_BYTES <= image.size);
         assert_in_range(db.shift0 + db.lod_count, 1, LM_DB_SHIFT_MAX + 1);
         for (uint32_t i = 0; i < db.band_count; i++) {
             const struct lm_band *b = &db.bands[i];
@@ -146,15 +148,66 @@ TEST(heights_beyond_16_km_in_the_header_are_refused)
     }
 }
 
-TEST(a_newer_version_is_told_from_damage)
+TEST(another_version_is_told_from_damage)
 {
     struct tiny_image image;
     struct lm_db db;
     build(&image);
-    image.bytes[8] = LM_DB_VERSION + 1;
+    for (int other = -1; other <= 1; other += 2) {
+        image.bytes[8] = (uint8_t)(LM_DB_VERSION + other); /* whatever its checksum says */
+        assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_ERR_VERSION);
+    }
+    tiny_image_free(&image);
+}
+
+TEST(a_top_that_is_not_resident_whole_is_refused_as_another_version)
+{
+    struct tiny_image image;
+    struct lm_db db;
+    build(&image);
+    image.bytes[offsetof(struct lm_image_header, top)] = 1;
+    assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_ERR_CORRUPT);
     tiny_image_seal(&image);
     assert_int_equal(open_bytes(&db, image.bytes, image.size), LM_ERR_VERSION);
     tiny_image_free(&image);
+}
+
+static uint32_t entry_crc(uint32_t number, const struct lm_tile_entry *e)
+{
+    return fx_crc32c(fx_crc32c(0, &number, sizeof number), e, 12);
+}
+
+TEST(an_entry_leads_to_a_whole_raw_record_and_to_detail_inside_its_section)
+{
+    enum { RAW = LM_TILE_BYTES / LM_DB_PLACE_BYTES, NONE = -1 };
+    static const struct {
+        struct lm_tile_entry entry;
+        int status;
+    } cases[] = {
+        {{0, RAW, 0, 0, LM_TILE_ABSENT, 0}, LM_OK},
+        {{2 * RAW, RAW, 0, 0, LM_TILE_ABSENT, 0}, LM_OK},
+        {{5, RAW, 0, 0, LM_TILE_ABSENT, 0}, LM_OK}, /* anywhere in TILES */
+        {{2 * RAW + 1, RAW, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{UINT32_MAX - 1, RAW, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, RAW - 1, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, RAW + 1, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, 0, 0, 0, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+        {{0, RAW, 1, 0, LM_TILE_ABSENT, 0}, LM_ERR_VERSION},
+        {{0, 7, 255, 0, LM_TILE_ABSENT, 0}, LM_ERR_VERSION},
+        {{LM_TILE_ABSENT, 0, 0, 0, LM_TILE_ABSENT, 0}, LM_OK},
+        {{0, RAW, 0, 4, 6, 0}, LM_OK},
+        {{0, RAW, 0, 4, 7, 0}, LM_ERR_CORRUPT},
+        {{0, RAW, 0, 4, UINT32_MAX - 1, 0}, LM_ERR_CORRUPT},
+        {{0, RAW, 0, 0, 3, 0}, LM_ERR_CORRUPT},
+        {{0, RAW, 0, 1, LM_TILE_ABSENT, 0}, LM_ERR_CORRUPT},
+    };
+    const struct lm_db db = {.tiles_size = 3 * RAW, .detail_size = 10};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_tile_entry e = cases[i].entry;
+        e.crc = entry_crc(7, &e);
+        assert_int_equal(lm_db_entry_check(&db, 7, &e), cases[i].status);
+        assert_int_equal(lm_db_entry_check(&db, 8, &e), LM_ERR_CORRUPT); /* not this entry's */
+    }
 }
 
 TEST(failing_and_hanging_flash_is_an_io_error)

@@ -54,15 +54,14 @@ static const struct lm_tile *find_tile(const struct world *w, uint32_t level, ui
                                        uint32_t column)
 {
     const int64_t entry = lm_db_entry(&w->map.db, (uint8_t)level, row, column);
-    uint32_t record = UINT32_MAX;
+    uint32_t place = UINT32_MAX;
     if (entry >= 0) {
-        memcpy(&record, w->map.image.bytes + w->map.image.directory_offset + (size_t)entry * 8, 4);
+        memcpy(&place, w->map.image.bytes + w->map.image.directory_offset + (size_t)entry * 16, 4);
     }
-    return record == UINT32_MAX
-               ? NULL
-               : (const struct lm_tile *)(const void *)(w->map.image.bytes +
-                                                        w->map.image.tiles_offset +
-                                                        (size_t)record * LM_TILE_BYTES);
+    return place == UINT32_MAX ? NULL
+                               : (const struct lm_tile *)(const void *)(w->map.image.bytes +
+                                                                        w->map.image.tiles_offset +
+                                                                        (size_t)place * 64);
 }
 
 /* What the image says at a place, in BAM with a fraction, from the finest level not below `level`
@@ -88,7 +87,7 @@ static struct ground ground_at(const struct world *w, uint32_t level, double lat
         if (t == NULL) {
             continue;
         }
-        const uint32_t r = row % 64, c = column % 64;
+        const uint32_t r = row % 64 + 1, c = column % 64 + 1;
         const double v = y - floor(y), u = x - floor(x);
         const double step_m = ldexp(1, t->post_shift) / 64;
         const double sw = t->points[r][c].post, se = t->points[r][c + 1].post,

@@ -156,14 +156,16 @@ TEST(any_flipped_bit_in_a_record_or_entry_is_caught)
     const struct lm_band *b = finest_band(f);
     const int64_t entry = lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
     assert_true(entry >= 0);
-    uint32_t record;
-    uint8_t *entry_bytes = f->image.bytes + f->image.directory_offset + 8 * (size_t)entry;
-    memcpy(&record, entry_bytes, 4);
-    uint8_t *record_bytes = f->image.bytes + f->image.tiles_offset + (size_t)record * LM_TILE_BYTES;
+    enum { ENTRY_BITS = 8 * sizeof(struct lm_tile_entry), RECORD_BITS = 200 };
+    uint32_t place;
+    uint8_t *entry_bytes = f->image.bytes + lm_db_entry_offset(&f->db, (uint32_t)entry);
+    memcpy(&place, entry_bytes, 4);
+    uint8_t *record_bytes =
+        f->image.bytes + f->image.tiles_offset + (size_t)place * LM_DB_PLACE_BYTES;
     uint32_t faults = 0;
-    for (uint32_t i = 0; i < 64 + 200; i++) {
-        const uint32_t bit = i < 64 ? i : (i - 64) * 667u % (LM_TILE_BYTES * 8u);
-        uint8_t *byte = (i < 64 ? entry_bytes : record_bytes) + bit / 8;
+    for (uint32_t i = 0; i < ENTRY_BITS + RECORD_BITS; i++) {
+        const uint32_t bit = i < ENTRY_BITS ? i : (i - ENTRY_BITS) * 667u % (LM_TILE_BYTES * 8u);
+        uint8_t *byte = (i < ENTRY_BITS ? entry_bytes : record_bytes) + bit / 8;
         *byte = (uint8_t)(*byte ^ 1u << bit % 8);
         free(f->pool);
         assert_int_equal(open_cache(f), LM_OK);
@@ -175,7 +177,7 @@ TEST(any_flipped_bit_in_a_record_or_entry_is_caught)
         assert_true(tile->lod > 0);
         *byte = (uint8_t)(*byte ^ 1u << bit % 8);
     }
-    assert_int_equal(faults, 264);
+    assert_int_equal(faults, ENTRY_BITS + RECORD_BITS);
     free_fixture(f);
 }
 
@@ -184,8 +186,9 @@ TEST(a_record_that_answers_for_another_tile_is_refused)
     struct fixture *f = make_fixture();
     const struct lm_band *b = finest_band(f);
     uint8_t *directory = f->image.bytes + f->image.directory_offset;
-    const size_t one = 8 * (size_t)lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
-    const size_t two = 8 * (size_t)lm_db_entry(&f->db, 0, b->row0 + 4, b->column0 + 1);
+    const size_t bytes = sizeof(struct lm_tile_entry);
+    const size_t one = bytes * (size_t)lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
+    const size_t two = bytes * (size_t)lm_db_entry(&f->db, 0, b->row0 + 4, b->column0 + 1);
     memcpy(directory + one, directory + two, 4); /* with its checksum put right */
     tiny_image_seal(&f->image);
     free(f->pool);
@@ -193,6 +196,23 @@ TEST(a_record_that_answers_for_another_tile_is_refused)
     get(f, 1, 1);
     serve(f, 0);
     assert_int_equal(f->cache.count.corrupt, 1);
+    assert_true(get(f, 1, 1)->lod > 0);
+    free_fixture(f);
+}
+
+TEST(a_record_of_an_unknown_encoding_is_refused_and_counted)
+{
+    struct fixture *f = make_fixture();
+    const struct lm_band *b = finest_band(f);
+    const int64_t entry = lm_db_entry(&f->db, 0, b->row0 + 1, b->column0 + 1);
+    f->image.bytes[lm_db_entry_offset(&f->db, (uint32_t)entry) + 6] = 3;
+    tiny_image_seal(&f->image);
+    free(f->pool);
+    assert_int_equal(open_cache(f), LM_OK);
+    get(f, 1, 1);
+    serve(f, 0);
+    assert_int_equal(f->cache.count.corrupt, 1);
+    assert_int_equal(f->cache.count.encodings, 1);
     assert_true(get(f, 1, 1)->lod > 0);
     free_fixture(f);
 }

@@ -92,7 +92,7 @@ struct with_signatures {
 static inline void seal_image(struct with_signatures *w)
 {
     put(w->bytes + w->head_at + 60, fx_crc32c(0, w->bytes + w->head_at, 60), 4);
-    put(w->bytes + 508, fx_crc32c(0, w->bytes, 508), 4);
+    put(w->bytes + HEADER_CRC_AT, fx_crc32c(0, w->bytes, HEADER_CRC_AT), 4);
 }
 
 static inline void add_signatures(struct with_signatures *w, const struct tiny_image *image)

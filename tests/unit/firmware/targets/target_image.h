@@ -7,7 +7,13 @@
 
 #include <stdlib.h>
 
-enum { TARGETS = 3, SECTION_TABLE = 64, SECTION_ENTRY = 24, SECTION_COUNT_AT = 56 };
+enum {
+    TARGETS = 3,
+    SECTION_TABLE = 64,
+    SECTION_ENTRY = 24,
+    SECTION_COUNT_AT = 56,
+    HEADER_CRC_AT = 1020
+};
 
 /* A tiny image with a section TARGETS behind everything else: three times the target, with ids
  * 0..2. */
@@ -23,7 +29,7 @@ static inline void put(uint8_t *at, uint64_t value, size_t bytes)
 
 static inline void seal_header(struct with_targets *w)
 {
-    put(w->bytes + 508, fx_crc32c(0, w->bytes, 508), 4);
+    put(w->bytes + HEADER_CRC_AT, fx_crc32c(0, w->bytes, HEADER_CRC_AT), 4);
 }
 
 static inline void seal_head(struct with_targets *w)

@@ -60,10 +60,9 @@ static uint16_t cell_at(const struct image *image, uint8_t level, double latitud
     const int64_t up = image_bam(latitude) + IMAGE_BAM_QUARTER;
     const uint32_t east = (uint32_t)image_bam(longitude), row = (uint32_t)(up >> (shift + 6));
     const int east_shift = shift + image_row_zone(shift, row);
-    const uint32_t record = image_record(image, level, row, east >> (east_shift + 6));
-    return record == UINT32_MAX
-               ? IMAGE_CELL_NONE
-               : image->tiles[record].points[up >> shift & 63][east >> east_shift & 63].cell;
+    const struct lm_tile *t = image_find_tile(image, level, row, east >> (east_shift + 6));
+    return t == NULL ? IMAGE_CELL_NONE
+                     : image_tile_cell(t, up >> shift & 63, (int)(east >> east_shift & 63));
 }
 
 /* ---- known rasters ---- */
@@ -159,7 +158,7 @@ static long compare_cover(const struct image *image)
             if (!is_inside || edge_x < 0.01 || edge_y < 0.01) {
                 continue;
             }
-            const uint16_t cell = t->points[k / CELLS][k % CELLS].cell;
+            const uint16_t cell = image_tile_cell(t, k / CELLS, k % CELLS);
             const long column = (long)floor(x), row = (long)floor(y);
             assert_int_equal(image_cell_class(cell), class_of(column, row));
             assert_true(image_gamma_db(image_cell_gamma(cell)) == gamma_of(column, row));
@@ -560,13 +559,9 @@ TEST(the_firmware_opens_the_image_and_accepts_every_tile)
     for (uint32_t i = 0; i < image.header.record_count; i++) {
         const struct lm_tile *t = &image.tiles[i];
         const int64_t entry = lm_db_entry(&db, t->lod, t->row, t->column);
-        uint32_t record;
         assert_true(entry >= 0);
-        assert_int_equal(lm_db_entry_check(&db, (uint32_t)entry,
-                                           image.bytes + db.directory_offset + (uint64_t)entry * 8,
-                                           &record),
-                         LM_OK);
-        assert_int_equal(record, i);
+        assert_int_equal(lm_db_entry_check(&db, (uint32_t)entry, &image.entries[entry]), LM_OK);
+        assert_true(image_find_tile(&image, t->lod, t->row, t->column) == t);
         assert_int_equal(lm_tile_check(t, t->lod, t->row, t->column), LM_OK);
     }
     image_close(&image);
@@ -700,7 +695,7 @@ TEST(inspect_verify_and_picture_say_what_is_in_the_image)
                                  scene_path("a.lmdb")),
                      0);
     assert_int_equal(scene_run("verify %s", scene_path("a.lmdb")), 1);
-    assert_true(scene_log_holds("record 1: its checksum does not fit it"));
+    assert_true(scene_log_holds("tile of entry 17: its checksum does not fit it"));
     assert_int_equal(scene_run("verify %s", scene_path("classes.tif")), 1);
     assert_int_equal(scene_run("inspect %s", scene_path("classes.tif")), 1);
     assert_int_equal(scene_run("verify"), 2);

@@ -359,7 +359,7 @@ TEST(no_damage_makes_the_reader_step_outside_the_image)
         if (trial % 4 != 0) {
             /* Only where the sections still lie: the others keep their wrong checksums. */
             const uint8_t *h = tiny.bytes;
-            if (memcmp(h, sound, 64) == 0 && memcmp(h + 64, sound + 64, 384) == 0) {
+            if (memcmp(h, sound, 64) == 0 && memcmp(h + 64, sound + 64, 768) == 0) {
                 tiny_image_seal(&tiny);
             }
         }
@@ -384,9 +384,9 @@ static struct lm_tile *record_of(struct tiny_image *image, uint32_t number)
                                       (size_t)number * LM_TILE_BYTES);
 }
 
-static uint32_t *entry_of(struct tiny_image *image, uint32_t number)
+static struct lm_tile_entry *entry_of(struct tiny_image *image, uint32_t number)
 {
-    return (uint32_t *)(void *)(image->bytes + image->directory_offset + (size_t)number * 8);
+    return (struct lm_tile_entry *)(void *)(image->bytes + image->directory_offset) + number;
 }
 
 static void say_another_row(struct tiny_image *i)
@@ -399,7 +399,7 @@ static void say_another_zone(struct tiny_image *i)
 }
 static void swap_two_entries(struct tiny_image *i)
 {
-    const uint32_t first = *entry_of(i, 0);
+    const struct lm_tile_entry first = *entry_of(i, 0);
     *entry_of(i, 0) = *entry_of(i, 1);
     *entry_of(i, 1) = first;
 }
@@ -409,15 +409,63 @@ static void point_twice(struct tiny_image *i)
 }
 static void point_beyond(struct tiny_image *i)
 {
-    *entry_of(i, 0) = i->record_count;
+    entry_of(i, 0)->place = i->record_count * (LM_TILE_BYTES / LM_DB_PLACE_BYTES) - 1;
 }
 static void lose_a_parent(struct tiny_image *i)
 {
-    *entry_of(i, i->entry_count - 1) = UINT32_MAX;
+    *entry_of(i, i->entry_count - 1) =
+        (struct lm_tile_entry){.place = LM_TILE_ABSENT, .detail_place = LM_TILE_ABSENT};
+}
+static void keep_the_size_of_an_absent_tile(struct tiny_image *i)
+{
+    entry_of(i, 0)->place = LM_TILE_ABSENT;
+}
+static void use_an_unknown_encoding(struct tiny_image *i)
+{
+    entry_of(i, 0)->encoding = 1;
+}
+static void shorten_a_record(struct tiny_image *i)
+{
+    entry_of(i, 0)->size--;
+}
+static void point_to_detail_that_is_not_there(struct tiny_image *i)
+{
+    entry_of(i, 0)->detail_place = 0;
+    entry_of(i, 0)->detail_size = 1;
+}
+static void miscount_the_records(struct tiny_image *i)
+{
+    ((struct lm_image_header *)(void *)i->bytes)->record_count--;
+}
+static void paint_the_border(struct tiny_image *i)
+{
+    record_of(i, 0)->points[0][7].cell ^= 0x0100;
+}
+static void lower_the_border(struct tiny_image *i)
+{
+    /* Of the north-eastern tile: its neighbours to the south and the west are there. */
+    for (uint32_t k = 0; k < i->record_count; k++) {
+        struct lm_tile *t = record_of(i, k);
+        if (t->lod == 0 && t->row > record_of(i, 0)->row && t->column > record_of(i, 0)->column) {
+            t->points[0][7].post ^= 0x0100;
+        }
+    }
+}
+static void raise_what_is_under(struct tiny_image *i)
+{
+    record_of(i, 0)->under = 0x5001;
+}
+static void face_nowhere(struct tiny_image *i)
+{
+    ((struct lm_classes *)(void *)(i->bytes + i->classes_offset))->entry[0].facing = 9;
+}
+static void leave_the_top_behind(struct tiny_image *i)
+{
+    ((struct lm_image_header *)(void *)i->bytes)->top = 1;
 }
 static void lift_a_corner(struct tiny_image *i)
 {
-    record_of(i, 0)->points[LM_TILE_CELLS][LM_TILE_CELLS].post ^= 0x0040;
+    record_of(i, 0)->points[LM_TILE_POSTS][LM_TILE_POSTS].post ^= 0x0040;
 }
 static void raise_the_base(struct tiny_image *i)
 {
@@ -437,7 +485,7 @@ static void brighten_a_cell(struct tiny_image *i)
 }
 static void fill_a_gap(struct tiny_image *i)
 {
-    record_of(i, 0)->reserved1[4] = 1;
+    record_of(i, 0)->reserved2[4] = 1;
 }
 static void overlap_bands(struct tiny_image *i)
 {
@@ -466,6 +514,16 @@ TEST(a_lie_with_right_checksums_is_found)
         {"unused bytes", fill_a_gap},
         {"overlapping bands", overlap_bands},
         {"falling heights", fall_in_the_heights},
+        {"an absent tile with a size", keep_the_size_of_an_absent_tile},
+        {"an unknown encoding", use_an_unknown_encoding},
+        {"a short record", shorten_a_record},
+        {"detail outside its section", point_to_detail_that_is_not_there},
+        {"a wrong number of records", miscount_the_records},
+        {"a border cell that is not the neighbour's", paint_the_border},
+        {"a border post that is not the neighbour's", lower_the_border},
+        {"a cell under structures that has a height", raise_what_is_under},
+        {"a facing out of range", face_nowhere},
+        {"a top that is not resident whole", leave_the_top_behind},
     };
     for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
         struct tiny_image tiny;
@@ -508,13 +566,12 @@ TEST(a_tile_written_is_a_tile_the_firmware_reads)
     memory_flash_open(&flash, image.bytes, image.size_bytes);
     assert_int_equal(lm_db_open(&db, &flash.port, 4), LM_OK);
     assert_int_equal(lm_db_entry(&db, 0, tile.row, 5), 1);
-    uint32_t record = 9;
-    assert_int_equal(lm_db_entry_check(&db, 1, (const uint8_t *)&image.entries[1], &record), LM_OK);
-    assert_int_equal(record, 0);
+    assert_int_equal(lm_db_entry_check(&db, 1, &image.entries[1]), LM_OK);
+    assert_int_equal(image.entries[1].place, 0);
     memcpy(&read_back, &image.tiles[0], sizeof read_back);
     assert_int_equal(lm_tile_check(&read_back, 0, tile.row, 5), LM_OK);
-    assert_int_equal(lm_db_entry_check(&db, 2, (const uint8_t *)&image.entries[2], &record), LM_OK);
-    assert_int_equal(record, UINT32_MAX);
+    assert_int_equal(lm_db_entry_check(&db, 2, &image.entries[2]), LM_OK);
+    assert_true(image.entries[2].place == LM_TILE_ABSENT);
     image_close(&image);
     unlink(path);
 }
