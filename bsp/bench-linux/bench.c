@@ -49,7 +49,7 @@ static void report_refusal(struct bench *b, const struct lm_radar *radar, int st
     }
 }
 
-int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
+int bench_open(struct bench *b, const char *database, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus, const struct lm_controls *controls)
 {
     memset(b, 0, sizeof *b);
@@ -59,8 +59,8 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
         return -1;
     }
     b->display = (struct lm_display){.ctx = b,
-                                     .width_px = width_px,
-                                     .height_px = height_px,
+                                     .width_px = glass->width_px,
+                                     .height_px = glass->height_px,
                                      .acquire = acquire,
                                      .present = present};
     b->board = (struct lm_board){.radar = &lm_radar_default,
@@ -72,6 +72,7 @@ int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_
                                  .controls = controls,
                                  .display = &b->display,
                                  .noise_seed = noise_seed,
+                                 .options = glass->options,
                                  .flash_poll_limit = 1000};
     const int status = lend_memory(b) == 0 ? lm_unit_init(b->unit, &b->board) : LM_ERR_NO_MEMORY;
     if (status != LM_OK) {

@@ -25,11 +25,17 @@ struct bench_bus {
     uint8_t node;                         /* the unit's own CANaerospace node; 0: it only listens */
 };
 
+/* Display of the unit. */
+struct bench_glass {
+    uint16_t width_px, height_px;
+    struct lm_glass_options options;
+};
+
 /* Open the database, a file, and initialise the unit, which is then ready for lm_unit_step. The
  * ports in `bus`, and `controls`, stay borrowed until bench_close. Returns 0; or -1, with the cause
  * in b->error and nothing open. A database that the firmware cannot use is no error: the unit runs,
  * the glass shows it, and unit->map.is_usable is false. */
-int bench_open(struct bench *b, const char *database, uint16_t width_px, uint16_t height_px,
+int bench_open(struct bench *b, const char *database, const struct bench_glass *glass,
                uint32_t noise_seed, const struct bench_bus *bus,
                const struct lm_controls *controls);
 

@@ -47,8 +47,10 @@ struct config {
     uint32_t glass; /* enum config_glass */
     char glass_card[CONFIG_PATH], glass_framebuffer[CONFIG_PATH], glass_connector[CONFIG_NAME];
     struct config_size glass_mode, glass_picture;
-    uint32_t glass_turn;   /* enum drv_turn */
-    uint32_t glass_format; /* enum drv_format */
+    uint32_t glass_turn;                                 /* enum drv_turn */
+    uint32_t glass_format;                               /* enum drv_format */
+    uint32_t glass_sector;                               /* 1: whole */
+    uint32_t glass_heading, glass_strobe, glass_borders; /* 1: on */
 
     char key[CONFIG_KEYS][CONFIG_NAME]; /* names of lines; [0] is button 1 */
     uint32_t key_active_low;

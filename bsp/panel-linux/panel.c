@@ -100,6 +100,10 @@ static int start_unit(struct panel *p, const struct lm_flash *flash)
                                  .display = &p->glass.port,
                                  .tile_pool_bytes = p->config->tiles * sizeof(struct lm_tile),
                                  .noise_seed = p->config->seed,
+                                 .options = {.is_sector_whole = p->config->glass_sector != 0,
+                                             .has_heading = p->config->glass_heading != 0,
+                                             .has_strobe = p->config->glass_strobe != 0,
+                                             .has_borders = p->config->glass_borders != 0},
                                  .flash_poll_limit = START_POLLS};
     p->board.tile_pool = calloc(1, p->board.tile_pool_bytes);
     p->board.plane = calloc(1, pixels);

@@ -17,11 +17,34 @@ void lm_cursor_stabilise(struct lm_cursor *c)
     c->is_snowplow = c->is_home = false;
 }
 
-/* The nearest offset within the sector's circle and not behind the aircraft. */
-static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px)
+/* Part of a sector that a cursor may stand in, pixels * 256 from the apex. */
+struct part {
+    int32_t aside_px_q8, low_px_q8, high_px_q8;
+};
+
+/* What the frame shows of the sector. */
+static struct part shown_part(const struct lm_view *v)
+{
+    return (struct part){lm_px_q8_of_px(v->aside_px), 0, lm_px_q8_of_px(v->above_px)};
+}
+
+/* What slewing reaches: 0.95 of half the frame's height to each side of its middle, and as much
+ * from the line straight ahead. [FreeFalcon] caps its cursor so, gmscope.cpp 1320. */
+static struct part slewed_part(const struct lm_view *v)
+{
+    const struct part shown = shown_part(v);
+    const int32_t high_px_q8 = shown.high_px_q8;
+    return (struct part){fx_min_i32(shown.aside_px_q8 - 256, high_px_q8 * 475 / 1000),
+                         high_px_q8 * 25 / 1000, high_px_q8 * 975 / 1000};
+}
+
+/* The nearest offset within a part of the sector and its circle. */
+static struct lm_offset within_sector(struct lm_offset o, int32_t radius_px,
+                                      const struct part *part)
 {
     const int64_t radius_px_q8 = lm_px_q8_of_px(radius_px);
-    o.y_px_q8 = fx_max_i32(o.y_px_q8, 0);
+    o.x_px_q8 = fx_clamp_i32(o.x_px_q8, -part->aside_px_q8, part->aside_px_q8);
+    o.y_px_q8 = fx_clamp_i32(o.y_px_q8, part->low_px_q8, part->high_px_q8);
     const int64_t length_px_q8 = fx_hypot_u32(o.x_px_q8, o.y_px_q8);
     if (length_px_q8 > radius_px_q8) {
         o.x_px_q8 = (int32_t)(o.x_px_q8 * radius_px_q8 / length_px_q8);
@@ -40,9 +63,10 @@ static struct lm_offset within_square(struct lm_offset o, const struct lm_view *
         middle.y_px_q8 + fx_clamp_i32(o.y_px_q8 - middle.y_px_q8, -edge_px_q8, edge_px_q8)};
 }
 
-static struct lm_offset within(struct lm_offset o, const struct lm_view *view)
+static struct lm_offset within(struct lm_offset o, const struct lm_view *view,
+                               const struct part *part)
 {
-    return view->shape == LM_VIEW_SECTOR ? within_sector(o, view->radius_px)
+    return view->shape == LM_VIEW_SECTOR ? within_sector(o, view->radius_px, part)
                                          : within_square(o, view);
 }
 
@@ -63,7 +87,8 @@ static void slew(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     }
     o.x_px_q8 += step_px_q8(c->slew_x, scene->half_px) * scene->slew_percent / 100;
     o.y_px_q8 += step_px_q8(c->slew_y, scene->half_px) * scene->slew_percent / 100;
-    c->position = lm_view_position(scene->view, within(o, scene->view));
+    const struct part part = slewed_part(scene->view);
+    c->position = lm_view_position(scene->view, within(o, scene->view, &part));
     c->is_home = false;
 }
 
@@ -92,7 +117,8 @@ void lm_cursor_locate(struct lm_cursor *c, const struct lm_cursor_scene *scene)
     if (c->is_on_glass) {
         /* A tolerance of one pixel: a position changes a little on its way from the glass to the
          * ground and back. */
-        const struct lm_offset o = within(c->offset, scene->view);
+        const struct part part = shown_part(scene->view);
+        const struct lm_offset o = within(c->offset, scene->view, &part);
         c->is_on_glass =
             fx_hypot_u32(o.x_px_q8 - c->offset.x_px_q8, o.y_px_q8 - c->offset.y_px_q8) <= 256;
     }

@@ -14,15 +14,20 @@ struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour)
     const int32_t shorter =
         surface->width_px < surface->height_px ? surface->width_px : surface->height_px;
     const int32_t dot_px = fx_clamp_i32((shorter + 60) / 240, 1, 4);
-    return (struct lm_pen){*surface, colour, dot_px, dot_px > 2 ? 2 : 1};
+    return (struct lm_pen){.surface = *surface,
+                           .clip = {0, 0, surface->width_px, surface->height_px},
+                           .colour = colour,
+                           .dot_px = dot_px,
+                           .line_px = dot_px > 2 ? 2 : 1};
 }
 
 void lm_draw_box(const struct lm_pen *pen, int32_t x, int32_t y, int32_t width, int32_t height)
 {
-    const int32_t right = fx_min_i32(x + width, pen->surface.width_px);
-    const int32_t bottom = fx_min_i32(y + height, pen->surface.height_px);
-    const int32_t left = fx_max_i32(x, 0);
-    for (int32_t row = fx_max_i32(y, 0); row < bottom; row++) {
+    const struct lm_clip *clip = &pen->clip;
+    const int32_t right = fx_min_i32(x + width, clip->right);
+    const int32_t bottom = fx_min_i32(y + height, clip->bottom);
+    const int32_t left = fx_max_i32(x, clip->left);
+    for (int32_t row = fx_max_i32(y, clip->top); row < bottom; row++) {
         uint32_t *out = pen->surface.pixels + (uint32_t)row * pen->surface.stride_px;
         for (int32_t column = left; column < right; column++) {
             out[column] = pen->colour;
@@ -35,14 +40,15 @@ struct dots {
     int32_t x, y, step_x, step_y, count;
 };
 
-/* True if a dot of the pen's line width at p is on the surface. */
-static bool is_on_surface(const struct lm_pen *pen, struct lm_point p)
+/* True if a dot of the pen's line width at p is within the clip. */
+static bool is_in_clip(const struct lm_pen *pen, struct lm_point p)
 {
-    return p.x >= 0 && p.x <= pen->surface.width_px - pen->line_px && p.y >= 0 &&
-           p.y <= pen->surface.height_px - pen->line_px;
+    const struct lm_clip *clip = &pen->clip;
+    return p.x >= clip->left && p.x <= clip->right - pen->line_px && p.y >= clip->top &&
+           p.y <= clip->bottom - pen->line_px;
 }
 
-/* Draw dots of one pixel, or two by two, that are all on the surface. Most lines consist of these,
+/* Draw dots of one pixel, or two by two, that are all within the clip. Most lines consist of these,
  * so they are not clipped one by one. */
 static void draw_dots_inside(const struct lm_pen *pen, struct dots d)
 {
@@ -70,7 +76,7 @@ void lm_draw_line(const struct lm_pen *pen, struct lm_point from, struct lm_poin
     /* |dx| and |dy| are below 2^14 (LM_DRAW_FAR), so the products stay below 2^30. */
     struct dots d = {from.x * 65536 + 32768, from.y * 65536 + 32768, dx * 65536 / steps,
                      dy * 65536 / steps, steps + 1};
-    if (pen->line_px <= 2 && is_on_surface(pen, from) && is_on_surface(pen, to)) {
+    if (pen->line_px <= 2 && is_in_clip(pen, from) && is_in_clip(pen, to)) {
         draw_dots_inside(pen, d);
         return;
     }

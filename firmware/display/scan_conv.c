@@ -1,6 +1,5 @@
 #include "lm/scan_conv.h"
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #include "fx/mem.h"
@@ -26,8 +25,11 @@ void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame)
     }
 }
 
-uint16_t lm_ppi_radius_px(const struct lm_frame *frame)
+uint16_t lm_ppi_radius_px(const struct lm_frame *frame, bool is_whole)
 {
+    if (!is_whole) {
+        return frame->height_px;
+    }
     /* A sector of +-60 degrees and radius r is sqrt 3 r wide and r high: 56756 / 65536 = sin 60. */
     const uint32_t by_width = ((uint32_t)frame->width_px << 15) / 56756u;
     return (uint16_t)(by_width < frame->height_px ? by_width : frame->height_px);

@@ -18,16 +18,33 @@ static uint32_t degrees_of(fx_bam_t angle)
     return lm_deg_of_bam(angle) % 360;
 }
 
+/* The pen of symbols of the picture, which end at the frame. */
+static struct lm_pen picture_pen(const struct lm_glass *g)
+{
+    const struct lm_frame *f = g->frame;
+    struct lm_pen pen = lm_symbol_pen(g);
+    pen.clip =
+        (struct lm_clip){f->left_px, f->top_px, f->left_px + f->width_px, f->top_px + f->height_px};
+    return pen;
+}
+
+/* Left edge of the frame's part that no label of the left keys reaches into. A label has at most
+ * five characters, from the second dot of the glass, and ground around them. */
+static int32_t beside_labels(const struct lm_glass *g, const struct lm_pen *pen)
+{
+    return fx_max_i32(g->frame->left_px, 2 * pen->dot_px + 5 * lm_column_px(pen) + pen->dot_px);
+}
+
 static void line(const struct lm_pen *pen, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
 {
     lm_draw_line(pen, (struct lm_point){x0, y0}, (struct lm_point){x1, y1});
 }
 
-/* Range arcs at a quarter, half and three quarters of the range (at 10 nm at the half alone), the
- * sector's edges, and the beam. */
+/* Range arcs at a quarter, half and three quarters of the range (at 10 nm at the half alone); as
+ * options the sector's edges and the beam. */
 static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    struct lm_pen pen = lm_symbol_pen(g);
+    struct lm_pen pen = picture_pen(g);
     const struct lm_spot apex = {lm_px_q8_of_px(s->view.at.x), lm_px_q8_of_px(s->view.at.y)};
     const int32_t radius = s->view.radius_px;
     const fx_bam_t half = s->azimuth_half;
@@ -35,26 +52,27 @@ static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
     for (int32_t quarter = first; quarter <= 4 - first; quarter++) {
         lm_draw_arc(&pen, apex, radius * quarter / 4, 0u - half, 2 * half);
     }
-    for (int32_t side = -1; side <= 1; side += 2) {
+    for (int32_t side = -1; s->options.has_borders && side <= 1; side += 2) {
         const fx_bam_t edge = (fx_bam_t)side * half;
         lm_draw_line(&pen, lm_ray_end(apex, edge, 1), lm_ray_end(apex, edge, radius));
     }
-    if (s->is_sweeping) {
+    if (s->is_sweeping && s->options.has_strobe) {
         pen.colour = g->palette->faint;
         const fx_bam_t beam = (fx_bam_t)s->antenna_azimuth;
         lm_draw_line(&pen, lm_ray_end(apex, beam, radius / 40), lm_ray_end(apex, beam, radius));
     }
 }
 
-/* Symbols of a window: a bracket 1,500 feet long at its upper left corner, and a small cross where
- * the cursor would be in the whole sector. */
+/* Symbols of a window: a bracket 1,500 feet long at its upper left corner, right of the gain, and a
+ * small cross where the cursor would be in the whole sector. */
 static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_pen pen = picture_pen(g);
     const int32_t dot = pen.dot_px;
     const int32_t length =
         (int32_t)(1500ull * LM_FOOT_UM * 256 / 1000 / s->view.scale_mm_per_px_q8);
-    const int32_t x = s->view.middle.x - s->view.radius_px + 4 * dot;
+    const int32_t square_left = s->view.middle.x - s->view.radius_px;
+    const int32_t x = fx_max_i32(square_left + 4 * dot, beside_labels(g, &pen) + 10 * dot);
     const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
     line(&pen, x, y, x + length, y);
     line(&pen, x, y, x, y + 3 * dot);
@@ -74,26 +92,27 @@ static int32_t scale_px(const struct lm_glass *g, int32_t angle)
     return (int32_t)(clamped * part_of_half(g, 720) / sixty);
 }
 
-/* The antenna's scales: azimuth along the bottom of the frame, elevation along its left side. Each
- * has ticks at every ten degrees up to thirty, and a T that points at the antenna's angle. */
+/* The antenna's scales: azimuth along the bottom of the frame, elevation along its left side,
+ * beside the labels. Each has ticks at every ten degrees up to thirty, and a T that points at the
+ * antenna's angle. */
 static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_pen pen = picture_pen(g);
     const int32_t dot = pen.dot_px, tick = 2 * dot, stem = 3 * dot;
     const int32_t middle_x = s->view.middle.x,
-                  bottom = g->frame->top_px + g->frame->height_px + dot;
-    const int32_t middle_y = g->surface.height_px / 2, left = g->frame->left_px;
+                  bottom = g->frame->top_px + g->frame->height_px - pen.line_px;
+    const int32_t middle_y = g->surface.height_px / 2, left = beside_labels(g, &pen);
     for (int32_t tens = -3; tens <= 3; tens++) {
         const int32_t at = scale_px(g, tens * (int32_t)FX_BAM_DEG(10));
-        line(&pen, middle_x + at, bottom, middle_x + at, bottom + tick);
+        line(&pen, middle_x + at, bottom - tick, middle_x + at, bottom);
         line(&pen, left, middle_y + at, left + tick, middle_y + at);
     }
     if (!s->is_sweeping) {
         return;
     }
     const int32_t x = middle_x + scale_px(g, s->antenna_azimuth);
-    const int32_t bar_y = bottom + tick + stem;
-    line(&pen, x, bottom + tick, x, bar_y);
+    const int32_t bar_y = bottom - tick - stem;
+    line(&pen, x, bar_y, x, bottom - tick);
     line(&pen, x - stem, bar_y, x + stem, bar_y);
     const int32_t y = middle_y - scale_px(g, s->antenna_elevation);
     const int32_t bar_x = left + tick + stem;
@@ -101,11 +120,11 @@ static void draw_antenna(const struct lm_glass *g, const struct lm_symbols *s)
     line(&pen, bar_x, y - stem, bar_x, y + stem);
 }
 
-/* The gain: a bracket beside OSB 20 with a caret. */
+/* The gain: a bracket beside the label of OSB 20, with a caret. */
 static void draw_gain(const struct lm_glass *g, int32_t gain_db)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
-    const int32_t dot = pen.dot_px, x = g->frame->left_px + 4 * dot;
+    const struct lm_pen pen = picture_pen(g);
+    const int32_t dot = pen.dot_px, x = beside_labels(g, &pen) + 4 * dot;
     const int32_t top = g->frame->top_px, high = part_of_half(g, 250);
     line(&pen, x, top, x, top + high);
     line(&pen, x, top, x + 3 * dot, top);
@@ -120,7 +139,7 @@ static void draw_gain(const struct lm_glass *g, int32_t gain_db)
  * if a finer one is offered. */
 static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_pen pen = picture_pen(g);
     const struct lm_frame *f = g->frame;
     const struct lm_point at = lm_view_point(&s->view, s->cursor);
     const int32_t right = f->left_px + f->width_px - 1, bottom = f->top_px + f->height_px - 1;
@@ -145,7 +164,7 @@ static void draw_cursor(const struct lm_glass *g, const struct lm_symbols *s)
 /* The steerpoint: a diamond. */
 static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_pen pen = picture_pen(g);
     const int32_t reach = part_of_half(g, 65) / 2;
     for (int32_t side = -1; side <= 1; side += 2) {
         line(&pen, at.x - reach, at.y, at.x, at.y + side * reach);
@@ -156,7 +175,7 @@ static void draw_steerpoint(const struct lm_glass *g, struct lm_point at)
 /* The ownship: a circle with a line twice its radius long in the direction of its heading. */
 static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
 {
-    const struct lm_pen pen = lm_symbol_pen(g);
+    const struct lm_pen pen = picture_pen(g);
     const struct lm_point at = lm_view_point(&s->view, s->ownship);
     const int32_t radius = part_of_half(g, 50);
     const struct lm_spot centre = lm_pixel_middle(at);
@@ -296,7 +315,7 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
             draw_window(g, s);
         }
         draw_antenna(g, s);
-        if (s->has_heading) {
+        if (s->has_heading && s->options.has_heading) {
             write_heading(g, s->heading);
         }
     }

@@ -8,9 +8,9 @@
 enum { FARTHEST_Q8 = LM_M_Q8(250000) };
 
 struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_view_from *from,
-                                 uint32_t range_m)
+                                 uint32_t range_m, bool is_whole)
 {
-    const uint16_t radius_px = lm_ppi_radius_px(frame);
+    const uint16_t radius_px = lm_ppi_radius_px(frame, is_whole);
     const struct lm_point apex = {frame->left_px + frame->width_px / 2,
                                   frame->top_px + frame->height_px};
     return (struct lm_view){
@@ -22,6 +22,8 @@ struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_v
         .middle = apex,
         .scale_mm_per_px_q8 = (uint32_t)((uint64_t)range_m * 256000u / radius_px),
         .radius_px = radius_px,
+        .aside_px = frame->width_px / 2,
+        .above_px = frame->height_px,
     };
 }
 

@@ -70,10 +70,14 @@ static void label_cell(const struct lm_page *p, struct lm_label *label)
     lm_label_set(label, "CELL", cells[p->cell_index].words);
 }
 
+/* In a sector the key is free: a patch begins with the cell of the one before. */
 static uint32_t press_cell(struct lm_page *p, int32_t step)
 {
+    if (!is_patch(p)) {
+        return 0;
+    }
     p->cell_index = (uint8_t)((p->cell_index + (uint32_t)step) % LM_SAR_CELLS_OFFERED);
-    return is_patch(p) ? LM_EFFECT_PATCH : 0;
+    return LM_EFFECT_PATCH;
 }
 
 /* ---- scales ---- */
@@ -266,7 +270,12 @@ static const struct lm_page_key keys[] = {
      .is_on = is_decluttered,
      .press = press_declutter,
      .hold = open_choice},
-    {.osb = 16, .text = label_cell, .starts_hidden = true, .press = press_cell, .step = 1},
+    {.osb = 16,
+     .text = label_cell,
+     .is_shown = is_patch,
+     .starts_hidden = true,
+     .press = press_cell,
+     .step = 1},
     {.osb = 17}, /* free */
     {.osb = 18, .text = label_azimuth, .is_shown = has_azimuth, .press = press_azimuth, .step = 1},
     {.osb = 19, .words = LM_GLYPH_DOWN, .is_shown = has_smaller, .press = press_range, .step = -1},

@@ -156,8 +156,9 @@ static struct lm_view view(const struct lm_picture *p)
         .up = is_window ? s->up : p->lent.ownship->heading,
         .height_m_q10 = has_geometry ? s->grid.height_m_q10 - s->grid.reference_m_q10 : 0,
     };
-    return is_window ? lm_view_of_window(&p->frame, &from, s->command.centre, s->half_m)
-                     : lm_view_of_sector(&p->frame, &from, scale_m(p));
+    return is_window
+               ? lm_view_of_window(&p->frame, &from, s->command.centre, s->half_m)
+               : lm_view_of_sector(&p->frame, &from, scale_m(p), p->lent.options.is_sector_whole);
 }
 
 static const struct lm_tone_config *tone(const struct lm_picture *p)
@@ -182,7 +183,8 @@ static void describe_window(const struct lm_picture *p, struct lm_symbols *symbo
 {
     const struct lm_view_from from = {lm_ownship_position(p->lent.ownship), p->view.up,
                                       p->view.height_m_q10};
-    const struct lm_view whole = lm_view_of_sector(&p->frame, &from, scale_m(p));
+    const struct lm_view whole =
+        lm_view_of_sector(&p->frame, &from, scale_m(p), p->lent.options.is_sector_whole);
     struct lm_offset at;
     symbols->is_cue_shown =
         p->lent.cursor->is_placed && lm_view_find(&whole, p->lent.cursor->position, &at);

@@ -72,6 +72,7 @@ static struct lm_symbols describe(const struct lm_unit *u)
 {
     struct lm_symbols s = {
         .view = u->picture.view,
+        .options = u->board->options,
         .is_sweeping = !(u->flags & LM_FLAGS_NO_LINES),
         .gain_db = u->page.gain_db,
         .heading = u->ownship.heading,

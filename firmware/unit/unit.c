@@ -20,6 +20,7 @@ static void init_picture(struct lm_unit *u)
         .page = &u->page,
         .cursor = &u->cursor,
         .noise_seed = board->noise_seed,
+        .options = board->options,
     };
     const struct lm_plane plane = {board->plane, board->display->width_px,
                                    board->display->height_px};

@@ -195,9 +195,9 @@ static void draw_sweeps(struct world *w, const struct sector_case *what, int cou
         lm_sector_begin(&sector, &w->tiles, &platform);
         const struct lm_view_from from = {platform.position, platform.heading, 3000 * 1024};
         const struct lm_view view =
-            sector.half_m
-                ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
-                : lm_view_of_sector(&w->frame, &from, lm_radar_default.range[range_index].range_m);
+            sector.half_m ? lm_view_of_window(&w->frame, &from, command.centre, sector.half_m)
+                          : lm_view_of_sector(&w->frame, &from,
+                                              lm_radar_default.range[range_index].range_m, false);
         const struct lm_ppi ppi =
             lm_view_ppi(&view, &w->frame, sector.slant.cell_m_q8, sector.edge_m_q8);
         const uint32_t lines = sector.lines;

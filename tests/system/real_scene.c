@@ -107,7 +107,7 @@ int real_ground_map_read(struct real_picture *p, const struct real_scene *scene,
         return -1;
     }
     const struct lm_frame f = lm_frame_of_display((uint16_t)g.width, (uint16_t)g.height);
-    const double radius = lm_ppi_radius_px(&f);
+    const double radius = lm_ppi_radius_px(&f, false);
     const int apex_x = f.left_px + f.width_px / 2, apex_y = f.top_px + f.height_px - 1;
     picture_clear(p);
     for (int y = f.top_px; y <= apex_y; y++) {

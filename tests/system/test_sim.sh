@@ -90,6 +90,8 @@ check '--quiet says nothing' fly quiet --quiet --seconds 0.1
 check 'indeed' test ! -s "$out"
 check 'the smallest glass' exits 0 "$sim" --db "$db" --bus "$log" --script "$script" --png "$work/least" --size 256x256
 check 'has that size' size_is "$work/least/patch.png" 256x256
+check 'a glass with choices' exits 0 "$sim" --db "$db" --bus "$log" --seconds 1.5 --png "$work/chosen" --glass whole --glass borders
+check 'a choice that no glass has' exits 2 "$sim" --db "$db" --bus "$log" --glass oval
 check 'the largest glass' exits 0 "$sim" --db "$db" --bus "$log" --seconds 0.5 --png "$work/most" --size 1024x1024
 check 'has that size' size_is "$work/most/frame-00000.png" 1024x1024
 check 'a flight without pictures' exits 0 "$sim" --db "$db" --bus "$log" --seconds 0.5

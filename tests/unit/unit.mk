@@ -73,6 +73,9 @@ $(UNIT)/drivers/display/test_fbdev:   LDLIBS += $(call WRAP,open ioctl)
 $(UNIT)/drivers/flash/test_flash_mtd: LDLIBS += $(call WRAP,open close ioctl pread)
 $(UNIT)/drivers/usb/test_usb:         LDLIBS += $(call WRAP,clock_gettime)
 
+# Where each text of the glass stands, the test learns from the firmware's calls.
+$(UNIT)/firmware/unit/test_glass:      LDLIBS += $(call WRAP,lm_draw_text)
+
 # The bezel over both versions of libgpiod, each a fake: version 1 where its header is installed, version 2 with a header of
 # ours where it is not. Both versions' objects come before the library, which has one of them.
 GPIO_TESTS := $(addprefix $(UNIT)/drivers/gpio/test_gpio,$(filter 1,$(GPIOD_MAJOR)) 2)

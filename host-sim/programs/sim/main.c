@@ -268,8 +268,8 @@ static int run(struct sim *s)
     }
     hands_init(&s->hands, &s->script.port);
     const struct bench_bus bus = {&s->can, o->profile, o->node};
-    if (bench_open(&s->bench, o->database, o->width_px, o->height_px, o->seed, &bus,
-                   &s->hands.port) != 0) {
+    const struct bench_glass glass = {o->width_px, o->height_px, o->glass};
+    if (bench_open(&s->bench, o->database, &glass, o->seed, &bus, &s->hands.port) != 0) {
         return hs_error(o->database, "landmass-db build makes a database", "%s", s->bench.error);
     }
     if (s->bench.unit->map.open_status == LM_ERR_VERSION) {

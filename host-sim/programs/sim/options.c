@@ -26,6 +26,10 @@ static const char help[] =
     "(below)\n"
     "  --bezel            draw the bezel into the pictures of --png too\n"
     "  --size WxH         pixels of the glass, 256..1024 each (default 768x768)\n"
+    "  --glass WORD       a choice about the glass; give the option again for a second one:\n"
+    "                     whole: the whole sector fits the frame; heading: the heading above\n"
+    "                     the picture; strobe: a faint line along the beam; borders: lines\n"
+    "                     along the sector's edges\n"
     "  --seconds S        flight time to run (default: to the end of the log)\n"
     "  --seed N           another speckle (default 0); the same inputs and seed give the same "
     "pictures\n"
@@ -75,6 +79,7 @@ enum {
     OPT_WINDOW,
     OPT_BEZEL,
     OPT_SIZE,
+    OPT_GLASS,
     OPT_SECONDS,
     OPT_SEED,
     OPT_QUIET,
@@ -82,14 +87,23 @@ enum {
 };
 
 static const struct option table[] = {
-    {"db", required_argument, NULL, OPT_DB},     {"bus", required_argument, NULL, OPT_BUS},
-    {"can", required_argument, NULL, OPT_CAN},   {"profile", required_argument, NULL, OPT_PROFILE},
-    {"node", required_argument, NULL, OPT_NODE}, {"script", required_argument, NULL, OPT_SCRIPT},
-    {"png", required_argument, NULL, OPT_PNG},   {"every", required_argument, NULL, OPT_EVERY},
-    {"window", no_argument, NULL, OPT_WINDOW},   {"bezel", no_argument, NULL, OPT_BEZEL},
-    {"size", required_argument, NULL, OPT_SIZE}, {"seconds", required_argument, NULL, OPT_SECONDS},
-    {"seed", required_argument, NULL, OPT_SEED}, {"quiet", no_argument, NULL, OPT_QUIET},
-    {"help", no_argument, NULL, OPT_HELP},       {0},
+    {"db", required_argument, NULL, OPT_DB},
+    {"bus", required_argument, NULL, OPT_BUS},
+    {"can", required_argument, NULL, OPT_CAN},
+    {"profile", required_argument, NULL, OPT_PROFILE},
+    {"node", required_argument, NULL, OPT_NODE},
+    {"script", required_argument, NULL, OPT_SCRIPT},
+    {"png", required_argument, NULL, OPT_PNG},
+    {"every", required_argument, NULL, OPT_EVERY},
+    {"window", no_argument, NULL, OPT_WINDOW},
+    {"bezel", no_argument, NULL, OPT_BEZEL},
+    {"size", required_argument, NULL, OPT_SIZE},
+    {"glass", required_argument, NULL, OPT_GLASS},
+    {"seconds", required_argument, NULL, OPT_SECONDS},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"quiet", no_argument, NULL, OPT_QUIET},
+    {"help", no_argument, NULL, OPT_HELP},
+    {0},
 };
 
 static bool whole(const char *text, long low, long high, long *value)
@@ -110,6 +124,24 @@ static bool take_size(struct options *o, const char *text)
     o->width_px = (uint16_t)width;
     o->height_px = (uint16_t)height;
     return true;
+}
+
+static bool take_glass(struct lm_glass_options *glass, const char *word)
+{
+    const struct {
+        const char *word;
+        bool *is_chosen;
+    } choices[] = {{"whole", &glass->is_sector_whole},
+                   {"heading", &glass->has_heading},
+                   {"strobe", &glass->has_strobe},
+                   {"borders", &glass->has_borders}};
+    for (size_t i = 0; i < sizeof choices / sizeof *choices; i++) {
+        if (strcmp(word, choices[i].word) == 0) {
+            *choices[i].is_chosen = true;
+            return true;
+        }
+    }
+    return false;
 }
 
 static bool take_value(struct options *o, int option)
@@ -146,6 +178,8 @@ static bool take_value(struct options *o, int option)
         return o->every != UINT32_MAX;
     case OPT_SIZE:
         return take_size(o, optarg);
+    case OPT_GLASS:
+        return take_glass(&o->glass, optarg);
     case OPT_SECONDS:
         o->seconds = strtod(optarg, &end);
         return end != optarg && *end == 0 && o->seconds > 0 && o->seconds < 1e6;

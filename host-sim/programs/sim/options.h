@@ -3,6 +3,7 @@
 #define SIM_OPTIONS_H
 
 #include "lm/bus_profile.h"
+#include "lm/glass_options.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,6 +17,7 @@ struct options {
     bool has_window, has_bezel, is_quiet;
     const struct lm_bus_profile *profile; /* of the bus */
     uint8_t node;                         /* on the bus; 0: it only listens */
+    struct lm_glass_options glass;
 };
 
 enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };

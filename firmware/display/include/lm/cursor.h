@@ -33,7 +33,7 @@ struct lm_cursor {
 
     /* Results of lm_cursor_locate. */
     struct lm_offset offset; /* on the glass, if is_on_glass */
-    bool is_on_glass;        /* within the sector's radius, the window or the patch */
+    bool is_on_glass;        /* within the sector's radius and the frame, the window or the patch */
     uint32_t range_m;        /* ground range from the ownship */
     fx_bam_t bearing;        /* from the ownship, from true north */
 };
@@ -58,8 +58,9 @@ void lm_cursor_stabilise(struct lm_cursor *c);
  * unit; it acts every LM_CURSOR_STEP_US and returns true if it did. A longer gap counts as one
  * step.
  *
- * Slewing stops at the edge of the sector, window or patch. A cursor beyond that edge, because the
- * aircraft flew on, is brought back to the edge when it is slewed. */
+ * Slewing stops at the edge of window or patch. In a sector it stops at its radius, and at 0.95 of
+ * half the frame's height: up and down from the frame's middle, and to each side. A cursor beyond
+ * that edge, because the aircraft flew on, is brought back to the edge when it is slewed. */
 bool lm_cursor_step(struct lm_cursor *c, const struct lm_cursor_scene *scene, uint64_t now_us);
 
 /* Compute offset, is_on_glass, range and bearing. Call when the view may have changed. Cost: about

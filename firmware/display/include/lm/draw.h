@@ -1,5 +1,5 @@
 /* Drawing: boxes, lines, arcs and text on a surface, of which every symbol is made. Everything is
- * clipped at the surface's edges. Nothing here fails. */
+ * clipped to the pen's clip. Nothing here fails. */
 #ifndef LM_DRAW_H
 #define LM_DRAW_H
 
@@ -28,16 +28,23 @@ static inline struct lm_spot lm_pixel_middle(struct lm_point p)
     return (struct lm_spot){lm_px_q8_of_px(p.x) + 128, lm_px_q8_of_px(p.y) + 128};
 }
 
-/* Pen: surface, colour and sizes of what is drawn. */
-struct lm_pen {
-    struct lm_surface surface; /* its pixels are borrowed */
-    uint32_t colour;           /* 0x00RRGGBB */
-    int32_t dot_px;            /* size of a dot of the font: characters are 5 by 7 dots */
-    int32_t line_px;           /* width of lines */
+/* Clip: the pixels that a pen may touch: from left and top up to, not including, right and bottom.
+ * It lies within the surface. */
+struct lm_clip {
+    int32_t left, top, right, bottom;
 };
 
-/* The pen for a surface of 256 to 1024 pixels a side. Text and lines grow with the surface: its
- * shorter side holds 35 to 69 characters. */
+/* Pen: surface, clip, colour and sizes of what is drawn. */
+struct lm_pen {
+    struct lm_surface surface; /* its pixels are borrowed */
+    struct lm_clip clip;
+    uint32_t colour; /* 0x00RRGGBB */
+    int32_t dot_px;  /* size of a dot of the font: characters are 5 by 7 dots */
+    int32_t line_px; /* width of lines */
+};
+
+/* The pen for a surface of 256 to 1024 pixels a side, all of which is its clip. Text and lines grow
+ * with the surface: its shorter side holds 35 to 69 characters. */
 struct lm_pen lm_pen_for(const struct lm_surface *surface, uint32_t colour);
 
 /* Fill the box whose upper left pixel is (x, y). */

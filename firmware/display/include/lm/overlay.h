@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/glass_options.h"
 #include "lm/page.h"
 #include "lm/port.h"
 #include "lm/scan_conv.h"
@@ -41,6 +42,7 @@ enum { LM_TO_GO_NONE = 6000 };
 /* The symbols of the radar picture: which are shown, where, and with which numbers. */
 struct lm_symbols {
     struct lm_view view;
+    struct lm_glass_options options;
     bool is_sweeping;          /* the beam and the antenna's marks are drawn */
     uint16_t range_nm;         /* range scale of the sector */
     fx_bam_t azimuth_half;     /* half the width of the sector */
@@ -93,7 +95,8 @@ void lm_overlay_picture(const struct lm_glass *g, const struct lm_plane *plane);
 /* Fill the surface with the palette's ink: the ground of a page of text. */
 void lm_overlay_blank(const struct lm_glass *g);
 
-/* Draw the symbols of the radar picture, and write its numbers. */
+/* Draw the symbols of the radar picture, none beyond the frame, and write its numbers above and
+ * below the frame. */
 void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *symbols);
 
 /* Draw the labels of all keys, and the values between them. */

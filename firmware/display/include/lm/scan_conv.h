@@ -5,11 +5,11 @@
  *     +----------------------------------+
  *     |     0.20                0.28     |     margins in halves of the glass;
  *     |    +----------------------+ 0.25 |     the frame is the rectangle that shows radar
- *     |    | .                  . |      |
- *     |    |   .     sector   .   |      |     sector: its apex is the middle of the frame's
- *     |    |     .          .     |      |             lower edge
- *     |    |       .      .       |      |     window, patch: a square in the frame's middle
- *     |    |         .  .         |      |
+ *     |    |                      |      |
+ *     |    |        sector        |      |     sector: its apex is the middle of the frame's
+ *     |    |  .                .  |      |             lower edge, its radius the frame's
+ *     |    |     .          .     |      |             height; the frame cuts its wings
+ *     |    |        .    .        |      |     window, patch: a square in the frame's middle
  *     |    +----------------------+ 0.32 |
  *     +----------------------------------+
  *
@@ -17,6 +17,7 @@
 #ifndef LM_SCAN_CONV_H
 #define LM_SCAN_CONV_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "fx/types.h"
@@ -46,8 +47,9 @@ void lm_plane_clear(const struct lm_plane *plane, const struct lm_frame *frame);
 void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, int32_t right_px,
                     int32_t down_px);
 
-/* Radius in pixels of the largest sector of +-60 degrees that fits the frame. */
-uint16_t lm_ppi_radius_px(const struct lm_frame *frame);
+/* Radius of a sector in pixels: the frame's height, as [FreeFalcon]'s viewport has it; or, if
+ * `is_whole`, that of the largest sector of +-60 degrees that fits the frame. */
+uint16_t lm_ppi_radius_px(const struct lm_frame *frame, bool is_whole);
 
 /* Geometry of lines that meet in one point, the apex. In a window the apex is far below the
  * frame. */

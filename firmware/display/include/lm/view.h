@@ -2,13 +2,13 @@
  * symbol or moves the cursor asks the view, and need not know the kind of picture.
  *
  *          up                     up
- *     .     |     .           +----|----+
- *      .    |    .            |    |    |
- *       .   +   .  middle     |    +    |  middle = origin
- *        .  |  .              |         |
- *         . | .               +---------+
- *          .|.
- *           +  origin
+ *     +-----|-----+           +----|----+
+ *     |     |     |           |    |    |
+ *     |     |     |           |    +    |  middle = origin
+ *     |.    |    .|           |         |
+ *     |  .  |  .  |           +---------+
+ *     +-----+-----+
+ *         origin
  *     sector: middle = origin    patch
  *
  * A window is a square cut out of a sector: its origin is the sector's apex, often far below the
@@ -47,6 +47,8 @@ struct lm_view {
                                     a sector the same as `at` */
     uint32_t scale_mm_per_px_q8; /* below 2^30 */
     int32_t radius_px;           /* of the sector; half a side of the window or patch */
+    int32_t aside_px, above_px;  /* sector: what the frame shows to each side of the origin, and
+                                  * above it */
 };
 
 /* Position and direction that a sector or window is seen from. */
@@ -56,9 +58,10 @@ struct lm_view_from {
     int32_t height_m_q10; /* of the antenna above flat ground */
 };
 
-/* The view of a sector of radius `range_m`, its apex at the middle of the frame's lower edge. */
+/* The view of a sector of radius `range_m`, its apex at the middle of the frame's lower edge;
+ * `is_whole` as in lm_ppi_radius_px. */
 struct lm_view lm_view_of_sector(const struct lm_frame *frame, const struct lm_view_from *from,
-                                 uint32_t range_m);
+                                 uint32_t range_m, bool is_whole);
 
 /* The view of a window that reaches `half_m` to each side of `centre`, in the frame's square. */
 struct lm_view lm_view_of_window(const struct lm_frame *frame, const struct lm_view_from *from,

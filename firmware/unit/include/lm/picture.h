@@ -42,6 +42,7 @@ struct lm_picture_lent {
         *page; /* the operator's selection; is told of the picture's kind and the beam's tilt */
     struct lm_cursor *cursor; /* centre of windows and patches; is located again in a new view */
     uint32_t noise_seed;
+    struct lm_glass_options options;
 };
 
 struct lm_picture {

@@ -53,8 +53,9 @@ struct lm_board {
     const struct lm_display *display;
     void *tile_pool; /* 8-byte aligned */
     size_t tile_pool_bytes;
-    uint8_t *plane;            /* one byte for each pixel of the display */
-    uint32_t noise_seed;       /* chooses the draws of speckle and noise, and nothing else */
+    uint8_t *plane;      /* one byte for each pixel of the display */
+    uint32_t noise_seed; /* chooses the draws of speckle and noise, and nothing else */
+    struct lm_glass_options options;
     uint32_t flash_poll_limit; /* polls after which a read at the start is given up */
     const char *restart;       /* cause of the board's restart, at most 20 capitals; NULL: power was
                                   switched on */

@@ -31,6 +31,7 @@ static double distance(struct lm_position a, struct lm_position b)
 
 /* A cursor, the aircraft it is moved against, and the sector on the glass. */
 struct scene {
+    bool is_whole; /* the first format of the sector */
     struct lm_frame frame;
     struct lm_view view;
     struct lm_cursor cursor;
@@ -42,7 +43,7 @@ static void look_from(struct scene *s, struct lm_position ownship, double headin
 {
     s->frame = lm_frame_of_display(SIDE, SIDE);
     const struct lm_view_from from = {ownship, hs_bam(heading), 0};
-    s->view = lm_view_of_sector(&s->frame, &from, RANGE_M);
+    s->view = lm_view_of_sector(&s->frame, &from, RANGE_M, s->is_whole);
     s->against = (struct lm_cursor_scene){.view = &s->view,
                                           .ownship = ownship,
                                           .heading = hs_bam(heading),
@@ -156,6 +157,47 @@ TEST(slewing_stops_at_the_edge_of_what_is_shown)
         assert_true(s.cursor.is_on_glass);
         assert_in_range(s.cursor.offset.x_px_q8 + 129 * 256, 0, 258 * 256);
         assert_in_range(s.cursor.offset.y_px_q8 + 129 * 256, 0, 258 * 256);
+    }
+}
+
+/* [FreeFalcon], gmscope.cpp 1320: the cursor is capped at 0.95 of half the viewport's height. */
+TEST(a_slewed_cursor_stays_in_the_box_of_the_source_and_in_the_frame)
+{
+    static const int towards[][2] = {{-1000, 0}, {1000, 0}, {0, -1000}, {-1000, -1000}, {0, 1000}};
+    for (size_t i = 0; i < 2 * sizeof towards / sizeof *towards; i++) {
+        struct scene s = {.is_whole = i % 2};
+        look_from(&s, origins[1], 10);
+        steps(&s, 0.02);
+        s.cursor.slew_x = towards[i / 2][0];
+        s.cursor.slew_y = towards[i / 2][1];
+        steps(&s, 5);
+        const double height = s.frame.height_px, wide = s.frame.width_px / 2;
+        const double x = s.cursor.offset.x_px_q8 / 256.0, y = s.cursor.offset.y_px_q8 / 256.0;
+        assert_true(s.cursor.is_on_glass);
+        assert_true(fabs(x) < fmin(0.475 * height, wide - 1) + 1);
+        assert_true(y > 0.025 * height - 1 && y < 0.975 * height + 1);
+        if (!s.is_whole && s.cursor.slew_x != 0 && s.cursor.slew_y == 0) {
+            assert_true(fabs(x) > 0.475 * height - 1);
+        }
+        if (!s.is_whole && s.cursor.slew_y == 1000) {
+            assert_true(y > 0.975 * height - 1);
+        }
+    }
+}
+
+TEST(a_place_that_the_frame_cuts_off_is_not_on_the_glass)
+{
+    struct scene s = {0};
+    look_from(&s, origins[0], 0);
+    const double aside_m = (double)RANGE_M * s.view.aside_px / s.view.radius_px;
+    s.cursor.is_placed = true;
+    for (int out = -1; out <= 1; out += 2) {
+        for (int side = -1; side <= 1; side += 2) {
+            const struct lm_position ahead = moved(origins[0], 0, RANGE_M / 2.0);
+            s.cursor.position = moved(ahead, 90 * side, aside_m * (1 + 0.02 * out));
+            lm_cursor_locate(&s.cursor, &s.against);
+            assert_int_equal(s.cursor.is_on_glass, out < 0);
+        }
     }
 }
 

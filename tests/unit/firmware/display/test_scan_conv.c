@@ -17,6 +17,7 @@ struct glass {
     uint8_t *memory;
     struct lm_plane plane;
     struct lm_frame frame;
+    bool is_whole; /* the first format of the sector */
 };
 
 static void make_glass(struct glass *g, uint16_t width_px, uint16_t height_px)
@@ -27,6 +28,7 @@ static void make_glass(struct glass *g, uint16_t width_px, uint16_t height_px)
     memset(g->memory, GUARD, 3 * bytes);
     g->plane = (struct lm_plane){g->memory + bytes, width_px, height_px};
     g->frame = lm_frame_of_display(width_px, height_px);
+    g->is_whole = false;
     lm_plane_clear(&g->plane, &g->frame);
 }
 
@@ -67,14 +69,14 @@ static struct polar polar_of(const struct glass *g, int32_t x, int32_t y)
     return p;
 }
 
-/* The whole sector, as a view of one lays it out: `CELLS` cells in its radius. */
-static struct lm_ppi sector_ppi(const struct lm_frame *frame)
+/* A sector, as a view of one lays it out: `CELLS` cells in its radius. */
+static struct lm_ppi sector_ppi(const struct lm_frame *frame, bool is_whole)
 {
     return (struct lm_ppi){
         .clip = *frame,
         .apex_x_px = frame->left_px + frame->width_px / 2,
         .apex_y_px = frame->top_px + frame->height_px,
-        .cells_per_px_q16 = (CELLS << 16) / lm_ppi_radius_px(frame),
+        .cells_per_px_q16 = (CELLS << 16) / lm_ppi_radius_px(frame, is_whole),
     };
 }
 
@@ -82,7 +84,7 @@ static void paint(const struct glass *g, int32_t left_bam, int32_t right_bam, ui
 {
     uint8_t line[CELLS];
     memset(line, grey, sizeof line);
-    const struct lm_ppi ppi = sector_ppi(&g->frame);
+    const struct lm_ppi ppi = sector_ppi(&g->frame, g->is_whole);
     lm_scan_conv_sector(&g->plane, &ppi, (fx_bam_t)left_bam, (fx_bam_t)right_bam, line, CELLS);
 }
 
@@ -107,12 +109,13 @@ static void paint_sector(const struct glass *g, int32_t half_bam, int32_t line_b
 
 TEST(every_pixel_of_a_sector_is_painted_by_exactly_one_line)
 {
-    for (int n = 0; n < SIZES; n++) {
+    for (int n = 0; n < 2 * SIZES; n++) {
         for (int a = 0; a < LM_AZIMUTHS; a++) {
             struct glass g;
-            make_glass(&g, sizes[n][0], sizes[n][1]);
+            make_glass(&g, sizes[n / 2][0], sizes[n / 2][1]);
             struct glass back;
-            make_glass(&back, sizes[n][0], sizes[n][1]);
+            make_glass(&back, sizes[n / 2][0], sizes[n / 2][1]);
+            g.is_whole = back.is_whole = n % 2;
             /* A line is a whole share of 120 degrees; sectors are cut to whole lines. */
             const int32_t line = (int32_t)lm_radar_default.line;
             const int32_t half =
@@ -120,7 +123,7 @@ TEST(every_pixel_of_a_sector_is_painted_by_exactly_one_line)
             paint_sector(&g, half, line, 0);
             paint_sector(&back, half, line, 1);
             const double half_rad = half / 2147483648.0 * 180 * degree;
-            const double radius_px = lm_ppi_radius_px(&g.frame);
+            const double radius_px = lm_ppi_radius_px(&g.frame, g.is_whole);
             for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
                 for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
                     const struct polar p = polar_of(&g, x, y);
@@ -147,11 +150,12 @@ TEST(a_pixel_shows_the_cell_at_its_range)
     for (int i = 0; i < CELLS; i++) {
         line[i] = (uint8_t)i;
     }
-    for (int n = 0; n < SIZES; n++) {
+    for (int n = 0; n < 2 * SIZES; n++) {
         struct glass g;
-        make_glass(&g, sizes[n][0], sizes[n][1]);
-        const struct lm_ppi ppi = sector_ppi(&g.frame);
-        const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame);
+        make_glass(&g, sizes[n / 2][0], sizes[n / 2][1]);
+        g.is_whole = n % 2;
+        const struct lm_ppi ppi = sector_ppi(&g.frame, g.is_whole);
+        const double cells_per_px = CELLS / (double)lm_ppi_radius_px(&g.frame, g.is_whole);
         const int32_t width = (int32_t)lm_radar_default.line;
         for (int32_t i = -128; i < 128; i += 9) {
             memset(g.plane.pixels, GUARD, (size_t)g.plane.width_px * g.plane.height_px);
@@ -234,15 +238,36 @@ TEST(the_frame_is_the_share_of_the_display_that_is_promised)
     assert_int_equal(f.top_px + f.height_px, 840); /* -0.68 */
 }
 
-TEST(a_sector_fits_its_frame)
+TEST(a_whole_sector_fits_its_frame)
 {
     for (uint16_t w = 100; w < 2000; w = (uint16_t)(w + 37)) {
         for (uint16_t h = 100; h < 2000; h = (uint16_t)(h + 41)) {
             const struct lm_frame f = {0, 0, w, h};
-            const double radius = lm_ppi_radius_px(&f), sin_60 = sqrt(0.75);
+            const double radius = lm_ppi_radius_px(&f, true), sin_60 = sqrt(0.75);
             assert_true(radius <= h && 2 * radius * sin_60 <= w + 1e-9);
             assert_true(radius + 1 > h || 2 * (radius + 1.01) * sin_60 > w);
         }
+    }
+}
+
+TEST(a_sector_is_as_high_as_its_frame_and_fills_two_fifths_of_the_glass)
+{
+    static const uint16_t sides[] = {480, 768, 1024};
+    for (size_t n = 0; n < sizeof sides / sizeof *sides; n++) {
+        struct glass g;
+        make_glass(&g, sides[n], sides[n]);
+        const int32_t line = (int32_t)lm_radar_default.line;
+        assert_in_range(lm_ppi_radius_px(&g.frame, false), g.frame.height_px - 1,
+                        g.frame.height_px + 1);
+        paint_sector(&g, 128 * line, line, 0);
+        uint32_t painted = 0;
+        for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+            for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                painted += g.plane.pixels[y * sides[n] + x] != 0;
+            }
+        }
+        assert_true(painted >= 0.4 * sides[n] * sides[n]);
+        close_glass(&g);
     }
 }
 

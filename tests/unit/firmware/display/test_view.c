@@ -96,7 +96,7 @@ TEST(a_symbol_over_a_sector_is_on_the_pixel_of_its_place)
 {
     const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
     const struct lm_view_from from = from_here();
-    const struct lm_view v = lm_view_of_sector(&frame, &from, 18520);
+    const struct lm_view v = lm_view_of_sector(&frame, &from, 18520, false);
     judge_offsets(&v, &frame, 72 * 256, 0);
     judge_offsets(&v, &frame, 300 * 256, 0);
 }
@@ -167,7 +167,7 @@ TEST(the_place_of_the_origin_is_the_origin)
 {
     const struct lm_frame frame = lm_frame_of_display(WIDTH, HEIGHT);
     const struct lm_view_from from = from_here();
-    const struct lm_view views[] = {lm_view_of_sector(&frame, &from, 18520),
+    const struct lm_view views[] = {lm_view_of_sector(&frame, &from, 18520, false),
                                     lm_view_of_patch(&frame, from.position, from.up, 256, 5000)};
     for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
         const struct lm_position place = lm_view_position(&views[i], (struct lm_offset){0, 0});

@@ -59,11 +59,11 @@ TEST(the_page_after_power_up_has_the_labels_of_the_key_map)
         int osb;
         const char *words;
         int is_inverse;
-    } map[] = {{1, "GM", 0},        {2, "MAN", 0},   {3, "NORM", 0},  {4, "OVRD", 0},
-               {5, "CNTL", 0},      {7, "FZ", 0},    {8, "SP", 0},    {9, "CZ", 0},
-               {10, "STP", 1},      {11, "DCLT", 0}, {12, "BIT", 0},  {13, "FCR", 1},
-               {14, "TEST", 0},     {15, "SWAP", 0}, {16, "CELL", 0}, {19, LM_GLYPH_DOWN, 0},
-               {20, LM_GLYPH_UP, 0}};
+    } map[] = {{1, "GM", 0},    {2, "MAN", 0},   {3, "NORM", 0},         {4, "OVRD", 0},
+               {5, "CNTL", 0},  {7, "FZ", 0},    {8, "SP", 0},           {9, "CZ", 0},
+               {10, "STP", 1},  {11, "DCLT", 0}, {12, "BIT", 0},         {13, "FCR", 1},
+               {14, "TEST", 0}, {15, "SWAP", 0}, {19, LM_GLYPH_DOWN, 0}, {20, LM_GLYPH_UP, 0}};
+    assert_false(says(r, "CELL"));
     for (size_t i = 0; i < sizeof map / sizeof *map; i++) {
         if (!labelled(r, map[i].osb, map[i].words, map[i].is_inverse)) {
             fail_msg("OSB %d does not say %s", map[i].osb, map[i].words);
@@ -108,14 +108,14 @@ TEST(osb_2_lets_the_range_follow_the_cursor)
     assert_int_equal(r->unit.page.range_index, scale_of(10));
     /* From half of 10 nm up to where 20 nm is due. */
     command(r, lm_control_slew(0, 1000));
-    run(r, 0.55);
+    run(r, 0.7);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     assert_int_equal(r->unit.page.range_index, scale_of(20));
     assert_true(says(r, "20"));
     /* And back: below 0.425 of 20 nm. */
     command(r, lm_control_slew(0, -1000));
-    run(r, 0.2);
+    run(r, 0.3);
     command(r, lm_control_slew(0, 0));
     run(r, 0.1);
     assert_int_equal(r->unit.page.range_index, scale_of(10));
@@ -405,12 +405,12 @@ TEST(osb_7_freezes_the_map_and_the_ownship_moves_over_it)
     assert_true(warns(r, "FZ"));
     const uint32_t sum = plane_sum(r), lines = r->unit.count.lines;
     const int32_t before = ownship_top(r);
-    run(r, 20); /* 3,000 m: 34 of the 210 pixels of 18,520 m */
+    run(r, 20); /* 3,000 m: 55.6 of the 343 pixels of 18,520 m */
     assert_int_equal(plane_sum(r), sum);
     assert_int_equal(r->unit.count.lines, lines);
     const int32_t after = ownship_top(r);
     assert_true(before > 0 && after > 0);
-    assert_in_range(before - after, 31, 37);
+    assert_in_range(before - after, 53, 58);
     press(r, 7);
     run(r, 0.5);
     assert_true(labelled(r, 7, "FZ", 0));
@@ -546,14 +546,17 @@ static void slew_right(struct rig *r)
 TEST(osb_16_chooses_the_cell_and_draws_the_patch_again)
 {
     struct rig *r = fly_rig();
-    assert_true(says(r, "5M"));
-    press(r, 16);
-    assert_true(says(r, "10M"));
+    press(r, 16); /* free in a sector */
+    assert_false(says(r, "5M") || says(r, "10M"));
     slew_right(r);
     command(r, lm_control_designate());
     run(r, 1);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
+    assert_int_equal(r->unit.picture.sar.command.cell_mm, 5000);
+    assert_true(says(r, "CELL 5.0M") && says(r, "5M"));
+    press(r, 16);
     assert_int_equal(r->unit.picture.sar.command.cell_mm, 10000);
+    assert_true(says(r, "10M"));
     const struct lm_position centre = r->unit.picture.sar.command.centre;
     press(r, 16);
     assert_int_equal(r->unit.picture.sar.command.cell_mm, 20000);
@@ -769,12 +772,13 @@ TEST(a_patch_dead_ahead_is_refused_and_its_time_to_go_is_on_the_glass_elsewhere)
     assert_int_not_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_true(warns(r, "UNABLE"));
     /* 10 km away at 150 m/s, 30 degrees off, with cells of 1 m: about 2 s. */
+    slew_right(r);
+    command(r, lm_control_designate());
+    run(r, 0.1);
     for (int i = 0; i < 3; i++) {
         press(r, 16);
     }
     assert_true(says(r, "1M"));
-    slew_right(r);
-    command(r, lm_control_designate());
     run(r, 0.3);
     command(r, (struct lm_control){.kind = LM_CONTROL_FREEZE, .is_frozen = true});
     run(r, 0.1);
