@@ -187,8 +187,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                                   radar->wavelength_um, patch_us)
             : 256;
     lm_class_lut_set(&s->class_lut, &radar->illumination, &db->classes);
-    lm_texture_set(&s->texture, &radar->texture, &db->classes, lm_scan_lod(db, command->cell_mm),
-                   setup->sea_state, 0);
+    lm_class_gain_set(&s->class_gain, &db->classes, lm_scan_lod(db, command->cell_mm),
+                      setup->sea_state, 0);
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, setup->reference_m_q10);
@@ -319,21 +319,11 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
            rise_q40 * (int64_t)(number % LM_SAR_FOREGROUND_LINES) / LM_SAR_FOREGROUND_LINES;
 }
 
-/* Noise key of a line of the patch. */
-static struct lm_noise_key line_noise_key(const struct lm_sar *s, enum lm_noise_kind kind,
-                                          uint32_t number)
-{
-    return lm_noise_key_of(kind, number, s->noise_epoch);
-}
-
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                        struct lm_line *line)
 {
-    const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .class_lut = &s->class_lut,
-                                        .texture = &s->texture,
-                                        .noise_key = line_noise_key(s, LM_NOISE_TEXTURE, number),
-                                        .lod = s->lod};
+    const struct lm_line_setup setup = {
+        .grid = &s->grid, .class_lut = &s->class_lut, .class_gain = &s->class_gain, .lod = s->lod};
     struct lm_ground_path path;
     set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);
@@ -354,7 +344,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         s->chips->count.cells_left_out +=
             lm_target_patch_add_chips(&s->target_patch, number, &s->geometry, clutter_db_q8);
     }
-    const struct lm_noise_key noise_key = line_noise_key(s, LM_NOISE_SPECKLE, number);
+    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, number, s->noise_epoch);
     if (s->rain.count != 0) {
         lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_db_q8, level_db_q8);
         lm_speckle_run(&s->radar->sar.speckle, &noise_key, level_db_q8 + LM_SAR_GUARD,

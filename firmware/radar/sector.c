@@ -1,6 +1,5 @@
 #include "lm/sector.h"
 
-#include "fx/const.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -231,11 +230,10 @@ void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setti
     }
 }
 
-static void set_texture(struct lm_sector *s, const struct lm_classes *classes)
+static void set_class_gain(struct lm_sector *s, const struct lm_classes *classes)
 {
     const uint8_t sea_state = s->environment ? s->environment->sea_state : LM_SEA_STATE_OF_IMAGE;
-    lm_texture_set(&s->texture, &s->radar->texture, classes, s->lod, sea_state,
-                   mode_of(s)->clutter_db_q8);
+    lm_class_gain_set(&s->class_gain, classes, s->lod, sea_state, mode_of(s)->clutter_db_q8);
 }
 
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
@@ -260,7 +258,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     set_tilt(s);
     lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
-    set_texture(s, &tiles->db->classes);
+    set_class_gain(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
     s->has_taps = false;
@@ -398,29 +396,11 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
     lm_line_add_targets(line, &s->grid, &targets);
 }
 
-/* Noise key of the texture, which belongs to the ground. Its cells are as wide as they are long,
- * side by side at each range: azimuths closer than that draw the same texture. Columns are counted
- * from north, at the middle of each block: column = azimuth range / cell. */
-static struct lm_noise_key texture_key(const struct lm_sector *s, fx_bam_t azimuth)
-{
-    const uint64_t radians_q32 = (uint64_t)azimuth * FX_TWO_PI_Q28 >> 28; /* below 2^34.7 */
-    struct lm_noise_key key = lm_noise_key_of(LM_NOISE_TEXTURE, 0, s->sweep);
-    key.column_step_q32 = radians_q32 * LM_NOISE_BLOCK;
-    /* Ranges are below 400 km, 2^26.7: the product is below 2^61.4.
-     * NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
-    const uint64_t edge_q32 = radians_q32 * s->ground_edge_m_q8 / s->grid.cell_m_q8;
-    key.column_q32 = edge_q32 + key.column_step_q32 / 2;
-    return key;
-}
-
 static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                   struct lm_line *line)
 {
-    const struct lm_line_setup setup = {.grid = &s->grid,
-                                        .class_lut = &s->class_lut,
-                                        .texture = &s->texture,
-                                        .noise_key = texture_key(s, azimuth),
-                                        .lod = s->lod};
+    const struct lm_line_setup setup = {
+        .grid = &s->grid, .class_lut = &s->class_lut, .class_gain = &s->class_gain, .lod = s->lod};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);

@@ -138,9 +138,4 @@ const struct lm_radar lm_radar_default = {
                      .edge_trees_db_q8 = LM_DB_Q8(2),
                      .shore_db_q8 = LM_DB_Q8(5),
                      .shore_width_m = 60},
-    /* Shapes nu of 1 to 3 are usual for towns and forest, none for farmland: UNSOURCED, tunable. */
-    .texture = {.shape_log2 = {[LM_KIND_GROUND] = LM_TEXTURE_NONE,
-                               [LM_KIND_WATER] = LM_TEXTURE_NONE,
-                               [LM_KIND_STRUCTURE] = 1,
-                               [LM_KIND_TREES] = 2}},
 };

@@ -102,7 +102,6 @@ static const struct lm_radar_field fields[] = {
     {"illumination.shore_db_q8", ONE(illumination.shore_db_q8),
      SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
     {"illumination.shore_width_m", ONE(illumination.shore_width_m), BETWEEN(0, 10000)},
-    {"texture.shape_log2", EACH(texture.shape_log2[0], LM_KINDS), BETWEEN(0, LM_TEXTURE_NONE)},
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
 

@@ -15,14 +15,13 @@ static void sample(const struct ref_db *db, unsigned level, const struct ref_par
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
 {
     ref_speckle_table(params->looks, tables->speckle_db);
-    ref_texture_tables(&tables->texture, params);
 }
 
 /* The stages behind aspect, for a line whose levels and draws are known. */
 static void finish(struct ref_bin *bins, size_t count, const struct ref_params *params,
                    const struct ref_tables *tables)
 {
-    ref_texture(bins, count, &tables->texture, params);
+    ref_class_gain(bins, count, params);
     ref_speckle(bins, count, tables->speckle_db, params->noise_floor_db);
     ref_tone(bins, count, params);
 }
@@ -53,8 +52,6 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
     ref_illuminate(bins, gm->cell_count, &view, params, horizon);
     for (uint32_t i = 0; i < gm->cell_count; i++) {
-        const uint32_t column = ref_ground_column(azimuth_deg, 0, gm->cell_m, i);
-        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, gm->epoch);
         bins[i].slice = ref_draw(LM_NOISE_SPECKLE, sample_number, i, gm->epoch);
     }
     finish(bins, gm->cell_count, params, tables);
@@ -160,12 +157,11 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
                    picture->start_horizons[line]);
 }
 
-/* Texture is drawn for the guard cells, too; speckle for those that are shown. */
+/* Speckle is drawn for the cells that are shown. */
 static void draw_patch_line(struct ref_bin *bins, const struct ref_sar *sar, unsigned line)
 {
     for (uint32_t i = 0; i < REF_GUARD_CELLS + sar->cell_count; i++) {
         const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
-        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, line, i, sar->epoch);
         bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->epoch);
     }
 }

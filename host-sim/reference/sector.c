@@ -51,7 +51,7 @@ static void look_across(struct ref_bin *bins, const struct ref_db *db,
         ref_gm_line(bins, db, &sector->ground, params, tables, azimuth_deg + off_deg,
                     (uint32_t)number);
         for (unsigned i = 0; i < sector->ground.cell_count; i++) {
-            const double level_db = bins[i].level_db + bins[i].texture_db;
+            const double level_db = bins[i].level_db + bins[i].class_gain_db;
             power[i] += bins[i].is_lit ? pow(10, level_db / 10) / azimuths : 0;
         }
     }

@@ -1,9 +1,8 @@
-/* Speckle, texture and noise: EQUATIONS.md, "Speckle and texture". */
+/* Class gain, speckle and noise: EQUATIONS.md, "Class gain" and "Speckle". */
 #include "fx/hash.h"
 #include "reference/reference.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Regularised incomplete gamma functions of whole shape: P by its series (DLMF 8.11.4), which has
  * no cancellation for x small, and Q = 1 - P by its finite sum (DLMF 8.4.10), which has none
@@ -71,34 +70,15 @@ unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint3
     return lm_noise_slice((first + cell % LM_NOISE_BLOCK) % REF_SPECKLE_SLICES);
 }
 
-uint32_t ref_ground_column(double azimuth_deg, double edge_m, double cell_m, uint32_t cell)
-{
-    const double turns = azimuth_deg / 360 - floor(azimuth_deg / 360);
-    const double middle = (cell / LM_NOISE_BLOCK + 0.5) * LM_NOISE_BLOCK;
-    return (uint32_t)(int64_t)floor(2 * acos(-1) * turns * (edge_m / cell_m + middle));
-}
-
-void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params)
-{
-    for (int kind = 0; kind < LM_KINDS; kind++) {
-        memset(texture->table_db[kind], 0, sizeof texture->table_db[kind]);
-        if (params->texture_shape[kind] > 0) {
-            ref_speckle_table((unsigned)params->texture_shape[kind], texture->table_db[kind]);
-        }
-    }
-}
-
 double ref_sea_db(int state)
 {
     return 5 * (state - 3);
 }
 
-void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
-                 const struct ref_params *params)
+void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params)
 {
     for (size_t i = 0; i < count; i++) {
-        const double sea_db = bins[i].kind == LM_KIND_WATER ? params->sea_db : 0;
-        bins[i].texture_db = texture->table_db[bins[i].kind][bins[i].texture_slice] + sea_db;
+        bins[i].class_gain_db = bins[i].kind == LM_KIND_WATER ? params->sea_db : 0;
     }
 }
 
@@ -107,7 +87,7 @@ void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_S
 {
     for (size_t i = 0; i < count; i++) {
         bins[i].speckle_db = table_db[bins[i].slice];
-        const double level_db = bins[i].level_db + bins[i].texture_db - bins[i].loss_db;
+        const double level_db = bins[i].level_db + bins[i].class_gain_db - bins[i].loss_db;
         const double ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
         const double floor = pow(10, noise_floor_db / 10) + bins[i].veil;
         bins[i].echo_db = 10 * log10(ground + floor) + bins[i].speckle_db;

@@ -24,7 +24,7 @@ struct input {
     int32_t number[4]; /* floor, rise, ...: what the kernel has of that kind */
     uint32_t cell[ROOM], power_q24[LM_K_TAPS][ROOM], weight_q16[LM_K_TAPS], entry[ROOM];
     int32_t level_db_q8[ROOM], other_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
-    int32_t cell_of[ROOM], word_of_class[LM_K_CODES];
+    int32_t cell_of[ROOM], gain_db_q8[LM_K_CODES];
     uint8_t looks_log2;
     struct lm_tile pool[TILES];
     struct lm_tile_coords places;
@@ -125,9 +125,7 @@ static void draw_classes(struct input *in)
 {
     draw_levels(in);
     for (uint32_t k = 0; k < LM_K_CODES; k++) {
-        const int32_t gain_db_q8 = within_size(in, 1 << 15);
-        in->word_of_class[k] = gain_db_q8 * (1 << LM_K_SHAPE_BITS) +
-                               (int32_t)hs_rng_below(&in->rng, LM_NOISE_LOOKS_LOG2_MAX + 2);
+        in->gain_db_q8[k] = within_size(in, 1 << 15);
     }
     for (uint32_t k = 0; k < ROOM; k++) {
         in->cell[k] = (uint32_t)hs_rng_u64(&in->rng) & 0xffff;
@@ -303,15 +301,7 @@ static void run_class_gain(const struct input *in, struct output *out, bool is_p
 {
     copy_cells(out->line[0], in->level_db_q8);
     TWIN(lm_k_class_gain)
-    (in->word_of_class, in->cell, signed_line(out->line[0]), in->cells);
-}
-
-static void run_class_noise(const struct input *in, struct output *out, bool is_plain)
-{
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_class_noise)
-    (in->word_of_class, in->looks_log2, row_of(in), in->entry, in->cell, signed_line(out->line[0]),
-     in->cells);
+    (in->gain_db_q8, in->cell, signed_line(out->line[0]), in->cells);
 }
 
 static void run_noise_add(const struct input *in, struct output *out, bool is_plain)
@@ -402,7 +392,6 @@ static const struct kernel kernels[] = {
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},
-    {"lm_k_class_noise", draw_classes, run_class_noise},
     {"lm_k_noise_add", draw_levels, run_noise_add},
     {"lm_k_noise_floor", draw_levels, run_noise_floor},
     {"lm_k_gather", draw_small_levels, run_gather},

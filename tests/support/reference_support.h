@@ -32,10 +32,6 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
                                 .black_db = decibels(tone->black_db_q8),
                                 .white_db = decibels(tone->white_db_q8),
                                 .gamma_exponent = decibels(tone->gamma_q8)};
-    for (int kind = 0; kind < LM_KINDS; kind++) {
-        const uint8_t log2 = radar->texture.shape_log2[kind];
-        params.texture_shape[kind] = log2 == LM_TEXTURE_NONE ? 0 : 1u << log2;
-    }
     return params;
 }
 

@@ -3,17 +3,6 @@
 
 enum { NEON_CELLS = 2 * LM_LANES }; /* that a turn takes: two blocks of draws */
 
-/* Classes that have a shape: all bits of a class's byte, or none. */
-static inline uint8x16_t neon_classes_of(const int32_t *word_of_class, int32_t shape)
-{
-    const int32x4x4_t word = vld1q_s32_x4(word_of_class);
-    const int16x8_t low = vmovn_high_s32(vmovn_s32(word.val[0]), word.val[1]);
-    const int16x8_t high = vmovn_high_s32(vmovn_s32(word.val[2]), word.val[3]);
-    const uint8x16_t of_class = vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(low), high));
-    const uint8x16_t mask = vdupq_n_u8((1 << LM_K_SHAPE_BITS) - 1);
-    return vceqq_u8(vandq_u8(of_class, mask), vdupq_n_u8((uint8_t)shape));
-}
-
 /* The classes of sixteen cells. */
 static inline uint8x16_t neon_class_index(const uint32_t *cell)
 {
@@ -26,37 +15,19 @@ static inline void neon_add(int32_t *level_db_q8, int16x8_t gain_db_q8)
     vst1q_s32(level_db_q8 + 4, vaddw_high_s16(vld1q_s32(level_db_q8 + 4), gain_db_q8));
 }
 
-void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell, int32_t *restrict level_q8,
+void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *restrict level_q8,
                      uint32_t cells)
 {
-    const int32x4x4_t word = vld1q_s32_x4(word_of_class);
-    int16x4_t gain_db_q8[4];
-    for (size_t n = 0; n < 4; n++) {
-        gain_db_q8[n] = vshrn_n_s32(word.val[n], LM_K_SHAPE_BITS);
-    }
-    const uint8x16_t first = vreinterpretq_u8_s16(vcombine_s16(gain_db_q8[0], gain_db_q8[1]));
-    const uint8x16_t second = vreinterpretq_u8_s16(vcombine_s16(gain_db_q8[2], gain_db_q8[3]));
+    const int32x4x4_t gain = vld1q_s32_x4(gain_db_q8);
+    const uint8x16_t first =
+        vreinterpretq_u8_s16(vmovn_high_s32(vmovn_s32(gain.val[0]), gain.val[1]));
+    const uint8x16_t second =
+        vreinterpretq_u8_s16(vmovn_high_s32(vmovn_s32(gain.val[2]), gain.val[3]));
     const uint8x16_t bytes[2] = {vuzp1q_u8(first, second), vuzp2q_u8(first, second)};
     for (size_t i = 0; i < cells; i += NEON_CELLS) {
         const uint16x8x2_t of_cells = neon_words_of_16(bytes, neon_class_index(cell + i));
         neon_add(level_q8 + i, vreinterpretq_s16_u16(of_cells.val[0]));
         neon_add(level_q8 + i + 8, vreinterpretq_s16_u16(of_cells.val[1]));
-    }
-}
-
-void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_q8,
-                      const uint32_t *entry, const uint32_t *cell, int32_t *restrict level_q8,
-                      uint32_t cells)
-{
-    const uint8x16_t has_it = neon_classes_of(word_of_class, shape);
-    for (size_t i = 0; i < cells; i += NEON_CELLS, entry += 2) {
-        const uint8x16_t here = vqtbl1q_u8(has_it, neon_class_index(cell + i));
-        if (vmaxvq_u32(vreinterpretq_u32_u8(here)) != 0) {
-            const int16x8_t low = vmovl_s8(vget_low_s8(vreinterpretq_s8_u8(here)));
-            const int16x8_t high = vmovl_high_s8(vreinterpretq_s8_u8(here));
-            neon_add(level_q8 + i, vandq_s16(vld1q_s16(row_q8 + entry[0]), low));
-            neon_add(level_q8 + i + 8, vandq_s16(vld1q_s16(row_q8 + entry[1]), high));
-        }
     }
 }
 

@@ -2,28 +2,12 @@
 #include "fx/log.h"
 #include "lm/kernels_clutter.h"
 
-static int32_t word_of(const int32_t *word_of_class, uint32_t cell)
-{
-    return word_of_class[(int32_t)cell >> 4 & (LM_K_CODES - 1)]; /* signed: becomes a gather */
-}
-
-void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell,
-                     int32_t *restrict level_db_q8, uint32_t cells)
+void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *restrict level_db_q8,
+                     uint32_t cells)
 {
     for (uint32_t i = 0; i < cells; i++) {
-        level_db_q8[i] += word_of(word_of_class, cell[i]) >> LM_K_SHAPE_BITS;
-    }
-}
-
-void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_db_q8,
-                      const uint32_t *entry, const uint32_t *cell, int32_t *restrict level_db_q8,
-                      uint32_t cells)
-{
-    int32_t draw_db_q8[LM_CELLS_ROOM];
-    draw(row_db_q8, entry, draw_db_q8, cells);
-    for (uint32_t i = 0; i < cells; i++) {
-        const int32_t its = word_of(word_of_class, cell[i]) & ((1 << LM_K_SHAPE_BITS) - 1);
-        level_db_q8[i] += its == shape ? draw_db_q8[i] : 0;
+        /* Signed: becomes a gather. */
+        level_db_q8[i] += gain_db_q8[(int32_t)cell[i] >> 4 & (LM_K_CODES - 1)];
     }
 }
 

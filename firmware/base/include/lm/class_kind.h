@@ -1,6 +1,6 @@
 /* Class kind: what a land cover class of the map is to the radar, apart from its brightness.
  *
- * The kind decides edges (lm/illumination.h) and texture (lm/speckle.h). The numbers are those of
+ * The kind decides edges (lm/illumination.h) and gain (lm/class_gain.h). The numbers are those of
  * the image's class table: docs/FORMATS.md, 1.3. */
 #ifndef LM_CLASS_KIND_H
 #define LM_CLASS_KIND_H

@@ -1,8 +1,8 @@
 /* Environment: rain, jammers and the state of the sea.
  *
  * A script or an instructor sets it (LM_CONTROL_ENVIRONMENT), or the bus (lm/weather_bus.h).
- * Nothing of it comes from the map. Laws: docs/EQUATIONS.md, "Rain", "Noise", "Speckle and
- * texture". */
+ * Nothing of it comes from the map. Laws: docs/EQUATIONS.md, "Rain", "Noise", "Class
+ * gain". */
 #ifndef LM_ENVIRONMENT_H
 #define LM_ENVIRONMENT_H
 
@@ -36,7 +36,7 @@ struct lm_environment {
     struct lm_jammer jammer[LM_JAMMERS_MAX];
     uint8_t rain_count;   /* entries of `rain` in use, 0..LM_RAINS_MAX */
     uint8_t jammer_count; /* entries of `jammer` in use, 0..LM_JAMMERS_MAX */
-    uint8_t sea_state;    /* 0..LM_SEA_STATE_MAX: what it does is in lm/speckle.h */
+    uint8_t sea_state;    /* 0..LM_SEA_STATE_MAX: what it does is in lm/class_gain.h */
 };
 
 /* Check an environment that comes from outside. The stages that use one do not check again.

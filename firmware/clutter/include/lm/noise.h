@@ -1,5 +1,5 @@
-/* Noise table: random draws of Gamma variables in decibels, for speckle, texture and receiver
- * noise. Law: docs/EQUATIONS.md, "Speckle and texture", under "Draws".
+/* Noise table: random draws of Gamma variables in decibels, for speckle and receiver noise.
+ * Law: docs/EQUATIONS.md, "Speckle", under "Draws".
  *
  * A line draws block by block, eight neighbouring cells at a time. A hash of column, block and
  * epoch chooses where a block starts in the table. Its cells take eight neighbouring entries:
@@ -43,7 +43,7 @@ static inline uint32_t lm_noise_slice(uint32_t entry)
 }
 
 /* Uses of draws. Draws of different kinds are independent. */
-enum lm_noise_kind { LM_NOISE_TEXTURE, LM_NOISE_SPECKLE, LM_NOISE_RECEIVER, LM_NOISE_KINDS };
+enum lm_noise_kind { LM_NOISE_SPECKLE, LM_NOISE_RECEIVER, LM_NOISE_KINDS };
 
 /* Noise key: the numbers that choose the draws of a line. Cells of the same block number, column
  * (whole part) and epoch have the same draws, in whatever line. */

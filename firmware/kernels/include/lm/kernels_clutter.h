@@ -1,4 +1,4 @@
-/* Kernels of the clutter: light and shadow along a line, texture, speckle and noise floor. What
+/* Kernels of the clutter: light and shadow along a line, class gain, speckle and noise floor. What
  * holds for every kernel (arrays, groups of 16 cells, ownership, costs) is in lm/kernels_map.h. */
 #ifndef LM_KERNELS_CLUTTER_H
 #define LM_KERNELS_CLUTTER_H
@@ -87,24 +87,14 @@ enum {
  * is written from entry 0 on. `first` may be `cells`. Cost: 9 a cell. */
 void lm_k_light(const struct lm_k_lit_line *line);
 
-/* Texture and speckle: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
- * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
- * it. `entry` has one for each block of the line, and for whole groups. */
-
-/* A class's word: the gain in 1/256 dB, signed and of 16 bits, times 2^LM_K_SHAPE_BITS; below it
- * the row of its draws. One number, so that a vector machine looks up one. */
-enum { LM_K_SHAPE_BITS = 3 };
-
-/* Add to each level the gain of its cell's class. `cell` as in a tile record; `word_of_class` has
- * LM_K_CODES entries. Cost: 3 a cell. */
-void lm_k_class_gain(const int32_t *word_of_class, const uint32_t *cell, int32_t *level_db_q8,
+/* Add to each level the gain of its cell's class, of which each takes 16 bits. `cell` as in a tile
+ * record; `gain_db_q8` has LM_K_CODES entries. Cost: 3 a cell. */
+void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *level_db_q8,
                      uint32_t cells);
 
-/* Add draws to the levels of those cells whose class has this shape (0..7), and to no others.
- * Cost: 2 a cell, 1 where a group has no such cell. */
-void lm_k_class_noise(const int32_t *word_of_class, int32_t shape, const int16_t *row_db_q8,
-                      const uint32_t *entry, const uint32_t *cell, int32_t *level_db_q8,
-                      uint32_t cells);
+/* Speckle: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
+ * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
+ * it. `entry` has one for each block of the line, and for whole groups. */
 
 /* Add a draw to each level. Groups have LM_LANES cells. Cost: 1 a cell. */
 void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *level_db_q8,

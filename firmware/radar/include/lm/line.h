@@ -5,7 +5,7 @@
  *     foreground                   lm_foreground_horizon        lm_foreground_horizon
  *     tiles to cells               lm_line_trace                lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
- *     texture and sea state        lm_line_trace                lm_line_trace
+ *     class gain                   lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
  *     chips of targets             with the scatterers below    lm_target_patch_shade, _add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
@@ -26,6 +26,7 @@
 #ifndef LM_LINE_H
 #define LM_LINE_H
 
+#include "lm/class_gain.h"
 #include "lm/illumination.h"
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
@@ -42,9 +43,8 @@ struct lm_line_targets {
 struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_class_lut *class_lut;
-    const struct lm_texture *texture;
-    struct lm_noise_key noise_key; /* chooses the texture */
-    uint8_t lod;                   /* LOD that the map is read from */
+    const struct lm_class_gain *class_gain;
+    uint8_t lod; /* LOD that the map is read from */
 };
 
 /* Work space and result of a line. The caller owns it, and a bench or a test can then read each
@@ -55,8 +55,8 @@ struct lm_line {
     uint8_t grey[LM_CELLS_ROOM]; /* result: 0..255 for each cell of the display line */
 };
 
-/* Trace the grid's cells along `path`: fill line->ground, and line->lit with texture and sea state
- * in its levels. `horizon` is that of the ground before the first cell. Returns the horizon behind
+/* Trace the grid's cells along `path`: fill line->ground, and line->lit with the class gain in its
+ * levels. `horizon` is that of the ground before the first cell. Returns the horizon behind
  * the last cell. A cell whose tile is not resident is read from a coarser tile, and its own tile is
  * requested. Cost: docs/benchmarks.md. */
 lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,

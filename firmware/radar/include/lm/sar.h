@@ -86,12 +86,12 @@ struct lm_sar {
     struct lm_foreground foreground;
     uint8_t lod; /* LOD that the patch is read from */
     struct lm_class_lut class_lut;
-    struct lm_texture texture;
+    struct lm_class_gain class_gain;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: none */
     uint64_t time_us;                    /* of the movers' positions */
     uint32_t epoch;                      /* of the targets' fluctuation */
-    uint32_t noise_epoch; /* of noise, texture and speckle: depends on centre and command too */
+    uint32_t noise_epoch; /* of noise and speckle: depends on centre and command too */
     int32_t across_mm_s;  /* velocity to the right of the line of sight */
     int32_t floor_db_q8;  /* noise with that of jammers, dB of gamma */
     struct lm_patch_rain rain;

@@ -98,7 +98,7 @@ struct lm_sector {
     struct lm_antenna_pattern pattern;
     struct lm_antenna_fan fan;
     struct lm_class_lut class_lut;
-    struct lm_texture texture;
+    struct lm_class_gain class_gain;
     struct lm_azimuth_average average; /* of the sample that is being traced */
     struct lm_beam beam;
     bool has_taps;          /* true once the next line's taps are set */

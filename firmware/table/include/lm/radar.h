@@ -27,7 +27,6 @@
 #include <stdint.h>
 
 #include "fx/types.h"
-#include "lm/class_kind.h"
 #include "lm/config.h"
 
 /* Scales that a table may have, sectors that it has, and characters of a name with its zero. */
@@ -66,13 +65,6 @@ struct lm_illumination_config {
 /* Speckle of a picture. */
 struct lm_speckle_config {
     uint8_t looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
-};
-
-/* Texture of the ground: shape by kind of class (enum lm_class_kind), as log2 nu of 0..4, or
- * LM_TEXTURE_NONE. */
-enum { LM_TEXTURE_NONE = 5 };
-struct lm_texture_config {
-    uint8_t shape_log2[LM_KINDS];
 };
 
 /* Tone window: which level is black, which is white, and the curve between them. */
@@ -193,7 +185,6 @@ struct lm_radar {
     struct lm_fov_row fov[LM_FOVS];
     struct lm_sar_table sar;
     struct lm_illumination_config illumination;
-    struct lm_texture_config texture;
 };
 
 extern const struct lm_radar lm_radar_default;

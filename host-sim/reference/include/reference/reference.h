@@ -44,8 +44,8 @@ struct ref_bin {
     double gain_db, edge_db; /* K, E */
     double level_db;         /* the noise floor where there is no echo */
     /* speckle and noise */
-    unsigned texture_slice, slice; /* drawn for texture and speckle, 0..1023 */
-    double texture_db;             /* with the state of the sea */
+    double class_gain_db; /* of the state of the sea */
+    unsigned slice;       /* drawn for speckle, 0..1023 */
     double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
     /* tone */
@@ -58,12 +58,11 @@ struct ref_params {
     double edge_structure_db, edge_trees_db; /* leading edges */
     double shore_db, shore_width_m;          /* far shore */
     double noise_floor_db;
-    unsigned looks;                 /* 1..64 */
-    double black_db, white_db;      /* white_db > black_db */
-    double gamma_exponent;          /* > 0 */
-    double texture_shape[LM_KINDS]; /* nu by kind of class, 1..64 in whole numbers; 0: none */
-    double sea_db;                  /* ref_sea_db of the state of the sea */
-    bool has_exact_weights;         /* bilinear weights not cut to 8 bits */
+    unsigned looks;            /* 1..64 */
+    double black_db, white_db; /* white_db > black_db */
+    double gamma_exponent;     /* > 0 */
+    double sea_db;             /* ref_sea_db of the state of the sea */
+    bool has_exact_weights;    /* bilinear weights not cut to 8 bits */
 };
 
 /* 6, 3 and 8 dB of edges, 90 m of shore, floor and black -45 dB, white 5 dB, 4 looks, exponent 1.
@@ -182,26 +181,14 @@ void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES]);
 /* The slice that a cell draws which is the cell-th of its line and lies in a column of a raster. */
 unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint32_t epoch);
 
-/* The column of the ground's raster in which the cell-th of a line lies, along an azimuth and with
- * its first cell's near edge edge_m away: columns are cell_m wide at the middle of each eight. */
-uint32_t ref_ground_column(double azimuth_deg, double edge_m, double cell_m, uint32_t cell);
-
-/* Tables of the texture by kind of class: those of params->texture_shape, all 0 for none. */
-struct ref_texture {
-    double table_db[LM_KINDS][REF_SPECKLE_SLICES];
-};
-void ref_texture_tables(struct ref_texture *texture, const struct ref_params *params);
-
 /* Level that a sea state (0..8) adds to water. */
 double ref_sea_db(int state);
 
-/* Fill `texture_db` from `kind` and `texture_slice`: what the roughness of the class and, over
- * water, the state of the sea add to the level. */
-void ref_texture(struct ref_bin *bins, size_t count, const struct ref_texture *texture,
-                 const struct ref_params *params);
+/* Fill `class_gain_db` from `kind`: over water, what the state of the sea adds to the level. */
+void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params);
 
-/* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db + texture_db -
- * loss_db (of a lit bin), floor and veil, + speckle_db. */
+/* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db +
+ * class_gain_db - loss_db (of a lit bin), floor and veil, + speckle_db. */
 void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
                  double noise_floor_db);
 
@@ -496,7 +483,6 @@ struct ref_sar {
 /* The tables of a picture. */
 struct ref_tables {
     double speckle_db[REF_SPECKLE_SLICES];
-    struct ref_texture texture;
 };
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
 

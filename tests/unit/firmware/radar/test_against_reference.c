@@ -23,7 +23,6 @@ struct world {
     struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
-    struct ref_texture texture;
     struct lm_environment environment;
     bool is_rainy;
 };
@@ -39,7 +38,6 @@ static void set_params(struct world *w)
     const struct lm_sar_table *sar = &w->radar.sar;
     w->params = params_of(&w->radar, decibels(sar->noise_floor_db_q8), &sar->tone, &sar->speckle);
     ref_speckle_table(w->params.looks, w->table_db);
-    ref_texture_tables(&w->texture, &w->params);
     assert_int_equal(lm_tone_set(&w->tone, &sar->tone), LM_OK);
 }
 
@@ -71,7 +69,6 @@ static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *
 {
     for (uint32_t i = 0; i < CELLS + REF_GUARD_CELLS; i++) {
         const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
-        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, line, i, sar->noise_epoch);
         bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->noise_epoch);
     }
 }
@@ -80,7 +77,7 @@ static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *
 static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t from, uint32_t cells,
                          struct score *score)
 {
-    ref_texture(bins, cells, &w->texture, &w->params);
+    ref_class_gain(bins, cells, &w->params);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
     for (uint32_t i = from; i < cells; i++) {

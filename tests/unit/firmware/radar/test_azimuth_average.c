@@ -211,9 +211,6 @@ TEST(the_table_brings_samples_near_to_what_the_beam_sees)
         start_sector(w, command, NULL, NULL);
         draw_line(w);
         see_all(w, &db, &params, seen);
-        for (int kind = 0; kind < LM_KINDS; kind++) {
-            w->radar.texture.shape_log2[kind] = LM_TEXTURE_NONE;
-        }
         double rms_db[LM_AZIMUTH_AVERAGE_LOG2_MAX + 1];
         for (int log2 = 0; log2 <= LM_AZIMUTH_AVERAGE_LOG2_MAX; log2++) {
             rms_db[log2] = rms_of_sweep(w, command, (uint8_t)log2, seen);

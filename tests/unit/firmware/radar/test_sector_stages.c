@@ -29,7 +29,6 @@ struct trial {
     struct sector_world *w;
     struct ref_params params;
     double speckle_db[REF_SPECKLE_SLICES], noise_db[REF_SPECKLE_SLICES];
-    struct ref_texture texture;
     struct ref_environment environment;
     const struct lm_environment *weather; /* NULL: fair */
     struct score score[STAGES];
@@ -86,16 +85,9 @@ static struct ref_antenna antenna_of(const struct lm_radar *radar)
 }
 
 /* What the cells of a sample draw. */
-static void take_draws(const struct sector_world *w, int32_t sample, uint32_t sweep,
-                       struct ref_bin *bins, uint32_t cells)
+static void take_draws(int32_t sample, uint32_t sweep, struct ref_bin *bins, uint32_t cells)
 {
-    const struct lm_sector *s = &w->sector;
-    const int32_t off = lm_beam_azimuth(&s->beam, s->radar, sample);
-    const double azimuth_deg = hs_degrees(s->up + (fx_bam_t)off);
-    const double edge_m = metres(s->ground_edge_m_q8), cell_m = metres(s->grid.cell_m_q8);
     for (uint32_t i = 0; i < cells; i++) {
-        const uint32_t column = ref_ground_column(azimuth_deg, edge_m, cell_m, i);
-        bins[i].texture_slice = ref_draw(LM_NOISE_TEXTURE, column, i, sweep);
         bins[i].slice = ref_draw(LM_NOISE_SPECKLE, (uint32_t)sample, i, sweep);
     }
 }
@@ -113,7 +105,7 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
     }
     take_ground(&w->line.ground, &w->map.db.classes, bins, cells);
     ref_illuminate(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
-    ref_texture(bins, cells, &t->texture, &t->params);
+    ref_class_gain(bins, cells, &t->params);
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
 }
 
@@ -127,7 +119,7 @@ static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
     struct lm_lit_line gain = w->line.lit;
     memset(gain.level_db_q8, 0, sizeof gain.level_db_q8);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &gain);
-    take_draws(w, sample, sweep, bins, cells);
+    take_draws(sample, sweep, bins, cells);
     see(t, bins, cells);
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
@@ -329,7 +321,6 @@ static void judge_sweep(struct sector_world *w, const char *what,
     t->params.sea_db = e ? ref_sea_db(e->sea_state) : 0;
     ref_speckle_table(t->params.looks, t->speckle_db);
     ref_speckle_table(1u << w->radar.receiver.noise_looks_log2, t->noise_db);
-    ref_texture_tables(&t->texture, &t->params);
     start_sector(w, command, e, NULL);
     do {
         judge_line(t);

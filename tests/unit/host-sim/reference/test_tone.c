@@ -80,25 +80,10 @@ TEST(cells_columns_epochs_and_kinds_draw_by_themselves)
         same[0] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell + 1, 5);
         same[1] += slice == ref_draw(LM_NOISE_SPECKLE, column + 1, cell, 5);
         same[2] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell, 6);
-        same[3] += slice == ref_draw(LM_NOISE_TEXTURE, column, cell, 5);
+        same[3] += slice == ref_draw(LM_NOISE_RECEIVER, column, cell, 5);
     }
     for (int i = 0; i < 4; i++) {
         assert_in_range(same[i], 0, 20);
-    }
-}
-
-/* 30 degrees are pi / 6 columns for each cell of the range: at 196 cells, the middle of cells 192
- * to 199, 102.6, and at 200 cells 104.7. There a column is 0.286 to 0.293 degrees wide. */
-TEST(columns_of_the_ground_are_as_wide_as_cells_are_long)
-{
-    assert_int_equal(ref_ground_column(30, 0, 50, 192), 102);
-    assert_int_equal(ref_ground_column(30, 0, 50, 199), 102);
-    assert_int_equal(ref_ground_column(30, 9800, 50, 0), 104);
-    for (double azimuth_deg = 0.05; azimuth_deg < 360; azimuth_deg += 0.37) {
-        const uint32_t column = ref_ground_column(azimuth_deg, 0, 50, 197);
-        assert_true(ref_ground_column(azimuth_deg + 0.293, 0, 50, 198) > column ||
-                    azimuth_deg > 359.7);
-        assert_true(ref_ground_column(azimuth_deg + 0.28, 0, 50, 198) <= column + 1);
     }
 }
 

@@ -1,0 +1,145 @@
+/* The gain of classes, and the noise floor: docs/EQUATIONS.md, "Class gain" and "Noise". */
+#include "check.h"
+#include "hs/rng.h"
+#include "lm/class_gain.h"
+#include "lm/illumination.h"
+#include "lm/speckle.h"
+#include "tiny_image.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROOM = 16 }; /* what the stages take for a few cells */
+
+static uint32_t cell_of(uint32_t class_index)
+{
+    return 200u << 8 | class_index << 4 | 5;
+}
+
+/* What a cell gains. */
+static int32_t gain_q8(const struct lm_class_gain *gain, uint32_t cell, int32_t level)
+{
+    uint32_t cells[ROOM];
+    int32_t levels[ROOM];
+    for (int i = 0; i < ROOM; i++) {
+        cells[i] = cell;
+        levels[i] = level;
+    }
+    lm_class_gain_run(gain, cells, levels, 1);
+    return levels[0] - level;
+}
+
+TEST(a_picture_of_the_images_own_sea_keeps_every_level_to_the_bit)
+{
+    struct lm_class_gain gain;
+    lm_class_gain_set(&gain, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE, 0);
+    assert_false(gain.is_any);
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        assert_int_equal(gain_q8(&gain, cell_of(i), -1234), 0);
+    }
+}
+
+/* [Nathanson]: -40 dB in state 3 and -30 dB in state 5. */
+TEST(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each)
+{
+    for (int sea = 0; sea <= 255; sea++) {
+        struct lm_class_gain gain;
+        lm_class_gain_set(&gain, tiny_classes(), 0, (uint8_t)sea, 0);
+        const uint32_t cell[ROOM] = {cell_of(TINY_WATER), cell_of(TINY_SOIL),
+                                     cell_of(TINY_STRUCTURE), cell_of(TINY_TREES)};
+        int32_t level[ROOM] = {-40 * 256, -20 * 256, 0, -15 * 256};
+        lm_class_gain_run(&gain, cell, level, 4);
+        assert_int_equal(level[0], (-40 + 5 * ((sea < 8 ? sea : 8) - 3)) * 256);
+        assert_int_equal(level[1], -20 * 256);
+        assert_int_equal(level[2], 0);
+        assert_int_equal(level[3], -15 * 256);
+    }
+}
+
+TEST(a_loss_is_taken_off_every_class)
+{
+    static const uint16_t losses_q8[] = {35 * 256, LM_CLUTTER_LOSS_MAX_DB_Q8, UINT16_MAX};
+    for (size_t n = 0; n < 3; n++) {
+        struct lm_class_gain whole, less;
+        lm_class_gain_set(&whole, tiny_classes(), 0, 0, 0);
+        lm_class_gain_set(&less, tiny_classes(), 0, 0, losses_q8[n]);
+        for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+            const int32_t lost = gain_q8(&whole, cell_of(i), 0) - gain_q8(&less, cell_of(i), 0);
+            assert_int_equal(lost, losses_q8[n] < LM_CLUTTER_LOSS_MAX_DB_Q8
+                                       ? losses_q8[n]
+                                       : LM_CLUTTER_LOSS_MAX_DB_Q8);
+        }
+    }
+}
+
+TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
+{
+    int32_t strongest = 0;
+    for (int row = 0; row <= LM_NOISE_LOOKS_LOG2_MAX; row++) {
+        for (int n = 0; n < LM_NOISE_SLICES; n++) {
+            strongest = lm_noise_db_q8[row][n] > strongest ? lm_noise_db_q8[row][n] : strongest;
+        }
+    }
+    static const uint16_t losses_q8[] = {0, UINT16_MAX};
+    for (size_t n = 0; n < 2; n++) {
+        struct lm_class_gain gain;
+        lm_class_gain_set(&gain, tiny_classes(), 0, LM_SEA_STATE_MAX, losses_q8[n]);
+        for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+            const int32_t level = LM_LEVEL_SHADOW + gain_q8(&gain, cell_of(i), LM_LEVEL_SHADOW);
+            assert_true(level + strongest < -80 * 256);
+            assert_true(level > -0x10000); /* what fx_power_q32_vec takes */
+        }
+    }
+}
+
+TEST(a_class_has_its_gain_in_the_lod_that_the_map_is_read_from)
+{
+    struct lm_classes classes = *tiny_classes();
+    classes.entry[TINY_STRUCTURE].lod_gain_db_q8[3] = 5 * 256;
+    classes.entry[TINY_WATER].lod_gain_db_q8[3] = -2 * 256;
+    classes.entry[TINY_SOIL].lod_gain_db_q8[15] = INT16_MAX; /* more than a gain may be */
+    for (uint8_t lod = 0; lod < LM_DB_LODS_MAX; lod++) {
+        struct lm_class_gain gain;
+        lm_class_gain_set(&gain, &classes, lod, LM_SEA_STATE_OF_IMAGE + 1, 256);
+        const int32_t on = lod == 3;
+        assert_int_equal(gain_q8(&gain, cell_of(TINY_STRUCTURE), 0), on * 5 * 256 - 256);
+        assert_int_equal(gain_q8(&gain, cell_of(TINY_WATER), 0), 5 * 256 - on * 2 * 256 - 256);
+        assert_int_equal(gain_q8(&gain, cell_of(TINY_SOIL), 0),
+                         (lod == 15) * LM_CLASS_GAIN_MAX_DB_Q8 - 256);
+    }
+}
+
+TEST(hostile_classes_and_cells_read_nothing_but_the_table)
+{
+    struct lm_classes classes;
+    memset(&classes, 0xff, sizeof classes);
+    struct lm_class_gain gain;
+    lm_class_gain_set(&gain, &classes, 0, 255, 1);
+    for (uint32_t i = 0; i < 16; i++) {
+        assert_int_equal(gain_q8(&gain, 0xffffff0fu | i << 4, 0), gain.of_class_db_q8[i]);
+    }
+}
+
+/* A level over a floor, without the speckle of the sum. */
+static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
+{
+    const struct lm_speckle_config config = {2};
+    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, 700, 2);
+    int32_t level[ROOM] = {level_q8}, speckled_q8[ROOM];
+    lm_speckle_floor_run(&config, floor_q8, &noise_key, level, speckled_q8, 1);
+    return speckled_q8[0] - lm_noise_cell_db_q8(2, &noise_key, 0);
+}
+
+TEST(the_floor_adds_as_power_to_every_level)
+{
+    struct hs_rng rng;
+    hs_rng_seed(&rng, 4);
+    for (int n = 0; n < 20000; n++) {
+        const int32_t floor_q8 = (int32_t)hs_rng_below(&rng, 40000) - 30000;
+        const int32_t level_q8 = (int32_t)hs_rng_below(&rng, 60000) - 40000;
+        const int32_t sum_q8 = over_floor_q8(floor_q8, level_q8);
+        const double expected = 10 * log10(pow(10, level_q8 / 2560.0) + pow(10, floor_q8 / 2560.0));
+        assert_true(fabs(sum_q8 / 256.0 - expected) < 0.018);
+    }
+    assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
+}
