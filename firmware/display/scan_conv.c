@@ -243,6 +243,38 @@ void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi,
     paint_rows(w, rows.end - middle.end, range, &columns, grey, cells);
 }
 
+/* Blacken the columns from `first` up to, not including, `end`. `apex` is the pixel of their row at
+ * column 0. */
+static void clear_columns(uint8_t *apex, int64_t first, int64_t end)
+{
+    if (first < end) {
+        memset(apex + first, 0, (size_t)(end - first));
+    }
+}
+
+void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
+                         fx_bam_t right)
+{
+    const struct lm_frame *clip = &ppi->clip;
+    const int64_t first = clip->left_px - ppi->apex_x_px, end = first + clip->width_px;
+    const int32_t top = ppi->apex_y_px - clip->top_px; /* rows from the apex to the clip's top */
+    const int32_t bottom = top - clip->height_px;
+    struct edge left_edge = edge_at(left), right_edge = edge_at(right);
+    skip_rows(&left_edge, fx_max_i32(bottom, 0));
+    skip_rows(&right_edge, fx_max_i32(bottom, 0));
+    for (int32_t row = bottom; row < top; row++) {
+        uint8_t *apex = plane->pixels + (ptrdiff_t)(ppi->apex_y_px - 1 - row) * plane->width_px +
+                        ppi->apex_x_px;
+        if (row < 0) {
+            clear_columns(apex, first, end);
+            continue;
+        }
+        const int64_t from = fx_clamp_i64(next_column(&left_edge), first, end);
+        clear_columns(apex, first, from);
+        clear_columns(apex, fx_clamp_i64(next_column(&right_edge), from, end), end);
+    }
+}
+
 struct lm_frame lm_frame_square(const struct lm_frame *frame)
 {
     const uint16_t side = frame->width_px < frame->height_px ? frame->width_px : frame->height_px;

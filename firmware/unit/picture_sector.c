@@ -86,6 +86,19 @@ static void recentre(struct lm_picture *p)
     p->sector.command.centre = cursor->position;
 }
 
+static struct lm_view view(const struct lm_picture *p);
+
+/* Remove the part of a window that the antenna does not reach in this sweep. Nothing would draw it
+ * again, and each sweep would move it along. */
+static void remove_unreached(struct lm_picture *p)
+{
+    const struct lm_sector *s = &p->sector;
+    const struct lm_view now = view(p);
+    const struct lm_ppi ppi = lm_view_ppi(&now, &p->frame, s->slant.cell_m_q8, s->edge_m_q8);
+    lm_plane_keep_wedge(&p->plane, &ppi, (fx_bam_t)lm_sector_edge_bam(s, 0),
+                        (fx_bam_t)lm_sector_edge_bam(s, s->lines));
+}
+
 static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
 {
     if (!lm_sector_is_at_edge(&p->sector)) {
@@ -97,7 +110,11 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
     lm_page_note_tilt(p->lent.page, p->sector.tilt);
     lm_coverage_judge(&p->coverage);
     p->coverage.cells_none = p->coverage.cells_seen = 0;
-    return lm_sector_is_window(&p->sector) ? LM_SWEEP_BEGUN_AT_COST : LM_SWEEP_BEGUN;
+    if (!lm_sector_is_window(&p->sector)) {
+        return LM_SWEEP_BEGUN;
+    }
+    remove_unreached(p);
+    return LM_SWEEP_BEGUN_AT_COST;
 }
 
 static bool sample_ahead(struct lm_picture *p, uint64_t now_us, uint32_t *azimuths)

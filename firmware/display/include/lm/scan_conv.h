@@ -66,6 +66,12 @@ struct lm_ppi {
 void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                          fx_bam_t right, const uint8_t *grey, uint32_t cells);
 
+/* Make those pixels of the clip black whose centres lie outside the wedge from azimuth `left` up
+ * to, not including, `right`: what lines between these two cannot paint. Azimuths are as in
+ * lm_scan_conv_sector. Cost: some 30 instructions a row, and the pixels that are made black. */
+void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
+                         fx_bam_t right);
+
 /* Side of a patch's cell in pixels: the largest whole number with which `cells` of them fit the
  * frame, at least 1. */
 uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells);

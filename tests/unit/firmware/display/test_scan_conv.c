@@ -215,6 +215,37 @@ TEST(a_window_shows_what_it_would_show_in_a_wider_one)
     }
 }
 
+TEST(what_a_wedge_does_not_cover_is_made_black_and_the_rest_is_kept)
+{
+    static const int32_t apex[][2] = {{250, 400}, {30, 500}, {203, 200}, {-9000, 9000}, {700, 100}};
+    static const int32_t edges[][2] = {{-60, 60}, {-60, -59}, {20, 50}, {-10, 0}, {0, 0}};
+    for (int n = 0; n < 25; n++) {
+        struct glass g;
+        make_glass(&g, 512, 512);
+        const struct lm_ppi ppi = {
+            .clip = {203, 140, 120, 97}, .apex_x_px = apex[n % 5][0], .apex_y_px = apex[n % 5][1]};
+        const int32_t left = edges[n / 5][0], right = edges[n / 5][1];
+        memset(g.plane.pixels, 7, 512 * 512);
+        lm_plane_keep_wedge(&g.plane, &ppi, (fx_bam_t)left * FX_BAM_DEG(1),
+                            (fx_bam_t)right * FX_BAM_DEG(1));
+        for (int32_t y = 0; y < 512; y++) {
+            for (int32_t x = 0; x < 512; x++) {
+                const bool is_in_clip = x >= 203 && x < 323 && y >= 140 && y < 237;
+                const double right_px = x + 0.5 - ppi.apex_x_px, up_px = ppi.apex_y_px - y - 0.5;
+                const double azimuth = atan2(right_px, up_px) / degree;
+                const double off_px =
+                    fmin(azimuth - left, right - azimuth) * degree * hypot(right_px, up_px);
+                if (is_in_clip && fabs(off_px) < 0.2 && up_px > 0) {
+                    continue;
+                }
+                assert_int_equal(g.plane.pixels[y * 512 + x], !is_in_clip || off_px > 0 ? 7 : 0);
+            }
+        }
+        memset(g.memory, GUARD, (size_t)3 * 512 * 512);
+        close_glass(&g);
+    }
+}
+
 TEST(hostile_wedges_stay_inside_the_frame)
 {
     struct glass g;
