@@ -1,6 +1,7 @@
 #include "lm/beam.h"
 
 #include "fx/bits.h"
+#include "fx/const.h"
 #include "fx/log.h"
 #include "fx/sat.h"
 #include "lm/kernels_radar.h"
@@ -31,9 +32,10 @@ int32_t lm_beam_azimuth(const struct lm_beam *b, const struct lm_radar *radar, i
     return sample * spacing + spacing / 2;
 }
 
+/* log2 of the ratio, rounded to the nearest: floor(log2(N sqrt 2)). The ratio is below 2^17. */
 static uint8_t fineness_of(uint32_t ratio_q8)
 {
-    const uint32_t ratio = ratio_q8 / 256;
+    const uint32_t ratio = (uint32_t)((uint64_t)ratio_q8 * FX_ROOT_1_2_Q30 >> (30 + 8 - 1));
     return ratio ? (uint8_t)fx_min_u32((uint32_t)(31 - fx_clz32(ratio)), LM_BEAM_FINEST) : 0;
 }
 
@@ -87,6 +89,13 @@ void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t a
         left -= taps->weight_q16[j];
     }
     taps->weight_q16[LM_BEAM_TAPS / 2] += left; /* the rest by rounding goes to a middle tap */
+}
+
+void lm_beam_weaken(struct lm_beam_taps *taps, uint32_t share_q16)
+{
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        taps->weight_q16[j] = (uint32_t)((uint64_t)taps->weight_q16[j] * share_q16 >> 16);
+    }
 }
 
 bool lm_beam_has(const struct lm_beam *b, int32_t sample)

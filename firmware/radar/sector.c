@@ -476,9 +476,9 @@ static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform 
     if (fov->sharpening <= 1) {
         return 256;
     }
+    const struct lm_dbs_scan scan = {rate_of(s), platform->speed_mm_s, s->width};
     const fx_bam_t off = s->up + (fx_bam_t)azimuth - platform->track;
-    return lm_dbs_sharpening_q8(fov,
-                                lm_dbs_ratio_q8(s->radar, rate_of(s), platform->speed_mm_s, off));
+    return lm_dbs_sharpening_q8(s->radar, &scan, fov->sharpening, off);
 }
 
 /* Taps of the next line, once has_taps is true. */
@@ -498,6 +498,8 @@ static void set_taps(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
         line_taps->taps.first += moved / spacing;
     } else {
         lm_beam_set_taps(&s->beam, s->radar, azimuth, ratio_q8, &line_taps->taps);
+        lm_beam_weaken(&line_taps->taps,
+                       lm_dbs_scallop_q16(s->radar, fov_of(s), ratio_q8, azimuth));
     }
     line_taps->azimuth = azimuth;
     line_taps->is_kept = ratio_q8 == 256;

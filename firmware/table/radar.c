@@ -83,14 +83,14 @@ const struct lm_radar lm_radar_default = {
                                 .speckle = {.looks_log2 = 0},
                                 .tone = {LM_DB_Q8(-48), LM_DB_Q8(-6), 320}}},
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
-     * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and real beam below half of that: UNSOURCED.
-     * Azimuths across a sample: enough for the ground to err less than the speckle does
+     * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and beam positions 2/5 of the beam apart,
+     * whose pattern is then 1 dB weaker half-way between: UNSOURCED. Azimuths across a sample:
+     * enough for the ground to err less than the speckle does
      * (tests/unit/firmware/radar/test_azimuth_average.c). */
     .fov = {[LM_FOV_NORM] = {.name = "NORM",
                              .range_max_nm = 80,
                              .slew_percent = 100,
                              .sharpening = 1,
-                             .sharpening_least = 1,
                              .azimuths_log2 = 1},
             [LM_FOV_EXP] = {.name = "EXP",
                             .range_max_nm = 80,
@@ -98,7 +98,6 @@ const struct lm_radar lm_radar_default = {
                             .window_permille = 125,
                             .azimuth_half_max = FX_BAM_DEG(60),
                             .sharpening = 1,
-                            .sharpening_least = 1,
                             .azimuths_log2 = 2},
             [LM_FOV_DBS1] = {.name = "DBS1",
                              .bam_per_s = FX_BAM_DEG(15),
@@ -107,7 +106,7 @@ const struct lm_radar lm_radar_default = {
                              .window_permille = 125,
                              .azimuth_half_max = FX_BAM_DEG(15),
                              .sharpening = 8,
-                             .sharpening_least = 4,
+                             .beam_step = FX_BAM_DEG(132) / 100,
                              .azimuths_log2 = 2},
             [LM_FOV_DBS2] = {.name = "DBS2",
                              .bam_per_s = FX_BAM_DEG(3),
@@ -116,7 +115,7 @@ const struct lm_radar lm_radar_default = {
                              .window_permille = 30,
                              .azimuth_half_max = FX_BAM_DEG(5),
                              .sharpening = 64,
-                             .sharpening_least = 32,
+                             .beam_step = FX_BAM_DEG(132) / 100,
                              .azimuths_log2 = 2}},
     /* UNSOURCED but for the formulas they go into: squints from 15 degrees, where Doppler
      * beam sharpening is usually said to begin, a minute of dwell at the most, a patch shown with

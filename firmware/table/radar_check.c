@@ -77,7 +77,7 @@ static const struct lm_radar_field fields[] = {
     {"fov[EXP..].window_permille", OF_WINDOWS(window_permille), BETWEEN(5, 250)},
     {"fov.azimuth_half_max", OF_FIELDS(azimuth_half_max), BETWEEN(0, LM_RADAR_AZIMUTH_MAX)},
     {"fov.sharpening", OF_FIELDS(sharpening), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
-    {"fov.sharpening_least", OF_FIELDS(sharpening_least), BETWEEN(1, LM_RADAR_SHARPENING_MAX)},
+    {"fov.beam_step", OF_FIELDS(beam_step), BETWEEN(0, FX_BAM_DEG(20))},
     {"fov.azimuths_log2", OF_FIELDS(azimuths_log2), BETWEEN(0, LM_RADAR_AZIMUTHS_LOG2_MAX)},
     {"sar.cells", ONE(sar.cells), BETWEEN(32, LM_RADAR_PATCH_CELLS_MAX)},
     {"sar.cell_min_mm", ONE(sar.cell_min_mm), BETWEEN(100, 100000)},
@@ -282,20 +282,10 @@ static uint32_t check_patch_tone(const struct lm_radar *r)
     return is_window_of_tone(&r->sar.tone) ? HOLDS : 0;
 }
 
-static uint32_t check_sharpening(const struct lm_radar *r)
+static uint32_t check_beam_steps(const struct lm_radar *r)
 {
     for (uint32_t i = 0; i < LM_FOVS; i++) {
-        if ((r->fov[i].sharpening & (r->fov[i].sharpening - 1)) != 0) {
-            return i;
-        }
-    }
-    return HOLDS;
-}
-
-static uint32_t check_sharpening_least(const struct lm_radar *r)
-{
-    for (uint32_t i = 0; i < LM_FOVS; i++) {
-        if (r->fov[i].sharpening_least > r->fov[i].sharpening) {
+        if (r->fov[i].beam_step > r->antenna.azimuth_beam) {
             return i;
         }
     }
@@ -347,8 +337,7 @@ static const struct rule {
     {"fov.bam_per_s", check_rates},
     {"fov.window_permille", check_windows},
     {"fov.azimuth_half_max", check_window_sectors},
-    {"fov.sharpening", check_sharpening},
-    {"fov.sharpening_least", check_sharpening_least},
+    {"fov.beam_step", check_beam_steps},
     {"sar.cell_max_mm", check_patch_cells},
     {"sar.tone.white_db_q8", check_patch_tone},
 };

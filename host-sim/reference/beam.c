@@ -6,9 +6,14 @@
 
 static const double rad = 3.14159265358979323846 / 180;
 
+double ref_beam_fineness(const struct ref_beam *b)
+{
+    return pow(2, floor(log2(b->ratio) + 0.5));
+}
+
 double ref_beam_spacing_deg(const struct ref_beam *b)
 {
-    return b->line_deg / pow(2, floor(log2(b->ratio)));
+    return b->line_deg / ref_beam_fineness(b);
 }
 
 double ref_beam_azimuth_deg(const struct ref_beam *b, long sample)

@@ -16,9 +16,20 @@ double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio)
     return asin(ratio / ref_dbs_ratio(d, 90)) / rad;
 }
 
-double ref_dbs_used(double had, double wanted, double least)
+double ref_dbs_used(const struct ref_dbs *d, double off_deg, double line_deg, double wanted)
 {
-    return had < least ? 1 : pow(2, floor(log2(fmin(had, wanted))));
+    const double fade_deg = fmin(11 * line_deg, 90);
+    const double to_deg = asin(fabs(sin(off_deg * rad))) / rad;
+    const double had = to_deg >= fade_deg
+                           ? ref_dbs_ratio(d, to_deg)
+                           : ref_dbs_ratio(d, fade_deg) * exp((to_deg - fade_deg) / fade_deg);
+    return fmax(fmin(had, wanted), 1);
+}
+
+double ref_dbs_scallop(double beam_deg, double step_deg, double ratio, double azimuth_deg)
+{
+    const double x = step_deg > 0 ? remainder(azimuth_deg, step_deg) / beam_deg : 0;
+    return pow(2, -8 * x * x * (1 - 1 / (ratio * ratio)));
 }
 
 double ref_mover_shift_deg(double closing_m_s, double speed_m_s, double off_deg)

@@ -31,7 +31,7 @@ struct samples {
 /* Azimuths across a sample: half as many for each doubling of the sharpness. */
 static unsigned azimuths_of(const struct ref_sector *s, const struct ref_beam *beam)
 {
-    const double fewer = pow(2, floor(log2(beam->ratio)));
+    const double fewer = ref_beam_fineness(beam);
     return s->azimuths > fewer ? (unsigned)(s->azimuths / fewer) : 1;
 }
 
@@ -82,9 +82,10 @@ static const struct ref_bin *sample(struct samples *s, const struct ref_db *db,
 /* How sharp the picture is at an azimuth. */
 static double ratio_at(const struct ref_sector *s, double azimuth_deg)
 {
-    return s->sharpening > 1 ? ref_dbs_used(ref_dbs_ratio(&s->dbs, azimuth_deg - s->track_deg),
-                                            s->sharpening, s->sharpening_least)
-                             : 1;
+    const double line_deg = 2 * s->ground.half_angle_deg / s->ground.line_count;
+    return s->sharpening > 1
+               ? ref_dbs_used(&s->dbs, azimuth_deg - s->track_deg, line_deg, s->sharpening)
+               : 1;
 }
 
 /* The weather along an azimuth. */
@@ -136,9 +137,12 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
         const struct ref_beam beam = {sector->beam_deg, sector->sample_deg,
                                       ratio_at(sector, azimuth_deg)};
         const struct ref_bin *lines[REF_BEAM_SAMPLES];
-        line.look = ref_beam_look(&beam, azimuth_deg - ground->centre_azimuth_deg);
+        const double from_middle_deg = azimuth_deg - ground->centre_azimuth_deg;
+        line.look = ref_beam_look(&beam, from_middle_deg);
         for (int j = 0; j < REF_BEAM_SAMPLES; j++) {
             lines[j] = sample(samples, db, sector, params, &tables, &beam, line.look.first + j);
+            line.look.weight[j] *=
+                ref_dbs_scallop(beam.beam_deg, sector->beam_step_deg, beam.ratio, from_middle_deg);
         }
         look_at_weather(sector, &line.receiver, azimuth_deg, &weather);
         ref_sector_line(&line, lines, ground->cell_count, &weather, level_db);

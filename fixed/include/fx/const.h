@@ -17,6 +17,7 @@
 #define FX_LOG2_PI_Q16      108232      /* log2(pi) 2^16 = 108232.45 */
 #define FX_LOG2_TWO_PI_Q16  173768      /* log2(2 pi) 2^16 = 173768.45 */
 #define FX_LOG2_FOUR_PI_Q16 239304      /* log2(4 pi) 2^16 = 239304.45 */
+#define FX_LOG2_E_Q16       94548       /* log2(e) 2^16 = 94548.46 */
 #define FX_LN2_Q32          2977044472u /* ln(2) 2^32 = 2977044471.82: 6.1e-11 too much */
 
 /* Decibels of a factor of two, and octaves in a decibel. */

@@ -24,7 +24,7 @@ struct request {
     double latitude_deg, longitude_deg, antenna_m, azimuth_deg, range_m, cell_m, cells;
     double half_angle_deg, lines, size_px, scale, epoch, looks;
     double beam_deg, tilt_deg, pulse_us, noise_db, code_gain_db, air_db_km, noise_looks, stc_m;
-    double sharpening, rate_deg_s, speed_m_s, track_deg;
+    double sharpening, beam_step_deg, rate_deg_s, speed_m_s, track_deg;
     double rain_mm_h, rain_radius_m, rain_distance_m, rain_bearing_deg;
     double jam_db, jam_distance_m, jam_bearing_deg;
     struct ref_params params;
@@ -75,8 +75,10 @@ static const struct option options[] = {
     {"noise-looks", "independent looks of the noise", AT(noise_looks), FOR_SECTOR, 1, 64, 16, true},
     {"stc", "metres of slant range where the time gain ends", AT(stc_m), FOR_SECTOR, 1, 1e6, 27780,
      false},
-    {"sharpening", "cells in a beam width; 1: real beam, half of it at the least", AT(sharpening),
-     FOR_SECTOR, 1, 256, 1, false},
+    {"sharpening", "cells in a beam width; 1: real beam", AT(sharpening), FOR_SECTOR, 1, 256, 1,
+     false},
+    {"beam-step", "degrees between beam positions, for sharpening; 0: none", AT(beam_step_deg),
+     FOR_SECTOR, 0, 20, 1.32, false},
     {"rate", "degrees a second of the antenna, for sharpening", AT(rate_deg_s), FOR_SECTOR, 0.1,
      360, 15, false},
     {"speed", "metres a second, for sharpening", AT(speed_m_s), FOR_SECTOR, 1, 2000, 250, false},
@@ -392,7 +394,7 @@ static int render_sector(const struct request *request, const struct ref_db *db)
         .sample_deg = 120.0 / 128,
         .azimuths = 2,
         .sharpening = request->sharpening,
-        .sharpening_least = request->sharpening / 2,
+        .beam_step_deg = request->sharpening > 1 ? request->beam_step_deg : 0,
         .dbs = {request->speed_m_s, request->beam_deg, WAVELENGTH_M, request->rate_deg_s},
         .track_deg = request->track_deg,
         .antenna = {ELEVATION_BEAM_DEG, 30, 2.2},

@@ -28,6 +28,7 @@ TEST(logarithms_are_their_formulas_rounded)
     IS_NEAREST(FX_LOG2_PI_Q16, log2(M_PI), 16);
     IS_NEAREST(FX_LOG2_TWO_PI_Q16, log2(2 * M_PI), 16);
     IS_NEAREST(FX_LOG2_FOUR_PI_Q16, log2(4 * M_PI), 16);
+    IS_NEAREST(FX_LOG2_E_Q16, log2(M_E), 16);
     IS_NEAREST(FX_LN2_Q32, log(2), 32);
     IS_NEAREST(FX_DB_PER_OCTAVE_Q13, 10 * log10(2), 13);
     IS_NEAREST(FX_DB_PER_OCTAVE_Q14, 10 * log10(2), 14);

@@ -39,7 +39,7 @@ struct lm_beam {
 /* Taps of one display line: samples first .. first + 7, each with its weight. */
 struct lm_beam_taps {
     int32_t first;
-    uint32_t weight_q16[LM_BEAM_TAPS]; /* of sample first + j; they add up to 65536 */
+    uint32_t weight_q16[LM_BEAM_TAPS]; /* of sample first + j; they add up to 65536 or less */
 };
 
 /* Drop all samples, because what they were traced from has changed. */
@@ -48,13 +48,17 @@ void lm_beam_clear(struct lm_beam *b);
 /* Compute the taps of a display line at `azimuth` (signed BAM from the sector's middle, within +-90
  * degrees).
  *
- * - ratio_q8 / 256 is the sharpening ratio, a power of two, 1..256.
- * - The table's `sample` must be 1/4 to 2/7 of the beam: eight samples then hold the beam.
+ * - ratio_q8 / 256 is the sharpening ratio N, 1..256. The fineness is the nearest to log2 N.
+ * - The table's `sample` must be 1/4 to 2/7 of the beam: eight samples then hold the beam, which is
+ *   1.7 to 3.5 of them wide.
  * - Samples of another fineness are dropped.
  *
- * Cost: about 450 instructions. */
+ * The weights add up to 65536. Cost: about 450 instructions. */
 void lm_beam_set_taps(struct lm_beam *b, const struct lm_radar *radar, int32_t azimuth,
                       uint32_t ratio_q8, struct lm_beam_taps *taps);
+
+/* Weaken a line: multiply its power by share_q16 / 65536, which is at most 1. */
+void lm_beam_weaken(struct lm_beam_taps *taps, uint32_t share_q16);
 
 /* Distance D between two samples. */
 fx_bam_t lm_beam_spacing(const struct lm_beam *b, const struct lm_radar *radar);

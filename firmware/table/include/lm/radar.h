@@ -16,7 +16,7 @@
  *  - an antenna rate of a field is 0 or LM_RADAR_RATE_MIN and more;
  *  - cells of a window are 1/4 m long or longer on the smallest scale;
  *  - a window may be one line wide to each side or wider;
- *  - a sharpening is a power of two, and not below the least that is used;
+ *  - beam positions are not farther apart than the azimuth beam is wide;
  *  - the largest cell of a patch is not smaller than the smallest.
  *
  * Angles and angular rates are BAM (2^32 is a circle), levels 1/256 dB. */
@@ -114,7 +114,8 @@ struct lm_fov_row {
     fx_bam_t azimuth_half_max; /* of a window, as swept; 0..LM_RADAR_AZIMUTH_MAX */
     uint16_t sharpening;       /* azimuth cells in a beam width; 1 (real beam) ..
                                 * LM_RADAR_SHARPENING_MAX */
-    uint16_t sharpening_least; /* real beam where there is less than this; 1.. */
+    fx_bam_t beam_step;        /* between two positions of the beam, whose dwells are processed by
+                                * themselves; 0 (not seen) ..20 degrees */
     uint8_t azimuths_log2;     /* traced across a sample of real beam (lm/azimuth_average.h); 0..
                                 * LM_RADAR_AZIMUTHS_LOG2_MAX */
 };

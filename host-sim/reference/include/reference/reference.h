@@ -331,7 +331,8 @@ struct ref_beam_look {
     double weight[REF_BEAM_SAMPLES];
 };
 
-/* D, and the azimuth of a sample from the sector's middle. */
+/* 2^k, D, and the azimuth of a sample from the sector's middle. */
+double ref_beam_fineness(const struct ref_beam *b);
 double ref_beam_spacing_deg(const struct ref_beam *b);
 double ref_beam_azimuth_deg(const struct ref_beam *b, long sample);
 
@@ -395,8 +396,13 @@ double ref_dbs_ratio(const struct ref_dbs *d, double off_deg);
 /* Angle off the velocity from which a ratio is to be had; NAN when it is nowhere. */
 double ref_dbs_notch_deg(const struct ref_dbs *d, double ratio);
 
-/* The ratio that is used where `had` is to be had: 1 in the notch. */
-double ref_dbs_used(double had, double wanted, double least);
+/* The ratio that is used at an angle off the velocity, with lines `line_deg` apart: 1 in the notch.
+ */
+double ref_dbs_used(const struct ref_dbs *d, double off_deg, double line_deg, double wanted);
+
+/* Power of a sharpened line at an azimuth from the sector's middle, beside the beam positions
+ * `step_deg` apart; 0: no positions. */
+double ref_dbs_scallop(double beam_deg, double step_deg, double ratio, double azimuth_deg);
 
 /* How far a target that closes seems to lie nearer to the velocity vector: as an angle, NAN where
  * no still ground has its Doppler shift; and, to the first order, on the ground of a patch at
@@ -524,11 +530,11 @@ struct ref_bin *ref_picture_bin(const struct ref_picture *picture, unsigned line
 /* A whole scale: the ground's cells begin at the antenna, and bins are as many and as long. */
 struct ref_sector {
     struct ref_gm ground; /* its lines are those that are drawn, its cells those that are sampled */
-    double beam_deg, sample_deg;         /* B, D0 */
-    unsigned azimuths;                   /* traced across a sample in real beam; 0 is 1 */
-    double sharpening, sharpening_least; /* 1 and 1: real beam */
-    struct ref_dbs dbs;                  /* not used by real beam */
-    double track_deg;                    /* azimuth of the velocity, likewise */
+    double beam_deg, sample_deg;      /* B, D0 */
+    unsigned azimuths;                /* traced across a sample in real beam; 0 is 1 */
+    double sharpening, beam_step_deg; /* 1 and 0: real beam */
+    struct ref_dbs dbs;               /* not used by real beam */
+    double track_deg;                 /* azimuth of the velocity, likewise */
     struct ref_antenna antenna;
     double tilt_deg;                    /* of the bar */
     struct ref_receiver receiver;       /* bins and height_m are filled by the sweep */

@@ -35,7 +35,8 @@ TEST(weights_are_those_of_the_pattern)
     hs_rng_seed(&rng, 31);
     double worst = 0;
     for (int n = 0; n < 4000; n++) {
-        const uint32_t ratio_q8 = 256u << (n % 3 ? hs_rng_below(&rng, 7) : 0);
+        const uint32_t ratio_q8 =
+            n % 3 ? 256 + hs_rng_below(&rng, 256u << hs_rng_below(&rng, 8)) : 256;
         const int32_t azimuth = bam(120 * hs_rng_uniform(&rng) - 60);
         struct ref_beam ref = ref_of(ratio_q8);
         struct lm_beam_taps taps;
@@ -158,12 +159,39 @@ TEST(a_sample_of_another_fineness_is_dropped)
     lm_beam_clear(&beam);
     lm_beam_set_taps(&beam, radar, 0, 256, &taps);
     lm_beam_slot(&beam, taps.first + 3);
-    lm_beam_set_taps(&beam, radar, 0, 511, &taps);
+    lm_beam_set_taps(&beam, radar, 0, 362, &taps); /* below the root of 2 */
     assert_true(lm_beam_has(&beam, taps.first + 3));
     assert_false(lm_beam_has(&beam, taps.first + 3 + LM_BEAM_TAPS)); /* the same slot */
-    lm_beam_set_taps(&beam, radar, 0, 512, &taps);
+    lm_beam_set_taps(&beam, radar, 0, 363, &taps);
     for (int32_t n = -100; n < 100; n++) {
         assert_false(lm_beam_has(&beam, n));
+    }
+}
+
+/* The spacing that the ratio's own logarithm is nearest to: 1.7 to 3.6 samples across the beam. */
+TEST(samples_are_as_close_as_the_beam_needs)
+{
+    struct lm_beam_taps taps;
+    for (uint32_t ratio_q8 = 256; ratio_q8 <= LM_RADAR_SHARPENING_MAX * 256; ratio_q8 += 23) {
+        lm_beam_set_taps(&beam, radar, 0, ratio_q8, &taps);
+        const double beam_bam = radar->antenna.azimuth_beam / sqrt(2) / (ratio_q8 / 256.0);
+        const double in_beam = beam_bam / lm_beam_spacing(&beam, radar);
+        assert_true(in_beam > 1.7 && in_beam < 3.6);
+        assert_true(beam.fineness == lround(log2(ratio_q8 / 256.0)) ||
+                    fabs(remainder(log2(ratio_q8 / 256.0), 1)) > 0.499);
+    }
+}
+
+TEST(a_weakened_line_keeps_its_shape)
+{
+    struct lm_beam_taps taps, weak;
+    lm_beam_set_taps(&beam, radar, bam(11), 700, &taps);
+    weak = taps;
+    lm_beam_weaken(&weak, 65536);
+    assert_memory_equal(&weak, &taps, sizeof taps);
+    lm_beam_weaken(&weak, 52000);
+    for (int j = 0; j < LM_BEAM_TAPS; j++) {
+        assert_true(fabs(weak.weight_q16[j] - taps.weight_q16[j] * (52000 / 65536.)) < 1);
     }
 }
 
@@ -178,14 +206,48 @@ TEST(the_ratio_to_be_had_is_that_of_the_formula)
     for (uint32_t rate_deg_s = 3; rate_deg_s <= 120; rate_deg_s += 13) {
         for (uint32_t speed_mm_s = 50000; speed_mm_s < 800000; speed_mm_s += 71000) {
             const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
+            const struct lm_dbs_scan scan = {FX_BAM_DEG(rate_deg_s), speed_mm_s, radar->line};
             for (int off_deg = -180; off_deg < 180; off_deg += 3) {
-                const uint32_t ratio_q8 = lm_dbs_ratio_q8(radar, FX_BAM_DEG(rate_deg_s), speed_mm_s,
-                                                          (fx_bam_t)bam(off_deg));
+                const uint32_t ratio_q8 = lm_dbs_ratio_q8(radar, &scan, (fx_bam_t)bam(off_deg));
                 const double wanted = fmin(ref_dbs_ratio(&ref, off_deg) * 256, UINT16_MAX);
                 assert_true(fabs(ratio_q8 - wanted) < 1.5 + 0.001 * wanted);
             }
         }
     }
+}
+
+/* Speeds from a light aircraft's to a fast one's, lines from the widest to the narrowest window's,
+ * and all angles off the velocity. */
+TEST(the_ratio_used_is_that_of_the_equations_and_no_two_lines_differ_by_a_tenth)
+{
+    static const struct {
+        uint32_t wanted, rate_deg_s;
+    } fields[] = {{8, 15}, {64, 3}, {13, 60}, {256, 3}};
+    static const double lines_deg[] = {0.0258, 0.06, 0.1172};
+    double worst_error = 0, worst_step = 0;
+    for (int n = 0; n < 12; n++) {
+        const uint32_t wanted = fields[n / 3].wanted, rate_deg_s = fields[n / 3].rate_deg_s;
+        for (uint32_t speed_mm_s = 30000; speed_mm_s < 900000; speed_mm_s = speed_mm_s * 4 / 3) {
+            const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
+            const double line_deg = lines_deg[n % 3];
+            const struct lm_dbs_scan scan = {FX_BAM_DEG(rate_deg_s), speed_mm_s,
+                                             (fx_bam_t)bam(line_deg)};
+            double before = NAN;
+            for (double off_deg = -180; off_deg < 180; off_deg += line_deg) {
+                const double used =
+                    lm_dbs_sharpening_q8(radar, &scan, wanted, (fx_bam_t)bam(off_deg)) / 256.0;
+                const double expected = ref_dbs_used(&ref, off_deg, line_deg, wanted);
+                assert_true(used >= 1 && used <= wanted);
+                worst_error = fmax(worst_error, fabs(used / expected - 1));
+                worst_step = isnan(before) ? 0 : fmax(worst_step, fabs(log(used / before)));
+                before = used;
+            }
+        }
+    }
+    print_message("# within %.4f of the equations; step between lines at most %.3f\n", worst_error,
+                  exp(worst_step) - 1);
+    assert_true(worst_error < 0.01);
+    assert_true(exp(worst_step) - 1 < 0.1);
 }
 
 /* Where the fields' sharpening runs out: within half a degree of the formula, at three speeds. */
@@ -200,33 +262,47 @@ TEST(the_notch_opens_where_the_formula_says)
         const struct lm_fov_row *fov = &radar->fov[cases[n / 3].field];
         const uint32_t rate_deg_s = cases[n / 3].rate_deg_s, speed_mm_s = speeds_mm_s[n % 3];
         const struct ref_dbs ref = dbs_of(rate_deg_s, speed_mm_s);
-        double full_deg = NAN, notch_deg = NAN;
+        const struct lm_dbs_scan scan = {
+            FX_BAM_DEG(rate_deg_s), speed_mm_s,
+            (fx_bam_t)bam(cases[n / 3].field == LM_FOV_DBS1 ? 0.117 : 0.026)};
+        double full_deg = NAN;
         for (double off_deg = 0; off_deg < 90; off_deg += 0.01) {
-            const uint32_t had_q8 =
-                lm_dbs_ratio_q8(radar, FX_BAM_DEG(rate_deg_s), speed_mm_s, (fx_bam_t)bam(off_deg));
-            const uint32_t used_q8 = lm_dbs_sharpening_q8(fov, had_q8);
-            const double used =
-                ref_dbs_used(ref_dbs_ratio(&ref, off_deg), fov->sharpening, fov->sharpening_least);
-            if (isnan(notch_deg) && used_q8 > 256) {
-                notch_deg = off_deg;
-            }
+            const uint32_t used_q8 =
+                lm_dbs_sharpening_q8(radar, &scan, fov->sharpening, (fx_bam_t)bam(off_deg));
             if (isnan(full_deg) && used_q8 == fov->sharpening * 256u) {
                 full_deg = off_deg;
             }
-            /* Outside of the notch cells are within a tenth of what they should be. */
-            if (fabs(off_deg - ref_dbs_notch_deg(&ref, fov->sharpening_least)) > 0.1 &&
-                fabs(off_deg - ref_dbs_notch_deg(&ref, fov->sharpening)) > 0.1) {
-                assert_true(fabs(used_q8 / 256.0 / used - 1) < 0.1);
-            }
         }
-        const double wanted_notch_deg = ref_dbs_notch_deg(&ref, fov->sharpening_least);
-        const double wanted_full_deg = ref_dbs_notch_deg(&ref, fov->sharpening);
-        print_message("# %2u:1 at %2u deg/s and %3u m/s: from %.2f degrees, notch below %.2f\n",
-                      fov->sharpening, rate_deg_s, speed_mm_s / 1000, full_deg, notch_deg);
-        assert_int_equal(isnan(full_deg) != 0, isnan(wanted_full_deg) != 0);
-        assert_false(fabs(notch_deg - wanted_notch_deg) > 0.5);
-        assert_false(fabs(full_deg - wanted_full_deg) > 0.5);
+        const double wanted_deg = ref_dbs_notch_deg(&ref, fov->sharpening);
+        const uint32_t ahead_q8 = lm_dbs_sharpening_q8(radar, &scan, fov->sharpening, 0);
+        print_message(
+            "# %2u:1 at %2u deg/s and %3u m/s: from %.2f degrees, wanted %.2f; %.2f:1 "
+            "ahead\n",
+            fov->sharpening, rate_deg_s, speed_mm_s / 1000, full_deg, wanted_deg, ahead_q8 / 256.0);
+        assert_int_equal(isnan(full_deg) != 0, isnan(wanted_deg) != 0);
+        assert_false(fabs(full_deg - wanted_deg) > 0.5);
+        assert_true(ahead_q8 < 3 * 256);
     }
+}
+
+TEST(lines_between_two_beam_positions_are_as_weak_as_the_pattern)
+{
+    struct hs_rng rng;
+    double worst = 0;
+    hs_rng_seed(&rng, 34);
+    for (int n = 0; n < 20000; n++) {
+        struct lm_fov_row fov = radar->fov[LM_FOV_DBS2];
+        fov.beam_step = n % 9 ? (fx_bam_t)bam(0.01 + 3.29 * hs_rng_uniform(&rng)) : 0;
+        const int32_t azimuth = bam(120 * hs_rng_uniform(&rng) - 60);
+        const uint32_t ratio_q8 = 256 + hs_rng_below(&rng, 255 * 256 + 1);
+        const double wanted = ref_dbs_scallop(radar->antenna.azimuth_beam * degrees_per_bam,
+                                              fov.beam_step * degrees_per_bam, ratio_q8 / 256.0,
+                                              azimuth * degrees_per_bam);
+        const double got = lm_dbs_scallop_q16(radar, &fov, ratio_q8, azimuth) / 65536.0;
+        worst = fmax(worst, fabs(got - wanted));
+    }
+    print_message("# scalloping: within %.1e\n", worst);
+    assert_true(worst < 1e-3);
 }
 
 TEST(each_look_is_weighed_at_its_own_tangent)

@@ -27,6 +27,7 @@ static struct sector_world *make_flat(bool is_sea)
     spec.shift0 = 13;
     spec.rows = spec.columns = 14;
     struct sector_world *w = make_sector_world(&spec);
+    w->radar.fov[LM_FOV_DBS1].beam_step = w->radar.fov[LM_FOV_DBS2].beam_step = 0;
     w->platform = (struct lm_platform){
         .position = {w->map.db.centre_latitude - FX_BAM_DEG(1) / 4, w->map.db.centre_longitude},
         .height_m_q10 = 2000 * 1024};
@@ -143,8 +144,8 @@ TEST(a_point_is_as_wide_as_the_sharpened_beam_and_as_the_real_one_in_the_notch)
     judge_width(LM_FOV_DBS1, -30, 20, 0.71, 16, 180, 8);
     judge_width(LM_FOV_DBS2, 45, 10, 0.31, 16, 180, 64);
     /* On a sampled azimuth: half a sample right of the nose. */
-    judge_width(LM_FOV_DBS1, 0.46875, 30, 0, 1, 60, 1);
-    judge_width(LM_FOV_DBS2, 0.46875, 30, 0, 1, 60, 1);
+    judge_width(LM_FOV_DBS1, 0.46875, 30, 0, 1, 30, 1);
+    judge_width(LM_FOV_DBS2, 0.46875, 30, 0, 1, 8, 1);
 }
 
 /* ---- where ---- */
@@ -257,90 +258,122 @@ TEST(a_point_stands_where_it_is_between_any_two_samples)
 
 /* ---- the notch ---- */
 
-enum { RINGS = 5, RING_POINTS = 6 };
-
-/* Five rings of points 2 degrees apart, each ring turned by 0.4 degree against the next: in real
- * beam each is a closed band, and sharpened at least one has a gap on any line. */
-static void add_rings(struct points *p, const struct sector_world *w, double ground_m,
-                      double apart_m, double rcs_db)
+/* Sharpening ratio of the line drawn last, from the weights of its samples: their deviation in
+ * samples is that of the two-way beam, B / (N sqrt 2) wide at half power. */
+static double ratio_of_line(const struct sector_world *w, uint32_t line)
 {
-    for (int ring = 0; ring < RINGS; ring++) {
-        for (int n = 0; n < RING_POINTS; n++) {
-            add_point(p, w, -5.8 + 0.4 * ring + 2 * n, ground_m + (ring - RINGS / 2) * apart_m,
-                      rcs_db);
-        }
+    const struct lm_sector *s = &w->sector;
+    const struct lm_beam_taps *taps = &s->taps[line % 2].taps;
+    double sum = 0, first = 0, second = 0;
+    for (int j = 0; j < LM_BEAM_TAPS; j++) {
+        sum += taps->weight_q16[j];
+        first += j * (double)taps->weight_q16[j];
+        second += j * j * (double)taps->weight_q16[j];
     }
+    const double deviation = sqrt(second / sum - first * first / (sum * sum));
+    const double width_bam = deviation * 2 * sqrt(2 * log(2)) * lm_beam_spacing(&s->beam, s->radar);
+    return w->radar.antenna.azimuth_beam / sqrt(2) / width_bam;
 }
 
-/* The darkest of the rings on the line drawn last. */
-static double darkest_ring(const struct sector_world *w, double ground_m, double apart_m)
+/* The ratios of a sweep straight ahead, by line. Ends of the beam that eight samples do not hold
+ * make it up to 6 % sharper. */
+static uint32_t take_ratios(struct sector_world *w, enum lm_fov field, double ratio[LINES_MAX])
 {
-    double level_db = INFINITY;
-    for (int ring = 0; ring < RINGS; ring++) {
-        level_db = fmin(level_db, level_near(w, ground_m + (ring - RINGS / 2) * apart_m));
-    }
-    return level_db;
-}
-
-/* How far real beam reaches to either side of the velocity. */
-static void measure_notch(struct sector_world *w, double ground_m, double apart_m, double *left_deg,
-                          double *right_deg)
-{
-    static double azimuth_deg[LINES_MAX], level_db[LINES_MAX];
-    double ahead_db = 0, least_deg = INFINITY;
-    uint32_t lines = 0;
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .range_index = scale_of(10),
+                                              .fov = (uint8_t)field,
+                                              .centre = place_at(w, 0, 9260)};
+    start_sector(w, &command, NULL, NULL);
     do {
-        assert_true(lines < LINES_MAX);
-        azimuth_deg[lines] = line_azimuth_deg(&w->sector, draw_line(w));
-        level_db[lines] = darkest_ring(w, ground_m, apart_m);
-        if (fabs(azimuth_deg[lines]) < least_deg) {
-            least_deg = fabs(azimuth_deg[lines]);
-            ahead_db = level_db[lines];
-        }
-        lines++;
+        const uint32_t line = draw_line(w);
+        ratio[line] = ratio_of_line(w, line);
     } while (!lm_sector_is_at_edge(&w->sector));
-    assert_true(ahead_db > -25); /* the bands stand out of the clutter */
-    *left_deg = *right_deg = 0;
-    for (uint32_t k = 0; k < lines; k++) {
-        const double width_deg = hs_degrees(w->sector.width);
-        const bool is_real_beam = level_db[k] > ahead_db - 8;
-        *left_deg += azimuth_deg[k] < 0 && is_real_beam ? width_deg : 0;
-        *right_deg += azimuth_deg[k] > 0 && is_real_beam ? width_deg : 0;
-    }
+    return w->sector.lines;
 }
 
-TEST(the_notch_ends_where_the_formula_says)
+/* Angle off the velocity within which lines are less sharp than wanted. */
+static double notch_deg(const struct sector_world *w, const double *ratio, double wanted,
+                        bool is_right)
+{
+    double deg = 0;
+    for (uint32_t k = 0; k < w->sector.lines; k++) {
+        const double off_deg = line_azimuth_deg(&w->sector, k);
+        deg +=
+            (off_deg > 0) == is_right && ratio[k] < 0.97 * wanted ? hs_degrees(w->sector.width) : 0;
+    }
+    return deg;
+}
+
+TEST(sharpening_runs_out_where_the_formula_says_and_without_a_step)
 {
     const struct {
         enum lm_fov field;
-        double rate_deg_s, least;
+        double rate_deg_s;
         uint32_t speed_m_s;
-        double ground_m, apart_m, rcs_db;
-    } cases[] = {
-        {LM_FOV_DBS1, 15, 4, 60, 14500, 300, 22},  {LM_FOV_DBS1, 15, 4, 100, 14500, 300, 22},
-        {LM_FOV_DBS1, 15, 4, 200, 14500, 300, 22}, {LM_FOV_DBS2, 3, 32, 120, 9200, 100, 12},
-        {LM_FOV_DBS2, 3, 32, 150, 9200, 100, 12},  {LM_FOV_DBS2, 3, 32, 250, 9200, 100, 12}};
+    } cases[] = {{LM_FOV_DBS1, 15, 60},  {LM_FOV_DBS1, 15, 100}, {LM_FOV_DBS1, 15, 200},
+                 {LM_FOV_DBS1, 15, 350}, {LM_FOV_DBS2, 3, 200},  {LM_FOV_DBS2, 3, 250},
+                 {LM_FOV_DBS2, 3, 350}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct sector_world *w = make_flat(true);
-        struct points p = {.count = 0};
-        double left_deg, right_deg;
+        static double ratio[LINES_MAX];
+        const double wanted = w->radar.fov[cases[i].field].sharpening;
+        double worst_step = 0, least = wanted;
         w->platform.speed_mm_s = cases[i].speed_m_s * 1000;
-        add_rings(&p, w, cases[i].ground_m, cases[i].apart_m, cases[i].rcs_db);
-        const struct lm_target_set set = set_of(&p);
-        const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
-                                                  .range_index = scale_of(10),
-                                                  .fov = (uint8_t)cases[i].field,
-                                                  .centre = place_at(w, 0, cases[i].ground_m)};
-        start_sector(w, &command, NULL, &set);
-        measure_notch(w, cases[i].ground_m, cases[i].apart_m, &left_deg, &right_deg);
+        const uint32_t lines = take_ratios(w, cases[i].field, ratio);
+        for (uint32_t k = 0; k < lines; k++) {
+            worst_step = fmax(worst_step, k > 0 ? fabs(log(ratio[k] / ratio[k - 1])) : 0);
+            least = fmin(least, ratio[k]);
+        }
         const struct ref_dbs dbs = dbs_of(w, cases[i].rate_deg_s);
-        const double wanted_deg = ref_dbs_notch_deg(&dbs, cases[i].least);
-        print_message("# field %d at %u m/s: notch to %.2f and %.2f degrees, wanted %.2f\n",
-                      cases[i].field, cases[i].speed_m_s, left_deg, right_deg, wanted_deg);
+        const double wanted_deg = ref_dbs_notch_deg(&dbs, wanted);
+        const double left_deg = notch_deg(w, ratio, wanted, false),
+                     right_deg = notch_deg(w, ratio, wanted, true);
+        print_message(
+            "# field %d at %u m/s: below %.0f:1 to %.2f and %.2f degrees, wanted %.2f; "
+            "%.2f:1 ahead; steps of at most %.3f\n",
+            cases[i].field, cases[i].speed_m_s, wanted, left_deg, right_deg, wanted_deg, least,
+            exp(worst_step) - 1);
         assert_true(fabs(left_deg - wanted_deg) < 0.5);
         assert_true(fabs(right_deg - wanted_deg) < 0.5);
+        assert_true(least < 3);
+        assert_true(exp(worst_step) - 1 < 0.2); /* a tenth, and what the samples make of it */
         free_sector_world(w);
     }
+}
+
+/* Lines that look between two beam positions, 2/5 of a beam apart, are weaker than those that look
+ * along one by its pattern: 0.96 dB. */
+TEST(a_sharpened_sea_is_scalloped_between_beam_positions)
+{
+    struct sector_world *w = make_flat(true);
+    const double ground_m = 9260, beam_deg = hs_degrees(w->radar.antenna.azimuth_beam);
+    const struct lm_sector_command command = {.mode = LM_SECTOR_GM,
+                                              .range_index = scale_of(10),
+                                              .fov = LM_FOV_DBS1,
+                                              .centre = place_at(w, 40, ground_m)};
+    double sum[2] = {0}, count[2] = {0};
+    w->radar.fov[LM_FOV_DBS1].beam_step = lm_radar_default.fov[LM_FOV_DBS1].beam_step;
+    const double step_deg = hs_degrees(w->radar.fov[LM_FOV_DBS1].beam_step);
+    w->platform.speed_mm_s = 200000;
+    start_sector(w, &command, NULL, NULL);
+    for (int sweep = 0; sweep < 4; sweep++) {
+        do {
+            const uint32_t line = draw_line(w);
+            const double off_deg = fabs(remainder(line_azimuth_deg(&w->sector, line), step_deg));
+            const int is_between = off_deg > 0.4 * step_deg;
+            if (is_between || off_deg < 0.1 * step_deg) {
+                sum[is_between] += power_near(w, ground_m);
+                count[is_between]++;
+            }
+        } while (!lm_sector_is_at_edge(&w->sector));
+    }
+    const double depth_db = 10 * log10(sum[0] / count[0] / (sum[1] / count[1]));
+    /* Means of x^2 over the two parts of half a step: 0.2033 and 0.0033 of its square. */
+    const double wanted_db =
+        80 * log10(2) * 0.2 * step_deg * step_deg / (beam_deg * beam_deg) * (1 - 1 / 64.0);
+    print_message("# scalloping of %.2f dB, wanted %.2f\n", depth_db, wanted_db);
+    assert_true(fabs(depth_db - wanted_db) < 0.25);
+    free_sector_world(w);
 }
 
 /* ---- speckle ---- */

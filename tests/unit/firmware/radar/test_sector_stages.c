@@ -167,12 +167,12 @@ static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
                                 .wavelength_m = s->radar->wavelength_um * 1e-6,
                                 .rate_deg_s = hs_degrees(rate)};
     const double off_deg = hs_degrees(s->up - s->platform.track) + azimuth_deg;
-    const double had = ref_dbs_ratio(&dbs, off_deg);
     return (struct ref_beam){
         .beam_deg = dbs.beam_deg,
         .line_deg = hs_degrees(s->radar->sample),
-        .ratio =
-            fov->sharpening > 1 ? ref_dbs_used(had, fov->sharpening, fov->sharpening_least) : 1};
+        .ratio = fov->sharpening > 1
+                     ? ref_dbs_used(&dbs, off_deg, hs_degrees(s->width), fov->sharpening)
+                     : 1};
 }
 
 /* The firmware's line behind the beam is made once more: the receiver has changed its own. */
@@ -192,11 +192,17 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
         }
         samples[j] = power[j];
     }
+    const double step_deg = hs_degrees(s->radar->fov[s->command.fov].beam_step);
+    const double scallop = ref_dbs_scallop(beam.beam_deg, step_deg, beam.ratio, azimuth_deg);
     ref_beam_sum(&look, samples, sum, s->slant.cells);
+    for (uint32_t i = 0; i < s->slant.cells; i++) {
+        sum[i] *= scallop;
+    }
     struct lm_beam_taps own;
     lm_beam_set_taps(&t->w->sector.beam, s->radar,
                      (int32_t)lround(azimuth_deg / 360 * 4294967296.0),
                      (uint32_t)lround(beam.ratio * 256), &own);
+    lm_beam_weaken(&own, (uint32_t)lround(scallop * 65536));
     lm_beam_sum(&s->beam, &own, drawn_q24, s->slant.cells);
     for (uint32_t i = 0; i < s->slant.cells; i++) {
         note_power(&t->score[BEAM], ldexp(drawn_q24[i], -24), sum[i], 1);

@@ -196,14 +196,9 @@ static void a_window_is_narrower_than_a_line(struct lm_radar *r)
     r->fov[LM_FOV_EXP].azimuth_half_max = r->line - 1;
 }
 
-static void a_sharpening_is_no_power_of_two(struct lm_radar *r)
+static void beam_positions_are_farther_apart_than_the_beam(struct lm_radar *r)
 {
-    r->fov[LM_FOV_DBS2].sharpening = 96;
-}
-
-static void more_sharpening_is_asked_for_than_used(struct lm_radar *r)
-{
-    r->fov[LM_FOV_DBS1].sharpening_least = 9;
+    r->fov[LM_FOV_DBS1].beam_step = r->antenna.azimuth_beam + 1;
 }
 
 static void the_largest_cell_is_smaller_than_the_smallest(struct lm_radar *r)
@@ -240,8 +235,7 @@ TEST(a_broken_rule_between_fields_is_refused_by_name)
         {a_field_s_rate_is_too_slow, "fov.bam_per_s", LM_FOV_DBS1},
         {a_window_s_cells_are_too_short, "fov.window_permille", LM_FOV_DBS2},
         {a_window_is_narrower_than_a_line, "fov.azimuth_half_max", LM_FOV_EXP},
-        {a_sharpening_is_no_power_of_two, "fov.sharpening", LM_FOV_DBS2},
-        {more_sharpening_is_asked_for_than_used, "fov.sharpening_least", LM_FOV_DBS1},
+        {beam_positions_are_farther_apart_than_the_beam, "fov.beam_step", LM_FOV_DBS1},
         {the_largest_cell_is_smaller_than_the_smallest, "sar.cell_max_mm", 0},
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) {

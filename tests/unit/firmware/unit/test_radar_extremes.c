@@ -69,10 +69,7 @@ static void repair_angles(struct lm_radar *r)
 static void repair_field(const struct lm_radar *r, uint32_t number, struct lm_fov_row *f)
 {
     f->bam_per_s = f->bam_per_s ? most(f->bam_per_s, LM_RADAR_RATE_MIN) : 0;
-    while ((f->sharpening & (f->sharpening - 1)) != 0) {
-        f->sharpening--;
-    }
-    f->sharpening_least = (uint16_t)least(f->sharpening_least, f->sharpening);
+    f->beam_step = least(f->beam_step, r->antenna.azimuth_beam);
     if (number != LM_FOV_NORM) {
         f->azimuth_half_max = most(f->azimuth_half_max, r->line);
         while (r->range[0].range_m * f->window_permille / 1000 * 8 < r->cells) {

@@ -61,12 +61,23 @@ TEST(a_dwell_tells_two_neighbouring_cells_apart_by_one_turn)
     }
 }
 
-TEST(what_is_used_is_a_power_of_two_that_is_had_and_real_beam_in_the_notch)
+TEST(what_is_used_is_what_is_had_up_to_what_is_wanted_and_real_beam_in_the_notch)
 {
-    assert_true(ref_dbs_used(100, 8, 4) == 8);
-    assert_true(ref_dbs_used(5.5, 8, 4) == 4);
-    assert_true(ref_dbs_used(4, 8, 4) == 4);
-    assert_true(ref_dbs_used(3.99, 8, 4) == 1);
+    const struct ref_dbs d = dbs_at(15, 100); /* 8:1 from 5.7 degrees */
+    assert_true(ref_dbs_used(&d, 45, 0.1, 8) == 8);
+    assert_true(ref_dbs_used(&d, 5.6, 0.1, 8) < 8 && ref_dbs_used(&d, 5.8, 0.1, 8) == 8);
+    assert_true(fabs(ref_dbs_used(&d, 3, 0.1, 8) - ref_dbs_ratio(&d, 3)) < 1e-12);
+    assert_true(ref_dbs_used(&d, 0, 0.1, 8) == 1);
+    assert_true(fabs(ref_dbs_used(&d, 177, 0.1, 8) - ref_dbs_used(&d, -3, 0.1, 8)) < 1e-9);
+}
+
+/* Half-way between positions 2/5 of a beam apart the pattern of both ways is 0.96 dB down. */
+TEST(between_two_beam_positions_a_sharpened_line_is_weaker_by_the_pattern)
+{
+    assert_true(ref_dbs_scallop(3.3, 1.32, 64, 13.2) == 1);
+    assert_true(fabs(10 * log10(ref_dbs_scallop(3.3, 1.32, 64, 13.86)) + 0.963) < 0.001);
+    assert_true(ref_dbs_scallop(3.3, 1.32, 1, 13.86) == 1);
+    assert_true(ref_dbs_scallop(3.3, 0, 64, 13.86) == 1);
 }
 
 /* By hand: 180 m/s, 3.3 degrees, 60 off: 180 * 0.0576 * 0.866 / 2 = 4.49 m/s, 8.7 knots. */

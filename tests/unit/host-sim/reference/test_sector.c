@@ -67,7 +67,6 @@ static struct ref_sector sector_of(const struct world *w, double half_deg)
         .beam_deg = 3.3,
         .sample_deg = 120.0 / 128,
         .sharpening = 1,
-        .sharpening_least = 1,
         .dbs = {250, 3.3, 0.0313, 15},
         .antenna = {4.6, 60, 2.2},
         .tilt_deg = ref_auto_tilt_deg(height_m, 18520),
@@ -156,7 +155,6 @@ TEST(sharpened_it_is_a_beam_over_the_ratio_and_wide_again_in_the_notch)
     const struct world *w = *state;
     struct ref_sector s = sector_of(w, 6);
     s.sharpening = 8;
-    s.sharpening_least = 4;
     double middle_deg, deviation_deg;
     for (int in_notch = 0; in_notch < 2; in_notch++) {
         s.track_deg = in_notch ? 0 : -40;
