@@ -187,8 +187,9 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                                   radar->wavelength_um, patch_us)
             : 256;
     lm_class_lut_set(&s->class_lut, &radar->illumination, &db->classes);
-    lm_class_gain_set(&s->class_gain, &db->classes, lm_scan_lod(db, command->cell_mm),
-                      setup->sea_state, 0);
+    lm_class_gain_set(&s->class_gain, &radar->facing, &db->classes,
+                      lm_scan_lod(db, command->cell_mm), setup->sea_state, 0);
+    lm_class_gain_look(&s->class_gain, command->look_azimuth);
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, setup->reference_m_q10);

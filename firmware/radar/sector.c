@@ -233,7 +233,8 @@ void lm_sector_set_beam(struct lm_sector *s, const struct lm_beam_setting *setti
 static void set_class_gain(struct lm_sector *s, const struct lm_classes *classes)
 {
     const uint8_t sea_state = s->environment ? s->environment->sea_state : LM_SEA_STATE_OF_IMAGE;
-    lm_class_gain_set(&s->class_gain, classes, s->lod, sea_state, mode_of(s)->clutter_db_q8);
+    lm_class_gain_set(&s->class_gain, &s->radar->facing, classes, s->lod, sea_state,
+                      mode_of(s)->clutter_db_q8);
 }
 
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
@@ -405,6 +406,7 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);
     const struct lm_ground_path path = sample_path(s, &ray);
+    lm_class_gain_look(&s->class_gain, azimuth);
     lm_line_trace(line, tiles, &setup, &path, horizon);
 }
 

@@ -102,6 +102,8 @@ static const struct lm_radar_field fields[] = {
     {"illumination.shore_db_q8", ONE(illumination.shore_db_q8),
      SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
     {"illumination.shore_width_m", ONE(illumination.shore_width_m), BETWEEN(0, 10000)},
+    {"facing.lobe_half", ONE(facing.lobe_half), BETWEEN(FX_BAM_DEG(4), FX_BAM_DEG(45))},
+    {"facing.floor_permille", ONE(facing.floor_permille), BETWEEN(10, 1000)},
 };
 enum { FIELDS = sizeof fields / sizeof *fields };
 

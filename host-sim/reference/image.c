@@ -327,6 +327,7 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
     bin->class_index = (int)(cell >> 4 & 15);
     bin->has_data = bin->class_index != LM_DB_CLASS_NONE;
     bin->kind = db->classes->entry[bin->class_index].kind;
+    bin->facing = db->classes->entry[bin->class_index].facing;
     bin->gamma_db =
         (cell >> 8) / 2.0 - 80 + db->classes->entry[bin->class_index].lod_gain_db_q8[level] / 256.0;
     bin->height_m = db->classes->height_dm[cell & 15] / 10.0;

@@ -75,10 +75,25 @@ double ref_sea_db(int state)
     return 5 * (state - 3);
 }
 
-void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params)
+double ref_facing_db(double off_deg, const struct ref_params *params)
+{
+    const double off = fabs(remainder(off_deg, 90)), half = params->lobe_half_deg;
+    /* The mean of the lobe over -45..45 degrees: an error function. */
+    const double root = sqrt(log(2));
+    const double mean =
+        half / 45 * sqrt(3.14159265358979323846) / (2 * root) * erf(root * 45 / half);
+    const double lobe = exp2(-off * off / (half * half)) / mean;
+    return 10 * log10(params->wall_floor + (1 - params->wall_floor) * lobe);
+}
+
+void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params,
+                    double look_deg)
 {
     for (size_t i = 0; i < count; i++) {
         bins[i].class_gain_db = bins[i].kind == LM_KIND_WATER ? params->sea_db : 0;
+        if (bins[i].facing > 0) {
+            bins[i].class_gain_db += ref_facing_db(look_deg - 11.25 * (bins[i].facing - 1), params);
+        }
     }
 }
 

@@ -13,7 +13,9 @@ struct ref_params ref_params_default(void)
                                .looks = 4,
                                .black_db = -45,
                                .white_db = 5,
-                               .gamma_exponent = 1};
+                               .gamma_exponent = 1,
+                               .lobe_half_deg = 8,
+                               .wall_floor = 0.15};
 }
 
 double ref_brightness(double level_db, const struct ref_params *params)

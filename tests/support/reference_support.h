@@ -3,6 +3,7 @@
 #ifndef REFERENCE_SUPPORT_H
 #define REFERENCE_SUPPORT_H
 
+#include "hs/angle.h"
 #include "lm/line.h"
 #include "lm/radar.h"
 
@@ -31,7 +32,9 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
                                 .looks = 1u << speckle->looks_log2,
                                 .black_db = decibels(tone->black_db_q8),
                                 .white_db = decibels(tone->white_db_q8),
-                                .gamma_exponent = decibels(tone->gamma_q8)};
+                                .gamma_exponent = decibels(tone->gamma_q8),
+                                .lobe_half_deg = hs_degrees(radar->facing.lobe_half),
+                                .wall_floor = radar->facing.floor_permille / 1000.0};
     return params;
 }
 
@@ -62,6 +65,7 @@ static inline void take_ground(const struct lm_scan_line *ground, const struct l
         bins[i].class_index = (int)(cell >> 4 & 15);
         bins[i].has_data = bins[i].class_index != LM_DB_CLASS_NONE;
         bins[i].kind = classes->entry[bins[i].class_index].kind;
+        bins[i].facing = classes->entry[bins[i].class_index].facing;
         bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
         bins[i].height_m = classes->height_dm[cell & 15] / 10.0;
         bins[i].elevation_m = ground->elevation_m_q14[i] / 16384.0;

@@ -62,6 +62,12 @@ struct lm_illumination_config {
     uint16_t shore_width_m;       /* of the shore's fall to nothing; 0..10,000 */
 };
 
+/* How walls return by the angle at which they face the radar (docs/EQUATIONS.md, "Class gain"). */
+struct lm_facing_config {
+    fx_bam_t lobe_half;      /* from the middle of the lobe to half its power; 4..45 degrees */
+    uint16_t floor_permille; /* of the mean power, from whatever side; 10..1000 */
+};
+
 /* Speckle of a picture. */
 struct lm_speckle_config {
     uint8_t looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
@@ -186,6 +192,7 @@ struct lm_radar {
     struct lm_fov_row fov[LM_FOVS];
     struct lm_sar_table sar;
     struct lm_illumination_config illumination;
+    struct lm_facing_config facing;
 };
 
 extern const struct lm_radar lm_radar_default;

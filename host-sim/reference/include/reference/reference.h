@@ -36,7 +36,8 @@ struct ref_bin {
     /* scan_line */
     bool has_data; /* false: class 15, or no tile */
     int class_index;
-    int kind; /* enum lm_class_kind */
+    int kind;   /* enum lm_class_kind */
+    int facing; /* of the class: 0, or 1 + direction of its walls / 11.25 degrees */
     double gamma_db, height_m, elevation_m;
     /* aspect */
     double tangent, horizon, rise; /* t, T, d */
@@ -44,7 +45,7 @@ struct ref_bin {
     double gain_db, edge_db; /* K, E */
     double level_db;         /* the noise floor where there is no echo */
     /* speckle and noise */
-    double class_gain_db; /* of the state of the sea */
+    double class_gain_db; /* of the state of the sea and the facing of walls */
     unsigned slice;       /* drawn for speckle, 0..1023 */
     double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
@@ -62,11 +63,14 @@ struct ref_params {
     double black_db, white_db; /* white_db > black_db */
     double gamma_exponent;     /* > 0 */
     double sea_db;             /* ref_sea_db of the state of the sea */
+    double lobe_half_deg;      /* half-power half-width of the lobe of walls, > 0 */
+    double wall_floor;         /* power of walls from whatever side, of their mean */
     bool has_exact_weights;    /* bilinear weights not cut to 8 bits */
 };
 
-/* 6, 3 and 8 dB of edges, 90 m of shore, floor and black -45 dB, white 5 dB, 4 looks, exponent 1.
- * Values to look at pictures with; the firmware's come from its own parameter table. */
+/* 6, 3 and 8 dB of edges, 90 m of shore, lobes of 8 degrees over 0.15, floor and black -45 dB,
+ * white 5 dB, 4 looks, exponent 1. Values to look at pictures with; the firmware's come from its
+ * own parameter table. */
 struct ref_params ref_params_default(void);
 
 /* ---- the image (image.c) ---- */
@@ -184,8 +188,13 @@ unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint3
 /* Level that a sea state (0..8) adds to water. */
 double ref_sea_db(int state);
 
-/* Fill `class_gain_db` from `kind`: over water, what the state of the sea adds to the level. */
-void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params);
+/* dB that walls gain whose direction is `off_deg` from the line of sight. */
+double ref_facing_db(double off_deg, const struct ref_params *params);
+
+/* Fill `class_gain_db` from `kind` and `facing`: over water what the state of the sea adds to the
+ * level, over walls what their direction does, seen along the azimuth `look_deg`. */
+void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params,
+                    double look_deg);
 
 /* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db +
  * class_gain_db - loss_db (of a lit bin), floor and veil, + speckle_db. */

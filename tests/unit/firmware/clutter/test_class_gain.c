@@ -1,15 +1,19 @@
 /* The gain of classes, and the noise floor: docs/EQUATIONS.md, "Class gain" and "Noise". */
 #include "check.h"
+#include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/class_gain.h"
 #include "lm/illumination.h"
 #include "lm/speckle.h"
+#include "reference/reference.h"
 #include "tiny_image.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { ROOM = 16 }; /* what the stages take for a few cells */
+
+static const struct lm_facing_config walls = {FX_BAM_DEG(8), 150};
 
 static uint32_t cell_of(uint32_t class_index)
 {
@@ -32,7 +36,7 @@ static int32_t gain_q8(const struct lm_class_gain *gain, uint32_t cell, int32_t 
 TEST(a_picture_of_the_images_own_sea_keeps_every_level_to_the_bit)
 {
     struct lm_class_gain gain;
-    lm_class_gain_set(&gain, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE, 0);
+    lm_class_gain_set(&gain, &walls, tiny_classes(), 0, LM_SEA_STATE_OF_IMAGE, 0);
     assert_false(gain.is_any);
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
         assert_int_equal(gain_q8(&gain, cell_of(i), -1234), 0);
@@ -44,7 +48,7 @@ TEST(only_water_grows_with_the_state_of_the_sea_by_5_decibels_each)
 {
     for (int sea = 0; sea <= 255; sea++) {
         struct lm_class_gain gain;
-        lm_class_gain_set(&gain, tiny_classes(), 0, (uint8_t)sea, 0);
+        lm_class_gain_set(&gain, &walls, tiny_classes(), 0, (uint8_t)sea, 0);
         const uint32_t cell[ROOM] = {cell_of(TINY_WATER), cell_of(TINY_SOIL),
                                      cell_of(TINY_STRUCTURE), cell_of(TINY_TREES)};
         int32_t level[ROOM] = {-40 * 256, -20 * 256, 0, -15 * 256};
@@ -61,8 +65,8 @@ TEST(a_loss_is_taken_off_every_class)
     static const uint16_t losses_q8[] = {35 * 256, LM_CLUTTER_LOSS_MAX_DB_Q8, UINT16_MAX};
     for (size_t n = 0; n < 3; n++) {
         struct lm_class_gain whole, less;
-        lm_class_gain_set(&whole, tiny_classes(), 0, 0, 0);
-        lm_class_gain_set(&less, tiny_classes(), 0, 0, losses_q8[n]);
+        lm_class_gain_set(&whole, &walls, tiny_classes(), 0, 0, 0);
+        lm_class_gain_set(&less, &walls, tiny_classes(), 0, 0, losses_q8[n]);
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
             const int32_t lost = gain_q8(&whole, cell_of(i), 0) - gain_q8(&less, cell_of(i), 0);
             assert_int_equal(lost, losses_q8[n] < LM_CLUTTER_LOSS_MAX_DB_Q8
@@ -83,7 +87,7 @@ TEST(a_shadow_stays_below_minus_80_dB_whatever_is_added)
     static const uint16_t losses_q8[] = {0, UINT16_MAX};
     for (size_t n = 0; n < 2; n++) {
         struct lm_class_gain gain;
-        lm_class_gain_set(&gain, tiny_classes(), 0, LM_SEA_STATE_MAX, losses_q8[n]);
+        lm_class_gain_set(&gain, &walls, tiny_classes(), 0, LM_SEA_STATE_MAX, losses_q8[n]);
         for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
             const int32_t level = LM_LEVEL_SHADOW + gain_q8(&gain, cell_of(i), LM_LEVEL_SHADOW);
             assert_true(level + strongest < -80 * 256);
@@ -100,7 +104,7 @@ TEST(a_class_has_its_gain_in_the_lod_that_the_map_is_read_from)
     classes.entry[TINY_SOIL].lod_gain_db_q8[15] = INT16_MAX; /* more than a gain may be */
     for (uint8_t lod = 0; lod < LM_DB_LODS_MAX; lod++) {
         struct lm_class_gain gain;
-        lm_class_gain_set(&gain, &classes, lod, LM_SEA_STATE_OF_IMAGE + 1, 256);
+        lm_class_gain_set(&gain, &walls, &classes, lod, LM_SEA_STATE_OF_IMAGE + 1, 256);
         const int32_t on = lod == 3;
         assert_int_equal(gain_q8(&gain, cell_of(TINY_STRUCTURE), 0), on * 5 * 256 - 256);
         assert_int_equal(gain_q8(&gain, cell_of(TINY_WATER), 0), 5 * 256 - on * 2 * 256 - 256);
@@ -109,12 +113,74 @@ TEST(a_class_has_its_gain_in_the_lod_that_the_map_is_read_from)
     }
 }
 
+/* The classes of facings 1..8, and one without. */
+static struct lm_classes faced_classes(void)
+{
+    struct lm_classes classes = *tiny_classes();
+    for (uint32_t i = 0; i <= LM_FACINGS; i++) {
+        classes.entry[i] = classes.entry[TINY_STRUCTURE];
+        classes.entry[i].facing = (uint8_t)i;
+    }
+    return classes;
+}
+
+TEST(walls_gain_what_the_reference_has_from_every_side)
+{
+    static const struct lm_facing_config tables[] = {
+        {FX_BAM_DEG(8), 150}, {FX_BAM_DEG(4), 10}, {FX_BAM_DEG(45), 500}, {FX_BAM_DEG(12), 1000}};
+    const struct lm_classes classes = faced_classes();
+    for (size_t n = 0; n < sizeof tables / sizeof tables[0]; n++) {
+        const struct ref_params params = {.lobe_half_deg = hs_degrees(tables[n].lobe_half),
+                                          .wall_floor = tables[n].floor_permille / 1000.0};
+        struct lm_class_gain gain;
+        lm_class_gain_set(&gain, &tables[n], &classes, 0, LM_SEA_STATE_OF_IMAGE, 0);
+        double worst_db = 0;
+        for (uint32_t look = 0; look < 7200; look++) {
+            struct ref_bin bins[LM_FACINGS + 1] = {{0}};
+            const fx_bam_t azimuth = look * 596523;
+            lm_class_gain_look(&gain, azimuth);
+            for (int i = 0; i <= LM_FACINGS; i++) {
+                bins[i].facing = i;
+            }
+            ref_class_gain(bins, LM_FACINGS + 1, &params, hs_degrees(azimuth));
+            for (uint32_t i = 0; i <= LM_FACINGS; i++) {
+                worst_db = fmax(
+                    worst_db, fabs(gain_q8(&gain, cell_of(i), 0) / 256.0 - bins[i].class_gain_db));
+            }
+        }
+        print_message("# lobe of %.0f degrees over %.2f: worst %.3f dB\n", params.lobe_half_deg,
+                      params.wall_floor, worst_db);
+        assert_true(worst_db < (params.lobe_half_deg < 5 ? 0.1 : 0.03));
+    }
+}
+
+TEST(the_mean_over_all_looks_is_kept_and_a_grid_town_flashes)
+{
+    const struct lm_classes classes = faced_classes();
+    struct lm_class_gain gain;
+    lm_class_gain_set(&gain, &walls, &classes, 0, LM_SEA_STATE_OF_IMAGE, 0);
+    enum { LOOKS = 7200 };
+    double mean = 0, brightest = 0, darkest = HUGE_VAL;
+    for (uint32_t look = 0; look < LOOKS; look++) {
+        lm_class_gain_look(&gain, look * 596523);
+        const double power = pow(10, gain_q8(&gain, cell_of(3), 0) / 2560.0);
+        mean += power / LOOKS;
+        brightest = fmax(brightest, power);
+        darkest = fmin(darkest, power);
+    }
+    print_message("# mean %.4f, flash %.1f dB\n", mean, 10 * log10(brightest / darkest));
+    assert_true(fabs(mean - 1) < 0.005);
+    assert_true(brightest / darkest > 10);
+    assert_int_equal(gain_q8(&gain, cell_of(0), 0), 0); /* no facing */
+}
+
 TEST(hostile_classes_and_cells_read_nothing_but_the_table)
 {
     struct lm_classes classes;
     memset(&classes, 0xff, sizeof classes);
     struct lm_class_gain gain;
-    lm_class_gain_set(&gain, &classes, 0, 255, 1);
+    lm_class_gain_set(&gain, &walls, &classes, 0, 255, 1);
+    lm_class_gain_look(&gain, FX_BAM_DEG(45));
     for (uint32_t i = 0; i < 16; i++) {
         assert_int_equal(gain_q8(&gain, 0xffffff0fu | i << 4, 0), gain.of_class_db_q8[i]);
     }

@@ -77,7 +77,7 @@ static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *
 static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t from, uint32_t cells,
                          struct score *score)
 {
-    ref_class_gain(bins, cells, &w->params);
+    ref_class_gain(bins, cells, &w->params, 0);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
     for (uint32_t i = from; i < cells; i++) {

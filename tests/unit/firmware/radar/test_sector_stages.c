@@ -93,7 +93,7 @@ static void take_draws(int32_t sample, uint32_t sweep, struct ref_bin *bins, uin
 }
 
 /* The levels that the reference finds on the firmware's ground, before the antenna. */
-static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
+static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells, fx_bam_t azimuth)
 {
     const struct sector_world *w = t->w;
     const struct lm_sector *s = &w->sector;
@@ -105,7 +105,7 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells)
     }
     take_ground(&w->line.ground, &w->map.db.classes, bins, cells);
     ref_illuminate(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
-    ref_class_gain(bins, cells, &t->params);
+    ref_class_gain(bins, cells, &t->params, hs_degrees(azimuth));
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
 }
 
@@ -120,7 +120,7 @@ static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
     memset(gain.level_db_q8, 0, sizeof gain.level_db_q8);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &gain);
     take_draws(sample, sweep, bins, cells);
-    see(t, bins, cells);
+    see(t, bins, cells, s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample));
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
         const int32_t level_q8 = w->line.lit.level_db_q8[i];
@@ -322,6 +322,7 @@ static void judge_sweep(struct sector_world *w, const char *what,
     struct trial *t = calloc(1, sizeof *t);
     const struct lm_sector_mode_row *mode = &w->radar.mode[command->mode];
     t->w = w;
+    w->map.db.classes.entry[TINY_STRUCTURE].facing = 3;
     t->weather = e;
     t->params = params_of(&w->radar, -INFINITY, &mode->tone, &mode->speckle);
     t->params.sea_db = e ? ref_sea_db(e->sea_state) : 0;

@@ -11,7 +11,7 @@ TEST(only_water_gains_by_the_state_of_the_sea)
     for (int kind = 0; kind < LM_KINDS; kind++) {
         bins[kind].kind = kind;
     }
-    ref_class_gain(bins, LM_KINDS, &params);
+    ref_class_gain(bins, LM_KINDS, &params, 0);
     for (int kind = 0; kind < LM_KINDS; kind++) {
         /* -40 dB to -30 dB */
         assert_true(bins[kind].class_gain_db == (kind == LM_KIND_WATER ? 10 : 0));
