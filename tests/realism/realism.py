@@ -32,12 +32,11 @@ OPEN = {
     "forest",
     "town_mean",
     "grid_town",
-    "re_cued",  # the firmware's texture
+    "border_steps",
     "class_spread",
     "settlement_spread",
     "standing_out",
     "sea_grazing",
-    "sharpening_steps",
     "shadow_length",  # heights end at 80 m
     "point_side_lobes",
     "glass_patch",

@@ -3,7 +3,7 @@
 Images are made by the project's own programs, as a user makes them:
 
     builtin    the country of landmass-scene, by the commands of `make run`
-    yard       a testing ground of known shapes on a plain: edges, a forest, towers, a grid town, a bright point
+    yard       a testing ground of known shapes on a plain: edges, a forest, towers, a grid town, a bright point, vehicles
     plain      an even plain of -15 dB, 300 km wide, without spread
     sea        the same of water
     orihuela   the classes of Sentinel-2's bands near Orihuela; needs the real data
@@ -172,8 +172,12 @@ class Scenes:
         write_raster(to / "heights.tif", heights, UTM_YARD, 32626)
         write_raster(to / "reflectivity.tif", gamma, UTM_YARD, 32626)
         write_raster(to / "terrain.tif", np.full((60, 60), 10, np.float32), UTM_AROUND, 32626)
+        for model in ("tank", "lorry"):
+            self.run("landmass-target", "bake", "--model", model, "--aspects", "24", "--depressions", "15,40", "--rays", "1",
+                     "--out", to / f"{model}.sig")
+        (to / "targets.txt").write_text(yard_targets())
         self.run("landmass-db", "build", "--classes", table, "--class-raster", to / "classes.tif",
-                 "--reflectivity", to / "reflectivity.tif", "--heights", to / "heights.tif",
+                 "--reflectivity", to / "reflectivity.tif", "--heights", to / "heights.tif", "--targets", to / "targets.txt",
                  "--terrain", to / "terrain.tif", "--land-class", "field", "--water-class", "water",
                  "--cell", "4.77", "--out", to / "scene.lmdb")
 
@@ -240,7 +244,7 @@ POINT_DB = 35.0
 # Places in the yard: metres east and north of its middle.
 EDGE_20, EDGE_45 = (-1200, 1200), (1200, 1200)
 FOREST, GRID_TOWN, TOWER, BLOCK, POINT = (0, 0), (-1200, -1200), (1300, -1400), (1300, -300), (0, -1300)
-EVEN = (0, 1300)
+TANKS, CAR_PARK = (0, 1300), (600, -300)
 FOREST_HALF_M, TOWN_HALF_M = 150, 200
 
 
@@ -278,8 +282,13 @@ def yard_planes():
         angle = np.radians(turn)
         beyond = (east - place[0]) * np.sin(angle) - (north - place[1]) * np.cos(angle) > 0
         classes[box(place, 300, 300) & beyond] = 1
-    paint = lambda where, index, height: (classes.__setitem__(where, index), heights.__setitem__(where, height))
+
+    def paint(where, index, height_m):
+        classes[where], heights[where] = index, height_m
+
     paint(box(FOREST, FOREST_HALF_M, FOREST_HALF_M), 3, FOREST_M)
+    paint(box(CAR_PARK, 40, 25), 1, 0)
+    paint((abs(north - CAR_PARK[1] - 40) < 4) & (abs(east - CAR_PARK[0]) < 300), 1, 0)
     paint(box(TOWER, 15, 15), 2, TOWER_M)
     paint(box(BLOCK, 30, 30), 2, BLOCK_M)
     # Houses of 12 m x 24 m, 8 m high, square to north, in blocks 40 m apart.
@@ -291,6 +300,24 @@ def yard_planes():
     point = box(POINT, 2.4, 2.4)
     classes[point], gamma[point] = 1, POINT_DB
     return classes, heights, gamma
+
+
+def yard_targets():
+    """Four tanks 26 m apart on the field, each turned another way, and three rows of lorries on the car park."""
+    rows = ["library tank tank.sig", "library lorry lorry.sig"]
+    for i, (east, north, heading) in enumerate(((-13, -13, 350), (13, -13, 50), (-13, 13, 200), (13, 13, 95))):
+        rows.append((TANKS, east, north, heading, f"tank-{i}", "tank"))
+    rows += [(CAR_PARK, 8 * column - 32, 17 * row - 17, 5 * (column % 3), f"lorry-{row}-{column}", "lorry")
+             for row in range(3) for column in range(9) if (row * 9 + column) % 5 != 3]
+    lines = []
+    for row in rows:
+        if isinstance(row, str):
+            lines.append(row)
+            continue
+        place, east, north, heading, name, model = row
+        latitude, longitude = utm_degrees((place[0] + east, place[1] + north))
+        lines.append(f"target {name} {latitude} {longitude} ground {heading} signature {model}")
+    return "\n".join(lines) + "\n"
 
 
 def write_raster(path, values, corner, epsg):

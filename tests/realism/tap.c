@@ -8,7 +8,7 @@
  *     sector NAME KEY=VALUE...   lat lon height_m heading track speed_m_s mode fov nm
  *                                clat clon sweeps epoch sea tilt
  *                                mover_m mover_az mover_mps mover_dbsm
- *     dbs NAME KEY=VALUE...      speed_m_s fov
+ *     dbs NAME KEY=VALUE...      speed_m_s fov line
  *
  * Angles are degrees. A picture becomes DIR/NAME.raw, int32 planes one after the other, and
  * DIR/NAME.head, their names and sizes and the numbers of the geometry.
@@ -22,6 +22,7 @@
 #include "lm/font.h"
 #include "lm/sar.h"
 #include "lm/sector.h"
+#include "lm/unit_map.h"
 #include "lm/units.h"
 
 #include <math.h>
@@ -33,8 +34,7 @@ enum { POOL_TILES = LM_TILE_SLOTS_MAX, POLLS_MAX = 1000000, LINE_MAX = 1024, SWE
 
 struct tap {
     struct drv_flash_file flash;
-    struct lm_db db;
-    struct lm_tile_cache tiles;
+    struct lm_unit_map map;
     struct lm_line line;
     struct lm_sar sar;
     struct lm_sector sector;
@@ -79,10 +79,15 @@ static FILE *open_output(const struct tap *t, const char *suffix)
     return file;
 }
 
+static bool is_read(const struct tap *t)
+{
+    return lm_tile_cache_is_idle(&t->map.tiles) && lm_chips_are_settled(&t->map.chips);
+}
+
 static void read_tiles(struct tap *t)
 {
-    for (int i = 0; i < POLLS_MAX && !lm_tile_cache_is_idle(&t->tiles); i++) {
-        lm_tile_cache_service(&t->tiles, 0, 64);
+    for (int i = 0; i < POLLS_MAX && !is_read(t); i++) {
+        lm_unit_map_service(&t->map, 0);
     }
 }
 
@@ -103,28 +108,29 @@ static void keep_ground(const struct tap *t, uint32_t number)
         const uint32_t cell = ground->cell[i + LM_SAR_GUARD];
         patch.cell[number][i] = (int32_t)cell;
         patch.elevation[number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD];
-        patch.height_dm[number][i] = t->db.classes.height_dm[cell & 15];
+        patch.height_dm[number][i] = t->map.db.classes.height_dm[cell & 15];
     }
 }
 
 static void prefetch_patch(struct tap *t)
 {
     for (uint32_t line = 0; line < CELLS; line += 4) {
-        lm_sar_prefetch(&t->sar, &t->tiles, line);
+        lm_sar_prefetch(&t->sar, &t->map.tiles, line);
         read_tiles(t);
     }
-    lm_sar_prefetch(&t->sar, &t->tiles, CELLS - 1);
+    lm_sar_prefetch(&t->sar, &t->map.tiles, CELLS - 1);
+    lm_sar_prefetch_targets(&t->sar, &t->map.tiles);
     read_tiles(t);
 }
 
 /* Elevation of the centre from tiles that are resident, as the unit takes it. */
 static int32_t reference_of(struct tap *t, const struct lm_sar_command *command)
 {
-    const int32_t mean_m_q10 = lm_m_q10_of_m_q6(t->db.mean_elevation_m_q6);
-    const uint8_t lod = lm_scan_lod(&t->db, command->cell_mm);
-    lm_scan_elevation(&t->tiles, lod, command->centre, mean_m_q10);
+    const int32_t mean_m_q10 = lm_m_q10_of_m_q6(t->map.db.mean_elevation_m_q6);
+    const uint8_t lod = lm_scan_lod(&t->map.db, command->cell_mm);
+    lm_scan_elevation(&t->map.tiles, lod, command->centre, mean_m_q10);
     read_tiles(t);
-    return lm_scan_elevation(&t->tiles, lod, command->centre, mean_m_q10);
+    return lm_scan_elevation(&t->map.tiles, lod, command->centre, mean_m_q10);
 }
 
 static int start_patch(struct tap *t, const struct lm_environment *environment)
@@ -137,11 +143,13 @@ static int start_patch(struct tap *t, const struct lm_environment *environment)
         .height_m_q6 = (int32_t)(number_of(t, "height_m", 3000) * 64),
         .has_layover = number_of(t, "layover", 0) != 0,
     };
-    const struct lm_sar_setup setup = {.reference_m_q10 = reference_of(t, &command),
+    const struct lm_sar_setup setup = {.targets = &t->map.target_set,
+                                       .chips = &t->map.chips,
+                                       .reference_m_q10 = reference_of(t, &command),
                                        .epoch = (uint32_t)number_of(t, "epoch", 0),
                                        .sea_state = environment->sea_state,
                                        .environment = environment};
-    return lm_sar_start(&t->sar, &lm_radar_default, &t->db, &command, &setup);
+    return lm_sar_start(&t->sar, &lm_radar_default, &t->map.db, &command, &setup);
 }
 
 /* Ground is that of the line sampled last: lines are sampled one by one and their ground kept. */
@@ -150,12 +158,12 @@ static void draw_patch_line(struct tap *t)
     const uint32_t number = t->sar.line;
     for (bool is_ready = false; !is_ready;) {
         const uint32_t sampled = t->sar.sampled;
-        is_ready = lm_sar_sample_ahead(&t->sar, &t->tiles, 1, &t->line);
+        is_ready = lm_sar_sample_ahead(&t->sar, &t->map.tiles, 1, &t->line);
         if (t->sar.sampled != sampled) {
             keep_ground(t, sampled);
         }
     }
-    const int32_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->tiles, &t->tone, &t->line);
+    const int32_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->map.tiles, &t->tone, &t->line);
     for (uint32_t i = 0; i < CELLS; i++) {
         patch.level[number][i] = level_db_q8[i + LM_SAR_GUARD];
         patch.grey[number][i] = t->line.grey[i + LM_SAR_GUARD];
@@ -183,7 +191,7 @@ static int draw_patch(struct tap *t)
     fprintf(head, "black_db %.3f\nwhite_db %.3f\n", lm_radar_default.sar.tone.black_db_q8 / 256.0,
             lm_radar_default.sar.tone.white_db_q8 / 256.0);
     for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
-        const struct lm_class *class = &t->db.classes.entry[i];
+        const struct lm_class *class = &t->map.db.classes.entry[i];
         if (class->name[0] != '\0') {
             fprintf(head, "class %.16s %u\n", class->name, class->kind);
         }
@@ -199,7 +207,7 @@ static void draw_sweep(struct tap *t, const struct lm_platform *platform, int32_
 {
     do {
         const uint32_t line =
-            lm_sector_draw_line(&t->sector, &t->tiles, platform, &t->tone, &t->line);
+            lm_sector_draw_line(&t->sector, &t->map.tiles, platform, &t->tone, &t->line);
         const uint32_t cells = t->sector.slant.cells;
         for (uint32_t i = 0; level && i < cells; i++) {
             level[(size_t)line * cells + i] = t->sector.level_db_q8[i];
@@ -286,23 +294,25 @@ static int draw_sector(struct tap *t)
             draw_sweep(t, &platform, NULL, NULL);
         }
     }
-    lm_sector_begin(&t->sector, &t->tiles, &platform);
+    lm_sector_begin(&t->sector, &t->map.tiles, &platform);
     write_sector(t, &platform, sweeps);
     return 0;
 }
 
-/* Sharpening that a sweep of DBS uses at 0..90 degrees from the velocity, in tenths of a degree. */
+/* Sharpening of the lines of a window from the velocity to 60 degrees off it, `line` degrees apart.
+ */
 static int print_sharpening(const struct tap *t)
 {
     const struct lm_radar *radar = &lm_radar_default;
     const struct lm_fov_row *fov = &radar->fov[(uint8_t)number_of(t, "fov", LM_FOV_DBS1)];
-    const uint32_t speed_mm_s = (uint32_t)(number_of(t, "speed_m_s", 250) * 1000);
+    const struct lm_dbs_scan scan = {.bam_per_s = fov->bam_per_s,
+                                     .speed_mm_s =
+                                         (uint32_t)(number_of(t, "speed_m_s", 250) * 1000),
+                                     .line = hs_bam(number_of(t, "line", 0.1))};
     FILE *head = open_output(t, "head");
     fprintf(head, "ratio");
-    for (int tenth = 0; tenth <= 900; tenth++) {
-        const uint32_t available_q8 =
-            lm_dbs_ratio_q8(radar, fov->bam_per_s, speed_mm_s, hs_bam(tenth / 10.0));
-        fprintf(head, " %.3f", lm_dbs_sharpening_q8(fov, available_q8) / 256.0);
+    for (fx_bam_t off = 0; off <= FX_BAM_DEG(60); off += scan.line) {
+        fprintf(head, " %.3f", lm_dbs_sharpening_q8(radar, &scan, fov->sharpening, off) / 256.0);
     }
     fprintf(head, "\n");
     return fclose(head);
@@ -314,10 +324,16 @@ static int open_image(struct tap *t, const char *path)
 {
     const size_t bytes = POOL_TILES * sizeof(struct lm_tile);
     t->pool = malloc(bytes);
-    if (drv_flash_file_open(&t->flash, path) != 0 ||
-        lm_db_open(&t->db, &t->flash.port, POLLS_MAX) != LM_OK || !t->pool ||
-        lm_tile_cache_init(&t->tiles, &t->db, t->pool, bytes, POLLS_MAX) != LM_OK) {
-        fprintf(stderr, "realism_tap: %s: cannot be opened as an image\n", path);
+    if (!t->pool || drv_flash_file_open(&t->flash, path) != 0) {
+        fprintf(stderr, "realism_tap: %s: cannot be opened\n", path);
+        return -1;
+    }
+    const struct lm_unit_map_lent lent = {.flash = &t->flash.port,
+                                          .tile_pool = t->pool,
+                                          .tile_pool_bytes = bytes,
+                                          .flash_poll_limit = POLLS_MAX};
+    if (lm_unit_map_open(&t->map, &lent) != LM_OK || !t->map.is_usable) {
+        fprintf(stderr, "realism_tap: %s: is no image that the firmware opens\n", path);
         return -1;
     }
     return 0;
