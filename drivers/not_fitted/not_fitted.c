@@ -33,4 +33,4 @@ static int no_control(void *ctx, struct lm_control *control)
 
 const struct lm_flash drv_no_flash = {NULL, 0, no_read, no_poll};
 const struct lm_can drv_no_can = {NULL, no_frame, NULL};
-const struct lm_controls drv_no_controls = {NULL, no_control};
+const struct lm_controls drv_no_controls = {.next = no_control};

@@ -154,12 +154,16 @@ static void draw_warning(const struct lm_glass *g, int32_t row, const char *word
     lm_draw_text(&pen, x, y, words);
 }
 
-void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags)
+void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags, enum lm_refusal reason)
 {
+    const char *const why = lm_refusal_word(reason);
     int32_t row = 0;
     for (uint32_t i = 0; i < LM_FLAGS; i++) {
         if (flags & 1u << i) {
             draw_warning(g, row++, flag_words[i]);
+        }
+        if ((flags & 1u << i & LM_FLAG_UNABLE) && *why) {
+            draw_warning(g, row++, why);
         }
     }
 }

@@ -35,15 +35,20 @@ static bool is_within(fx_bam_t angle, fx_bam_t limit)
     return fx_abs_u32((int32_t)angle) <= limit;
 }
 
-/* True if an aircraft in flight can make a patch there in that time. */
-static bool can_be_made(const struct lm_radar *radar, const struct lm_sar_flight *f,
-                        uint64_t patch_us)
+/* Judge whether an aircraft in flight can make a patch there in that time. */
+static enum lm_refusal judge_flight(const struct lm_radar *radar, const struct lm_sar_flight *f,
+                                    uint64_t patch_us)
 {
     const fx_bam_t squint = f->track - f->bearing, least = radar->sar.squint_min;
     const bool is_off_the_track =
         fx_abs_u32((int32_t)squint) >= least && fx_abs_u32((int32_t)(squint + FX_BAM_180)) >= least;
-    return is_off_the_track && is_within(f->bearing - f->heading, radar->antenna.azimuth_limit) &&
-           patch_us <= lm_us_of_ms(radar->sar.dwell_max_ms);
+    if (!is_off_the_track) {
+        return LM_REFUSED_SQUINT;
+    }
+    if (!is_within(f->bearing - f->heading, radar->antenna.azimuth_limit)) {
+        return LM_REFUSED_GIMBAL;
+    }
+    return patch_us <= lm_us_of_ms(radar->sar.dwell_max_ms) ? LM_REFUSED_NOT : LM_REFUSED_DWELL;
 }
 
 /* Ground range where the guard cells begin; below 0 if that is behind the antenna. */
@@ -54,12 +59,38 @@ static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_comm
            (int64_t)before_centre * lm_m_q8_of_mm_nearest(c->cell_mm);
 }
 
-static bool command_is_sound(const struct lm_radar *radar, const struct lm_sar_command *c)
+static enum lm_refusal judge_command(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const int32_t highest_m_q6 = lm_m_q6_of_m(30000);
-    return c->cell_mm >= radar->sar.cell_min_mm && c->cell_mm <= radar->sar.cell_max_mm &&
-           c->range_m >= 1000 && c->range_m <= 250000 && c->height_m_q6 >= -highest_m_q6 &&
-           c->height_m_q6 <= highest_m_q6 && guard_m_q8(radar, c) >= LM_M_Q8(16 * LM_RANGE_MIN_M);
+    if (c->cell_mm < radar->sar.cell_min_mm || c->cell_mm > radar->sar.cell_max_mm) {
+        return LM_REFUSED_CELL;
+    }
+    if (c->range_m > 250000) {
+        return LM_REFUSED_FAR;
+    }
+    if (c->range_m < 1000 || guard_m_q8(radar, c) < LM_M_Q8(16 * LM_RANGE_MIN_M)) {
+        return LM_REFUSED_NEAR;
+    }
+    return c->height_m_q6 >= -highest_m_q6 && c->height_m_q6 <= highest_m_q6 ? LM_REFUSED_NOT
+                                                                             : LM_REFUSED_HEIGHT;
+}
+
+/* Velocity to the right of the line of sight: that of the flight, or the table's to the left. */
+static int32_t across_mm_s_of(const struct lm_radar *radar, const struct lm_sar_flight *flight)
+{
+    return flight ? speed_across_mm_s(flight) : -(int32_t)radar->sar.reference_speed_mm_s;
+}
+
+enum lm_refusal lm_sar_judge(const struct lm_radar *radar, const struct lm_sar_command *command,
+                             const struct lm_sar_setup *setup)
+{
+    const enum lm_refusal reason = judge_command(radar, command);
+    const uint32_t across_mm_s = fx_abs_u32(across_mm_s_of(radar, setup->flight));
+    if (reason != LM_REFUSED_NOT || !setup->flight) {
+        return reason;
+    }
+    return judge_flight(radar, setup->flight,
+                        dwell_us(radar, command, setup->reference_m_q10, across_mm_s));
 }
 
 static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference_m_q10)
@@ -160,16 +191,12 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
                  const struct lm_sar_command *command, const struct lm_sar_setup *setup)
 {
     const struct lm_sar_flight *flight = setup->flight;
-    if (!command_is_sound(radar, command)) {
+    if (lm_sar_judge(radar, command, setup) != LM_REFUSED_NOT) {
         return LM_ERR_RANGE;
     }
-    const int32_t across_mm_s =
-        flight ? speed_across_mm_s(flight) : -(int32_t)radar->sar.reference_speed_mm_s;
+    const int32_t across_mm_s = across_mm_s_of(radar, flight);
     const uint64_t patch_us =
         dwell_us(radar, command, setup->reference_m_q10, fx_abs_u32(across_mm_s));
-    if (flight && !can_be_made(radar, flight, patch_us)) {
-        return LM_ERR_RANGE;
-    }
     const uint64_t line_us = patch_us / radar->sar.cells;
     s->radar = radar;
     s->command = *command;

@@ -16,12 +16,26 @@ static void follow_scale(struct lm_unit *u)
     }
 }
 
-/* Start a patch, or show LM_FLAG_UNABLE for a while. */
-static bool try_patch(struct lm_unit *u, const struct lm_sar_command *command, uint64_t now_us)
+/* Count a control that was refused. */
+static void note_refusal(struct lm_unit *u, enum lm_refusal reason)
 {
-    const bool is_started = lm_picture_start(&u->picture, LM_PICTURE_PATCH, command, now_us);
-    u->unable_until_us = is_started ? 0 : now_us + UNABLE_SHOWN_US;
-    return is_started;
+    u->count.commands_refused++;
+    u->refusal = reason;
+}
+
+/* Show LM_FLAG_UNABLE with its reason for a while, or end it. Returns the reason. */
+static enum lm_refusal show_unable(struct lm_unit *u, enum lm_refusal reason, uint64_t now_us)
+{
+    u->unable.until_us = reason == LM_REFUSED_NOT ? 0 : now_us + UNABLE_SHOWN_US;
+    u->unable.reason = reason;
+    return reason;
+}
+
+/* Start a patch, or show why not. */
+static enum lm_refusal try_patch(struct lm_unit *u, const struct lm_sar_command *command,
+                                 uint64_t now_us)
+{
+    return show_unable(u, lm_picture_start(&u->picture, LM_PICTURE_PATCH, command, now_us), now_us);
 }
 
 static void restart_patch(struct lm_unit *u, uint64_t now_us)
@@ -29,7 +43,10 @@ static void restart_patch(struct lm_unit *u, uint64_t now_us)
     struct lm_sar_command command = u->picture.sar.command;
     command.cell_mm = lm_page_cell_mm(&u->page);
     command.has_layover = u->page.is_slant;
-    u->count.commands_refused += !try_patch(u, &command, now_us);
+    const enum lm_refusal reason = try_patch(u, &command, now_us);
+    if (reason != LM_REFUSED_NOT) {
+        note_refusal(u, reason);
+    }
 }
 
 void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
@@ -66,32 +83,36 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 
 /* Target management switch up: stabilise a snowplow cursor, otherwise start a patch at the
  * cursor. */
-static bool designate(struct lm_unit *u, uint64_t now_us)
+static enum lm_refusal designate(struct lm_unit *u, uint64_t now_us)
 {
     if (u->page.format == LM_FORMAT_BIT || u->page.format == LM_FORMAT_TEST) {
-        return false; /* no cursor is shown on these pages */
+        return LM_REFUSED_PAGE;
     }
     if (u->cursor.is_snowplow) {
         lm_cursor_stabilise(&u->cursor);
-        return true;
+        return LM_REFUSED_NOT;
     }
     const struct lm_sar_command command = {.centre = u->cursor.position,
                                            .cell_mm = lm_page_cell_mm(&u->page),
                                            .is_from_ownship = true,
                                            .has_layover = u->page.is_slant};
     if (!u->cursor.is_placed || u->page.is_override) {
-        u->unable_until_us = now_us + UNABLE_SHOWN_US;
-        return false;
+        return show_unable(u, u->cursor.is_placed ? LM_REFUSED_SILENT : LM_REFUSED_CURSOR, now_us);
     }
     u->cursor.is_home = false; /* a change of scale must not move it now */
     return try_patch(u, &command, now_us);
 }
 
+static enum lm_refusal refused_unless(bool is_sound)
+{
+    return is_sound ? LM_REFUSED_NOT : LM_REFUSED_VALUE;
+}
+
 /* Carry out the effects of a direct command. The page returns none if it refused the command. */
-static bool apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
+static enum lm_refusal apply_any(struct lm_unit *u, uint32_t effects, uint64_t now_us)
 {
     lm_apply_effects(u, effects, now_us);
-    return effects != 0;
+    return refused_unless(effects != 0);
 }
 
 static bool apply_steerpoint(struct lm_unit *u, const struct lm_control *control)
@@ -135,19 +156,21 @@ static bool apply_slew(struct lm_unit *u, const struct lm_control *control)
     return true;
 }
 
-static bool apply_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control *control,
+                                     uint64_t now_us)
 {
     switch (control->kind) {
     case LM_CONTROL_SECTOR:
         return apply_any(
             u, lm_page_select_sector(&u->page, control->sector.mode, control->sector.fov), now_us);
     case LM_CONTROL_ENVIRONMENT:
-        return lm_unit_weather_command(&u->weather, &control->environment, now_us) == LM_OK;
+        return refused_unless(lm_unit_weather_command(&u->weather, &control->environment, now_us) ==
+                              LM_OK);
     case LM_CONTROL_STEERPOINT:
-        return apply_steerpoint(u, control);
+        return refused_unless(apply_steerpoint(u, control));
     case LM_CONTROL_DROP:
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
-        return true;
+        return LM_REFUSED_NOT;
     case LM_CONTROL_SAR:
         return try_patch(u, &control->sar, now_us);
     case LM_CONTROL_RANGE:
@@ -158,18 +181,32 @@ static bool apply_control(struct lm_unit *u, const struct lm_control *control, u
         return apply_any(u, lm_page_set_gain(&u->page, control->gain_db), now_us);
     case LM_CONTROL_FREEZE:
         lm_page_set_frozen(&u->page, control->is_frozen);
-        return true;
+        return LM_REFUSED_NOT;
     case LM_CONTROL_DOWN:
     case LM_CONTROL_UP:
-        return apply_button(u, control, now_us);
+        return refused_unless(apply_button(u, control, now_us));
     case LM_CONTROL_KNOB:
         return apply_any(u, lm_page_set_knob(&u->page, control->knob), now_us);
     case LM_CONTROL_SLEW:
-        return apply_slew(u, control);
+        return refused_unless(apply_slew(u, control));
     case LM_CONTROL_DESIGNATE:
         return designate(u, now_us);
     }
-    return false;
+    return LM_REFUSED_VALUE;
+}
+
+/* Apply a control, and tell its source if the unit refused it or the press that it is. */
+static void take_control(struct lm_unit *u, const struct lm_control *control, uint64_t now_us)
+{
+    const struct lm_controls *source = u->board->controls;
+    const uint32_t refused = u->count.commands_refused;
+    const enum lm_refusal reason = apply_control(u, control, now_us);
+    if (reason != LM_REFUSED_NOT) {
+        note_refusal(u, reason);
+    }
+    if (u->count.commands_refused != refused && source->refused) {
+        source->refused(source->ctx, u->refusal);
+    }
 }
 
 void lm_take_controls(struct lm_unit *u, uint64_t now_us)
@@ -181,6 +218,6 @@ void lm_take_controls(struct lm_unit *u, uint64_t now_us)
     const struct lm_controls *controls = u->board->controls;
     struct lm_control control;
     for (uint32_t i = 0; i < CONTROLS_A_STEP && controls->next(controls->ctx, &control) == 1; i++) {
-        u->count.commands_refused += !apply_control(u, &control, now_us);
+        take_control(u, &control, now_us);
     }
 }

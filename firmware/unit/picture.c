@@ -26,18 +26,19 @@ void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
     memset(plane->pixels, 0, (size_t)plane->width_px * plane->height_px);
 }
 
-bool lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
-                      const struct lm_sar_command *patch, uint64_t now_us)
+enum lm_refusal lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
+                                 const struct lm_sar_command *patch, uint64_t now_us)
 {
-    if (!methods_of[kind]->start(p, patch, now_us)) {
-        return false;
+    const enum lm_refusal reason = methods_of[kind]->start(p, patch, now_us);
+    if (reason != LM_REFUSED_NOT) {
+        return reason;
     }
     lm_page_show_picture(p->lent.page, kind);
     p->next_line_us = now_us;
     p->coverage = (struct lm_coverage){0};
     p->is_view_held = false;
     lm_plane_clear(&p->plane, &p->frame);
-    return true;
+    return LM_REFUSED_NOT;
 }
 
 void lm_picture_remove(struct lm_picture *p)

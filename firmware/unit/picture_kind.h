@@ -15,8 +15,9 @@ enum lm_sweep {
 struct lm_picture_methods {
     bool moves; /* result of lm_picture_moves */
 
-    /* Take the request, as lm_picture_start says. False: refused, and *p is unchanged. */
-    bool (*start)(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us);
+    /* Take the request, as lm_picture_start says. If it is refused, *p is unchanged. */
+    enum lm_refusal (*start)(struct lm_picture *p, const struct lm_sar_command *patch,
+                             uint64_t now_us);
 
     /* Go back to the first line, in a picture that has a first line. */
     void (*restart)(struct lm_picture *p);

@@ -62,14 +62,18 @@ static int32_t elevation_q10(const struct lm_picture *p, const struct lm_sar_com
                              lm_m_q10_of_m_q6(map->db.mean_elevation_m_q6));
 }
 
-static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
+static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *patch,
+                             uint64_t now_us)
 {
     struct lm_sar_flight flight;
     struct lm_sar_command command = *patch;
     struct lm_unit_map *map = p->lent.map;
     const bool is_in_flight = command.is_from_ownship;
-    if (!map->is_usable || (is_in_flight && !resolve_command(p, &command, &flight))) {
-        return false;
+    if (!map->is_usable) {
+        return LM_REFUSED_MAP;
+    }
+    if (is_in_flight && !resolve_command(p, &command, &flight)) {
+        return LM_REFUSED_NAV;
     }
     const struct lm_sar_setup scene = {.flight = is_in_flight ? &flight : NULL,
                                        .targets = &map->target_set,
@@ -79,15 +83,17 @@ static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint
                                        .sea_state = p->lent.environment->sea_state,
                                        .environment = p->lent.environment,
                                        .time_us = now_us};
-    if (lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene) != LM_OK) {
-        return false;
+    const enum lm_refusal reason = lm_sar_judge(p->lent.radar, &command, &scene);
+    if (reason != LM_REFUSED_NOT) {
+        return reason;
     }
+    (void)lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene); /* it is judged */
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
     p->is_cursor_awaited = false;
     p->acquire.is_reading = true;
     p->acquire.lines_asked_for = 0;
     p->acquire.until_us = now_us + ACQUIRE_US;
-    return true;
+    return LM_REFUSED_NOT;
 }
 
 static void restart(struct lm_picture *p)

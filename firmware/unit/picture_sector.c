@@ -14,7 +14,8 @@ static struct lm_beam_setting beam_of(const struct lm_page *page)
 
 /* Start a sweep. A window is centred on the cursor; until that is placed, the whole sector is
  * swept. */
-static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint64_t now_us)
+static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *patch,
+                             uint64_t now_us)
 {
     (void)patch;
     (void)now_us;
@@ -32,7 +33,7 @@ static bool start(struct lm_picture *p, const struct lm_sar_command *patch, uint
     p->sector.targets = &p->lent.map->target_set;
     p->sector.chips = &p->lent.map->chips;
     p->sector.environment = p->lent.environment;
-    return true;
+    return LM_REFUSED_NOT;
 }
 
 static void sweep_on(struct lm_picture *p)

@@ -92,7 +92,7 @@ static void show_radar(const struct lm_unit *u, const struct lm_glass *glass)
     const struct lm_symbols symbols = describe(u);
     lm_overlay_picture(glass, &u->picture.plane);
     lm_overlay_symbols(glass, &symbols);
-    lm_overlay_warnings(glass, u->flags);
+    lm_overlay_warnings(glass, u->flags, u->unable.reason);
 }
 
 static void show_bit(const struct lm_unit *u, const struct lm_glass *glass)

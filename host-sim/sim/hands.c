@@ -14,7 +14,8 @@ static void put(struct hands *h, struct lm_control control)
 static int next(void *ctx, struct lm_control *control)
 {
     struct hands *h = ctx;
-    if (h->script && h->script->next(h->script->ctx, control) == 1) {
+    h->is_scripted = h->script && h->script->next(h->script->ctx, control) == 1;
+    if (h->is_scripted) {
         return 1;
     }
     if (h->tail == h->head) {
@@ -24,11 +25,20 @@ static int next(void *ctx, struct lm_control *control)
     return 1;
 }
 
+/* The glass tells the hand; the script is told by its port. */
+static void refused(void *ctx, enum lm_refusal reason)
+{
+    const struct hands *h = ctx;
+    if (h->is_scripted && h->script->refused) {
+        h->script->refused(h->script->ctx, reason);
+    }
+}
+
 void hands_init(struct hands *h, const struct lm_controls *script)
 {
     memset(h, 0, sizeof *h);
     h->script = script;
-    h->port = (struct lm_controls){.ctx = h, .next = next};
+    h->port = (struct lm_controls){.ctx = h, .next = next, .refused = refused};
 }
 
 void hands_button(struct hands *h, int32_t button, bool is_down)

@@ -364,7 +364,8 @@ static int split(char *line, char **words)
     return count;
 }
 
-static int append(struct script *s, const char *place, const struct line_events *line)
+static int append(struct script *s, const char *place, int line_number,
+                  const struct line_events *line)
 {
     const size_t count = (size_t)(s->count + line->count);
     struct script_event *grown = realloc(s->events, sizeof *grown * count);
@@ -375,6 +376,7 @@ static int append(struct script *s, const char *place, const struct line_events 
     for (int i = 0; i < line->count; i++) {
         s->events[s->count] = line->event[i];
         s->events[s->count].order = s->count;
+        s->events[s->count].line = line_number;
         s->count++;
     }
     return 0;
@@ -398,7 +400,7 @@ static int take_line(struct script *s, const char *path, int line_number, char *
         return hs_error(place, "sort the script by time", "goes back in time");
     }
     s->last_us = parsed.event[0].time_us;
-    return append(s, place, &parsed);
+    return append(s, place, line_number, &parsed);
 }
 
 static int by_time(const void *a, const void *b)
@@ -415,10 +417,40 @@ static int next_control(void *ctx, struct lm_control *control)
     struct script *s = ctx;
     if (s->next < s->count && !s->events[s->next].is_picture &&
         s->events[s->next].time_us <= s->now_us) {
+        s->line_taken = s->events[s->next].line;
         *control = s->events[s->next++].control;
         return 1;
     }
     return 0;
+}
+
+void script_report_refusal(const struct script *s, enum lm_refusal reason)
+{
+    static const char *const causes[LM_REFUSALS] = {
+        [LM_REFUSED_NOT] = "nothing is wrong",
+        [LM_REFUSED_VALUE] = "out of range, or mode and field of view lack it",
+        [LM_REFUSED_PAGE] = "no cursor is on the page that is shown",
+        [LM_REFUSED_CURSOR] = "the cursor is not placed yet",
+        [LM_REFUSED_SILENT] = "the radar is silenced",
+        [LM_REFUSED_MAP] = "there is no usable map",
+        [LM_REFUSED_NAV] = "position, height, heading or velocity is not good",
+        [LM_REFUSED_CELL] = "no patch has such cells",
+        [LM_REFUSED_NEAR] = "the patch is too near",
+        [LM_REFUSED_FAR] = "the patch is too far",
+        [LM_REFUSED_HEIGHT] = "the antenna is too high or too low",
+        [LM_REFUSED_SQUINT] = "the squint is too small: the patch is too near to the track",
+        [LM_REFUSED_GIMBAL] = "the patch is beyond the antenna's gimbal",
+        [LM_REFUSED_DWELL] = "the dwell would be too long",
+    };
+    char place[sizeof s->path + 32];
+    snprintf(place, sizeof place, "%s line %d", s->path, s->line_taken);
+    hs_warn(place, "the unit goes on without it", "refused: %s",
+            causes[(unsigned)reason < LM_REFUSALS ? reason : LM_REFUSED_VALUE]);
+}
+
+static void report_refused(void *ctx, enum lm_refusal reason)
+{
+    script_report_refusal(ctx, reason);
 }
 
 int script_read(struct script *s, const char *path, const struct lm_radar *radar)
@@ -426,7 +458,8 @@ int script_read(struct script *s, const char *path, const struct lm_radar *radar
     memset(s, 0, sizeof *s);
     s->radar = radar;
     s->range_nm = radar->range_start_nm;
-    s->port = (struct lm_controls){.ctx = s, .next = next_control};
+    s->port = (struct lm_controls){.ctx = s, .next = next_control, .refused = report_refused};
+    snprintf(s->path, sizeof s->path, "%s", path ? path : "script");
     s->environment.sea_state = LM_SEA_STATE_OF_IMAGE;
     if (!path) {
         return 0;

@@ -21,7 +21,7 @@ void memory_board_open(struct memory_board *b, const uint8_t *image, size_t imag
 {
     memory_flash_open(&b->flash, image, image_bytes);
     b->can = (struct lm_can){.ctx = parts->ctx, .receive = parts->receive};
-    b->controls = (struct lm_controls){parts->ctx, parts->next_control};
+    b->controls = (struct lm_controls){.ctx = parts->ctx, .next = parts->next_control};
     b->display = (struct lm_display){b, parts->width_px, parts->height_px, acquire, present};
     b->glass = parts->glass;
     b->acquire_status = b->present_status = LM_OK;

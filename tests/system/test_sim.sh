@@ -189,6 +189,12 @@ check 'so is time that goes back' bad_script 2 '5 gm' '4 gm'
 check 'so is a picture outside the folder' bad_script 1 '0 picture ../up'
 check 'a missing script is named' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/nosuch.script"
 check 'with its cause' said 'nosuch.script: cannot be opened: No such file'
+printf '%s\n' '0 range 20' '# far away' '0.5 sar 80 0 5' '0.6 osb 1' '0.9 range 80' >"$work/refused.script"
+check 'a script with commands that the unit refuses is flown to the end' \
+    exits 0 "$sim" --db "$db" --bus "$log" --seconds 1 --script "$work/refused.script"
+check 'each is reported with line and reason' said 'refused.script line 3: warning: refused: the patch is too far; '
+check 'one behind a key, too' said 'refused.script line 5: warning: refused: out of range, or mode'
+check 'and none but those' test "$(grep -c refused: "$last_error")" -eq 2
 printf '0 picture here\n' >"$work/picture.script"
 check 'a picture asked for without a folder' exits 1 "$sim" --db "$db" --bus "$log" --script "$work/picture.script"
 check 'is told how to give one' said 'add --png DIR'

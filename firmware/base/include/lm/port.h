@@ -31,6 +31,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lm/refusal.h"
 #include "lm/status.h"
 
 /* Flash: a read-only memory that does one read at a time.
@@ -130,6 +131,9 @@ struct lm_controls {
     /* Take the operator's next act. Never waits. Returns 1 with *control filled, or 0 if there is
      * none, with *control unspecified. */
     int (*next)(void *ctx, struct lm_control *control);
+
+    /* Learn that the control handed out last was refused. NULL if nobody asks. */
+    void (*refused)(void *ctx, enum lm_refusal reason);
 };
 
 #endif

@@ -13,6 +13,7 @@
 #include "lm/glass_options.h"
 #include "lm/page.h"
 #include "lm/port.h"
+#include "lm/refusal.h"
 #include "lm/scan_conv.h"
 #include "lm/text.h"
 #include "lm/view.h"
@@ -102,8 +103,9 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *symbo
 /* Draw the labels of all keys, and the values between them. */
 void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page);
 
-/* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame. */
-void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags);
+/* Write the words of `flags` (enum lm_flag) below each other, from the top of the frame; below that
+ * of LM_FLAG_UNABLE the word for its reason. */
+void lm_overlay_warnings(const struct lm_glass *g, uint32_t flags, enum lm_refusal reason);
 
 /* Draw a hand that turns one eighth with every frame, in the lower right corner. A hand that stands
  * still shows that the display has stopped. */

@@ -33,6 +33,7 @@
 #include "lm/line.h"
 #include "lm/patch_rain.h"
 #include "lm/radar.h"
+#include "lm/refusal.h"
 #include "lm/sar_command.h"
 #include "lm/target_patch.h"
 #include "lm/tone.h"
@@ -112,15 +113,23 @@ struct lm_sar {
     uint64_t power_q32[LM_CELLS_ROOM];              /* work space */
 };
 
+/* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
+ * - LM_REFUSED_CELL: cell_mm is outside the table's cell_min_mm..cell_max_mm;
+ * - LM_REFUSED_FAR: range_m is above 250,000;
+ * - LM_REFUSED_NEAR: range_m is below 1,000, or the guard cells would begin nearer than 16
+ *   LM_RANGE_MIN_M;
+ * - LM_REFUSED_HEIGHT: height_m_q6 is more than 30 km above or below mean sea level;
+ * - LM_REFUSED_SQUINT: in flight (setup->flight), the squint is below the table's squint_min, ahead
+ *   or astern;
+ * - LM_REFUSED_GIMBAL: in flight, the bearing is off the nose by more than the antenna's
+ *   azimuth_limit;
+ * - LM_REFUSED_DWELL: in flight, the dwell is longer than the table's dwell_max_ms.
+ * Cost: some 200 instructions. */
+enum lm_refusal lm_sar_judge(const struct lm_radar *radar, const struct lm_sar_command *command,
+                             const struct lm_sar_setup *setup);
+
 /* Start a patch. The command's geometry must be complete: the caller resolves is_from_ownship.
- * Returns LM_OK, or LM_ERR_RANGE with *s unchanged if
- * - cell_mm is outside the table's cell_min_mm..cell_max_mm;
- * - range_m is outside 1,000..250,000;
- * - the guard cells would begin nearer than 16 LM_RANGE_MIN_M;
- * - height_m_q6 is more than 30 km above or below mean sea level;
- * - in flight (setup->flight), the squint is below the table's squint_min, ahead or astern;
- * - in flight, the bearing is off the nose by more than the antenna's azimuth_limit;
- * - in flight, the dwell is longer than the table's dwell_max_ms.
+ * Returns LM_OK, or LM_ERR_RANGE with *s unchanged iff lm_sar_judge refuses it.
  *
  * A patch of commanded geometry (flight NULL) has none of the last three limits. Its dwell is that
  * of an aircraft that passes at the table's reference speed, with the patch abeam to the right.

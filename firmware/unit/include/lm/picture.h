@@ -75,12 +75,13 @@ void lm_picture_init(struct lm_picture *p, const struct lm_picture_lent *lent,
 
 /* Begin a picture of the page's settings on a black plane. Its kind becomes the page's. `patch` is
  * the request for a patch, copied, and NULL for any other kind. A sector always begins. Returns
- * false, and the present picture goes on unchanged, iff
- * - a patch is asked for and there is no usable map;
- * - the patch is seen from the ownship, and navigation is not good (enum lm_nav_quality);
- * - lm_sar_start refuses the patch. */
-bool lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
-                      const struct lm_sar_command *patch, uint64_t now_us);
+ * LM_REFUSED_NOT; or the reason, and the present picture goes on unchanged:
+ * - LM_REFUSED_MAP: a patch is asked for and there is no usable map;
+ * - LM_REFUSED_NAV: the patch is seen from the ownship, and navigation is not good (enum
+ *   lm_nav_quality);
+ * - what lm_sar_judge says of the patch. */
+enum lm_refusal lm_picture_start(struct lm_picture *p, enum lm_picture_kind kind,
+                                 const struct lm_sar_command *patch, uint64_t now_us);
 
 /* Make the plane black, because what it shows is no longer true. A patch begins again from its
  * first line; a sector sweeps on. */

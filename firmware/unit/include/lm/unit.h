@@ -98,7 +98,11 @@ struct lm_unit {
         bool is_commanded; /* a controller set one; it takes precedence over the bus's */
         struct lm_position position;
     } steerpoint;
-    uint64_t unable_until_us; /* LM_FLAG_UNABLE is shown until then */
+    struct {
+        uint64_t until_us;      /* LM_FLAG_UNABLE is shown until then */
+        enum lm_refusal reason; /* with this reason */
+    } unable;
+    enum lm_refusal refusal; /* reason of the control refused last */
 
     struct lm_picture picture;
     uint64_t next_frame_us;

@@ -16,10 +16,11 @@ struct hands {
     const struct lm_controls *script; /* borrowed; NULL: none */
     struct lm_control queue[HANDS_QUEUE];
     uint32_t head, tail;
-    uint32_t down;  /* bit n - 1: button n is held by mouse or keyboard */
-    bool arrows[4]; /* left, right, up, down */
-    int32_t knob;   /* thousandths */
-    uint32_t lost;  /* controls that found the queue full */
+    uint32_t down;    /* bit n - 1: button n is held by mouse or keyboard */
+    bool arrows[4];   /* left, right, up, down */
+    int32_t knob;     /* thousandths */
+    uint32_t lost;    /* controls that found the queue full */
+    bool is_scripted; /* the control handed out last came from the script */
     struct lm_controls port;
 };
 

@@ -32,7 +32,8 @@
 
 struct script_event {
     uint64_t time_us;
-    int order; /* of the line in the script */
+    int order; /* of the event in the script */
+    int line;  /* of the script, from 1 */
     bool is_picture;
     char picture[64];
     struct lm_control control;
@@ -44,6 +45,8 @@ struct script {
     struct lm_environment environment; /* of the line read last: rain and jammers add up */
     struct script_event *events;       /* owned */
     int count, next;
+    char path[256];   /* of the file, as reports name it; cut off if it is longer */
+    int line_taken;   /* line of the control handed out last; 0: none */
     uint64_t last_us; /* of the line read last */
     uint64_t now_us;
     struct lm_controls port; /* its ctx is this struct, which must not move */
@@ -56,6 +59,10 @@ struct script {
  * refuses. */
 int script_read(struct script *s, const char *path, const struct lm_radar *radar);
 void script_free(struct script *s);
+
+/* Report the control handed out last as refused, by file and line, on standard error. The port
+ * calls it. */
+void script_report_refusal(const struct script *s, enum lm_refusal reason);
 
 /* Controls up to `now_us` are handed out through the port. A picture that is due by then is taken
  * out of the way and its name returned, else NULL. */
