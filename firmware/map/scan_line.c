@@ -44,8 +44,9 @@ struct walk {
 
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
 {
+    const uint64_t longest_mm = (uint64_t)cell_mm + cell_mm / 8;
     uint8_t lod = 0;
-    while (lod + 1 < db->lod_count && lm_db_cell_mm(db, (uint8_t)(lod + 1)) <= cell_mm) {
+    while (lod + 1 < db->lod_count && lm_db_cell_mm(db, (uint8_t)(lod + 1)) <= longest_mm) {
         lod++;
     }
     return lod;

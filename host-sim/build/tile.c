@@ -125,7 +125,7 @@ static void fill_by_rule(struct build_context *b, const struct image_frame *f, s
 {
     for (int r = 0; r < CELLS; r++) {
         for (int c = 0; c < CELLS; c++) {
-            uint16_t *cell = &t->cells[r][c];
+            uint16_t *cell = &t->ground.cells[r][c];
             const bool is_given = is_below[2 * (r / HALF) + c / HALF] || *cell != IMAGE_CELL_NONE;
             if (!is_given && has_terrain(&t->posts, r, c)) {
                 const int k = rule_class(b, &t->posts, f, r, c);
@@ -145,7 +145,7 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
     for (int r = 0; r < CELLS; r++) {
         const double area = cell_area_m2(f, r);
         for (int c = 0; c < CELLS; c++) {
-            const uint8_t k = image_cell_class(t->cells[r][c]);
+            const uint8_t k = image_cell_class(t->ground.cells[r][c]);
             if (is_below[2 * (r / HALF) + c / HALF] || k == LM_DB_CLASS_NONE) {
                 continue;
             }
@@ -160,13 +160,10 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
     }
 }
 
-/* What the tile below gives to its quarter of this one. */
-static void take_child(const struct build_context *b, struct build_tile *t,
-                       const struct build_tile *child, int quarter)
+/* The posts that the tile below gives to its quarter of this one: every second one. */
+static void take_posts(struct build_tile *t, const struct build_tile *child, int quarter)
 {
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
-    image_reduce(&child->cells[0][0], CELLS, 2, &t->cells[row][column], CELLS, HALF,
-                 b->classes.height_dm);
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {
             t->posts.q6[row + r][column + c] = child->posts.q6[2 * r][2 * c];
@@ -179,7 +176,7 @@ static bool is_empty(const struct build_tile *t)
 {
     for (int r = 0; r < CELLS; r++) {
         for (int c = 0; c < CELLS; c++) {
-            if (image_cell_class(t->cells[r][c]) != LM_DB_CLASS_NONE) {
+            if (image_cell_class(t->ground.cells[r][c]) != LM_DB_CLASS_NONE) {
                 return false;
             }
         }
@@ -192,7 +189,7 @@ static int make_from_inputs(struct build_context *b, int level, const struct ima
                             bool has_child, struct build_tile *t)
 {
     const struct image_area area = image_frame_area(f);
-    const int found = level == 0 ? cover_cells(b, f, &t->cells[0][0]) : 0;
+    const int found = level == 0 ? cover_cells(b, f, &t->ground.cells[0][0]) : 0;
     if (found < 0) {
         return -1;
     }
@@ -224,7 +221,7 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
         below += is_below[i];
     }
     for (int i = 0; i < CELLS * CELLS; i++) {
-        t->cells[i / CELLS][i % CELLS] = IMAGE_CELL_NONE;
+        t->ground.cells[i / CELLS][i % CELLS] = IMAGE_CELL_NONE;
     }
     const int made = below < 4 ? make_from_inputs(b, level, f, below > 0, t) : 0;
     if (made < 0 || (made == 0 && below == 0)) {
@@ -236,12 +233,19 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
     }
     for (int i = 0; i < 4; i++) {
         if (children[i]) {
-            take_child(b, t, children[i], i);
+            take_posts(t, children[i], i);
         }
     }
     identify(&t->record, level, f);
-    image_cells_encode(t->cells, &t->record);
     image_posts_encode(t->posts.q6, &t->record);
+    image_ground_init(&t->ground, &t->record);
+    for (int i = 0; i < 4; i++) {
+        if (children[i]) {
+            image_ground_take(&t->ground, &t->record, &children[i]->ground, i,
+                              b->classes.height_dm);
+        }
+    }
+    image_ground_encode(&t->ground, &t->record, b->classes.height_dm);
     return !is_empty(t);
 }
 

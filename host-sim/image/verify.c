@@ -5,6 +5,7 @@
 #include "image/border.h"
 #include "image/codes.h"
 #include "image/grid.h"
+#include "image/ground.h"
 #include "image/signatures.h"
 #include "image/targets.h"
 
@@ -445,26 +446,20 @@ static void check_border(struct verify *v, uint32_t number, const struct lm_tile
 
 /* ---- levels ---- */
 
-/* Does the parent hold what its child reduces to? */
-static bool child_fits(const struct image *image, const struct lm_tile *parent,
-                       const struct lm_tile *child)
+/* A tile of the pyramid, as it is made from those below it. */
+struct rung {
+    const struct lm_tile *tile;
+    uint32_t number; /* of its entry */
+    struct image_ground ground;
+};
+
+static bool posts_fit(const struct lm_tile *tile, const struct lm_tile *below, int quarter)
 {
     enum { HALF = LM_TILE_CELLS / 2 };
-    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], reduced[HALF][HALF],
-        own[LM_TILE_CELLS][LM_TILE_CELLS];
-    const int row = (int)(child->row & 1) * HALF, column = (int)(child->column & 1) * HALF;
-    image_cells_decode(parent, own);
-    image_cells_decode(child, cells);
-    image_reduce(&cells[0][0], LM_TILE_CELLS, 2, &reduced[0][0], HALF, HALF,
-                 image->db.classes.height_dm);
-    for (int r = 0; r < HALF; r++) {
-        if (memcmp(reduced[r], &own[row + r][column], sizeof reduced[r]) != 0) {
-            return false;
-        }
-    }
+    const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {
-            if (!posts_agree(parent, row + r, column + c, child, 2 * r, 2 * c)) {
+            if (!posts_agree(tile, row + r, column + c, below, 2 * r, 2 * c)) {
                 return false;
             }
         }
@@ -472,22 +467,111 @@ static bool child_fits(const struct image *image, const struct lm_tile *parent,
     return true;
 }
 
+static bool cells_fit(const struct rung *made, const struct lm_tile *encoded, int quarter)
+{
+    enum { HALF = LM_TILE_CELLS / 2 };
+    const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
+    for (int i = 0; i < HALF * HALF; i++) {
+        const int r = row + i / HALF, c = column + i % HALF;
+        if (image_tile_cell(made->tile, r, c) != image_tile_cell(encoded, r, c)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static int climb(struct verify *v, int level, uint32_t row, uint32_t column, struct rung **out);
+
+/* Make a tile again from the four below it, and compare. */
+static int check_below(struct verify *v, struct rung *made, struct rung *const below[4])
+{
+    const uint16_t *heights_dm = v->image->db.classes.height_dm;
+    struct lm_tile *encoded = malloc(sizeof *encoded);
+    if (!encoded) {
+        return -1;
+    }
+    *encoded = *made->tile;
+    for (int i = 0; i < 4; i++) {
+        if (below[i]) {
+            image_ground_take(&made->ground, made->tile, &below[i]->ground, i, heights_dm);
+        }
+    }
+    image_ground_encode(&made->ground, encoded, heights_dm);
+    for (int i = 0; i < 4; i++) {
+        if (!below[i]) {
+            continue;
+        }
+        v->counts->children++;
+        if (!posts_fit(made->tile, below[i]->tile, i) || !cells_fit(made, encoded, i)) {
+            image_find(v->findings, image_record_offset(v->image, below[i]->number),
+                       "tile of entry %" PRIu32 ": the tile above it does not hold its mean",
+                       below[i]->number);
+        }
+    }
+    free(encoded);
+    return 0;
+}
+
+static int climb_to(struct verify *v, struct rung *made)
+{
+    const struct lm_tile *t = made->tile;
+    struct rung *below[4] = {NULL, NULL, NULL, NULL};
+    int result = 0;
+    image_cells_decode(t, made->ground.cells);
+    image_ground_init(&made->ground, t);
+    for (int i = 0; i < 4 && result == 0 && t->lod > 0; i++) {
+        result = climb(v, t->lod - 1, 2 * t->row + (uint32_t)(i / 2),
+                       2 * t->column + (uint32_t)(i % 2), &below[i]);
+    }
+    if (result == 0) {
+        result = check_below(v, made, below);
+    }
+    for (int i = 0; i < 4; i++) {
+        free(below[i]);
+    }
+    return result;
+}
+
+/* Check a tile and all below it. *out is the caller's to free, NULL without a sound tile. Returns
+ * 0, or -1 without memory. */
+static int climb(struct verify *v, int level, uint32_t row, uint32_t column, struct rung **out)
+{
+    const struct lm_tile *t = find_tile(v->image, (uint8_t)level, row, column);
+    *out = NULL;
+    if (!t || lm_tile_check(t, (uint8_t)level, row, column) != LM_OK) {
+        return 0;
+    }
+    struct rung *made = malloc(sizeof *made);
+    if (!made) {
+        return -1;
+    }
+    made->tile = t;
+    made->number = (uint32_t)lm_db_entry(&v->image->db, (uint8_t)level, row, column);
+    *out = made;
+    return climb_to(v, made);
+}
+
+/* Tiles of the coarsest level, and with them all that have a parent. */
+static void check_levels(struct verify *v)
+{
+    for (uint32_t i = 0; i < v->entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(v->image, v->entries[i]);
+        struct rung *top = NULL;
+        const bool is_top = t->lod + 1 == v->image->header.lod_count;
+        if (is_top && climb(v, t->lod, t->row, t->column, &top) != 0) {
+            image_find(v->findings, image_record_offset(v->image, v->entries[i]),
+                       "not enough memory to check the levels below it");
+        }
+        free(top);
+    }
+}
+
 static void check_parent(struct verify *v, uint32_t number, const struct lm_tile *t)
 {
-    if (t->lod + 1 >= v->image->header.lod_count) {
-        return;
-    }
-    const uint64_t at = image_record_offset(v->image, number);
-    const struct lm_tile *parent =
-        find_tile(v->image, (uint8_t)(t->lod + 1), t->row >> 1, t->column >> 1);
-    if (!parent) {
-        image_find(v->findings, at, "tile of entry %" PRIu32 ": there is no tile above it", number);
-        return;
-    }
-    v->counts->children++;
-    if (!child_fits(v->image, parent, t)) {
-        image_find(v->findings, at,
-                   "tile of entry %" PRIu32 ": the tile above it does not hold its mean", number);
+    if (t->lod + 1 < v->image->header.lod_count &&
+        !find_tile(v->image, (uint8_t)(t->lod + 1), t->row >> 1, t->column >> 1)) {
+        image_find(v->findings, image_record_offset(v->image, number),
+                   "tile of entry %" PRIu32 ": there is no tile above it", number);
     }
 }
 
@@ -534,6 +618,7 @@ int image_verify(struct image *image, struct image_findings *findings,
     }
     check_directory(&v);
     check_tiles(&v);
+    check_levels(&v);
     free(v.entries);
     return 0;
 }

@@ -215,7 +215,7 @@ double ref_db_cell_m(const struct ref_db *db, unsigned level)
 unsigned ref_db_level_for(const struct ref_db *db, double cell_m)
 {
     unsigned level = 0;
-    while (level + 1 < db->level_count && ref_db_cell_m(db, level + 1) <= cell_m) {
+    while (level + 1 < db->level_count && ref_db_cell_m(db, level + 1) <= cell_m * 9 / 8) {
         level++;
     }
     return level;

@@ -23,6 +23,13 @@ enum {
 
 static const double semi_axis_m = 6378137.0, e2 = 0.00669437999014;
 
+/* What coarser levels are made of: cells with heights of structures alone, and tops of terrain in
+ * metres. */
+struct ground {
+    uint16_t cells[TILE][TILE];
+    double top_m[TILE][TILE];
+};
+
 struct builder {
     const struct tiny_spec *spec;
     const struct lm_classes *classes;
@@ -31,6 +38,7 @@ struct builder {
     uint8_t level_count;
     int64_t south, north, west, east; /* of the wanted area, BAM; longitudes may pass 2^32 */
     struct lm_tile **tiles;           /* by directory entry; NULL where left out */
+    struct ground **grounds;          /* of each tile */
     double land_sum_m;
     uint32_t land_count;
 };
@@ -278,33 +286,47 @@ static struct lm_tile_point *point(struct lm_tile *tile, uint32_t r, uint32_t c)
     return &tile->points[1 + r][1 + c];
 }
 
-static struct lm_tile *find_tile(const struct builder *b, uint8_t level, uint32_t row,
-                                 uint32_t column)
+/* The tile's directory entry, or -1. */
+static int64_t find_entry(const struct builder *b, uint8_t level, uint32_t row, uint32_t column)
 {
     for (uint32_t i = 0; i < b->band_count; i++) {
         const struct lm_band *band = &b->bands[i];
         const uint32_t wide = tile_width_log2(b, level, band->zone);
         const uint32_t along = (column - band->column0) & ((UINT32_C(1) << (32 - wide)) - 1);
         if (band->lod == level && row - band->row0 < band->rows && along < band->columns) {
-            return b->tiles[band->entry0 + (row - band->row0) * band->columns + along];
+            return band->entry0 + (row - band->row0) * band->columns + along;
         }
     }
-    return NULL;
+    return -1;
+}
+
+static struct lm_tile *find_tile(const struct builder *b, uint8_t level, uint32_t row,
+                                 uint32_t column)
+{
+    const int64_t entry = find_entry(b, level, row, column);
+    return entry < 0 ? NULL : b->tiles[entry];
+}
+
+/* The ground below a cell of a coarser level, or NULL. */
+static const struct ground *ground_below(const struct builder *b, const struct lm_tile *tile,
+                                         uint32_t r, uint32_t c)
+{
+    const int64_t entry = tile->lod == 0
+                              ? -1
+                              : find_entry(b, (uint8_t)(tile->lod - 1), tile->row * 2 + r / 32,
+                                           tile->column * 2 + c / 32);
+    return entry < 0 ? NULL : b->grounds[entry];
 }
 
 static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, uint32_t r,
                           uint32_t c)
 {
-    if (tile->lod > 0) {
-        struct lm_tile *child = find_tile(b, (uint8_t)(tile->lod - 1), tile->row * 2 + r / 32,
-                                          tile->column * 2 + c / 32);
-        if (child != NULL) {
-            const uint32_t y = r * 2 % TILE, x = c * 2 % TILE;
-            const uint16_t four[4] = {point(child, y, x)->cell, point(child, y, x + 1)->cell,
-                                      point(child, y + 1, x)->cell,
-                                      point(child, y + 1, x + 1)->cell};
-            return mean_of_four(b, four);
-        }
+    const struct ground *below = ground_below(b, tile, r, c);
+    if (below != NULL) {
+        const uint32_t y = r * 2 % TILE, x = c * 2 % TILE;
+        const uint16_t four[4] = {below->cells[y][x], below->cells[y][x + 1],
+                                  below->cells[y + 1][x], below->cells[y + 1][x + 1]};
+        return mean_of_four(b, four);
     }
     const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
     const int64_t latitude = ((int64_t)tile->row * TILE + r) * (1 << high) + (1 << (high - 1));
@@ -369,6 +391,48 @@ static void count_land(struct builder *b, struct lm_tile *tile)
     }
 }
 
+/* Terrain of a tile in metres, at a place in cells from its own south-west post. */
+static double terrain_m(struct lm_tile *tile, double y, double x)
+{
+    const uint32_t r = (uint32_t)y, c = (uint32_t)x;
+    const double v = y - r, u = x - c;
+    const double code =
+        (point(tile, r, c)->post * (1 - u) + point(tile, r, c + 1)->post * u) * (1 - v) +
+        (point(tile, r + 1, c)->post * (1 - u) + point(tile, r + 1, c + 1)->post * u) * v;
+    return (tile->base_m_q6 + code * (1 << tile->post_shift)) / 64;
+}
+
+/* FORMATS.md 1.6: how far the terrain of the level below stands out of a cell. */
+static double crest_m(struct lm_tile *tile, const struct ground *below, uint32_t r, uint32_t c)
+{
+    double e[4]; /* south-west, south-east, north-west, north-east */
+    for (uint32_t i = 0; i < 4; i++) {
+        e[i] = below->top_m[2 * r % TILE + i / 2][2 * c % TILE + i % 2] -
+               terrain_m(tile, r + 0.25 + 0.5 * (i / 2), c + 0.25 + 0.5 * (i % 2));
+    }
+    const double columns = (fmax(e[0], e[2]) + fmax(e[1], e[3])) / 2;
+    const double rows = (fmax(e[0], e[1]) + fmax(e[2], e[3])) / 2;
+    return fmax(fmax(columns, rows), 0);
+}
+
+/* Cells of a tile that has its posts. */
+static void make_cells(const struct builder *b, struct lm_tile *tile, struct ground *g)
+{
+    for (uint32_t i = 0; i < TILE * TILE; i++) {
+        const uint32_t r = i / TILE, c = i % TILE;
+        const struct ground *below = ground_below(b, tile, r, c);
+        const double crest = below ? crest_m(tile, below, r, c) : 0;
+        g->cells[r][c] = make_cell(b, tile, r, c);
+        g->top_m[r][c] = terrain_m(tile, r + 0.5, c + 0.5) + crest;
+        struct tiny_cell cell = unpack_cell(g->cells[r][c]);
+        const uint8_t crest_code = nearest_height_code(b->classes, 10 * crest);
+        if (cell.class_index != LM_DB_CLASS_NONE && crest_code > cell.height_code) {
+            cell.height_code = crest_code;
+        }
+        point(tile, r, c)->cell = pack_cell(cell);
+    }
+}
+
 static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, uint32_t c)
 {
     const uint32_t wide = tile_width_log2(b, band->lod, band->zone);
@@ -387,14 +451,16 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
     tile->zone = band->zone;
     tile->row = row;
     tile->column = column;
-    for (uint32_t i = 0; i < TILE * TILE; i++) {
-        point(tile, i / TILE, i % TILE)->cell = make_cell(b, tile, i / TILE, i % TILE);
+    struct ground *ground = calloc(1, sizeof *ground);
+    b->grounds[band->entry0 + r * band->columns + c] = ground;
+    if (ground == NULL || make_posts(b, tile) != 0) {
+        return -1;
     }
-    const int status = make_posts(b, tile);
+    make_cells(b, tile, ground);
     if (band->lod == 0) {
         count_land(b, tile);
     }
-    return status;
+    return 0;
 }
 
 /* FORMATS.md 1.6: the neighbour's cell at the middle of this one, or the tile's nearest. */
@@ -435,7 +501,8 @@ static void fill_borders(struct builder *b)
 static int make_tiles(struct builder *b)
 {
     b->tiles = calloc(b->entry_count, sizeof *b->tiles);
-    if (b->tiles == NULL) {
+    b->grounds = calloc(b->entry_count, sizeof *b->grounds);
+    if (b->tiles == NULL || b->grounds == NULL) {
         return -1;
     }
     for (uint32_t i = 0; i < b->band_count; i++) {
@@ -555,10 +622,12 @@ int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec)
     if (status == 0) {
         status = assemble(&b, image);
     }
-    for (uint32_t i = 0; b.tiles != NULL && i < b.entry_count; i++) {
+    for (uint32_t i = 0; b.grounds != NULL && i < b.entry_count; i++) {
         free(b.tiles[i]);
+        free(b.grounds[i]);
     }
     free(b.tiles);
+    free(b.grounds);
     return status;
 }
 

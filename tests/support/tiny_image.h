@@ -82,10 +82,10 @@ struct tiny_spec tiny_spec_at(double latitude_deg, double longitude_deg);
  * 60, 80, 100 m. */
 const struct lm_classes *tiny_classes(void);
 
-/* Build the image in memory. Levels above 0 hold the mean power, commonest class and mean height of
- * the four cells below where all four exist, and the cell at their own centre elsewhere.
- * Returns 0; -1 without memory, with too many bands, when a level asked for does not exist, or
- * when a tile's elevations do not fit the record.
+/* Build the image in memory. Levels above 0 hold what FORMATS.md makes of the four cells below
+ * where all four exist, and the cell at their own centre elsewhere. Returns 0; -1 without memory,
+ * with too many bands, when a level asked for does not exist, or when a tile's elevations do not
+ * fit the record.
  */
 int tiny_image_build(struct tiny_image *image, const struct tiny_spec *spec);
 

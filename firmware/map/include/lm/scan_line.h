@@ -30,8 +30,9 @@ struct lm_scan_line {
     int32_t elevation_m_q14[LM_CELLS_ROOM]; /* above mean sea level; 0 where there is no data */
 };
 
-/* LOD for a line whose cells are cell_mm long: the LOD whose cell is the largest that is not
- * longer. 0 if all are longer. */
+/* LOD for a line whose cells are cell_mm long: the LOD whose cell is the largest that is not longer
+ * by more than an eighth, so that a line steps over few cells of the map and no crest. 0 if all are
+ * longer. */
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 
 /* Read the first `cells` (1..LM_CELLS_MAX) entries along the path.

@@ -4,6 +4,7 @@
 
 #include "build/plan.h"
 #include "hs/class_table.h"
+#include "image/ground.h"
 #include "lm/db.h"
 #include "reflectivity/reflect.h"
 #include "resample/cover.h"
@@ -40,10 +41,10 @@ struct build_context {
     struct build_counts counts;
 };
 
-/* A tile, its cells by themselves, and its elevations not yet cut to steps. */
+/* A tile, the ground from which coarser ones are made, and its elevations not yet cut to steps. */
 struct build_tile {
     struct lm_tile record;
-    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
+    struct image_ground ground;
     struct terrain_posts posts;
 };
 

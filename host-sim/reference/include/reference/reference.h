@@ -98,8 +98,8 @@ int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const 
 void ref_db_close(struct ref_db *db);
 
 /* Height of a cell along the meridian, and the level to read for range cells of `cell_m`: the
- * largest cell not longer than that. Assumed: level 0 when every cell is longer, and the length of
- * a cell is its share of the meridian, whatever the latitude. */
+ * largest cell not longer than 9/8 of that. Assumed: level 0 when every cell is longer, and the
+ * length of a cell is its share of the meridian, whatever the latitude. */
 double ref_db_cell_m(const struct ref_db *db, unsigned level);
 unsigned ref_db_level_for(const struct ref_db *db, double cell_m);
 

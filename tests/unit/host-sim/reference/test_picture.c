@@ -113,7 +113,7 @@ TEST(a_plane_comes_back_from_its_posts)
     }
 }
 
-TEST(the_level_is_the_largest_cell_not_longer_than_a_range_cell)
+TEST(the_level_is_the_largest_cell_not_longer_than_nine_eighths_of_a_range_cell)
 {
     struct tiny_spec spec = tiny_spec_at(46, 11);
     spec.level_count = 6;
@@ -121,8 +121,8 @@ TEST(the_level_is_the_largest_cell_not_longer_than_a_range_cell)
     open_image(&db, &spec);
     assert_true(fabs(ref_db_cell_m(&db, 0) - 4.7693) < 0.001);
     assert_true(fabs(ref_db_cell_m(&db, 5) - 152.62) < 0.01);
-    const double cells_m[] = {1, 4.7, 4.8, 9.5, 9.6, 100, 152.7, 5000};
-    const unsigned levels[] = {0, 0, 0, 0, 1, 4, 5, 5};
+    const double cells_m[] = {1, 4.7, 8.4, 8.5, 9.6, 100, 136, 5000};
+    const unsigned levels[] = {0, 0, 0, 1, 1, 4, 5, 5};
     for (int i = 0; i < 8; i++) {
         assert_int_equal(ref_db_level_for(&db, cells_m[i]), levels[i]);
     }

@@ -1,0 +1,44 @@
+/* Ground of a tile: its cells with the heights of structures alone, and how high its terrain really
+ * stands. From these a coarser level is made (docs/FORMATS.md, 1.6).
+ *
+ *     coarse terrain        ________________       crest: what the posts of the coarser level lost
+ *                          /    . |^  .     \
+ *     finer terrain ______/____/ \||___\_____\__
+ *                                 v
+ *
+ * Usage, from the finest level up: image_ground_init; image_ground_take for each quarter that has a
+ * tile below; image_ground_encode. */
+#ifndef IMAGE_GROUND_H
+#define IMAGE_GROUND_H
+
+#include "lm/db.h"
+
+#include <stdint.h>
+
+struct image_ground {
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS]; /* height codes of structures */
+    /* Of the terrain in each cell, metres x 64: what a line of sight along either axis meets on
+     * average. Sums of whole numbers and halves: exact. */
+    double top_q6[LM_TILE_CELLS][LM_TILE_CELLS];
+};
+
+/* Tops of a tile's own terrain, in the middle of each cell, into g->top_q6. `tile` has its posts.
+ */
+void image_ground_init(struct image_ground *g, const struct lm_tile *tile);
+
+/* Make a quarter (2 * north + east) from the tile below it: cells by image_reduce, tops from the
+ * tops below. `tile` is the coarser one and has its posts. */
+void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
+                       const struct image_ground *below, int quarter,
+                       const uint16_t heights_dm[16]);
+
+/* Height in metres of a cell's crest above its tile's terrain, 0 or more. */
+double image_ground_crest_m(const struct image_ground *g, const struct lm_tile *tile, int row,
+                            int column);
+
+/* Put the cells into the record: the height code is that of the structures, or of the crest where
+ * it is higher. Cells without data have none. */
+void image_ground_encode(const struct image_ground *g, struct lm_tile *tile,
+                         const uint16_t heights_dm[16]);
+
+#endif
