@@ -27,6 +27,7 @@ void canvas_free(struct canvas *c)
     free(c->material);
     free(c->variant);
     free(c->height_hm);
+    detail_free(&c->detail);
     *c = (struct canvas){0};
 }
 
@@ -78,6 +79,29 @@ static void paint_row(struct canvas *c, const struct point *q, int count, int y,
     }
 }
 
+static bool is_built(enum material m)
+{
+    return material_look(m)->group == CLASS_STRUCTURE;
+}
+
+/* Add what is built to the detail, if its middle is on the image and may be painted. */
+static void add_footprint(struct canvas *c, const struct point *p, int count, const struct brush *b)
+{
+    struct point middle = {0, 0};
+    for (int i = 0; i < count; i++) {
+        middle.u += p[i].u / count;
+        middle.v += p[i].v / count;
+    }
+    const enum material ground = canvas_at(c, middle);
+    const bool takes =
+        ground != MATERIAL_COUNT && (b->over == 0 || (b->over & MATERIAL_BIT(ground)));
+    if (takes && is_built(b->material) && b->height_m > 0) {
+        const struct detail_block what = {
+            .height_m = b->height_m, .material = b->material, .variant = b->variant};
+        detail_add_footprint(&c->detail, p, count, &what);
+    }
+}
+
 void canvas_polygon(struct canvas *c, const struct point *p, int count, const struct brush *b)
 {
     struct point q[CORNERS_MAX];
@@ -95,6 +119,7 @@ void canvas_polygon(struct canvas *c, const struct point *p, int count, const st
     if (right < 0 || left > c->side) {
         return;
     }
+    add_footprint(c, p, count, b);
     const int from = (int)fmax(0, ceil(low - 0.5)), to = (int)fmin(c->side, ceil(high - 0.5));
     for (int y = from; y < to; y++) {
         paint_row(c, q, count, y, b);
@@ -136,11 +161,22 @@ void canvas_line(struct canvas *c, const struct point *p, int count, double widt
     }
 }
 
-enum material canvas_at(const struct canvas *c, struct point p)
+/* Sub-pixel of a place, or -1 off the image. */
+static int64_t pixel_at(const struct canvas *c, struct point p)
 {
     const struct point q = to_canvas(c, p);
-    if (!(q.u >= 0 && q.v >= 0 && q.u < c->side && q.v < c->side)) {
-        return MATERIAL_COUNT;
-    }
-    return (enum material)c->material[(size_t)q.v * (size_t)c->side + (size_t)q.u];
+    const bool is_on = q.u >= 0 && q.v >= 0 && q.u < c->side && q.v < c->side;
+    return is_on ? (int64_t)q.v * c->side + (int64_t)q.u : -1;
+}
+
+enum material canvas_at(const struct canvas *c, struct point p)
+{
+    const int64_t i = pixel_at(c, p);
+    return i < 0 ? MATERIAL_COUNT : (enum material)c->material[i];
+}
+
+uint8_t canvas_variant_at(const struct canvas *c, struct point p)
+{
+    const int64_t i = pixel_at(c, p);
+    return i < 0 ? 0 : c->variant[i];
 }

@@ -243,6 +243,92 @@ int output_description(const struct scene *s, const char *path)
     return hs_atomic_commit(&file);
 }
 
+/* Points of the detail in degrees: middles and ends of lengths of the blocks, ends of the lines,
+ * masts, in this order. */
+struct places {
+    int count;
+    struct point *at;
+    double *longitude, *latitude;
+};
+
+static int locate(struct places *where, const struct detail *d, const char *path)
+{
+    where->count = 2 * d->block_count + 2 * d->line_count + d->mast_count;
+    const size_t room = (size_t)where->count + 1;
+    where->at = malloc(room * sizeof *where->at);
+    where->longitude = malloc(room * sizeof *where->longitude);
+    where->latitude = malloc(room * sizeof *where->latitude);
+    if (!where->at || !where->longitude || !where->latitude) {
+        return hs_error(path, NULL, "out of memory");
+    }
+    struct point *next = where->at;
+    for (int i = 0; i < d->block_count; i++) {
+        *next++ = d->blocks[i].middle.origin;
+        *next++ = frame_point(&d->blocks[i].middle, d->blocks[i].length_m / 2, 0);
+    }
+    for (int i = 0; i < d->line_count; i++) {
+        *next++ = d->lines[i].from;
+        *next++ = d->lines[i].to;
+    }
+    for (int i = 0; i < d->mast_count; i++) {
+        *next++ = d->masts[i].at;
+    }
+    return output_geographic(where->at, where->count, where->longitude, where->latitude);
+}
+
+/* Azimuth from one point to the next, degrees. */
+static double azimuth_deg(const struct places *where, int i)
+{
+    const double degree = 3.14159265358979323846 / 180;
+    const double east =
+        (where->longitude[i + 1] - where->longitude[i]) * cos(where->latitude[i] * degree);
+    return fmod(atan2(east, where->latitude[i + 1] - where->latitude[i]) / degree + 360, 360);
+}
+
+static void print_detail(FILE *out, const struct detail *d, const struct places *where)
+{
+    static const char *const line_names[DETAIL_LINE_KINDS] = {"fence", "rail", "wire", "railing"};
+    int n = 0;
+    fprintf(out,
+            "# The built-in scene of landmass: what stands on it, in degrees and metres.\n"
+            "# building LATITUDE LONGITUDE LENGTH WIDTH TURN HEIGHT flat|gabled\n");
+    for (int i = 0; i < d->block_count; i++, n += 2) {
+        const struct detail_block *b = &d->blocks[i];
+        const bool is_house = b->material == ROOF_TILE && b->height_m <= 10 && b->width_m <= 16;
+        fprintf(out, "building %.7f %.7f %.1f %.1f %.2f %.1f %s\n", where->latitude[n],
+                where->longitude[n], fmax(b->length_m, 0.1), fmax(b->width_m, 0.1),
+                azimuth_deg(where, n), b->height_m, is_house ? "gabled" : "flat");
+    }
+    fprintf(out, "# line LATITUDE LONGITUDE LATITUDE LONGITUDE KIND\n");
+    for (int i = 0; i < d->line_count; i++, n += 2) {
+        fprintf(out, "line %.7f %.7f %.7f %.7f %s\n", where->latitude[n], where->longitude[n],
+                where->latitude[n + 1], where->longitude[n + 1], line_names[d->lines[i].kind]);
+    }
+    fprintf(out, "# mast LATITUDE LONGITUDE HEIGHT\n");
+    for (int i = 0; i < d->mast_count; i++, n++) {
+        fprintf(out, "mast %.7f %.7f %.1f\n", where->latitude[n], where->longitude[n],
+                d->masts[i].height_m);
+    }
+}
+
+int output_detail(const struct scene *s, const char *path)
+{
+    struct places where = {0};
+    struct hs_atomic_file file;
+    int result = locate(&where, &s->canvas.detail, path);
+    if (result == 0) {
+        result = hs_atomic_open(&file, path);
+    }
+    if (result == 0) {
+        print_detail(file.stream, &s->canvas.detail, &where);
+        result = hs_atomic_commit(&file);
+    }
+    free(where.at);
+    free(where.longitude);
+    free(where.latitude);
+    return result;
+}
+
 static uint8_t tone(double value, double full)
 {
     return (uint8_t)lround(255 * pow(fmin(fmax(value / full, 0), 1), 1 / 1.7));

@@ -18,5 +18,7 @@ void scene_paint_port(struct scene *s);
 void scene_paint_airfield(struct scene *s);
 /* The main roads and their bridges. */
 void scene_paint_roads(struct scene *s);
+/* Fences, and the power line: they are in the detail alone. */
+void scene_paint_lines(struct scene *s);
 
 #endif

@@ -70,6 +70,8 @@ static void build_bridge(struct scene *s, struct point at, struct point a, struc
     const struct shape deck = frame_rectangle(&f, -half, -road_m / 2 - 2.5, half, road_m / 2 + 2.5);
     const struct brush concrete = scene_solid(CONCRETE_OLD, 150, 6);
     canvas_shape(&s->canvas, &deck, &concrete);
+    detail_add_line(&s->canvas.detail, deck.p[0], deck.p[1], DETAIL_RAILING);
+    detail_add_line(&s->canvas.detail, deck.p[3], deck.p[2], DETAIL_RAILING);
 }
 
 static void bridge_river(struct scene *s, const struct point *line, int count, double road_m)

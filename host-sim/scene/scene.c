@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include "hs/error.h"
 #include "painters.h"
 
 int scene_make(struct scene *s)
@@ -18,7 +19,10 @@ int scene_make(struct scene *s)
     scene_paint_port(s);
     scene_paint_airfield(s);
     scene_paint_roads(s);
-    return 0;
+    scene_paint_lines(s);
+    canvas_trim_detail(&s->canvas);
+    return s->canvas.detail.is_short ? hs_error("detail", "make the scene smaller", "out of memory")
+                                     : 0;
 }
 
 void scene_free(struct scene *s)

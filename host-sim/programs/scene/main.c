@@ -31,6 +31,8 @@ static const char help_text[] =
     "                     structure, vegetation or water\n"
     "  truth.tif          the true class of every pixel, 0..5 in that order\n"
     "  heights.tif        metres that structures and trees stand above the terrain, float\n"
+    "  detail.txt         footprints of buildings, fences, wires, masts (landmass-db build "
+    "--detail)\n"
     "  scene.txt          what it is, and where its places are\n"
     "The country is designed for 12.8 km (size times cell): coast with a bay and a harbour,\n"
     "town, airfield, river with bridges, lake, farmland, woods, hills of 500 m. Less shows its\n"
@@ -131,6 +133,12 @@ static int write_description(const struct scene *s, const struct picture *p, con
     return output_description(s, path);
 }
 
+static int write_detail(const struct scene *s, const struct picture *p, const char *path)
+{
+    (void)p;
+    return output_detail(s, path);
+}
+
 static int write_preview_terrain(const struct scene *s, const struct picture *p, const char *path)
 {
     (void)p;
@@ -149,6 +157,7 @@ static int write_files(const struct command *c, const struct scene *s, const str
         {"truth.tif", output_truth, false},
         {"heights.tif", output_heights, false},
         {"exemplars.geojson", exemplars_write, false},
+        {"detail.txt", write_detail, false},
         {"preview.png", output_preview_image, true},
         {"truth.png", output_preview_truth, true},
         {"terrain.png", write_preview_terrain, true},

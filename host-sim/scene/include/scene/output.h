@@ -26,6 +26,9 @@ int output_preview_image(const struct scene *s, const struct picture *p, const c
 int output_preview_truth(const struct scene *s, const struct picture *p, const char *path);
 int output_preview_terrain(const struct scene *s, const char *path);
 
+/* Footprints and lines, as `landmass-db build --detail` reads them. */
+int output_detail(const struct scene *s, const char *path);
+
 /* Longitude and latitude in degrees of a place. Returns 0, or -1 with the error reported. */
 int output_geographic(const struct point *p, int count, double *longitude, double *latitude);
 

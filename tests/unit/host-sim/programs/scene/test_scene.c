@@ -92,6 +92,7 @@ TEST(the_same_seed_gives_the_same_pixels_and_another_does_not)
     }
     assert_int_equal(
         support_run("cmp %s/exemplars.geojson %s/exemplars.geojson", w->folder, again.folder), 0);
+    assert_int_equal(support_run("cmp %s/detail.txt %s/detail.txt", w->folder, again.folder), 0);
     support_run("rm -rf %s %s", again.folder, other.folder);
 }
 
@@ -253,6 +254,55 @@ TEST(structures_stand_and_water_does_not)
     assert_true(floating < 0.001 * SIZE * SIZE); /* pixels that a quay or a bank shares */
     free(h);
     GDALClose(d);
+}
+
+/* Pixel of a place, or -1 off the image. */
+static int pixel_at(const struct written *w, OGRCoordinateTransformationH way, double latitude,
+                    double longitude)
+{
+    double x = longitude, y = latitude;
+    assert_true(OCTTransform(way, 1, &x, &y, NULL));
+    const double column = (x - w->transform[0]) / CELL, row = (w->transform[3] - y) / CELL;
+    return column >= 0 && row >= 0 && column < SIZE && row < SIZE ? (int)row * SIZE + (int)column
+                                                                  : -1;
+}
+
+/* The oracle is the raster of true classes: where the detail has a building that fills more than a
+ * pixel, the raster has a structure. */
+TEST(buildings_of_the_detail_stand_where_the_classes_say_so)
+{
+    const struct written *w = *state;
+    char path[512], line[256], roof[16];
+    snprintf(path, sizeof path, "%s/detail.txt", w->folder);
+    FILE *in = fopen(path, "r");
+    assert_non_null(in);
+    OGRSpatialReferenceH utm = OSRNewSpatialReference(NULL), wgs84 = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(utm, 32626);
+    OSRImportFromEPSG(wgs84, 4326);
+    OSRSetAxisMappingStrategy(utm, OAMS_TRADITIONAL_GIS_ORDER);
+    OSRSetAxisMappingStrategy(wgs84, OAMS_TRADITIONAL_GIS_ORDER);
+    OGRCoordinateTransformationH way = OCTNewCoordinateTransformation(wgs84, utm);
+    int large = 0, right = 0, all = 0;
+    while (fgets(line, sizeof line, in)) {
+        double latitude, longitude, length, width, turn, height;
+        if (sscanf(line, "building %lf %lf %lf %lf %lf %lf %15s", &latitude, &longitude, &length,
+                   &width, &turn, &height, roof) != 7) {
+            continue;
+        }
+        const int pixel = pixel_at(w, way, latitude, longitude);
+        all++;
+        assert_true(pixel >= 0 && turn >= 0 && turn < 360 && height > 0 && height <= 50);
+        if (fmin(length, width) >= 1.5 * CELL) {
+            large++;
+            right += w->truth[pixel] == 3;
+        }
+    }
+    fclose(in);
+    printf("%d buildings, of %d large ones %d on structures\n", all, large, right);
+    assert_true(all > 1000 && large > 100 && right >= 0.97 * large);
+    OCTDestroyCoordinateTransformation(way);
+    OSRDestroySpatialReference(utm);
+    OSRDestroySpatialReference(wgs84);
 }
 
 TEST(a_bad_command_line_or_folder_is_told_and_writes_nothing)
