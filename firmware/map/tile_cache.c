@@ -149,6 +149,8 @@ static void take_entry(struct lm_tile_cache *c)
         lm_tile_cache_want(c, absent.lod, absent.row, absent.column); /* requests its parent */
     } else {
         c->is_reading_entry = false;
+        c->slots[c->reading_slot].detail_place = entry->detail_place;
+        c->slots[c->reading_slot].detail_size = entry->detail_size;
         start_read(c, lm_db_tile_offset(c->db, entry), &c->pool[c->reading_slot], LM_TILE_BYTES);
     }
 }
@@ -300,6 +302,13 @@ void lm_tile_cache_want(struct lm_tile_cache *c, uint8_t lod, uint32_t row, uint
 static bool is_resident(const struct lm_tile_cache *c, uint16_t i)
 {
     return c->slots[i].state == LM_SLOT_RESIDENT;
+}
+
+const struct lm_tile_slot *lm_tile_cache_find(const struct lm_tile_cache *c, uint8_t lod,
+                                              uint32_t row, uint32_t column)
+{
+    const uint16_t i = find(c, lod, row, column);
+    return is_resident(c, i) ? &c->slots[i] : NULL;
 }
 
 static const struct lm_tile *use_slot(struct lm_tile_cache *c, uint16_t i)

@@ -6,6 +6,9 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
 {
     const uint32_t cells = setup->grid->cells;
     lm_scan_line_run(&line->ground, tiles, setup->lod, path, cells);
+    if (setup->detail) {
+        lm_detail_patch_draw(setup->detail, setup->number, path, &line->ground, cells);
+    }
     horizon = lm_illuminate(setup->grid, setup->class_lut, &line->ground, horizon, &line->lit);
     lm_class_gain_run(setup->class_gain, line->ground.cell, line->lit.level_db_q8, cells);
     return horizon;

@@ -220,6 +220,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, setup->reference_m_q10);
+    const bool is_finer = s->lod == 0 && command->cell_mm < lm_db_cell_mm(db, 0);
+    s->detail_state = is_finer && db->detail_size != 0 ? LM_SAR_DETAIL_WANTED : LM_SAR_DETAIL_NONE;
     return LM_OK;
 }
 
@@ -304,6 +306,50 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     }
 }
 
+/* Box of the tiles that may hold detail of the patch: around a circle that holds the patch, and
+ * 200 m wider, because an item belongs to the tile of its middle. */
+static struct lm_detail_box detail_box(const struct lm_sar *s)
+{
+    struct lm_geo_origin centre;
+    /* 3/4 of the width is more than half the diagonal. */
+    const uint32_t reach_m_q8 = s->geometry.lines * s->grid.cell_m_q8 / 4 * 3 + LM_M_Q8(200);
+    lm_geo_set_origin(&centre, s->command.centre);
+    return (struct lm_detail_box){
+        .south = lm_geo_direct(&centre, FX_BAM_180, reach_m_q8).latitude,
+        .north = lm_geo_direct(&centre, 0, reach_m_q8).latitude,
+        .west = lm_geo_direct(&centre, FX_BAM_180 + FX_BAM_90, reach_m_q8).longitude,
+        .east = lm_geo_direct(&centre, FX_BAM_90, reach_m_q8).longitude};
+}
+
+static void start_detail(struct lm_sar *s, const struct lm_db *db)
+{
+    const struct lm_detail_box box = detail_box(s);
+    lm_detail_reader_start(&s->detail_reader, db, &box);
+    lm_detail_patch_clear(&s->detail, db);
+    s->detail_state = LM_SAR_DETAIL_LOADING;
+}
+
+bool lm_sar_load_detail(struct lm_sar *s, struct lm_tile_cache *tiles, bool is_late)
+{
+    if (s->detail_state == LM_SAR_DETAIL_WANTED) {
+        start_detail(s, tiles->db);
+    }
+    if (s->detail_state != LM_SAR_DETAIL_LOADING) {
+        return true;
+    }
+    const enum lm_detail_step step = lm_detail_reader_step(&s->detail_reader, tiles);
+    if (step == LM_DETAIL_ARRIVED) {
+        lm_detail_patch_add(&s->detail, &s->detail_reader, tiles->db, &s->geometry,
+                            s->radar->sar.line_lobe);
+    }
+    if (step != LM_DETAIL_ENDED && !is_late) {
+        return false;
+    }
+    lm_detail_patch_close(&s->detail);
+    s->detail_state = LM_SAR_DETAIL_READY;
+    return true;
+}
+
 /* Compute the scatterers and chips of the targets that the patch may show. */
 static void find_target_patch(struct lm_sar *s, struct lm_tile_cache *tiles)
 {
@@ -351,7 +397,12 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
                        struct lm_line *line)
 {
     const struct lm_line_setup setup = {
-        .grid = &s->grid, .class_lut = &s->class_lut, .class_gain = &s->class_gain, .lod = s->lod};
+        .grid = &s->grid,
+        .class_lut = &s->class_lut,
+        .class_gain = &s->class_gain,
+        .lod = s->lod,
+        .detail = s->detail_state == LM_SAR_DETAIL_READY ? &s->detail : NULL,
+        .number = number};
     struct lm_ground_path path;
     set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);

@@ -119,7 +119,7 @@ const struct lm_radar lm_radar_default = {
                              .azimuths_log2 = 2}},
     /* UNSOURCED but for the formulas they go into: squints from 15 degrees, where Doppler
      * beam sharpening is usually said to begin, a minute of dwell at the most, a patch shown with
-     * four looks. */
+     * four looks, lines that glint within three degrees of broadside. */
     .sar = {.cells = 256,
             .cell_min_mm = 500,
             .cell_max_mm = 40000,
@@ -128,6 +128,7 @@ const struct lm_radar lm_radar_default = {
             .reference_speed_mm_s = 250000,
             .mocomp_residual_permille = 10,
             .noise_floor_db_q8 = LM_DB_Q8(-46),
+            .line_lobe = FX_BAM_DEG(6),
             .speckle = {.looks_log2 = 2},
             .tone = {LM_DB_Q8(-42), LM_DB_Q8(12), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall

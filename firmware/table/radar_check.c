@@ -89,6 +89,7 @@ static const struct lm_radar_field fields[] = {
     {"sar.mocomp_residual_permille", ONE(sar.mocomp_residual_permille), BETWEEN(0, 1000)},
     {"sar.noise_floor_db_q8", ONE(sar.noise_floor_db_q8),
      SIGNED_BETWEEN(LM_DB_Q8(-100), LM_DB_Q8(20))},
+    {"sar.line_lobe", ONE(sar.line_lobe), BETWEEN(1 << 20, FX_BAM_90)},
     {"sar.speckle.looks_log2", ONE(sar.speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
     {"sar.tone.black_db_q8", ONE(sar.tone.black_db_q8),
      SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},

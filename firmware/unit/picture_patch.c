@@ -91,6 +91,7 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
     p->is_cursor_awaited = false;
     p->acquire.is_reading = true;
+    p->acquire.has_tiles = false;
     p->acquire.lines_asked_for = 0;
     p->acquire.until_us = now_us + ACQUIRE_US;
     return LM_REFUSED_NOT;
@@ -124,17 +125,20 @@ static bool refresh_reference(struct lm_picture *p)
     }
     lm_sar_set_reference(&p->sar, &p->lent.map->db, reference_m_q10);
     lm_sar_prefetch_targets(&p->sar, &p->lent.map->tiles);
+    p->acquire.has_tiles = false;
     return true;
 }
 
 static bool is_ready(struct lm_picture *p, uint64_t now_us)
 {
-    const struct lm_unit_map *map = p->lent.map;
+    struct lm_unit_map *map = p->lent.map;
     if (p->acquire.is_reading) {
-        const bool has_all = p->acquire.lines_asked_for == lines_of(p) &&
-                             lm_tile_cache_is_idle(&map->tiles) &&
-                             lm_chips_are_settled(&map->chips);
-        const bool is_over = has_all || now_us >= p->acquire.until_us;
+        const bool is_late = now_us >= p->acquire.until_us;
+        p->acquire.has_tiles |= p->acquire.lines_asked_for == lines_of(p) &&
+                                lm_tile_cache_is_idle(&map->tiles) &&
+                                lm_chips_are_settled(&map->chips);
+        const bool is_over =
+            (p->acquire.has_tiles || is_late) && lm_sar_load_detail(&p->sar, &map->tiles, is_late);
         p->acquire.is_reading = !is_over || refresh_reference(p);
         p->next_line_us = now_us + p->sar.line_us; /* the dwell begins */
     }

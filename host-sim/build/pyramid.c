@@ -43,6 +43,18 @@ static struct build_tile *tile_at(const struct pyramid *p, const struct tile_row
     return east < row->band->columns ? row->tiles[east] : NULL;
 }
 
+/* Enter where the detail of a tile of the finest level lies. */
+static void name_detail(struct pyramid *p, uint8_t level, uint32_t entry,
+                        const struct build_tile *tile)
+{
+    const struct build_detail_record detail =
+        build_detail_of_tile(&p->b->detail, tile->record.row, tile->record.column);
+    if (level == 0 && detail.units != 0) {
+        image_writer_detail(p->writer, entry, detail.place, (uint8_t)detail.units);
+        p->b->counts.detail_items += detail.items;
+    }
+}
+
 static int make_row_tiles(struct pyramid *p, uint32_t number, const struct tile_row below[2],
                           struct tile_row *row)
 {
@@ -58,6 +70,7 @@ static int make_row_tiles(struct pyramid *p, uint32_t number, const struct tile_
         }
         const uint32_t entry = band->entry0 + (number - band->row0) * band->columns + i;
         if (row->tiles[i]) {
+            name_detail(p, band->lod, entry, row->tiles[i]);
             if (image_writer_tile(p->writer, entry, &row->tiles[i]->record) != 0) {
                 return -1;
             }

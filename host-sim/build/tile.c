@@ -172,6 +172,29 @@ static void take_posts(struct build_tile *t, const struct build_tile *child, int
     }
 }
 
+/* The ground that stands for the structures of a tile where their detail is drawn: the cell that is
+ * commonest among those that stand for nothing built, or else bare of height what there is. */
+static uint16_t ground_under(const struct build_context *b, const struct build_tile *t)
+{
+    uint32_t count[LM_DB_CLASSES] = {0};
+    double sum_db[LM_DB_CLASSES] = {0};
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        const uint16_t cell = t->ground.cells[i / CELLS][i % CELLS];
+        const uint8_t k = image_cell_class(cell);
+        if (k != LM_DB_CLASS_NONE && b->classes.entry[k].kind == LM_KIND_GROUND) {
+            count[k]++;
+            sum_db[k] += image_gamma_db(image_cell_gamma(cell));
+        }
+    }
+    int most = b->rule.land;
+    for (int k = 0; k < LM_DB_CLASS_NONE; k++) {
+        most = count[k] > count[most] ? k : most;
+    }
+    const double gamma_db =
+        count[most] ? sum_db[most] / count[most] : b->table.items[most].gamma_db;
+    return image_cell(image_gamma_code(gamma_db), (uint8_t)most, 0);
+}
+
 static bool is_empty(const struct build_tile *t)
 {
     for (int r = 0; r < CELLS; r++) {
@@ -237,6 +260,9 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
         }
     }
     identify(&t->record, level, f);
+    if (level == 0 && build_detail_of_tile(&b->detail, f->row, f->column).units != 0) {
+        t->record.under = ground_under(b, t);
+    }
     image_posts_encode(t->posts.q6, &t->record);
     image_ground_init(&t->ground, &t->record);
     for (int i = 0; i < 4; i++) {

@@ -8,6 +8,7 @@
 #include "image/ground.h"
 #include "image/signatures.h"
 #include "image/targets.h"
+#include "lm/detail.h"
 
 #include <inttypes.h>
 #include <stdbool.h>
@@ -160,6 +161,34 @@ static int check_bands(struct verify *v)
 }
 
 /* ---- directory ---- */
+
+/* The detail of a tile, apart from where it lies. */
+static void check_detail(struct verify *v, uint32_t number, const struct lm_tile *tile)
+{
+    const struct image *image = v->image;
+    const struct lm_tile_entry *e = &image->entries[number];
+    const uint64_t at = image->db.detail_offset + (uint64_t)e->detail_place * LM_DB_PLACE_BYTES;
+    const struct lm_detail *detail = (const void *)(image->bytes + at);
+    if (e->detail_size == 0) {
+        return;
+    }
+    if (tile->lod != 0 || lm_detail_check(detail, e->detail_size * (uint32_t)LM_DB_PLACE_BYTES, 0,
+                                          tile->row, tile->column) != LM_OK) {
+        image_find(v->findings, at, "entry %" PRIu32 ": the detail of its tile is not sound",
+                   number);
+        return;
+    }
+    for (uint32_t i = 0; i < detail->count; i++) {
+        const struct lm_detail_item *item = &detail->items[i];
+        const uint8_t kind = image->db.classes.entry[item->class_number].kind;
+        if (item->kind != LM_DETAIL_LINE && kind != LM_KIND_STRUCTURE) {
+            image_find(v->findings, at,
+                       "entry %" PRIu32 ": item %" PRIu32
+                       " of its detail has a class that is no structure",
+                       number, i);
+        }
+    }
+}
 
 /* What one entry says, apart from the record. Returns whether it has one that can be read. */
 static bool check_entry(struct verify *v, uint32_t number)
@@ -588,6 +617,7 @@ static void check_tiles(struct verify *v)
             check_north_edge(v, number, t);
             check_border(v, number, t);
             check_parent(v, number, t);
+            check_detail(v, number, t);
         }
         hs_progress_update(&progress, i + 1);
     }

@@ -86,7 +86,8 @@ int image_writer_begin(struct image_writer *w, const char *path,
     image_sha256_begin(&w->tiles_sha256);
     w->records = malloc((size_t)header->entry_count * sizeof *w->records);
     w->entry_of = malloc((size_t)header->entry_count * sizeof *w->entry_of);
-    if (!w->records || !w->entry_of) {
+    w->details = calloc(header->entry_count + 1u, sizeof *w->details);
+    if (!w->records || !w->entry_of || !w->details) {
         image_writer_abort(w);
         return hs_error(path, "choose larger cells or a smaller area", "out of memory");
     }
@@ -105,11 +106,15 @@ int image_writer_tile(struct image_writer *w, uint32_t entry, const struct lm_ti
     return put(w, tile, LM_TILE_BYTES);
 }
 
+void image_writer_detail(struct image_writer *w, uint32_t entry, uint32_t place, uint8_t size)
+{
+    w->details[entry] = (struct image_detail_place){place, size};
+}
+
 /* Hash a section that is in memory, write it, and add its line to the manifest. */
-static int put_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
+static int put_section(struct image_writer *w, struct lm_image_section *s, const void *data,
                        FILE *manifest)
 {
-    struct lm_image_section *s = section(w, type);
     struct image_sha256 sha;
     char digest[IMAGE_SHA256_TEXT];
     image_sha256_begin(&sha);
@@ -117,7 +122,7 @@ static int put_section(struct image_writer *w, enum lm_image_section_type type, 
     image_sha256_end(&sha, digest);
     s->crc = fx_crc32c(0, data, s->bytes);
     if (manifest) {
-        fprintf(manifest, "section-sha256: %s %s\n", image_section_name(type), digest);
+        fprintf(manifest, "section-sha256: %s %s\n", image_section_name(s->type), digest);
     }
     if (fseeko(w->file.stream, (off_t)s->offset, SEEK_SET) != 0) {
         return write_failed(w);
@@ -139,11 +144,12 @@ static int put_directory(struct image_writer *w, FILE *manifest)
             .place = has_tile ? w->records[i] * RECORD_SIZE : LM_TILE_ABSENT,
             .size = has_tile ? RECORD_SIZE : 0,
             .encoding = LM_TILE_RAW,
-            .detail_place = LM_TILE_ABSENT,
+            .detail_place = w->details[i].size ? w->details[i].place : LM_TILE_ABSENT,
+            .detail_size = w->details[i].size,
         };
         entries[i].crc = image_entry_crc(i, &entries[i]);
     }
-    const int result = put_section(w, LM_IMAGE_DIRECTORY, entries, manifest);
+    const int result = put_section(w, section(w, LM_IMAGE_DIRECTORY), entries, manifest);
     free(entries);
     return result;
 }
@@ -212,8 +218,8 @@ static int fill_borders(struct image_writer *w)
 
 static int put_tables(struct image_writer *w, FILE *manifest)
 {
-    if (put_section(w, LM_IMAGE_CLASSES, &w->classes, manifest) != 0 ||
-        put_section(w, LM_IMAGE_BANDS, w->bands, manifest) != 0 ||
+    if (put_section(w, section(w, LM_IMAGE_CLASSES), &w->classes, manifest) != 0 ||
+        put_section(w, section(w, LM_IMAGE_BANDS), w->bands, manifest) != 0 ||
         put_directory(w, manifest) != 0) {
         return -1;
     }
@@ -227,16 +233,16 @@ static int put_tables(struct image_writer *w, FILE *manifest)
 }
 
 /* Append a section whose length was not known before to the image, which ends at `*end`. */
-static int append_section(struct image_writer *w, enum lm_image_section_type type, const void *data,
-                          size_t bytes, FILE *manifest, uint64_t *end)
+static int append_section(struct image_writer *w, struct lm_image_section *s,
+                          const struct image_bytes *bytes, FILE *manifest, uint64_t *end)
 {
-    struct lm_image_section *s = section(w, type);
-    *s = (struct lm_image_section){.type = type, .offset = aligned(*end), .bytes = bytes};
+    s->offset = aligned(*end);
+    s->bytes = bytes->count;
     if (fseeko(w->file.stream, (off_t)*end, SEEK_SET) != 0) {
         return write_failed(w);
     }
     *end = s->offset + s->bytes;
-    return pad_to(w, s->offset) == 0 ? put_section(w, type, data, manifest) : -1;
+    return pad_to(w, s->offset) == 0 ? put_section(w, s, bytes->data, manifest) : -1;
 }
 
 /* Sections that an image need not have. */
@@ -246,8 +252,9 @@ static int put_extra(struct image_writer *w, enum lm_image_section_type type,
     if (!bytes->data) {
         return 0;
     }
-    w->header.section_count = type;
-    return append_section(w, type, bytes->data, bytes->count, manifest, end);
+    struct lm_image_section *s = &w->header.sections[w->header.section_count++];
+    s->type = type;
+    return append_section(w, s, bytes, manifest, end);
 }
 
 static int put_header(struct image_writer *w)
@@ -277,11 +284,15 @@ static int finish(struct image_writer *w, const char *manifest)
     if (result == 0) {
         result = put_extra(w, LM_IMAGE_SIGNATURES, &w->signatures, stream, &end);
     }
+    if (result == 0) {
+        result = put_extra(w, LM_IMAGE_DETAIL, &w->detail, stream, &end);
+    }
     if (fclose(stream) != 0) {
         result = hs_error(w->file.path, NULL, "out of memory");
     }
     if (result == 0) {
-        result = append_section(w, LM_IMAGE_MANIFEST, text, bytes, NULL, &end);
+        const struct image_bytes whole = {text, bytes};
+        result = append_section(w, section(w, LM_IMAGE_MANIFEST), &whole, NULL, &end);
         w->header.image_bytes = end;
     }
     free(text);
@@ -300,5 +311,7 @@ void image_writer_abort(struct image_writer *w)
     hs_atomic_abort(&w->file);
     free(w->records);
     free(w->entry_of);
+    free(w->details);
     w->records = w->entry_of = NULL;
+    w->details = NULL;
 }

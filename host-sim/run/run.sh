@@ -59,7 +59,8 @@ EOF
 say "Build the flash image and check every byte of it"
 "$bin"/landmass-db build --classes $classes --class-raster $out/classes.tif \
     --reflectivity $out/reflectivity.tif --terrain $out/scene/terrain.tif --terrain $out/surroundings/terrain.tif \
-    --heights $out/scene/heights.tif --targets $out/targets.txt --title "built-in scene" --out $out/scene.lmdb
+    --heights $out/scene/heights.tif --detail $out/scene/detail.txt --targets $out/targets.txt \
+    --title "built-in scene" --out $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
 
 say "Fly in from the sea at 3,000 m: ground map, then patches of places to the right of the way"

@@ -16,7 +16,7 @@
 #include <time.h>
 
 struct settings {
-    const char *classes, *class_raster, *reflectivity, *heights, *targets;
+    const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
     struct db_list terrain;
     double cell_m;
     long shift0, seed;
@@ -66,6 +66,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
         OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
                "specific targets and their signatures (docs/targets.md); left out: none"),
+        OPTION("detail", DB_TEXT, detail, 0, 0, "FILE",
+               "footprints of buildings, walls, lines and masts (docs/database.md); left out: "
+               "none"),
         OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",
                "about this cell size: the nearest of 0.149 m x 2^n\n"
                "0: the pixel size of the class raster, or else of the terrain, or the next smaller "
@@ -304,13 +307,18 @@ static int open_inputs(struct build_context *b, const struct settings *s)
                      &(struct terrain_options){s->sea_level_m, s->voids_are_sea}) != 0) {
         return -1;
     }
-    return check_overlap(b, s) != 0 ? -1 : make_plan(b, s);
+    if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {
+        return -1;
+    }
+    const struct build_detail_settings detail = {b->plan.shift0, b->seed, &b->table, b->laws};
+    return s->detail ? build_detail_read(&b->detail, s->detail, &detail) : 0;
 }
 
 static void close_inputs(struct build_context *b)
 {
     resample_cover_close(&b->cover);
     terrain_close(&b->terrain);
+    build_detail_free(&b->detail);
 }
 
 /* Specific targets and their signatures, with the sections made of them; all zero without any. */
@@ -373,6 +381,9 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
         for (int k = 0; k < m->member_count && result == 0; k++) {
             result = build_manifest_dataset(out, "terrain", m->members[k].dataset);
         }
+    }
+    if (result == 0 && s->detail) {
+        result = build_manifest_file(out, "detail", s->detail);
     }
     return result == 0 && s->targets ? write_targets_inputs(out, s->targets, signatures) : result;
 }
@@ -466,6 +477,8 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     fill_header(&w.header, b, s, centre);
     w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
+    w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
+                                    b->detail.section_bytes};
     if (image_writer_end(&w, manifest) != 0) {
         return -1;
     }
@@ -530,6 +543,17 @@ static void print_report(const struct build_context *b, const struct report *r, 
     printf("done in %.1f s\n", seconds);
 }
 
+static void print_detail(const struct build_context *b, const char *path)
+{
+    const uint64_t outside = b->detail.count - b->counts.detail_items;
+    printf("detail %" PRIu32 " items in %" PRIu32 " tiles\n", b->detail.count,
+           b->detail.record_count);
+    if (outside > 0) {
+        hs_warn(path, "give --class-raster or --terrain that reaches there",
+                "%" PRIu64 " items lie outside the map's finest level and are not shown", outside);
+    }
+}
+
 static double now_seconds(void)
 {
     struct timespec t;
@@ -561,6 +585,9 @@ static int build(const struct settings *s)
     if (result == 0 && s->targets) {
         printf("targets %" PRIu32 ", signatures %" PRIu32 "\n", extras.targets.count,
                extras.targets.signatures.count);
+    }
+    if (result == 0 && s->detail) {
+        print_detail(b, s->detail);
     }
     if (result == 0) {
         print_report(b, &report, now_seconds() - start);

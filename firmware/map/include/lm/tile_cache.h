@@ -71,8 +71,10 @@ struct lm_tile_slot {
     uint64_t failed_us;       /* time of the failure, in state LM_SLOT_BAD */
     uint32_t last_use;        /* the cache's clock when the tile was last used or requested */
     uint32_t row, column;
-    uint16_t next; /* slot in its chain, or LM_SLOT_NONE */
+    uint32_t detail_place; /* of its vector detail, as in struct lm_tile_entry */
+    uint16_t next;         /* slot in its chain, or LM_SLOT_NONE */
     uint8_t lod, state;
+    uint8_t detail_size; /* 0: it has none */
 };
 
 /* LM_SLOT_NONE is the index that ends a chain. Chains are per LOD. */
@@ -149,6 +151,11 @@ int lm_tile_cache_init(struct lm_tile_cache *c, const struct lm_db *db, void *po
  * lm_tile_cache_service. Cost: one chain for each LOD that is tried. */
 const struct lm_tile *lm_tile_cache_get(struct lm_tile_cache *c, uint8_t lod, uint32_t row,
                                         uint32_t column);
+
+/* The slot in which a tile is resident, or NULL. It is no look-up: nothing is counted or requested.
+ * The pointer is valid until the next lm_tile_cache_service. */
+const struct lm_tile_slot *lm_tile_cache_find(const struct lm_tile_cache *c, uint8_t lod,
+                                              uint32_t row, uint32_t column);
 
 /* Number of look-ups that found the tile itself. */
 static inline uint32_t lm_tile_cache_hits(const struct lm_tile_cache *c)

@@ -4,6 +4,7 @@
  *     ---------------------------- ---------------------------- -----------------------------
  *     foreground                   lm_foreground_horizon        lm_foreground_horizon
  *     tiles to cells               lm_line_trace                lm_line_trace
+ *     detail                       -                            lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     class gain                   lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
@@ -27,6 +28,7 @@
 #define LM_LINE_H
 
 #include "lm/class_gain.h"
+#include "lm/detail_patch.h"
 #include "lm/illumination.h"
 #include "lm/scan_line.h"
 #include "lm/speckle.h"
@@ -44,7 +46,9 @@ struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_class_lut *class_lut;
     const struct lm_class_gain *class_gain;
-    uint8_t lod; /* LOD that the map is read from */
+    uint8_t lod;                          /* LOD that the map is read from */
+    const struct lm_detail_patch *detail; /* drawn into the cells; NULL: none */
+    uint32_t number;                      /* of the line in the patch that has the detail */
 };
 
 /* Work space and result of a line. The caller owns it, and a bench or a test can then read each

@@ -28,6 +28,7 @@
 #include <stdint.h>
 
 #include "lm/defocus.h"
+#include "lm/detail_patch.h"
 #include "lm/foreground.h"
 #include "lm/layover.h"
 #include "lm/line.h"
@@ -74,6 +75,14 @@ struct lm_sar_setup {
     uint64_t time_us;                         /* movers are where they are at this time */
 };
 
+/* Whether a patch has the detail of its tiles. */
+enum lm_sar_detail {
+    LM_SAR_DETAIL_NONE, /* its cells are not shorter than the map's: they show all that is known */
+    LM_SAR_DETAIL_WANTED,
+    LM_SAR_DETAIL_LOADING,
+    LM_SAR_DETAIL_READY
+};
+
 /* State of a patch. Set up by lm_sar_start; the caller owns it, and all fields are read-only to
  * others. */
 struct lm_sar {
@@ -108,7 +117,10 @@ struct lm_sar {
     uint32_t sampled, summed;        /* lines in the ring; lines that have the scatterers added */
     bool has_target_patch;           /* true once the targets' scatterers were computed */
     uint32_t hidden_known;           /* scatterers tested for being hidden, before line 0 */
-    struct lm_target_patch target_patch;            /* targets, from the first line on */
+    struct lm_target_patch target_patch; /* targets, from the first line on */
+    enum lm_sar_detail detail_state;
+    struct lm_detail_reader detail_reader;
+    struct lm_detail_patch detail; /* drawn once detail_state is LM_SAR_DETAIL_READY */
     int32_t ring_db_q8[LM_SAR_RING][LM_CELLS_ROOM]; /* levels of line n at n % LM_SAR_RING */
     uint64_t power_q32[LM_CELLS_ROOM];              /* work space */
 };
@@ -150,6 +162,12 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
 
 /* Select the targets that the patch may show, and request their chips. */
 void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles);
+
+/* Read the detail of the patch's tiles, when these are resident. True once nothing is missing;
+ * false: call again in a later step. Detail that arrives after the first line was sampled would
+ * change the picture half-way: with `is_late` what has arrived is all that is drawn, and the answer
+ * is true. Cost: one record a call, see lm_detail_patch_add. */
+bool lm_sar_load_detail(struct lm_sar *s, struct lm_tile_cache *tiles, bool is_late);
 
 /* Take samples that the next line needs, at most `at_most` of them. True if the line has all of
  * them; false: call again. The first line needs LM_SAR_AHEAD + 1 samples, more than the time of one

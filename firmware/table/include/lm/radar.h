@@ -170,6 +170,7 @@ struct lm_sar_table {
     uint16_t mocomp_residual_permille; /* of a lateral acceleration that motion compensation leaves;
                                         * 0 (none) ..1000 */
     int16_t noise_floor_db_q8;         /* dB of gamma; -100..20 dB */
+    fx_bam_t line_lobe; /* half-power width in which a fence or wire glints; 2^20..90 degrees */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };

@@ -54,6 +54,7 @@ struct lm_picture {
     struct lm_sar sar;
     struct {
         bool is_reading;          /* the patch's tiles are being read; no line is drawn */
+        bool has_tiles;           /* all tiles and chips are there; detail may still be read */
         uint32_t lines_asked_for; /* the tiles of lines below this one were requested */
         uint64_t until_us;        /* end of the wait: lines are then drawn with the tiles at hand */
     } acquire;

@@ -2,6 +2,7 @@
 #ifndef BUILD_TILE_H
 #define BUILD_TILE_H
 
+#include "build/detail.h"
 #include "build/plan.h"
 #include "hs/class_table.h"
 #include "image/ground.h"
@@ -25,6 +26,7 @@ struct build_counts {
     uint64_t cells_by_rule;              /* of these, by the terrain's rule */
     uint64_t cells_beyond_terrain;       /* of these, on elevations of the terrain's edge */
     double land_area_m2, land_metres_m2; /* for the mean elevation */
+    uint64_t detail_items;               /* of tiles that are in the image */
 };
 
 struct build_context {
@@ -38,6 +40,7 @@ struct build_context {
     uint32_t seed;
     int parts; /* pixels of the class raster that a cell is cut into, along one side */
     int terrain_level[DB_LIST_MAX]; /* from which level each terrain layer gives tiles of its own */
+    struct build_detail detail;     /* all zero without any */
     struct build_counts counts;
 };
 

@@ -16,6 +16,12 @@ struct image_bytes {
     size_t count;
 };
 
+/* Where the detail of a tile lies in the section DETAIL, in units of LM_DB_PLACE_BYTES. */
+struct image_detail_place {
+    uint32_t place;
+    uint8_t size; /* 0: the tile has none */
+};
+
 struct image_writer {
     struct hs_atomic_file file;
     struct lm_image_header header;
@@ -23,7 +29,9 @@ struct image_writer {
     struct lm_band bands[LM_DB_BANDS_MAX];
     uint32_t *records;                      /* record number of each directory entry; owned */
     uint32_t *entry_of;                     /* and of each record its entry; owned */
+    struct image_detail_place *details;     /* and of each entry, where its detail lies; owned */
     struct image_bytes targets, signatures; /* the sections; data NULL for an image without */
+    struct image_bytes detail;              /* the same */
     uint32_t tiles_crc;
     struct image_sha256 tiles_sha256;
 };
@@ -40,9 +48,13 @@ int image_writer_begin(struct image_writer *w, const char *path,
  * with the error reported. */
 int image_writer_tile(struct image_writer *w, uint32_t entry, const struct lm_tile *tile);
 
+/* Name the detail of directory entry `entry`. */
+void image_writer_detail(struct image_writer *w, uint32_t entry, uint32_t place, uint8_t size);
+
 /* Finish: borders of tiles, directory, manifest and header. `manifest` is text to which the SHA-256
  * of the other sections is added. Title, centre, mean elevation and geoid are taken from w->header,
- * targets and signatures from w->targets and w->signatures, where the caller has put them. Returns
+ * targets, signatures and detail from w->targets, w->signatures and w->detail, where the caller has
+ * put them. Returns
  * 0, or -1 with the error reported; either way the writer is done with. */
 int image_writer_end(struct image_writer *w, const char *manifest);
 

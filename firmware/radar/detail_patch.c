@@ -1,0 +1,365 @@
+#include "lm/detail_patch.h"
+
+#include "fx/mem.h"
+#include "fx/sat.h"
+#include "fx/trig.h"
+#include "lm/units.h"
+
+enum {
+    ONE_Q16 = 1 << 16,
+    EAVES_PERCENT = 60, /* height of a gable's eaves over that of its ridge */
+    GAMMA_STEPS_A_DB = 256 / LM_GAMMA_CODE_STEP_DB_Q8
+};
+
+void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db)
+{
+    p->tile_count = p->shape_count = p->left_out = 0;
+    p->structures = 0;
+    p->side_log2 = (uint8_t)(db->shift0 + LM_TILE_CELLS_LOG2);
+    for (uint32_t n = 0; n < LM_DB_CLASSES; n++) {
+        const bool is_structure = db->classes.entry[n].kind == LM_KIND_STRUCTURE;
+        p->structures |= (uint16_t)(is_structure << n);
+    }
+    memset(p->first, 0, sizeof p->first);
+}
+
+/* ---- items to shapes ---- */
+
+/* Place in a patch: metres to the right of its middle, and beyond it. */
+struct place {
+    int32_t right_m_q8, beyond_m_q8;
+};
+
+static bool find_place(const struct lm_patch_geometry *g, struct lm_position position,
+                       struct place *place)
+{
+    uint32_t distance_m_q8;
+    fx_bam_t azimuth;
+    if (!lm_target_view_locate(g->centre, position, &distance_m_q8, &azimuth)) {
+        return false;
+    }
+    const fx_bam_t off = azimuth - g->look;
+    place->right_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_sin_q30(off) >> 30);
+    place->beyond_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_cos_q30(off) >> 30);
+    return true;
+}
+
+/* Tile in a patch: its south-west corner, and the ways to the corners north and east of it. Within
+ * a tile of a kilometre, places by these are right within centimetres. */
+struct tile_frame {
+    struct place corner, north, east;
+};
+
+static bool set_frame(struct tile_frame *f, const struct lm_detail_reader *r,
+                      const struct lm_db *db, const struct lm_patch_geometry *g)
+{
+    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
+    const fx_bam_t latitude = (r->row << side_log2) - FX_BAM_90;
+    const uint32_t across_log2 = side_log2 + lm_db_zone(latitude);
+    const fx_bam_t longitude = r->column << across_log2;
+    const struct lm_position south_west = {latitude, longitude},
+                             north_west = {latitude + (1u << side_log2), longitude},
+                             south_east = {latitude, longitude + (1u << across_log2)};
+    if (!find_place(g, south_west, &f->corner) || !find_place(g, north_west, &f->north) ||
+        !find_place(g, south_east, &f->east)) {
+        return false;
+    }
+    f->north.right_m_q8 -= f->corner.right_m_q8;
+    f->north.beyond_m_q8 -= f->corner.beyond_m_q8;
+    f->east.right_m_q8 -= f->corner.right_m_q8;
+    f->east.beyond_m_q8 -= f->corner.beyond_m_q8;
+    return true;
+}
+
+/* Sides of a tile are below 2^25, shares are 16 bits: products need 64. */
+static int32_t coordinate(int32_t corner, int32_t north, int32_t east,
+                          const struct lm_detail_item *item)
+{
+    return corner + (int32_t)(((int64_t)north * item->north + (int64_t)east * item->east) >> 16);
+}
+
+static struct place place_of(const struct tile_frame *f, const struct lm_detail_item *item)
+{
+    return (struct place){
+        coordinate(f->corner.right_m_q8, f->north.right_m_q8, f->east.right_m_q8, item),
+        coordinate(f->corner.beyond_m_q8, f->north.beyond_m_q8, f->east.beyond_m_q8, item)};
+}
+
+/* Half a side of so many decimetres, at least half a cell: no line of the patch misses a fence. */
+static uint32_t half_side_m_q8(uint16_t side_dm, uint32_t cell_m_q8)
+{
+    return fx_max_u32((uint32_t)side_dm * 64 / 5, cell_m_q8 / 2);
+}
+
+/* Height code nearest to a height. */
+static uint32_t height_code(const struct lm_classes *classes, uint32_t height_dm)
+{
+    uint32_t nearest = 0;
+    for (uint32_t n = 1; n < LM_DB_CLASSES; n++) {
+        const int32_t off = (int32_t)classes->height_dm[n] - (int32_t)height_dm;
+        const int32_t best = (int32_t)classes->height_dm[nearest] - (int32_t)height_dm;
+        nearest = fx_abs_u32(off) < fx_abs_u32(best) ? n : nearest;
+    }
+    return nearest;
+}
+
+static uint32_t height_codes(const struct lm_classes *classes, const struct lm_detail_item *item)
+{
+    uint32_t codes = 0;
+    for (uint32_t eighth = 0; eighth < 8; eighth++) {
+        /* The middle of the eighth is (2 n + 1) / 16 of the way from the ridge to the eaves. */
+        const uint32_t fall = (100 - EAVES_PERCENT) * (2 * eighth + 1) / 16;
+        const uint32_t percent = item->kind == LM_DETAIL_GABLE ? 100 - fall : 100;
+        codes |= height_code(classes, item->height_dm * percent / 100) << (4 * eighth);
+    }
+    return codes;
+}
+
+/* Reflectivity of a line seen `off` its broadside: glint - 12 dB (off / lobe)^2, and not below that
+ * of a line seen along. */
+static uint8_t line_gamma_code(const struct lm_detail_item *item, fx_bam_t off, fx_bam_t lobe)
+{
+    const uint32_t turned = fx_abs_u32((int32_t)(off << 1)) >> 1; /* modulo a half turn */
+    const uint64_t ratio_q8 = ((uint64_t)turned << 8) / fx_max_u32(lobe, 1);
+    const uint64_t fall = (12 * GAMMA_STEPS_A_DB * ratio_q8 * ratio_q8) >> 16;
+    const uint32_t depth = (uint32_t)(item->glint_code - item->gamma_code);
+    return (uint8_t)(item->glint_code - (fall < depth ? (uint32_t)fall : depth));
+}
+
+/* Coordinates of a shape: u and v of a place dx to the right of its middle and dy beyond it are
+ *
+ *     u = (dx sin t + dy cos t) / a      v = (dx cos t - dy sin t) / b      t the turn from the ray
+ *
+ * A line is a ray: with s the range of the place, S that of the patch's centre and x how far the
+ * place is to the right, a step of one line is dx = ds s / S, and a step of one cell is dy = ds and
+ * dx = ds x / s. */
+static void set_axes(struct lm_detail_shape *shape, const struct lm_detail_item *item,
+                     const struct place *place, const struct lm_patch_geometry *g)
+{
+    const uint32_t cell_m_q8 = g->cell_m_q8;
+    const int64_t range_m_q8 = (int64_t)g->centre_m_q8 + place->beyond_m_q8;
+    const int64_t wide_q14 = ((range_m_q8 << 14) / g->centre_m_q8);
+    const int64_t lean_q14 = ((int64_t)place->right_m_q8 << 14) / range_m_q8;
+    const fx_bam_t turn = ((fx_bam_t)item->turn << 16) - g->look;
+    const int64_t sine_q14 = fx_sin_q30(turn) >> 16, cosine_q14 = fx_cos_q30(turn) >> 16;
+    const uint32_t a_m_q8 = half_side_m_q8(item->length_dm, cell_m_q8),
+                   b_m_q8 = half_side_m_q8(item->width_dm, cell_m_q8);
+    /* A cell is at most two half sides, 2^17; sines and the rest are near 1 in Q14. */
+    const int64_t u_q16 = ((int64_t)cell_m_q8 << 16) / a_m_q8,
+                  v_q16 = ((int64_t)cell_m_q8 << 16) / b_m_q8;
+    shape->u_line_q16 = (int32_t)(u_q16 * (wide_q14 * sine_q14 >> 14) >> 14);
+    shape->v_line_q16 = (int32_t)(v_q16 * (wide_q14 * cosine_q14 >> 14) >> 14);
+    shape->u_cell_q16 = (int32_t)(u_q16 * ((lean_q14 * sine_q14 >> 14) + cosine_q14) >> 14);
+    shape->v_cell_q16 = (int32_t)(v_q16 * ((lean_q14 * cosine_q14 >> 14) - sine_q14) >> 14);
+
+    /* The corners reach a |sin t| + b |cos t| to the side. What the ray leans adds to that. */
+    const int64_t aside_m_q8 =
+        (a_m_q8 * (int64_t)fx_abs_u32((int32_t)sine_q14) +
+         b_m_q8 * (int64_t)fx_abs_u32((int32_t)cosine_q14) +
+         ((int64_t)(a_m_q8 + b_m_q8) * (int64_t)fx_abs_u32((int32_t)lean_q14))) >>
+        14;
+    const int64_t reach_q8 = lm_cells_q8_of_m_q8((aside_m_q8 << 14) / wide_q14, cell_m_q8);
+    const int64_t first = (shape->line_q8 - reach_q8 + 255) >> 8,
+                  end = ((shape->line_q8 + reach_q8) >> 8) + 1;
+    shape->first_line = (uint16_t)fx_clamp_i64(first, 0, g->lines);
+    shape->end_line = (uint16_t)fx_clamp_i64(end, 0, g->lines);
+}
+
+static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const struct place *place,
+                                       const struct lm_db *db, const struct lm_patch_geometry *g,
+                                       fx_bam_t lobe)
+{
+    const int64_t range_m_q8 = (int64_t)g->centre_m_q8 + place->beyond_m_q8;
+    const int64_t aside_m_q8 = (int64_t)place->right_m_q8 * g->centre_m_q8 / range_m_q8;
+    const int32_t middle_q8 = (int32_t)(g->lines - 1) * 128;
+    const fx_bam_t ray = g->look + fx_atan2(place->right_m_q8, (int32_t)range_m_q8);
+    struct lm_detail_shape shape = {
+        .line_q8 = middle_q8 + (int32_t)lm_cells_q8_of_m_q8(aside_m_q8, g->cell_m_q8),
+        .cell_q8 = (int32_t)(g->cells - g->guard - 1) * 128 + (int32_t)(g->guard * 256) +
+                   (int32_t)lm_cells_q8_of_m_q8(place->beyond_m_q8, g->cell_m_q8),
+        .class_number = item->class_number,
+        .is_line = item->kind == LM_DETAIL_LINE,
+        .gamma_code = item->gamma_code,
+        .height_codes = height_codes(&db->classes, item),
+    };
+    if (shape.is_line) {
+        const fx_bam_t broadside = ((fx_bam_t)item->turn << 16) + FX_BAM_90;
+        shape.gamma_code = line_gamma_code(item, broadside - ray, lobe);
+    }
+    set_axes(&shape, item, place, g);
+    return shape;
+}
+
+void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
+                         const struct lm_db *db, const struct lm_patch_geometry *g, fx_bam_t lobe)
+{
+    const int64_t reach_m_q8 = (int64_t)g->cells * g->cell_m_q8;
+    struct tile_frame frame;
+    if (p->tile_count == LM_DETAIL_TILES_MAX || !set_frame(&frame, r, db, g)) {
+        return;
+    }
+    p->tile[p->tile_count++] = (struct lm_detail_tile){r->row, r->column, r->under};
+    for (uint32_t i = 0; i < r->record.count; i++) {
+        const struct lm_detail_item *item = &r->record.items[i];
+        const struct place place = place_of(&frame, item);
+        /* Beyond twice the patch nothing touches it, and ranges stay positive. */
+        if (fx_abs_u32(place.right_m_q8) > reach_m_q8 ||
+            fx_abs_u32(place.beyond_m_q8) > reach_m_q8 ||
+            (int64_t)g->centre_m_q8 + place.beyond_m_q8 <= 0) {
+            continue;
+        }
+        if (p->shape_count == LM_DETAIL_SHAPES_MAX) {
+            p->left_out += r->record.count - i;
+            return;
+        }
+        const struct lm_detail_shape shape = shape_of(item, &place, db, g, lobe);
+        if (shape.first_line < shape.end_line) {
+            p->shape[p->shape_count++] = shape;
+        }
+    }
+}
+
+/* ---- sorting by lines ---- */
+
+static uint32_t first_block(const struct lm_detail_shape *shape)
+{
+    return shape->first_line / LM_DETAIL_BLOCK_LINES;
+}
+
+static uint32_t last_block(const struct lm_detail_shape *shape)
+{
+    return (shape->end_line - 1u) / LM_DETAIL_BLOCK_LINES;
+}
+
+/* A counting sort: how many shapes each block has, where its entries begin, and then the entries.
+ * Shapes stay in their order. */
+void lm_detail_patch_close(struct lm_detail_patch *p)
+{
+    uint32_t count[LM_DETAIL_BLOCKS] = {0}, total = 0;
+    uint16_t next[LM_DETAIL_BLOCKS];
+    for (uint32_t i = 0; i < p->shape_count; i++) {
+        const uint32_t last = last_block(&p->shape[i]);
+        for (uint32_t b = first_block(&p->shape[i]); b <= last; b++) {
+            count[b]++;
+        }
+    }
+    for (uint32_t b = 0; b < LM_DETAIL_BLOCKS; b++) {
+        p->first[b] = next[b] = (uint16_t)total;
+        total = fx_min_u32(total + count[b], LM_DETAIL_ENTRIES_MAX);
+    }
+    p->first[LM_DETAIL_BLOCKS] = (uint16_t)total;
+    for (uint32_t i = 0; i < p->shape_count; i++) {
+        const uint32_t last = last_block(&p->shape[i]);
+        for (uint32_t b = first_block(&p->shape[i]); b <= last; b++) {
+            if (next[b] == p->first[b + 1]) {
+                p->left_out++;
+            } else {
+                p->entry[next[b]++] = (uint16_t)i;
+            }
+        }
+    }
+}
+
+/* ---- one line ---- */
+
+/* Cells from the shape's middle, between which the line is within a half side of it. */
+struct interval {
+    int32_t from_q8, to_q8;
+};
+
+/* Narrow an interval to |at + step d / 256| <= 1. False if nothing is left. Both coordinates are
+ * below 2^26 where the line meets the shape's block: times 2^8 they need 64 bits. */
+static bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
+{
+    if (step_q16 == 0) {
+        return fx_abs_u32(at_q16) <= ONE_Q16;
+    }
+    const int32_t one_q16 = step_q16 > 0 ? ONE_Q16 : -ONE_Q16;
+    const int64_t from_q8 = ((int64_t)-one_q16 - at_q16) * 256 / step_q16;
+    const int64_t to_q8 = ((int64_t)one_q16 - at_q16) * 256 / step_q16;
+    d->from_q8 = (int32_t)fx_clamp_i64(from_q8, d->from_q8, INT32_MAX / 2);
+    d->to_q8 = (int32_t)fx_clamp_i64(to_q8, INT32_MIN / 2, d->to_q8);
+    return d->from_q8 <= d->to_q8;
+}
+
+/* Draw a shape into the cells of a line. Returns how many were drawn. */
+static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, uint32_t cells,
+                           uint32_t *cell)
+{
+    const int32_t off_q8 = (int32_t)(line * 256) - shape->line_q8;
+    const int32_t u_q16 = (int32_t)((int64_t)shape->u_line_q16 * off_q8 >> 8);
+    const int32_t v_q16 = (int32_t)((int64_t)shape->v_line_q16 * off_q8 >> 8);
+    struct interval d = {-shape->cell_q8, (int32_t)((cells - 1) * 256) - shape->cell_q8};
+    if (d.to_q8 < d.from_q8 || !narrow(&d, u_q16, shape->u_cell_q16) ||
+        !narrow(&d, v_q16, shape->v_cell_q16)) {
+        return 0;
+    }
+    const int32_t first = (shape->cell_q8 + d.from_q8 + 255) >> 8;
+    const int32_t end = ((shape->cell_q8 + d.to_q8) >> 8) + 1;
+    const uint32_t top = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
+    for (int32_t i = first; i < end; i++) {
+        const int32_t along_q8 = i * 256 - shape->cell_q8;
+        const int32_t at_q16 = v_q16 + (int32_t)((int64_t)shape->v_cell_q16 * along_q8 >> 8);
+        const uint32_t eighth = fx_min_u32(fx_abs_u32(at_q16) >> 13, 7);
+        const uint32_t ground_gamma = cell[i] & 0xFF00u;
+        cell[i] = !shape->is_line ? top | (shape->height_codes >> (4 * eighth) & 15)
+                                  : (cell[i] & 0xFFu) | fx_max_u32(ground_gamma, top & 0xFF00u);
+    }
+    return end > first ? (uint32_t)(end - first) : 0;
+}
+
+/* Tile of the detail that holds cell k of a path, or NULL. Cells of one tile follow each other:
+ * the tile found last is tried first. */
+static const struct lm_detail_tile *tile_at(const struct lm_detail_patch *p,
+                                            const struct lm_ground_path *path, uint32_t k,
+                                            const struct lm_detail_tile *last)
+{
+    const uint64_t pairs = (uint64_t)k * (k - 1) / 2;
+    const fx_bam_t latitude =
+        (fx_bam_t)((path->latitude + k * path->latitude_step + pairs * path->latitude_bend) >> 32);
+    const fx_bam_t longitude =
+        (fx_bam_t)((path->longitude + k * path->longitude_step + pairs * path->longitude_bend) >>
+                   32);
+    const uint32_t row = (latitude + FX_BAM_90) >> p->side_log2;
+    const uint32_t column = longitude >> (p->side_log2 + lm_db_zone(latitude));
+    if (last && last->row == row && last->column == column) {
+        return last;
+    }
+    for (uint32_t i = 0; i < p->tile_count; i++) {
+        if (p->tile[i].row == row && p->tile[i].column == column) {
+            return &p->tile[i];
+        }
+    }
+    return NULL;
+}
+
+/* Replace the structures of the map by the ground under them, where the tile has detail. */
+static void uncover(const struct lm_detail_patch *p, const struct lm_ground_path *path,
+                    uint32_t *cell, uint32_t cells)
+{
+    const struct lm_detail_tile *tile = NULL;
+    for (uint32_t k = 0; k < cells; k++) {
+        if (p->structures >> (cell[k] >> 4 & 15) & 1) {
+            tile = tile_at(p, path, k, tile);
+            cell[k] = tile ? tile->under : cell[k];
+        }
+    }
+}
+
+void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
+                          const struct lm_ground_path *path, struct lm_scan_line *ground,
+                          uint32_t cells)
+{
+    if (p->tile_count == 0) {
+        return;
+    }
+    const uint32_t block = line / LM_DETAIL_BLOCK_LINES;
+    uint32_t drawn = 0;
+    uncover(p, path, ground->cell, cells);
+    for (uint32_t n = p->first[block]; n < p->first[block + 1]; n++) {
+        const struct lm_detail_shape *shape = &p->shape[p->entry[n]];
+        if (line >= shape->first_line && line < shape->end_line && drawn < LM_DETAIL_CELLS_A_LINE) {
+            drawn += draw_shape(shape, line, cells, ground->cell);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+/* Detail in a patch: the rectangles and lines of the tiles (lm/detail.h), drawn into the cells of
+ * each line before it is illuminated. Walls, fronts, roofs and shadows then follow from the
+ * heights, as they do from the map's own cells. Law: docs/EQUATIONS.md, "Detail".
+ *
+ *     map's cells           with detail                    u, v: coordinates in half sides
+ *      ..SSS...              ........
+ *      .SSSSS..    ->        ..####..  S  goes to `under`      |u| <= 1 and |v| <= 1: inside
+ *      ..SSSS..              ..####..  #  a rectangle
+ *
+ * Order of the calls: lm_detail_patch_clear; lm_detail_patch_add for each record;
+ * lm_detail_patch_close; then lm_detail_patch_draw for each line, in any order. No call fails:
+ * what does not fit is left out and counted. */
+#ifndef LM_DETAIL_PATCH_H
+#define LM_DETAIL_PATCH_H
+
+#include "lm/detail_reader.h"
+#include "lm/geo.h"
+#include "lm/scan_line.h"
+#include "lm/target_patch.h"
+
+enum {
+    LM_DETAIL_SHAPES_MAX = 1536, /* of a patch: a town of 400 m2 a house at cells of 3 m */
+    LM_DETAIL_ENTRIES_MAX = 4096,
+    LM_DETAIL_BLOCK_LINES = 8,
+    LM_DETAIL_BLOCKS = LM_CELLS_MAX / LM_DETAIL_BLOCK_LINES,
+    LM_DETAIL_CELLS_A_LINE = 2 * LM_CELLS_MAX /* bounds the cost of a line */
+};
+
+/* Item in the coordinates of a patch, which count from the middle of cell 0 of line 0. */
+struct lm_detail_shape {
+    int32_t line_q8, cell_q8; /* middle */
+    /* Change of u (along the length) and v (along the width), in half sides, a line and a cell. */
+    int32_t u_line_q16, u_cell_q16, v_line_q16, v_cell_q16;
+    uint32_t height_codes; /* a nibble for each eighth of |v| */
+    uint8_t gamma_code, class_number;
+    bool is_line;
+    uint16_t first_line, end_line; /* lines that it may touch */
+};
+
+/* Tile with detail: its cells of structures show `under`. */
+struct lm_detail_tile {
+    uint32_t row, column;
+    uint16_t under;
+};
+
+/* Detail of a patch. The caller owns it; all fields are read-only to others. */
+struct lm_detail_patch {
+    uint32_t tile_count, shape_count;
+    uint32_t left_out;   /* items for which there was no room, since lm_detail_patch_clear */
+    uint16_t structures; /* bit n: class n is of the kind structure */
+    uint8_t side_log2;   /* of a tile of LOD 0, BAM of latitude */
+    struct lm_detail_tile tile[LM_DETAIL_TILES_MAX];
+    struct lm_detail_shape shape[LM_DETAIL_SHAPES_MAX];
+    /* Shapes of each block of lines: entry[first[b]] .. entry[first[b + 1] - 1]. */
+    uint16_t first[LM_DETAIL_BLOCKS + 1], entry[LM_DETAIL_ENTRIES_MAX];
+};
+
+void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db);
+
+/* Add the items of the record that the reader has at hand. `lobe` is the half-power width of a
+ * line's glint. Cost: some 5,000 instructions, and 400 an item. */
+void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
+                         const struct lm_db *db, const struct lm_patch_geometry *g, fx_bam_t lobe);
+
+/* Sort the shapes by lines. Cost: some 20 instructions a shape. */
+void lm_detail_patch_close(struct lm_detail_patch *p);
+
+/* Draw the detail of line `line` into its cells. `path` is the one that they were read along. Cost:
+ * 3 instructions a cell, 15 for a cell of a structure, 60 for a shape that the line's block holds,
+ * and 8 for a cell that is drawn, at most LM_DETAIL_CELLS_A_LINE of them. */
+void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
+                          const struct lm_ground_path *path, struct lm_scan_line *ground,
+                          uint32_t cells);
+
+#endif

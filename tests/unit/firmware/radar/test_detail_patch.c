@@ -1,0 +1,355 @@
+/* Detail in a patch. The oracle places every item and every cell once more in double precision,
+ * from docs/FORMATS.md and docs/EQUATIONS.md, "Detail", and asks which cells lie inside. */
+#include "lm/detail_patch.h"
+
+#include "check.h"
+#include "fx/crc32c.h"
+#include "hs/rng.h"
+#include "lm/radar.h"
+#include "reference_support.h"
+#include "tiny_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELLS = 256, GUARD = 4, SHIFT0 = 9 };
+
+static const double pi = 3.14159265358979323846, degree = 3.14159265358979323846 / 180;
+
+static struct lm_detail_patch patch;
+static struct lm_detail_reader reader;
+static struct lm_db db;
+static struct lm_scan_line ground;
+static struct hs_rng rng;
+
+/* A patch of `cell_m`, seen along `look_deg` from `range_m`. */
+struct scene {
+    struct ref_place centre;
+    double look_deg, range_m, cell_m;
+    uint32_t lines;
+    struct lm_patch_geometry g;
+};
+
+static fx_bam_t bam(double deg)
+{
+    return (fx_bam_t)(int64_t)llround(deg / 360 * 4294967296.0);
+}
+
+static struct scene scene_at(double latitude, double look_deg, double range_m, double cell_m)
+{
+    struct scene s = {
+        .centre = {latitude, 11.2}, .look_deg = look_deg, .range_m = range_m, .cell_m = cell_m};
+    const double near_m = range_m - CELLS * cell_m / 2;
+    s.lines = 2 * (uint32_t)ceil(CELLS * range_m / near_m / 2);
+    s.g = (struct lm_patch_geometry){.centre = {bam(latitude), bam(11.2)},
+                                     .look = bam(look_deg),
+                                     .centre_m_q8 = (uint32_t)lround(range_m * 256),
+                                     .cell_m_q8 = (uint32_t)lround(cell_m * 256),
+                                     .lines = s.lines,
+                                     .cells = CELLS + GUARD,
+                                     .guard = GUARD};
+    db = (struct lm_db){.shift0 = SHIFT0, .lod_count = 1, .classes = *tiny_classes()};
+    lm_detail_patch_clear(&patch, &db);
+    return s;
+}
+
+/* A tile near the centre, as the reader hands it over. */
+static void open_record(const struct scene *s, int rows_off, int columns_off, uint16_t under)
+{
+    const uint32_t side = SHIFT0 + 6, zone = lm_db_zone(s->g.centre.latitude);
+    memset(&reader, 0, sizeof reader);
+    reader.row = (uint32_t)((int)((s->g.centre.latitude + FX_BAM_90) >> side) + rows_off);
+    reader.column = (uint32_t)((int)(s->g.centre.longitude >> (side + zone)) + columns_off);
+    reader.under = under;
+}
+
+static struct ref_place item_place(const struct scene *s, const struct lm_detail_item *item)
+{
+    const uint32_t zone = lm_db_zone(s->g.centre.latitude);
+    const double side = ldexp(360, SHIFT0 + 6 - 32), wide = ldexp(side, (int)zone);
+    return (struct ref_place){(reader.row + item->north / 65536.0) * side - 90,
+                              (reader.column + item->east / 65536.0) * wide};
+}
+
+/* Where a place lies in the patch: metres to the right of the centre, and beyond it. */
+static void to_patch(const struct scene *s, struct ref_place place, double *right, double *beyond)
+{
+    double azimuth, distance;
+    ref_geo_inverse(s->centre, place, &azimuth, &distance);
+    *right = distance * sin((azimuth - s->look_deg) * degree);
+    *beyond = distance * cos((azimuth - s->look_deg) * degree);
+}
+
+/* u and v of the middle of a cell, in half sides of an item that is as wide as a cell at least. */
+static void in_item(const struct scene *s, const struct lm_detail_item *item, uint32_t line,
+                    uint32_t cell, double *u, double *v)
+{
+    double x0, y0;
+    to_patch(s, item_place(s, item), &x0, &y0);
+    const double y = ((int)cell - GUARD + 0.5 - CELLS / 2.0) * s->cell_m;
+    const double x = (line + 0.5 - s->lines / 2.0) * s->cell_m * (s->range_m + y) / s->range_m;
+    const double turn = item->turn * (2 * pi / 65536) - s->look_deg * degree;
+    const double a = fmax(item->length_dm / 20.0, s->cell_m / 2),
+                 b = fmax(item->width_dm / 20.0, s->cell_m / 2);
+    *u = ((x - x0) * sin(turn) + (y - y0) * cos(turn)) / a;
+    *v = ((x - x0) * cos(turn) - (y - y0) * sin(turn)) / b;
+}
+
+/* Puts the item into the middle of the patch, or up to `off` of a tile's side aside. */
+static void put_in_patch(const struct scene *s, struct lm_detail_item *item, double off)
+{
+    const uint32_t side = SHIFT0 + 6, zone = lm_db_zone(s->g.centre.latitude);
+    const double north = ldexp((s->g.centre.latitude + FX_BAM_90) << (32 - side), -32),
+                 east = ldexp(s->g.centre.longitude << (32 - side - zone), -32);
+    const double aside[2] = {off * (2 * hs_rng_uniform(&rng) - 1),
+                             off * (2 * hs_rng_uniform(&rng) - 1)};
+    item->north = (uint16_t)fmax(0, fmin(65535, 65536 * (north + aside[0])));
+    item->east = (uint16_t)fmax(0, fmin(65535, 65536 * (east + aside[1])));
+}
+
+static struct lm_detail_item random_block(void)
+{
+    return (struct lm_detail_item){.kind = LM_DETAIL_BLOCK,
+                                   .class_number = TINY_STRUCTURE,
+                                   .gamma_code = 140,
+                                   .north = (uint16_t)hs_rng_u64(&rng),
+                                   .east = (uint16_t)hs_rng_u64(&rng),
+                                   .length_dm = (uint16_t)(1 + hs_rng_below(&rng, 500)),
+                                   .width_dm = (uint16_t)(1 + hs_rng_below(&rng, 300)),
+                                   .turn = (uint16_t)hs_rng_u64(&rng),
+                                   .height_dm = 120};
+}
+
+static void draw(const struct scene *s, uint32_t line)
+{
+    static const struct lm_ground_path nowhere;
+    for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+        ground.cell[i] = 100 << 8 | TINY_SOIL << 4;
+    }
+    lm_detail_patch_draw(&patch, line, &nowhere, &ground, s->g.cells);
+}
+
+/* Any block at any place and turn, in patches near and far, wide and narrow: a cell is drawn if its
+ * middle lies inside. Middles within 3 % of a half side, or 8 cm, of an edge are not judged. */
+TEST(cells_whose_middle_is_inside_are_drawn_and_no_others)
+{
+    static const struct {
+        double latitude, look, range, cell;
+    } cases[] = {{46, 30, 20000, 1},
+                 {46, 200, 3000, 2},
+                 {-33, 314, 9000, 0.5},
+                 {67, 95, 40000, 3},
+                 {5, 180, 1500, 2}};
+    uint32_t inside = 0, judged = 0;
+    hs_rng_seed(&rng, 14);
+    for (int n = 0; n < 120; n++) {
+        const size_t which = (size_t)n % (sizeof cases / sizeof *cases);
+        const struct scene s = scene_at(cases[which].latitude, cases[which].look,
+                                        cases[which].range, cases[which].cell);
+        open_record(&s, 0, 0, 0);
+        reader.record.items[0] = random_block();
+        put_in_patch(&s, &reader.record.items[0], 0.3);
+        reader.record.count = 1;
+        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_close(&patch);
+        const struct lm_detail_item *item = &reader.record.items[0];
+        const double least = fmin(fmax(item->length_dm / 20.0, s.cell_m / 2),
+                                  fmax(item->width_dm / 20.0, s.cell_m / 2));
+        const double unsure = 0.03 + 0.08 / least;
+        for (uint32_t line = 0; line < s.lines; line++) {
+            draw(&s, line);
+            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+                double u, v;
+                in_item(&s, item, line, i, &u, &v);
+                const double off = fmax(fabs(u), fabs(v)) - 1;
+                const bool is_drawn = (ground.cell[i] >> 4 & 15) == TINY_STRUCTURE;
+                if (fabs(off) > unsure) {
+                    assert_int_equal(is_drawn, off < 0);
+                    inside += off < 0;
+                    judged++;
+                }
+            }
+        }
+    }
+    print_message("# %u cells inside of %u\n", inside, judged);
+    assert_true(inside > 40000);
+}
+
+/* A fence thinner than a cell is met by every line across it. */
+TEST(no_line_of_the_patch_misses_a_thin_wall)
+{
+    const struct scene s = scene_at(46, 0, 20000, 2);
+    open_record(&s, 0, 0, 0);
+    for (int turn = 0; turn < 180; turn += 5) {
+        lm_detail_patch_clear(&patch, &db);
+        struct lm_detail_item wall = random_block();
+        double x0, y0;
+        wall.length_dm = 800;
+        wall.width_dm = 3;
+        wall.turn = (uint16_t)(turn * 65536 / 360);
+        put_in_patch(&s, &wall, 0.2);
+        reader.record.items[0] = wall;
+        reader.record.count = 1;
+        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_close(&patch);
+        to_patch(&s, item_place(&s, &wall), &x0, &y0);
+        const double reach = 40 * fabs(sin(turn * degree)) - 3;
+        for (uint32_t line = 0; line < s.lines; line++) {
+            const double x = (line + 0.5 - s.lines / 2.0) * s.cell_m * (s.range_m + y0) / s.range_m;
+            int drawn = 0;
+            draw(&s, line);
+            for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+                drawn += (ground.cell[i] >> 4 & 15) == TINY_STRUCTURE;
+            }
+            if (fabs(x - x0) < reach && fabs(y0) < 200) {
+                assert_true(drawn >= 1);
+            }
+        }
+    }
+}
+
+/* Height above the terrain falls from the ridge to the eaves, three fifths as high. */
+TEST(a_gable_is_highest_along_its_ridge)
+{
+    const struct scene s = scene_at(46, 0, 20000, 0.5);
+    open_record(&s, 0, 0, 0);
+    struct lm_detail_item house = random_block();
+    house.kind = LM_DETAIL_GABLE;
+    house.length_dm = 300;
+    house.width_dm = 160;
+    house.height_dm = 150;
+    house.turn = 20 * 65536 / 360;
+    put_in_patch(&s, &house, 0);
+    reader.record.items[0] = house;
+    reader.record.count = 1;
+    lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    lm_detail_patch_close(&patch);
+    const uint16_t *height_dm = db.classes.height_dm;
+    int judged = 0;
+    for (uint32_t line = 0; line < s.lines; line++) {
+        draw(&s, line);
+        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            double u, v;
+            in_item(&s, &house, line, i, &u, &v);
+            if (fmax(fabs(u), fabs(v)) < 0.97) {
+                const double wanted = 15 * (1 - 0.4 * fabs(v)),
+                             is = height_dm[ground.cell[i] & 15] / 10.0;
+                /* Half an eighth of the fall, and the distance to the nearest of the heights. */
+                double nearest = 1e9;
+                for (int n = 0; n < 16; n++) {
+                    nearest = fmin(nearest, fabs(height_dm[n] / 10.0 - wanted));
+                }
+                assert_true(fabs(is - wanted) <= nearest + 0.75);
+                judged++;
+            }
+        }
+    }
+    assert_true(judged > 1000);
+}
+
+/* Reflectivity of a fence seen `off` its broadside, dB above that of one seen along. */
+static double glint_db(double off_deg)
+{
+    const struct scene s = scene_at(46, 90, 20000, 1);
+    open_record(&s, 0, 0, 0);
+    struct lm_detail_item fence = {.kind = LM_DETAIL_LINE,
+                                   .gamma_code = 120,
+                                   .glint_code = 180,
+                                   .length_dm = 300,
+                                   .width_dm = 1,
+                                   .turn = (uint16_t)lround(off_deg * 65536 / 360)};
+    put_in_patch(&s, &fence, 0);
+    reader.record.items[0] = fence;
+    reader.record.count = 1;
+    lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    return (patch.shape[0].gamma_code - 120) / 2.0;
+}
+
+TEST(a_line_glints_broadside)
+{
+    assert_true(fabs(glint_db(0) - 30) < 0.6);
+    assert_true(fabs(glint_db(180) - 30) < 0.6);
+    for (int side = -1; side <= 1; side += 2) {
+        assert_true(fabs(glint_db(side * 3) - (30 - 3)) < 0.8); /* half power at half the lobe */
+        assert_true(fabs(glint_db(side * 6) - (30 - 12)) < 0.8);
+        assert_true(glint_db(side * 15) == 0);
+        assert_true(glint_db(90 + side * 10) == 0);
+    }
+}
+
+/* A line keeps class and height of the ground, and never darkens it. */
+TEST(a_line_lights_the_ground_that_it_crosses)
+{
+    const struct scene s = scene_at(46, 90, 20000, 1);
+    (void)glint_db(0);
+    lm_detail_patch_close(&patch);
+    int lit = 0;
+    for (uint32_t line = 0; line < s.lines; line++) {
+        draw(&s, line);
+        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            assert_int_equal(ground.cell[i] & 0xFF, TINY_SOIL << 4);
+            assert_true(ground.cell[i] >> 8 == 100 || ground.cell[i] >> 8 >= 178);
+            lit += ground.cell[i] >> 8 != 100;
+        }
+    }
+    assert_true(lit >= 25 && lit <= 70); /* 30 m of a fence that lies across the lines */
+}
+
+/* What does not fit is left out and counted; a line draws so many cells and no more. */
+TEST(room_and_cost_are_bounded)
+{
+    const struct scene s = scene_at(46, 0, 20000, 3);
+    hs_rng_seed(&rng, 3);
+    open_record(&s, 0, 0, 0);
+    for (int i = 0; i < LM_DETAIL_ITEMS_MAX; i++) {
+        reader.record.items[i] = random_block();
+    }
+    reader.record.count = LM_DETAIL_ITEMS_MAX;
+    for (int k = 0; k < 5; k++) {
+        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    }
+    lm_detail_patch_close(&patch);
+    assert_int_equal(patch.shape_count, LM_DETAIL_SHAPES_MAX);
+    assert_true(patch.left_out >= 5 * LM_DETAIL_ITEMS_MAX - LM_DETAIL_SHAPES_MAX);
+    for (uint32_t line = 0; line < s.lines; line++) {
+        draw(&s, line);
+    }
+    for (int k = 0; k < LM_DETAIL_TILES_MAX + 2; k++) {
+        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    }
+    assert_int_equal(patch.tile_count, LM_DETAIL_TILES_MAX);
+}
+
+/* Anything that passes the record's check may be drawn: no item reaches beyond the line. */
+TEST(hostile_items_stay_in_the_line)
+{
+    hs_rng_seed(&rng, 8);
+    for (int n = 0; n < 60; n++) {
+        const struct scene s = scene_at(n % 2 ? 84.3 : 61.8, n * 37.0, 1500 + 900 * n, 0.5 + n % 9);
+        open_record(&s, (int)hs_rng_below(&rng, 5) - 2, (int)hs_rng_below(&rng, 5) - 2, 0);
+        for (int i = 0; i < 300; i++) {
+            struct lm_detail_item *item = &reader.record.items[i];
+            *item = random_block();
+            item->kind = (uint8_t)(1 + hs_rng_below(&rng, LM_DETAIL_KINDS - 1));
+            item->class_number = (uint8_t)hs_rng_below(&rng, LM_DB_CLASS_NONE);
+            item->length_dm = (uint16_t)(1 + hs_rng_below(&rng, 65535));
+            item->width_dm = (uint16_t)(1 + hs_rng_below(&rng, 65535));
+            item->height_dm = (uint16_t)hs_rng_u64(&rng);
+            item->glint_code = 255;
+            item->gamma_code = (uint8_t)hs_rng_u64(&rng);
+        }
+        reader.record.count = 300;
+        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_close(&patch);
+        for (uint32_t line = 0; line < s.lines; line += 7) {
+            for (uint32_t i = s.g.cells; i < LM_CELLS_ROOM; i++) {
+                ground.cell[i] = 0xABCDEF;
+            }
+            draw(&s, line);
+            for (uint32_t i = s.g.cells; i < LM_CELLS_ROOM; i++) {
+                assert_int_equal(ground.cell[i], 0xABCDEF);
+            }
+        }
+    }
+}
