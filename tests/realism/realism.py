@@ -37,6 +37,7 @@ OPEN = {
     "settlement_spread",
     "standing_out",
     "sea_grazing",
+    "patch_rays",  # lines of a patch are parallel
     "shadow_length",  # heights end at 80 m
     "point_side_lobes",
     "glass_patch",
@@ -106,7 +107,8 @@ def main():
     if unknown:
         sys.exit(f"realism: OPEN names what is no measure: {', '.join(sorted(unknown))}")
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        names = ["builtin", "yard", "plain", "sea"] + (["orihuela"] if world.has(scenes.S2) else [])
+        names = ["builtin", "yard", "plain", "sea"]
+        names += [name for name, file in (("orihuela", scenes.S2), ("hawaii", scenes.DTED[0])) if world.has(file)]
         list(pool.map(world.image, names))
     only = sys.argv[sys.argv.index("--only") + 1:] if "--only" in sys.argv else []
     wanted = [m for m in measures.MEASURES if not only or m[2].__name__ in only]

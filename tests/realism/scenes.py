@@ -6,6 +6,7 @@ Images are made by the project's own programs, as a user makes them:
     yard       a testing ground of known shapes on a plain: edges, a forest, towers, a grid town, a bright point, vehicles
     plain      an even plain of -15 dB, 300 km wide, without spread
     sea        the same of water
+    hawaii     three tiles of DTED level 1; needs the real data
     orihuela   the classes of Sentinel-2's bands near Orihuela; needs the real data
 """
 import os
@@ -20,6 +21,7 @@ gdal.UseExceptions()
 CLASSES = "host-sim/programs/db/classes/heaton6.classes"
 S2 = "sen1floods11_spain_s1_s2/Spain_7370579_S2Hand.tif"
 S1 = "sen1floods11_spain_s1_s2/Spain_7370579_S1Hand.tif"
+DTED = [f"dted1_hawaii/{name}_3arc_v2.dt1" for name in ("n19_w155", "n19_w156", "n20_w156")]
 CELLS = 256
 # Kinds of classes, as the firmware numbers them.
 GROUND, WATER, STRUCTURE, TREES = range(4)
@@ -109,7 +111,7 @@ class Scenes:
         self.data = Path(data) if data else None
         self.work.mkdir(parents=True, exist_ok=True)
         self.pictures = {}
-        self.locks = {name: threading.Lock() for name in ("builtin", "yard", "plain", "sea", "orihuela")}
+        self.locks = {name: threading.Lock() for name in ("builtin", "yard", "plain", "sea", "hawaii", "orihuela")}
         self.drawing = threading.Lock()
 
     # ---- images ----
@@ -153,6 +155,11 @@ class Scenes:
         flat = to / "terrain.tif"
         write_raster(flat, np.full((40, 40), 10, np.float32), (-0.90, 0.008, 38.26, -0.008), 4326)
         self.reflect_and_build(to, "--terrain", flat, "--cell", "10")
+
+    def make_hawaii(self, to):
+        terrain = [word for name in DTED for word in ("--terrain", self.data / name)]
+        self.run("landmass-db", "build", "--classes", "host-sim/gallery/terrain.classes", *terrain, "--land-class", "land",
+                 "--water-class", "sea", "--out", to / "scene.lmdb")
 
     def make_plain(self, to, land="field"):
         table = to / "even.classes"
