@@ -11,6 +11,7 @@ extern __typeof__(lm_k_tile_read) lm_k_tile_read_c;
 extern __typeof__(lm_k_highest_tangent) lm_k_highest_tangent_c;
 extern __typeof__(lm_k_light) lm_k_light_c;
 extern __typeof__(lm_k_class_gain) lm_k_class_gain_c;
+extern __typeof__(lm_k_water_gain) lm_k_water_gain_c;
 extern __typeof__(lm_k_noise_add) lm_k_noise_add_c;
 extern __typeof__(lm_k_noise_floor) lm_k_noise_floor_c;
 extern __typeof__(lm_k_gather) lm_k_gather_c;

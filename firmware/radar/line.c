@@ -11,6 +11,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
     }
     horizon = lm_illuminate(setup->grid, setup->class_lut, &line->ground, horizon, &line->lit);
     lm_class_gain_run(setup->class_gain, line->ground.cell, line->lit.level_db_q8, cells);
+    lm_sea_run(setup->sea, line->ground.cell, line->lit.level_db_q8);
     return horizon;
 }
 

@@ -105,6 +105,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
     s->lod = lm_scan_lod(db, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
                       cells + LM_SAR_GUARD, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
+    lm_sea_set_cells(&s->sea, &s->grid, near_m_q8 + cell_m_q8 / 2);
 }
 
 /* Set the foreground: the terrain before the first guard cell. */
@@ -187,6 +188,15 @@ static uint32_t noise_epoch_of(const struct lm_sar_command *c, uint32_t epoch)
     return fx_hash3(of_place, c->look_azimuth, c->cell_mm);
 }
 
+static void set_sea(struct lm_sar *s, const struct lm_classes *classes,
+                    const struct lm_sar_setup *setup)
+{
+    const struct lm_environment *e = setup->environment;
+    lm_sea_set(&s->sea, s->radar, classes, setup->sea_state,
+               e && e->has_wind ? &e->wind_from : NULL);
+    lm_sea_look(&s->sea, s->command.look_azimuth);
+}
+
 int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm_db *db,
                  const struct lm_sar_command *command, const struct lm_sar_setup *setup)
 {
@@ -217,6 +227,7 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     lm_class_gain_set(&s->class_gain, &radar->facing, &db->classes,
                       lm_scan_lod(db, command->cell_mm), setup->sea_state, 0);
     lm_class_gain_look(&s->class_gain, command->look_azimuth);
+    set_sea(s, &db->classes, setup);
     const uint64_t patch_ms = lm_ms_of_us(patch_us);
     s->dwell_ms = (uint32_t)(patch_ms < DWELL_MOST_MS ? patch_ms : DWELL_MOST_MS);
     lm_sar_set_reference(s, db, setup->reference_m_q10);
@@ -400,6 +411,7 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
         .grid = &s->grid,
         .class_lut = &s->class_lut,
         .class_gain = &s->class_gain,
+        .sea = &s->sea,
         .lod = s->lod,
         .detail = s->detail_state == LM_SAR_DETAIL_READY ? &s->detail : NULL,
         .number = number};

@@ -237,6 +237,14 @@ static void set_class_gain(struct lm_sector *s, const struct lm_classes *classes
                       mode_of(s)->clutter_db_q8);
 }
 
+static void set_sea(struct lm_sector *s, const struct lm_classes *classes)
+{
+    const struct lm_environment *e = s->environment;
+    lm_sea_set(&s->sea, s->radar, classes, e ? e->sea_state : LM_SEA_STATE_OF_IMAGE,
+               e && e->has_wind ? &e->wind_from : NULL);
+    lm_sea_set_cells(&s->sea, &s->grid, s->ground_edge_m_q8 + s->grid.cell_m_q8 / 2);
+}
+
 void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
                      const struct lm_platform *platform)
 {
@@ -260,6 +268,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     set_tilt(s);
     lm_class_lut_set(&s->class_lut, &s->radar->illumination, &tiles->db->classes);
     set_class_gain(s, &tiles->db->classes);
+    set_sea(s, &tiles->db->classes);
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
     s->has_taps = false;
@@ -400,13 +409,17 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
 static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
                   struct lm_line *line)
 {
-    const struct lm_line_setup setup = {
-        .grid = &s->grid, .class_lut = &s->class_lut, .class_gain = &s->class_gain, .lod = s->lod};
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .class_lut = &s->class_lut,
+                                        .class_gain = &s->class_gain,
+                                        .sea = &s->sea,
+                                        .lod = s->lod};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);
     const lm_horizon_q40_t horizon = horizon_at(s, tiles, azimuth, line);
     const struct lm_ground_path path = sample_path(s, &ray);
     lm_class_gain_look(&s->class_gain, azimuth);
+    lm_sea_look(&s->sea, azimuth);
     lm_line_trace(line, tiles, &setup, &path, horizon);
 }
 

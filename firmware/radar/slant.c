@@ -47,7 +47,7 @@ void lm_slant_run(const struct lm_slant *s, const struct lm_range_grid *grid, in
         const struct lm_slant_pair *pair = &s->pair[k];
         bin_db_q8[pair->bin] = fx_max_i32(bin_db_q8[pair->bin], level_db_q8[pair->last]);
     }
-    /* Levels are within 2^17. The lowest is a cell hardly lit, -195 dB, with class gain -89,
-     * speckle -33, a chip's shadow -48 and the elevation pattern -96. */
+    /* Levels are within 2^17. The lowest is a cell hardly lit, -195 dB, with class gain and sea
+     * -127, speckle -33, a chip's shadow -48 and the elevation pattern -96. */
     lm_k_powers_of_levels(power_q24, s->cells);
 }

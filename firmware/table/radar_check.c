@@ -23,6 +23,7 @@
 #define SIGNED_BETWEEN(low, high) .is_signed = true, .min = (low), .max = (high)
 
 #define CODE_GAIN BETWEEN(0, LM_DB_Q8(40))
+#define OF_WIND   SIGNED_BETWEEN(LM_DB_Q8(-10), LM_DB_Q8(10))
 
 static const struct lm_radar_field fields[] = {
     {"ranges", ONE(ranges), BETWEEN(1, LM_RANGES_MAX)},
@@ -103,6 +104,9 @@ static const struct lm_radar_field fields[] = {
     {"illumination.shore_db_q8", ONE(illumination.shore_db_q8),
      SIGNED_BETWEEN(0, LM_EDGE_MAX_DB_Q8)},
     {"illumination.shore_width_m", ONE(illumination.shore_width_m), BETWEEN(0, 10000)},
+    {"sea.upwind_db_q8", ONE(sea.upwind_db_q8), OF_WIND},
+    {"sea.crosswind_db_q8", ONE(sea.crosswind_db_q8), OF_WIND},
+    {"sea.downwind_db_q8", ONE(sea.downwind_db_q8), OF_WIND},
     {"facing.lobe_half", ONE(facing.lobe_half), BETWEEN(FX_BAM_DEG(4), FX_BAM_DEG(45))},
     {"facing.floor_permille", ONE(facing.floor_permille), BETWEEN(10, 1000)},
 };

@@ -18,10 +18,12 @@ void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
 }
 
 /* The stages behind aspect, for a line whose levels and draws are known. */
-static void finish(struct ref_bin *bins, size_t count, const struct ref_params *params,
-                   const struct ref_tables *tables, double look_deg)
+static void finish(struct ref_bin *bins, size_t count, const struct ref_view *view,
+                   const struct ref_params *params, const struct ref_tables *tables,
+                   double look_deg)
 {
     ref_class_gain(bins, count, params, look_deg);
+    ref_sea(bins, count, view, params, look_deg);
     ref_speckle(bins, count, tables->speckle_db, params->noise_floor_db);
     ref_tone(bins, count, params);
 }
@@ -54,7 +56,7 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
     for (uint32_t i = 0; i < gm->cell_count; i++) {
         bins[i].slice = ref_draw(LM_NOISE_SPECKLE, sample_number, i, gm->epoch);
     }
-    finish(bins, gm->cell_count, params, tables, azimuth_deg);
+    finish(bins, gm->cell_count, &view, params, tables, azimuth_deg);
     return horizon;
 }
 
@@ -246,7 +248,8 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     for (unsigned line = 0; line < sar->cell_count; line++) {
         struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
         draw_patch_line(bins, sar, line);
-        finish(bins, REF_GUARD_CELLS + sar->cell_count, params, &tables, sar->azimuth_deg);
+        finish(bins, REF_GUARD_CELLS + sar->cell_count, &picture->view, params, &tables,
+               sar->azimuth_deg);
     }
     return 0;
 }

@@ -75,6 +75,52 @@ double ref_sea_db(int state)
     return 5 * (state - 3);
 }
 
+/* [GIT]: the height of the waves by the state's wind. State 0 counts as a half. */
+double ref_sea_critical(int state, double wavelength_m)
+{
+    const double wind_m_s = 2.15 * pow(state > 0 ? state : 0.5, 1.04);
+    const double wave_m = 4.52e-3 * pow(wind_m_s, 2.5);
+    return (wavelength_m + 0.015) / ((14.4 * wavelength_m + 5.5) * wave_m);
+}
+
+double ref_sea_grazing_db(double over)
+{
+    return fmax(-10 * log10(1 + pow(over, -4)), -24);
+}
+
+/* The harmonics through three looks, before the mean is taken off. */
+static double wind_shape_db(double off_deg, const struct ref_sea *sea)
+{
+    const double off = off_deg * acos(-1.0) / 180;
+    const double up = sea->upwind_db, cross = sea->crosswind_db, down = sea->downwind_db;
+    return (up + 2 * cross + down) / 4 + (up - down) / 2 * cos(off) +
+           (up - 2 * cross + down) / 4 * cos(2 * off);
+}
+
+double ref_sea_wind_db(double off_deg, const struct ref_sea *sea)
+{
+    enum { LOOKS = 3600 };
+    double sum = 0;
+    for (int n = 0; n < LOOKS; n++) {
+        sum += pow(10, wind_shape_db(n * 360.0 / LOOKS, sea) / 10);
+    }
+    return wind_shape_db(off_deg, sea) - 10 * log10(sum / LOOKS);
+}
+
+void ref_sea(struct ref_bin *bins, size_t count, const struct ref_view *view,
+             const struct ref_params *params, double look_deg)
+{
+    const struct ref_sea *sea = &params->sea;
+    const double wind_db = sea->has_wind ? ref_sea_wind_db(look_deg - sea->wind_from_deg, sea) : 0;
+    for (size_t i = 0; i < count; i++) {
+        const double grazing = ref_grazing(view, bins[i].range_m, bins[i].range_m);
+        if (bins[i].kind == LM_KIND_WATER) {
+            bins[i].class_gain_db +=
+                wind_db + (sea->critical > 0 ? ref_sea_grazing_db(grazing / sea->critical) : 0);
+        }
+    }
+}
+
 double ref_facing_db(double off_deg, const struct ref_params *params)
 {
     const double off = fabs(remainder(off_deg, 90)), half = params->lobe_half_deg;

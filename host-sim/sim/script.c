@@ -287,7 +287,7 @@ static bool add_jammer(char **words, int count, struct lm_environment *e)
 /* What changes the environment; the control carries the whole of it. */
 static bool parse_environment(char **words, int count, struct lm_environment *e)
 {
-    double state;
+    double state, wind_deg = 0;
     if (strcmp(words[1], "rain") == 0) {
         return add_rain(words, count, e);
     }
@@ -298,10 +298,16 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
         e->rain_count = e->jammer_count = 0;
         return count == 3 && strcmp(words[2], "fair") == 0;
     }
-    if (count != 3 || !number(words[2], 0, LM_SEA_STATE_MAX, &state) || state != floor(state)) {
+    if (count < 3 || count > 4 || !number(words[2], 0, LM_SEA_STATE_MAX, &state) ||
+        state != floor(state)) {
         return false;
     }
     e->sea_state = (uint8_t)state;
+    e->has_wind = count == 4;
+    if (e->has_wind && !number(words[3], -180, 360, &wind_deg)) {
+        return false;
+    }
+    e->wind_from = hs_bam(wind_deg);
     return true;
 }
 

@@ -304,6 +304,14 @@ static void run_class_gain(const struct input *in, struct output *out, bool is_p
     (in->gain_db_q8, in->cell, signed_line(out->line[0]), in->cells);
 }
 
+static void run_water_gain(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_water_gain)
+    ((uint32_t)in->number[0], in->number[1], in->other_db_q8, in->cell, signed_line(out->line[0]),
+     in->cells);
+}
+
 static void run_noise_add(const struct input *in, struct output *out, bool is_plain)
 {
     copy_cells(out->line[0], in->level_db_q8);
@@ -392,6 +400,7 @@ static const struct kernel kernels[] = {
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},
+    {"lm_k_water_gain", draw_classes, run_water_gain},
     {"lm_k_noise_add", draw_levels, run_noise_add},
     {"lm_k_noise_floor", draw_levels, run_noise_floor},
     {"lm_k_gather", draw_small_levels, run_gather},

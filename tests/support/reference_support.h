@@ -24,17 +24,22 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
                                           const struct lm_speckle_config *speckle)
 {
     const struct lm_illumination_config *a = &radar->illumination;
-    struct ref_params params = {.edge_structure_db = decibels(a->edge_structure_db_q8),
-                                .edge_trees_db = decibels(a->edge_trees_db_q8),
-                                .shore_db = decibels(a->shore_db_q8),
-                                .shore_width_m = a->shore_width_m,
-                                .noise_floor_db = noise_floor_db,
-                                .looks = 1u << speckle->looks_log2,
-                                .black_db = decibels(tone->black_db_q8),
-                                .white_db = decibels(tone->white_db_q8),
-                                .gamma_exponent = decibels(tone->gamma_q8),
-                                .lobe_half_deg = hs_degrees(radar->facing.lobe_half),
-                                .wall_floor = radar->facing.floor_permille / 1000.0};
+    struct ref_params params = {
+        .edge_structure_db = decibels(a->edge_structure_db_q8),
+        .edge_trees_db = decibels(a->edge_trees_db_q8),
+        .shore_db = decibels(a->shore_db_q8),
+        .shore_width_m = a->shore_width_m,
+        .noise_floor_db = noise_floor_db,
+        .looks = 1u << speckle->looks_log2,
+        .black_db = decibels(tone->black_db_q8),
+        .white_db = decibels(tone->white_db_q8),
+        .gamma_exponent = decibels(tone->gamma_q8),
+        .lobe_half_deg = hs_degrees(radar->facing.lobe_half),
+        .wall_floor = radar->facing.floor_permille / 1000.0,
+        .sea = {.critical = ref_sea_critical(LM_SEA_STATE_OF_IMAGE, radar->wavelength_um * 1e-6),
+                .upwind_db = decibels(radar->sea.upwind_db_q8),
+                .crosswind_db = decibels(radar->sea.crosswind_db_q8),
+                .downwind_db = decibels(radar->sea.downwind_db_q8)}};
     return params;
 }
 

@@ -1,4 +1,4 @@
-/* Environment: rain, jammers and the state of the sea.
+/* Environment: rain, jammers, the state of the sea and the wind over it.
  *
  * A script or an instructor sets it (LM_CONTROL_ENVIRONMENT), or the bus (lm/weather_bus.h).
  * Nothing of it comes from the map. Laws: docs/EQUATIONS.md, "Rain", "Noise", "Class
@@ -6,6 +6,7 @@
 #ifndef LM_ENVIRONMENT_H
 #define LM_ENVIRONMENT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "lm/geo.h"
@@ -36,7 +37,9 @@ struct lm_environment {
     struct lm_jammer jammer[LM_JAMMERS_MAX];
     uint8_t rain_count;   /* entries of `rain` in use, 0..LM_RAINS_MAX */
     uint8_t jammer_count; /* entries of `jammer` in use, 0..LM_JAMMERS_MAX */
-    uint8_t sea_state;    /* 0..LM_SEA_STATE_MAX: what it does is in lm/class_gain.h */
+    uint8_t sea_state;    /* 0..LM_SEA_STATE_MAX: what it does is in lm/class_gain.h, lm/sea.h */
+    bool has_wind;        /* false: the sea looks alike from all sides */
+    fx_bam_t wind_from;   /* direction that the wind over the sea blows from, from north */
 };
 
 /* Check an environment that comes from outside. The stages that use one do not check again.

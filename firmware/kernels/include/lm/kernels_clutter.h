@@ -92,6 +92,11 @@ void lm_k_light(const struct lm_k_lit_line *line);
 void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *level_db_q8,
                      uint32_t cells);
 
+/* Add to the levels of water, whose classes are the bits of `water`, even_db_q8 and the cell's own
+ * gain. `cell` as in a tile record; gains within 2^30 of 0. Cost: 4 a cell. */
+void lm_k_water_gain(uint32_t water, int32_t even_db_q8, const int32_t *cell_db_q8,
+                     const uint32_t *cell, int32_t *level_db_q8, uint32_t cells);
+
 /* Speckle: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
  * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
  * it. `entry` has one for each block of the line, and for whole groups. */

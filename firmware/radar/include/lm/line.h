@@ -6,7 +6,7 @@
  *     tiles to cells               lm_line_trace                lm_line_trace
  *     detail                       -                            lm_line_trace
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
- *     class gain                   lm_line_trace                lm_line_trace
+ *     class gain, sea              lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
  *     chips of targets             with the scatterers below    lm_target_patch_shade, _add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
@@ -31,6 +31,7 @@
 #include "lm/detail_patch.h"
 #include "lm/illumination.h"
 #include "lm/scan_line.h"
+#include "lm/sea.h"
 #include "lm/speckle.h"
 #include "lm/target_line.h"
 
@@ -46,6 +47,7 @@ struct lm_line_setup {
     const struct lm_range_grid *grid;
     const struct lm_class_lut *class_lut;
     const struct lm_class_gain *class_gain;
+    const struct lm_sea *sea;
     uint8_t lod;                          /* LOD that the map is read from */
     const struct lm_detail_patch *detail; /* drawn into the cells; NULL: none */
     uint32_t number;                      /* of the line in the patch that has the detail */

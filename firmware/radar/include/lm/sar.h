@@ -71,7 +71,7 @@ struct lm_sar_setup {
     int32_t reference_m_q10;             /* elevation of the patch's flat ground */
     uint32_t epoch;                      /* chooses the random draws: noise, targets */
     uint8_t sea_state;
-    const struct lm_environment *environment; /* rain and jammers; NULL: none; read at once */
+    const struct lm_environment *environment; /* rain, jammers, wind; NULL: none; read at once */
     uint64_t time_us;                         /* movers are where they are at this time */
 };
 
@@ -97,6 +97,7 @@ struct lm_sar {
     uint8_t lod; /* LOD that the patch is read from */
     struct lm_class_lut class_lut;
     struct lm_class_gain class_gain;
+    struct lm_sea sea;
     const struct lm_target_set *targets; /* borrowed; NULL: none */
     struct lm_chips *chips;              /* borrowed; NULL: none */
     uint64_t time_us;                    /* of the movers' positions */

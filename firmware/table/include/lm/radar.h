@@ -73,6 +73,11 @@ struct lm_speckle_config {
     uint8_t looks_log2; /* 0..LM_LOOKS_LOG2_MAX */
 };
 
+/* Return of the sea by the wind: at looks against it, across it and with it, beside each other. */
+struct lm_sea_config {
+    int16_t upwind_db_q8, crosswind_db_q8, downwind_db_q8; /* dB; -10..10 dB each */
+};
+
 /* Tone window: which level is black, which is white, and the curve between them. */
 enum { LM_TONE_GAMMA_MIN_Q8 = 26, LM_TONE_GAMMA_MAX_Q8 = 1024 };
 struct lm_tone_config {
@@ -193,6 +198,7 @@ struct lm_radar {
     struct lm_fov_row fov[LM_FOVS];
     struct lm_sar_table sar;
     struct lm_illumination_config illumination;
+    struct lm_sea_config sea;
     struct lm_facing_config facing;
 };
 

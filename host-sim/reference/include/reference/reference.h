@@ -63,9 +63,14 @@ struct ref_params {
     double black_db, white_db; /* white_db > black_db */
     double gamma_exponent;     /* > 0 */
     double sea_db;             /* ref_sea_db of the state of the sea */
-    double lobe_half_deg;      /* half-power half-width of the lobe of walls, > 0 */
-    double wall_floor;         /* power of walls from whatever side, of their mean */
-    bool has_exact_weights;    /* bilinear weights not cut to 8 bits */
+    struct ref_sea {
+        double critical; /* critical grazing angle, radians; 0: none */
+        bool has_wind;
+        double wind_from_deg, upwind_db, crosswind_db, downwind_db;
+    } sea;
+    double lobe_half_deg;   /* half-power half-width of the lobe of walls, > 0 */
+    double wall_floor;      /* power of walls from whatever side, of their mean */
+    bool has_exact_weights; /* bilinear weights not cut to 8 bits */
 };
 
 /* 6, 3 and 8 dB of edges, 90 m of shore, lobes of 8 degrees over 0.15, floor and black -45 dB,
@@ -187,6 +192,19 @@ unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint3
 
 /* Level that a sea state (0..8) adds to water. */
 double ref_sea_db(int state);
+
+/* Critical grazing angle of a sea state (0..8), radians. */
+double ref_sea_critical(int state, double wavelength_m);
+
+/* dB that water gains at a grazing angle over the critical one, and at a look `off_deg` from where
+ * the wind comes from. */
+double ref_sea_grazing_db(double over);
+double ref_sea_wind_db(double off_deg, const struct ref_sea *sea);
+
+/* Add to `class_gain_db` of water what the grazing angle and the wind do, seen along the azimuth
+ * `look_deg`. After ref_class_gain. */
+void ref_sea(struct ref_bin *bins, size_t count, const struct ref_view *view,
+             const struct ref_params *params, double look_deg);
 
 /* dB that walls gain whose direction is `off_deg` from the line of sight. */
 double ref_facing_db(double off_deg, const struct ref_params *params);

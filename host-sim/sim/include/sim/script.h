@@ -10,7 +10,7 @@
  *   SECONDS weather fair                      no rain, nobody jams
  *   SECONDS rain LAT LON RADIUS_KM MM_PER_H   one more circle of rain
  *   SECONDS jam LAT LON DB                    one more jammer, over the noise at ten nautical miles
- *   SECONDS seastate 0..8
+ *   SECONDS seastate 0..8 [WIND_DEG]     degrees from north that the wind comes from
  *   SECONDS gain DB                           -30..30
  *   SECONDS freeze on|off
  *   SECONDS osb N [HELD_S]                    press option select button 1..20, for 0.1 s or HELD_S

@@ -23,6 +23,7 @@ struct world {
     struct lm_radar radar;
     struct ref_params params;
     double table_db[REF_SPECKLE_SLICES];
+    struct ref_view view; /* of the patch */
     struct lm_environment environment;
     bool is_rainy;
 };
@@ -78,6 +79,7 @@ static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t f
                          struct score *score)
 {
     ref_class_gain(bins, cells, &w->params, 0);
+    ref_sea(bins, cells, &w->view, &w->params, 0);
     ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
     ref_tone(bins, cells, &w->params);
     for (uint32_t i = from; i < cells; i++) {
@@ -212,6 +214,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     struct ref_picture picture;
     set_params(w);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
+    w->view = picture.view;
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
     struct ref_bin *copy = calloc(CELLS + REF_GUARD_CELLS, sizeof *copy);

@@ -106,6 +106,7 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells, fx_
     take_ground(&w->line.ground, &w->map.db.classes, bins, cells);
     ref_illuminate(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
     ref_class_gain(bins, cells, &t->params, hs_degrees(azimuth));
+    ref_sea(bins, cells, &view, &t->params, hs_degrees(azimuth));
     ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
 }
 
@@ -326,6 +327,10 @@ static void judge_sweep(struct sector_world *w, const char *what,
     t->weather = e;
     t->params = params_of(&w->radar, -INFINITY, &mode->tone, &mode->speckle);
     t->params.sea_db = e ? ref_sea_db(e->sea_state) : 0;
+    t->params.sea.critical =
+        ref_sea_critical(e ? e->sea_state : LM_SEA_STATE_OF_IMAGE, w->radar.wavelength_um * 1e-6);
+    t->params.sea.has_wind = e && e->has_wind;
+    t->params.sea.wind_from_deg = e ? hs_degrees(e->wind_from) : 0;
     ref_speckle_table(t->params.looks, t->speckle_db);
     ref_speckle_table(1u << w->radar.receiver.noise_looks_log2, t->noise_db);
     start_sector(w, command, e, NULL);
@@ -380,7 +385,9 @@ TEST(rain_jammer_and_sea_agree_with_the_reference)
         .jammer = {{place_at(w, 30, 50000), 25 * 256}},
         .rain_count = 2,
         .jammer_count = 1,
-        .sea_state = 5};
+        .sea_state = 2,
+        .has_wind = true,
+        .wind_from = FX_BAM_DEG(70)};
     judge_sweep(w, "GM, 20 nm, rain and jammer", &command, &e);
     free_sector_world(w);
 }

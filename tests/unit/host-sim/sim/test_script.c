@@ -223,7 +223,7 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     struct script s;
     assert_int_equal(read_text(&s,
                                "1 rain 45 -90 10 30\n2 jam -45 90 12.5\n3 rain 0 0 0.1 150\n"
-                               "4 seastate 6\n5 weather fair\n6 jam 0 45 -20\n"),
+                               "4 seastate 6 -90\n5 weather fair\n6 jam 0 45 -20\n7 seastate 2\n"),
                      0);
     struct lm_environment e = at(&s, 1).environment;
     assert_int_equal(e.rain_count, 1);
@@ -248,10 +248,15 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     e = at(&s, 5).environment;
     assert_int_equal(e.rain_count + e.jammer_count, 0);
     assert_int_equal(e.sea_state, 6); /* the sea outlasts the weather */
+    assert_true(e.has_wind);
+    assert_int_equal(e.wind_from, hs_bam(270));
     e = at(&s, 6).environment;
     assert_int_equal(e.jammer_count, 1);
     assert_int_equal(e.jammer[0].noise_ratio_db_q8, -5120);
     assert_int_equal(lm_environment_check(&e), LM_OK);
+    e = at(&s, 7).environment;
+    assert_int_equal(e.sea_state, 2);
+    assert_false(e.has_wind); /* nobody says where it comes from now */
     script_free(&s);
 }
 
@@ -333,7 +338,8 @@ TEST(commands_that_are_none_are_refused)
                                "0 seastate 9\n",
                                "0 seastate -1\n",
                                "0 seastate 2.5\n",
-                               "0 seastate 1 1\n"};
+                               "0 seastate 1 361\n",
+                               "0 seastate 1 1 1\n"};
     freopen("/dev/null", "w", stderr);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct script s;
