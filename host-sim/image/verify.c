@@ -90,7 +90,7 @@ static void check_class(struct verify *v, int number)
         return;
     }
     bool has_remains = false;
-    has_remains |= (c->reserved0 | c->reserved1[0] | c->reserved1[1]) != 0;
+    has_remains |= (c->reserved1[0] | c->reserved1[1]) != 0 || c->flags > LM_CLASS_NATURAL;
     for (size_t i = strnlen(c->name, sizeof c->name); i < sizeof c->name; i++) {
         has_remains |= c->name[i] != 0;
     }

@@ -11,12 +11,13 @@
 
 static const char *const key_names[DB_KEY_COUNT] = {
     "colour",  "kind",          "gamma_db", "spread_db", "limits_db",
-    "texture", "texture_shape", "height_m", "looks",
+    "texture", "texture_shape", "height_m", "looks",     "borders",
 };
 enum { KEYS_REQUIRED = DB_KEY_LIMITS + 1 };
 
 static const char *const kind_names[] = {"ground", "water", "structure", "trees"};
 static const char *const texture_names[] = {"gaussian", "rayleigh", "k"};
+static const char *const border_names[] = {"straight", "natural"};
 
 /* The keys whose value is one number: where it is kept, its range, and what a message calls it. */
 struct number_key {
@@ -114,12 +115,16 @@ static const char *set_key(struct db_class *c, enum db_class_key key, const char
         word = find_word(texture_names, 3, value);
         c->texture = word < 0 ? DB_TEXTURE_GAUSSIAN : (enum db_texture)word;
         return word >= 0 ? NULL : "gaussian, rayleigh or k";
+    case DB_KEY_BORDERS:
+        word = find_word(border_names, 2, value);
+        c->is_natural = word == 1;
+        return word >= 0 ? NULL : "natural or straight";
     default:
         return "a known key";
     }
 }
 
-static int finish_section(const struct db_text_file *f, const struct section *s)
+static int finish_section(const struct db_text_file *f, struct section *s)
 {
     if (!s->c) {
         return 0;
@@ -129,6 +134,9 @@ static int finish_section(const struct db_text_file *f, const struct section *s)
             return db_text_error(f, "add it to the section", "class [%s] ends here without `%s`",
                                  s->c->name, key_names[i]);
         }
+    }
+    if (!s->has_key[DB_KEY_BORDERS]) {
+        s->c->is_natural = s->c->kind != DB_KIND_STRUCTURE;
     }
     if (s->c->gamma_db < s->c->low_db || s->c->gamma_db > s->c->high_db) {
         return db_text_error(f, "widen limits_db or move gamma_db",
@@ -250,6 +258,9 @@ static void write_value(FILE *out, const struct db_class *c, enum db_class_key k
         break;
     case DB_KEY_TEXTURE:
         snprintf(value, sizeof value, "%s", texture_names[c->texture]);
+        break;
+    case DB_KEY_BORDERS:
+        snprintf(value, sizeof value, "%s", border_names[c->is_natural]);
         break;
     default:
         memcpy(&number, (const char *)c + number_keys[key].offset, sizeof number);

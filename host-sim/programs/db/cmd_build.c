@@ -177,6 +177,7 @@ static void fill_classes(struct lm_classes *to, const struct db_class_table *tab
         e->spread_db_q8 = (uint16_t)lround(c->spread_db * 256.0);
         e->height_dm = (uint16_t)lround(c->height_m * 10.0);
         e->looks = (uint16_t)fmax(1.0, round(c->looks));
+        e->flags = c->is_natural ? LM_CLASS_NATURAL : 0;
     }
     memcpy(to->height_dm, image_heights_dm, sizeof to->height_dm);
 }

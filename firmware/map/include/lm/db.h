@@ -112,6 +112,11 @@ struct lm_band {
 };
 _Static_assert(sizeof(struct lm_band) == 24, "the record must be what FORMATS.md says");
 
+/* Flags of a class. */
+enum {
+    LM_CLASS_NATURAL = 1 /* its borders have grown: where both classes are natural, they may bend */
+};
+
 /* Class: one land cover of the image. */
 struct lm_class {
     char name[16];         /* zero-padded; may fill all 16 */
@@ -123,7 +128,7 @@ struct lm_class {
     uint16_t looks;        /* independent looks of a texture sample, from 1; host tools use it */
     uint8_t facing;        /* of walls: 0 none; n = 1..LM_FACINGS: (n - 1) * 11.25 degrees from
                               north, modulo 90 */
-    uint8_t reserved0;
+    uint8_t flags;         /* LM_CLASS_NATURAL */
     int16_t lod_gain_db_q8[LM_DB_LODS_MAX]; /* added to the reflectivity of its cells, by LOD */
     uint8_t reserved1[2];
 };

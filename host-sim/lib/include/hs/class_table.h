@@ -11,11 +11,14 @@
  *     texture_shape  order of the k texture, 0.1..1000; 1 unless given
  *     height_m       height of structures and canopy where nothing better is known, 0..500 m
  *     looks          speckle looks, 1..64; 1 unless given
+ *     borders        natural | straight: whether people made its borders; unless given, those of
+ *                    structures are straight
  *
  * colour to limits_db are required. A class is known elsewhere by its place in the file, from 0. */
 #ifndef HS_CLASS_TABLE_H
 #define HS_CLASS_TABLE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -38,6 +41,7 @@ enum db_class_key {
     DB_KEY_SHAPE,
     DB_KEY_HEIGHT,
     DB_KEY_LOOKS,
+    DB_KEY_BORDERS,
     DB_KEY_COUNT
 };
 
@@ -50,6 +54,7 @@ struct db_class {
     double texture_shape;
     double height_m;
     double looks;
+    bool is_natural;                           /* borders have grown */
     char source[DB_KEY_COUNT][DB_SOURCE_SIZE]; /* the remark after each value; empty when none */
 };
 
