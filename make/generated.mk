@@ -9,7 +9,7 @@ vpath %.c $(GEN)
 
 SRC_fixed    := $(sort $(wildcard fixed/src/*.c) fixed/src/tables.c)
 SRC_firmware := $(sort $(wildcard firmware/*/*.c) $(SRC_kernels) \
-    $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c))
+    $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c map/grown_table.c))
 SRC_core     := $(SRC_firmware) $(SRC_fixed)
 
 GEN_INC := $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include)
@@ -27,7 +27,8 @@ $(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/progr
 $(GEN)/fixed/src/tables.c: SET := fixed
 $(GEN)/firmware/clutter/noise_table.c: SET := noise
 $(GEN)/firmware/clutter/response_table.c: SET := response
-$(GEN)/fixed/src/tables.c $(addprefix $(GEN)/firmware/clutter/,noise_table.c response_table.c): $(GEN)/bin/tables
+$(GEN)/firmware/map/grown_table.c: SET := grown
+$(GEN)/fixed/src/tables.c $(addprefix $(GEN)/firmware/,clutter/noise_table.c clutter/response_table.c map/grown_table.c): $(GEN)/bin/tables
 	@mkdir -p $(@D)
 	$(Q)$< $(SET) $@
 

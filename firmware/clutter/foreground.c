@@ -31,6 +31,6 @@ lm_horizon_q40_t lm_foreground_horizon(const struct lm_foreground *f,
                                        struct lm_tile_cache *tiles,
                                        const struct lm_ground_path *path, struct lm_scan_line *line)
 {
-    lm_scan_line_run(line, tiles, f->lod, path, LM_FOREGROUND_CELLS);
+    lm_scan_line_run(line, tiles, f->lod, NULL, path, LM_FOREGROUND_CELLS);
     return lm_foreground_line_horizon(&f->grid, class_lut, line);
 }

@@ -1,5 +1,6 @@
 #include "lm/scan_line.h"
 
+#include "lm/grown.h"
 #include "lm/tile_read.h"
 
 /* A line is walked from run to run. A run is a stretch of cells in one tile.
@@ -36,6 +37,7 @@ struct map_axis {
 /* Walk of a line through the tiles of one LOD. */
 struct walk {
     const struct lm_ground_path *path; /* borrowed */
+    const struct lm_k_blend *blend;    /* borrowed; NULL: the nearest cells are read */
     struct map_axis north, east;
     uint32_t cells;
     uint32_t side_log2; /* of a tile, in BAM of latitude */
@@ -50,6 +52,27 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
         lod++;
     }
     return lod;
+}
+
+/* Lengths of cells for crowns: the map must not show them, and the picture must. */
+enum { CROWN_CELL_MM = 3500 };
+
+/* Eight texels a cell, or those of the crowns' own size. */
+enum { TEXEL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 3 };
+
+void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm)
+{
+    const uint32_t map_mm = lm_db_cell_mm(db, 0);
+    const bool has_crowns = cell_mm < CROWN_CELL_MM && map_mm > CROWN_CELL_MM;
+    b->is_on = (uint64_t)3 * cell_mm < (uint64_t)2 * map_mm;
+    b->natural = b->crowned = b->flat = 0;
+    for (uint32_t i = 0; i < LM_DB_CLASSES; i++) {
+        const struct lm_class *c = &db->classes.entry[i];
+        b->natural |= (uint32_t)(c->flags & LM_CLASS_NATURAL) << i;
+        b->crowned |= (uint32_t)(has_crowns && c->kind == LM_KIND_TREES) << i;
+    }
+    b->grown_shift =
+        has_crowns ? 32u - LM_TILE_CELLS_LOG2 - db->shift0 + LM_GROWN_TEXEL_LOG2 : TEXEL_SHIFT;
 }
 
 static inline uint64_t magnitude(int64_t x)
@@ -124,6 +147,7 @@ static inline void start_axis(struct map_axis *a, struct path_coordinate g, uint
 static OUT_OF_LINE void start_walk(struct walk *w, const struct lm_db *db, uint8_t lod,
                                    const struct lm_ground_path *path, uint32_t cells)
 {
+    w->blend = NULL;
     const uint64_t from_pole = path->latitude + ((uint64_t)FX_BAM_90 << 32);
     w->path = path;
     w->cells = cells;
@@ -252,7 +276,11 @@ static void read_assigned(const struct walk *w, const struct lm_tile *pool, uint
     if (first != end) {
         const struct lm_tile_coords coords = {quadratic_of(&w->north.coordinate),
                                               quadratic_of(&w->east.coordinate)};
-        lm_tile_read(pool, &coords, first, end, line);
+        if (w->blend) {
+            lm_tile_blend(w->blend, &coords, first, end, line);
+        } else {
+            lm_tile_read(pool, &coords, first, end, line);
+        }
     }
 }
 
@@ -281,10 +309,22 @@ static uint32_t read_zone(struct walk *w, struct lm_tile_cache *tiles, uint8_t l
 }
 
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t lod,
-                      const struct lm_ground_path *path, uint32_t cells)
+                      const struct lm_scan_blend *blend, const struct lm_ground_path *path,
+                      uint32_t cells)
 {
     struct walk w;
+    struct lm_k_blend map;
     start_walk(&w, tiles->db, lod, path, cells);
+    if (blend && blend->is_on) {
+        map = (struct lm_k_blend){.points = lm_tile_origin(tiles->pool),
+                                  .grown = lm_grown,
+                                  .height_dm_of_code = tiles->db->classes.height_dm,
+                                  .grown_shift = blend->grown_shift,
+                                  .natural = blend->natural,
+                                  .crowned = blend->crowned,
+                                  .flat = blend->flat};
+        w.blend = &map;
+    }
     for (uint32_t k = 0; k < cells;) {
         k = read_zone(&w, tiles, lod, k, line);
     }

@@ -8,15 +8,27 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
                             east);
 }
 
+/* Fill the last group of cells first..end - 1, which is read whole: any tile of the pool will do.
+ * Returns how many groups there are. */
+static uint32_t fill_groups(uint32_t first, uint32_t end, struct lm_scan_line *line)
+{
+    for (int lane = 0; lane < LM_LANES; lane++) {
+        line->cell[end + (uint32_t)lane] = 0;
+        line->elevation_m_q14[end + (uint32_t)lane] = 0;
+    }
+    return (end - first + LM_LANES - 1) / LM_LANES;
+}
+
 void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coords, uint32_t first,
                   uint32_t end, struct lm_scan_line *line)
 {
-    const uint32_t groups = (end - first + LM_LANES - 1) / LM_LANES;
-    uint32_t *const cell_behind = line->cell + end;
-    int32_t *const elevation_behind = line->elevation_m_q14 + end;
-    for (int lane = 0; lane < LM_LANES; lane++) {
-        cell_behind[lane] = 0; /* the last group reads these too: any tile of the pool will do */
-        elevation_behind[lane] = 0;
-    }
+    const uint32_t groups = fill_groups(first, end, line);
     lm_k_tile_read(lm_tile_origin(pool), coords, first, groups, line->cell, line->elevation_m_q14);
+}
+
+void lm_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *coords,
+                   uint32_t first, uint32_t end, struct lm_scan_line *line)
+{
+    const uint32_t groups = fill_groups(first, end, line);
+    lm_k_tile_blend(map, coords, first, groups, line->cell, line->elevation_m_q14);
 }

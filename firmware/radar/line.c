@@ -5,7 +5,7 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
                                lm_horizon_q40_t horizon)
 {
     const uint32_t cells = setup->grid->cells;
-    lm_scan_line_run(&line->ground, tiles, setup->lod, path, cells);
+    lm_scan_line_run(&line->ground, tiles, setup->lod, setup->blend, path, cells);
     if (setup->detail) {
         lm_detail_patch_draw(setup->detail, setup->number, path, &line->ground, cells);
     }

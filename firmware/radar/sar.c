@@ -103,6 +103,7 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
                                             half_m_q8, half_m_q8};
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->lod = lm_scan_lod(db, c->cell_mm);
+    lm_scan_blend_set(&s->blend, db, c->cell_mm);
     lm_range_grid_set(&s->grid, &s->radar->illumination, near_m_q8 + cell_m_q8 / 2, cell_m_q8,
                       cells + LM_SAR_GUARD, lm_m_q10_of_m_q6(c->height_m_q6), reference_m_q10);
     lm_sea_set_cells(&s->sea, &s->grid, near_m_q8 + cell_m_q8 / 2);
@@ -407,14 +408,18 @@ static lm_horizon_q40_t start_horizon(struct lm_sar *s, struct lm_tile_cache *ti
 static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                        struct lm_line *line)
 {
-    const struct lm_line_setup setup = {
-        .grid = &s->grid,
-        .class_lut = &s->class_lut,
-        .class_gain = &s->class_gain,
-        .sea = &s->sea,
-        .lod = s->lod,
-        .detail = s->detail_state == LM_SAR_DETAIL_READY ? &s->detail : NULL,
-        .number = number};
+    const bool has_detail = s->detail_state == LM_SAR_DETAIL_READY;
+    struct lm_scan_blend blend = s->blend;
+    /* Detail takes the map's structures away, and their codes' heights with them. */
+    blend.flat = has_detail ? s->detail.structures : 0;
+    const struct lm_line_setup setup = {.grid = &s->grid,
+                                        .class_lut = &s->class_lut,
+                                        .class_gain = &s->class_gain,
+                                        .sea = &s->sea,
+                                        .blend = &blend,
+                                        .lod = s->lod,
+                                        .detail = has_detail ? &s->detail : NULL,
+                                        .number = number};
     struct lm_ground_path path;
     set_path(&path, s, number);
     s->horizon = start_horizon(s, tiles, number, line);

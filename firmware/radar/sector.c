@@ -179,12 +179,14 @@ static void set_ranges(struct lm_sector *s, struct lm_tile_cache *tiles, int32_t
     lm_beam_clear(&s->beam);
 }
 
-/* LOD of the sector: map cells about as large as the bins of the display. */
-static uint8_t lod_of(const struct lm_sector *s, const struct lm_db *db)
+/* Set the LOD of the sector: map cells about as large as the bins of the display. */
+static void set_lod(struct lm_sector *s, const struct lm_db *db)
 {
     const uint32_t side_m =
         lm_sector_is_window(s) ? 2 * s->half_m : s->radar->range[s->command.range_index].range_m;
-    return lm_scan_lod(db, lm_mm_of_m(side_m) / s->radar->cells);
+    const uint32_t bin_mm = lm_mm_of_m(side_m) / s->radar->cells;
+    s->lod = lm_scan_lod(db, bin_mm);
+    lm_scan_blend_set(&s->blend, db, bin_mm);
 }
 
 static bool differs(int32_t a_m_q10, int32_t b_m_q10)
@@ -250,7 +252,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
 {
     const uint32_t old_edge_m_q8 = s->edge_m_q8, old_half_m = s->half_m;
     s->half_m = s->radar->range[s->command.range_index].range_m * fov_of(s)->window_permille / 1000;
-    s->lod = lod_of(s, tiles->db);
+    set_lod(s, tiles->db);
     const int32_t reference_m_q10 = reference_m_q10_of(tiles, s->lod, platform->position);
     s->up = platform->heading;
     s->platform = *platform;
@@ -413,6 +415,7 @@ static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azi
                                         .class_lut = &s->class_lut,
                                         .class_gain = &s->class_gain,
                                         .sea = &s->sea,
+                                        .blend = &s->blend,
                                         .lod = s->lod};
     struct lm_geo_ray ray;
     lm_geo_set_ray(&ray, &s->origin, azimuth);

@@ -333,6 +333,40 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
     bin->height_m = db->classes->height_dm[cell & 15] / 10.0;
 }
 
+/* The four cells around a place of a tile, by the points of its record. */
+static struct ref_corners corners_of(const struct ref_db *db, const struct lm_tile *tile,
+                                     const struct grid_place *g, double cell_m, bool is_exact)
+{
+    const double half = 0.5;
+    const double y = g->r + g->north + half, x = g->c + g->east + half; /* rows of points */
+    const double v = y - floor(y), u = x - floor(x);
+    const struct lm_tile_point *low = &tile->points[(int)y][(int)x];
+    const struct lm_tile_point *high = &tile->points[(int)y + 1][(int)x];
+    const bool has_crowns = cell_m < 3.5 && ref_db_cell_m(db, 0) > 3.5;
+    const double texels = has_crowns ? ldexp(1, (int)db->shift0 - 6) : 8;
+    return (struct ref_corners){
+        .cell = {low[0].cell, low[1].cell, high[0].cell, high[1].cell},
+        .north = is_exact ? v : floor(v * 128) / 128,
+        .east = is_exact ? u : floor(u * 128) / 128,
+        .texel_row = fmod((g->r + g->north) * texels, 128),
+        .texel_column = fmod((g->c + g->east) * texels, 128),
+        .has_crowns = has_crowns,
+    };
+}
+
+void ref_db_ground(const struct ref_db *db, double cell_m, struct ref_place place, bool is_exact,
+                   struct ref_bin *bin)
+{
+    struct grid_place g;
+    const struct lm_tile *tile = find_nearest(db, 0, place, &g);
+    if (tile != NULL && tile->lod == 0 && cell_m < 2 * ref_db_cell_m(db, 0) / 3) {
+        const struct ref_corners corners = corners_of(db, tile, &g, cell_m, is_exact);
+        ref_blend_cells(db, &corners, bin);
+    } else {
+        ref_db_cell(db, ref_db_level_for(db, cell_m), place, bin);
+    }
+}
+
 bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
                       bool is_exact, double *elevation_m)
 {

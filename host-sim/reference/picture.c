@@ -5,11 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void sample(const struct ref_db *db, unsigned level, const struct ref_params *params,
+static void sample(const struct ref_db *db, double cell_m, const struct ref_params *params,
                    struct ref_bin *bin)
 {
-    ref_db_cell(db, level, bin->place, bin);
-    ref_db_elevation(db, level, bin->place, params->has_exact_weights, &bin->elevation_m);
+    ref_db_ground(db, cell_m, bin->place, params->has_exact_weights, bin);
+    ref_db_elevation(db, ref_db_level_for(db, cell_m), bin->place, params->has_exact_weights,
+                     &bin->elevation_m);
 }
 
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
@@ -42,13 +43,12 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
                    double azimuth_deg, uint32_t sample_number)
 {
     const struct ref_view view = ref_gm_view(db, gm, params);
-    const unsigned level = ref_db_level_for(db, gm->cell_m);
     const double length_m = gm->cell_count * gm->cell_m;
     const struct ref_path path = ref_gm_path(gm->antenna, azimuth_deg, length_m);
     for (unsigned i = 0; i < gm->cell_count; i++) {
         bins[i].range_m = (i + 0.5) * gm->cell_m;
         bins[i].place = ref_path_at(&path, bins[i].range_m / length_m);
-        sample(db, level, params, &bins[i]);
+        sample(db, gm->cell_m, params, &bins[i]);
     }
     const size_t first = ref_first_shown(bins, gm->cell_count, &view);
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
@@ -125,7 +125,6 @@ double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
     const double across_m = sar_offset_m(sar, (int)line);
     const double end_m = sar->range_m + sar_offset_m(sar, -REF_GUARD_CELLS) - sar->cell_m / 2;
     const double start_m = end_m / 16, cell_m = (end_m - start_m) / REF_COARSE_CELLS;
-    const unsigned level = ref_db_level_for(db, cell_m);
     struct ref_path path;
     for (int i = 0; i < 3; i++) {
         const double range_m = start_m + (end_m - start_m) * i / 2;
@@ -138,7 +137,7 @@ double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
     for (int i = 0; i < REF_COARSE_CELLS; i++) {
         bins[i].range_m = start_m + (i + 0.5) * cell_m;
         bins[i].place = ref_path_at(&path, (i + 0.5) / REF_COARSE_CELLS);
-        sample(db, level, params, &bins[i]);
+        sample(db, cell_m, params, &bins[i]);
     }
     return ref_highest_tangent(bins, REF_COARSE_CELLS, sar->antenna_m);
 }
@@ -152,7 +151,7 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
         const double along_m = sar_offset_m(sar, i);
         bin->range_m = sar->range_m + along_m;
         bin->place = ref_surface_at(surface, sar_offset_m(sar, (int)line), along_m);
-        sample(db, picture->level, params, bin);
+        sample(db, sar->cell_m, params, bin);
     }
     ref_illuminate(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
                    REF_GUARD_CELLS + sar->cell_count, &picture->view, params,

@@ -1,3 +1,5 @@
+#include "fx/hash.h"
+#include "lm/grown.h"
 #include "lm/noise.h"
 #include "tables/tables.h"
 
@@ -291,6 +293,102 @@ static const struct table response_tables[] = {
      RESPONSE_CELLS + 1, response_envelope},
 };
 
+/* What has grown: a pattern that repeats itself, in texels of 0.6 m. Numbers that look drawn are
+ * hashes, so that every machine makes the same. */
+enum { GROWN = LM_K_GROWN_SIDE, WAVES_ACROSS = 16, TREES_ACROSS = 11, TREES_ALONG = 10 };
+
+/* 0..1, by three numbers. */
+static long double drawn(int a, int b, int c)
+{
+    return fx_hash3((uint32_t)a, (uint32_t)b, (uint32_t)c) / 4294967296.0L;
+}
+
+/* Bends of borders: waves of all directions, 76 m / k long, k = 3..16, the longer the stronger, so
+ * that a border has bays and in them smaller ones. */
+struct wave {
+    long double strength, phase;
+    int p, q;
+};
+
+static int set_waves(struct wave *waves)
+{
+    int count = 0;
+    for (int p = 0; p <= WAVES_ACROSS; p++) {
+        for (int q = -WAVES_ACROSS; q <= WAVES_ACROSS; q++) {
+            const long double k = hypotl(p, q);
+            if (k >= 3 && k <= WAVES_ACROSS && (p > 0 || q > 0)) {
+                waves[count++] = (struct wave){powl(k, -1.2L), drawn(p, q, 1), p, q};
+            }
+        }
+    }
+    return count;
+}
+
+static long double bend_at(int row, int column)
+{
+    static struct wave waves[(WAVES_ACROSS + 1) * (2 * WAVES_ACROSS + 1)];
+    static int count;
+    long double sum = 0;
+    count = count > 0 ? count : set_waves(waves);
+    for (int i = 0; i < count; i++) {
+        const struct wave *w = &waves[i];
+        const long double turn = (long double)(w->p * row + w->q * column) / GROWN + w->phase;
+        sum += cosl(2 * PI * turn) * w->strength;
+    }
+    return sum;
+}
+
+/* Distance on a ring of GROWN texels. */
+static long double around(long double x)
+{
+    return x - GROWN * floorl(x / GROWN + 0.5L);
+}
+
+/* Height of the crown of tree (i, j) over texel (row, column), as a share of the canopy's, or 0: a
+ * dome 5 to 8 m wide. One tree in twelve is missing. A texel is 3/4 as wide as high: the cosine of
+ * a middle latitude. */
+static long double crown_at(int i, int j, int row, int column)
+{
+    const int n = (j % TREES_ALONG + TREES_ALONG) % TREES_ALONG;
+    const int m = (i % TREES_ACROSS + TREES_ACROSS) % TREES_ACROSS;
+    const long double pitch_row = (long double)GROWN / TREES_ACROSS,
+                      pitch_column = (long double)GROWN / TREES_ALONG;
+    const long double north = (m + 0.5L + 0.7L * (drawn(m, n, 2) - 0.5L)) * pitch_row;
+    const long double east = (n + (m % 2) * 0.5L + 0.7L * (drawn(m, n, 3) - 0.5L)) * pitch_column;
+    const long double radius = 4.6L + 2.6L * drawn(m, n, 4), top = 0.96L + 0.16L * drawn(m, n, 5);
+    const long double away = hypotl(around(row - north), 0.75L * around(column - east)) / radius;
+    return away >= 1 || drawn(m, n, 6) < 1 / 12.0L ? 0 : top * (1 - 0.16L * away * away);
+}
+
+enum { CROWN_MEAN_PERMILLE = 923 }; /* of all texels, before they are made 1 */
+
+static long double canopy_at(int row, int column)
+{
+    const int i = row * TREES_ACROSS / GROWN, j = column * TREES_ALONG / GROWN;
+    long double top = 0.8L; /* what grows in the gaps */
+    for (int di = -2; di <= 2; di++) {
+        for (int dj = -2; dj <= 2; dj++) {
+            top = fmaxl(top, crown_at(i + di, j + dj, row, column));
+        }
+    }
+    return top * 1000 / CROWN_MEAN_PERMILLE;
+}
+
+/* The first row and column are repeated behind the last: four texels are read at a time. */
+static int64_t grown(int row, int i)
+{
+    (void)row;
+    const int r = i / LM_K_GROWN_STRIDE % GROWN, c = i % LM_K_GROWN_STRIDE % GROWN;
+    const int64_t bend = llroundl(fminl(fmaxl(60 * bend_at(r, c), -127), 127));
+    const int64_t crown = 128 + llroundl(256 * (canopy_at(r, c) - 1));
+    return (bend & 255) | crown << 8;
+}
+
+static const struct table grown_tables[] = {
+    {"lm_grown", "uint16_t", "bend of borders, and crowns of trees times 256", 0, LM_K_GROWN_WORDS,
+     grown},
+};
+
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
 const struct table_set table_sets[] = {
@@ -298,5 +396,6 @@ const struct table_set table_sets[] = {
     {"noise", "firmware/clutter/noise_table.c", "lm/noise.h", noise_tables, COUNT(noise_tables)},
     {"response", "firmware/clutter/response_table.c", "lm/response.h", response_tables,
      COUNT(response_tables)},
+    {"grown", "firmware/map/grown_table.c", "lm/grown.h", grown_tables, COUNT(grown_tables)},
 };
 const int table_set_count = COUNT(table_sets);

@@ -21,7 +21,7 @@ static void sample(struct lm_tile_cache *cache, struct lm_scan_line *line, struc
     const uint8_t level = lm_scan_lod(cache->db, cell_mm);
     for (int i = 0; i < 2; i++) {
         lm_ground_path_fit(&path, points, 64);
-        lm_scan_line_run(line, cache, level, &path, 64); /* asks for what is missing */
+        lm_scan_line_run(line, cache, level, NULL, &path, 64); /* asks for what is missing */
         lm_tile_cache_service(cache, (uint64_t)i * 2000000, 64);
     }
     (void)lm_scan_elevation(cache, level, from, 0);

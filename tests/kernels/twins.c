@@ -5,6 +5,7 @@
  *   twins [SEEDS]     so many lines for each kernel (300) */
 #include "fx/sat.h"
 #include "hs/rng.h"
+#include "lm/grown.h"
 #include "lm/illumination.h"
 #include "lm/noise.h"
 #include "lm/tile_cache.h"
@@ -179,7 +180,9 @@ static void draw_ground(struct input *in, uint32_t cell_q8)
         low_bits = any % 5 == 0 ? any >> 8 : low_bits;
         elevation_q14 = is_wild ? (int32_t)hs_rng_below(&in->rng, 48000u << 14) - (16000 << 14)
                                 : elevation_q14 % (1 << 26) + within(in, 16 * cell_q8);
-        in->ground.cell[i] = (any >> 16 & 0xFF00) | (low_bits & 0xFF);
+        const int32_t code = (int32_t)(any >> 24), blended = (int32_t)hs_rng_below(&in->rng, 256);
+        const int32_t more_db_q8 = any % 3 == 0 ? (blended - code) * LM_GAMMA_CODE_STEP_DB_Q8 : 0;
+        in->ground.cell[i] = (uint32_t)more_db_q8 << 16 | (any >> 16 & 0xFF00) | (low_bits & 0xFF);
         in->ground.elevation_m_q14[i] = elevation_q14;
     }
 }
@@ -196,6 +199,25 @@ static void draw_class_lut(struct input *in, struct lm_illumination_config *conf
     config->shore_db_q8 = (int16_t)hs_rng_below(&in->rng, 4096);
     config->shore_width_m = (uint16_t)hs_rng_below(&in->rng, 2000);
     lm_class_lut_set(&in->class_lut, config, &classes);
+}
+
+/* Tiles of a few classes, so that cells side by side are often of one; masks of any. */
+static void draw_blend(struct input *in)
+{
+    struct lm_illumination_config config;
+    draw_tiles(in);
+    draw_class_lut(in, &config);
+    const uint32_t kinds = (uint32_t)hs_rng_u64(&in->rng) & 0xF0;
+    for (int t = 0; t < TILES; t++) {
+        for (int i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
+            in->pool[t].points[i / LM_TILE_POINTS][i % LM_TILE_POINTS].cell &=
+                (uint16_t)(0xFF0F | kinds);
+        }
+    }
+    in->number[0] = 20 + (int32_t)hs_rng_below(&in->rng, 6);
+    in->number[1] = (int32_t)hs_rng_below(&in->rng, 65536);
+    in->number[3] = (int32_t)(hs_rng_u64(&in->rng) & hs_rng_u64(&in->rng) & 0xFFFF);
+    in->number[2] = hs_rng_below(&in->rng, 2) ? (int32_t)hs_rng_below(&in->rng, 65536) : 0;
 }
 
 static void draw_light(struct input *in)
@@ -252,6 +274,25 @@ static void run_tile_read(const struct input *in, struct output *out, bool is_pl
     TWIN(lm_k_tile_read)
     (lm_tile_origin(&in->pool[0]), &in->places, in->first, groups, out->line[0],
      signed_line(out->line[1]));
+    out->first = in->first;
+    out->end[0] = out->end[1] = in->first + groups * LM_LANES;
+    out->room = out->end[0];
+}
+
+static void run_tile_blend(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t groups = (in->cells - in->first + LM_LANES - 1) / LM_LANES;
+    const struct lm_k_blend map = {.points = lm_tile_origin(in->pool),
+                                   .grown = lm_grown,
+                                   .height_dm_of_code = in->class_lut.height_dm,
+                                   .grown_shift = (uint32_t)in->number[0],
+                                   .natural = (uint32_t)in->number[1],
+                                   .crowned = (uint32_t)in->number[2],
+                                   .flat = (uint32_t)in->number[3]};
+    copy_cells(out->line[0], in->ground.cell);
+    copy_cells(out->line[1], in->ground.elevation_m_q14);
+    TWIN(lm_k_tile_blend)
+    (&map, &in->places, in->first, groups, out->line[0], signed_line(out->line[1]));
     out->first = in->first;
     out->end[0] = out->end[1] = in->first + groups * LM_LANES;
     out->room = out->end[0];
@@ -397,6 +438,7 @@ static void run_tone(const struct input *in, struct output *out, bool is_plain)
 
 static const struct kernel kernels[] = {
     {"lm_k_tile_read", draw_tiles, run_tile_read},
+    {"lm_k_tile_blend", draw_blend, run_tile_blend},
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},

@@ -71,7 +71,7 @@ static inline void take_ground(const struct lm_scan_line *ground, const struct l
         bins[i].has_data = bins[i].class_index != LM_DB_CLASS_NONE;
         bins[i].kind = classes->entry[bins[i].class_index].kind;
         bins[i].facing = classes->entry[bins[i].class_index].facing;
-        bins[i].gamma_db = (cell >> 8) / 2.0 - 80;
+        bins[i].gamma_db = (cell >> 8 & 255) / 2.0 - 80 + ((int32_t)cell >> 16) / 256.0;
         bins[i].height_m = classes->height_dm[cell & 15] / 10.0;
         bins[i].elevation_m = ground->elevation_m_q14[i] / 16384.0;
     }

@@ -106,15 +106,18 @@ static inline uint8x16_t neon_edges(const struct neon_class_lut *l, struct neon_
     return vqtbl1q_u8(l->edge_db_q3, vbicq_u8(mark, before));
 }
 
-/* What the cells show but for gain: edge, reflectivity and the horizon's rise. */
-static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells, uint32x4x4_t rise)
+/* What the cells show but for gain: edge, reflectivity and the horizon's rise. `more_q8` is that of
+ * the cells' upper halves, which may be negative and wraps. */
+static inline uint16x8x2_t neon_shown(uint8x16_t edge_db_q3, uint16x8x2_t cells,
+                                      uint16x8x2_t more_q8, uint32x4x4_t rise)
 {
     uint16x8x2_t own_q8 = {
         {vshll_n_u8(vget_low_u8(edge_db_q3), 5), vshll_high_n_u8(edge_db_q3, 5)}};
     /* The upper byte times LM_GAMMA_CODE_STEP_DB_Q8. With LM_EDGE_MAX_DB_Q8 and the rise's decibels
      * it takes 16 bits: 32640 + 8160 + 24659. */
     for (size_t n = 0; n < 2; n++) {
-        own_q8.val[n] = vsraq_n_u16(own_q8.val[n], vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
+        own_q8.val[n] = vsraq_n_u16(vaddq_u16(own_q8.val[n], more_q8.val[n]),
+                                    vandq_u16(cells.val[n], vdupq_n_u16(0xFF00)), 1);
     }
     return neon_add_db_q8_of_16(own_q8, rise);
 }
@@ -125,7 +128,8 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
                                                              struct neon_before *b,
                                                              struct neon_place *at)
 {
-    const uint16x8x2_t cells = neon_lower_halves(vld1q_u32_x4(at->cell));
+    const uint32x4x4_t words = vld1q_u32_x4(at->cell);
+    const uint16x8x2_t cells = neon_lower_halves(words);
     const uint8x16_t lower = neon_lower_bytes(cells);
     const int32x4x4_t seen = neon_tangents(l, at, vandq_u8(lower, vdupq_n_u8(LM_K_CODES - 1)));
     uint32x4x4_t rise;
@@ -137,7 +141,7 @@ static inline __attribute__((always_inline)) void neon_cells(const struct neon_c
     uint8x16_t left;
     const uint8x16_t edge_db_q3 = neon_edges(l, b, hidden->bytes, vshrq_n_u8(lower, 4), &left);
     vst1q_u8(at->behind_shore, left);
-    const uint16x8x2_t shown_q8 = neon_shown(edge_db_q3, cells, rise);
+    const uint16x8x2_t shown_q8 = neon_shown(edge_db_q3, cells, neon_upper_halves(words), rise);
     const uint32x4x4_t gain_db_q8 = vld1q_u32_x4(at->gain_db_q8);
     for (size_t n = 0; n < 4; n++) {
         const uint16x8_t pair_q8 = shown_q8.val[n / 2];

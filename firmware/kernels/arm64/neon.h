@@ -11,12 +11,19 @@
 #include "fx/const.h"
 #include "fx/tables.h"
 
-/* The lower halves of sixteen numbers, and the lower bytes of those. */
+/* The lower and the upper halves of sixteen numbers, and the lower bytes of those. */
 static inline uint16x8x2_t neon_lower_halves(uint32x4x4_t v)
 {
     return (uint16x8x2_t){
         {vuzp1q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
          vuzp1q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
+}
+
+static inline uint16x8x2_t neon_upper_halves(uint32x4x4_t v)
+{
+    return (uint16x8x2_t){
+        {vuzp2q_u16(vreinterpretq_u16_u32(v.val[0]), vreinterpretq_u16_u32(v.val[1])),
+         vuzp2q_u16(vreinterpretq_u16_u32(v.val[2]), vreinterpretq_u16_u32(v.val[3]))}};
 }
 
 static inline uint8x16_t neon_lower_bytes(uint16x8x2_t v)

@@ -59,7 +59,8 @@ static void take_tops(const struct lm_k_lit_line *line, uint32_t end, struct wor
         const int32_t height_m_q14 = words.height_m_q14[(int32_t)(cell % LM_K_CODES)];
         w->tangent[LM_LANES + i] = lm_k_tangent(&tops, i, height_m_q14);
         w->kind[LM_LANES + i] = words.kind[(int32_t)((cell >> 4) % LM_K_CODES)];
-        level_db_q8[i] = (int32_t)(cell >> 8) * LM_GAMMA_CODE_STEP_DB_Q8 + gain_db_q8[i];
+        level_db_q8[i] = (int32_t)(cell >> 8 & 255) * LM_GAMMA_CODE_STEP_DB_Q8 +
+                         ((int32_t)cell >> 16) + gain_db_q8[i];
     }
 }
 

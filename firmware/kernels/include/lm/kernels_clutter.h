@@ -16,9 +16,11 @@ enum { LM_K_CODES = 16 }; /* height codes of a map, and classes */
 
 /* The tops of a line's cells, and where they are seen from. */
 struct lm_k_tops {
-    uint32_t first;                    /* cells before this one are too near to be shown */
-    uint32_t cells;                    /* of the line; 1..LM_CELLS_MAX */
-    const uint32_t *cell;              /* as in a tile record: struct lm_tile_point */
+    uint32_t first; /* cells before this one are too near to be shown */
+    uint32_t cells; /* of the line; 1..LM_CELLS_MAX */
+    /* Lower half: as in a tile record (struct lm_tile_point). Upper half: what to add to the
+     * reflectivity, 1/256 dB, signed; both together -80..47.5 dB. */
+    const uint32_t *cell;
     const int32_t *elevation_m_q14;    /* of the terrain; magnitude below 2^29 */
     const int32_t *fall_m_q14;         /* antenna's height and the Earth's drop; below 2^30 */
     const int32_t *inverse_range;      /* 1 / range in the tangents' format and Q17 more; 0..2^31 */

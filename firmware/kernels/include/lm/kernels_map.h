@@ -78,4 +78,37 @@ static inline struct lm_ground lm_k_tile_sample(const struct lm_tile_point *poin
 void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coords *places,
                     uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
+/* Side of the pattern of what has grown, in texels, and its table: the first row and column stand
+ * behind the last once more. */
+enum {
+    LM_K_GROWN_SIDE = 128,
+    LM_K_GROWN_STRIDE = LM_K_GROWN_SIDE + 1,
+    LM_K_GROWN_WORDS = LM_K_GROWN_STRIDE * LM_K_GROWN_STRIDE
+};
+
+/* The map as lm_k_tile_blend reads it. Bit k of a mask is for class k. Borders between two natural
+ * classes are bent by the pattern of what has grown, and heights of crowned classes follow it.
+ * Those of flat ones are not blended: then their elevation is the terrain's. */
+struct lm_k_blend {
+    const struct lm_tile_point *points; /* as in lm_k_tile_sample */
+    /* A texel is a word: bits 7..0 how far borders are bent, -128..127; 15..8 how much higher than
+     * the map's crowns are, (n - 128) / 256. Row by row from the south-west. */
+    const uint16_t *grown;
+    const uint16_t *height_dm_of_code; /* LM_K_CODES entries; differences up to 3.2 km */
+    uint32_t grown_shift;              /* from a place in its tile to texels; 4..25 */
+    uint32_t natural, crowned, flat;
+};
+
+/* Read the tiles like lm_k_tile_read, for cells that are shorter than the map's: blend the four
+ * cells whose middles are around each place. Law: docs/EQUATIONS.md, "Finer than the map".
+ *
+ * - cell[k]: of the cells of the class that wins, the one that has most weight, as in the record.
+ *   In the upper half is what its reflectivity lacks to that of the blend: 1/256 dB, signed.
+ * - elevation_m_q14[k]: of the terrain, and what the cell's height lacks to that of the blend.
+ *
+ * Points beside the own ones of a tile are read, too. Cost: 33 a cell where all that is around is
+ * of one class and height, up to 70 elsewhere. */
+void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
+                     uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
+
 #endif

@@ -10,12 +10,13 @@
  *
  *     static struct lm_scan_line line;
  *     const uint8_t lod = lm_scan_lod(cache.db, cell_mm);
- *     lm_scan_line_run(&line, &cache, lod, &path, 512);
+ *     lm_scan_line_run(&line, &cache, lod, NULL, &path, 512);
  *
  * No function waits for the flash, and none fails. Pointers are borrowed for the call. */
 #ifndef LM_SCAN_LINE_H
 #define LM_SCAN_LINE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "lm/geo.h"
@@ -26,7 +27,9 @@
 enum { LM_CELL_NONE = 0x00F0 };
 
 struct lm_scan_line {
-    uint32_t cell[LM_CELLS_ROOM];           /* as in struct lm_tile_point, or LM_CELL_NONE */
+    /* Lower half: as in struct lm_tile_point, or LM_CELL_NONE. Upper half: what to add to its
+     * reflectivity, 1/256 dB, signed; 0 unless blended. */
+    uint32_t cell[LM_CELLS_ROOM];
     int32_t elevation_m_q14[LM_CELLS_ROOM]; /* above mean sea level; 0 where there is no data */
 };
 
@@ -35,17 +38,32 @@ struct lm_scan_line {
  * longer. */
 uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm);
 
+/* Blend: how a line is read whose cells are shorter than the map's. Prepared once a picture. Law:
+ * docs/EQUATIONS.md, "Finer than the map". */
+struct lm_scan_blend {
+    bool is_on;
+    uint32_t natural, crowned, flat, grown_shift; /* as in struct lm_k_blend */
+};
+
+/* Prepare the blend for lines whose cells are cell_mm long, below 2^30. It is on if they are
+ * shorter than 2/3 of a cell of LOD 0. Crowns are drawn if cells are shorter than 3.5 m, half a
+ * crown, and the map's are not. `db` is borrowed for the call. Cost: 150 instructions. */
+void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm);
+
 /* Read the first `cells` (1..LM_CELLS_MAX) entries along the path.
  *
  * - A tile that is not resident is requested. Its nearest resident ancestor answers for it; where
  *   there is none, the cells are LM_CELL_NONE. lm/tile_cache.h counts both.
  * - Points lie within 2^-10 of a cell of the path's, in lines of 1024 cells within 2^-9. The cell
  * is one of the tile that answers.
+ * - If `blend` is on, tiles of the LOD itself are blended: lm_k_tile_blend says what `line` gets.
+ *   An ancestor never is. `blend` may be NULL; it needs LOD 0.
  *
  * `tiles` is changed: its clock, requests and counts. Cost: see docs/benchmarks.md; some 75
  * instructions for each tile that the line crosses. */
 void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, uint8_t lod,
-                      const struct lm_ground_path *path, uint32_t cells);
+                      const struct lm_scan_blend *blend, const struct lm_ground_path *path,
+                      uint32_t cells);
 
 /* Request the tiles that lm_scan_line_run would use, without reading a cell. */
 void lm_scan_line_prefetch(struct lm_tile_cache *tiles, uint8_t lod,

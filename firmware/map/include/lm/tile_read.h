@@ -28,4 +28,9 @@ struct lm_ground lm_tile_ground(const struct lm_tile *tile, uint32_t north, uint
 void lm_tile_read(const struct lm_tile *pool, const struct lm_tile_coords *coords, uint32_t first,
                   uint32_t end, struct lm_scan_line *line);
 
+/* The same for cells that are shorter than the map's. `map` is prepared for the pool. Cost: that of
+ * lm_k_tile_blend. */
+void lm_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *coords,
+                   uint32_t first, uint32_t end, struct lm_scan_line *line);
+
 #endif

@@ -48,6 +48,7 @@ struct lm_line_setup {
     const struct lm_class_lut *class_lut;
     const struct lm_class_gain *class_gain;
     const struct lm_sea *sea;
+    const struct lm_scan_blend *blend;    /* for the cells of the grid; NULL: off */
     uint8_t lod;                          /* LOD that the map is read from */
     const struct lm_detail_patch *detail; /* drawn into the cells; NULL: none */
     uint32_t number;                      /* of the line in the patch that has the detail */

@@ -95,6 +95,7 @@ struct lm_sar {
     struct lm_range_grid grid;
     struct lm_foreground foreground;
     uint8_t lod; /* LOD that the patch is read from */
+    struct lm_scan_blend blend;
     struct lm_class_lut class_lut;
     struct lm_class_gain class_gain;
     struct lm_sea sea;

@@ -93,6 +93,7 @@ struct lm_sector {
     int32_t tilt;              /* of the beam's axis in this sweep, signed BAM */
 
     uint8_t lod; /* LOD that the map is read from */
+    struct lm_scan_blend blend;
     struct lm_range_grid grid;
     struct lm_slant slant;
     struct lm_antenna_pattern pattern;

@@ -119,6 +119,30 @@ void ref_db_cell(const struct ref_db *db, unsigned level, struct ref_place place
 bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place place,
                       bool is_exact, double *elevation_m);
 
+/* ---- what lies between the cells (blend.c) ---- */
+
+/* The four cells whose middles are around a point: south-west, south-east, north-west, north-east,
+ * and the point's place between them, 0..1. The place in texels of what has grown, modulo 128. */
+struct ref_corners {
+    uint16_t cell[4];
+    double north, east;
+    double texel_row, texel_column;
+    bool has_crowns;
+};
+
+/* Fill the fields of ref_db_cell with what lies between four cells. */
+void ref_blend_cells(const struct ref_db *db, const struct ref_corners *corners,
+                     struct ref_bin *bin);
+
+/* n of the page at a texel, and C at any place of the pattern, 0..128. */
+double ref_grown_bend(int row, int column);
+double ref_grown_crown(double row, double column);
+
+/* The same for a range cell of `cell_m`: blended where that is finer than the map, with the weights
+ * cut to 1/128 unless `is_exact`. */
+void ref_db_ground(const struct ref_db *db, double cell_m, struct ref_place place, bool is_exact,
+                   struct ref_bin *bin);
+
 /* ---- geometry (geo.c) ---- */
 
 /* The place at a distance and azimuth (clockwise from north) on WGS-84, by EQUATIONS.md's

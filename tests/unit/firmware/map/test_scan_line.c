@@ -170,7 +170,7 @@ static uint32_t scan_and_compare(struct world *w, uint8_t level, const struct lm
     lm_scan_line_prefetch(&w->map.tiles, level, p, cells);
     tiny_map_read_tiles(&w->map);
     const uint32_t misses = w->map.tiles.count.misses;
-    lm_scan_line_run(&w->line, &w->map.tiles, level, p, cells);
+    lm_scan_line_run(&w->line, &w->map.tiles, level, NULL, p, cells);
     assert_int_equal(w->map.tiles.count.misses, misses);
     return compare(w, level, p, cells);
 }
@@ -287,7 +287,7 @@ TEST(lines_near_the_poles_do_no_harm)
                 .longitude_step = hs_rng_u64(&rng) >> hs_rng_below(&rng, 40),
                 .latitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40)),
                 .longitude_bend = hs_rng_u64(&rng) >> (16 + hs_rng_below(&rng, 40))};
-            lm_scan_line_run(&w.line, &w.map.tiles, level, &p, LM_CELLS_MAX);
+            lm_scan_line_run(&w.line, &w.map.tiles, level, NULL, &p, LM_CELLS_MAX);
             for (uint32_t k = 0; k < LM_CELLS_MAX; k++) {
                 assert_in_range(w.line.cell[k], 0, 0xFFFF);
             }
@@ -321,12 +321,12 @@ TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
     const struct lm_ground_path p = path_from(45.9965, 10.995, 40, 5, 0);
     const uint8_t coarsest = (uint8_t)(w.map.db.lod_count - 1);
     /* Nothing but the coarsest level has been read. */
-    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
     assert_true(compare(&w, coarsest, &p, 150) == 150);
     assert_true(w.map.tiles.count.substituted > 0);
     /* It has asked for what it missed; with the parents there too, they are not used. */
     tiny_map_read_tiles(&w.map);
-    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
     assert_true(compare(&w, 0, &p, 150) == 150);
     tiny_map_close(&w.map);
     /* Each level in turn is the finest that is there. */
@@ -334,7 +334,7 @@ TEST(what_is_not_resident_is_answered_by_the_nearest_ancestor)
         open_world(&w, 46, 11);
         lm_scan_line_prefetch(&w.map.tiles, level, &p, 150);
         tiny_map_read_tiles(&w.map);
-        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
         assert_true(compare(&w, level, &p, 150) == 150);
         tiny_map_close(&w.map);
     }
@@ -358,7 +358,7 @@ TEST(tiles_that_the_image_leaves_out_are_answered_by_their_parents)
         lm_scan_line_prefetch(&w.map.tiles, 1, &p, 150);
         lm_scan_line_prefetch(&w.map.tiles, 0, &p, 150);
         tiny_map_read_tiles(&w.map);
-        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 150);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 150);
         assert_true(compare(&w, 0, &p, 150) > 100);
     }
     tiny_map_close(&w.map);
@@ -369,7 +369,7 @@ TEST(beyond_the_map_there_is_no_data_at_sea_level)
     static struct world w;
     open_world(&w, 46, 11);
     const struct lm_ground_path p = path_from(10, 50, 45, 5, 0);
-    lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 100);
+    lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 100);
     for (int i = 0; i < 100; i++) {
         assert_int_equal(w.line.cell[i], LM_CELL_NONE);
         assert_int_equal(w.line.elevation_m_q14[i], 0);
@@ -385,7 +385,7 @@ TEST(one_elevation_is_that_of_a_line)
         const struct lm_ground_path p = path_from(46 + i * 1e-5, 11 - i * 2e-5, 0, 1, 0);
         const struct lm_position position = {(fx_bam_t)(p.latitude >> 32),
                                              (fx_bam_t)(p.longitude >> 32)};
-        lm_scan_line_run(&w.line, &w.map.tiles, 0, &p, 1);
+        lm_scan_line_run(&w.line, &w.map.tiles, 0, NULL, &p, 1);
         const int32_t q10 = lm_scan_elevation(&w.map.tiles, 0, position, -99);
         /* A place is whole BAM: a fraction of a weight's step. */
         assert_true(abs(q10 - (w.line.elevation_m_q14[0] >> 4)) < 64);

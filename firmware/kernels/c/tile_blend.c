@@ -1,0 +1,163 @@
+#include "fx/lerp.h"
+#include "fx/mem.h"
+#include "fx/sat.h"
+#include "lm/kernels_clutter.h"
+#include "lm/kernels_map.h"
+#include "lm/lanes.h"
+
+/* 2^11 / (i + 1/2), which is 2^25 over a weight of 2^8 (i + 1/2), at most 255: i is the weight of a
+ * class, less one, in 64ths of all. The last entry is exact, for cells that are all of one class.
+ * The vectors of arm64/ look up the same. */
+static const int32_t share_of_weight[64] = {
+    255, 255, 255, 255, 255, 255, 255, 255, 241, 216, 195, 178, 164, 152, 141, 132,
+    124, 117, 111, 105, 100, 95,  91,  87,  84,  80,  77,  74,  72,  69,  67,  65,
+    63,  61,  59,  58,  56,  55,  53,  52,  51,  49,  48,  47,  46,  45,  44,  43,
+    42,  41,  41,  40,  39,  38,  38,  37,  36,  36,  35,  34,  34,  33,  33,  32,
+};
+
+/* Of the four cells whose middles are around a place: class, and weight. Weights add up to 2^14. */
+struct corner {
+    int32_t cell, kind, weight;
+};
+
+static inline struct corner corner_of(uint32_t point, int32_t weight)
+{
+    return (struct corner){(int32_t)(point & 0xFFFF), (int32_t)(point >> 4 & 15), weight};
+}
+
+/* Weight of all cells of the class of the first. */
+static inline int32_t weight_of_class(struct corner of, struct corner b, struct corner c,
+                                      struct corner d)
+{
+    return of.weight + (of.kind == b.kind ? b.weight : 0) + (of.kind == c.kind ? c.weight : 0) +
+           (of.kind == d.kind ? d.weight : 0);
+}
+
+/* The class that has won so far: its number and weight. */
+struct winner {
+    int32_t kind, weight;
+};
+
+/* Let a class challenge the winner. Where both are natural, the ground leans to the one or to the
+ * other: at most 9/10 of both weights, below 2^14 because the classes differ. */
+static inline struct winner challenge(struct winner w, int32_t kind, int32_t weight,
+                                      int32_t lean_q15, uint32_t natural)
+{
+    const bool are_natural = (natural >> kind & natural >> w.kind & 1u) != 0;
+    const int32_t lean = (weight + w.weight) * lean_q15 >> 15;
+    const int32_t leaning = kind > w.kind ? lean : -lean;
+    const int32_t more = weight - w.weight + (are_natural && kind != w.kind ? leaning : 0);
+    return more > 0 ? (struct winner){kind, weight} : w;
+}
+
+static inline int32_t height_dm_of(const int32_t *height_dm, int32_t cell)
+{
+    return height_dm[cell & 15];
+}
+
+/* Difference of two heights. It wraps as the vectors of arm64/ do, beyond 3.2 km. */
+static inline int32_t apart_dm(int32_t height_dm, int32_t from_dm)
+{
+    return (int16_t)(uint16_t)(uint32_t)(height_dm - from_dm);
+}
+
+struct heights {
+    int32_t dm[LM_K_CODES];
+};
+
+/* What has grown at a place. The bend is that of the nearest texel to the south-west; crowns are
+ * straight between texels, in sixteenths: 255 * 256 at most. */
+struct grown {
+    int32_t bend, crown_q16;
+};
+
+static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north, uint32_t east)
+{
+    const uint32_t north_q4 = north >> (map->grown_shift - 4);
+    const uint32_t east_q4 = east >> (map->grown_shift - 4);
+    const int32_t row = (int32_t)(north_q4 >> 4) % LM_K_GROWN_SIDE;
+    const int32_t column = (int32_t)(east_q4 >> 4) % LM_K_GROWN_SIDE;
+    const uint16_t *texel = map->grown + row * LM_K_GROWN_STRIDE + column;
+    const uint32_t south = fx_load_u32(texel), next = fx_load_u32(texel + LM_K_GROWN_STRIDE);
+    const uint32_t u = east_q4 % 16, v = north_q4 % 16;
+    const uint32_t at_south = (south >> 8 & 255) * (16 - u) + (south >> 24) * u;
+    const uint32_t at_north = (next >> 8 & 255) * (16 - u) + (next >> 24) * u;
+    return (struct grown){(int8_t)(uint8_t)south,
+                          (int32_t)(at_south * (16 - v) + at_north * v) - 128 * 256};
+}
+
+static inline __attribute__((always_inline)) struct lm_ground blend(const struct lm_k_blend *map,
+                                                                    const struct heights *heights,
+                                                                    uint32_t record, int32_t scale,
+                                                                    uint32_t north, uint32_t east)
+{
+    /* Half a cell to the south-west lies the cell whose middle is next. Weights are 1/128. */
+    const uint32_t north_q25 = (north >> 1) + (1u << 24), east_q25 = (east >> 1) + (1u << 24);
+    const int32_t row = (int32_t)(north_q25 >> 25) - 1, column = (int32_t)(east_q25 >> 25) - 1;
+    const int32_t at = (int32_t)record + row * LM_TILE_POINTS + column;
+    const int32_t v = north_q25 >> 18 & 127, u = east_q25 >> 18 & 127;
+    const int32_t of_d = u * v, of_b = 128 * u - of_d, of_c = 128 * v - of_d;
+    const struct lm_tile_point *p = map->points;
+    const struct corner a = corner_of(fx_load_u32(p + at), 16384 - of_b - of_c - of_d);
+    const struct corner b = corner_of(fx_load_u32(p + at + 1), of_b);
+    const struct corner c = corner_of(fx_load_u32(p + at + LM_TILE_POINTS), of_c);
+    const struct corner d = corner_of(fx_load_u32(p + at + LM_TILE_POINTS + 1), of_d);
+
+    const struct grown grown = grown_at(map, north, east);
+    const int32_t lean_q15 = grown.bend * 230;
+    struct winner w = {a.kind, weight_of_class(a, b, c, d)};
+    w = challenge(w, b.kind, weight_of_class(b, a, c, d), lean_q15, map->natural);
+    w = challenge(w, c.kind, weight_of_class(c, a, b, d), lean_q15, map->natural);
+    w = challenge(w, d.kind, weight_of_class(d, a, b, c), lean_q15, map->natural);
+
+    const int32_t in_a = a.kind == w.kind ? a.weight : 0, in_b = b.kind == w.kind ? b.weight : 0;
+    const int32_t in_c = c.kind == w.kind ? c.weight : 0, in_d = d.kind == w.kind ? d.weight : 0;
+    int32_t most = in_a, cell = a.cell;
+    cell = in_b > most ? b.cell : cell;
+    most = fx_max_i32(in_b, most);
+    cell = in_c > most ? c.cell : cell;
+    most = fx_max_i32(in_c, most);
+    cell = in_d > most ? d.cell : cell;
+
+    const int32_t share = share_of_weight[(w.weight - 1) >> 8];
+    const int32_t gamma = cell >> 8;
+    const int32_t gamma_sum = in_a * ((a.cell >> 8) - gamma) + in_b * ((b.cell >> 8) - gamma) +
+                              in_c * ((c.cell >> 8) - gamma) + in_d * ((d.cell >> 8) - gamma);
+    const int32_t more_db_q8 = (gamma_sum * share + 2048) >> 12;
+
+    const int32_t height_dm = height_dm_of(heights->dm, cell);
+    const int32_t height_sum = in_a * apart_dm(height_dm_of(heights->dm, a.cell), height_dm) +
+                               in_b * apart_dm(height_dm_of(heights->dm, b.cell), height_dm) +
+                               in_c * apart_dm(height_dm_of(heights->dm, c.cell), height_dm) +
+                               in_d * apart_dm(height_dm_of(heights->dm, d.cell), height_dm);
+    const bool is_flat = (map->flat >> w.kind & 1u) != 0;
+    const int32_t higher_dm_q10 = is_flat ? 0 : (height_sum >> 9) * share;
+    const int32_t higher_m_q14 =
+        higher_dm_q10 + (higher_dm_q10 >> 1) + (higher_dm_q10 >> 4) + (higher_dm_q10 >> 5);
+    const int32_t height_m_q14 = lm_k_height_m_q14((uint16_t)height_dm) + higher_m_q14;
+    const int32_t crown_q16 = (map->crowned >> w.kind & 1u) != 0 ? grown.crown_q16 : 0;
+    const int32_t crown_m_q14 = (int32_t)((int64_t)height_m_q14 * crown_q16 >> 16);
+
+    const struct lm_ground g = lm_k_tile_sample(p, record, scale, north, east);
+    return (struct lm_ground){(uint32_t)cell | (uint32_t)more_db_q8 << 16,
+                              g.elevation_m_q14 + higher_m_q14 + crown_m_q14};
+}
+
+/* Whole groups: a vector of cells has no rest. No store touches the points: it may gather. */
+void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
+                     uint32_t first, uint32_t groups, uint32_t *restrict cell,
+                     int32_t *restrict elevation_m_q14)
+{
+    const struct lm_tile_coords p = *places;
+    const struct lm_k_blend m = *map;
+    struct heights heights;
+    for (int i = 0; i < LM_K_CODES; i++) {
+        heights.dm[i] = m.height_dm_of_code[i];
+    }
+    for (uint32_t k = first; k < first + groups * LM_LANES; k++) {
+        const uint32_t north = lm_quadratic_at(&p.north, k), east = lm_quadratic_at(&p.east, k);
+        const struct lm_ground g = blend(&m, &heights, cell[k], elevation_m_q14[k], north, east);
+        cell[k] = g.cell;
+        elevation_m_q14[k] = g.elevation_m_q14;
+    }
+}
