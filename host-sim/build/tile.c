@@ -55,10 +55,18 @@ static int rule_class(const struct build_context *b, const struct terrain_posts 
 static uint16_t encode(const struct build_context *b, int class_number, double gamma_db,
                        double height_m)
 {
-    const enum db_class_kind kind = b->table.items[class_number].kind;
-    const bool stands = kind == DB_KIND_STRUCTURE || kind == DB_KIND_TREES;
+    const uint8_t kind = b->classes.entry[class_number].kind;
+    const bool stands = kind == LM_KIND_STRUCTURE || kind == LM_KIND_TREES;
     const uint8_t height = stands ? image_height_code(b->classes.height_dm, height_m * 10.0) : 0;
     return image_cell(image_gamma_code(gamma_db), (uint8_t)class_number, height);
+}
+
+/* Middle of a cell, or of one of the `parts` x `parts` of one, in BAM. */
+static void cell_middle(const struct image_frame *f, int parts, int r, int c, double *latitude,
+                        double *longitude)
+{
+    *latitude = (double)f->south + (r + 0.5) / parts * (double)f->latitude_step;
+    *longitude = (double)f->west + (c + 0.5) / parts * (double)f->longitude_step;
 }
 
 /* The random reflectivity of a cell, or of one of the `parts` x `parts` of one: by where it lies
@@ -67,11 +75,10 @@ static double assigned_gamma_db(const struct build_context *b, int class_number,
                                 const struct image_frame *f, int parts, int r, int c)
 {
     const double radians = 3.14159265358979323846 / 2147483648.0;
-    const double north = (r + 0.5) / parts * (double)f->latitude_step;
-    const double east = (c + 0.5) / parts * (double)f->longitude_step;
-    return db_reflect_assign_cell(&b->laws[class_number], b->seed,
-                                  radians * ((double)f->south + north),
-                                  radians * ((double)f->west + east),
+    double latitude, longitude;
+    cell_middle(f, parts, r, c, &latitude, &longitude);
+    return db_reflect_assign_cell(&b->laws[class_number], b->seed, radians * latitude,
+                                  radians * longitude,
                                   (double)f->latitude_step * IMAGE_METRES_PER_BAM / parts);
 }
 
@@ -85,6 +92,21 @@ static uint16_t encode_sample(const struct build_context *b, const struct resamp
     const double gamma_db =
         s->has_gamma ? (double)s->gamma_db : assigned_gamma_db(b, k, f, b->parts, r, c);
     return encode(b, k, gamma_db, s->has_height ? (double)s->height_m : b->table.items[k].height_m);
+}
+
+/* Give cells of structures the class of their facing. */
+static void face(const struct build_context *b, const struct image_frame *f, uint16_t *cells)
+{
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        const uint8_t k = image_cell_class(cells[i]);
+        if (k != LM_DB_CLASS_NONE && b->facing.first[k] != 0) {
+            double latitude, longitude;
+            cell_middle(f, 1, i / CELLS, i % CELLS, &latitude, &longitude);
+            cells[i] = image_cell(image_cell_gamma(cells[i]),
+                                  build_facing_class(&b->facing, k, latitude, longitude),
+                                  image_cell_height(cells[i]));
+        }
+    }
 }
 
 /* Cells of the finest level that the class raster gives. Returns how many samples it had, or -1. */
@@ -104,6 +126,7 @@ static int cover_cells(const struct build_context *b, const struct image_frame *
             fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
         }
         image_reduce(fine, side, b->parts, cells, CELLS, CELLS, b->classes.height_dm);
+        face(b, f, cells);
     }
     free(samples);
     free(fine);
@@ -152,7 +175,7 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
             n->cells[k]++;
             n->area_m2[k] += area;
             n->cells_beyond_terrain += !has_terrain(&t->posts, r, c);
-            if (b->table.items[k].kind != DB_KIND_WATER) {
+            if (b->classes.entry[k].kind != LM_KIND_WATER) {
                 n->land_area_m2 += area;
                 n->land_metres_m2 += area * centre_metres(&t->posts, r, c);
             }
@@ -169,6 +192,13 @@ static void take_posts(struct build_tile *t, const struct build_tile *child, int
             t->posts.q6[row + r][column + c] = child->posts.q6[2 * r][2 * c];
             t->posts.has[row + r][column + c] = child->posts.has[2 * r][2 * c];
         }
+    }
+    for (int i = 0; i < HALF * HALF; i++) {
+        const int r = i / HALF, c = i % HALF;
+        t->built[row + r][column + c] =
+            (child->built[2 * r][2 * c] + child->built[2 * r][2 * c + 1] +
+             child->built[2 * r + 1][2 * c] + child->built[2 * r + 1][2 * c + 1]) /
+            4;
     }
 }
 
@@ -234,9 +264,22 @@ static void identify(struct lm_tile *tile, int level, const struct image_frame *
     tile->column = f->column;
 }
 
+/* Add the tile as the display unit will see it to the budget of towns. */
+static void budget(struct build_context *b, int level, const struct image_frame *f,
+                   const struct build_tile *t)
+{
+    uint16_t cells[CELLS][CELLS];
+    image_cells_decode(&t->record, cells);
+    const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
+    const struct build_towns_tile seen = {(const uint16_t(*)[CELLS])cells, t->posts.q6, t->built};
+    build_towns_add(&b->towns, level, &seen, &b->classes, north_m,
+                    cell_area_m2(f, CELLS / 2) / north_m);
+}
+
 static int make_tile(struct build_context *b, int level, const struct image_frame *f,
                      struct build_tile *const children[4], struct build_tile *t)
 {
+    const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
     bool is_below[4];
     int below = 0;
     for (int i = 0; i < 4; i++) {
@@ -253,6 +296,7 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
     if (made > 0) {
         fill_by_rule(b, f, t, is_below);
         count_cells(b, f, t, is_below);
+        build_towns_mark(t->ground.cells, &b->classes, north_m, t->built);
     }
     for (int i = 0; i < 4; i++) {
         if (children[i]) {
@@ -272,6 +316,7 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
         }
     }
     image_ground_encode(&t->ground, &t->record, b->classes.height_dm);
+    budget(b, level, f, t);
     return !is_empty(t);
 }
 

@@ -192,6 +192,7 @@ static int read_table(struct build_context *b, const struct settings *s)
                         b->table.count, LM_DB_CLASS_NONE);
     }
     fill_classes(&b->classes, &b->table);
+    build_facing_classes(&b->facing, &b->classes, b->table.count);
     for (int i = 0; i < b->table.count; i++) {
         db_reflect_law_init(&b->laws[i], &b->table.items[i]);
     }
@@ -312,11 +313,15 @@ static int open_inputs(struct build_context *b, const struct settings *s)
         return -1;
     }
     const struct build_detail_settings detail = {b->plan.shift0, b->seed, &b->table, b->laws};
-    return s->detail ? build_detail_read(&b->detail, s->detail, &detail) : 0;
+    if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
+        return -1;
+    }
+    return build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan);
 }
 
 static void close_inputs(struct build_context *b)
 {
+    build_facing_free(&b->facing);
     resample_cover_close(&b->cover);
     terrain_close(&b->terrain);
     build_detail_free(&b->detail);
@@ -400,12 +405,13 @@ static char *make_manifest(const struct build_context *b, const struct settings 
         hs_error("manifest", NULL, "out of memory");
         return NULL;
     }
-    snprintf(options, sizeof options,
-             "shift0: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
-             "%d\nsteep-class: %s\n"
-             "steep-degrees: %g\n",
-             b->plan.shift0, s->land_class, s->water_class, s->sea_level_m, s->voids_are_sea,
-             s->steep_class ? s->steep_class : "none", s->steep_degrees);
+    snprintf(
+        options, sizeof options,
+        "shift0: %d\nfacings: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
+        "%d\nsteep-class: %s\n"
+        "steep-degrees: %g\n",
+        b->plan.shift0, b->facing.facings, s->land_class, s->water_class, s->sea_level_m,
+        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
     const int result = write_inputs(out, b, s, signatures);
@@ -447,6 +453,16 @@ static void choose_centre(const struct build_context *b, const struct settings *
     centre[0] = (uint32_t)latitude;
 }
 
+static void set_town_gains(struct build_context *b)
+{
+    for (int i = 0; i < LM_DB_CLASSES; i++) {
+        struct lm_class *c = &b->classes.entry[i];
+        for (int level = 0; level < b->plan.level_count && c->kind == LM_KIND_STRUCTURE; level++) {
+            c->lod_gain_db_q8[level] = (int16_t)lround(256 * build_towns_gain_db(&b->towns, level));
+        }
+    }
+}
+
 struct report {
     struct build_level_counts levels;
     uint64_t image_bytes, entry_count, record_count;
@@ -476,6 +492,8 @@ static int write_image(struct build_context *b, const struct settings *s, const 
                         "no cell of the image would hold data");
     }
     fill_header(&w.header, b, s, centre);
+    set_town_gains(b);
+    w.classes = b->classes;
     w.targets = (struct image_bytes){extras->targets_bytes, extras->targets_size};
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
     w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
@@ -506,9 +524,20 @@ static void print_classes(const struct build_context *b)
     const struct build_counts *n = &b->counts;
     uint64_t cells = 0;
     for (int k = 0; k < b->table.count; k++) {
-        printf("class %-2d %-16s %12" PRIu64 " cells  %12.3f km2\n", k, b->table.items[k].name,
-               n->cells[k], n->area_m2[k] * 1e-6);
-        cells += n->cells[k];
+        uint64_t of_class = n->cells[k];
+        double area_m2 = n->area_m2[k];
+        for (int i = 0; b->facing.first[k] > 0 && i < b->facing.facings; i++) {
+            of_class += n->cells[b->facing.first[k] + i];
+            area_m2 += n->area_m2[b->facing.first[k] + i];
+        }
+        printf("class %-2d %-16s %12" PRIu64 " cells  %12.3f km2", k, b->table.items[k].name,
+               of_class, area_m2 * 1e-6);
+        if (b->table.items[k].kind == DB_KIND_STRUCTURE) {
+            printf("  in %d facings, %.0f %% of them", b->facing.facings,
+                   of_class ? 100.0 * (double)(of_class - n->cells[k]) / (double)of_class : 0);
+        }
+        printf("\n");
+        cells += of_class;
     }
     printf("cells %" PRIu64 ", of them %" PRIu64 " classed from elevation, %" PRIu64
            " beyond the terrain\n",

@@ -3,7 +3,9 @@
 #define BUILD_TILE_H
 
 #include "build/detail.h"
+#include "build/facing.h"
 #include "build/plan.h"
+#include "build/towns.h"
 #include "hs/class_table.h"
 #include "image/ground.h"
 #include "lm/db.h"
@@ -34,7 +36,7 @@ struct build_context {
     struct terrain terrain;
     struct db_class_table table;
     struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */
-    struct lm_classes classes;
+    struct lm_classes classes;                /* of the table, then those of facings */
     struct build_rule rule;
     struct build_plan plan;
     uint32_t seed;
@@ -42,6 +44,8 @@ struct build_context {
     int terrain_level[DB_LIST_MAX]; /* from which level each terrain layer gives tiles of its own */
     struct build_detail detail;     /* all zero without any */
     struct build_counts counts;
+    struct build_towns towns;
+    struct build_facing facing;
 };
 
 /* A tile, the ground from which coarser ones are made, and its elevations not yet cut to steps. */
@@ -49,6 +53,7 @@ struct build_tile {
     struct lm_tile record;
     struct image_ground ground;
     struct terrain_posts posts;
+    float built[LM_TILE_CELLS][LM_TILE_CELLS]; /* share that is built-up */
 };
 
 /* Make tile (level, row, column); children[2 * north + east] are the tiles below it or NULL.
