@@ -190,9 +190,12 @@ void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position,
         const int32_t along_m_q8 =
             extent->near_m_q8 +
             (int32_t)((int64_t)(extent->far_m_q8 - extent->near_m_q8) * row / 2);
+        /* Sides are below 2^26, and the apex and the row are at most 2^27 apart. */
+        const int64_t from_apex_m_q8 = (int64_t)extent->apex_m_q8 + along_m_q8;
+        const int32_t side_m_q8 = (int32_t)(extent->side_m_q8 * from_apex_m_q8 / extent->apex_m_q8);
         struct lm_position q[3];
         for (int column = 0; column < 3; column++) {
-            const int32_t across_m_q8 = (column - 1) * extent->side_m_q8;
+            const int32_t across_m_q8 = (column - 1) * side_m_q8;
             q[column] = lm_geo_direct(&o, azimuth + fx_atan2(across_m_q8, along_m_q8),
                                       fx_hypot_u32(across_m_q8, along_m_q8));
         }

@@ -322,84 +322,234 @@ void lm_plane_shift(const struct lm_plane *plane, const struct lm_frame *frame, 
     }
 }
 
-uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells)
+struct lm_frame lm_patch_square(const struct lm_frame *frame)
 {
-    const uint32_t side = frame->width_px < frame->height_px ? frame->width_px : frame->height_px;
-    return (uint16_t)(side >= cells ? side / cells : 1);
+    struct lm_frame square = lm_frame_square(frame);
+    square.width_px &= 0xFFFEu;
+    square.height_px &= 0xFFFEu;
+    return square;
 }
 
-/* Paint a cell: a square of pixels, upwards from its lower left corner. */
-static inline void paint_cell(uint8_t *corner, ptrdiff_t up, int32_t side_px, uint8_t grey)
+enum { LINE_Q20 = 1 << 20, SHARE_Q7 = 1 << 7, ROWS_AT_ONCE = 64 };
+
+/* Set the cells that a row lies between: row r of n is (r + 1/2) C / n - 1/2 above the middle of
+ * cell 0, of C cells. */
+static void set_cells(struct lm_patch_painter *p, uint32_t row)
 {
-    for (int32_t row = 0; row < side_px; row++) {
-        for (int32_t column = 0; column < side_px; column++) {
-            corner[row * up + column] = grey;
+    const uint32_t rows = p->square.height_px;
+    const int64_t above_q7 =
+        (int64_t)(2 * row + 1) * p->cells * SHARE_Q7 / (2 * rows) - SHARE_Q7 / 2;
+    const int64_t last_q7 = (int64_t)(p->cells - 1) * SHARE_Q7;
+    const uint32_t held_q7 = (uint32_t)fx_clamp_i64(above_q7, 0, last_q7);
+    p->cell[row] = (uint16_t)(held_q7 / SHARE_Q7);
+    p->part_q7[row] = (uint16_t)(held_q7 % SHARE_Q7);
+}
+
+/* Set the lines of a row. Row r lies (2 r + 1) C / 2 n cells beyond the near edge, of C cells in n
+ * rows. With S the range of the middle, s that of the row and ds a cell, a pixel is
+ *
+ *     C / n S / s lines = 2 C S / (2 n (S - C ds / 2) + (2 r + 1) C ds)
+ *
+ * Ranges are below 2^26, C and n at most 2^10: numerator and denominator are below 2^38. A pixel
+ * that is more than 2^6 lines is at the antenna's feet, in no patch. */
+static void set_lines(struct lm_patch_painter *p, const struct lm_patch_fan *fan, uint32_t row)
+{
+    const int64_t rows = p->square.height_px, side_m_q8 = (int64_t)fan->cells * fan->cell_m_q8;
+    const int64_t middle = 2 * (int64_t)fan->cells * fan->centre_m_q8;
+    const int64_t there =
+        rows * (2 * (int64_t)fan->centre_m_q8 - side_m_q8) + (2 * (int64_t)row + 1) * side_m_q8;
+    const int64_t most_q20 = (int64_t)LINE_Q20 << 6;
+    const int64_t step_q20 =
+        fx_clamp_i64(there > 0 ? middle * LINE_Q20 / there : most_q20, LINE_Q20 >> 6, most_q20);
+    /* The middle of the leftmost pixel lies (n - 1) / 2 pixels left of the square's middle, and
+     * line -1 (N + 1) / 2 lines. */
+    const int64_t start_q20 =
+        ((int64_t)fan->lines + 1) * (LINE_Q20 / 2) - (p->square.width_px - 1) * step_q20 / 2;
+    p->step_q20[row] = (int32_t)step_q20;
+    p->start_q20[row] = (int32_t)fx_clamp_i64(start_q20, 0, INT32_MAX / 2);
+    p->most_px = fx_max_u32(p->most_px, (uint32_t)((LINE_Q20 + step_q20 - 1) / step_q20));
+}
+
+void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *frame,
+                          const struct lm_patch_fan *fan)
+{
+    p->square = lm_patch_square(frame);
+    p->lines = fan->lines;
+    p->cells = fan->cells;
+    p->most_px = 0;
+    /* Whole groups of rows, as they are painted. */
+    for (uint32_t row = 0; row < (uint32_t)p->square.height_px + ROWS_AT_ONCE - 1; row++) {
+        set_cells(p, row % LM_PATCH_SIDE_MAX_PX);
+        set_lines(p, fan, row % LM_PATCH_SIDE_MAX_PX);
+    }
+}
+
+/* Some rows of a strip, which lies between two lines. From its next pixel on, each row has four
+ * pixels of it at most. */
+struct strip {
+    uint16_t grey[ROWS_AT_ONCE];        /* of the second line */
+    uint16_t column_px[ROWS_AT_ONCE];   /* of the next pixel */
+    uint16_t share_q7[4][ROWS_AT_ONCE]; /* of the second line in each pixel; all of it behind it */
+    uint16_t pair[2]
+                 [ROWS_AT_ONCE]; /* greys, two pixels in a number: the left one is the lower byte */
+};
+
+/* Grey between two. A difference is below 2^8, times 2^7: 16 bits hold it. */
+static inline uint16_t grey_between(uint16_t first, uint16_t second, uint16_t share_q7)
+{
+    const int16_t more = (int16_t)((int16_t)(second - first) * (int16_t)share_q7 + SHARE_Q7 / 2);
+    return (uint16_t)(first + (more >> 7));
+}
+
+/* Greys of the second line at the middles of the rows. Two cells are read as one number. */
+static inline void set_greys(const struct lm_patch_painter *p, uint32_t first, const uint8_t *grey,
+                             struct strip *s)
+{
+    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
+        s->grey[i] = fx_load_u16(grey + p->cell[first + i]);
+    }
+    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
+        s->grey[i] = grey_between(s->grey[i] & 255, s->grey[i] >> 8, p->part_q7[first + i]);
+    }
+}
+
+/* Shares of the second line in the next pixels of each row. Then move on, by the pixels that lie
+ * before the second line. */
+static inline void set_shares(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
+                              struct strip *s)
+{
+    for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
+        const int32_t step_q20 = p->step_q20[first + i];
+        int32_t on_q20 = p->on_q20[first + i], next_q20 = on_q20;
+        uint32_t count = 0;
+        for (uint32_t k = 0; k < most_px; k++, on_q20 += step_q20) {
+            s->share_q7[k][i] = (uint16_t)fx_min_i32(on_q20 >> 13, SHARE_Q7);
+            next_q20 += on_q20 < LINE_Q20 ? step_q20 : 0;
+            count += on_q20 < LINE_Q20;
+        }
+        s->column_px[i] = p->column_px[first + i];
+        p->column_px[first + i] = (uint16_t)(s->column_px[i] + count);
+        p->on_q20[first + i] = next_q20 - LINE_Q20;
+    }
+}
+
+/* Greys of the pixels, two at a time. */
+static inline void set_pairs(struct lm_patch_painter *p, uint32_t first, uint32_t most_px,
+                             struct strip *s)
+{
+    for (uint32_t k = 0; k < most_px; k += 2) {
+        for (uint32_t i = 0; i < ROWS_AT_ONCE; i++) {
+            const uint16_t before = p->grey[first + i], here = s->grey[i];
+            const uint16_t left = grey_between(before, here, s->share_q7[k][i]);
+            const uint16_t right = grey_between(before, here, s->share_q7[k + 1][i]);
+            s->pair[k / 2][i] = (uint16_t)(left | right << 8);
         }
     }
 }
 
-enum { AT_ONCE = 8 };
-
-/* Paint eight cells of two by two pixels, upwards. Two pixels side by side are stored as one
- * number. The empty asm statement makes the compiler compute all eight numbers in one vector
- * operation before the first is stored. */
-static inline void paint_pairs(uint8_t *corner, ptrdiff_t up, const uint8_t *grey)
+/* True if no row ends within the next `most_px` pixels. */
+static inline bool are_whole(const struct strip *s, uint32_t rows, uint32_t most_px, uint32_t right)
 {
-    uint16_t pair[AT_ONCE];
-    for (int32_t k = 0; k < AT_ONCE; k++) {
-        pair[k] = (uint16_t)(grey[k] * 0x0101u);
+    uint32_t farthest = 0;
+    for (uint32_t i = 0; i < rows; i++) {
+        farthest = fx_max_u32(farthest, s->column_px[i]);
     }
-    __asm__("" : "+m"(pair));
-    for (int32_t k = 0; k < AT_ONCE; k++) {
-        fx_store_u16(corner + 2 * k * up, pair[k]);
-        fx_store_u16(corner + (2 * k + 1) * up, pair[k]);
-    }
+    return farthest + most_px <= right;
 }
 
-/* Paint cells upwards, eight at a time: for small cells, counting costs as much as painting.
- * Callers pass a constant side, so that the compiler unrolls the loops inside a cell. */
-static inline void paint_cells(uint8_t *corner, ptrdiff_t up, int32_t side_px, const uint8_t *grey,
-                               size_t count)
+/* Store the pixels of `rows` rows. If one of them ends, each is stored pixel by pixel. */
+static inline void store(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
+                         uint32_t most_px, const struct strip *s, uint8_t *row, ptrdiff_t up)
 {
-    const ptrdiff_t next = side_px * up;
-    const uint8_t *const end = grey + count, *const whole = end - count % AT_ONCE;
-    for (; grey != whole; grey += AT_ONCE, corner += AT_ONCE * next) {
-        if (side_px == 2) {
-            paint_pairs(corner, up, grey);
-            continue;
+    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
+    if (are_whole(s, rows, most_px, right)) {
+        for (uint32_t i = 0; i < rows; i++, row += up) {
+            fx_store_u16(row + s->column_px[i], s->pair[0][i]);
+            if (most_px > 2) {
+                fx_store_u16(row + s->column_px[i] + 2, s->pair[1][i]);
+            }
         }
-        for (int32_t k = 0; k < AT_ONCE; k++) {
-            paint_cell(corner + k * next, up, side_px, grey[k]);
-        }
-    }
-    for (; grey != end; grey++, corner += next) {
-        paint_cell(corner, up, side_px, *grey);
-    }
-}
-
-void lm_scan_conv_patch(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
-                        const uint8_t *grey, uint32_t cells)
-{
-    const int32_t cell_px = lm_patch_cell_px(frame, cells), side_px = cell_px * (int32_t)cells;
-    const int32_t left = (frame->width_px - side_px) / 2 + (int32_t)line * cell_px;
-    const int32_t bottom = (frame->height_px + side_px) / 2 - 1;
-    /* A frame smaller than the patch shows the patch's middle, with cells of one pixel. */
-    if (left < 0 || left + cell_px > frame->width_px) {
         return;
     }
-    const uint32_t first = (uint32_t)fx_max_i32(bottom + 1 - frame->height_px, 0);
-    const uint32_t end = fx_min_u32(cells, (uint32_t)bottom + 1);
-    const size_t width_px = plane->width_px, count = end > first ? end - first : 0;
-    uint8_t *pixel = plane->pixels + ((uint32_t)(frame->top_px + bottom) - first) * width_px +
-                     frame->left_px + left;
-    const ptrdiff_t up = -(ptrdiff_t)width_px;
-    if (cell_px == 1) {
-        paint_cells(pixel, up, 1, grey + first, count);
-    } else if (cell_px == 2) {
-        paint_cells(pixel, up, 2, grey + first, count);
-    } else {
-        for (uint32_t i = first; i < end; i++, pixel += cell_px * up) {
-            paint_cell(pixel, up, cell_px, grey[i]);
+    for (uint32_t i = 0; i < rows; i++, row += up) {
+        uint16_t *const end = &p->column_px[first + i];
+        *end = (uint16_t)fx_min_u32(*end, right);
+        for (uint32_t k = 0, x = s->column_px[i]; x < *end; k++, x++) {
+            row[x] = (uint8_t)(s->pair[k / 2][i] >> k % 2 * 8);
+        }
+    }
+}
+
+/* Paint some rows of a strip. Callers pass constants for `most_px`, 2 or 4, so that the compiler
+ * unrolls the loops over pixels. */
+static inline void paint_strip(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
+                               uint32_t most_px, struct strip *s, uint8_t *row, ptrdiff_t up)
+{
+    set_shares(p, first, most_px, s);
+    set_pairs(p, first, most_px, s);
+    store(p, first, rows, most_px, s, row, up);
+}
+
+/* The same where more than four pixels of a row may lie between two lines. */
+static void paint_wide_strip(struct lm_patch_painter *p, uint32_t first, uint32_t rows,
+                             const struct strip *s, uint8_t *row, ptrdiff_t up)
+{
+    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
+    for (uint32_t i = first; i < first + rows; i++, row += up) {
+        for (; p->on_q20[i] < LINE_Q20 && p->column_px[i] < right; p->column_px[i]++) {
+            row[p->column_px[i]] = (uint8_t)grey_between(p->grey[i], s->grey[i - first],
+                                                         (uint16_t)(p->on_q20[i] >> 13));
+            p->on_q20[i] += p->step_q20[i];
+        }
+        p->on_q20[i] -= p->on_q20[i] < LINE_Q20 ? 0 : LINE_Q20;
+    }
+}
+
+/* Begin at the left edge of each row, with a line before line 0 that is equal to it. */
+static void begin(struct lm_patch_painter *p)
+{
+    memcpy(p->on_q20, p->start_q20, sizeof p->on_q20);
+    for (uint32_t row = 0; row < LM_PATCH_SIDE_MAX_PX; row++) {
+        p->column_px[row] = p->square.left_px;
+    }
+}
+
+/* Fill what is left of some rows. */
+static void fill(const struct lm_patch_painter *p, uint32_t first, uint32_t rows, uint8_t *row,
+                 ptrdiff_t up)
+{
+    const uint32_t right = (uint32_t)p->square.left_px + p->square.width_px;
+    for (uint32_t i = first; i < first + rows; i++, row += up) {
+        memset(row + p->column_px[i], p->grey[i], right - p->column_px[i]);
+    }
+}
+
+void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
+                        const uint8_t *grey)
+{
+    const uint32_t all = p->square.height_px;
+    const ptrdiff_t up = -(ptrdiff_t)plane->width_px;
+    uint8_t *row = plane->pixels + (p->square.top_px + all - 1) * plane->width_px;
+    struct strip s;
+    if (line == 0) {
+        begin(p);
+    }
+    for (uint32_t first = 0; first < all; first += ROWS_AT_ONCE, row += ROWS_AT_ONCE * up) {
+        const uint32_t rows = fx_min_u32(all - first, ROWS_AT_ONCE);
+        set_greys(p, first, grey, &s);
+        if (line == 0) {
+            memcpy(p->grey + first, s.grey, sizeof s.grey);
+        }
+        if (p->most_px <= 2) {
+            paint_strip(p, first, rows, 2, &s, row, up);
+        } else if (p->most_px <= 4) {
+            paint_strip(p, first, rows, 4, &s, row, up);
+        } else {
+            paint_wide_strip(p, first, rows, &s, row, up);
+        }
+        memcpy(p->grey + first, s.grey, sizeof s.grey);
+        if (line == p->lines - 1) {
+            fill(p, first, rows, row, up);
         }
     }
 }

@@ -36,15 +36,15 @@ static struct lm_point middle_of(const struct lm_frame *frame)
 struct lm_view lm_view_of_patch(const struct lm_frame *frame, struct lm_position centre,
                                 fx_bam_t look, uint32_t cells, uint32_t cell_mm)
 {
-    const uint16_t cell_px = lm_patch_cell_px(frame, cells);
+    const struct lm_frame square = lm_patch_square(frame);
     return (struct lm_view){
         .shape = LM_VIEW_PATCH,
         .origin = centre,
         .up = look,
-        .at = middle_of(frame),
-        .middle = middle_of(frame),
-        .scale_mm_per_px_q8 = (uint32_t)(lm_mm_q8_of_mm(cell_mm) / cell_px),
-        .radius_px = cell_px * (int32_t)cells / 2,
+        .at = middle_of(&square),
+        .middle = middle_of(&square),
+        .scale_mm_per_px_q8 = (uint32_t)(lm_mm_q8_of_mm(cell_mm) * cells / square.width_px),
+        .radius_px = square.width_px / 2,
     };
 }
 

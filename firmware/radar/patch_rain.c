@@ -20,14 +20,19 @@ enum {
     RANGE_MOST_Q8 = 1 << 27
 };
 
-static struct lm_shower_cells reach_of(const struct lm_patch_geometry *g)
+/* Cells on the ray in direction `aside`, by their range along it: 1 / cos(aside) times that along
+ * the line of sight to the centre. Rays to a patch are within 75 degrees of that. */
+static struct lm_shower_cells reach_of(const struct lm_patch_geometry *g, fx_bam_t aside)
 {
-    const uint32_t before_m_q8 = (g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
-    return (struct lm_shower_cells){g->centre_m_q8 - before_m_q8, g->cell_m_q8, g->cells};
+    const uint32_t shown = g->cells - g->guard;
+    const uint32_t before_m_q8 = (shown - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8;
+    const uint32_t cos_q30 = (uint32_t)fx_max_i32(fx_cos_q30(aside), 1 << 28);
+    const uint64_t first_m_q8 = g->centre_m_q8 - before_m_q8;
+    return (struct lm_shower_cells){(uint32_t)((first_m_q8 << 30) / cos_q30),
+                                    (uint32_t)(((uint64_t)g->cell_m_q8 << 30) / cos_q30), g->cells};
 }
 
-/* Azimuth of the ray through the middle of line `line`, from the line of sight to the centre, right
- * positive. */
+/* Azimuth of line `line`, from the line of sight to the centre, right positive. */
 static fx_bam_t aside_of(const struct lm_patch_geometry *g, int32_t line)
 {
     const int64_t across_m_q8 = (2 * (int64_t)line + 1 - g->lines) * g->cell_m_q8 / 2;
@@ -70,13 +75,14 @@ static bool is_met(const struct lm_shower *s, int32_t most, const struct lm_show
     return lm_shower_chord(s, (fx_bam_t)nearest, &chord) && chord.from_m_q8 < (int32_t)end_m_q8;
 }
 
-static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
-                     const struct lm_shower_cells *reach)
+static void keep_met(struct lm_patch_rain *p, const struct lm_patch_geometry *g)
 {
-    const int32_t most = (int32_t)aside_of(g, (int32_t)g->lines) + p->beam / 2 * 3;
+    const fx_bam_t outermost = aside_of(g, (int32_t)g->lines);
+    const struct lm_shower_cells reach = reach_of(g, outermost);
+    const int32_t most = (int32_t)outermost + p->beam / 2 * 3;
     uint32_t kept = 0;
     for (uint32_t n = 0; n < p->count; n++) {
-        if (is_met(&p->shower[n], most, reach)) {
+        if (is_met(&p->shower[n], most, &reach)) {
             p->shower[kept++] = p->shower[n];
         }
     }
@@ -172,10 +178,10 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
     if (p->count == 0) {
         return;
     }
-    const struct lm_shower_cells reach = reach_of(g);
+    const struct lm_shower_cells middle = reach_of(g, 0);
     p->beam = fx_max_i32((int32_t)radar->antenna.azimuth_beam, BEAM_LEAST);
     p->noise_db_q8 = noise_db_q8;
-    keep_met(p, g, &reach);
+    keep_met(p, g);
     if (p->count == 0) {
         return;
     }
@@ -185,31 +191,32 @@ void lm_patch_rain_set(struct lm_patch_rain *p, const struct lm_radar *radar,
     p->slant_q16 = (uint32_t)(((uint64_t)fx_hypot_u32((int32_t)g->centre_m_q8, above_m_q8) << 16) /
                               g->centre_m_q8);
     for (uint32_t i = 0; i < g->cells; i++) {
-        p->volume_db_q8[i] = volume_db_q8(radar, g, reach.first_m_q8 + i * reach.cell_m_q8);
+        p->volume_db_q8[i] = volume_db_q8(radar, g, middle.first_m_q8 + i * middle.cell_m_q8);
     }
     p->veil[0].is_set = p->veil[1].is_set = false;
 }
 
 /* Veil at a station, computed when it is first asked for. Lines go from left to right, so two
  * stations are kept: the even and the odd one. */
-static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
-                              const struct lm_shower_cells *reach)
+static const int32_t *veil_at(struct lm_patch_rain *p, const struct lm_patch_geometry *g,
+                              int32_t station)
 {
     struct lm_rain_veil *v = &p->veil[station & 1];
     if (v->is_set && v->station == station) {
         return v->level_db_q8;
     }
-    const int32_t one_q8 = fx_db_q8_u64((uint64_t)1 << 32);
+    const int32_t one_q8 = fx_db_q8_u64((uint64_t)1 << 32), axis = station * (p->beam / STATIONS);
+    const struct lm_shower_cells reach = reach_of(g, (fx_bam_t)axis);
     v->is_set = true;
     v->station = station;
-    memset(p->power_q32, 0, reach->cells * sizeof *p->power_q32);
+    memset(p->power_q32, 0, reach.cells * sizeof *p->power_q32);
     for (uint32_t n = 0; n < p->count; n++) {
-        find_edges(p, &p->shower[n], reach);
+        find_edges(p, &p->shower[n], &reach);
         for (int32_t ray = 0; ray < RAYS; ray++) {
-            add_ray(p, &p->shower[n], station * (p->beam / STATIONS), ray, reach);
+            add_ray(p, &p->shower[n], axis, ray, &reach);
         }
     }
-    for (uint32_t i = 0; i < reach->cells; i++) {
+    for (uint32_t i = 0; i < reach.cells; i++) {
         v->level_db_q8[i] =
             fx_db_q8_sum_vec(p->noise_db_q8, fx_db_q8_u64(p->power_q32[i]) - one_q8);
     }
@@ -219,13 +226,13 @@ static const int32_t *veil_at(struct lm_patch_rain *p, int32_t station,
 void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *g, uint32_t line,
                        const int32_t *clutter_db_q8, int32_t *level_db_q8)
 {
-    const struct lm_shower_cells reach = reach_of(g);
     const fx_bam_t aside = aside_of(g, (int32_t)line);
+    const struct lm_shower_cells reach = reach_of(g, aside);
     const int32_t apart = p->beam / STATIONS, rest = (int32_t)aside % apart;
     const int32_t station = (int32_t)aside / apart - (rest < 0);
     const int32_t part_q8 = (int32_t)((int64_t)(rest < 0 ? rest + apart : rest) * 256 / apart);
-    const int32_t *before_db_q8 = veil_at(p, station, &reach);
-    const int32_t *after_db_q8 = veil_at(p, station + 1, &reach);
+    const int32_t *before_db_q8 = veil_at(p, g, station);
+    const int32_t *after_db_q8 = veil_at(p, g, station + 1);
     set_loss(p, aside, &reach);
     for (uint32_t i = 0; i < g->cells; i++) {
         const int32_t veil_db_q8 =
@@ -239,15 +246,16 @@ void lm_patch_rain_run(struct lm_patch_rain *p, const struct lm_patch_geometry *
 void lm_patch_rain_weaken(const struct lm_patch_rain *p, const struct lm_patch_geometry *g,
                           struct lm_target_patch *target_patch)
 {
-    const struct lm_shower_cells reach = reach_of(g);
     struct lm_chord chord;
     for (uint32_t n = 0; n < p->count; n++) {
         const struct lm_shower s = slanted(p, n);
         for (uint32_t i = 0; i < target_patch->scatterer_count; i++) {
             struct lm_patch_scatterer *scatterer = &target_patch->scatterer[i];
+            const fx_bam_t aside = aside_of(g, scatterer->line);
+            const struct lm_shower_cells reach = reach_of(g, aside);
             const int64_t range_m_q8 =
                 reach.first_m_q8 + (int64_t)scatterer->cell * reach.cell_m_q8;
-            if (lm_shower_chord(&s, aside_of(g, scatterer->line), &chord)) {
+            if (lm_shower_chord(&s, aside, &chord)) {
                 const int32_t at_m_q8 =
                     range_m_q8 < RANGE_MOST_Q8 ? (int32_t)range_m_q8 : RANGE_MOST_Q8;
                 const uint32_t before_m_q8 = (uint32_t)lm_chord_before_m_q8(chord, at_m_q8);

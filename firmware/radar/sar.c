@@ -59,6 +59,20 @@ static int64_t guard_m_q8(const struct lm_radar *radar, const struct lm_sar_comm
            (int64_t)before_centre * lm_m_q8_of_mm_nearest(c->cell_mm);
 }
 
+/* Lines that cover the square at its near edge, an even number: there line k of n is
+ * (k + 1/2 - n/2) ds (S - C) / S aside, with C half a side. S is below 2^26 and there are at most
+ * 2^10 cells. The near edge is behind the antenna or on it: no number is enough. */
+static uint64_t lines_needed(const struct lm_radar *radar, const struct lm_sar_command *c)
+{
+    const uint32_t cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm);
+    const int64_t range_m_q8 = lm_m_q8_of_m(c->range_m);
+    const int64_t near_m_q8 = range_m_q8 - (int64_t)radar->sar.cells * cell_m_q8 / 2;
+    const uint64_t cells_m_q8 = (uint64_t)radar->sar.cells * (uint64_t)range_m_q8;
+    return near_m_q8 <= 0
+               ? UINT64_MAX
+               : (cells_m_q8 + 2 * (uint64_t)near_m_q8 - 1) / (2 * (uint64_t)near_m_q8) * 2;
+}
+
 static enum lm_refusal judge_command(const struct lm_radar *radar, const struct lm_sar_command *c)
 {
     const int32_t highest_m_q6 = lm_m_q6_of_m(30000);
@@ -68,7 +82,8 @@ static enum lm_refusal judge_command(const struct lm_radar *radar, const struct 
     if (c->range_m > 250000) {
         return LM_REFUSED_FAR;
     }
-    if (c->range_m < 1000 || guard_m_q8(radar, c) < LM_M_Q8(16 * LM_RANGE_MIN_M)) {
+    if (c->range_m < 1000 || guard_m_q8(radar, c) < LM_M_Q8(16 * LM_RANGE_MIN_M) ||
+        lines_needed(radar, c) > LM_PATCH_LINES_MAX) {
         return LM_REFUSED_NEAR;
     }
     return c->height_m_q6 >= -highest_m_q6 && c->height_m_q6 <= highest_m_q6 ? LM_REFUSED_NOT
@@ -99,8 +114,11 @@ static void set_grid(struct lm_sar *s, const struct lm_db *db, int32_t reference
     const uint32_t cells = s->radar->sar.cells, cell_m_q8 = lm_m_q8_of_mm_nearest(c->cell_mm);
     const uint32_t near_m_q8 = (uint32_t)guard_m_q8(s->radar, c);
     const int32_t half_m_q8 = (int32_t)(cells * cell_m_q8 / 2);
-    const struct lm_ground_extent extent = {-half_m_q8 - LM_SAR_GUARD * (int32_t)cell_m_q8,
-                                            half_m_q8, half_m_q8};
+    const struct lm_ground_extent extent = {.near_m_q8 =
+                                                -half_m_q8 - LM_SAR_GUARD * (int32_t)cell_m_q8,
+                                            .far_m_q8 = half_m_q8,
+                                            .side_m_q8 = (int32_t)(s->lines * cell_m_q8 / 2),
+                                            .apex_m_q8 = lm_m_q8_of_m(c->range_m)};
     lm_ground_patch_set(&s->ground, c->centre, c->look_azimuth, &extent);
     s->lod = lm_scan_lod(db, c->cell_mm);
     lm_scan_blend_set(&s->blend, db, c->cell_mm);
@@ -117,8 +135,10 @@ static void set_foreground(struct lm_sar *s, const struct lm_db *db)
     lm_foreground_set(f, db, &s->radar->illumination, (uint32_t)guard_m_q8(s->radar, c), &s->grid);
     const int32_t near_m_q8 = (int32_t)f->start_m_q8 - (int32_t)lm_m_q8_of_m(c->range_m);
     const struct lm_ground_extent extent = {
-        near_m_q8, near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * f->cell_m_q8),
-        (int32_t)(s->radar->sar.cells * s->grid.cell_m_q8 / 2)};
+        .near_m_q8 = near_m_q8,
+        .far_m_q8 = near_m_q8 + (int32_t)(LM_FOREGROUND_CELLS * f->cell_m_q8),
+        .side_m_q8 = (int32_t)(s->lines * s->grid.cell_m_q8 / 2),
+        .apex_m_q8 = lm_m_q8_of_m(c->range_m)};
     lm_ground_patch_set(&s->foreground_ground, c->centre, c->look_azimuth, &extent);
 }
 
@@ -147,7 +167,7 @@ static void set_geometry(struct lm_sar *s)
         .look = s->command.look_azimuth,
         .centre_m_q8 = lm_m_q8_of_m(s->command.range_m),
         .cell_m_q8 = s->grid.cell_m_q8,
-        .lines = s->radar->sar.cells,
+        .lines = s->lines,
         .cells = s->grid.cells,
         .guard = LM_SAR_GUARD,
         .first = fx_max_u32(s->grid.first, LM_SAR_GUARD),
@@ -160,12 +180,19 @@ static void set_geometry(struct lm_sar *s)
     };
 }
 
+/* Position below the antenna. */
+static struct lm_position antenna_of(const struct lm_sar_command *c)
+{
+    struct lm_geo_origin centre;
+    lm_geo_set_origin(&centre, c->centre);
+    return lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, lm_m_q8_of_m(c->range_m));
+}
+
 /* Compute noise and rain of a patch for an antenna that points at its centre all along. A jammer
  * therefore raises the noise of the whole patch alike. */
 static void find_weather(struct lm_sar *s, const struct lm_environment *environment)
 {
     const struct lm_sar_command *c = &s->command;
-    struct lm_geo_origin centre;
     uint32_t distance_m_q8;
     fx_bam_t azimuth;
     s->floor_db_q8 = s->radar->sar.noise_floor_db_q8;
@@ -173,9 +200,7 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     if (!environment || environment->rain_count + environment->jammer_count == 0) {
         return;
     }
-    lm_geo_set_origin(&centre, c->centre);
-    const struct lm_position antenna =
-        lm_geo_direct(&centre, c->look_azimuth + FX_BAM_180, lm_m_q8_of_m(c->range_m));
+    const struct lm_position antenna = antenna_of(c);
     lm_geo_inverse(antenna, c->centre, &distance_m_q8, &azimuth);
     s->floor_db_q8 += lm_noise_rise_db_q8(environment, s->radar, antenna, azimuth);
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
@@ -208,9 +233,10 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     const int32_t across_mm_s = across_mm_s_of(radar, flight);
     const uint64_t patch_us =
         dwell_us(radar, command, setup->reference_m_q10, fx_abs_u32(across_mm_s));
-    const uint64_t line_us = patch_us / radar->sar.cells;
     s->radar = radar;
     s->command = *command;
+    s->lines = (uint32_t)lines_needed(radar, command);
+    const uint64_t line_us = patch_us / s->lines;
     s->line_us = line_us < LM_SAR_LINE_MIN_US ? LM_SAR_LINE_MIN_US : line_us;
     s->targets = setup->targets;
     s->chips = setup->chips;
@@ -249,21 +275,21 @@ void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t refe
 
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s)
 {
-    return (s->radar->sar.cells - s->line) * s->line_us;
+    return (s->lines - s->line) * s->line_us;
 }
 
 /* Path of a line over the guard cells and the patch. */
 static void set_path(struct lm_ground_path *path, const struct lm_sar *s, uint32_t line)
 {
-    lm_ground_patch_path(path, &s->ground, line, s->radar->sar.cells, s->grid.cells);
+    lm_ground_patch_path(path, &s->ground, line, s->lines, s->grid.cells);
 }
 
 /* Path of a line over the foreground. */
 static void set_foreground_path(struct lm_ground_path *path, const struct lm_sar *s,
                                 uint32_t number)
 {
-    lm_ground_patch_path(path, &s->foreground_ground, number * LM_SAR_FOREGROUND_LINES,
-                         s->radar->sar.cells, LM_FOREGROUND_CELLS);
+    lm_ground_patch_path(path, &s->foreground_ground, number * LM_SAR_FOREGROUND_LINES, s->lines,
+                         LM_FOREGROUND_CELLS);
 }
 
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line)
@@ -278,16 +304,17 @@ void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32
     }
 }
 
-/* Greatest displacement by Doppler, s v / (V sin o) for the fastest target. Targets outside of the
- * patch may appear in it. */
-static uint32_t displaced_most_m(const struct lm_sar *s)
+/* Greatest displacement by Doppler, s v / (V sin o) for the fastest target at the patch's far end.
+ * Targets outside of the patch may appear in it. */
+static uint32_t displaced_most_m(const struct lm_sar *s, uint32_t half_diagonal_m)
 {
+    const uint64_t far_m = (uint64_t)s->command.range_m + half_diagonal_m;
     uint32_t fastest_mm_s = 0;
     for (uint32_t i = 0; i < s->targets->count; i++) {
         fastest_mm_s = fx_max_u32(fastest_mm_s, s->targets->items[i].speed_mm_s);
     }
     const uint64_t across_mm_s = fx_max_u32(fx_abs_u32(s->across_mm_s), 1);
-    const uint64_t most_m = (uint64_t)s->command.range_m * fastest_mm_s / across_mm_s;
+    const uint64_t most_m = far_m * fastest_mm_s / across_mm_s;
     return most_m < 200000 ? (uint32_t)most_m : 200000;
 }
 
@@ -300,7 +327,8 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     /* Half the diagonal; 1.5 is more than the root of 2. */
     const uint32_t half_diagonal_m = s->radar->sar.cells * s->grid.cell_m_q8 / 512 * 3 / 2 + 1;
     const struct lm_target_query query = {.position = s->command.centre,
-                                          .reach_m = half_diagonal_m + displaced_most_m(s),
+                                          .reach_m = half_diagonal_m +
+                                                     displaced_most_m(s, half_diagonal_m),
                                           .time_us = s->time_us,
                                           .tiles = tiles,
                                           .lod = s->lod};
@@ -308,9 +336,7 @@ void lm_sar_prefetch_targets(struct lm_sar *s, struct lm_tile_cache *tiles)
     if (s->chips) {
         const struct lm_chip_query chip_query = {.centre = s->command.centre,
                                                  .reach_m = query.reach_m,
-                                                 .is_parallel = true,
-                                                 .look = s->command.look_azimuth,
-                                                 .range_m_q8 = lm_m_q8_of_m(s->command.range_m),
+                                                 .radar = antenna_of(&s->command),
                                                  .heights = s->geometry.heights,
                                                  .cell_mm = s->command.cell_mm,
                                                  .side_most = LM_CHIP_SIDE};
@@ -455,8 +481,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
 /* True if a scatterer may be displayed on lines before the one that holds its position. */
 static bool is_early(const struct lm_sar *s, const struct lm_patch_scatterer *p)
 {
-    return (p->is_displaced || p->is_chip) && p->line >= 0 &&
-           p->line < (int32_t)s->radar->sar.cells;
+    return (p->is_displaced || p->is_chip) && p->line >= 0 && p->line < (int32_t)s->lines;
 }
 
 /* Test which chips and displaced movers are hidden before the first line is sampled: they are
@@ -518,7 +543,7 @@ static const int32_t *focus_line(struct lm_sar *s, int32_t *smeared_db_q8)
     const int32_t *near_lines[2 * LM_DEFOCUS_REACH + 1];
     uint32_t share_q16[2 * LM_DEFOCUS_REACH + 1];
     for (int32_t m = -LM_DEFOCUS_REACH; m <= LM_DEFOCUS_REACH; m++) {
-        const int32_t last = s->radar->sar.cells - 1;
+        const int32_t last = (int32_t)s->lines - 1;
         const int32_t number = fx_clamp_i32((int32_t)s->line + m, 0, last);
         near_lines[m + LM_DEFOCUS_REACH] = ring_line(s, (uint32_t)number) + LM_SAR_GUARD;
     }
@@ -544,7 +569,7 @@ static void sample_some(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line)
 {
-    const uint32_t end = fx_min_u32(s->line + 1 + LM_SAR_AHEAD, s->radar->sar.cells);
+    const uint32_t end = fx_min_u32(s->line + 1 + LM_SAR_AHEAD, s->lines);
     if (s->sampled < end) {
         sample_some(s, tiles, end, at_most, line);
     }
@@ -554,11 +579,10 @@ bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
 const int32_t *lm_sar_draw_line(struct lm_sar *s, struct lm_tile_cache *tiles,
                                 const struct lm_tone *tone, struct lm_line *line)
 {
-    const uint32_t lines = s->radar->sar.cells;
     lm_sar_sample_ahead(s, tiles, LM_PATCH_SCATTERERS_MAX, line);
-    add_scatterers(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, lines));
+    add_scatterers(s, fx_min_u32(s->line + 1 + LM_DEFOCUS_REACH, s->lines));
     const int32_t *const level_db_q8 = focus_line(s, line->lit.level_db_q8);
-    lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, lines);
+    lm_tone_run(tone, level_db_q8 + LM_SAR_GUARD, line->grey + LM_SAR_GUARD, s->radar->sar.cells);
     s->line++;
     return level_db_q8;
 }

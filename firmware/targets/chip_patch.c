@@ -4,35 +4,36 @@
 #include "fx/sat.h"
 #include "fx/trig.h"
 
-/* a b / 2^30, for a position on the chip below 2^23 and a sine or cosine: below 2^53. */
-static int32_t part(int64_t a, int32_t b_q30)
-{
-    return (int32_t)(a * b_q30 >> 30);
-}
-
-/* Angle by which the chip is turned. */
-struct rotation {
-    int32_t cos_q30, sin_q30;
-};
-
-/* Corner of a box of pixels, relative to the origin and turned by the chip's angle. */
+/* Corner of a box of pixels, relative to the origin, in lines and cells. */
 struct chip_corner {
-    int32_t right_px_q16, beyond_px_q16;
+    int32_t right, beyond;
 };
 
-static struct chip_corner turned(const struct lm_chip_patch *chip, const struct rotation *r,
-                                 int32_t column_q16, int32_t row_q16)
+/* a / b for a length on the chip below 2^26 and a step of at least 1. Longer than 2^20 cells is as
+ * good as that. */
+static int32_t whole_cells(int64_t a, int64_t b)
 {
-    const int32_t x = column_q16 - chip->origin_px_q16[0], y = row_q16 - chip->origin_px_q16[1];
-    return (struct chip_corner){part(x, r->cos_q30) - part(y, r->sin_q30),
-                                part(x, r->sin_q30) + part(y, r->cos_q30)};
+    const int64_t most = 1 << 20;
+    return (int32_t)fx_clamp_i64(a / b, -most, most);
 }
 
-/* Whole cells from the origin to a coordinate in pixels, with `more` for what lies within a cell.
- */
-static int32_t cells_of(int32_t pixels_q16, uint32_t pixels_a_cell_q16, int32_t more)
+/* Lines and cells from the origin to a place on the chip. With the steps (a, c) of a line and (b,
+ * d) of a cell, in columns and rows, and the place (x, y):
+ *
+ *     right = (x d - y b) / (a d - b c)        beyond = (y a - x c) / (a d - b c)
+ *
+ * Places are below 2^23 and steps below 2^21; products are below 2^45. The determinant is not 0,
+ * as the ray is within 75 degrees of the line of sight and steps are half a pixel or more; where
+ * rounding makes it so, the cells are nowhere. */
+static struct chip_corner corner_of(const struct lm_chip_patch *chip, int32_t column_q16,
+                                    int32_t row_q16)
 {
-    return pixels_q16 / (int32_t)fx_max_u32(pixels_a_cell_q16, 1) + more;
+    const int64_t x = column_q16 - chip->origin_px_q16[0], y = row_q16 - chip->origin_px_q16[1];
+    const int64_t a = chip->right_px_q16[0], c = chip->right_px_q16[1];
+    const int64_t b = chip->beyond_px_q16[0], d = chip->beyond_px_q16[1];
+    const int64_t determinant = a * d - b * c > 0 ? a * d - b * c : 1;
+    return (struct chip_corner){whole_cells(x * d - y * b, determinant),
+                                whole_cells(y * a - x * c, determinant)};
 }
 
 /* Whole cells that a stretched box covers more on either side, rounded up. */
@@ -44,8 +45,7 @@ static int32_t more_of(uint32_t stretch_q8)
 /* Cells that show any pixel of a box: the box of pixels grows by half a pixel, and the cells by
  * one, all around. */
 static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
-                                     const struct lm_chip_box *box, const struct rotation *turn,
-                                     uint32_t scale_q16)
+                                     const struct lm_chip_box *box)
 {
     struct lm_chip_reach r = {INT32_MAX, 0, INT32_MAX, 0};
     if (box->row_end == 0) {
@@ -56,11 +56,11 @@ static struct lm_chip_reach reach_of(const struct lm_chip_patch *chip,
         const int32_t column_q16 =
             i % 2 ? box->column_end * 65536 + 32768 : box->column * 65536 - 32768;
         const int32_t row_q16 = i / 2 ? box->row_end * 65536 + 32768 : box->row * 65536 - 32768;
-        const struct chip_corner c = turned(chip, turn, column_q16, row_q16);
-        r.right = fx_min_i32(r.right, cells_of(c.right_px_q16, scale_q16, -1));
-        r.right_end = fx_max_i32(r.right_end, cells_of(c.right_px_q16, scale_q16, 2));
-        r.beyond = fx_min_i32(r.beyond, cells_of(c.beyond_px_q16, scale_q16, -1));
-        r.beyond_end = fx_max_i32(r.beyond_end, cells_of(c.beyond_px_q16, scale_q16, 2));
+        const struct chip_corner c = corner_of(chip, column_q16, row_q16);
+        r.right = fx_min_i32(r.right, c.right - 1);
+        r.right_end = fx_max_i32(r.right_end, c.right + 2);
+        r.beyond = fx_min_i32(r.beyond, c.beyond - 1);
+        r.beyond_end = fx_max_i32(r.beyond_end, c.beyond + 2);
     }
     return r;
 }
@@ -89,32 +89,41 @@ static int32_t side_gain_db_q8(uint32_t scale_q16, uint32_t stretch_q8, int32_t 
            fx_db_q8(65536);
 }
 
-/* Column and row of a cell `right` and `beyond` of the target's origin, with k pixels to a cell and
- * the chip turned by d:
+/* Part of a step's length along the columns or rows: a length below 2^20 times a sine or cosine. */
+static int32_t step_px_q16(uint32_t length_px_q16, int32_t part_q30)
+{
+    return (int32_t)((int64_t)length_px_q16 * part_q30 >> 30);
+}
+
+/* Column and row of a cell `right` and `beyond` of the target's origin. With m pixels to a cell, a
+ * line w cells wide, the chip turned by d and the ray by e:
  *
- *     column = column0 + k ( right cos d + beyond sin d)
- *     row    = row0    + k (-right sin d + beyond cos d) */
+ *     column = column0 + m ( right w cos(e - d) + beyond sin d / cos e)
+ *     row    = row0    + m ( right w sin(e - d) + beyond cos d / cos e) */
 void lm_chip_patch_set(struct lm_chip_patch *chip, const struct lm_chip_slot *slot, fx_bam_t turn,
-                       uint32_t cell_mm, const struct lm_smear *smear)
+                       const struct lm_chip_cells *cells, const struct lm_smear *smear)
 {
     /* Pixels of a cell. A chip is reduced to pixels of half a cell or more, so this is below 2^18.
-     */
-    const uint32_t scale_q16 = (uint32_t)(((uint64_t)cell_mm << 16) / slot->pixel_mm);
-    const struct rotation r = {fx_cos_q30(turn), fx_sin_q30(turn)};
+     * So is that of a line, and cos e is 1/4 or more. */
+    const uint32_t deep_q16 = (uint32_t)(((uint64_t)cells->cell_mm << 16) / slot->pixel_mm);
+    const uint32_t wide_q16 = (uint32_t)((uint64_t)deep_q16 * cells->wide_q16 >> 16);
+    const int32_t cos_q30 = fx_max_i32(fx_cos_q30(cells->aside), 1 << 28);
+    const uint32_t ray_q16 = (uint32_t)(((uint64_t)deep_q16 << 30) / (uint32_t)cos_q30);
     chip->slot = slot;
-    chip->right_px_q16[0] = chip->beyond_px_q16[1] = part(scale_q16, r.cos_q30);
-    chip->beyond_px_q16[0] = part(scale_q16, r.sin_q30);
-    chip->right_px_q16[1] = -chip->beyond_px_q16[0];
+    chip->right_px_q16[0] = step_px_q16(wide_q16, fx_cos_q30(cells->aside - turn));
+    chip->right_px_q16[1] = step_px_q16(wide_q16, fx_sin_q30(cells->aside - turn));
+    chip->beyond_px_q16[0] = step_px_q16(ray_q16, fx_sin_q30(turn));
+    chip->beyond_px_q16[1] = step_px_q16(ray_q16, fx_cos_q30(turn));
     chip->origin_px_q16[0] = (int32_t)slot->side << 15;
     chip->origin_px_q16[1] = (int32_t)((uint32_t)slot->origin_row << 16 >> slot->key.shift);
-    chip->lit = reach_of(chip, &slot->lit, &r, scale_q16);
-    chip->dark = reach_of(chip, &slot->dark, &r, scale_q16);
+    chip->lit = reach_of(chip, &slot->lit);
+    chip->dark = reach_of(chip, &slot->dark);
     widen(&chip->lit, smear);
-    chip->half_px_q8[0] = half_px_q8_of(scale_q16, smear->across_stretch_q8);
-    chip->half_px_q8[1] = half_px_q8_of(scale_q16, smear->along_stretch_q8);
-    chip->dark_half_px_q8 = half_px_q8_of(scale_q16, 256);
-    chip->gain_db_q8 = side_gain_db_q8(scale_q16, smear->across_stretch_q8, chip->half_px_q8[0]) +
-                       side_gain_db_q8(scale_q16, smear->along_stretch_q8, chip->half_px_q8[1]);
+    chip->half_px_q8[0] = half_px_q8_of(wide_q16, smear->across_stretch_q8);
+    chip->half_px_q8[1] = half_px_q8_of(deep_q16, smear->along_stretch_q8);
+    chip->dark_half_px_q8 = half_px_q8_of(deep_q16, 256);
+    chip->gain_db_q8 = side_gain_db_q8(wide_q16, smear->across_stretch_q8, chip->half_px_q8[0]) +
+                       side_gain_db_q8(deep_q16, smear->along_stretch_q8, chip->half_px_q8[1]);
 }
 
 /* Box on the chip, from edge [0] to edge [1]. */

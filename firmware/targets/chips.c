@@ -43,11 +43,9 @@ static uint32_t shift_for(const struct lm_signature *s, const struct lm_chip_que
 static void view_of(struct lm_target_view *v, const struct lm_target_candidate *candidate,
                     const struct lm_chip_query *query)
 {
-    uint32_t range_m_q8 = query->range_m_q8;
-    fx_bam_t back = query->look + FX_BAM_180;
-    if (!query->is_parallel) {
-        lm_geo_inverse(candidate->state.position, query->radar, &range_m_q8, &back);
-    }
+    uint32_t range_m_q8;
+    fx_bam_t back;
+    lm_geo_inverse(candidate->state.position, query->radar, &range_m_q8, &back);
     lm_target_view_of(v, candidate, back, range_m_q8, &query->heights);
 }
 

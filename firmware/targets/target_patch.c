@@ -3,6 +3,7 @@
 #include "fx/bits.h"
 #include "fx/log.h"
 #include "fx/mem.h"
+#include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
 #include "lm/illumination.h"
@@ -10,13 +11,37 @@
 
 /* ---- positions of the scatterers ---- */
 
-/* Position of a target in the patch: ground range from the antenna, and offset to the right of the
- * line of sight through the centre. `shift` is its displacement by Doppler. */
+/* Position of a target in the patch: range from the antenna along the line of sight through the
+ * centre, and offset to the right of it. `aside` is the direction of the target's own ray, from
+ * that line of sight. The other members are counted where the patch's lines are a cell apart, at
+ * the centre's range: `shift` is its displacement by Doppler. */
 struct patch_position {
-    int32_t range_m_q8, across_m_q8, shift_m_q8;
+    int32_t range_m_q8, across_m_q8;
+    fx_bam_t aside;
+    int32_t shift_m_q8;
     int64_t smear_across_m_q8,
         walk_m_q8; /* change over the dwell: across where it appears, and along */
 };
+
+/* Length across at a range, as it is at the centre's range: x S / s. Ranges are below 2^27. Lengths
+ * are held to 2^35 before and to 2^26 behind: both are far outside of any patch. */
+static int32_t at_centre_m_q8(const struct lm_patch_geometry *g, int64_t length_m_q8,
+                              int32_t range_m_q8)
+{
+    const int64_t most = (int64_t)1 << 35, limit = 1 << 26;
+    const int64_t held_m_q8 = fx_clamp_i64(length_m_q8, -most, most);
+    return (int32_t)fx_clamp_i64(held_m_q8 * g->centre_m_q8 / fx_max_i32(range_m_q8, 1), -limit,
+                                 limit);
+}
+
+/* Area of a clutter cell at a range, where lines are s / S cells apart. */
+static int32_t area_dbm2_q8(const struct lm_patch_geometry *g, int32_t range_m_q8)
+{
+    const uint32_t held_m_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
+    const uint64_t width_m_q8 = (uint64_t)g->cell_m_q8 * held_m_q8 / g->centre_m_q8;
+    return lm_clutter_area_dbm2_q8(width_m_q8 != 0 ? width_m_q8 : 1, g->cell_m_q8, held_m_q8,
+                                   held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights);
+}
 
 /* Displace a mover and compute its smear. With v the closing speed, v' its speed to the right, V
  * the radar's speed across and s the range:
@@ -24,21 +49,22 @@ struct patch_position {
  *     displacement          s v / V across
  *     smear over the dwell  (2 v' - v'^2 / V) T across, -v T along
  *
+ * Both times S / s, as all lengths across.
  * The radar flies by it at V - v' instead of V, so its displacement drifts while the dwell lasts.
  */
 static void put_mover(const struct lm_patch_geometry *g, const struct lm_target *t,
                       fx_bam_t heading, struct patch_position *position)
 {
     /* Speeds are below 2^20, ranges below 2^27, the dwell below 2^17: products are below 2^58. A
-     * displacement beyond 2^28 is far outside of any patch. */
-    const int64_t closing_mm_s =
-        lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_180);
-    const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, g->look + FX_BAM_90);
-    const int64_t shift_m_q8 = position->range_m_q8 * closing_mm_s / g->across_mm_s,
-                  limit = 1 << 28;
+     * displacement beyond 2^26 is far outside of any patch. */
+    const fx_bam_t ray = g->look + position->aside;
+    const int64_t closing_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, ray + FX_BAM_180);
+    const int64_t right_mm_s = lm_mover_closing_mm_s(t->speed_mm_s, heading, ray + FX_BAM_90);
+    const int64_t shift_m_q8 = g->centre_m_q8 * closing_mm_s / g->across_mm_s, limit = 1 << 26;
     const int64_t drift_mm_s = 2 * right_mm_s - right_mm_s * right_mm_s / g->across_mm_s;
     position->shift_m_q8 = (int32_t)fx_clamp_i64(shift_m_q8, -limit, limit);
-    position->smear_across_m_q8 = lm_m_q8_of_um(drift_mm_s * g->dwell_ms);
+    position->smear_across_m_q8 =
+        at_centre_m_q8(g, lm_m_q8_of_um(drift_mm_s * g->dwell_ms), position->range_m_q8);
     position->walk_m_q8 = lm_m_q8_of_um(-closing_mm_s * g->dwell_ms);
 }
 
@@ -55,6 +81,7 @@ static bool find_position(const struct lm_patch_geometry *g, const struct lm_tar
     const int64_t along_m_q8 = (int64_t)distance_m_q8 * fx_cos_q30(off) >> 30;
     position->range_m_q8 = fx_max_i32((int32_t)(g->centre_m_q8 + along_m_q8), 0);
     position->across_m_q8 = (int32_t)((int64_t)distance_m_q8 * fx_sin_q30(off) >> 30);
+    position->aside = fx_atan2(position->across_m_q8, fx_max_i32(position->range_m_q8, 1));
     position->shift_m_q8 = 0;
     position->smear_across_m_q8 = position->walk_m_q8 = 0;
     if (t->speed_mm_s != 0 && g->across_mm_s != 0) {
@@ -69,10 +96,17 @@ static int32_t in_cells(const struct lm_patch_geometry *g, int64_t length_m_q8)
     return (int32_t)lm_cells_q8_of_m_q8(length_m_q8, g->cell_m_q8);
 }
 
-/* Scatterer of one return. s is its ground range, x its offset across, y its height above the
+/* Range of a target along its own ray, at least 1. */
+static uint32_t ray_range_m_q8(const struct patch_position *position)
+{
+    return fx_max_u32(fx_hypot_u32(position->range_m_q8, position->across_m_q8), 1);
+}
+
+/* Scatterer of one return. A return lies along and across its target's ray. s is its range, x its
+ * offset across, both along the line of sight through the centre; y is its height above the
  * reference, v the displacement by Doppler. In cells from the middle of cell 0 of line 0:
  *
- *     across = x + v + half the lines
+ *     across = x S / s + v + half the lines
  *     along  = s - near end - y tan(psi)        the last term is layover
  *
  * Its level is its cross section over the area of a clutter cell. Lengths are below 2^29; times 256
@@ -82,24 +116,26 @@ static struct lm_patch_scatterer scatterer_of(const struct lm_patch_geometry *g,
                                               const struct patch_position *position,
                                               const struct lm_return *r)
 {
-    const int32_t range_m_q8 = position->range_m_q8 + lm_m_q8_of_mm(r->along_mm);
-    const int32_t across_m_q8 = position->across_m_q8 + lm_m_q8_of_mm(r->across_mm);
+    const int64_t sin_q30 = fx_sin_q30(position->aside), cos_q30 = fx_cos_q30(position->aside);
+    const int64_t out_m_q8 = lm_m_q8_of_mm(r->along_mm), right_m_q8 = lm_m_q8_of_mm(r->across_mm);
+    const int32_t range_m_q8 =
+        position->range_m_q8 + (int32_t)((out_m_q8 * cos_q30 - right_m_q8 * sin_q30) >> 30);
+    const int64_t across_m_q8 = at_centre_m_q8(
+        g, position->across_m_q8 + ((right_m_q8 * cos_q30 + out_m_q8 * sin_q30) >> 30), range_m_q8);
     const int32_t top_m_q10 =
         lm_m_q10_of_m_q6(candidate->elevation_m_q6) + lm_m_q10_of_mm(r->up_mm);
     /* Coordinates count from the middle of the first line and of the first guard cell. */
+    const int64_t shown = g->cells - g->guard;
     const int64_t left_m_q8 = (int64_t)(g->lines - 1) * g->cell_m_q8 / 2;
     const int64_t near_m_q8 =
-        g->centre_m_q8 - ((int64_t)(g->lines - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
+        g->centre_m_q8 - ((shown - 1) * g->cell_m_q8 / 2 + g->guard * g->cell_m_q8);
     const int64_t nearer_m_q8 =
         (int64_t)(top_m_q10 - g->heights.reference_m_q10) * g->lean_q16 >> 18;
     const uint32_t held_m_q8 = (uint32_t)fx_max_i32(range_m_q8, 1);
     struct lm_patch_scatterer p = {
         .across_cells_q8 = in_cells(g, across_m_q8 + position->shift_m_q8 + left_m_q8),
         .along_cells_q8 = in_cells(g, range_m_q8 - near_m_q8 - nearer_m_q8),
-        .level_db_q8 =
-            r->rcs_dbsm_q8 -
-            lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, held_m_q8,
-                                    held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights),
+        .level_db_q8 = r->rcs_dbsm_q8 - area_dbm2_q8(g, range_m_q8),
         .phase = r->phase,
         .tangent_q38 = lm_target_view_tangent_q38(top_m_q10, held_m_q8, &g->heights),
         .line = lm_cells_of_cells_q8(in_cells(g, across_m_q8 + left_m_q8)),
@@ -121,8 +157,8 @@ static void add_returns(struct lm_target_patch *p, const struct lm_target_set *s
     struct lm_return returns[LM_SCATTERERS_MAX];
     struct lm_target_view v;
     uint32_t count = 1;
-    lm_target_view_of(&v, candidate, g->look + FX_BAM_180, (uint32_t)position->range_m_q8,
-                      &g->heights);
+    lm_target_view_of(&v, candidate, g->look + position->aside + FX_BAM_180,
+                      ray_range_m_q8(position), &g->heights);
     if (t->scatterer_count != 0) {
         count = lm_target_returns(t, &v, g->wavelength_um, returns);
     } else {
@@ -190,14 +226,16 @@ static void add_chip(struct lm_target_patch *p, const struct lm_chip_slot *slot,
 {
     struct lm_patch_scatterer *scatterer = &p->scatterer[p->scatterer_count - 1];
     struct lm_patch_chip *chip = &p->chip[scatterer->target];
-    const uint32_t held_m_q8 = (uint32_t)fx_max_i32(position->range_m_q8, 1);
+    const struct lm_chip_cells cells_there = {
+        .cell_mm = lm_mm_of_m_q8(g->cell_m_q8),
+        .wide_q16 =
+            (uint32_t)(((uint64_t)fx_max_i32(position->range_m_q8, 1) << 16) / g->centre_m_q8),
+        .aside = position->aside,
+    };
     chip->scatterer = p->scatterer_count - 1;
     chip->shadow_across_cells_q8 = scatterer->across_cells_q8 - in_cells(g, position->shift_m_q8);
-    chip->area_dbm2_q8 =
-        lm_clutter_area_dbm2_q8(g->cell_m_q8, g->cell_m_q8, held_m_q8,
-                                held_m_q8 - fx_min_u32(held_m_q8, g->cell_m_q8), &g->heights);
-    lm_chip_patch_set(&chip->patch, slot, turn, lm_mm_of_m_q8(g->cell_m_q8),
-                      &p->target[scatterer->target].smear);
+    chip->area_dbm2_q8 = area_dbm2_q8(g, position->range_m_q8);
+    lm_chip_patch_set(&chip->patch, slot, turn, &cells_there, &p->target[scatterer->target].smear);
     scatterer->is_chip = p->target[scatterer->target].has_chip = true;
     const struct lm_chip_reach *lit = &chip->patch.lit, *dark = &chip->patch.dark;
     const uint32_t cells = fx_max_u32(fx_abs_u32(lit->right), fx_abs_u32(lit->right_end)) + 1;

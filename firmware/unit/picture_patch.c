@@ -15,6 +15,11 @@ enum {
 
 static uint32_t lines_of(const struct lm_picture *p)
 {
+    return p->sar.lines;
+}
+
+static uint32_t cells_of(const struct lm_picture *p)
+{
     return p->lent.radar->sar.cells;
 }
 
@@ -89,6 +94,11 @@ static enum lm_refusal start(struct lm_picture *p, const struct lm_sar_command *
     }
     (void)lm_sar_start(&p->sar, p->lent.radar, &map->db, &command, &scene); /* it is judged */
     lm_sar_prefetch_targets(&p->sar, &map->tiles);
+    const struct lm_patch_fan fan = {.lines = p->sar.lines,
+                                     .cells = cells_of(p),
+                                     .centre_m_q8 = p->sar.geometry.centre_m_q8,
+                                     .cell_m_q8 = p->sar.geometry.cell_m_q8};
+    lm_patch_painter_set(&p->painter, &p->frame, &fan);
     p->is_cursor_awaited = false;
     p->acquire.is_reading = true;
     p->acquire.has_tiles = false;
@@ -168,14 +178,14 @@ static uint32_t draw_line(struct lm_picture *p, uint64_t now_us)
     (void)now_us;
     const uint32_t number = p->sar.line;
     lm_sar_draw_line(&p->sar, &p->lent.map->tiles, &p->tone[LM_PICTURE_PATCH], &p->line);
-    lm_coverage_add(&p->coverage, &p->line.ground, lines_of(p));
+    lm_coverage_add(&p->coverage, &p->line.ground, cells_of(p));
     lm_coverage_judge(&p->coverage);
     return number;
 }
 
 static void paint(struct lm_picture *p, uint32_t number)
 {
-    lm_scan_conv_patch(&p->plane, &p->frame, number, p->line.grey + LM_SAR_GUARD, lines_of(p));
+    lm_scan_conv_patch(&p->painter, &p->plane, number, p->line.grey + LM_SAR_GUARD);
 }
 
 static uint64_t line_us(const struct lm_picture *p)
@@ -191,7 +201,7 @@ static void set_beam_none(struct lm_picture *p)
 static struct lm_view view(const struct lm_picture *p)
 {
     const struct lm_sar_command *c = &p->sar.command;
-    return lm_view_of_patch(&p->frame, c->centre, c->look_azimuth, lines_of(p), c->cell_mm);
+    return lm_view_of_patch(&p->frame, c->centre, c->look_azimuth, cells_of(p), c->cell_mm);
 }
 
 static const struct lm_tone_config *tone(const struct lm_picture *p)

@@ -69,13 +69,18 @@ struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, d
                           hypot(across_m, along_m));
 }
 
-struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, double half_side_m)
+struct ref_surface ref_sar_surface(const struct ref_sar *sar)
 {
-    struct ref_surface s = {.half_side_m = half_side_m};
+    const double half_m = sar->cell_count * sar->cell_m / 2;
+    const double near_m = -half_m - REF_GUARD_CELLS * sar->cell_m;
+    struct ref_surface s = {
+        .near_m = near_m, .far_m = half_m, .side_m = ref_sar_lines(sar) * sar->cell_m / 2};
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
+            const double along_m = near_m + (half_m - near_m) * j / 2;
+            const double across_m = (i - 1) * s.side_m * (sar->range_m + along_m) / sar->range_m;
             const struct ref_place p =
-                ref_patch_offset(centre, azimuth_deg, (i - 1) * half_side_m, (j - 1) * half_side_m);
+                ref_patch_offset(sar->centre, sar->azimuth_deg, across_m, along_m);
             s.latitude_deg[i][j] = p.latitude_deg;
             s.longitude_deg[i][j] = p.longitude_deg;
         }
@@ -85,8 +90,8 @@ struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, 
 
 struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m)
 {
-    const double u = (across_m / surface->half_side_m + 1) / 2;
-    const double v = (along_m / surface->half_side_m + 1) / 2;
+    const double u = (across_m / surface->side_m + 1) / 2;
+    const double v = (along_m - surface->near_m) / (surface->far_m - surface->near_m);
     double latitude[3], longitude[3];
     for (int i = 0; i < 3; i++) {
         latitude[i] = parabola(surface->latitude_deg[i], v);

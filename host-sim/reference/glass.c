@@ -4,12 +4,39 @@
 #include <math.h>
 #include <string.h>
 
-void ref_glass_sar(const struct ref_picture *picture, unsigned scale, uint8_t *pixels)
+/* Number held to 0..count - 1, and what is left of it above a whole number. */
+static unsigned hold(double place, unsigned count, double *rest)
 {
-    const unsigned n = picture->cell_count, width = n * scale;
-    for (unsigned i = 0; i < width * width; i++) {
-        const unsigned line = i % width / scale, cell = n - 1 - i / width / scale;
-        pixels[i] = ref_picture_bin(picture, line, (int)cell)->grey;
+    const double held = fmin(fmax(place, 0), count - 1);
+    const unsigned whole = (unsigned)fmin(floor(held), count < 2 ? 0 : count - 2);
+    *rest = held - whole;
+    return whole;
+}
+
+static double grey_at(const struct ref_picture *picture, double line, double cell)
+{
+    double right, up;
+    const unsigned k = hold(line, picture->line_count, &right);
+    const unsigned i = hold(cell, picture->cell_count, &up);
+    const unsigned next = k + (right > 0);
+    const int above = (int)(i + (up > 0));
+    const double at_left = (1 - up) * ref_picture_bin(picture, k, (int)i)->grey +
+                           up * ref_picture_bin(picture, k, above)->grey;
+    const double at_right = (1 - up) * ref_picture_bin(picture, next, (int)i)->grey +
+                            up * ref_picture_bin(picture, next, above)->grey;
+    return (1 - right) * at_left + right * at_right;
+}
+
+void ref_glass_sar(const struct ref_picture *picture, double range_m, unsigned side,
+                   uint8_t *pixels)
+{
+    const double cells = picture->cell_count, cell_m = picture->view.cell_m;
+    for (unsigned i = 0; i < side * side; i++) {
+        /* From the middle of the square, in cells. */
+        const double x = ((i % side + 0.5) / side - 0.5) * cells;
+        const double y = (0.5 - (i / side + 0.5) / side) * cells;
+        const double line = x * range_m / (range_m + y * cell_m) + picture->line_count / 2.0 - 0.5;
+        pixels[i] = (uint8_t)lround(grey_at(picture, line, y + cells / 2 - 0.5));
     }
 }
 

@@ -113,23 +113,34 @@ int ref_gm_sweep(struct ref_picture *picture, const struct ref_db *db, const str
     return 0;
 }
 
-/* x_k of a line, and y_i of a cell, which count alike from the middle of the patch. */
-static double sar_offset_m(const struct ref_sar *sar, int index)
+unsigned ref_sar_lines(const struct ref_sar *sar)
 {
-    return (index + 0.5 - sar->cell_count / 2.0) * sar->cell_m;
+    const double half_m = sar->cell_count * sar->cell_m / 2;
+    return 2 * (unsigned)ceil(sar->cell_count * sar->range_m / (2 * (sar->range_m - half_m)));
+}
+
+/* x_k of a line at the centre's range, and y_i of a cell. */
+static double sar_across_m(const struct ref_sar *sar, unsigned line)
+{
+    return (line + 0.5 - ref_sar_lines(sar) / 2.0) * sar->cell_m;
+}
+
+static double sar_along_m(const struct ref_sar *sar, int cell)
+{
+    return (cell + 0.5 - sar->cell_count / 2.0) * sar->cell_m;
 }
 
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
                        const struct ref_params *params, unsigned line)
 {
-    const double across_m = sar_offset_m(sar, (int)line);
-    const double end_m = sar->range_m + sar_offset_m(sar, -REF_GUARD_CELLS) - sar->cell_m / 2;
+    const double tangent = sar_across_m(sar, line) / sar->range_m;
+    const double end_m = sar->range_m + sar_along_m(sar, -REF_GUARD_CELLS) - sar->cell_m / 2;
     const double start_m = end_m / 16, cell_m = (end_m - start_m) / REF_COARSE_CELLS;
     struct ref_path path;
     for (int i = 0; i < 3; i++) {
         const double range_m = start_m + (end_m - start_m) * i / 2;
-        const struct ref_place p =
-            ref_patch_offset(sar->centre, sar->azimuth_deg, across_m, range_m - sar->range_m);
+        const struct ref_place p = ref_patch_offset(sar->centre, sar->azimuth_deg,
+                                                    tangent * range_m, range_m - sar->range_m);
         path.latitude_deg[i] = p.latitude_deg;
         path.longitude_deg[i] = p.longitude_deg;
     }
@@ -148,9 +159,9 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
 {
     for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
         struct ref_bin *bin = ref_picture_bin(picture, line, i);
-        const double along_m = sar_offset_m(sar, i);
+        const double along_m = sar_along_m(sar, i);
         bin->range_m = sar->range_m + along_m;
-        bin->place = ref_surface_at(surface, sar_offset_m(sar, (int)line), along_m);
+        bin->place = ref_surface_at(surface, sar_across_m(sar, line), along_m);
         sample(db, sar->cell_m, params, bin);
     }
     ref_illuminate(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
@@ -184,45 +195,31 @@ static struct ref_patch_rain find_rain(const struct ref_sar *sar, const struct r
     return w;
 }
 
-/* The rain over cell `cell` of every line; `aside_deg` and `veil` have room for as many. */
-static void rain_on_cells(const struct ref_picture *picture, const struct ref_sar *sar,
-                          const struct ref_patch_rain *rain, int cell, const double *aside_deg,
-                          double *veil)
+static void rain_on_line(const struct ref_picture *picture, const struct ref_sar *sar,
+                         const struct ref_patch_rain *rain, unsigned line)
 {
-    const double range_m = sar->range_m + sar_offset_m(sar, cell);
-    ref_patch_veil(rain, &picture->view, range_m, aside_deg, veil, sar->cell_count);
-    for (unsigned line = 0; line < sar->cell_count; line++) {
-        struct ref_bin *bin = ref_picture_bin(picture, line, cell);
-        bin->loss_db = ref_patch_loss_db(rain, aside_deg[line], range_m, sar->cell_m);
-        bin->veil = veil[line];
+    const double aside_deg = atan2(sar_across_m(sar, line), sar->range_m) * 180 / acos(-1.0);
+    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
+        struct ref_bin *bin = ref_picture_bin(picture, line, i);
+        bin->loss_db = ref_patch_loss_db(rain, aside_deg, bin->range_m, sar->cell_m);
+        bin->veil = ref_patch_veil(rain, &picture->view, bin->range_m, aside_deg);
     }
 }
 
-/* Before the speckle of any line. Returns 0, or -1 with the error reported. */
-static int rain_on(const struct ref_picture *picture, const struct ref_sar *sar)
+/* Before the speckle of any line. */
+static void rain_on(const struct ref_picture *picture, const struct ref_sar *sar)
 {
     const struct ref_patch_rain rain = find_rain(sar, &picture->view);
-    if (rain.environment.rain_count == 0) {
-        return 0;
+    for (unsigned line = 0; line < picture->line_count && rain.environment.rain_count != 0;
+         line++) {
+        rain_on_line(picture, sar, &rain, line);
     }
-    double *aside_deg = calloc(2 * sar->cell_count, sizeof *aside_deg);
-    if (aside_deg == NULL) {
-        return hs_error("picture", "ask for fewer cells", "not enough memory for the rain");
-    }
-    for (unsigned line = 0; line < sar->cell_count; line++) {
-        aside_deg[line] = atan2(sar_offset_m(sar, (int)line), sar->range_m) * 180 / acos(-1.0);
-    }
-    for (int i = -REF_GUARD_CELLS; i < (int)sar->cell_count; i++) {
-        rain_on_cells(picture, sar, &rain, i, aside_deg, aside_deg + sar->cell_count);
-    }
-    free(aside_deg);
-    return 0;
 }
 
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params)
 {
-    *picture = (struct ref_picture){.line_count = sar->cell_count,
+    *picture = (struct ref_picture){.line_count = ref_sar_lines(sar),
                                     .cell_count = sar->cell_count,
                                     .guard_count = REF_GUARD_CELLS,
                                     .view = {sar->antenna_m, 0, sar->cell_m},
@@ -232,19 +229,15 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     }
     ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
                      &picture->view.reference_m);
-    const struct ref_surface surface =
-        ref_sar_surface(sar->centre, sar->azimuth_deg, sar->cell_count * sar->cell_m / 2);
+    const struct ref_surface surface = ref_sar_surface(sar);
     struct ref_tables tables;
     ref_tables_set(&tables, params);
-    for (unsigned line = 0; line < sar->cell_count; line++) {
+    for (unsigned line = 0; line < picture->line_count; line++) {
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
     }
-    if (rain_on(picture, sar) != 0) {
-        ref_picture_free(picture);
-        return -1;
-    }
-    for (unsigned line = 0; line < sar->cell_count; line++) {
+    rain_on(picture, sar);
+    for (unsigned line = 0; line < picture->line_count; line++) {
         struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
         draw_patch_line(bins, sar, line);
         finish(bins, REF_GUARD_CELLS + sar->cell_count, &picture->view, params, &tables,

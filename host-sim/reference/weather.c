@@ -95,37 +95,35 @@ static double ray_loss_db(const struct ref_patch_rain *w, double aside_deg, doub
     return loss_db;
 }
 
+/* Range along the ray in direction aside_deg of what lies range_m along the line of sight. */
+static double on_ray_m(double aside_deg, double range_m)
+{
+    return range_m / cos(aside_deg * rad);
+}
+
 double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
                          double cell_m)
 {
     double echo;
-    return ray_loss_db(w, aside_deg, range_m - cell_m / 2, range_m + cell_m / 2, &echo);
+    return ray_loss_db(w, aside_deg, on_ray_m(aside_deg, range_m - cell_m / 2),
+                       on_ray_m(aside_deg, range_m + cell_m / 2), &echo);
 }
 
-void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
-                    const double *aside_deg, double *veil, size_t count)
+double ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
+                      double aside_deg)
 {
-    enum { IN_BEAM = 200, RAYS = 30 * IN_BEAM, REACH = 5 * IN_BEAM / 4 };
-    const double near_m = range_m - view->cell_m / 2, far_m = range_m + view->cell_m / 2;
-    const double spacing_deg = w->azimuth_beam_deg / IN_BEAM;
-    const double middle_deg = count > 0 ? (aside_deg[0] + aside_deg[count - 1]) / 2 : 0;
+    enum { IN_BEAM = 200, REACH = 5 * IN_BEAM / 4 };
+    const double near_m = on_ray_m(aside_deg, range_m - view->cell_m / 2);
+    const double far_m = on_ray_m(aside_deg, range_m + view->cell_m / 2);
     const double height_m = range_m * w->elevation_beam_deg * rad * sqrt(pi / (8 * log(2.0))) / 2;
-    double power[RAYS];
-    for (int k = 0; k < RAYS; k++) {
-        const double at_deg = middle_deg + (k - (RAYS - 1) / 2.0) * spacing_deg;
+    double sum = 0, weights = 0;
+    for (int k = -REACH; k < REACH; k++) {
         double echo;
-        const double loss_db = ray_loss_db(w, at_deg, near_m, far_m, &echo);
-        power[k] = echo * pow(10, -loss_db / 10);
+        const double x = (k + 0.5) / IN_BEAM, weight = pow(2, -8 * x * x);
+        const double loss_db =
+            ray_loss_db(w, aside_deg + x * w->azimuth_beam_deg, near_m, far_m, &echo);
+        sum += weight * echo * pow(10, -loss_db / 10);
+        weights += weight;
     }
-    for (size_t n = 0; n < count; n++) {
-        const double axis = (RAYS - 1) / 2.0 + (aside_deg[n] - middle_deg) / spacing_deg;
-        double sum = 0, weights = 0;
-        for (int k = (int)axis - REACH; k <= (int)axis + REACH; k++) {
-            const double x = (k - axis) * spacing_deg / w->azimuth_beam_deg;
-            const double weight = pow(2, -8 * x * x);
-            sum += weight * power[k];
-            weights += weight;
-        }
-        veil[n] = sum / weights * height_m / ref_grazing(view, range_m, range_m - view->cell_m);
-    }
+    return sum / weights * height_m / ref_grazing(view, range_m, range_m - view->cell_m);
 }

@@ -61,9 +61,10 @@ struct world {
     struct lm_line line;
     struct lm_plane plane;
     struct lm_frame frame;
+    struct lm_patch_painter painter;
 };
 
-/* The glass: a display of 512 x 512, where a patch of 256 cells shows a cell as one pixel. */
+/* The glass: a display of 512 x 512, where a patch has 366 x 366 pixels. */
 enum { DISPLAY_PX = 512, CELL_MM = 5000 };
 
 static int open_world(struct world *w, uint8_t shift0)
@@ -136,16 +137,20 @@ static int draw_patches(struct world *w, const struct lm_target_set *targets, ui
         if (lm_sar_start(&sar, &lm_radar_default, &w->db, &command, &scene) != LM_OK) {
             return -1;
         }
-        for (uint32_t line = 0; line < lm_radar_default.sar.cells; line += 8) {
+        const struct lm_patch_fan fan = {.lines = sar.lines,
+                                         .cells = lm_radar_default.sar.cells,
+                                         .centre_m_q8 = sar.geometry.centre_m_q8,
+                                         .cell_m_q8 = sar.geometry.cell_m_q8};
+        lm_patch_painter_set(&w->painter, &w->frame, &fan);
+        for (uint32_t line = 0; line < sar.lines; line += 8) {
             lm_sar_prefetch(&sar, &w->tiles, line);
             make_resident(w);
         }
         lm_sar_prefetch_targets(&sar, &w->tiles);
         make_resident(w);
-        while (sar.line < lm_radar_default.sar.cells) {
+        while (sar.line < sar.lines) {
             lm_sar_draw_line(&sar, &w->tiles, &w->tone, &w->line);
-            lm_scan_conv_patch(&w->plane, &w->frame, sar.line - 1, w->line.grey + LM_SAR_GUARD,
-                               lm_radar_default.sar.cells);
+            lm_scan_conv_patch(&w->painter, &w->plane, sar.line - 1, w->line.grey + LM_SAR_GUARD);
         }
     }
     return 0;

@@ -69,15 +69,15 @@ static void choose(struct world *w, bool is_window)
         .items = &w->target, .count = 1, .signatures = &w->signature, .signature_count = 1};
     const struct lm_target_query scene = {.position = {w->target.latitude, w->target.longitude},
                                           .reach_m = 2000};
-    const struct lm_chip_query chips = {.centre = scene.position,
-                                        .reach_m = 2000,
-                                        .radar = {w->look % FX_BAM_90, w->target.longitude},
-                                        .is_parallel = !is_window,
-                                        .look = w->look,
-                                        .range_m_q8 = w->range_q8,
-                                        .heights = {3000 * 1024, 0},
-                                        .cell_mm = w->cell_mm,
-                                        .side_most = is_window ? 32 : LM_CHIP_SIDE};
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, scene.position);
+    const struct lm_chip_query chips = {
+        .centre = scene.position,
+        .reach_m = 2000,
+        .radar = lm_geo_direct(&origin, w->look + FX_BAM_180, w->range_q8),
+        .heights = {3000 * 1024, 0},
+        .cell_mm = w->cell_mm,
+        .side_most = is_window ? 32 : LM_CHIP_SIDE};
     lm_target_candidates_select(&w->near, &set, &scene);
     lm_chips_choose(&w->chips, &w->near, &chips);
 }

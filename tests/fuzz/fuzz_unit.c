@@ -290,7 +290,7 @@ static void check(const struct world *w)
     FUZZ_ASSERT(u->picture.sector.command.range_index < lm_radar_default.ranges &&
                 u->picture.sector.command.azimuth_index < LM_AZIMUTHS);
     FUZZ_ASSERT(!u->picture.sector.is_begun || u->picture.sector.line < u->picture.sector.lines);
-    FUZZ_ASSERT(u->picture.sar.line <= lm_radar_default.sar.cells);
+    FUZZ_ASSERT(u->picture.sar.line <= u->picture.sar.lines);
     FUZZ_ASSERT(u->page.gain_db >= -30 && u->page.gain_db <= 30);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
         FUZZ_ASSERT(w->board.glass[i] <= 0x00FFFFFF);

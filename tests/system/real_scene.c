@@ -86,13 +86,15 @@ int real_patch_read(struct real_picture *p, const struct real_scene *scene, cons
         return -1;
     }
     const struct lm_frame f = lm_frame_of_display((uint16_t)g.width, (uint16_t)g.height);
-    const int side = lm_patch_cell_px(&f, REAL_CELLS);
-    const int left = f.left_px + (f.width_px - side * REAL_CELLS) / 2;
-    const int bottom = f.top_px + (f.height_px + side * REAL_CELLS) / 2 - 1;
+    const struct lm_frame square = lm_patch_square(&f);
+    const int bottom = square.top_px + square.height_px - 1;
     picture_clear(p);
     for (int line = 0; line < REAL_CELLS; line++) {
         for (int cell = 0; cell < REAL_CELLS; cell++) {
-            p->grey[line][cell] = g.grey[(bottom - cell * side) * g.width + left + line * side];
+            /* The pixel that holds the middle of the cell. */
+            const int right = (2 * line + 1) * square.width_px / (2 * REAL_CELLS);
+            const int up = (2 * cell + 1) * square.height_px / (2 * REAL_CELLS);
+            p->grey[line][cell] = g.grey[(bottom - up) * g.width + square.left_px + right];
         }
     }
     free(g.grey);

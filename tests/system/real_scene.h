@@ -24,7 +24,8 @@ struct real_scene {
 int real_scene_make(struct real_scene *scene, const char *name, const char *needed);
 
 /* Grey of a picture by line (0 is the leftmost) and range cell (0 is the nearest); REAL_NO_PIXEL
- * where symbols hide it or it is smaller than a pixel. */
+ * where symbols hide it or it is smaller than a pixel. The lines of a patch are here the columns of
+ * its square, a cell wide each. */
 struct real_picture {
     int grey[REAL_CELLS][REAL_CELLS];
 };

@@ -21,6 +21,14 @@ static inline uint32_t fx_load_u32(const void *from)
     return word;
 }
 
+/* Load two bytes from any address, in this machine's byte order. */
+static inline uint16_t fx_load_u16(const void *from)
+{
+    uint16_t half;
+    __builtin_memcpy(&half, from, sizeof half);
+    return half;
+}
+
 /* Store the lower 16 bits of a number at any address, in this machine's byte order. */
 static inline void fx_store_u16(void *to, uint32_t number)
 {

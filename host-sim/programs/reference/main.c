@@ -316,13 +316,13 @@ static int render_sar(const struct request *request, const struct ref_db *db)
     if (ref_sar_patch(&picture, db, &sar, &request->params) != 0) {
         return -1;
     }
-    const unsigned scale = (unsigned)request->scale, side = sar.cell_count * scale;
+    const unsigned side = sar.cell_count * (unsigned)request->scale;
     uint8_t *pixels = malloc((size_t)side * side);
     int status = -1;
     if (pixels == NULL) {
         hs_error("picture", "lower --scale", "not enough memory for %u x %u pixels", side, side);
     } else {
-        ref_glass_sar(&picture, scale, pixels);
+        ref_glass_sar(&picture, sar.range_m, side, pixels);
         status = write_out(request, &picture, pixels, side, side);
     }
     ref_picture_free(&picture);

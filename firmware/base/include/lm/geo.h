@@ -88,17 +88,19 @@ struct lm_ground_parabola {
     int64_t bend;        /* right + left - 2 middle */
 };
 
-/* Ground patch: a rectangle of ground whose axis runs at an azimuth through a position.
+/* Ground patch: the part of a fan of lines that lies around a position. The lines meet in the apex,
+ * the antenna, and the axis runs from it through the position.
  *
  * Nine points carry a biquadratic surface in latitude and longitude.
  *
- *     row[2]   +-----+-----+   far_m_q8      ^ azimuth
- *              |     |     |                 |
- *     row[1]   +-----+-----+                 |
- *              |     |     |                 o position
- *     row[0]   +-----+-----+   near_m_q8
- *            left        right
- *            <-----> side_m_q8                                */
+ *     row[2]   +-------+-------+   far_m_q8      ^ azimuth
+ *               \      |      /                  |
+ *     row[1]     +-----+-----+                   |
+ *                 \    |    /                    o position
+ *     row[0]       +---+---+   near_m_q8
+ *                left     right
+ *                     \ /
+ *                      o   apex, apex_m_q8 before the position */
 struct lm_ground_patch {
     struct {
         struct lm_ground_parabola latitude, longitude;
@@ -106,18 +108,21 @@ struct lm_ground_patch {
 };
 
 /* Extent of a ground patch: along its axis from near_m_q8 to far_m_q8 ahead of the position, behind
- * it if negative, and side_m_q8 to either side. All corners within 300 km. */
+ * it if negative. At the position it reaches side_m_q8 to either side, at y ahead of it
+ * side_m_q8 (apex_m_q8 + y) / apex_m_q8. The near end is not behind the apex, and all corners are
+ * within 300 km. */
 struct lm_ground_extent {
     int32_t near_m_q8, far_m_q8, side_m_q8;
+    uint32_t apex_m_q8; /* > 0 */
 };
 
 /* Prepare a patch about `position`, with its axis at `azimuth`. Cost: about 4,500 instructions. */
 void lm_ground_patch_set(struct lm_ground_patch *p, struct lm_position position, fx_bam_t azimuth,
                          const struct lm_ground_extent *extent);
 
-/* Start, middle and end of one of `lines` lines along the axis. Line 0 is the leftmost, and line k
- * is (k + 1/2 - lines/2) / lines of the patch's width right of the axis. The surface continues
- * beyond the last line: line < lines + 32. */
+/* Start, middle and end of one of `lines` lines of the fan. Line 0 is the leftmost, and line k is
+ * (k + 1/2 - lines/2) / lines of the patch's width right of the axis. The surface continues beyond
+ * the last line: line < lines + 32. */
 void lm_ground_patch_line(const struct lm_ground_patch *p, uint32_t line, uint32_t lines,
                           struct lm_position points[3]);
 

@@ -72,13 +72,55 @@ void lm_scan_conv_sector(const struct lm_plane *plane, const struct lm_ppi *ppi,
 void lm_plane_keep_wedge(const struct lm_plane *plane, const struct lm_ppi *ppi, fx_bam_t left,
                          fx_bam_t right);
 
-/* Side of a patch's cell in pixels: the largest whole number with which `cells` of them fit the
- * frame, at least 1. */
-uint16_t lm_patch_cell_px(const struct lm_frame *frame, uint32_t cells);
+/* The square of a patch: the largest of an even number of pixels in the middle of a frame. */
+struct lm_frame lm_patch_square(const struct lm_frame *frame);
 
-/* Paint column `line`, from 0 at the left, of a patch of cells x cells. grey[0] is the nearest
- * cell, at the bottom. A frame with fewer pixels than cells shows the patch's middle. */
-void lm_scan_conv_patch(const struct lm_plane *plane, const struct lm_frame *frame, uint32_t line,
-                        const uint8_t *grey, uint32_t cells);
+/* Pixels of a patch's square, a side, at most. */
+enum { LM_PATCH_SIDE_MAX_PX = 1024 };
+
+/* Geometry of a patch: its lines are rays from the antenna. */
+struct lm_patch_fan {
+    uint32_t lines,
+        cells; /* both at least 1; the square is `cells` cells of the lines wide and deep */
+    uint32_t centre_m_q8; /* from the antenna to the square's middle: beyond half the square */
+    uint32_t cell_m_q8;   /* length of a cell, and distance of lines in the square's middle */
+};
+
+/* Painter of a patch. Every pixel of the square takes the grey between the four cells around it,
+ * linear both ways. A line completes the pixels between it and the line before.
+ *
+ *      line k - 1    k
+ *         \    . .  /       . pixels that line k completes
+ *          \   . . /
+ *           \  .  /        lines are closer together at the bottom, where the patch is nearer
+ *            \ . /
+ *
+ * Up to three pixels to the right of a line are painted before they are due; the next line paints
+ * them again. The caller owns the painter; all fields are read-only to others. Rows count upwards
+ * from the bottom of the square. */
+struct lm_patch_painter {
+    struct lm_frame square;
+    uint32_t lines, cells;
+    uint32_t most_px;                    /* pixels from one line to the next, at most, in any row */
+    uint16_t cell[LM_PATCH_SIDE_MAX_PX]; /* the lower of the two cells that a row lies between */
+    uint16_t part_q7[LM_PATCH_SIDE_MAX_PX]; /* the share of the upper one */
+    int32_t step_q20[LM_PATCH_SIDE_MAX_PX]; /* lines a pixel in a row */
+    /* The next pixel of each row: its column, and how many lines beyond the line painted last. */
+    uint16_t column_px[LM_PATCH_SIDE_MAX_PX];
+    int32_t on_q20[LM_PATCH_SIDE_MAX_PX];
+    int32_t start_q20[LM_PATCH_SIDE_MAX_PX]; /* the line, from line -1, on which a row begins */
+    uint16_t grey[LM_PATCH_SIDE_MAX_PX];     /* of the line painted last */
+};
+
+/* Prepare a patch that fills the square of `frame` (lm_patch_square), of at most
+ * LM_PATCH_SIDE_MAX_PX pixels a side. Cost: about 50 instructions a row. */
+void lm_patch_painter_set(struct lm_patch_painter *p, const struct lm_frame *frame,
+                          const struct lm_patch_fan *fan);
+
+/* Paint line `line`. Lines come in order; line 0 restarts the painter. grey[0] is the nearest cell,
+ * at the bottom; there are p->cells of them, and one more byte is read. Pixels beyond the first and
+ * the last line and cell take these. Cost: docs/benchmarks.md. */
+void lm_scan_conv_patch(struct lm_patch_painter *p, const struct lm_plane *plane, uint32_t line,
+                        const uint8_t *grey);
 
 #endif

@@ -1,24 +1,29 @@
-/* SAR patch: a synthetic-aperture picture of cells x cells, drawn once. Its lines are parallel to
- * the line of sight, and its cell is the same in range and across.
+/* SAR patch: a synthetic-aperture picture of a square of ground, drawn once.
+ *
+ * Its lines are rays from the antenna, as shadows are: line k keeps its direction from the first
+ * cell of the foreground to the last of the patch. One dwell tells directions apart, so that a line
+ * is as wide as a cell at the centre, narrower before it and wider behind it. The square needs more
+ * lines than cells, because they are close together at its near edge.
  *
  * Order of the calls:
  * - lm_sar_start;
  * - while tiles are read: lm_sar_prefetch for some lines, and lm_sar_prefetch_targets;
  * - for each line: lm_sar_sample_ahead until it returns true, then lm_sar_draw_line;
- * - the patch is done when s->line is radar->sar.cells.
+ * - the patch is done when s->line is s->lines.
  *
  * Only lm_sar_start fails; every call runs in bounded time. lm/line.h has the order of the stages.
  *
- *     +--------------------+   far end
- *     |       patch        |
- *     |    cells x cells   |   lines run from near to far; line 0 is at the left
- *     +--------------------+
- *     |    guard cells     |   LM_SAR_GUARD, traced and not displayed
- *     +--------------------+
- *     |     foreground     |   from 1/16 of the way on: casts shadows into the patch;
- *     |    |          |    |   traced along every LM_SAR_FOREGROUND_LINES-th line
- *     '    '          '    '
- *              antenna         not to scale
+ *     \ +------------------+ /   far end
+ *      \|                  |/    what the glass shows: cells x cells
+ *       \                  /     lines run from near to far; line 0 is at the left
+ *       |\                /|
+ *       +-\--------------/-+
+ *          \ guard cells/        LM_SAR_GUARD, traced and not displayed
+ *           \----------/
+ *            \ fore-  /          from 1/16 of the way on: casts shadows into the patch;
+ *             \ground/           traced along every LM_SAR_FOREGROUND_LINES-th line
+ *              \    /
+ *              antenna           not to scale
  *
  * Source: docs/EQUATIONS.md, "Synthetic aperture". */
 #ifndef LM_SAR_H
@@ -88,6 +93,7 @@ enum lm_sar_detail {
 struct lm_sar {
     const struct lm_radar *radar; /* borrowed */
     struct lm_sar_command command;
+    uint32_t lines;                           /* number of lines: even, radar->sar.cells or more */
     uint64_t line_us;                         /* time between two lines */
     uint32_t dwell_ms;                        /* below 2^17; a longer dwell counts as that */
     struct lm_ground_patch ground;            /* guard cells and patch */
@@ -115,7 +121,7 @@ struct lm_sar {
     uint32_t second_foreground; /* number of the second of the two traced foregrounds; 0: none */
     lm_horizon_q40_t foregrounds[2]; /* horizon behind each of the two */
     lm_horizon_q40_t horizon;        /* horizon at the start of the line traced last */
-    uint32_t line;                   /* next line to draw; radar->sar.cells: done */
+    uint32_t line;                   /* next line to draw; `lines`: done */
     uint32_t sampled, summed;        /* lines in the ring; lines that have the scatterers added */
     bool has_target_patch;           /* true once the targets' scatterers were computed */
     uint32_t hidden_known;           /* scatterers tested for being hidden, before line 0 */
@@ -130,8 +136,8 @@ struct lm_sar {
 /* Judge whether a patch can be made. Returns LM_REFUSED_NOT, or the first of these that holds:
  * - LM_REFUSED_CELL: cell_mm is outside the table's cell_min_mm..cell_max_mm;
  * - LM_REFUSED_FAR: range_m is above 250,000;
- * - LM_REFUSED_NEAR: range_m is below 1,000, or the guard cells would begin nearer than 16
- *   LM_RANGE_MIN_M;
+ * - LM_REFUSED_NEAR: range_m is below 1,000, the guard cells would begin nearer than 16
+ *   LM_RANGE_MIN_M, or the patch would need more than LM_PATCH_LINES_MAX lines;
  * - LM_REFUSED_HEIGHT: height_m_q6 is more than 30 km above or below mean sea level;
  * - LM_REFUSED_SQUINT: in flight (setup->flight), the squint is below the table's squint_min, ahead
  *   or astern;
@@ -159,7 +165,7 @@ void lm_sar_set_reference(struct lm_sar *s, const struct lm_db *db, int32_t refe
 /* Time until the last line is due. */
 uint64_t lm_sar_time_to_go_us(const struct lm_sar *s);
 
-/* Request the tiles of line `line` (0..radar->sar.cells - 1) and of the foreground before it. */
+/* Request the tiles of line `line` (0..lines - 1) and of the foreground before it. */
 void lm_sar_prefetch(const struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t line);
 
 /* Select the targets that the patch may show, and request their chips. */
@@ -177,7 +183,7 @@ bool lm_sar_load_detail(struct lm_sar *s, struct lm_tile_cache *tiles, bool is_l
 bool lm_sar_sample_ahead(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t at_most,
                          struct lm_line *line);
 
-/* Draw the next line and move on. Call it while s->line < radar->sar.cells.
+/* Draw the next line and move on. Call it while s->line < s->lines.
  *
  * - Result: levels (dB * 256), valid until the next call, and line->grey. In both the first cell of
  *   the display has the index LM_SAR_GUARD.

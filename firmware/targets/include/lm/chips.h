@@ -82,11 +82,7 @@ struct lm_chips {
 struct lm_chip_query {
     struct lm_position centre; /* of the patch or window */
     uint32_t reach_m;          /* half its diagonal: targets beyond it need no chip */
-    struct lm_position radar;  /* read unless is_parallel */
-    bool is_parallel; /* true for a patch: all targets are seen along `look` from range_m_q8;
-                         false for a window: each is seen from `radar` */
-    fx_bam_t look;
-    uint32_t range_m_q8;
+    struct lm_position radar;  /* below the antenna, which sees each target from there */
     struct lm_target_heights heights;
     uint32_t cell_mm;   /* of the picture: chips are reduced to the largest pixel not above it */
     uint32_t side_most; /* most pixels of a row after the reduction */

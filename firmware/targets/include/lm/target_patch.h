@@ -10,16 +10,20 @@
  * No call fails. Source: docs/EQUATIONS.md, "Point response", "Targets" and "Signatures".
  *
  *     line 0                                 lines - 1
- *       +------------------------------------------+  cell `cells` - 1
- *       |                    ^ look                |
- *       |                    |                     |
- *       |                 centre                   |
- *       |                                          |
- *       +------------------------------------------+  cell `guard`: the patch begins
- *       |                                          |  guard cells, not displayed
- *       +------------------------------------------+  cell 0
+ *         \                                      /   cell `cells` - 1
+ *          \                 ^ look             /
+ *           \                |                 /
+ *            \            centre              /
+ *             \                              /
+ *              \----------------------------/     cell `guard`: the patch begins
+ *               \  guard cells, not shown  /
+ *                \------------------------/       cell 0
  *
- *                         antenna, centre_m_q8 from the centre                            */
+ *                         antenna, centre_m_q8 from the centre
+ *
+ * Lines are rays from the antenna. A point x to the right of the line of sight through the centre
+ * and s away from the antenna along it lies on line x S / s / ds, counted from the middle, with S
+ * the centre's range and ds a cell. */
 #ifndef LM_TARGET_PATCH_H
 #define LM_TARGET_PATCH_H
 
@@ -30,6 +34,9 @@
 #include "lm/target_view.h"
 
 enum { LM_PATCH_SCATTERERS_MAX = LM_TARGET_CANDIDATES_MAX * LM_SCATTERERS_MAX };
+
+/* Lines of a patch: twice as many as cells for one that begins half-way to its centre. */
+enum { LM_PATCH_LINES_MAX = 2 * LM_CELLS_MAX };
 
 /* Geometry of a patch: what targets need to know of it. */
 struct lm_patch_geometry {
@@ -76,7 +83,7 @@ struct lm_patch_chip {
     struct lm_chip_patch patch;
     uint32_t scatterer; /* index of the scatterer that has its position and whether it is hidden */
     int32_t shadow_across_cells_q8; /* of the true origin: Doppler does not displace a shadow */
-    int32_t area_dbm2_q8;           /* area of a clutter cell there (lm_clutter_area_dbm2_q8) */
+    int32_t area_dbm2_q8;           /* area of a clutter cell there */
 };
 
 /* Most cells of a line that chips are added to. It bounds the line's cost. */
@@ -92,7 +99,7 @@ struct lm_target_patch {
     struct lm_patch_chip chip[LM_TARGET_CANDIDATES_MAX]; /* same index as target; if it has_chip */
     /* Targets of each line. Bit n is set if target n or one of its scatterers is on the line, or
      * may touch the line with its power or its chip's shadow. Most lines have few bits. */
-    uint32_t on_line[LM_CELLS_MAX];
+    uint32_t on_line[LM_PATCH_LINES_MAX];
     int32_t re_q24[LM_CELLS_ROOM], im_q24[LM_CELLS_ROOM]; /* scratch: zero between calls */
 };
 

@@ -52,6 +52,7 @@ struct lm_picture {
     bool is_cursor_awaited; /* a window is selected, but swept as NORM until the cursor is placed */
 
     struct lm_sar sar;
+    struct lm_patch_painter painter;
     struct {
         bool is_reading;          /* the patch's tiles are being read; no line is drawn */
         bool has_tiles;           /* all tiles and chips are there; detail may still be read */

@@ -161,17 +161,25 @@ struct ref_path {
 struct ref_path ref_gm_path(struct ref_place antenna, double azimuth_deg, double length_m);
 struct ref_place ref_path_at(const struct ref_path *path, double u);
 
-/* The biquadratic surface through nine points of a patch: [across][along] at -w, 0, +w. Assumed:
- * `azimuth_deg` is the line of sight's at the centre, pointing away from the radar; the point at
- * across x and along y lies at azimuth + atan2(x, y) and distance hypot(x, y) from the centre; w is
- * half the side of the patch. */
-struct ref_surface {
-    double half_side_m;
-    double latitude_deg[3][3], longitude_deg[3][3];
-};
+/* The place `across_m` to the right of the line of sight through a patch's centre, and `along_m`
+ * beyond the centre along it. Assumed: `azimuth_deg` is the line of sight's at the centre, pointing
+ * away from the radar; the point at across x and along y lies at azimuth + atan2(x, y) and distance
+ * hypot(x, y) from the centre. */
 struct ref_place ref_patch_offset(struct ref_place centre, double azimuth_deg, double across_m,
                                   double along_m);
-struct ref_surface ref_sar_surface(struct ref_place centre, double azimuth_deg, double half_side_m);
+
+/* The biquadratic surface through nine points of the fan of a patch's lines: [across][along] at -w,
+ * 0, +w, as it is at the centre's range, and at the near end of the guard cells, half-way, and at
+ * the far end. w is half the number of lines. */
+struct ref_sar;
+struct ref_surface {
+    double near_m, far_m; /* from the centre */
+    double side_m;        /* w */
+    double latitude_deg[3][3], longitude_deg[3][3];
+};
+struct ref_surface ref_sar_surface(const struct ref_sar *sar);
+
+/* The place of x_k and y_i. */
 struct ref_place ref_surface_at(const struct ref_surface *surface, double across_m, double along_m);
 
 /* ---- illumination (illumination.c) ---- */
@@ -356,15 +364,14 @@ struct ref_patch_rain {
     double slant; /* metres of the way for each metre along the ground */
 };
 
-/* Loss by rain of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line
- * whose middle appears `aside_deg` to the right of the line of sight. */
+/* Loss by rain of the echo of a cell of `cell_m` at `range_m`, dB there and back, on the line in
+ * direction `aside_deg` to the right of the line of sight. Lengths are along that line of sight. */
 double ref_patch_loss_db(const struct ref_patch_rain *w, double aside_deg, double range_m,
                          double cell_m);
 
-/* Echo of rain in the cells at `range_m`, as gamma: veil[n] on the line `aside_deg[n]` of the
- * line of sight. These grow with n, within 40 degrees or ten beams of their middle. */
-void ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
-                    const double *aside_deg, double *veil, size_t count);
+/* Echo of rain in such a cell, as gamma. */
+double ref_patch_veil(const struct ref_patch_rain *w, const struct ref_view *view, double range_m,
+                      double aside_deg);
 
 /* ---- real beam: the antenna (beam.c), and a line (sector.c) ---- */
 
@@ -531,11 +538,14 @@ struct ref_sar {
     double
         range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
     double antenna_m, cell_m;
-    unsigned cell_count;        /* along either side */
+    unsigned cell_count;        /* along either side of the square */
     uint32_t epoch;             /* of its draws: lm_sar's noise_epoch */
     struct ref_patch_rain rain; /* distances, angles and slant are filled from these places */
     struct ref_place rain_centre[4];
 };
+
+/* Number of lines of a patch: n of "Line of a patch". */
+unsigned ref_sar_lines(const struct ref_sar *sar);
 
 /* The tables of a picture. */
 struct ref_tables {
@@ -557,8 +567,8 @@ struct ref_view ref_gm_view(const struct ref_db *db, const struct ref_gm *gm,
 double ref_gm_azimuth_deg(const struct ref_gm *gm, unsigned line);
 
 /* T before the first guard cell of line k: the coarse line. Assumed: the coarse line is the patch's
- * line prolonged towards the radar at the same across offset, its places on the parabola through
- * the two ends and the middle; its cells end where the first guard cell begins. */
+ * line prolonged towards the radar, its places on the parabola through the two ends and the middle;
+ * its cells end where the first guard cell begins. */
 double ref_sar_horizon(const struct ref_db *db, const struct ref_sar *sar,
                        const struct ref_params *params, unsigned line);
 
@@ -601,9 +611,10 @@ int ref_sector_sweep(struct ref_picture *picture, const struct ref_db *db,
 
 /* ---- on the glass (glass.c) ---- */
 
-/* A patch as cell_count x cell_count pixels of scale x scale each: far on top, right of the line of
- * sight to the right. */
-void ref_glass_sar(const struct ref_picture *picture, unsigned scale, uint8_t *pixels);
+/* A patch as `side` x `side` pixels: far on top, right of the line of sight to the right, the grey
+ * of a pixel linear between the four cells around it. range_m is that of the centre. */
+void ref_glass_sar(const struct ref_picture *picture, double range_m, unsigned side,
+                   uint8_t *pixels);
 
 /* A sweep seen from above, the sector's middle upwards: `width` x `height` pixels, the antenna in
  * the middle of the lower edge, the last cell's far end at the top. A pixel takes the line in whose

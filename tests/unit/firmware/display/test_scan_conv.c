@@ -302,64 +302,128 @@ TEST(a_sector_is_as_high_as_its_frame_and_fills_two_fifths_of_the_glass)
     }
 }
 
-/* A patch whose cell (line, range) is 1 + (line * 7 + range * 13) % 255. */
-static uint8_t patch_grey(uint32_t line, uint32_t range)
+/* ---- patches ---- */
+
+/* A patch over a plane ramp of greys, in thousandths of the square to the right and up. */
+struct ramp {
+    double at_middle, right, up;
+};
+
+static double ramp_grey(const struct ramp *r, double right, double up)
 {
-    return (uint8_t)(1 + (line * 7 + range * 13) % 255);
+    return r->at_middle + r->right * right + r->up * up;
 }
 
-TEST(a_patch_cell_is_a_square_of_pixels_at_its_place)
+/* How far right a line is at a cell, and how far up, in squares from the middle. */
+static double right_of(const struct lm_patch_fan *fan, uint32_t line, double up)
 {
-    static const uint16_t px[] = {512, 700, 1024, 1100, 2048};
-    static const uint32_t counts[] = {256, 64, 100};
-    for (int n = 0; n < 5 * 3; n++) {
-        const uint32_t cells = counts[n % 3];
+    const double side_m_q8 = (double)fan->cells * fan->cell_m_q8;
+    return (line + 0.5 - fan->lines / 2.0) / fan->cells * (1 + up * side_m_q8 / fan->centre_m_q8);
+}
+
+static double up_of(const struct lm_patch_fan *fan, uint32_t cell)
+{
+    return (cell + 0.5) / fan->cells - 0.5;
+}
+
+static uint32_t lines_of(uint32_t cells, double range_m, double cell_m)
+{
+    return 2 * (uint32_t)ceil(cells * range_m / (2 * (range_m - cells * cell_m / 2)));
+}
+
+static struct lm_patch_fan fan_of(uint32_t cells, double range_m, double cell_m)
+{
+    return (struct lm_patch_fan){lines_of(cells, range_m, cell_m), cells,
+                                 (uint32_t)lround(range_m * 256), (uint32_t)lround(cell_m * 256)};
+}
+
+static void paint_patch(const struct glass *g, const struct lm_patch_fan *fan,
+                        const struct ramp *ramp)
+{
+    static struct lm_patch_painter painter;
+    lm_patch_painter_set(&painter, &g->frame, fan);
+    for (uint32_t line = 0; line < fan->lines; line++) {
+        uint8_t grey[CELLS];
+        for (uint32_t i = 0; i < fan->cells; i++) {
+            const double up = up_of(fan, i);
+            const double value = ramp_grey(ramp, right_of(fan, line, up), up);
+            grey[i] = (uint8_t)lround(fmin(fmax(value, 0), 255));
+        }
+        lm_scan_conv_patch(&painter, &g->plane, line, grey);
+    }
+}
+
+/* Bilinear painting keeps a plane, whatever the fan: the rays' lines lie where they are. */
+TEST(a_patch_fills_its_square_and_shows_every_place_where_it_is)
+{
+    static const uint16_t px[][2] = {{256, 256}, {480, 480},  {512, 512},  {768, 768},
+                                     {700, 900}, {1024, 768}, {1024, 1024}};
+    static const double fans[][3] = {
+        {256, 60000, 5}, {256, 15000, 20}, {256, 9600, 40}, {64, 20000, 1}, {100, 5000, 30}};
+    const struct ramp ramp = {127, 160, 60};
+    for (int n = 0; n < 7 * 5; n++) {
+        const double *f = fans[n % 5];
+        const struct lm_patch_fan fan = fan_of((uint32_t)f[0], f[1], f[2]);
         struct glass g;
-        make_glass(&g, px[n / 3], px[n / 3]);
-        const uint32_t side = lm_patch_cell_px(&g.frame, cells);
-        assert_int_equal(side, fmin(g.frame.width_px, g.frame.height_px) / cells);
-        for (uint32_t line = 0; line < cells; line++) {
-            uint8_t grey[CELLS];
-            for (uint32_t i = 0; i < cells; i++) {
-                grey[i] = patch_grey(line, i);
-            }
-            lm_scan_conv_patch(&g.plane, &g.frame, line, grey, cells);
-        }
-        const uint32_t left = g.frame.left_px + (g.frame.width_px - side * cells) / 2;
-        const uint32_t bottom = g.frame.top_px + (g.frame.height_px + side * cells) / 2 - 1;
-        for (uint32_t y = g.frame.top_px; y < (uint32_t)g.frame.top_px + g.frame.height_px; y++) {
-            for (uint32_t x = g.frame.left_px; x < (uint32_t)g.frame.left_px + g.frame.width_px;
-                 x++) {
-                const uint32_t line = (x - left) / side, range = (bottom - y) / side;
-                const int is_patch = x >= left && line < cells && y <= bottom && range < cells;
-                assert_int_equal(g.plane.pixels[y * g.plane.width_px + x],
-                                 is_patch ? patch_grey(line, range) : 0);
+        make_glass(&g, px[n / 5][0], px[n / 5][1]);
+        const struct lm_frame s = lm_patch_square(&g.frame);
+        paint_patch(&g, &fan, &ramp);
+        double worst = 0;
+        for (int32_t y = g.frame.top_px; y < g.frame.top_px + g.frame.height_px; y++) {
+            for (int32_t x = g.frame.left_px; x < g.frame.left_px + g.frame.width_px; x++) {
+                const double right = (x + 0.5 - s.left_px) / s.width_px - 0.5;
+                const double up = 0.5 - (y + 0.5 - s.top_px) / s.height_px;
+                const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
+                if (fabs(right) > 0.5 || fabs(up) > 0.5) {
+                    assert_int_equal(shown, 0);
+                } else if (fabs(up) < 0.5 - 0.5 / fan.cells) { /* the ends are held */
+                    worst = fmax(worst, fabs(shown - ramp_grey(&ramp, right, up)));
+                }
             }
         }
+        /* Half a grey of the cells and one of each step of the painter. */
+        assert_true(worst < 2);
         close_glass(&g);
     }
 }
 
-TEST(a_frame_smaller_than_the_patch_shows_its_middle)
+TEST(a_patch_takes_half_of_any_glass)
 {
-    for (uint16_t size = 100; size <= 330; size = (uint16_t)(size + 10)) {
-        struct glass g;
-        make_glass(&g, size, (uint16_t)(size + size % 30));
-        for (uint32_t line = 0; line < CELLS; line++) {
-            uint8_t grey[CELLS];
-            for (uint32_t i = 0; i < CELLS; i++) {
-                grey[i] = patch_grey(line, i);
-            }
-            lm_scan_conv_patch(&g.plane, &g.frame, line, grey, CELLS);
-        }
-        const struct lm_frame *f = &g.frame;
-        const int32_t x = f->width_px / 2, y = f->height_px / 2;
-        const int32_t line = x - (f->width_px - CELLS) / 2,
-                      range = (f->height_px + CELLS) / 2 - 1 - y;
-        assert_in_range(line, CELLS / 2 - 1, CELLS / 2 + 1);
-        assert_in_range(range, CELLS / 2 - 1, CELLS / 2 + 1);
-        assert_int_equal(g.plane.pixels[(f->top_px + y) * g.plane.width_px + f->left_px + x],
-                         patch_grey((uint32_t)line, (uint32_t)range));
-        close_glass(&g);
+    static const uint16_t px[] = {480, 512, 768, 1024};
+    for (int n = 0; n < 4; n++) {
+        const struct lm_frame frame = lm_frame_of_display(px[n], px[n]);
+        const struct lm_frame s = lm_patch_square(&frame);
+        assert_int_equal(s.width_px, s.height_px);
+        assert_int_equal(s.width_px % 2, 0);
+        assert_true(2 * s.width_px * s.height_px >= px[n] * px[n]);
     }
+}
+
+/* While the patch is drawn, what is painted stays right to the last line, and nothing is beyond. */
+TEST(a_patch_grows_line_by_line)
+{
+    const struct lm_patch_fan fan = fan_of(256, 15000, 20);
+    static struct lm_patch_painter painter;
+    struct glass g;
+    uint8_t grey[CELLS];
+    memset(grey, 200, sizeof grey);
+    make_glass(&g, 512, 512);
+    const struct lm_frame s = lm_patch_square(&g.frame);
+    lm_patch_painter_set(&painter, &g.frame, &fan);
+    for (uint32_t line = 0; line < fan.lines; line++) {
+        lm_scan_conv_patch(&painter, &g.plane, line, grey);
+        for (int32_t y = s.top_px; y < s.top_px + s.height_px && line % 9 == 0; y++) {
+            const double up = 0.5 - (y + 0.5 - s.top_px) / s.height_px;
+            const double end = s.left_px + (right_of(&fan, line, up) + 0.5) * s.width_px;
+            for (int32_t x = s.left_px; x < s.left_px + s.width_px; x++) {
+                const uint8_t shown = g.plane.pixels[y * g.plane.width_px + x];
+                if (x + 0.5 < end - 0.1) {
+                    assert_int_equal(shown, 200);
+                } else if (x + 0.5 > end + 4 && x >= s.left_px + 4) {
+                    assert_int_equal(shown, 0); /* up to four are painted before they are due */
+                }
+            }
+        }
+    }
+    close_glass(&g);
 }

@@ -735,7 +735,7 @@ TEST(designate_looks_closely_at_the_cursor_and_drop_comes_back)
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
     assert_memory_equal(&r->unit.picture.sar.command.centre, &r->unit.cursor.position,
                         sizeof(struct lm_position));
-    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, r->unit.picture.sar.lines);
     char look[16];
     snprintf(look, sizeof look, "LOOK %03.0f",
              r->unit.picture.sar.command.look_azimuth * 360.0 / 4294967296.0);

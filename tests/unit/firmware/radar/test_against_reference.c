@@ -127,7 +127,7 @@ static struct lm_sar start_patch(struct world *w, int look_deg, uint32_t cell_mm
                                        .sea_state = LM_SEA_STATE_OF_IMAGE,
                                        .environment = w->is_rainy ? &w->environment : NULL};
     assert_int_equal(lm_sar_start(&sar, &w->radar, &w->map.db, &command, &scene), LM_OK);
-    for (uint32_t line = 0; line < CELLS; line += 4) {
+    for (uint32_t line = 0; line < sar.lines; line += 4) {
         lm_sar_prefetch(&sar, &w->map.tiles, line);
         tiny_map_read_tiles(&w->map);
     }
@@ -218,7 +218,8 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
     struct lm_sar sar = start_patch(w, look_deg, (uint32_t)lround(cell_m * 1000), (uint32_t)range_m,
                                     (int32_t)height_m, picture.view.reference_m);
     struct ref_bin *copy = calloc(CELLS + REF_GUARD_CELLS, sizeof *copy);
-    for (uint32_t k = 0; k < CELLS; k++) {
+    assert_int_equal(sar.lines, picture.line_count);
+    for (uint32_t k = 0; k < sar.lines; k++) {
         lm_sar_sample_line(&sar, &w->map.tiles, k, &w->line, w->level_q8);
         lm_tone_run(&w->tone, w->level_q8, w->line.grey, CELLS + REF_GUARD_CELLS);
         score_patch_line(w, &wanted, &picture, k, &sar, copy, scores);

@@ -203,8 +203,7 @@ static void compare_line(struct world *w, uint32_t line_number, struct apart *ap
     look_at_line(w, line_number, loss_db);
     look_into_the_dark(w, line_number, dark_db);
     for (uint32_t i = 0; i < CELLS; i += 13) {
-        double veil;
-        ref_patch_veil(&w->ref, &w->view, range_m(w, i), &aside_deg, &veil, 1);
+        const double veil = ref_patch_veil(&w->ref, &w->view, range_m(w, i), aside_deg);
         const double wanted_db =
             ref_patch_loss_db(&w->ref, aside_deg, range_m(w, i), w->view.cell_m);
         const double off_db = dark_db[i] - 10 * log10(noise + veil);

@@ -8,8 +8,6 @@
 
 #include <math.h>
 
-enum { CELLS = 256 };
-
 static const double pi = 3.14159265358979323846;
 static const double wavelength_m = 0.031228; /* 9.6 GHz */
 
@@ -45,7 +43,7 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
     command(r, control);
     run(r, 0.004);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    while (r->unit.picture.sar.line < CELLS) {
+    while (r->unit.picture.sar.line < r->unit.picture.sar.lines) {
         if (first_us == 0 &&
             r->now_us >= r->unit.picture.next_line_us - r->unit.picture.sar.line_us &&
             r->unit.picture.sar.line > 0) {
@@ -55,7 +53,8 @@ static double seconds_of_patch(struct rig *r, struct lm_control control)
         assert_true(r->now_us < 100000000);
         run(r, 0.002);
     }
-    return (double)(r->now_us - first_us) / 1e6 * CELLS / (CELLS - first);
+    const uint32_t lines = r->unit.picture.sar.lines;
+    return (double)(r->now_us - first_us) / 1e6 * lines / (lines - first);
 }
 
 /* T = l R / (2 V d sin o) by hand: 20 nautical miles, 45 degrees, 250 m/s. */
@@ -160,9 +159,10 @@ TEST(the_time_to_go_falls_to_nothing_as_the_lines_are_drawn)
     command(r, patch_at(r, 45, 37040, 1));
     run(r, 0.6); /* the tiles are there */
     const double total_s = wavelength_m * hypot(37040, 1900) / (2 * 250 * sin(pi / 4));
-    while (r->unit.picture.sar.line < CELLS) {
+    while (r->unit.picture.sar.line < r->unit.picture.sar.lines) {
         const double left_s = (double)lm_sar_time_to_go_us(&r->unit.picture.sar) / 1e6;
-        const double expected_s = total_s * (CELLS - r->unit.picture.sar.line) / CELLS;
+        const struct lm_sar *sar = &r->unit.picture.sar;
+        const double expected_s = total_s * (sar->lines - sar->line) / sar->lines;
         assert_true(fabs(left_s - expected_s) < 0.02 * total_s);
         run(r, 0.05);
     }

@@ -419,7 +419,7 @@ TEST(a_patch_drawn_twice_is_the_same)
         command(r, patch);
         step(r);
         assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-        while (r->unit.picture.sar.line < r->unit.picture.sar.radar->sar.cells) {
+        while (r->unit.picture.sar.line < r->unit.picture.sar.lines) {
             step(r);
         }
         assert_true(lit_pixels(r) > 10000);

@@ -132,11 +132,12 @@ static void choose(struct signature_world *f, const struct lm_target *targets, u
 {
     const struct lm_target_set set = set_with_signature(f, targets, count);
     const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 1000};
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, scene.position);
     const struct lm_chip_query chips = {.centre = scene.position,
                                         .reach_m = scene.reach_m,
-                                        .is_parallel = true,
-                                        .look = FX_BAM_90,
-                                        .range_m_q8 = 20000 * 256,
+                                        .radar =
+                                            lm_geo_direct(&origin, FX_BAM_DEG(270), 20000 * 256),
                                         .heights = {6000 * 1024, 0},
                                         .cell_mm = cell_mm,
                                         .side_most = LM_CHIP_SIDE};
@@ -313,8 +314,9 @@ TEST_WITH(a_chip_laid_over_cells_of_any_size_and_turn_agrees_with_the_reference,
         const struct lm_chip_slot *slot = lm_chip_of(&candidates.candidate[0]);
         const struct lm_smear still = lm_smear_of(0, 0);
         struct lm_chip_patch lay;
-        lm_chip_patch_set(&lay, slot, candidates.candidate[0].chip_turn,
-                          (uint32_t)lround(cell_m * 1000), &still);
+        const struct lm_chip_cells cells = {.cell_mm = (uint32_t)lround(cell_m * 1000),
+                                            .wide_q16 = 65536};
+        lm_chip_patch_set(&lay, slot, candidates.candidate[0].chip_turn, &cells, &still);
         const struct lm_chip chip = make_chip(slot->key.aspect, slot->key.depression);
         const struct ref_chip ref = {&chip, PIXEL_MM / 1000.0, ORIGIN_ROW,
                                      (int32_t)candidates.candidate[0].chip_turn * 360.0 /

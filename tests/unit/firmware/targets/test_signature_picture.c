@@ -39,9 +39,13 @@ static void draw_patch(struct fixture *f, const struct lm_target_set *set,
     assert_int_equal(lm_sar_start(&f->sar, &f->radar, &f->world.db, &command, &scene), LM_OK);
     lm_sar_prefetch_targets(&f->sar, &f->world.tiles);
     assert_true(serve_chips(&f->world));
-    for (int k = 0; k < SIDE; k++) {
+    /* Of the lines, which are more than cells, those in the middle. */
+    const int beside = ((int)f->sar.lines - SIDE) / 2;
+    for (int k = -beside; k < SIDE + beside; k++) {
         const int32_t *level_q8 = lm_sar_draw_line(&f->sar, &f->world.tiles, &f->tone, &f->line);
-        memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
+        if (k >= 0 && k < SIDE) {
+            memcpy(picture[k], level_q8 + LM_SAR_GUARD, sizeof picture[k]);
+        }
     }
 }
 

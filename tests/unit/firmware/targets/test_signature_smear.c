@@ -72,14 +72,15 @@ static void choose_chip(struct fixture *f, const struct lm_target *t,
 {
     const struct lm_target_set set = set_with_signature(&f->world, t, 1);
     const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = 20000};
-    const struct lm_chip_query chips = {.centre = scene.position,
-                                        .reach_m = scene.reach_m,
-                                        .is_parallel = true,
-                                        .look = FX_BAM_90,
-                                        .range_m_q8 = (uint32_t)range_m * 256,
-                                        .heights = heights,
-                                        .cell_mm = 1000,
-                                        .side_most = LM_CHIP_SIDE};
+    struct lm_geo_origin origin;
+    lm_geo_set_origin(&origin, scene.position);
+    const struct lm_chip_query chips = {
+        .centre = scene.position,
+        .reach_m = scene.reach_m,
+        .radar = lm_geo_direct(&origin, FX_BAM_DEG(270), (uint32_t)range_m * 256),
+        .heights = heights,
+        .cell_mm = 1000,
+        .side_most = LM_CHIP_SIDE};
     lm_target_candidates_select(candidates, &set, &scene);
     lm_chips_choose(&f->world.chips, candidates, &chips);
     assert_true(serve_chips(&f->world));

@@ -71,11 +71,17 @@ static double middle_of(double number)
     return (number + 0.5 - LINES / 2) * cell_m;
 }
 
+/* Across offset of a line at a cell: lines are rays. */
+static double across_of(double line, double cell)
+{
+    return middle_of(line) * (range_m + middle_of(cell)) / range_m;
+}
+
 /* Line and cell of fractions, places from the middles of the first ones. */
 static struct lm_target point_in(double line, double cell, double rcs_db)
 {
     double to[2];
-    place_at(46, 11, 0, middle_of(line), middle_of(cell), to);
+    place_at(46, 11, 0, across_of(line, cell), middle_of(cell), to);
     return point_at(to[0], to[1], 0, rcs_db);
 }
 
@@ -83,7 +89,8 @@ static double level_db(double rcs_db, double cell)
 {
     const struct ref_view view = {height_m, 0, cell_m};
     const double at_m = range_m + middle_of(cell);
-    return rcs_db - 10 * log10(cell_m * cell_m * ref_grazing(&view, at_m, at_m - cell_m));
+    const double width_m = cell_m * at_m / range_m;
+    return rcs_db - 10 * log10(width_m * cell_m * ref_grazing(&view, at_m, at_m - cell_m));
 }
 
 /* ---- the shape ---- */
@@ -181,7 +188,7 @@ TEST(a_point_is_at_its_place_with_all_its_power)
         const double lat = 75 * (2 * hs_rng_uniform(&rng) - 1), look = 360 * hs_rng_uniform(&rng);
         const double line = 20 + 88 * hs_rng_uniform(&rng), cell = 20 + 88 * hs_rng_uniform(&rng);
         double to[2], power = 0, across = 0, along = 0;
-        place_at(lat, 20, look, middle_of(line), middle_of(cell), to);
+        place_at(lat, 20, look, across_of(line, cell), middle_of(cell), to);
         const struct lm_target t = point_at(to[0], to[1], 0, 35);
         const struct lm_patch_geometry g = geometry(lat, 20, look);
         find_points(&t, 1, &g, 0);
@@ -254,7 +261,7 @@ TEST(bodies_add_as_phasors_and_targets_as_powers_everywhere)
         for (int k = 0; k < 4; k++) {
             double to[2];
             t[k] = random_target(&rng, 15000);
-            place_at(46, 11, 0, middle_of(40 + 12 * k), middle_of(80 - 9 * k), to);
+            place_at(46, 11, 0, across_of(40 + 12 * k, 80 - 9 * k), middle_of(80 - 9 * k), to);
             t[k].latitude = hs_bam(to[0]);
             t[k].longitude = hs_bam(to[1]);
             seal_target(&t[k]);
@@ -325,7 +332,8 @@ TEST(a_mover_is_displaced_by_r_v_over_v_sin_o_within_a_cell)
         g.across_mm_s = (int32_t)lround(across_m_s * 1000);
         find_points(&t, 1, &g, 0);
         const double closing = -speed * cos(heading * pi / 180);
-        const double expected = 64 + (range_m + middle_of(70)) * closing / across_m_s / cell_m;
+        /* s v / V at its range, where lines are s / S cells apart. */
+        const double expected = 64 + range_m * closing / across_m_s / cell_m;
         assert_true(fabs(points.scatterer[0].across_cells_q8 / 256.0 - expected) < 1);
         assert_true(fabs(points.scatterer[0].along_cells_q8 / 256.0 - (GUARD + 70)) < 0.1);
     }
@@ -344,7 +352,7 @@ TEST(what_a_mover_is_smeared_to_is_what_the_aperture_makes_of_it)
         g.across_mm_s = (int32_t)lround(flies_m_s * 1000);
         g.dwell_ms = 2000;
         /* From where Doppler puts it onto line 64. */
-        const double shift_m = (range_m + middle_of(70)) * closing / flies_m_s;
+        const double shift_m = range_m * closing / flies_m_s;
         struct lm_target t = point_in(64 - shift_m / cell_m, 70, 35);
         t.heading = hs_bam(atan2(right, -closing) * 180 / pi);
         t.speed_mm_s = (uint32_t)lround(hypot(right, closing) * 1000);

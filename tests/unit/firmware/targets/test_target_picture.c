@@ -39,9 +39,13 @@ static void draw_patch_of_cells(const struct lm_target_set *set, uint32_t cell_m
     const struct lm_sar_setup scene = {
         .targets = set, .epoch = 5, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
-    for (int k = 0; k < SIDE; k++) {
+    /* Of the lines, which are more than cells, those in the middle. */
+    const int beside = ((int)sar.lines - SIDE) / 2;
+    for (int k = -beside; k < SIDE + beside; k++) {
         lm_sar_draw_line(&sar, &map.tiles, &tone, &line);
-        memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
+        if (k >= 0 && k < SIDE) {
+            memcpy(picture[k], line.grey + LM_SAR_GUARD, SIDE);
+        }
     }
 }
 
@@ -54,12 +58,11 @@ TEST(a_corner_is_bright_with_its_side_lobes_and_the_rest_is_untouched)
 {
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     open_soil();
-    /* 202 m north and 122 m east of the centre, looking east: line 128 - 50.5 to the left, cell
-     * 158.
-     */
+    /* 203.2 m north and 122 m east of the centre, looking east: on a ray 202 m to the left at the
+     * centre, line 128 - 50.5, cell 158. */
     struct lm_target t = point_at(46, 11, 0, 0);
     t.heading = FX_BAM_DEG(270); /* towards the radar */
-    add_scatterer(&t, LM_SHAPE_TRIHEDRAL, 1500, -122000, 202000, 1000, 0, 35.264);
+    add_scatterer(&t, LM_SHAPE_TRIHEDRAL, 1500, -122000, 203232, 1000, 0, 35.264);
     const struct lm_target_set set = {.items = &t, .count = 1}, none = {0};
     draw_patch(&none, without);
     draw_patch(&set, with);
@@ -106,11 +109,12 @@ static int brightest_cell(uint8_t with[SIDE][SIDE], uint8_t without[SIDE][SIDE])
     return cell;
 }
 
-/* Its corners are 3.6 km from its centre. It looks east: lines from north to south, cells from west
- * to east. The target is just below white, or neighbours would be as white. */
+/* Its corners are 3.6 km from its centre, the targets 3.1 km. It looks east: lines from north to
+ * south, cells from west to east. The target is just below
+ * white, or neighbours would be as white. */
 TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
 {
-    enum { CELL_MM = 20000, OUT_CELLS = 120 };
+    enum { CELL_MM = 20000, OUT_CELLS = 110 };
     static uint8_t without[SIDE][SIDE], with[SIDE][SIDE];
     const struct lm_target_set none = {0};
     open_soil();
@@ -123,7 +127,9 @@ TEST(a_target_in_the_corner_of_a_coarse_patch_is_shown)
         const struct lm_target_set set = {.items = &t, .count = 1};
         draw_patch_of_cells(&set, CELL_MM, with);
         const int cell = brightest_cell(with, without);
-        assert_true(abs(cell / SIDE - (SIDE / 2 + south * OUT_CELLS)) <= 1);
+        /* Lines are rays from 20 km away. */
+        const int out_lines = OUT_CELLS * 20000 / (20000 + east * OUT_CELLS * CELL_MM / 1000);
+        assert_true(abs(cell / SIDE - (SIDE / 2 + south * out_lines)) <= 1);
         assert_true(abs(cell % SIDE - (SIDE / 2 + east * OUT_CELLS)) <= 1);
     }
     tiny_map_close(&map);

@@ -96,7 +96,7 @@ static void check_bounds(const struct rig *r)
     assert_true(abs(p->palette.contrast) <= LM_ROCKER_STEPS);
     assert_true(abs(p->palette.symbology) <= LM_ROCKER_STEPS);
     assert_true(p->hidden < 1u << LM_OSBS && r->unit.keys.down < 1u << LM_BUTTONS);
-    assert_true(r->unit.picture.sar.line <= lm_radar_default.sar.cells);
+    assert_true(r->unit.picture.sar.line <= r->unit.picture.sar.lines);
     assert_int_equal(r->unit.picture.sector.command.range_index < lm_radar_default.ranges, 1);
     const struct lm_cursor *c = &r->unit.cursor;
     assert_true(abs(c->slew_x) <= LM_FULL_DEFLECTION && abs(c->slew_y) <= LM_FULL_DEFLECTION);

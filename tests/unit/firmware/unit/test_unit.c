@@ -169,7 +169,7 @@ TEST(a_patch_completes_and_stays)
     run(r, 4);
     assert_int_equal(r->unit.count.commands_refused, 0);
     assert_int_equal(r->unit.page.picture, LM_PICTURE_PATCH);
-    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, r->unit.picture.sar.lines);
     const uint32_t done = plane_sum(r);
     assert_true(lit_pixels(r) > 10000);
     run(r, 2);
@@ -194,7 +194,7 @@ TEST(a_patch_that_loses_its_navigation_is_drawn_again_though_no_frame_is_shown)
     run(r, 1);
     command(r, patch_here);
     run(r, 4);
-    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, r->unit.picture.sar.lines);
     r->board.acquire_status = LM_BUSY;
     r->bus.stop_us = r->now_us;
     run(r, 11);
@@ -206,7 +206,7 @@ TEST(a_patch_that_loses_its_navigation_is_drawn_again_though_no_frame_is_shown)
     r->bus.stop_us = UINT64_MAX;
     r->bus.sent_us = r->now_us;
     run(r, 4);
-    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, r->unit.picture.sar.lines);
     free_rig(r);
 }
 
@@ -246,7 +246,7 @@ TEST(a_patch_takes_its_elevation_from_the_finest_tile_though_that_was_not_read)
                      cold->unit.picture.sar.grid.reference_m_q10);
     assert_int_not_equal(guessed_q10, cold->unit.picture.sar.grid.reference_m_q10);
     run(warm, 4);
-    assert_int_equal(cold->unit.picture.sar.line, 256);
+    assert_int_equal(cold->unit.picture.sar.line, cold->unit.picture.sar.lines);
     assert_int_equal(plane_sum(warm), plane_sum(cold));
     free_rig(cold);
     free_rig(warm);
@@ -266,10 +266,10 @@ TEST(all_tiles_of_a_patch_are_there_before_its_first_line_a_few_lines_asked_for_
         assert_true(u->page.picture == LM_PICTURE_PATCH && u->picture.sar.line == 0 &&
                     ++step < 250);
     } while (u->picture.acquire.is_reading);
-    assert_int_equal(u->picture.acquire.lines_asked_for, 256);
+    assert_int_equal(u->picture.acquire.lines_asked_for, u->picture.sar.lines);
     const uint32_t substituted = u->map.tiles.count.substituted;
     run(r, 4);
-    assert_int_equal(u->picture.sar.line, 256);
+    assert_int_equal(u->picture.sar.line, u->picture.sar.lines);
     assert_int_equal(u->map.tiles.count.substituted, substituted);
     free_rig(r);
 }
@@ -285,7 +285,7 @@ TEST(a_patch_on_the_smallest_glass_stays_within_its_frame)
     run(r, 1);
     command(r, patch_here);
     run(r, 4);
-    assert_int_equal(r->unit.picture.sar.line, lm_radar_default.sar.cells);
+    assert_int_equal(r->unit.picture.sar.line, r->unit.picture.sar.lines);
     const struct lm_frame *f = &r->unit.picture.frame;
     for (size_t i = 0; i < end; i++) {
         const size_t x = i % 256, y = i / 256;

@@ -1,0 +1,347 @@
+/* Shadows of patches against somebody else's lines of sight: GDAL's viewshed over the full terrain,
+ * not over what the image's coarser levels left of it. Patches from narrow and far to wide and
+ * near, where lines that were parallel would cast their shadows beside the true ones. */
+#include "check.h"
+#include "lm/sar.h"
+#include "memory_flash.h"
+#include "real_scene.h"
+#include "support.h"
+#include "tiny_image.h"
+
+#include <cpl_string.h>
+#include <gdal.h>
+#include <gdal_alg.h>
+#include <gdalwarper.h>
+#include <math.h>
+#include <ogr_srs_api.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POLLS = 16, POOL_TILES = 4000, CELLS = 256 };
+
+static const double post_m = 20; /* of the terrain that the viewshed works on */
+
+/* The map as the firmware reads it. */
+struct world {
+    uint8_t *image; /* owned */
+    size_t size;
+    struct memory_flash flash;
+    struct lm_db db;
+    struct lm_tile_cache tiles;
+    void *pool;
+    struct lm_sar sar;
+    struct lm_line line;
+    int32_t level_q8[LM_CELLS_ROOM];
+};
+
+struct patch {
+    struct real_place centre; /* seen from the south */
+    double range_m, height_m, side_m;
+};
+
+static void open_world(struct world *w)
+{
+    const size_t bytes = POOL_TILES * sizeof(struct lm_tile);
+    memory_flash_open(&w->flash, w->image, w->size);
+    w->pool = malloc(bytes);
+    assert_non_null(w->pool);
+    assert_int_equal(lm_db_open(&w->db, &w->flash.port, POLLS), LM_OK);
+    assert_int_equal(lm_tile_cache_init(&w->tiles, &w->db, w->pool, bytes, POLLS), LM_OK);
+}
+
+static void close_world(struct world *w)
+{
+    free(w->pool);
+    free(w->image);
+    free(w);
+}
+
+static void read_tiles(struct world *w)
+{
+    for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&w->tiles); i++) {
+        lm_tile_cache_service(&w->tiles, 0, 1);
+    }
+    assert_true(lm_tile_cache_is_idle(&w->tiles));
+}
+
+/* ---- the terrain as the oracle sees it ---- */
+
+/* An empty raster in memory, equidistant about the antenna, from 1 km behind it to beyond the
+ * patch. The antenna is the middle of a pixel. */
+static GDALDatasetH make_raster(const struct patch *p, struct real_place antenna)
+{
+    const int half = (int)ceil((p->side_m / 2 + 500) / post_m);
+    const int width = 2 * half + 1, ahead = (int)ceil((p->range_m + p->side_m / 2 + 500) / post_m);
+    const int height = ahead + (int)(1000 / post_m);
+    char srs_text[200];
+    snprintf(srs_text, sizeof srs_text, "+proj=aeqd +lat_0=%.9f +lon_0=%.9f +datum=WGS84 +units=m",
+             antenna.latitude, antenna.longitude);
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
+    assert_int_equal(OSRImportFromProj4(srs, srs_text), OGRERR_NONE);
+    GDALDatasetH d =
+        GDALCreate(GDALGetDriverByName("MEM"), "", width, height, 1, GDT_Float32, NULL);
+    assert_non_null(d);
+    double forward[6] = {-(half + 0.5) * post_m, post_m, 0, (ahead + 0.5) * post_m, 0, -post_m};
+    GDALSetGeoTransform(d, forward);
+    GDALSetSpatialRef(d, srs);
+    OSRDestroySpatialReference(srs);
+    return d;
+}
+
+static int width_of(GDALDatasetH d)
+{
+    return GDALGetRasterXSize(d);
+}
+
+static int height_of(GDALDatasetH d)
+{
+    return GDALGetRasterYSize(d);
+}
+
+static void *read_band(GDALDatasetH d, GDALDataType type, size_t bytes)
+{
+    void *values = malloc((size_t)width_of(d) * (size_t)height_of(d) * bytes);
+    assert_non_null(values);
+    assert_int_equal(GDALRasterIO(GDALGetRasterBand(d, 1), GF_Read, 0, 0, width_of(d), height_of(d),
+                                  values, width_of(d), height_of(d), type, 0, 0),
+                     CE_None);
+    return values;
+}
+
+/* 1 where the ground of the raster is seen. The oracle's heights are above the ground below it. */
+static uint8_t *viewshed(GDALDatasetH terrain, const struct patch *p)
+{
+    double forward[6];
+    GDALGetGeoTransform(terrain, forward);
+    float below_m;
+    const int column = (int)(-forward[0] / post_m), row = (int)(forward[3] / post_m);
+    assert_int_equal(GDALRasterIO(GDALGetRasterBand(terrain, 1), GF_Read, column, row, 1, 1,
+                                  &below_m, 1, 1, GDT_Float32, 0, 0),
+                     CE_None);
+    /* Radar waves: an Earth of 4/3 its radius takes 3/4 of the drop. */
+    GDALDatasetH seen = GDALViewshedGenerate(GDALGetRasterBand(terrain, 1), "MEM", "", NULL, 0, 0,
+                                             p->height_m - below_m, 0, 1, 0, 0, -1, 0.75, GVM_Max,
+                                             0, NULL, NULL, GVOT_NORMAL, NULL);
+    assert_non_null(seen);
+    assert_int_equal(width_of(seen), width_of(terrain));
+    assert_int_equal(height_of(seen), height_of(terrain));
+    uint8_t *values = read_band(seen, GDT_Byte, 1);
+    GDALClose(seen);
+    return values;
+}
+
+/* ---- the patch ---- */
+
+/* Which cells of which lines the firmware leaves without an echo: 1 for a shadow. */
+static uint8_t *draw_shadows(struct world *w, const struct patch *p)
+{
+    const struct lm_sar_command command = {
+        .centre = {(fx_bam_t)(int32_t)lround(p->centre.latitude / 360 * 4294967296.0),
+                   (fx_bam_t)(int32_t)lround(p->centre.longitude / 360 * 4294967296.0)},
+        .cell_mm = (uint32_t)lround(p->side_m / CELLS * 1000),
+        .range_m = (uint32_t)p->range_m,
+        .height_m_q6 = (int32_t)(p->height_m * 64)};
+    const struct lm_sar_setup setup = {.sea_state = LM_SEA_STATE_OF_IMAGE};
+    assert_int_equal(lm_sar_start(&w->sar, &lm_radar_default, &w->db, &command, &setup), LM_OK);
+    uint8_t *shadows = malloc((size_t)w->sar.lines * CELLS);
+    assert_non_null(shadows);
+    for (uint32_t line = 0; line < w->sar.lines; line++) {
+        lm_sar_prefetch(&w->sar, &w->tiles, line);
+        read_tiles(w);
+        lm_sar_sample_line(&w->sar, &w->tiles, line, &w->line, w->level_q8);
+        for (int i = 0; i < CELLS; i++) {
+            shadows[line * CELLS + (uint32_t)i] =
+                w->line.lit.level_db_q8[LM_SAR_GUARD + i] == LM_LEVEL_SHADOW;
+        }
+    }
+    return shadows;
+}
+
+/* ---- both ---- */
+
+struct overlap {
+    int both, either, pixels;
+};
+
+/* Where the patch has the pixel: on the ray to it, by EQUATIONS.md. */
+static int is_dark(const struct world *w, const struct patch *p, const uint8_t *shadows,
+                   double right_m, double beyond_m)
+{
+    const double cell_m = p->side_m / CELLS;
+    const double line = right_m * p->range_m / (p->range_m + beyond_m) / cell_m;
+    const int k = (int)floor(line + w->sar.lines / 2.0),
+              i = (int)floor(beyond_m / cell_m + CELLS / 2);
+    assert_true(k >= 0 && k < (int)w->sar.lines && i >= 0 && i < CELLS);
+    return shadows[k * CELLS + i];
+}
+
+static struct overlap compare(const struct world *w, const struct patch *p, GDALDatasetH terrain,
+                              const uint8_t *seen, const uint8_t *shadows)
+{
+    struct overlap o = {0};
+    double forward[6];
+    GDALGetGeoTransform(terrain, forward);
+    for (int row = 0; row < height_of(terrain); row++) {
+        for (int column = 0; column < width_of(terrain); column++) {
+            const double right_m = forward[0] + (column + 0.5) * post_m;
+            const double beyond_m = forward[3] - (row + 0.5) * post_m - p->range_m;
+            if (fabs(right_m) < p->side_m / 2 - 1 && fabs(beyond_m) < p->side_m / 2 - 1) {
+                const int hidden = !seen[row * width_of(terrain) + column];
+                const int dark = is_dark(w, p, shadows, right_m, beyond_m);
+                o.both += hidden && dark;
+                o.either += hidden || dark;
+                o.pixels++;
+            }
+        }
+    }
+    return o;
+}
+
+/* Overlap: the area that both have in shadow over the area that either has. */
+static void judge(struct world *w, const struct patch *p, GDALDatasetH terrain, double least)
+{
+    uint8_t *seen = viewshed(terrain, p), *shadows = draw_shadows(w, p);
+    const struct overlap o = compare(w, p, terrain, seen, shadows);
+    const double overlap = (double)o.both / o.either;
+    print_message("# %.1f km wide at %.0f km: %.1f %% in shadow, overlap %.3f\n", p->side_m / 1000,
+                  p->range_m / 1000, 100.0 * o.both / o.pixels, overlap);
+    assert_true(o.both * 4 > o.pixels && overlap >= least);
+    free(seen);
+    free(shadows);
+}
+
+/* ---- hills of our own ---- */
+
+static double hills_m(double latitude_deg, double longitude_deg)
+{
+    const double north = latitude_deg * 111000, east = longitude_deg * 77000;
+    return 500 + 170 * sin(north / 290 + sin(east / 900)) * cos(east / 410) +
+           120 * sin((north + east) / 830) + 60 * cos((north - 2 * east) / 350);
+}
+
+static double tiny_hills_m(void *ctx, const struct tiny_place *place)
+{
+    (void)ctx;
+    return hills_m(place->latitude_deg, place->longitude_deg);
+}
+
+static void fill_with_hills(GDALDatasetH d, struct real_place antenna)
+{
+    double forward[6];
+    GDALGetGeoTransform(d, forward);
+    float *row_m = malloc((size_t)width_of(d) * sizeof *row_m);
+    assert_non_null(row_m);
+    for (int row = 0; row < height_of(d); row++) {
+        const double north_m = forward[3] - (row + 0.5) * post_m;
+        for (int column = 0; column < width_of(d); column++) {
+            const double east_m = forward[0] + (column + 0.5) * post_m;
+            const struct real_place p = real_geodesic(
+                antenna, atan2(east_m, north_m) * 180 / acos(-1.0), hypot(east_m, north_m));
+            row_m[column] = (float)hills_m(p.latitude, p.longitude);
+        }
+        assert_int_equal(GDALRasterIO(GDALGetRasterBand(d, 1), GF_Write, 0, row, width_of(d), 1,
+                                      row_m, width_of(d), 1, GDT_Float32, 0, 0),
+                         CE_None);
+    }
+    free(row_m);
+}
+
+/* Cells of 40 m over posts 76 m apart miss crests of the mountains that the viewshed's own 20 m
+ * find. With parallel lines the widest two have an overlap of 0.80 and 0.88 over the hills, and of
+ * 0.75 and 0.84 over the mountains. */
+static const struct {
+    double range_m, height_m, side_m, least_of_hills, least_of_mountains;
+} views[] = {
+    {10000, 2000, 2560, 0.95, 0.95},  {15000, 2500, 5120, 0.95, 0.95},
+    {20000, 3000, 5120, 0.95, 0.95},  {30000, 4000, 5120, 0.95, 0.95},
+    {60000, 7000, 5120, 0.95, 0.95},  {20000, 3000, 10240, 0.95, 0.90},
+    {12000, 2500, 10240, 0.95, 0.87},
+};
+
+TEST(shadows_of_hills_fall_where_gdal_has_them)
+{
+    struct world *w = calloc(1, sizeof *w);
+    assert_non_null(w);
+    const struct real_place centre = {46, 11};
+    struct tiny_spec spec = tiny_spec_at(46 - 0.24, 11);
+    spec.shift0 = 11;
+    spec.rows = 60;
+    spec.columns = 12;
+    spec.elevation_m = tiny_hills_m;
+    struct tiny_image image;
+    assert_int_equal(tiny_image_build(&image, &spec), 0);
+    w->image = image.bytes;
+    w->size = image.size;
+    open_world(w);
+    GDALAllRegister();
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        const struct patch p = {centre, views[i].range_m, views[i].height_m, views[i].side_m};
+        const struct real_place antenna = real_geodesic(centre, 180, p.range_m);
+        GDALDatasetH terrain = make_raster(&p, antenna);
+        fill_with_hills(terrain, antenna);
+        judge(w, &p, terrain, views[i].least_of_hills);
+        GDALClose(terrain);
+    }
+    close_world(w);
+}
+
+/* ---- real mountains ---- */
+
+/* The Alps behind Nice, made into an image by the builder. False where the data are not here. */
+static bool open_mountains(struct world *w, char *terrain_path, size_t size)
+{
+    char path[1024], image_path[1100];
+    if (!support_data_path("srtm_hgt/N43E007.hgt.zip", path, sizeof path)) {
+        return false;
+    }
+    snprintf(terrain_path, size, "/vsizip/%s/N43E007.hgt", path);
+    snprintf(image_path, sizeof image_path, "%s/tmp/shadows.lmdb", support_build_dir());
+    assert_int_equal(support_run("mkdir -p %s/tmp && %s/bin/landmass-db build --title shadows "
+                                 "--classes host-sim/gallery/terrain.classes --terrain %s "
+                                 "--land-class land --water-class sea --out %s",
+                                 support_build_dir(), support_build_dir(), path, image_path),
+                     0);
+    FILE *f = fopen(image_path, "rb");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    w->size = (size_t)ftell(f);
+    rewind(f);
+    w->image = malloc(w->size);
+    assert_non_null(w->image);
+    assert_int_equal(fread(w->image, 1, w->size, f), w->size);
+    fclose(f);
+    return true;
+}
+
+static void fill_from(GDALDatasetH d, const char *path)
+{
+    GDALDatasetH from = GDALOpen(path, GA_ReadOnly);
+    assert_non_null(from);
+    assert_int_equal(GDALReprojectImage(from, NULL, d, NULL, GRA_Bilinear, 0, 0, NULL, NULL, NULL),
+                     CE_None);
+    GDALClose(from);
+}
+
+TEST(shadows_of_real_mountains_fall_where_gdal_has_them)
+{
+    char path[1200];
+    struct world *w = calloc(1, sizeof *w);
+    assert_non_null(w);
+    if (!open_mountains(w, path, sizeof path)) {
+        free(w);
+        skip();
+    }
+    open_world(w);
+    GDALAllRegister();
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        const struct real_place centre = {43.93, 7.3};
+        const struct patch p = {centre, views[i].range_m, views[i].height_m + 1500,
+                                views[i].side_m};
+        GDALDatasetH terrain = make_raster(&p, real_geodesic(centre, 180, p.range_m));
+        fill_from(terrain, path);
+        judge(w, &p, terrain, views[i].least_of_mountains);
+        GDALClose(terrain);
+    }
+    close_world(w);
+}
