@@ -30,7 +30,9 @@ enum { TEN_MILLIONTHS = 10000000 };
  *
  * Weather is sent by whoever runs the exercise, on identifiers that the specification leaves to the
  * user (1800..1899), once a second: three sets missed are stale, and after 10 s a storm that stands
- * still is a wrong picture.
+ * still is a wrong picture. The wind over the sea comes from there too, or else from the aircraft's
+ * own (334), of which the specification does not say whether it is the direction from or to: from,
+ * as meteorologists say it.
  *
  * The specification gives longitudes of waypoint, INS and auxiliary the type SHORT; that is a
  * misprint for the SHORT2 of the latitudes. */
@@ -74,6 +76,9 @@ static const struct lm_bus_row canas17_rows[] = {
     ROW("jammer longitude",                     1805, JAMMER_LONGITUDE, 0, PLACE,     -180,   180, 1000000, 3000, 10000),
     ROW("jammer to noise ratio",                1806, JAMMER_RATIO,     0, TYPE(FLOAT), -20,    80, 1000000, 3000, 10000),
     ROW("weather clear",                        1807, WEATHER_CLEAR,    0, TYPE(UCHAR),   0,   255, 1000000, 3000, 10000),
+    ROW("sea state",                            1808, SEA_STATE,        0, TYPE(UCHAR),   0,     8, 1000000, 3000, 10000),
+    ROW("sea wind direction",                   1809, WIND_DIRECTION,   0, TYPE(FLOAT), -180,   360, 1000000, 3000, 10000),
+    ROW("wind direction",                        334, WIND_DIRECTION,   1, ANALOGUE,    -180,   360, 1000000, 3000, 10000),
 };
 
 /* What XCSoar's driver takes, and what is made for it therefore sends: byte 1 says nothing, each

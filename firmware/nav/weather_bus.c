@@ -29,16 +29,28 @@ enum age { GOOD, STALE, DEAD };
 
 /* A time up to the stale age ahead of the clock counts as now. Further ahead, the clock was set
  * back. */
-static enum age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
+static enum age age_by(uint32_t stale_us, uint32_t dead_us, uint64_t time_us, uint64_t now_us)
 {
     if (time_us > now_us) {
-        return time_us - now_us > w->stale_us ? DEAD : GOOD;
+        return time_us - now_us > stale_us ? DEAD : GOOD;
     }
     const uint64_t age_us = now_us - time_us;
-    return age_us > w->dead_us ? DEAD : age_us > w->stale_us ? STALE : GOOD;
+    return age_us > dead_us ? DEAD : age_us > stale_us ? STALE : GOOD;
 }
 
-/* Bit n of a mask is slot n. */
+static enum age age_of(const struct lm_weather_bus *w, uint64_t time_us, uint64_t now_us)
+{
+    return age_by(w->stale_us, w->dead_us, time_us, now_us);
+}
+
+static enum age age_of_sea(const struct lm_weather_sea *s, uint64_t now_us)
+{
+    return s->is_there ? age_by(s->stale_us, s->dead_us, s->time_us, now_us) : DEAD;
+}
+
+enum { ALL = (1 << LM_WEATHER_SLOTS) - 1 };
+
+/* Bit n of a mask is slot n. All bits are the sea as well. */
 static void clear(struct lm_weather_bus *w, uint32_t mask)
 {
     for (uint32_t n = 0; n < LM_WEATHER_SLOTS; n++) {
@@ -46,6 +58,9 @@ static void clear(struct lm_weather_bus *w, uint32_t mask)
             w->slot[n].is_there = false;
             w->slot[n].set.parts = 0;
         }
+    }
+    if (mask == ALL) {
+        w->state.is_there = w->wind.is_there = false;
     }
 }
 
@@ -111,6 +126,36 @@ static void add_part(struct lm_weather_bus *w, struct lm_weather_slot *s,
     }
 }
 
+/* Take a value of the sea. While one is good, only its own sender and better ones are heard. */
+static void take_sea(struct lm_weather_bus *w, struct lm_weather_sea *s,
+                     const struct lm_bus_event *event)
+{
+    const bool is_good = age_of_sea(s, event->time_us) == GOOD;
+    if (is_good && event->priority > s->priority) {
+        return;
+    }
+    if (is_good && event->priority == s->priority && event->node != s->node) {
+        w->count.rivals++;
+        return;
+    }
+    *s = (struct lm_weather_sea){.is_there = true,
+                                 .node = event->node,
+                                 .priority = event->priority,
+                                 .value = event->value,
+                                 .time_us = event->time_us,
+                                 .stale_us = (uint32_t)lm_us_of_ms(event->stale_ms),
+                                 .dead_us = (uint32_t)lm_us_of_ms(event->dead_ms)};
+}
+
+static void take_sea_state(struct lm_weather_bus *w, const struct lm_bus_event *event)
+{
+    if (event->value < 0 || event->value > LM_SEA_STATE_MAX) {
+        w->count.refused++;
+        return;
+    }
+    take_sea(w, &w->state, event);
+}
+
 void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *event)
 {
     struct part part;
@@ -119,6 +164,14 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
     }
     if (event->field == LM_BUS_WEATHER_CLEAR) {
         clear(w, (uint32_t)event->value);
+        return;
+    }
+    if (event->field == LM_BUS_SEA_STATE) {
+        take_sea_state(w, event);
+        return;
+    }
+    if (event->field == LM_BUS_WIND_DIRECTION) {
+        take_sea(w, &w->wind, event);
         return;
     }
     if (!part_of((enum lm_bus_field)event->field, &part)) {
@@ -139,9 +192,26 @@ void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *ev
     add_part(w, s, event, &part);
 }
 
+/* Add the sea as far as nothing is commanded. Returns true if what was added is stale. */
+static bool add_sea(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e)
+{
+    const enum age state_age = age_of_sea(&w->state, now_us),
+                   wind_age = age_of_sea(&w->wind, now_us);
+    const bool is_state_used = state_age != DEAD && !e->is_sea_commanded;
+    const bool is_wind_used = wind_age != DEAD && !e->has_wind;
+    w->state.is_there = state_age != DEAD;
+    w->wind.is_there = wind_age != DEAD;
+    e->sea_state = is_state_used ? (uint8_t)w->state.value : e->sea_state;
+    if (is_wind_used) {
+        e->has_wind = true;
+        e->wind_from = (fx_bam_t)w->wind.value;
+    }
+    return (is_state_used && state_age == STALE) || (is_wind_used && wind_age == STALE);
+}
+
 bool lm_weather_bus_at(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e)
 {
-    bool is_any_stale = false;
+    bool is_any_stale = add_sea(w, now_us, e);
     for (uint32_t n = 0; n < LM_WEATHER_SLOTS; n++) {
         struct lm_weather_slot *s = &w->slot[n];
         const enum age age = s->is_there ? age_of(w, s->time_us, now_us) : DEAD;

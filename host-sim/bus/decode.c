@@ -105,7 +105,7 @@ static void print_event(FILE *out, const struct lm_bus_profile *profile,
     const double counts = ldexp(s->multiplier, s->frac_bits) / s->divisor;
     fprintf(out, " = %s %.*f %s", lm_bus_fields[row->field].name, counts > 1000 ? 7 : 3,
             e->value / counts, s->bus_unit);
-    if (row->field >= LM_BUS_NAV_FIELDS && row->field != LM_BUS_WEATHER_CLEAR) {
+    if (row->field >= LM_BUS_NAV_FIELDS && row->field < LM_BUS_WEATHER_CLEAR) {
         fprintf(out, " (number %u, set %u)", e->service, e->code);
     }
     if (e->channel != 0) {

@@ -351,7 +351,7 @@ static int check_packed(const struct reader *r, struct item *item)
 {
     struct lm_bus_packing *p = &item->row.packing;
     const bool is_float = p->type == LM_BUS_FLOAT;
-    if (item->row.field >= LM_BUS_NAV_FIELDS) {
+    if (item->row.field >= LM_BUS_NAV_FIELDS && item->row.field < LM_BUS_SEA_STATE) {
         return wrong(r, "weather needs framing canaerospace",
                      "comes in sets, which only message and service codes tell apart",
                      lm_bus_fields[item->row.field].name);

@@ -303,6 +303,7 @@ static bool parse_environment(char **words, int count, struct lm_environment *e)
         return false;
     }
     e->sea_state = (uint8_t)state;
+    e->is_sea_commanded = true;
     e->has_wind = count == 4;
     if (e->has_wind && !number(words[3], -180, 360, &wind_deg)) {
         return false;

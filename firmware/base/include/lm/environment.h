@@ -35,11 +35,12 @@ struct lm_jammer {
 struct lm_environment {
     struct lm_rain rain[LM_RAINS_MAX];
     struct lm_jammer jammer[LM_JAMMERS_MAX];
-    uint8_t rain_count;   /* entries of `rain` in use, 0..LM_RAINS_MAX */
-    uint8_t jammer_count; /* entries of `jammer` in use, 0..LM_JAMMERS_MAX */
-    uint8_t sea_state;    /* 0..LM_SEA_STATE_MAX: what it does is in lm/class_gain.h, lm/sea.h */
-    bool has_wind;        /* false: the sea looks alike from all sides */
-    fx_bam_t wind_from;   /* direction that the wind over the sea blows from, from north */
+    uint8_t rain_count;    /* entries of `rain` in use, 0..LM_RAINS_MAX */
+    uint8_t jammer_count;  /* entries of `jammer` in use, 0..LM_JAMMERS_MAX */
+    uint8_t sea_state;     /* 0..LM_SEA_STATE_MAX: what it does is in lm/class_gain.h, lm/sea.h */
+    bool is_sea_commanded; /* true: the sea state of the bus does not count */
+    bool has_wind;         /* false: the sea looks alike from all sides */
+    fx_bam_t wind_from;    /* direction that the wind over the sea blows from, from north */
 };
 
 /* Check an environment that comes from outside. The stages that use one do not check again.

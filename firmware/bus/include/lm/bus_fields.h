@@ -41,6 +41,8 @@ enum lm_bus_field {
     LM_BUS_JAMMER_LONGITUDE,
     LM_BUS_JAMMER_RATIO,  /* jammer to noise, on the antenna's axis at ten nautical miles */
     LM_BUS_WEATHER_CLEAR, /* removes weather: bits 0..3 circles of rain, bits 4..7 jammers */
+    LM_BUS_SEA_STATE,
+    LM_BUS_WIND_DIRECTION, /* that the wind blows from */
     LM_BUS_FIELDS
 };
 
@@ -54,6 +56,7 @@ enum lm_bus_unit {
     LM_BUS_MM_H,         /* millimetres an hour */
     LM_BUS_DB_Q8,        /* dB * 256 */
     LM_BUS_BITS,         /* a set of bits */
+    LM_BUS_STATE,        /* a number of a scale: sea state */
     LM_BUS_UNITS
 };
 

@@ -1,6 +1,6 @@
-/* Bus weather: rain and jammers received over the bus (docs/bus.md, "Weather"). A circle of rain is
- * a set of four values, a jammer a set of three. Each value comes in its own frame, and only a
- * complete set takes effect. */
+/* Bus weather: rain, jammers and the sea received over the bus (docs/bus.md, "Weather"). A circle
+ * of rain is a set of four values, a jammer a set of three. Each value comes in its own frame, and
+ * only a complete set takes effect. Sea state and wind are values by themselves. */
 #ifndef LM_WEATHER_BUS_H
 #define LM_WEATHER_BUS_H
 
@@ -33,14 +33,24 @@ struct lm_weather_slot {
     } is;
 };
 
+/* Sea state, or direction of the wind over it. */
+struct lm_weather_sea {
+    bool is_there;
+    uint8_t node, priority; /* of the sender */
+    int32_t value;          /* in the unit of the field */
+    uint64_t time_us;
+    uint32_t stale_us, dead_us;
+};
+
 /* State; the caller owns it. It starts as zeros. Counters only ever grow. */
 struct lm_weather_bus {
     struct lm_weather_slot slot[LM_WEATHER_SLOTS];
+    struct lm_weather_sea state, wind;
     uint32_t stale_us, dead_us; /* ages of the event taken last: lm/bus_event.h */
     struct {
         uint32_t sets;    /* sets that took effect */
         uint32_t torn;    /* sets left incomplete when frames of the next came */
-        uint32_t refused; /* complete sets out of range, which a user's own table allows */
+        uint32_t refused; /* sets and states out of range, which a user's own table allows */
         uint32_t numbers; /* frames with a circle's or jammer's number that does not exist */
         uint32_t rivals;  /* frames of a second node while the first one is received */
     } count;
@@ -50,6 +60,7 @@ struct lm_weather_bus {
 void lm_weather_bus_take(struct lm_weather_bus *w, const struct lm_bus_event *event);
 
 /* Append the weather in force at `now_us` to *e, as far as there is room, and discard what is dead.
+ * A sea state of *e that is commanded, and a wind that it has, stay.
  * Returns true if any of it is stale, by the ages of lm/nav.h. Cost: 100 instructions. */
 bool lm_weather_bus_at(struct lm_weather_bus *w, uint64_t now_us, struct lm_environment *e);
 

@@ -325,3 +325,108 @@ TEST(what_is_there_already_stands_before_the_buss)
     assert_int_equal(e.rain[3].centre.latitude, hs_bam(46));
     assert_int_equal(e.sea_state, 5);
 }
+
+/* ---- the sea ---- */
+
+static void hear_state(struct ear *ear, uint8_t node, uint8_t state, uint64_t time_us)
+{
+    struct lm_can_frame f = bus_frame(1808, LM_CANAS_UCHAR, 0, (uint32_t)state << 24, time_us);
+    f.length = 5;
+    f.data[0] = node;
+    hear_frame(ear, &f);
+}
+
+TEST(the_sea_state_and_the_wind_come_by_themselves)
+{
+    struct ear ear;
+    open_ear(&ear);
+    look(&ear, 0);
+    assert_int_equal(ear.e.sea_state, 0);
+    assert_false(ear.e.has_wind);
+    hear_state(&ear, 20, 6, S);
+    look(&ear, S);
+    assert_int_equal(ear.e.sea_state, 6);
+    assert_false(ear.e.has_wind);
+    hear(&ear, (struct from){20, 0, 0, S}, 1809, 270);
+    look(&ear, S);
+    assert_true(ear.e.has_wind);
+    assert_int_equal(ear.e.wind_from, hs_bam(270));
+    hear(&ear, (struct from){20, 0, 0, S}, 1809, -45);
+    look(&ear, S);
+    assert_int_equal(ear.e.wind_from, hs_bam(315));
+    hear_state(&ear, 20, 9, S); /* out of the row's range */
+    look(&ear, S);
+    assert_int_equal(ear.e.sea_state, 6);
+    hear_clear(&ear, 0x7f, S);
+    look(&ear, S);
+    assert_int_equal(ear.e.sea_state, 6);
+    hear_clear(&ear, 0xff, S);
+    look(&ear, S);
+    assert_int_equal(ear.e.sea_state, 0);
+    assert_false(ear.e.has_wind);
+}
+
+TEST(the_aircrafts_own_wind_counts_where_nobody_tells_that_of_the_sea)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear(&ear, (struct from){2, 0, 0, S}, 334, 90);
+    look(&ear, S);
+    assert_int_equal(ear.e.wind_from, hs_bam(90));
+    hear(&ear, (struct from){20, 0, 0, S}, 1809, 180);
+    hear(&ear, (struct from){2, 0, 1, 2 * S}, 334, 95);
+    look(&ear, 2 * S);
+    assert_int_equal(ear.e.wind_from, hs_bam(180));
+    assert_int_equal(ear.weather.count.rivals, 0);
+    hear(&ear, (struct from){21, 0, 0, 2 * S}, 1809, 10);
+    assert_int_equal(ear.weather.count.rivals, 1);
+    hear(&ear, (struct from){2, 0, 2, 4 * S + 1}, 334, 100); /* the exercise's is stale */
+    look(&ear, 4 * S + 1);
+    assert_int_equal(ear.e.wind_from, hs_bam(100));
+}
+
+TEST(a_sea_that_is_not_told_anew_is_flagged_after_3_s_and_gone_after_10)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear_state(&ear, 20, 5, S);
+    look(&ear, 4 * S);
+    assert_false(ear.is_stale);
+    look(&ear, 4 * S + 1);
+    assert_int_equal(ear.e.sea_state, 5);
+    assert_true(ear.is_stale);
+    look(&ear, 11 * S + 1);
+    assert_int_equal(ear.e.sea_state, 0);
+    assert_false(ear.is_stale);
+}
+
+TEST(a_commanded_sea_stands_before_the_buss)
+{
+    struct ear ear;
+    open_ear(&ear);
+    hear_state(&ear, 20, 5, 0);
+    hear(&ear, (struct from){20, 0, 0, 0}, 1809, 180);
+    struct lm_environment e = {.sea_state = 2, .is_sea_commanded = true};
+    lm_weather_bus_at(&ear.weather, 0, &e);
+    assert_int_equal(e.sea_state, 2);
+    assert_int_equal(e.wind_from, hs_bam(180)); /* the command has none */
+    e = (struct lm_environment){
+        .sea_state = 2, .is_sea_commanded = true, .has_wind = true, .wind_from = 7};
+    assert_false(lm_weather_bus_at(&ear.weather, 9 * S, &e)); /* stale, and not used */
+    assert_int_equal(e.wind_from, 7);
+}
+
+TEST(a_state_that_a_wider_table_believes_is_refused)
+{
+    struct lm_weather_bus w = {0};
+    const int32_t bad[] = {-1, 9, INT32_MAX, INT32_MIN};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const struct lm_bus_event event = {
+            .field = LM_BUS_SEA_STATE, .value = bad[i], .stale_ms = 1000, .dead_ms = 1000};
+        struct lm_environment e = {.sea_state = 3};
+        lm_weather_bus_take(&w, &event);
+        lm_weather_bus_at(&w, 0, &e);
+        assert_int_equal(e.sea_state, 3);
+    }
+    assert_int_equal(w.count.refused, 4);
+}

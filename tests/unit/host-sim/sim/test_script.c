@@ -229,6 +229,7 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     assert_int_equal(e.rain_count, 1);
     assert_int_equal(e.jammer_count, 0);
     assert_int_equal(e.sea_state, LM_SEA_STATE_OF_IMAGE);
+    assert_false(e.is_sea_commanded);
     assert_int_equal(e.rain[0].centre.latitude, hs_bam(45));
     assert_int_equal(e.rain[0].centre.longitude, hs_bam(-90));
     assert_int_equal(e.rain[0].radius_m, 10000);
@@ -244,6 +245,7 @@ TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
     assert_int_equal(e.rain[1].radius_m, 100);
     e = at(&s, 4).environment;
     assert_int_equal(e.sea_state, 6);
+    assert_true(e.is_sea_commanded);
     assert_int_equal(e.rain_count, 2);
     e = at(&s, 5).environment;
     assert_int_equal(e.rain_count + e.jammer_count, 0);
