@@ -52,11 +52,11 @@ static int rule_class(const struct build_context *b, const struct terrain_posts 
     return b->rule.land;
 }
 
-static uint16_t encode(const struct build_context *b, int class_number, double gamma_db,
-                       double height_m)
+static uint16_t encode(struct build_context *b, int class_number, double gamma_db, double height_m)
 {
     const uint8_t kind = b->classes.entry[class_number].kind;
     const bool stands = kind == LM_KIND_STRUCTURE || kind == LM_KIND_TREES;
+    b->counts.heights_cut += stands && height_m * 10.0 > BUILD_HEIGHT_MAX_DM;
     const uint8_t height = stands ? image_height_code(b->classes.height_dm, height_m * 10.0) : 0;
     return image_cell(image_gamma_code(gamma_db), (uint8_t)class_number, height);
 }
@@ -82,7 +82,7 @@ static double assigned_gamma_db(const struct build_context *b, int class_number,
                                   (double)f->latitude_step * IMAGE_METRES_PER_BAM / parts);
 }
 
-static uint16_t encode_sample(const struct build_context *b, const struct resample_sample *s,
+static uint16_t encode_sample(struct build_context *b, const struct resample_sample *s,
                               const struct image_frame *f, int r, int c)
 {
     const int k = s->class_number;
@@ -110,7 +110,7 @@ static void face(const struct build_context *b, const struct image_frame *f, uin
 }
 
 /* Cells of the finest level that the class raster gives. Returns how many samples it had, or -1. */
-static int cover_cells(const struct build_context *b, const struct image_frame *f, uint16_t *cells)
+static int cover_cells(struct build_context *b, const struct image_frame *f, uint16_t *cells)
 {
     const size_t side = (size_t)(CELLS * b->parts);
     struct resample_sample *samples = malloc(side * side * sizeof *samples);
@@ -183,16 +183,21 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
     }
 }
 
-/* The posts that the tile below gives to its quarter of this one: every second one. */
-static void take_posts(struct build_tile *t, const struct build_tile *child, int quarter)
+void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *below, int quarter)
 {
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {
-            t->posts.q6[row + r][column + c] = child->posts.q6[2 * r][2 * c];
-            t->posts.has[row + r][column + c] = child->posts.has[2 * r][2 * c];
+            posts->q6[row + r][column + c] = below->q6[2 * r][2 * c];
+            posts->has[row + r][column + c] = below->has[2 * r][2 * c];
         }
     }
+}
+
+/* The share of structures in the tile below, for its quarter of this one. */
+static void take_built(struct build_tile *t, const struct build_tile *child, int quarter)
+{
+    const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
     for (int i = 0; i < HALF * HALF; i++) {
         const int r = i / HALF, c = i % HALF;
         t->built[row + r][column + c] =
@@ -300,7 +305,8 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
     }
     for (int i = 0; i < 4; i++) {
         if (children[i]) {
-            take_posts(t, children[i], i);
+            build_take_posts(&t->posts, &children[i]->posts, i);
+            take_built(t, children[i], i);
         }
     }
     identify(&t->record, level, f);

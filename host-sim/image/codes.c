@@ -1,9 +1,7 @@
 #include "image/codes.h"
 
 #include <math.h>
-
-const uint16_t image_heights_dm[16] = {0,   20,  30,  40,  50,  60,  80,  100,
-                                       120, 150, 180, 220, 270, 350, 500, 800};
+#include <stdio.h>
 
 uint8_t image_gamma_code(double gamma_db)
 {
@@ -25,6 +23,14 @@ uint8_t image_height_code(const uint16_t table_dm[16], double height_dm)
         }
     }
     return (uint8_t)best;
+}
+
+void image_heights_text(const uint16_t table_dm[16], char *text, size_t room)
+{
+    size_t used = 0;
+    for (int i = 0; i < 16 && used < room; i++) {
+        used += (size_t)snprintf(text + used, room - used, " %g", table_dm[i] / 10.0);
+    }
 }
 
 /* Sums over the cells that become one. */

@@ -54,6 +54,13 @@ void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
 {
     const int row0 = quarter / 2 * HALF, column0 = quarter % 2 * HALF;
     image_reduce(&below->cells[0][0], CELLS, 2, &g->cells[row0][column0], CELLS, HALF, heights_dm);
+    image_ground_take_tops(g, tile, below, quarter);
+}
+
+void image_ground_take_tops(struct image_ground *g, const struct lm_tile *tile,
+                            const struct image_ground *below, int quarter)
+{
+    const int row0 = quarter / 2 * HALF, column0 = quarter % 2 * HALF;
     for (int r = 0; r < HALF; r++) {
         for (int c = 0; c < HALF; c++) {
             const int row = row0 + r, column = column0 + c;

@@ -29,7 +29,7 @@ static const struct number_key number_keys[DB_KEY_COUNT] = {
     [DB_KEY_GAMMA] = {offsetof(struct db_class, gamma_db), -80, 40, "a number of dB, -80..40"},
     [DB_KEY_SPREAD] = {offsetof(struct db_class, spread_db), 0, 20, "a number of dB, 0..20"},
     [DB_KEY_SHAPE] = {offsetof(struct db_class, texture_shape), 0.1, 1000, "a number 0.1..1000"},
-    [DB_KEY_HEIGHT] = {offsetof(struct db_class, height_m), 0, 500, "a number of metres, 0..500"},
+    [DB_KEY_HEIGHT] = {offsetof(struct db_class, height_m), 0, 1000, "a number of metres, 0..1000"},
     [DB_KEY_LOOKS] = {offsetof(struct db_class, looks), 1, 64, "a number 1..64"},
 };
 

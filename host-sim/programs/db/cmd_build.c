@@ -1,5 +1,6 @@
 #include "commands.h"
 
+#include "build/heights.h"
 #include "build/manifest.h"
 #include "build/pyramid.h"
 #include "build/targets.h"
@@ -24,7 +25,7 @@ struct settings {
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
-    bool voids_are_sea;
+    bool voids_are_sea, may_cut_heights;
 };
 
 static const struct db_usage usage = {
@@ -64,6 +65,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION(
             "heights", DB_TEXT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
+        OPTION("cut-heights", DB_FLAG, may_cut_heights, 0, 0, NULL,
+               "cut structures and trees above 1,000 m to that; otherwise they are an error"),
         OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
                "specific targets and their signatures (docs/targets.md); left out: none"),
         OPTION("detail", DB_TEXT, detail, 0, 0, "FILE",
@@ -179,7 +182,6 @@ static void fill_classes(struct lm_classes *to, const struct db_class_table *tab
         e->looks = (uint16_t)fmax(1.0, round(c->looks));
         e->flags = c->is_natural ? LM_CLASS_NATURAL : 0;
     }
-    memcpy(to->height_dm, image_heights_dm, sizeof to->height_dm);
 }
 
 static int read_table(struct build_context *b, const struct settings *s)
@@ -300,6 +302,20 @@ static int check_overlap(const struct build_context *b, const struct settings *s
                     image_longitude_degrees(a->west + (uint32_t)a->width));
 }
 
+static int choose_heights(struct build_context *b)
+{
+    struct build_heights *h = malloc(sizeof *h);
+    if (!h) {
+        return hs_error("--heights", NULL, "out of memory");
+    }
+    const int result = build_heights_survey(h, b);
+    if (result == 0) {
+        build_heights_choose(h, b->classes.height_dm);
+    }
+    free(h);
+    return result;
+}
+
 static int open_inputs(struct build_context *b, const struct settings *s)
 {
     if (read_table(b, s) != 0 ||
@@ -316,7 +332,10 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
         return -1;
     }
-    return build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan);
+    if (build_facing_survey(&b->facing, &b->classes, &b->cover, &b->plan) != 0) {
+        return -1;
+    }
+    return choose_heights(b);
 }
 
 static void close_inputs(struct build_context *b)
@@ -398,7 +417,8 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
 static char *make_manifest(const struct build_context *b, const struct settings *s,
                            const struct build_signatures *signatures)
 {
-    char *text = NULL, options[512];
+    char *text = NULL, options[640], heights[160];
+    image_heights_text(b->classes.height_dm, heights, sizeof heights);
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
     if (!out) {
@@ -409,9 +429,9 @@ static char *make_manifest(const struct build_context *b, const struct settings 
         options, sizeof options,
         "shift0: %d\nfacings: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
         "%d\nsteep-class: %s\n"
-        "steep-degrees: %g\n",
+        "steep-degrees: %g\nheights:%s\n",
         b->plan.shift0, b->facing.facings, s->land_class, s->water_class, s->sea_level_m,
-        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees);
+        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees, heights);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
     const int result = write_inputs(out, b, s, signatures);
@@ -469,6 +489,17 @@ struct report {
     int32_t mean_elevation_q6;
 };
 
+static int check_heights(const struct build_context *b, const struct settings *s)
+{
+    if (b->counts.heights_cut == 0 || s->may_cut_heights) {
+        return 0;
+    }
+    return hs_error(s->heights ? s->heights : s->classes,
+                    "correct them, or give --cut-heights to cut them to 1,000 m",
+                    "%" PRIu64 " samples of structures or trees are higher than 1,000 m",
+                    b->counts.heights_cut);
+}
+
 static int write_image(struct build_context *b, const struct settings *s, const char *manifest,
                        const struct extras *extras, struct report *report)
 {
@@ -482,7 +513,7 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     if (image_writer_begin(&w, s->out, &header, &b->classes, b->plan.bands) != 0) {
         return -1;
     }
-    if (build_pyramid(b, &w, &report->levels) != 0) {
+    if (build_pyramid(b, &w, &report->levels) != 0 || check_heights(b, s) != 0) {
         image_writer_abort(&w);
         return -1;
     }
@@ -498,7 +529,14 @@ static int write_image(struct build_context *b, const struct settings *s, const 
     w.signatures = (struct image_bytes){extras->signatures_bytes, extras->signatures_size};
     w.detail = (struct image_bytes){b->detail.section_bytes ? b->detail.section : NULL,
                                     b->detail.section_bytes};
-    if (image_writer_end(&w, manifest) != 0) {
+    char *whole = NULL;
+    if (asprintf(&whole, "%sheights-cut: %" PRIu64 "\n", manifest, b->counts.heights_cut) < 0) {
+        image_writer_abort(&w);
+        return hs_error(s->out, NULL, "out of memory");
+    }
+    const int status = image_writer_end(&w, whole);
+    free(whole);
+    if (status != 0) {
         return -1;
     }
     report->image_bytes = w.header.image_bytes;
@@ -566,9 +604,12 @@ static void print_voids(const struct terrain *t)
 
 static void print_report(const struct build_context *b, const struct report *r, double seconds)
 {
+    char heights[160];
     print_levels(b, r);
     print_classes(b);
     print_voids(&b->terrain);
+    image_heights_text(b->classes.height_dm, heights, sizeof heights);
+    printf("heights m%s; %" PRIu64 " samples cut to 1,000 m\n", heights, b->counts.heights_cut);
     printf("mean elevation of land %.1f m\n", r->mean_elevation_q6 / 64.0);
     printf("done in %.1f s\n", seconds);
 }

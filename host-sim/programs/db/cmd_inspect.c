@@ -92,11 +92,9 @@ static void print_classes(const struct image *image)
                    c->colour[1], c->colour[2]);
         }
     }
-    printf("heights m      ");
-    for (int i = 0; i < 16; i++) {
-        printf(" %g", image->db.classes.height_dm[i] / 10.0);
-    }
-    putchar('\n');
+    char heights[160];
+    image_heights_text(image->db.classes.height_dm, heights, sizeof heights);
+    printf("heights m      %s\n", heights);
 }
 
 /* Control characters of a damaged or hostile file do not reach the terminal. */

@@ -2,6 +2,7 @@
 #include "image_command.h"
 
 #include "hs/error.h"
+#include "image/codes.h"
 #include "image/verify.h"
 
 #include <inttypes.h>
@@ -38,6 +39,11 @@ int db_cmd_verify(int argc, char **argv)
     printf("%s: %" PRIu64 " bytes, %" PRIu64 " entries, %" PRIu64 " tiles, %" PRIu64
            " shared edges, %" PRIu64 " tiles against the level above\n",
            path, image.size_bytes, n.entries, n.tiles, n.edges, n.children);
+    if (is_complete) {
+        char heights[160];
+        image_heights_text(image.db.classes.height_dm, heights, sizeof heights);
+        printf("heights of the codes, m:%s\n", heights);
+    }
     image_close(&image);
     if (findings.count > 0) {
         hs_error(path, "build it again", "%" PRIu64 " faults%s", findings.count,

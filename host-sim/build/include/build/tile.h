@@ -29,6 +29,7 @@ struct build_counts {
     uint64_t cells_beyond_terrain;       /* of these, on elevations of the terrain's edge */
     double land_area_m2, land_metres_m2; /* for the mean elevation */
     uint64_t detail_items;               /* of tiles that are in the image */
+    uint64_t heights_cut;                /* samples of structures and trees above 1,000 m */
 };
 
 struct build_context {
@@ -48,6 +49,8 @@ struct build_context {
     struct build_facing facing;
 };
 
+enum { BUILD_HEIGHT_MAX_DM = 10000 }; /* 1,000 m: higher things are cut to it, and counted */
+
 /* A tile, the ground from which coarser ones are made, and its elevations not yet cut to steps. */
 struct build_tile {
     struct lm_tile record;
@@ -55,6 +58,10 @@ struct build_tile {
     struct terrain_posts posts;
     float built[LM_TILE_CELLS][LM_TILE_CELLS]; /* share that is built-up */
 };
+
+/* The posts that the tile below gives to its quarter (2 * north + east) of a tile: every second
+ * one. */
+void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *below, int quarter);
 
 /* Make tile (level, row, column); children[2 * north + east] are the tiles below it or NULL.
  * Returns 0 and *out, which the caller frees, or NULL there when the tile holds no data; -1 with

@@ -22,8 +22,8 @@ double image_gamma_db(uint8_t code);
 /* The code whose height is nearest to `height_dm`, the lower one of two as near. */
 uint8_t image_height_code(const uint16_t table_dm[16], double height_dm);
 
-/* The builder's own height codes: 0, 2, 3, 4, 5, 6, 8, 10, 12, 15, 18, 22, 27, 35, 50, 80 m. */
-extern const uint16_t image_heights_dm[16];
+/* The heights of codes 0..15 as text, metres, each with a space before it. 160 bytes are enough. */
+void image_heights_text(const uint16_t table_dm[16], char *text, size_t room);
 
 static inline uint16_t image_cell(uint8_t gamma_code, uint8_t class_number, uint8_t height_code)
 {

@@ -32,6 +32,10 @@ void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
                        const struct image_ground *below, int quarter,
                        const uint16_t heights_dm[16]);
 
+/* The tops alone. */
+void image_ground_take_tops(struct image_ground *g, const struct lm_tile *tile,
+                            const struct image_ground *below, int quarter);
+
 /* Height in metres of a cell's crest above its tile's terrain, 0 or more. */
 double image_ground_crest_m(const struct image_ground *g, const struct lm_tile *tile, int row,
                             int column);

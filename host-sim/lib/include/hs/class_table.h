@@ -9,7 +9,7 @@
  *     limits_db      low high: no pixel of the class leaves them; those of two classes may overlap
  *     texture        gaussian | rayleigh | k: shape in dB (reflectivity/reflect.h)
  *     texture_shape  order of the k texture, 0.1..1000; 1 unless given
- *     height_m       height of structures and canopy where nothing better is known, 0..500 m
+ *     height_m       height of structures and canopy where nothing better is known, 0..1000 m
  *     looks          speckle looks, 1..64; 1 unless given
  *     borders        natural | straight: whether people made its borders; unless given, those of
  *                    structures are straight

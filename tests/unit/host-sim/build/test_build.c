@@ -169,10 +169,12 @@ static long compare_cover(const struct image *image)
             const long column = (long)floor(x), row = (long)floor(y);
             assert_int_equal(table_class(cell), class_of(column, row));
             assert_true(image_gamma_db(image_cell_gamma(cell)) == gamma_of(column, row));
-            /* Structures of 8 m have code 6, trees of 12 m code 8; water has none whatever the
-             * table says. */
+            /* Structures have 8 m, trees 12 m; water has none whatever the table says. */
             const int k_class = class_of(column, row);
-            assert_int_equal(image_cell_height(cell), k_class == 3 ? 6 : k_class == 4 ? 8 : 0);
+            assert_int_equal(image->db.classes.height_dm[image_cell_height(cell)], k_class == 3 ? 80
+                                                                                   : k_class == 4
+                                                                                       ? 120
+                                                                                       : 0);
             compared++;
         }
     }
@@ -503,10 +505,109 @@ TEST(heights_come_from_their_raster_and_else_from_the_class)
             const uint8_t k = image_cell_class(cell);
             const bool has_tower = x<8.045, is_plain = x> 8.055;
             if ((k == 3 || k == 4) && (has_tower || is_plain)) {
-                assert_int_equal(image_cell_height(cell), has_tower ? 13 : k == 3 ? 6 : 8);
+                assert_int_equal(image.db.classes.height_dm[image_cell_height(cell)],
+                                 has_tower ? 360
+                                 : k == 3  ? 80
+                                           : 120);
             }
         }
     }
+    image_close(&image);
+}
+
+static double far_away_m(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return 10;
+}
+
+/* Metres above the ground: a town of 3 to 25 m, and single towers of 30, 80 and 300 m in it. */
+static double skyline_m(double x, double y)
+{
+    static const double towers_m[] = {30, 80, 300};
+    const long column = (long)floor((x - 8) / 0.0005), row = (long)floor((y - 47) / 0.0005);
+    for (int i = 0; i < 3; i++) {
+        if (row == 100 && column == 40 + 20 * i) {
+            return towers_m[i];
+        }
+    }
+    return 3 + (double)((column * 7 + row * 13) % 221) / 10;
+}
+
+static double all_structure(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return 3;
+}
+
+static double too_high_m(double x, double y)
+{
+    return fabs(x - 8.05) < 0.001 && fabs(y - 47.05) < 0.001 ? 1200 : 8;
+}
+
+/* An image of nothing but structures, with these heights above a plain. */
+static int build_skyline(double (*height_m)(double x, double y), const char *more)
+{
+    struct scene_raster r = {.width = 200,
+                             .height = 200,
+                             .geotransform = {8, 0.0005, 0, 47.1, 0, -0.0005},
+                             .epsg = 4326,
+                             .type = GDT_Byte,
+                             .value = all_structure};
+    scene_write("classes.tif", &r);
+    r.type = GDT_Float32;
+    r.value = height_m;
+    scene_write("heights.tif", &r);
+    scene_classes();
+    write_terrain("terrain.tif", 7.9, 46.9, 0.4, 0.4, 0.002, far_away_m);
+    return scene_run(
+        "build --classes %s --class-raster %s --heights %s --terrain %s --land-class "
+        "soil --out %s %s",
+        scene_path(SCENE_CLASSES), scene_path("classes.tif"), scene_path("heights.tif"),
+        scene_path("terrain.tif"), scene_path("a.lmdb"), more);
+}
+
+TEST(the_heights_of_the_codes_are_those_that_occur)
+{
+    assert_int_equal(build_skyline(skyline_m, ""), 0);
+    struct image image;
+    open_sound_image(&image, "a.lmdb");
+    const uint16_t *table_dm = image.db.classes.height_dm;
+    static const double towers_m[] = {30, 80, 300};
+    double worst_m = 0;
+    for (int i = 0; i < 3; i++) {
+        const uint16_t dm = table_dm[image_height_code(table_dm, towers_m[i] * 10)];
+        print_message("# %.0f m is %.1f m\n", towers_m[i], dm / 10.0);
+        assert_true(fabs(dm / 10.0 - towers_m[i]) <= 0.02 * towers_m[i]);
+    }
+    for (double m = 3; m <= 25; m += 0.1) {
+        const double dm = table_dm[image_height_code(table_dm, m * 10)];
+        worst_m = fmax(worst_m, fabs(dm / 10 - m));
+    }
+    print_message("# a town of 3 to 25 m: %.2f m off at most\n", worst_m);
+    assert_true(worst_m < 1.5); /* 12 codes over 22 m, evenly, leave 0.9 m */
+    assert_true(support_run("%s/bin/landmass-db inspect %s | grep -q '^heights:.* 300'",
+                            support_build_dir(), scene_path("a.lmdb")) == 0);
+    image_close(&image);
+}
+
+TEST(heights_above_a_kilometre_are_refused_or_cut_and_counted)
+{
+    unlink(scene_path("a.lmdb"));
+    assert_int_equal(build_skyline(too_high_m, ""), 1);
+    assert_true(scene_log_holds("are higher than 1,000 m; correct them, or give --cut-heights"));
+    assert_int_equal(access(scene_path("a.lmdb"), F_OK), -1);
+    assert_int_equal(build_skyline(too_high_m, "--cut-heights"), 0);
+    struct image image;
+    open_sound_image(&image, "a.lmdb");
+    assert_int_equal(image.db.classes.height_dm[15], 10000);
+    assert_false(scene_log_holds("; 0 samples cut to 1,000 m"));
+    assert_true(scene_log_holds("samples cut to 1,000 m"));
+    assert_int_equal(support_run("%s/bin/landmass-db inspect %s | grep -q '^heights-cut: [1-9]'",
+                                 support_build_dir(), scene_path("a.lmdb")),
+                     0);
     image_close(&image);
 }
 
@@ -571,13 +672,6 @@ TEST(the_firmware_opens_the_image_and_accepts_every_tile)
         assert_int_equal(lm_tile_check(t, t->lod, t->row, t->column), LM_OK);
     }
     image_close(&image);
-}
-
-static double far_away_m(double x, double y)
-{
-    (void)x;
-    (void)y;
-    return 10;
 }
 
 static double class_nine(double x, double y)
