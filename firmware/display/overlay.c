@@ -1,6 +1,7 @@
 #include "lm/overlay.h"
 
 #include "fx/mem.h"
+#include "fx/sat.h"
 #include "lm/font.h"
 #include "overlay_internal.h"
 
@@ -130,8 +131,9 @@ void lm_overlay_labels(const struct lm_glass *g, const struct lm_page *page)
 
 /* ---- words ---- */
 
-static const char flag_words[LM_FLAGS][9] = {"NAV", "NAV FAIL", "DB FAIL", "TILE",   "BUS",
-                                             "FZ",  "OFF MAP",  "NO RAD",  "UNABLE", "WX"};
+static const char flag_words[LM_FLAGS][9] = {"NAV",    "NAV FAIL", "DB FAIL", "TILE",
+                                             "BUS",    "FZ",       "OFF MAP", "NO RAD",
+                                             "UNABLE", "WX",       "BLW TERR"};
 
 const char *lm_flag_word(uint32_t number)
 {
@@ -143,7 +145,8 @@ static void draw_warning(const struct lm_glass *g, int32_t row, const char *word
     const struct lm_pen pen = lm_pen_for(&g->surface, g->palette->warning);
     const int32_t dot = pen.dot_px, width = lm_text_width(&pen, words);
     const int32_t x = g->frame->left_px + (g->frame->width_px - width) / 2;
-    const int32_t y = g->frame->top_px + 3 * dot + row * (lm_row_px(&pen) + 4 * dot);
+    const int32_t first = fx_max_i32(g->frame->top_px, LM_BELOW_TOP_ROW_DOTS * dot) + 3 * dot;
+    const int32_t y = first + row * (lm_row_px(&pen) + 4 * dot);
     const int32_t left = x - 3 * dot, right = x + width + 2 * dot;
     const int32_t top = y - 3 * dot, bottom = y + (LM_FONT_HEIGHT + 2) * dot;
     struct lm_pen ground = pen;

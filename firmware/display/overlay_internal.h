@@ -5,6 +5,10 @@
 #include "lm/draw.h"
 #include "lm/overlay.h"
 
+/* Dots from the glass's top to the row of numbers below the upper labels, and to what is below that
+ * row. On some glasses the row reaches into the frame by a dot or two. */
+enum { LM_TOP_ROW_DOTS = 20, LM_BELOW_TOP_ROW_DOTS = LM_TOP_ROW_DOTS + 9 };
+
 /* The pen of symbols and text. */
 static inline struct lm_pen lm_symbol_pen(const struct lm_glass *g)
 {

@@ -186,12 +186,18 @@ static void draw_ownship(const struct lm_glass *g, const struct lm_symbols *s)
 
 /* ---- numbers ---- */
 
-/* Top of a row of numbers. Row 0 is between the upper labels and the frame; rows 1 and 2 are
- * between the frame and the lower labels. */
+/* Top of a row of numbers. Row 0 is between the upper labels, which may have two lines, and the
+ * frame; rows 1 and 2 are between the frame and the lower labels. */
 static int32_t row_y(const struct lm_glass *g, const struct lm_pen *pen, int32_t row)
 {
     const int32_t bottom = g->surface.height_px - (4 + 3 * 9) * pen->dot_px;
-    return row == 0 ? 3 * pen->dot_px + lm_row_px(pen) : bottom + (row - 1) * lm_row_px(pen);
+    return row == 0 ? LM_TOP_ROW_DOTS * pen->dot_px : bottom + (row - 1) * lm_row_px(pen);
+}
+
+/* Left edge of the first number of a row, and right edge of the last from the glass's own. */
+static int32_t margin_px(const struct lm_pen *pen)
+{
+    return 2 * lm_column_px(pen);
 }
 
 enum align { ALIGN_LEFT, ALIGN_MIDDLE, ALIGN_RIGHT };
@@ -199,7 +205,7 @@ enum align { ALIGN_LEFT, ALIGN_MIDDLE, ALIGN_RIGHT };
 static void write_row(const struct lm_glass *g, int32_t row, enum align align, const char *words)
 {
     const struct lm_pen pen = lm_symbol_pen(g);
-    const int32_t edge = 3 * lm_column_px(&pen), width = lm_text_width(&pen, words);
+    const int32_t edge = margin_px(&pen), width = lm_text_width(&pen, words);
     int32_t x = edge;
     if (align == ALIGN_MIDDLE) {
         x = (g->surface.width_px - width) / 2;
@@ -270,6 +276,21 @@ static void write_to_go(const struct lm_glass *g, uint32_t to_go_s)
     write_row(g, 1, ALIGN_MIDDLE, t.words);
 }
 
+/* Length of the map's cells. It stands between the longest elevation, which has twelve characters,
+ * and the longest longitude, which has ten. */
+static void write_map_cell(const struct lm_glass *g, uint32_t cell_mm)
+{
+    const struct lm_pen pen = lm_symbol_pen(g);
+    const int32_t column = lm_column_px(&pen), edge = margin_px(&pen);
+    const int32_t left = edge + 12 * column, right = g->surface.width_px - edge - 10 * column;
+    struct lm_text t = {0};
+    lm_text_add(&t, "MAP ");
+    lm_text_number(&t, fx_min_u32((cell_mm + 500) / 1000, 999), 1);
+    lm_text_add(&t, "M");
+    lm_write(&pen, (left + right - lm_text_width(&pen, t.words)) / 2, row_y(g, &pen, 2), t.words,
+             g->palette->ink);
+}
+
 static void write_patch(const struct lm_glass *g, const struct lm_symbols *s)
 {
     struct lm_text t = {0};
@@ -320,6 +341,9 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
         }
     }
     draw_gain(g, s->gain_db);
+    if (s->coarse_mm != 0) {
+        write_map_cell(g, s->coarse_mm);
+    }
     if (s->has_steerpoint) {
         write_to_go(g, s->to_go_s);
     }

@@ -267,6 +267,10 @@ static OUT_OF_LINE void read_substitute(const struct walk *w, struct lm_tile_cac
         quadratic_in_ancestor(&w->east.coordinate, middle, generations)};
     assign_tile(lm_tile_base_of(tiles->pool, tile), first, end, line);
     lm_tile_read(tiles->pool, &coords, first, end, line);
+    if (line->cell[middle] != LM_CELL_NONE && tile->lod > lod) {
+        line->coarsest_lod = tile->lod > line->coarsest_lod ? tile->lod : line->coarsest_lod;
+        line->coarse_cells = (uint16_t)(line->coarse_cells + end - first);
+    }
 }
 
 /* Read cells of a zone that have a tile assigned. Pass two. */
@@ -314,6 +318,8 @@ void lm_scan_line_run(struct lm_scan_line *line, struct lm_tile_cache *tiles, ui
 {
     struct walk w;
     struct lm_k_blend map;
+    line->coarsest_lod = lod;
+    line->coarse_cells = 0;
     start_walk(&w, tiles->db, lod, path, cells);
     if (blend && blend->is_on) {
         map = (struct lm_k_blend){.points = lm_tile_origin(tiles->pool),

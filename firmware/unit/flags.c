@@ -1,6 +1,14 @@
 #include "flags.h"
 
-enum { TILE_FAULT_SHOWN_US = 3000000 };
+#include "lm/units.h"
+#include "ownship.h"
+
+enum {
+    TILE_FAULT_SHOWN_US = 3000000,
+    /* An aircraft on the ground, or a height that is a little wrong, is not below the terrain.
+     * UNSOURCED. */
+    BELOW_M_Q10 = 10 << 10
+};
 
 static uint32_t map_flags(struct lm_unit *u, uint64_t now_us)
 {
@@ -28,9 +36,21 @@ static uint32_t nav_flags(const struct lm_unit *u)
     return is_good ? 0 : LM_FLAG_NAV_STALE;
 }
 
+/* LM_FLAG_BELOW, by the elevation read last. */
+static uint32_t terrain_flags(const struct lm_unit *u)
+{
+    const struct lm_ownship *own = &u->ownship;
+    if (!u->map.is_usable || u->ground_m_q10 == LM_NO_ELEVATION || !lm_ownship_is_known(own) ||
+        own->height_quality == LM_NAV_DEAD) {
+        return 0;
+    }
+    const int32_t height_m_q10 = lm_m_q10_of_m_q6(lm_antenna_height_m_q6(own, &u->map.db));
+    return height_m_q10 + BELOW_M_Q10 < u->ground_m_q10 ? LM_FLAG_BELOW : 0;
+}
+
 uint32_t lm_update_flags(struct lm_unit *u, uint64_t now_us)
 {
-    const uint32_t flags = map_flags(u, now_us) | nav_flags(u) |
+    const uint32_t flags = map_flags(u, now_us) | nav_flags(u) | terrain_flags(u) |
                            (u->page.is_frozen ? LM_FLAG_FROZEN : 0u) |
                            (u->page.is_override ? LM_FLAG_SILENT : 0u) |
                            (u->picture.coverage.is_off_map ? LM_FLAG_OFF_MAP : 0u) |

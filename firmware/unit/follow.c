@@ -5,7 +5,7 @@
 #include "ownship.h"
 
 enum {
-    ELEVATION_CELL_MM = 30000 /* cell size of the LOD that the cursor's elevation is read from */
+    ELEVATION_CELL_MM = 30000 /* cell size of the LOD that elevations are read from */
 };
 
 static void follow_view(struct lm_unit *u)
@@ -13,12 +13,15 @@ static void follow_view(struct lm_unit *u)
     lm_picture_follow_view(&u->picture, (u->flags & LM_FLAGS_STANDING) != 0);
 }
 
-static void read_elevation(struct lm_unit *u)
+/* Read the elevations under cursor and aircraft. */
+static void read_elevations(struct lm_unit *u)
 {
     if (u->map.is_usable) {
         const uint8_t lod = lm_scan_lod(&u->map.db, ELEVATION_CELL_MM);
         u->cursor_elevation_m_q10 =
             lm_scan_elevation(&u->map.tiles, lod, u->cursor.position, LM_NO_ELEVATION);
+        u->ground_m_q10 = lm_scan_elevation(&u->map.tiles, lod, lm_ownship_position(&u->ownship),
+                                            LM_NO_ELEVATION);
     }
 }
 
@@ -48,7 +51,7 @@ void lm_follow_cursor(struct lm_unit *u, uint64_t now_us)
         return;
     }
     lm_cursor_locate(&u->cursor, &scene);
-    read_elevation(u);
+    read_elevations(u);
     if (u->picture.is_cursor_awaited && u->cursor.is_placed) {
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
     }

@@ -225,6 +225,8 @@ static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
     symbols->patch_cell_mm = p->sar.command.cell_mm;
     symbols->patch_percent = (uint16_t)(p->sar.line * 100 / lines_of(p));
     symbols->patch_to_go_s = (uint32_t)((lm_sar_time_to_go_us(&p->sar) + 999999) / 1000000);
+    symbols->coarse_mm =
+        lm_coverage_coarse_mm(&p->coverage, &p->lent.map->db, p->sar.lod, p->sar.command.cell_mm);
     symbols->patch_look = p->sar.command.look_azimuth;
 }
 

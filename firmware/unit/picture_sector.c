@@ -110,7 +110,7 @@ static enum lm_sweep begin(struct lm_picture *p, uint64_t now_us)
     lm_sector_begin(&p->sector, &p->lent.map->tiles, &platform);
     lm_page_note_tilt(p->lent.page, p->sector.tilt);
     lm_coverage_judge(&p->coverage);
-    p->coverage.cells_none = p->coverage.cells_seen = 0;
+    lm_coverage_restart(&p->coverage);
     if (!lm_sector_is_window(&p->sector)) {
         return LM_SWEEP_BEGUN;
     }
@@ -219,6 +219,10 @@ static void describe(const struct lm_picture *p, struct lm_symbols *symbols)
     symbols->azimuth_half = radar->azimuth_half[p->lent.page->azimuth_index];
     symbols->antenna_azimuth = lm_sector_edge_bam(&p->sector, p->sector.line);
     symbols->antenna_elevation = p->sector.tilt;
+    if (p->lent.map->is_usable && p->sector.grid.cells != 0) {
+        symbols->coarse_mm = lm_coverage_coarse_mm(&p->coverage, &p->lent.map->db, p->sector.lod,
+                                                   lm_mm_of_m_q8(p->sector.slant.cell_m_q8));
+    }
     if (p->view.shape == LM_VIEW_WINDOW) {
         describe_window(p, symbols);
     }

@@ -47,6 +47,7 @@ int lm_unit_init(struct lm_unit *u, const struct lm_board *board)
                           board->hardware_revision, LM_VERSION_NUMBER);
     lm_unit_weather_init(&u->weather);
     lm_page_init(&u->page, board->radar);
+    u->ground_m_q10 = LM_NO_ELEVATION;
     init_picture(u);
     lm_apply_effects(u, LM_EFFECT_SECTOR | LM_EFFECT_TONE | LM_EFFECT_PALETTE, 0);
 

@@ -29,9 +29,10 @@ enum lm_flag {
     LM_FLAG_OFF_MAP = 1 << 6,   /* most of the picture lies outside the map */
     LM_FLAG_SILENT = 1 << 7,    /* the operator silences the radar: the sweep stands still */
     LM_FLAG_UNABLE = 1 << 8,    /* the last patch asked for cannot be made */
-    LM_FLAG_WEATHER = 1 << 9    /* the bus's weather is stale and will be removed */
+    LM_FLAG_WEATHER = 1 << 9,   /* the bus's weather is stale and will be removed */
+    LM_FLAG_BELOW = 1 << 10     /* the aircraft is below the map's terrain */
 };
-enum { LM_FLAGS = 10 };
+enum { LM_FLAGS = 11 };
 
 /* The word of flag `number`, 0..LM_FLAGS - 1, which is the number of its bit: at most eight
  * characters, in static memory. */
@@ -71,6 +72,9 @@ struct lm_symbols {
     bool is_cue_shown;     /* window: `cue` is drawn */
     struct lm_point cue;   /* where the cursor would be in the whole sector */
     bool is_finer_offered; /* window: mark what the next field of view will cut out */
+
+    uint32_t coarse_mm; /* length of the map's cells where the picture's are shorter; 0: not written
+                         */
 
     bool is_ownship_shown; /* over a picture that stands */
     struct lm_offset ownship;

@@ -31,6 +31,8 @@ struct lm_scan_line {
      * reflectivity, 1/256 dB, signed; 0 unless blended. */
     uint32_t cell[LM_CELLS_ROOM];
     int32_t elevation_m_q14[LM_CELLS_ROOM]; /* above mean sea level; 0 where there is no data */
+    uint8_t coarsest_lod;                   /* of the tiles that answered with data */
+    uint16_t coarse_cells;                  /* cells in runs that an ancestor answered with data */
 };
 
 /* LOD for a line whose cells are cell_mm long: the LOD whose cell is the largest that is not longer

@@ -17,6 +17,7 @@ enum {
                      | LM_FLAG_BUS     /* the bus is down or silent */
                      | LM_FLAG_OFF_MAP /* the image does not cover most of the picture */
                      | LM_FLAG_WEATHER /* the sender of the weather is silent */
+                     | LM_FLAG_BELOW   /* height or terrain is wrong */
 };
 
 enum { LM_FAULTS_KEPT = 4 };

@@ -94,6 +94,7 @@ struct lm_unit {
     struct lm_palette palette;
     struct lm_cursor cursor;
     int32_t cursor_elevation_m_q10; /* of the map under the cursor, or LM_NO_ELEVATION */
+    int32_t ground_m_q10;           /* of the map under the aircraft, or LM_NO_ELEVATION */
     struct {
         bool is_commanded; /* a controller set one; it takes precedence over the bus's */
         struct lm_position position;

@@ -1,11 +1,13 @@
 /* What is on the glass above the picture: the steerpoint, where it is marked and how long it is to
- * it. */
+ * it; cells of the map that are longer than the picture's; an aircraft below the terrain. */
 #include "check.h"
+#include "glass_text.h"
 #include "hs/angle.h"
 #include "unit_rig.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Whether the glass says how long it is from the aircraft to a place on its meridian, within a
  * second. */
@@ -155,5 +157,81 @@ TEST(a_steerpoint_above_below_or_beside_the_frame_is_not_marked)
             assert_int_equal(corners_at(r, x, y), out <= 0 ? corners_within(&f, x, y) : 0);
             free_rig(r);
         }
+    }
+}
+
+/* The map's cells are 2^11 BAM of latitude: 19.1 m. */
+TEST(the_length_of_the_maps_cells_is_on_the_glass_while_the_pictures_are_shorter)
+{
+    struct rig *r = fly_rig();
+    run(r, 2); /* until a sweep has all tiles */
+    assert_false(says(r, "MAP"));
+    struct lm_control patch = patch_here;
+    patch.sar.centre.longitude = hs_bam(11.03); /* the map ends at 11.055 */
+    command(r, patch);
+    run(r, 2);
+    assert_true(says(r, "MAP 19M")); /* under cells of 5 m */
+    command(r, (struct lm_control){.kind = LM_CONTROL_DROP});
+    command(r,
+            (struct lm_control){.kind = LM_CONTROL_SECTOR, .sector = {LM_SECTOR_GM, LM_FOV_DBS2}});
+    run(r, 2);
+    assert_true(says(r, "MAP 19M")); /* under cells of 4.3 m */
+    free_rig(r);
+}
+
+TEST(ancestors_that_answer_for_tiles_are_a_coarser_map)
+{
+    struct rig *r = start_rig();
+    r->board.flash.fail_every = 1;
+    command(r, range_10);
+    run(r, 2);
+    assert_true(r->unit.map.tiles.count.substituted > 0);
+    const uint8_t coarsest = (uint8_t)(r->unit.map.db.lod_count - 1);
+    char words[32];
+    snprintf(words, sizeof words, "MAP %uM",
+             (unsigned)((lm_db_cell_mm(&r->unit.map.db, coarsest) + 500) / 1000));
+    assert_true(says(r, words));
+    r->board.flash.fail_every = 0;
+    run(r, 8);
+    assert_false(says(r, "MAP"));
+    free_rig(r);
+}
+
+/* Whether the glass warns with a word. */
+static bool warns(const struct rig *r, const char *word)
+{
+    const struct lm_surface s = glass_of(r);
+    return glass_find(&s, word, r->unit.palette.warning, r->unit.palette.ink, NULL);
+}
+
+/* Whether a fault of that word is in the log. */
+static bool has_logged(const struct rig *r, const char *word)
+{
+    const struct lm_fault *fault;
+    for (uint32_t age = 0; (fault = lm_fault_log_at(&r->unit.faults, age)) != NULL; age++) {
+        if (strcmp(lm_flag_word(fault->flag), word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The terrain on the way is 100 m high. */
+TEST(an_aircraft_below_the_terrain_is_told_so)
+{
+    static const struct {
+        double height_m;
+        bool is_below;
+    } heights[] = {{2000, false}, {120, false}, {93, false}, {85, true}, {-100, true}};
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+        struct rig *r = make_rig();
+        r->bus.height_m = heights[i].height_m;
+        assert_int_equal(lm_unit_init(&r->unit, &r->board.lent), LM_OK);
+        run(r, 2);
+        assert_int_equal((r->unit.flags & LM_FLAG_BELOW) != 0, heights[i].is_below);
+        assert_int_equal(warns(r, "BLW TERR"), heights[i].is_below);
+        assert_int_equal(has_logged(r, "BLW TERR"), heights[i].is_below);
+        assert_true(lit_pixels(r) > 0 || heights[i].height_m < 0); /* and the picture goes on */
+        free_rig(r);
     }
 }
