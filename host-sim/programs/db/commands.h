@@ -8,6 +8,7 @@ int db_cmd_segment(int argc, char **argv);
 int db_cmd_correct(int argc, char **argv);
 int db_cmd_reflect(int argc, char **argv);
 int db_cmd_build(int argc, char **argv);
+int db_cmd_convert(int argc, char **argv);
 int db_cmd_inspect(int argc, char **argv);
 int db_cmd_verify(int argc, char **argv);
 int db_cmd_picture(int argc, char **argv);

@@ -11,6 +11,7 @@ static const struct hs_command commands[] = {
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
     {"inspect", "print what a database image holds", db_cmd_inspect},
+    {"convert", "make an image of version 3 from one of version 2", db_cmd_convert},
     {"verify", "check every byte of a database image", db_cmd_verify},
     {"picture", "draw a plane of a database image", db_cmd_picture},
 };

@@ -1,0 +1,91 @@
+#include "commands.h"
+
+#include "hs/error.h"
+#include "hs/options.h"
+#include "image/reader.h"
+#include "image/verify.h"
+#include "image/version2.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct db_usage usage = {
+    "convert OLD NEW", "make an image of version 3 from one of version 2",
+    "Keeps every cell and post, classes, targets, signatures and manifest. Fills the borders of "
+    "tiles "
+    "from their\n"
+    "neighbours, and makes the coarser levels again, so that crests survive in them. The new image "
+    "is "
+    "verified.\n"
+    "It is put in place whole or not at all; OLD stays as it is and may not be NEW.\n"
+    "\n"
+    "What version 2 did not hold cannot be made of it. It is printed what must be built again from "
+    "the sources\n"
+    "to have it."};
+
+static int read_bytes(const char *old, const char *path)
+{
+    struct image image;
+    if (image_map(&image, old) != 0) {
+        return -1;
+    }
+    const int result = image_version2_convert(image.bytes, image.size_bytes, old, path);
+    image_close(&image);
+    return result;
+}
+
+/* The highest of the 16 heights is where version 2 ended, whatever stood there. */
+static void print_missing(const struct image *image)
+{
+    printf(
+        "to have these, build it again from its sources with `landmass-db build`:\n"
+        "- structures and trees higher than %g m: the old table of heights ended there\n"
+        "- heights between those of its table\n"
+        "- facings of walls, gains by level, natural borders of classes\n"
+        "- the spread of reflectivity as ground that is alike in every level\n"
+        "- vector detail\n",
+        image->db.classes.height_dm[15] / 10.0);
+}
+
+static int check_new(const char *path)
+{
+    struct image image;
+    struct image_findings findings = {stderr, 0, 10};
+    struct image_verify_counts counts;
+    if (image_map(&image, path) != 0) {
+        return -1;
+    }
+    const bool is_complete = image_verify(&image, &findings, &counts) == 0;
+    if (is_complete && findings.count == 0) {
+        printf("%s: version 3, %" PRIu64 " bytes, %" PRIu64 " tiles, no faults\n", path,
+               image.size_bytes, counts.tiles);
+        print_missing(&image);
+    }
+    image_close(&image);
+    return is_complete && findings.count == 0
+               ? 0
+               : hs_error(path, "the old image has faults of its own: build it again",
+                          "has %" PRIu64 " faults", findings.count);
+}
+
+int db_cmd_convert(int argc, char **argv)
+{
+    int exit_code;
+    const bool has_files =
+        argc > 2 && strncmp(argv[1], "--", 2) != 0 && strncmp(argv[2], "--", 2) != 0;
+    const int taken = has_files ? 2 : 0;
+    if (!db_options_read(&usage, NULL, 0, argc - taken, argv + taken, &exit_code)) {
+        return exit_code;
+    }
+    if (!has_files) {
+        hs_error(argv[0], "see `landmass-db convert --help`", "needs the files OLD and NEW");
+        return HS_EXIT_USAGE;
+    }
+    if (strcmp(argv[1], argv[2]) == 0) {
+        hs_error(argv[2], "name another file", "is the old image");
+        return HS_EXIT_USAGE;
+    }
+    return read_bytes(argv[1], argv[2]) == 0 && check_new(argv[2]) == 0 ? HS_EXIT_OK
+                                                                        : HS_EXIT_FAILED;
+}
