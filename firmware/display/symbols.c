@@ -63,25 +63,69 @@ static void draw_sector(const struct lm_glass *g, const struct lm_symbols *s)
     }
 }
 
-/* Symbols of a window: a bracket 1,500 feet long at its upper left corner, right of the gain, and a
- * small cross where the cursor would be in the whole sector. */
-static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
+/* Bracket `length` pixels long, at the upper left corner of a window or patch, right of the gain
+ * and of the labels. One of a tenth of the length has a tick in its middle. */
+static void draw_bracket(const struct lm_glass *g, const struct lm_symbols *s, int32_t length,
+                         bool is_tenth)
 {
     const struct lm_pen pen = picture_pen(g);
-    const int32_t dot = pen.dot_px;
-    const int32_t length =
-        (int32_t)(1500ull * LM_FOOT_UM * 256 / 1000 / s->view.scale_mm_per_px_q8);
-    const int32_t square_left = s->view.middle.x - s->view.radius_px;
+    const int32_t dot = pen.dot_px, square_left = s->view.middle.x - s->view.radius_px;
     const int32_t x = fx_max_i32(square_left + 4 * dot, beside_labels(g, &pen) + 10 * dot);
     const int32_t y = s->view.middle.y - s->view.radius_px + 4 * dot;
     line(&pen, x, y, x + length, y);
     line(&pen, x, y, x, y + 3 * dot);
     line(&pen, x + length, y, x + length, y + 3 * dot);
+    if (is_tenth) {
+        line(&pen, x + length / 2, y, x + length / 2, y + 2 * dot);
+    }
+}
+
+static int32_t px_of_feet(const struct lm_symbols *s, uint64_t feet)
+{
+    return (int32_t)(feet * LM_FOOT_UM * 256 / 1000 / s->view.scale_mm_per_px_q8);
+}
+
+/* Symbols of a window: a bracket 1,500 feet long, and a small cross where the cursor would be in
+ * the whole sector. */
+static void draw_window(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = picture_pen(g);
+    draw_bracket(g, s, px_of_feet(s, 1500), false);
     if (s->is_cue_shown) {
         const int32_t arm = part_of_half(g, 30);
         line(&pen, s->cue.x - arm, s->cue.y, s->cue.x + arm, s->cue.y);
         line(&pen, s->cue.x, s->cue.y - arm, s->cue.x, s->cue.y + arm);
     }
+}
+
+/* The line of sight, an arrow that points up, and north, a line with its letter, at the lower right
+ * corner of a patch. */
+static void draw_look(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const struct lm_pen pen = picture_pen(g);
+    const int32_t arm = part_of_half(g, 60), head = part_of_half(g, 20);
+    const int32_t away = s->view.radius_px - 2 * arm;
+    const struct lm_point at = {s->view.middle.x + away, s->view.middle.y + away};
+    const struct lm_spot from = lm_pixel_middle(at);
+    const fx_bam_t north = 0u - s->patch_look;
+    const struct lm_point tip = lm_ray_end(from, 0, arm),
+                          letter = lm_ray_end(from, north, 7 * arm / 4);
+    line(&pen, at.x, at.y + arm / 2, tip.x, tip.y);
+    line(&pen, tip.x, tip.y, tip.x - head, tip.y + head);
+    line(&pen, tip.x, tip.y, tip.x + head, tip.y + head);
+    lm_draw_line(&pen, at, lm_ray_end(from, north, arm));
+    lm_write(&pen, letter.x - lm_column_px(&pen) / 2, letter.y - lm_row_px(&pen) / 2, "N",
+             g->palette->ink);
+}
+
+/* Symbols of a patch: a bracket 1,500 feet long, or 150 feet where that would be more than half a
+ * side, and the directions of the line of sight and of north. */
+static void draw_patch(const struct lm_glass *g, const struct lm_symbols *s)
+{
+    const int32_t whole = px_of_feet(s, 1500);
+    const bool is_tenth = whole > s->view.radius_px;
+    draw_bracket(g, s, is_tenth ? px_of_feet(s, 150) : whole, is_tenth);
+    draw_look(g, s);
 }
 
 /* Length of an angle on the antenna's scales: 60 degrees are 0.72 of half the glass. */
@@ -328,6 +372,7 @@ void lm_overlay_symbols(const struct lm_glass *g, const struct lm_symbols *s)
         write_cursor(g, s);
     }
     if (s->view.shape == LM_VIEW_PATCH) {
+        draw_patch(g, s);
         write_patch(g, s);
     } else {
         if (s->view.shape == LM_VIEW_SECTOR) {

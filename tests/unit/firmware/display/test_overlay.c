@@ -342,3 +342,73 @@ TEST(the_grid_of_the_test_pattern_reaches_from_edge_to_edge_and_its_circles_are_
     }
     free_surface(&s);
 }
+
+/* ---- symbols of a patch ---- */
+
+/* A black glass with the symbols of a patch of 256 cells, drawn in white. */
+static struct lm_surface draw_patch_symbols(uint32_t cell_mm, double look_deg, struct lm_view *view)
+{
+    struct lm_surface surface = make_surface(768, 768);
+    const struct lm_frame frame = lm_frame_of_display(768, 768);
+    static struct lm_palette palette;
+    palette = (struct lm_palette){.symbol = 0xFFFFFF};
+    for (int i = 0; i < 768 * 768; i++) {
+        surface.pixels[i / 768 * (int)surface.stride_px + i % 768] = 0;
+    }
+    const fx_bam_t look = (fx_bam_t)(int64_t)(look_deg / 360 * 4294967296.0);
+    *view = lm_view_of_patch(&frame, (struct lm_position){0, 0}, look, 256, cell_mm);
+    const struct lm_symbols symbols = {.view = *view, .patch_look = look, .patch_cell_mm = cell_mm};
+    const struct lm_glass glass = {surface, &frame, &palette};
+    lm_overlay_symbols(&glass, &symbols);
+    return surface;
+}
+
+static bool is_drawn(const struct lm_surface *s, double x, double y)
+{
+    return s->pixels[(int)floor(y) * (int)s->stride_px + (int)floor(x)] != 0;
+}
+
+/* Longest horizontal line in the upper left quarter of the square: the bracket. */
+static int bracket_px(const struct lm_surface *s, const struct lm_view *v)
+{
+    int longest = 0;
+    for (int y = v->middle.y - v->radius_px; y < v->middle.y; y++) {
+        for (int x = v->middle.x - v->radius_px, run = 0; x < v->middle.x + v->radius_px; x++) {
+            run = is_drawn(s, x, y) ? run + 1 : 0;
+            longest = run > longest ? run : longest;
+        }
+    }
+    return longest;
+}
+
+TEST(the_bracket_of_a_patch_is_1500_feet_long_or_150)
+{
+    static const struct {
+        uint32_t cell_mm;
+        double feet;
+    } cases[] = {{5000, 1500}, {20000, 1500}, {2000, 150}, {1000, 150}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct lm_view v;
+        struct lm_surface s = draw_patch_symbols(cases[i].cell_mm, 0, &v);
+        const double side_m = 256 * cases[i].cell_mm / 1000.0;
+        const double wanted_px = cases[i].feet * 0.3048 / side_m * 2 * v.radius_px;
+        /* A line is a dot wide, two pixels here. */
+        assert_true(fabs(bracket_px(&s, &v) - wanted_px) < 4);
+        free_surface(&s);
+    }
+}
+
+TEST(the_arrow_of_a_patch_points_along_the_line_of_sight_and_its_n_to_the_north)
+{
+    for (double look_deg = 15; look_deg < 360; look_deg += 30) {
+        struct lm_view v;
+        struct lm_surface s = draw_patch_symbols(5000, look_deg, &v);
+        const double arm = 768 * 60 / 2000, corner = v.radius_px - 2 * arm;
+        const double x = v.middle.x + corner + 0.5, y = v.middle.y + corner + 0.5;
+        const double north = -look_deg / 57.29577951308232;
+        assert_true(is_drawn(&s, x, y - arm + 2));
+        assert_true(is_drawn(&s, x + 0.7 * arm * sin(north), y - 0.7 * arm * cos(north)));
+        assert_false(is_drawn(&s, x - 0.7 * arm * sin(north), y + 0.7 * arm * cos(north)));
+        free_surface(&s);
+    }
+}
