@@ -9,7 +9,7 @@ vpath %.c $(GEN)
 
 SRC_fixed    := $(sort $(wildcard fixed/src/*.c) fixed/src/tables.c)
 SRC_firmware := $(sort $(wildcard firmware/*/*.c) $(SRC_kernels) \
-    $(addprefix firmware/,bus/bus_generic.c clutter/noise_table.c clutter/response_table.c map/grown_table.c))
+    $(addprefix firmware/,bus/bus_generic.c clutter/grain_table.c clutter/noise_table.c clutter/response_table.c map/grown_table.c))
 SRC_core     := $(SRC_firmware) $(SRC_fixed)
 
 GEN_INC := $(INC_firmware) $(foreach l,lib tables bus,-Ihost-sim/$l/include)
@@ -25,10 +25,11 @@ GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c))
 
 $(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_error)
 $(GEN)/fixed/src/tables.c: SET := fixed
+$(GEN)/firmware/clutter/grain_table.c: SET := grain
 $(GEN)/firmware/clutter/noise_table.c: SET := noise
 $(GEN)/firmware/clutter/response_table.c: SET := response
 $(GEN)/firmware/map/grown_table.c: SET := grown
-$(GEN)/fixed/src/tables.c $(addprefix $(GEN)/firmware/,clutter/noise_table.c clutter/response_table.c map/grown_table.c): $(GEN)/bin/tables
+$(GEN)/fixed/src/tables.c $(addprefix $(GEN)/firmware/,clutter/grain_table.c clutter/noise_table.c clutter/response_table.c map/grown_table.c): $(GEN)/bin/tables
 	@mkdir -p $(@D)
 	$(Q)$< $(SET) $@
 

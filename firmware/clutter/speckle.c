@@ -14,13 +14,3 @@ void lm_speckle_run(const struct lm_speckle_config *config, const struct lm_nois
     lm_noise_line_set(&noise, noise_key, cells);
     lm_k_noise_add(lm_noise_db_q8[config->looks_log2], noise.entry, level_db_q8, cells);
 }
-
-void lm_speckle_floor_run(const struct lm_speckle_config *config, int32_t floor_db_q8,
-                          const struct lm_noise_key *noise_key, const int32_t *level_db_q8,
-                          int32_t *speckled_db_q8, uint32_t cells)
-{
-    struct lm_noise_line noise;
-    lm_noise_line_set(&noise, noise_key, cells);
-    lm_k_noise_floor(lm_noise_db_q8[config->looks_log2], noise.entry, floor_db_q8, level_db_q8,
-                     speckled_db_q8, cells);
-}

@@ -1,6 +1,7 @@
 #include "lm/sar.h"
 
 #include "fx/hash.h"
+#include "fx/log.h"
 #include "fx/root.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
@@ -206,12 +207,12 @@ static void find_weather(struct lm_sar *s, const struct lm_environment *environm
     lm_patch_rain_find(&s->rain, environment, s->radar, antenna, azimuth);
 }
 
-/* Epoch of the patch's noise: a hash of centre and command. Without it every patch would show the
- * same grain, like a dirty glass. The same patch made again shows the same grain. */
-static uint32_t noise_epoch_of(const struct lm_sar_command *c, uint32_t epoch)
+/* Where the patch lies in the grain: a hash of centre and command. Without it every patch would
+ * show the same grain, like a dirty glass. The same patch made again shows the same grain. */
+static struct lm_grain_place grain_of(const struct lm_sar_command *c, uint32_t epoch)
 {
     const uint32_t of_place = fx_hash3(c->centre.latitude, c->centre.longitude, epoch);
-    return fx_hash3(of_place, c->look_azimuth, c->cell_mm);
+    return lm_grain_start(LM_GRAIN_SPECKLE, fx_hash3(of_place, c->look_azimuth, c->cell_mm));
 }
 
 static void set_sea(struct lm_sar *s, const struct lm_classes *classes,
@@ -242,7 +243,8 @@ int lm_sar_start(struct lm_sar *s, const struct lm_radar *radar, const struct lm
     s->chips = setup->chips;
     s->time_us = setup->time_us;
     s->epoch = setup->epoch;
-    s->noise_epoch = noise_epoch_of(command, setup->epoch);
+    s->grain = grain_of(command, setup->epoch);
+    lm_grain_curve_set(&s->speckle, 256u << radar->sar.speckle.looks_log2);
     s->across_mm_s = across_mm_s;
     find_weather(s, setup->environment);
     s->defocus_lines_q8 =
@@ -452,6 +454,23 @@ static void trace_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t n
     lm_line_trace(line, tiles, &setup, &path, s->horizon);
 }
 
+/* Weaken the line by rain, add its floor, and multiply all of it by the speckle. */
+static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int32_t *clutter_db_q8,
+                                  int32_t *level_db_q8)
+{
+    const uint32_t cells = s->radar->sar.cells;
+    const struct lm_grain_place place = {s->grain.row + number, s->grain.column};
+    int32_t noise_db_q8 = s->floor_db_q8;
+    if (s->rain.count != 0) {
+        lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_db_q8, clutter_db_q8);
+        noise_db_q8 = LM_LEVEL_SHADOW; /* the rain's veil has it */
+    }
+    const int32_t leak_db_q8 =
+        lm_patch_floor_run(&s->floor, &s->radar->sar, number, clutter_db_q8 + LM_SAR_GUARD, cells);
+    lm_grain_floor_run(&s->speckle, place, fx_db_q8_sum_vec(noise_db_q8, leak_db_q8),
+                       clutter_db_q8 + LM_SAR_GUARD, level_db_q8 + LM_SAR_GUARD, cells);
+}
+
 void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t number,
                         struct lm_line *line, int32_t *level_db_q8)
 {
@@ -466,16 +485,7 @@ void lm_sar_sample_line(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t 
         s->chips->count.cells_left_out +=
             lm_target_patch_add_chips(&s->target_patch, number, &s->geometry, clutter_db_q8);
     }
-    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, number, s->noise_epoch);
-    if (s->rain.count != 0) {
-        lm_patch_rain_run(&s->rain, &s->geometry, number, clutter_db_q8, level_db_q8);
-        lm_speckle_run(&s->radar->sar.speckle, &noise_key, level_db_q8 + LM_SAR_GUARD,
-                       s->radar->sar.cells);
-        return;
-    }
-    lm_speckle_floor_run(&s->radar->sar.speckle, s->floor_db_q8, &noise_key,
-                         clutter_db_q8 + LM_SAR_GUARD, level_db_q8 + LM_SAR_GUARD,
-                         s->radar->sar.cells);
+    add_floor_and_speckle(s, number, clutter_db_q8, level_db_q8);
 }
 
 /* True if a scatterer may be displayed on lines before the one that holds its position. */
@@ -591,5 +601,6 @@ void lm_sar_restart(struct lm_sar *s)
 {
     s->line = s->sampled = s->summed = s->hidden_known = s->second_foreground = 0;
     s->has_target_patch = false;
+    lm_patch_floor_clear(&s->floor);
     lm_target_patch_clear(&s->target_patch);
 }

@@ -129,8 +129,11 @@ const struct lm_radar lm_radar_default = {
             .mocomp_residual_permille = 10,
             .noise_floor_db_q8 = LM_DB_Q8(-46),
             .line_lobe = FX_BAM_DEG(6),
+            /* UNSOURCED: shadows of real X-band patches are some 16 dB below the grass around. */
+            .ground_leak_db_q8 = LM_DB_Q8(-17),
+            .ground_leak_most_db_q8 = LM_DB_Q8(-10),
             .speckle = {.looks_log2 = 2},
-            .tone = {LM_DB_Q8(-42), LM_DB_Q8(12), 384}},
+            .tone = {LM_DB_Q8(-38), LM_DB_Q8(10), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall
      * alone, a tree line 2 dB; far shores 5 dB over 60 m ([Heaton] names the effects and gives no
      * figures). */

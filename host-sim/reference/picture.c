@@ -16,6 +16,7 @@ static void sample(const struct ref_db *db, double cell_m, const struct ref_para
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
 {
     ref_speckle_table(params->looks, tables->speckle_db);
+    ref_grain_table(params->looks, tables->grain_db);
 }
 
 /* The stages behind aspect, for a line whose levels and draws are known. */
@@ -172,9 +173,8 @@ static void sar_line(const struct ref_picture *picture, const struct ref_db *db,
 /* Speckle is drawn for the cells that are shown. */
 static void draw_patch_line(struct ref_bin *bins, const struct ref_sar *sar, unsigned line)
 {
-    for (uint32_t i = 0; i < REF_GUARD_CELLS + sar->cell_count; i++) {
-        const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
-        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->epoch);
+    for (uint32_t i = REF_GUARD_CELLS; i < REF_GUARD_CELLS + sar->cell_count; i++) {
+        bins[i].grain = ref_grain(sar->grain_row + line, sar->grain_column + i - REF_GUARD_CELLS);
     }
 }
 
@@ -231,6 +231,7 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
                      &picture->view.reference_m);
     const struct ref_surface surface = ref_sar_surface(sar);
     struct ref_tables tables;
+    struct ref_leak leak = {0};
     ref_tables_set(&tables, params);
     for (unsigned line = 0; line < picture->line_count; line++) {
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
@@ -239,9 +240,12 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     rain_on(picture, sar);
     for (unsigned line = 0; line < picture->line_count; line++) {
         struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
+        const size_t count = REF_GUARD_CELLS + sar->cell_count;
         draw_patch_line(bins, sar, line);
-        finish(bins, REF_GUARD_CELLS + sar->cell_count, &picture->view, params, &tables,
-               sar->azimuth_deg);
+        ref_class_gain(bins, count, params, sar->azimuth_deg);
+        ref_sea(bins, count, &picture->view, params, sar->azimuth_deg);
+        ref_patch_echo(bins, count, REF_GUARD_CELLS, tables.grain_db, params, &leak, line);
+        ref_tone(bins, count, params);
     }
     return 0;
 }

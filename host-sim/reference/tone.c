@@ -10,6 +10,8 @@ struct ref_params ref_params_default(void)
                                .shore_db = 8,
                                .shore_width_m = 90,
                                .noise_floor_db = -45,
+                               .leak_db = -17,
+                               .leak_most_db = 0,
                                .looks = 4,
                                .black_db = -45,
                                .white_db = 5,

@@ -1,10 +1,12 @@
 #include "fx/hash.h"
+#include "lm/grain.h"
 #include "lm/grown.h"
 #include "lm/noise.h"
 #include "tables/tables.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 
 static const long double PI = 3.141592653589793238462643383279502884L;
 
@@ -232,6 +234,113 @@ static const struct table noise_tables[] = {
      LM_NOISE_LOOKS_LOG2_MAX + 1, LM_NOISE_SLICES + LM_NOISE_BLOCK, noise},
 };
 
+/* ---- grain ---- */
+
+enum { GRAIN = LM_GRAIN_ROWS * LM_GRAIN_COLUMNS };
+
+/* A white number that is nearly Gaussian: eight uniform ones of 16 bits, their mean taken off. Row
+ * and column may be any; the field begins again as lm/grain.h says. */
+static int64_t white(int row, int column)
+{
+    const int turns = row >= 0 ? row / LM_GRAIN_ROWS : -1;
+    const uint32_t r = (uint32_t)(row - turns * LM_GRAIN_ROWS);
+    const uint32_t c = (uint32_t)(column + turns * LM_GRAIN_TWIST) % LM_GRAIN_COLUMNS;
+    int64_t sum = -4 * 65535;
+    for (uint32_t k = 0; k < 4; k++) {
+        const uint32_t hash = fx_hash3(r, c, k);
+        sum += (hash & 0xffff) + (hash >> 16);
+    }
+    return sum;
+}
+
+/* White numbers averaged over their neighbours both ways. The weights are those of the root of a
+ * spectrum whose correlation is 0.31 one cell away and 0.003 two away, of numbers that become
+ * 0.30 of powers. Whole numbers, so that every machine ranks the sums alike. */
+static int64_t smoothed(int row, int column)
+{
+    static const int64_t weight[4] = {974, 161, -12, 2};
+    int64_t sum = 0;
+    for (int down = -3; down <= 3; down++) {
+        for (int along = -3; along <= 3; along++) {
+            sum += weight[abs(down)] * weight[abs(along)] * white(row + down, column + along);
+        }
+    }
+    return sum;
+}
+
+struct ranked {
+    int64_t value;
+    int place;
+};
+
+static int compare_ranked(const void *a, const void *b)
+{
+    const struct ranked *x = a, *y = b;
+    return x->value != y->value ? (x->value > y->value) - (x->value < y->value)
+                                : x->place - y->place;
+}
+
+static long double gaussian_below(long double z)
+{
+    return erfcl(-z / sqrtl(2)) / 2;
+}
+
+/* The field by ranks: of the lowest number comes the value that as many of a Gaussian distribution
+ * are below. */
+static int64_t grain(int row, int column)
+{
+    static struct ranked ranked[GRAIN];
+    static int8_t field[GRAIN];
+    static int is_made;
+    if (!is_made) {
+        for (int i = 0; i < GRAIN; i++) {
+            ranked[i] = (struct ranked){smoothed(i / LM_GRAIN_COLUMNS, i % LM_GRAIN_COLUMNS), i};
+        }
+        qsort(ranked, GRAIN, sizeof *ranked, compare_ranked);
+        int code = -128;
+        for (int i = 0; i < GRAIN; i++) {
+            const long double share = (i + 0.5L) / GRAIN;
+            while (code < 127 && gaussian_below((code + 0.5L) / 32) < share) {
+                code++;
+            }
+            field[ranked[i].place] = (int8_t)code;
+        }
+        is_made = 1;
+    }
+    return field[row * LM_GRAIN_COLUMNS + column];
+}
+
+/* The regularised lower incomplete gamma function P(a, x) by its series, all of whose terms are
+ * positive (DLMF 8.11.4). */
+static long double gamma_share(long double a, long double x)
+{
+    long double term = expl(a * logl(x) - x - lgammal(a + 1)), sum = term;
+    for (int n = 1; n < 2000 && term > sum * 1e-22L; n++) {
+        term *= x / (a + n);
+        sum += term;
+    }
+    return sum;
+}
+
+static int64_t grain_knot(int row, int knot)
+{
+    const long double looks = exp2l(row / 4.0L), share = gaussian_below(knot / 2.0L - 4);
+    long double low = 0, high = 400;
+    for (int i = 0; i < 200; i++) {
+        const long double middle = (low + high) / 2;
+        *(gamma_share(looks, middle) < share ? &low : &high) = middle;
+    }
+    return rounded(10 * log10l(low / looks), 8);
+}
+
+static const struct table grain_tables[] = {
+    {"lm_grain_q5", "int8_t", "correlated Gaussian numbers, 1/32 of a standard deviation",
+     LM_GRAIN_ROWS, LM_GRAIN_COLUMNS, grain},
+    {"lm_grain_knot_db_q8", "int16_t",
+     "dB of a Gamma(2^(row / 4)) variable as probable as a Gaussian one of i / 2 - 4",
+     LM_GRAIN_LOOKS_ROWS, LM_GRAIN_LINES + 1, grain_knot},
+};
+
 /* The Taylor weighting of 35 dB and nbar = 4 over an aperture, w(p) = 1 + 2 sum of F_m cos(2 pi m
  * p), whose response to a point is sinc(x) + sum of F_m (sinc(x - m) + sinc(x + m)) in cells x. (T.
  * T. Taylor, "Design of line-source antennas for narrow beamwidth and low side lobes", IRE Trans.
@@ -393,6 +502,7 @@ static const struct table grown_tables[] = {
 
 const struct table_set table_sets[] = {
     {"fixed", "fixed/src/tables.c", "fx/tables.h", fixed_tables, COUNT(fixed_tables)},
+    {"grain", "firmware/clutter/grain_table.c", "lm/grain.h", grain_tables, COUNT(grain_tables)},
     {"noise", "firmware/clutter/noise_table.c", "lm/noise.h", noise_tables, COUNT(noise_tables)},
     {"response", "firmware/clutter/response_table.c", "lm/response.h", response_tables,
      COUNT(response_tables)},

@@ -5,6 +5,7 @@
  *   twins [SEEDS]     so many lines for each kernel (300) */
 #include "fx/sat.h"
 #include "hs/rng.h"
+#include "lm/grain.h"
 #include "lm/grown.h"
 #include "lm/illumination.h"
 #include "lm/noise.h"
@@ -27,6 +28,8 @@ struct input {
     int32_t level_db_q8[ROOM], other_db_q8[ROOM], fall_db_q8[ROOM], rain_db_q8[ROOM];
     int32_t cell_of[ROOM], gain_db_q8[LM_K_CODES];
     uint8_t looks_log2;
+    int8_t grain_q5[2][ROOM];
+    int32_t base_db_q8[2][LM_K_CURVE_LINES], rise_db_q8[2][LM_K_CURVE_LINES];
     struct lm_tile pool[TILES];
     struct lm_tile_coords places;
     struct lm_scan_line ground;
@@ -94,6 +97,26 @@ static void draw_levels(struct input *in)
     draw_line(in->other_db_q8, in, 1 << 30);
     in->number[0] = within_size(in, 1 << 30);
     in->number[1] = within_size(in, 1 << 15);
+}
+
+/* Numbers and curves of any kind that lm/kernels_clutter.h allows. */
+static void draw_grain(struct input *in)
+{
+    for (uint32_t n = 0; n < 2; n++) {
+        for (uint32_t k = 0; k < ROOM; k++) {
+            in->grain_q5[n][k] = (int8_t)((int32_t)hs_rng_below(&in->rng, 256) - 128);
+        }
+        for (uint32_t k = 0; k < LM_K_CURVE_LINES; k++) {
+            in->base_db_q8[n][k] = within_size(in, 1 << 14);
+            in->rise_db_q8[n][k] = (int32_t)hs_rng_below(&in->rng, 4370);
+        }
+    }
+}
+
+static void draw_speckle(struct input *in)
+{
+    draw_levels(in);
+    draw_grain(in);
 }
 
 static void draw_small_levels(struct input *in)
@@ -359,10 +382,23 @@ static void run_noise_add(const struct input *in, struct output *out, bool is_pl
     TWIN(lm_k_noise_add)(row_of(in), in->entry, signed_line(out->line[0]), in->cells);
 }
 
-static void run_noise_floor(const struct input *in, struct output *out, bool is_plain)
+static struct lm_k_curve curve_of(const struct input *in, uint32_t n)
 {
-    TWIN(lm_k_noise_floor)
-    (row_of(in), in->entry, in->number[0], in->level_db_q8, signed_line(out->line[0]), in->cells);
+    return (struct lm_k_curve){in->base_db_q8[n], in->rise_db_q8[n]};
+}
+
+static void run_grain_add(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_curve curve = curve_of(in, 0);
+    copy_cells(out->line[0], in->level_db_q8);
+    TWIN(lm_k_grain_add)(&curve, in->grain_q5[0], signed_line(out->line[0]), in->cells);
+}
+
+static void run_grain_floor(const struct input *in, struct output *out, bool is_plain)
+{
+    const struct lm_k_curve curve = curve_of(in, 0);
+    TWIN(lm_k_grain_floor)
+    (&curve, in->grain_q5[0], in->number[0], in->level_db_q8, signed_line(out->line[0]), in->cells);
 }
 
 static void run_gather(const struct input *in, struct output *out, bool is_plain)
@@ -444,7 +480,8 @@ static const struct kernel kernels[] = {
     {"lm_k_class_gain", draw_classes, run_class_gain},
     {"lm_k_water_gain", draw_classes, run_water_gain},
     {"lm_k_noise_add", draw_levels, run_noise_add},
-    {"lm_k_noise_floor", draw_levels, run_noise_floor},
+    {"lm_k_grain_add", draw_speckle, run_grain_add},
+    {"lm_k_grain_floor", draw_speckle, run_grain_floor},
     {"lm_k_gather", draw_small_levels, run_gather},
     {"lm_k_powers_of_levels", draw_small_levels, run_powers_of_levels},
     {"lm_k_levels_add", draw_levels, run_levels_add},

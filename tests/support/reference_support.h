@@ -30,6 +30,8 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
         .shore_db = decibels(a->shore_db_q8),
         .shore_width_m = a->shore_width_m,
         .noise_floor_db = noise_floor_db,
+        .leak_db = decibels(radar->sar.ground_leak_db_q8),
+        .leak_most_db = decibels(radar->sar.ground_leak_most_db_q8),
         .looks = 1u << speckle->looks_log2,
         .black_db = decibels(tone->black_db_q8),
         .white_db = decibels(tone->white_db_q8),

@@ -11,8 +11,8 @@
 /* As in host-sim/gallery/village.classes; NONE lies outside the raster. */
 enum { FOREST, VILLAGE, WATER, MUD, NONE };
 
-/* No echo, or nearly none: what lies in shadow is exactly 0. */
-enum { DARK = 4, CELL_M = 10 };
+/* What lies in shadow has the floor of the patch alone, mostly below this. */
+enum { DARK = 24, CELL_M = 10 };
 
 static const struct real_place centre = {-1.46935, -56.3626};
 static struct real_scene scene;
@@ -134,8 +134,8 @@ TEST(shadow_lies_behind_the_forest_that_casts_it_whichever_way_the_radar_looks)
         const double left = with_forest(p, -1, 0, reach), right = with_forest(p, 1, 0, reach);
         print_message("# patch %d: forest before %.2f, behind %.2f, left %.2f, right %.2f\n", n,
                       before, behind, left, right);
-        assert_true(before > 0.9);
-        assert_true(behind < before - 0.2 && left < before - 0.2 && right < before - 0.2);
+        assert_true(before > 0.8);
+        assert_true(behind < before - 0.15 && left < before - 0.15 && right < before - 0.15);
     }
 }
 

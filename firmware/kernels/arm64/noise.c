@@ -38,26 +38,3 @@ void lm_k_noise_add(const int16_t *row_q8, const uint32_t *entry, int32_t *restr
         neon_add(level_q8 + i, vld1q_s16(row_q8 + entry[i / LM_LANES]));
     }
 }
-
-void lm_k_noise_floor(const int16_t *row_q8, const uint32_t *entry, int32_t floor_q8,
-                      const int32_t *level_q8, int32_t *restrict noisy_q8, uint32_t cells)
-{
-    const uint8x16x4_t lows = vld1q_u8_x4(fx_table_db_sum_lines[0]);
-    const uint8x16x4_t highs = vld1q_u8_x4(fx_table_db_sum_lines[1]);
-    const uint8x16x4_t falls = vld1q_u8_x4(fx_table_db_sum_lines[2]);
-    const int32x4_t one = vdupq_n_s32(floor_q8);
-    const int32x4x4_t floor = {{one, one, one, one}};
-    for (size_t i = 0; i < cells; i += NEON_CELLS) {
-        /* A block that is left over is done twice at once. */
-        const size_t next = i + LM_LANES < cells ? i + LM_LANES : i;
-        const int32x4x4_t level = neon_load_8_and_8(level_q8 + i, level_q8 + next);
-        int32x4x4_t sum = neon_db_q8_sum(lows, highs, falls, level, floor);
-        const int16x8_t draw_q8[2] = {vld1q_s16(row_q8 + entry[i / LM_LANES]),
-                                      vld1q_s16(row_q8 + entry[next / LM_LANES])};
-        for (size_t n = 0; n < 2; n++) {
-            sum.val[2 * n] = vaddw_s16(sum.val[2 * n], vget_low_s16(draw_q8[n]));
-            sum.val[2 * n + 1] = vaddw_high_s16(sum.val[2 * n + 1], draw_q8[n]);
-        }
-        neon_store_8_and_8(noisy_q8 + i, noisy_q8 + next, sum);
-    }
-}

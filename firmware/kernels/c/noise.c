@@ -1,5 +1,4 @@
 #include "draws.h"
-#include "fx/log.h"
 #include "lm/kernels_clutter.h"
 
 void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *restrict level_db_q8,
@@ -18,17 +17,5 @@ void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *re
     draw(row_db_q8, entry, draw_db_q8, cells);
     for (uint32_t i = 0; i < cells; i++) {
         level_db_q8[i] += draw_db_q8[i];
-    }
-}
-
-void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t floor_db_q8,
-                      const int32_t *level_db_q8, int32_t *restrict noisy_db_q8, uint32_t cells)
-{
-    int32_t draw_db_q8[LM_CELLS_ROOM];
-    draw(row_db_q8, entry, draw_db_q8, cells);
-    for (uint32_t i = 0; i < cells; i++) {
-        /* draw() fills every cell.
-         * NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult) */
-        noisy_db_q8[i] = fx_db_q8_sum_vec(level_db_q8[i], floor_db_q8) + draw_db_q8[i];
     }
 }

@@ -3,6 +3,7 @@
 
 #include "hs/error.h"
 #include "hs/png.h"
+#include "lm/grain.h"
 #include "reference/reference.h"
 
 #include <math.h>
@@ -113,6 +114,10 @@ static const struct option options[] = {
      FOR_ALL, 0.01, 1, NAN, false},
     {"floor", "dB of the noise floor", AT(params.noise_floor_db), FOR_SAR | FOR_GM, -120, 60, NAN,
      false},
+    {"leak", "dB that the mean of the ground leaves in the dark", AT(params.leak_db), FOR_SAR, -120,
+     0, NAN, false},
+    {"leak-most", "dB that a cell counts for at most in that mean", AT(params.leak_most_db),
+     FOR_SAR, -120, 60, NAN, false},
     {"black", "dB shown black", AT(params.black_db), FOR_ALL, -120, 60, NAN, false},
     {"white", "dB shown white", AT(params.white_db), FOR_ALL, -120, 60, NAN, false},
     {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_ALL, 0.1, 10, NAN,
@@ -294,13 +299,15 @@ static size_t set_rain(const struct request *request, struct ref_place antenna,
 /* Beam and wavelength are those of the firmware's table. */
 static int render_sar(const struct request *request, const struct ref_db *db)
 {
+    const struct lm_grain_place start = lm_grain_start(LM_GRAIN_SPECKLE, (uint32_t)request->epoch);
     struct ref_sar sar = {.centre = place_of(request, db),
                           .azimuth_deg = request->azimuth_deg,
                           .range_m = request->range_m,
                           .antenna_m = request->antenna_m,
                           .cell_m = request->cell_m,
                           .cell_count = (unsigned)request->cells,
-                          .epoch = (uint32_t)request->epoch,
+                          .grain_row = start.row,
+                          .grain_column = start.column,
                           .rain = {.wavelength_m = WAVELENGTH_M,
                                    .azimuth_beam_deg = AZIMUTH_BEAM_DEG,
                                    .elevation_beam_deg = ELEVATION_BEAM_DEG}};

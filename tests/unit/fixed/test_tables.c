@@ -13,8 +13,11 @@
 static const struct {
     const char *set;
     uint32_t sum;
-} known[] = {
-    {"fixed", 0xd8236599}, {"noise", 0x1e4a6858}, {"response", 0x0f490b48}, {"grown", 0x6e59d7b1}};
+} known[] = {{"fixed", 0xd8236599},
+             {"grain", 0x6f535233},
+             {"noise", 0x1e4a6858},
+             {"response", 0x0f490b48},
+             {"grown", 0x6e59d7b1}};
 
 static char *whole_file(const char *path)
 {

@@ -99,18 +99,30 @@ void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *l
 void lm_k_water_gain(uint32_t water, int32_t even_db_q8, const int32_t *cell_db_q8,
                      const uint32_t *cell, int32_t *level_db_q8, uint32_t cells);
 
-/* Speckle: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
+/* Speckle from the grain: numbers of a field (lm/grain.h), and the curve that makes decibels of
+ * them. */
+struct lm_k_curve {
+    const int32_t *base_db_q8; /* LM_K_CURVE_LINES entries; with the rise they take 16 bits */
+    const int32_t *rise_db_q8; /* likewise; 0..4369, so that 15 times as much takes 16 bits */
+};
+
+enum { LM_K_CURVE_LINES = 16 };
+
+/* Add to each level the speckle of its number. Cost: 2 a cell. */
+void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t *level_db_q8,
+                    uint32_t cells);
+
+/* Power of each level and the floor together, as a level, and the speckle of its number added to
+ * it. Levels and floor within 2^30 of 0; the sum's worst error is 0.018 dB. Cost: 4 a cell. */
+void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_db_q8,
+                      const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
+
+/* Noise: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
  * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
  * it. `entry` has one for each block of the line, and for whole groups. */
 
 /* Add a draw to each level. Groups have LM_LANES cells. Cost: 1 a cell. */
 void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *level_db_q8,
                     uint32_t cells);
-
-/* Power of each level and the floor together, as a level, and a draw added to it. Levels and floor
- * within 2^30 of 0; the sum's worst error is 0.018 dB. Groups have LM_LANES cells. Cost: 4 a
- * cell. */
-void lm_k_noise_floor(const int16_t *row_db_q8, const uint32_t *entry, int32_t floor_db_q8,
-                      const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
 
 #endif

@@ -10,8 +10,8 @@
  *     layover                      -                            lm_layover_run
  *     chips of targets             with the scatterers below    lm_target_patch_shade, _add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
- *     receiver noise               with the receiver below      lm_speckle_floor_run
- *     speckle                      lm_speckle_run               lm_speckle_run, _floor_run
+ *     receiver noise               with the receiver below      lm_patch_floor_run
+ *     speckle                      lm_speckle_run               lm_grain_floor_run
  *     scatterers of targets        lm_line_add_targets          lm_target_patch_add_scatterers
  *     elevation pattern            lm_antenna_pattern_apply     -
  *     ground range to slant range  lm_slant_run                 -

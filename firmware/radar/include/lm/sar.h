@@ -35,8 +35,10 @@
 #include "lm/defocus.h"
 #include "lm/detail_patch.h"
 #include "lm/foreground.h"
+#include "lm/grain.h"
 #include "lm/layover.h"
 #include "lm/line.h"
+#include "lm/patch_floor.h"
 #include "lm/patch_rain.h"
 #include "lm/radar.h"
 #include "lm/refusal.h"
@@ -109,9 +111,11 @@ struct lm_sar {
     struct lm_chips *chips;              /* borrowed; NULL: none */
     uint64_t time_us;                    /* of the movers' positions */
     uint32_t epoch;                      /* of the targets' fluctuation */
-    uint32_t noise_epoch; /* of noise and speckle: depends on centre and command too */
-    int32_t across_mm_s;  /* velocity to the right of the line of sight */
-    int32_t floor_db_q8;  /* noise with that of jammers, dB of gamma */
+    struct lm_grain_place grain;   /* of cell 0 of line 0: depends on centre and command too */
+    struct lm_grain_curve speckle; /* of the table's looks */
+    struct lm_patch_floor floor;   /* of the lines sampled so far */
+    int32_t across_mm_s;           /* velocity to the right of the line of sight */
+    int32_t floor_db_q8;           /* noise with that of jammers, dB of gamma */
     struct lm_patch_rain rain;
     struct lm_layover layover;
     uint32_t defocus_lines_q8; /* width of the defocus; 256: none */

@@ -176,6 +176,10 @@ struct lm_sar_table {
                                         * 0 (none) ..1000 */
     int16_t noise_floor_db_q8;         /* dB of gamma; -100..20 dB */
     fx_bam_t line_lobe; /* half-power width in which a fence or wire glints; 2^20..90 degrees */
+    int16_t ground_leak_db_q8;      /* what side lobes, ambiguities and quantisation leave of the
+                                     * ground's mean in every cell; -100..0 dB */
+    int16_t ground_leak_most_db_q8; /* a stronger cell counts as this one, because its side lobes
+                                     * are drawn; dB of gamma, -60..20 dB */
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };

@@ -22,7 +22,12 @@
 #define REF_EFFECTIVE_EARTH_M (4.0 / 3.0 * REF_EARTH_M)
 #define REF_MERIDIAN_M        40007862.9 /* around the Earth through the poles: 2^32 BAM of latitude */
 
-enum { REF_SPECKLE_SLICES = 1024, REF_GUARD_CELLS = 4, REF_COARSE_CELLS = 128 };
+enum {
+    REF_SPECKLE_SLICES = 1024,
+    REF_GRAIN_VALUES = 256,
+    REF_GUARD_CELLS = 4,
+    REF_COARSE_CELLS = 128
+};
 
 struct ref_place {
     double latitude_deg, longitude_deg; /* longitude: any turn */
@@ -47,6 +52,8 @@ struct ref_bin {
     /* speckle and noise */
     double class_gain_db; /* of the state of the sea and the facing of walls */
     unsigned slice;       /* drawn for speckle, 0..1023 */
+    int grain;            /* of a patch, likewise: 1/32 of a standard deviation */
+    double ground;        /* of a patch: power of the ground behind rain */
     double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
     /* tone */
@@ -59,10 +66,11 @@ struct ref_params {
     double edge_structure_db, edge_trees_db; /* leading edges */
     double shore_db, shore_width_m;          /* far shore */
     double noise_floor_db;
-    unsigned looks;            /* 1..64 */
-    double black_db, white_db; /* white_db > black_db */
-    double gamma_exponent;     /* > 0 */
-    double sea_db;             /* ref_sea_db of the state of the sea */
+    double leak_db, leak_most_db; /* what the ground leaves in the dark of a patch */
+    unsigned looks;               /* 1..64 */
+    double black_db, white_db;    /* white_db > black_db */
+    double gamma_exponent;        /* > 0 */
+    double sea_db;                /* ref_sea_db of the state of the sea */
     struct ref_sea {
         double critical; /* critical grazing angle, radians; 0: none */
         bool has_wind;
@@ -221,6 +229,32 @@ void ref_speckle_table(unsigned looks, double table_db[REF_SPECKLE_SLICES]);
 
 /* The slice that a cell draws which is the cell-th of its line and lies in a column of a raster. */
 unsigned ref_draw(enum lm_noise_kind kind, uint32_t column, uint32_t cell, uint32_t epoch);
+
+/* 10 log10 of a Gamma variable of shape `looks` (1 or more) and mean 1 that is as probable as a
+ * Gaussian one of z; and of z = -4, -4 + 1/32, .. */
+double ref_grain_db(double looks, double z);
+void ref_grain_table(double looks, double table_db[REF_GRAIN_VALUES]);
+
+/* The number of the field of grain at a place, 1/32 of a standard deviation. The field itself is
+ * that of lm/grain.h, by definition; its statistics are tested by themselves. */
+int ref_grain(uint32_t row, uint32_t column);
+
+/* The running mean of a patch's ground: zero before its first line. */
+struct ref_leak {
+    double mean;
+    unsigned lines;
+};
+
+/* Power that the ground leaves in each cell of a line, from the `ground` and `veil` of its bins.
+ * The line is taken into the mean first. */
+double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
+                const struct ref_bin *shown, size_t count);
+
+/* Fill `ground`, `speckle_db` and `echo_db` of a patch's line whose first `guard` bins are not
+ * shown: ground, floor and veil as powers, + the speckle of `grain`. */
+void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
+                    const double table_db[REF_GRAIN_VALUES], const struct ref_params *params,
+                    struct ref_leak *leak, unsigned line);
 
 /* Level that a sea state (0..8) adds to water. */
 double ref_sea_db(int state);
@@ -538,9 +572,9 @@ struct ref_sar {
     double
         range_m; /* S, along the ground from antenna to centre; > half the patch and guard cells */
     double antenna_m, cell_m;
-    unsigned cell_count;        /* along either side of the square */
-    uint32_t epoch;             /* of its draws: lm_sar's noise_epoch */
-    struct ref_patch_rain rain; /* distances, angles and slant are filled from these places */
+    unsigned cell_count;              /* along either side of the square */
+    uint32_t grain_row, grain_column; /* of cell 0 of line 0 */
+    struct ref_patch_rain rain;       /* distances, angles and slant are filled from these places */
     struct ref_place rain_centre[4];
 };
 
@@ -549,7 +583,7 @@ unsigned ref_sar_lines(const struct ref_sar *sar);
 
 /* The tables of a picture. */
 struct ref_tables {
-    double speckle_db[REF_SPECKLE_SLICES];
+    double speckle_db[REF_SPECKLE_SLICES], grain_db[REF_GRAIN_VALUES];
 };
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
 

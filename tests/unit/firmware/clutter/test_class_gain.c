@@ -1,14 +1,13 @@
-/* The gain of classes, and the noise floor: docs/EQUATIONS.md, "Class gain" and "Noise". */
+/* The gain of classes: docs/EQUATIONS.md, "Class gain". */
 #include "check.h"
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/class_gain.h"
 #include "lm/illumination.h"
-#include "lm/speckle.h"
+#include "lm/noise.h"
 #include "reference/reference.h"
 #include "tiny_image.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { ROOM = 16 }; /* what the stages take for a few cells */
@@ -184,28 +183,4 @@ TEST(hostile_classes_and_cells_read_nothing_but_the_table)
     for (uint32_t i = 0; i < 16; i++) {
         assert_int_equal(gain_q8(&gain, 0xffffff0fu | i << 4, 0), gain.of_class_db_q8[i]);
     }
-}
-
-/* A level over a floor, without the speckle of the sum. */
-static int32_t over_floor_q8(int32_t floor_q8, int32_t level_q8)
-{
-    const struct lm_speckle_config config = {2};
-    const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, 700, 2);
-    int32_t level[ROOM] = {level_q8}, speckled_q8[ROOM];
-    lm_speckle_floor_run(&config, floor_q8, &noise_key, level, speckled_q8, 1);
-    return speckled_q8[0] - lm_noise_cell_db_q8(2, &noise_key, 0);
-}
-
-TEST(the_floor_adds_as_power_to_every_level)
-{
-    struct hs_rng rng;
-    hs_rng_seed(&rng, 4);
-    for (int n = 0; n < 20000; n++) {
-        const int32_t floor_q8 = (int32_t)hs_rng_below(&rng, 40000) - 30000;
-        const int32_t level_q8 = (int32_t)hs_rng_below(&rng, 60000) - 40000;
-        const int32_t sum_q8 = over_floor_q8(floor_q8, level_q8);
-        const double expected = 10 * log10(pow(10, level_q8 / 2560.0) + pow(10, floor_q8 / 2560.0));
-        assert_true(fabs(sum_q8 / 256.0 - expected) < 0.018);
-    }
-    assert_in_range(over_floor_q8(-46 * 256, LM_LEVEL_SHADOW) + 46 * 256, 0, 1);
 }

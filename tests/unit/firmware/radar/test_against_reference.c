@@ -22,7 +22,7 @@ struct world {
     int32_t level_q8[LM_CELLS_ROOM]; /* of its cells, with noise and speckle */
     struct lm_radar radar;
     struct ref_params params;
-    double table_db[REF_SPECKLE_SLICES];
+    double table_db[REF_GRAIN_VALUES];
     struct ref_view view; /* of the patch */
     struct lm_environment environment;
     bool is_rainy;
@@ -32,13 +32,14 @@ struct world {
 struct score {
     uint32_t pixels, beyond_half_db, beyond_1_grey, lit_in_one;
     double worst_db, squares;
+    struct ref_leak leak; /* of the lines so far */
 };
 
 static void set_params(struct world *w)
 {
     const struct lm_sar_table *sar = &w->radar.sar;
     w->params = params_of(&w->radar, decibels(sar->noise_floor_db_q8), &sar->tone, &sar->speckle);
-    ref_speckle_table(w->params.looks, w->table_db);
+    ref_grain_table(w->params.looks, w->table_db);
     assert_int_equal(lm_tone_set(&w->tone, &sar->tone), LM_OK);
 }
 
@@ -68,21 +69,21 @@ static void free_world(struct world *w)
 /* What the cells of a patch's line draw, guard cells first. */
 static void take_draws(const struct lm_sar *sar, uint32_t line, struct ref_bin *bins)
 {
-    for (uint32_t i = 0; i < CELLS + REF_GUARD_CELLS; i++) {
-        const uint32_t shown = i < REF_GUARD_CELLS ? 0 : i - REF_GUARD_CELLS;
-        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, line, shown, sar->noise_epoch);
+    for (uint32_t i = 0; i < CELLS; i++) {
+        bins[REF_GUARD_CELLS + i].grain = ref_grain(sar->grain.row + line, sar->grain.column + i);
     }
 }
 
 /* Compare what came out of a line with bins whose aspect is done and whose draws are known. */
-static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t from, uint32_t cells,
+static void compare_line(const struct world *w, struct ref_bin *bins, uint32_t line,
                          struct score *score)
 {
+    const uint32_t cells = REF_GUARD_CELLS + CELLS;
     ref_class_gain(bins, cells, &w->params, 0);
     ref_sea(bins, cells, &w->view, &w->params, 0);
-    ref_speckle(bins, cells, w->table_db, w->params.noise_floor_db);
+    ref_patch_echo(bins, cells, REF_GUARD_CELLS, w->table_db, &w->params, &score->leak, line);
     ref_tone(bins, cells, &w->params);
-    for (uint32_t i = from; i < cells; i++) {
+    for (uint32_t i = REF_GUARD_CELLS; i < cells; i++) {
         const double error_db = fabs(decibels(w->level_q8[i]) - bins[i].echo_db);
         score->pixels++;
         score->squares += error_db * error_db;
@@ -192,11 +193,11 @@ static void score_patch_line(struct world *w, const struct ref_sar *wanted,
     take_draws(sar, line, bins);
     memcpy(copy, bins, cells * sizeof *copy);
     ref_illuminate(copy, cells, &picture->view, &w->params, wanted_horizon);
-    compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->whole);
+    compare_line(w, copy, line, &scores->whole);
     take_ground(&w->line.ground, &w->map.db.classes, copy, cells);
     ref_illuminate(copy, cells, &picture->view, &w->params, horizon);
-    compare_line(w, copy, REF_GUARD_CELLS, cells, &scores->stage);
-    compare_line(w, bins, REF_GUARD_CELLS, cells, &scores->foregrounds);
+    compare_line(w, copy, line, &scores->stage);
+    compare_line(w, bins, line, &scores->foregrounds);
 }
 
 static void score_patch(struct world *w, int look_deg, double cell_m, double range_m,
@@ -212,6 +213,7 @@ static void score_patch(struct world *w, int look_deg, double cell_m, double ran
         make_rain(w, &wanted);
     }
     struct ref_picture picture;
+    scores->stage.leak = scores->whole.leak = scores->foregrounds.leak = (struct ref_leak){0};
     set_params(w);
     assert_int_equal(ref_sar_patch(&picture, &w->ref, &wanted, &w->params), 0);
     w->view = picture.view;

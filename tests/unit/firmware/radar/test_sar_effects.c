@@ -149,11 +149,11 @@ static const struct lm_sar_command from_the_south = {.centre = {FX_BAM_DEG(46), 
                                                      .range_m = 9000,
                                                      .height_m_q6 = 3000 * 64};
 
-static uint32_t noise_epoch_of(struct lm_sar_command command, uint32_t epoch)
+static uint32_t grain_of(struct lm_sar_command command, uint32_t epoch)
 {
     const struct lm_sar_setup scene = {.epoch = epoch, .sea_state = LM_SEA_STATE_OF_IMAGE};
     assert_int_equal(lm_sar_start(&sar, &lm_radar_default, &map.db, &command, &scene), LM_OK);
-    return sar.noise_epoch;
+    return sar.grain.row << 16 | sar.grain.column;
 }
 
 TEST(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again)
@@ -167,12 +167,12 @@ TEST(a_patch_has_grain_of_its_own_and_the_same_when_it_is_made_again)
     c[2].centre.longitude += 1;
     c[3].look_azimuth += 1;
     c[4].cell_mm += 1;
-    const uint32_t grain = noise_epoch_of(c[0], 5);
+    const uint32_t grain = grain_of(c[0], 5);
     for (int i = 1; i < 5; i++) {
-        assert_int_not_equal(noise_epoch_of(c[i], 5), grain);
+        assert_int_not_equal(grain_of(c[i], 5), grain);
     }
-    assert_int_not_equal(noise_epoch_of(c[0], 6), grain);
-    assert_int_equal(noise_epoch_of(c[0], 5), grain);
+    assert_int_not_equal(grain_of(c[0], 6), grain);
+    assert_int_equal(grain_of(c[0], 5), grain);
     tiny_map_close(&map);
 }
 

@@ -1,0 +1,95 @@
+/* The grain of speckle, and what the ground leaves in the dark of a patch: EQUATIONS.md, "Speckle"
+ * and "Noise". */
+#include "lm/grain.h"
+#include "reference/reference.h"
+
+#include <math.h>
+
+static double gaussian_below(double z)
+{
+    return erfc(-z / sqrt(2)) / 2;
+}
+
+/* The lower and the upper incomplete gamma function of any shape, regularised: by the series (DLMF
+ * 8.11.4) where it is the smaller one, by the continued fraction (DLMF 8.9.2, forwards by Lentz)
+ * where the other is. */
+static double lower_share(double shape, double x)
+{
+    double term = exp(shape * log(x) - x - lgamma(shape + 1)), sum = term;
+    for (int n = 1; n < 1000 && term > 1e-17 * sum; n++) {
+        term *= x / (shape + n);
+        sum += term;
+    }
+    return sum;
+}
+
+static double upper_share(double shape, double x)
+{
+    double b = x + 1 - shape, c = 1e300, d = 1 / b, product = d;
+    for (int n = 1; n < 1000; n++) {
+        const double a = -n * (n - shape);
+        b += 2;
+        d = 1 / (a * d + b);
+        c = b + a / c;
+        product *= c * d;
+        if (fabs(c * d - 1) < 1e-16) {
+            break;
+        }
+    }
+    return product * exp(shape * log(x) - x - lgamma(shape));
+}
+
+double ref_grain_db(double looks, double z)
+{
+    const double below = gaussian_below(z), above = gaussian_below(-z);
+    double low = 0, high = 4 * looks + 64;
+    for (int i = 0; i < 100; i++) {
+        const double x = (low + high) / 2;
+        const bool is_below =
+            x < looks ? lower_share(looks, x) < below : upper_share(looks, x) > above;
+        *(is_below ? &low : &high) = x;
+    }
+    return 10 * log10((low + high) / 2 / looks);
+}
+
+void ref_grain_table(double looks, double table_db[REF_GRAIN_VALUES])
+{
+    for (int i = 0; i < REF_GRAIN_VALUES; i++) {
+        table_db[i] = ref_grain_db(looks, (i - 128) / 32.0);
+    }
+}
+
+int ref_grain(uint32_t row, uint32_t column)
+{
+    const uint32_t turns = row / LM_GRAIN_ROWS;
+    return lm_grain_q5[row % LM_GRAIN_ROWS][(column + turns * LM_GRAIN_TWIST) % LM_GRAIN_COLUMNS];
+}
+
+double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
+                const struct ref_bin *shown, size_t count)
+{
+    double sum = 0;
+    unsigned cells = 0;
+    for (size_t i = line % 4; i < count; i += 4, cells++) {
+        sum += fmin(shown[i].ground + shown[i].veil, pow(10, params->leak_most_db / 10));
+    }
+    leak->lines = leak->lines < 32 ? leak->lines + 1 : 32;
+    leak->mean += (sum / cells - leak->mean) / leak->lines;
+    return leak->mean * pow(10, params->leak_db / 10);
+}
+
+void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
+                    const double table_db[REF_GRAIN_VALUES], const struct ref_params *params,
+                    struct ref_leak *leak, unsigned line)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double level_db = bins[i].level_db + bins[i].class_gain_db - bins[i].loss_db;
+        bins[i].ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
+    }
+    const double left = ref_leak(leak, params, line, bins + guard, count - guard);
+    const double floor = pow(10, params->noise_floor_db / 10) + left;
+    for (size_t i = 0; i < count; i++) {
+        bins[i].speckle_db = table_db[bins[i].grain + 128];
+        bins[i].echo_db = 10 * log10(bins[i].ground + floor + bins[i].veil) + bins[i].speckle_db;
+    }
+}
