@@ -30,6 +30,10 @@ static void note_classes(struct build_heights *h, const struct db_class_table *t
         if (kind == DB_KIND_STRUCTURE || kind == DB_KIND_TREES) {
             note(h->structures, table->items[i].height_m);
         }
+        /* Tops differ (build/canopy.h); they need not be told from each other as houses are. */
+        for (double part = 0.55; kind == DB_KIND_TREES && part < 1.5; part += 0.15) {
+            note(h->crests, table->items[i].height_m * part);
+        }
     }
 }
 

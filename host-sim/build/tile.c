@@ -1,5 +1,6 @@
 #include "build/tile.h"
 
+#include "build/canopy.h"
 #include "hs/error.h"
 #include "image/codes.h"
 
@@ -302,6 +303,7 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
         fill_by_rule(b, f, t, is_below);
         count_cells(b, f, t, is_below);
         build_towns_mark(t->ground.cells, &b->classes, north_m, t->built);
+        build_canopy(b, f, &t->ground);
     }
     for (int i = 0; i < 4; i++) {
         if (children[i]) {
