@@ -301,9 +301,11 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
         const int32_t along_q8 = i * 256 - shape->cell_q8;
         const int32_t at_q16 = v_q16 + (int32_t)((int64_t)shape->v_cell_q16 * along_q8 >> 8);
         const uint32_t eighth = fx_min_u32(fx_abs_u32(at_q16) >> 13, 7);
-        const uint32_t ground_gamma = cell[i] & 0xFF00u;
-        cell[i] = !shape->is_line ? top | (shape->height_codes >> (4 * eighth) & 15)
-                                  : (cell[i] & 0xFFu) | fx_max_u32(ground_gamma, top & 0xFF00u);
+        if (!shape->is_line) {
+            cell[i] = top | (shape->height_codes >> (4 * eighth) & 15);
+        } else if (shape->gamma_code > (cell[i] >> 8 & 0xFF)) {
+            cell[i] = (uint32_t)shape->gamma_code << 8 | (cell[i] & 0xFF);
+        }
     }
     return end > first ? (uint32_t)(end - first) : 0;
 }

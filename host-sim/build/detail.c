@@ -131,7 +131,8 @@ static int add_box(struct reading *r, const struct box *box)
         at->item.gamma_code = image_gamma_code(line_kinds[box->line_kind].along_db);
         at->item.glint_code = image_gamma_code(line_kinds[box->line_kind].broadside_db);
     } else {
-        at->item.class_number = (uint8_t)r->structure;
+        at->item.class_number =
+            build_facing_number(r->settings->facing, (uint8_t)r->structure, box->turn_deg);
         at->item.gamma_code = roof_code(r, box);
     }
     r->detail->count++;

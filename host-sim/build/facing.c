@@ -267,11 +267,18 @@ double build_facing_at(const struct build_facing *f, double latitude_bam, double
     return degrees < 0 ? degrees + 90 : degrees;
 }
 
+uint8_t build_facing_number(const struct build_facing *f, uint8_t class_number, double degrees)
+{
+    const uint8_t first = f->first[class_number];
+    const double turn = fmod(fmod(degrees, 90) + 90, 90);
+    return first == 0 ? class_number
+                      : (uint8_t)(first + (int)lround(turn * f->facings / 90) % f->facings);
+}
+
 uint8_t build_facing_class(const struct build_facing *f, uint8_t class_number, double latitude_bam,
                            double longitude_bam)
 {
-    const uint8_t first = f->first[class_number];
-    const double degrees = first ? build_facing_at(f, latitude_bam, longitude_bam) : -1;
-    return degrees < 0 ? class_number
-                       : (uint8_t)(first + (int)lround(degrees * f->facings / 90) % f->facings);
+    const bool has_facings = f->first[class_number] != 0;
+    const double degrees = has_facings ? build_facing_at(f, latitude_bam, longitude_bam) : -1;
+    return degrees < 0 ? class_number : build_facing_number(f, class_number, degrees);
 }

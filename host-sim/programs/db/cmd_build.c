@@ -328,7 +328,8 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {
         return -1;
     }
-    const struct build_detail_settings detail = {b->plan.shift0, b->seed, &b->table, b->laws};
+    const struct build_detail_settings detail = {b->plan.shift0, b->seed, &b->table, b->laws,
+                                                 &b->facing};
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {
         return -1;
     }

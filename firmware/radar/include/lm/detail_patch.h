@@ -22,7 +22,7 @@ enum {
     LM_DETAIL_SHAPES_MAX = 1536, /* of a patch: a town of 400 m2 a house at cells of 3 m */
     LM_DETAIL_ENTRIES_MAX = 4096,
     LM_DETAIL_BLOCK_LINES = 8,
-    LM_DETAIL_BLOCKS = LM_CELLS_MAX / LM_DETAIL_BLOCK_LINES,
+    LM_DETAIL_BLOCKS = LM_PATCH_LINES_MAX / LM_DETAIL_BLOCK_LINES,
     LM_DETAIL_CELLS_A_LINE = 2 * LM_CELLS_MAX /* bounds the cost of a line */
 };
 

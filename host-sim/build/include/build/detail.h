@@ -13,6 +13,7 @@
 #ifndef BUILD_DETAIL_H
 #define BUILD_DETAIL_H
 
+#include "build/facing.h"
 #include "hs/class_table.h"
 #include "lm/detail.h"
 #include "reflectivity/reflect.h"
@@ -25,6 +26,7 @@ struct build_detail_settings {
     uint32_t seed;                      /* of the roofs' reflectivity */
     const struct db_class_table *table; /* borrowed, as are the laws of its classes */
     const struct db_reflect_law *laws;
+    const struct build_facing *facing; /* class numbers by the turn of a wall; borrowed */
 };
 
 /* Item with its tile, and the place in the file that keeps the order of equals. */

@@ -42,6 +42,9 @@ void build_facing_free(struct build_facing *f);
 /* Direction of the walls around a place, in degrees from north, 0..90; -1 where there is none. */
 double build_facing_at(const struct build_facing *f, double latitude_bam, double longitude_bam);
 
+/* The class number of a class for walls that face some degrees from north. */
+uint8_t build_facing_number(const struct build_facing *f, uint8_t class_number, double degrees);
+
 /* The class number of a cell of a class at a place. */
 uint8_t build_facing_class(const struct build_facing *f, uint8_t class_number, double latitude_bam,
                            double longitude_bam);

@@ -20,8 +20,9 @@ enum { SHIFT0 = 9 };
 
 static struct db_class_table table;
 static struct db_reflect_law laws[DB_CLASS_MAX];
+static struct build_facing facing;
 static const struct build_detail_settings settings = {
-    .shift0 = SHIFT0, .seed = 1, .table = &table, .laws = laws};
+    .shift0 = SHIFT0, .seed = 1, .table = &table, .laws = laws, .facing = &facing};
 
 static int open_table(void **state)
 {
