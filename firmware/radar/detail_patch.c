@@ -190,9 +190,23 @@ static struct lm_detail_shape shape_of(const struct lm_detail_item *item, const 
     return shape;
 }
 
-void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
-                         const struct lm_db *db, const struct lm_patch_geometry *g, fx_bam_t lobe)
+/* Position of an item on the Earth. */
+static struct lm_position position_of(const struct lm_detail_reader *r, const struct lm_db *db,
+                                      const struct lm_detail_item *item)
 {
+    const uint32_t side_log2 = (uint32_t)db->shift0 + LM_TILE_CELLS_LOG2;
+    const fx_bam_t south = (r->row << side_log2) - FX_BAM_90;
+    const uint32_t across_log2 = side_log2 + lm_db_zone(south);
+    return (struct lm_position){south + (fx_bam_t)((uint64_t)item->north << side_log2 >> 16),
+                                (r->column << across_log2) +
+                                    (fx_bam_t)((uint64_t)item->east << across_log2 >> 16)};
+}
+
+void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
+                         struct lm_tile_cache *tiles, const struct lm_patch_geometry *g,
+                         fx_bam_t lobe)
+{
+    const struct lm_db *db = tiles->db;
     const int64_t reach_m_q8 = (int64_t)g->cells * g->cell_m_q8;
     struct tile_frame frame;
     if (p->tile_count == LM_DETAIL_TILES_MAX || !set_frame(&frame, r, db, g)) {
@@ -212,8 +226,10 @@ void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reade
             p->left_out += r->record.count - i;
             return;
         }
-        const struct lm_detail_shape shape = shape_of(item, &place, db, g, lobe);
+        struct lm_detail_shape shape = shape_of(item, &place, db, g, lobe);
         if (shape.first_line < shape.end_line) {
+            shape.elevation_m_q14 = (int32_t)lm_m_q14_of_m_q10(
+                lm_scan_elevation(tiles, 0, position_of(r, db, item), 0));
             p->shape[p->shape_count++] = shape;
         }
     }
@@ -284,8 +300,9 @@ static bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
 
 /* Draw a shape into the cells of a line. Returns how many were drawn. */
 static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, uint32_t cells,
-                           uint32_t *cell)
+                           struct lm_scan_line *ground)
 {
+    uint32_t *const cell = ground->cell;
     const int32_t off_q8 = (int32_t)(line * 256) - shape->line_q8;
     const int32_t u_q16 = (int32_t)((int64_t)shape->u_line_q16 * off_q8 >> 8);
     const int32_t v_q16 = (int32_t)((int64_t)shape->v_line_q16 * off_q8 >> 8);
@@ -303,6 +320,7 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
         const uint32_t eighth = fx_min_u32(fx_abs_u32(at_q16) >> 13, 7);
         if (!shape->is_line) {
             cell[i] = top | (shape->height_codes >> (4 * eighth) & 15);
+            ground->elevation_m_q14[i] = shape->elevation_m_q14;
         } else if (shape->gamma_code > (cell[i] >> 8 & 0xFF)) {
             cell[i] = (uint32_t)shape->gamma_code << 8 | (cell[i] & 0xFF);
         }
@@ -361,7 +379,7 @@ void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,
     for (uint32_t n = p->first[block]; n < p->first[block + 1]; n++) {
         const struct lm_detail_shape *shape = &p->shape[p->entry[n]];
         if (line >= shape->first_line && line < shape->end_line && drawn < LM_DETAIL_CELLS_A_LINE) {
-            drawn += draw_shape(shape, line, cells, ground->cell);
+            drawn += draw_shape(shape, line, cells, ground);
         }
     }
 }

@@ -379,7 +379,7 @@ bool lm_sar_load_detail(struct lm_sar *s, struct lm_tile_cache *tiles, bool is_l
     }
     const enum lm_detail_step step = lm_detail_reader_step(&s->detail_reader, tiles);
     if (step == LM_DETAIL_ARRIVED) {
-        lm_detail_patch_add(&s->detail, &s->detail_reader, tiles->db, &s->geometry,
+        lm_detail_patch_add(&s->detail, &s->detail_reader, tiles, &s->geometry,
                             s->radar->sar.line_lobe);
     }
     if (step != LM_DETAIL_ENDED && !is_late) {

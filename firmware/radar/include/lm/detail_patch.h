@@ -29,6 +29,7 @@ enum {
 /* Item in the coordinates of a patch, which count from the middle of cell 0 of line 0. */
 struct lm_detail_shape {
     int32_t line_q8, cell_q8; /* middle */
+    int32_t elevation_m_q14;  /* of the terrain there: a building stands level on it */
     /* Change of u (along the length) and v (along the width), in half sides, a line and a cell. */
     int32_t u_line_q16, u_cell_q16, v_line_q16, v_cell_q16;
     uint32_t height_codes; /* a nibble for each eighth of |v| */
@@ -57,10 +58,11 @@ struct lm_detail_patch {
 
 void lm_detail_patch_clear(struct lm_detail_patch *p, const struct lm_db *db);
 
-/* Add the items of the record that the reader has at hand. `lobe` is the half-power width of a
- * line's glint. Cost: some 5,000 instructions, and 400 an item. */
+/* Add the items of the record that the reader has at hand, on the terrain of its tile. `lobe` is
+ * the half-power width of a line's glint. Cost: some 5,000 instructions, and 400 an item. */
 void lm_detail_patch_add(struct lm_detail_patch *p, const struct lm_detail_reader *r,
-                         const struct lm_db *db, const struct lm_patch_geometry *g, fx_bam_t lobe);
+                         struct lm_tile_cache *tiles, const struct lm_patch_geometry *g,
+                         fx_bam_t lobe);
 
 /* Sort the shapes by lines. Cost: some 20 instructions a shape. */
 void lm_detail_patch_close(struct lm_detail_patch *p);

@@ -19,9 +19,41 @@ static const double pi = 3.14159265358979323846, degree = 3.14159265358979323846
 
 static struct lm_detail_patch patch;
 static struct lm_detail_reader reader;
-static struct lm_db db;
+static struct tiny_map map; /* its grid and classes are used, and its terrain in one test */
 static struct lm_scan_line ground;
 static struct hs_rng rng;
+
+/* A slope to the north. */
+static double slope_m(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    return 300 + 0.1 * p->north_m;
+}
+
+static struct tiny_cell soil(void *ctx, const struct tiny_place *p)
+{
+    (void)ctx;
+    (void)p;
+    return (struct tiny_cell){-20, TINY_SOIL, 0};
+}
+
+static int open_map(void **state)
+{
+    (void)state;
+    struct tiny_spec spec = tiny_spec_at(46, 11.2);
+    spec.rows = spec.columns = 4;
+    spec.cell = soil;
+    spec.elevation_m = slope_m;
+    tiny_map_open(&map, &spec, 40);
+    return 0;
+}
+
+static int close_map(void **state)
+{
+    (void)state;
+    tiny_map_close(&map);
+    return 0;
+}
 
 /* A patch of `cell_m`, seen along `look_deg` from `range_m`. */
 struct scene {
@@ -49,8 +81,7 @@ static struct scene scene_at(double latitude, double look_deg, double range_m, d
                                      .lines = s.lines,
                                      .cells = CELLS + GUARD,
                                      .guard = GUARD};
-    db = (struct lm_db){.shift0 = SHIFT0, .lod_count = 1, .classes = *tiny_classes()};
-    lm_detail_patch_clear(&patch, &db);
+    lm_detail_patch_clear(&patch, &map.db);
     return s;
 }
 
@@ -151,7 +182,7 @@ TEST(cells_whose_middle_is_inside_are_drawn_and_no_others)
         reader.record.items[0] = random_block();
         put_in_patch(&s, &reader.record.items[0], 0.3);
         reader.record.count = 1;
-        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
         lm_detail_patch_close(&patch);
         const struct lm_detail_item *item = &reader.record.items[0];
         const double least = fmin(fmax(item->length_dm / 20.0, s.cell_m / 2),
@@ -182,7 +213,7 @@ TEST(no_line_of_the_patch_misses_a_thin_wall)
     const struct scene s = scene_at(46, 0, 20000, 2);
     open_record(&s, 0, 0, 0);
     for (int turn = 0; turn < 180; turn += 5) {
-        lm_detail_patch_clear(&patch, &db);
+        lm_detail_patch_clear(&patch, &map.db);
         struct lm_detail_item wall = random_block();
         double x0, y0;
         wall.length_dm = 800;
@@ -191,7 +222,7 @@ TEST(no_line_of_the_patch_misses_a_thin_wall)
         put_in_patch(&s, &wall, 0.2);
         reader.record.items[0] = wall;
         reader.record.count = 1;
-        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
         lm_detail_patch_close(&patch);
         to_patch(&s, item_place(&s, &wall), &x0, &y0);
         const double reach = 40 * fabs(sin(turn * degree)) - 3;
@@ -223,9 +254,9 @@ TEST(a_gable_is_highest_along_its_ridge)
     put_in_patch(&s, &house, 0);
     reader.record.items[0] = house;
     reader.record.count = 1;
-    lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     lm_detail_patch_close(&patch);
-    const uint16_t *height_dm = db.classes.height_dm;
+    const uint16_t *height_dm = map.db.classes.height_dm;
     int judged = 0;
     for (uint32_t line = 0; line < s.lines; line++) {
         draw(&s, line);
@@ -262,7 +293,7 @@ static double glint_db(double off_deg)
     put_in_patch(&s, &fence, 0);
     reader.record.items[0] = fence;
     reader.record.count = 1;
-    lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     return (patch.shape[0].gamma_code - 120) / 2.0;
 }
 
@@ -307,7 +338,7 @@ TEST(room_and_cost_are_bounded)
     }
     reader.record.count = LM_DETAIL_ITEMS_MAX;
     for (int k = 0; k < 5; k++) {
-        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     }
     lm_detail_patch_close(&patch);
     assert_int_equal(patch.shape_count, LM_DETAIL_SHAPES_MAX);
@@ -316,7 +347,7 @@ TEST(room_and_cost_are_bounded)
         draw(&s, line);
     }
     for (int k = 0; k < LM_DETAIL_TILES_MAX + 2; k++) {
-        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
     }
     assert_int_equal(patch.tile_count, LM_DETAIL_TILES_MAX);
 }
@@ -340,7 +371,7 @@ TEST(hostile_items_stay_in_the_line)
             item->gamma_code = (uint8_t)hs_rng_u64(&rng);
         }
         reader.record.count = 300;
-        lm_detail_patch_add(&patch, &reader, &db, &s.g, FX_BAM_DEG(6));
+        lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
         lm_detail_patch_close(&patch);
         for (uint32_t line = 0; line < s.lines; line += 7) {
             for (uint32_t i = s.g.cells; i < LM_CELLS_ROOM; i++) {
@@ -353,3 +384,43 @@ TEST(hostile_items_stay_in_the_line)
         }
     }
 }
+
+/* On a slope, a building's cells all have the elevation of the terrain under its middle; the ground
+ * beside it keeps its own. */
+TEST(a_building_stands_level_on_the_terrain_under_its_middle)
+{
+    const struct scene s = scene_at(46, 0, 20000, 1);
+    open_record(&s, 0, 0, 0);
+    lm_tile_cache_want(&map.tiles, 0, reader.row, reader.column);
+    tiny_map_read_tiles(&map);
+    struct lm_detail_item hall = random_block();
+    hall.length_dm = hall.width_dm = 600;
+    put_in_patch(&s, &hall, 0);
+    reader.record.items[0] = hall;
+    reader.record.count = 1;
+    lm_detail_patch_add(&patch, &reader, &map.tiles, &s.g, FX_BAM_DEG(6));
+    lm_detail_patch_close(&patch);
+    int32_t level = 0;
+    int inside = 0;
+    for (uint32_t line = 0; line < s.lines; line++) {
+        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            ground.elevation_m_q14[i] = -1;
+        }
+        draw(&s, line);
+        for (uint32_t i = 0; i < CELLS + GUARD; i++) {
+            if ((ground.cell[i] >> 4 & 15) != TINY_STRUCTURE) {
+                assert_int_equal(ground.elevation_m_q14[i], -1);
+                continue;
+            }
+            level = inside++ == 0 ? ground.elevation_m_q14[i] : level;
+            assert_int_equal(ground.elevation_m_q14[i], level);
+        }
+    }
+    double azimuth, distance;
+    ref_geo_inverse(s.centre, item_place(&s, &hall), &azimuth, &distance);
+    const double wanted = 300 + 0.1 * distance * cos(azimuth * degree);
+    assert_true(inside > 3000);
+    assert_true(fabs(level / 16384.0 - wanted) < 0.1);
+}
+
+TEST_GROUP(open_map, close_map);
