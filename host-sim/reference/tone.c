@@ -17,7 +17,7 @@ struct ref_params ref_params_default(void)
                                .white_db = 5,
                                .gamma_exponent = 1,
                                .lobe_half_deg = 8,
-                               .wall_floor = 0.15};
+                               .wall_floor = 0.1};
 }
 
 double ref_brightness(double level_db, const struct ref_params *params)

@@ -2,7 +2,7 @@
  *
  * Walls stand at right angles and along streets, so that a place has one direction modulo 90
  * degrees, or none. It is found from the borders of structures in the class raster, in surroundings
- * of some 200 m. A class of structures becomes several that differ in nothing but their facing, as
+ * of some 400 m. A class of structures becomes several that differ in nothing but their facing, as
  * many as there are free class numbers. */
 #ifndef BUILD_FACING_H
 #define BUILD_FACING_H

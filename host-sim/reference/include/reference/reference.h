@@ -81,7 +81,7 @@ struct ref_params {
     bool has_exact_weights; /* bilinear weights not cut to 8 bits */
 };
 
-/* 6, 3 and 8 dB of edges, 90 m of shore, lobes of 8 degrees over 0.15, floor and black -45 dB,
+/* 6, 3 and 8 dB of edges, 90 m of shore, lobes of 8 degrees over 0.1, floor and black -45 dB,
  * white 5 dB, 4 looks, exponent 1. Values to look at pictures with; the firmware's come from its
  * own parameter table. */
 struct ref_params ref_params_default(void);
