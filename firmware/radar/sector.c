@@ -400,6 +400,7 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .speed_mm_s = s->platform.speed_mm_s,
                   .track = s->platform.track,
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
+                  .stretch_cells = mode->stretch_cells,
                   .scan = s->sweep,
                   .pulse = s->samples,
                   .noise_key = speckle,

@@ -57,8 +57,9 @@ const struct lm_radar lm_radar_default = {
                  .air_loss_db_per_km_q16 = 1592},
     /* Rates: [FreeFalcon], as above: base 60 degrees a second, twice that in GM; bars: one in
      * GM and four in GMT [FlightGear]. Gates: [FreeFalcon]'s 3 to 100, here knots. No 80 nm scale
-     * in GMT and SEA. UNSOURCED: looks (many pulses within a beam width average in real beam), 35
-     * dB of clutter cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
+     * in GMT and SEA. UNSOURCED: looks (many pulses within a beam width average in real beam),
+     * movers three cells deep in GMT, which are four pixels on a glass of 480, 35 dB of clutter
+     * cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
     .mode = {[LM_SECTOR_GM] = {.name = "GM",
                                .bam_per_s = FX_BAM_DEG(120),
                                .range_max_nm = 80,
@@ -71,6 +72,7 @@ const struct lm_radar lm_radar_default = {
                                 .range_max_nm = 40,
                                 .fov_last = LM_FOV_EXP,
                                 .bars = 4,
+                                .stretch_cells = 1,
                                 .clutter_db_q8 = LM_DB_Q8(35),
                                 .gate_mm_s = {1543, 51444},
                                 .speckle = {.looks_log2 = 2},

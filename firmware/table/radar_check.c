@@ -62,6 +62,7 @@ static const struct lm_radar_field fields[] = {
     {"mode.range_max_nm", OF_MODES(range_max_nm), BETWEEN(1, 999)},
     {"mode.fov_last", OF_MODES(fov_last), BETWEEN(0, LM_FOVS - 1)},
     {"mode.bars", OF_MODES(bars), BETWEEN(1, 8)},
+    {"mode.stretch_cells", OF_MODES(stretch_cells), BETWEEN(0, 4)},
     {"mode.clutter_db_q8", OF_MODES(clutter_db_q8), BETWEEN(0, LM_DB_Q8(64))},
     {"mode.gate_mm_s[0]", OF_MODES(gate_mm_s[0]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.gate_mm_s[1]", OF_MODES(gate_mm_s[1]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},

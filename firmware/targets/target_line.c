@@ -310,6 +310,18 @@ static void make_scatterers_echo(struct echo *e, const struct lm_target_line *li
     }
 }
 
+/* Add a level to a cell and, if the line stretches echoes, to those before and behind it. */
+static void add_level(const struct lm_target_line *line, int32_t cell, int32_t gamma_db_q8,
+                      int32_t *level_db_q8)
+{
+    const int32_t stretch = (int32_t)line->stretch_cells;
+    const int32_t first = fx_max_i32(cell - stretch, (int32_t)line->first);
+    const int32_t end = fx_min_i32(cell + stretch + 1, (int32_t)line->cells);
+    for (int32_t k = first; k < end; k++) {
+        level_db_q8[k] = fx_db_q8_sum_vec(level_db_q8[k], gamma_db_q8);
+    }
+}
+
 /* Add a phasor sum to each cell that holds some of the returns. */
 static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line,
                          int32_t *level_db_q8)
@@ -327,7 +339,7 @@ static uint32_t add_echo(const struct echo *e, const struct lm_target_line *line
         done |= mask;
         const int32_t gamma_db_q8 =
             lm_returns_sum_dbsm_q8(e->returns, mask) - area_dbm2_q8(line, (uint32_t)cell);
-        level_db_q8[cell] = fx_db_q8_sum_vec(level_db_q8[cell], gamma_db_q8);
+        add_level(line, cell, gamma_db_q8, level_db_q8);
         cells++;
     }
     return cells;
@@ -369,7 +381,7 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
 {
     const struct lm_target *t = &candidates->set.items[candidate->index];
     struct echo echo;
-    if (lm_chip_of(candidate)) {
+    if (lm_chip_of(candidate) && line->stretch_cells == 0) {
         return sees_top(line, horizon, &candidates->set, candidate, seen)
                    ? add_chip(line, candidate, seen, level_db_q8)
                    : 0;

@@ -107,6 +107,7 @@ struct lm_sector_mode_row {
     uint16_t range_max_nm;   /* the largest scale that it has; 1..999 */
     uint8_t fov_last;        /* enum lm_fov: the last that the mode has */
     uint8_t bars;            /* swept in turn; 1..8 */
+    uint8_t stretch_cells;   /* cells before and behind its own that a target also fills; 0..4 */
     uint16_t clutter_db_q8;  /* how much of what stands still is cancelled, dB; 0..64 dB */
     uint32_t gate_mm_s[2];   /* closing speeds, either way, of what is shown; 0..
                               * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */

@@ -16,14 +16,16 @@ struct lm_target_line {
     uint32_t first;                        /* cells before this one are not displayed */
     int32_t height_m_q10, reference_m_q10; /* antenna, and flat ground of the receiver's gain */
     uint32_t wavelength_um;
-    bool is_doppler;       /* true if azimuth is measured by Doppler, which displaces movers */
-    fx_bam_t beam;         /* one-way half-power width of the antenna in azimuth */
-    uint32_t speed_mm_s;   /* speed of the antenna over the ground */
-    fx_bam_t track;        /* direction of that speed */
-    uint32_t gate_mm_s[2]; /* least and greatest closing speed displayed, of either sign; the least
-                              is lm_mover_clutter_mm_s where that is more; [1] = 0: every target is
-                              displayed */
-    uint32_t scan, pulse;  /* number of the sweep and of the line: they choose random draws */
+    bool is_doppler;        /* true if azimuth is measured by Doppler, which displaces movers */
+    fx_bam_t beam;          /* one-way half-power width of the antenna in azimuth */
+    uint32_t speed_mm_s;    /* speed of the antenna over the ground */
+    fx_bam_t track;         /* direction of that speed */
+    uint32_t gate_mm_s[2];  /* least and greatest closing speed displayed, of either sign; the least
+                               is lm_mover_clutter_mm_s where that is more; [1] = 0: every target is
+                               displayed */
+    uint32_t stretch_cells; /* cells before and behind its own that a target also fills, so that it
+                               is seen; then it is a point even if it has a chip */
+    uint32_t scan, pulse;   /* number of the sweep and of the line: they choose random draws */
     const struct lm_noise_key *noise_key; /* borrowed for the call: speckle of the line's cells, for
                                              chips; NULL: chips have no speckle */
     struct lm_speckle_config speckle;

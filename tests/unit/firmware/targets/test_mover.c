@@ -1,6 +1,8 @@
 /* Targets that move: where they are, and where a Doppler picture puts them. Places come from
  * PROJ's geodesics, displacements from theory: V cos(o') = V cos(o) + v. */
 #include "hs/angle.h"
+#include "lm/radar.h"
+#include "lm/scan_conv.h"
 #include "lm/target_line.h"
 
 #include "check.h"
@@ -341,6 +343,52 @@ TEST(a_sharpened_sector_shows_a_mover_where_ground_has_its_shift_if_the_beam_see
         assert_true(fabs(decibels(moved / still) + 80 * log10(2) * beams * beams) < 0.5);
     }
     assert_true(seen > 40 && unseen > 5);
+}
+
+/* Cells that hold some of a mover in the line that it lies in, and whether they hold it alike. */
+static int cells_filled(uint32_t stretch_cells, double range_m, bool *are_alike)
+{
+    const struct lm_target t = moving_point(46 + range_m / 111132, 11, 180, 10, 1000);
+    const struct lm_target_set set = {.items = &t, .count = 1};
+    const struct lm_target_query scene = {.position = {hs_bam(46), hs_bam(11)}, .reach_m = RANGE_M};
+    struct lm_target_candidates candidates;
+    struct lm_target_line line = sector_line(LINES / 2);
+    int32_t level_q8[LM_CELLS_MAX], highest = INT32_MIN, lowest = INT32_MAX;
+    int filled = 0;
+    lm_target_candidates_select(&candidates, &set, &scene);
+    line.gate_mm_s[1] = 20000;
+    line.stretch_cells = stretch_cells;
+    for (int k = 0; k < LM_CELLS_MAX; k++) {
+        level_q8[k] = LM_LEVEL_SHADOW;
+    }
+    (void)lm_target_line_add(&candidates, &line, NULL, level_q8);
+    for (int k = 0; k < LM_CELLS_MAX; k++) {
+        if (level_q8[k] != LM_LEVEL_SHADOW) {
+            filled++;
+            highest = level_q8[k] > highest ? level_q8[k] : highest;
+            lowest = level_q8[k] < lowest ? level_q8[k] : lowest;
+        }
+    }
+    *are_alike = highest == lowest;
+    return filled;
+}
+
+TEST(a_stretched_mover_fills_the_cells_beside_its_own_and_none_beyond_the_line)
+{
+    bool are_alike;
+    for (uint32_t stretch = 0; stretch <= 4; stretch++) {
+        assert_int_equal(cells_filled(stretch, 20000, &are_alike), 2 * stretch + 1);
+        assert_true(are_alike);
+        const double last_cell_m = RANGE_M * (1 - 0.5 / CELLS);
+        assert_int_equal(cells_filled(stretch, last_cell_m - 60, &are_alike), stretch + 1);
+    }
+}
+
+TEST(a_mover_of_gmt_is_three_pixels_thick_or_more_on_a_glass_of_480)
+{
+    const struct lm_frame frame = lm_frame_of_display(480, 480);
+    const uint32_t cells = 2u * lm_radar_default.mode[LM_SECTOR_GMT].stretch_cells + 1;
+    assert_true(cells * lm_ppi_radius_px(&frame, false) >= 3u * lm_radar_default.cells);
 }
 
 TEST(the_gates_show_only_closing_speeds_within_them_either_way)
