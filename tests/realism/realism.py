@@ -36,7 +36,6 @@ OPEN = {
     "class_spread",
     "settlement_spread",
     "standing_out",
-    "sea_grazing",
     "patch_rays",  # lines of a patch are parallel
     "shadow_length",  # heights end at 80 m
     "point_side_lobes",
