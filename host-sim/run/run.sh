@@ -63,32 +63,40 @@ say "Build the flash image and check every byte of it"
     --title "built-in scene" --out $out/scene.lmdb
 "$bin"/landmass-db verify $out/scene.lmdb
 
-say "Fly in from the sea at 3,000 m: ground map, then patches of places to the right of the way"
-"$bin"/landmass-nav --straight 42.045,-29.18,90,3000,180 --seconds 60 --out $out/flight.log
-cat >$out/flight.script <<EOF
-0   range 20
-5   picture ground-map-20nm
-5   range 10
-9   picture ground-map-10nm
-10  sar $(place town) 5
-16  picture sar-town
-17  sar $(place harbour) 4
-23  picture sar-harbour
-24  sar $(place airfield) 5
-30  picture sar-airfield
-30  sar $(place airfield) 1
-36  picture sar-parked
-36  sar $(place lake) 8
-42  picture sar-lake
-42  sar $(place river-valley) 12
-48  picture sar-river-valley
-48  range 10
-52  picture ground-map-coast
-EOF
+# SECONDS PLACE CELL SIDE: five seconds for the patch, then its picture.
+look_at() {
+    echo "$1 sar $(place "$2") $3"
+    echo "$(($1 + 5)) picture sar-$2-from-$4"
+}
+
 window=
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then window=--window; fi
+
+say "Fly in from the sea at 3,000 m: ground map, then patches of five places to the right of the way"
+"$bin"/landmass-nav --straight 42.045,-29.18,90,3000,180 --seconds 60 --out $out/flight.log
+{
+    printf '0 range 20\n5 picture ground-map-20nm\n5 range 10\n9 picture ground-map-10nm\n'
+    look_at 10 town 2 north
+    look_at 16 harbour 4 north
+    look_at 22 airfield 5 north
+    printf '28 sar %s 1\n34 picture sar-parked\n' "$(place airfield)"
+    look_at 34 lake 8 north
+    look_at 40 river-valley 5 north
+    printf '46 range 10\n50 picture ground-map-coast\n'
+} >$out/flight.script
 "$bin"/landmass-sim --db $out/scene.lmdb --bus $out/flight.log --script $out/flight.script \
-    --png $out/pictures --every 150 --seconds 53 $window
+    --png $out/pictures --every 150 --seconds 51 $window
+
+say "The same five places once more, from a northbound way to the east of them"
+"$bin"/landmass-nav --straight 41.83,-28.86,0,3000,180 --seconds 40 --out $out/east.log
+{
+    look_at 1 airfield 5 east
+    look_at 7 harbour 4 east
+    look_at 13 town 2 east
+    look_at 19 lake 8 east
+    look_at 25 river-valley 5 east
+} >$out/east.script
+"$bin"/landmass-sim --db $out/scene.lmdb --bus $out/east.log --script $out/east.script --png $out/pictures --every 0
 
 say "Fly past the town once more: sea, moving targets, and the ground map through every field of view"
 "$bin"/landmass-nav --straight 42.05,-29.16,90,3000,180 --seconds 25 --out $out/modes.log
