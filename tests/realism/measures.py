@@ -251,7 +251,7 @@ def edge_error_m(scenes, place, cell_m=0.5):
     """How far the border between two classes in the picture lies off a straight line, rms, metres."""
     squares = []
     for along in (-60, 60):
-        turn = {place_of.EDGE_20: 20, place_of.EDGE_45: 45}[place]
+        turn = place_of.EDGES[place]
         centre = place[0] + along * np.cos(np.radians(turn)), place[1] + along * np.sin(np.radians(turn))
         picture = scenes.patch("yard", utm_degrees(centre), cell_m)
         beyond = picture.is_class("asphalt").astype(int)
@@ -268,7 +268,8 @@ def edge_error_m(scenes, place, cell_m=0.5):
 
 @measure("5, 6.1, item 1", "straight edge turned 20 / 45 degrees, 0.5 m picture of a 4.77 m map: rms m off its line")
 def edges(scenes, real):
-    """The border of asphalt and field in the picture's classes, against the best straight line.
+    """The border of asphalt and field in the picture's classes, against the best straight line. Turns count on the map's own
+    grid, whose cells are 4.77 m by 3.54 m there: 45 degrees is their diagonal.
 
     Real: a straight edge is straight. Yardstick: 1.05 and 0.25 m (report, 6.1), a tenth more for the place of the cells.
     """
@@ -332,27 +333,35 @@ def square_mean_db(scenes, place, cell_m, look=0, side_m=512):
     return db(np.mean(means))
 
 
-def ground_map_mean_db(scenes, place, reach_m):
-    """Mean power of a ground map around a place 14.6 km ahead."""
-    radar = moved(place, 270, 14600)
-    picture = scenes.sector("builtin", radar, heading=90, track=45, sweeps=4, speed_m_s=SPEED_M_S)
-    away = np.sqrt(14600.0**2 + 3000.0**2)
-    azimuth = np.radians(picture.azimuth_deg() - 90)
+def ground_map_means_db(scenes, place, reach_m, look):
+    """Mean power of a ground map around a place 14.6 km ahead; and what it should be: that of a patch of 20 m cells from
+    the same side, behind the two-way beam, 2.33 degrees wide, and a bin of range.
+    """
+    radar, away = moved(place, look + 180, 14600), np.sqrt(14600.0**2 + 3000.0**2)
+    picture = scenes.sector("builtin", radar, heading=look, track=look - 45, sweeps=4, speed_m_s=SPEED_M_S)
+    azimuth = np.radians((picture.azimuth_deg() - look + 180) % 360 - 180)
     near = np.hypot((picture.range_m()[None, :] - away), picture.range_m()[None, :] * azimuth[:, None]) < reach_m
-    return db(power(picture.sweeps_db())[:, near].mean())
+    patch = scenes.patch("builtin", place, 20, look, range_m=14600).power
+    beam_cells = away * BEAM_RAD / np.sqrt(2) / 2.3548 / 20
+    smeared = ndimage.uniform_filter1d(ndimage.gaussian_filter1d(patch, beam_cells, axis=0), 4, axis=1)
+    line, cell = np.mgrid[0:CELLS, 0:CELLS] + 0.5 - CELLS / 2
+    return db(power(picture.sweeps_db())[:, near].mean()), db(smeared[np.hypot(line, cell) * 20 < reach_m].mean())
 
 
-@measure("3.4, 6.2, item 6", "town: mean at 1, 2, 5, 10, 20 m and in GM, dB of gamma")
+@measure("3.4, 6.2, item 6", "town: mean at 1, 2, 5, 10, 20 m, dB of gamma; GM over what the beam makes of 20 m, dB")
 def town_mean(scenes, real):
-    """Mean power of the same 512 m of the built-in town at each cell size, 20 km away and 3,000 m up, and in GM.
+    """Mean power of the same 512 m of the built-in town at each cell size, 20 km away and 3,000 m up; and in GM from
+    14.6 km, over what its beam of 590 m makes of the patch of 20 m. Over eight looks, because walls flash.
 
     Source: the class table, metropolitan 0 dB, a mean with walls and corners [Nathanson and Long]. Yardstick: 0 +- 1.5
     at all of them.
     """
-    place = scenes.place("town")
-    ours = [square_mean_db(scenes, place, cell) for cell in (1, 2, 5, 10, 20)] + [ground_map_mean_db(scenes, place, 256)]
-    return Row("-1.5..1.5", "0 (Nathanson and Long)", ", ".join(f"{v:+.1f}" for v in ours),
-               "report: +4.8 at 1 m .. -3.7 in GM", all(within(v, -1.5, 1.5) for v in ours))
+    place, sides = scenes.place("town"), range(0, 360, 45)
+    ours = [db(np.mean([power(square_mean_db(scenes, place, cell, look)) for look in sides])) for cell in (1, 2, 5, 10, 20)]
+    maps = [db(power(np.array(v)).mean()) for v in zip(*(ground_map_means_db(scenes, place, 256, look) for look in sides))]
+    return Row("-1.5..1.5", "0 (Nathanson and Long)", ", ".join(f"{v:+.1f}" for v in ours) +
+               f"; {maps[0] - maps[1]:+.1f} ({maps[0]:+.1f})", "report: +4.8 at 1 m .. -3.7 in GM",
+               all(within(v, -1.5, 1.5) for v in ours + [maps[0] - maps[1]]))
 
 
 @measure("3.4, item 7", "plain field: drift of its mean from 1 m to 20 m and GM, dB")
@@ -490,11 +499,14 @@ def our_orihuela(scenes, look=LOOK_SENTINEL):
         for k in (-1, 0, 1):
             centre = moved(moved(MIDDLE, look, i * 2560), look + 90, k * 2560)
             picture = scenes.patch("orihuela", centre, 10, look, range_m=20000, height_m=20000)
-            cell = np.floor((along - i * 2560) / 10 + CELLS / 2).astype(int)
-            line = np.floor((across - k * 2560) / 10 + CELLS / 2).astype(int)
-            inside = (cell >= 0) & (cell < CELLS) & (line >= 0) & (line < CELLS)
-            ours[inside] = picture.level_db[line[inside], cell[inside]]
-            classes[inside] = picture.class_index[line[inside], cell[inside]]
+            # Line k is a ray from the antenna: at range S + y it lies x_k (S + y) / S aside.
+            y, x = along - i * 2560, across - k * 2560
+            level, code = picture.every_line["level"] / 256, picture.every_line["cell"]
+            cell = np.floor(y / 10 + CELLS / 2).astype(int)
+            line = np.floor(x * 20000 / (20000 + y) / 10 + len(level) / 2).astype(int)
+            inside = (abs(y) < 1280) & (abs(x) < 1280) & (line >= 0) & (line < len(level)) & (cell >= 0) & (cell < CELLS)
+            ours[inside] = level[line[inside], cell[inside]]
+            classes[inside] = code[line[inside], cell[inside]] >> 4 & 15
     return ours, classes
 
 
@@ -584,16 +596,22 @@ def structure_points(scenes, real):
                f"four looks alone {100 * brightest_share(white_grain()):.0f} %", within(ours, 0.3, 0.5))
 
 
-@measure("3.3", "Orihuela: structure pixels over 12 dB above their surroundings")
+@measure("3.3", "Orihuela: structure pixels over 12 dB above the structures around them / above all around them")
 def standing_out(scenes, real):
-    """Against the median of the 21 x 21 pixels around. Real: Sentinel-1. Yardstick: at most 5 % (judgement)."""
+    """Against the mean level of the structures in the 21 x 21 pixels around, and against the median of all of these. Real:
+    Sentinel-1. Yardstick: 0.3 to 3 % of the former (judgement); the latter is a matter of level, which a C-band
+    radar that looks steeply does not tell.
+    """
     o = orihuela(scenes, real)
 
-    def share(picture, mask):
+    def share(picture, masks):
+        mask = masks["structure"]
+        mean = ndimage.uniform_filter(np.where(mask, picture, 0.0), 21) / np.maximum(ndimage.uniform_filter(mask.astype(float), 21), 1e-3)
         filled = np.where(np.isfinite(picture), picture, np.nanmedian(picture))
-        return (filled - ndimage.median_filter(filled, 21) > 12)[mask["structure"]].mean()
+        return 100 * (picture - mean > 12)[mask].mean(), 100 * (filled - ndimage.median_filter(filled, 21) > 12)[mask].mean()
     measured, ours = share(o.real_db, o.mask), share(o.ours_db, o.our_mask)
-    return Row("<= 5 %", f"{100 * measured:.1f} %", f"{100 * ours:.1f} %", "constant picture 0.0 %", ours <= 0.05)
+    form = "{:.1f} / {:.1f} %".format
+    return Row("0.3..3 %", form(*measured), form(*ours), "four looks alone 0.0 %", within(ours[0], 0.3, 3))
 
 
 def settlements(o, count=14):
@@ -659,20 +677,45 @@ def far_noise(scenes, real):
                "scales without one law: report 25, 23, 21, 19", ours[3] <= 10)
 
 
-@measure("4.E5, 6.9, item 10", "sea: fall of its level from 10 to 1.5 degrees of grazing beyond constant gamma, dB")
-def sea_grazing(scenes, real):
-    """SEA over open water in state 2, 300 m up: level at 1.7 km less that at 10 km, freed of noise by the off-map sweep.
+def water_over_field(scenes, reach_m, **keys):
+    """Power of water over that of the even field in SEA, at slant ranges; freed of noise by the sweep off the map."""
+    keys = dict(mode=2, height_m=150, nm=10, sweeps=8, speed_m_s=SPEED_M_S, **keys)
+    water, field, nothing = (scenes.sector(*at, **keys) for at in (("sea", PLAIN), ("plain", PLAIN), ("plain", OFF_MAP)))
+    found = []
+    for reach in reach_m:
+        at = np.argmin(abs(water.range_m() - reach))
+        w, f, n = (power(p.sweeps_db()[:, 32:224, at - 3:at + 4]).mean() for p in (water, field, nothing))
+        found.append(db(max(w - n, 1e-12) / max(f - n, 1e-12)))
+    return found
 
-    Source: below a critical angle sea clutter falls with a high power of it (NRL AD0687403): in state 2 below 2.4 degrees
-    and in state 3 below 0.8, where the noise is stronger than the sea (GIT model). Yardstick: more than 3 dB (judgement).
+
+def critical_loss_db(range_m, height_m=150.0, state=2):
+    """Loss of water at low grazing by GIT's interference factor: Horst, Dyer, Tuley 1978."""
+    wave_m = 4.52e-3 * (2.15 * state**1.04) ** 2.5
+    critical = (WAVELENGTH_M + 0.015) / ((14.4 * WAVELENGTH_M + 5.5) * wave_m)
+    grazing = height_m / range_m - range_m / (2 * EARTH_M)
+    return -db(1 + (critical / grazing) ** 4)
+
+
+@measure("4.E5, 6.9, item 10", "sea state 2: its level at 1.6 degrees of grazing under that at 4.5 degrees, dB")
+def sea_grazing(scenes, real):
+    """Water over an even field at 1.9 and 5.4 km, from 150 m. Source: below a critical angle sea clutter falls with a high
+    power of it (NRL AD0687403); GIT's model has the fourth. Yardstick: GIT's fall, 2 dB either way.
     """
-    keys = dict(mode=2, height_m=300, nm=10, sweeps=12, speed_m_s=SPEED_M_S, sea=2)
-    water, nothing = (scenes.sector(*at, **keys) for at in (("sea", PLAIN), ("plain", OFF_MAP)))
-    at = [np.argmin(abs(water.range_m() - r)) for r in (1730, 10000)]
-    level = [db(max(power(water.sweeps_db()[:, 64:192, i - 6:i + 7]).mean() -
-                    power(nothing.sweeps_db()[:, 64:192, i - 6:i + 7]).mean(), 1e-12)) for i in at]
-    fall = level[0] - level[1]
-    return Row("> 3", "GIT model 7.1", f"{fall:.1f}", "constant gamma 0.0", bool(fall > 3))
+    near, far = water_over_field(scenes, (1900, 5400), sea=2)
+    theory = critical_loss_db(1900) - critical_loss_db(5400)
+    return Row(f"{theory - 2:.1f}..{theory + 2:.1f}", f"GIT {theory:.1f}", f"{near - far:.1f}", "constant gamma 0.0",
+               within(near - far, theory - 2, theory + 2))
+
+
+@measure("4.E5, 6.9, item 10", "sea state 4: upwind and downwind over crosswind, dB")
+def sea_wind(scenes, real):
+    """Means over 40 degrees about each direction. Source: at X band and HH the return depends on the wind's direction (NRL
+    AD0687403, which gives no figures here). Yardstick: upwind 3..8 over crosswind, downwind between the two (judgement).
+    """
+    up, across, down = (water_over_field(scenes, (3000,), sea=4, wind=0, heading=heading)[0] for heading in (0, 90, 180))
+    return Row("3..8, between", "brightest upwind (NRL AD0687403)", f"{up - across:.1f}, {down - across:.1f}",
+               "the same from all sides 0.0, 0.0", within(up - across, 3, 8) and within(down - across, 0, up - across))
 
 
 @measure("4.E6, 6.9, item 10", "GMT: a mover of 5 / 30 knots 55 degrees off the track over the picture without it, dB")
@@ -826,17 +869,20 @@ def shadow_overlap(scenes, range_m, look=200):
     half = np.degrees(np.arctan(2600 / range_m))
     # The direction of the patch at the antenna is that at its middle less the turn of the meridian.
     heading = look + np.sin(np.radians(VALLEYS[0])) * (antenna[1] - VALLEYS[1])
-    terrain = FullTerrain(scenes.data, antenna, height_m, heading, s[-1] + 100, half, half / 200, 10.0 if range_m < 30000 else 20.0)
+    terrain = FullTerrain(scenes.data, antenna, height_m, heading, 1.02 * s[-1] + 100, half, half / 200, 10.0 if range_m < 30000 else 20.0)
+    # Line k is the ray x_k aside at the patch's range S; its cells are as far as their foot on the line of sight.
     azimuth = np.degrees(np.arctan((np.arange(CELLS) + 0.5 - CELLS / 2) * 20 / range_m))
-    row = np.clip(np.round((azimuth + half) / terrain.turn_deg).astype(int), 0, len(terrain.azimuth) - 1)
-    column = np.round(s / terrain.step_m).astype(int) - 1
-    land = terrain.elevation[np.ix_(row, column)] > 10
-    hidden = ndimage.uniform_filter((terrain.hidden_m > 0).astype(float), 3)[np.ix_(row, column)] > 0.5
-    level = db(ndimage.uniform_filter(picture.power, 3))
-    shade = np.percentile(level[hidden & land], 30)
-    dark = level < (shade + np.median(level[~hidden & land])) / 2
-    both = (dark & hidden & land).sum()
-    return both / ((dark | hidden) & land).sum(), hidden[land].mean()
+    row = np.clip(np.round((azimuth + half) / terrain.turn_deg).astype(int), 0, len(terrain.azimuth) - 1)[:, None]
+    away = s[None, :] / np.cos(np.radians(azimuth))[:, None]
+    column = np.clip(np.round(away / terrain.step_m).astype(int) - 1, 0, len(terrain.range) - 1)
+    depth = terrain.hidden_m[row, column]
+    # The image's terrain lies 2 m rms off the full one: what that decides says nothing of the rays.
+    hidden = depth > 5
+    sure = (terrain.elevation[row, column] > 10) & (hidden | ~ndimage.binary_dilation(depth > 0, iterations=1))
+    level = ndimage.median_filter(picture.level_db, 3)
+    shade = np.percentile(level[hidden & sure], 30)
+    dark = level < (shade + np.median(level[~hidden & sure])) / 2
+    return (dark & hidden & sure).sum() / ((dark | hidden) & sure).sum(), hidden[sure].mean()
 
 
 VALLEYS = (20.12, -155.70)
@@ -844,8 +890,9 @@ VALLEYS = (20.12, -155.70)
 
 @measure("item 3", "Hawaii, patch 5 km wide from 15 / 60 km: overlap of its shadows with those along true rays")
 def patch_rays(scenes, real):
-    """Valleys of Kohala in 20 m cells, against the terrain's full resolution seen from the antenna. Dark is what lies, after a
-    mean of 3 x 3, below the middle between shadow and light. Yardstick: 0.95 (report: 0.76 and 0.97 against gdal_viewshed).
+    """Valleys of Kohala in 20 m cells, against the terrain's full resolution seen from the antenna: what is hidden by
+    5 m, and what is lit and not beside a shadow. Dark is what lies, after a median of 3 x 3, below the middle between shadow and light. Yardstick: 0.95
+    (report: 0.76 and 0.97 against gdal_viewshed).
     """
     if not scenes.has(place_of.DTED[0]):
         raise Skip("no DTED of Hawaii here")

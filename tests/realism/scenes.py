@@ -43,7 +43,11 @@ class Picture:
             return
         shape = [int(v) for v in self.head["shape"]]
         raw = np.fromfile(folder / f"{name}.raw", dtype=np.int32).reshape([-1] + shape)
-        self.planes = dict(zip(self.head["planes"], raw))
+        # A patch has a few more lines than cells: rays from the antenna, side by side at the centre's range. What is
+        # measured is the middle of them; `every_line` is for places.
+        self.every_line = dict(zip(self.head["planes"], raw))
+        spare = (shape[0] - CELLS) // 2 if "cell" in self.every_line else 0
+        self.planes = {name: plane[spare: shape[0] - spare] for name, plane in self.every_line.items()}
 
     def number(self, key):
         return float(self.head[key][0])
@@ -143,7 +147,8 @@ class Scenes:
                  "--classes", CLASSES, "--net", to / "scene.net", "--hold-out", "polygons:0.33")
         self.run("landmass-db", "segment", "--image", to / "scene/image.tif", "--net", to / "scene.net",
                  "--classes", CLASSES, "--out", to / "classes.tif")
-        self.reflect_and_build(to, "--heights", to / "scene/heights.tif", "--terrain", to / "scene/terrain.tif")
+        self.reflect_and_build(to, "--heights", to / "scene/heights.tif", "--detail", to / "scene/detail.txt",
+                              "--terrain", to / "scene/terrain.tif")
 
     def make_orihuela(self, to):
         here = "host-sim/programs/realradar"
@@ -250,17 +255,20 @@ TOWER_M, BLOCK_M, FOREST_M = 300.0, 30.0, 12.0
 POINT_DB = 35.0
 # Places in the yard: metres east and north of its middle.
 EDGE_20, EDGE_45 = (-1200, 1200), (1200, 1200)
+# Directions of the edges from east, degrees: 20 and 45 on the grid of the map, whose cells are 4.77 m by 3.54 m here.
+EDGES = {EDGE_20: 26.1, EDGE_45: 53.4}
 FOREST, GRID_TOWN, TOWER, BLOCK, POINT = (0, 0), (-1200, -1200), (1300, -1400), (1300, -300), (0, -1300)
 TANKS, CAR_PARK = (0, 1300), (600, -300)
 FOREST_HALF_M, TOWN_HALF_M = 150, 200
 
 
 def even_classes():
-    """The class table of yard and plain: levels without spread."""
+    """The class table of yard and plain: levels without spread; asphalt and fields meet along straight lines."""
     rows = [("field", "ground", FIELD_DB, 0), ("asphalt", "ground", ASPHALT_DB, 0), ("structure", "structure", TOWN_DB, 8),
             ("forest", "trees", FOREST_DB, 12), ("water", "water", -40, 0)]
     return "".join(f"[{name}]\ncolour = 9 9 {i}\nkind = {kind}\ngamma_db = {gamma}\nspread_db = 0\n"
-                   f"limits_db = {gamma - 9} {gamma + 9}\ntexture = gaussian\nheight_m = {height}\nlooks = 1\n\n"
+                   f"limits_db = {gamma - 9} {gamma + 9}\ntexture = gaussian\nheight_m = {height}\nlooks = 1\n"
+                   f"borders = {'straight' if name == 'asphalt' else 'natural'}\n\n"
                    for i, (name, kind, gamma, height) in enumerate(rows))
 
 
@@ -285,7 +293,7 @@ def yard_planes():
     def box(place, half_east, half_north):
         return (abs(east - place[0]) < half_east) & (abs(north - place[1]) < half_north)
 
-    for place, turn in ((EDGE_20, 20), (EDGE_45, 45)):
+    for place, turn in EDGES.items():
         angle = np.radians(turn)
         beyond = (east - place[0]) * np.sin(angle) - (north - place[1]) * np.cos(angle) > 0
         classes[box(place, 300, 300) & beyond] = 1

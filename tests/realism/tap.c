@@ -6,7 +6,7 @@
  *
  *     sar NAME KEY=VALUE...      lat lon cell_mm look range_m height_m layover epoch
  *     sector NAME KEY=VALUE...   lat lon height_m heading track speed_m_s mode fov nm
- *                                clat clon sweeps epoch sea tilt
+ *                                clat clon sweeps epoch sea wind tilt
  *                                mover_m mover_az mover_mps mover_dbsm
  *     dbs NAME KEY=VALUE...      speed_m_s fov line
  *
@@ -96,9 +96,9 @@ static void read_tiles(struct tap *t)
 enum { CELLS = 256 };
 
 /* Planes of a patch, [line][cell]. */
+typedef int32_t patch_plane[LM_PATCH_LINES_MAX][CELLS];
 static struct patch_planes {
-    int32_t level[CELLS][CELLS], grey[CELLS][CELLS], cell[CELLS][CELLS];
-    int32_t elevation[CELLS][CELLS], height_dm[CELLS][CELLS];
+    patch_plane level, grey, cell, elevation, height_dm;
 } patch;
 
 static void keep_ground(const struct tap *t, uint32_t number)
@@ -114,11 +114,11 @@ static void keep_ground(const struct tap *t, uint32_t number)
 
 static void prefetch_patch(struct tap *t)
 {
-    for (uint32_t line = 0; line < CELLS; line += 4) {
+    for (uint32_t line = 0; line < t->sar.lines; line += 4) {
         lm_sar_prefetch(&t->sar, &t->map.tiles, line);
         read_tiles(t);
     }
-    lm_sar_prefetch(&t->sar, &t->map.tiles, CELLS - 1);
+    lm_sar_prefetch(&t->sar, &t->map.tiles, t->sar.lines - 1);
     lm_sar_prefetch_targets(&t->sar, &t->map.tiles);
     read_tiles(t);
 }
@@ -179,13 +179,17 @@ static int draw_patch(struct tap *t)
     }
     prefetch_patch(t);
     lm_tone_set(&t->tone, &lm_radar_default.sar.tone);
-    while (t->sar.line < CELLS) {
+    while (t->sar.line < t->sar.lines) {
         draw_patch_line(t);
     }
     FILE *raw = open_output(t, "raw"), *head = open_output(t, "head");
-    fwrite(&patch, sizeof patch, 1, raw);
-    fprintf(head, "planes level grey cell elevation height_dm\nshape %d %d\nlod %u\n", CELLS, CELLS,
-            t->sar.lod);
+    const patch_plane *planes[] = {&patch.level, &patch.grey, &patch.cell, &patch.elevation,
+                                   &patch.height_dm};
+    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
+        fwrite(planes[i], sizeof patch.level[0], t->sar.lines, raw);
+    }
+    fprintf(head, "planes level grey cell elevation height_dm\nshape %u %d\nlod %u\n", t->sar.lines,
+            CELLS, t->sar.lod);
     fprintf(head, "reference_m %.3f\nfloor_db %.3f\n", t->sar.grid.reference_m_q10 / 1024.0,
             lm_radar_default.sar.noise_floor_db_q8 / 256.0);
     fprintf(head, "black_db %.3f\nwhite_db %.3f\n", lm_radar_default.sar.tone.black_db_q8 / 256.0,
@@ -262,8 +266,11 @@ static struct lm_target mover_of(const struct tap *t, const struct lm_platform *
 
 static int draw_sector(struct tap *t)
 {
-    const struct lm_environment weather = {.sea_state =
-                                               (uint8_t)number_of(t, "sea", LM_SEA_STATE_OF_IMAGE)};
+    const struct lm_environment weather = {
+        .sea_state = (uint8_t)number_of(t, "sea", LM_SEA_STATE_OF_IMAGE),
+        .has_wind = number_of(t, "wind", -1) >= 0,
+        .wind_from = angle_of(t, "wind"),
+    };
     const struct lm_platform platform = {
         .position = place_of(t, "lat", "lon"),
         .height_m_q10 = (int32_t)(number_of(t, "height_m", 3000) * 1024),
