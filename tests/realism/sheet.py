@@ -114,7 +114,8 @@ def alone(scenes):
                                    ("Ours: the same, looking east.", "town", 2, 90),
                                    ("Ours: the built-in river valley, 5 m cells, looking north.", "river-valley", 5, 0),
                                    ("Ours: the built-in harbour, 2 m cells, looking east.", "harbour", 2, 90)):
-        yield text, grey_of(upwards(scenes.patch("builtin", scenes.place(name), cell, look)))
+        # About what the fields have: in a town the median may be shadow.
+        yield text, grey_of(upwards(scenes.patch("builtin", scenes.place(name), cell, look)), about=place_of.FIELD_DB)
 
 
 def pairs(scenes, real):
