@@ -38,6 +38,6 @@ LIB_reference := $(call host_archives,reference)
 LIB_tables    := $(call host_archives,tables)
 
 # Loops over pixels and rays that are worth vectorising.
-VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect \
+VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect reflectivity/place \
     $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
 $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-trapping-math

@@ -28,11 +28,18 @@ struct cube {
     double in_x, in_y, in_z;
 };
 
+/* Without a call of the library, as which compilers make floor(). */
+static int64_t floor_of(double x)
+{
+    const int64_t whole = (int64_t)x;
+    return whole - (x < (double)whole);
+}
+
 static struct cube cube_of(struct reflect_place p, double step_m)
 {
     const double x = p.x / step_m, y = p.y / step_m, z = p.z / step_m;
-    const double fx = floor(x), fy = floor(y), fz = floor(z);
-    return (struct cube){(int64_t)fx, (int64_t)fy, (int64_t)fz, x - fx, y - fy, z - fz};
+    const int64_t cx = floor_of(x), cy = floor_of(y), cz = floor_of(z);
+    return (struct cube){cx, cy, cz, x - (double)cx, y - (double)cy, z - (double)cz};
 }
 
 /* The finishing steps of splitmix64 over a sum of multiples of odd numbers. */
@@ -49,8 +56,12 @@ static uint64_t hash(uint64_t seed, int64_t x, int64_t y, int64_t z)
  * of the width of one. */
 static double normal_of(uint64_t bits)
 {
-    const double step = (double)(bits * 0xd6e8feb86659fd93u >> 32) * (1.0 / 4294967296.0);
-    return (__builtin_popcountll(bits) + step - 32.5) * 0.24935;
+    const uint64_t pairs = bits - (bits >> 1 & 0x5555555555555555u);
+    const uint64_t fours = (pairs & 0x3333333333333333u) + (pairs >> 2 & 0x3333333333333333u);
+    const uint64_t bytes = (fours + (fours >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    const int set = (int)(bytes * 0x0101010101010101u >> 56);
+    const double step = (double)(int32_t)(bits * 0xd6e8feb86659fd93u >> 33) * (1.0 / 2147483648.0);
+    return (set + step - 32.5) * 0.24935;
 }
 
 static double smooth_step(double t)

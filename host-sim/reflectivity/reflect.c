@@ -181,7 +181,9 @@ void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
     law->mean_db += 10 * log10(power);
 }
 
-double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
+/* The value at a place, without the pattern of the cell where that averages out. */
+static double value_at(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p,
+                       bool has_cell)
 {
     const struct db_class *c = law->c;
     if (c->spread_db <= 0) {
@@ -191,15 +193,20 @@ double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct
     const bool grows = c->kind == DB_KIND_WATER || c->kind == DB_KIND_TREES;
     const double object = grows ? reflect_pattern_smooth(own, p, smooth_m)
                                 : reflect_pattern_parcels(own, p, parcel_m);
-    const double rank = law->weight[0] * object +
-                        law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
-                        law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m);
+    const double rank =
+        law->weight[0] * object + law->weight[1] * reflect_pattern_smooth(own + 1, p, tens_m) +
+        (has_cell ? law->weight[2] * reflect_pattern_smooth(own + 2, p, cell_m) : 0);
     const double value = value_of_rank(law, rank);
     if (law->spot_share <= 0) {
         return value;
     }
     const double spot = reflect_pattern_spots(own + 3, p, law->spot_share);
     return spot < 0 ? value : value + spot_db(law, spot);
+}
+
+double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p)
+{
+    return value_at(law, seed, p, true);
 }
 
 double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, double latitude,
@@ -217,7 +224,7 @@ double db_reflect_assign_cell(const struct db_reflect_law *law, uint64_t seed, d
         const double north = ((i / side + 0.5) / side - 0.5) * width_m;
         const struct reflect_place p =
             reflect_place_beside(middle, latitude, longitude, east, north);
-        power += exp(db_reflect_assign(law, seed, p) / db_per_neper);
+        power += exp(value_at(law, seed, p, width_m <= 4 * cell_m) / db_per_neper);
     }
     /* Where the places are farther apart than what they stand for is wide, their mean varies more
      * than that of all the ground. */
