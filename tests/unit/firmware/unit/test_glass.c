@@ -5,6 +5,9 @@
 
 #include <stdio.h>
 
+/* Pairs of a mode and a field of view. */
+enum { FOVS = LM_FOVS, PAIRS = (int)LM_SECTOR_MODES * (int)LM_FOVS };
+
 /* Pixels that are not black outside the frame, but for texts and the hand that shows life. */
 static void nothing_is_beside_the_frame(const struct walk *w, const char *situation)
 {
@@ -26,10 +29,10 @@ static void nothing_is_beside_the_frame(const struct walk *w, const char *situat
 static void check_sectors(struct walk *w)
 {
     const struct lm_radar *radar = &lm_radar_default;
-    for (int32_t n = 0; n < LM_SECTOR_MODES * LM_FOVS * radar->ranges * LM_AZIMUTHS; n++) {
-        const int32_t mode = n % LM_SECTOR_MODES, fov = n / LM_SECTOR_MODES % LM_FOVS;
-        const int32_t range = n / (LM_SECTOR_MODES * LM_FOVS) % radar->ranges;
-        const int32_t azimuth = n / (LM_SECTOR_MODES * LM_FOVS * radar->ranges);
+    for (int32_t n = 0; n < PAIRS * radar->ranges * LM_AZIMUTHS; n++) {
+        const int32_t mode = n / FOVS % LM_SECTOR_MODES, fov = n % FOVS;
+        const int32_t range = n / PAIRS % radar->ranges;
+        const int32_t azimuth = n / (PAIRS * radar->ranges);
         const int32_t range_nm = radar->range[range].range_nm;
         const struct lm_control narrow = {.kind = LM_CONTROL_AZIMUTH, .azimuth_index = azimuth};
         const struct lm_control scale = {.kind = LM_CONTROL_RANGE, .range_nm = range_nm};
@@ -180,7 +183,7 @@ static void turn_all(struct walk *w, bool is_up)
 static void look_at_pictures(struct walk *w)
 {
     const struct lm_radar *radar = &lm_radar_default;
-    for (int32_t n = 0; n < LM_SECTOR_MODES * LM_FOVS; n++) {
+    for (int32_t n = 0; n < PAIRS; n++) {
         const int32_t mode = n / LM_FOVS, fov = n % LM_FOVS;
         if (fov > radar->mode[mode].fov_last) {
             continue;
