@@ -52,6 +52,10 @@ if command -v valgrind > /dev/null; then
     count sar > "$work/sar"
     table 65536 '%7.1f' "SAR patch, a pixel" < "$work/sar"
     awk '$1 == "lm_sar_prefetch" { printf "  %-44s %7.1f\n", "and, before it: asking for its tiles", $2 / 65536 }' "$work/sar"
+    echo
+    echo "The same of cells of 1 m, finer than the map's of 4.8 m"
+    count finer > "$work/finer"
+    table 65536 '%7.1f' "SAR patch finer than the map, a pixel" < "$work/finer"
     count chips > "$work/chips"
     echo
     echo "Sixteen targets with a signature, 60 x 60 cells of 0.5 m each: instructions a target and patch"

@@ -278,12 +278,12 @@ int main(int argc, char **argv)
     static struct world world; /* large, and this is a program, not the firmware */
     const char *what = argc == 3 ? argv[1] : "";
     const int count = argc == 3 ? atoi(argv[2]) : 0;
-    const bool has_chips = strcmp(what, "chips") == 0;
-    const int is_patch = has_chips || strcmp(what, "sar") == 0,
+    const bool has_chips = strcmp(what, "chips") == 0, is_finer = strcmp(what, "finer") == 0;
+    const int is_patch = has_chips || is_finer || strcmp(what, "sar") == 0,
               is_comparison = strcmp(what, "compare") == 0;
     const struct sector_case *sector = find_case(what);
     if (count < 1 || (!is_patch && !is_comparison && !sector)) {
-        fputs("usage: stage_bench sar|chips|gm|exp|dbs1|dbs2|gmt|sea|compare N\n", stderr);
+        fputs("usage: stage_bench sar|finer|chips|gm|exp|dbs1|dbs2|gmt|sea|compare N\n", stderr);
         return 2;
     }
     if (open_world(&world, sector ? 12 : 9) != 0) {
@@ -298,5 +298,6 @@ int main(int argc, char **argv)
         return 0;
     }
     const struct lm_target_set targets = parked(&world);
-    return draw_patches(&world, has_chips ? &targets : NULL, has_chips ? 500 : CELL_MM, count) != 0;
+    const uint32_t cell_mm = has_chips ? 500 : is_finer ? 1000 : CELL_MM;
+    return draw_patches(&world, has_chips ? &targets : NULL, cell_mm, count) != 0;
 }

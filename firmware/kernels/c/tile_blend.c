@@ -58,7 +58,7 @@ static inline int32_t height_dm_of(const int32_t *height_dm, int32_t cell)
 /* Difference of two heights. It wraps as the vectors of arm64/ do, beyond 3.2 km. */
 static inline int32_t apart_dm(int32_t height_dm, int32_t from_dm)
 {
-    return (int16_t)(uint16_t)(uint32_t)(height_dm - from_dm);
+    return (int32_t)((uint32_t)(height_dm - from_dm) << 16) >> 16;
 }
 
 struct heights {
@@ -75,14 +75,15 @@ static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north
 {
     const uint32_t north_q4 = north >> (map->grown_shift - 4);
     const uint32_t east_q4 = east >> (map->grown_shift - 4);
-    const int32_t row = (int32_t)(north_q4 >> 4) % LM_K_GROWN_SIDE;
-    const int32_t column = (int32_t)(east_q4 >> 4) % LM_K_GROWN_SIDE;
-    const uint16_t *texel = map->grown + row * LM_K_GROWN_STRIDE + column;
-    const uint32_t south = fx_load_u32(texel), next = fx_load_u32(texel + LM_K_GROWN_STRIDE);
+    const int32_t row = (int32_t)(north_q4 >> 4 & (LM_K_GROWN_SIDE - 1));
+    const int32_t column = (int32_t)(east_q4 >> 4 & (LM_K_GROWN_SIDE - 1));
+    const int32_t at = row * LM_K_GROWN_STRIDE + column;
+    const uint32_t south = fx_load_u32(map->grown + at);
+    const uint32_t next = fx_load_u32(map->grown + at + LM_K_GROWN_STRIDE);
     const uint32_t u = east_q4 % 16, v = north_q4 % 16;
     const uint32_t at_south = (south >> 8 & 255) * (16 - u) + (south >> 24) * u;
     const uint32_t at_north = (next >> 8 & 255) * (16 - u) + (next >> 24) * u;
-    return (struct grown){(int8_t)(uint8_t)south,
+    return (struct grown){(int32_t)(south << 24) >> 24,
                           (int32_t)(at_south * (16 - v) + at_north * v) - 128 * 256};
 }
 
