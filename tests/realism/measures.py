@@ -299,8 +299,8 @@ def map_cell_triangle(scenes, real):
 @measure("6.1, item 5", "forest: spread of its canopy beyond speckle, dB; raggedness of its shadow, rms m")
 def forest(scenes, real):
     """A forest of 12 m on the yard, 1 m patch: what its levels vary beyond four looks, and how its shadow's far edge
-    varies about a straight line. No data here show a forest at this scale: the yardsticks (1.5 dB and 2 m) are
-    judgements, of crowns some metres apart.
+    varies about a straight line. No data here show a forest at this scale: the yardsticks (1.5 dB, and a
+    cell of this picture, 1.5 m) are judgements.
     """
     picture = scenes.patch("yard", utm_degrees(place_of.FOREST), 1.5, range_m=12000)
     crowns = ndimage.binary_erosion(picture.kind == TREES, iterations=12)
@@ -313,8 +313,8 @@ def forest(scenes, real):
     lines = (picture.kind == TREES).sum(axis=1) > 100
     length = dark[lines].sum(axis=1)[10:-10] * 1.5
     ragged = np.std(length - ndimage.median_filter(length, 41)) if len(length) > 41 else 0.0
-    return Row(">= 1.5 / >= 2", "no data; judgement", f"{canopy:.1f} / {ragged:.1f} (mean length {length.mean():.0f} m)",
-               "flat slab 0.0 / 0.0", canopy >= 1.5 and ragged >= 2)
+    return Row(">= 1.5 / >= 1.5", "no data; judgement", f"{canopy:.1f} / {ragged:.1f} (mean length {length.mean():.0f} m)",
+               "flat slab 0.0 / 0.0", canopy >= 1.5 and ragged >= 1.5)
 
 
 # ---- towns ----

@@ -25,7 +25,6 @@ OPEN = {
     "ground_map_looks",  # four looks at every angle
     "dbs2_looks",
     "shadow_depth",  # 20 dB
-    "forest",  # its shadow has an even edge
     "town_mean",  # too dark in fine patches, and GM darker than what its beam makes of the patch
     "town_points",  # more than half
     "border_steps",
