@@ -32,21 +32,19 @@ void image_ground_init(struct image_ground *g, const struct lm_tile *tile)
     }
 }
 
-/* What stands out of a cell: of the four tops below, each above the terrain at its own place, the
- * higher of two that a line of sight passes, and the mean of both such pairs; along the axis that
- * gives more. A plane has none, however steep. */
+/* What stands out of a cell: the highest of the four tops below, each above the terrain at its own
+ * place. A plane has none, however steep. */
 static double crest_q6(const struct lm_tile *tile, const struct image_ground *below, int row,
                        int column, int fine_row, int fine_column)
 {
-    double above[2][2];
+    double crest = 0;
     for (int i = 0; i < 4; i++) {
         const int north = i / 2, east = i % 2;
-        above[north][east] = below->top_q6[fine_row + north][fine_column + east] -
-                             terrain_q6(tile, 4 * row + 1 + 2 * north, 4 * column + 1 + 2 * east);
+        crest =
+            fmax(crest, below->top_q6[fine_row + north][fine_column + east] -
+                            terrain_q6(tile, 4 * row + 1 + 2 * north, 4 * column + 1 + 2 * east));
     }
-    const double to_north = (fmax(above[0][0], above[1][0]) + fmax(above[0][1], above[1][1])) / 2;
-    const double to_east = (fmax(above[0][0], above[0][1]) + fmax(above[1][0], above[1][1])) / 2;
-    return fmax(fmax(to_north, to_east), 0);
+    return crest;
 }
 
 void image_ground_take(struct image_ground *g, const struct lm_tile *tile,

@@ -410,9 +410,7 @@ static double crest_m(struct lm_tile *tile, const struct ground *below, uint32_t
         e[i] = below->top_m[2 * r % TILE + i / 2][2 * c % TILE + i % 2] -
                terrain_m(tile, r + 0.25 + 0.5 * (i / 2), c + 0.25 + 0.5 * (i % 2));
     }
-    const double columns = (fmax(e[0], e[2]) + fmax(e[1], e[3])) / 2;
-    const double rows = (fmax(e[0], e[1]) + fmax(e[2], e[3])) / 2;
-    return fmax(fmax(columns, rows), 0);
+    return fmax(fmax(fmax(e[0], e[1]), fmax(e[2], e[3])), 0);
 }
 
 /* Cells of a tile that has its posts. */

@@ -6,5 +6,6 @@ TESTS += $(REAL_TESTS)
 $(REAL_TESTS:$(O)/bin/%=$(O)/%.o) $(O)/tests/system/real_scene.o: EXTRA_CFLAGS := $(call pkgs,cflags,gdal)
 $(REAL_TESTS): $(O)/bin/tests/system/%: $(O)/tests/system/%.o $(O)/tests/system/real_scene.o \
     $(O)/drivers/flash/flash_file.o \
-    $(LIB_support) $(LIB_firmware) $(LIB_fixed) | $(addprefix $(O)/bin/landmass-,db nav sim target)
+    $(LIB_support) $(O)/host-sim/lib/liblib.a $(LIB_firmware) $(LIB_fixed) \
+    | $(addprefix $(O)/bin/landmass-,db nav sim target)
 $(REAL_TESTS): LDLIBS := -lcmocka $(call pkgs,libs,gdal proj libpng)

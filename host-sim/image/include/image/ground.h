@@ -17,8 +17,8 @@
 
 struct image_ground {
     uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS]; /* height codes of structures */
-    /* Of the terrain in each cell, metres x 64: what a line of sight along either axis meets on
-     * average. Sums of whole numbers and halves: exact. */
+    /* Of the terrain in each cell, metres x 64: in the middle, plus what stands out of the cell.
+     * Whole numbers, quarters and their like: exact. */
     double top_q6[LM_TILE_CELLS][LM_TILE_CELLS];
 };
 
