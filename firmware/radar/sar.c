@@ -12,7 +12,11 @@
 _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
                "the table leaves room for the guard cells");
 
-enum { LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10), DWELL_MOST_MS = (1 << 17) - 1 };
+enum {
+    SIDE_LOBE_DOWN_Q8 = LM_DB_Q8(35),
+    LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10),
+    DWELL_MOST_MS = (1 << 17) - 1
+};
 
 /* Component of the velocity across the line of sight, to the right. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
@@ -467,6 +471,7 @@ static void add_floor_and_speckle(struct lm_sar *s, uint32_t number, int32_t *cl
     }
     const int32_t leak_db_q8 =
         lm_patch_floor_run(&s->floor, &s->radar->sar, number, clutter_db_q8 + LM_SAR_GUARD, cells);
+    s->shadow_db_q8 = fx_db_q8_sum_vec(s->floor_db_q8, leak_db_q8);
     lm_grain_floor_run(&s->speckle, place, fx_db_q8_sum_vec(noise_db_q8, leak_db_q8),
                        clutter_db_q8 + LM_SAR_GUARD, level_db_q8 + LM_SAR_GUARD, cells);
 }
@@ -526,18 +531,28 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
                          struct lm_line *line)
 {
     for (; s->sampled < end; s->sampled++) {
-        lm_sar_sample_line(s, tiles, s->sampled, line, ring_line(s, s->sampled));
+        int32_t *const level_db_q8 = ring_line(s, s->sampled);
+        lm_sar_sample_line(s, tiles, s->sampled, line, level_db_q8);
+        /* A chip has the side lobes that were baked into it: on its lines none are found. */
+        const bool has_chip = s->chips && s->target_patch.on_line[s->sampled] != 0;
+        lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8 + LM_SAR_GUARD,
+                           s->radar->sar.cells,
+                           has_chip ? INT32_MAX : s->shadow_db_q8 + SIDE_LOBE_DOWN_Q8,
+                           s->command.centre.longitude);
         lm_target_patch_mark_hidden(&s->target_patch, s->sampled, line->lit.horizon,
                                     s->grid.tangent_bits, s->grid.cells);
     }
 }
 
-/* Add the scatterers to lines until `end` have them. It is done after speckle and noise, which
- * belong to the clutter: the echo of a target has its own fluctuation. */
+/* Add side lobes of the ground, and the scatterers, to lines until `end` have them. It is done
+ * after speckle and noise, which belong to the clutter: the echo of a target has its own
+ * fluctuation. */
 static void add_scatterers(struct lm_sar *s, uint32_t end)
 {
     const int32_t least_db_q8 = s->radar->sar.noise_floor_db_q8 - LEFT_OUT_BELOW_FLOOR_Q8;
     for (; s->summed < end; s->summed++) {
+        lm_side_lobes_add(&s->side_lobes, s->summed, ring_line(s, s->summed) + LM_SAR_GUARD,
+                          s->radar->sar.cells);
         lm_target_patch_add_scatterers(&s->target_patch, s->summed, least_db_q8, &s->geometry,
                                        ring_line(s, s->summed));
     }
@@ -601,6 +616,7 @@ void lm_sar_restart(struct lm_sar *s)
 {
     s->line = s->sampled = s->summed = s->hidden_known = s->second_foreground = 0;
     s->has_target_patch = false;
+    lm_side_lobes_clear(&s->side_lobes);
     lm_patch_floor_clear(&s->floor);
     lm_target_patch_clear(&s->target_patch);
 }

@@ -12,6 +12,7 @@
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_patch_floor_run
  *     speckle                      lm_speckle_run               lm_grain_floor_run
+ *     side lobes of the ground     -                            lm_side_lobes_find, _add
  *     scatterers of targets        lm_line_add_targets          lm_target_patch_add_scatterers
  *     elevation pattern            lm_antenna_pattern_apply     -
  *     ground range to slant range  lm_slant_run                 -

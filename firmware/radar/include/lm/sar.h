@@ -43,6 +43,7 @@
 #include "lm/radar.h"
 #include "lm/refusal.h"
 #include "lm/sar_command.h"
+#include "lm/side_lobes.h"
 #include "lm/target_patch.h"
 #include "lm/tone.h"
 
@@ -129,6 +130,8 @@ struct lm_sar {
     uint32_t sampled, summed;        /* lines in the ring; lines that have the scatterers added */
     bool has_target_patch;           /* true once the targets' scatterers were computed */
     uint32_t hidden_known;           /* scatterers tested for being hidden, before line 0 */
+    int32_t shadow_db_q8;            /* level of a shadow on the line sampled last, dB of gamma */
+    struct lm_side_lobes side_lobes; /* of the ground */
     struct lm_target_patch target_patch; /* targets, from the first line on */
     enum lm_sar_detail detail_state;
     struct lm_detail_reader detail_reader;

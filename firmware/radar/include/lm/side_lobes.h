@@ -1,0 +1,66 @@
+/* Side lobes of the map: strong returns of the ground have the point response, as targets have. The
+ * stage finds the strongest cells of each line of a patch, and gives their side lobes to the cells
+ * along and across. Law: docs/EQUATIONS.md, "Side lobes of the ground".
+ *
+ *               .
+ *               .              a cross: along the line of the cell, and on the lines beside it,
+ *
+ *       . . .   #   . . .      from the second cell to LM_RESPONSE_REACH on each side
+ *
+ *               .
+ *               .
+ *
+ * Order of the calls: _clear for a patch, _find for each line once it has its noise and speckle,
+ * _add for each line once those LM_RESPONSE_REACH lines further on were found. No call fails. */
+#ifndef LM_SIDE_LOBES_H
+#define LM_SIDE_LOBES_H
+
+#include <stdint.h>
+
+#include "lm/response.h"
+
+enum {
+    LM_SIDE_LOBES_A_LINE = 4, /* cells of a line that have side lobes, at most */
+    LM_SIDE_LOBES_LINES = 32, /* lines that are remembered */
+    LM_SIDE_LOBES_OFFSETS = 8 /* places of a point in its cell, each way */
+};
+
+_Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and those ahead");
+
+/* Strong cell: its level with speckle, and how far its point lies from the cell's middle. */
+struct lm_strong_cell {
+    int32_t cell, level_db_q8;
+    int32_t right_16ths, beyond_16ths; /* of a cell: -4..3 */
+};
+
+/* Strong cells of the lines around the one that is drawn. The caller owns it; all fields are
+ * read-only to others. */
+struct lm_side_lobes {
+    struct {
+        uint32_t count;
+        struct lm_strong_cell strong[LM_SIDE_LOBES_A_LINE]; /* the strongest first */
+    } line[LM_SIDE_LOBES_LINES];                            /* line n at n % LM_SIDE_LOBES_LINES */
+    uint32_t found;                                         /* lines that were searched */
+    /* Response of a point, by its offset in 16ths and the cells from its own, over that in its own.
+     */
+    int16_t side_db_q8[LM_SIDE_LOBES_OFFSETS][2 * LM_RESPONSE_REACH + 1];
+};
+
+/* Forget all lines. Cost: some 7,000 instructions. */
+void lm_side_lobes_clear(struct lm_side_lobes *s);
+
+/* Find the strong cells of line `line`, which is the one after the last. A cell is strong if its
+ * level is at least `least_db_q8` and the largest within LM_RESPONSE_REACH / 2 cells along, and
+ * stands LM_SIDE_LOBES_ABOVE_DB_Q8 over the cells at both ends of these. `seed` chooses where in
+ * its cell a point lies. Cost: 2 instructions a cell, and 40 for each that is strong. */
+enum { LM_SIDE_LOBES_ABOVE_DB_Q8 = 28 * 256 };
+void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
+                        uint32_t cells, int32_t least_db_q8, uint32_t seed);
+
+/* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
+ * to LM_RESPONSE_REACH before and behind it. Cost: 15 instructions for each cell of a cross that
+ * lies on the line: at most 56 along it and 56 across. */
+void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
+                       uint32_t cells);
+
+#endif
