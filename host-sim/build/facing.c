@@ -10,9 +10,9 @@
 
 enum { CELLS = LM_TILE_CELLS, REACH = 3 };
 
-/* UNSOURCED: a block's least size, and how much of the border must agree for a direction. Borders
- * at random agree to less than a tenth over 400 m. */
-static const double block_m = 60, agreement_least = 0.12;
+/* UNSOURCED, chosen over Orihuela: a block's least size, and how much of the border must agree for
+ * a direction. */
+static const double block_m = 60, agreement_least = 0.08;
 
 static const double pi = 3.14159265358979323846;
 

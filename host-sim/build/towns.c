@@ -10,7 +10,7 @@ enum { CELLS = LM_TILE_CELLS };
 
 /* UNSOURCED: what counts as built-up, and how steeply towns are usually looked at: from 3,000 m,
  * 20 km away. */
-static const double surroundings_m = 150, built_share = 0.1, grazing_tangent = 0.15;
+static const double surroundings_m = 150, built_share = 0.05, grazing_tangent = 0.15;
 /* Levels without towns of their own are not turned up to the table's mean by force. */
 static const double gain_most_db = 12;
 

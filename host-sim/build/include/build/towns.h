@@ -31,7 +31,7 @@ struct build_towns_tile {
 };
 
 /* Mark cells whose surroundings, some 150 m wide and inside the tile, are built-up: structures on a
- * tenth of them or more. */
+ * twentieth of them or more. */
 void build_towns_mark(const uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS],
                       const struct lm_classes *classes, double cell_m,
                       float built[LM_TILE_CELLS][LM_TILE_CELLS]);

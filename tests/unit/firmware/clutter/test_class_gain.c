@@ -12,7 +12,7 @@
 
 enum { ROOM = 16 }; /* what the stages take for a few cells */
 
-static const struct lm_facing_config walls = {FX_BAM_DEG(8), 100};
+static const struct lm_facing_config walls = {FX_BAM_DEG(7), 60};
 
 static uint32_t cell_of(uint32_t class_index)
 {
@@ -126,7 +126,7 @@ static struct lm_classes faced_classes(void)
 TEST(walls_gain_what_the_reference_has_from_every_side)
 {
     static const struct lm_facing_config tables[] = {
-        {FX_BAM_DEG(8), 100}, {FX_BAM_DEG(4), 10}, {FX_BAM_DEG(45), 500}, {FX_BAM_DEG(12), 1000}};
+        {FX_BAM_DEG(7), 60}, {FX_BAM_DEG(4), 10}, {FX_BAM_DEG(45), 500}, {FX_BAM_DEG(12), 1000}};
     const struct lm_classes classes = faced_classes();
     for (size_t n = 0; n < sizeof tables / sizeof tables[0]; n++) {
         const struct ref_params params = {.lobe_half_deg = hs_degrees(tables[n].lobe_half),
