@@ -57,8 +57,8 @@ uint8_t lm_scan_lod(const struct lm_db *db, uint32_t cell_mm)
 /* Lengths of cells for crowns: the map must not show them, and the picture must. */
 enum { CROWN_CELL_MM = 3500 };
 
-/* Eight texels a cell, or those of the crowns' own size. */
-enum { TEXEL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 3 };
+/* Four texels a cell, or those of the crowns' own size. */
+enum { TEXEL_SHIFT = 32 - LM_TILE_CELLS_LOG2 - 2 };
 
 void lm_scan_blend_set(struct lm_scan_blend *b, const struct lm_db *db, uint32_t cell_mm)
 {

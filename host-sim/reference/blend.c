@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { TEXELS = 128, ROWS_OF_TREES = 11, TREES_IN_A_ROW = 10 };
+enum { TEXELS = 64, STEPS = 128, ROWS_OF_TREES = 11, TREES_IN_A_ROW = 10 };
 
 /* H of the page. */
 static double drawn(int a, int b, int c)
@@ -13,7 +13,7 @@ static double drawn(int a, int b, int c)
     return ldexp(fx_hash3((uint32_t)a, (uint32_t)b, (uint32_t)c), -32);
 }
 
-double ref_grown_bend(int row, int column)
+static double bend_at(int row, int column)
 {
     const double turn = 2 * acos(-1.0);
     double sum = 0;
@@ -21,7 +21,8 @@ double ref_grown_bend(int row, int column)
         for (int q = p == 0 ? 1 : -16; q <= 16; q++) {
             const double k = hypot(p, q);
             if (k >= 3 && k <= 16) {
-                const double phase = (p * row + q * column) / (double)TEXELS + drawn(p, q, 1);
+                const double phase =
+                    (p * 2 * row + q * 2 * column) / (double)STEPS + drawn(p, q, 1);
                 sum += cos(turn * phase) / pow(k, 1.2);
             }
         }
@@ -32,8 +33,8 @@ double ref_grown_bend(int row, int column)
 /* The shorter way round between two places of the pattern. */
 static double apart(double a, double b)
 {
-    const double d = fmod(fabs(a - b), TEXELS);
-    return fmin(d, TEXELS - d);
+    const double d = fmod(fabs(a - b), STEPS);
+    return fmin(d, STEPS - d);
 }
 
 static double dome(int i, int j, int row, int column)
@@ -41,7 +42,7 @@ static double dome(int i, int j, int row, int column)
     const double north = 128.0 / ROWS_OF_TREES * (i + 0.5 + 0.7 * (drawn(i, j, 2) - 0.5));
     const double east = 128.0 / TREES_IN_A_ROW * (j + 0.5 * (i % 2) + 0.7 * (drawn(i, j, 3) - 0.5));
     const double radius = 4.6 + 2.6 * drawn(i, j, 4);
-    const double x = hypot(apart(row, north), 0.75 * apart(column, east)) / radius;
+    const double x = hypot(apart(2 * row, north), 0.75 * apart(2 * column, east)) / radius;
     if (drawn(i, j, 6) < 1.0 / 12 || x >= 1) {
         return 0;
     }
@@ -59,13 +60,24 @@ static double crown_at(int row, int column)
     return round(canopy / 0.923 * 256) / 256;
 }
 
-double ref_grown_crown(double row, double column)
+/* What lies between four texels. */
+static double between(double (*at)(int row, int column), double row, double column)
 {
     const int r = (int)floor(row), c = (int)floor(column), after_r = (r + 1) % TEXELS,
               after_c = (c + 1) % TEXELS;
     const double v = row - r, u = column - c;
-    return (1 - v) * ((1 - u) * crown_at(r, c) + u * crown_at(r, after_c)) +
-           v * ((1 - u) * crown_at(after_r, c) + u * crown_at(after_r, after_c));
+    return (1 - v) * ((1 - u) * at(r, c) + u * at(r, after_c)) +
+           v * ((1 - u) * at(after_r, c) + u * at(after_r, after_c));
+}
+
+double ref_grown_bend(double row, double column)
+{
+    return between(bend_at, row, column);
+}
+
+double ref_grown_crown(double row, double column)
+{
+    return between(crown_at, row, column);
 }
 
 static int class_of(uint16_t cell)
@@ -104,7 +116,7 @@ void ref_blend_cells(const struct ref_db *db, const struct ref_corners *c, struc
         share[class_of(c->cell[i])] += weight[i];
         are_mixed = are_mixed || class_of(c->cell[i]) != class_of(c->cell[0]);
     }
-    const double bend = are_mixed ? ref_grown_bend((int)c->texel_row, (int)c->texel_column) : 0;
+    const double bend = are_mixed ? ref_grown_bend(c->texel_row, c->texel_column) : 0;
     const int k = winner_of(db, c->cell, share, bend);
     for (int i = 0; i < 4; i++) {
         if (class_of(c->cell[i]) == k) {

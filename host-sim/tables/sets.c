@@ -402,9 +402,9 @@ static const struct table response_tables[] = {
      RESPONSE_CELLS + 1, response_envelope},
 };
 
-/* What has grown: a pattern that repeats itself, in texels of 0.6 m. Numbers that look drawn are
- * hashes, so that every machine makes the same. */
-enum { GROWN = LM_K_GROWN_SIDE, WAVES_ACROSS = 16, TREES_ACROSS = 11, TREES_ALONG = 10 };
+/* What has grown: a pattern that repeats itself, in steps of 0.6 m, of which a texel has two.
+ * Numbers that look drawn are hashes, so that every machine makes the same. */
+enum { GROWN = 128, WAVES_ACROSS = 16, TREES_ACROSS = 11, TREES_ALONG = 10 };
 
 /* 0..1, by three numbers. */
 static long double drawn(int a, int b, int c)
@@ -447,14 +447,14 @@ static long double bend_at(int row, int column)
     return sum;
 }
 
-/* Distance on a ring of GROWN texels. */
+/* Distance on a ring of GROWN steps. */
 static long double around(long double x)
 {
     return x - GROWN * floorl(x / GROWN + 0.5L);
 }
 
-/* Height of the crown of tree (i, j) over texel (row, column), as a share of the canopy's, or 0: a
- * dome 5 to 8 m wide. One tree in twelve is missing. A texel is 3/4 as wide as high: the cosine of
+/* Height of the crown of tree (i, j) at (row, column), as a share of the canopy's, or 0: a
+ * dome 5 to 8 m wide. One tree in twelve is missing. A step is 3/4 as wide as high: the cosine of
  * a middle latitude. */
 static long double crown_at(int i, int j, int row, int column)
 {
@@ -469,7 +469,7 @@ static long double crown_at(int i, int j, int row, int column)
     return away >= 1 || drawn(m, n, 6) < 1 / 12.0L ? 0 : top * (1 - 0.16L * away * away);
 }
 
-enum { CROWN_MEAN_PERMILLE = 923 }; /* of all texels, before they are made 1 */
+enum { CROWN_MEAN_PERMILLE = 923 }; /* of all places, before they are made 1 */
 
 static long double canopy_at(int row, int column)
 {
@@ -487,7 +487,7 @@ static long double canopy_at(int row, int column)
 static int64_t grown(int row, int i)
 {
     (void)row;
-    const int r = i / LM_K_GROWN_STRIDE % GROWN, c = i % LM_K_GROWN_STRIDE % GROWN;
+    const int r = 2 * (i / LM_K_GROWN_STRIDE) % GROWN, c = 2 * (i % LM_K_GROWN_STRIDE) % GROWN;
     const int64_t bend = llroundl(fminl(fmaxl(60 * bend_at(r, c), -127), 127));
     const int64_t crown = 128 + llroundl(256 * (canopy_at(r, c) - 1));
     return (bend & 255) | crown << 8;

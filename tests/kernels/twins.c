@@ -237,7 +237,7 @@ static void draw_blend(struct input *in)
                 (uint16_t)(0xFF0F | kinds);
         }
     }
-    in->number[0] = 20 + (int32_t)hs_rng_below(&in->rng, 6);
+    in->number[0] = 20 + (int32_t)hs_rng_below(&in->rng, 7);
     in->number[1] = (int32_t)hs_rng_below(&in->rng, 65536);
     in->number[3] = (int32_t)(hs_rng_u64(&in->rng) & hs_rng_u64(&in->rng) & 0xFFFF);
     in->number[2] = hs_rng_below(&in->rng, 2) ? (int32_t)hs_rng_below(&in->rng, 65536) : 0;

@@ -75,9 +75,9 @@ static inline uint16x8_t neon_bit_of(uint32_t mask, int16x8_t kind)
     return vshlq_u16(vdupq_n_u16((uint16_t)mask), vnegq_s16(kind));
 }
 
-/* What has grown at eight places: bends in steps, and crowns. */
+/* What has grown at eight places: bends and crowns, bytes times 256. */
 struct neon_grown {
-    int16x8_t bend, crown_q16;
+    int16x8_t bend_q8, crown_q16;
 };
 
 /* Two texels side by side at each of eight places. */
@@ -112,6 +112,14 @@ static inline uint16x8_t neon_crowns(uint16x8_t west, uint16x8_t east, uint16x8_
                      vshrq_n_u16(east, 8), u);
 }
 
+/* Bends between two texels, in sixteenths. */
+static inline int16x8_t neon_bends(uint16x8_t west, uint16x8_t east, int16x8_t u)
+{
+    const int16x8_t at_west = vshrq_n_s16(vreinterpretq_s16_u16(vshlq_n_u16(west, 8)), 8);
+    const int16x8_t at_east = vshrq_n_s16(vreinterpretq_s16_u16(vshlq_n_u16(east, 8)), 8);
+    return vmlaq_s16(vmulq_s16(at_west, vsubq_s16(vdupq_n_s16(16), u)), at_east, u);
+}
+
 static inline struct neon_grown neon_grown_at(const struct lm_k_blend *map,
                                               const uint32x4_t north[2], const uint32x4_t east[2])
 {
@@ -134,14 +142,17 @@ static inline struct neon_grown neon_grown_at(const struct lm_k_blend *map,
     const uint32x4x2_t next = neon_texels(grown + 2 * LM_K_GROWN_STRIDE, offset);
     const uint16x8_t u = vandq_u16(neon_even(east_q4[0], east_q4[1]), sixteenths);
     const uint16x8_t v = vandq_u16(neon_even(north_q4[0], north_q4[1]), sixteenths);
-    const uint16x8_t west = neon_even(south.val[0], south.val[1]);
-    const uint16x8_t at_south = neon_crowns(west, neon_odd(south.val[0], south.val[1]), u);
-    const uint16x8_t at_north =
-        neon_crowns(neon_even(next.val[0], next.val[1]), neon_odd(next.val[0], next.val[1]), u);
-    const uint16x8_t crown =
-        vmlaq_u16(vmulq_u16(at_south, vsubq_u16(vdupq_n_u16(16), v)), at_north, v);
-    return (struct neon_grown){vshrq_n_s16(vreinterpretq_s16_u16(vshlq_n_u16(west, 8)), 8),
-                               vreinterpretq_s16_u16(veorq_u16(crown, vdupq_n_u16(0x8000)))};
+    const uint16x8_t texel[4] = {
+        neon_even(south.val[0], south.val[1]), neon_odd(south.val[0], south.val[1]),
+        neon_even(next.val[0], next.val[1]), neon_odd(next.val[0], next.val[1])};
+    const uint16x8_t v_left = vsubq_u16(vdupq_n_u16(16), v);
+    const uint16x8_t crown = vmlaq_u16(vmulq_u16(neon_crowns(texel[0], texel[1], u), v_left),
+                                       neon_crowns(texel[2], texel[3], u), v);
+    const int16x8_t u_s16 = vreinterpretq_s16_u16(u);
+    const int16x8_t bend =
+        vmlaq_s16(vmulq_s16(neon_bends(texel[0], texel[1], u_s16), vreinterpretq_s16_u16(v_left)),
+                  neon_bends(texel[2], texel[3], u_s16), vreinterpretq_s16_u16(v));
+    return (struct neon_grown){bend, vreinterpretq_s16_u16(veorq_u16(crown, vdupq_n_u16(0x8000)))};
 }
 
 /* Let a class challenge the winner. */
@@ -321,7 +332,7 @@ static inline int16x8_t neon_contest(const struct lm_k_blend *map, struct neon_c
         kind[n] = neon_kinds(c->cell[n]);
     }
     const struct neon_winner w =
-        neon_winner_of(c, kind, vmulq_n_s16(grown.bend, 230), map->natural);
+        neon_winner_of(c, kind, vqdmulhq_n_s16(grown.bend_q8, 230 << 7), map->natural);
     for (size_t n = 0; n < 4; n++) {
         c->weight[n] = neon_where(vceqq_s16(kind[n], w.kind), c->weight[n]);
     }

@@ -65,10 +65,9 @@ struct heights {
     int32_t dm[LM_K_CODES];
 };
 
-/* What has grown at a place. The bend is that of the nearest texel to the south-west; crowns are
- * straight between texels, in sixteenths: 255 * 256 at most. */
+/* What has grown at a place, straight between texels, in sixteenths: bytes times 256. */
 struct grown {
-    int32_t bend, crown_q16;
+    int32_t bend_q8, crown_q16;
 };
 
 static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north, uint32_t east)
@@ -83,7 +82,12 @@ static inline struct grown grown_at(const struct lm_k_blend *map, uint32_t north
     const uint32_t u = east_q4 % 16, v = north_q4 % 16;
     const uint32_t at_south = (south >> 8 & 255) * (16 - u) + (south >> 24) * u;
     const uint32_t at_north = (next >> 8 & 255) * (16 - u) + (next >> 24) * u;
-    return (struct grown){(int32_t)(south << 24) >> 24,
+    const int32_t west = 16 - (int32_t)u, east_ward = (int32_t)u;
+    const int32_t bend_south =
+        ((int32_t)(south << 24) >> 24) * west + ((int32_t)(south << 8) >> 24) * east_ward;
+    const int32_t bend_north =
+        ((int32_t)(next << 24) >> 24) * west + ((int32_t)(next << 8) >> 24) * east_ward;
+    return (struct grown){bend_south * (16 - (int32_t)v) + bend_north * (int32_t)v,
                           (int32_t)(at_south * (16 - v) + at_north * v) - 128 * 256};
 }
 
@@ -105,7 +109,7 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
     const struct corner d = corner_of(fx_load_u32(p + at + LM_TILE_POINTS + 1), of_d);
 
     const struct grown grown = grown_at(map, north, east);
-    const int32_t lean_q15 = grown.bend * 230;
+    const int32_t lean_q15 = grown.bend_q8 * 230 >> 8;
     struct winner w = {a.kind, weight_of_class(a, b, c, d)};
     w = challenge(w, b.kind, weight_of_class(b, a, c, d), lean_q15, map->natural);
     w = challenge(w, c.kind, weight_of_class(c, a, b, d), lean_q15, map->natural);

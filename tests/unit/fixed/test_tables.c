@@ -17,7 +17,7 @@ static const struct {
              {"grain", 0x6f535233},
              {"noise", 0x1e4a6858},
              {"response", 0x0f490b48},
-             {"grown", 0x6e59d7b1}};
+             {"grown", 0x1c7e5635}};
 
 static char *whole_file(const char *path)
 {

@@ -81,7 +81,7 @@ void lm_k_tile_read(const struct lm_tile_point *points, const struct lm_tile_coo
 /* Side of the pattern of what has grown, in texels, and its table: the first row and column stand
  * behind the last once more. */
 enum {
-    LM_K_GROWN_SIDE = 128,
+    LM_K_GROWN_SIDE = 64,
     LM_K_GROWN_STRIDE = LM_K_GROWN_SIDE + 1,
     LM_K_GROWN_WORDS = LM_K_GROWN_STRIDE * LM_K_GROWN_STRIDE
 };
@@ -95,7 +95,7 @@ struct lm_k_blend {
      * the map's crowns are, (n - 128) / 256. Row by row from the south-west. */
     const uint16_t *grown;
     const uint16_t *height_dm_of_code; /* LM_K_CODES entries; differences up to 3.2 km */
-    uint32_t grown_shift;              /* from a place in its tile to texels; 4..25 */
+    uint32_t grown_shift;              /* from a place in its tile to texels; 4..26 */
     uint32_t natural, crowned, flat;
 };
 

@@ -3,7 +3,7 @@
  * same texel in every picture.
  *
  * A texel is 2^LM_GROWN_TEXEL_LOG2 BAM of latitude high, and as many of longitude wide times those
- * of a cell's zone: 0.6 m. The build makes the table (host-sim/tables); its law is in
+ * of a cell's zone: 1.2 m. The build makes the table (host-sim/tables); its law is in
  * docs/EQUATIONS.md, "Finer than the map". */
 #ifndef LM_GROWN_H
 #define LM_GROWN_H
@@ -12,7 +12,7 @@
 
 #include "lm/kernels_map.h"
 
-enum { LM_GROWN_TEXEL_LOG2 = 6 };
+enum { LM_GROWN_TEXEL_LOG2 = 7 };
 
 /* Texels as in struct lm_k_blend. */
 extern const uint16_t lm_grown[LM_K_GROWN_WORDS];

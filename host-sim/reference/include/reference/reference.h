@@ -130,7 +130,7 @@ bool ref_db_elevation(const struct ref_db *db, unsigned level, struct ref_place 
 /* ---- what lies between the cells (blend.c) ---- */
 
 /* The four cells whose middles are around a point: south-west, south-east, north-west, north-east,
- * and the point's place between them, 0..1. The place in texels of what has grown, modulo 128. */
+ * and the point's place between them, 0..1. The place in texels of what has grown, modulo 64. */
 struct ref_corners {
     uint16_t cell[4];
     double north, east;
@@ -142,8 +142,8 @@ struct ref_corners {
 void ref_blend_cells(const struct ref_db *db, const struct ref_corners *corners,
                      struct ref_bin *bin);
 
-/* n of the page at a texel, and C at any place of the pattern, 0..128. */
-double ref_grown_bend(int row, int column);
+/* n and C of the page at a place of the pattern, 0..64. */
+double ref_grown_bend(double row, double column);
 double ref_grown_crown(double row, double column);
 
 /* The same for a range cell of `cell_m`: blended where that is finer than the map, with the weights

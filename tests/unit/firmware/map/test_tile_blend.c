@@ -38,7 +38,7 @@ static struct lm_k_blend blend_of(uint32_t natural, uint32_t crowned)
     return (struct lm_k_blend){.points = &points[LM_TILE_BORDER][LM_TILE_BORDER],
                                .grown = lm_grown,
                                .height_dm_of_code = height_dm,
-                               .grown_shift = 23,
+                               .grown_shift = 24,
                                .natural = natural,
                                .crowned = crowned};
 }
@@ -332,8 +332,8 @@ TEST(any_four_cells_are_blended_as_the_equations_say)
             .cell = {low[0].cell, low[1].cell, low[66].cell, low[67].cell},
             .north = v,
             .east = u,
-            .texel_row = fmod(y * 8, 128),
-            .texel_column = fmod(x * 8, 128),
+            .texel_row = fmod(y * 4, 64),
+            .texel_column = fmod(x * 4, 64),
             .has_crowns = true};
         struct ref_bin bin;
         ref_blend_cells(&db, &corners, &bin);
