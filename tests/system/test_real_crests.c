@@ -65,6 +65,18 @@ static void map_open(const char *path)
     lm_class_lut_set(&map.classes, &lm_radar_default.illumination, &map.db.classes);
 }
 
+/* Read a line, tiles and all, and light it by map.grid. */
+static void map_read(uint8_t lod, const struct lm_ground_path *path)
+{
+    for (int again = 0; again < 2; again++) {
+        lm_scan_line_run(&map.line, &map.tiles, lod, NULL, path, BINS);
+        for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&map.tiles); i++) {
+            lm_tile_cache_service(&map.tiles, 0, 8);
+        }
+    }
+    lm_illuminate(&map.grid, &map.classes, &map.line, LM_HORIZON_OPEN, &map.lit);
+}
+
 /* The levels of a line as the radar draws it before anything random: map.lit. */
 static void map_trace(struct lm_position from, fx_bam_t azimuth, double range_m, double height_m)
 {
@@ -81,13 +93,7 @@ static void map_trace(struct lm_position from, fx_bam_t azimuth, double range_m,
     const uint8_t lod = lm_scan_lod(&map.db, (uint32_t)((uint64_t)cell_m_q8 * 1000 / 256));
     lm_range_grid_set(&map.grid, &lm_radar_default.illumination, cell_m_q8 / 2, cell_m_q8, BINS,
                       (int32_t)lround(height_m * 1024), 0);
-    for (int again = 0; again < 2; again++) {
-        lm_scan_line_run(&map.line, &map.tiles, lod, NULL, &path, BINS);
-        for (int i = 0; i < 100000 && !lm_tile_cache_is_idle(&map.tiles); i++) {
-            lm_tile_cache_service(&map.tiles, 0, 8);
-        }
-    }
-    lm_illuminate(&map.grid, &map.classes, &map.line, LM_HORIZON_OPEN, &map.lit);
+    map_read(lod, &path);
 }
 
 /* ---- the terrain ---- */
@@ -420,5 +426,134 @@ TEST(a_ridge_120_m_wide_hides_two_thirds_of_what_geometry_says_or_more)
     real_raster_free(&t.rasters[0]);
     free(map.bytes);
     remove(raster);
+    remove(out);
+}
+
+/* ---- towers ---- */
+
+enum { FIELD_SIDE = 640, TOWERS = 3, TOWER_SIDE = 6 };
+static const double field_px_deg = 0.00005, field_north = 0.016, field_west = 10; /* 5.6 m */
+static const double towers_m[TOWERS] = {30, 80, 300};
+
+/* Towers stand side by side, 200 pixels from the southern edge, in a town of 3 to 25 m that lies
+ * apart from them. */
+static double field_m(int y, int x, bool is_height)
+{
+    for (int i = 0; i < TOWERS; i++) {
+        const int west = 100 + 200 * i;
+        if (y >= 440 - TOWER_SIDE && y < 440 && x >= west && x < west + 2 * TOWER_SIDE) {
+            return is_height ? towers_m[i] : 3;
+        }
+    }
+    const bool is_town = y >= 560;
+    return is_height ? (is_town ? 3 + (x * 7 + y * 13) % 221 / 10.0 : 0) : is_town ? 3 : 0;
+}
+
+static void write_field(const char *name, bool is_height, double flat)
+{
+    char path[600];
+    snprintf(path, sizeof path, "%s/tmp/%s", support_build_dir(), name);
+    GDALAllRegister();
+    GDALDatasetH file = GDALCreate(GDALGetDriverByName("GTiff"), path, FIELD_SIDE, FIELD_SIDE, 1,
+                                   is_height ? GDT_Float32 : GDT_Byte, NULL);
+    double geo[6] = {field_west, field_px_deg, 0, field_north, 0, -field_px_deg};
+    double row[FIELD_SIDE];
+    assert_non_null(file);
+    GDALSetGeoTransform(file, geo);
+    GDALSetProjection(file, "EPSG:4326");
+    for (int y = 0; y < FIELD_SIDE; y++) {
+        for (int x = 0; x < FIELD_SIDE; x++) {
+            row[x] = flat >= 0 ? flat : field_m(y, x, is_height);
+        }
+        assert_int_equal(GDALRasterIO(GDALGetRasterBand(file, 1), GF_Write, 0, y, FIELD_SIDE, 1,
+                                      row, FIELD_SIDE, 1, GDT_Float64, 0, 0),
+                         CE_None);
+    }
+    GDALClose(file);
+}
+
+/* Six classes by number: soil, asphalt, concrete, structure, trees, water. */
+static void write_field_classes(void)
+{
+    char path[600];
+    snprintf(path, sizeof path, "%s/tmp/field.classes", support_build_dir());
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(
+        "[soil]\ncolour = 176 140 90\nkind = ground\ngamma_db = -20\nspread_db = 3\n"
+        "limits_db = -29 -11\n"
+        "[asphalt]\ncolour = 96 96 104\nkind = ground\ngamma_db = -30\nspread_db = 3\n"
+        "limits_db = -39 -21\n"
+        "[concrete]\ncolour = 208 208 200\nkind = ground\ngamma_db = -28\nspread_db = 3\n"
+        "limits_db = -37 -19\n"
+        "[structure]\ncolour = 216 48 40\nkind = structure\ngamma_db = 0\nspread_db = 5\n"
+        "limits_db = -15 15\nheight_m = 8\n"
+        "[trees]\ncolour = 48 136 48\nkind = trees\ngamma_db = -15\nspread_db = 3\n"
+        "limits_db = -24 -6\nheight_m = 12\n"
+        "[water]\ncolour = 32 64 160\nkind = water\ngamma_db = -40\nspread_db = 3\n"
+        "limits_db = -49 -31\n",
+        file);
+    fclose(file);
+}
+
+/* Cells of 5 m, as in a patch, from 8.7 km on: what lies behind the tower. */
+TEST(a_tower_of_30_80_or_300_m_casts_the_shadow_of_its_height)
+{
+    char out[600];
+    const char *b = support_build_dir();
+    const double height_m = 3000, cell_m = 5, start_m = 8700;
+    assert_int_equal(support_run("mkdir -p %s/tmp", b), 0);
+    write_field("field.tif", false, -1);
+    write_field("field_heights.tif", true, -1);
+    write_field("field_terrain.tif", true, 0);
+    write_field_classes();
+    snprintf(out, sizeof out, "%s/tmp/field.lmdb", b);
+    assert_int_equal(
+        support_run("%s/bin/landmass-db build --classes %s/tmp/field.classes --class-raster "
+                    "%s/tmp/field.tif --heights %s/tmp/field_heights.tif --terrain "
+                    "%s/tmp/field_terrain.tif --land-class soil --sea-level -10 --out %s "
+                    ">/dev/null 2>&1",
+                    b, b, b, b, b, out),
+        0);
+    map_open(out);
+    for (int i = 0; i < TOWERS; i++) {
+        /* From the south along a meridian through the tower; its southern face is 100 m behind the
+         * first cell. */
+        const double longitude = field_west + (100 + 200 * i + TOWER_SIDE) * field_px_deg;
+        const double face = field_north - 440 * field_px_deg;
+        const double metres = 110574; /* of a degree of latitude at the equator */
+        const struct lm_position from = {hs_bam(face - (start_m + 100) / metres),
+                                         hs_bam(longitude)};
+        struct lm_geo_origin origin;
+        struct lm_geo_ray ray;
+        struct lm_ground_path path;
+        lm_geo_set_origin(&origin, from);
+        lm_geo_set_ray(&ray, &origin, 0);
+        const uint32_t start_m_q8 = (uint32_t)(start_m * 256), long_m_q8 = BINS * 5 * 256;
+        const struct lm_position points[3] = {lm_geo_along(&ray, start_m_q8),
+                                              lm_geo_along(&ray, start_m_q8 + long_m_q8 / 2),
+                                              lm_geo_along(&ray, start_m_q8 + long_m_q8)};
+        lm_ground_path_fit(&path, points, BINS);
+        lm_range_grid_set(&map.grid, &lm_radar_default.illumination, start_m_q8 + 640, 1280, BINS,
+                          (int32_t)height_m * 1024, 0);
+        map_read(lm_scan_lod(&map.db, 5000), &path);
+        int dark = 0, tower = 0;
+        double highest_m = 0;
+        for (int k = 0; k < BINS; k++) {
+            const double h = map.db.classes.height_dm[map.line.cell[k] & 15] / 10.0;
+            highest_m = fmax(highest_m, h);
+            dark += map.lit.level_db_q8[k] == LM_LEVEL_SHADOW && h == 0;
+            tower += h > 0;
+        }
+        /* From the tower's rear edge to where the ray over it meets the ground. */
+        const double rear_m = start_m + 100 + tower * cell_m;
+        const double tangent = (height_m - highest_m) / rear_m;
+        const double true_m = towers_m[i] / tangent;
+        print_message("# %3.0f m: %.1f m in the image; its shadow %d m of %.0f\n", towers_m[i],
+                      highest_m, dark * (int)cell_m, true_m);
+        assert_true(fabs(highest_m - towers_m[i]) <= 0.02 * towers_m[i]);
+        assert_true(fabs(dark * cell_m - true_m) <= fmax(2 * cell_m, 0.02 * true_m));
+    }
+    free(map.bytes);
     remove(out);
 }
