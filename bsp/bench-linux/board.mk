@@ -10,6 +10,7 @@ DRIVERS = can/can_log $(LINUX_DRIVERS)
 # the last ten years has 256-bit vectors: its compiler is told so when the machine that builds, which is the one that
 # runs, says it has them. Tuned for haswell, because the tuning for no machine in particular avoids vector gathers.
 OPT_core := -O3 -funroll-loops
+OPT_rest  = $(OPT_core)
 ifeq ($(findstring clang,$(CC)),)
 OPT_core += -fno-tree-loop-distribution # or gcc makes two loops of tile_read.c's, each of which works out the places
 endif

@@ -21,3 +21,4 @@ KERNELS := $(if $(filter arm64,$(ARCH)),arm64,c)
 
 # For any processor of its kind: a package does not know where it will be installed.
 OPT_core := -O3 -funroll-loops
+OPT_rest  = $(OPT_core)

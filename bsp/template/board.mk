@@ -8,6 +8,7 @@ AR := gcc-ar
 OPT := -O2 -g
 # How the two lowest layers are compiled besides. They are integers: the picture is the same whatever you choose.
 OPT_core := -O3 -funroll-loops
+OPT_rest  = $(OPT_core)
 
 # Loops written for vectors of the machine: arm64 on any 64-bit Arm, c on every other (firmware/kernels).
 KERNELS := c

@@ -15,6 +15,7 @@ OPT      := -O2 -g -mcpu=cortex-a53 -ffreestanding -fno-pic -fno-stack-protector
 # The two lowest layers are integers and make vectors of loops; drivers and board run in interrupts, which keep their
 # hands off the vector registers, and before the MMU allows unaligned access.
 OPT_core := -O3 -funroll-loops
+OPT_rest := -Os # of what has no such loops
 OPT_board := -mgeneral-regs-only -mstrict-align
 
 # Instead of the programs and tests of a PC.

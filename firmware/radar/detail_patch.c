@@ -298,11 +298,34 @@ static bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
     return d->from_q8 <= d->to_q8;
 }
 
+/* Draw a roof into cells first..end - 1. `v_q16` is v of the first of them; inside it is at most 1,
+ * and a step at most 2, both in Q16. */
+static void draw_roof(const struct lm_detail_shape *shape, int32_t first, int32_t end,
+                      int32_t v_q16, struct lm_scan_line *ground)
+{
+    const uint32_t top = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
+    for (int32_t i = first; i < end; i++, v_q16 += shape->v_cell_q16) {
+        const uint32_t eighth = fx_min_u32(fx_abs_u32(v_q16) >> 13, 7);
+        ground->cell[i] = top | (shape->height_codes >> (4 * eighth) & 15);
+        ground->elevation_m_q14[i] = shape->elevation_m_q14;
+    }
+}
+
+/* Light cells first..end - 1 by a fence or wire. The ground keeps its class and height. */
+static void draw_glint(const struct lm_detail_shape *shape, int32_t first, int32_t end,
+                       uint32_t *cell)
+{
+    for (int32_t i = first; i < end; i++) {
+        if (shape->gamma_code > (cell[i] >> 8 & 0xFF)) {
+            cell[i] = (uint32_t)shape->gamma_code << 8 | (cell[i] & 0xFF);
+        }
+    }
+}
+
 /* Draw a shape into the cells of a line. Returns how many were drawn. */
 static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, uint32_t cells,
                            struct lm_scan_line *ground)
 {
-    uint32_t *const cell = ground->cell;
     const int32_t off_q8 = (int32_t)(line * 256) - shape->line_q8;
     const int32_t u_q16 = (int32_t)((int64_t)shape->u_line_q16 * off_q8 >> 8);
     const int32_t v_q16 = (int32_t)((int64_t)shape->v_line_q16 * off_q8 >> 8);
@@ -313,17 +336,12 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     }
     const int32_t first = (shape->cell_q8 + d.from_q8 + 255) >> 8;
     const int32_t end = ((shape->cell_q8 + d.to_q8) >> 8) + 1;
-    const uint32_t top = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
-    for (int32_t i = first; i < end; i++) {
-        const int32_t along_q8 = i * 256 - shape->cell_q8;
-        const int32_t at_q16 = v_q16 + (int32_t)((int64_t)shape->v_cell_q16 * along_q8 >> 8);
-        const uint32_t eighth = fx_min_u32(fx_abs_u32(at_q16) >> 13, 7);
-        if (!shape->is_line) {
-            cell[i] = top | (shape->height_codes >> (4 * eighth) & 15);
-            ground->elevation_m_q14[i] = shape->elevation_m_q14;
-        } else if (shape->gamma_code > (cell[i] >> 8 & 0xFF)) {
-            cell[i] = (uint32_t)shape->gamma_code << 8 | (cell[i] & 0xFF);
-        }
+    const int32_t along_q8 = first * 256 - shape->cell_q8;
+    if (shape->is_line) {
+        draw_glint(shape, first, end, ground->cell);
+    } else {
+        draw_roof(shape, first, end, v_q16 + (int32_t)((int64_t)shape->v_cell_q16 * along_q8 >> 8),
+                  ground);
     }
     return end > first ? (uint32_t)(end - first) : 0;
 }
