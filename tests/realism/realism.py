@@ -24,12 +24,11 @@ import scenes
 OPEN = {
     "ground_map_looks",  # four looks at every angle
     "dbs2_looks",
-    "shadow_depth",  # 20 dB
-    "town_mean",  # too dark in fine patches, and GM darker than what its beam makes of the patch
+    "shadow_depth",  # 18.6 dB
+    "town_mean",  # GM is darker than what its beam makes of the patch
     "town_points",  # more than half
     "border_steps",
     "class_spread",
-    "settlement_spread",
     "point_side_lobes",
 }
 
