@@ -20,7 +20,7 @@
 #include "lm/response.h"
 
 enum {
-    LM_SIDE_LOBES_A_LINE = 4, /* cells of a line that have side lobes, at most */
+    LM_SIDE_LOBES_A_LINE = 2, /* cells of a line that have side lobes, at most */
     LM_SIDE_LOBES_LINES = 32, /* lines that are remembered */
     LM_SIDE_LOBES_OFFSETS = 8 /* places of a point in its cell, each way */
 };
@@ -59,7 +59,7 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
 
 /* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
  * to LM_RESPONSE_REACH before and behind it. Cost: 15 instructions for each cell of a cross that
- * lies on the line: at most 56 along it and 56 across. */
+ * lies on the line: at most 28 along it and 28 across. */
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
                        uint32_t cells);
 

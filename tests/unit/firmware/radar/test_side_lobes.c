@@ -77,7 +77,7 @@ TEST(a_lone_wall_has_a_cross_whose_side_lobes_are_taylors)
     assert_true(worst_db < 1);
 }
 
-TEST(of_many_strong_cells_the_strongest_four_of_a_line_count)
+TEST(of_many_strong_cells_only_the_strongest_of_a_line_count)
 {
     int32_t level_q8[LM_CELLS_ROOM];
     for (int i = 0; i < CELLS; i++) {
