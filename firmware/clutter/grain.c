@@ -4,6 +4,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "lm/kernels_clutter.h"
+#include "lm/kernels_radar.h"
 #include "lm/lanes.h"
 
 _Static_assert((int)LM_GRAIN_LINES == (int)LM_K_CURVE_LINES,
@@ -12,8 +13,8 @@ _Static_assert((int)LM_GRAIN_LINES == (int)LM_K_CURVE_LINES,
 void lm_grain_curve_set(struct lm_grain_curve *curve, uint32_t looks_q8)
 {
     const uint32_t looks = fx_min_u32(fx_max_u32(looks_q8, 256), LM_GRAIN_LOOKS_MAX_Q8);
-    /* Four rows an octave, in Q16: 0..24. At the last row the one behind it has no weight. */
-    const int32_t at_q16 = 4 * (fx_log2_q16(looks) - (8 << 16));
+    /* Eight rows an octave, in Q16: 0..48. At the last row the one behind it has no weight. */
+    const int32_t at_q16 = 8 * (fx_log2_q16(looks) - (8 << 16));
     const int32_t row = fx_min_i32(at_q16 >> 16, LM_GRAIN_LOOKS_ROWS - 2);
     const int32_t part_q8 = (at_q16 - row * 65536) >> 8;
     const int16_t *few = lm_grain_knot_db_q8[row], *many = lm_grain_knot_db_q8[row + 1];
@@ -61,4 +62,57 @@ void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_plac
     const struct lm_k_curve lines = kernel_curve(curve);
     lm_grain_row(place, grain_q5, cells);
     lm_k_grain_floor(&lines, grain_q5, floor_db_q8, level_db_q8, speckled_db_q8, cells);
+}
+
+static inline int8_t between(int8_t first, int8_t second, uint32_t way)
+{
+    const int32_t sum_q7 =
+        first * lm_grain_weight_q7[LM_GRAIN_WAY - way] + second * lm_grain_weight_q7[way] + 64;
+    return (int8_t)fx_clamp_i32(sum_q7 >> 7, INT8_MIN, INT8_MAX);
+}
+
+/* Numbers between two rows. */
+static void mix_rows(const struct lm_grain_stretch *s, int8_t *grain_q5, uint32_t columns)
+{
+    int8_t second_q5[LM_CELLS_ROOM];
+    struct lm_grain_place place = s->start;
+    place.row += (uint32_t)(s->row_q16 >> 16);
+    lm_grain_row(place, grain_q5, columns);
+    place.row++;
+    lm_grain_row(place, second_q5, columns);
+    const uint32_t way = (uint32_t)(s->row_q16 & 65535) / (65536 / LM_GRAIN_WAY);
+    const int32_t first_q7 = lm_grain_weight_q7[LM_GRAIN_WAY - way];
+    const int32_t weight_q7 = lm_grain_weight_q7[way];
+    for (uint32_t i = 0; i < columns; i++) {
+        const int32_t sum = (grain_q5[i] * first_q7 + second_q5[i] * weight_q7 + 64) >> 7;
+        grain_q5[i] = (int8_t)fx_clamp_i32(sum, INT8_MIN, INT8_MAX);
+    }
+}
+
+/* Numbers of cells that are less than a column apart, from the last cell on: a cell needs columns
+ * no further than itself and the next, and those before are still there. */
+static void stretch_row(uint32_t step_q16, int8_t *grain_q5, uint32_t cells)
+{
+    for (uint32_t i = cells; i-- > 0;) {
+        const uint64_t at_q16 = (uint64_t)i * step_q16;
+        const uint32_t column = (uint32_t)(at_q16 >> 16);
+        const uint32_t way = (uint32_t)(at_q16 & 65535) / (65536 / LM_GRAIN_WAY);
+        grain_q5[i] = between(grain_q5[column], grain_q5[column + 1], way);
+    }
+}
+
+void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_stretch *stretch,
+                     uint32_t *power_q24, uint32_t cells)
+{
+    int8_t grain_q5[LM_CELLS_ROOM];
+    int32_t level_db_q8[LM_CELLS_ROOM];
+    const struct lm_k_curve lines = kernel_curve(curve);
+    mix_rows(stretch, grain_q5, cells + 1);
+    if (stretch->step_q16 < 65536) {
+        stretch_row(stretch->step_q16, grain_q5, cells);
+    }
+    memset(level_db_q8, 0, sizeof level_db_q8);
+    lm_k_grain_add(&lines, grain_q5, level_db_q8, cells);
+    memcpy(power_q24, level_db_q8, cells * sizeof *power_q24);
+    lm_k_powers_of_levels(power_q24, cells);
 }

@@ -118,6 +118,7 @@ uint32_t *lm_beam_slot(struct lm_beam *b, int32_t sample)
     const bool is_next = sample == end, is_before = sample == b->first - 1;
     b->held = is_next || is_before ? fx_min_i32(b->held + 1, LM_BEAM_TAPS) : 1;
     b->first = is_next ? end + 1 - b->held : sample;
+    b->has_steady[slot_of(sample)] = false;
     return b->power_q24[slot_of(sample)];
 }
 
@@ -129,4 +130,29 @@ void lm_beam_sum(const struct lm_beam *b, const struct lm_beam_taps *taps, uint3
         power[j] = b->power_q24[slot_of(taps->first + j)];
     }
     lm_k_beam_sum(power, taps->weight_q16, power_q24, cells);
+}
+
+uint32_t *lm_beam_steady_slot(struct lm_beam *b, int32_t sample)
+{
+    b->has_steady[slot_of(sample)] = true;
+    return b->steady_q24[slot_of(sample)];
+}
+
+/* Slots without scatterers have whatever was there, and no weight. */
+bool lm_beam_steady_sum(const struct lm_beam *b, const struct lm_beam_taps *taps,
+                        uint32_t *power_q24, uint32_t cells)
+{
+    const uint32_t *power[LM_BEAM_TAPS];
+    uint32_t weight_q16[LM_BEAM_TAPS];
+    bool has_any = false;
+    for (int32_t j = 0; j < LM_BEAM_TAPS; j++) {
+        const uint32_t slot = slot_of(taps->first + j);
+        power[j] = b->steady_q24[slot];
+        weight_q16[j] = b->has_steady[slot] ? taps->weight_q16[j] : 0;
+        has_any |= b->has_steady[slot];
+    }
+    if (has_any) {
+        lm_k_beam_sum(power, weight_q16, power_q24, cells);
+    }
+    return has_any;
 }

@@ -16,7 +16,7 @@ uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, const struct lm_dbs_scan 
     const uint64_t swept_mm = (dwell_bam * 2 * scan->speed_mm_s >> 15) * sine_q15; /* < 2^55 */
     /* Times 2 pi / 2^32 for the radian, 1000 / l, and 256: 2 pi * 256 * 1000 is 1608495. */
     const uint64_t ratio_q8 = (swept_mm >> 16) * 1608495 / radar->wavelength_um >> 16;
-    return ratio_q8 < UINT16_MAX ? (uint32_t)ratio_q8 : UINT16_MAX;
+    return ratio_q8 < LM_DBS_RATIO_MAX_Q8 ? (uint32_t)ratio_q8 : LM_DBS_RATIO_MAX_Q8;
 }
 
 /* Angle to the velocity, ahead or astern: 0..90 degrees. */

@@ -1,5 +1,8 @@
 #include "lm/line.h"
 
+#include "fx/mem.h"
+#include "lm/level.h"
+
 lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles,
                                const struct lm_line_setup *setup, const struct lm_ground_path *path,
                                lm_horizon_q40_t horizon)
@@ -15,9 +18,18 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
     return horizon;
 }
 
-void lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
+bool lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
                          const struct lm_line_targets *targets)
 {
     const struct lm_target_horizon horizon = {line->lit.horizon, grid->tangent_bits};
-    lm_target_line_add(targets->candidates, &targets->where, &horizon, line->lit.level_db_q8);
+    struct lm_target_line where = targets->where;
+    where.clutter_db_q8 = line->lit.level_db_q8;
+    for (uint32_t i = 0; i < grid->cells; i++) {
+        line->steady.level_db_q8[i] = LM_LEVEL_SHADOW;
+    }
+    if (lm_target_line_add(targets->candidates, &where, &horizon, line->steady.level_db_q8) == 0) {
+        return false;
+    }
+    memcpy(line->steady.horizon, line->lit.horizon, sizeof line->steady.horizon);
+    return true;
 }

@@ -110,7 +110,9 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
     set_bins(r, radar, height_m_q10, range, fov);
     /* 2^32 times 2^21.3; over metres in Q8 it is bins in Q16. */
     const uint64_t pulse_m_q24 = (uint64_t)range->pulse_ns[fov] * LM_HALF_LIGHT_M_PER_NS_Q24;
-    set_pulse(r, pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1));
+    const uint64_t pulse_q16 = pulse_m_q24 / fx_max_u32(slant->cell_m_q8, 1);
+    set_pulse(r, pulse_q16);
+    r->grain_step_q16 = pulse_q16 > 65536 ? (uint32_t)(((uint64_t)1 << 32) / pulse_q16) : 65536;
 }
 
 /* (a + b) w, for the powers of two bins and a weight of at most 2^15, in whole parts of 2^24. Upper
@@ -161,15 +163,43 @@ static void smear(const struct lm_receiver *r, uint32_t *restrict power_q24)
     }
 }
 
+void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24)
+{
+    if (r->weight_q16[1] != 0) {
+        smear(r, power_q24);
+    }
+}
+
+/* Powers that saturate stay below 2^32. */
+static inline uint32_t faded_q24(uint32_t power_q24, uint32_t speckle_q24)
+{
+    const uint64_t product = (uint64_t)power_q24 * speckle_q24 >> 24;
+    return product < UINT32_MAX ? (uint32_t)product : UINT32_MAX;
+}
+
+void lm_receiver_fade(const struct lm_receiver *r, const uint32_t *restrict speckle_q24,
+                      uint32_t *restrict power_q24)
+{
+    for (uint32_t i = 0; i < r->cells; i++) {
+        power_q24[i] = faded_q24(power_q24[i], speckle_q24[i]);
+    }
+}
+
+void lm_receiver_join(const struct lm_receiver *r, const uint32_t *restrict steady_q24,
+                      uint32_t *restrict power_q24)
+{
+    for (uint32_t i = 0; i < r->cells; i++) {
+        const uint32_t sum_q24 = power_q24[i] + steady_q24[i];
+        power_q24[i] = sum_q24 < power_q24[i] ? UINT32_MAX : sum_q24;
+    }
+}
+
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
-                     uint32_t sweep, uint32_t *power_q24, int32_t *level_db_q8)
+                     uint32_t sweep, const uint32_t *power_q24, int32_t *level_db_q8)
 {
     const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_RECEIVER, line, sweep);
     struct lm_noise_line noise;
     lm_noise_line_set(&noise, &noise_key, r->cells);
-    if (r->weight_q16[1] != 0) {
-        smear(r, power_q24);
-    }
     const struct lm_k_receiver k = {.noise_db_q8 = r->noise_db_q8,
                                     .fall_db_q8 = r->fall_db_q8,
                                     .rise_db_q8 = weather ? weather->noise_rise_db_q8 : 0,

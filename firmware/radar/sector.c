@@ -274,6 +274,7 @@ void lm_sector_begin(struct lm_sector *s, struct lm_tile_cache *tiles,
     s->line = s->is_leftward ? s->lines - 1 : 0;
     s->is_begun = true;
     s->has_taps = false;
+    s->grain = (struct lm_grain_stretch){.start = lm_grain_start(LM_GRAIN_SPECKLE, s->sweep)};
 }
 
 static void move_on(struct lm_sector *s)
@@ -376,9 +377,9 @@ static void find_targets(struct lm_sector *s, struct lm_tile_cache *tiles)
     lm_chips_choose(s->chips, &s->candidates, &chip_query);
 }
 
-/* Add the targets that the sample meets. */
-static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
-                        const struct lm_noise_key *speckle, struct lm_line *line)
+/* Find the targets that the sample meets. False if there are none. */
+static bool add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
+                        struct lm_line *line)
 {
     const struct lm_sector_mode_row *mode = mode_of(s);
     find_targets(s, tiles);
@@ -402,11 +403,9 @@ static void add_targets(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam
                   .gate_mm_s = {mode->gate_mm_s[0], mode->gate_mm_s[1]},
                   .stretch_cells = mode->stretch_cells,
                   .scan = s->sweep,
-                  .pulse = s->samples,
-                  .noise_key = speckle,
-                  .speckle = mode->speckle},
+                  .pulse = s->samples},
     };
-    lm_line_add_targets(line, &s->grid, &targets);
+    return lm_line_add_targets(line, &s->grid, &targets);
 }
 
 static void trace(struct lm_sector *s, struct lm_tile_cache *tiles, fx_bam_t azimuth,
@@ -472,32 +471,33 @@ static void take_sample(struct lm_sector *s, struct lm_tile_cache *tiles, int32_
                         struct lm_line *line)
 {
     const fx_bam_t azimuth = s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample);
-    const struct lm_noise_key speckle =
-        lm_noise_key_of(LM_NOISE_SPECKLE, (uint32_t)sample, s->sweep);
     follow(s);
     trace_average(s, tiles, azimuth, line);
-    lm_speckle_run(&mode_of(s)->speckle, &speckle, line->lit.level_db_q8, s->grid.cells);
-    if (s->targets && s->targets->count != 0) {
-        add_targets(s, tiles, azimuth, &speckle, line);
-    }
+    const bool has_steady =
+        s->targets && s->targets->count != 0 && add_targets(s, tiles, azimuth, line);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &line->lit);
     lm_slant_run(&s->slant, &s->grid, line->lit.level_db_q8, lm_beam_slot(&s->beam, sample));
+    if (has_steady) {
+        lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &line->steady);
+        lm_slant_run(&s->slant, &s->grid, line->steady.level_db_q8,
+                     lm_beam_steady_slot(&s->beam, sample));
+    }
     s->samples++;
 }
 
 /* ---- lines of the display ---- */
 
-/* Sharpening ratio at an azimuth. */
+/* Sharpening ratio used at an azimuth, and looks: what the dwell offers and sharpening leaves. */
 static uint32_t ratio_q8_of(const struct lm_sector *s, const struct lm_platform *platform,
-                            int32_t azimuth)
+                            int32_t azimuth, uint32_t *looks_q8)
 {
     const struct lm_fov_row *fov = fov_of(s);
-    if (fov->sharpening <= 1) {
-        return 256;
-    }
     const struct lm_dbs_scan scan = {rate_of(s), platform->speed_mm_s, s->width};
     const fx_bam_t off = s->up + (fx_bam_t)azimuth - platform->track;
-    return lm_dbs_sharpening_q8(s->radar, &scan, fov->sharpening, off);
+    const uint32_t used_q8 =
+        fov->sharpening > 1 ? lm_dbs_sharpening_q8(s->radar, &scan, fov->sharpening, off) : 256;
+    *looks_q8 = fx_max_u32(lm_dbs_ratio_q8(s->radar, &scan, off) * 256 / used_q8, 256);
+    return used_q8;
 }
 
 /* Taps of the next line, once has_taps is true. */
@@ -521,6 +521,7 @@ static void set_taps(struct lm_sector *s, int32_t azimuth, uint32_t ratio_q8)
                        lm_dbs_scallop_q16(s->radar, fov_of(s), ratio_q8, azimuth));
     }
     line_taps->azimuth = azimuth;
+    line_taps->ratio_q8 = ratio_q8;
     line_taps->is_kept = ratio_q8 == 256;
 }
 
@@ -538,7 +539,9 @@ static void prepare_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     }
     if (!s->has_taps) {
         const int32_t azimuth = middle_of(s, s->line);
-        set_taps(s, azimuth, ratio_q8_of(s, platform, azimuth));
+        uint32_t looks_q8;
+        set_taps(s, azimuth, ratio_q8_of(s, platform, azimuth, &looks_q8));
+        taps_of_line(s)->looks_q8 = looks_q8;
         s->has_taps = true;
     }
 }
@@ -569,6 +572,35 @@ static void prefetch(const struct lm_sector *s, struct lm_tile_cache *tiles)
     lm_scan_line_prefetch(tiles, s->lod, &path, s->grid.cells);
 }
 
+/* Fade the line's ground, and move on in the grain: a row of it is a two-way beam wide, B / (N root
+ * 2). 362 is 256 root 2; a line is below 2^31, times 2^16 and 2^9. */
+static void fade_line(struct lm_sector *s)
+{
+    const struct lm_sector_taps *taps = taps_of_line(s);
+    struct lm_grain_curve curve;
+    uint32_t speckle_q24[LM_CELLS_ROOM];
+    s->grain.step_q16 = s->receiver.grain_step_q16;
+    lm_grain_curve_set(&curve, taps->looks_q8);
+    lm_grain_powers(&curve, &s->grain, speckle_q24, s->slant.cells);
+    lm_receiver_fade(&s->receiver, speckle_q24, s->power_q24);
+    s->grain.row_q16 += (uint64_t)s->width * taps->ratio_q8 * 362 / s->radar->antenna.azimuth_beam;
+}
+
+/* The display line's power: ground behind beam, pulse and speckle, and scatterers behind beam and
+ * pulse. */
+static void sum_powers(struct lm_sector *s)
+{
+    const struct lm_beam_taps *taps = &taps_of_line(s)->taps;
+    uint32_t steady_q24[LM_CELLS_ROOM];
+    lm_beam_sum(&s->beam, taps, s->power_q24, s->slant.cells);
+    lm_receiver_pulse(&s->receiver, s->power_q24);
+    fade_line(s);
+    if (lm_beam_steady_sum(&s->beam, taps, steady_q24, s->slant.cells)) {
+        lm_receiver_pulse(&s->receiver, steady_q24);
+        lm_receiver_join(&s->receiver, steady_q24, s->power_q24);
+    }
+}
+
 uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
                              const struct lm_platform *platform, const struct lm_tone *tone,
                              struct lm_line *line)
@@ -577,7 +609,7 @@ uint32_t lm_sector_draw_line(struct lm_sector *s, struct lm_tile_cache *tiles,
     lm_sector_sample_ahead(s, tiles, platform, &azimuths, line);
     const uint32_t drawn = s->line, cells = s->slant.cells;
     const int32_t azimuth = middle_of(s, drawn);
-    lm_beam_sum(&s->beam, &taps_of_line(s)->taps, s->power_q24, cells);
+    sum_powers(s);
     const struct lm_weather *weather = NULL;
     if (s->environment) {
         lm_weather_line(&s->weather, s->environment, &s->receiver, s->radar, s->platform.position,

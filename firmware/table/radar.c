@@ -57,15 +57,14 @@ const struct lm_radar lm_radar_default = {
                  .air_loss_db_per_km_q16 = 1592},
     /* Rates: [FreeFalcon], as above: base 60 degrees a second, twice that in GM; bars: one in
      * GM and four in GMT [FlightGear]. Gates: [FreeFalcon]'s 3 to 100, here knots. No 80 nm scale
-     * in GMT and SEA. UNSOURCED: looks (many pulses within a beam width average in real beam),
-     * movers three cells deep in GMT, which are four pixels on a glass of 480, 35 dB of clutter
+     * in GMT and SEA. UNSOURCED: movers three cells
+     * deep in GMT, which are four pixels on a glass of 480, 35 dB of clutter
      * cancelled, tone windows from the sea's -40 dB to the brightest buildings. */
     .mode = {[LM_SECTOR_GM] = {.name = "GM",
                                .bam_per_s = FX_BAM_DEG(120),
                                .range_max_nm = 80,
                                .fov_last = LM_FOV_DBS2,
                                .bars = 1,
-                               .speckle = {.looks_log2 = 2},
                                .tone = {LM_DB_Q8(-42), LM_DB_Q8(6), 384}},
              [LM_SECTOR_GMT] = {.name = "GMT",
                                 .bam_per_s = FX_BAM_DEG(60),
@@ -75,14 +74,12 @@ const struct lm_radar lm_radar_default = {
                                 .stretch_cells = 1,
                                 .clutter_db_q8 = LM_DB_Q8(35),
                                 .gate_mm_s = {1543, 51444},
-                                .speckle = {.looks_log2 = 2},
                                 .tone = {LM_DB_Q8(-36), LM_DB_Q8(0), 256}},
              [LM_SECTOR_SEA] = {.name = "SEA",
                                 .bam_per_s = FX_BAM_DEG(60),
                                 .range_max_nm = 40,
                                 .fov_last = LM_FOV_EXP,
                                 .bars = 1,
-                                .speckle = {.looks_log2 = 0},
                                 .tone = {LM_DB_Q8(-48), LM_DB_Q8(-6), 320}}},
     /* Windows, azimuth limits, paces of the cursor and DBS rates (a quarter and a twentieth of the
      * base): [FreeFalcon]; sharpening by 8:1 and 64:1, and beam positions 2/5 of the beam apart,

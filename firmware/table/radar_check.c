@@ -66,7 +66,6 @@ static const struct lm_radar_field fields[] = {
     {"mode.clutter_db_q8", OF_MODES(clutter_db_q8), BETWEEN(0, LM_DB_Q8(64))},
     {"mode.gate_mm_s[0]", OF_MODES(gate_mm_s[0]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
     {"mode.gate_mm_s[1]", OF_MODES(gate_mm_s[1]), BETWEEN(0, LM_RADAR_SPEED_MAX_MM_S)},
-    {"mode.speckle.looks_log2", OF_MODES(speckle.looks_log2), BETWEEN(0, LM_LOOKS_LOG2_MAX)},
     {"mode.tone.black_db_q8", OF_MODES(tone.black_db_q8),
      SIGNED_BETWEEN(LM_DB_Q8(-64), LM_DB_Q8(64))},
     {"mode.tone.white_db_q8", OF_MODES(tone.white_db_q8),

@@ -144,24 +144,20 @@ static void darken(const struct pixel_map *map, const uint32_t cell[LM_CHIP_SPAN
     }
 }
 
-/* A chip is the mean over many looks, as the clutter's level is before its speckle. The ground has
- * its speckle already, so the chip is multiplied by the same draw of each cell before it is added.
+/* A chip is the mean over many looks, as the clutter's level is: both take their speckle together.
  */
 static uint32_t brighten(const struct lm_chip_slot *slot, const struct pixel_map *map,
-                         const uint32_t cell[LM_CHIP_SPAN + 1], const struct lm_target_line *line,
-                         int32_t clutter_db_q8, int32_t *level_db_q8)
+                         const uint32_t cell[LM_CHIP_SPAN + 1], int32_t clutter_db_q8,
+                         int32_t *level_db_q8)
 {
     const int32_t unit_q8 = fx_db_q8(1u << 31);
     uint32_t given = 0;
     for (uint32_t i = 0; i < map->cells; i++) {
         if (cell[i] != 0) {
             const uint32_t at = (uint32_t)map->first + i;
-            const int32_t speckle_db_q8 =
-                line->noise_key ? lm_noise_cell_db_q8(line->speckle.looks_log2, line->noise_key, at)
-                                : 0;
             const int32_t chip_db_q8 =
                 slot->total_dbsm_q8 + fx_db_q8(cell[i]) - unit_q8 - clutter_db_q8;
-            level_db_q8[at] = fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8 + speckle_db_q8);
+            level_db_q8[at] = fx_db_q8_sum_vec(level_db_q8[at], chip_db_q8);
             given++;
         }
     }
@@ -179,5 +175,5 @@ uint32_t lm_chip_sector_add(const struct lm_target_candidate *candidate,
     gather(slot, &slot->dark, &map, dark_q20, origin->shadow_off_bam, line->width, cell);
     darken(&map, cell, pixels_a_cell_q16(slot, origin, line), level_db_q8);
     gather(slot, &slot->lit, &map, power_q31, origin->off_bam, line->width, cell);
-    return brighten(slot, &map, cell, line, clutter_db_q8, level_db_q8);
+    return brighten(slot, &map, cell, clutter_db_q8, level_db_q8);
 }

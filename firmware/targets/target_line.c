@@ -382,8 +382,9 @@ static uint32_t add_target(const struct lm_target_candidates *candidates,
     const struct lm_target *t = &candidates->set.items[candidate->index];
     struct echo echo;
     if (lm_chip_of(candidate) && line->stretch_cells == 0) {
+        int32_t *ground_db_q8 = line->clutter_db_q8 ? line->clutter_db_q8 : level_db_q8;
         return sees_top(line, horizon, &candidates->set, candidate, seen)
-                   ? add_chip(line, candidate, seen, level_db_q8)
+                   ? add_chip(line, candidate, seen, ground_db_q8)
                    : 0;
     }
     if (t->scatterer_count == 0) {

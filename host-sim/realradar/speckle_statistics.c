@@ -1,7 +1,7 @@
 #include "realradar/speckle_statistics.h"
 
 #include "hs/error.h"
-#include "lm/noise.h"
+#include "lm/grain.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -174,10 +174,13 @@ void rr_window_take(const struct rr_image *image, const struct rr_window *window
 
 void rr_firmware_speckle(double *power, unsigned side, unsigned looks_log2, unsigned epoch)
 {
+    const struct lm_grain_place start = lm_grain_start(LM_GRAIN_SPECKLE, epoch);
+    struct lm_grain_curve curve;
+    lm_grain_curve_set(&curve, 256u << looks_log2);
     for (uint32_t row = 0; row < side; row++) {
-        const struct lm_noise_key raster = lm_noise_key_of(LM_NOISE_SPECKLE, row, epoch);
         for (uint32_t column = 0; column < side; column++) {
-            const double level_db = lm_noise_cell_db_q8(looks_log2, &raster, column) / 256.0;
+            const struct lm_grain_place place = {start.row + row, start.column + column};
+            const double level_db = lm_grain_db_q8(&curve, lm_grain_at(place)) / 256.0;
             power[row * side + column] = pow(10, level_db / 10);
         }
     }

@@ -65,6 +65,36 @@ int ref_grain(uint32_t row, uint32_t column)
     return lm_grain_q5[row % LM_GRAIN_ROWS][(column + turns * LM_GRAIN_TWIST) % LM_GRAIN_COLUMNS];
 }
 
+/* Weight of a number that is a part `q` of the way from its neighbour, in whole parts of 128. */
+static double weight(double q)
+{
+    const double p = 1 - q;
+    return round(128 * q / sqrt(p * p + q * q + 0.62 * p * q)) / 128;
+}
+
+/* Between two numbers, in steps of 1/64 of the way: their weights are such that the deviation of
+ * the sum is 1 again. The sum is a number of the field's own steps. */
+static double between(double first, double second, double way)
+{
+    const double q = floor(way * 64) / 64;
+    const double sum = floor(weight(1 - q) * first + weight(q) * second + 0.5);
+    return fmax(fmin(sum, 127), -128);
+}
+
+double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, double row,
+                       double column)
+{
+    const uint32_t r = start_row + (uint32_t)row, c = start_column + (uint32_t)column;
+    const double down = row - floor(row), along = column - floor(column);
+    const double left = between(ref_grain(r, c), ref_grain(r + 1, c), down);
+    const double right = between(ref_grain(r, c + 1), ref_grain(r + 1, c + 1), down);
+    /* Linear between z = -4, -3.5, .. 4. */
+    const double halves = between(left, right, along) / 16, low = floor(halves);
+    const double low_db = ref_grain_db(looks, low / 2),
+                 next_db = ref_grain_db(looks, low / 2 + 0.5);
+    return pow(10, (low_db + (next_db - low_db) * (halves - low)) / 10);
+}
+
 double ref_leak(struct ref_leak *leak, const struct ref_params *params, unsigned line,
                 const struct ref_bin *shown, size_t count)
 {

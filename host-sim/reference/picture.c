@@ -1,5 +1,6 @@
 /* Whole pictures: the stages in their order, line by line. */
 #include "hs/error.h"
+#include "lm/grain.h"
 #include "reference/reference.h"
 
 #include <math.h>
@@ -15,7 +16,6 @@ static void sample(const struct ref_db *db, double cell_m, const struct ref_para
 
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params)
 {
-    ref_speckle_table(params->looks, tables->speckle_db);
     ref_grain_table(params->looks, tables->grain_db);
 }
 
@@ -26,7 +26,7 @@ static void finish(struct ref_bin *bins, size_t count, const struct ref_view *vi
 {
     ref_class_gain(bins, count, params, look_deg);
     ref_sea(bins, count, view, params, look_deg);
-    ref_speckle(bins, count, tables->speckle_db, params->noise_floor_db);
+    ref_speckle(bins, count, tables->grain_db, params->noise_floor_db);
     ref_tone(bins, count, params);
 }
 
@@ -54,8 +54,9 @@ double ref_gm_line(struct ref_bin *bins, const struct ref_db *db, const struct r
     const size_t first = ref_first_shown(bins, gm->cell_count, &view);
     const double horizon = first < gm->cell_count ? ref_gm_horizon(&bins[first], &view) : 0;
     ref_illuminate(bins, gm->cell_count, &view, params, horizon);
+    const struct lm_grain_place start = lm_grain_start(LM_GRAIN_SPECKLE, gm->epoch);
     for (uint32_t i = 0; i < gm->cell_count; i++) {
-        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, sample_number, i, gm->epoch);
+        bins[i].grain = ref_grain(start.row + sample_number, start.column + i);
     }
     finish(bins, gm->cell_count, &view, params, tables, azimuth_deg);
     return horizon;

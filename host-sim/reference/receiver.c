@@ -79,7 +79,8 @@ void ref_receive(const struct ref_receiver *r, const struct ref_weather_line *we
     for (size_t i = 0; i < r->bins.count; i++) {
         const double slant_m = r->bins.first_m + (double)i * r->bins.step_m;
         const double air = pow(10, -r->air_loss_db_km * slant_m / 1000 / 10);
-        const double signal = air * (weather != NULL ? power[i] * weather->pass[i] : power[i]);
+        const double faded = r->speckle != NULL ? power[i] * r->speckle[i] : power[i];
+        const double signal = air * (weather != NULL ? faded * weather->pass[i] : faded);
         const double rain = weather != NULL ? air * weather->rain[i] : 0;
         const unsigned slice = ref_draw(LM_NOISE_RECEIVER, line, (uint32_t)i, sweep);
         const double fluctuation = pow(10, r->noise_table_db[slice] / 10);

@@ -1,10 +1,31 @@
 /* A sector in real beam or sharpened: sampled lines, and what the display makes of them.
  * EQUATIONS.md, "Real beam". */
 #include "hs/error.h"
+#include "lm/grain.h"
 #include "reference/reference.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+double ref_dbs_looks(double had, double used)
+{
+    return fmax(1, had / used);
+}
+
+double ref_grain_rows(const struct ref_beam *beam, double width_deg)
+{
+    return width_deg * beam->ratio * sqrt(2) / beam->beam_deg;
+}
+
+void ref_line_speckle(double looks, uint32_t sweep, double grain_row, double pulse_bins,
+                      double *speckle, size_t count)
+{
+    const struct lm_grain_place start = lm_grain_start(LM_GRAIN_SPECKLE, sweep);
+    const double step = fmin(1, 1 / pulse_bins);
+    for (size_t i = 0; i < count; i++) {
+        speckle[i] = ref_grain_power(looks, start.row, start.column, grain_row, (double)i * step);
+    }
+}
 
 void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *const samples[],
                      size_t cells, const struct ref_weather_line *weather, double *level_db)
@@ -17,8 +38,16 @@ void ref_sector_line(const struct ref_sector_line *s, const struct ref_bin *cons
                         cells, power[j]);
         lines[j] = power[j];
     }
+    double speckle[REF_CELLS_MAX];
+    struct ref_receiver receiver = s->receiver;
     ref_beam_sum(&s->look, lines, sum, s->receiver.bins.count);
-    ref_receive(&s->receiver, weather, s->line, s->sweep, sum, level_db);
+    if (s->looks > 0) {
+        const double pulse_bins = ref_pulse_m(receiver.pulse_s) / receiver.bins.step_m;
+        ref_line_speckle(s->looks, s->sweep, s->grain_row, pulse_bins, speckle,
+                         receiver.bins.count);
+        receiver.speckle = speckle;
+    }
+    ref_receive(&receiver, weather, s->line, s->sweep, sum, level_db);
 }
 
 /* The lines sampled last: sample n of a spacing is in slot n mod 8. */
@@ -36,7 +65,7 @@ static unsigned azimuths_of(const struct ref_sector *s, const struct ref_beam *b
 }
 
 /* The ground about the azimuth of a sample: everything that of the last azimuth traced, but the
- * levels those of the mean power, with its speckle. */
+ * levels those of the mean power. */
 static void look_across(struct ref_bin *bins, const struct ref_db *db,
                         const struct ref_sector *sector, const struct ref_params *params,
                         const struct ref_tables *tables, const struct ref_beam *beam, long number)
@@ -57,7 +86,7 @@ static void look_across(struct ref_bin *bins, const struct ref_db *db,
     }
     for (unsigned i = 0; i < sector->ground.cell_count; i++) {
         bins[i].is_lit = power[i] > 0;
-        bins[i].echo_db = 10 * log10(power[i]) + bins[i].speckle_db;
+        bins[i].echo_db = 10 * log10(power[i]);
     }
 }
 
@@ -145,7 +174,10 @@ static void draw(struct ref_picture *picture, struct samples *samples, const str
                 ref_dbs_scallop(beam.beam_deg, sector->beam_step_deg, beam.ratio, from_middle_deg);
         }
         look_at_weather(sector, &line.receiver, azimuth_deg, &weather);
+        line.looks =
+            ref_dbs_looks(ref_dbs_ratio(&sector->dbs, azimuth_deg - sector->track_deg), beam.ratio);
         ref_sector_line(&line, lines, ground->cell_count, &weather, level_db);
+        line.grain_row += ref_grain_rows(&beam, 2 * ground->half_angle_deg / ground->line_count);
         fill_line(ref_picture_bin(picture, line.line, 0), &line.receiver, level_db, params);
     }
 }

@@ -143,11 +143,11 @@ void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params 
     }
 }
 
-void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
+void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_GRAIN_VALUES],
                  double noise_floor_db)
 {
     for (size_t i = 0; i < count; i++) {
-        bins[i].speckle_db = table_db[bins[i].slice];
+        bins[i].speckle_db = table_db[bins[i].grain + 128];
         const double level_db = bins[i].level_db + bins[i].class_gain_db - bins[i].loss_db;
         const double ground = bins[i].is_lit ? pow(10, level_db / 10) : 0;
         const double floor = pow(10, noise_floor_db / 10) + bins[i].veil;

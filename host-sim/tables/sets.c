@@ -324,7 +324,7 @@ static long double gamma_share(long double a, long double x)
 
 static int64_t grain_knot(int row, int knot)
 {
-    const long double looks = exp2l(row / 4.0L), share = gaussian_below(knot / 2.0L - 4);
+    const long double looks = exp2l(row / 8.0L), share = gaussian_below(knot / 2.0L - 4);
     long double low = 0, high = 400;
     for (int i = 0; i < 200; i++) {
         const long double middle = (low + high) / 2;
@@ -333,11 +333,23 @@ static int64_t grain_knot(int row, int knot)
     return rounded(10 * log10l(low / looks), 8);
 }
 
+/* Neighbours correlate by 0.31, so that the variance of a sum of weights p and q is
+ * p2 + q2 + 0.62 p q. */
+static int64_t grain_weight(int row, int way)
+{
+    (void)row;
+    const long double q = (long double)way / LM_GRAIN_WAY, p = 1 - q;
+    return rounded(q / sqrtl(p * p + q * q + 0.62L * p * q), 7);
+}
+
 static const struct table grain_tables[] = {
+    {"lm_grain_weight_q7", "uint8_t",
+     "weight of the second of two numbers, i / 64 of the way to it", 0, LM_GRAIN_WAY + 1,
+     grain_weight},
     {"lm_grain_q5", "int8_t", "correlated Gaussian numbers, 1/32 of a standard deviation",
      LM_GRAIN_ROWS, LM_GRAIN_COLUMNS, grain},
     {"lm_grain_knot_db_q8", "int16_t",
-     "dB of a Gamma(2^(row / 4)) variable as probable as a Gaussian one of i / 2 - 4",
+     "dB of a Gamma(2^(row / 8)) variable as probable as a Gaussian one of i / 2 - 4",
      LM_GRAIN_LOOKS_ROWS, LM_GRAIN_LINES + 1, grain_knot},
 };
 

@@ -376,12 +376,6 @@ static void run_water_gain(const struct input *in, struct output *out, bool is_p
      in->cells);
 }
 
-static void run_noise_add(const struct input *in, struct output *out, bool is_plain)
-{
-    copy_cells(out->line[0], in->level_db_q8);
-    TWIN(lm_k_noise_add)(row_of(in), in->entry, signed_line(out->line[0]), in->cells);
-}
-
 static struct lm_k_curve curve_of(const struct input *in, uint32_t n)
 {
     return (struct lm_k_curve){in->base_db_q8[n], in->rise_db_q8[n]};
@@ -479,7 +473,6 @@ static const struct kernel kernels[] = {
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},
     {"lm_k_water_gain", draw_classes, run_water_gain},
-    {"lm_k_noise_add", draw_levels, run_noise_add},
     {"lm_k_grain_add", draw_speckle, run_grain_add},
     {"lm_k_grain_floor", draw_speckle, run_grain_floor},
     {"lm_k_gather", draw_small_levels, run_gather},

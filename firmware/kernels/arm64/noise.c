@@ -30,11 +30,3 @@ void lm_k_class_gain(const int32_t *gain_db_q8, const uint32_t *cell, int32_t *r
         neon_add(level_q8 + i + 8, vreinterpretq_s16_u16(of_cells.val[1]));
     }
 }
-
-void lm_k_noise_add(const int16_t *row_q8, const uint32_t *entry, int32_t *restrict level_q8,
-                    uint32_t cells)
-{
-    for (size_t i = 0; i < cells; i += LM_LANES) {
-        neon_add(level_q8 + i, vld1q_s16(row_q8 + entry[i / LM_LANES]));
-    }
-}

@@ -10,7 +10,7 @@ enum { COLUMNS = 23 };
 const char ref_dump_columns[] =
     "line,cell,range_m,latitude_deg,longitude_deg,has_data,class,kind,gamma_db,height_m,elevation_"
     "m,"
-    "tangent,horizon,rise,is_lit,gain_db,edge_db,level_db,slice,class_gain_db,echo_db,brightness,"
+    "tangent,horizon,rise,is_lit,gain_db,edge_db,level_db,grain,class_gain_db,echo_db,brightness,"
     "grey";
 
 static void fill_row(double row[COLUMNS], unsigned line, int cell, const struct ref_bin *bin)
@@ -33,7 +33,7 @@ static void fill_row(double row[COLUMNS], unsigned line, int cell, const struct 
                                     bin->gain_db,
                                     bin->edge_db,
                                     bin->level_db,
-                                    bin->slice,
+                                    bin->grain,
                                     bin->class_gain_db,
                                     bin->echo_db,
                                     bin->brightness,

@@ -61,7 +61,7 @@ static const struct option options[] = {
     {"scale", "pixels along a cell's side", AT(scale), FOR_SAR, 1, 16, 2, true},
     {"epoch", "number of the look: another one, another speckle", AT(epoch), FOR_ALL, 0,
      4294967295.0, 0, true},
-    {"looks", "independent looks averaged", AT(looks), FOR_ALL, 1, 64, 4, true},
+    {"looks", "independent looks averaged", AT(looks), FOR_SAR | FOR_GM, 1, 64, 4, true},
     {"beam", "degrees of the one-way half-power beam in azimuth", AT(beam_deg), FOR_SECTOR, 0.1, 20,
      AZIMUTH_BEAM_DEG, false},
     {"tilt", "degrees of the antenna upwards; AUTO by default", AT(tilt_deg), FOR_SECTOR, -60, 60,

@@ -1,5 +1,5 @@
-/* Noise table: random draws of Gamma variables in decibels, for speckle and receiver noise.
- * Law: docs/EQUATIONS.md, "Speckle", under "Draws".
+/* Noise table: random draws of Gamma variables in decibels, for the receiver's noise. Law:
+ * docs/EQUATIONS.md, "Noise", under "Draws".
  *
  * A line draws block by block, eight neighbouring cells at a time. A hash of column, block and
  * epoch chooses where a block starts in the table. Its cells take eight neighbouring entries:
@@ -34,7 +34,7 @@ extern const int16_t lm_noise_db_q8[LM_NOISE_LOOKS_LOG2_MAX + 1][LM_NOISE_SLICES
  * Two products with odd factors modulo 1024 and two folds (x ^ x >> n). Each step can be inverted,
  * so every slice occurs once. The factors were chosen for little correlation between entries up to
  * seven apart, the reach of a block: at most 0.0135, of slices or of exponential powers
- * (test_speckle.c). */
+ * (test_noise.c). */
 static inline uint32_t lm_noise_slice(uint32_t entry)
 {
     const uint32_t once = entry * 987 % LM_NOISE_SLICES;
@@ -43,7 +43,7 @@ static inline uint32_t lm_noise_slice(uint32_t entry)
 }
 
 /* Uses of draws. Draws of different kinds are independent. */
-enum lm_noise_kind { LM_NOISE_SPECKLE, LM_NOISE_RECEIVER, LM_NOISE_KINDS };
+enum lm_noise_kind { LM_NOISE_RECEIVER, LM_NOISE_KINDS };
 
 /* Noise key: the numbers that choose the draws of a line. Cells of the same block number, column
  * (whole part) and epoch have the same draws, in whatever line. */

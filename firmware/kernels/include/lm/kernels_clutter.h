@@ -121,8 +121,4 @@ void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, in
  * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
  * it. `entry` has one for each block of the line, and for whole groups. */
 
-/* Add a draw to each level. Groups have LM_LANES cells. Cost: 1 a cell. */
-void lm_k_noise_add(const int16_t *row_db_q8, const uint32_t *entry, int32_t *level_db_q8,
-                    uint32_t cells);
-
 #endif

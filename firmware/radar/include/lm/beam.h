@@ -34,6 +34,8 @@ struct lm_beam {
     uint8_t fineness;    /* k of the spacing D = D0 / 2^k; D0 is the table's `sample` */
     int32_t first, held; /* samples first .. first + held - 1 are held; held is 0..8 */
     uint32_t power_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
+    bool has_steady[LM_BEAM_TAPS]; /* true if a slot has scatterers, which are kept apart */
+    uint32_t steady_q24[LM_BEAM_TAPS][LM_CELLS_ROOM];
 };
 
 /* Taps of one display line: samples first .. first + 7, each with its weight. */
@@ -80,6 +82,15 @@ bool lm_beam_next_missing(const struct lm_beam *b, const struct lm_beam_taps *ta
  * cells. The other samples stay held only if this one is their neighbour. The slot is part of *b.
  */
 uint32_t *lm_beam_slot(struct lm_beam *b, int32_t sample);
+
+/* The same slot's powers of scatterers, which the caller fills, too. Call it after lm_beam_slot; a
+ * slot without this call has no scatterers. */
+uint32_t *lm_beam_steady_slot(struct lm_beam *b, int32_t sample);
+
+/* Compute the powers of the scatterers of the display line. False, with *power_q24 unchanged, if no
+ * sample of the taps has any. Cost: that of lm_beam_sum, or 30 instructions. */
+bool lm_beam_steady_sum(const struct lm_beam *b, const struct lm_beam_taps *taps,
+                        uint32_t *power_q24, uint32_t cells);
 
 /* Compute the powers of the display line. All samples of the taps must be held. Cost:
  * docs/benchmarks.md. */

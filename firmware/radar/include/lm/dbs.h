@@ -15,6 +15,7 @@
 
 #include "lm/radar.h"
 
+enum { LM_DBS_RATIO_MAX_Q8 = (1 << 24) - 1 };
 enum { LM_DBS_FADE_LINES = 11 }; /* between two lines the ratio changes by less than a tenth */
 
 /* Scan of the antenna over a moving aircraft. */
@@ -25,7 +26,7 @@ struct lm_dbs_scan {
 };
 
 /* Sharpening ratio available at `off` from the velocity: N(o) = 2 V B^2 sin o / (lambda w), cells
- * in a beam width. At most 2^16 - 1. */
+ * in a beam width. At most LM_DBS_RATIO_MAX_Q8. */
 uint32_t lm_dbs_ratio_q8(const struct lm_radar *radar, const struct lm_dbs_scan *scan,
                          fx_bam_t off);
 

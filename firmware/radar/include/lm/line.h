@@ -8,16 +8,19 @@
  *     shadow, slope, edges         lm_line_trace                lm_line_trace
  *     class gain, sea              lm_line_trace                lm_line_trace
  *     layover                      -                            lm_layover_run
- *     chips of targets             with the scatterers below    lm_target_patch_shade, _add_chips
+ *     targets                      lm_line_add_targets          -
+ *     chips of targets             with the scatterers above    lm_target_patch_shade, _add_chips
  *     rain                         with the receiver below      lm_patch_rain_run
  *     receiver noise               with the receiver below      lm_patch_floor_run
- *     speckle                      lm_speckle_run               lm_grain_floor_run
+ *     speckle                      behind the pulse, below      lm_grain_floor_run
  *     side lobes of the ground     -                            lm_side_lobes_find, _add
- *     scatterers of targets        lm_line_add_targets          lm_target_patch_add_scatterers
+ *     scatterers of targets        kept apart, joined below     lm_target_patch_add_scatterers
  *     elevation pattern            lm_antenna_pattern_apply     -
  *     ground range to slant range  lm_slant_run                 -
  *     azimuth                      lm_beam_sum                  lm_defocus_run
- *     pulse, noise, rain, jammers  lm_receiver_run              -
+ *     pulse                        lm_receiver_pulse            -
+ *     speckle, scatterers          lm_receiver_fade, _join      -
+ *     noise, rain, jammers         lm_receiver_run              -
  *     level to grey                lm_tone_run                  lm_tone_run
  *
  * A sector's stages work on one azimuth (a sample) down to the slant range, and on a line of the
@@ -28,12 +31,13 @@
 #ifndef LM_LINE_H
 #define LM_LINE_H
 
+#include <stdbool.h>
+
 #include "lm/class_gain.h"
 #include "lm/detail_patch.h"
 #include "lm/illumination.h"
 #include "lm/scan_line.h"
 #include "lm/sea.h"
-#include "lm/speckle.h"
 #include "lm/target_line.h"
 
 /* Targets that a line may meet, and the line's own geometry. */
@@ -60,6 +64,7 @@ struct lm_line_setup {
 struct lm_line {
     struct lm_scan_line ground;  /* cells and elevations, read from the map */
     struct lm_lit_line lit;      /* horizon, and levels that the stages change in place */
+    struct lm_lit_line steady;   /* of a sector: the same horizon, and levels of scatterers */
     uint8_t grey[LM_CELLS_ROOM]; /* result: 0..255 for each cell of the display line */
 };
 
@@ -71,10 +76,12 @@ lm_horizon_q40_t lm_line_trace(struct lm_line *line, struct lm_tile_cache *tiles
                                const struct lm_line_setup *setup, const struct lm_ground_path *path,
                                lm_horizon_q40_t horizon);
 
-/* Add to line->lit.level_db_q8 the returns of targets that the line's horizon does not hide. Call
- * it after speckle: the echo of a scatterer has its own fluctuation, and a chip takes the speckle
- * of its cells by itself. Cost: that of lm_target_line_add. */
-void lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
+/* Find the returns of targets that the line's horizon does not hide. Chips go into
+ * line->lit.level_db_q8: like the ground they are means, and take its speckle. Scatterers fluctuate
+ * by themselves: line->steady gets their levels, with LM_LEVEL_SHADOW where there is none. False,
+ * with line->steady of no meaning, if the line meets no target. Cost: that of lm_target_line_add.
+ */
+bool lm_line_add_targets(struct lm_line *line, const struct lm_range_grid *grid,
                          const struct lm_line_targets *targets);
 
 #endif

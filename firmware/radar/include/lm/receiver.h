@@ -20,6 +20,8 @@ struct lm_receiver {
     /* Pulse: weight of each bin m to either side in a bin's power. weight_q16[0] plus twice the
      * others is 65536. weight_q16[0] is all of it if the pulse is not longer than a bin. */
     uint32_t weight_q16[LM_PULSE_REACH_MAX + 1];
+    uint32_t grain_step_q16; /* columns of the grain a bin: a column is a bin or a pulse long,
+                                whichever is longer; 1..65536 */
     int32_t noise_db_q8[LM_CELLS_ROOM];  /* mean noise of each bin before the fall, dB of gamma */
     int32_t fall_db_q8[LM_CELLS_ROOM];   /* loss of clear air and behind the STC's end; 0 or more */
     int32_t volume_db_q8[LM_CELLS_ROOM]; /* 10 log10(r b / g): gamma of scatterers that fill the
@@ -34,13 +36,24 @@ void lm_receiver_set(struct lm_receiver *r, const struct lm_radar *radar,
                      const struct lm_slant *slant, int32_t height_m_q10, uint8_t range_index,
                      enum lm_fov fov);
 
-/* Compute the level of each bin from its power; 1.0 in Q24 is 0 dB of gamma. `power_q24` is
- * changed. `weather` is NULL in fair weather without jammers. `line` and `sweep` choose the noise.
+/* Replace the power of each bin by its mean over the pulse. Cost: 9 instructions a bin where the
+ * pulse is longer than a bin. */
+void lm_receiver_pulse(const struct lm_receiver *r, uint32_t *power_q24);
+
+/* Multiply the power of each bin by that of its speckle, 1 in Q24. Cost: 2 instructions a bin. */
+void lm_receiver_fade(const struct lm_receiver *r, const uint32_t *speckle_q24,
+                      uint32_t *power_q24);
+
+/* Add the power of scatterers, which have no speckle of the ground. Cost: 1 instruction a bin. */
+void lm_receiver_join(const struct lm_receiver *r, const uint32_t *steady_q24, uint32_t *power_q24);
+
+/* Compute the level of each bin from its power, behind all of the above; 1.0 in Q24 is 0 dB of
+ * gamma. `weather` is NULL in fair weather without jammers. `line` and `sweep` choose the noise.
  *
  * Levels are within 500 dB of 0. They are within 0.05 dB of the equations, apart from the power's
- * own step of 2^-24. Cost: 7 instructions a bin on a machine with vectors of eight; a pulse longer
- * than a bin takes 9 more, rain 2. */
+ * own step of 2^-24. Cost: 7 instructions a bin on a machine with vectors of eight; rain takes 2
+ * more. */
 void lm_receiver_run(const struct lm_receiver *r, const struct lm_weather *weather, uint32_t line,
-                     uint32_t sweep, uint32_t *power_q24, int32_t *level_db_q8);
+                     uint32_t sweep, const uint32_t *power_q24, int32_t *level_db_q8);
 
 #endif

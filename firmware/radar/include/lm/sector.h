@@ -31,6 +31,7 @@
 #include "lm/azimuth_average.h"
 #include "lm/beam.h"
 #include "lm/foreground.h"
+#include "lm/grain.h"
 #include "lm/line.h"
 #include "lm/radar.h"
 #include "lm/receiver.h"
@@ -107,8 +108,11 @@ struct lm_sector {
     struct lm_sector_taps { /* taps of the last even and of the last odd line */
         bool is_kept;       /* true if not sharpened: a later line may shift and use them */
         int32_t azimuth;    /* of that line, signed BAM from the sector's middle */
+        uint32_t ratio_q8;  /* sharpening used */
+        uint32_t looks_q8;  /* of the ground's speckle: 256 or more */
         struct lm_beam_taps taps;
     } taps[2];
+    struct lm_grain_stretch grain; /* of the next line */
     struct lm_receiver receiver;
     struct lm_weather weather;
     struct lm_target_candidates candidates;
@@ -119,7 +123,7 @@ struct lm_sector {
     bool has_foreground;                 /* true once it was traced */
 
     uint32_t samples;                   /* taken since the start; only grows */
-    uint32_t power_q24[LM_CELLS_ROOM];  /* line drawn last, behind beam and pulse */
+    uint32_t power_q24[LM_CELLS_ROOM];  /* line drawn last, behind beam, pulse and speckle */
     int32_t level_db_q8[LM_CELLS_ROOM]; /* line drawn last, behind the receiver */
 };
 

@@ -111,7 +111,6 @@ struct lm_sector_mode_row {
     uint16_t clutter_db_q8;  /* how much of what stands still is cancelled, dB; 0..64 dB */
     uint32_t gate_mm_s[2];   /* closing speeds, either way, of what is shown; 0..
                               * LM_RADAR_SPEED_MAX_MM_S; [1] is 0: all */
-    struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };
 

@@ -17,8 +17,8 @@ struct lm_chip_sector_origin {
                                displace a shadow */
 };
 
-/* Darken the line's ground in the target's shadow, then add the target. The chip takes the line's
- * speckle, which the ground has already. Returns the number of cells that got power.
+/* Darken the line's ground in the target's shadow, then add the target. Both are means, which take
+ * their speckle later. Returns the number of cells that got power.
  *
  * - candidate->chip is resident (lm_chip_of is not NULL). All pointers are borrowed for the call.
  * - clutter_db_q8 is lm_clutter_area_dbm2_q8 of a cell there.

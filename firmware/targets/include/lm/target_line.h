@@ -4,7 +4,6 @@
 #ifndef LM_TARGET_LINE_H
 #define LM_TARGET_LINE_H
 
-#include "lm/speckle.h"
 #include "lm/target_view.h"
 
 /* Line of a sector: one sampled azimuth, with what targets need to know of it. */
@@ -26,9 +25,8 @@ struct lm_target_line {
     uint32_t stretch_cells; /* cells before and behind its own that a target also fills, so that it
                                is seen; then it is a point even if it has a chip */
     uint32_t scan, pulse;   /* number of the sweep and of the line: they choose random draws */
-    const struct lm_noise_key *noise_key; /* borrowed for the call: speckle of the line's cells, for
-                                             chips; NULL: chips have no speckle */
-    struct lm_speckle_config speckle;
+    int32_t *clutter_db_q8; /* borrowed for the call: levels of the ground, which chips darken and
+                               add to; NULL: those of the scatterers */
 };
 
 /* Horizon of a line, which hides targets. `horizon[i]` is the largest tangent at which a cell

@@ -51,8 +51,7 @@ struct ref_bin {
     double level_db;         /* the noise floor where there is no echo */
     /* speckle and noise */
     double class_gain_db; /* of the state of the sea and the facing of walls */
-    unsigned slice;       /* drawn for speckle, 0..1023 */
-    int grain;            /* of a patch, likewise: 1/32 of a standard deviation */
+    int grain;            /* drawn for speckle: 1/32 of a standard deviation */
     double ground;        /* of a patch: power of the ground behind rain */
     double loss_db, veil; /* of a patch, by rain: taken from the echo, and added to the noise */
     double speckle_db, echo_db;
@@ -239,6 +238,10 @@ void ref_grain_table(double looks, double table_db[REF_GRAIN_VALUES]);
  * that of lm/grain.h, by definition; its statistics are tested by themselves. */
 int ref_grain(uint32_t row, uint32_t column);
 
+/* Power of the speckle of so many looks at a place between rows and columns of the field. */
+double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, double row,
+                       double column);
+
 /* The running mean of a patch's ground: zero before its first line. */
 struct ref_leak {
     double mean;
@@ -280,9 +283,9 @@ double ref_facing_db(double off_deg, const struct ref_params *params);
 void ref_class_gain(struct ref_bin *bins, size_t count, const struct ref_params *params,
                     double look_deg);
 
-/* Fill `speckle_db` from `slice`, and echo_db = the sum of the powers, level_db +
+/* Fill `speckle_db` from `grain`, and echo_db = the sum of the powers, level_db +
  * class_gain_db - loss_db (of a lit bin), floor and veil, + speckle_db. */
-void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_SPECKLE_SLICES],
+void ref_speckle(struct ref_bin *bins, size_t count, const double table_db[REF_GRAIN_VALUES],
                  double noise_floor_db);
 
 /* ---- tone (tone.c) ---- */
@@ -315,6 +318,7 @@ struct ref_receiver {
     double code_gain_db;          /* C */
     double air_loss_db_km;        /* there and back */
     const double *noise_table_db; /* borrowed: ref_speckle_table of the noise's looks */
+    const double *speckle;        /* borrowed: power of the ground's in each bin; NULL: none */
     double stc_m;                 /* r_s */
     double pulse_s;
 };
@@ -467,7 +471,19 @@ struct ref_sector_line {
     double near_edge_m, cell_m; /* of the ground's cells */
     struct ref_receiver receiver;
     uint32_t line, sweep;
+    double looks;     /* of the ground's speckle; 0: none */
+    double grain_row; /* of the line, from where the sweep's grain begins */
 };
+
+/* Looks that a dwell with a ratio `had` leaves where `used` is used. */
+double ref_dbs_looks(double had, double used);
+
+/* Rows of the grain from one line to the next, `width_deg` apart: a row is a two-way beam wide. */
+double ref_grain_rows(const struct ref_beam *beam, double width_deg);
+
+/* Power of the speckle in each bin of a line whose pulse is `pulse_bins` bins long. */
+void ref_line_speckle(double looks, uint32_t sweep, double grain_row, double pulse_bins,
+                      double *speckle, size_t count);
 
 /* Levels of a line's bins from 8 sampled lines of `cells` cells each (up to REF_CELLS_MAX), whose
  * `echo_db` is known; NULL `weather`: fair. */
@@ -583,7 +599,7 @@ unsigned ref_sar_lines(const struct ref_sar *sar);
 
 /* The tables of a picture. */
 struct ref_tables {
-    double speckle_db[REF_SPECKLE_SLICES], grain_db[REF_GRAIN_VALUES];
+    double grain_db[REF_GRAIN_VALUES];
 };
 void ref_tables_set(struct ref_tables *tables, const struct ref_params *params);
 

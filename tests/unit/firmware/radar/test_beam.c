@@ -209,7 +209,7 @@ TEST(the_ratio_to_be_had_is_that_of_the_formula)
             const struct lm_dbs_scan scan = {FX_BAM_DEG(rate_deg_s), speed_mm_s, radar->line};
             for (int off_deg = -180; off_deg < 180; off_deg += 3) {
                 const uint32_t ratio_q8 = lm_dbs_ratio_q8(radar, &scan, (fx_bam_t)bam(off_deg));
-                const double wanted = fmin(ref_dbs_ratio(&ref, off_deg) * 256, UINT16_MAX);
+                const double wanted = fmin(ref_dbs_ratio(&ref, off_deg) * 256, LM_DBS_RATIO_MAX_Q8);
                 assert_true(fabs(ratio_q8 - wanted) < 1.5 + 0.001 * wanted);
             }
         }

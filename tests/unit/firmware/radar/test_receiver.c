@@ -192,6 +192,7 @@ TEST(clear_air_weakens_what_returns_and_not_the_noise)
             for (uint32_t i = 0; i < CELLS; i++) {
                 w->power[i] = has_signal ? 1u << 31 : 0;
             }
+            lm_receiver_pulse(&w->receiver, w->power);
             lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
             const double loss_db = has_signal ? 3.6 / 148160 * bin_m(w, 200) : 0;
             const int32_t level_q8 = w->level[200];
@@ -220,6 +221,7 @@ TEST(the_noise_has_its_mean_and_its_number_of_looks)
         for (uint32_t line = 0; line < LINES; line++) {
             double last = 0;
             memset(w->power, 0, sizeof w->power);
+            lm_receiver_pulse(&w->receiver, w->power);
             lm_receiver_run(&w->receiver, NULL, line, 17, w->power, w->level);
             for (uint32_t i = 0; i < CELLS; i++) {
                 const double x = pow(10, (w->level[i] - w->receiver.noise_db_q8[i]) / 2560.0);
@@ -248,10 +250,12 @@ TEST(another_sweep_has_other_noise_and_the_same_one_the_same)
     struct world *w = make_world();
     int32_t first[CELLS];
     set_scale(w, 1, 5000, 400);
+    lm_receiver_pulse(&w->receiver, w->power);
     lm_receiver_run(&w->receiver, NULL, 3, 9, w->power, w->level);
     memcpy(first, w->level, sizeof first);
     for (uint32_t sweep = 9; sweep < 12; sweep++) {
         memset(w->power, 0, sizeof w->power);
+        lm_receiver_pulse(&w->receiver, w->power);
         lm_receiver_run(&w->receiver, NULL, 3, sweep, w->power, w->level);
         int same = 0;
         for (uint32_t i = 0; i < CELLS; i++) {
@@ -283,6 +287,7 @@ TEST(a_pulse_keeps_the_energy_and_is_as_wide_as_it_is_long)
             set_pulse_only(w, pulse_m / bins, pulses_ns[n]);
             memset(w->power, 0, sizeof w->power);
             w->power[100] = 1 << 24;
+            lm_receiver_pulse(&w->receiver, w->power);
             lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
             double sum = 0, highest = 0;
             for (uint32_t i = 0; i < CELLS; i++) {
@@ -309,6 +314,7 @@ TEST(a_pulse_means_its_bins_as_the_equations_say)
             w->power[i] = n % 10 ? (uint32_t)hs_rng_u64(&rng) : UINT32_MAX;
             power[i] = w->power[i];
         }
+        lm_receiver_pulse(&w->receiver, w->power);
         lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
         ref_pulse(power, CELLS, ref_pulse_m(pulse_ns * 1e-9) / w->ref.bins.step_m);
         for (uint32_t i = 0; i < CELLS; i++) {
@@ -325,6 +331,7 @@ TEST(a_pulse_not_longer_than_a_bin_changes_nothing)
     for (uint32_t i = 0; i < CELLS; i++) {
         w->power[i] = i * 7919;
     }
+    lm_receiver_pulse(&w->receiver, w->power);
     lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
     for (uint32_t i = 0; i < CELLS; i++) {
         assert_int_equal(w->power[i], i * 7919);
@@ -345,6 +352,7 @@ TEST(behind_the_time_gains_end_levels_fall_by_30_decibels_a_decade)
         for (uint32_t i = 0; i < CELLS; i++) {
             w->power[i] = 1 << 24;
         }
+        lm_receiver_pulse(&w->receiver, w->power);
         lm_receiver_run(&w->receiver, NULL, 0, 0, w->power, w->level);
         for (uint32_t i = 0; i < CELLS; i++) {
             const double fall_db = fmax(0, 30 * log10(bin_m(w, i) / stc_m));
@@ -381,6 +389,7 @@ TEST(levels_are_those_of_the_reference)
             ref_weather.pass[i] = weather.has_rain ? pow(10, -weather.loss_db_q8[i] / 2560.0) : 1;
             ref_weather.rain[i] = weather.has_rain ? pow(10, weather.rain_db_q8[i] / 2560.0) : 0;
         }
+        lm_receiver_pulse(&w->receiver, w->power);
         lm_receiver_run(&w->receiver, &weather, line, 5, w->power, w->level);
         ref_receive(&w->ref, &ref_weather, line, 5, power, level_db);
         for (uint32_t i = 0; i < CELLS; i++) {
@@ -433,6 +442,7 @@ TEST(whatever_the_table_says_levels_stay_in_their_bounds)
             w->power[i] = n % 4 ? UINT32_MAX : 0;
             w->level[i] = 12345;
         }
+        lm_receiver_pulse(&w->receiver, w->power);
         lm_receiver_run(&w->receiver, NULL, UINT32_MAX, UINT32_MAX, w->power, w->level);
         for (uint32_t i = 0; i < LM_CELLS_ROOM; i++) {
             assert_true(i < cells ? abs(w->level[i]) < 500 * 256 : w->level[i] == 12345);

@@ -28,7 +28,8 @@ struct score {
 struct trial {
     struct sector_world *w;
     struct ref_params params;
-    double speckle_db[REF_SPECKLE_SLICES], noise_db[REF_SPECKLE_SLICES];
+    double noise_db[REF_SPECKLE_SLICES];
+    double grain_row; /* of the line, from where the sweep's grain begins */
     struct ref_environment environment;
     const struct lm_environment *weather; /* NULL: fair */
     struct score score[STAGES];
@@ -84,14 +85,6 @@ static struct ref_antenna antenna_of(const struct lm_radar *radar)
                                 .fan_deg = hs_degrees(radar->antenna.fan)};
 }
 
-/* What the cells of a sample draw. */
-static void take_draws(int32_t sample, uint32_t sweep, struct ref_bin *bins, uint32_t cells)
-{
-    for (uint32_t i = 0; i < cells; i++) {
-        bins[i].slice = ref_draw(LM_NOISE_SPECKLE, (uint32_t)sample, i, sweep);
-    }
-}
-
 /* The levels that the reference finds on the firmware's ground, before the antenna. */
 static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells, fx_bam_t azimuth)
 {
@@ -107,11 +100,13 @@ static void see(const struct trial *t, struct ref_bin *bins, uint32_t cells, fx_
     ref_illuminate(bins, cells, &view, &t->params, horizon_of(s, bins, cells, &view));
     ref_class_gain(bins, cells, &t->params, hs_degrees(azimuth));
     ref_sea(bins, cells, &view, &t->params, hs_degrees(azimuth));
-    ref_speckle(bins, cells, t->speckle_db, t->params.noise_floor_db);
+    for (uint32_t i = 0; i < cells; i++) {
+        bins[i].echo_db = bins[i].is_lit ? bins[i].level_db + bins[i].class_gain_db : -INFINITY;
+    }
 }
 
 /* The sample taken last, whose ground and levels are still in the line. */
-static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
+static void judge_sample(struct trial *t, int32_t sample)
 {
     const struct sector_world *w = t->w;
     const struct lm_sector *s = &w->sector;
@@ -120,7 +115,6 @@ static void judge_sample(struct trial *t, int32_t sample, uint32_t sweep)
     struct lm_lit_line gain = w->line.lit;
     memset(gain.level_db_q8, 0, sizeof gain.level_db_q8);
     lm_antenna_pattern_apply(&s->pattern, &s->fan, &s->grid, &gain);
-    take_draws(sample, sweep, bins, cells);
     see(t, bins, cells, s->up + (fx_bam_t)lm_beam_azimuth(&s->beam, s->radar, sample));
     const struct ref_antenna antenna = antenna_of(&w->radar);
     for (uint32_t i = 0; i < cells; i++) {
@@ -159,7 +153,7 @@ static void judge_slant(struct trial *t, long sample)
     }
 }
 
-static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
+static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg, double *looks)
 {
     const struct lm_fov_row *fov = &s->radar->fov[s->command.fov];
     const uint32_t rate = fov->bam_per_s ? fov->bam_per_s : s->radar->mode[0].bam_per_s;
@@ -168,12 +162,14 @@ static struct ref_beam beam_of(const struct lm_sector *s, double azimuth_deg)
                                 .wavelength_m = s->radar->wavelength_um * 1e-6,
                                 .rate_deg_s = hs_degrees(rate)};
     const double off_deg = hs_degrees(s->up - s->platform.track) + azimuth_deg;
-    return (struct ref_beam){
+    const struct ref_beam beam = {
         .beam_deg = dbs.beam_deg,
         .line_deg = hs_degrees(s->radar->sample),
         .ratio = fov->sharpening > 1
                      ? ref_dbs_used(&dbs, off_deg, hs_degrees(s->width), fov->sharpening)
                      : 1};
+    *looks = ref_dbs_looks(ref_dbs_ratio(&dbs, off_deg), beam.ratio);
+    return beam;
 }
 
 /* The firmware's line behind the beam is made once more: the receiver has changed its own. */
@@ -181,7 +177,8 @@ static void judge_beam(struct trial *t, uint32_t line, uint32_t *drawn_q24)
 {
     const struct lm_sector *s = &t->w->sector;
     const double azimuth_deg = line_azimuth_deg(s, line);
-    const struct ref_beam beam = beam_of(s, azimuth_deg);
+    double looks;
+    const struct ref_beam beam = beam_of(s, azimuth_deg, &looks);
     const struct ref_beam_look look = ref_beam_look(&beam, azimuth_deg);
     double power[REF_BEAM_SAMPLES][REF_CELLS_MAX], sum[REF_CELLS_MAX];
     const double *samples[REF_BEAM_SAMPLES];
@@ -254,9 +251,14 @@ static void judge_receiver(struct trial *t, uint32_t line, uint32_t sweep,
                            const uint32_t *drawn_q24)
 {
     const struct lm_sector *s = &t->w->sector;
-    const struct ref_receiver receiver = receiver_of(t);
+    struct ref_receiver receiver = receiver_of(t);
     struct ref_weather_line weather;
-    double power[REF_CELLS_MAX], level_db[REF_CELLS_MAX];
+    double power[REF_CELLS_MAX], level_db[REF_CELLS_MAX], speckle[REF_CELLS_MAX], looks;
+    const struct ref_beam beam = beam_of(s, line_azimuth_deg(s, line), &looks);
+    ref_line_speckle(looks, sweep, t->grain_row,
+                     ref_pulse_m(receiver.pulse_s) / receiver.bins.step_m, speckle, s->slant.cells);
+    receiver.speckle = speckle;
+    t->grain_row += ref_grain_rows(&beam, hs_degrees(s->width));
     for (uint32_t i = 0; i < s->slant.cells; i++) {
         power[i] = ldexp(drawn_q24[i], -24);
     }
@@ -284,10 +286,11 @@ static void judge_line(struct trial *t)
     uint32_t drawn_q24[LM_CELLS_ROOM];
     /* To the right, the sample taken last is the outermost. */
     const double azimuth_deg = line_azimuth_deg(s, line);
-    const struct ref_beam beam = beam_of(s, azimuth_deg);
+    double looks;
+    const struct ref_beam beam = beam_of(s, azimuth_deg, &looks);
     const long last = ref_beam_look(&beam, azimuth_deg).first + REF_BEAM_SAMPLES - 1;
     if (s->samples != samples) {
-        judge_sample(t, (int32_t)last, sweep);
+        judge_sample(t, (int32_t)last);
         judge_slant(t, last);
     }
     judge_beam(t, line, drawn_q24);
@@ -306,15 +309,17 @@ static void report(const char *what, const struct trial *t)
                   100.0 * t->beyond_1_grey / t->pixels);
 }
 
-/* At most one value in ten thousand beyond half a decibel, one pixel in a thousand more than one
- * grey level off. */
+/* At most one value in ten thousand beyond half a decibel. Behind the speckle it is one in four
+ * thousand, and three pixels in a thousand more than one grey level off: with one or two looks, a
+ * step of the grain, 1/32 of a deviation, is up to half a decibel in a deep fade. */
 static void judge(const struct trial *t)
 {
     for (int stage = 0; stage < STAGES; stage++) {
         assert_true(t->score[stage].values > 10000);
-        assert_true(t->score[stage].beyond_half_db * 10000.0 <= t->score[stage].values);
+        const double most = stage == RECEIVER ? 4000 : 10000;
+        assert_true(t->score[stage].beyond_half_db * most <= t->score[stage].values);
     }
-    assert_true(t->beyond_1_grey * 1000.0 <= t->pixels);
+    assert_true(t->beyond_1_grey * 1000.0 <= 3 * t->pixels);
 }
 
 static void judge_sweep(struct sector_world *w, const char *what,
@@ -325,13 +330,12 @@ static void judge_sweep(struct sector_world *w, const char *what,
     t->w = w;
     w->map.db.classes.entry[TINY_STRUCTURE].facing = 3;
     t->weather = e;
-    t->params = params_of(&w->radar, -INFINITY, &mode->tone, &mode->speckle);
+    t->params = params_of(&w->radar, -INFINITY, &mode->tone, &w->radar.sar.speckle);
     t->params.sea_db = e ? ref_sea_db(e->sea_state) : 0;
     t->params.sea.critical =
         ref_sea_critical(e ? e->sea_state : LM_SEA_STATE_OF_IMAGE, w->radar.wavelength_um * 1e-6);
     t->params.sea.has_wind = e && e->has_wind;
     t->params.sea.wind_from_deg = e ? hs_degrees(e->wind_from) : 0;
-    ref_speckle_table(t->params.looks, t->speckle_db);
     ref_speckle_table(1u << w->radar.receiver.noise_looks_log2, t->noise_db);
     start_sector(w, command, e, NULL);
     do {

@@ -4,7 +4,6 @@
 #include "hs/angle.h"
 #include "hs/rng.h"
 #include "lm/receiver.h"
-#include "lm/speckle.h"
 #include "lm/status.h"
 #include "lm/weather.h"
 #include "reference/reference.h"
@@ -282,7 +281,9 @@ TEST(a_strobe_lifts_the_noise_of_every_bin_alike)
     static int32_t quiet[LM_CELLS_ROOM], jammed[LM_CELLS_ROOM];
     add_jammer(w, 18520, 0, 30);
     look(w);
+    lm_receiver_pulse(&w->receiver, power);
     lm_receiver_run(&w->receiver, NULL, 1, 1, power, quiet);
+    lm_receiver_pulse(&w->receiver, power);
     lm_receiver_run(&w->receiver, &w->weather, 1, 1, power, jammed);
     for (uint32_t i = 0; i < CELLS; i++) {
         assert_true(abs(jammed[i] - quiet[i] - w->weather.noise_rise_db_q8) <= 1);
@@ -341,6 +342,7 @@ TEST(no_environment_in_range_leaves_the_bounds)
             assert_true(!w->weather.has_rain || w->weather.loss_db_q8[i] >= 0);
             power[i] = UINT32_MAX;
         }
+        lm_receiver_pulse(&w->receiver, power);
         lm_receiver_run(&w->receiver, &w->weather, 0, 0, power, level);
         for (uint32_t i = 0; i < CELLS; i++) {
             assert_true(abs(level[i]) < 500 * 256);

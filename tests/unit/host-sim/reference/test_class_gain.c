@@ -20,7 +20,7 @@ TEST(only_water_gains_by_the_state_of_the_sea)
 
 TEST(a_class_gain_is_the_grounds_and_not_the_noises)
 {
-    static const double no_speckle[REF_SPECKLE_SLICES];
+    static const double no_speckle[REF_GRAIN_VALUES];
     struct ref_bin bins[2] = {{.is_lit = true, .level_db = -20, .class_gain_db = 7},
                               {.is_lit = false, .level_db = -20, .class_gain_db = 7}};
     ref_speckle(bins, 2, no_speckle, -30);

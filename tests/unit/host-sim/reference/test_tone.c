@@ -69,33 +69,32 @@ TEST(speckle_rises_from_slice_to_slice)
 }
 
 /* Every cell draws by itself: of 4096 pairs, four share a slice by chance. */
-TEST(cells_columns_epochs_and_kinds_draw_by_themselves)
+TEST(cells_columns_and_epochs_draw_by_themselves)
 {
-    int same[4] = {0};
+    int same[3] = {0};
     for (uint32_t n = 0; n < 4096; n++) {
         const uint32_t column = n / 64, cell = n % 64;
-        const unsigned slice = ref_draw(LM_NOISE_SPECKLE, column, cell, 5);
+        const unsigned slice = ref_draw(LM_NOISE_RECEIVER, column, cell, 5);
         assert_true(slice < REF_SPECKLE_SLICES);
-        assert_int_equal(slice, ref_draw(LM_NOISE_SPECKLE, column, cell, 5));
-        same[0] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell + 1, 5);
-        same[1] += slice == ref_draw(LM_NOISE_SPECKLE, column + 1, cell, 5);
-        same[2] += slice == ref_draw(LM_NOISE_SPECKLE, column, cell, 6);
-        same[3] += slice == ref_draw(LM_NOISE_RECEIVER, column, cell, 5);
+        assert_int_equal(slice, ref_draw(LM_NOISE_RECEIVER, column, cell, 5));
+        same[0] += slice == ref_draw(LM_NOISE_RECEIVER, column, cell + 1, 5);
+        same[1] += slice == ref_draw(LM_NOISE_RECEIVER, column + 1, cell, 5);
+        same[2] += slice == ref_draw(LM_NOISE_RECEIVER, column, cell, 6);
     }
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 3; i++) {
         assert_in_range(same[i], 0, 20);
     }
 }
 
 TEST(noise_adds_to_the_power_before_speckle)
 {
-    double table_db[REF_SPECKLE_SLICES];
-    ref_speckle_table(4, table_db);
-    struct ref_bin bins[2] = {{.is_lit = false, .slice = 7},
-                              {.is_lit = true, .level_db = -45, .slice = 1000}};
+    double table_db[REF_GRAIN_VALUES];
+    ref_grain_table(4, table_db);
+    struct ref_bin bins[2] = {{.is_lit = false, .grain = -70},
+                              {.is_lit = true, .level_db = -45, .grain = 100}};
     ref_speckle(bins, 2, table_db, -45);
-    assert_true(fabs(bins[0].echo_db - (-45 + table_db[7])) < 1e-12);
-    assert_true(fabs(bins[1].echo_db - (-45 + 10 * log10(2) + table_db[1000])) < 1e-12);
+    assert_true(fabs(bins[0].echo_db - (-45 + table_db[58])) < 1e-12);
+    assert_true(fabs(bins[1].echo_db - (-45 + 10 * log10(2) + table_db[228])) < 1e-12);
 }
 
 TEST(tone_rises_from_black_to_white)

@@ -1,7 +1,6 @@
-/* Draws and speckle against the statistics of a Gamma distribution. */
+/* Draws of the receiver's noise against the statistics of a Gamma distribution. */
 #include "check.h"
 #include "lm/noise.h"
-#include "lm/speckle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,13 +23,11 @@ static void fill_slices(uint32_t slice[SIDE][SIDE], enum lm_noise_kind kind, uin
 /* Powers after speckle of `looks_log2` on a field of 0 dB. */
 static void fill_powers(double *power, uint8_t looks_log2, uint32_t epoch)
 {
-    const struct lm_speckle_config config = {looks_log2};
     for (uint32_t line = 0; line < SIDE; line++) {
-        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, line, epoch);
-        int32_t level[SIDE] = {0};
-        lm_speckle_run(&config, &noise_key, level, SIDE);
+        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_RECEIVER, line, epoch);
         for (uint32_t i = 0; i < SIDE; i++) {
-            power[line * SIDE + i] = pow(10, level[i] / 2560.0);
+            power[line * SIDE + i] =
+                pow(10, lm_noise_cell_db_q8(looks_log2, &noise_key, i) / 2560.0);
         }
     }
 }
@@ -129,7 +126,7 @@ TEST(every_slice_is_drawn_equally_often)
     static uint32_t slice[SIDE][SIDE];
     for (uint32_t epoch = 0; epoch < 4; epoch++) {
         int count[LM_NOISE_SLICES] = {0};
-        fill_slices(slice, LM_NOISE_SPECKLE, epoch);
+        fill_slices(slice, LM_NOISE_RECEIVER, epoch);
         for (int i = 0; i < SIDE * SIDE; i++) {
             count[slice[i / SIDE][i % SIDE]]++;
         }
@@ -161,7 +158,7 @@ TEST(neighbouring_cells_are_independent)
     static uint32_t slice[SIDE][SIDE];
     double worst = 0;
     for (uint32_t epoch = 0; epoch < 3; epoch++) {
-        fill_slices(slice, LM_NOISE_SPECKLE, epoch);
+        fill_slices(slice, LM_NOISE_RECEIVER, epoch);
         for (int down = 0; down <= 3; down++) {
             for (int along = down == 0; along <= 9; along++) {
                 worst = fmax(worst, fabs(correlation(slice, slice, down, along)));
@@ -197,15 +194,13 @@ TEST(no_frequency_along_the_lines_stands_out)
     assert_true(least > 1 - 5.0 / 16 && most < 1 + 5.0 / 16);
 }
 
-TEST(kinds_and_epochs_know_nothing_of_each_other)
+TEST(epochs_know_nothing_of_each_other)
 {
     static uint32_t a[SIDE][SIDE], b[SIDE][SIDE];
-    fill_slices(a, LM_NOISE_SPECKLE, 7);
+    fill_slices(a, LM_NOISE_RECEIVER, 7);
+    fill_slices(b, LM_NOISE_RECEIVER, 8);
+    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
     fill_slices(b, LM_NOISE_RECEIVER, 7);
-    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
-    fill_slices(b, LM_NOISE_SPECKLE, 8);
-    assert_true(fabs(correlation(a, b, 0, 0)) < 5.0 / SIDE);
-    fill_slices(b, LM_NOISE_SPECKLE, 7);
     assert_memory_equal(a, b, sizeof a);
 }
 
@@ -220,22 +215,5 @@ TEST(lines_of_one_column_draw_alike_and_columns_may_grow_along_a_line)
     for (uint32_t block = 1; block < 8; block++) {
         assert_int_equal(line.entry[block], lm_noise_entry(&behind, block));
         assert_int_equal(line.entry[block], lm_noise_entry(&grown, block));
-    }
-}
-
-TEST(every_cell_gains_its_draw)
-{
-    for (uint32_t column = 0; column < 500; column++) {
-        const struct lm_speckle_config config = {(uint8_t)(column % 5)};
-        const struct lm_noise_key noise_key = lm_noise_key_of(LM_NOISE_SPECKLE, column, 1);
-        int32_t level[48];
-        for (int i = 0; i < 48; i++) {
-            level[i] = 1000 * i - 0x8000;
-        }
-        lm_speckle_run(&config, &noise_key, level, 48);
-        for (uint32_t i = 0; i < 48; i++) {
-            const int32_t draw = lm_noise_cell_db_q8(config.looks_log2, &noise_key, i);
-            assert_int_equal(level[i], 1000 * (int32_t)i - 0x8000 + draw);
-        }
     }
 }
