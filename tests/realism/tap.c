@@ -96,19 +96,17 @@ static void read_tiles(struct tap *t)
 enum { CELLS = 256 };
 
 /* Planes of a patch, [line][cell]. */
-typedef int32_t patch_plane[LM_PATCH_LINES_MAX][CELLS];
-static struct patch_planes {
-    patch_plane level, grey, cell, elevation, height_dm;
-} patch;
+enum { LEVEL, GREY, CELL, ELEVATION, HEIGHT_DM, PLANES };
+static int32_t patch[PLANES][LM_PATCH_LINES_MAX][CELLS];
 
 static void keep_ground(const struct tap *t, uint32_t number)
 {
     const struct lm_scan_line *ground = &t->line.ground;
     for (uint32_t i = 0; i < CELLS; i++) {
         const uint32_t cell = ground->cell[i + LM_SAR_GUARD];
-        patch.cell[number][i] = (int32_t)cell;
-        patch.elevation[number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD];
-        patch.height_dm[number][i] = t->map.db.classes.height_dm[cell & 15];
+        patch[CELL][number][i] = (int32_t)cell;
+        patch[ELEVATION][number][i] = ground->elevation_m_q14[i + LM_SAR_GUARD];
+        patch[HEIGHT_DM][number][i] = t->map.db.classes.height_dm[cell & 15];
     }
 }
 
@@ -165,8 +163,8 @@ static void draw_patch_line(struct tap *t)
     }
     const int32_t *level_db_q8 = lm_sar_draw_line(&t->sar, &t->map.tiles, &t->tone, &t->line);
     for (uint32_t i = 0; i < CELLS; i++) {
-        patch.level[number][i] = level_db_q8[i + LM_SAR_GUARD];
-        patch.grey[number][i] = t->line.grey[i + LM_SAR_GUARD];
+        patch[LEVEL][number][i] = level_db_q8[i + LM_SAR_GUARD];
+        patch[GREY][number][i] = t->line.grey[i + LM_SAR_GUARD];
     }
 }
 
@@ -183,10 +181,8 @@ static int draw_patch(struct tap *t)
         draw_patch_line(t);
     }
     FILE *raw = open_output(t, "raw"), *head = open_output(t, "head");
-    const patch_plane *planes[] = {&patch.level, &patch.grey, &patch.cell, &patch.elevation,
-                                   &patch.height_dm};
-    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
-        fwrite(planes[i], sizeof patch.level[0], t->sar.lines, raw);
+    for (int plane = 0; plane < PLANES; plane++) {
+        fwrite(patch[plane], sizeof patch[plane][0], t->sar.lines, raw);
     }
     fprintf(head, "planes level grey cell elevation height_dm\nshape %u %d\nlod %u\n", t->sar.lines,
             CELLS, t->sar.lod);
