@@ -213,7 +213,7 @@ TEST(the_firmwares_speckle_is_one_look_where_it_says_one_and_not_where_it_says_f
     rr_statistics_of(&s, power, CELLS);
     assert_true(fabs(s.mean - 1) < 0.01 && fabs(s.cv_intensity - 1) < 0.03);
     assert_true(fabs(s.cv_amplitude - 0.523) < 0.01 && fabs(s.db_std - 5.57) < 0.06);
-    assert_true(s.ks < 0.005);
+    assert_true(s.ks < 0.01); /* a step of the grain has up to 1/80 */
     rr_firmware_speckle(power, SIDE, 2, 3);
     rr_statistics_of(&s, power, CELLS);
     assert_true(fabs(s.enl / 4 - 1) < 0.1 && fabs(s.db_std - 2.31) < 0.05);
