@@ -50,9 +50,13 @@ struct box {
     int line_kind; /* of LM_DETAIL_LINE */
 };
 
+/* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
 static int split_words(char *line, char *words[WORDS_MAX])
 {
     int count = 0;
+    for (int i = 0; i < WORDS_MAX; i++) {
+        words[i] = line + strlen(line);
+    }
     char *rest = NULL;
     for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
         if (count == WORDS_MAX) {

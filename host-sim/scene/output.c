@@ -255,7 +255,7 @@ static int locate(struct places *where, const struct detail *d, const char *path
 {
     where->count = 2 * d->block_count + 2 * d->line_count + d->mast_count;
     const size_t room = (size_t)where->count + 1;
-    where->at = malloc(room * sizeof *where->at);
+    where->at = calloc(room, sizeof *where->at);
     where->longitude = malloc(room * sizeof *where->longitude);
     where->latitude = malloc(room * sizeof *where->latitude);
     if (!where->at || !where->longitude || !where->latitude) {
