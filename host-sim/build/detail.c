@@ -50,34 +50,10 @@ struct box {
     int line_kind; /* of LM_DETAIL_LINE */
 };
 
-/* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
-static int split_words(char *line, char *words[WORDS_MAX])
-{
-    int count = 0;
-    for (int i = 0; i < WORDS_MAX; i++) {
-        words[i] = line + strlen(line);
-    }
-    char *rest = NULL;
-    for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
-        if (count == WORDS_MAX) {
-            return WORDS_MAX + 1;
-        }
-        words[count++] = w;
-    }
-    return count;
-}
-
-static bool read_number(const char *word, double low, double high, double *number)
-{
-    char *end;
-    *number = strtod(word, &end);
-    return end != word && *end == '\0' && *number >= low && *number <= high;
-}
-
 static bool read_place(char *const *words, double place[2])
 {
-    return read_number(words[0], -89.9, 89.9, &place[0]) &&
-           read_number(words[1], -180, 360, &place[1]);
+    return db_text_number(words[0], -89.9, 89.9, &place[0]) &&
+           db_text_number(words[1], -180, 360, &place[1]);
 }
 
 /* ---- boxes to items ---- */
@@ -181,10 +157,10 @@ static int read_building(struct reading *r, char *const *words, int count)
     struct box box = {.kind = LM_DETAIL_BLOCK};
     const bool is_gabled = count == 8 && strcmp(words[7], "gabled") == 0;
     if (count != 8 || !read_place(words + 1, place) ||
-        !read_number(words[3], 0.1, 2000, &box.length_m) ||
-        !read_number(words[4], 0.1, 2000, &box.width_m) ||
-        !read_number(words[5], -360, 360, &box.turn_deg) ||
-        !read_number(words[6], 0.1, 1000, &box.height_m) ||
+        !db_text_number(words[3], 0.1, 2000, &box.length_m) ||
+        !db_text_number(words[4], 0.1, 2000, &box.width_m) ||
+        !db_text_number(words[5], -360, 360, &box.turn_deg) ||
+        !db_text_number(words[6], 0.1, 1000, &box.height_m) ||
         (!is_gabled && strcmp(words[7], "flat") != 0)) {
         return db_text_error(&r->file, building_form,
                              "a number is missing or out of its range, or the roof is none");
@@ -200,7 +176,7 @@ static int read_wall(struct reading *r, char *const *words, int count)
     double from[2], to[2];
     struct box box = {.kind = LM_DETAIL_BLOCK, .width_m = wall_width_m};
     if (count != 6 || !read_place(words + 1, from) || !read_place(words + 3, to) ||
-        !read_number(words[5], 0.1, 1000, &box.height_m)) {
+        !db_text_number(words[5], 0.1, 1000, &box.height_m)) {
         return db_text_error(&r->file, wall_form, "a number is missing or out of its range");
     }
     return needs_structure(r) == 0 ? add_run(r, from, to, &box) : -1;
@@ -228,7 +204,7 @@ static int read_mast(struct reading *r, char *const *words, int count)
     double place[2];
     struct box box = {.kind = LM_DETAIL_BLOCK, .length_m = mast_width_m, .width_m = mast_width_m};
     if (count != 4 || !read_place(words + 1, place) ||
-        !read_number(words[3], 0.1, 1000, &box.height_m)) {
+        !db_text_number(words[3], 0.1, 1000, &box.height_m)) {
         return db_text_error(&r->file, mast_form, "a number is missing or out of its range");
     }
     box.latitude = place[0];
@@ -246,7 +222,7 @@ static int read_line(struct reading *r)
                  {"line", read_line_of_kind},
                  {"mast", read_mast}};
     char *words[WORDS_MAX];
-    const int count = split_words(r->file.line, words);
+    const int count = db_text_words(r->file.line, words, WORDS_MAX);
     if (count > WORDS_MAX) {
         return db_text_error(&r->file, NULL, "more than %d words", WORDS_MAX);
     }

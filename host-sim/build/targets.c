@@ -29,30 +29,11 @@ static const char target_form[] =
 static const char via_form[] =
     "via LATITUDE LONGITUDE, behind a target without bodies that is `moving SPEED`";
 
-/* Returns their number, WORDS_MAX + 1 for too many; words beyond it are empty. */
-static int split_words(char *line, char *words[WORDS_MAX])
-{
-    int count = 0;
-    for (int i = 0; i < WORDS_MAX; i++) {
-        words[i] = line + strlen(line);
-    }
-    char *rest = NULL;
-    for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
-        if (count == WORDS_MAX) {
-            return WORDS_MAX + 1;
-        }
-        words[count++] = w;
-    }
-    return count;
-}
-
 /* Numbers in `count` words, each within low..high; false when one is not. */
 static bool read_numbers(char *const *words, int count, double *numbers, double low, double high)
 {
     for (int i = 0; i < count; i++) {
-        char *end;
-        numbers[i] = strtod(words[i], &end);
-        if (end == words[i] || *end != '\0' || !(numbers[i] >= low && numbers[i] <= high)) {
+        if (!db_text_number(words[i], low, high, &numbers[i])) {
             return false;
         }
     }
@@ -337,7 +318,7 @@ static int read_library(struct reading *r, char *const *words, int count)
 static int read_line(struct reading *r)
 {
     char *words[WORDS_MAX];
-    const int count = split_words(r->file.line, words);
+    const int count = db_text_words(r->file.line, words, WORDS_MAX);
     if (count > WORDS_MAX) {
         return db_text_error(&r->file, NULL, "more than %d words", WORDS_MAX);
     }

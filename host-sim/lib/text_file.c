@@ -75,6 +75,30 @@ int db_text_split(char *line, char **key, char **value)
     return **key && **value ? 0 : -1;
 }
 
+int db_text_words(char *line, char **words, int most)
+{
+    int count = 0;
+    char *const end = line + strlen(line);
+    for (int i = 0; i < most; i++) {
+        words[i] = end;
+    }
+    char *rest = NULL;
+    for (char *w = strtok_r(line, " \t", &rest); w; w = strtok_r(NULL, " \t", &rest)) {
+        if (count == most) {
+            return most + 1;
+        }
+        words[count++] = w;
+    }
+    return count;
+}
+
+bool db_text_number(const char *word, double low, double high, double *number)
+{
+    char *end;
+    *number = strtod(word, &end);
+    return end != word && *end == '\0' && *number >= low && *number <= high;
+}
+
 void db_text_close(struct db_text_file *f)
 {
     if (f->stream) {

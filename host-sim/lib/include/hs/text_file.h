@@ -3,6 +3,7 @@
 #ifndef HS_TEXT_FILE_H
 #define HS_TEXT_FILE_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 struct db_text_file {
@@ -27,6 +28,13 @@ int db_text_error(const struct db_text_file *f, const char *remedy, const char *
 
 /* Split "key = value" in place; returns 0, or -1 when there is no '=' or either side is empty. */
 int db_text_split(char *line, char **key, char **value);
+
+/* Split a line into words in place, at spaces and tabs. Returns their number, or most + 1 when
+ * there are more than `most`; the entries of `words` behind the last are empty words. */
+int db_text_words(char *line, char **words, int most);
+
+/* The whole of a word as a number within low..high, ends included; false when it is none. */
+bool db_text_number(const char *word, double low, double high, double *number);
 
 /* Close the file and free the line. */
 void db_text_close(struct db_text_file *f);
