@@ -64,10 +64,20 @@ void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_plac
     lm_k_grain_floor(&lines, grain_q5, floor_db_q8, level_db_q8, speckled_db_q8, cells);
 }
 
-static inline int8_t between(int8_t first, int8_t second, uint32_t way)
+/* Weights of two numbers between which a cell lies, in steps of LM_GRAIN_WAY. */
+struct way {
+    int32_t first_q7, second_q7;
+};
+
+static inline struct way way_of(uint32_t part_q16)
 {
-    const int32_t sum_q7 =
-        first * lm_grain_weight_q7[LM_GRAIN_WAY - way] + second * lm_grain_weight_q7[way] + 64;
+    const uint32_t way = part_q16 / (65536 / LM_GRAIN_WAY);
+    return (struct way){lm_grain_weight_q7[LM_GRAIN_WAY - way], lm_grain_weight_q7[way]};
+}
+
+static inline int8_t between(int8_t first, int8_t second, struct way way)
+{
+    const int32_t sum_q7 = first * way.first_q7 + second * way.second_q7 + 64;
     return (int8_t)fx_clamp_i32(sum_q7 >> 7, INT8_MIN, INT8_MAX);
 }
 
@@ -80,12 +90,9 @@ static void mix_rows(const struct lm_grain_stretch *s, int8_t *grain_q5, uint32_
     lm_grain_row(place, grain_q5, columns);
     place.row++;
     lm_grain_row(place, second_q5, columns);
-    const uint32_t way = (uint32_t)(s->row_q16 & 65535) / (65536 / LM_GRAIN_WAY);
-    const int32_t first_q7 = lm_grain_weight_q7[LM_GRAIN_WAY - way];
-    const int32_t weight_q7 = lm_grain_weight_q7[way];
+    const struct way way = way_of((uint32_t)(s->row_q16 & 65535));
     for (uint32_t i = 0; i < columns; i++) {
-        const int32_t sum = (grain_q5[i] * first_q7 + second_q5[i] * weight_q7 + 64) >> 7;
-        grain_q5[i] = (int8_t)fx_clamp_i32(sum, INT8_MIN, INT8_MAX);
+        grain_q5[i] = between(grain_q5[i], second_q5[i], way);
     }
 }
 
@@ -96,7 +103,7 @@ static void stretch_row(uint32_t step_q16, int8_t *grain_q5, uint32_t cells)
     for (uint32_t i = cells; i-- > 0;) {
         const uint64_t at_q16 = (uint64_t)i * step_q16;
         const uint32_t column = (uint32_t)(at_q16 >> 16);
-        const uint32_t way = (uint32_t)(at_q16 & 65535) / (65536 / LM_GRAIN_WAY);
+        const struct way way = way_of((uint32_t)(at_q16 & 65535));
         grain_q5[i] = between(grain_q5[column], grain_q5[column + 1], way);
     }
 }

@@ -106,11 +106,13 @@ static uint32_t height_code(const struct lm_classes *classes, uint32_t height_dm
 static uint32_t height_codes(const struct lm_classes *classes, const struct lm_detail_item *item)
 {
     uint32_t codes = 0;
+    if (item->kind != LM_DETAIL_GABLE) {
+        return height_code(classes, item->height_dm) * 0x11111111u;
+    }
     for (uint32_t eighth = 0; eighth < 8; eighth++) {
         /* The middle of the eighth is (2 n + 1) / 16 of the way from the ridge to the eaves. */
         const uint32_t fall = (100 - EAVES_PERCENT) * (2 * eighth + 1) / 16;
-        const uint32_t percent = item->kind == LM_DETAIL_GABLE ? 100 - fall : 100;
-        codes |= height_code(classes, item->height_dm * percent / 100) << (4 * eighth);
+        codes |= height_code(classes, item->height_dm * (100 - fall) / 100) << (4 * eighth);
     }
     return codes;
 }
