@@ -82,6 +82,12 @@ int resample_cover_open(struct resample_cover *c, const struct db_class_table *t
     return 0;
 }
 
+int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map *codes)
+{
+    c->codes = codes;
+    return db_code_map_survey(codes, c->table, c->classes.band, c->classes.path);
+}
+
 void resample_cover_close(struct resample_cover *c)
 {
     plane_close(&c->classes);
@@ -151,23 +157,35 @@ static int unknown_class(const struct resample_cover *c, const struct lookup *l,
                     names);
 }
 
+/* The class of a pixel's value: an index of the table, DB_CLASS_NODATA, or -1 when it is neither.
+ */
+static int class_of(const struct resample_cover *c, int32_t value)
+{
+    if (c->classes.has_nodata && value == c->classes.nodata) {
+        return DB_CLASS_NODATA;
+    }
+    if (c->codes) {
+        return db_code_map_class(c->codes, value);
+    }
+    const bool is_class = value >= 0 && value < c->table->count;
+    return is_class || value == DB_CLASS_NODATA ? value : -1;
+}
+
 static int take_classes(const struct resample_cover *c, const struct lookup *l,
                         const int32_t *pixels, size_t count, struct resample_sample *samples)
 {
-    const struct resample_plane *p = &c->classes;
     int found = 0;
     for (size_t i = 0; i < count; i++) {
         size_t at;
         samples[i] = (struct resample_sample){.class_number = LM_DB_CLASS_NONE};
-        if (!find(l, i, &at) || pixels[at] == DB_CLASS_NODATA ||
-            (p->has_nodata && pixels[at] == p->nodata)) {
-            continue;
-        }
-        if (pixels[at] < 0 || pixels[at] >= c->table->count) {
+        const int class_index = find(l, i, &at) ? class_of(c, pixels[at]) : DB_CLASS_NODATA;
+        if (class_index < 0) {
             return unknown_class(c, l, i, pixels[at]);
         }
-        samples[i].class_number = (uint8_t)pixels[at];
-        found++;
+        if (class_index != DB_CLASS_NODATA) {
+            samples[i].class_number = (uint8_t)class_index;
+            found++;
+        }
     }
     return found;
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # One real scene, from its data to pictures of it.
-# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|modes|island_modes|airfield
+# Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|zion|guadeloupe|
+#        kansas|modes|island_modes|airfield
 # The tests of tests/system run the same scenes through the same script.
 set -eu
 bin=$1
@@ -8,6 +9,7 @@ data=$2
 out=$3
 scene=$4
 in=host-sim/gallery
+tables=host-sim/programs/db/classes
 
 say() {
     printf '\n== %s: %s\n' "$scene" "$*"
@@ -196,6 +198,39 @@ riviera() {
     # An aircraft that calibrates the airport's instruments: up the coast and down to the runway, 1,230 m to 200 m. Its heights are
     # above the sea; the bus carries heights above the ellipsoid.
     fly riviera --start 9500 --seconds 345 --height-offset 49 "$data/nav_tracks/nice.csv.gz"
+}
+
+cover() { # TITLE LAND-COVER MAP TERRAIN, then options: an image of somebody's land cover, without training
+    title=$1 raster=$2 map=$3 terrain=$4
+    shift 4
+    build "$title" --classes $tables/landcover.classes --class-raster "$raster" --map "$tables/$map" \
+        --terrain "$terrain" "$@"
+}
+
+plain() { # EPSG "WEST NORTH EAST SOUTH" METRES: level ground, where there is no terrain
+    # shellcheck disable=SC2086 # four numbers
+    gdal_create -q -ot Float32 -outsize 100 100 -burn "$3" -a_srs "EPSG:$1" -a_ullr $2 "$out/terrain.tif"
+}
+
+zion() {
+    need zion_nlcd_srtm
+    cover Zion "$data/zion_nlcd_srtm/nlcd2011.tif" nlcd.map "$data/zion_nlcd_srtm/srtm.tif"
+    fly zion --straight 37.20,-113.20,30,4500,200 --seconds 30
+}
+
+guadeloupe() {
+    need corine_guadeloupe
+    plain 4559 "617151 1836482 723451 1740782" 1
+    cover Guadeloupe "$data/corine_guadeloupe/U2018_CLC2018_V2020_20u1_FR_GLP.tif" corine.map "$out/terrain.tif" \
+        --sea-level -1 --land-class water
+    fly guadeloupe --straight 16.02,-61.90,75,4500,200 --seconds 30
+}
+
+kansas() {
+    need cropland_kansas_cdl
+    plain 5070 "-106095 1822605 -76095 1792605" 380
+    cover Kansas "$data/cropland_kansas_cdl/2021_30m_cdls.tif" cdl.map "$out/terrain.tif"
+    fly kansas --straight 39.17,-97.20,40,3000,200 --seconds 30
 }
 
 airfield() { # a field of our own, on level ground at 42 N 27 W, with what landmass-target bakes parked on it

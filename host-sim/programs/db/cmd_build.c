@@ -18,6 +18,7 @@
 
 struct settings {
     const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
+    const char *map, *unknown_codes;
     struct db_list terrain;
     double cell_m;
     long shift0, seed;
@@ -59,6 +60,11 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         {"terrain", DB_LIST, &s->terrain, 0, 0, "DEM", "elevation model; may be given again", true},
         OPTION("class-raster", DB_TEXT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
+        OPTION("map", DB_TEXT, map, 0, 0, "FILE",
+               "the class raster is somebody's land cover: its codes, each with a class "
+               "(docs/import.md)"),
+        OPTION("unknown-codes", DB_TEXT, unknown_codes, 0, 0, "NAME",
+               "class of codes that the map leaves out, or none; left out: they are an error"),
         OPTION("reflectivity", DB_TEXT, reflectivity, 0, 0, "FILE",
                "reflectivity (gamma, dB) on the class raster's grid\nleft out: drawn from "
                "the class's distribution"),
@@ -134,6 +140,12 @@ static int check_settings(struct settings *s)
     if (!s->class_raster && (s->reflectivity || s->heights)) {
         return usage_error(s->reflectivity ? "--reflectivity" : "--heights",
                            "needs --class-raster");
+    }
+    if (s->map && !s->class_raster) {
+        return usage_error("--map", "needs --class-raster");
+    }
+    if (s->unknown_codes && !s->map) {
+        return usage_error("--unknown-codes", "needs --map");
     }
     return s->centre ? parse_centre(s->centre, s->centre_bam) : 0;
 }
@@ -316,11 +328,31 @@ static int choose_heights(struct build_context *b)
     return result;
 }
 
+static int read_codes(struct build_context *b, const struct settings *s)
+{
+    if (!s->map) {
+        return 0;
+    }
+    if (db_code_map_read(&b->codes, s->map, &b->table) != 0) {
+        return -1;
+    }
+    if (s->unknown_codes) {
+        const bool is_none = strcmp(s->unknown_codes, "none") == 0;
+        b->codes.unknown_class =
+            is_none ? DB_CLASS_NODATA : named_class(&b->table, "--unknown-codes", s->unknown_codes);
+        if (b->codes.unknown_class < 0) {
+            return -1;
+        }
+    }
+    return resample_cover_set_codes(&b->cover, &b->codes);
+}
+
 static int open_inputs(struct build_context *b, const struct settings *s)
 {
     if (read_table(b, s) != 0 ||
         resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
             0 ||
+        read_codes(b, s) != 0 ||
         terrain_open(&b->terrain, &s->terrain,
                      &(struct terrain_options){s->sea_level_m, s->voids_are_sea}) != 0) {
         return -1;
@@ -397,6 +429,9 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
                                               &b->cover.heights};
     const char *const roles[3] = {"class-raster", "reflectivity", "heights"};
     int result = build_manifest_file(out, "classes", s->classes);
+    if (result == 0 && s->map) {
+        result = build_manifest_file(out, "map", s->map);
+    }
     for (int i = 0; i < 3 && result == 0; i++) {
         if (planes[i]->dataset) {
             result = build_manifest_dataset(out, roles[i], planes[i]->dataset);
@@ -418,7 +453,7 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
 static char *make_manifest(const struct build_context *b, const struct settings *s,
                            const struct build_signatures *signatures)
 {
-    char *text = NULL, options[640], heights[160];
+    char *text = NULL, options[704], heights[160];
     image_heights_text(b->classes.height_dm, heights, sizeof heights);
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
@@ -430,9 +465,10 @@ static char *make_manifest(const struct build_context *b, const struct settings 
         options, sizeof options,
         "shift0: %d\nfacings: %d\nland-class: %s\nwater-class: %s\nsea-level: %g m\nvoids-are-sea: "
         "%d\nsteep-class: %s\n"
-        "steep-degrees: %g\nheights:%s\n",
+        "steep-degrees: %g\nunknown-codes: %s\nheights:%s\n",
         b->plan.shift0, b->facing.facings, s->land_class, s->water_class, s->sea_level_m,
-        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees, heights);
+        s->voids_are_sea, s->steep_class ? s->steep_class : "none", s->steep_degrees,
+        s->unknown_codes ? s->unknown_codes : "refused", heights);
     const struct build_manifest head = {options, &b->table, b->seed};
     build_manifest_head(out, &head);
     const int result = write_inputs(out, b, s, signatures);

@@ -36,6 +36,7 @@ struct build_context {
     struct resample_cover cover;
     struct terrain terrain;
     struct db_class_table table;
+    struct db_code_map codes;                 /* of the class raster, when it is a land cover */
     struct db_reflect_law laws[DB_CLASS_MAX]; /* of the table's classes */
     struct lm_classes classes;                /* of the table, then those of facings */
     struct build_rule rule;
