@@ -21,7 +21,7 @@ $(GEN)/bin/%:
 	$(Q)$(HOSTCC) $^ -lm -o $@
 
 gen_objs = $(patsubst %.c,$(GEN)/host/%.o,$(1))
-GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c))
+GEN_error := $(call gen_objs,$(addprefix host-sim/lib/,atomic_file.c error.c input_file.c))
 
 $(GEN)/bin/tables: $(call gen_objs,$(wildcard host-sim/tables/*.c host-sim/programs/tables/*.c)) $(GEN_error)
 $(GEN)/fixed/src/tables.c: SET := fixed

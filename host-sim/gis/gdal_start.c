@@ -1,7 +1,13 @@
 #include "gis/gdal_start.h"
 
+#include "hs/input_file.h"
+
 #include <cpl_error.h>
-#include <gdal.h>
+#include <cpl_string.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 enum { CACHE_BYTES = 128 << 20 };
 
@@ -10,6 +16,37 @@ void db_gdal_start(void)
     GDALAllRegister();
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALSetCacheMax64(CACHE_BYTES);
+}
+
+/* "/vsizip/folder/a.zip/b.hgt" lies in the file folder/a.zip: the longest part that is a file. */
+static void note_file(const char *name)
+{
+    char path[PATH_MAX];
+    struct stat status;
+    const char *prefixes[] = {"/vsizip/", "/vsigzip/", "/vsitar/"};
+    for (int i = 0; i < 3; i++) {
+        const size_t length = strlen(prefixes[i]);
+        name += strncmp(name, prefixes[i], length) == 0 ? length : 0;
+    }
+    snprintf(path, sizeof path, "%s", name);
+    char *slash = NULL;
+    while (stat(path, &status) != 0 && (slash = strrchr(path, '/')) && slash != path) {
+        *slash = '\0';
+    }
+    hs_input_note(path);
+    if (!slash) {
+        hs_input_note_folder(path);
+    }
+}
+
+GDALDatasetH db_gdal_note(GDALDatasetH dataset)
+{
+    char **files = dataset ? GDALGetFileList(dataset) : NULL;
+    for (int i = 0; files && files[i]; i++) {
+        note_file(files[i]);
+    }
+    CSLDestroy(files);
+    return dataset;
 }
 
 const char *db_gdal_complaint(void)

@@ -194,7 +194,8 @@ int db_polygons_read(struct db_polygons *p, const char *path, const char *field,
 {
     *p = (struct db_polygons){0};
     CPLErrorReset();
-    GDALDatasetH file = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY, NULL, NULL, NULL);
+    GDALDatasetH file =
+        db_gdal_note(GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY, NULL, NULL, NULL));
     if (!file) {
         return hs_error(path, "check the name and that `ogrinfo` can read it",
                         "cannot be opened as polygons: %s", db_gdal_complaint());

@@ -105,6 +105,7 @@ static int open_file(struct db_raster *r, int file, const struct db_raster_optio
     const unsigned flags = GDAL_OF_RASTER | GDAL_OF_READONLY;
     CPLErrorReset();
     r->files[file] = GDALOpenEx(path, flags, NULL, NULL, NULL);
+    db_gdal_note(r->files[file]);
     if (!r->files[file]) {
         return hs_error(path, "check the name and that `gdalinfo` can read it",
                         "cannot be opened as an image: %s", db_gdal_complaint());
@@ -281,10 +282,13 @@ int db_raster_create(struct db_raster_out *out, const char *path, const struct d
                      GDALDataType type, double nodata)
 {
     *out = (struct db_raster_out){.width = grid->width, .type = type};
-    out->path = strdup(path);
     out->temporary = hs_atomic_temporary_name(path);
+    if (!out->temporary) {
+        return -1;
+    }
+    out->path = strdup(path);
     CPLErrorReset();
-    out->dataset = out->path && out->temporary ? create_dataset(out->temporary, grid, type) : NULL;
+    out->dataset = out->path ? create_dataset(out->temporary, grid, type) : NULL;
     if (!out->dataset) {
         hs_error(path, "check that the folder exists and can be written", "cannot be created: %s",
                  db_gdal_complaint());
@@ -361,9 +365,9 @@ void db_raster_abort(struct db_raster_out *out)
     }
     if (out->temporary) {
         char *side = side_name(out->temporary);
-        unlink(out->temporary);
+        hs_atomic_drop(out->temporary);
         if (side) {
-            unlink(side);
+            hs_atomic_drop(side);
         }
         free(side);
     }

@@ -2,6 +2,7 @@
 
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/signature_file.h"
 #include "hs/zero_bytes.h"
 #include "image/grid.h"
@@ -33,6 +34,7 @@ void image_find(struct image_findings *f, uint64_t offset, const char *cause, ..
 int image_map(struct image *image, const char *path)
 {
     *image = (struct image){0};
+    hs_input_note(path);
     const int fd = open(path, O_RDONLY | O_CLOEXEC);
     struct stat status;
     if (fd < 0 || fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {

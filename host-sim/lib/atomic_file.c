@@ -1,13 +1,92 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-char *hs_atomic_temporary_name(const char *path)
+/* Temporary files of this process, so that they can be removed when it is stopped. A signal may
+ * come at any time: a slot is written last when it is taken, and first when it is given up. */
+enum { TEMPORARIES_MAX = 256 };
+static char *volatile temporaries[TEMPORARIES_MAX];
+static bool is_watched;
+
+static void remove_temporaries(void)
+{
+    for (int i = 0; i < TEMPORARIES_MAX; i++) {
+        if (temporaries[i]) {
+            unlink(temporaries[i]);
+        }
+    }
+}
+
+/* The disposition is back at the default by then: the program ends as it would have. */
+static void on_signal(int number)
+{
+    remove_temporaries();
+    raise(number);
+}
+
+static void watch(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    if (is_watched) {
+        return;
+    }
+    is_watched = true;
+    atexit(remove_temporaries);
+    for (int i = 0; i < 3; i++) {
+        struct sigaction before, action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL) {
+            sigaction(numbers[i], &action, NULL);
+        }
+    }
+}
+
+static int slot_of(const char *temporary)
+{
+    for (int i = 0; i < TEMPORARIES_MAX; i++) {
+        if (temporaries[i] && strcmp(temporaries[i], temporary) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* With all slots taken a file is not watched; nobody writes so many at a time. */
+static void remember(const char *temporary)
+{
+    watch();
+    for (int i = 0; i < TEMPORARIES_MAX && slot_of(temporary) < 0; i++) {
+        if (!temporaries[i]) {
+            temporaries[i] = strdup(temporary);
+        }
+    }
+}
+
+static void forget(const char *temporary)
+{
+    const int slot = slot_of(temporary);
+    if (slot >= 0) {
+        char *name = temporaries[slot];
+        temporaries[slot] = NULL;
+        free(name);
+    }
+}
+
+void hs_atomic_drop(const char *temporary)
+{
+    unlink(temporary);
+    forget(temporary);
+}
+
+/* NULL when memory ran out. */
+static char *name_beside(const char *path)
 {
     char *name = NULL;
     /* The extension stays last: some writers choose their format by it. */
@@ -27,22 +106,86 @@ static int is_special(const char *path)
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode);
 }
 
-static int refuse_special(const char *path)
+static int check_place(const char *path)
 {
-    return hs_error(path, "name an ordinary file", "exists and is no ordinary file");
+    if (is_special(path)) {
+        return hs_error(path, "name an ordinary file", "exists and is no ordinary file");
+    }
+    return hs_input_is(path)
+               ? hs_error(path, "name another file for the output",
+                          "is an input, or lies in a folder that is one; it would be overwritten")
+               : 0;
+}
+
+static int cannot_create(const char *path, int cause)
+{
+    return hs_error(path, "check that the folder exists and can be written",
+                    "cannot be created: %s", strerror(cause));
+}
+
+char *hs_atomic_temporary_name(const char *path)
+{
+    if (check_place(path) != 0) {
+        return NULL;
+    }
+    char *name = name_beside(path);
+    if (name) {
+        remember(name);
+    } else {
+        hs_error(path, NULL, "out of memory");
+    }
+    return name;
+}
+
+/* By the file, not by its name. */
+static bool is_claimed(const char *temporary)
+{
+    struct stat wanted, status;
+    if (stat(temporary, &wanted) != 0) {
+        return false;
+    }
+    for (int i = 0; i < TEMPORARIES_MAX; i++) {
+        if (temporaries[i] && stat(temporaries[i], &status) == 0 &&
+            status.st_dev == wanted.st_dev && status.st_ino == wanted.st_ino) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int hs_output_claim(const char *path)
+{
+    char *name = name_beside(path);
+    if (!name) {
+        return hs_error(path, NULL, "out of memory");
+    }
+    int result = check_place(path);
+    if (result == 0 && is_claimed(name)) {
+        result = hs_error(path, "name two files", "is named as two outputs");
+    }
+    if (result == 0) {
+        FILE *stream = fopen(name, "wb");
+        result = stream && fclose(stream) == 0 ? 0 : cannot_create(path, errno);
+    }
+    if (result == 0) {
+        remember(name);
+    }
+    free(name);
+    return result;
 }
 
 int hs_atomic_rename(const char *temporary, const char *path)
 {
-    if (is_special(path)) {
-        unlink(temporary);
-        return refuse_special(path);
+    if (check_place(path) != 0) {
+        hs_atomic_drop(temporary);
+        return -1;
     }
     if (rename(temporary, path) == 0) {
+        forget(temporary);
         return 0;
     }
     const int cause = errno;
-    unlink(temporary);
+    hs_atomic_drop(temporary);
     return hs_error(path, "choose another output name or folder", "cannot be put in place: %s",
                     strerror(cause));
 }
@@ -50,12 +193,12 @@ int hs_atomic_rename(const char *temporary, const char *path)
 int hs_atomic_open(struct hs_atomic_file *f, const char *path)
 {
     *f = (struct hs_atomic_file){NULL, NULL, NULL};
-    if (is_special(path)) {
-        return refuse_special(path);
+    f->temporary = hs_atomic_temporary_name(path);
+    if (!f->temporary) {
+        return -1;
     }
     f->path = strdup(path);
-    f->temporary = hs_atomic_temporary_name(path);
-    if (!f->path || !f->temporary) {
+    if (!f->path) {
         hs_atomic_abort(f);
         return hs_error(path, NULL, "out of memory");
     }
@@ -63,8 +206,7 @@ int hs_atomic_open(struct hs_atomic_file *f, const char *path)
     if (!f->stream) {
         const int cause = errno;
         hs_atomic_abort(f);
-        return hs_error(path, "check that the folder exists and can be written",
-                        "cannot be created: %s", strerror(cause));
+        return cannot_create(path, cause);
     }
     return 0;
 }
@@ -95,7 +237,7 @@ void hs_atomic_abort(struct hs_atomic_file *f)
         fclose(f->stream);
     }
     if (f->temporary) {
-        unlink(f->temporary);
+        hs_atomic_drop(f->temporary);
     }
     free(f->temporary);
     free(f->path);

@@ -1,5 +1,7 @@
 #include "hs/error.h"
 
+#include "hs/input_file.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -8,6 +10,7 @@ static const char *program_name = "landmass";
 void hs_set_program(const char *name)
 {
     program_name = name;
+    hs_input_guard();
 }
 
 const char *hs_program(void)

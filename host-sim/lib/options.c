@@ -1,6 +1,9 @@
 #include "hs/options.h"
 
+#include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
+#include "hs/output_path.h"
 
 #include <errno.h>
 #include <math.h>
@@ -94,9 +97,13 @@ static const char *store(const struct db_option *o, const char *text)
         *(bool *)o->target = true;
         return NULL;
     case DB_TEXT:
+    case DB_INPUT:
+    case DB_OUTPUT:
+    case DB_FOLDER:
         *(const char **)o->target = text;
         return NULL;
     case DB_LIST:
+    case DB_INPUTS:
         return add_items(o->target, text) == 0 ? NULL : "too many values";
     case DB_REAL:
         if (!parse_number(text, &number) || !is_within(number, o)) {
@@ -156,8 +163,38 @@ static int read_one(const struct db_usage *usage, const struct db_option *option
 
 static bool is_given(const struct db_option *o)
 {
-    return o->kind == DB_LIST ? ((const struct db_list *)o->target)->count > 0
-                              : *(const char **)o->target != NULL;
+    return o->kind == DB_LIST || o->kind == DB_INPUTS
+               ? ((const struct db_list *)o->target)->count > 0
+               : *(const char **)o->target != NULL;
+}
+
+static void note_inputs(const struct db_option *o)
+{
+    if (o->kind == DB_INPUT && is_given(o)) {
+        hs_input_note(*(const char **)o->target);
+    }
+    const struct db_list *list = o->kind == DB_INPUTS ? o->target : NULL;
+    for (int i = 0; list && i < list->count; i++) {
+        hs_input_note(list->items[i]);
+    }
+}
+
+/* All inputs first: an option's place in the table must not matter. */
+static int claim_outputs(const struct db_option *options, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        note_inputs(&options[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const struct db_option *o = &options[i];
+        if ((o->kind == DB_OUTPUT && is_given(o) &&
+             hs_output_claim(*(const char **)o->target) != 0) ||
+            (o->kind == DB_FOLDER && is_given(o) &&
+             hs_output_folder_check(*(const char **)o->target) != 0)) {
+            return -1;
+        }
+    }
+    return 0;
 }
 
 bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
@@ -184,7 +221,8 @@ bool db_options_read(const struct db_usage *usage, const struct db_option *optio
             return false;
         }
     }
-    return true;
+    *exit_code = HS_EXIT_FAILED;
+    return claim_outputs(options, count) == 0;
 }
 
 void db_list_free(struct db_list *list)

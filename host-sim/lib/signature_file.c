@@ -3,6 +3,7 @@
 #include "fx/crc32c.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/zero_bytes.h"
 
 #include <errno.h>
@@ -146,7 +147,7 @@ static int read_chips(struct db_signature *s, FILE *in, const char *path)
 int db_signature_read(struct db_signature *s, const char *path)
 {
     *s = (struct db_signature){.chips = NULL};
-    FILE *in = fopen(path, "rb");
+    FILE *in = hs_input_open(path, "rb");
     if (!in) {
         return hs_error(path, "check the name", "cannot be read: %s", strerror(errno));
     }

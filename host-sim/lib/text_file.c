@@ -1,6 +1,7 @@
 #include "hs/text_file.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -11,7 +12,7 @@
 int db_text_open(struct db_text_file *f, const char *path)
 {
     *f = (struct db_text_file){.path = path};
-    f->stream = fopen(path, "r");
+    f->stream = hs_input_open(path, "r");
     if (!f->stream) {
         return hs_error(path, "check the name", "cannot be read: %s", strerror(errno));
     }

@@ -3,6 +3,7 @@
 #include "read_formats.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -114,6 +115,7 @@ int nav_read_track(const char *path, enum nav_format format, struct nav_track *t
     if (format == NAV_FORMAT_BY_NAME) {
         format = format_by_name(path);
     }
+    hs_input_note(path);
     const int fd = is_stdin ? dup(STDIN_FILENO) : open(path, O_RDONLY | O_CLOEXEC);
     gzFile file = fd >= 0 ? gzdopen(fd, "rb") : NULL;
     if (!file) {

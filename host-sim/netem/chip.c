@@ -2,6 +2,7 @@
 
 #include "gis/gdal_start.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <gdal.h>
@@ -18,7 +19,7 @@ static const char remedy[] = "copy the chip again";
 /* The whole file and a zero behind it. Returns 0, or -1 with the error reported. */
 static int read_bytes(const char *path, unsigned char **bytes, size_t *size)
 {
-    FILE *stream = fopen(path, "rb");
+    FILE *stream = hs_input_open(path, "rb");
     if (!stream) {
         return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
     }
@@ -68,7 +69,7 @@ static int read_raster(struct nm_chip *chip, const char *path)
 {
     static const char *const drivers[] = {"PNG", "JPEG", "GTiff", NULL};
     const GDALDatasetH file =
-        GDALOpenEx(path, GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, NULL, NULL);
+        db_gdal_note(GDALOpenEx(path, GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, NULL, NULL));
     if (!file) {
         return hs_error(path, "give raw MSTAR, .csv, PNG, JPEG or TIFF", "is no chip: %s",
                         db_gdal_complaint());
@@ -95,7 +96,7 @@ int nm_chip_seems(const char *path)
         }
     }
     char start[sizeof mstar_start] = "";
-    FILE *stream = fopen(path, "rb");
+    FILE *stream = hs_input_open(path, "rb");
     const size_t size = stream ? fread(start, 1, sizeof start - 1, stream) : 0;
     if (stream) {
         fclose(stream);

@@ -1,6 +1,7 @@
 #include "netem/experiment.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/output_path.h"
 #include "netem/model_file.h"
 #include "netem/report.h"
@@ -109,6 +110,7 @@ int nm_experiment_train(struct nm_experiment *e, const char *folder, bool is_res
         (is_resumed ? go_on(e, path) : begin(e, path)) != 0) {
         return -1;
     }
+    hs_input_forget(path); /* It is continued in its place. */
     const struct nm_samples training = nm_dataset_training(&e->dataset);
     const struct nm_samples validation = nm_dataset_validation(&e->dataset);
     while (nm_training_phase(e->training) != NM_PHASES) {

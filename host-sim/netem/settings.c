@@ -48,7 +48,7 @@ void nm_target_options(struct nm_settings *s, struct db_option *o)
         {"law", DB_TEXT, &t->law, 0, 0, "NAME",
          "of the simulator before training: raysar, fresnel-hh, fresnel-vv, spm-hh or spm-vv",
          false},
-        {"materials", DB_TEXT, &t->materials, 0, 0, "FILE",
+        {"materials", DB_INPUT, &t->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
     setup_model_options(t, o);
@@ -58,7 +58,7 @@ void nm_target_options(struct nm_settings *s, struct db_option *o)
 void nm_chip_options(struct nm_settings *s, struct db_option *o)
 {
     const struct db_option options[NM_CHIP_OPTIONS] = {
-        {"chips", DB_TEXT, &s->chips, 0, 0, "FOLDER|LIST",
+        {"chips", DB_INPUT, &s->chips, 0, 0, "FOLDER|LIST",
          "raw MSTAR, CSV, PNG, JPEG or TIFF files: a folder of them, or a list of lines\n"
          "FILE [AZIMUTH DEPRESSION [SHIFT_X SHIFT_Y [GAIN [training|validation]]]]",
          true},

@@ -1,6 +1,7 @@
 #include "mat_file.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -146,7 +147,7 @@ static bool find_struct(struct rr_mat_file *file, struct rr_mat_slice rest, cons
 /* The whole file, or NULL, reported. */
 static uint8_t *load(const char *path, size_t *size)
 {
-    FILE *stream = fopen(path, "rb");
+    FILE *stream = hs_input_open(path, "rb");
     uint8_t *bytes = NULL;
     if (!stream) {
         hs_error(path, remedy, "cannot be opened: %s", strerror(errno));

@@ -1,6 +1,7 @@
 /* The flash image as docs/FORMATS.md, section 1, describes it, and what stands at a place in it. */
 #include "fx/crc32c.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "reference/reference.h"
 
 #include <errno.h>
@@ -173,7 +174,7 @@ int ref_db_open_memory(struct ref_db *db, const void *bytes, size_t size, const 
 /* The whole file in one block; `*size` bytes. NULL with the error reported. */
 static uint8_t *read_whole(const char *path, size_t *size)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = hs_input_open(path, "rb");
     if (file == NULL) {
         hs_error(path, "check the path", "cannot be opened: %s", strerror(errno));
         return NULL;

@@ -10,7 +10,8 @@
 static int plane_open(struct resample_plane *p, const char *path, const char *what)
 {
     CPLErrorReset();
-    *p = (struct resample_plane){.path = path, .dataset = GDALOpen(path, GA_ReadOnly)};
+    *p =
+        (struct resample_plane){.path = path, .dataset = db_gdal_note(GDALOpen(path, GA_ReadOnly))};
     if (!p->dataset) {
         return hs_error(path, "check the name and that `gdalinfo` can read it",
                         "cannot be opened as %s: %s", what, db_gdal_complaint());

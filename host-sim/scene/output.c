@@ -70,7 +70,7 @@ static int write_raster(const char *path, const struct raster *r, const char *co
 {
     char *temporary = hs_atomic_temporary_name(path);
     if (!temporary) {
-        return hs_error(path, NULL, "out of memory");
+        return -1;
     }
     CPLErrorReset();
     CPLPushErrorHandler(CPLQuietErrorHandler);
@@ -85,7 +85,7 @@ static int write_raster(const char *path, const struct raster *r, const char *co
     if (failed) {
         result = hs_error(path, "check that the folder can be written and has space",
                           "cannot be written: %s", CPLGetLastErrorMsg());
-        unlink(temporary);
+        hs_atomic_drop(temporary);
     } else {
         result = hs_atomic_rename(temporary, path);
     }

@@ -3,6 +3,7 @@
 #include "fx/types.h"
 #include "hs/angle.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "lm/radar.h"
 
 #include <errno.h>
@@ -471,7 +472,7 @@ int script_read(struct script *s, const char *path, const struct lm_radar *radar
     if (!path) {
         return 0;
     }
-    FILE *file = fopen(path, "r");
+    FILE *file = hs_input_open(path, "r");
     if (!file) {
         return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
     }

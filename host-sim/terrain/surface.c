@@ -62,7 +62,7 @@ static void read_units(struct terrain_member *m)
 static int open_source(struct source *s, const char *path)
 {
     struct terrain_member *m = &s->member;
-    m->dataset = open_dataset(path);
+    m->dataset = db_gdal_note(open_dataset(path));
     if (!m->dataset) {
         return hs_error(path, "check the name and that `gdalinfo` can read it",
                         "cannot be opened as terrain: %s", db_gdal_complaint());

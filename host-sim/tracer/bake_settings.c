@@ -27,7 +27,7 @@ void bake_settings_free(struct bake_settings *s)
 void bake_options(struct bake_settings *s, struct db_option *o)
 {
     const struct db_option options[BAKE_OPTIONS] = {
-        {"out", DB_TEXT, &s->out, 0, 0, "FILE.sig", "the signature", true},
+        {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.sig", "the signature", true},
         {"name", DB_TEXT, &s->name, 0, 0, "NAME",
          "of the signature, up to 16 letters; left out: that of the file", false},
         {"aspects", DB_INTEGER, &s->aspects, 1, LM_SIGNATURE_ASPECTS_MAX, "N",
@@ -43,7 +43,7 @@ void bake_options(struct bake_settings *s, struct db_option *o)
         {"mean", DB_REAL, &s->mean_dbsm, -80, 80, "DBSM",
          "in place of --gain: what the model's cross section shall be, as a mean over all looks",
          false},
-        {"sheet", DB_TEXT, &s->sheet, 0, 0, "FILE.png",
+        {"sheet", DB_OUTPUT, &s->sheet, 0, 0, "FILE.png",
          "chips to look at: a row for each depression", false},
     };
     memcpy(o, options, sizeof options);

@@ -1,6 +1,7 @@
 #include "tracer/materials.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -80,7 +81,7 @@ static int read_rows(struct table *table, FILE *in, const char *path)
 
 static int read_table(struct table *table, const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = hs_input_open(path, "r");
     if (!in) {
         return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
     }

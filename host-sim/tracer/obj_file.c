@@ -2,6 +2,7 @@
 
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -197,7 +198,7 @@ static int read_open(struct reader *r, FILE *in)
 int obj_read(struct mesh *m, const char *path, enum obj_up up)
 {
     *m = (struct mesh){0};
-    FILE *in = fopen(path, "rb");
+    FILE *in = hs_input_open(path, "rb");
     if (!in) {
         return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
     }

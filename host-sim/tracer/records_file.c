@@ -2,6 +2,7 @@
 #include "fx/crc32c.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "tracer/records.h"
 
 #include <errno.h>
@@ -162,7 +163,7 @@ static int read_all(struct trace_records *r, FILE *in, const char *path)
 int trace_records_read(struct trace_records *r, const char *path)
 {
     *r = (struct trace_records){0};
-    FILE *in = fopen(path, "rb");
+    FILE *in = hs_input_open(path, "rb");
     if (!in) {
         return hs_error(path, "check the name", "cannot be opened: %s", strerror(errno));
     }

@@ -36,7 +36,7 @@ struct setup setup_default(void)
 void setup_model_options(struct setup *s, struct db_option *o)
 {
     const struct db_option options[SETUP_MODEL_OPTIONS] = {
-        {"model", DB_TEXT, &s->model, 0, 0, "NAME|FILE.obj",
+        {"model", DB_INPUT, &s->model, 0, 0, "NAME|FILE.obj",
          "a built-in model (see `landmass-target model --help`) or a Wavefront OBJ file", true},
         {"up", DB_TEXT, &s->up, 0, 0, "y|z",
          "which axis of FILE.obj points up; default y, and x ahead in either case", false},
@@ -87,7 +87,7 @@ void setup_law_options(struct setup *s, struct db_option *o)
     const struct db_option options[SETUP_LAW_OPTIONS] = {
         {"law", DB_TEXT, &s->law, 0, 0, "NAME",
          "of reflection: raysar (default), fresnel-hh, fresnel-vv, spm-hh or spm-vv", false},
-        {"materials", DB_TEXT, &s->materials, 0, 0, "FILE",
+        {"materials", DB_INPUT, &s->materials, 0, 0, "FILE",
          "surfaces by name, in the form that `landmass-target materials` prints", false},
     };
     memcpy(o, options, sizeof options);

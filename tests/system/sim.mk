@@ -10,3 +10,11 @@ SIM_TOOL := $(O)/bin/tests/system/test_sim_tool
 $(O)/bin/tests/system/test_sim: $(SIM_TOOL)
 $(SIM_TOOL): $(O)/tests/system/test_sim_tool.o $(LIB_support) $(LIB_fixed)
 $(SIM_TOOL): LDLIBS := $(call pkgs,libs,libpng)
+
+# What happens to wrong and doubtful inputs; the table of docs/database.md.
+INPUTS_TEST := $(O)/bin/tests/system/test_inputs
+TESTS += $(INPUTS_TEST)
+$(INPUTS_TEST): tests/system/test_inputs.py $(PROGRAMS)
+	@mkdir -p $(@D)
+	@printf '#!/bin/sh\nexec $${PYTHON:-/usr/bin/python3} -B tests/system/test_inputs.py "$$@"\n' >$@
+	@chmod +x $@

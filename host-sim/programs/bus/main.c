@@ -4,6 +4,7 @@
 #include "bus/table_text.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -52,7 +53,7 @@ static int print_for(FILE *out, const struct command *c)
     } else if (c->log_path == NULL || strcmp(c->log_path, "-") == 0) {
         return bus_decode(out, stdin, "standard input", c->profile);
     } else {
-        FILE *in = fopen(c->log_path, "r");
+        FILE *in = hs_input_open(c->log_path, "r");
         if (in == NULL) {
             return hs_error(c->log_path, "landmass-nav and candump -L make one",
                             "cannot be opened: %s", strerror(errno));
@@ -75,6 +76,9 @@ static int run(const struct command *c)
         return status;
     }
     struct hs_atomic_file file;
+    if (c->log_path != NULL) {
+        hs_input_note(c->log_path);
+    }
     if (hs_atomic_open(&file, c->out_path) != 0) {
         return -1;
     }
@@ -87,7 +91,7 @@ static int run(const struct command *c)
 
 static int read_table(struct bus_table *table, const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = hs_input_open(path, "r");
     if (in == NULL) {
         return hs_error(path, NULL, "cannot be opened: %s", strerror(errno));
     }

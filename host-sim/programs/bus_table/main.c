@@ -4,13 +4,14 @@
 #include "bus/table_text.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <errno.h>
 #include <string.h>
 
 static int read_table(struct bus_table *table, const char *path)
 {
-    FILE *in = fopen(path, "r");
+    FILE *in = hs_input_open(path, "r");
     if (in == NULL) {
         return hs_error(path, "BUS_TABLE of board.mk names it", "cannot be opened: %s",
                         strerror(errno));

@@ -55,27 +55,28 @@ static const struct db_usage usage = {
 static bool read_settings(struct settings *s, int argc, char **argv, int *exit_code)
 {
     const struct db_option options[] = {
-        {"classes", DB_TEXT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
-        {"out", DB_TEXT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
-        {"terrain", DB_LIST, &s->terrain, 0, 0, "DEM", "elevation model; may be given again", true},
-        OPTION("class-raster", DB_TEXT, class_raster, 0, 0, "FILE",
+        {"classes", DB_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
+        {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
+        {"terrain", DB_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
+         true},
+        OPTION("class-raster", DB_INPUT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
-        OPTION("map", DB_TEXT, map, 0, 0, "FILE",
+        OPTION("map", DB_INPUT, map, 0, 0, "FILE",
                "the class raster is somebody's land cover: its codes, each with a class "
                "(docs/import.md)"),
         OPTION("unknown-codes", DB_TEXT, unknown_codes, 0, 0, "NAME",
                "class of codes that the map leaves out, or none; left out: they are an error"),
-        OPTION("reflectivity", DB_TEXT, reflectivity, 0, 0, "FILE",
+        OPTION("reflectivity", DB_INPUT, reflectivity, 0, 0, "FILE",
                "reflectivity (gamma, dB) on the class raster's grid\nleft out: drawn from "
                "the class's distribution"),
         OPTION(
-            "heights", DB_TEXT, heights, 0, 0, "FILE",
+            "heights", DB_INPUT, heights, 0, 0, "FILE",
             "metres of structures and trees above the terrain\nleft out: the class table's height"),
         OPTION("cut-heights", DB_FLAG, may_cut_heights, 0, 0, NULL,
                "cut structures and trees above 1,000 m to that; otherwise they are an error"),
-        OPTION("targets", DB_TEXT, targets, 0, 0, "FILE",
+        OPTION("targets", DB_INPUT, targets, 0, 0, "FILE",
                "specific targets and their signatures (docs/targets.md); left out: none"),
-        OPTION("detail", DB_TEXT, detail, 0, 0, "FILE",
+        OPTION("detail", DB_INPUT, detail, 0, 0, "FILE",
                "footprints of buildings, walls, lines and masts (docs/database.md); left out: "
                "none"),
         OPTION("cell", DB_REAL, cell_m, 0, 10000, "METRES",

@@ -1,6 +1,8 @@
 #include "commands.h"
 
+#include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/options.h"
 #include "image/reader.h"
 #include "image/verify.h"
@@ -82,9 +84,9 @@ int db_cmd_convert(int argc, char **argv)
         hs_error(argv[0], "see `landmass-db convert --help`", "needs the files OLD and NEW");
         return HS_EXIT_USAGE;
     }
-    if (strcmp(argv[1], argv[2]) == 0) {
-        hs_error(argv[2], "name another file", "is the old image");
-        return HS_EXIT_USAGE;
+    hs_input_note(argv[1]);
+    if (hs_output_claim(argv[2]) != 0) {
+        return HS_EXIT_FAILED;
     }
     return read_bytes(argv[1], argv[2]) == 0 && check_new(argv[2]) == 0 ? HS_EXIT_OK
                                                                         : HS_EXIT_FAILED;

@@ -34,15 +34,15 @@ struct options {
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
     const struct db_option table[] = {
-        {"class-raster", DB_TEXT, &o->class_raster, 0, 0, "FILE",
+        {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment`.", true},
         DB_CLASSES_OPTION(o->classes),
-        {"corrections", DB_TEXT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
+        {"corrections", DB_INPUT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
          true},
-        {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},
+        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},
         {"field", DB_TEXT, &o->field, 0, 0, "NAME",
          "The polygons' field that holds the class; default `class`.", false},
-        {"map", DB_TEXT, &o->map, 0, 0, "FILE",
+        {"map", DB_INPUT, &o->map, 0, 0, "FILE",
          "Lines of `source-label = class`; without it labels must be names of classes.", false},
     };
     return db_options_read(&usage, table, sizeof table / sizeof table[0], argc, argv, exit_code);

@@ -31,7 +31,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
          "from the "
          "north-west)",
          true},
-        {"out", DB_TEXT, &s->out, 0, 0, "P.png", "the picture", true},
+        {"out", DB_OUTPUT, &s->out, 0, 0, "P.png", "the picture", true},
         {"level", DB_INTEGER, &s->level, -1, LM_DB_LODS_MAX - 1, "L",
          "level of detail; -1: the finest that fits the picture", false},
         {"area", DB_TEXT, &s->area, 0, 0, "LATS,LONW,LATN,LONE",

@@ -52,15 +52,15 @@ struct options {
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
 {
     struct db_option table[] = {
-        {"class-raster", DB_TEXT, &o->class_raster, 0, 0, "FILE",
+        {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`.", true},
         DB_CLASSES_OPTION(o->classes),
-        {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
+        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
         {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default) or adjust.", false},
         {"bands", DB_LIST, &o->bands, 0, 0, "N,N",
          "Bands of the image whose mean is the brightness, from 1; default all.", false},
         {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},
-        {"picture", DB_TEXT, &o->picture, 0, 0, "FILE",
+        {"picture", DB_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG, black at the lowest and white at the highest mean of the classes.",
          false},
         DB_IMAGE_OPTIONS(&o->image),

@@ -47,11 +47,11 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
 {
     const struct db_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
-        {"classes", DB_TEXT, &o->classes, 0, 0, "FILE",
+        {"classes", DB_INPUT, &o->classes, 0, 0, "FILE",
          "The class table the network was trained with.", true},
-        {"net", DB_TEXT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
-        {"out", DB_TEXT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
-        {"picture", DB_TEXT, &o->picture, 0, 0, "FILE",
+        {"net", DB_INPUT, &o->net, 0, 0, "FILE", "The network, from `landmass-db train`.", true},
+        {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the class raster goes.", true},
+        {"picture", DB_OUTPUT, &o->picture, 0, 0, "FILE",
          "Also write a PNG: the image on the left, its classes on the right; at most 1024 "
          "pixels each\n"
          "way, larger images show every n-th pixel.",
@@ -60,7 +60,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "Bands to show as red, green and blue, from 1; default 1,2,3 of three bands, "
          "3,2,1 of more.",
          false},
-        {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
+        {"report", DB_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
          "confusion.csv.",
          false},

@@ -67,18 +67,18 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     const struct db_option table[] = {
         DB_IMAGE_OPTIONS(&o->image),
         DB_CLASSES_OPTION(o->classes),
-        {"net", DB_TEXT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
+        {"net", DB_OUTPUT, &o->net, 0, 0, "FILE", "Where the trained network goes.", true},
         DB_EXEMPLAR_OPTIONS(&o->known),
         {"hold-out", DB_TEXT, &o->hold_out, 0, 0, "HOW:PART",
          "Keep exemplars to judge by: `polygons:0.3` whole polygons of each class, "
          "`pixels:0.3` pixels\n"
          "at random (only for comparison with others: it flatters).",
          false},
-        {"report", DB_TEXT, &o->report, 0, 0, "FOLDER",
+        {"report", DB_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write confusion matrices, recognition by polygon and by square, and the error curve "
          "there.",
          false},
-        {"split-out", DB_TEXT, &o->split_out, 0, 0, "FILE",
+        {"split-out", DB_OUTPUT, &o->split_out, 0, 0, "FILE",
          "Write each exemplar with its part (train or held-out) and inputs as CSV, for other "
          "programs.",
          false},

@@ -1,6 +1,7 @@
 #include "image_command.h"
 
 #include "hs/error.h"
+#include "hs/input_file.h"
 
 #include <string.h>
 
@@ -9,6 +10,9 @@ bool image_command_read(const struct db_usage *usage, const struct db_option *op
 {
     const bool has_file = argc > 1 && strncmp(argv[1], "--", 2) != 0;
     *path = has_file ? argv[1] : NULL;
+    if (has_file) {
+        hs_input_note(*path);
+    }
     if (!db_options_read(usage, options, count, has_file ? argc - 1 : argc,
                          has_file ? argv + 1 : argv, exit_code)) {
         return false;

@@ -13,7 +13,7 @@ struct db_image_options {
 /* Three entries for the table of a command. */
 #define DB_IMAGE_OPTIONS(o)                                                                        \
     {.name = "image",                                                                              \
-     .kind = DB_LIST,                                                                              \
+     .kind = DB_INPUTS,                                                                            \
      .target = &(o)->paths,                                                                        \
      .value_name = "FILE",                                                                         \
      .is_required = true,                                                                          \
@@ -34,7 +34,7 @@ struct db_image_options {
 /* An entry for the table: the class table. `o` is a const char *. */
 #define DB_CLASSES_OPTION(o)                                                                       \
     {                                                                                              \
-        .name = "classes", .kind = DB_TEXT, .target = &(o), .value_name = "FILE",                  \
+        .name = "classes", .kind = DB_INPUT, .target = &(o), .value_name = "FILE",                 \
         .is_required = true, .help = "The class table."                                            \
     }
 
@@ -47,7 +47,7 @@ struct db_exemplar_options {
 /* Four entries. */
 #define DB_EXEMPLAR_OPTIONS(o)                                                                     \
     {.name = "exemplars",                                                                          \
-     .kind = DB_TEXT,                                                                              \
+     .kind = DB_INPUT,                                                                             \
      .target = &(o)->polygons,                                                                     \
      .value_name = "FILE",                                                                         \
      .help =                                                                                       \
@@ -61,7 +61,7 @@ struct db_exemplar_options {
          .value_name = "NAME",                                                                     \
          .help = "The polygons' field that holds the label; default `class`."},                    \
         {.name = "labels",                                                                         \
-         .kind = DB_TEXT,                                                                          \
+         .kind = DB_INPUT,                                                                         \
          .target = &(o)->labels,                                                                   \
          .value_name = "FILE",                                                                     \
          .help =                                                                                   \
@@ -71,7 +71,7 @@ struct db_exemplar_options {
              "one label\n"                                                                         \
              "take the place of polygons."},                                                       \
     {                                                                                              \
-        .name = "map", .kind = DB_TEXT, .target = &(o)->map, .value_name = "FILE",                 \
+        .name = "map", .kind = DB_INPUT, .target = &(o)->map, .value_name = "FILE",                \
         .help =                                                                                    \
             "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "      \
             "Without it\n"                                                                         \

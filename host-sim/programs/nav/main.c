@@ -1,6 +1,7 @@
 /* landmass-nav: a recorded or invented flight as traffic of the avionics bus. */
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "nav/make_track.h"
 #include "nav/parse.h"
 #include "nav/read_track.h"
@@ -398,7 +399,10 @@ static int run(struct command *c, struct nav_track *t)
     struct nav_reading reading = {0};
     struct nav_findings found;
     struct nav_sent sent;
-    if (get_track(c, t, &reading) != 0) {
+    if (c->track_path) {
+        hs_input_note(c->track_path);
+    }
+    if ((c->out_path && hs_output_claim(c->out_path) != 0) || get_track(c, t, &reading) != 0) {
         return -1;
     }
     shift_track(c, t);

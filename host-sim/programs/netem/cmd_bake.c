@@ -116,7 +116,7 @@ int nm_cmd_bake(int argc, char **argv)
     const char *training = NULL;
     enum { BAKE = 1 + SETUP_MODEL_OPTIONS, RAYS = BAKE + BAKE_OPTIONS };
     struct db_option options[RAYS + SETUP_RAY_OPTIONS] = {
-        {"training", DB_TEXT, &training, 0, 0, "FILE", "that `train` left", true}};
+        {"training", DB_INPUT, &training, 0, 0, "FILE", "that `train` left", true}};
     int exit_code;
     setup_model_options(&setup, options + 1);
     bake_options(&settings, options + BAKE);

@@ -151,7 +151,7 @@ int nm_cmd_paper(int argc, char **argv)
         {"t72-15", DB_TEXT, &f.t72_15, 0, 0, "FOLDER", "raw chips of the T-72 at 15 degrees",
          false},
         {"t72-17", DB_TEXT, &f.t72_17, 0, 0, "FOLDER", "and at 17 degrees", false},
-        {"out", DB_TEXT, &f.out, 0, 0, "FOLDER", "for the results", true},
+        {"out", DB_FOLDER, &f.out, 0, 0, "FOLDER", "for the results", true},
         {"all", DB_FLAG, &f.is_all, 0, 0, NULL, "train EP1 to EP8, not one architecture", false},
         {"azimuth-left", DB_FLAG, &f.is_counted_left, 0, 0, NULL,
          "MSTAR's TargetAz counts to the left; here the radar goes round to the right", false},

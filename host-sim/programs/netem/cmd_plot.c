@@ -77,7 +77,7 @@ int nm_cmd_plot(int argc, char **argv)
     const struct db_option options[] = {
         {"training", DB_LIST, &files, 0, 0, "FILE,...", "that `train` left; up to 16 of them",
          true},
-        {"out", DB_TEXT, &out, 0, 0, "FOLDER", "for the pictures", true},
+        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the pictures", true},
         {"materials", DB_INTEGER, &materials, 1, 8, "N", "whose curves are drawn", false},
     };
     const size_t count = sizeof options / sizeof options[0];

@@ -218,7 +218,7 @@ int nm_cmd_recover(int argc, char **argv)
     struct db_option options[OPTIONS] = {
         {"hidden-law", DB_TEXT, &h.law, 0, 0, "NAME",
          "raysar, fresnel-hh, fresnel-vv (default), spm-hh or spm-vv", false},
-        {"hidden-materials", DB_TEXT, &h.materials, 0, 0, "FILE",
+        {"hidden-materials", DB_INPUT, &h.materials, 0, 0, "FILE",
          "its surfaces, in the form that `landmass-target materials` prints", false},
         {"number", DB_INTEGER, &h.chips, 2, 10000, "N", "chips to make", false},
         {"share", DB_REAL, &h.share, 0, 1, "P", "of them for training", false},
@@ -227,7 +227,7 @@ int nm_cmd_recover(int argc, char **argv)
         {"looks", DB_INTEGER, &h.looks, 0, 64, "N", "of their speckle; 0: none", false},
         {"shift", DB_INTEGER, &h.shift_px, 0, 20, "PX", "of the hidden translation, at most",
          false},
-        {"out", DB_TEXT, &h.out, 0, 0, "FOLDER", "for the results", true},
+        {"out", DB_FOLDER, &h.out, 0, 0, "FOLDER", "for the results", true},
         {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };

@@ -224,8 +224,9 @@ int nm_cmd_register(int argc, char **argv)
     struct run r = {.settings = nm_settings_default(), .views = 180, .reach_px = 12};
     int exit_code;
     struct db_option options[OPTIONS] = {
-        {"out", DB_TEXT, &r.out, 0, 0, "FILE", "the list", true},
-        {"scores", DB_TEXT, &r.scores, 0, 0, "FILE", "how well each chip fits, as a table", false},
+        {"out", DB_OUTPUT, &r.out, 0, 0, "FILE", "the list", true},
+        {"scores", DB_OUTPUT, &r.scores, 0, 0, "FILE", "how well each chip fits, as a table",
+         false},
         {"views", DB_INTEGER, &r.views, 4, 3600, "N", "simulated, evenly around", false},
         {"shift", DB_INTEGER, &r.reach_px, 0, 512, "PX",
          "how far from the middle of its chip a target may be", false},

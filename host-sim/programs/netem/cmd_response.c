@@ -144,7 +144,7 @@ int nm_cmd_response(int argc, char **argv)
     long seed = 1;
     int exit_code;
     const struct db_option options[] = {
-        {"history", DB_TEXT, &file, 0, 0, "FILE", "one degree of the Gotcha set, MATLAB 5", true},
+        {"history", DB_INPUT, &file, 0, 0, "FILE", "one degree of the Gotcha set, MATLAB 5", true},
         {"seed", DB_INTEGER, &seed, 0, 1e15, "N", "of the simulated speckle", false},
     };
     if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,

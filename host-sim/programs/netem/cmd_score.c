@@ -46,8 +46,8 @@ int nm_cmd_score(int argc, char **argv)
     const char *out = NULL, *training = NULL, *set = "validation";
     int exit_code;
     struct db_option options[OPTIONS] = {
-        {"training", DB_TEXT, &training, 0, 0, "FILE", "that `train` left", true},
-        {"out", DB_TEXT, &out, 0, 0, "FOLDER", "for the results", true},
+        {"training", DB_INPUT, &training, 0, 0, "FILE", "that `train` left", true},
+        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
         {"set", DB_TEXT, &set, 0, 0, "validation|training", "which chips; default validation",
          false},
         {"seed", DB_INTEGER, &s.seed, 0, 1e15, "N", "of the division into both", false},

@@ -121,8 +121,8 @@ int nm_cmd_simulate(int argc, char **argv)
     struct order o = {.views = 1, .seed = 1};
     int exit_code;
     struct db_option options[OPTIONS] = {
-        {"training", DB_TEXT, &o.training, 0, 0, "FILE", "that `train` left", true},
-        {"out", DB_TEXT, &o.out, 0, 0, "FOLDER", "for the chips", true},
+        {"training", DB_INPUT, &o.training, 0, 0, "FILE", "that `train` left", true},
+        {"out", DB_FOLDER, &o.out, 0, 0, "FOLDER", "for the chips", true},
         {"azimuth", DB_REAL, &o.azimuth_deg, -360, 360, "DEG",
          "of the radar as the target sees it, from its nose to the right", false},
         {"views", DB_INTEGER, &o.views, 1, 3600, "N", "evenly around, from --azimuth on", false},

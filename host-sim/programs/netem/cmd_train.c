@@ -48,7 +48,7 @@ int nm_cmd_train(int argc, char **argv)
     bool is_resumed = false;
     int exit_code;
     struct db_option options[OPTIONS] = {
-        {"out", DB_TEXT, &out, 0, 0, "FOLDER", "for the results", true},
+        {"out", DB_FOLDER, &out, 0, 0, "FOLDER", "for the results", true},
         {"resume", DB_FLAG, &is_resumed, 0, 0, NULL, "go on where FOLDER's training stopped",
          false},
     };

@@ -1,7 +1,9 @@
 /* landmass-reference: the picture of the firmware, computed in double precision. */
 #include "dump.h"
 
+#include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/png.h"
 #include "lm/grain.h"
 #include "reference/reference.h"
@@ -455,7 +457,9 @@ int main(int argc, char **argv)
         return HS_EXIT_USAGE;
     }
     struct ref_db db;
-    if (ref_db_open(&db, request.image) != 0) {
+    hs_input_note(request.image);
+    if (hs_output_claim(request.out) != 0 || (request.dump && hs_output_claim(request.dump) != 0) ||
+        ref_db_open(&db, request.image) != 0) {
         return HS_EXIT_FAILED;
     }
     const int status = mode == FOR_SAR  ? render_sar(&request, &db)

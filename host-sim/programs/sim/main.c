@@ -5,6 +5,7 @@
 #include "drv/can_log.h"
 #include "drv/can_socket.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/png.h"
 #include "hs/progress.h"
 #include "lm/bus_filters.h"
@@ -61,7 +62,7 @@ static int open_bus(struct sim *s)
     const struct options *o = &s->options;
     s->socket.fd = -1;
     if (o->bus_log) {
-        s->log_file = fopen(o->bus_log, "r");
+        s->log_file = hs_input_open(o->bus_log, "r");
         if (!s->log_file) {
             return hs_error(o->bus_log, "landmass-nav makes one from a track",
                             "cannot be opened: %s", strerror(errno));

@@ -129,7 +129,7 @@ int target_cmd_curves(int argc, char **argv)
     long figure = 3;
     const struct db_option options[] = {
         {"figure", DB_INTEGER, &figure, 3, 6, "FIGURE", "which", false},
-        {"out", DB_TEXT, &out, 0, 0, "FILE.png", "the picture", true},
+        {"out", DB_OUTPUT, &out, 0, 0, "FILE.png", "the picture", true},
     };
     int exit_code;
     if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,

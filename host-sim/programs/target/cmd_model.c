@@ -66,8 +66,8 @@ int target_cmd_model(int argc, char **argv)
     s.depression_deg = 30;
     s.azimuth_deg = 30;
     struct db_option options[SETUP_MODEL_OPTIONS + 5] = {
-        {"obj", DB_TEXT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
-        {"view", DB_TEXT, &view, 0, 0, "FILE.png", "draw the model", false},
+        {"obj", DB_OUTPUT, &obj, 0, 0, "FILE.obj", "write the model, with z up", false},
+        {"view", DB_OUTPUT, &view, 0, 0, "FILE.png", "draw the model", false},
         {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the eye, from the model's nose towards its right", false},
         {"depression", DB_REAL, &s.depression_deg, 1, 90, "DEG", "of the eye's sight", false},

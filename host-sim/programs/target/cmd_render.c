@@ -98,9 +98,9 @@ int target_cmd_render(int argc, char **argv)
     long zoom = 6;
     enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
     struct db_option options[COUNT] = {
-        {"records", DB_TEXT, &records, 0, 0, "FILE.trace", "in place of a model", false},
-        {"out", DB_TEXT, &png, 0, 0, "FILE.png", "the picture", false},
-        {"csv", DB_TEXT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
+        {"records", DB_INPUT, &records, 0, 0, "FILE.trace", "in place of a model", false},
+        {"out", DB_OUTPUT, &png, 0, 0, "FILE.png", "the picture", false},
+        {"csv", DB_OUTPUT, &csv, 0, 0, "FILE.csv", "the amplitudes", false},
         {"zoom", DB_INTEGER, &zoom, 1, 64, "N", "dots of the PNG a pixel, either way", false},
         {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG",
          "of the radar, from the model's nose towards its right", false},

@@ -125,7 +125,7 @@ int target_cmd_sheet(int argc, char **argv)
     long count = 12, columns = 3, size_px = 216;
     enum { OWN = 5, COUNT = OWN + SETUP_OPTIONS };
     struct db_option options[COUNT] = {
-        {"out", DB_TEXT, &out, 0, 0, "FILE.png", "the sheet", true},
+        {"out", DB_OUTPUT, &out, 0, 0, "FILE.png", "the sheet", true},
         {"count", DB_INTEGER, &count, 1, 360, "N", "azimuths, evenly around", false},
         {"azimuth", DB_REAL, &s.azimuth_deg, -360, 360, "DEG", "of the first of them", false},
         {"columns", DB_INTEGER, &columns, 1, 20, "N", "pairs side by side", false},

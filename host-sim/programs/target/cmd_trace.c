@@ -61,8 +61,8 @@ int target_cmd_trace(int argc, char **argv)
     struct outputs outputs = {NULL, NULL, 2};
     enum { OWN = 4, COUNT = OWN + SETUP_MODEL_OPTIONS + SETUP_TRACE_OPTIONS };
     struct db_option options[COUNT] = {
-        {"out", DB_TEXT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
-        {"picture", DB_TEXT, &outputs.picture, 0, 0, "FILE.png",
+        {"out", DB_OUTPUT, &outputs.records, 0, 0, "FILE.trace", "the records", true},
+        {"picture", DB_OUTPUT, &outputs.picture, 0, 0, "FILE.png",
          "what was recorded at one reflection, channel by channel, at the places where the\nrays "
          "were sent (Niu and others, Table I)",
          false},

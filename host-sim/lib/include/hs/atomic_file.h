@@ -1,5 +1,8 @@
 /* Atomic file: it appears under its final name whole, or not at all. Usage: hs_atomic_open, write
- * to `stream`, then hs_atomic_commit, or hs_atomic_abort to give up. */
+ * to `stream`, then hs_atomic_commit, or hs_atomic_abort to give up.
+ *
+ * An output never takes the place of an input (hs/input_file.h), of a device, a pipe or a folder.
+ * Temporary files vanish when the program ends, at SIGINT, SIGTERM and SIGHUP too. */
 #ifndef HS_ATOMIC_FILE_H
 #define HS_ATOMIC_FILE_H
 
@@ -11,12 +14,19 @@ struct hs_atomic_file {
     char *temporary; /* owned: the name used while writing, in the same folder */
 };
 
+/* Make sure, before long work, that `path` can be written at its end: makes the temporary file,
+ * which hs_atomic_open takes over. Returns 0, or -1 with the error reported:
+ * - `path` exists and is no ordinary file, because it would be replaced,
+ * - it is an input of this run, or lies in a folder that is one,
+ * - it is claimed already: two outputs would be one file,
+ * - the folder is missing or cannot be written. */
+int hs_output_claim(const char *path);
+
 /* Begin a file that will be called `path`, and put it in place. Commit flushes to the disk before
  * it renames. Both return 0, or -1 with the error reported; nothing is left of the temporary file
  * then, nor after a commit. Failures:
- * - open: `path` exists and is no ordinary file (a device, a pipe, a folder), because it would be
- *   replaced; the folder is missing or cannot be written; no memory,
- * - commit: the disk is full, or the rename is refused. */
+ * - open: as hs_output_claim, but for a claim; no memory,
+ * - commit: the disk is full, the rename is refused, or `path` has become an input. */
 int hs_atomic_open(struct hs_atomic_file *f, const char *path);
 int hs_atomic_commit(struct hs_atomic_file *f);
 
@@ -24,9 +34,11 @@ int hs_atomic_commit(struct hs_atomic_file *f);
 void hs_atomic_abort(struct hs_atomic_file *f);
 
 /* For libraries that insist on opening the file themselves: the temporary name for `path` (caller
- * frees), and the rename at the end. `hs_atomic_rename` reports, removes `temporary` and returns -1
- * on failure. */
+ * frees), and the rename at the end. Both report and return NULL or -1 on failure, the first as
+ * hs_atomic_open, the second with `temporary` removed. `hs_atomic_drop` removes a temporary file
+ * instead; harmless when there is none. */
 char *hs_atomic_temporary_name(const char *path);
 int hs_atomic_rename(const char *temporary, const char *path);
+void hs_atomic_drop(const char *temporary);
 
 #endif

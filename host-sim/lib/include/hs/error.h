@@ -20,7 +20,8 @@ int hs_error(const char *place, const char *remedy, const char *cause, ...)
 int hs_warn(const char *place, const char *remedy, const char *cause, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Name the program in the messages; call once at the start of main. Keeps the pointer. */
+/* Name the program in the messages, and guard its inputs from here on (hs/input_file.h); call once
+ * at the start of main. Keeps the pointer. */
 void hs_set_program(const char *name);
 const char *hs_program(void);
 

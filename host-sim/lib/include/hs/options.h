@@ -18,6 +18,10 @@ enum db_option_kind {
     DB_FLAG,    /* bool */
     DB_TEXT,    /* const char *, borrowed from argv */
     DB_LIST,    /* struct db_list */
+    DB_INPUT,   /* const char *: a file that is read; hs/input_file.h */
+    DB_INPUTS,  /* struct db_list of such */
+    DB_OUTPUT,  /* const char *: a file that is written; claimed (hs/atomic_file.h) */
+    DB_FOLDER,  /* const char *: a folder that is written to, and made if need be */
     DB_REAL,    /* double within low..high; NAN before: there is no default */
     DB_INTEGER, /* long within low..high */
 };
@@ -42,7 +46,8 @@ struct db_usage {
  * true when the command shall go on. Otherwise *exit_code is:
  * - HS_EXIT_OK: --help was asked for and printed,
  * - HS_EXIT_USAGE, reported: a word that is no option or an unknown one, a value too many or too
- *   few, a number outside its range, or a required option that is missing. */
+ *   few, a number outside its range, or a required option that is missing,
+ * - HS_EXIT_FAILED, reported: an output cannot be written, or is an input or another output. */
 bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
 

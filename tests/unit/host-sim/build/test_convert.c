@@ -270,8 +270,8 @@ TEST(every_program_names_the_remedy_and_a_bad_image_is_refused)
     open_tiny(&tiny, &image, 46, 11);
     const struct old_image old = old_image_of(&image);
     write_bytes("old.lmdb", old.bytes, old.size);
-    static const char *const commands[] = {"inspect %s", "verify %s",
-                                           "picture %s --plane class --out /dev/null"};
+    static const char *const commands[] = {
+        "inspect %s", "verify %s", "picture %s --plane class --out /tmp/landmass-never.png"};
     for (int i = 0; i < 3; i++) {
         char line[600];
         snprintf(line, sizeof line, commands[i], scene_path("old.lmdb"));
@@ -295,7 +295,7 @@ TEST(every_program_names_the_remedy_and_a_bad_image_is_refused)
     write_bytes("bad.lmdb", old.bytes, old.size);
     expect_refusal("bad.lmdb", 1, "does not lie inside it");
     assert_int_equal(scene_run("convert %s", scene_path("old.lmdb")), 2);
-    assert_int_equal(scene_run("convert %s %s", scene_path("old.lmdb"), scene_path("old.lmdb")), 2);
+    assert_int_equal(scene_run("convert %s %s", scene_path("old.lmdb"), scene_path("old.lmdb")), 1);
     assert_int_equal(scene_run("convert --help"), 0);
     assert_true(scene_log_holds("what must be built again"));
     free(old.bytes);

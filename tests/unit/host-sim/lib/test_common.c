@@ -2,6 +2,7 @@
 #include "check.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/input_file.h"
 #include "hs/rng.h"
 
 #include <math.h>
@@ -88,4 +89,95 @@ TEST(numbers_below_a_bound_are_even)
     for (int i = 0; i < 3; i++) {
         assert_in_range(count[i], 9700, 10300);
     }
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+/* A folder with "input" and "link" to it; the current folder is it until `leave`. */
+static void enter(char *folder)
+{
+    hs_input_guard();
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chdir(folder), 0);
+    write_file("input", "input");
+    assert_int_equal(symlink("input", "link"), 0);
+    assert_int_equal(link("input", "hard"), 0);
+}
+
+static void leave(const char *folder)
+{
+    const char *const names[] = {"input", "link", "hard", "output"};
+    for (int i = 0; i < 4; i++) {
+        unlink(names[i]);
+    }
+    assert_int_equal(chdir("/"), 0);
+    assert_int_equal(rmdir(folder), 0); /* nothing else was left in it */
+}
+
+TEST(an_input_is_no_place_for_an_output_whatever_its_name)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX", absolute[64];
+    enter(folder);
+    snprintf(absolute, sizeof absolute, "%s/input", folder);
+    fclose(hs_input_open("link", "r"));
+    const char *const names[] = {"input", "link", "hard", "./input", absolute};
+    for (int i = 0; i < 5; i++) {
+        struct hs_atomic_file f;
+        assert_int_equal(hs_output_claim(names[i]), -1);
+        assert_int_equal(hs_atomic_open(&f, names[i]), -1);
+        assert_null(hs_atomic_temporary_name(names[i]));
+    }
+    hs_input_forget("hard");
+    struct hs_atomic_file f;
+    assert_int_equal(hs_atomic_open(&f, "input"), 0);
+    hs_atomic_abort(&f);
+    leave(folder);
+}
+
+TEST(a_file_that_becomes_an_input_during_the_work_is_kept)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX";
+    enter(folder);
+    struct hs_atomic_file f;
+    assert_int_equal(hs_atomic_open(&f, "input"), 0);
+    hs_input_note("link");
+    assert_int_equal(hs_atomic_commit(&f), -1);
+    char text[8] = "";
+    FILE *file = fopen("input", "r");
+    assert_non_null(fgets(text, sizeof text, file));
+    fclose(file);
+    assert_string_equal(text, "input");
+    hs_input_forget("input");
+    leave(folder);
+}
+
+TEST(two_claims_of_one_file_are_refused_and_a_file_takes_its_claim_over)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX";
+    enter(folder);
+    struct hs_atomic_file f;
+    assert_int_equal(hs_output_claim("output"), 0);
+    assert_int_equal(hs_output_claim("./output"), -1);
+    assert_int_equal(hs_atomic_open(&f, "output"), 0);
+    assert_int_equal(hs_atomic_commit(&f), 0);
+    assert_int_equal(access("output", F_OK), 0);
+    leave(folder);
+}
+
+TEST(nothing_goes_into_a_folder_that_is_an_input)
+{
+    char folder[] = "/tmp/landmass-test-XXXXXX", output[64];
+    enter(folder);
+    snprintf(output, sizeof output, "%s/output", folder);
+    hs_input_note_folder(folder);
+    assert_int_equal(hs_output_claim(output), -1);
+    assert_int_equal(hs_output_claim("output"), -1);
+    hs_input_forget(folder);
+    leave(folder);
 }

@@ -1,0 +1,350 @@
+#!/usr/bin/env python3
+"""What the tools do with inputs that are wrong, doubtful or clumsy: the table of docs/database.md, "What happens to an
+input", is what this test sees when it runs every row.
+
+    test_inputs.py            TAP on standard output
+    test_inputs.py --write    run, and write the table into the document
+
+BUILD names the build's folder. Files are made on the spot by GDAL, in the formats that users have.
+"""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+from osgeo import gdal, ogr, osr
+
+gdal.UseExceptions()
+BUILD = os.path.abspath(os.environ.get("BUILD", "build/bench-linux"))
+DOCUMENT = "docs/database.md"
+BEGIN, END = "<!-- table: tests/system/test_inputs.py -->\n", "<!-- end of the table -->\n"
+TABLE = os.path.abspath("host-sim/programs/db/classes/heaton6.classes")
+CLASSES = ["soil", "asphalt", "concrete", "structure", "vegetation", "water"]
+SIDE, STEP = 64, 10.0  # pixels, metres
+WEST, NORTH = 500000.0, 4800000.0
+ROWS = []
+
+
+def row(name, command, wanted):
+    """A row of the table: what is given, the command, and how the command must end: 'refused', 'warned' or 'done'."""
+    def keep(function):
+        ROWS.append((name, command, wanted, function))
+        return function
+    return keep
+
+
+class Run:
+    def __init__(self, done):
+        self.code, self.out, self.err = done.returncode, done.stdout, done.stderr
+
+    def outcome(self):
+        return "refused" if self.code else "warned" if "warning: " in self.err else "done"
+
+
+def tool(program, *words, **more):
+    line = [os.path.join(BUILD, "bin", "landmass-" + program)] + [str(word) for word in words]
+    return Run(subprocess.run(line, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL, **more))
+
+
+def db(*words):
+    return tool("db", *words)
+
+
+def crs(name):
+    reference = osr.SpatialReference()
+    reference.SetFromUserInput(name)
+    return reference
+
+
+def raster(path, bands, kind=gdal.GDT_Float32, at=(WEST, NORTH), step=STEP, system="EPSG:32632", nodata=None, unit=None,
+           names=None, driver="GTiff"):
+    """Write planes of numbers as a raster; `bands` is a list of arrays."""
+    high, wide = bands[0].shape
+    out = gdal.GetDriverByName(driver).Create(path, wide, high, len(bands), kind)
+    out.SetGeoTransform((at[0], step, 0, at[1], 0, -step))
+    if system:
+        out.SetProjection(crs(system).ExportToWkt())
+    for i, plane in enumerate(bands):
+        band = out.GetRasterBand(i + 1)
+        band.WriteArray(plane)
+        if nodata is not None:
+            band.SetNoDataValue(nodata)
+        if unit:
+            band.SetUnitType(unit)
+        if names:
+            band.SetCategoryNames(names)
+    out = None
+    return path
+
+
+def classes_plane():
+    """Columns of soil, vegetation and water."""
+    plane = numpy.zeros((SIDE, SIDE), numpy.uint8)
+    plane[:, SIDE // 3:2 * SIDE // 3] = CLASSES.index("vegetation")
+    plane[:, 2 * SIDE // 3:] = CLASSES.index("water")
+    return plane
+
+
+def image_planes(seed=1):
+    colours = {0: (170, 140, 90), 4: (60, 120, 50), 5: (30, 50, 120)}
+    noise = numpy.random.default_rng(seed)
+    plane = classes_plane()
+    return [numpy.clip(numpy.vectorize(lambda c: colours[c][b])(plane) + noise.normal(0, 6, plane.shape), 0, 255) for b in range(3)]
+
+
+def exemplars(path, labels=("soil", "vegetation", "water"), field="class"):
+    layer_file = ogr.GetDriverByName("GeoJSON").CreateDataSource(path)
+    layer = layer_file.CreateLayer("exemplars", crs("EPSG:32632"), ogr.wkbPolygon)
+    layer.CreateField(ogr.FieldDefn(field, ogr.OFTString))
+    for i, label in enumerate(labels):
+        for part in range(3):
+            x = WEST + STEP * (i * SIDE / 3 + 3)
+            y = NORTH - STEP * (part * SIDE / 3 + 3)
+            ring = "%f %f,%f %f,%f %f,%f %f,%f %f" % (x, y, x + 140, y, x + 140, y - 140, x, y - 140, x, y)
+            feature = ogr.Feature(layer.GetLayerDefn())
+            feature.SetField(field, label)
+            feature.SetGeometry(ogr.CreateGeometryFromWkt("POLYGON((%s))" % ring))
+            layer.CreateFeature(feature)
+    layer_file = None
+    return path
+
+
+def slope(base=100.0, side=120, step=30.0):
+    """Heights that rise to the east by one metre a pixel."""
+    return numpy.tile(base + numpy.arange(side, dtype=numpy.float32), (side, 1))
+
+
+DEM_AT = (WEST - 1200, NORTH + 1200)
+
+
+def terrain(path="dem.tif", plane=None, **more):
+    more.setdefault("at", DEM_AT)
+    more.setdefault("step", 30.0)
+    return raster(path, [slope() if plane is None else plane], **more)
+
+
+def prepare():
+    raster("image.tif", image_planes(), gdal.GDT_Byte)
+    exemplars("fields.geojson")
+    shutil.copy(TABLE, "heaton6.classes")
+    raster("classes.tif", [classes_plane()], gdal.GDT_Byte, nodata=255, names=CLASSES)
+    terrain()
+    for words in (["train", "--image", "image.tif", "--classes", "heaton6.classes", "--exemplars", "fields.geojson", "--net", "scene.net",
+                   "--epochs", "20"],
+                  ["reflect", "--class-raster", "classes.tif", "--classes", "heaton6.classes", "--out", "gamma.tif"],
+                  BUILD_AREA + ["--out", "area.lmdb"]):
+        done = db(*words)
+        assert done.code == 0, done.err
+
+
+BUILD_AREA = ["build", "--classes", "heaton6.classes", "--class-raster", "classes.tif", "--terrain", "dem.tif"]
+TRAIN = ["train", "--image", "image.tif", "--classes", "heaton6.classes", "--exemplars", "fields.geojson", "--epochs", "20"]
+SEGMENT = ["segment", "--image", "image.tif", "--classes", "heaton6.classes", "--net", "scene.net"]
+REFLECT = ["reflect", "--class-raster", "classes.tif", "--classes", "heaton6.classes"]
+CORRECT = ["correct", "--class-raster", "classes.tif", "--classes", "heaton6.classes", "--corrections", "fields.geojson"]
+
+
+def contents(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def kept(path, work):
+    """What `work` does, with the file at `path` the same before and after, and nothing unfinished left."""
+    before = contents(path)
+    done = work()
+    assert contents(path) == before, path + " was changed"
+    assert not [name for name in os.listdir(".") if name.startswith(".unfinished")], "unfinished files are left"
+    return done
+
+
+# ---- Outputs that would take the place of an input.
+
+def overwrite(name, command, path, words):
+    row(name, command, "refused")(lambda: kept(path, lambda: db(*words)))
+
+
+for each, lines, option in (("train", TRAIN, "--net"), ("segment", SEGMENT, "--out"), ("reflect", REFLECT, "--out"),
+                            ("correct", CORRECT, "--out"), ("build", BUILD_AREA, "--out")):
+    for given in lines[1:]:
+        if not given.startswith("--") and os.path.splitext(given)[1]:
+            overwrite("output named as the input `%s`" % given, each, given, lines + [option, given])
+
+
+@row("output that is a symbolic link to an input", "build", "refused")
+def output_is_a_link():
+    os.symlink("dem.tif", "link.lmdb")
+    return kept("dem.tif", lambda: db(*BUILD_AREA, "--out", "link.lmdb"))
+
+
+@row("output that is a hard link of an input", "segment", "refused")
+def output_is_a_hard_link():
+    os.link("image.tif", "hard.tif")
+    return kept("image.tif", lambda: db(*SEGMENT, "--out", "hard.tif"))
+
+
+@row("output named as the source of a virtual raster", "segment", "refused")
+def output_is_a_source():
+    gdal.BuildVRT("image.vrt", ["image.tif"]).FlushCache()
+    words = [word if word != "image.tif" else "image.vrt" for word in SEGMENT]
+    return kept("image.tif", lambda: db(*words, "--out", "image.tif"))
+
+
+@row("output named as a side file of an input", "reflect", "refused")
+def output_is_a_side_file():
+    return kept("classes.tif.aux.xml", lambda: db(*REFLECT, "--out", "classes.tif.aux.xml"))
+
+
+@row("output named as an archive that is read", "build", "refused")
+def output_is_an_archive():
+    shutil.make_archive("N43", "zip", ".", "dem.tif")
+    os.rename("N43.zip", "dem.tif.zip")
+    return kept("dem.tif.zip", lambda: db("build", "--classes", "heaton6.classes", "--terrain", "dem.tif.zip", "--out", "dem.tif.zip"))
+
+
+@row("output named as a signature that the targets name", "build", "refused")
+def output_is_a_signature():
+    done = tool("target", "bake", "--model", "tank", "--aspects", "24", "--depressions", "8", "--rays", "1", "--out", "tank.sig")
+    assert done.code == 0, done.err
+    with open("targets.txt", "w") as file:
+        file.write("library tank tank.sig\n")
+    return kept("tank.sig", lambda: db(*BUILD_AREA, "--targets", "targets.txt", "--out", "tank.sig"))
+
+
+@row("picture named as the image", "picture", "refused")
+def picture_is_the_image():
+    return kept("area.lmdb", lambda: db("picture", "area.lmdb", "--plane", "class", "--out", "./area.lmdb"))
+
+
+@row("new image that is a link to the old one", "convert", "refused")
+def new_is_old():
+    os.symlink("area.lmdb", "new.lmdb")
+    return kept("area.lmdb", lambda: db("convert", "area.lmdb", "new.lmdb"))
+
+
+@row("log named as the track", "landmass-nav", "refused")
+def log_is_the_track():
+    with open("track.csv", "w") as file:
+        file.write("time,lat,lon,altitude\n" + "".join("%d,43.%02d,7,1000\n" % (1e9 + i, i) for i in range(20)))
+    return kept("track.csv", lambda: tool("nav", "--out", "./track.csv", "track.csv"))
+
+
+@row("log named as its text", "landmass-bus", "refused")
+def decoded_is_the_log():
+    done = tool("nav", "--out", "track.log", "track.csv")
+    assert done.code == 0, done.err
+    return kept("track.log", lambda: tool("bus", "decode", "--out", "./track.log", "track.log"))
+
+
+@row("picture named as the model", "landmass-target", "refused")
+def picture_is_the_model():
+    done = tool("target", "model", "--model", "tank", "--obj", "tank.obj")
+    assert done.code == 0, done.err
+    return kept("tank.obj", lambda: tool("target", "model", "--model", "tank.obj", "--view", "./tank.obj"))
+
+
+@row("picture named as the image", "landmass-reference", "refused")
+def reference_is_the_image():
+    return kept("area.lmdb", lambda: tool("reference", "gm", "area.lmdb", "--out", "./area.lmdb"))
+
+
+@row("two outputs of one name", "segment", "refused")
+def two_outputs():
+    done = db(*SEGMENT, "--out", "both.tif", "--picture", "./both.tif")
+    assert not os.path.exists("both.tif")
+    return done
+
+
+@row("output in a folder that is not there", "train", "refused")
+def folder_is_missing():
+    done = db(*TRAIN, "--net", "nosuch/scene.net")
+    assert "epoch" not in done.out, "it trained before it noticed"
+    return done
+
+
+@row("report that is an ordinary file", "train", "refused")
+def report_is_a_file():
+    done = kept("image.tif", lambda: db(*TRAIN, "--net", "new.net", "--report", "image.tif"))
+    assert "epoch" not in done.out, "it trained before it noticed"
+    assert not os.path.exists("new.net")
+    return done
+
+
+def stopped(number):
+    """Ends `train` while it works; what is left in the folder."""
+    before = set(os.listdir("."))
+    words = [os.path.join(BUILD, "bin", "landmass-db")] + TRAIN[:-2] + ["--epochs", "2000", "--patience", "2000", "--goal", "1.01",
+                                                                       "--net", "never.net"]
+    work = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 20
+    while set(os.listdir(".")) == before and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert set(os.listdir(".")) != before, "no temporary file was seen"
+    work.send_signal(number)
+    assert work.wait(20) == -number, "it did not end by the signal"
+    assert set(os.listdir(".")) == before, "left: %s" % (set(os.listdir(".")) - before)
+
+
+@row("Ctrl-C, SIGTERM or SIGHUP during the work", "train", "refused")
+def ctrl_c():
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        stopped(number)
+    return None
+
+
+# ---- The table and the run.
+
+def says(run):
+    """The first line that tells the reason, without the program's name."""
+    lines = [line for line in run.err.splitlines() if run.code or "warning: " in line]
+    return re.sub(r"^landmass-\w+: ", "", lines[0]) if lines else ""
+
+
+def table_row(name, command, wanted, run):
+    said = says(run).replace("|", "\\|") if run else ""
+    return "| %s | `%s` | %s | %s |\n" % (name, command, wanted, said)
+
+
+def document_with(rows):
+    with open(DOCUMENT) as file:
+        text = file.read()
+    head, tail = text.split(BEGIN)[0], text.split(END)[1]
+    return text, head + BEGIN + "\n| input | command | outcome | what is said |\n|---|---|---|---|\n" + "".join(rows) + "\n" + END + tail
+
+
+def main():
+    home, failed, lines = os.getcwd(), 0, []
+    print("1..%d" % (len(ROWS) + 1))
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        prepare()
+        for number, (name, command, wanted, function) in enumerate(ROWS, 1):
+            statement = "%s, %s: %s" % (command, name, wanted)
+            try:
+                done = function()
+                assert done is None or done.outcome() == wanted, "%s: %s%s" % (done.outcome(), done.out, done.err)
+                assert done is None or wanted == "done" or says(done), "no reason is given"
+                lines.append(table_row(name, command, wanted, done))
+                print("ok %d - %s" % (number, statement))
+            except Exception as error:
+                failed += 1
+                print("not ok %d - %s\n# %s" % (number, statement, str(error).replace("\n", "\n# ")))
+        os.chdir(home)
+    old, new = document_with(lines)
+    if "--write" in sys.argv:
+        with open(DOCUMENT, "w") as file:
+            file.write(new)
+    elif old != new:
+        failed += 1
+        print("not ", end="")
+    print("ok %d - %s has the table that was seen" % (len(ROWS) + 1, DOCUMENT))
+    sys.exit(failed > 0)
+
+
+main()
