@@ -5,6 +5,7 @@
 #include "fx/hash.h"
 #include "fx/log.h"
 #include "fx/sat.h"
+#include "lm/kernels_radar.h"
 #include "lm/lanes.h"
 #include "lm/level.h"
 #include "lm/units.h"
@@ -30,10 +31,10 @@ void lm_side_lobes_clear(struct lm_side_lobes *s)
     for (uint32_t k = 0; k < LM_SIDE_LOBES_LINES; k++) {
         s->line[k].count = 0;
     }
+    int16_t *side = s->side_db_q8;
     for (int32_t k = 0; k < LM_SIDE_LOBES_OFFSETS; k++) {
         for (int32_t n = -LM_RESPONSE_REACH; n <= LM_RESPONSE_REACH; n++) {
-            s->side_db_q8[k][n + LM_RESPONSE_REACH] =
-                side_db_q8(n, 16 * (k - LM_SIDE_LOBES_OFFSETS / 2));
+            *side++ = side_db_q8(n, 16 * (k - LM_SIDE_LOBES_OFFSETS / 2));
         }
     }
 }
@@ -55,51 +56,68 @@ static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_
     return true;
 }
 
-/* Insert a strong cell by its level. The weakest drops out of a full line. */
-static void insert(struct lm_side_lobes *s, uint32_t line, uint32_t cell, int32_t level_db_q8,
-                   uint32_t seed)
+/* Insert a strong cell by its level: after those that are as strong. The weakest drops out of a
+ * full line. Out of line, it takes no registers from the search. */
+static __attribute__((noinline)) void insert(struct lm_side_lobes *s, uint32_t line, uint32_t cell,
+                                             int32_t level_db_q8, uint32_t seed)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES, draw = fx_hash3(line, cell, seed);
     struct lm_strong_cell *const strong = s->line[slot].strong;
-    uint32_t at = s->line[slot].count;
-    if (at == LM_SIDE_LOBES_A_LINE && strong[at - 1].level_db_q8 >= level_db_q8) {
-        return;
-    }
-    at = fx_min_u32(at, LM_SIDE_LOBES_A_LINE - 1);
+    uint32_t at = fx_min_u32(s->line[slot].count, LM_SIDE_LOBES_A_LINE - 1);
     for (; at > 0 && strong[at - 1].level_db_q8 < level_db_q8; at--) {
         strong[at] = strong[at - 1];
     }
-    strong[at] = (struct lm_strong_cell){(int32_t)cell, level_db_q8,
-                                         (int32_t)(draw & 7) - LM_SIDE_LOBES_OFFSETS / 2,
-                                         (int32_t)(draw >> 3 & 7) - LM_SIDE_LOBES_OFFSETS / 2};
+    strong[at] = (struct lm_strong_cell){(int32_t)cell, level_db_q8, draw % LM_SIDE_LOBES_OFFSETS,
+                                         draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS};
     s->line[slot].count = fx_min_u32(s->line[slot].count + 1, LM_SIDE_LOBES_A_LINE);
+}
+
+/* Cells first..end - 1 of a line. */
+struct stretch {
+    uint32_t line, first, end, cells;
+};
+
+/* Least level of a cell that may still be inserted. */
+static int32_t least_now(const struct lm_side_lobes *s, uint32_t line, int32_t least_db_q8)
+{
+    const uint32_t slot = line % LM_SIDE_LOBES_LINES;
+    return s->line[slot].count == LM_SIDE_LOBES_A_LINE
+               ? s->line[slot].strong[LM_SIDE_LOBES_A_LINE - 1].level_db_q8 + 1
+               : least_db_q8;
+}
+
+/* Search a stretch for strong cells. Returns the least level of the next. */
+static int32_t search(struct lm_side_lobes *s, struct stretch at, const int32_t *level_db_q8,
+                      int32_t least_db_q8, uint32_t seed)
+{
+    const int32_t *const end = level_db_q8 + at.end;
+    int32_t least = least_db_q8;
+    for (const int32_t *level = level_db_q8 + at.first; level != end; level++) {
+        if (*level >= least) {
+            const uint32_t cell = (uint32_t)(level - level_db_q8);
+            if (stands_out(level_db_q8, cell, at.cells)) {
+                insert(s, at.line, cell, *level, seed);
+                least = least_now(s, at.line, least_db_q8);
+            }
+        }
+    }
+    return least;
 }
 
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
                         uint32_t cells, int32_t least_db_q8, uint32_t seed)
 {
+    int32_t highest_db_q8[LM_CELLS_MAX / LM_K_HIGHEST_CELLS + 2];
+    int32_t least = least_db_q8;
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
-    for (uint32_t first = 0; first < cells; first += LM_LANES) {
-        const uint32_t end = fx_min_u32(first + LM_LANES, cells);
-        int32_t highest_db_q8 = level_db_q8[first];
-        for (uint32_t i = first; i < first + LM_LANES; i++) {
-            highest_db_q8 = fx_max_i32(highest_db_q8, level_db_q8[i]);
-        }
-        for (uint32_t i = first; i < end && highest_db_q8 >= least_db_q8; i++) {
-            if (level_db_q8[i] >= least_db_q8 && stands_out(level_db_q8, i, cells)) {
-                insert(s, line, i, level_db_q8[i], seed);
-            }
+    lm_k_highest(level_db_q8, highest_db_q8, cells);
+    for (uint32_t first = 0; first < cells; first += LM_K_HIGHEST_CELLS) {
+        if (highest_db_q8[first / LM_K_HIGHEST_CELLS] >= least) {
+            const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, cells);
+            least = search(s, (struct stretch){line, first, end, cells}, level_db_q8, least, seed);
         }
     }
-}
-
-/* Side lobe of a point, `cells` cells from its own. */
-static inline int32_t side_lobe_db_q8(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
-                                      int32_t off_16ths, int32_t cells)
-{
-    return p->level_db_q8 +
-           s->side_db_q8[off_16ths + LM_SIDE_LOBES_OFFSETS / 2][cells + LM_RESPONSE_REACH];
 }
 
 /* Add a side lobe, if it is not 25 dB below what is there. */
@@ -110,33 +128,50 @@ static inline void add(int32_t *level_db_q8, int32_t side_lobe)
     }
 }
 
-static void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
-                      int32_t *level_db_q8, int32_t cells)
+/* Side lobes of points at that offset, by the cells from their own. */
+static inline const int16_t *side_of(const struct lm_side_lobes *s, uint32_t offset)
 {
-    const int32_t first = fx_max_i32(p->cell - LM_RESPONSE_REACH, 0);
-    const int32_t last = fx_min_i32(p->cell + LM_RESPONSE_REACH, cells - 1);
+    return s->side_db_q8 + offset * LM_SIDE_LOBES_CELLS + LM_RESPONSE_REACH;
+}
+
+/* Side lobes of a point in cells first..last of its own line. */
+static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
+                             int32_t *level_db_q8, int32_t first, int32_t last)
+{
+    const int16_t *const side = side_of(s, p->beyond);
     for (int32_t i = first; i <= last; i++) {
-        if (fx_abs_u32(i - p->cell) >= NEAREST) {
-            add(&level_db_q8[i], side_lobe_db_q8(s, p, p->beyond_16ths, i - p->cell));
-        }
+        add(&level_db_q8[i], p->level_db_q8 + side[i - p->cell]);
+    }
+}
+
+/* Side lobes of line `n` on line `line`. */
+static inline void add_across(const struct lm_side_lobes *s, uint32_t n, uint32_t line,
+                              int32_t *level_db_q8)
+{
+    const uint32_t slot = n % LM_SIDE_LOBES_LINES;
+    const struct lm_strong_cell *p = s->line[slot].strong;
+    const struct lm_strong_cell *const end = p + s->line[slot].count;
+    for (; p != end; p++) {
+        add(&level_db_q8[p->cell],
+            p->level_db_q8 + side_of(s, p->right)[(int32_t)line - (int32_t)n]);
     }
 }
 
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
                        uint32_t cells)
 {
-    const uint32_t first = line > LM_RESPONSE_REACH ? line - LM_RESPONSE_REACH : 0;
+    const uint32_t slot = line % LM_SIDE_LOBES_LINES;
     const uint32_t end = fx_min_u32(line + LM_RESPONSE_REACH + 1, s->found);
-    for (uint32_t n = first; n < end; n++) {
-        const uint32_t slot = n % LM_SIDE_LOBES_LINES;
-        const int32_t beside = (int32_t)line - (int32_t)n;
-        for (uint32_t k = 0; k < s->line[slot].count; k++) {
-            const struct lm_strong_cell *p = &s->line[slot].strong[k];
-            if (beside == 0) {
-                add_along(s, p, level_db_q8, (int32_t)cells);
-            } else if (fx_abs_u32(beside) >= NEAREST) {
-                add(&level_db_q8[p->cell], side_lobe_db_q8(s, p, p->right_16ths, beside));
-            }
-        }
+    for (uint32_t n = line - fx_min_u32(line, LM_RESPONSE_REACH); n + NEAREST <= line; n++) {
+        add_across(s, n, line, level_db_q8);
+    }
+    for (uint32_t k = 0; k < s->line[slot].count; k++) {
+        const struct lm_strong_cell *const p = &s->line[slot].strong[k];
+        add_along(s, p, level_db_q8, fx_max_i32(p->cell - LM_RESPONSE_REACH, 0), p->cell - NEAREST);
+        add_along(s, p, level_db_q8, p->cell + NEAREST,
+                  fx_min_i32(p->cell + LM_RESPONSE_REACH, (int32_t)cells - 1));
+    }
+    for (uint32_t n = line + NEAREST; n < end; n++) {
+        add_across(s, n, line, level_db_q8);
     }
 }

@@ -423,6 +423,13 @@ static void run_levels_mean(const struct input *in, struct output *out, bool is_
     out->room = in->cells;
 }
 
+static void run_highest(const struct input *in, struct output *out, bool is_plain)
+{
+    TWIN(lm_k_highest)(in->level_db_q8, signed_line(out->line[0]), in->cells);
+    out->end[0] = (in->cells + 15) / 16 * 2;
+    out->room = out->end[0];
+}
+
 static void run_beam_sum(const struct input *in, struct output *out, bool is_plain)
 {
     const uint32_t *power_q24[LM_K_TAPS];
@@ -479,6 +486,7 @@ static const struct kernel kernels[] = {
     {"lm_k_powers_of_levels", draw_small_levels, run_powers_of_levels},
     {"lm_k_levels_add", draw_levels, run_levels_add},
     {"lm_k_levels_mean", draw_levels, run_levels_mean},
+    {"lm_k_highest", draw_levels, run_highest},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},

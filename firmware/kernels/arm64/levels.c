@@ -45,3 +45,15 @@ void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t leas
                            cells - whole);
     }
 }
+
+void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells)
+{
+    for (size_t i = 0; i < cells; i += 16) {
+        const int32x4x4_t level = vld1q_s32_x4(level_db_q8 + i);
+        const int32x4_t of_pairs = vpmaxq_s32(vmaxq_s32(level.val[0], level.val[1]),
+                                              vmaxq_s32(level.val[2], level.val[3]));
+        const int32x4_t of_eights = vpmaxq_s32(of_pairs, of_pairs);
+        vst1_s32(highest_db_q8, vget_low_s32(of_eights));
+        highest_db_q8 += 2;
+    }
+}

@@ -18,3 +18,15 @@ void lm_k_levels_mean(const int32_t *restrict sum_db_q8, int32_t less_db_q8, int
         level_db_q8[i] = fx_max_i32(all_db_q8 - less_db_q8, least_db_q8);
     }
 }
+
+void lm_k_highest(const int32_t *level_db_q8, int32_t *restrict highest_db_q8, uint32_t cells)
+{
+    const uint32_t blocks = (cells + 15) / 16 * (16 / LM_K_HIGHEST_CELLS);
+    for (uint32_t n = 0; n < blocks; n++, level_db_q8 += LM_K_HIGHEST_CELLS) {
+        int32_t highest = level_db_q8[0];
+        for (uint32_t i = 1; i < LM_K_HIGHEST_CELLS; i++) {
+            highest = fx_max_i32(highest, level_db_q8[i]);
+        }
+        highest_db_q8[n] = highest;
+    }
+}

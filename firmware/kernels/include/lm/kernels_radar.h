@@ -28,6 +28,12 @@ void lm_k_levels_add(int32_t *sum_db_q8, const int32_t *level_db_q8, uint32_t ce
 void lm_k_levels_mean(const int32_t *sum_db_q8, int32_t less_db_q8, int32_t least_db_q8,
                       int32_t *level_db_q8, uint32_t cells);
 
+enum { LM_K_HIGHEST_CELLS = 8 };
+
+/* The highest of each LM_K_HIGHEST_CELLS levels, in whole groups of 16. Behind the last cell there
+ * may be anything: it counts too. Cost: 1 a cell. */
+void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells);
+
 enum { LM_K_TAPS = 8 };
 
 /* Weighted sum of LM_K_TAPS lines of powers, rounded down. The weights add up to 65536, so that the

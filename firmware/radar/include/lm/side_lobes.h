@@ -20,17 +20,19 @@
 #include "lm/response.h"
 
 enum {
-    LM_SIDE_LOBES_A_LINE = 2, /* cells of a line that have side lobes, at most */
-    LM_SIDE_LOBES_LINES = 32, /* lines that are remembered */
-    LM_SIDE_LOBES_OFFSETS = 8 /* places of a point in its cell, each way */
+    LM_SIDE_LOBES_A_LINE = 2,  /* cells of a line that have side lobes, at most */
+    LM_SIDE_LOBES_LINES = 32,  /* lines that are remembered */
+    LM_SIDE_LOBES_OFFSETS = 8, /* places of a point in its cell, each way */
+    LM_SIDE_LOBES_CELLS = 2 * LM_RESPONSE_REACH + 1
 };
 
 _Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and those ahead");
 
-/* Strong cell: its level with speckle, and how far its point lies from the cell's middle. */
+/* Strong cell: its level with speckle, and where in the cell its point lies, 0..7: sixteenths from
+ * 4/16 before the middle to 3/16 behind it. */
 struct lm_strong_cell {
     int32_t cell, level_db_q8;
-    int32_t right_16ths, beyond_16ths; /* of a cell: -4..3 */
+    uint32_t right, beyond;
 };
 
 /* Strong cells of the lines around the one that is drawn. The caller owns it; all fields are
@@ -41,9 +43,9 @@ struct lm_side_lobes {
         struct lm_strong_cell strong[LM_SIDE_LOBES_A_LINE]; /* the strongest first */
     } line[LM_SIDE_LOBES_LINES];                            /* line n at n % LM_SIDE_LOBES_LINES */
     uint32_t found;                                         /* lines that were searched */
-    /* Response of a point, by its offset in 16ths and the cells from its own, over that in its own.
-     */
-    int16_t side_db_q8[LM_SIDE_LOBES_OFFSETS][2 * LM_RESPONSE_REACH + 1];
+    /* Response of a point over that in its own cell: for each place in the cell, by the cells from
+     * there, -LM_RESPONSE_REACH first. */
+    int16_t side_db_q8[LM_SIDE_LOBES_OFFSETS * LM_SIDE_LOBES_CELLS];
 };
 
 /* Forget all lines. Cost: some 7,000 instructions. */
@@ -52,13 +54,14 @@ void lm_side_lobes_clear(struct lm_side_lobes *s);
 /* Find the strong cells of line `line`, which is the one after the last. A cell is strong if its
  * level is at least `least_db_q8` and the largest within LM_RESPONSE_REACH / 2 cells along, and
  * stands LM_SIDE_LOBES_ABOVE_DB_Q8 over the cells at both ends of these. `seed` chooses where in
- * its cell a point lies. Cost: 2 instructions a cell, and 40 for each that is strong. */
+ * its cell a point lies. Cost: 2 instructions a cell, and 100 for each group of 8 that may hold one
+ * of the strongest. */
 enum { LM_SIDE_LOBES_ABOVE_DB_Q8 = 28 * 256 };
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
                         uint32_t cells, int32_t least_db_q8, uint32_t seed);
 
 /* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
- * to LM_RESPONSE_REACH before and behind it. Cost: 15 instructions for each cell of a cross that
+ * to LM_RESPONSE_REACH before and behind it. Cost: 22 instructions for each cell of a cross that
  * lies on the line: at most 28 along it and 28 across. */
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
                        uint32_t cells);

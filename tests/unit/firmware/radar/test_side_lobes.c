@@ -56,7 +56,7 @@ TEST(a_lone_wall_has_a_cross_whose_side_lobes_are_taylors)
     for (uint32_t seed = 0; seed < 200; seed++) {
         const struct lm_strong_cell *p = draw_wall(seed);
         for (int n = -LM_RESPONSE_REACH + 1; n < LM_RESPONSE_REACH; n++) {
-            const double off[2] = {p->beyond_16ths / 16.0, p->right_16ths / 16.0};
+            const double off[2] = {(p->beyond - 4.0) / 16, (p->right - 4.0) / 16};
             const int32_t shown_q8[2] = {picture[MIDDLE][WALL + n], picture[MIDDLE + n][WALL]};
             for (int way = 0; way < 2 && abs(n) >= 2; way++) {
                 const double wanted_db =
