@@ -126,7 +126,8 @@ static int cover_cells(struct build_context *b, const struct image_frame *f, uin
         for (size_t i = 0; i < side * side; i++) {
             fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
         }
-        image_reduce(fine, side, b->parts, cells, CELLS, CELLS, b->classes.height_dm);
+        const struct image_reduction parted = {&b->classes, b->parts, CELLS, IMAGE_VOTE_COUNT};
+        image_reduce(&parted, fine, side, cells, CELLS);
         face(b, f, cells);
     }
     free(samples);
@@ -319,8 +320,7 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
     image_ground_init(&t->ground, &t->record);
     for (int i = 0; i < 4; i++) {
         if (children[i]) {
-            image_ground_take(&t->ground, &t->record, &children[i]->ground, i,
-                              b->classes.height_dm);
+            image_ground_take(&t->ground, &t->record, &children[i]->ground, i, &b->classes);
         }
     }
     image_ground_encode(&t->ground, &t->record, b->classes.height_dm);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 uint8_t image_gamma_code(double gamma_db)
 {
@@ -33,39 +34,77 @@ void image_heights_text(const uint16_t table_dm[16], char *text, size_t room)
     }
 }
 
-/* Sums over the cells that become one. */
-struct sums {
-    int count[LM_DB_CLASSES];
-    double height_dm[LM_DB_CLASSES];
-    double power; /* of the cells with data */
+/* What the rule of coarser cells asks of the class table. */
+struct rule {
+    const uint16_t *heights_dm;
+    double least_built;           /* share of the power from which structures win the cell */
+    double power[256];            /* of the reflectivity codes */
+    uint8_t group[LM_DB_CLASSES]; /* of a class: the lowest number of those that differ in their
+                                   * facing alone */
+    bool stands[LM_DB_CLASSES];   /* it is a class of structures */
 };
 
-static void add_cell(struct sums *s, uint16_t cell, const double power[256],
-                     const uint16_t heights_dm[16])
+static void set_rule(struct rule *rule, const struct lm_classes *classes, enum image_vote vote)
 {
-    const uint8_t k = image_cell_class(cell);
-    s->count[k]++;
-    s->height_dm[k] += heights_dm[image_cell_height(cell)];
-    s->power += k == LM_DB_CLASS_NONE ? 0.0 : power[image_cell_gamma(cell)];
+    rule->heights_dm = classes->height_dm;
+    rule->least_built = vote == IMAGE_VOTE_POWER ? IMAGE_BUILT_SHARE : 1;
+    for (int i = 0; i < 256; i++) {
+        rule->power[i] = pow(10.0, image_gamma_db((uint8_t)i) / 10.0);
+    }
+    for (uint8_t k = 0; k < LM_DB_CLASSES; k++) {
+        const struct lm_class *c = &classes->entry[k];
+        uint8_t first = c->facing == 0 ? k : 0;
+        while (first < k && (classes->entry[first].kind != c->kind ||
+                             memcmp(classes->entry[first].name, c->name, sizeof c->name) != 0)) {
+            first++;
+        }
+        rule->group[k] = first;
+        rule->stands[k] = c->kind == LM_KIND_STRUCTURE && k != LM_DB_CLASS_NONE;
+    }
 }
 
-static uint16_t cell_of_sums(const struct sums *s, const uint16_t heights_dm[16])
+/* Sums over the cells that become one. */
+struct sums {
+    int count[LM_DB_CLASSES], of_group[LM_DB_CLASSES];
+    double height_dm[LM_DB_CLASSES]; /* of groups */
+    double power, structures;        /* of the cells with data; of those of structures */
+};
+
+static void add_cell(struct sums *s, uint16_t cell, const struct rule *rule)
 {
-    int best = 0, count = 0;
+    const uint8_t k = image_cell_class(cell);
+    const double power = k == LM_DB_CLASS_NONE ? 0.0 : rule->power[image_cell_gamma(cell)];
+    s->count[k]++;
+    s->of_group[rule->group[k]]++;
+    s->height_dm[rule->group[k]] += rule->heights_dm[image_cell_height(cell)];
+    s->power += power;
+    s->structures += rule->stands[k] ? power : 0.0;
+}
+
+static uint16_t cell_of_sums(const struct sums *s, const struct rule *rule)
+{
+    const bool is_built = s->structures > s->power * rule->least_built;
+    int best = -1, count = 0; /* a group */
     for (int k = 0; k < LM_DB_CLASS_NONE; k++) {
-        best = s->count[k] > s->count[best] ? k : best;
+        const bool may_win = s->of_group[k] > 0 && (!is_built || rule->stands[k]);
+        best = may_win && (best < 0 || s->of_group[k] > s->of_group[best]) ? k : best;
         count += s->count[k];
     }
     if (count == 0) {
         return IMAGE_CELL_NONE;
     }
+    int facing = best;
+    for (int k = 0; k < LM_DB_CLASS_NONE; k++) {
+        facing = rule->group[k] == best && s->count[k] > s->count[facing] ? k : facing;
+    }
     const uint8_t gamma = image_gamma_code(10.0 * log10(s->power / count));
-    const uint8_t height = image_height_code(heights_dm, s->height_dm[best] / s->count[best]);
-    return image_cell(gamma, (uint8_t)best, height);
+    const uint8_t height =
+        image_height_code(rule->heights_dm, s->height_dm[best] / s->of_group[best]);
+    return image_cell(gamma, (uint8_t)facing, height);
 }
 
 static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
-                             const double power[256], const uint16_t heights_dm[16])
+                             const struct rule *rule)
 {
     struct sums sums = {0};
     bool are_equal = true;
@@ -79,24 +118,22 @@ static uint16_t reduce_block(const uint16_t *fine, size_t stride, int factor,
     }
     for (int r = 0; r < factor; r++) {
         for (int c = 0; c < factor; c++) {
-            add_cell(&sums, fine[(size_t)r * stride + (size_t)c], power, heights_dm);
+            add_cell(&sums, fine[(size_t)r * stride + (size_t)c], rule);
         }
     }
-    return cell_of_sums(&sums, heights_dm);
+    return cell_of_sums(&sums, rule);
 }
 
-void image_reduce(const uint16_t *fine, size_t fine_stride, int factor, uint16_t *coarse,
-                  size_t coarse_stride, int coarse_side, const uint16_t heights_dm[16])
+void image_reduce(const struct image_reduction *how, const uint16_t *fine, size_t fine_stride,
+                  uint16_t *coarse, size_t coarse_stride)
 {
-    double power[256];
-    for (int i = 0; i < 256; i++) {
-        power[i] = pow(10.0, image_gamma_db((uint8_t)i) / 10.0);
-    }
-    for (int r = 0; r < coarse_side; r++) {
-        for (int c = 0; c < coarse_side; c++) {
-            const size_t from = (size_t)(factor * r) * fine_stride + (size_t)(factor * c);
+    struct rule rule;
+    set_rule(&rule, how->classes, how->vote);
+    for (int r = 0; r < how->side; r++) {
+        for (int c = 0; c < how->side; c++) {
+            const size_t from = (size_t)(how->factor * r) * fine_stride + (size_t)(how->factor * c);
             coarse[(size_t)r * coarse_stride + (size_t)c] =
-                reduce_block(fine + from, fine_stride, factor, power, heights_dm);
+                reduce_block(fine + from, fine_stride, how->factor, &rule);
         }
     }
 }

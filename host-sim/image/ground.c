@@ -48,10 +48,12 @@ static double crest_q6(const struct lm_tile *tile, const struct image_ground *be
 }
 
 void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
-                       const struct image_ground *below, int quarter, const uint16_t heights_dm[16])
+                       const struct image_ground *below, int quarter,
+                       const struct lm_classes *classes)
 {
     const int row0 = quarter / 2 * HALF, column0 = quarter % 2 * HALF;
-    image_reduce(&below->cells[0][0], CELLS, 2, &g->cells[row0][column0], CELLS, HALF, heights_dm);
+    const struct image_reduction halved = {classes, 2, HALF, IMAGE_VOTE_POWER};
+    image_reduce(&halved, &below->cells[0][0], CELLS, &g->cells[row0][column0], CELLS);
     image_ground_take_tops(g, tile, below, quarter);
 }
 

@@ -514,7 +514,7 @@ static int climb(struct verify *v, int level, uint32_t row, uint32_t column, str
 /* Make a tile again from the four below it, and compare. */
 static int check_below(struct verify *v, struct rung *made, struct rung *const below[4])
 {
-    const uint16_t *heights_dm = v->image->db.classes.height_dm;
+    const struct lm_classes *classes = &v->image->db.classes;
     struct lm_tile *encoded = malloc(sizeof *encoded);
     if (!encoded) {
         return -1;
@@ -522,10 +522,10 @@ static int check_below(struct verify *v, struct rung *made, struct rung *const b
     *encoded = *made->tile;
     for (int i = 0; i < 4; i++) {
         if (below[i]) {
-            image_ground_take(&made->ground, made->tile, &below[i]->ground, i, heights_dm);
+            image_ground_take(&made->ground, made->tile, &below[i]->ground, i, classes);
         }
     }
-    image_ground_encode(&made->ground, encoded, heights_dm);
+    image_ground_encode(&made->ground, encoded, classes->height_dm);
     for (int i = 0; i < 4; i++) {
         if (!below[i]) {
             continue;

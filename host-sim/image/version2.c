@@ -245,7 +245,7 @@ static int make_from(struct conversion *c, uint32_t entry, const struct old_tile
         result = make_tile(c, old->lod - 1, 2 * old->row + (uint32_t)(i / 2),
                            2 * old->column + (uint32_t)(i % 2), &below);
         if (below) {
-            image_ground_take(ground, tile, below, i, c->classes.height_dm);
+            image_ground_take(ground, tile, below, i, &c->classes);
         }
         free(below);
     }

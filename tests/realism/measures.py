@@ -335,7 +335,8 @@ def square_mean_db(scenes, place, cell_m, look=0, side_m=512):
 
 def ground_map_means_db(scenes, place, reach_m, look):
     """Mean power of a ground map around a place 14.6 km ahead; and what it should be: that of a patch of 20 m cells from
-    the same side, behind the two-way beam, 2.33 degrees wide, and a bin of range.
+    the same side, behind the two-way beam, 2.33 degrees wide, and a bin of range. The map is freed of what dims all
+    ground alike there, roll-off behind the STC and clear air: by the even field of the plain at the same ranges.
     """
     radar, away = moved(place, look + 180, 14600), np.sqrt(14600.0**2 + 3000.0**2)
     picture = scenes.sector("builtin", radar, heading=look, track=look - 45, sweeps=4, speed_m_s=SPEED_M_S)
@@ -345,7 +346,9 @@ def ground_map_means_db(scenes, place, reach_m, look):
     beam_cells = away * BEAM_RAD / np.sqrt(2) / 2.3548 / 20
     smeared = ndimage.uniform_filter1d(ndimage.gaussian_filter1d(patch, beam_cells, axis=0), 4, axis=1)
     line, cell = np.mgrid[0:CELLS, 0:CELLS] + 0.5 - CELLS / 2
-    return db(power(picture.sweeps_db())[:, near].mean()), db(smeared[np.hypot(line, cell) * 20 < reach_m].mean())
+    even = power(scenes.sector("plain", PLAIN, track=-45, sweeps=24, speed_m_s=SPEED_M_S).sweeps_db())[:, 64:192]
+    dimmed = even[:, :, near.any(axis=0)].mean() / power(place_of.FIELD_DB)
+    return db(power(picture.sweeps_db())[:, near].mean() / dimmed), db(smeared[np.hypot(line, cell) * 20 < reach_m].mean())
 
 
 @measure("3.4, 6.2, item 6", "town: mean at 1, 2, 5, 10, 20 m, dB of gamma; GM over what the beam makes of 20 m, dB")

@@ -255,20 +255,32 @@ static uint8_t nearest_height_code(const struct lm_classes *classes, double dm)
     return best;
 }
 
-/* FORMATS.md 1.6: mean power, the commonest class (the lower number when equal, data before none),
- * and the mean height of the cells of that class. */
+static bool is_built(const struct builder *b, uint8_t k)
+{
+    return b->classes->entry[k].kind == LM_KIND_STRUCTURE;
+}
+
+/* FORMATS.md 1.6: mean power; structures where they return more than a quarter of it, else the
+ * commonest class (the lower number when equal, data before none); and the mean height of the cells
+ * of that class. The classes of these images differ in more than their facing. */
 static uint16_t mean_of_four(const struct builder *b, const uint16_t four[4])
 {
-    double power = 0, dm = 0;
+    double power = 0, built = 0, dm = 0;
     int votes[16] = {0};
     for (int i = 0; i < 4; i++) {
         const struct tiny_cell cell = unpack_cell(four[i]);
-        power += pow(10, cell.gamma_db / 10) / 4;
+        const double own = pow(10, cell.gamma_db / 10) / 4;
+        power += own;
+        built += is_built(b, cell.class_index) ? own : 0;
         votes[cell.class_index]++;
     }
     uint8_t winner = 0;
     for (uint8_t k = 1; k < 16; k++) {
         winner = votes[k] > votes[winner] ? k : winner;
+    }
+    for (uint8_t k = 0; k < 16 && 4 * built > power; k++) {
+        const bool is_better = !is_built(b, winner) || votes[k] > votes[winner];
+        winner = is_built(b, k) && votes[k] > 0 && is_better ? k : winner;
     }
     for (int i = 0; i < 4; i++) {
         const struct tiny_cell cell = unpack_cell(four[i]);

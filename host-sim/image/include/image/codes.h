@@ -42,12 +42,27 @@ static inline uint8_t image_cell_height(uint16_t cell)
     return cell & 15;
 }
 
-/* Make each `factor` x `factor` cells of a square one, `coarse_side` the side of the result:
- * reflectivity is the mean in power of the cells with data, class the commonest (of equals the
- * lower number; "no data" only when all are), height the mean of the cells of that class. Strides
- * in cells. `fine` and `coarse` may be the same array. */
-void image_reduce(const uint16_t *fine, size_t fine_stride, int factor, uint16_t *coarse,
-                  size_t coarse_stride, int coarse_side, const uint16_t heights_dm[16]);
+/* How several cells agree on the class of one.
+ *
+ * The commonest wins: of equals the lower number, and "no data" only when all are. Classes that
+ * differ in nothing but their facing count together, and then the commonest of them is taken. By
+ * power, structures win before that where they return more than IMAGE_BUILT_SHARE of the cell's
+ * power: a town is mostly streets and yards, but what the radar sees of it are its buildings. */
+enum image_vote { IMAGE_VOTE_COUNT, IMAGE_VOTE_POWER };
+#define IMAGE_BUILT_SHARE 0.25
+
+struct image_reduction {
+    const struct lm_classes *classes;
+    int factor; /* so many cells both ways become one */
+    int side;   /* of the result, in cells */
+    enum image_vote vote;
+};
+
+/* Make fewer cells: reflectivity is the mean in power of the cells with data, class as they agree,
+ * height the mean of the cells of that class, in all its facings. Strides in cells. `fine` and
+ * `coarse` may be the same array. */
+void image_reduce(const struct image_reduction *how, const uint16_t *fine, size_t fine_stride,
+                  uint16_t *coarse, size_t coarse_stride);
 
 /* The tile's own cells, into its record and out of it. */
 void image_cells_encode(uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS], struct lm_tile *tile);

@@ -30,7 +30,7 @@ void image_ground_init(struct image_ground *g, const struct lm_tile *tile);
  * tops below. `tile` is the coarser one and has its posts. */
 void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
                        const struct image_ground *below, int quarter,
-                       const uint16_t heights_dm[16]);
+                       const struct lm_classes *classes);
 
 /* The tops alone. */
 void image_ground_take_tops(struct image_ground *g, const struct lm_tile *tile,

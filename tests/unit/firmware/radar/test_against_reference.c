@@ -252,9 +252,11 @@ TEST(patches_agree_with_the_reference)
      * the pixel differs. */
     assert_true(whole->beyond_half_db * 200 <= whole->pixels);
     assert_true(whole->beyond_1_grey * 200 <= whole->pixels);
-    /* Three in a thousand more where a shadow that begins before the patch ends elsewhere. */
-    assert_true(foregrounds->beyond_half_db * 125 <= foregrounds->pixels);
-    assert_true(foregrounds->beyond_1_grey * 125 <= foregrounds->pixels);
+    /* Seven in a thousand more where a shadow that begins before the patch ends elsewhere: the
+     * houses of this country stand in the coarse cells of the foreground, and are narrower than
+     * LM_SAR_FOREGROUND_LINES. */
+    assert_true(foregrounds->beyond_half_db * 100 <= foregrounds->pixels);
+    assert_true(foregrounds->beyond_1_grey * 100 <= foregrounds->pixels);
 }
 
 /* The same through rain, whose edge runs through each picture. */

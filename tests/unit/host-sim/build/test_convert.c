@@ -53,8 +53,9 @@ static void old_cells(const struct image *image, const struct lm_tile *t,
         if (below) {
             uint16_t fine[LM_TILE_CELLS][LM_TILE_CELLS];
             old_cells(image, below, fine);
-            image_reduce(&fine[0][0], LM_TILE_CELLS, 2, &cells[i / 2 * HALF][i % 2 * HALF],
-                         LM_TILE_CELLS, HALF, image->db.classes.height_dm);
+            const struct image_reduction halved = {&image->db.classes, 2, HALF, IMAGE_VOTE_POWER};
+            image_reduce(&halved, &fine[0][0], LM_TILE_CELLS, &cells[i / 2 * HALF][i % 2 * HALF],
+                         LM_TILE_CELLS);
         }
     }
 }

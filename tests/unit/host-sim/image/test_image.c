@@ -74,39 +74,87 @@ TEST(a_height_gets_the_nearest_code)
     }
 }
 
+/* Field, street, and houses in three facings. */
+static struct lm_classes town_classes(void)
+{
+    struct lm_classes classes = {.entry = {{.name = "field", .kind = LM_KIND_GROUND},
+                                           {.name = "house", .kind = LM_KIND_STRUCTURE},
+                                           {.name = "street", .kind = LM_KIND_GROUND},
+                                           {.name = "house", .kind = LM_KIND_STRUCTURE},
+                                           {.name = "house", .kind = LM_KIND_STRUCTURE}}};
+    classes.entry[3].facing = 1;
+    classes.entry[4].facing = 3;
+    memcpy(classes.height_dm, heights_dm, sizeof heights_dm);
+    return classes;
+}
+
+static double power_of(uint16_t cell)
+{
+    return pow(10.0, ((cell >> 8) / 2.0 - 80.0) / 10.0);
+}
+
+static bool is_house(int k)
+{
+    return k == 1 || k == 3 || k == 4;
+}
+
+/* Votes for a class: of four cells, those of houses count together. */
+static int votes_of(const uint16_t four[4], int k)
+{
+    int votes = 0;
+    for (int i = 0; i < 4; i++) {
+        const int other = four[i] >> 4 & 15;
+        votes += other == k || (is_house(other) && is_house(k));
+    }
+    return votes;
+}
+
+static int own_votes_of(const uint16_t four[4], int k)
+{
+    int votes = 0;
+    for (int i = 0; i < 4; i++) {
+        votes += (four[i] >> 4 & 15) == k;
+    }
+    return votes;
+}
+
 /* The rule of FORMATS.md 1.6 again, the plain way. */
 static uint16_t mean_of_four(const uint16_t four[4])
 {
-    int best = LM_DB_CLASS_NONE, best_count = 0, data = 0;
-    double power = 0, height = 0;
-    for (int k = 0; k < LM_DB_CLASS_NONE; k++) {
-        int count = 0;
-        for (int i = 0; i < 4; i++) {
-            count += (four[i] >> 4 & 15) == k;
-        }
-        if (count > best_count) {
-            best = k;
-            best_count = count;
-        }
-    }
+    int data = 0, houses = 0;
+    double power = 0, built = 0, height = 0;
     for (int i = 0; i < 4; i++) {
         const int k = four[i] >> 4 & 15;
-        if (k != LM_DB_CLASS_NONE) {
-            power += pow(10.0, ((four[i] >> 8) / 2.0 - 80.0) / 10.0);
-            data++;
-        }
-        if (k == best && k != LM_DB_CLASS_NONE) {
-            height += heights_dm[four[i] & 15];
-        }
+        data += k != LM_DB_CLASS_NONE;
+        power += k != LM_DB_CLASS_NONE ? power_of(four[i]) : 0;
+        built += is_house(k) ? power_of(four[i]) : 0;
+        houses += is_house(k);
+        height += is_house(k) ? heights_dm[four[i] & 15] : 0;
     }
     if (data == 0) {
         return LM_DB_CLASS_NONE << 4;
     }
+    int best = 0;
+    for (int k = 1; k < 5; k++) {
+        best = votes_of(four, k) > votes_of(four, best) ? k : best;
+    }
+    if (4 * built > power || is_house(best)) {
+        best = 1;
+        best = own_votes_of(four, 3) > own_votes_of(four, best) ? 3 : best;
+        best = own_votes_of(four, 4) > own_votes_of(four, best) ? 4 : best;
+        height /= houses;
+    } else {
+        height = 0;
+        for (int i = 0; i < 4; i++) {
+            const bool is_one = (four[i] >> 4 & 15) == best;
+            height += is_one ? heights_dm[four[i] & 15] : 0;
+        }
+        height /= own_votes_of(four, best);
+    }
     const double code = floor(2.0 * (10.0 * log10(power / data) + 80.0) + 0.5);
     int nearest = 0;
     for (int i = 0; i < 16; i++) {
-        if (fabs(heights_dm[i] - height / best_count) <
-            fabs(heights_dm[nearest] - height / best_count)) {
+        if (fabs(heights_dm[i] - height) < fabs(heights_dm[nearest] - height)) {
             nearest = i;
         }
     }
@@ -115,17 +163,20 @@ static uint16_t mean_of_four(const uint16_t four[4])
 
 TEST(a_coarser_cell_is_the_mean_of_four)
 {
+    const struct lm_classes classes = town_classes();
+    const struct image_reduction halved = {&classes, 2, 8, IMAGE_VOTE_POWER};
     struct hs_rng rng;
     hs_rng_seed(&rng, 1);
     for (int trial = 0; trial < 200; trial++) {
         uint16_t fine[16][16], coarse[8][8];
+        const uint32_t span = trial % 2 ? 256 : 24; /* of the reflectivities */
         for (int i = 0; i < 256; i++) {
             const uint32_t kind = hs_rng_below(&rng, 5);
-            const uint16_t data = (uint16_t)(hs_rng_below(&rng, 256) << 8 |
-                                             hs_rng_below(&rng, 4) << 4 | hs_rng_below(&rng, 16));
+            const uint16_t data = (uint16_t)(hs_rng_below(&rng, span) << 8 |
+                                             hs_rng_below(&rng, 5) << 4 | hs_rng_below(&rng, 16));
             fine[i / 16][i % 16] = kind == 0 ? IMAGE_CELL_NONE : data;
         }
-        image_reduce(&fine[0][0], 16, 2, &coarse[0][0], 8, 8, heights_dm);
+        image_reduce(&halved, &fine[0][0], 16, &coarse[0][0], 8);
         for (int r = 0; r < 8; r++) {
             for (int c = 0; c < 8; c++) {
                 const uint16_t four[4] = {fine[2 * r][2 * c], fine[2 * r][2 * c + 1],
@@ -133,6 +184,22 @@ TEST(a_coarser_cell_is_the_mean_of_four)
                 assert_int_equal(coarse[r][c], mean_of_four(four));
             }
         }
+    }
+}
+
+TEST(a_house_among_streets_wins_its_cell_by_its_power_and_not_by_count)
+{
+    const struct lm_classes classes = town_classes();
+    const uint16_t street = image_cell(image_gamma_code(-30), 2, 0);
+    const uint16_t fine[2][2] = {{street, image_cell(image_gamma_code(0), 4, 5)}, {street, street}};
+    const enum image_vote votes[] = {IMAGE_VOTE_COUNT, IMAGE_VOTE_POWER};
+    const uint16_t expected[] = {image_cell(image_gamma_code(-6), 2, 0),
+                                 image_cell(image_gamma_code(-6), 4, 5)};
+    for (int i = 0; i < 2; i++) {
+        uint16_t coarse;
+        const struct image_reduction halved = {&classes, 2, 1, votes[i]};
+        image_reduce(&halved, &fine[0][0], 2, &coarse, 1);
+        assert_int_equal(coarse, expected[i]);
     }
 }
 
