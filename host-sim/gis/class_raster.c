@@ -4,6 +4,17 @@
 
 #include <cpl_string.h>
 #include <stdio.h>
+#include <string.h>
+
+static void set_names_item(GDALRasterBandH band, const struct db_class_table *table)
+{
+    char names[DB_CLASS_MAX * DB_NAME_SIZE] = "";
+    for (int i = 0; i < table->count; i++) {
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i > 0 ? "," : "", table->items[i].name);
+    }
+    GDALSetMetadataItem(band, DB_CLASS_NAMES_ITEM, names, NULL);
+}
 
 int db_class_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                            const struct db_class_table *table)
@@ -22,12 +33,14 @@ int db_class_raster_create(struct db_raster_out *out, const char *path, const st
     }
     GDALSetRasterColorTable(band, colours);
     GDALSetRasterCategoryNames(band, names);
+    set_names_item(band, table);
     GDALDestroyColorTable(colours);
     CSLDestroy(names);
     return 0;
 }
 
-int db_class_raster_open(struct db_raster *r, const char *path)
+int db_class_raster_open(struct db_raster *r, struct db_class_numbers *numbers, const char *path,
+                         const struct db_class_table *table, bool ignores_names)
 {
     if (db_raster_open_one(r, path) != 0) {
         return -1;
@@ -38,10 +51,14 @@ int db_class_raster_open(struct db_raster *r, const char *path)
         db_raster_close(r);
         return -1;
     }
+    if (db_class_numbers_read(numbers, r->bands[0].handle, path, table, ignores_names) != 0) {
+        db_raster_close(r);
+        return -1;
+    }
     return 0;
 }
 
-int db_class_raster_read(const struct db_raster *r, const struct db_class_table *table, int y,
+int db_class_raster_read(const struct db_raster *r, const struct db_class_numbers *numbers, int y,
                          int rows, float *scratch, uint8_t *valid, uint8_t *classes)
 {
     if (db_raster_read(r, y, rows, scratch, valid) != 0) {
@@ -49,14 +66,13 @@ int db_class_raster_read(const struct db_raster *r, const struct db_class_table 
     }
     for (size_t i = 0; i < (size_t)rows * (size_t)r->grid.width; i++) {
         const float v = scratch[i];
-        if (!valid[i] || v == (float)DB_CLASS_NODATA) {
-            classes[i] = DB_CLASS_NODATA;
-        } else if (v >= 0 && v < (float)table->count && v == (float)(int)v) {
-            classes[i] = (uint8_t)v;
-        } else {
-            return hs_error(r->name, "use the class table it was made with",
-                            "holds class %g at row %d, but the class table ends at %d", (double)v,
-                            y + (int)(i / (size_t)r->grid.width), table->count - 1);
+        const bool is_number = v >= 0 && v <= 255;
+        classes[i] = !valid[i]   ? DB_CLASS_NODATA
+                     : is_number ? numbers->class_of[(int)v]
+                                 : DB_CLASS_UNKNOWN;
+        if (classes[i] == DB_CLASS_UNKNOWN) {
+            return hs_error(r->name, "run again", "was changed while it was read, at row %d",
+                            y + (int)(i / (size_t)r->grid.width));
         }
     }
     return 0;

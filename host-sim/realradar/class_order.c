@@ -142,9 +142,9 @@ static int rows_alloc(struct rows *rows, const struct db_raster *rasters)
 }
 
 static int take_row(struct pixels *p, struct rows *rows, const struct db_raster *rasters,
-                    const struct db_class_table *table, int y)
+                    const struct db_class_numbers *numbers, int y)
 {
-    if (db_class_raster_read(&rasters[CLASSES], table, y, 1, rows->plane[CLASSES],
+    if (db_class_raster_read(&rasters[CLASSES], numbers, y, 1, rows->plane[CLASSES],
                              rows->valid[CLASSES], rows->classes) != 0 ||
         db_raster_read(&rasters[REFLECTIVITY], y, 1, rows->plane[REFLECTIVITY],
                        rows->valid[REFLECTIVITY]) != 0 ||
@@ -163,12 +163,12 @@ static int take_row(struct pixels *p, struct rows *rows, const struct db_raster 
 }
 
 static int take_pixels(struct pixels *p, const struct db_raster *rasters,
-                       const struct rr_class_source *source)
+                       const struct db_class_numbers *numbers)
 {
     struct rows rows = {0};
     int status = rows_alloc(&rows, rasters);
     for (int y = 0; y < rasters[CLASSES].grid.height && status == 0; y++) {
-        status = take_row(p, &rows, rasters, source->table, y);
+        status = take_row(p, &rows, rasters, numbers, y);
     }
     rows_free(&rows);
     return status;
@@ -235,7 +235,7 @@ static int fill_order(struct rr_class_order *order, const struct pixels *p)
 }
 
 static int compare_open(struct rr_class_order *order, const struct db_raster *rasters,
-                        const struct rr_class_source *source)
+                        const struct db_class_numbers *numbers)
 {
     const struct db_grid *grid = &rasters[CLASSES].grid;
     for (int i = REFLECTIVITY; i <= RADAR; i++) {
@@ -248,7 +248,7 @@ static int compare_open(struct rr_class_order *order, const struct db_raster *ra
     if (pixels_alloc(&p, (size_t)grid->width * (size_t)grid->height) != 0) {
         return -1;
     }
-    int status = take_pixels(&p, rasters, source);
+    int status = take_pixels(&p, rasters, numbers);
     if (status == 0) {
         status = add_speckle(&p);
     }
@@ -263,15 +263,17 @@ int rr_class_order_compare(struct rr_class_order *order, const struct rr_class_s
 {
     const char *const paths[RASTERS] = {source->class_raster, source->reflectivity, source->radar};
     struct db_raster rasters[RASTERS];
+    struct db_class_numbers numbers;
     int open = 0, status = 0;
     *order = (struct rr_class_order){0};
     while (open < RASTERS && status == 0) {
-        status = open == CLASSES ? db_class_raster_open(&rasters[open], paths[open])
+        status = open == CLASSES ? db_class_raster_open(&rasters[open], &numbers, paths[open],
+                                                        source->table, false)
                                  : db_raster_open_one(&rasters[open], paths[open]);
         open += status == 0;
     }
     if (status == 0) {
-        status = compare_open(order, rasters, source);
+        status = compare_open(order, rasters, &numbers);
     }
     while (open > 0) {
         db_raster_close(&rasters[--open]);

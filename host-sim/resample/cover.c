@@ -89,6 +89,12 @@ int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map 
     return db_code_map_survey(codes, c->table, c->classes.band, c->classes.path);
 }
 
+int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names)
+{
+    return db_class_numbers_read(&c->numbers, c->classes.band, c->classes.path, c->table,
+                                 ignores_names);
+}
+
 void resample_cover_close(struct resample_cover *c)
 {
     plane_close(&c->classes);
@@ -168,8 +174,8 @@ static int class_of(const struct resample_cover *c, int32_t value)
     if (c->codes) {
         return db_code_map_class(c->codes, value);
     }
-    const bool is_class = value >= 0 && value < c->table->count;
-    return is_class || value == DB_CLASS_NODATA ? value : -1;
+    const int index = value >= 0 && value < 256 ? c->numbers.class_of[value] : DB_CLASS_UNKNOWN;
+    return index == DB_CLASS_UNKNOWN ? -1 : index;
 }
 
 static int take_classes(const struct resample_cover *c, const struct lookup *l,

@@ -298,6 +298,109 @@ def ctrl_c():
     return None
 
 
+# ---- Class numbers.
+
+def reordered():
+    """The class table with its sections in another order: water is the first, soil the last."""
+    sections = re.split(r"(?m)^(?=\[)", contents(TABLE).decode())
+    with open("reordered.classes", "w") as file:
+        file.write(sections[0] + "".join(reversed(sections[1:])))
+    return "reordered.classes"
+
+
+def with_table(words, table):
+    return [table if word == "heaton6.classes" else word for word in words]
+
+
+def mean_gamma_of_water(path):
+    plane = gdal.Open(path).ReadAsArray()
+    return plane[:, -10:].mean()
+
+
+@row("class table in another order, raster with names", "reflect", "done")
+def table_is_reordered():
+    done = db(*with_table(REFLECT, reordered()), "--out", "reordered-gamma.tif")
+    assert abs(mean_gamma_of_water("reordered-gamma.tif") - mean_gamma_of_water("gamma.tif")) < 1, "water and soil are swapped"
+    return done
+
+
+@row("class table in another order, raster with names", "build", "done")
+def table_is_reordered_in_build():
+    done = db(*with_table(BUILD_AREA, reordered()), "--out", "reordered.lmdb")
+    areas = dict(re.findall(r"class +\d+ +(\w+) .* ([0-9.]+) km2", done.out))
+    first = dict(re.findall(r"class +\d+ +(\w+) .* ([0-9.]+) km2", db(*BUILD_AREA, "--out", "again.lmdb").out))
+    assert areas == first, "areas differ: %s, %s" % (areas, first)
+    return done
+
+
+@row("class table in another order, raster with names", "correct", "done")
+def table_is_reordered_in_correct():
+    done = db(*with_table(CORRECT, reordered()), "--out", "corrected.tif")
+    names = dict(re.findall(r"(?m)^ +(\d+): (\w+)$", gdal.Info("corrected.tif")))
+    assert names[str(gdal.Open("corrected.tif").ReadAsArray()[0, -1])] == "water", names
+    return done
+
+
+@row("side file with the names lost, class table in another order", "reflect", "done")
+def side_file_is_lost():
+    assert db(*SEGMENT, "--out", "segmented.tif").code == 0
+    os.remove("segmented.tif.aux.xml")
+    words = ["segmented.tif" if word == "classes.tif" else word for word in with_table(REFLECT, reordered())]
+    done = db(*words, "--out", "lost-gamma.tif")
+    assert abs(mean_gamma_of_water("lost-gamma.tif") - mean_gamma_of_water("gamma.tif")) < 1, "water and soil are swapped"
+    return done
+
+
+@row("names in an attribute table, in another order", "reflect", "done")
+def names_in_an_attribute_table():
+    raster("rat.tif", [classes_plane()], gdal.GDT_Byte, nodata=255)
+    file = gdal.Open("rat.tif", gdal.GA_Update)
+    table = gdal.RasterAttributeTable()
+    table.CreateColumn("Value", gdal.GFT_Integer, gdal.GFU_MinMax)
+    table.CreateColumn("Class", gdal.GFT_String, gdal.GFU_Name)
+    for i, name in enumerate(CLASSES):
+        table.SetValueAsInt(i, 0, i)
+        table.SetValueAsString(i, 1, name)
+    file.GetRasterBand(1).SetDefaultRAT(table)
+    file = None
+    words = ["rat.tif" if word == "classes.tif" else word for word in with_table(REFLECT, reordered())]
+    done = db(*words, "--out", "rat-gamma.tif")
+    assert abs(mean_gamma_of_water("rat-gamma.tif") - mean_gamma_of_water("gamma.tif")) < 1, "water and soil are swapped"
+    return done
+
+
+def without_names():
+    return raster("unnamed.tif", [classes_plane()], gdal.GDT_Byte, nodata=255)
+
+
+for each, lines in (("reflect", REFLECT), ("build", BUILD_AREA), ("correct", CORRECT)):
+    @row("class raster without names", each, "warned")
+    def names_are_missing(lines=lines, out="unnamed-" + each + (".lmdb" if each == "build" else ".tif")):
+        without_names()
+        done = db(*["unnamed.tif" if word == "classes.tif" else word for word in lines], "--out", out)
+        assert re.search(r"class number 5 is taken for water +1408 pixels +34.4 % +0.141 km2", done.out), done.out
+        return done
+
+    @row("class raster with a class that the table has not", each, "refused")
+    def a_class_is_unknown(lines=lines, out="other-" + each + ".tif"):
+        raster("other.tif", [classes_plane()], gdal.GDT_Byte, nodata=255, names=["soil", "asphalt", "concrete", "structure", "jungle", "water"])
+        return db(*["other.tif" if word == "classes.tif" else word for word in lines], "--out", out)
+
+    @row("the same with `--class-numbers`", each, "warned")
+    def numbers_are_asked_for(lines=lines, out="other-" + each + ".tif"):
+        return db(*["other.tif" if word == "classes.tif" else word for word in lines], "--class-numbers", "--out", out)
+
+    @row("class raster with a number behind the table's end", each, "refused")
+    def a_number_is_too_large(lines=lines, out="large-" + each + ".tif"):
+        raster("large.tif", [numpy.where(classes_plane() == 5, 9, classes_plane())], gdal.GDT_Byte, nodata=255)
+        return db(*["large.tif" if word == "classes.tif" else word for word in lines], "--out", out)
+
+    @row("heights or reflectivity as class raster", each, "refused")
+    def values_are_no_classes(lines=lines, out="values-" + each + ".tif"):
+        raster("values.tif", [classes_plane() * 0.9], gdal.GDT_Float32)
+        return db(*["values.tif" if word == "classes.tif" else word for word in lines], "--out", out)
+
+
 # ---- The table and the run.
 
 def says(run):

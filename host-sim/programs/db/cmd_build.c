@@ -26,7 +26,7 @@ struct settings {
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
-    bool voids_are_sea, may_cut_heights;
+    bool voids_are_sea, may_cut_heights, ignores_names;
 };
 
 static const struct db_usage usage = {
@@ -61,6 +61,9 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
          true},
         OPTION("class-raster", DB_INPUT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
+        OPTION("class-numbers", DB_FLAG, ignores_names, 0, 0, NULL,
+               "take the class raster's numbers for places in the class table, though it names "
+               "its classes"),
         OPTION("map", DB_INPUT, map, 0, 0, "FILE",
                "the class raster is somebody's land cover: its codes, each with a class "
                "(docs/import.md)"),
@@ -332,7 +335,7 @@ static int choose_heights(struct build_context *b)
 static int read_codes(struct build_context *b, const struct settings *s)
 {
     if (!s->map) {
-        return 0;
+        return s->class_raster ? resample_cover_set_numbers(&b->cover, s->ignores_names) : 0;
     }
     if (db_code_map_read(&b->codes, s->map, &b->table) != 0) {
         return -1;

@@ -29,6 +29,7 @@ static const struct db_usage usage = {
 
 struct options {
     const char *class_raster, *classes, *corrections, *field, *map, *out;
+    bool ignores_names;
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
@@ -37,6 +38,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment`.", true},
         DB_CLASSES_OPTION(o->classes),
+        DB_CLASS_NUMBERS_OPTION(o->ignores_names),
         {"corrections", DB_INPUT, &o->corrections, 0, 0, "FILE", "Polygons of the right class.",
          true},
         {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the corrected class raster goes.", true},
@@ -53,6 +55,7 @@ struct work {
     struct db_class_table table;
     struct db_label_map map;
     struct db_raster in;
+    struct db_class_numbers numbers;
     struct db_raster_out out;
     struct db_polygons polygons;
     uint8_t *class_of; /* owned: of each polygon */
@@ -95,7 +98,8 @@ static int prepare(struct work *w)
     const struct options *o = w->options;
     if (db_class_table_read(&w->table, o->classes) != 0 ||
         db_label_map_read(&w->map, o->map, &w->table) != 0 ||
-        db_class_raster_open(&w->in, o->class_raster) != 0 ||
+        db_class_raster_open(&w->in, &w->numbers, o->class_raster, &w->table, o->ignores_names) !=
+            0 ||
         db_polygons_read(&w->polygons, o->corrections, o->field, &w->in.grid) != 0 ||
         find_classes(w) != 0) {
         return -1;
@@ -126,7 +130,7 @@ static int apply_span(void *context, int y, int x_begin, int x_end)
 
 static int correct_block(struct work *w, int rows)
 {
-    if (db_class_raster_read(&w->in, &w->table, w->y, rows, w->scratch, w->valid, w->classes) !=
+    if (db_class_raster_read(&w->in, &w->numbers, w->y, rows, w->scratch, w->valid, w->classes) !=
         0) {
         return -1;
     }

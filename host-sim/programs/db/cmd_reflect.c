@@ -47,6 +47,7 @@ struct options {
     struct db_list bands;
     const char *class_raster, *classes, *method, *out, *picture;
     long seed;
+    bool ignores_names;
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
@@ -55,6 +56,7 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         {"class-raster", DB_INPUT, &o->class_raster, 0, 0, "FILE",
          "The class raster, from `segment` or `correct`.", true},
         DB_CLASSES_OPTION(o->classes),
+        DB_CLASS_NUMBERS_OPTION(o->ignores_names),
         {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
         {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default) or adjust.", false},
         {"bands", DB_LIST, &o->bands, 0, 0, "N,N",
@@ -89,6 +91,7 @@ struct work {
     struct db_class_table table;
     struct db_reflect_law laws[DB_CLASS_MAX];
     struct db_raster classes, image;
+    struct db_class_numbers numbers;
     bool uses_band[DB_LIST_MAX * 8];
     int bands_used;
     struct db_raster_out out;
@@ -161,8 +164,9 @@ static int prepare(struct work *w)
 {
     const struct options *o = w->options;
     if (db_class_table_read(&w->table, o->classes) != 0 ||
-        db_class_raster_open(&w->classes, o->class_raster) != 0 || open_image(w) != 0 ||
-        alloc_block(w) != 0 ||
+        db_class_raster_open(&w->classes, &w->numbers, o->class_raster, &w->table,
+                             o->ignores_names) != 0 ||
+        open_image(w) != 0 || alloc_block(w) != 0 ||
         pixel_places_open(&w->places, &w->classes.grid, o->class_raster) != 0) {
         return -1;
     }
@@ -183,7 +187,7 @@ static int read_block(struct work *w)
 {
     struct block *b = &w->block;
     const size_t count = (size_t)b->rows * (size_t)w->classes.grid.width;
-    if (db_class_raster_read(&w->classes, &w->table, b->y, b->rows, b->values, b->class_valid,
+    if (db_class_raster_read(&w->classes, &w->numbers, b->y, b->rows, b->values, b->class_valid,
                              b->classes) != 0) {
         return -1;
     }

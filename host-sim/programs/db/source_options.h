@@ -38,6 +38,15 @@ struct db_image_options {
         .is_required = true, .help = "The class table."                                            \
     }
 
+/* An entry for the table: go by the numbers of a class raster. `o` is a bool. */
+#define DB_CLASS_NUMBERS_OPTION(o)                                                                 \
+    {                                                                                              \
+        .name = "class-numbers", .kind = DB_FLAG, .target = &(o),                                  \
+        .help =                                                                                    \
+            "Take the class raster's numbers for places in the class table, though the raster "    \
+            "names its classes."                                                                   \
+    }
+
 /* Where the class of pixels is known: polygons or a raster of labels, NULL unless given. `field`
  * holds the default before. */
 struct db_exemplar_options {

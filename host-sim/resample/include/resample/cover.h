@@ -3,6 +3,7 @@
 #ifndef RESAMPLE_COVER_H
 #define RESAMPLE_COVER_H
 
+#include "gis/class_numbers.h"
 #include "gis/code_map.h"
 #include "hs/class_table.h"
 #include "image/grid.h"
@@ -28,7 +29,8 @@ struct resample_plane {
 struct resample_cover {
     struct resample_plane classes, reflectivity, heights;
     const struct db_class_table *table; /* borrowed */
-    const struct db_code_map *codes;    /* borrowed; NULL: the pixels are classes of the table */
+    const struct db_code_map *codes;    /* borrowed; NULL: the pixels are class numbers */
+    struct db_class_numbers numbers;    /* of these, once they are set */
     struct image_area area;
     double pixel_latitude_bam, pixel_longitude_bam;
 };
@@ -46,6 +48,10 @@ void resample_cover_close(struct resample_cover *c);
 /* From here on the class raster's pixels are codes of somebody's land cover. Prints which occur.
  * Returns 0, or -1 with the error reported (db_code_map_survey). */
 int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map *codes);
+
+/* From here on the class raster's pixels are class numbers, matched by name where the raster has
+ * names. Returns 0, or -1 with the error reported (db_class_numbers_read). */
+int resample_cover_set_numbers(struct resample_cover *c, bool ignores_names);
 
 /* Say how large the image's finest cells are. Call once before resample_cover_tile. */
 void resample_cover_set_cell(struct resample_cover *c, uint8_t shift0);

@@ -451,7 +451,7 @@ TEST(the_command_says_what_is_wrong)
     assert_true(fixture_fails(HS_EXIT_USAGE, "neither assign nor adjust",
                               "reflect --method guess --class-raster %s --classes %s --out %s",
                               raster, table, out));
-    assert_true(fixture_fails(HS_EXIT_FAILED, "the class table ends at 2",
+    assert_true(fixture_fails(HS_EXIT_FAILED, "which is no class number",
                               "reflect --class-raster %s --classes %s --out %s",
                               fixture_path("bright.tif"), table, out));
     assert_true(fixture_fails(HS_EXIT_FAILED, "cannot be created",
