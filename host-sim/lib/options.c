@@ -4,6 +4,7 @@
 #include "hs/error.h"
 #include "hs/input_file.h"
 #include "hs/output_path.h"
+#include "options_help.h"
 
 #include <errno.h>
 #include <math.h>
@@ -11,49 +12,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void print_lines(const char *text, int indent)
-{
-    while (*text) {
-        const size_t length = strcspn(text, "\n");
-        printf("%*s%.*s\n", indent, "", (int)length, text);
-        text += length + (text[length] == '\n');
-    }
-}
-
-static void print_help(const struct db_usage *usage, const struct db_option *options, size_t count)
-{
-    printf("%s %s: %s\n\nUsage: %s %s", hs_program(), usage->command, usage->summary, hs_program(),
-           usage->command);
-    for (size_t i = 0; i < count; i++) {
-        if (options[i].is_required) {
-            printf(" --%s %s", options[i].name, options[i].value_name);
-        }
-    }
-    printf(" [options]\n\n");
-    print_lines(usage->description, 0);
-    printf("\nOptions:\n");
-    for (size_t i = 0; i < count; i++) {
-        const struct db_option *o = &options[i];
-        printf("  --%s%s%s%s\n", o->name, o->value_name ? " " : "",
-               o->value_name ? o->value_name : "", o->is_required ? "  (required)" : "");
-        print_lines(o->help, 6);
-        if (o->kind == DB_REAL && isnan(*(double *)o->target)) {
-            printf("      Range %g to %g.\n", o->low, o->high);
-        } else if (o->kind == DB_REAL) {
-            printf("      Range %g to %g; default %g.\n", o->low, o->high, *(double *)o->target);
-        } else if (o->kind == DB_INTEGER) {
-            printf("      Range %.0f to %.0f; default %ld.\n", o->low, o->high, *(long *)o->target);
-        }
-    }
-    printf("  --help\n      Print this text.\n");
-}
+/* A command line on its way into the table. */
+struct reader {
+    const struct db_usage *usage;
+    const struct db_option *options;
+    size_t count;
+    int argc;
+    char **argv;
+    int next;           /* word of argv */
+    size_t next_option; /* where to look for the next argument that is no option */
+};
 
 static int usage_error(const struct db_usage *usage, const char *option, const char *cause)
 {
     char place[128], remedy[128];
-    snprintf(place, sizeof place, "%s %s", usage->command, option);
-    snprintf(remedy, sizeof remedy, "see %s %s --help", hs_program(), usage->command);
+    const char *blank = *usage->command ? " " : "";
+    snprintf(place, sizeof place, "%s%s%s", usage->command, blank, option);
+    snprintf(remedy, sizeof remedy, "see %s%s%s --help", hs_program(), blank, usage->command);
     return hs_error(place, remedy, "%s", cause);
+}
+
+int db_options_wrong(const struct db_usage *usage, const char *option, const char *cause)
+{
+    usage_error(usage, option, cause);
+    return HS_EXIT_USAGE;
 }
 
 static int add_items(struct db_list *list, const char *text)
@@ -75,30 +57,63 @@ static int add_items(struct db_list *list, const char *text)
     return 0;
 }
 
-static bool parse_number(const char *text, double *number)
+bool db_parse_number(const char *text, double *number)
 {
     char *end;
     errno = 0;
     *number = strtod(text, &end);
-    return errno == 0 && end != text && *end == '\0';
+    return errno == 0 && end != text && *end == '\0' && isfinite(*number);
 }
 
-/* Also false when the number is a NaN. */
-static bool is_within(double number, const struct db_option *o)
+/* Also false when `text` is no number. */
+static bool read_within(const struct db_option *o, const char *text, double *number)
 {
-    return number >= o->low && number <= o->high;
+    return db_parse_number(text, number) && *number >= o->low && *number <= o->high;
 }
 
+/* Which of the words between the bars, or -1. */
+static int choice_of(const char *words, const char *text)
+{
+    for (int i = 0; *words; i++) {
+        const size_t length = strcspn(words, "|");
+        if (strlen(text) == length && strncmp(words, text, length) == 0) {
+            return i;
+        }
+        words += length + (words[length] == '|');
+    }
+    return -1;
+}
+
+static const char *store_number(const struct db_option *o, const char *text)
+{
+    double number;
+    const bool is_within = read_within(o, text, &number);
+    if (o->kind == DB_REAL) {
+        if (!is_within) {
+            return "needs a number within its range";
+        }
+        *(double *)o->target = number;
+        return NULL;
+    }
+    if (!is_within || number != (double)(long)number) {
+        return "needs a whole number within its range";
+    }
+    *(long *)o->target = (long)number;
+    return NULL;
+}
+
+/* NULL, or what is wrong with the value. */
 static const char *store(const struct db_option *o, const char *text)
 {
-    double number = 0;
     switch (o->kind) {
     case DB_FLAG:
         *(bool *)o->target = true;
         return NULL;
     case DB_TEXT:
     case DB_INPUT:
+    case DB_INPUT_ARGUMENT:
     case DB_OUTPUT:
+    case DB_OUTPUT_ARGUMENT:
     case DB_FOLDER:
         *(const char **)o->target = text;
         return NULL;
@@ -106,59 +121,83 @@ static const char *store(const struct db_option *o, const char *text)
     case DB_INPUTS:
         return add_items(o->target, text) == 0 ? NULL : "too many values";
     case DB_REAL:
-        if (!parse_number(text, &number) || !is_within(number, o)) {
-            return "needs a number within its range";
-        }
-        *(double *)o->target = number;
-        return NULL;
     case DB_INTEGER:
-        if (!parse_number(text, &number) || !is_within(number, o) ||
-            number != (double)(long)number) {
-            return "needs a whole number within its range";
-        }
-        *(long *)o->target = (long)number;
-        return NULL;
+        return store_number(o, text);
+    case DB_CHOICE:
+        *(int *)o->target = choice_of(o->value_name, text);
+        return *(int *)o->target >= 0 ? NULL : "needs one of its words";
+    case DB_TAKER: {
+        const struct db_taker *taker = o->target;
+        return taker->take(taker->context, text);
+    }
+    case DB_HEADING:
+        break;
     }
     return "is not understood";
 }
 
-static const struct db_option *find(const struct db_option *options, size_t count, const char *name,
-                                    size_t length)
+static bool is_option(const struct db_option *o)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (strlen(options[i].name) == length && strncmp(options[i].name, name, length) == 0) {
-            return &options[i];
+    return !db_is_argument(o) && o->kind != DB_HEADING;
+}
+
+static const struct db_option *find(const struct reader *r, const char *name, size_t length)
+{
+    for (size_t i = 0; i < r->count; i++) {
+        const struct db_option *o = &r->options[i];
+        if (is_option(o) && strlen(o->name) == length && strncmp(o->name, name, length) == 0) {
+            return o;
         }
     }
     return NULL;
 }
 
-/* Read the option at argv[*i] and its value, if any, and step over both. */
-static int read_one(const struct db_usage *usage, const struct db_option *options, size_t count,
-                    int argc, char **argv, int *i)
+static int store_or_report(const struct reader *r, const struct db_option *o, const char *text)
 {
-    const char *argument = argv[*i];
-    if (strncmp(argument, "--", 2) != 0 || argument[2] == '\0') {
-        return usage_error(usage, argument, "is not an option");
+    const char *wrong = store(o, text);
+    if (!wrong) {
+        return 0;
     }
-    const char *name = argument + 2;
-    const size_t length = strcspn(name, "=");
-    const struct db_option *o = find(options, count, name, length);
+    char place[128];
+    snprintf(place, sizeof place, "--%s %s", o->name, text);
+    return usage_error(r->usage, place, wrong);
+}
+
+static int read_argument(struct reader *r, const char *word)
+{
+    while (r->next_option < r->count) {
+        const struct db_option *o = &r->options[r->next_option++];
+        if (db_is_argument(o)) {
+            return store_or_report(r, o, word);
+        }
+    }
+    return usage_error(r->usage, word, "is a word too many, and no option");
+}
+
+/* Read the next word and its value, if any, and step over both. */
+static int read_one(struct reader *r)
+{
+    const char *word = r->argv[r->next++];
+    if (word[0] != '-' || word[1] == '\0') {
+        return read_argument(r, word);
+    }
+    const char *name = word + 2;
+    const size_t length = strncmp(word, "--", 2) == 0 ? strcspn(name, "=") : 0;
+    const struct db_option *o = find(r, name, length);
     if (!o) {
-        return usage_error(usage, argument, "is not an option of this command");
+        return usage_error(r->usage, word, "is not an option of this command");
     }
     const char *value = name[length] == '=' ? name + length + 1 : NULL;
     if (o->kind == DB_FLAG && value) {
-        return usage_error(usage, argument, "takes no value");
+        return usage_error(r->usage, word, "takes no value");
     }
     if (o->kind != DB_FLAG && !value) {
-        if (*i + 1 >= argc) {
-            return usage_error(usage, argument, "needs a value");
+        if (r->next >= r->argc) {
+            return usage_error(r->usage, word, "needs a value");
         }
-        value = argv[++*i];
+        value = r->argv[r->next++];
     }
-    const char *wrong = store(o, value);
-    return wrong ? usage_error(usage, argument, wrong) : 0;
+    return store_or_report(r, o, value);
 }
 
 static bool is_given(const struct db_option *o)
@@ -170,7 +209,7 @@ static bool is_given(const struct db_option *o)
 
 static void note_inputs(const struct db_option *o)
 {
-    if (o->kind == DB_INPUT && is_given(o)) {
+    if ((o->kind == DB_INPUT || o->kind == DB_INPUT_ARGUMENT) && is_given(o)) {
         hs_input_note(*(const char **)o->target);
     }
     const struct db_list *list = o->kind == DB_INPUTS ? o->target : NULL;
@@ -187,11 +226,24 @@ static int claim_outputs(const struct db_option *options, size_t count)
     }
     for (size_t i = 0; i < count; i++) {
         const struct db_option *o = &options[i];
-        if ((o->kind == DB_OUTPUT && is_given(o) &&
-             hs_output_claim(*(const char **)o->target) != 0) ||
+        const bool is_output = o->kind == DB_OUTPUT || o->kind == DB_OUTPUT_ARGUMENT;
+        if ((is_output && is_given(o) && hs_output_claim(*(const char **)o->target) != 0) ||
             (o->kind == DB_FOLDER && is_given(o) &&
              hs_output_folder_check(*(const char **)o->target) != 0)) {
             return -1;
+        }
+    }
+    return 0;
+}
+
+static int check_required(const struct reader *r)
+{
+    for (size_t i = 0; i < r->count; i++) {
+        const struct db_option *o = &r->options[i];
+        if (o->kind != DB_HEADING && o->is_required && !is_given(o)) {
+            char name[64];
+            snprintf(name, sizeof name, "%s%s", is_option(o) ? "--" : "", o->name);
+            return usage_error(r->usage, name, "is required");
         }
     }
     return 0;
@@ -201,25 +253,20 @@ bool db_options_read(const struct db_usage *usage, const struct db_option *optio
                      int argc, char **argv, int *exit_code)
 {
     for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "--help") == 0) {
-            print_help(usage, options, count);
+        if (db_options_explain(usage, options, count, argv[i])) {
             *exit_code = HS_EXIT_OK;
             return false;
         }
     }
+    struct reader r = {usage, options, count, argc, argv, 1, 0};
     *exit_code = HS_EXIT_USAGE;
-    for (int i = 1; i < argc; i++) {
-        if (read_one(usage, options, count, argc, argv, &i) != 0) {
+    while (r.next < argc) {
+        if (read_one(&r) != 0) {
             return false;
         }
     }
-    for (size_t i = 0; i < count; i++) {
-        if (options[i].is_required && !is_given(&options[i])) {
-            char name[64];
-            snprintf(name, sizeof name, "--%s", options[i].name);
-            usage_error(usage, name, "is required");
-            return false;
-        }
+    if (check_required(&r) != 0) {
+        return false;
     }
     *exit_code = HS_EXIT_FAILED;
     return claim_outputs(options, count) == 0;
@@ -236,7 +283,7 @@ void db_list_free(struct db_list *list)
 int db_split_word_number(const char *text, char *word, size_t word_size, double *number)
 {
     const size_t length = strcspn(text, ":");
-    if (text[length] != ':' || length >= word_size || !parse_number(text + length + 1, number)) {
+    if (text[length] != ':' || length >= word_size || !db_parse_number(text + length + 1, number)) {
         return -1;
     }
     memcpy(word, text, length);

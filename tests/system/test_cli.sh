@@ -19,6 +19,25 @@ names_itself() { # the first line is "program: place: cause"
     head -n 1 "$last_error" | grep -qE "(^|/)$1: [^:]+"
 }
 
+is_a_manual_page() { # PROGRAM [COMMAND]: the formatter has nothing to warn of
+    exits 0 "$@" --help=man && printed '^\.TH LANDMASS-' || return 1
+    warned=$(MANROFFSEQ='' MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z "$out" 2>&1 >/dev/null)
+    [ -z "$warned" ] || { echo "# $warned" && return 1; }
+}
+
+lists_what_it_explains() { # PROGRAM [COMMAND]: every option of the list is in the help
+    exits 0 "$@" --help=list && cut -f1 "$out" | grep -E '^--' >"$work/list" && exits 0 "$@" --help || return 1
+    while read -r option; do
+        grep -qE -e "$option( |\[|=|$)" "$out" || { echo "# $option is not in the help" && return 1; }
+    done <"$work/list"
+}
+
+explains_itself() { # PROGRAM [COMMAND]
+    name=$(basename "$1")${2:+ $2}
+    check "$name --help=man is a manual page" is_a_manual_page "$@"
+    check "$name --help=list names what --help explains" lists_what_it_explains "$@"
+}
+
 for program in "$build"/bin/landmass-*; do
     name=${program##*/}
     check "$name --help prints how it is used" helps "$program"
@@ -26,10 +45,16 @@ for program in "$build"/bin/landmass-*; do
     check "and says so under its name" names_itself "$name"
     # A service works when it is started alone.
     [ "$name" = landmass-panel ] || check "$name alone is a wrong command line" refuses "$program"
+    [ "$name" = landmass-panel ] && continue # it has a page of its own
+    check "$name --version prints it" exits 0 "$program" --version
+    explains_itself "$program"
+    for command in $("$program" --help=list | sed -n 's/^\([a-z0-9]*\)\t\t$/\1/p'); do
+        explains_itself "$program" "$command"
+    done
 done
 
 db=$build/bin/landmass-db
-commands=$("$db" --help | sed -n 's/^  \([a-z]*\)  *[a-z].*/\1/p')
+commands=$("$db" --help=list | sed -n 's/^\([a-z]*\)\t\t$/\1/p')
 check 'landmass-db has its commands' test "$(echo "$commands" | wc -w)" -ge 8
 for command in $commands; do
     check "landmass-db $command --help prints how it is used" helps "$db" "$command"

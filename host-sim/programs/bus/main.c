@@ -5,38 +5,15 @@
 #include "hs/atomic_file.h"
 #include "hs/error.h"
 #include "hs/input_file.h"
+#include "hs/menu.h"
+#include "hs/options.h"
 
 #include <errno.h>
-#include <getopt.h>
-#include <stdlib.h>
 #include <string.h>
-
-static const char help_text[] =
-    "usage: landmass-bus COMMAND [OPTIONS] [LOG]\n"
-    "Tell what the display takes from the avionics bus, and read a recorded bus.\n"
-    "\n"
-    "Commands:\n"
-    "  table             the profile as a table of Markdown\n"
-    "  dbc               the profile as a .dbc file, for analysers and other tools\n"
-    "  filters           the kernel's filters, as candump takes them: can0,40C:C00007FF\n"
-    "  decode [LOG]      each frame of a log of candump -L (of standard input without LOG):\n"
-    "                    what it means, or why the display does not take it\n"
-    "  fields            the fields that a table of your own may name, and their units\n"
-    "\n"
-    "Options:\n"
-    "  --profile NAME    canas17 (the default), xcsoar, or generic: the one that was built in\n"
-    "                    from a text table\n"
-    "  --table FILE      a text table instead of a built-in profile; docs/bus.md explains it\n"
-    "  --out FILE        where the text goes; without it, standard output\n"
-    "  -h, --help        print this\n"
-    "\n"
-    "To try a table of your own on recorded traffic before it is built in:\n"
-    "  landmass-bus decode --table my.bus flight.log\n"
-    "Exit status: 0 done, 1 the work failed, 2 the command line makes no sense.\n";
 
 struct command {
     const char *name;
-    const char *log_path, *table_path, *out_path; /* NULL: not given */
+    const char *log_path, *table_path, *out_path, *profile_name; /* NULL: not given */
     const struct lm_bus_profile *profile;
 };
 
@@ -76,9 +53,6 @@ static int run(const struct command *c)
         return status;
     }
     struct hs_atomic_file file;
-    if (c->log_path != NULL) {
-        hs_input_note(c->log_path);
-    }
     if (hs_atomic_open(&file, c->out_path) != 0) {
         return -1;
     }
@@ -100,78 +74,48 @@ static int read_table(struct bus_table *table, const char *path)
     return status;
 }
 
-static void complain_of_profile(const char *name)
+static int find_profile(struct command *c)
 {
+    c->profile = lm_bus_profile_named(lm_bus_profiles, c->profile_name);
+    if (c->profile != NULL) {
+        return 0;
+    }
     char names[200] = "";
     for (const struct lm_bus_named_profile *p = lm_bus_profiles; p->name != NULL; p++) {
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "one of ", p->name);
     }
-    hs_error(name, names, "there is no such profile");
+    return hs_error(c->profile_name, names, "there is no such profile");
 }
 
-static bool is_command(const char *name)
+static bool read_options(struct command *c, const struct db_usage *usage, int argc, char **argv,
+                         int *exit_code)
 {
-    static const char *const names[] = {"table", "dbc", "filters", "decode", "fields"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (strcmp(names[i], name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* HS_EXIT_OK to go on; -1 when help was printed; HS_EXIT_USAGE. */
-static int read_options(struct command *c, int argc, char **argv)
-{
-    enum { OPT_PROFILE = 256, OPT_TABLE, OPT_OUT };
-    static const struct option options[] = {
-        {"profile", required_argument, NULL, OPT_PROFILE},
-        {"table", required_argument, NULL, OPT_TABLE},
-        {"out", required_argument, NULL, OPT_OUT},
-        {"help", no_argument, NULL, 'h'},
-        {NULL, 0, NULL, 0},
+    const struct db_option options[] = {
+        {"profile", DB_TEXT, &c->profile_name, 0, 0, "NAME",
+         "canas17 (left out), xcsoar, or generic: the one that was built in from a text table",
+         false},
+        {"table", DB_INPUT, &c->table_path, 0, 0, "FILE",
+         "a text table instead of a built-in profile; docs/bus.md explains it", false},
+        {"out", DB_OUTPUT, &c->out_path, 0, 0, "FILE",
+         "where the text goes; left out: standard output", false},
+        {"LOG", DB_INPUT_ARGUMENT, &c->log_path, 0, 0, NULL,
+         "of candump -L; left out: standard input", false},
     };
-    for (int code; (code = getopt_long(argc, argv, "h", options, NULL)) != -1;) {
-        switch (code) {
-        case OPT_PROFILE:
-            c->profile = lm_bus_profile_named(lm_bus_profiles, optarg);
-            if (c->profile == NULL) {
-                complain_of_profile(optarg);
-                return HS_EXIT_USAGE;
-            }
-            break;
-        case OPT_TABLE:
-            c->table_path = optarg;
-            break;
-        case OPT_OUT:
-            c->out_path = optarg;
-            break;
-        case 'h':
-            fputs(help_text, stdout);
-            return -1;
-        default:
-            return HS_EXIT_USAGE;
-        }
-    }
-    c->name = optind < argc ? argv[optind++] : NULL;
-    c->log_path = optind < argc ? argv[optind++] : NULL;
-    if (c->name == NULL || !is_command(c->name) || optind < argc ||
-        (c->log_path != NULL && strcmp(c->name, "decode") != 0)) {
-        hs_error("command line", "try landmass-bus --help",
-                 "expected one command, and for decode at most one log");
-        return HS_EXIT_USAGE;
-    }
-    return HS_EXIT_OK;
+    const size_t count = sizeof options / sizeof options[0];
+    const bool has_log = strcmp(c->name, "decode") == 0;
+    return db_options_read(usage, options, has_log ? count : count - 1, argc, argv, exit_code);
 }
 
-int main(int argc, char **argv)
+static int run_command(const struct db_usage *usage, int argc, char **argv)
 {
-    hs_set_program("landmass-bus");
-    struct command c = {.profile = &lm_bus_canas17};
-    const int status = read_options(&c, argc, argv);
-    if (status != HS_EXIT_OK) {
-        return status < 0 ? HS_EXIT_OK : status;
+    struct command c = {.name = usage->command, .profile_name = "canas17"};
+    int exit_code;
+    if (!read_options(&c, usage, argc, argv, &exit_code)) {
+        return exit_code;
+    }
+    if (find_profile(&c) != 0) {
+        return HS_EXIT_USAGE;
     }
     static struct bus_table table;
     if (c.table_path != NULL) {
@@ -181,4 +125,45 @@ int main(int argc, char **argv)
         c.profile = &table.profile;
     }
     return run(&c) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+static const struct db_usage usages[] = {
+    {"table", "the profile as a table of Markdown", "What the display takes from the bus."},
+    {"dbc", "the profile as a .dbc file, for analysers and other tools",
+     "The usual description of a CAN bus."},
+    {"filters", "the kernel's filters, as candump takes them",
+     "A line a filter: can0,40C:C00007FF. To hear what the display hears:\n"
+     "\n"
+     "  candump -L can0,$(landmass-bus filters | paste -sd, -)"},
+    {"decode", "what each frame of a log means, or why the display does not take it",
+     "To try a table of your own on recorded traffic before it is built in:\n"
+     "\n"
+     "  landmass-bus decode --table my.bus flight.log"},
+    {"fields", "the fields that a table of your own may name, and their units",
+     "docs/bus.md explains the table."},
+};
+enum { COMMANDS = sizeof usages / sizeof usages[0] };
+
+/* argv[0] is one of their names. */
+static int run_named(int argc, char **argv)
+{
+    int i = 0;
+    while (i < COMMANDS - 1 && strcmp(usages[i].command, argv[0]) != 0) {
+        i++;
+    }
+    return run_command(&usages[i], argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+    struct hs_command commands[COMMANDS];
+    for (int i = 0; i < COMMANDS; i++) {
+        commands[i] = (struct hs_command){usages[i].command, usages[i].summary, run_named};
+    }
+    const struct hs_menu menu = {
+        .program = "landmass-bus",
+        .purpose = "what the display takes from the avionics bus, and a recorded bus read",
+        .commands = commands,
+        .count = COMMANDS};
+    return hs_menu_main(&menu, argc, argv);
 }

@@ -1,8 +1,6 @@
 #include "commands.h"
 
-#include "hs/atomic_file.h"
 #include "hs/error.h"
-#include "hs/input_file.h"
 #include "hs/options.h"
 #include "image/reader.h"
 #include "image/verify.h"
@@ -10,10 +8,9 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 static const struct db_usage usage = {
-    "convert OLD NEW", "make an image of version 3 from one of version 2",
+    "convert", "make an image of version 3 from one of version 2",
     "Keeps every cell and post, classes, targets, signatures and manifest. Fills the borders of "
     "tiles "
     "from their\n"
@@ -73,21 +70,15 @@ static int check_new(const char *path)
 
 int db_cmd_convert(int argc, char **argv)
 {
+    const char *old = NULL, *new = NULL;
     int exit_code;
-    const bool has_files =
-        argc > 2 && strncmp(argv[1], "--", 2) != 0 && strncmp(argv[2], "--", 2) != 0;
-    const int taken = has_files ? 2 : 0;
-    if (!db_options_read(&usage, NULL, 0, argc - taken, argv + taken, &exit_code)) {
+    const struct db_option options[] = {
+        {"OLD", DB_INPUT_ARGUMENT, &old, 0, 0, NULL, "the image of version 2", true},
+        {"NEW", DB_OUTPUT_ARGUMENT, &new, 0, 0, NULL, "the image to write", true},
+    };
+    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
         return exit_code;
     }
-    if (!has_files) {
-        hs_error(argv[0], "see `landmass-db convert --help`", "needs the files OLD and NEW");
-        return HS_EXIT_USAGE;
-    }
-    hs_input_note(argv[1]);
-    if (hs_output_claim(argv[2]) != 0) {
-        return HS_EXIT_FAILED;
-    }
-    return read_bytes(argv[1], argv[2]) == 0 && check_new(argv[2]) == 0 ? HS_EXIT_OK
-                                                                        : HS_EXIT_FAILED;
+    return read_bytes(old, new) == 0 && check_new(new) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }

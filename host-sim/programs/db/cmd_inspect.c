@@ -1,7 +1,7 @@
 #include "commands.h"
-#include "image_command.h"
 
 #include "hs/error.h"
+#include "hs/options.h"
 #include "image/codes.h"
 #include "image/grid.h"
 #include "image/reader.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 static const struct db_usage usage = {
-    "inspect FILE", "print what a database image holds",
+    "inspect", "print what a database image holds",
     "Prints header, sections, bands, levels, extents, classes, "
     "targets, signatures and manifest. `verify` checks the image's every byte."};
 
@@ -110,9 +110,13 @@ static void print_manifest(const struct image *image)
 
 int db_cmd_inspect(int argc, char **argv)
 {
-    const char *path;
+    const char *path = NULL;
     int exit_code;
-    if (!image_command_read(&usage, NULL, 0, argc, argv, &path, &exit_code)) {
+    const struct db_option options[] = {
+        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
+    };
+    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
         return exit_code;
     }
     struct image image;

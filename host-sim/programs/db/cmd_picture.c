@@ -1,7 +1,7 @@
 #include "commands.h"
-#include "image_command.h"
 
 #include "hs/error.h"
+#include "hs/options.h"
 #include "hs/png.h"
 #include "image/picture.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct db_usage usage = {"picture FILE", "draw a plane of a database image",
+static const struct db_usage usage = {"picture", "draw a plane of a database image",
                                       "North is up, and a metre is as long eastward as northward "
                                       "in the middle of the picture. Where a level has no tile\n"
                                       "the next coarser one shows through; no data is black. What "
@@ -26,6 +26,7 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
                           int *exit_code)
 {
     const struct db_option options[] = {
+        {"FILE", DB_INPUT_ARGUMENT, path, 0, 0, NULL, "the database image", true},
         {"plane", DB_TEXT, &s->plane, 0, 0, "NAME",
          "reflectivity, class, elevation, height (of structures and trees) or\nshade (hills lit "
          "from the "
@@ -41,8 +42,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, const char 
          "dB or metres that are drawn black; equal to --white: from the picture itself", false},
         {"white", DB_REAL, &s->white, -10000, 10000, "VALUE", "likewise white", false},
     };
-    return image_command_read(&usage, options, sizeof options / sizeof options[0], argc, argv, path,
-                              exit_code);
+    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                           exit_code);
 }
 
 static int parse_area(const char *text, struct image_area *area)
@@ -151,7 +152,7 @@ static int run(const char *path, const struct settings *s)
 int db_cmd_picture(int argc, char **argv)
 {
     struct settings s = {.level = -1, .max_size = 2048};
-    const char *path;
+    const char *path = NULL;
     int exit_code;
     return read_settings(&s, argc, argv, &path, &exit_code) ? run(path, &s) : exit_code;
 }

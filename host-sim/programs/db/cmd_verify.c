@@ -1,7 +1,7 @@
 #include "commands.h"
-#include "image_command.h"
 
 #include "hs/error.h"
+#include "hs/options.h"
 #include "image/codes.h"
 #include "image/verify.h"
 
@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const struct db_usage usage = {
-    "verify FILE", "check every byte of a database image",
+    "verify", "check every byte of a database image",
     "Checks header, sections and unused bytes, every directory entry and tile record with its "
     "checksum and its place,\n"
     "elevations along the edges that tiles share, and that each coarser level holds the mean of "
@@ -21,9 +21,13 @@ enum { SHOWN_MAX = 100 };
 
 int db_cmd_verify(int argc, char **argv)
 {
-    const char *path;
+    const char *path = NULL;
     int exit_code;
-    if (!image_command_read(&usage, NULL, 0, argc, argv, &path, &exit_code)) {
+    const struct db_option options[] = {
+        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL, "the database image", true},
+    };
+    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
         return exit_code;
     }
     struct image image;

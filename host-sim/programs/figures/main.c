@@ -2,50 +2,56 @@
 #include "figures.h"
 
 #include "hs/error.h"
+#include "hs/menu.h"
+#include "hs/options.h"
 
-#include <stdio.h>
-#include <string.h>
+#include <stddef.h>
 
-static const struct figure {
-    const char *name, *help;
-    int (*draw)(const char *path);
-} figures[] = {
-    {"figure1",
-     "Heaton, Figure 1: nine corner reflectors seen by a high- and a low-resolution radar",
-     figure1_draw},
-    {"table1", "Heaton, Table 1: the lobes of flat plates, one way as printed and two ways as used",
-     table1_draw},
-};
-enum { FIGURES = sizeof figures / sizeof figures[0] };
-
-static void print_help(void)
+/* Draw what argv[0] names. */
+static int run(int (*draw)(const char *path), const struct db_usage *usage, int argc, char **argv)
 {
-    printf(
-        "usage: landmass-figures FIGURE FILE.png\n\n"
-        "Draw a figure of the documentation (docs/targets.md) with the firmware's own functions.\n"
-        "A FILE.png that stands already is replaced whole, or left alone if anything fails.\n\n"
-        "Figures:\n");
-    for (int i = 0; i < FIGURES; i++) {
-        printf("  %-8s %s\n", figures[i].name, figures[i].help);
+    const char *path = NULL;
+    int exit_code;
+    const struct db_option options[] = {
+        {"FILE.png", DB_OUTPUT_ARGUMENT, &path, 0, 0, NULL,
+         "the picture; one that stands already is replaced whole, or left alone if anything fails",
+         true},
+    };
+    if (!db_options_read(usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
+        return exit_code;
     }
+    return draw(path) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+static int run_figure1(int argc, char **argv)
+{
+    const struct db_usage usage = {
+        "figure1",
+        "Heaton, Figure 1: nine corner reflectors seen by a high- and a low-resolution radar",
+        "See docs/targets.md."};
+    return run(figure1_draw, &usage, argc, argv);
+}
+
+static int run_table1(int argc, char **argv)
+{
+    const struct db_usage usage = {
+        "table1",
+        "Heaton, Table 1: the lobes of flat plates, one way as printed and two ways as used",
+        "See docs/targets.md."};
+    return run(table1_draw, &usage, argc, argv);
 }
 
 int main(int argc, char **argv)
 {
-    hs_set_program("landmass-figures");
-    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
-        print_help();
-        return HS_EXIT_OK;
-    }
-    if (argc != 3) {
-        hs_error("command line", "try landmass-figures --help", "expected FIGURE FILE.png");
-        return HS_EXIT_USAGE;
-    }
-    for (int i = 0; i < FIGURES; i++) {
-        if (strcmp(argv[1], figures[i].name) == 0) {
-            return figures[i].draw(argv[2]) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
-        }
-    }
-    hs_error(argv[1], "landmass-figures --help lists the figures", "there is no such figure");
-    return HS_EXIT_USAGE;
+    static const struct hs_command commands[] = {
+        {"figure1", "nine corner reflectors at two resolutions: Heaton, Figure 1", run_figure1},
+        {"table1", "the lobes of flat plates: Heaton, Table 1", run_table1},
+    };
+    const struct hs_menu menu = {.program = "landmass-figures",
+                                 .purpose =
+                                     "figures of the documentation, by the firmware's functions",
+                                 .commands = commands,
+                                 .count = sizeof commands / sizeof commands[0]};
+    return hs_menu_main(&menu, argc, argv);
 }

@@ -1,30 +1,22 @@
 /* landmass-realradar classes */
 #include "commands.h"
-#include "options.h"
 
 #include "gis/gdal_start.h"
 #include "hs/error.h"
+#include "hs/options.h"
 #include "hs/output_path.h"
 #include "realradar/class_order.h"
 
 #include <stdio.h>
 
-static const char help_text[] =
-    "usage: landmass-realradar classes --classes FILE --class-raster FILE\n"
-    "           --reflectivity FILE --radar FILE [--out DIR]\n"
-    "Rank the classes of a database by a real radar's picture of the same ground, and show the\n"
+static const struct db_usage usage = {
+    "classes", "rank and spread of the classes of a database beside a real radar picture",
+    "Rank the classes of a database by a real radar's picture of the same ground, and show the "
     "simulated values beside the measured ones.\n"
     "\n"
-    "  --classes FILE        the class table of landmass-db\n"
-    "  --class-raster FILE   from landmass-db segment\n"
-    "  --reflectivity FILE   from landmass-db reflect, dB\n"
-    "  --radar FILE          the real radar on the same grid; its first band, dB\n"
-    "  --out DIR             leave classes.png there\n"
-    "  -h, --help            print this\n"
-    "\n"
-    "Another band, angle or number of looks than the simulation's shifts the real levels: then\n"
-    "judge the order and the spread alone. The simulated column has the firmware's speckle of 4\n"
-    "looks on the reflectivity. Spread is from 5 to 95 per cent of the pixels.\n";
+    "Another band, angle or number of looks than the simulation's shifts the real levels: then "
+    "judge the order and the spread alone. The simulated column has the firmware's speckle of 4 "
+    "looks on the reflectivity. Spread is from 5 to 95 per cent of the pixels."};
 
 static void print_spread(const struct rr_spread *s)
 {
@@ -78,43 +70,45 @@ static void print_order(const struct rr_class_order *order, const struct db_clas
            order->pixel_correlation);
 }
 
-enum { TABLE = 1, CLASS_RASTER, REFLECTIVITY, RADAR, OUT, VALUES };
+struct files {
+    const char *table, *class_raster, *reflectivity, *radar, *out;
+};
+
+static bool read_options(struct files *f, int argc, char **argv, int *exit_code)
+{
+    const struct db_option options[] = {
+        {"classes", DB_INPUT, &f->table, 0, 0, "FILE", "the class table of landmass-db", true},
+        {"class-raster", DB_INPUT, &f->class_raster, 0, 0, "FILE", "from landmass-db segment",
+         true},
+        {"reflectivity", DB_INPUT, &f->reflectivity, 0, 0, "FILE", "from landmass-db reflect, dB",
+         true},
+        {"radar", DB_INPUT, &f->radar, 0, 0, "FILE",
+         "the real radar on the same grid; its first band, dB", true},
+        {"out", DB_FOLDER, &f->out, 0, 0, "DIR", "leave classes.png there", false},
+    };
+    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                           exit_code);
+}
 
 int rr_cmd_classes(int argc, char **argv)
 {
-    static const struct option options[] = {
-        {"classes", required_argument, NULL, TABLE},
-        {"class-raster", required_argument, NULL, CLASS_RASTER},
-        {"reflectivity", required_argument, NULL, REFLECTIVITY},
-        {"radar", required_argument, NULL, RADAR},
-        {"out", required_argument, NULL, OUT},
-        {"help", no_argument, NULL, 'h'},
-        {NULL, 0, NULL, 0},
-    };
-    const char *values[VALUES] = {NULL};
-    const int read = rr_read_options(argc, argv, options, help_text, values);
-    if (read != HS_EXIT_OK) {
-        return read < 0 ? HS_EXIT_OK : read;
-    }
-    if (!values[TABLE] || !values[CLASS_RASTER] || !values[REFLECTIVITY] || !values[RADAR] ||
-        optind != argc) {
-        hs_error("classes", "see landmass-realradar classes --help",
-                 "needs --classes, --class-raster, --reflectivity and --radar, and no more");
-        return HS_EXIT_USAGE;
+    struct files f = {NULL};
+    int exit_code;
+    if (!read_options(&f, argc, argv, &exit_code)) {
+        return exit_code;
     }
     struct db_class_table table;
     struct rr_class_order order;
     char path[4096];
     db_gdal_start();
-    if (db_class_table_read(&table, values[TABLE]) != 0 ||
-        rr_class_order_compare(&order, &(struct rr_class_source){&table, values[CLASS_RASTER],
-                                                                 values[REFLECTIVITY],
-                                                                 values[RADAR]}) != 0) {
+    if (db_class_table_read(&table, f.table) != 0 ||
+        rr_class_order_compare(&order, &(struct rr_class_source){&table, f.class_raster,
+                                                                 f.reflectivity, f.radar}) != 0) {
         return HS_EXIT_FAILED;
     }
     print_order(&order, &table);
-    if (values[OUT] && (hs_output_path(path, sizeof path, values[OUT], "classes.png") != 0 ||
-                        rr_class_order_plot(&order, &table, path) != 0)) {
+    if (f.out && (hs_output_path(path, sizeof path, f.out, "classes.png") != 0 ||
+                  rr_class_order_plot(&order, &table, path) != 0)) {
         return HS_EXIT_FAILED;
     }
     return HS_EXIT_OK;

@@ -1,34 +1,26 @@
 /* landmass-realradar focus */
 #include "commands.h"
-#include "options.h"
 
 #include "hs/error.h"
+#include "hs/options.h"
 #include "hs/output_path.h"
 #include "realradar/point_response.h"
 #include "realradar/speckle_statistics.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char help_text[] =
-    "usage: landmass-realradar focus FILE [--size M] [--pixel M] [--out DIR]\n"
-    "Make a picture of a phase history by back-projection, and print how its speckle and its\n"
+static const struct db_usage usage = {
+    "focus", "make a picture of a real phase history; score speckle and points",
+    "Make a picture of a phase history by back-projection, and print how its speckle and its "
     "points compare with theory and with the firmware's speckle.\n"
     "\n"
-    "  FILE           one degree of the AFRL Gotcha set (MATLAB 5: data.fp, freq, x, y, z, r0)\n"
-    "  --size M       side of the ground patch round the scene's centre, 20..200 m (100)\n"
-    "  --pixel M      0.05..1 m (0.2)\n"
-    "  --out DIR      leave picture.png there, 60 dB from black to white\n"
-    "  -h, --help     print this\n"
-    "\n"
-    "Even ground is found by the texture of block means; points are those with nothing near\n"
-    "them. Noise is Gaussian noise in place of the echo, through the same band, aperture and\n"
-    "choice of windows: what a perfect scene would score.\n";
+    "Even ground is found by the texture of block means; points are those with nothing near them. "
+    "Noise is Gaussian noise in place of the echo, through the same band, aperture and choice of "
+    "windows: what a perfect scene would score."};
 
-enum { SIZE = 1, PIXEL, OUT, VALUES, REFLECTORS_MOST = 5, FIRMWARE_SIDE = 512 };
+enum { REFLECTORS_MOST = 5, FIRMWARE_SIDE = 512 };
 
 static const double taylor_db = 35, picture_span_db = 60;
 
@@ -242,48 +234,25 @@ static int focus(struct focus *f, const char *path, const char *folder)
                : rr_image_write(&f->image, picture, picture_span_db);
 }
 
-/* Returns false, reported, when the text is no number from low to high. */
-static bool take_metres(const char *option, const char *text, double low, double high,
-                        double *value)
-{
-    if (!text) {
-        return true;
-    }
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    if (errno == 0 && end != text && *end == '\0' && *value >= low && *value <= high) {
-        return true;
-    }
-    hs_error(option, "see landmass-realradar focus --help", "takes metres from %g to %g, not '%s'",
-             low, high, text);
-    return false;
-}
-
 int rr_cmd_focus(int argc, char **argv)
 {
-    static const struct option options[] = {
-        {"size", required_argument, NULL, SIZE},
-        {"pixel", required_argument, NULL, PIXEL},
-        {"out", required_argument, NULL, OUT},
-        {"help", no_argument, NULL, 'h'},
-        {NULL, 0, NULL, 0},
-    };
-    const char *values[VALUES] = {NULL};
     struct focus f = {.side_m = 100, .pixel_m = 0.2};
-    const int read = rr_read_options(argc, argv, options, help_text, values);
-    if (read != HS_EXIT_OK) {
-        return read < 0 ? HS_EXIT_OK : read;
+    const char *path = NULL, *folder = NULL;
+    int exit_code;
+    const struct db_option options[] = {
+        {"FILE", DB_INPUT_ARGUMENT, &path, 0, 0, NULL,
+         "one degree of the AFRL Gotcha set (MATLAB 5: data.fp, freq, x, y, z, r0)", true},
+        {"size", DB_REAL, &f.side_m, 20, 200, "M",
+         "side of the ground patch round the scene's centre", false},
+        {"pixel", DB_REAL, &f.pixel_m, 0.05, 1, "M", "of the picture", false},
+        {"out", DB_FOLDER, &folder, 0, 0, "DIR",
+         "leave picture.png there, 60 dB from black to white", false},
+    };
+    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
+        return exit_code;
     }
-    if (!take_metres("--size", values[SIZE], 20, 200, &f.side_m) ||
-        !take_metres("--pixel", values[PIXEL], 0.05, 1, &f.pixel_m)) {
-        return HS_EXIT_USAGE;
-    }
-    if (optind + 1 != argc) {
-        hs_error("focus", "see landmass-realradar focus --help", "needs one file");
-        return HS_EXIT_USAGE;
-    }
-    const int status = focus(&f, argv[optind], values[OUT]);
+    const int status = focus(&f, path, folder);
     rr_image_free(&f.image);
     rr_profiles_free(&f.profiles);
     rr_phase_history_free(&f.history);

@@ -1,9 +1,9 @@
 /* landmass-reference: the picture of the firmware, computed in double precision. */
 #include "dump.h"
 
-#include "hs/atomic_file.h"
 #include "hs/error.h"
-#include "hs/input_file.h"
+#include "hs/menu.h"
+#include "hs/options.h"
 #include "hs/png.h"
 #include "lm/grain.h"
 #include "reference/reference.h"
@@ -33,7 +33,7 @@ struct request {
     struct ref_params params;
 };
 
-struct option {
+struct number {
     const char *name, *help;
     size_t offset; /* of the double in struct request */
     int modes;
@@ -43,7 +43,7 @@ struct option {
 
 #define AT(field) offsetof(struct request, field)
 
-static const struct option options[] = {
+static const struct number numbers[] = {
     {"latitude", "degrees, of the patch's centre or the antenna; the image's centre by default",
      AT(latitude_deg), FOR_ALL, -90, 90, NAN, false},
     {"longitude", "degrees, likewise", AT(longitude_deg), FOR_ALL, -360, 360, NAN, false},
@@ -125,149 +125,107 @@ static const struct option options[] = {
     {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_ALL, 0.1, 10, NAN,
      false},
 };
-enum { OPTION_COUNT = sizeof options / sizeof options[0] };
+enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 
-static double *option_value(struct request *request, const struct option *option)
+static double *number_value(struct request *request, const struct number *number)
 {
-    return (double *)(void *)((char *)request + option->offset);
+    return (double *)(void *)((char *)request + number->offset);
 }
 
-static void print_options(int mode)
+static const struct db_usage usages[] = {
+    {"sar", "a patch, the line of sight upwards", ""},
+    {"gm", "a sector as it is sampled, seen from above",
+     "The antenna is in the middle of the lower edge."},
+    {"sector", "a sector behind antenna and receiver",
+     "Beam, slant range, pulse, noise, rain, jamming."},
+};
+enum { MODES = sizeof usages / sizeof usages[0] };
+
+/* Which of `usages` has this name; the last for any other. */
+static int mode_index(const char *name)
 {
-    struct request usual = {.params = ref_params_default()};
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        const struct option *o = &options[i];
-        if ((o->modes & mode) == 0) {
-            continue;
-        }
-        const double value = isnan(o->usual) ? *option_value(&usual, o) : o->usual;
-        printf("  --%-19s %s", o->name, o->help);
-        if (strstr(o->help, "likewise") == NULL && strstr(o->help, "by default") == NULL) {
-            printf(" [%g]", value);
-        }
-        putchar('\n');
+    int i = 0;
+    while (i < MODES - 1 && strcmp(usages[i].command, name) != 0) {
+        i++;
     }
-    printf("  --%-19s %s\n", "exact-weights", "do not cut the weights between posts to 8 bits");
-    printf("  --%-19s %s\n", "out FILE", "the picture, a grey PNG [reference.png]");
-    printf("  --%-19s %s\n", "dump FILE",
-           "every stage of every cell: CSV, or raw doubles if FILE ends in .f64");
-    printf("\nColumns of the dump: %s\n", ref_dump_columns);
+    return i;
 }
 
-/* Name of a mode, and the mode of a name; 0 for none. */
-static const char *mode_name(int mode)
+/* The options of a mode; returns how many. A number's value is its default before. */
+static size_t fill_options(struct db_option *options, struct request *request, int mode)
 {
-    return mode == FOR_SAR ? "sar" : mode == FOR_GM ? "gm" : "sector";
-}
-
-static int mode_of(const char *name)
-{
-    for (int mode = FOR_SAR; mode <= FOR_SECTOR; mode *= 2) {
-        if (strcmp(name, mode_name(mode)) == 0) {
-            return mode;
+    size_t count = 0;
+    options[count++] = (struct db_option){
+        "IMAGE", DB_INPUT_ARGUMENT, &request->image, 0, 0, NULL, "the database image", true};
+    for (int i = 0; i < NUMBERS; i++) {
+        const struct number *n = &numbers[i];
+        if (n->modes & mode) {
+            options[count++] = (struct db_option){
+                n->name, DB_REAL, number_value(request, n), n->low, n->high, "X", n->help, false};
         }
     }
-    return 0;
+    options[count++] = (struct db_option){"exact-weights",
+                                          DB_FLAG,
+                                          &request->has_exact_weights,
+                                          0,
+                                          0,
+                                          NULL,
+                                          "do not cut the weights between posts to 8 bits",
+                                          false};
+    options[count++] = (struct db_option){
+        "out", DB_OUTPUT, &request->out, 0, 0, "FILE", "the picture, a grey PNG (reference.png)",
+        false};
+    options[count++] =
+        (struct db_option){"dump",
+                           DB_TEXT,
+                           &request->dump,
+                           0,
+                           0,
+                           "FILE",
+                           "every stage of every cell: CSV, or raw doubles if FILE ends in .f64",
+                           false};
+    options[count++] = (struct db_option){"Columns of the dump", DB_HEADING, NULL, 0, 0, NULL,
+                                          ref_dump_columns,      false};
+    return count;
 }
 
-static void print_help(int mode)
+/* Whether the numbers that must be whole are, and white lies above black. */
+static bool check_numbers(struct request *request, const struct db_usage *usage, int mode,
+                          int *exit_code)
 {
-    if (mode == FOR_ALL) {
-        printf(
-            "usage: landmass-reference sar|gm|sector IMAGE [options]\n\n"
-            "Render a picture from a flash image in double precision, by the equations of "
-            "docs/EQUATIONS.md.\nIt is what the firmware's picture is judged by.\n\n"
-            "  sar     a patch, the line of sight upwards\n"
-            "  gm      a sector as it is sampled, seen from above, the antenna in the middle of "
-            "the "
-            "lower edge\n"
-            "  sector  the same behind antenna and receiver: beam, slant range, pulse, noise, "
-            "rain, "
-            "jamming\n\n"
-            "landmass-reference sar --help lists the options, and so do the others.\n");
-        return;
-    }
-    printf("usage: landmass-reference %s IMAGE [options]\n\n", mode_name(mode));
-    print_options(mode);
-}
-
-static const struct option *find_option(const char *name, int mode)
-{
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (strcmp(name, options[i].name) == 0 && (options[i].modes & mode) != 0) {
-            return &options[i];
+    for (int i = 0; i < NUMBERS; i++) {
+        const struct number *n = &numbers[i];
+        if (n->is_whole && (n->modes & mode) && fmod(*number_value(request, n), 1) != 0) {
+            char name[64];
+            snprintf(name, sizeof name, "--%s", n->name);
+            *exit_code = db_options_wrong(usage, name, "needs a whole number");
+            return false;
         }
     }
-    return NULL;
+    if (request->params.white_db <= request->params.black_db) {
+        *exit_code = db_options_wrong(usage, "--white", "must lie above --black");
+        return false;
+    }
+    return true;
 }
 
-static int set_number(struct request *request, const struct option *option, const char *text)
-{
-    char *end;
-    const double value = strtod(text, &end);
-    const bool is_number =
-        end != text && *end == '\0' && (!option->is_whole || fmod(value, 1) == 0);
-    if (!is_number || !(value >= option->low && value <= option->high)) {
-        return hs_error(option->name, NULL, "'%s' is no %s from %g to %g", text,
-                        option->is_whole ? "whole number" : "number", option->low, option->high);
-    }
-    *option_value(request, option) = value;
-    return 0;
-}
-
-/* One option and its value; the number of arguments used, or -1. */
-static int parse_option(struct request *request, int mode, char **argv)
-{
-    const char *name = argv[0] + 2;
-    if (strcmp(name, "exact-weights") == 0) {
-        request->has_exact_weights = true;
-        return 1;
-    }
-    const struct option *option = find_option(name, mode);
-    const char **file = strcmp(name, "out") == 0    ? &request->out
-                        : strcmp(name, "dump") == 0 ? &request->dump
-                                                    : NULL;
-    if (option == NULL && file == NULL) {
-        return hs_error(argv[0],
-                        "landmass-reference sar --help lists them, and so do gm and sector",
-                        "there is no such option");
-    }
-    if (argv[1] == NULL) {
-        return hs_error(argv[0], NULL, "a value must follow");
-    }
-    if (file != NULL) {
-        *file = argv[1];
-        return 2;
-    }
-    return set_number(request, option, argv[1]) == 0 ? 2 : -1;
-}
-
-static int parse(struct request *request, int mode, char **argv)
+static bool parse(struct request *request, int mode, int argc, char **argv, int *exit_code)
 {
     *request = (struct request){.out = "reference.png", .params = ref_params_default()};
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        double *value = option_value(request, &options[i]);
-        *value = options[i].offset >= AT(params) ? *value : options[i].usual;
+    for (int i = 0; i < NUMBERS; i++) {
+        double *value = number_value(request, &numbers[i]);
+        *value = numbers[i].offset >= AT(params) ? *value : numbers[i].usual;
     }
-    for (int used = 1; *argv != NULL; argv += used) {
-        used = 1;
-        if (strncmp(*argv, "--", 2) == 0) {
-            used = parse_option(request, mode, argv);
-        } else if (request->image == NULL) {
-            request->image = *argv;
-        } else {
-            used = hs_error(*argv, "give one image", "one argument too many");
-        }
-        if (used < 0) {
-            return -1;
-        }
+    const struct db_usage *usage = &usages[mode_index(argv[0])];
+    struct db_option options[NUMBERS + 5];
+    const size_t count = fill_options(options, request, mode);
+    if (!db_options_read(usage, options, count, argc, argv, exit_code) ||
+        !check_numbers(request, usage, mode, exit_code)) {
+        return false;
     }
     request->params.looks = (unsigned)request->looks;
     request->params.has_exact_weights = request->has_exact_weights;
-    if (request->params.white_db <= request->params.black_db) {
-        return hs_error("--white", NULL, "white must lie above black");
-    }
-    return request->image ? 0 : hs_error("command line", "name one", "no image is given");
+    return true;
 }
 
 static struct ref_place place_of(const struct request *request, const struct ref_db *db)
@@ -431,35 +389,17 @@ static int render_sector(const struct request *request, const struct ref_db *db)
                : -1;
 }
 
-static bool asks_for_help(const char *argument)
+/* argv[0] names the mode. */
+static int run(int argc, char **argv)
 {
-    return strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0;
-}
-
-int main(int argc, char **argv)
-{
-    hs_set_program("landmass-reference");
-    if (argc >= 2 && asks_for_help(argv[1])) {
-        print_help(FOR_ALL);
-        return HS_EXIT_OK;
-    }
-    const int mode = argc < 2 ? 0 : mode_of(argv[1]);
-    if (mode == 0) {
-        hs_error("command line", "try landmass-reference --help", "expected sar, gm or sector");
-        return HS_EXIT_USAGE;
-    }
-    if (argc >= 3 && asks_for_help(argv[2])) {
-        print_help(mode);
-        return HS_EXIT_OK;
-    }
+    const int mode = 1 << mode_index(argv[0]);
     struct request request;
-    if (parse(&request, mode, argv + 2) != 0) {
-        return HS_EXIT_USAGE;
+    int exit_code;
+    if (!parse(&request, mode, argc, argv, &exit_code)) {
+        return exit_code;
     }
     struct ref_db db;
-    hs_input_note(request.image);
-    if (hs_output_claim(request.out) != 0 || (request.dump && hs_output_claim(request.dump) != 0) ||
-        ref_db_open(&db, request.image) != 0) {
+    if (ref_db_open(&db, request.image) != 0) {
         return HS_EXIT_FAILED;
     }
     const int status = mode == FOR_SAR  ? render_sar(&request, &db)
@@ -467,4 +407,19 @@ int main(int argc, char **argv)
                                         : render_sector(&request, &db);
     ref_db_close(&db);
     return status == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
+}
+
+int main(int argc, char **argv)
+{
+    struct hs_command commands[MODES];
+    for (int i = 0; i < MODES; i++) {
+        commands[i] = (struct hs_command){usages[i].command, usages[i].summary, run};
+    }
+    const struct hs_menu menu = {
+        .program = "landmass-reference",
+        .purpose = "a picture in double precision, by the equations of docs/EQUATIONS.md",
+        .commands = commands,
+        .count = MODES,
+        .closing = "It is what the firmware's picture is judged by.\n"};
+    return hs_menu_main(&menu, argc, argv);
 }

@@ -300,16 +300,9 @@ int main(int argc, char **argv)
         hs_error("start", NULL, "out of memory");
         return HS_EXIT_FAILED;
     }
-    int exit_code = HS_EXIT_USAGE;
-    switch (options_read(&s->options, argc, argv)) {
-    case OPTIONS_DONE:
-        exit_code = HS_EXIT_OK;
-        break;
-    case OPTIONS_RUN:
+    int exit_code;
+    if (options_read(&s->options, argc, argv, &exit_code)) {
         exit_code = run(s) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
-        break;
-    case OPTIONS_WRONG:
-        break;
     }
     script_free(&s->script);
     free(s->bezel_pixels);

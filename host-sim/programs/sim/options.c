@@ -1,43 +1,20 @@
 #include "options.h"
 
 #include "hs/error.h"
+#include "hs/options.h"
 #include "sim/window.h"
 
-#include <getopt.h>
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-static const char help[] =
-    "Usage: landmass-sim --db FILE [--bus FILE.log | --can IFACE] [options]\n"
-    "\n"
-    "Run the display unit's firmware on this PC.\n"
-    "\n"
-    "  --db FILE          flash image made by landmass-db build\n"
-    "  --bus FILE.log     take the bus from a candump -L log, in flight time from its first frame\n"
-    "  --can IFACE        take the bus from a SocketCAN interface, in real time\n"
-    "  --profile NAME     what the bus's frames mean: a profile of docs/bus.md; default canas17\n"
-    "  --node N           be node N (1..255) of a CANaerospace bus and answer requests; 0: only "
-    "listen (default)\n"
-    "  --script FILE      operate the controls by a script (below)\n"
-    "  --png DIR          write pictures into DIR (made if need be) as frame-NNNNN.png\n"
-    "  --every N          write every Nth picture; 0: only those the script names (default 30)\n"
-    "  --window           show bezel and glass in a window, in real time, and operate them "
-    "(below)\n"
-    "  --bezel            draw the bezel into the pictures of --png too\n"
-    "  --size WxH         pixels of the glass, 256..1024 each (default 768x768)\n"
-    "  --glass WORD       a choice about the glass; give the option again for a second one:\n"
-    "                     whole: the whole sector fits the frame; heading: the heading above\n"
-    "                     the picture; strobe: a faint line along the beam; borders: lines\n"
-    "                     along the sector's edges\n"
-    "  --seconds S        flight time to run (default: to the end of the log)\n"
-    "  --seed N           another speckle (default 0); the same inputs and seed give the same "
-    "pictures\n"
-    "  --quiet            no summary\n"
-    "  -h, --help         this text\n"
-    "\n"
-    "Without a bus the unit shows what it shows in the cockpit when the bus is dead.\n"
-    "\n"
+static const struct db_usage usage = {
+    "", "run the display unit's firmware on this PC",
+    "Fly a database image: the bus comes from a log or from a CAN interface, controls from a "
+    "script or a window, and pictures go to the window or to files. Without a bus the unit shows "
+    "what it shows in the cockpit when the bus is dead."};
+
+static const char script_help[] =
     "A script has one command a line, each with its time; '#' begins a remark:\n"
     "  SECONDS gm|gmt|sea [norm|exp|dbs1|dbs2]    mode and field of view (dbs: gm only)\n"
     "  SECONDS range 10|20|40|80                  nautical miles\n"
@@ -60,75 +37,25 @@ static const char help[] =
     "  SECONDS knob X                             range knob, -1..1\n"
     "  SECONDS slew X Y FOR_S                     cursor to the right and up, -1..1\n"
     "  SECONDS designate | drop                   target management switch up, down\n"
-    "  SECONDS picture NAME                       write DIR/NAME.png then\n"
-    "\n"
-    "Keys of the window:\n";
+    "  SECONDS picture NAME                       write DIR/NAME.png then\n";
 
-static const char help_end[] =
-    "\n"
-    "Exit codes: 0 done, 1 failed, 2 wrong command line.\n";
-
-enum {
-    OPT_DB = 1,
-    OPT_BUS,
-    OPT_CAN,
-    OPT_PROFILE,
-    OPT_NODE,
-    OPT_SCRIPT,
-    OPT_PNG,
-    OPT_EVERY,
-    OPT_WINDOW,
-    OPT_BEZEL,
-    OPT_SIZE,
-    OPT_GLASS,
-    OPT_SECONDS,
-    OPT_SEED,
-    OPT_QUIET,
-    OPT_HELP
-};
-
-static const struct option table[] = {
-    {"db", required_argument, NULL, OPT_DB},
-    {"bus", required_argument, NULL, OPT_BUS},
-    {"can", required_argument, NULL, OPT_CAN},
-    {"profile", required_argument, NULL, OPT_PROFILE},
-    {"node", required_argument, NULL, OPT_NODE},
-    {"script", required_argument, NULL, OPT_SCRIPT},
-    {"png", required_argument, NULL, OPT_PNG},
-    {"every", required_argument, NULL, OPT_EVERY},
-    {"window", no_argument, NULL, OPT_WINDOW},
-    {"bezel", no_argument, NULL, OPT_BEZEL},
-    {"size", required_argument, NULL, OPT_SIZE},
-    {"glass", required_argument, NULL, OPT_GLASS},
-    {"seconds", required_argument, NULL, OPT_SECONDS},
-    {"seed", required_argument, NULL, OPT_SEED},
-    {"quiet", no_argument, NULL, OPT_QUIET},
-    {"help", no_argument, NULL, OPT_HELP},
-    {0},
-};
-
-static bool whole(const char *text, long low, long high, long *value)
+static const char *take_size(void *context, const char *text)
 {
-    char *end;
-    *value = strtol(text, &end, 10);
-    return end != text && *end == 0 && *value >= low && *value <= high;
-}
-
-static bool take_size(struct options *o, const char *text)
-{
+    struct options *o = context;
     unsigned width, height;
     char rest;
     if (sscanf(text, "%ux%u%c", &width, &height, &rest) != 2 || width < 256 || width > 1024 ||
         height < 256 || height > 1024) {
-        return false;
+        return "needs WxH, 256..1024 each";
     }
     o->width_px = (uint16_t)width;
     o->height_px = (uint16_t)height;
-    return true;
+    return NULL;
 }
 
-static bool take_glass(struct lm_glass_options *glass, const char *word)
+static const char *take_glass(void *context, const char *word)
 {
+    struct lm_glass_options *glass = context;
     const struct {
         const char *word;
         bool *is_chosen;
@@ -139,109 +66,93 @@ static bool take_glass(struct lm_glass_options *glass, const char *word)
     for (size_t i = 0; i < sizeof choices / sizeof *choices; i++) {
         if (strcmp(word, choices[i].word) == 0) {
             *choices[i].is_chosen = true;
-            return true;
+            return NULL;
         }
     }
-    return false;
+    return "needs one of its words";
 }
 
-static bool take_value(struct options *o, int option)
+static const char *take_profile(void *context, const char *name)
 {
-    long n;
-    char *end;
-    switch (option) {
-    case OPT_DB:
-        o->database = optarg;
-        return true;
-    case OPT_BUS:
-        o->bus_log = optarg;
-        return true;
-    case OPT_CAN:
-        o->can_interface = optarg;
-        return true;
-    case OPT_PROFILE:
-        o->profile = lm_bus_profile_named(lm_bus_profiles, optarg);
-        return o->profile != NULL;
-    case OPT_NODE:
-        if (!whole(optarg, 0, 255, &n)) {
-            return false;
-        }
-        o->node = (uint8_t)n;
-        return true;
-    case OPT_SCRIPT:
-        o->script = optarg;
-        return true;
-    case OPT_PNG:
-        o->png_folder = optarg;
-        return true;
-    case OPT_EVERY:
-        o->every = whole(optarg, 0, 1000000, &n) ? (uint32_t)n : UINT32_MAX;
-        return o->every != UINT32_MAX;
-    case OPT_SIZE:
-        return take_size(o, optarg);
-    case OPT_GLASS:
-        return take_glass(&o->glass, optarg);
-    case OPT_SECONDS:
-        o->seconds = strtod(optarg, &end);
-        return end != optarg && *end == 0 && o->seconds > 0 && o->seconds < 1e6;
-    case OPT_SEED:
-        o->seed = whole(optarg, 0, 0x7fffffff, &n) ? (uint32_t)n : UINT32_MAX;
-        return o->seed != UINT32_MAX;
-    default:
+    const struct lm_bus_profile **profile = context;
+    *profile = lm_bus_profile_named(lm_bus_profiles, name);
+    return *profile ? NULL : "needs a profile of docs/bus.md";
+}
+
+/* Numbers as the table of options keeps them. */
+struct raw {
+    long node, every, seed;
+    double seconds;
+};
+
+static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
+{
+    struct db_taker size = {take_size, o}, glass = {take_glass, &o->glass},
+                    profile = {take_profile, &o->profile};
+    const struct db_option options[] = {
+        {"db", DB_INPUT, &o->database, 0, 0, "FILE", "flash image made by landmass-db build", true},
+        {"bus", DB_INPUT, &o->bus_log, 0, 0, "FILE.log",
+         "take the bus from a candump -L log, in flight time from its first frame", false},
+        {"can", DB_TEXT, &o->can_interface, 0, 0, "IFACE",
+         "take the bus from a SocketCAN interface, in real time", false},
+        {"profile", DB_TAKER, &profile, 0, 0, "NAME",
+         "what the bus's frames mean: a profile of docs/bus.md (canas17)", false},
+        {"node", DB_INTEGER, &raw->node, 0, 255, "N",
+         "be this node of a CANaerospace bus and answer requests; 0: only listen", false},
+        {"script", DB_INPUT, &o->script, 0, 0, "FILE", "operate the controls by a script (below)",
+         false},
+        {"png", DB_FOLDER, &o->png_folder, 0, 0, "DIR",
+         "write pictures into DIR (made if need be) as frame-NNNNN.png", false},
+        {"every", DB_INTEGER, &raw->every, 0, 1000000, "N",
+         "write every Nth picture; 0: only those the script names", false},
+        {"window", DB_FLAG, &o->has_window, 0, 0, NULL,
+         "show bezel and glass in a window, in real time, and operate them (below)", false},
+        {"bezel", DB_FLAG, &o->has_bezel, 0, 0, NULL,
+         "draw the bezel into the pictures of --png too", false},
+        {"size", DB_TAKER, &size, 0, 0, "WxH", "pixels of the glass, 256..1024 each (768x768)",
+         false},
+        {"glass", DB_TAKER, &glass, 0, 0, "whole|heading|strobe|borders",
+         "a choice about the glass; give the option again for a second one.\n"
+         "whole: the whole sector fits the frame; heading: the heading above the picture; strobe: "
+         "a faint line along the beam; borders: lines along the sector's edges",
+         false},
+        {"seconds", DB_REAL, &raw->seconds, 0.001, 999999, "S",
+         "flight time to run; left out: to the end of the log", false},
+        {"seed", DB_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
+         "another speckle; the same inputs and seed give the same pictures", false},
+        {"quiet", DB_FLAG, &o->is_quiet, 0, 0, NULL, "no summary", false},
+        {"Script", DB_HEADING, NULL, 0, 0, NULL, script_help, false},
+        {"Keys of the window", DB_HEADING, NULL, 0, 0, NULL, window_keys_help, false},
+    };
+    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                           exit_code);
+}
+
+/* Whether the options make sense together. */
+static bool check(const struct options *o, int *exit_code)
+{
+    if (o->bus_log && o->can_interface) {
+        *exit_code = db_options_wrong(&usage, "--bus", "and --can exclude each other");
         return false;
     }
-}
-
-static enum options_result check(const struct options *o)
-{
-    if (!o->database) {
-        hs_error("command line", "landmass-sim --help", "--db FILE is missing");
-        return OPTIONS_WRONG;
-    }
-    if (o->bus_log && o->can_interface) {
-        hs_error("command line", "give one of them", "--bus and --can exclude each other");
-        return OPTIONS_WRONG;
-    }
     if (!o->has_window && !o->bus_log && o->seconds <= 0) {
-        hs_error("command line", "add --seconds S, --bus or --window", "the run would never end");
-        return OPTIONS_WRONG;
+        *exit_code = db_options_wrong(&usage, "--seconds",
+                                      "or --bus or --window is needed, or the run would never end");
+        return false;
     }
-    return OPTIONS_RUN;
+    return true;
 }
 
-enum options_result options_read(struct options *o, int argc, char **argv)
+bool options_read(struct options *o, int argc, char **argv, int *exit_code)
 {
-    memset(o, 0, sizeof *o);
-    o->every = 30;
-    o->profile = &lm_bus_canas17;
-    o->width_px = o->height_px = 768;
-    int option;
-    opterr = 0; /* the words are ours */
-    while ((option = getopt_long(argc, argv, ":h", table, NULL)) != -1) {
-        if (option == OPT_HELP || option == 'h') {
-            printf("%s%s%s", help, window_keys_help, help_end);
-            return OPTIONS_DONE;
-        }
-        if (option == OPT_WINDOW) {
-            o->has_window = true;
-        } else if (option == OPT_BEZEL) {
-            o->has_bezel = true;
-        } else if (option == OPT_QUIET) {
-            o->is_quiet = true;
-        } else if (option == '?' || option == ':') {
-            hs_error("command line", "landmass-sim --help",
-                     option == '?' ? "there is no option \"%s\"" : "\"%s\" lacks its value",
-                     argv[optind - 1]);
-            return OPTIONS_WRONG;
-        } else if (!take_value(o, option)) {
-            hs_error("command line", "landmass-sim --help", "\"%s\" is no value for that option",
-                     optarg);
-            return OPTIONS_WRONG;
-        }
+    *o = (struct options){.profile = &lm_bus_canas17, .width_px = 768, .height_px = 768};
+    struct raw raw = {.every = 30, .seconds = NAN};
+    if (!read_table(o, &raw, argc, argv, exit_code)) {
+        return false;
     }
-    if (optind < argc) {
-        hs_error("command line", "landmass-sim --help", "\"%s\" is not an option", argv[optind]);
-        return OPTIONS_WRONG;
-    }
-    return check(o);
+    o->node = (uint8_t)raw.node;
+    o->every = (uint32_t)raw.every;
+    o->seed = (uint32_t)raw.seed;
+    o->seconds = isnan(raw.seconds) ? 0 : raw.seconds;
+    return check(o, exit_code);
 }

@@ -20,9 +20,8 @@ struct options {
     struct lm_glass_options glass;
 };
 
-enum options_result { OPTIONS_RUN, OPTIONS_DONE, OPTIONS_WRONG };
-
-/* OPTIONS_DONE: help was asked for and printed. OPTIONS_WRONG: the error is reported. */
-enum options_result options_read(struct options *o, int argc, char **argv);
+/* Returns true to run. Otherwise *exit_code is an hs_exit: help was printed, or the mistake
+ * reported. */
+bool options_read(struct options *o, int argc, char **argv, int *exit_code);
 
 #endif

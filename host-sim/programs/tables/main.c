@@ -1,22 +1,12 @@
 /* landmass-tables: the constant tables of fixed/ and firmware/, as C. */
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/menu.h"
+#include "hs/options.h"
 #include "tables/tables.h"
 
 #include <errno.h>
 #include <string.h>
-
-static void print_help(void)
-{
-    printf(
-        "usage: landmass-tables SET [FILE]\n\n"
-        "Write the constant tables of SET as C source to FILE, or to the standard output.\n"
-        "A FILE that stands already is replaced whole, or left alone if anything fails.\n\n"
-        "Sets, and where the build puts them, below build/<board>/gen:\n");
-    for (int i = 0; i < table_set_count; i++) {
-        printf("  %-10s %s\n", table_sets[i].name, table_sets[i].file);
-    }
-}
 
 static int print_to_stdout(const struct table_set *set)
 {
@@ -43,21 +33,37 @@ static int print_to_file(const struct table_set *set, const char *path)
     return hs_atomic_commit(&file) == 0 ? HS_EXIT_OK : HS_EXIT_FAILED;
 }
 
+/* Print the set that argv[0] names. */
+static int run(int argc, char **argv)
+{
+    const struct table_set *set = table_set_find(argv[0]);
+    const struct db_usage usage = {
+        set->name, "constant tables as C source",
+        "The build makes them so, below build/<board>/gen. A FILE that stands already is replaced "
+        "whole, or left alone if anything fails."};
+    const char *path = NULL;
+    int exit_code;
+    const struct db_option options[] = {
+        {"FILE", DB_OUTPUT_ARGUMENT, &path, 0, 0, NULL, "left out: standard output", false},
+    };
+    if (!db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                         &exit_code)) {
+        return exit_code;
+    }
+    return path ? print_to_file(set, path) : print_to_stdout(set);
+}
+
+enum { SETS_MAX = 16 };
+
 int main(int argc, char **argv)
 {
-    hs_set_program("landmass-tables");
-    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
-        print_help();
-        return HS_EXIT_OK;
+    struct hs_command commands[SETS_MAX];
+    for (int i = 0; i < table_set_count && i < SETS_MAX; i++) {
+        commands[i] = (struct hs_command){table_sets[i].name, table_sets[i].file, run};
     }
-    if (argc < 2 || argc > 3) {
-        hs_error("command line", "try landmass-tables --help", "expected SET [FILE]");
-        return HS_EXIT_USAGE;
-    }
-    const struct table_set *set = table_set_find(argv[1]);
-    if (set == NULL) {
-        hs_error(argv[1], "landmass-tables --help lists the sets", "there is no such set");
-        return HS_EXIT_USAGE;
-    }
-    return argc == 2 ? print_to_stdout(set) : print_to_file(set, argv[2]);
+    const struct hs_menu menu = {.program = "landmass-tables",
+                                 .purpose = "the constant tables of fixed/ and firmware/, as C",
+                                 .commands = commands,
+                                 .count = table_set_count < SETS_MAX ? table_set_count : SETS_MAX};
+    return hs_menu_main(&menu, argc, argv);
 }

@@ -1,5 +1,5 @@
-/* Menu of a program with sub-commands: prints the list, answers `--help`, and runs the command
- * that was named. */
+/* Menu of a program with sub-commands: prints the list, answers --help, --help=man, --help=list and
+ * --version as hs/options.h does, and runs the command that was named. */
 #ifndef HS_MENU_H
 #define HS_MENU_H
 

@@ -1,5 +1,6 @@
-/* Command-line options: one table for each sub-command, from which they are read, checked and
- * explained, so that --help always agrees with what is accepted. */
+/* Command-line options: one table for each program or sub-command. The command line is read and
+ * checked by it, and --help, the manual page and the shell's completion are made from it, so that
+ * they always agree with what is accepted. */
 #ifndef HS_OPTIONS_H
 #define HS_OPTIONS_H
 
@@ -14,6 +15,14 @@ struct db_list {
     int count;
 };
 
+/* A value with a form of its own, such as LAT,LON. `take` returns NULL, or why it refuses `text` as
+ * what the option does: "needs two numbers". It is called once for each time the option is given.
+ */
+struct db_taker {
+    const char *(*take)(void *context, const char *text);
+    void *context;
+};
+
 enum db_option_kind {
     DB_FLAG,    /* bool */
     DB_TEXT,    /* const char *, borrowed from argv */
@@ -24,6 +33,14 @@ enum db_option_kind {
     DB_FOLDER,  /* const char *: a folder that is written to, and made if need be */
     DB_REAL,    /* double within low..high; NAN before: there is no default */
     DB_INTEGER, /* long within low..high */
+    DB_CHOICE,  /* int: which of the words in value_name, "csv|gpx|igc", counted from 0; -1 before:
+                   there is no default */
+    DB_TAKER,   /* struct db_taker */
+    DB_INPUT_ARGUMENT, /* const char *: the next word that is no option, a file that is read. "-" is
+                          such a word. name: its place holder, "TRACK" */
+    DB_OUTPUT_ARGUMENT, /* likewise a file that is written */
+    DB_HEADING, /* no option: a heading (name, or NULL for none) of what follows in the help, and
+                   lines of text below it (help) */
 };
 
 struct db_option {
@@ -33,26 +50,33 @@ struct db_option {
     double low, high;
     const char *value_name; /* "FILE", "N" */
     const char *help;       /* may hold several lines */
-    bool is_required;
+    bool is_required;       /* a text, a list or an argument */
 };
 
 struct db_usage {
-    const char *command;     /* "segment" */
+    const char *command;     /* "segment"; "" where the program has no sub-commands */
     const char *summary;     /* one line */
     const char *description; /* whole paragraphs */
 };
 
 /* Read argv[1..] into the targets of the options. Lists must be freed whatever is returned. Returns
  * true when the command shall go on. Otherwise *exit_code is:
- * - HS_EXIT_OK: --help was asked for and printed,
- * - HS_EXIT_USAGE, reported: a word that is no option or an unknown one, a value too many or too
- *   few, a number outside its range, or a required option that is missing,
+ * - HS_EXIT_OK: --help, -h, --version, --help=man or --help=list was asked for and printed,
+ * - HS_EXIT_USAGE, reported: a word too many or an unknown option, a value too many or too few, a
+ *   number outside its range, a word that is no choice, or a required option that is missing,
  * - HS_EXIT_FAILED, reported: an output cannot be written, or is an input or another output. */
 bool db_options_read(const struct db_usage *usage, const struct db_option *options, size_t count,
                      int argc, char **argv, int *exit_code);
 
+/* Report what is wrong with `option` ("--bus") where each option alone makes sense and they do not
+ * together. Returns HS_EXIT_USAGE. */
+int db_options_wrong(const struct db_usage *usage, const char *option, const char *cause);
+
 /* Free the items. Harmless on a zeroed list. */
 void db_list_free(struct db_list *list);
+
+/* The whole of `text` as a finite number. False, with *number undefined, where it is none. */
+bool db_parse_number(const char *text, double *number);
 
 /* Split `text` ("polygons:0.3") at the colon: copies the word before it and reads the number after
  * it. Returns 0, or -1 when there is no colon, no number, or the word does not fit. */

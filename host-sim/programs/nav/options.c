@@ -1,0 +1,214 @@
+#include "options.h"
+
+#include "hs/error.h"
+#include "hs/options.h"
+#include "nav/parse.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Numbers between commas; returns how many, or -1 for anything else or more than `most`. */
+static int take_list(const char *text, double *value, int most)
+{
+    char copy[256];
+    if (strlen(text) >= sizeof copy) {
+        return -1;
+    }
+    strcpy(copy, text);
+    int n = 0;
+    for (char *p = copy, *next; p; p = next, n++) {
+        next = strchr(p, ',');
+        if (next) {
+            *next++ = '\0';
+        }
+        if (n == most || !nav_parse_number(p, &value[n])) {
+            return -1;
+        }
+    }
+    return n;
+}
+
+static bool is_place(double latitude_deg, double longitude_deg)
+{
+    return fabs(latitude_deg) <= 90 && fabs(longitude_deg) <= 180;
+}
+
+static const char *take_circle(void *context, const char *text)
+{
+    struct command *c = context;
+    double v[6] = {0};
+    const int n = take_list(text, v, 6);
+    if (n < 5 || !is_place(v[0], v[1]) || fabs(v[2]) < 1 || fabs(v[2]) > 1e6 || v[4] <= 0 ||
+        v[4] > 10000) {
+        return "needs LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG] with a radius of 1..1000000 m "
+               "and a speed of up to 10000 m/s";
+    }
+    c->circle = (struct nav_circle){v[0], v[1], v[2], v[3], v[4], v[5]};
+    c->has_circle = true;
+    return NULL;
+}
+
+static const char *take_straight(void *context, const char *text)
+{
+    struct command *c = context;
+    double v[5];
+    if (take_list(text, v, 5) != 5 || !is_place(v[0], v[1]) || v[4] < 0 || v[4] > 10000) {
+        return "needs LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS with a speed of 0..10000 m/s";
+    }
+    c->straight = (struct nav_straight){v[0], v[1], v[2], v[3], v[4]};
+    c->has_straight = true;
+    return NULL;
+}
+
+static bool add_weather(struct command *c, bool is_jammer, const char *text)
+{
+    double v[6];
+    return nav_weather_add(&c->send.weather, is_jammer, v, take_list(text, v, 6));
+}
+
+static const char *take_rain(void *context, const char *text)
+{
+    return add_weather(context, false, text)
+               ? NULL
+               : "needs LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]] with a radius of 100..100000 m "
+                 "and 1..150 mm/h, up to four times";
+}
+
+static const char *take_jammer(void *context, const char *text)
+{
+    return add_weather(context, true, text)
+               ? NULL
+               : "needs LAT,LON,DB[,FROM_S[,UNTIL_S]] with -20..80 dB, up to four times";
+}
+
+static const char *take_interface(void *context, const char *text)
+{
+    struct command *c = context;
+    const size_t length = strlen(text);
+    if (length < 1 || length > 15 || strpbrk(text, " \t\n/")) {
+        return "needs a name of 1 to 15 characters without blanks";
+    }
+    c->send.interface = text;
+    return NULL;
+}
+
+static const char *take_begin(void *context, const char *text)
+{
+    struct command *c = context;
+    c->has_begin = nav_parse_time(text, &c->begin_us);
+    return c->has_begin ? NULL : "needs a time such as 2020-06-25T08:23:06Z";
+}
+
+static const struct db_usage usage = {
+    "", "turn a flight into traffic of the avionics bus",
+    "Write a log of CANaerospace 1.7 frames, as candump -L writes it. The flight is a TRACK, a "
+    "--circle or a --straight line: exactly one of them.\n"
+    "\n"
+    "Between fixes the position follows the geodesic. What the track does not have is derived: "
+    "bank from turn rate and speed, pitch from the angle of climb, heading = track."};
+
+static const char columns_help[] =
+    "They are named in the first line, in any order and case: timestamp or time (ISO 8601, or "
+    "seconds, milliseconds or microseconds since 1970), latitude (lat), longitude (lon), altitude "
+    "(feet) or altitude_m, groundspeed (knots) or groundspeed_ms, track, heading, roll, pitch "
+    "(degrees), vertical_rate (feet a minute) or vertical_rate_ms. Others are passed over; an "
+    "empty field is a value not known.\n";
+
+/* What options give that is not a number or a name of its own in struct command. */
+struct raw {
+    int format, position; /* -1: by name; enum nav_position */
+    double clear_s;       /* NAN: never */
+    double seconds, max_gap_s;
+};
+
+static bool read_table(struct command *c, struct raw *raw, int argc, char **argv, int *exit_code)
+{
+    struct db_taker circle = {take_circle, c}, straight = {take_straight, c},
+                    interface = {take_interface, c}, begin = {take_begin, c}, rain = {take_rain, c},
+                    jammer = {take_jammer, c};
+    const struct db_option options[] = {
+        {"TRACK", DB_INPUT_ARGUMENT, &c->track_path, 0, 0, NULL,
+         "a .csv, .gpx or .igc file, plain or .gz; - is standard input", false},
+        {"format", DB_CHOICE, &raw->format, 0, 0, "csv|gpx|igc",
+         "of the track, when the name of the file does not tell", false},
+        {"strict", DB_FLAG, &c->is_strict, 0, 0, NULL,
+         "stop at the first line that cannot be used; otherwise such lines are left out, counted "
+         "and reported",
+         false},
+        {"circle", DB_TAKER, &circle, 0, 0, "LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG]",
+         "fly a banked circle round LAT,LON (degrees), clockwise, or to the left for a negative "
+         "radius, beginning START_DEG from north",
+         false},
+        {"straight", DB_TAKER, &straight, 0, 0, "LAT,LON,HEADING_DEG,HEIGHT_M,SPEED_MS",
+         "fly the geodesic that leaves LAT,LON in the direction HEADING_DEG", false},
+        {"What is sent", DB_HEADING, NULL, 0, 0, NULL, "", false},
+        {"out", DB_OUTPUT, &c->out_path, 0, 0, "FILE",
+         "where the log goes; left out: standard output", false},
+        {"iface", DB_TAKER, &interface, 0, 0, "NAME", "interface named in the log (can0)", false},
+        {"position", DB_CHOICE, &raw->position, 0, 0, "double|float|long",
+         "latitude and longitude as pairs of DOUBLEH and DOUBLEL, as FLOAT, or as LONG of 1e-7 "
+         "degree",
+         false},
+        {"rate-scale", DB_REAL, &c->send.rate_scale, NAV_RATE_SCALE_MIN, NAV_RATE_SCALE_MAX, "X",
+         "multiply every rate; 1: attitude 80 Hz, positions and speeds 10 Hz, time and date 1 Hz",
+         false},
+        {"start", DB_REAL, &c->start_s, 0, 1e9, "S", "begin S seconds after the first fix", false},
+        {"seconds", DB_REAL, &raw->seconds, 0.0125, 1e9, "S",
+         "send S seconds; left out: the whole track, or 60 s of a --circle or --straight line",
+         false},
+        {"begin", DB_TAKER, &begin, 0, 0, "TIME",
+         "move the flight so that its first fix is at TIME (ISO 8601, or seconds since 1970); "
+         "--circle and --straight otherwise begin at 2000-01-01T12:00:00Z",
+         false},
+        {"rain", DB_TAKER, &rain, 0, 0, "LAT,LON,RADIUS_M,MM_H[,FROM_S[,UNTIL_S]]",
+         "tell of a circle of rain, 100..100000 m, 1..150 mm/h, once a second, in a part of the "
+         "log; up to four",
+         false},
+        {"jammer", DB_TAKER, &jammer, 0, 0, "LAT,LON,DB[,FROM_S[,UNTIL_S]]",
+         "likewise a jammer of -20..80 dB above the radar's noise, on the axis of its antenna at "
+         "ten nautical miles",
+         false},
+        {"weather-clear", DB_REAL, &raw->clear_s, 0, 1e9, "S",
+         "take all of it away S seconds after the log's beginning; what is only not told any more "
+         "is removed by the display after 10 s",
+         false},
+        {"height-offset", DB_REAL, &c->height_offset_m, -10000, 10000, "M",
+         "add M metres to every height, for example the height of the geoid", false},
+        {"quiet", DB_FLAG, &c->is_quiet, 0, 0, NULL, "no summary on standard error", false},
+        {"What counts as broken", DB_HEADING, NULL, 0, 0, NULL, "", false},
+        {"max-gap", DB_REAL, &raw->max_gap_s, 0.001, 1e9, "S",
+         "a longer pause between fixes is a gap, in which the bus is silent; left out: the larger "
+         "of 30 s and 3 median intervals",
+         false},
+        {"max-speed", DB_REAL, &c->limits.max_speed_ms, 1, 1e9, "MS",
+         "a faster step between fixes is a jump and is sent as one: the position stays, then jumps "
+         "when the next fix is due",
+         false},
+        {"Columns of a CSV", DB_HEADING, NULL, 0, 0, NULL, columns_help, false},
+    };
+    return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
+                           exit_code);
+}
+
+bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
+{
+    *c = (struct command){.limits = {.max_speed_ms = 800 * 1852.0 / 3600.0},
+                          .send = {.interface = "can0", .rate_scale = 1}};
+    struct raw raw = {-1, NAV_POSITION_DOUBLE, NAN, NAN, NAN};
+    if (!read_table(c, &raw, argc, argv, exit_code)) {
+        return false;
+    }
+    if ((c->track_path != NULL) + c->has_circle + c->has_straight != 1) {
+        *exit_code = db_options_wrong(
+            &usage, "TRACK", "or --circle or --straight must be given, and only one of them");
+        return false;
+    }
+    c->format =
+        raw.format < 0 ? NAV_FORMAT_BY_NAME : (enum nav_format)(raw.format + NAV_FORMAT_CSV);
+    c->send.position = (enum nav_position)raw.position;
+    c->send.weather.has_clear = !isnan(raw.clear_s);
+    c->send.weather.clear_s = raw.clear_s;
+    c->seconds = isnan(raw.seconds) ? 0 : raw.seconds;
+    c->limits.max_gap_s = isnan(raw.max_gap_s) ? 0 : raw.max_gap_s;
+    return true;
+}
