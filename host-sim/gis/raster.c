@@ -266,14 +266,14 @@ int db_raster_read(const struct db_raster *r, int y, int rows, float *pixels, ui
 }
 
 static GDALDatasetH create_dataset(const char *temporary, const struct db_grid *grid,
-                                   GDALDataType type)
+                                   GDALDataType type, int bands)
 {
     char **options = NULL;
     options = CSLSetNameValue(options, "COMPRESS", "DEFLATE");
     options = CSLSetNameValue(options, "TILED", "YES");
     options = CSLSetNameValue(options, "BIGTIFF", "IF_SAFER");
     GDALDatasetH dataset = GDALCreate(GDALGetDriverByName("GTiff"), temporary, grid->width,
-                                      grid->height, 1, type, options);
+                                      grid->height, bands, type, options);
     CSLDestroy(options);
     return dataset;
 }
@@ -281,6 +281,13 @@ static GDALDatasetH create_dataset(const char *temporary, const struct db_grid *
 int db_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                      GDALDataType type, double nodata)
 {
+    return db_raster_create_bands(out, path, grid, &(struct db_raster_kind){type, nodata, 1});
+}
+
+int db_raster_create_bands(struct db_raster_out *out, const char *path, const struct db_grid *grid,
+                           const struct db_raster_kind *kind)
+{
+    const GDALDataType type = kind->type;
     *out = (struct db_raster_out){.width = grid->width, .type = type};
     out->temporary = hs_atomic_temporary_name(path);
     if (!out->temporary) {
@@ -288,7 +295,7 @@ int db_raster_create(struct db_raster_out *out, const char *path, const struct d
     }
     out->path = strdup(path);
     CPLErrorReset();
-    out->dataset = out->path ? create_dataset(out->temporary, grid, type) : NULL;
+    out->dataset = out->path ? create_dataset(out->temporary, grid, type, kind->bands) : NULL;
     if (!out->dataset) {
         hs_error(path, "check that the folder exists and can be written", "cannot be created: %s",
                  db_gdal_complaint());
@@ -301,13 +308,20 @@ int db_raster_create(struct db_raster_out *out, const char *path, const struct d
     if (grid->crs) {
         GDALSetSpatialRef(out->dataset, grid->crs);
     }
-    GDALSetRasterNoDataValue(GDALGetRasterBand(out->dataset, 1), nodata);
+    for (int b = 1; b <= kind->bands; b++) {
+        GDALSetRasterNoDataValue(GDALGetRasterBand(out->dataset, b), kind->nodata);
+    }
     return 0;
 }
 
 int db_raster_write(struct db_raster_out *out, int y, int rows, const void *pixels)
 {
-    const GDALRasterBandH band = GDALGetRasterBand(out->dataset, 1);
+    return db_raster_write_band(out, 1, y, rows, pixels);
+}
+
+int db_raster_write_band(struct db_raster_out *out, int number, int y, int rows, const void *pixels)
+{
+    const GDALRasterBandH band = GDALGetRasterBand(out->dataset, number);
     CPLErrorReset();
     if (GDALRasterIO(band, GF_Write, 0, y, out->width, rows, (void *)pixels, out->width, rows,
                      out->type, 0, 0) != CE_None) {

@@ -3,6 +3,7 @@
 #ifndef DB_COMMANDS_H
 #define DB_COMMANDS_H
 
+int db_cmd_import(int argc, char **argv);
 int db_cmd_train(int argc, char **argv);
 int db_cmd_segment(int argc, char **argv);
 int db_cmd_correct(int argc, char **argv);

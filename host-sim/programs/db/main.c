@@ -5,6 +5,7 @@
 #include "hs/menu.h"
 
 static const struct hs_command commands[] = {
+    {"import", "look straight down on a visual database", db_cmd_import},
     {"train", "learn the classes of an image from exemplar pixels", db_cmd_train},
     {"segment", "give each pixel of an image its class", db_cmd_segment},
     {"correct", "apply manual corrections to a class raster", db_cmd_correct},

@@ -84,9 +84,20 @@ struct db_raster_out {
 int db_raster_create(struct db_raster_out *out, const char *path, const struct db_grid *grid,
                      GDALDataType type, double nodata);
 
-/* `pixels` are rows * width values of the type given at creation. Returns 0 or -1 with the error
- * reported. */
+/* The same with several bands, all of one type and nodata value. */
+struct db_raster_kind {
+    GDALDataType type;
+    double nodata;
+    int bands;
+};
+int db_raster_create_bands(struct db_raster_out *out, const char *path, const struct db_grid *grid,
+                           const struct db_raster_kind *kind);
+
+/* `pixels` are rows * width values of the type given at creation, of the first band or of band
+ * `number`, from 1. Return 0 or -1 with the error reported. */
 int db_raster_write(struct db_raster_out *out, int y, int rows, const void *pixels);
+int db_raster_write_band(struct db_raster_out *out, int number, int y, int rows,
+                         const void *pixels);
 
 /* Put the file in place. Returns 0, or -1 with the error reported and nothing left. */
 int db_raster_commit(struct db_raster_out *out);
