@@ -6,6 +6,7 @@
 
 #include <cblas.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,34 +16,86 @@ static void use_one_thread(void)
         1); /* The order of sums, and so the last bit, depends on the threads. */
 }
 
-/* Mean and standard deviation of each input over the training samples; a constant input gets a
- * scale of 1. */
-static int find_normalisation(struct db_net *net, const struct db_samples *s)
+/* Mean, standard deviation and range of one input over the training samples; a constant input gets
+ * a scale of 1. Returns whether it varies. */
+static bool measure_input(struct db_net *net, const struct db_samples *s, size_t f)
 {
     const size_t inputs = (size_t)s->input_count;
-    net->mean = calloc(inputs, sizeof *net->mean);
-    net->scale = calloc(inputs, sizeof *net->scale);
-    if (!net->mean || !net->scale) {
-        return hs_error("training", NULL, "out of memory");
+    double sum = 0, square = 0, count = 0, low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < s->count; i++) {
+        if (s->items[i].part == DB_PART_TRAIN) {
+            const double v = (double)s->inputs[i * inputs + f];
+            sum += v;
+            low = fmin(low, v);
+            high = fmax(high, v);
+            count++;
+        }
     }
-    for (size_t f = 0; f < inputs; f++) {
-        double sum = 0, square = 0, count = 0;
-        for (size_t i = 0; i < s->count; i++) {
-            if (s->items[i].part == DB_PART_TRAIN) {
-                sum += (double)s->inputs[i * inputs + f];
-                count++;
+    const double mean = sum / count;
+    for (size_t i = 0; i < s->count; i++) {
+        if (s->items[i].part == DB_PART_TRAIN) {
+            const double d = (double)s->inputs[i * inputs + f] - mean;
+            square += d * d;
+        }
+    }
+    const double deviation = sqrt(square / count);
+    const bool varies = deviation > 1e-6 * fabs(mean) && deviation > 1e-30;
+    net->mean[f] = (float)mean;
+    net->scale[f] = varies ? (float)deviation : 1;
+    net->low[f] = (float)low;
+    net->high[f] = (float)high;
+    return varies;
+}
+
+/* A band that holds one value tells nothing; an image of such bands is the wrong file. */
+static int find_normalisation(struct db_net *net, const struct db_samples *s)
+{
+    int constant = 0;
+    if (db_net_alloc_inputs(net) != 0) {
+        return -1;
+    }
+    for (int f = 0; f < s->input_count; f++) {
+        if (!measure_input(net, s, (size_t)f)) {
+            constant++;
+            if (f < net->band_count) {
+                char place[24];
+                snprintf(place, sizeof place, "band %d", f + 1);
+                hs_warn(place, "check the image, or leave the band out",
+                        "holds %g at every exemplar and tells nothing", (double)net->mean[f]);
             }
         }
-        const double mean = count > 0 ? sum / count : 0;
-        for (size_t i = 0; i < s->count; i++) {
-            if (s->items[i].part == DB_PART_TRAIN) {
-                const double d = (double)s->inputs[i * inputs + f] - mean;
-                square += d * d;
+    }
+    if (constant == s->input_count) {
+        return hs_error("training", "check the image: it may be empty, or scaled to nothing",
+                        "every exemplar looks the same");
+    }
+    return 0;
+}
+
+int db_priors_find(double priors[DB_CLASS_MAX], const struct db_samples *samples,
+                   const struct db_class_table *table, const struct db_learn_options *options)
+{
+    double drawn[DB_CLASS_MAX] = {0}, trained[DB_CLASS_MAX] = {0}, sum = 0;
+    for (size_t i = 0; i < samples->count; i++) {
+        drawn[samples->items[i].class_index]++;
+        trained[samples->items[i].class_index] += samples->items[i].part == DB_PART_TRAIN;
+    }
+    for (int c = 0; c < DB_CLASS_MAX; c++) {
+        priors[c] = 0;
+        if (trained[c] > 0) {
+            priors[c] = options->priors == DB_PRIORS_EQUAL ? 1
+                        : options->priors == DB_PRIORS_GIVEN
+                            ? options->prior[c]
+                            : (double)options->available[c] * trained[c] / drawn[c];
+            if (!(priors[c] > 0)) {
+                return hs_error("--priors", "give each class that has exemplars a share above 0",
+                                "leave out class `%s`", table->items[c].name);
             }
+            sum += priors[c];
         }
-        const double deviation = count > 0 ? sqrt(square / count) : 0;
-        net->mean[f] = (float)mean;
-        net->scale[f] = deviation > 1e-6 * fabs(mean) && deviation > 1e-30 ? (float)deviation : 1;
+    }
+    for (int c = 0; c < DB_CLASS_MAX; c++) {
+        priors[c] /= sum > 0 ? sum : 1;
     }
     return 0;
 }
@@ -111,31 +164,50 @@ static int part_gather(struct part_data *d, const struct db_samples *s, const st
     return 0;
 }
 
-static int train_member(struct db_net *net, int m, const struct db_samples *s,
-                        const uint8_t *output_of_class, const struct db_learn_options *options,
-                        struct db_train_report *report)
+/* What all members share. */
+struct task {
+    struct db_net *net;
+    struct db_samples *samples;
+    const struct db_class_table *table;
+    const struct db_learn_options *options;
+    size_t region_count;
+    uint8_t output_of_class[DB_CLASS_MAX];
+    double priors[DB_CLASS_MAX]; /* of each output */
+};
+
+static void shape_member(struct db_mlp *mlp, const struct task *t)
 {
-    struct db_mlp *mlp = &net->members[m];
-    *mlp = (struct db_mlp){.input_count = net->input_count,
-                           .output_count = net->output_count,
-                           .unit = options->unit,
-                           .loss = options->loss};
-    mlp->hidden_count = options->hidden > 0
-                            ? options->hidden
-                            : db_mlp_default_hidden(net->input_count, net->output_count);
-    struct db_train_options train = options->train;
-    train.seed += (uint64_t)m;
+    *mlp = (struct db_mlp){.input_count = t->net->input_count,
+                           .output_count = t->net->output_count,
+                           .unit = t->options->unit,
+                           .loss = t->options->loss,
+                           .layer_count = t->options->layer_count};
+    memcpy(mlp->hidden, t->options->hidden, sizeof mlp->hidden);
+    if (mlp->layer_count == 0) {
+        mlp->layer_count = 1;
+        mlp->hidden[0] = db_mlp_default_hidden(mlp->input_count, mlp->output_count, NULL);
+    }
+}
+
+static int train_member(const struct task *t, int m, struct db_train_report *report)
+{
+    struct db_mlp *mlp = &t->net->members[m];
+    struct db_train_options train = t->options->train;
     struct part_data training, validation = {0};
-    if (part_gather(&training, s, net, output_of_class, DB_PART_TRAIN) != 0) {
+    train.seed += (uint64_t)m;
+    shape_member(mlp, t);
+    if (part_gather(&training, t->samples, t->net, t->output_of_class, DB_PART_TRAIN) != 0) {
         return hs_error("training", "lower --per-class", "out of memory");
     }
     int result = -1;
-    if (part_gather(&validation, s, net, output_of_class, DB_PART_VALIDATE) != 0 ||
+    if (part_gather(&validation, t->samples, t->net, t->output_of_class, DB_PART_VALIDATE) != 0 ||
         db_mlp_init(mlp, train.seed) != 0) {
         hs_error("training", "lower --per-class", "out of memory");
     } else {
-        const struct db_train_data a = {training.inputs, training.targets, training.count};
-        const struct db_train_data b = {validation.inputs, validation.targets, validation.count};
+        const struct db_train_data a = {training.inputs, training.targets, training.count,
+                                        t->priors};
+        const struct db_train_data b = {validation.inputs, validation.targets, validation.count,
+                                        t->priors};
         result = db_mlp_train(mlp, &train, &a, &b, report);
     }
     part_free(&validation);
@@ -153,40 +225,53 @@ static void take_back(struct db_samples *s)
 }
 
 /* Set other regions aside for each member, so that together they have learnt from all. */
-static int set_aside(struct db_samples *s, size_t region_count, const struct db_class_table *table,
-                     const struct db_learn_options *options, int member)
+static int set_aside(const struct task *t, int member)
 {
-    take_back(s);
-    if (options->validate <= 0) {
+    take_back(t->samples);
+    if (t->options->validate <= 0) {
         return 0;
     }
-    const uint64_t seed = options->train.seed * 1000 + (uint64_t)member + 1;
-    return db_split(s, region_count, table, true, options->validate, seed, DB_PART_VALIDATE, true);
+    const uint64_t seed = t->options->train.seed * 1000 + (uint64_t)member + 1;
+    return db_split(t->samples, t->region_count, t->table, true, t->options->validate, seed,
+                    DB_PART_VALIDATE, true);
 }
 
-static int learn(struct db_net *net, struct db_samples *s, size_t region_count,
-                 const struct db_class_table *table, const struct db_learn_options *options,
-                 struct db_train_report *reports)
+/* The priors are those of the samples before thinning. */
+static int find_output_priors(struct task *t)
 {
-    uint8_t output_of_class[DB_CLASS_MAX];
-    if (find_normalisation(net, s) != 0 || choose_outputs(net, s, table, output_of_class) != 0) {
+    double priors[DB_CLASS_MAX];
+    if (db_priors_find(priors, t->samples, t->table, t->options) != 0) {
         return -1;
     }
-    const long thinned = options->thin > 0 ? db_thin(s, net->scale, options->thin) : 0;
+    for (int c = 0; c < t->table->count; c++) {
+        if (t->output_of_class[c] != DB_CLASS_NODATA) {
+            t->priors[t->output_of_class[c]] = priors[c];
+        }
+    }
+    return 0;
+}
+
+static int learn(struct task *t, struct db_train_report *reports)
+{
+    const struct db_learn_options *o = t->options;
+    if (choose_outputs(t->net, t->samples, t->table, t->output_of_class) != 0 ||
+        find_normalisation(t->net, t->samples) != 0 || find_output_priors(t) != 0) {
+        return -1;
+    }
+    const long thinned = o->thin > 0 ? db_thin(t->samples, t->net->scale, o->thin) : 0;
     if (thinned < 0) {
         return -1;
     }
-    if (options->thin > 0 && options->thin_is_loud) {
+    if (o->thin > 0 && o->thin_is_loud) {
         printf("nearly identical exemplars dropped: %ld\n", thinned);
     }
-    for (int m = 0; m < options->members; m++) {
-        if (set_aside(s, region_count, table, options, m) != 0 ||
-            train_member(net, m, s, output_of_class, options, &reports[m]) != 0) {
+    for (int m = 0; m < o->members; m++) {
+        if (set_aside(t, m) != 0 || train_member(t, m, &reports[m]) != 0) {
             return -1;
         }
-        net->member_count = m + 1;
+        t->net->member_count = m + 1;
     }
-    take_back(s);
+    take_back(t->samples);
     return 0;
 }
 
@@ -194,11 +279,18 @@ int db_learn(struct db_net *net, struct db_samples *samples, size_t region_count
              const struct db_class_table *table, int band_count, int context,
              const struct db_learn_options *options, struct db_train_report *reports)
 {
-    *net = (struct db_net){
-        .band_count = band_count, .context = context, .input_count = samples->input_count};
+    struct task t = {.net = net,
+                     .samples = samples,
+                     .table = table,
+                     .options = options,
+                     .region_count = region_count};
+    *net = (struct db_net){.band_count = band_count,
+                           .context = context,
+                           .input_count = samples->input_count,
+                           .has_range = true};
     memset(reports, 0, (size_t)options->members * sizeof *reports);
     use_one_thread();
-    if (learn(net, samples, region_count, table, options, reports) != 0) {
+    if (learn(&t, reports) != 0) {
         for (int m = 0; m < options->members; m++) {
             db_train_report_free(&reports[m]);
         }
@@ -242,7 +334,7 @@ int db_classify_samples(const struct db_net *net, const struct db_class_table *t
                 planes[f * BLOCK + i] = samples->inputs[(at + i) * inputs + f];
             }
         }
-        db_apply(&applied, planes, BLOCK, count, given + at);
+        db_apply(&applied, planes, BLOCK, count, given + at, NULL);
         for (size_t i = 0; i < count; i++) {
             given[at + i] = class_of_output[given[at + i]];
         }

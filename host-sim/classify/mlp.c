@@ -7,20 +7,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t db_mlp_size(const struct db_mlp *net)
+int db_mlp_hidden_total(const struct db_mlp *net)
 {
-    const size_t hidden = (size_t)net->hidden_count;
-    return hidden * (size_t)(net->input_count + 1) + (size_t)net->output_count * (hidden + 1);
+    int total = 0;
+    for (int l = 0; l < net->layer_count; l++) {
+        total += net->hidden[l];
+    }
+    return total;
 }
 
-struct db_mlp_parts db_mlp_split(const struct db_mlp *net, float *weights)
+struct db_mlp_layer db_mlp_layer(const struct db_mlp *net, float *weights, int layer)
 {
-    struct db_mlp_parts p;
-    p.hidden = weights;
-    p.hidden_bias = p.hidden + (size_t)net->hidden_count * (size_t)net->input_count;
-    p.output = p.hidden_bias + net->hidden_count;
-    p.output_bias = p.output + (size_t)net->output_count * (size_t)net->hidden_count;
-    return p;
+    struct db_mlp_layer l = {.weights = weights, .from = net->input_count};
+    for (int i = 0; i < layer; i++) {
+        l.weights += (size_t)net->hidden[i] * (size_t)(l.from + 1);
+        l.from = net->hidden[i];
+    }
+    l.to = layer < net->layer_count ? net->hidden[layer] : net->output_count;
+    l.bias = l.weights + (size_t)l.to * (size_t)l.from;
+    return l;
+}
+
+size_t db_mlp_size(const struct db_mlp *net)
+{
+    size_t size = 0;
+    for (int i = 0; i <= net->layer_count; i++) {
+        const struct db_mlp_layer l = db_mlp_layer(net, NULL, i);
+        size += (size_t)l.to * (size_t)(l.from + 1);
+    }
+    return size;
 }
 
 static void draw_layer(float *weights, int from, int to, struct hs_rng *rng)
@@ -39,9 +54,10 @@ int db_mlp_init(struct db_mlp *net, uint64_t seed)
     }
     struct hs_rng rng;
     hs_rng_seed(&rng, seed);
-    const struct db_mlp_parts p = db_mlp_split(net, net->weights);
-    draw_layer(p.hidden, net->input_count, net->hidden_count, &rng);
-    draw_layer(p.output, net->hidden_count, net->output_count, &rng);
+    for (int i = 0; i <= net->layer_count; i++) {
+        const struct db_mlp_layer l = db_mlp_layer(net, net->weights, i);
+        draw_layer(l.weights, l.from, l.to, &rng);
+    }
     return 0;
 }
 
@@ -51,15 +67,14 @@ void db_mlp_free(struct db_mlp *net)
     net->weights = NULL;
 }
 
-/* sums = from * weights' + bias, for a layer of `to_count` units. */
-static void weigh(const float *from, const float *weights, const float *bias, int count,
-                  int from_count, int to_count, float *sums)
+/* sums = from * weights' + bias. */
+static void weigh(const float *from, const struct db_mlp_layer *l, int count, float *sums)
 {
     for (int i = 0; i < count; i++) {
-        memcpy(sums + (size_t)i * (size_t)to_count, bias, (size_t)to_count * sizeof *sums);
+        memcpy(sums + (size_t)i * (size_t)l->to, l->bias, (size_t)l->to * sizeof *sums);
     }
-    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, count, to_count, from_count, 1, from,
-                from_count, weights, from_count, 1, sums, to_count);
+    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, count, l->to, l->from, 1, from, l->from,
+                l->weights, l->from, 1, sums, l->to);
 }
 
 static void squash(float *values, size_t count, enum db_unit unit)
@@ -86,13 +101,18 @@ static void softmax(float *values, int count)
 
 void db_mlp_forward(const struct db_mlp *net, const struct db_mlp_batch *batch)
 {
-    const struct db_mlp_parts p = db_mlp_split(net, net->weights);
     const size_t count = (size_t)batch->count;
-    weigh(batch->inputs, p.hidden, p.hidden_bias, batch->count, net->input_count, net->hidden_count,
-          batch->hidden);
-    squash(batch->hidden, count * (size_t)net->hidden_count, net->unit);
-    weigh(batch->hidden, p.output, p.output_bias, batch->count, net->hidden_count,
-          net->output_count, batch->outputs);
+    const float *from = batch->inputs;
+    float *to = batch->hidden;
+    for (int i = 0; i < net->layer_count; i++) {
+        const struct db_mlp_layer l = db_mlp_layer(net, net->weights, i);
+        weigh(from, &l, batch->count, to);
+        squash(to, count * (size_t)l.to, net->unit);
+        from = to;
+        to += count * (size_t)l.to;
+    }
+    const struct db_mlp_layer last = db_mlp_layer(net, net->weights, net->layer_count);
+    weigh(from, &last, batch->count, batch->outputs);
     if (net->loss == DB_LOSS_SQUARE) {
         squash(batch->outputs, count * (size_t)net->output_count, DB_UNIT_SIGMOID);
         return;
@@ -117,37 +137,48 @@ static void find_output_delta(const struct db_mlp *net, const struct db_mlp_batc
     }
 }
 
-/* gradient = delta' * from, and the sums of delta's columns for the biases. */
-static void find_layer_gradient(const float *delta, const float *from, int count, int from_count,
-                                int to_count, float *weights, float *bias)
+/* The layer's part of the gradient = delta' * from, and the sums of delta's columns for the biases.
+ */
+static void find_layer_gradient(const float *delta, const float *from, int count,
+                                const struct db_mlp_layer *g)
 {
-    cblas_sgemm(CblasRowMajor, CblasTrans, CblasNoTrans, to_count, from_count, count, 1, delta,
-                to_count, from, from_count, 0, weights, from_count);
-    memset(bias, 0, (size_t)to_count * sizeof *bias);
+    cblas_sgemm(CblasRowMajor, CblasTrans, CblasNoTrans, g->to, g->from, count, 1, delta, g->to,
+                from, g->from, 0, g->weights, g->from);
+    memset(g->bias, 0, (size_t)g->to * sizeof *g->bias);
     for (int i = 0; i < count; i++) {
-        for (int k = 0; k < to_count; k++) {
-            bias[k] += delta[i * to_count + k];
+        for (int k = 0; k < g->to; k++) {
+            g->bias[k] += delta[i * g->to + k];
         }
+    }
+}
+
+/* The error at the sums that enter the units of the layer below: theirs times their slope. */
+static void pass_down(const struct db_mlp *net, const struct db_mlp_layer *l, int count,
+                      const float *delta, const float *below, float *delta_below)
+{
+    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count, l->from, l->to, 1, delta, l->to,
+                l->weights, l->from, 0, delta_below, l->from);
+    for (size_t i = 0; i < (size_t)count * (size_t)l->from; i++) {
+        const float h = below[i];
+        delta_below[i] *= net->unit == DB_UNIT_TANH ? 1 - h * h : h * (1 - h);
     }
 }
 
 void db_mlp_backward(const struct db_mlp *net, const struct db_mlp_batch *batch, float *gradient)
 {
-    const struct db_mlp_parts p = db_mlp_split(net, net->weights);
-    const struct db_mlp_parts g = db_mlp_split(net, gradient);
-    const int hidden = net->hidden_count;
+    const float *delta = batch->output_delta;
+    size_t end = (size_t)batch->count * (size_t)db_mlp_hidden_total(net);
     find_output_delta(net, batch);
-    find_layer_gradient(batch->output_delta, batch->hidden, batch->count, hidden, net->output_count,
-                        g.output, g.output_bias);
-    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, batch->count, hidden, net->output_count,
-                1, batch->output_delta, net->output_count, p.output, hidden, 0, batch->hidden_delta,
-                hidden);
-    for (size_t i = 0; i < (size_t)batch->count * (size_t)hidden; i++) {
-        const float h = batch->hidden[i];
-        batch->hidden_delta[i] *= net->unit == DB_UNIT_TANH ? 1 - h * h : h * (1 - h);
+    for (int i = net->layer_count; i > 0; i--) {
+        const struct db_mlp_layer l = db_mlp_layer(net, net->weights, i);
+        const struct db_mlp_layer g = db_mlp_layer(net, gradient, i);
+        end -= (size_t)batch->count * (size_t)l.from;
+        find_layer_gradient(delta, batch->hidden + end, batch->count, &g);
+        pass_down(net, &l, batch->count, delta, batch->hidden + end, batch->hidden_delta + end);
+        delta = batch->hidden_delta + end;
     }
-    find_layer_gradient(batch->hidden_delta, batch->inputs, batch->count, net->input_count, hidden,
-                        g.hidden, g.hidden_bias);
+    const struct db_mlp_layer g = db_mlp_layer(net, gradient, 0);
+    find_layer_gradient(delta, batch->inputs, batch->count, &g);
 }
 
 double db_mlp_loss(const struct db_mlp *net, const struct db_mlp_batch *batch)
@@ -167,9 +198,13 @@ double db_mlp_loss(const struct db_mlp *net, const struct db_mlp_batch *batch)
     return sum / batch->count;
 }
 
-int db_mlp_default_hidden(int input_count, int output_count)
+int db_mlp_default_hidden(int input_count, int output_count, long *wanted)
 {
-    enum { MOST = 128 };
-    const long product = (long)input_count * output_count;
-    return product < MOST ? (int)product : MOST;
+    long rule = (long)input_count * output_count;
+    rule = rule > 3L * input_count ? rule : 3L * input_count + 1;
+    rule = rule > DB_HIDDEN_LEAST ? rule : DB_HIDDEN_LEAST;
+    if (wanted) {
+        *wanted = rule;
+    }
+    return rule < DB_HIDDEN_MOST ? (int)rule : DB_HIDDEN_MOST;
 }

@@ -2,6 +2,7 @@
 
 #include "hs/error.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,32 +27,36 @@ float db_fast_tanh(float x)
     return fast_tanh(x);
 }
 
+/* Take the mean away and divide by the scale in the weights instead of in every pixel. */
+static void fold_normalisation(const struct db_net *net, const struct db_mlp_layer *first)
+{
+    for (int j = 0; j < first->to; j++) {
+        double bias = (double)first->bias[j];
+        for (int i = 0; i < first->from; i++) {
+            float *w = &first->weights[(size_t)j * (size_t)first->from + (size_t)i];
+            *w /= net->scale[i];
+            bias -= (double)*w * (double)net->mean[i];
+        }
+        first->bias[j] = (float)bias;
+    }
+}
+
 int db_apply_init(struct db_applied *a, const struct db_net *net)
 {
-    const struct db_mlp *first = &net->members[0];
-    *a = (struct db_applied){.input_count = net->input_count,
-                             .hidden_count = first->hidden_count,
-                             .output_count = net->output_count,
-                             .member_count = net->member_count,
-                             .unit = first->unit,
-                             .member_size = db_mlp_size(first)};
+    *a = (struct db_applied){.shape = net->members[0], .member_count = net->member_count};
+    a->shape.weights = NULL;
+    a->member_size = db_mlp_size(&a->shape);
     a->weights = malloc((size_t)a->member_count * a->member_size * sizeof *a->weights);
-    if (!a->weights) {
+    a->planes = malloc((size_t)db_mlp_hidden_total(&a->shape) * LANE * sizeof *a->planes);
+    if (!a->weights || !a->planes) {
+        db_apply_free(a);
         return hs_error("network", NULL, "out of memory");
     }
     for (int m = 0; m < a->member_count; m++) {
         float *weights = a->weights + (size_t)m * a->member_size;
         memcpy(weights, net->members[m].weights, a->member_size * sizeof *weights);
-        const struct db_mlp_parts p = db_mlp_split(first, weights);
-        for (int j = 0; j < a->hidden_count; j++) {
-            double bias = (double)p.hidden_bias[j];
-            for (int i = 0; i < a->input_count; i++) {
-                float *w = &p.hidden[(size_t)j * (size_t)a->input_count + (size_t)i];
-                *w /= net->scale[i];
-                bias -= (double)*w * (double)net->mean[i];
-            }
-            p.hidden_bias[j] = (float)bias;
-        }
+        const struct db_mlp_layer first = db_mlp_layer(&a->shape, weights, 0);
+        fold_normalisation(net, &first);
     }
     return 0;
 }
@@ -59,6 +64,7 @@ int db_apply_init(struct db_applied *a, const struct db_net *net)
 void db_apply_free(struct db_applied *a)
 {
     free(a->weights);
+    free(a->planes);
     *a = (struct db_applied){0};
 }
 
@@ -92,42 +98,69 @@ static void squash(float *values, enum db_unit unit, int count)
 
 /* Some pixels on their way through the network. */
 struct lane {
-    const float *planes; /* of the first pixel */
+    const float *planes; /* of the first pixel: what feeds the next layer */
     size_t stride;       /* from plane to plane */
     int count;           /* 1..LANE */
     float outputs[DB_CLASS_MAX][LANE];
 };
 
-/* Add what one member says; a hidden unit is used up as soon as it is known. */
-static void add_member(const struct db_applied *a, const float *weights, struct lane *lane)
+/* What unit j of a hidden layer says. */
+static void find_unit(const struct db_applied *a, const struct db_mlp_layer *l, int j,
+                      const struct lane *lane, float *unit)
 {
-    const size_t inputs = (size_t)a->input_count, hidden = (size_t)a->hidden_count;
-    const float *hidden_bias = weights + hidden * inputs;
-    const float *output = hidden_bias + hidden;
-    const float *output_bias = output + (size_t)a->output_count * hidden;
+    fill(unit, l->bias[j], lane->count);
+    for (int i = 0; i < l->from; i++) {
+        add_scaled(unit, lane->planes + (size_t)i * lane->stride,
+                   l->weights[(size_t)j * (size_t)l->from + (size_t)i], lane->count);
+    }
+    squash(unit, a->shape.unit, lane->count);
+}
+
+/* The hidden layers but the last; `lane` then holds what they say. */
+static void climb(const struct db_applied *a, float *weights, struct lane *lane)
+{
+    float *to = a->planes;
+    for (int i = 0; i + 1 < a->shape.layer_count; i++) {
+        const struct db_mlp_layer l = db_mlp_layer(&a->shape, weights, i);
+        for (int j = 0; j < l.to; j++) {
+            find_unit(a, &l, j, lane, to + (size_t)j * LANE);
+        }
+        lane->planes = to;
+        lane->stride = LANE;
+        to += (size_t)l.to * LANE;
+    }
+}
+
+/* Add what one member says; a unit of the last hidden layer is used up as soon as it is known. */
+static void add_member(const struct db_applied *a, float *weights, struct lane *lane)
+{
+    const float *planes = lane->planes;
+    const size_t stride = lane->stride;
+    const struct db_mlp_layer l = db_mlp_layer(&a->shape, weights, a->shape.layer_count - 1);
+    const struct db_mlp_layer output = db_mlp_layer(&a->shape, weights, a->shape.layer_count);
     float unit[LANE];
-    for (size_t j = 0; j < hidden; j++) {
-        fill(unit, hidden_bias[j], lane->count);
-        for (size_t i = 0; i < inputs; i++) {
-            add_scaled(unit, lane->planes + i * lane->stride, weights[j * inputs + i], lane->count);
-        }
-        squash(unit, a->unit, lane->count);
-        for (int k = 0; k < a->output_count; k++) {
-            add_scaled(lane->outputs[k], unit, output[(size_t)k * hidden + j], lane->count);
+    climb(a, weights, lane);
+    for (int j = 0; j < l.to; j++) {
+        find_unit(a, &l, j, lane, unit);
+        for (int k = 0; k < output.to; k++) {
+            add_scaled(lane->outputs[k], unit,
+                       output.weights[(size_t)k * (size_t)output.from + (size_t)j], lane->count);
         }
     }
-    for (int k = 0; k < a->output_count; k++) {
+    for (int k = 0; k < output.to; k++) {
         for (int i = 0; i < lane->count; i++) {
-            lane->outputs[k][i] += output_bias[k];
+            lane->outputs[k][i] += output.bias[k];
         }
     }
+    lane->planes = planes;
+    lane->stride = stride;
 }
 
 static void choose(const struct db_applied *a, struct lane *lane, uint8_t *winners)
 {
     float *best = lane->outputs[0];
     memset(winners, 0, (size_t)lane->count);
-    for (int k = 1; k < a->output_count; k++) {
+    for (int k = 1; k < a->shape.output_count; k++) {
         const float *plane = lane->outputs[k];
         for (int i = 0; i < lane->count; i++) {
             winners[i] = plane[i] > best[i] ? (uint8_t)k : winners[i];
@@ -136,19 +169,36 @@ static void choose(const struct db_applied *a, struct lane *lane, uint8_t *winne
     }
 }
 
+/* The largest but one is the largest of the others. */
+static void find_margins(const struct db_applied *a, const struct lane *lane, float *margins)
+{
+    for (int i = 0; i < lane->count; i++) {
+        float best = -INFINITY, second = -INFINITY;
+        for (int k = 0; k < a->shape.output_count; k++) {
+            const float v = lane->outputs[k][i];
+            second = fmaxf(second, fminf(v, best));
+            best = fmaxf(v, best);
+        }
+        margins[i] = (best - second) / (float)a->member_count;
+    }
+}
+
 void db_apply(const struct db_applied *a, const float *planes, size_t stride, size_t count,
-              uint8_t *winners)
+              uint8_t *winners, float *margins)
 {
     struct lane lane = {.stride = stride};
     for (size_t at = 0; at < count; at += LANE) {
         lane.planes = planes + at;
         lane.count = count - at < LANE ? (int)(count - at) : LANE;
-        for (int k = 0; k < a->output_count; k++) {
+        for (int k = 0; k < a->shape.output_count; k++) {
             fill(lane.outputs[k], 0, lane.count);
         }
         for (int m = 0; m < a->member_count; m++) {
             add_member(a, a->weights + (size_t)m * a->member_size, &lane);
         }
-        choose(a, &lane, winners + at);
+        if (margins) {
+            find_margins(a, &lane, margins + at);
+        }
+        choose(a, &lane, winners + at); /* It overwrites the outputs. */
     }
 }

@@ -14,28 +14,29 @@
 enum {
     CLASSES = 256,      /* as many as a target can name */
     SCORE_BATCH = 1024, /* exemplars at a time when only looking */
-    ACTIONS_BEFORE_NEW_WEIGHTS = 3,
+    EPOCH_LEAST = 512,  /* presentations: a handful of exemplars would change the weights once */
 };
 
 /* An exemplar's RMS error over the outputs counts as high or low beyond these. */
 static const double high_error = 0.4, low_error = 0.2;
-/* Recognition of 95 % switches between the two in up to a tenth of the presentations: more is the
- * symptom. */
+/* Recognition of 95 % switches between the two in up to a tenth of the presentations: more is
+ * Heaton's symptom. */
 static const double alternating = 0.1;
-/* Relative fall of the error that still counts as progress. */
-static const double error_progress = 2e-3;
+/* What counts as progress: the relative fall of the error, the rise of the recognition. */
+static const double error_progress = 0.01, score_progress = 0.002;
 
 static int batch_alloc(struct db_mlp_batch *b, const struct db_mlp *net, int count)
 {
     const size_t n = (size_t)count;
-    float *all = malloc(n * (size_t)(2 * net->hidden_count + 2 * net->output_count) * sizeof *all);
+    const size_t hidden = (size_t)db_mlp_hidden_total(net), outputs = (size_t)net->output_count;
+    float *all = malloc(n * 2 * (hidden + outputs) * sizeof *all);
     *b = (struct db_mlp_batch){.count = count, .hidden = all};
     if (!all) {
         return -1;
     }
-    b->hidden_delta = b->hidden + n * (size_t)net->hidden_count;
-    b->outputs = b->hidden_delta + n * (size_t)net->hidden_count;
-    b->output_delta = b->outputs + n * (size_t)net->output_count;
+    b->hidden_delta = b->hidden + n * hidden;
+    b->outputs = b->hidden_delta + n * hidden;
+    b->output_delta = b->outputs + n * outputs;
     return 0;
 }
 
@@ -80,18 +81,18 @@ double db_mlp_recognition(const struct db_mlp *net, const struct db_train_data *
         }
     }
     free(b.hidden);
-    double sum = 0;
-    int classes = 0;
+    double sum = 0, weights = 0;
     for (int c = 0; c < CLASSES; c++) {
         if (seen[c] > 0) {
-            sum += (double)right[c] / (double)seen[c];
-            classes++;
+            const double weight = data->priors ? data->priors[c] : 1;
+            sum += weight * (double)right[c] / (double)seen[c];
+            weights += weight;
         }
     }
     if (rms) {
         *rms = sqrt(square / ((double)data->count * net->output_count));
     }
-    return sum / classes;
+    return sum / weights;
 }
 
 /* Endless rounds through the exemplars of each class, in an order drawn anew for each round. */
@@ -99,10 +100,11 @@ struct presenter {
     uint32_t *order;           /* owned: exemplars sorted by class */
     size_t begin[CLASSES + 1]; /* of each class in `order` */
     size_t next[CLASSES];
-    uint32_t *epoch; /* owned: those of the present epoch */
-    size_t count;
-    uint8_t classes[CLASSES]; /* that have exemplars */
-    int class_count;
+    uint32_t *epoch;       /* owned: those of the present epoch */
+    size_t count;          /* of them */
+    size_t usual;          /* presentations of an epoch, give or take one a class */
+    double share[CLASSES]; /* of each class in them */
+    double owed[CLASSES];  /* parts of presentations carried over from epoch to epoch */
 };
 
 static void presenter_free(struct presenter *p)
@@ -111,11 +113,25 @@ static void presenter_free(struct presenter *p)
     free(p->epoch);
 }
 
+/* The priors of the classes that have exemplars, brought to a sum of 1. */
+static void find_shares(struct presenter *p, const double *priors)
+{
+    double sum = 0;
+    for (int c = 0; c < CLASSES; c++) {
+        const bool occurs = p->begin[c + 1] > p->begin[c];
+        p->share[c] = occurs ? (priors ? priors[c] : 1) : 0;
+        sum += p->share[c];
+    }
+    for (int c = 0; c < CLASSES; c++) {
+        p->share[c] /= sum;
+    }
+}
+
 static int presenter_init(struct presenter *p, const struct db_train_data *data)
 {
-    *p = (struct presenter){.count = data->count};
+    *p = (struct presenter){.usual = data->count > EPOCH_LEAST ? data->count : EPOCH_LEAST};
     p->order = malloc(data->count * sizeof *p->order);
-    p->epoch = malloc(data->count * sizeof *p->epoch);
+    p->epoch = malloc((p->usual + CLASSES) * sizeof *p->epoch);
     if (!p->order || !p->epoch) {
         return -1; /* trainer_free frees either. */
     }
@@ -128,11 +144,9 @@ static int presenter_init(struct presenter *p, const struct db_train_data *data)
             }
         }
         p->next[c] = used; /* The first draw begins a round. */
-        if (used > p->begin[c]) {
-            p->classes[p->class_count++] = (uint8_t)c;
-        }
     }
     p->begin[CLASSES] = used;
+    find_shares(p, data->priors);
     return 0;
 }
 
@@ -145,15 +159,26 @@ static void shuffle(uint32_t *items, size_t count, struct hs_rng *rng)
     }
 }
 
+static uint32_t present_next(struct presenter *p, int c, struct hs_rng *rng)
+{
+    if (p->next[c] == p->begin[c + 1]) {
+        p->next[c] = p->begin[c];
+        shuffle(p->order + p->begin[c], p->begin[c + 1] - p->begin[c], rng);
+    }
+    return p->order[p->next[c]++];
+}
+
 static void presenter_draw_epoch(struct presenter *p, struct hs_rng *rng)
 {
-    for (size_t i = 0; i < p->count; i++) {
-        const int c = p->classes[i % (size_t)p->class_count];
-        if (p->next[c] == p->begin[c + 1]) {
-            p->next[c] = p->begin[c];
-            shuffle(p->order + p->begin[c], p->begin[c + 1] - p->begin[c], rng);
+    p->count = 0;
+    for (int c = 0; c < CLASSES; c++) {
+        /* Half a part in 10^9 keeps whole numbers whole. */
+        p->owed[c] += p->share[c] * (double)p->usual;
+        const size_t due = (size_t)(p->owed[c] + 1e-9);
+        p->owed[c] -= (double)due;
+        for (size_t i = 0; i < due; i++) {
+            p->epoch[p->count++] = present_next(p, c, rng);
         }
-        p->epoch[i] = p->order[p->next[c]++];
     }
     shuffle(p->epoch, p->count, rng);
 }
@@ -172,9 +197,10 @@ struct trainer {
     struct hs_rng rng;
     double rate, momentum, noise; /* as they are by now */
     double best_score, best_rms;  /* of the weights in `best` */
-    double low_rms;               /* the lowest that counted as progress */
-    int progress_epoch;           /* the last that improved on anything */
-    int actions;
+    double mark_score, mark_rms;  /* where progress was last made */
+    int score_epoch, rms_epoch;   /* when */
+    int actions;                  /* cures tried on these weights */
+    int redraws_left;
     bool was_high; /* the error of the exemplar presented last */
 };
 
@@ -195,8 +221,9 @@ static int trainer_init(struct trainer *t)
     t->rate = t->options->rate;
     t->momentum = t->options->momentum;
     t->noise = t->options->noise;
-    t->best_score = -1;
-    t->best_rms = t->low_rms = INFINITY;
+    t->best_score = t->mark_score = -1;
+    t->best_rms = t->mark_rms = INFINITY;
+    t->redraws_left = t->options->redraws;
     hs_rng_seed(&t->rng, t->options->seed ^ 0x7261696e);
     t->inputs = malloc(batch * (size_t)t->net->input_count * sizeof *t->inputs);
     t->targets = malloc(batch);
@@ -275,20 +302,33 @@ static void run_epoch(struct trainer *t, struct db_epoch *epoch)
     epoch->validation = db_mlp_recognition(t->net, t->validation, NULL);
 }
 
+static double score_of(const struct db_epoch *epoch)
+{
+    return isnan(epoch->validation) ? epoch->recognition : epoch->validation;
+}
+
 static void keep_if_better(struct trainer *t, const struct db_epoch *epoch, int number)
 {
-    const double score = isnan(epoch->validation) ? epoch->recognition : epoch->validation;
+    const double score = score_of(epoch);
     if (score > t->best_score || (score == t->best_score && epoch->rms < t->best_rms)) {
         t->best_score = score;
         t->best_rms = epoch->rms;
         t->report->best_epoch = number;
-        t->progress_epoch = number;
         memcpy(t->best, t->net->weights, db_mlp_size(t->net) * sizeof *t->best);
     }
-    if (epoch->rms < t->low_rms * (1 - error_progress)) {
-        t->low_rms = epoch->rms;
-        /* With validation polygons a falling training error alone is no progress. */
-        t->progress_epoch = isnan(epoch->validation) ? number : t->progress_epoch;
+}
+
+/* Any fall of the error, however small, is a better result but no progress: on the flat ground of a
+ * local minimum it goes on for ever. */
+static void note_progress(struct trainer *t, const struct db_epoch *epoch, int number)
+{
+    if (score_of(epoch) >= t->mark_score + score_progress) {
+        t->mark_score = score_of(epoch);
+        t->score_epoch = number;
+    }
+    if (epoch->rms <= t->mark_rms * (1 - error_progress)) {
+        t->mark_rms = epoch->rms;
+        t->rms_epoch = number;
     }
 }
 
@@ -319,19 +359,20 @@ static int draw_new_weights(struct trainer *t)
     t->rate = t->options->rate;
     t->momentum = t->options->momentum;
     t->noise = t->options->noise;
-    t->low_rms = INFINITY;
+    t->mark_score = -1;
+    t->mark_rms = INFINITY;
+    t->actions = 0;
+    t->redraws_left--;
     return 0;
 }
 
 /* The next cure; returns false when there is none left. */
 static bool act_on_minimum(struct trainer *t, int epoch, double alternation)
 {
-    const char *symptom = "local minimum (%.0f %% alternating)";
     char met[64];
-    snprintf(met, sizeof met, symptom, 100 * alternation);
-    if (t->actions > ACTIONS_BEFORE_NEW_WEIGHTS) {
-        return false;
-    }
+    snprintf(met, sizeof met, "%s (%.0f %% alternating)",
+             alternation < alternating ? "plateau below the goal" : "local minimum",
+             100 * alternation);
     memset(t->velocity, 0, db_mlp_size(t->net) * sizeof *t->velocity);
     switch (t->actions++) {
     case 0:
@@ -348,26 +389,44 @@ static bool act_on_minimum(struct trainer *t, int epoch, double alternation)
         record(t, epoch, "%s: noise raised to %g", met, t->noise);
         return true;
     default:
+        if (t->redraws_left == 0) {
+            return false;
+        }
         record(t, epoch, "%s: weights drawn anew", met);
         return draw_new_weights(t) == 0;
     }
 }
 
+static bool has_goal(const struct trainer *t)
+{
+    return t->report->epochs[t->report->best_epoch - 1].recognition >= t->options->goal;
+}
+
+/* Once the goal is reached, and with validation, a falling error alone is no progress. */
+static bool is_plateau(const struct trainer *t, const struct db_epoch *epoch, int number)
+{
+    const bool error_counts = isnan(epoch->validation) && !has_goal(t);
+    const int last = error_counts && t->rms_epoch > t->score_epoch ? t->rms_epoch : t->score_epoch;
+    return number - last >= t->options->patience;
+}
+
 /* Returns true when training is over. */
 static bool is_over(struct trainer *t, const struct db_epoch *epoch, int number)
 {
-    if (epoch->recognition >= t->options->goal) {
+    t->report->stop = DB_STOP_EPOCHS;
+    if (!is_plateau(t, epoch, number)) {
+        return false;
+    }
+    const bool error_falls = number - t->rms_epoch < t->options->patience;
+    if (has_goal(t)) {
         t->report->stop = DB_STOP_GOAL;
         return true;
     }
-    if (number - t->progress_epoch >= t->options->patience) {
-        t->progress_epoch = number;
-        if (epoch->alternation < alternating || !act_on_minimum(t, number, epoch->alternation)) {
-            t->report->stop = DB_STOP_PLATEAU;
-            return true;
-        }
+    t->score_epoch = t->rms_epoch = number;
+    if (error_falls || !act_on_minimum(t, number, epoch->alternation)) {
+        t->report->stop = DB_STOP_PLATEAU;
+        return true;
     }
-    t->report->stop = DB_STOP_EPOCHS;
     return false;
 }
 
@@ -391,6 +450,7 @@ int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
         struct db_epoch *epoch = &report->epochs[report->epoch_count++];
         run_epoch(&t, epoch);
         keep_if_better(&t, epoch, report->epoch_count);
+        note_progress(&t, epoch, report->epoch_count);
         over = is_over(&t, epoch, report->epoch_count);
         hs_progress_update(&progress, (uint64_t)report->epoch_count);
     }

@@ -12,28 +12,32 @@
 static const char *const unit_names[] = {"tanh", "sigmoid"};
 static const char *const loss_names[] = {"square", "cross-entropy"};
 
-static void write_layer(FILE *out, const float *weights, const float *bias, int from, int to)
+static void write_layer(FILE *out, const struct db_mlp_layer *l)
 {
-    for (int j = 0; j < to; j++) {
+    for (int j = 0; j < l->to; j++) {
         fputs("unit-weights", out);
-        for (int i = 0; i < from; i++) {
-            fprintf(out, " %.9g", (double)weights[(size_t)j * (size_t)from + (size_t)i]);
+        for (int i = 0; i < l->from; i++) {
+            fprintf(out, " %.9g", (double)l->weights[(size_t)j * (size_t)l->from + (size_t)i]);
         }
-        fprintf(out, " %.9g\n", (double)bias[j]);
+        fprintf(out, " %.9g\n", (double)l->bias[j]);
     }
 }
 
 static void write_head(FILE *out, const struct db_net *net)
 {
     const struct db_mlp *first = &net->members[0];
-    fprintf(out, "landmass-net 1\nbands %d\ncontext %d\nunit %s\nloss %s\nhidden %d\nmembers %d\n",
-            net->band_count, net->context, unit_names[first->unit], loss_names[first->loss],
-            first->hidden_count, net->member_count);
+    fprintf(out, "landmass-net 2\nbands %d\ncontext %d\nunit %s\nloss %s\nhidden", net->band_count,
+            net->context, unit_names[first->unit], loss_names[first->loss]);
+    for (int l = 0; l < first->layer_count; l++) {
+        fprintf(out, " %d", first->hidden[l]);
+    }
+    fprintf(out, "\nmembers %d\n", net->member_count);
     for (int k = 0; k < net->output_count; k++) {
         fprintf(out, "class %s\n", net->class_names[k]);
     }
     for (int i = 0; i < net->input_count; i++) {
-        fprintf(out, "input %.9g %.9g\n", (double)net->mean[i], (double)net->scale[i]);
+        fprintf(out, "input %.9g %.9g %.9g %.9g\n", (double)net->mean[i], (double)net->scale[i],
+                (double)net->low[i], (double)net->high[i]);
     }
 }
 
@@ -46,13 +50,26 @@ int db_net_write(const struct db_net *net, const char *path)
     write_head(file.stream, net);
     for (int m = 0; m < net->member_count; m++) {
         const struct db_mlp *mlp = &net->members[m];
-        const struct db_mlp_parts p = db_mlp_split(mlp, mlp->weights);
         fprintf(file.stream, "# member %d\n", m + 1);
-        write_layer(file.stream, p.hidden, p.hidden_bias, mlp->input_count, mlp->hidden_count);
-        write_layer(file.stream, p.output, p.output_bias, mlp->hidden_count, mlp->output_count);
+        for (int i = 0; i <= mlp->layer_count; i++) {
+            const struct db_mlp_layer l = db_mlp_layer(mlp, mlp->weights, i);
+            write_layer(file.stream, &l);
+        }
     }
     fputs("end\n", file.stream);
     return hs_atomic_commit(&file);
+}
+
+int db_net_alloc_inputs(struct db_net *net)
+{
+    const size_t count = (size_t)net->input_count;
+    net->mean = calloc(count, sizeof *net->mean);
+    net->scale = calloc(count, sizeof *net->scale);
+    net->low = calloc(count, sizeof *net->low);
+    net->high = calloc(count, sizeof *net->high);
+    return net->mean && net->scale && net->low && net->high
+               ? 0
+               : hs_error("network", NULL, "out of memory");
 }
 
 /* Step to the next line, which must begin with `key` and a space, and give what follows. A file
@@ -107,12 +124,9 @@ static int read_choice(struct db_text_file *f, const char *key, const char *cons
                          key, names[0], names[1], value);
 }
 
-static int read_floats(struct db_text_file *f, const char *key, float *numbers, int count)
+static int parse_floats(struct db_text_file *f, const char *key, const char *value, float *numbers,
+                        int count)
 {
-    const char *value = "";
-    if (next_value(f, key, &value) != 0) {
-        return -1;
-    }
     for (int i = 0; i < count; i++) {
         char *end;
         numbers[i] = strtof(value, &end);
@@ -127,6 +141,35 @@ static int read_floats(struct db_text_file *f, const char *key, float *numbers, 
         return db_text_error(f, "train again or copy the file again", "more than %d numbers",
                              count);
     }
+    return 0;
+}
+
+static int read_floats(struct db_text_file *f, const char *key, float *numbers, int count)
+{
+    const char *value = "";
+    return next_value(f, key, &value) != 0 ? -1 : parse_floats(f, key, value, numbers, count);
+}
+
+/* Units of one layer or, from version 2 on, of several. */
+static int read_hidden(struct db_text_file *f, int version, struct db_mlp *shape)
+{
+    const char *value = "";
+    const int most = version < 2 ? 1 : DB_LAYERS_MAX;
+    if (next_value(f, "hidden", &value) != 0) {
+        return -1;
+    }
+    do {
+        char *end;
+        const long units = strtol(value, &end, 10);
+        if (end == value || (*end != '\0' && *end != ' ') || units < 1 || units > DB_HIDDEN_MAX ||
+            shape->layer_count == most) {
+            return db_text_error(f, "train again or copy the file again",
+                                 "`hidden` must be 1..%d numbers of 1..%d in version %d, not `%s`",
+                                 most, DB_HIDDEN_MAX, version, value);
+        }
+        shape->hidden[shape->layer_count++] = (int)units;
+        value = end;
+    } while (*value != '\0');
     return 0;
 }
 
@@ -156,41 +199,53 @@ static int read_classes(struct db_text_file *f, struct db_net *net)
     return 0;
 }
 
-/* The first `input` line has been read already, by read_classes. */
-static int read_inputs(struct db_text_file *f, struct db_net *net)
+/* MEAN SCALE and, from version 2 on, LOW HIGH. */
+static int take_input(struct db_text_file *f, struct db_net *net, int i, const float *numbers)
 {
-    for (int i = 0; i < net->input_count; i++) {
-        float pair[2];
-        if (i == 0) {
-            char *end, *last;
-            const bool is_input = strncmp(f->line, "input ", 6) == 0;
-            pair[0] = is_input ? strtof(f->line + 6, &end) : 0;
-            pair[1] = is_input ? strtof(end, &last) : 0;
-            if (!is_input || last == end || *last != '\0' || !(fabsf(pair[0]) <= 1e9f)) {
-                return db_text_error(f, "train again or copy the file again",
-                                     "expected `class NAME` or `input MEAN SCALE`");
-            }
-        } else if (read_floats(f, "input", pair, 2) != 0) {
-            return -1;
-        }
-        if (!(pair[1] > 0 && pair[1] <= 1e9f)) {
-            return db_text_error(f, "train again", "the scale of an input must be above 0");
-        }
-        net->mean[i] = pair[0];
-        net->scale[i] = pair[1];
+    if (!(numbers[1] > 0)) {
+        return db_text_error(f, "train again", "the scale of an input must be above 0");
     }
+    net->mean[i] = numbers[0];
+    net->scale[i] = numbers[1];
+    if (!net->has_range) {
+        return 0;
+    }
+    if (numbers[2] > numbers[3]) {
+        return db_text_error(f, "train again", "the range of an input ends before it begins");
+    }
+    net->low[i] = numbers[2];
+    net->high[i] = numbers[3];
     return 0;
 }
 
-static int read_layer(struct db_text_file *f, float *weights, float *bias, int from, int to)
+/* The first `input` line has been read already, by read_classes. */
+static int read_inputs(struct db_text_file *f, struct db_net *net)
 {
-    float *row = malloc((size_t)(from + 1) * sizeof *row);
-    int result = row ? 0 : hs_error(f->path, NULL, "out of memory");
-    for (int j = 0; result == 0 && j < to; j++) {
-        result = read_floats(f, "unit-weights", row, from + 1);
+    const int count = net->has_range ? 4 : 2;
+    float numbers[4];
+    if (strncmp(f->line, "input ", 6) != 0) {
+        return db_text_error(f, "train again or copy the file again",
+                             "expected `class NAME` or `input MEAN SCALE LOW HIGH`");
+    }
+    int result = parse_floats(f, "input", f->line + 6, numbers, count);
+    for (int i = 0; result == 0 && i < net->input_count; i++) {
+        result = i == 0 ? 0 : read_floats(f, "input", numbers, count);
         if (result == 0) {
-            memcpy(weights + (size_t)j * (size_t)from, row, (size_t)from * sizeof *row);
-            bias[j] = row[from];
+            result = take_input(f, net, i, numbers);
+        }
+    }
+    return result;
+}
+
+static int read_layer(struct db_text_file *f, const struct db_mlp_layer *l)
+{
+    float *row = malloc((size_t)(l->from + 1) * sizeof *row);
+    int result = row ? 0 : hs_error(f->path, NULL, "out of memory");
+    for (int j = 0; result == 0 && j < l->to; j++) {
+        result = read_floats(f, "unit-weights", row, l->from + 1);
+        if (result == 0) {
+            memcpy(l->weights + (size_t)j * (size_t)l->from, row, (size_t)l->from * sizeof *row);
+            l->bias[j] = row[l->from];
         }
     }
     free(row);
@@ -200,14 +255,12 @@ static int read_layer(struct db_text_file *f, float *weights, float *bias, int f
 static int read_member(struct db_text_file *f, struct db_mlp *mlp)
 {
     mlp->weights = calloc(db_mlp_size(mlp), sizeof *mlp->weights);
-    if (!mlp->weights) {
-        return hs_error(f->path, NULL, "out of memory");
+    int result = mlp->weights ? 0 : hs_error(f->path, NULL, "out of memory");
+    for (int i = 0; result == 0 && i <= mlp->layer_count; i++) {
+        const struct db_mlp_layer l = db_mlp_layer(mlp, mlp->weights, i);
+        result = read_layer(f, &l);
     }
-    const struct db_mlp_parts p = db_mlp_split(mlp, mlp->weights);
-    if (read_layer(f, p.hidden, p.hidden_bias, mlp->input_count, mlp->hidden_count) != 0) {
-        return -1;
-    }
-    return read_layer(f, p.output, p.output_bias, mlp->hidden_count, mlp->output_count);
+    return result;
 }
 
 static int read_end(struct db_text_file *f)
@@ -226,12 +279,11 @@ static int read_net(struct db_text_file *f, struct db_net *net)
 {
     struct db_mlp shape = {0};
     int version, unit, loss;
-    if (read_count(f, "landmass-net", 1, 1, &version) != 0 ||
+    if (read_count(f, "landmass-net", 1, 2, &version) != 0 ||
         read_count(f, "bands", 1, DB_INPUT_MAX, &net->band_count) != 0 ||
         read_count(f, "context", 1, DB_CONTEXT_MAX, &net->context) != 0 ||
         read_choice(f, "unit", unit_names, &unit) != 0 ||
-        read_choice(f, "loss", loss_names, &loss) != 0 ||
-        read_count(f, "hidden", 1, DB_HIDDEN_MAX, &shape.hidden_count) != 0 ||
+        read_choice(f, "loss", loss_names, &loss) != 0 || read_hidden(f, version, &shape) != 0 ||
         read_count(f, "members", 1, DB_MEMBERS_MAX, &net->member_count) != 0 ||
         read_classes(f, net) != 0) {
         return -1;
@@ -240,12 +292,8 @@ static int read_net(struct db_text_file *f, struct db_net *net)
     if (net->input_count > DB_INPUT_MAX || net->context % 2 == 0) {
         return db_text_error(f, "train again", "bands and context do not fit");
     }
-    net->mean = calloc((size_t)net->input_count, sizeof *net->mean);
-    net->scale = calloc((size_t)net->input_count, sizeof *net->scale);
-    if (!net->mean || !net->scale) {
-        return hs_error(f->path, NULL, "out of memory");
-    }
-    if (read_inputs(f, net) != 0) {
+    net->has_range = version >= 2;
+    if (db_net_alloc_inputs(net) != 0 || read_inputs(f, net) != 0) {
         return -1;
     }
     shape.input_count = net->input_count;
@@ -283,5 +331,7 @@ void db_net_free(struct db_net *net)
     }
     free(net->mean);
     free(net->scale);
+    free(net->low);
+    free(net->high);
     *net = (struct db_net){0};
 }

@@ -4,6 +4,7 @@
 
 #include "classify/confusion.h"
 #include "classify/error_regions.h"
+#include "classify/judge.h"
 #include "classify/learn.h"
 #include "classify/mlp_apply.h"
 #include "gis/class_raster.h"
@@ -38,7 +39,8 @@ static const struct db_usage usage = {
 struct options {
     struct db_image_options image;
     struct db_exemplar_options known; /* for the report */
-    const char *classes, *net, *out, *picture, *report;
+    const char *classes, *net, *out, *picture, *report, *reject;
+    double sure;
     struct db_list picture_bands;
     long square;
 };
@@ -60,6 +62,14 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "Bands to show as red, green and blue, from 1; default 1,2,3 of three bands, "
          "3,2,1 of more.",
          false},
+        {"reject", DB_TEXT, &o->reject, 0, 0, "CLASS",
+         "Give this class of the table, or `nodata`, to pixels outside the range that the network "
+         "was\n"
+         "trained on, instead of what it says of them.",
+         false},
+        {"sure", DB_REAL, &o->sure, 0.5, 0.999, "P",
+         "With --reject: also to pixels whose class is less than so probable against the next.",
+         false},
         {"report", DB_FOLDER, &o->report, 0, 0, "FOLDER",
          "Write where exemplars (below) came out wrong: regions.csv, squares.csv, worst.txt, "
          "confusion.csv.",
@@ -77,6 +87,8 @@ struct work {
     struct db_net net;
     uint8_t class_of_output[DB_CLASS_MAX];
     struct db_applied applied;
+    struct db_judge judge;
+    uint8_t rejected_class; /* what rejected pixels become */
     struct db_raster image;
     struct db_raster_out out;
     struct db_exemplars exemplars;
@@ -85,7 +97,8 @@ struct work {
     struct db_preview original, classes;
     int shown[3]; /* bands of the picture, from 0 */
     int shown_count;
-    uint64_t counts[256];
+    uint64_t counts[256]; /* pixels of each class, without those rejected */
+    uint64_t rejected;
     double seconds; /* of the network alone */
 };
 
@@ -140,12 +153,33 @@ static int find_exemplars(struct work *w)
     return w->given ? 0 : hs_error(o->report, NULL, "out of memory");
 }
 
+static int find_reject_class(struct work *w)
+{
+    const char *name = w->options->reject;
+    w->judge.net = &w->net;
+    w->judge.sure = w->options->sure;
+    w->rejected_class = DB_CLASS_NODATA;
+    if (!name || strcmp(name, "nodata") == 0) {
+        return 0;
+    }
+    const int c = db_class_find(&w->table, name);
+    if (c < 0) {
+        char names[DB_CLASS_MAX * DB_NAME_SIZE];
+        db_class_names(&w->table, names, sizeof names);
+        return hs_error("--reject", "name one of them",
+                        "there is no class `%s`; there are %s, nodata", name, names);
+    }
+    w->rejected_class = (uint8_t)c;
+    return 0;
+}
+
 static int prepare(struct work *w)
 {
     const struct options *o = w->options;
     if (db_class_table_read(&w->table, o->classes) != 0 || db_net_read(&w->net, o->net) != 0 ||
         db_net_classes(&w->net, &w->table, o->net, w->class_of_output) != 0 ||
-        db_apply_init(&w->applied, &w->net) != 0 || db_image_open(&w->image, &o->image) != 0) {
+        find_reject_class(w) != 0 || db_apply_init(&w->applied, &w->net) != 0 ||
+        db_image_open(&w->image, &o->image) != 0) {
         return -1;
     }
     if (w->image.band_count != w->net.band_count) {
@@ -165,7 +199,8 @@ static int prepare(struct work *w)
 
 struct block {
     float *planes;
-    uint8_t *valid, *classes;
+    uint8_t *valid, *classes, *reject;
+    float *margins; /* NULL unless pixels can be unsure */
     int y, rows;
 };
 
@@ -180,12 +215,19 @@ static void classify(struct work *w, const struct block *b)
 {
     const size_t count = (size_t)b->rows * (size_t)w->image.grid.width;
     const double begin = now_s();
-    db_apply(&w->applied, b->planes, count, count, b->classes);
-    for (size_t i = 0; i < count; i++) {
-        b->classes[i] = b->valid[i] ? w->class_of_output[b->classes[i]] : DB_CLASS_NODATA;
-    }
+    db_apply(&w->applied, b->planes, count, count, b->classes, b->margins);
     w->seconds += now_s() - begin;
+    db_judge_add(&w->judge, b->planes, b->margins, b->valid, count, b->reject);
     for (size_t i = 0; i < count; i++) {
+        if (!b->valid[i]) {
+            b->classes[i] = DB_CLASS_NODATA;
+        } else if (w->options->reject && b->reject[i]) {
+            w->rejected++;
+            b->classes[i] = w->rejected_class;
+            continue;
+        } else {
+            b->classes[i] = w->class_of_output[b->classes[i]];
+        }
         w->counts[b->classes[i]]++;
     }
 }
@@ -229,27 +271,51 @@ static int segment_block(struct work *w, const struct block *b)
     return db_raster_write(&w->out, b->y, b->rows, b->classes);
 }
 
+static void free_block(struct block *b)
+{
+    free(b->planes);
+    free(b->valid);
+    free(b->classes);
+    free(b->reject);
+    free(b->margins);
+}
+
+static int alloc_block(const struct work *w, struct block *b, size_t count)
+{
+    const bool wants_margins = w->options->sure > 0.5;
+    *b = (struct block){malloc((size_t)w->net.input_count * count * sizeof(float)),
+                        malloc(count),
+                        malloc(count),
+                        malloc(count),
+                        wants_margins ? malloc(count * sizeof(float)) : NULL,
+                        0,
+                        0};
+    if (b->planes && b->valid && b->classes && b->reject && (b->margins || !wants_margins)) {
+        return 0;
+    }
+    free_block(b);
+    return hs_error(w->image.name, NULL, "out of memory");
+}
+
 static int segment(struct work *w)
 {
     const struct db_grid *grid = &w->image.grid;
-    const int rows =
-        db_raster_block_rows(grid, db_feature_bytes(w->image.band_count, w->net.context) + 1);
-    const size_t count = (size_t)rows * (size_t)grid->width;
-    struct block b = {malloc((size_t)w->net.input_count * count * sizeof(float)), malloc(count),
-                      malloc(count), 0, 0};
+    const size_t bytes = db_feature_bytes(w->image.band_count, w->net.context) + 2 + sizeof(float);
+    const int rows = db_raster_block_rows(grid, bytes);
+    struct block b;
+    if (alloc_block(w, &b, (size_t)rows * (size_t)grid->width) != 0) {
+        return -1;
+    }
     struct hs_progress progress;
     hs_progress_begin(&progress, "segment", (uint64_t)grid->height);
-    int result =
-        b.planes && b.valid && b.classes ? 0 : hs_error(w->image.name, NULL, "out of memory");
+    int result = 0;
     for (b.y = 0; result == 0 && b.y < grid->height; b.y += rows) {
         b.rows = b.y + rows < grid->height ? rows : grid->height - b.y;
         result = segment_block(w, &b);
         hs_progress_update(&progress, (uint64_t)(b.y + b.rows));
     }
     hs_progress_end(&progress);
-    free(b.planes);
-    free(b.valid);
-    free(b.classes);
+    free_block(&b);
     return result;
 }
 
@@ -296,13 +362,29 @@ static int write_report(const struct work *w)
         w->exemplars.region_count, (int)w->options->square, &w->image.grid, &w->table);
 }
 
+/* The classes as they stand in the raster, then how far to believe them. */
+static void print_counts(struct work *w)
+{
+    uint64_t written[256];
+    memcpy(written, w->counts, sizeof written);
+    written[w->rejected_class] += w->rejected;
+    db_class_counts_print(&w->table, written);
+    db_judge_report(&w->judge, w->image.name, &w->table, w->counts);
+    if (w->options->reject) {
+        printf("rejected: %llu pixels of %llu became %s; %llu outside the range, %llu unsure\n",
+               (unsigned long long)w->rejected, (unsigned long long)w->judge.pixels,
+               w->options->reject, (unsigned long long)w->judge.outside,
+               (unsigned long long)w->judge.unsure);
+    }
+}
+
 static int run(struct work *w)
 {
     if (prepare(w) != 0 || segment(w) != 0 || db_raster_commit(&w->out) != 0) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
-    db_class_counts_print(&w->table, w->counts);
+    print_counts(w);
     const double megapixels = 1e-6 * (double)w->image.grid.width * (double)w->image.grid.height;
     printf("network: %.2f Mpixel in %.3f s on one core, %.1f Mpixel/s\n", megapixels, w->seconds,
            megapixels / w->seconds);
@@ -320,12 +402,16 @@ static bool has_sense(const struct options *o)
                  "is of no use here without a report");
         return false;
     }
+    if (o->sure > 0.5 && !o->reject) {
+        hs_error("--sure", "say with --reject what they become", "is of no use alone");
+        return false;
+    }
     return true;
 }
 
 int db_cmd_segment(int argc, char **argv)
 {
-    struct options options = {.known = {.field = "class"}, .square = 64};
+    struct options options = {.known = {.field = "class"}, .square = 64, .sure = 0.5};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {

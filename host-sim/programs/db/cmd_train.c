@@ -8,6 +8,7 @@
 #include "classify/split.h"
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "hs/text_file.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,7 +41,8 @@ struct options {
     struct db_exemplar_options known;
     const char *classes, *net, *report, *split_out, *hold_out;
     const char *loss, *unit;
-    long context, hidden, per_class, members, epochs, patience, batch, seed;
+    struct db_list hidden, priors;
+    long context, per_class, members, epochs, patience, redraws, batch, seed;
     double rate, momentum, decay, noise, goal, validate, thin;
 };
 
@@ -53,6 +55,7 @@ static const struct options defaults = {
     .members = 1,
     .epochs = 300,
     .patience = 15,
+    .redraws = 3,
     .batch = 32,
     .seed = 1,
     .rate = 0.1,
@@ -89,8 +92,17 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "inputs;\n"
          "1 for the pixel's own bands only, as in Heaton.",
          false},
-        {"hidden", DB_INTEGER, &o->hidden, 0, DB_HIDDEN_MAX, "N",
-         "Hidden units; 0 for inputs x outputs, at most 128.", false},
+        {"hidden", DB_LIST, &o->hidden, 0, 0, "N,..",
+         "Units of each hidden layer, 1 to 4 layers. Default: one layer of inputs x outputs, more "
+         "than\n"
+         "three times the inputs, 8..128.",
+         false},
+        {"priors", DB_LIST, &o->priors, 0, 0, "HOW",
+         "How often the network is to expect each class: `exemplars`, as often as it has exemplar "
+         "pixels\n"
+         "(default with --labels); `equal` (default with --exemplars); or shares, NAME=SHARE,.. "
+         "of every class.",
+         false},
         {"unit", DB_TEXT, &o->unit, 0, 0, "KIND", "Hidden units: tanh (default) or sigmoid.",
          false},
         {"loss", DB_TEXT, &o->loss, 0, 0, "KIND",
@@ -100,12 +112,16 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          "as much.",
          false},
         {"goal", DB_REAL, &o->goal, 0, 1.01, "X",
-         "Stop when this part of the exemplars, as the mean over the classes, is recognised.",
+         "Part of the exemplars, by the priors, that must be recognised: a plateau below it is "
+         "taken\n"
+         "for a local minimum.",
          false},
         {"epochs", DB_INTEGER, &o->epochs, 1, DB_EPOCHS_MAX, "N", "Stop after so many rounds.",
          false},
         {"patience", DB_INTEGER, &o->patience, 1, DB_EPOCHS_MAX, "N",
          "Epochs without progress that make a plateau.", false},
+        {"redraws", DB_INTEGER, &o->redraws, 0, DB_EPOCHS_MAX, "N",
+         "How often new random weights are tried to leave a local minimum.", false},
         {"validate", DB_REAL, &o->validate, 0, 0.9, "X",
          "Part of the training polygons set aside to choose the best weights by.", false},
         {"noise", DB_REAL, &o->noise, 0, 10, "X",
@@ -131,6 +147,8 @@ struct choices {
     double held_out;
     enum db_loss loss;
     enum db_unit unit;
+    int layer_count, hidden[DB_LAYERS_MAX];
+    enum db_priors priors;
 };
 
 static int usage_error(const char *option, const char *cause)
@@ -154,9 +172,40 @@ static int read_hold_out(const struct options *o, struct choices *c)
     return 0;
 }
 
+static int read_hidden(const struct options *o, struct choices *c)
+{
+    if (o->hidden.count > DB_LAYERS_MAX) {
+        return usage_error("--hidden", "takes at most 4 layers");
+    }
+    for (c->layer_count = 0; c->layer_count < o->hidden.count; c->layer_count++) {
+        char *end;
+        const long units = strtol(o->hidden.items[c->layer_count], &end, 10);
+        if (*end != '\0' || units < 1 || units > DB_HIDDEN_MAX) {
+            return usage_error("--hidden", "needs 1 to 1024 units in each layer");
+        }
+        c->hidden[c->layer_count] = (int)units;
+    }
+    return 0;
+}
+
+static void read_priors_kind(const struct options *o, struct choices *c)
+{
+    const char *word = o->priors.count == 1 ? o->priors.items[0] : NULL;
+    if (o->priors.count == 0) {
+        /* A label raster is a map, so its shares are those of the ground. How much of a class was
+         * drawn by hand says nothing of how much there is. */
+        c->priors = o->known.labels ? DB_PRIORS_EXEMPLARS : DB_PRIORS_EQUAL;
+        return;
+    }
+    c->priors = word && strcmp(word, "exemplars") == 0 ? DB_PRIORS_EXEMPLARS
+                : word && strcmp(word, "equal") == 0   ? DB_PRIORS_EQUAL
+                                                       : DB_PRIORS_GIVEN;
+}
+
 static int choose(const struct options *o, struct choices *c)
 {
     *c = (struct choices){0};
+    read_priors_kind(o, c);
     if (!o->known.polygons == !o->known.labels) {
         return usage_error("--exemplars", "give either --exemplars or --labels");
     }
@@ -174,7 +223,7 @@ static int choose(const struct options *o, struct choices *c)
     }
     c->loss = strcmp(o->loss, "square") == 0 ? DB_LOSS_SQUARE : DB_LOSS_CROSS_ENTROPY;
     c->unit = strcmp(o->unit, "tanh") == 0 ? DB_UNIT_TANH : DB_UNIT_SIGMOID;
-    return read_hold_out(o, c);
+    return read_hidden(o, c) != 0 ? -1 : read_hold_out(o, c);
 }
 
 /* Everything the command works on. */
@@ -265,10 +314,41 @@ static int write_split(const struct work *w)
     return hs_atomic_commit(&file);
 }
 
+/* "NAME=SHARE" of each class. */
+static int read_priors(const struct work *w, double *prior)
+{
+    const struct db_list *list = &w->options->priors;
+    if (w->choices.priors != DB_PRIORS_GIVEN) {
+        return 0;
+    }
+    for (int i = 0; i < list->count; i++) {
+        char word[DB_NAME_SIZE];
+        const char *equals = strchr(list->items[i], '=');
+        const size_t length = equals ? (size_t)(equals - list->items[i]) : DB_NAME_SIZE;
+        if (length >= sizeof word) {
+            return usage_error("--priors", "needs `exemplars`, `equal` or NAME=SHARE,..");
+        }
+        memcpy(word, list->items[i], length);
+        word[length] = '\0';
+        const int c = db_class_find(&w->table, word);
+        if (c < 0) {
+            char names[DB_CLASS_MAX * DB_NAME_SIZE];
+            db_class_names(&w->table, names, sizeof names);
+            return hs_error("--priors", "name classes of the class table",
+                            "there is no class `%s`; there are %s", word, names);
+        }
+        if (!db_text_number(equals + 1, 0, 1e9, &prior[c])) {
+            return hs_error("--priors", "give a number of 0 or more", "`%s` is no share",
+                            equals + 1);
+        }
+    }
+    return 0;
+}
+
 static int learn(struct work *w)
 {
     const struct options *o = w->options;
-    const struct db_learn_options options = {
+    struct db_learn_options options = {
         .train = {.rate = o->rate,
                   .momentum = o->momentum,
                   .decay = o->decay,
@@ -277,8 +357,11 @@ static int learn(struct work *w)
                   .batch = (int)o->batch,
                   .epochs = (int)o->epochs,
                   .patience = (int)o->patience,
+                  .redraws = (int)o->redraws,
                   .seed = (uint64_t)o->seed},
-        .hidden = (int)o->hidden,
+        .layer_count = w->choices.layer_count,
+        .priors = w->choices.priors,
+        .available = w->exemplars.available,
         .unit = w->choices.unit,
         .loss = w->choices.loss,
         .members = (int)o->members,
@@ -286,6 +369,10 @@ static int learn(struct work *w)
         .thin = o->thin,
         .thin_is_loud = true,
     };
+    memcpy(options.hidden, w->choices.hidden, sizeof options.hidden);
+    if (read_priors(w, options.prior) != 0) {
+        return -1;
+    }
     return db_learn(&w->net, &w->samples, w->exemplars.region_count, &w->table, w->image.band_count,
                     (int)o->context, &options, w->reports);
 }
@@ -295,8 +382,19 @@ static void print_training(const struct work *w)
     static const char *const stops[] = {"the goal is reached", "all epochs are spent",
                                         "no further progress"};
     const struct db_mlp *mlp = &w->net.members[0];
-    printf("network: %d inputs, %d hidden, %d outputs\n", mlp->input_count, mlp->hidden_count,
-           mlp->output_count);
+    printf("network: %d inputs, ", mlp->input_count);
+    for (int l = 0; l < mlp->layer_count; l++) {
+        printf("%d ", mlp->hidden[l]);
+    }
+    printf("hidden, %d outputs\n", mlp->output_count);
+    long wanted;
+    const int taken = db_mlp_default_hidden(mlp->input_count, mlp->output_count, &wanted);
+    if (w->choices.layer_count == 0 && taken < wanted) {
+        printf(
+            "The rule asks for %ld hidden units; more than %d gained nothing where it was "
+            "measured (--hidden).\n",
+            wanted, taken);
+    }
     for (int m = 0; m < w->net.member_count; m++) {
         const struct db_train_report *r = &w->reports[m];
         const struct db_epoch *best = &r->epochs[r->best_epoch - 1];
@@ -453,6 +551,8 @@ int db_cmd_train(int argc, char **argv)
     db_exemplars_free(&w->exemplars);
     db_raster_close(&w->image);
     db_list_free(&options.image.paths);
+    db_list_free(&options.hidden);
+    db_list_free(&options.priors);
     free(w);
     return exit_code;
 }

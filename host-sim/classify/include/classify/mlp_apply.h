@@ -11,10 +11,11 @@ float db_fast_tanh(float x);
 
 /* A network with the normalisation folded into its first layer. */
 struct db_applied {
-    int input_count, hidden_count, output_count, member_count;
-    enum db_unit unit;
+    struct db_mlp shape; /* without weights */
+    int member_count;
     float *weights; /* owned: for each member as in db_mlp */
     size_t member_size;
+    float *planes; /* owned: scratch, so that one thread at a time may use it */
 };
 
 /* Returns 0, or -1 out of memory, reported. */
@@ -26,8 +27,12 @@ void db_apply_free(struct db_applied *a);
 /* The output with the largest sum over the members, for each of `count` pixels. `planes` holds one
  * plane of `stride` values an input, of which the first `count` are used. The sums that enter the
  * output units are compared: units are monotonic, so for a single network the answer is that of its
- * outputs. */
+ * outputs.
+ *
+ * `margins`, unless NULL, receives by how much the largest sum passes the next, as the mean over
+ * the members: with cross-entropy the logarithm of how much likelier the winner is, so that its
+ * probability against the next is 1 / (1 + exp(-margin)). */
 void db_apply(const struct db_applied *a, const float *planes, size_t stride, size_t count,
-              uint8_t *winners);
+              uint8_t *winners, float *margins);
 
 #endif

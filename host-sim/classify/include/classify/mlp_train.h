@@ -13,10 +13,11 @@ struct db_train_options {
     double momentum; /* 0..1, exclusive of 1 */
     double decay;    /* of the weights: part of a weight taken from its gradient, >= 0 */
     double noise;    /* standard deviation of the noise, in deviations of each input */
-    double goal;     /* mean over the classes of the part recognised, 0..1: stop there */
+    double goal;     /* recognition (struct db_epoch) that a plateau must have to be no minimum */
     int batch;       /* exemplars between two changes of weights */
     int epochs;      /* at most; 1..DB_EPOCHS_MAX */
-    int patience;    /* epochs without a better result or a falling error that make a plateau */
+    int patience;    /* epochs without progress that make a plateau */
+    int redraws;     /* how often the weights may be drawn anew, >= 0 */
     uint64_t seed;
 };
 
@@ -25,13 +26,15 @@ struct db_train_data {
     const float *inputs; /* borrowed; count x inputs, row-major */
     const uint8_t *targets;
     size_t count;
+    const double *priors; /* borrowed: how often each output is the right one; NULL: equally */
 };
 
 enum db_train_stop { DB_STOP_GOAL, DB_STOP_EPOCHS, DB_STOP_PLATEAU };
 
 struct db_epoch {
     double rms;         /* error over all outputs of the clean training exemplars */
-    double recognition; /* mean over the classes, 0..1, of the clean training exemplars */
+    double recognition; /* part of the clean training exemplars recognised, 0..1: the mean over the
+                         * classes that occur, weighted by their priors */
     double validation;  /* the same of the validation exemplars; NaN without any */
     double alternation; /* how often an exemplar of low error followed one of high error or the
                          * other way round, as a part of those presented */
@@ -54,12 +57,15 @@ struct db_train_report {
 /* Train `net` from its present weights; on return it holds the best met: by validation recognition
  * when `validation` has exemplars, else by training recognition, the error deciding between equals.
  *
- * Each epoch presents as many exemplars as there are, each class equally often: those of rare
- * classes repeatedly, those of frequent ones in turn. A plateau is `patience` epochs in which
- * neither the result nor the error improved. When exemplars of high and of low error alternate on
- * it, a local minimum is recorded and acted on: the rate is halved, then rate and momentum, then
- * the noise is doubled, then the weights are drawn anew. Otherwise, or after the last of these,
- * training ends.
+ * Each epoch presents as many exemplars as there are, at least 512, each class as often as
+ * `training->priors` say: exemplars of a class in turn, in a new order each time round.
+ *
+ * Progress is a recognition that rose by 0.2 points, or an error that fell by 1 %, since progress
+ * was last made; with validation exemplars only the former. A plateau is `patience` epochs without.
+ * Training ends on one if the goal is reached, or if validation stands while the error still falls.
+ * Any other is a local minimum, recorded and acted on: the rate is halved, then rate and momentum
+ * are lowered, then the noise is doubled, then the weights are drawn anew and all begins again.
+ * Training ends on the plateau that finds no redraw left.
  *
  * The same data, options and seed give the same weights on the same machine. Returns 0, or -1 out
  * of memory with the error reported. `report` is to be freed either way. */
@@ -70,8 +76,8 @@ int db_mlp_train(struct db_mlp *net, const struct db_train_options *options,
 /* Harmless on a zeroed struct. */
 void db_train_report_free(struct db_train_report *report);
 
-/* Mean over the classes of the part of `data` that the network recognises, and the RMS error over
- * all outputs if `rms` is not NULL. Returns NaN without exemplars or out of memory. */
+/* The recognition of `data` as in struct db_epoch, and the RMS error over all outputs if `rms` is
+ * not NULL. Returns NaN without exemplars or out of memory. */
 double db_mlp_recognition(const struct db_mlp *net, const struct db_train_data *data, double *rms);
 
 #endif

@@ -160,6 +160,114 @@ TEST(later_corrections_win_and_are_counted)
     assert_int_equal(found[95], 255);
 }
 
+/* ---- Imagery that is not what the network was trained on ---- */
+
+/* The scene with `more` added to the first columns of both bands. */
+static void write_brightened_scene(int columns, float more)
+{
+    struct db_grid grid = fixture_grid(WIDTH, HEIGHT);
+    for (int b = 0; b < 2; b++) {
+        struct db_raster r;
+        static float values[WIDTH * HEIGHT];
+        static uint8_t valid[WIDTH * HEIGHT];
+        char name[32];
+        snprintf(name, sizeof name, "band%d.tif", b + 1);
+        assert_int_equal(db_raster_open_one(&r, fixture_path(name)), 0);
+        assert_int_equal(db_raster_read(&r, 0, HEIGHT, values, valid), 0);
+        db_raster_close(&r);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            values[i] += valid[i] && i % WIDTH < columns ? more : 0;
+        }
+        snprintf(name, sizeof name, "bright%d.tif", b + 1);
+        fixture_raster(name, &grid, GDT_UInt16, values, 0);
+    }
+    OSRDestroySpatialReference(grid.crs);
+}
+
+static int segment_bright(char *said, size_t size, const char *more)
+{
+    return fixture_run(said, size, "segment " SCENE " --net %s --out %s %s",
+                       fixture_path("bright1.tif"), fixture_path("bright2.tif"),
+                       fixture_path("scene.classes"), fixture_path("scene.net"),
+                       fixture_path("bright.tif"), more);
+}
+
+TEST(imagery_out_of_the_range_of_the_training_is_warned_of_with_figures)
+{
+    char said[8192];
+    train_scene("scene.net");
+    write_brightened_scene(0, 0);
+    assert_int_equal(segment_bright(said, sizeof said, ""), 0);
+    assert_null(strstr(said, "that the network was trained on"));
+    assert_null(strstr(said, "of its pixels became"));
+    assert_non_null(strstr(said, "largest class: field, 41.7 %"));
+    write_brightened_scene(WIDTH, 30000);
+    assert_int_equal(segment_bright(said, sizeof said, ""), 0);
+    assert_non_null(strstr(said, "outside the range of the training: 100.0 % of the pixels"));
+    assert_non_null(strstr(said, "warning: 100.0 % of its pixels lie outside the range"));
+    assert_non_null(strstr(said, "warning: 100.0 % of its pixels became"));
+}
+
+TEST(pixels_outside_the_range_become_the_reject_class_when_told_so)
+{
+    static uint8_t found[WIDTH * HEIGHT];
+    static const struct {
+        const char *options;
+        int becomes;
+    } cases[] = {{"--reject nodata", 255}, {"--reject lake", 1}};
+    char said[8192];
+    train_scene("scene.net");
+    write_brightened_scene(20, 1000);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        assert_int_equal(segment_bright(said, sizeof said, cases[k].options), 0);
+        assert_non_null(strstr(said, "rejected: "));
+        read_classes("bright.tif", found);
+        int wrong = 0;
+        for (int i = 0; i < WIDTH * (HEIGHT - 1); i++) {
+            const int x = i % WIDTH, is_bright = x < 20;
+            assert_true(!is_bright || found[i] == cases[k].becomes);
+            wrong += !is_bright && found[i] != truth_at(x, i / WIDTH);
+        }
+        /* Noise takes some pixels of the scene itself beyond what the exemplars held. */
+        assert_in_range(wrong, 0, WIDTH * HEIGHT / 50);
+    }
+}
+
+TEST(pixels_between_two_classes_are_rejected_when_surety_is_asked_for)
+{
+    char said[8192];
+    train_scene("scene.net");
+    write_brightened_scene(0, 0);
+    assert_int_equal(segment_bright(said, sizeof said, "--reject nodata --sure 0.999"), 0);
+    const char *unsure = strstr(said, "outside the range, ");
+    assert_non_null(unsure);
+    const int strict = atoi(unsure + strlen("outside the range, "));
+    assert_int_equal(segment_bright(said, sizeof said, "--reject nodata --sure 0.6"), 0);
+    unsure = strstr(said, "outside the range, ");
+    assert_non_null(unsure);
+    assert_true(atoi(unsure + strlen("outside the range, ")) < strict);
+    assert_true(fixture_fails(HS_EXIT_FAILED, "there is no class `clouds`",
+                              "segment " SCENE " --net %s --out %s --reject clouds", SCENE_PATHS,
+                              fixture_path("scene.net"), fixture_path("never.tif")));
+    assert_true(fixture_fails(HS_EXIT_USAGE, "say with --reject what they become",
+                              "segment " SCENE " --net %s --out %s --sure 0.9", SCENE_PATHS,
+                              fixture_path("scene.net"), fixture_path("never.tif")));
+}
+
+TEST(a_network_file_of_version_1_segments_and_says_that_it_has_no_range)
+{
+    char said[8192];
+    train_scene("scene.net");
+    assert_int_equal(support_run("sed -e 's/^landmass-net 2/landmass-net 1/' -e "
+                                 "'s/^\\(input [^ ]* [^ ]*\\) .*/\\1/' %s > %s",
+                                 fixture_path("scene.net"), fixture_path("old.net")),
+                     0);
+    assert_int_equal(fixture_run(said, sizeof said, "segment " SCENE " --net %s --out %s",
+                                 SCENE_PATHS, fixture_path("old.net"), fixture_path("out.tif")),
+                     0);
+    assert_non_null(strstr(said, "not in a network file of version 1"));
+}
+
 /* ---- What can be wrong ---- */
 
 TEST(bad_input_to_train_is_named_with_its_remedy)
