@@ -59,9 +59,10 @@ test: $(if $(NAME),$(TESTS_named)) ## Build and run the tests of one name or fol
 panel: deps ## Build the cockpit panel's program for this machine, or for ARCH=arm64 or amd64
 	@$(MAKE) --no-print-directory BOARD=panel-linux panel-program
 
-package: deps ## Build the panel's Debian packages for arm64 and amd64 in build/packages
+package: deps ## Build the Debian packages in build/packages: the panel for arm64 and amd64, the tools for this machine
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=amd64 panel-package
 	@$(MAKE) --no-print-directory BOARD=panel-linux ARCH=arm64 panel-package
+	@$(MAKE) --no-print-directory O=build/tools HAS_AVX2= tools-package
 
 check-clang: deps ## Unit tests and golden pictures once more, built by CLANG (clang-19); like check, part of .ci/run
 	@$(MAKE) --no-print-directory -j2 CC=$(CLANG) O=build/$(CLANG) check-unit

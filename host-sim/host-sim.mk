@@ -42,3 +42,8 @@ LIB_tables    := $(call host_archives,tables)
 VECTOR_LOOPS := classify/mlp_apply reflectivity/reflect reflectivity/place \
     $(addprefix tracer/,first_bounce projection ray_angles scene trace_tile)
 $(VECTOR_LOOPS:%=$(O)/host-sim/%.o): EXTRA_CFLAGS := -O3 -fno-math-errno -fno-trapping-math
+
+# The Debian package of the tools. HAS_AVX2= on the command line makes programs for any processor of this kind.
+.PHONY: tools-package
+tools-package: $(patsubst %,$(O)/bin/landmass-%,$(filter-out bus_table,$(HOST_PROGRAMS)))
+	@sh host-sim/package/build.sh $(O)/bin build/packages

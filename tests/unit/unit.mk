@@ -109,6 +109,8 @@ $(UNIT)/$(basename $(1)): tests/unit/$(1)
 	@chmod +x $$@
 endef
 $(eval $(call unit_script,bsp/panel-linux/test_package.sh))
+$(eval $(call unit_script,host-sim/package/test_package.sh))
 $(eval $(call unit_script,host-sim/programs/bus/test_forms.py))
 $(UNIT)/bsp/panel-linux/test_package: $(PANEL) $(wildcard bsp/panel-linux/debian/*)
+$(UNIT)/host-sim/package/test_package: $(PROGRAMS) $(wildcard host-sim/package/*)
 $(UNIT)/host-sim/programs/bus/test_forms: | $(O)/bin/landmass-bus $(GEN)/bin/bus_table
