@@ -1,14 +1,19 @@
 #include <arm_neon.h>
+#include <stdbool.h>
 
 #include "fx/mem.h"
 #include "lm/kernels_clutter.h"
 #include "lm/kernels_map.h"
 #include "lm/lanes.h"
+#include "neon.h"
 #include "neon_tile.h"
 #include "neon_track.h"
 
-/* Eight places at a time, in 16 bits where they suffice. Words and order are those of
- * c/tile_blend.c. */
+/* Sixteen places at a time: what is known of a cell stands in bytes, and so do weights. Words and
+ * order are those of c/tile_blend.c. The contest of classes, what has grown and heights are left
+ * out where none of the sixteen needs them. */
+
+enum { PLACES = 2 * LM_LANES, NATURAL = 1, CROWNED = 2, FLAT = 4 };
 
 /* share_of_weight of c/tile_blend.c. */
 static const uint8_t share_of_weight[64] = {
@@ -18,33 +23,79 @@ static const uint8_t share_of_weight[64] = {
     42,  41,  41,  40,  39,  38,  38,  37,  36,  36,  35,  34,  34,  33,  33,  32,
 };
 
-/* The four cells around each of eight places: south-west, south-east, north-west, north-east. */
-struct neon_corners {
-    uint16x8_t cell[4];
-    int16x8_t weight[4];
+/* A map, as the vectors look it up: marks of each class, and heights of height codes, lower bytes
+ * and upper bytes. */
+struct neon_map {
+    struct neon_source posts, cells;
+    const uint8_t *grown;
+    int32x4_t down; /* to sixteenths of a texel */
+    uint8x16_t marks, height_dm[2];
 };
 
-/* What has won: class, and the weight of its cells. */
-struct neon_winner {
-    int16x8_t kind, weight;
+/* Where sixteen places are, in their tiles, and which half of a turn is stored where: the second
+ * half of a last odd group is stored below the first. */
+struct neon_turn {
+    uint32_t *cell, *elevation;
+    size_t next;
+    uint32_t north[PLACES], east[PLACES];
 };
+
+/* The four cells around each place: south-west, south-east, north-west, north-east. */
+struct neon_corners {
+    uint8x16_t low[4];   /* class and height code */
+    uint8x16_t gamma[4]; /* code of the reflectivity */
+    uint8x16_t kind[4];
+    uint8x16_t weight[4]; /* in 256ths; the first's is one less */
+};
+
+/* What has grown at sixteen places: half the lean of a border, in 128ths, and crowns. */
+struct neon_grown {
+    int8x16_t lean_q7;
+    int16x8_t crown_q16[2];
+};
+
+static inline bool neon_any(uint8x16_t x)
+{
+    return vmaxvq_u8(x) != 0;
+}
+
+/* Of a mask of classes, the mark in the byte of each class. */
+static inline uint8x16_t neon_marks(uint32_t mask, uint8_t mark)
+{
+    const uint8x16_t bit = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    const uint8x16_t bits = vcombine_u8(vdup_n_u8((uint8_t)mask), vdup_n_u8((uint8_t)(mask >> 8)));
+    return vandq_u8(vtstq_u8(bits, bit), vdupq_n_u8(mark));
+}
+
+static inline struct neon_map neon_map_of(const struct lm_k_blend *map)
+{
+    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code));
+    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(map->height_dm_of_code + 8));
+    return (struct neon_map){
+        .posts = neon_source_of(map->points),
+        .cells = neon_source_of(map->points - LM_TILE_POINTS - 1),
+        .grown = (const uint8_t *)map->grown,
+        .down = vdupq_n_s32(4 - (int32_t)map->grown_shift),
+        .marks =
+            vorrq_u8(vorrq_u8(neon_marks(map->natural, NATURAL), neon_marks(map->crowned, CROWNED)),
+                     neon_marks(map->flat, FLAT)),
+        .height_dm = {vuzp1q_u8(low, high), vuzp2q_u8(low, high)},
+    };
+}
+
+/* ---- places and points ---- */
 
 /* A coordinate half a cell further, in 2^-25 of a tile. */
 static inline uint32x4_t neon_half_on(uint32x4_t at)
 {
-    return vsraq_n_u32(vdupq_n_u32(1u << 24), at, 1);
+    return vhaddq_u32(at, vdupq_n_u32(1u << 25));
 }
 
 /* Bits 24..18 of eight coordinates. */
-static inline int16x8_t neon_fractions(uint32x4_t low, uint32x4_t high)
+static inline uint16x8_t neon_fractions(uint32x4_t low, uint32x4_t high)
 {
     const uint16x8_t upper = vuzp2q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
-    return vreinterpretq_s16_u16(vshrq_n_u16(vshlq_n_u16(upper, 7), 9));
-}
-
-static inline int16x8_t neon_kinds(uint16x8_t cell)
-{
-    return vreinterpretq_s16_u16(vandq_u16(vshrq_n_u16(cell, 4), vdupq_n_u16(15)));
+    return vshrq_n_u16(vshlq_n_u16(upper, 7), 9);
 }
 
 /* Where the south-western of the four cells is, in bytes from the record's first point. */
@@ -55,341 +106,475 @@ static inline uint32x4_t neon_corner_offsets(uint32x4_t record, uint32x4_t north
     return vshlq_n_u32(vmlaq_n_u32(across, vshrq_n_u32(north_q25, 25), LM_TILE_POINTS), 2);
 }
 
-static inline void neon_set_weights(struct neon_corners *c, int16x8_t u, int16x8_t v)
+/* Upper eight bits of sixteen numbers of 14. */
+static inline uint8x16_t neon_256ths(uint16x8_t low, uint16x8_t high)
 {
-    c->weight[3] = vmulq_s16(u, v);
-    c->weight[1] = vsubq_s16(vshlq_n_s16(u, 7), c->weight[3]);
-    const int16x8_t of_north = vshlq_n_s16(v, 7);
-    c->weight[2] = vsubq_s16(of_north, c->weight[3]);
-    c->weight[0] = vsubq_s16(vsubq_s16(vdupq_n_s16(16384), of_north), c->weight[1]);
+    return vshrn_high_n_u16(vshrn_n_u16(low, 6), high, 6);
 }
 
-static inline int16x8_t neon_where(uint16x8_t mask, int16x8_t x)
+/* The numbers that are cut off add up to less than the first's weight: no sum is above 255. */
+static inline void neon_set_weights(struct neon_corners *c, const uint16x8_t u[2],
+                                    const uint16x8_t v[2])
 {
-    return vandq_s16(vreinterpretq_s16_u16(mask), x);
+    uint16x8_t of_b[2], of_c[2], of_d[2];
+    for (size_t h = 0; h < 2; h++) {
+        of_d[h] = vmulq_u16(u[h], v[h]);
+        of_b[h] = vsubq_u16(vshlq_n_u16(u[h], 7), of_d[h]);
+        of_c[h] = vsubq_u16(vshlq_n_u16(v[h], 7), of_d[h]);
+    }
+    c->weight[1] = neon_256ths(of_b[0], of_b[1]);
+    c->weight[2] = neon_256ths(of_c[0], of_c[1]);
+    c->weight[3] = neon_256ths(of_d[0], of_d[1]);
+    c->weight[0] = vmvnq_u8(vaddq_u8(vaddq_u8(c->weight[1], c->weight[2]), c->weight[3]));
 }
 
-/* Bit 0: whether a mask of classes has each class. */
-static inline uint16x8_t neon_bit_of(uint32_t mask, int16x8_t kind)
+/* Lower and upper bytes of sixteen cells. */
+static inline void neon_set_cells(struct neon_corners *c, size_t n, uint16x8_t low, uint16x8_t high)
 {
-    return vshlq_u16(vdupq_n_u16((uint16_t)mask), vnegq_s16(kind));
+    const uint8x16_t first = vreinterpretq_u8_u16(low), second = vreinterpretq_u8_u16(high);
+    c->low[n] = vuzp1q_u8(first, second);
+    c->gamma[n] = vuzp2q_u8(first, second);
 }
 
-/* What has grown at eight places: bends and crowns, bytes times 256. */
-struct neon_grown {
-    int16x8_t bend_q8, crown_q16;
+/* ---- what has grown ---- */
+
+/* Where the texels of eight places are, in bytes. */
+static inline uint16x8_t neon_texel_offsets(uint16x8_t north_q4, uint16x8_t east_q4)
+{
+    const uint16x8_t in_side = vdupq_n_u16(LM_K_GROWN_SIDE - 1);
+    const uint16x8_t row = vandq_u16(vshrq_n_u16(north_q4, 4), in_side);
+    const uint16x8_t column = vandq_u16(vshrq_n_u16(east_q4, 4), in_side);
+    return vshlq_n_u16(vmlaq_n_u16(column, row, LM_K_GROWN_STRIDE), 1);
+}
+
+/* Two texels side by side at each of sixteen places: bends to the west, crowns there, and both to
+ * the east; to the south and to the north. */
+struct neon_texels {
+    uint8x16x4_t south, north;
 };
 
-/* Two texels side by side at each of eight places. */
-static inline uint32x4x2_t neon_texels(const uint8_t *grown, const uint32_t *offset)
+static inline struct neon_texels neon_texels_at(const uint8_t *grown, const uint16_t *offset)
 {
-    uint32x4x2_t t = {{vdupq_n_u32(0), vdupq_n_u32(0)}};
-    t.val[0] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[0]), t.val[0], 0);
-    t.val[0] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[1]), t.val[0], 1);
-    t.val[0] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[2]), t.val[0], 2);
-    t.val[0] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[3]), t.val[0], 3);
-    t.val[1] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[4]), t.val[1], 0);
-    t.val[1] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[5]), t.val[1], 1);
-    t.val[1] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[6]), t.val[1], 2);
-    t.val[1] = vld1q_lane_u32((const uint32_t *)(const void *)(grown + offset[7]), t.val[1], 3);
-    return t;
+    const uint8_t *further = grown + 2 * LM_K_GROWN_STRIDE;
+    uint32_t south[PLACES], north[PLACES];
+    __asm__("" : "+r"(further));
+    for (size_t k = 0; k < PLACES; k += 2) {
+        const size_t o0 = offset[k], o1 = offset[k + 1];
+        const uint32_t s0 = fx_load_u32(grown + o0), s1 = fx_load_u32(grown + o1);
+        const uint32_t n0 = fx_load_u32(further + o0), n1 = fx_load_u32(further + o1);
+        south[k] = s0;
+        south[k + 1] = s1;
+        north[k] = n0;
+        north[k + 1] = n1;
+    }
+    __asm__("" : "+m"(south), "+m"(north));
+    return (struct neon_texels){vld4q_u8((const uint8_t *)south), vld4q_u8((const uint8_t *)north)};
 }
 
-static inline uint16x8_t neon_even(uint32x4_t low, uint32x4_t high)
-{
-    return vuzp1q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
-}
+/* Sixteenths of a way, and what is left of it, as bytes and as words. */
+struct neon_way {
+    uint8x16_t on, left;
+};
 
-static inline uint16x8_t neon_odd(uint32x4_t low, uint32x4_t high)
+static inline struct neon_way neon_way_of(uint16x8_t low_q4, uint16x8_t high_q4)
 {
-    return vuzp2q_u16(vreinterpretq_u16_u32(low), vreinterpretq_u16_u32(high));
+    const uint8x16_t on = vandq_u8(
+        vuzp1q_u8(vreinterpretq_u8_u16(low_q4), vreinterpretq_u8_u16(high_q4)), vdupq_n_u8(15));
+    return (struct neon_way){on, vsubq_u8(vdupq_n_u8(16), on)};
 }
 
 /* Crowns between two texels, in sixteenths. */
-static inline uint16x8_t neon_crowns(uint16x8_t west, uint16x8_t east, uint16x8_t u)
+static inline uint16x8x2_t neon_crowns(uint8x16x4_t texels, struct neon_way east)
 {
-    return vmlaq_u16(vmulq_u16(vshrq_n_u16(west, 8), vsubq_u16(vdupq_n_u16(16), u)),
-                     vshrq_n_u16(east, 8), u);
+    return (uint16x8x2_t){
+        {vmlal_u8(vmull_u8(vget_low_u8(texels.val[1]), vget_low_u8(east.left)),
+                  vget_low_u8(texels.val[3]), vget_low_u8(east.on)),
+         vmlal_high_u8(vmull_high_u8(texels.val[1], east.left), texels.val[3], east.on)}};
 }
 
 /* Bends between two texels, in sixteenths. */
-static inline int16x8_t neon_bends(uint16x8_t west, uint16x8_t east, int16x8_t u)
+static inline int16x8x2_t neon_bends(uint8x16x4_t texels, struct neon_way east)
 {
-    const int16x8_t at_west = vshrq_n_s16(vreinterpretq_s16_u16(vshlq_n_u16(west, 8)), 8);
-    const int16x8_t at_east = vshrq_n_s16(vreinterpretq_s16_u16(vshlq_n_u16(east, 8)), 8);
-    return vmlaq_s16(vmulq_s16(at_west, vsubq_s16(vdupq_n_s16(16), u)), at_east, u);
+    const int8x16_t west_bend = vreinterpretq_s8_u8(texels.val[0]),
+                    east_bend = vreinterpretq_s8_u8(texels.val[2]),
+                    on = vreinterpretq_s8_u8(east.on), left = vreinterpretq_s8_u8(east.left);
+    return (int16x8x2_t){{vmlal_s8(vmull_s8(vget_low_s8(west_bend), vget_low_s8(left)),
+                                   vget_low_s8(east_bend), vget_low_s8(on)),
+                          vmlal_high_s8(vmull_high_s8(west_bend, left), east_bend, on)}};
 }
 
-static inline struct neon_grown neon_grown_at(const struct lm_k_blend *map,
-                                              const uint32x4_t north[2], const uint32x4_t east[2])
+static inline struct neon_grown neon_grown_at(const struct neon_map *map,
+                                              const struct neon_turn *turn)
 {
-    const uint8_t *const grown = (const uint8_t *)map->grown;
-    const int32x4_t down = vdupq_n_s32(4 - (int32_t)map->grown_shift);
-    const uint32x4_t in_side = vdupq_n_u32(LM_K_GROWN_SIDE - 1);
-    const uint16x8_t sixteenths = vdupq_n_u16(15);
-    uint32x4_t north_q4[2], east_q4[2];
-    uint32_t offset[LM_LANES];
+    const uint32x4x4_t north = vld1q_u32_x4(turn->north), east = vld1q_u32_x4(turn->east);
+    uint16x8_t north_q4[2], east_q4[2];
+    uint16_t offset[PLACES];
     for (size_t h = 0; h < 2; h++) {
-        north_q4[h] = vshlq_u32(north[h], down);
-        east_q4[h] = vshlq_u32(east[h], down);
-        const uint32x4_t row = vandq_u32(vshrq_n_u32(north_q4[h], 4), in_side);
-        const uint32x4_t column = vandq_u32(vshrq_n_u32(east_q4[h], 4), in_side);
-        const uint32x4_t at = vmlaq_n_u32(column, row, LM_K_GROWN_STRIDE);
-        vst1q_u32(offset + 4 * h, vshlq_n_u32(at, 1));
+        north_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(north.val[2 * h], map->down)),
+                                 vreinterpretq_u16_u32(vshlq_u32(north.val[2 * h + 1], map->down)));
+        east_q4[h] = vuzp1q_u16(vreinterpretq_u16_u32(vshlq_u32(east.val[2 * h], map->down)),
+                                vreinterpretq_u16_u32(vshlq_u32(east.val[2 * h + 1], map->down)));
+        vst1q_u16(offset + LM_LANES * h, neon_texel_offsets(north_q4[h], east_q4[h]));
     }
     __asm__("" : "+m"(offset));
-    const uint32x4x2_t south = neon_texels(grown, offset);
-    const uint32x4x2_t next = neon_texels(grown + 2 * LM_K_GROWN_STRIDE, offset);
-    const uint16x8_t u = vandq_u16(neon_even(east_q4[0], east_q4[1]), sixteenths);
-    const uint16x8_t v = vandq_u16(neon_even(north_q4[0], north_q4[1]), sixteenths);
-    const uint16x8_t texel[4] = {
-        neon_even(south.val[0], south.val[1]), neon_odd(south.val[0], south.val[1]),
-        neon_even(next.val[0], next.val[1]), neon_odd(next.val[0], next.val[1])};
-    const uint16x8_t v_left = vsubq_u16(vdupq_n_u16(16), v);
-    const uint16x8_t crown = vmlaq_u16(vmulq_u16(neon_crowns(texel[0], texel[1], u), v_left),
-                                       neon_crowns(texel[2], texel[3], u), v);
-    const int16x8_t u_s16 = vreinterpretq_s16_u16(u);
-    const int16x8_t bend =
-        vmlaq_s16(vmulq_s16(neon_bends(texel[0], texel[1], u_s16), vreinterpretq_s16_u16(v_left)),
-                  neon_bends(texel[2], texel[3], u_s16), vreinterpretq_s16_u16(v));
-    return (struct neon_grown){bend, vreinterpretq_s16_u16(veorq_u16(crown, vdupq_n_u16(0x8000)))};
-}
-
-/* Let a class challenge the winner. */
-static inline void neon_challenge(struct neon_winner *w, int16x8_t kind, int16x8_t weight,
-                                  int16x8_t lean_q15, uint32_t natural)
-{
-    const uint16x8_t bits = vandq_u16(neon_bit_of(natural, kind), neon_bit_of(natural, w->kind));
-    const uint16x8_t are_natural = vtstq_u16(bits, vdupq_n_u16(1));
-    const int16x8_t lean =
-        neon_where(are_natural, vqdmulhq_s16(vaddq_s16(weight, w->weight), lean_q15));
-    const int16x8_t leaning = vsubq_s16(neon_where(vcgtq_s16(kind, w->kind), lean),
-                                        neon_where(vcltq_s16(kind, w->kind), lean));
-    const int16x8_t more = vaddq_s16(vsubq_s16(weight, w->weight), leaning);
-    const uint16x8_t takes = vcgtzq_s16(more);
-    w->kind = vbslq_s16(takes, kind, w->kind);
-    w->weight = vbslq_s16(takes, weight, w->weight);
-}
-
-/* The winner among four, by the weights of their classes. */
-static inline struct neon_winner neon_winner_of(const struct neon_corners *corners,
-                                                const int16x8_t kind[4], int16x8_t lean_q15,
-                                                uint32_t natural)
-{
-    const uint16x8_t ab = vceqq_s16(kind[0], kind[1]), ac = vceqq_s16(kind[0], kind[2]);
-    const uint16x8_t ad = vceqq_s16(kind[0], kind[3]), bc = vceqq_s16(kind[1], kind[2]);
-    const uint16x8_t bd = vceqq_s16(kind[1], kind[3]), cd = vceqq_s16(kind[2], kind[3]);
-    const int16x8_t a = corners->weight[0], b = corners->weight[1];
-    const int16x8_t c = corners->weight[2], d = corners->weight[3];
-    const int16x8_t of_a =
-        vaddq_s16(vaddq_s16(a, neon_where(ab, b)), vaddq_s16(neon_where(ac, c), neon_where(ad, d)));
-    const int16x8_t of_b =
-        vaddq_s16(vaddq_s16(b, neon_where(ab, a)), vaddq_s16(neon_where(bc, c), neon_where(bd, d)));
-    const int16x8_t of_c =
-        vaddq_s16(vaddq_s16(c, neon_where(ac, a)), vaddq_s16(neon_where(bc, b), neon_where(cd, d)));
-    const int16x8_t of_d =
-        vaddq_s16(vaddq_s16(d, neon_where(ad, a)), vaddq_s16(neon_where(bd, b), neon_where(cd, c)));
-    struct neon_winner w = {kind[0], of_a};
-    neon_challenge(&w, kind[1], of_b, lean_q15, natural);
-    neon_challenge(&w, kind[2], of_c, lean_q15, natural);
-    neon_challenge(&w, kind[3], of_d, lean_q15, natural);
-    return w;
-}
-
-/* Of four numbers less one of them, each times its weight: the sums. */
-static inline int32x4x2_t neon_weighed(const struct neon_corners *c, const int16x8_t number[4],
-                                       int16x8_t less)
-{
-    int16x8_t x = vsubq_s16(number[0], less);
-    int32x4_t low = vmull_s16(vget_low_s16(x), vget_low_s16(c->weight[0]));
-    int32x4_t high = vmull_high_s16(x, c->weight[0]);
-    for (size_t n = 1; n < 4; n++) {
-        x = vsubq_s16(number[n], less);
-        low = vmlal_s16(low, vget_low_s16(x), vget_low_s16(c->weight[n]));
-        high = vmlal_high_s16(high, x, c->weight[n]);
+    const struct neon_texels texels = neon_texels_at(map->grown, offset);
+    const struct neon_way u = neon_way_of(east_q4[0], east_q4[1]);
+    const struct neon_way v = neon_way_of(north_q4[0], north_q4[1]);
+    const uint16x8_t on[2] = {vmovl_u8(vget_low_u8(v.on)), vmovl_high_u8(v.on)};
+    const uint16x8_t left[2] = {vmovl_u8(vget_low_u8(v.left)), vmovl_high_u8(v.left)};
+    const uint16x8x2_t crown[2] = {neon_crowns(texels.south, u), neon_crowns(texels.north, u)};
+    const int16x8x2_t bend[2] = {neon_bends(texels.south, u), neon_bends(texels.north, u)};
+    struct neon_grown g;
+    int16x8_t lean[2];
+    for (size_t h = 0; h < 2; h++) {
+        const uint16x8_t sum =
+            vmlaq_u16(vmulq_u16(crown[0].val[h], left[h]), crown[1].val[h], on[h]);
+        const int16x8_t bent = vmlaq_s16(vmulq_s16(bend[0].val[h], vreinterpretq_s16_u16(left[h])),
+                                         bend[1].val[h], vreinterpretq_s16_u16(on[h]));
+        g.crown_q16[h] = vreinterpretq_s16_u16(veorq_u16(sum, vdupq_n_u16(0x8000)));
+        lean[h] = vqrdmulhq_n_s16(bent, LM_K_LEAN_OF_BEND_Q7);
     }
-    return (int32x4x2_t){{low, high}};
+    g.lean_q7 = vmovn_high_s16(vmovn_s16(lean[0]), lean[1]);
+    return g;
 }
 
-/* Of the cells that have weight, the first of the heaviest. */
-static inline uint16x8_t neon_heaviest(const struct neon_corners *c)
-{
-    uint16x8_t cell = c->cell[0];
-    int16x8_t most = c->weight[0];
-    for (size_t n = 1; n < 4; n++) {
-        cell = vbslq_u16(vcgtq_s16(c->weight[n], most), c->cell[n], cell);
-        most = vmaxq_s16(c->weight[n], most);
-    }
-    return cell;
-}
+/* ---- the contest of classes ---- */
 
-/* The bits in which some of the four cells differs from the first. */
-static inline uint16x8_t neon_differences(const struct neon_corners *c)
-{
-    return vorrq_u16(
-        vorrq_u16(veorq_u16(c->cell[0], c->cell[1]), veorq_u16(c->cell[0], c->cell[2])),
-        veorq_u16(c->cell[0], c->cell[3]));
-}
-
-/* The heights of height codes, lower bytes and upper bytes. */
-struct neon_heights {
-    uint8x16_t dm[2];
+/* The class that has won so far: number, weight, marks. */
+struct neon_winner {
+    uint8x16_t kind, weight, marks;
 };
 
-static inline struct neon_heights neon_heights_of(const uint16_t *height_dm)
+/* Let a class challenge the winner: it wins if weight (128 + lean) > winner's (128 - lean). The
+ * lean is within 115 of 0, so that a byte holds both factors. */
+static inline void neon_challenge(struct neon_winner *w, struct neon_winner k, int8x16_t lean_q7)
 {
-    const uint8x16_t low = vreinterpretq_u8_u16(vld1q_u16(height_dm));
-    const uint8x16_t high = vreinterpretq_u8_u16(vld1q_u16(height_dm + 8));
-    return (struct neon_heights){{vuzp1q_u8(low, high), vuzp2q_u8(low, high)}};
+    const uint8x16_t are_natural = vtstq_u8(vandq_u8(k.marks, w->marks), vdupq_n_u8(NATURAL));
+    const int8x16_t leaning = vbslq_s8(vcgtq_u8(k.kind, w->kind), lean_q7, vnegq_s8(lean_q7));
+    const uint8x16_t lean = vandq_u8(vreinterpretq_u8_s8(leaning), are_natural);
+    const uint8x16_t for_it = vaddq_u8(vdupq_n_u8(128), lean);
+    const uint8x16_t against = vsubq_u8(vdupq_n_u8(128), lean);
+    const uint16x8_t low = vcgtq_u16(vmull_u8(vget_low_u8(k.weight), vget_low_u8(for_it)),
+                                     vmull_u8(vget_low_u8(w->weight), vget_low_u8(against)));
+    const uint16x8_t high =
+        vcgtq_u16(vmull_high_u8(k.weight, for_it), vmull_high_u8(w->weight, against));
+    const uint8x16_t takes = vuzp1q_u8(vreinterpretq_u8_u16(low), vreinterpretq_u8_u16(high));
+    w->kind = vbslq_u8(takes, k.kind, w->kind);
+    w->weight = vbslq_u8(takes, k.weight, w->weight);
+    w->marks = vbslq_u8(takes, k.marks, w->marks);
 }
 
-/* Heights of the codes of eight cells, and of eight more. */
-static inline void neon_heights_dm(const struct neon_heights *h, uint16x8_t a, uint16x8_t b,
-                                   int16x8_t height_dm[2])
+/* Weight of all cells of the class of the first: up to 255. */
+static inline uint8x16_t neon_of_class(uint8x16_t own, uint8x16_t is_b, uint8x16_t b,
+                                       uint8x16_t is_c, uint8x16_t c, uint8x16_t is_d, uint8x16_t d)
 {
-    const uint8x16_t code = vandq_u8(vuzp1q_u8(vreinterpretq_u8_u16(a), vreinterpretq_u8_u16(b)),
-                                     vdupq_n_u8(LM_K_CODES - 1));
-    const uint8x16_t low = vqtbl1q_u8(h->dm[0], code), high = vqtbl1q_u8(h->dm[1], code);
-    height_dm[0] = vreinterpretq_s16_u8(vzip1q_u8(low, high));
-    height_dm[1] = vreinterpretq_s16_u8(vzip2q_u8(low, high));
+    return vqaddq_u8(vqaddq_u8(own, vandq_u8(is_b, b)),
+                     vqaddq_u8(vandq_u8(is_c, c), vandq_u8(is_d, d)));
 }
 
-/* What four heights are higher than the code's, and the crown; metres * 16384. */
-static inline int32x4_t neon_higher(int32x4_t sum, int32x4_t share, uint16x4_t height_dm,
-                                    int16x4_t crown_q16)
+/* The class of each of the four cells with its weight. */
+static inline void neon_set_classes(const struct neon_map *map, const struct neon_corners *corners,
+                                    struct neon_winner of[4])
 {
-    const int32x4_t q10 = vmulq_s32(vshrq_n_s32(sum, 9), share);
-    const int32x4_t higher =
-        vaddq_s32(vsraq_n_s32(q10, q10, 1), vsraq_n_s32(vshrq_n_s32(q10, 4), q10, 5));
-    const uint32x4_t code_m_q14 = vshrq_n_u32(vmull_n_u16(height_dm, LM_K_Q19_OF_DM), 5);
-    const int32x4_t height = vaddq_s32(vreinterpretq_s32_u32(code_m_q14), higher);
-    return vaddq_s32(higher, vqdmulhq_s32(height, vshll_n_s16(crown_q16, 15)));
-}
-
-static inline int32x4_t neon_low(uint16x8_t x)
-{
-    return vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(x)));
-}
-
-static inline int32x4_t neon_high(uint16x8_t x)
-{
-    return vreinterpretq_s32_u32(vmovl_high_u16(x));
-}
-
-/* Mean of the winner's cells, whose weights are left in `c`: cell, level and elevation of eight. */
-static inline void neon_store_mean(const struct lm_k_blend *map, const struct neon_corners *c,
-                                   int16x8_t weight, const struct neon_heights *heights,
-                                   int16x8_t crown_q16, const uint32x4_t ground[2], uint32_t *cell,
-                                   uint32_t *elevation)
-{
-    const uint8x16x4_t shares = vld1q_u8_x4(share_of_weight);
-    const uint8x8_t step = vshrn_n_u16(vreinterpretq_u16_s16(vsubq_s16(weight, vdupq_n_s16(1))), 8);
-    const uint16x8_t share = vmovl_u8(vqtbl4_u8(shares, step));
-    const uint16x8_t best = neon_heaviest(c);
-    int16x8_t number[4];
+    const uint8x16_t *const kind = corners->kind;
+    const uint8x16_t ab = vceqq_u8(kind[0], kind[1]), ac = vceqq_u8(kind[0], kind[2]);
+    const uint8x16_t ad = vceqq_u8(kind[0], kind[3]), bc = vceqq_u8(kind[1], kind[2]);
+    const uint8x16_t bd = vceqq_u8(kind[1], kind[3]), cd = vceqq_u8(kind[2], kind[3]);
+    const uint8x16_t a = vqaddq_u8(corners->weight[0], vdupq_n_u8(1));
+    const uint8x16_t b = corners->weight[1], c = corners->weight[2], d = corners->weight[3];
+    of[0].weight = neon_of_class(a, ab, b, ac, c, ad, d);
+    of[1].weight = neon_of_class(b, ab, a, bc, c, bd, d);
+    of[2].weight = neon_of_class(c, ac, a, bc, b, cd, d);
+    of[3].weight = neon_of_class(d, ad, a, bd, b, cd, c);
     for (size_t n = 0; n < 4; n++) {
-        number[n] = vreinterpretq_s16_u16(vshrq_n_u16(c->cell[n], 8));
+        of[n].kind = kind[n];
+        of[n].marks = vqtbl1q_u8(map->marks, kind[n]);
     }
-    const int32x4x2_t gamma = neon_weighed(c, number, vreinterpretq_s16_u16(vshrq_n_u16(best, 8)));
-    const int16x8_t more_db_q8 =
-        vrshrn_high_n_s32(vrshrn_n_s32(vmulq_s32(gamma.val[0], neon_low(share)), 12),
-                          vmulq_s32(gamma.val[1], neon_high(share)), 12);
-    const uint16x8_t more = vreinterpretq_u16_s16(more_db_q8);
-    vst1q_u32(cell, vreinterpretq_u32_u16(vzip1q_u16(best, more)));
-    vst1q_u32(cell + 4, vreinterpretq_u32_u16(vzip2q_u16(best, more)));
+}
+
+/* True if some class bends borders or has crowns. */
+static inline bool neon_needs_grown(const struct neon_winner of[4])
+{
+    const uint8x16_t marks =
+        vorrq_u8(vorrq_u8(of[0].marks, of[1].marks), vorrq_u8(of[2].marks, of[3].marks));
+    return neon_any(vandq_u8(marks, vdupq_n_u8(NATURAL | CROWNED)));
+}
+
+/* Find the winners, and take the weights of all but their cells away. */
+static inline uint8x16_t neon_contest(const struct neon_map *map, const struct neon_turn *turn,
+                                      struct neon_corners *c, int16x8_t crown_q16[2])
+{
+    struct neon_grown grown = {vdupq_n_s8(0), {vdupq_n_s16(0), vdupq_n_s16(0)}};
+    struct neon_winner of[4];
+    neon_set_classes(map, c, of);
+    if (neon_needs_grown(of)) {
+        grown = neon_grown_at(map, turn);
+    }
+    struct neon_winner w = of[0];
+    neon_challenge(&w, of[1], grown.lean_q7);
+    neon_challenge(&w, of[2], grown.lean_q7);
+    neon_challenge(&w, of[3], grown.lean_q7);
+    const int8x16_t is_crowned = vreinterpretq_s8_u8(vtstq_u8(w.marks, vdupq_n_u8(CROWNED)));
+    crown_q16[0] = vandq_s16(grown.crown_q16[0], vmovl_s8(vget_low_s8(is_crowned)));
+    crown_q16[1] = vandq_s16(grown.crown_q16[1], vmovl_high_s8(is_crowned));
+    for (size_t n = 0; n < 4; n++) {
+        c->weight[n] = vandq_u8(vceqq_u8(c->kind[n], w.kind), c->weight[n]);
+    }
+    return w.kind;
+}
+
+/* ---- means ---- */
+
+/* Of the cells that have weight, the first of the heaviest: lower byte and code. */
+struct neon_cell {
+    uint8x16_t low, gamma;
+};
+
+static inline struct neon_cell neon_heaviest(const struct neon_corners *c)
+{
+    struct neon_cell best = {c->low[0], c->gamma[0]};
+    uint8x16_t most = c->weight[0];
+    for (size_t n = 1; n < 4; n++) {
+        const uint8x16_t is_more = vcgtq_u8(c->weight[n], most);
+        best.low = vbslq_u8(is_more, c->low[n], best.low);
+        best.gamma = vbslq_u8(is_more, c->gamma[n], best.gamma);
+        most = vmaxq_u8(most, c->weight[n]);
+    }
+    return best;
+}
+
+/* What the mean of eight reflectivities is above the heaviest cell's. */
+static inline int16x8_t neon_more_db_q8(uint16x8_t gamma_sum, uint8x8_t share)
+{
+    const int16x8_t share_q15 = vreinterpretq_s16_u16(vshll_n_u8(share, 7));
+    return vshlq_n_s16(vqrdmulhq_s16(vreinterpretq_s16_u16(gamma_sum), share_q15), 2);
+}
+
+/* Store the cells of a turn, and what the means of their reflectivities are above them. */
+static inline void neon_store_cells(const struct neon_corners *c, const struct neon_turn *turn,
+                                    struct neon_cell best, uint8x16_t weight, uint8x16_t share)
+{
+    uint16x8_t low = vmull_u8(vget_low_u8(c->weight[0]), vget_low_u8(c->gamma[0]));
+    uint16x8_t high = vmull_high_u8(c->weight[0], c->gamma[0]);
+    for (size_t n = 1; n < 4; n++) {
+        low = vmlal_u8(low, vget_low_u8(c->weight[n]), vget_low_u8(c->gamma[n]));
+        high = vmlal_high_u8(high, c->weight[n], c->gamma[n]);
+    }
+    low = vmlsl_u8(low, vget_low_u8(weight), vget_low_u8(best.gamma));
+    high = vmlsl_high_u8(high, weight, best.gamma);
+    const uint16x8_t first = vreinterpretq_u16_u8(vzip1q_u8(best.low, best.gamma));
+    const uint16x8_t second = vreinterpretq_u16_u8(vzip2q_u8(best.low, best.gamma));
+    const uint16x8_t more = vreinterpretq_u16_s16(neon_more_db_q8(low, vget_low_u8(share)));
+    const uint16x8_t further = vreinterpretq_u16_s16(neon_more_db_q8(high, vget_high_u8(share)));
+    vst1q_u16((uint16_t *)(turn->cell + turn->next), vzip1q_u16(second, further));
+    vst1q_u16((uint16_t *)(turn->cell + turn->next + 4), vzip2q_u16(second, further));
+    vst1q_u16((uint16_t *)turn->cell, vzip1q_u16(first, more));
+    vst1q_u16((uint16_t *)(turn->cell + 4), vzip2q_u16(first, more));
+}
+
+/* Heights of the codes of sixteen cells. */
+static inline uint16x8x2_t neon_heights_dm(const struct neon_map *map, uint8x16_t low)
+{
+    return neon_words_of_16(map->height_dm, vandq_u8(low, vdupq_n_u8(LM_K_CODES - 1)));
+}
+
+/* Metres * 16384 of four heights. */
+static inline int32x4_t neon_metres_q14(uint16x4_t height_dm)
+{
+    return vreinterpretq_s32_u32(vshrq_n_u32(vmull_n_u16(height_dm, LM_K_Q19_OF_DM), 5));
+}
+
+/* What four heights are higher than the code's: metres * 16384. */
+static inline int32x4_t neon_higher(int32x4_t sum, int32x4_t share)
+{
+    const int32x4_t q10 = vshrq_n_s32(vmulq_s32(vshrq_n_s32(sum, 1), share), 2);
+    return vaddq_s32(vsraq_n_s32(q10, q10, 1), vsraq_n_s32(vshrq_n_s32(q10, 4), q10, 5));
+}
+
+/* The same of sixteen places. */
+static inline int32x4x4_t neon_higher_of_16(const struct neon_map *map,
+                                            const struct neon_corners *c, uint16x8x2_t own_dm,
+                                            uint8x16_t share)
+{
+    int32x4x4_t sum = {{vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0)}};
+    for (size_t n = 0; n < 4; n++) {
+        const uint16x8x2_t height = neon_heights_dm(map, c->low[n]);
+        const int16x8_t weight[2] = {vreinterpretq_s16_u16(vmovl_u8(vget_low_u8(c->weight[n]))),
+                                     vreinterpretq_s16_u16(vmovl_high_u8(c->weight[n]))};
+        for (size_t h = 0; h < 2; h++) {
+            const int16x8_t apart = vreinterpretq_s16_u16(vsubq_u16(height.val[h], own_dm.val[h]));
+            sum.val[2 * h] =
+                vmlal_s16(sum.val[2 * h], vget_low_s16(apart), vget_low_s16(weight[h]));
+            sum.val[2 * h + 1] = vmlal_high_s16(sum.val[2 * h + 1], apart, weight[h]);
+        }
+    }
+    for (size_t h = 0; h < 2; h++) {
+        const uint16x8_t wide = h == 0 ? vmovl_u8(vget_low_u8(share)) : vmovl_high_u8(share);
+        sum.val[2 * h] =
+            neon_higher(sum.val[2 * h], vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(wide))));
+        sum.val[2 * h + 1] =
+            neon_higher(sum.val[2 * h + 1], vreinterpretq_s32_u32(vmovl_high_u16(wide)));
+    }
+    return sum;
+}
+
+/* Add to the elevations what the means of heights and the crowns are above the codes' heights. */
+static inline void neon_add_heights(const struct neon_map *map, const struct neon_corners *c,
+                                    const struct neon_turn *turn, uint8x16_t low, uint8x16_t share,
+                                    bool do_differ, const int16x8_t crown_q16[2])
+{
+    const uint16x8x2_t own_dm = neon_heights_dm(map, low);
+    int32x4x4_t more = {{vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0)}};
+    if (do_differ) {
+        more = neon_higher_of_16(map, c, own_dm, share);
+    }
+    for (size_t h = 0; h < 2; h++) {
+        const int32x4_t first =
+            vaddq_s32(neon_metres_q14(vget_low_u16(own_dm.val[h])), more.val[2 * h]);
+        const int32x4_t second =
+            vaddq_s32(neon_metres_q14(vget_high_u16(own_dm.val[h])), more.val[2 * h + 1]);
+        more.val[2 * h] = vaddq_s32(
+            more.val[2 * h], vqdmulhq_s32(first, vshll_n_s16(vget_low_s16(crown_q16[h]), 15)));
+        more.val[2 * h + 1] =
+            vaddq_s32(more.val[2 * h + 1],
+                      vqdmulhq_s32(second, vshll_n_s16(vget_high_s16(crown_q16[h]), 15)));
+    }
+    int32_t *const low_half = (int32_t *)turn->elevation, *const high_half = low_half + turn->next;
+    const int32x4x4_t ground = neon_load_8_and_8(low_half, high_half);
+    vst1q_s32(high_half, vaddq_s32(ground.val[2], more.val[2]));
+    vst1q_s32(high_half + 4, vaddq_s32(ground.val[3], more.val[3]));
+    vst1q_s32(low_half, vaddq_s32(ground.val[0], more.val[0]));
+    vst1q_s32(low_half + 4, vaddq_s32(ground.val[1], more.val[1]));
+}
+
+/* ---- a turn ---- */
+
+/* Where sixteen places are: north and east. */
+struct neon_places {
+    uint32x4x4_t north, east;
+};
+
+/* Elevation of the terrain at eight places. */
+static inline void neon_elevations(const struct neon_places *at, size_t half, const uint32_t *scale,
+                                   const neon_pair *south, const neon_pair *north,
+                                   uint32x4_t elevation[2])
+{
+    const uint16x8x4_t s = vld4q_u16((const uint16_t *)south);
+    const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
+    const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
+    const uint32x4x2_t post_q16 =
+        neon_bilerp(&posts, neon_weights(at->east.val[2 * half], at->east.val[2 * half + 1]),
+                    neon_weights(at->north.val[2 * half], at->north.val[2 * half + 1]));
+    elevation[0] = neon_elevation(vld1q_u32(scale), post_q16.val[0]);
+    elevation[1] = neon_elevation(vld1q_u32(scale + 4), post_q16.val[1]);
+}
+
+/* Store the elevations of the terrain, and find the four cells around each place. */
+static inline void neon_read(const struct neon_map *map, const struct neon_turn *turn,
+                             const struct neon_places *at, struct neon_corners *c)
+{
+    uint32_t offset[2 * PLACES];
+    neon_pair south[PLACES], north[PLACES];
+    uint16x8_t u[2], v[2];
+    uint32x4_t elevation[4];
+    uint32x4x4_t n_q25, e_q25, of_posts, of_cells;
+    for (size_t h = 0; h < 4; h++) {
+        const uint32x4_t record = vld1q_u32(turn->cell + 4 * (h % 2) + (h < 2 ? 0 : turn->next));
+        n_q25.val[h] = neon_half_on(at->north.val[h]);
+        e_q25.val[h] = neon_half_on(at->east.val[h]);
+        of_posts.val[h] = neon_offsets(record, at->north.val[h], at->east.val[h]);
+        of_cells.val[h] = neon_corner_offsets(record, n_q25.val[h], e_q25.val[h]);
+    }
+    vst1q_u32_x4(offset, of_posts);
+    vst1q_u32_x4(offset + PLACES, of_cells);
+    for (size_t h = 0; h < 2; h++) {
+        u[h] = neon_fractions(e_q25.val[2 * h], e_q25.val[2 * h + 1]);
+        v[h] = neon_fractions(n_q25.val[2 * h], n_q25.val[2 * h + 1]);
+    }
+    neon_set_weights(c, u, v);
+    __asm__("" : "+m"(offset));
+    for (size_t k = 0; k < PLACES; k += 4) {
+        neon_fetch(&map->posts, offset + k, south + k, north + k);
+    }
+    uint32_t *const further = turn->elevation + turn->next;
+    neon_elevations(at, 0, turn->elevation, south, north, elevation);
+    neon_elevations(at, 1, further, south + LM_LANES, north + LM_LANES, elevation + 2);
+    vst1q_u32(further, elevation[2]);
+    vst1q_u32(further + 4, elevation[3]);
+    vst1q_u32(turn->elevation, elevation[0]);
+    vst1q_u32(turn->elevation + 4, elevation[1]);
+    for (size_t k = 0; k < PLACES; k += 4) {
+        neon_fetch(&map->cells, offset + PLACES + k, south + k, north + k);
+    }
+    const uint16x8x4_t s[2] = {vld4q_u16((const uint16_t *)south),
+                               vld4q_u16((const uint16_t *)(south + LM_LANES))};
+    const uint16x8x4_t f[2] = {vld4q_u16((const uint16_t *)north),
+                               vld4q_u16((const uint16_t *)(north + LM_LANES))};
+    neon_set_cells(c, 0, s[0].val[0], s[1].val[0]);
+    neon_set_cells(c, 1, s[0].val[2], s[1].val[2]);
+    neon_set_cells(c, 2, f[0].val[0], f[1].val[0]);
+    neon_set_cells(c, 3, f[0].val[2], f[1].val[2]);
+}
+
+/* Blend the cells of a turn. */
+static inline void neon_blend(const struct neon_map *map, const struct neon_turn *turn,
+                              const struct neon_places *at)
+{
+    struct neon_corners c;
+    neon_read(map, turn, at, &c);
+    for (size_t n = 0; n < 4; n++) {
+        c.kind[n] = vshrq_n_u8(c.low[n], 4);
+    }
+    const uint8x16_t differences =
+        vorrq_u8(vorrq_u8(veorq_u8(c.low[0], c.low[1]), veorq_u8(c.low[0], c.low[2])),
+                 veorq_u8(c.low[0], c.low[3]));
+    int16x8_t crown_q16[2] = {vdupq_n_s16(0), vdupq_n_s16(0)};
+    uint8x16_t kind = c.kind[0];
+    const uint8x16_t is_crowned = vtstq_u8(vqtbl1q_u8(map->marks, kind), vdupq_n_u8(CROWNED));
+    if (neon_any(vorrq_u8(vshrq_n_u8(differences, 4), is_crowned))) {
+        kind = neon_contest(map, turn, &c, crown_q16);
+    }
+    const uint8x16_t weight =
+        vaddq_u8(vaddq_u8(c.weight[0], c.weight[1]), vaddq_u8(c.weight[2], c.weight[3]));
+    const uint8x16_t share = vqtbl4q_u8(vld1q_u8_x4(share_of_weight), vshrq_n_u8(weight, 2));
+    const struct neon_cell best = neon_heaviest(&c);
+    neon_store_cells(&c, turn, best, weight, share);
 
     /* Most ground is of one height. */
-    const uint16x8_t differs =
-        vorrq_u16(vandq_u16(neon_differences(c), vdupq_n_u16(LM_K_CODES - 1)),
-                  vreinterpretq_u16_s16(crown_q16));
-    if (vmaxvq_u16(differs) == 0) {
-        vst1q_u32(elevation, ground[0]);
-        vst1q_u32(elevation + 4, ground[1]);
+    if (!neon_any(vorrq_u8(vandq_u8(differences, vdupq_n_u8(LM_K_CODES - 1)),
+                           vreinterpretq_u8_s16(vorrq_s16(crown_q16[0], crown_q16[1]))))) {
         return;
     }
-    int16x8_t own_dm[2];
-    neon_heights_dm(heights, c->cell[0], c->cell[1], number);
-    neon_heights_dm(heights, c->cell[2], c->cell[3], number + 2);
-    neon_heights_dm(heights, best, best, own_dm);
-    const int32x4x2_t sum = neon_weighed(c, number, own_dm[0]);
-    const uint16x8_t height_dm = vreinterpretq_u16_s16(own_dm[0]);
-    const uint16x8_t is_flat = vtstq_u16(neon_bit_of(map->flat, neon_kinds(best)), vdupq_n_u16(1));
-    const uint16x8_t height_share = vbicq_u16(share, is_flat);
-    const int32x4_t low = neon_higher(sum.val[0], neon_low(height_share), vget_low_u16(height_dm),
-                                      vget_low_s16(crown_q16));
-    const int32x4_t high = neon_higher(sum.val[1], neon_high(height_share),
-                                       vget_high_u16(height_dm), vget_high_s16(crown_q16));
-    vst1q_u32(elevation, vaddq_u32(ground[0], vreinterpretq_u32_s32(low)));
-    vst1q_u32(elevation + 4, vaddq_u32(ground[1], vreinterpretq_u32_s32(high)));
-}
-
-/* Take the weights of all but the winner's cells away. Returns the weight that is left. */
-static inline int16x8_t neon_contest(const struct lm_k_blend *map, struct neon_corners *c,
-                                     struct neon_grown grown, int16x8_t *crown_q16)
-{
-    int16x8_t kind[4];
+    uint8x16_t differs = vdupq_n_u8(0);
     for (size_t n = 0; n < 4; n++) {
-        kind[n] = neon_kinds(c->cell[n]);
+        const uint8x16_t counts = vtstq_u8(c.weight[n], c.weight[n]);
+        differs = vorrq_u8(differs, vandq_u8(veorq_u8(c.low[n], best.low), counts));
     }
-    const struct neon_winner w =
-        neon_winner_of(c, kind, vqdmulhq_n_s16(grown.bend_q8, 230 << 7), map->natural);
-    for (size_t n = 0; n < 4; n++) {
-        c->weight[n] = neon_where(vceqq_s16(kind[n], w.kind), c->weight[n]);
+    const uint8x16_t is_flat = vtstq_u8(vqtbl1q_u8(map->marks, kind), vdupq_n_u8(FLAT));
+    const bool do_differ = neon_any(vbicq_u8(differs, is_flat));
+    if (do_differ || neon_any(vreinterpretq_u8_s16(vorrq_s16(crown_q16[0], crown_q16[1])))) {
+        neon_add_heights(map, &c, turn, best.low, vbicq_u8(share, is_flat), do_differ, crown_q16);
     }
-    const uint16x8_t is_crowned = vtstq_u16(neon_bit_of(map->crowned, w.kind), vdupq_n_u16(1));
-    *crown_q16 = neon_where(is_crowned, grown.crown_q16);
-    return w.weight;
 }
 
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
-                     uint32_t first, uint32_t groups, uint32_t *cell_of_line,
-                     int32_t *elevation_m_q14)
+                     uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14)
 {
-    const struct neon_source posts_of = neon_source_of(map->points);
-    const struct neon_source cells_of = neon_source_of(map->points - LM_TILE_POINTS - 1);
-    const struct neon_heights heights = neon_heights_of(map->height_dm_of_code);
+    const struct neon_map look_up = neon_map_of(map);
     struct neon_track north_track = neon_track_from(&places->north, first);
     struct neon_track east_track = neon_track_from(&places->east, first);
-    uint32_t *cell = cell_of_line + first;
-    uint32_t *elevation = (uint32_t *)elevation_m_q14 + first;
-    for (const uint32_t *const end = cell + groups * LM_LANES; cell != end;
-         cell += LM_LANES, elevation += LM_LANES) {
-        uint32_t offset[2 * LM_LANES];
-        neon_pair south[LM_LANES], north[LM_LANES];
-        const uint32x4_t n[2] = {neon_next(&north_track), neon_next(&north_track)};
-        const uint32x4_t e[2] = {neon_next(&east_track), neon_next(&east_track)};
-        const uint32x4_t n_q25[2] = {neon_half_on(n[0]), neon_half_on(n[1])};
-        const uint32x4_t e_q25[2] = {neon_half_on(e[0]), neon_half_on(e[1])};
-        for (size_t h = 0; h < 2; h++) {
-            const uint32x4_t record = vld1q_u32(cell + 4 * h);
-            vst1q_u32(offset + 4 * h, neon_offsets(record, n[h], e[h]));
-            vst1q_u32(offset + LM_LANES + 4 * h, neon_corner_offsets(record, n_q25[h], e_q25[h]));
+    struct neon_turn turn = {
+        .cell = cell + first, .elevation = (uint32_t *)elevation_m_q14 + first, .next = LM_LANES};
+    for (const uint32_t *const end = turn.cell + groups * LM_LANES; turn.cell < end;
+         turn.cell += PLACES, turn.elevation += PLACES) {
+        struct neon_places at;
+        for (size_t h = 0; h < 4; h++) {
+            at.north.val[h] = neon_next(&north_track);
+            at.east.val[h] = neon_next(&east_track);
         }
-        __asm__("" : "+m"(offset));
-        neon_fetch(&posts_of, offset, south, north);
-        neon_fetch(&posts_of, offset + 4, south + 4, north + 4);
-        const uint16x8x4_t s = vld4q_u16((const uint16_t *)south);
-        const uint16x8x4_t f = vld4q_u16((const uint16_t *)north);
-        const struct neon_posts posts = {s.val[1], s.val[3], f.val[1], f.val[3]};
-        const uint32x4x2_t post_q16 =
-            neon_bilerp(&posts, neon_weights(e[0], e[1]), neon_weights(n[0], n[1]));
-        const uint32x4_t ground[2] = {neon_elevation(vld1q_u32(elevation), post_q16.val[0]),
-                                      neon_elevation(vld1q_u32(elevation + 4), post_q16.val[1])};
-        neon_fetch(&cells_of, offset + LM_LANES, south, north);
-        neon_fetch(&cells_of, offset + LM_LANES + 4, south + 4, north + 4);
-        const uint16x8x4_t low = vld4q_u16((const uint16_t *)south);
-        const uint16x8x4_t high = vld4q_u16((const uint16_t *)north);
-        struct neon_corners c = {.cell = {low.val[0], low.val[2], high.val[0], high.val[2]}};
-        neon_set_weights(&c, neon_fractions(e_q25[0], e_q25[1]),
-                         neon_fractions(n_q25[0], n_q25[1]));
-        int16x8_t weight = vdupq_n_s16(16384), crown_q16 = vdupq_n_s16(0);
-        /* Crowned cells, and those that are not of one class with all around. */
-        const uint16x8_t is_crowned =
-            vtstq_u16(neon_bit_of(map->crowned, neon_kinds(c.cell[0])), vdupq_n_u16(1));
-        const uint16x8_t others = vandq_u16(neon_differences(&c), vdupq_n_u16(0xF0));
-        if (vmaxvq_u16(vorrq_u16(is_crowned, others)) != 0) {
-            weight = neon_contest(map, &c, neon_grown_at(map, n, e), &crown_q16);
-        }
-        neon_store_mean(map, &c, weight, &heights, crown_q16, ground, cell, elevation);
+        vst1q_u32_x4(turn.north, at.north);
+        vst1q_u32_x4(turn.east, at.east);
+        turn.next = turn.cell + LM_LANES == end ? 0 : LM_LANES;
+        neon_blend(&look_up, &turn, &at);
     }
 }

@@ -5,8 +5,7 @@
 #include "lm/kernels_map.h"
 #include "lm/lanes.h"
 
-/* 2^11 / (i + 1/2), which is 2^25 over a weight of 2^8 (i + 1/2), at most 255: i is the weight of a
- * class, less one, in 64ths of all. The last entry is exact, for cells that are all of one class.
+/* 2^13 over a weight of 4 i + 2, at most 255: i is the weight of a class, of 255, in steps of 4.
  * The vectors of arm64/ look up the same. */
 static const int32_t share_of_weight[64] = {
     255, 255, 255, 255, 255, 255, 255, 255, 241, 216, 195, 178, 164, 152, 141, 132,
@@ -15,7 +14,7 @@ static const int32_t share_of_weight[64] = {
     42,  41,  41,  40,  39,  38,  38,  37,  36,  36,  35,  34,  34,  33,  33,  32,
 };
 
-/* Of the four cells whose middles are around a place: class, and weight. Weights add up to 2^14. */
+/* Of the four cells whose middles are around a place: class, and weight. Weights add up to 256. */
 struct corner {
     int32_t cell, kind, weight;
 };
@@ -25,12 +24,13 @@ static inline struct corner corner_of(uint32_t point, int32_t weight)
     return (struct corner){(int32_t)(point & 0xFFFF), (int32_t)(point >> 4 & 15), weight};
 }
 
-/* Weight of all cells of the class of the first. */
+/* Weight of all cells of the class of the first; 255 stands for 256, too. */
 static inline int32_t weight_of_class(struct corner of, struct corner b, struct corner c,
                                       struct corner d)
 {
-    return of.weight + (of.kind == b.kind ? b.weight : 0) + (of.kind == c.kind ? c.weight : 0) +
-           (of.kind == d.kind ? d.weight : 0);
+    return fx_min_i32(of.weight + (of.kind == b.kind ? b.weight : 0) +
+                          (of.kind == c.kind ? c.weight : 0) + (of.kind == d.kind ? d.weight : 0),
+                      255);
 }
 
 /* The class that has won so far: its number and weight. */
@@ -39,15 +39,15 @@ struct winner {
 };
 
 /* Let a class challenge the winner. Where both are natural, the ground leans to the one or to the
- * other: at most 9/10 of both weights, below 2^14 because the classes differ. */
+ * other. With S the weights and n twice the lean, S_k - S_m + n (S_k + S_m) > 0 is
+ * S_k (1 + n) > S_m (1 - n). */
 static inline struct winner challenge(struct winner w, int32_t kind, int32_t weight,
-                                      int32_t lean_q15, uint32_t natural)
+                                      int32_t lean_q7, uint32_t natural)
 {
     const bool are_natural = (natural >> kind & natural >> w.kind & 1u) != 0;
-    const int32_t lean = (weight + w.weight) * lean_q15 >> 15;
-    const int32_t leaning = kind > w.kind ? lean : -lean;
-    const int32_t more = weight - w.weight + (are_natural && kind != w.kind ? leaning : 0);
-    return more > 0 ? (struct winner){kind, weight} : w;
+    const int32_t leaning = kind > w.kind ? lean_q7 : -lean_q7;
+    const int32_t lean = are_natural ? leaning : 0;
+    return weight * (128 + lean) > w.weight * (128 - lean) ? (struct winner){kind, weight} : w;
 }
 
 static inline int32_t height_dm_of(const int32_t *height_dm, int32_t cell)
@@ -55,10 +55,16 @@ static inline int32_t height_dm_of(const int32_t *height_dm, int32_t cell)
     return height_dm[cell & 15];
 }
 
-/* Difference of two heights. It wraps as the vectors of arm64/ do, beyond 3.2 km. */
+/* The lower 16 bits with their sign: sums wrap as the vectors of arm64/ do. */
+static inline int32_t wrapped(int32_t x)
+{
+    return (int32_t)((uint32_t)x << 16) >> 16;
+}
+
+/* Difference of two heights: right up to 3.2 km. */
 static inline int32_t apart_dm(int32_t height_dm, int32_t from_dm)
 {
-    return (int32_t)((uint32_t)(height_dm - from_dm) << 16) >> 16;
+    return wrapped(height_dm - from_dm);
 }
 
 struct heights {
@@ -101,22 +107,27 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
     const int32_t row = (int32_t)(north_q25 >> 25) - 1, column = (int32_t)(east_q25 >> 25) - 1;
     const int32_t at = (int32_t)record + row * LM_TILE_POINTS + column;
     const int32_t v = north_q25 >> 18 & 127, u = east_q25 >> 18 & 127;
-    const int32_t of_d = u * v, of_b = 128 * u - of_d, of_c = 128 * v - of_d;
+    /* Cut off, the three add up to 255 at most: together they are 256 - (128 - u) (128 - v) / 64.
+     */
+    const int32_t of_d = u * v >> 6, of_b = (128 * u - u * v) >> 6, of_c = (128 * v - u * v) >> 6;
     const struct lm_tile_point *p = map->points;
-    const struct corner a = corner_of(fx_load_u32(p + at), 16384 - of_b - of_c - of_d);
+    const struct corner a = corner_of(fx_load_u32(p + at), 256 - of_b - of_c - of_d);
     const struct corner b = corner_of(fx_load_u32(p + at + 1), of_b);
     const struct corner c = corner_of(fx_load_u32(p + at + LM_TILE_POINTS), of_c);
     const struct corner d = corner_of(fx_load_u32(p + at + LM_TILE_POINTS + 1), of_d);
 
     const struct grown grown = grown_at(map, north, east);
-    const int32_t lean_q15 = grown.bend_q8 * 230 >> 8;
+    const int32_t lean_q7 = (grown.bend_q8 * LM_K_LEAN_OF_BEND_Q7 + (1 << 14)) >> 15;
     struct winner w = {a.kind, weight_of_class(a, b, c, d)};
-    w = challenge(w, b.kind, weight_of_class(b, a, c, d), lean_q15, map->natural);
-    w = challenge(w, c.kind, weight_of_class(c, a, b, d), lean_q15, map->natural);
-    w = challenge(w, d.kind, weight_of_class(d, a, b, c), lean_q15, map->natural);
+    w = challenge(w, b.kind, weight_of_class(b, a, c, d), lean_q7, map->natural);
+    w = challenge(w, c.kind, weight_of_class(c, a, b, d), lean_q7, map->natural);
+    w = challenge(w, d.kind, weight_of_class(d, a, b, c), lean_q7, map->natural);
 
-    const int32_t in_a = a.kind == w.kind ? a.weight : 0, in_b = b.kind == w.kind ? b.weight : 0;
-    const int32_t in_c = c.kind == w.kind ? c.weight : 0, in_d = d.kind == w.kind ? d.weight : 0;
+    /* Of 255, so that a byte holds all weights together: the first cell has one less. */
+    const int32_t in_a = a.kind == w.kind ? a.weight - 1 : 0;
+    const int32_t in_b = b.kind == w.kind ? b.weight : 0;
+    const int32_t in_c = c.kind == w.kind ? c.weight : 0;
+    const int32_t in_d = d.kind == w.kind ? d.weight : 0;
     int32_t most = in_a, cell = a.cell;
     cell = in_b > most ? b.cell : cell;
     most = fx_max_i32(in_b, most);
@@ -124,11 +135,11 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
     most = fx_max_i32(in_c, most);
     cell = in_d > most ? d.cell : cell;
 
-    const int32_t share = share_of_weight[(w.weight - 1) >> 8];
+    const int32_t share = share_of_weight[(in_a + in_b + in_c + in_d) >> 2];
     const int32_t gamma = cell >> 8;
     const int32_t gamma_sum = in_a * ((a.cell >> 8) - gamma) + in_b * ((b.cell >> 8) - gamma) +
                               in_c * ((c.cell >> 8) - gamma) + in_d * ((d.cell >> 8) - gamma);
-    const int32_t more_db_q8 = (gamma_sum * share + 2048) >> 12;
+    const int32_t more_db_q8 = ((wrapped(gamma_sum) * share + 128) >> 8) * 4;
 
     const int32_t height_dm = height_dm_of(heights->dm, cell);
     const int32_t height_sum = in_a * apart_dm(height_dm_of(heights->dm, a.cell), height_dm) +
@@ -136,7 +147,8 @@ static inline __attribute__((always_inline)) struct lm_ground blend(const struct
                                in_c * apart_dm(height_dm_of(heights->dm, c.cell), height_dm) +
                                in_d * apart_dm(height_dm_of(heights->dm, d.cell), height_dm);
     const bool is_flat = (map->flat >> w.kind & 1u) != 0;
-    const int32_t higher_dm_q10 = is_flat ? 0 : (height_sum >> 9) * share;
+    /* The sum is below 2^23. */
+    const int32_t higher_dm_q10 = is_flat ? 0 : (height_sum >> 1) * share >> 2;
     const int32_t higher_m_q14 =
         higher_dm_q10 + (higher_dm_q10 >> 1) + (higher_dm_q10 >> 4) + (higher_dm_q10 >> 5);
     const int32_t height_m_q14 = lm_k_height_m_q14((uint16_t)height_dm) + higher_m_q14;

@@ -86,6 +86,9 @@ enum {
     LM_K_GROWN_WORDS = LM_K_GROWN_STRIDE * LM_K_GROWN_STRIDE
 };
 
+/* A border between two natural classes leans by n = 230/256 of a bend; half of that in 128ths. */
+enum { LM_K_LEAN_OF_BEND_Q7 = 115 };
+
 /* The map as lm_k_tile_blend reads it. Bit k of a mask is for class k. Borders between two natural
  * classes are bent by the pattern of what has grown, and heights of crowned classes follow it.
  * Those of flat ones are not blended: then their elevation is the terrain's. */
@@ -103,11 +106,12 @@ struct lm_k_blend {
  * cells whose middles are around each place. Law: docs/EQUATIONS.md, "Finer than the map".
  *
  * - cell[k]: of the cells of the class that wins, the one that has most weight, as in the record.
- *   In the upper half is what its reflectivity lacks to that of the blend: 1/256 dB, signed.
+ *   In the upper half is what its reflectivity lacks to that of the blend: 1/256 dB, signed, in
+ *   steps of 1/64 dB. Reflectivities of one class must be within 63.5 dB.
  * - elevation_m_q14[k]: of the terrain, and what the cell's height lacks to that of the blend.
  *
- * Points beside the own ones of a tile are read, too. Cost: 33 a cell where all that is around is
- * of one class and height, up to 70 elsewhere. */
+ * Points beside the own ones of a tile are read, too. Cost: 31 a cell where all that is around is
+ * of one class and height, up to 59 elsewhere. */
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
                      uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
