@@ -21,13 +21,22 @@ struct sampler {
     uint64_t seen[DB_CLASS_MAX];
     size_t cap;
     struct hs_rng rng;
+    uint8_t *ignored; /* owned; NULL, or one bit a pixel of the image, row by row */
+    size_t width;
 };
+
+static bool is_ignored(const struct sampler *s, int x, int y)
+{
+    const size_t bit = (size_t)y * s->width + (size_t)x;
+    return s->ignored && s->ignored[bit / 8] >> bit % 8 & 1;
+}
 
 static void sampler_free(struct sampler *s)
 {
     for (int i = 0; i < DB_CLASS_MAX; i++) {
         free(s->classes[i].items);
     }
+    free(s->ignored);
 }
 
 static int sampler_add(struct sampler *s, struct db_exemplar item)
@@ -54,17 +63,19 @@ static int sampler_add(struct sampler *s, struct db_exemplar item)
     return 0;
 }
 
-/* How often each label turned up that the map leaves out. */
+/* How often each label turned up that the map leaves out or ignores. */
 struct left_out {
     struct {
         char label[DB_LABEL_SIZE];
+        bool is_ignored; /* as told */
         uint64_t count;
     } items[DB_MAP_MAX];
     int count;
     uint64_t others; /* of labels beyond the first DB_MAP_MAX */
 };
 
-static void count_left_out(struct left_out *l, const char *label, uint64_t count)
+static void count_left_out(struct left_out *l, const struct db_label_map *map, const char *label,
+                           uint64_t count)
 {
     for (int i = 0; i < l->count; i++) {
         if (strcmp(l->items[i].label, label) == 0) {
@@ -77,18 +88,32 @@ static void count_left_out(struct left_out *l, const char *label, uint64_t count
         return;
     }
     strcpy(l->items[l->count].label, label);
+    l->items[l->count].is_ignored = db_label_map_is_ignored(map, label);
     l->items[l->count++].count = count;
 }
 
-static void report_left_out(const struct left_out *l, const char *what)
+/* Numbers are near each other without being misspelt. */
+static bool is_number(const char *label)
+{
+    return label[strspn(label, "0123456789")] == '\0';
+}
+
+/* A label that is nearly one of the map is likely to be meant for it. */
+static void report_left_out(const struct left_out *l, const struct db_label_map *map)
 {
     for (int i = 0; i < l->count; i++) {
-        printf("label `%s`: not mapped, %llu %s ignored\n", l->items[i].label,
-               (unsigned long long)l->items[i].count, what);
+        const char *label = l->items[i].label;
+        const char *nearest = l->items[i].is_ignored ? NULL : db_label_map_nearest(map, label);
+        printf("label `%s`: %s, %llu pixels ignored\n", label,
+               l->items[i].is_ignored ? "to be ignored" : "not mapped",
+               (unsigned long long)l->items[i].count);
+        if (nearest && !is_number(label)) {
+            hs_warn(label, "correct its spelling, or say --ignore", "is not mapped, but `%s` is",
+                    nearest);
+        }
     }
     if (l->others > 0) {
-        printf("further labels: not mapped, %llu %s ignored\n", (unsigned long long)l->others,
-               what);
+        printf("further labels: not mapped, %llu pixels ignored\n", (unsigned long long)l->others);
     }
 }
 
@@ -163,7 +188,7 @@ static int take_span(void *context, int y, int x_begin, int x_end)
     sink->pixels += (uint64_t)(x_end - x_begin);
     for (int x = x_begin; x < x_end; x++) {
         const struct db_exemplar item = {x, y, sink->region, sink->class_index, DB_PART_TRAIN};
-        if (sampler_add(sink->sampler, item) != 0) {
+        if (!is_ignored(sink->sampler, x, y) && sampler_add(sink->sampler, item) != 0) {
             return -1;
         }
     }
@@ -177,14 +202,47 @@ static int count_span(void *context, int y, int x_begin, int x_end)
     return 0;
 }
 
-static int sample_polygon(struct sampler *s, const struct db_polygon *polygon, uint32_t region,
-                          int class_index, const struct db_grid *grid, struct left_out *left)
+static int ignore_span(void *context, int y, int x_begin, int x_end)
 {
+    const struct sampler *s = context;
+    for (int x = x_begin; x < x_end; x++) {
+        const size_t bit = (size_t)y * s->width + (size_t)x;
+        s->ignored[bit / 8] |= (uint8_t)(1 << bit % 8);
+    }
+    return 0;
+}
+
+/* Mark the pixels under ignored polygons before any other is looked at: a cloud hides what lies
+ * under it, whoever else claims that. */
+static int mark_ignored(struct sampler *s, const struct db_polygons *polygons,
+                        const struct db_label_map *map, const struct db_grid *grid)
+{
+    s->width = (size_t)grid->width;
+    for (size_t i = 0; i < polygons->count; i++) {
+        const struct db_polygon *p = &polygons->items[i];
+        if (!db_label_map_is_ignored(map, p->label)) {
+            continue;
+        }
+        if (!s->ignored) {
+            s->ignored = calloc(s->width * (size_t)grid->height / 8 + 1, 1);
+        }
+        if (!s->ignored || db_polygon_walk(p, 0, grid->height, grid->width, ignore_span, s) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+static int sample_polygon(struct sampler *s, const struct db_polygon *polygon, uint32_t region,
+                          const struct db_label_map *map, const struct db_grid *grid,
+                          struct left_out *left)
+{
+    const int class_index = db_label_map_find(map, polygon->label);
     uint64_t pixels = 0;
     if (class_index < 0) {
         const int result =
             db_polygon_walk(polygon, 0, grid->height, grid->width, count_span, &pixels);
-        count_left_out(left, polygon->label, pixels);
+        count_left_out(left, map, polygon->label, pixels);
         return result;
     }
     struct span_sink sink = {s, region, (uint8_t)class_index, 0};
@@ -196,6 +254,27 @@ static int sample_polygon(struct sampler *s, const struct db_polygon *polygon, u
                 "covers no pixel of the image");
     }
     return result;
+}
+
+/* Without a map every label was meant to be a class. */
+static int check_labels(const struct db_polygons *polygons, const struct db_exemplar_source *source)
+{
+    for (size_t i = 0; i < polygons->count && source->map->is_default; i++) {
+        const struct db_polygon *p = &polygons->items[i];
+        if (db_label_map_find(source->map, p->label) >= 0 ||
+            db_label_map_is_ignored(source->map, p->label)) {
+            continue;
+        }
+        char names[DB_CLASS_MAX * DB_NAME_SIZE];
+        const char *nearest = db_label_map_nearest(source->map, p->label);
+        db_class_names(source->table, names, sizeof names);
+        return hs_error(source->polygons_path,
+                        "correct the label, leave it out with --ignore, or give a --map",
+                        "polygon %ld has the label `%s`, which is no class%s%s%s; there are %s",
+                        p->id, p->label, nearest ? "; did you mean `" : "", nearest ? nearest : "",
+                        nearest ? "`?" : "", names);
+    }
+    return 0;
 }
 
 static int name_regions_by_polygon(struct db_exemplars *e, const struct db_polygons *polygons,
@@ -215,6 +294,23 @@ static int name_regions_by_polygon(struct db_exemplars *e, const struct db_polyg
     return 0;
 }
 
+static int sample_polygons(struct db_exemplars *e, struct sampler *s,
+                           const struct db_exemplar_source *source,
+                           const struct db_polygons *polygons, const struct db_grid *grid)
+{
+    struct left_out left = {0};
+    int result = mark_ignored(s, polygons, source->map, grid);
+    for (size_t i = 0; result == 0 && i < polygons->count; i++) {
+        result = sample_polygon(s, &polygons->items[i], (uint32_t)i, source->map, grid, &left);
+    }
+    if (result != 0 || gather(e, s) != 0 ||
+        name_regions_by_polygon(e, polygons, source->map) != 0) {
+        return hs_error(source->polygons_path, NULL, "out of memory");
+    }
+    report_left_out(&left, source->map);
+    return 0;
+}
+
 static int find_in_polygons(struct db_exemplars *e, struct sampler *s,
                             const struct db_exemplar_source *source, const struct db_grid *grid)
 {
@@ -222,17 +318,10 @@ static int find_in_polygons(struct db_exemplars *e, struct sampler *s,
     if (db_polygons_read(&polygons, source->polygons_path, source->field, grid) != 0) {
         return -1;
     }
-    struct left_out left = {0};
-    int result = 0;
-    for (size_t i = 0; result == 0 && i < polygons.count; i++) {
-        const int class_index = db_label_map_find(source->map, polygons.items[i].label);
-        result = sample_polygon(s, &polygons.items[i], (uint32_t)i, class_index, grid, &left);
+    int result = check_labels(&polygons, source);
+    if (result == 0) {
+        result = sample_polygons(e, s, source, &polygons, grid);
     }
-    if (result != 0 || gather(e, s) != 0 ||
-        name_regions_by_polygon(e, &polygons, source->map) != 0) {
-        result = hs_error(source->polygons_path, NULL, "out of memory");
-    }
-    report_left_out(&left, "pixels");
     db_polygons_free(&polygons);
     return result;
 }
@@ -409,7 +498,7 @@ static int find_in_labels(struct db_exemplars *e, struct sampler *s,
         if (pass.pixels[i] > 0 && pass.class_of[i] < 0) {
             char label[DB_LABEL_SIZE];
             snprintf(label, sizeof label, "%d", i);
-            count_left_out(&left, label, pass.pixels[i]);
+            count_left_out(&left, source->map, label, pass.pixels[i]);
         }
     }
     label_pass_close(&pass);
@@ -418,7 +507,7 @@ static int find_in_labels(struct db_exemplars *e, struct sampler *s,
     }
     if (result == 0) {
         label_patches(e, source->table);
-        report_left_out(&left, "pixels");
+        report_left_out(&left, source->map);
     }
     return result;
 }
@@ -446,6 +535,9 @@ static int check_classes(const struct db_exemplars *e, const struct db_exemplar_
     }
     for (int i = 0; i < source->map->count; i++) {
         const int c = source->map->items[i].class_index;
+        if (c < 0) {
+            continue;
+        }
         const char *name = source->table->items[c].name, *label = source->map->items[i].label;
         if (e->available[c] == 0 && !source->map->is_default) {
             return hs_error(path, "check the label's spelling, or drop the line from the map",

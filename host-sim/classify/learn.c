@@ -251,6 +251,36 @@ static int find_output_priors(struct task *t)
     return 0;
 }
 
+static void count_training(const struct db_samples *s, size_t counts[DB_CLASS_MAX])
+{
+    memset(counts, 0, DB_CLASS_MAX * sizeof *counts);
+    for (size_t i = 0; i < s->count; i++) {
+        counts[s->items[i].class_index] += s->items[i].part == DB_PART_TRAIN;
+    }
+}
+
+/* What thinning leaves is no longer distributed as the class is: say where little is left. */
+static int thin(struct task *t)
+{
+    size_t before[DB_CLASS_MAX], after[DB_CLASS_MAX];
+    count_training(t->samples, before);
+    const long thinned = db_thin(t->samples, t->net->scale, t->options->thin);
+    if (thinned < 0) {
+        return -1;
+    }
+    count_training(t->samples, after);
+    if (t->options->thin_is_loud) {
+        printf("nearly identical exemplars dropped: %ld\n", thinned);
+    }
+    for (int c = 0; c < t->table->count; c++) {
+        if (2 * after[c] < before[c] && t->options->thin_is_loud) {
+            hs_warn(t->table->items[c].name, "lower --thin",
+                    "keeps only %zu of %zu exemplars after thinning", after[c], before[c]);
+        }
+    }
+    return 0;
+}
+
 static int learn(struct task *t, struct db_train_report *reports)
 {
     const struct db_learn_options *o = t->options;
@@ -258,12 +288,8 @@ static int learn(struct task *t, struct db_train_report *reports)
         find_normalisation(t->net, t->samples) != 0 || find_output_priors(t) != 0) {
         return -1;
     }
-    const long thinned = o->thin > 0 ? db_thin(t->samples, t->net->scale, o->thin) : 0;
-    if (thinned < 0) {
+    if (o->thin > 0 && thin(t) != 0) {
         return -1;
-    }
-    if (o->thin > 0 && o->thin_is_loud) {
-        printf("nearly identical exemplars dropped: %ld\n", thinned);
     }
     for (int m = 0; m < o->members; m++) {
         if (set_aside(t, m) != 0 || train_member(t, m, &reports[m]) != 0) {

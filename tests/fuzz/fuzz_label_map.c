@@ -18,8 +18,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (db_label_map_read(map, file.path, table) == 0) {
         FUZZ_ASSERT(map->count >= 0 && map->count <= DB_MAP_MAX);
         for (int i = 0; i < map->count; i++) {
-            FUZZ_ASSERT(map->items[i].class_index >= 0 && map->items[i].class_index < 3);
-            FUZZ_ASSERT(db_label_map_find(map, map->items[i].label) >= 0);
+            const char *label = map->items[i].label;
+            FUZZ_ASSERT(map->items[i].class_index >= -1 && map->items[i].class_index < 3);
+            FUZZ_ASSERT((db_label_map_find(map, label) >= 0) ==
+                        !db_label_map_is_ignored(map, label));
+            FUZZ_ASSERT(db_label_map_nearest(map, label) != NULL);
         }
     }
     fuzz_file_close(&file);

@@ -131,7 +131,7 @@ static int find_exemplars(struct work *w)
     if (!o->report) {
         return 0;
     }
-    if (db_label_map_read(&map, o->known.map, &w->table) != 0) {
+    if (db_exemplar_map_read(&map, &o->known, &w->table) != 0) {
         return -1;
     }
     const struct db_exemplar_source source = {
@@ -431,6 +431,7 @@ int db_cmd_segment(int argc, char **argv)
     db_net_free(&w->net);
     db_list_free(&options.image.paths);
     db_list_free(&options.picture_bands);
+    db_list_free(&options.known.ignore);
     free(w);
     return exit_code;
 }

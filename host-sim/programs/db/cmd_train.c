@@ -62,7 +62,6 @@ static const struct options defaults = {
     .momentum = 0.9,
     .noise = 0.02,
     .goal = 0.95,
-    .thin = 0.002,
 };
 
 static bool read_options(struct options *o, int argc, char **argv, int *exit_code)
@@ -134,7 +133,9 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
          false},
         {"thin", DB_REAL, &o->thin, 0, 10, "X",
          "Keep one of the exemplars of a class that share a cell of so many deviations in each "
-         "input.",
+         "input;\n"
+         "0 (default) keeps all. It flattens what is frequent: of one band only its values are "
+         "left.",
          false},
         {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of everything random.", false},
     };
@@ -281,6 +282,9 @@ static void print_counts(const struct work *w)
             printf("%-16s %10llu pixels, %8zu to train on, %8zu held out\n", w->table.items[c].name,
                    (unsigned long long)w->exemplars.available[c], parts[DB_PART_TRAIN],
                    parts[DB_PART_HELD_OUT]);
+        } else if (w->map.is_default) {
+            hs_warn(w->table.items[c].name, "draw some, or take it out of the class table",
+                    "has no exemplar, so no pixel will be given this class");
         }
     }
 }
@@ -515,7 +519,7 @@ static int evaluate(const struct work *w)
 static int run(struct work *w)
 {
     if (db_class_table_read(&w->table, w->options->classes) != 0 ||
-        db_label_map_read(&w->map, w->options->known.map, &w->table) != 0 ||
+        db_exemplar_map_read(&w->map, &w->options->known, &w->table) != 0 ||
         db_image_open(&w->image, &w->options->image) != 0 || gather(w) != 0) {
         return HS_EXIT_FAILED;
     }
@@ -551,6 +555,7 @@ int db_cmd_train(int argc, char **argv)
     db_exemplars_free(&w->exemplars);
     db_raster_close(&w->image);
     db_list_free(&options.image.paths);
+    db_list_free(&options.known.ignore);
     db_list_free(&options.hidden);
     db_list_free(&options.priors);
     free(w);

@@ -19,3 +19,13 @@ int db_image_open(struct db_raster *r, const struct db_image_options *options)
     }
     return db_raster_open(r, &raster);
 }
+
+int db_exemplar_map_read(struct db_label_map *map, const struct db_exemplar_options *options,
+                         const struct db_class_table *table)
+{
+    int result = db_label_map_read(map, options->map, table);
+    for (int i = 0; result == 0 && i < options->ignore.count; i++) {
+        result = db_label_map_ignore(map, options->ignore.items[i]);
+    }
+    return result;
+}

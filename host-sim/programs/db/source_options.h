@@ -2,6 +2,7 @@
 #ifndef DB_SOURCE_OPTIONS_H
 #define DB_SOURCE_OPTIONS_H
 
+#include "gis/label_map.h"
 #include "gis/raster.h"
 
 struct db_image_options {
@@ -51,9 +52,10 @@ struct db_image_options {
  * holds the default before. */
 struct db_exemplar_options {
     const char *polygons, *field, *labels, *map;
+    struct db_list ignore; /* labels */
 };
 
-/* Four entries. */
+/* Five entries. */
 #define DB_EXEMPLAR_OPTIONS(o)                                                                     \
     {.name = "exemplars",                                                                          \
      .kind = DB_INPUT,                                                                             \
@@ -79,13 +81,27 @@ struct db_exemplar_options {
              "than the image a pixel takes the most frequent label in it. Connected patches of "   \
              "one label\n"                                                                         \
              "take the place of polygons."},                                                       \
+        {.name = "ignore",                                                                         \
+         .kind = DB_LIST,                                                                          \
+         .target = &(o)->ignore,                                                                   \
+         .value_name = "LABEL",                                                                    \
+         .help =                                                                                   \
+             "Labels of what is not to be looked at, clouds say: pixels under such polygons "      \
+             "belong to\n"                                                                         \
+             "no class, whoever else claims them. Repeat it, or separate labels by commas."},      \
     {                                                                                              \
         .name = "map", .kind = DB_INPUT, .target = &(o)->map, .value_name = "FILE",                \
         .help =                                                                                    \
-            "Lines of `source-label = class`. Labels it leaves out are ignored and counted. "      \
-            "Without it\n"                                                                         \
+            "Lines of `source-label = class`. The class `ignore` is as --ignore. Labels it "       \
+            "leaves "                                                                              \
+            "out\n"                                                                                \
+            "are counted. Without it "                                                             \
             "labels must be the names of classes."                                                 \
     }
+
+/* Read the map and add the labels to be ignored. Returns 0, or -1 with the error reported. */
+int db_exemplar_map_read(struct db_label_map *map, const struct db_exemplar_options *options,
+                         const struct db_class_table *table);
 
 /* Open the image the options name. Returns 0, or -1 with the error reported. */
 int db_image_open(struct db_raster *r, const struct db_image_options *options);

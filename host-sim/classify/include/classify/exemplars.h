@@ -48,10 +48,12 @@ struct db_exemplar_source {
     uint64_t seed;
 };
 
-/* Find the exemplars on `grid`. Labels the map leaves out are reported with their counts on
- * standard output. A mapped class without a pixel, polygons that all lie outside and labels of
- * another shape are errors. Returns 0, or -1 with the error reported and nothing to free. Memory:
- * 16 bytes an exemplar kept, 4 bytes a patch of a label raster. */
+/* Find the exemplars on `grid`. Pixels under an ignored polygon are nobody's. Labels that the map
+ * leaves out or ignores are reported with their counts on standard output, and one that is nearly a
+ * label of the map is warned of. A polygon whose label is no class when there is no map, a mapped
+ * class without a pixel, polygons that all lie outside and labels of another shape are errors.
+ * Returns 0, or -1 with the error reported and nothing to free. Memory: 16 bytes an exemplar kept,
+ * 4 bytes a patch of a label raster, one bit a pixel of the image when a polygon is ignored. */
 int db_exemplars_find(struct db_exemplars *e, const struct db_exemplar_source *source,
                       const struct db_grid *grid);
 
