@@ -1,7 +1,7 @@
 # Host libraries and programs, the lowest library first: name, what it may include, packages (make/host.mk).
 # A library sees earlier lines only, so that the arrows cannot run in a circle.
 $(call host_library, lib,          fixed firmware,                                      libpng)
-$(call host_library, gis,          lib,                                                 gdal)
+$(call host_library, gis,          lib,                                                 gdal proj)
 $(call host_library, image,        lib fixed firmware)
 $(call host_library, classify,     gis lib,                                             openblas)
 $(call host_library, resample,     image gis lib fixed firmware)

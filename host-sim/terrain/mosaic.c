@@ -38,7 +38,10 @@ static void lay_over(const struct terrain_member *m, const struct resample_windo
         const float *from = raw + (size_t)r * (size_t)part->width;
         for (int c = 0; c < part->width; c++) {
             const size_t at = to + (size_t)c;
-            const double value = from[c] * m->scale + m->offset;
+            const double value =
+                from[c] * m->scale + m->offset +
+                terrain_vertical_shift(&m->vertical, m->width, m->height, part->x - m->x + c + 0.5,
+                                       part->y - m->y + r + 0.5);
             const bool is_void = (m->has_nodata && from[c] == (float)m->nodata) ||
                                  !(value >= lowest_m && value <= highest_m);
             if (!is_void) {
@@ -95,6 +98,7 @@ void terrain_mosaic_close(struct terrain_mosaic *m)
     for (int i = 0; i < m->member_count; i++) {
         GDALClose(m->members[i].dataset);
         free(m->members[i].path);
+        terrain_vertical_free(&m->members[i].vertical);
     }
     free(m->members);
     resample_georef_close(&m->georef);

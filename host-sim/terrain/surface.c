@@ -43,23 +43,22 @@ static GDALDatasetH open_dataset(const char *path)
     return dataset;
 }
 
-static void read_units(struct terrain_member *m)
+static int read_units(struct terrain_member *m, const struct terrain_options *options)
 {
     int given = 0;
+    if (terrain_vertical_read(&m->vertical, m->band, m->path, &options->vertical) != 0) {
+        return -1;
+    }
     m->nodata = GDALGetRasterNoDataValue(m->band, &given);
     m->has_nodata = given && !isnan(m->nodata);
     const double scale = GDALGetRasterScale(m->band, &given);
-    m->scale = given ? scale : 1.0;
+    m->scale = m->vertical.metres * (given ? scale : 1.0);
     const double offset = GDALGetRasterOffset(m->band, &given);
-    m->offset = given ? offset : 0.0;
-    const char *unit = GDALGetRasterUnitType(m->band);
-    if (strcmp(unit, "ft") == 0 || strcmp(unit, "feet") == 0 || strcmp(unit, "foot") == 0) {
-        m->scale *= 0.3048;
-        m->offset *= 0.3048;
-    }
+    m->offset = m->vertical.metres * (given ? offset : 0.0);
+    return 0;
 }
 
-static int open_source(struct source *s, const char *path)
+static int open_source(struct source *s, const char *path, const struct terrain_options *options)
 {
     struct terrain_member *m = &s->member;
     m->dataset = db_gdal_note(open_dataset(path));
@@ -73,7 +72,9 @@ static int open_source(struct source *s, const char *path)
         return hs_error(path, "name one of its sub-datasets, as `gdalinfo` lists them",
                         "holds no band");
     }
-    read_units(m);
+    if (read_units(m, options) != 0) {
+        return -1;
+    }
     m->width = GDALGetRasterXSize(m->dataset);
     m->height = GDALGetRasterYSize(m->dataset);
     return resample_georef_open(&s->georef, m->dataset, path);
@@ -85,6 +86,7 @@ static void close_source(struct source *s)
         GDALClose(s->member.dataset);
     }
     free(s->member.path);
+    terrain_vertical_free(&s->member.vertical);
     resample_georef_close(&s->georef);
 }
 
@@ -159,7 +161,7 @@ static int finish_layer(struct terrain_layer *layer, const struct terrain_option
 
 static int make_layers(struct terrain *t, struct source *sources, int count)
 {
-    t->layers = calloc((size_t)count, sizeof *t->layers);
+    t->layers = count > 0 ? calloc((size_t)count, sizeof *t->layers) : NULL;
     if (!t->layers) {
         return hs_error("terrain", NULL, "out of memory");
     }
@@ -184,6 +186,19 @@ static int make_layers(struct terrain *t, struct source *sources, int count)
     return 0;
 }
 
+/* Files that say the same as the one before are passed over. */
+static void say_heights(const struct source *sources, int count)
+{
+    const char *last = "";
+    for (int i = 0; i < count; i++) {
+        const struct terrain_member *m = &sources[i].member;
+        if (strcmp(m->vertical.said, last) != 0) {
+            printf("terrain from %s: %s\n", m->path, m->vertical.said);
+        }
+        last = m->vertical.said;
+    }
+}
+
 int terrain_open(struct terrain *t, const struct db_list *paths,
                  const struct terrain_options *options)
 {
@@ -191,9 +206,10 @@ int terrain_open(struct terrain *t, const struct db_list *paths,
     struct source *sources = calloc((size_t)paths->count, sizeof *sources);
     int result = sources ? 0 : hs_error("terrain", NULL, "out of memory");
     for (int i = 0; result == 0 && i < paths->count; i++) {
-        result = open_source(&sources[i], paths->items[i]);
+        result = open_source(&sources[i], paths->items[i], options);
     }
     if (result == 0) {
+        say_heights(sources, paths->count);
         result = make_layers(t, sources, paths->count);
     }
     for (int i = 0; sources && i < paths->count; i++) {

@@ -401,6 +401,113 @@ for each, lines in (("reflect", REFLECT), ("build", BUILD_AREA), ("correct", COR
         return db(*["values.tif" if word == "classes.tif" else word for word in lines], "--out", out)
 
 
+# ---- Units and datums of terrain. The slope rises from 100 to 219 m; the land's mean elevation tells what became of it.
+
+BUILD_TERRAIN = ["build", "--classes", "heaton6.classes", "--cell", "150", "--out", "terrain.lmdb"]
+FEET, SURVEY_FEET = 0.3048, 1200 / 3937
+
+
+def mean_elevation(done):
+    assert done.code == 0, done.err
+    return float(re.search(r"mean elevation of land ([0-9.-]+) m", done.out).group(1))
+
+
+def land_like(path, wanted, *words, tolerance=0.5):
+    """Builds over one model and compares its mean elevation with the slope's in metres, plus `wanted` metres."""
+    done = db(*BUILD_TERRAIN, "--terrain", path, *words)
+    plain = mean_elevation(db(*BUILD_TERRAIN, "--terrain", "dem.tif"))
+    assert abs(mean_elevation(done) - plain - wanted) < tolerance, "mean elevation %s, wanted %s" % (mean_elevation(done), plain + wanted)
+    return done
+
+
+for each, said, system, metres in (
+        ("US survey feet by its CRS (EPSG:6360)", None, "EPSG:32632+6360", SURVEY_FEET),
+        ("international feet by its CRS (EPSG:8228)", None, "EPSG:32632+8228", FEET),
+        ("`us-ft` in its band", "us-ft", "EPSG:32632", SURVEY_FEET),
+        ("`US survey foot` in its band", "US survey foot", "EPSG:32632", SURVEY_FEET),
+        ("`ft` in its band", "ft", "EPSG:32632", FEET),
+        ("`cm` in its band", "cm", "EPSG:32632", 0.01),
+        ("`fathom` in its band, which PROJ knows", "fathom", "EPSG:32632", 1.8288),
+        ("`metre` in its band", "metre", "EPSG:32632", 1),
+        ("no word of unit and datum", None, "EPSG:32632", 1)):
+    @row("terrain, " + each, "build", "warned" if "8228" in system or "6360" in system else "done")
+    def unit_is_read(said=said, system=system, metres=metres):
+        terrain("unit.tif", slope() / metres, unit=said, system=system)
+        done = land_like("unit.tif", 0)
+        assert ("(assumed)" in done.out) == (said is None and "+" not in system) or said, done.out
+        return done
+
+
+@row("terrain, `smoots` in its band", "build", "refused")
+def unit_is_unknown():
+    terrain("smoots.tif", unit="smoots")
+    return db(*BUILD_TERRAIN, "--terrain", "smoots.tif")
+
+
+@row("the same with `--terrain-unit m`", "build", "done")
+def unit_is_told():
+    return land_like("smoots.tif", 0, "--terrain-unit", "m")
+
+
+@row("`--terrain-unit` that is none", "build", "refused")
+def told_unit_is_unknown():
+    return db(*BUILD_TERRAIN, "--terrain", "dem.tif", "--terrain-unit", "smoots")
+
+
+@row("terrain whose band and CRS differ in the unit", "build", "refused")
+def units_differ():
+    terrain("differ.tif", system="EPSG:32632+6360", unit="m")
+    return db(*BUILD_TERRAIN, "--terrain", "differ.tif")
+
+
+@row("terrain as depths (EPSG:5831)", "build", "warned")
+def depths():
+    terrain("depths.tif", -slope(), system="EPSG:32632+5831")
+    return land_like("depths.tif", 0)
+
+
+@row("terrain above EGM96 (EPSG:5773)", "build", "done")
+def above_egm96():
+    terrain("egm96.tif", system="EPSG:32632+5773")
+    return land_like("egm96.tif", 0, tolerance=0.02)
+
+
+def undulation():
+    """EGM96 above the ellipsoid in the middle of the terrain, by PROJ's own grid."""
+    away = osr.CoordinateTransformation(crs("EPSG:32632+5773"), crs("EPSG:4979"))
+    return away.TransformPoint(DEM_AT[0] + 1800, DEM_AT[1] - 1800, 0)[2]
+
+
+@row("terrain above the ellipsoid (EPSG:4979)", "build", "done")
+def above_the_ellipsoid():
+    assert 40 < undulation() < 60, undulation()
+    terrain("ellipsoid.tif", slope(), at=(8.99, 43.37), step=0.0003, system="EPSG:4979")
+    terrain("degrees.tif", slope(), at=(8.99, 43.37), step=0.0003, system="EPSG:4326")
+    done = db(*BUILD_TERRAIN, "--terrain", "ellipsoid.tif")
+    plain = db(*BUILD_TERRAIN, "--terrain", "degrees.tif")
+    assert abs(mean_elevation(done) - mean_elevation(plain) + undulation()) < 0.5, (mean_elevation(done), undulation())
+    return done
+
+
+@row("terrain with `--terrain-datum ellipsoid`", "build", "done")
+def told_the_ellipsoid():
+    return land_like("dem.tif", -undulation(), "--terrain-datum", "ellipsoid")
+
+
+@row("terrain above the ellipsoid, no geoid grid installed", "build", "refused")
+def no_grid():
+    folder = os.path.join(os.getcwd(), "proj")
+    os.mkdir(folder)
+    shutil.copy("/usr/share/proj/proj.db", folder)
+    return tool("db", *BUILD_TERRAIN, "--terrain", "ellipsoid.tif", env={**os.environ, "PROJ_LIB": folder, "PROJ_DATA": folder, "PROJ_NETWORK": "OFF"})
+
+
+@row("terrain above a datum whose grid is not installed (EPSG:5703)", "build", "warned")
+def above_navd88():
+    terrain("navd88.tif", system="EPSG:32632+5703")
+    return land_like("navd88.tif", 0)
+
+
 # ---- The table and the run.
 
 def says(run):

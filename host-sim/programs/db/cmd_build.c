@@ -18,7 +18,7 @@
 
 struct settings {
     const char *classes, *class_raster, *reflectivity, *heights, *targets, *detail;
-    const char *map, *unknown_codes;
+    const char *map, *unknown_codes, *terrain_unit, *terrain_datum;
     struct db_list terrain;
     double cell_m;
     long shift0, seed;
@@ -59,6 +59,12 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
         {"terrain", DB_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
          true},
+        OPTION("terrain-unit", DB_TEXT, terrain_unit, 0, 0, "UNIT",
+               "of all terrain: m, cm, ft (international), us-ft ...; left out: as the files say, "
+               "or m"),
+        OPTION("terrain-datum", DB_TEXT, terrain_datum, 0, 0, "NAME",
+               "what heights of all terrain are above: msl, egm96, egm2008 or ellipsoid;\nleft "
+               "out: as the files say, or msl"),
         OPTION("class-raster", DB_INPUT, class_raster, 0, 0, "FILE",
                "class of each pixel, 255: no data"),
         OPTION("class-numbers", DB_FLAG, ignores_names, 0, 0, NULL,
@@ -130,6 +136,12 @@ static int parse_centre(const char *text, uint32_t centre[2])
     return 0;
 }
 
+static bool is_datum(const char *name)
+{
+    return strcmp(name, "msl") == 0 || strcmp(name, "egm96") == 0 || strcmp(name, "egm2008") == 0 ||
+           strcmp(name, "ellipsoid") == 0;
+}
+
 static int check_settings(struct settings *s)
 {
     if (s->cell_m > 0 && s->shift0 > 0) {
@@ -150,6 +162,9 @@ static int check_settings(struct settings *s)
     }
     if (s->unknown_codes && !s->map) {
         return usage_error("--unknown-codes", "needs --map");
+    }
+    if (s->terrain_datum && !is_datum(s->terrain_datum)) {
+        return usage_error("--terrain-datum", "must be msl, egm96, egm2008 or ellipsoid");
     }
     return s->centre ? parse_centre(s->centre, s->centre_bam) : 0;
 }
@@ -358,7 +373,9 @@ static int open_inputs(struct build_context *b, const struct settings *s)
             0 ||
         read_codes(b, s) != 0 ||
         terrain_open(&b->terrain, &s->terrain,
-                     &(struct terrain_options){s->sea_level_m, s->voids_are_sea}) != 0) {
+                     &(struct terrain_options){s->sea_level_m,
+                                               s->voids_are_sea,
+                                               {s->terrain_unit, s->terrain_datum}}) != 0) {
         return -1;
     }
     if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {
@@ -445,6 +462,7 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
         const struct terrain_mosaic *m = &b->terrain.layers[i].mosaic;
         for (int k = 0; k < m->member_count && result == 0; k++) {
             result = build_manifest_dataset(out, "terrain", m->members[k].dataset);
+            fprintf(out, "terrain-heights: %s\n", m->members[k].vertical.said);
         }
     }
     if (result == 0 && s->detail) {

@@ -5,6 +5,7 @@
 
 #include "resample/georef.h"
 #include "resample/mesh.h"
+#include "terrain/vertical.h"
 
 #include <gdal.h>
 #include <stdbool.h>
@@ -16,7 +17,8 @@ struct terrain_member {
     char *path;              /* owned */
     int x, y, width, height; /* where it lies in the mosaic */
     bool has_nodata;
-    double nodata, scale, offset; /* metres = value * scale + offset */
+    double nodata, scale, offset; /* metres = value * scale + offset + shift of `vertical` */
+    struct terrain_vertical vertical;
 };
 
 struct terrain_mosaic {

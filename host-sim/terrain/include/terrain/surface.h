@@ -24,6 +24,7 @@ struct terrain_layer {
 struct terrain_options {
     double sea_level_m;
     bool voids_are_sea; /* whatever their rim says */
+    struct terrain_vertical_options vertical;
 };
 
 struct terrain {
@@ -34,7 +35,8 @@ struct terrain {
 };
 
 /* Open the models and fill their voids. `path.zip` is opened through /vsizip/. Returns 0, or -1
- * with the error reported and nothing to close. Reads every model once or twice. */
+ * with the error reported and nothing to close. Prints what was found or assumed of their heights.
+ * Reads every model once or twice. */
 int terrain_open(struct terrain *t, const struct db_list *paths,
                  const struct terrain_options *options);
 void terrain_close(struct terrain *t);
