@@ -1,6 +1,7 @@
 /* landmass-db reflect: a class raster in, a reflectivity raster out. */
 #include "commands.h"
 #include "pixel_places.h"
+#include "radar_image.h"
 #include "source_options.h"
 
 #include "gis/class_raster.h"
@@ -22,7 +23,7 @@ static const struct db_usage usage = {
     .description =
         "Writes the constant-gamma reflectivity of each pixel in dB at X band (Float32 GeoTIFF, "
         "-9999 for no\n"
-        "data) from its class, by either of Heaton's methods:\n\n"
+        "data) from its class, by one of Heaton's two methods or from radar imagery:\n\n"
         "  assign  random values with the class's mean, spread, limits and texture. Predictable, "
         "and borders\n"
         "          between classes soften where their limits overlap. The value depends on the "
@@ -35,7 +36,17 @@ static const struct db_usage usage = {
         "but what is\n"
         "          bright to the eye need not be bright to the radar. Needs --image. Pixels of a "
         "class where\n"
-        "          the image has no data get the class's mean.\n\n"
+        "          the image has no data get the class's mean. An image put together from several "
+        "pictures has\n"
+        "          edges where they meet: --patches makes each class alike in all of them.\n"
+        "  radar   radar imagery (--radar), as Sentinel-1's gamma0, which is the constant-gamma "
+        "reflectivity.\n"
+        "          Speckle is lessened by mean powers over --multilook pixels. Other bands than X "
+        "have other\n"
+        "          levels: it is assumed that they differ by one number of dB in each class "
+        "(--calibrate).\n"
+        "          Water is uniform as above. Pixels without radar data are drawn as by assign, "
+        "and counted.\n\n"
         "Speckle is not added: the display unit does that.\n\n"
         "Example:\n"
         "  landmass-db reflect --class-raster scene-classes.tif --classes heaton6.classes \\\n"
@@ -45,7 +56,8 @@ static const struct db_usage usage = {
 struct options {
     struct db_image_options image;
     struct db_list bands;
-    const char *class_raster, *classes, *method, *out, *picture;
+    const char *class_raster, *classes, *method, *out, *picture, *patches, *calibrate;
+    struct radar_options radar;
     long seed;
     bool ignores_names;
 };
@@ -58,7 +70,26 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
         DB_CLASSES_OPTION(o->classes),
         DB_CLASS_NUMBERS_OPTION(o->ignores_names),
         {"out", DB_OUTPUT, &o->out, 0, 0, "FILE", "Where the reflectivity raster goes.", true},
-        {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default) or adjust.", false},
+        {"method", DB_TEXT, &o->method, 0, 0, "NAME", "assign (default), adjust or radar.", false},
+        {"patches", DB_INPUT, &o->patches, 0, 0, "FILE",
+         "With adjust: numbers of the pictures that the image is made of, from `import "
+         "--out-mask`.",
+         false},
+        {"radar", DB_INPUT, &o->radar.path, 0, 0, "FILE",
+         "With radar: the imagery, in any CRS and pixel size.", false},
+        {"radar-unit", DB_TEXT, &o->radar.unit, 0, 0, "NAME",
+         "What it holds: db or linear (power).", false},
+        {"radar-band", DB_INTEGER, &o->radar.band, 1, 64, "N",
+         "Its band, from 1; vertical polarisation is that of most radars.", false},
+        {"incidence", DB_REAL, &o->radar.incidence_deg, 1, 80, "DEGREES",
+         "It holds sigma0, seen at this angle from the vertical; default: it holds gamma0.", false},
+        {"multilook", DB_INTEGER, &o->radar.multilook, 1, 99, "N",
+         "Side, an odd number of its pixels, of the squares whose mean power is taken.", false},
+        {"calibrate", DB_TEXT, &o->calibrate, 0, 0, "NAME",
+         "class (default): each class gets the mean of the class table; scene: one number of dB "
+         "for all;\n"
+         "none: as it is.",
+         false},
         {"bands", DB_LIST, &o->bands, 0, 0, "N,N",
          "Bands of the image whose mean is the brightness, from 1; default all.", false},
         {"seed", DB_INTEGER, &o->seed, 0, 2147483647, "N", "Seed of the random values.", false},
@@ -72,6 +103,14 @@ static bool read_options(struct options *o, int argc, char **argv, int *exit_cod
     return db_options_read(&usage, table, COUNT, argc, argv, exit_code);
 }
 
+enum method { ASSIGN, ADJUST, RADAR, METHODS };
+static const char *const methods[METHODS] = {"assign", "adjust", "radar"};
+
+enum {
+    PATCHES = 65536,
+    PATCH_PIXELS_MIN = 50 /* of a class, for a mean and spread of their own */
+};
+
 /* What came out, for each class. */
 struct outcome {
     double sum[DB_CLASS_MAX], square[DB_CLASS_MAX], low[DB_CLASS_MAX], high[DB_CLASS_MAX];
@@ -81,13 +120,19 @@ struct outcome {
 struct block {
     float *pixels; /* planes of the image, or one plane of scratch */
     uint8_t *valid, *class_valid, *classes;
-    float *values; /* dB */
+    float *values; /* brightness, or dB of the radar; then dB of the result */
+    float *patches;
     int y, rows;
 };
 
 struct work {
     const struct options *options;
-    bool adjusts;
+    enum method method;
+    struct radar_image radar;
+    struct db_raster patches;
+    struct db_brightness *by_patch; /* owned: of each patch; NULL: there are none */
+    double scene_offset_db;         /* of radar imagery */
+    uint64_t filled, alone;         /* pixels without radar data; in patches too small */
     struct db_class_table table;
     struct db_reflect_law laws[DB_CLASS_MAX];
     struct db_raster classes, image;
@@ -129,7 +174,10 @@ static int choose_bands(struct work *w)
 
 static int open_image(struct work *w)
 {
-    if (!w->adjusts) {
+    if (w->method == RADAR) {
+        return radar_image_open(&w->radar, &w->options->radar, &w->classes.grid);
+    }
+    if (w->method != ADJUST) {
         return 0;
     }
     if (db_image_open(&w->image, &w->options->image) != 0) {
@@ -142,19 +190,38 @@ static int open_image(struct work *w)
     return choose_bands(w);
 }
 
+static int open_patches(struct work *w)
+{
+    const char *path = w->options->patches;
+    if (!path) {
+        return 0;
+    }
+    if (db_raster_open_one(&w->patches, path) != 0) {
+        return -1;
+    }
+    if (w->patches.band_count != 1 || !db_grid_is_same(&w->patches.grid, &w->classes.grid)) {
+        return hs_error(path, "give the --out-mask of the import that made the image",
+                        "has %d bands, or lies on another grid than %s", w->patches.band_count,
+                        w->options->class_raster);
+    }
+    w->by_patch = calloc(PATCHES, sizeof *w->by_patch);
+    return w->by_patch ? 0 : hs_error(path, NULL, "out of memory");
+}
+
 static int alloc_block(struct work *w)
 {
-    const size_t planes = w->adjusts ? (size_t)w->image.band_count : 1;
-    const size_t pixel = (planes + 1) * sizeof(float) + 3;
+    const size_t planes = w->method == ADJUST ? (size_t)w->image.band_count : 1;
+    const size_t pixel = (planes + 2) * sizeof(float) + 3;
     w->block_rows = db_raster_block_rows(&w->classes.grid, pixel);
     const size_t count = (size_t)w->block_rows * (size_t)w->classes.grid.width;
     struct block *b = &w->block;
     b->pixels = malloc(planes * count * sizeof *b->pixels);
     b->values = malloc(count * sizeof *b->values);
+    b->patches = malloc(count * sizeof *b->patches);
     b->valid = malloc(count);
     b->class_valid = malloc(count);
     b->classes = malloc(count);
-    if (!b->pixels || !b->values || !b->valid || !b->class_valid || !b->classes) {
+    if (!b->pixels || !b->values || !b->patches || !b->valid || !b->class_valid || !b->classes) {
         return hs_error(w->options->out, NULL, "out of memory");
     }
     return 0;
@@ -166,7 +233,7 @@ static int prepare(struct work *w)
     if (db_class_table_read(&w->table, o->classes) != 0 ||
         db_class_raster_open(&w->classes, &w->numbers, o->class_raster, &w->table,
                              o->ignores_names) != 0 ||
-        open_image(w) != 0 || alloc_block(w) != 0 ||
+        open_image(w) != 0 || open_patches(w) != 0 || alloc_block(w) != 0 ||
         pixel_places_open(&w->places, &w->classes.grid, o->class_raster) != 0) {
         return -1;
     }
@@ -181,8 +248,28 @@ static int prepare(struct work *w)
     return db_raster_create(&w->out, o->out, &w->classes.grid, GDT_Float32, NODATA_DB);
 }
 
-/* Classes of the block, and for `adjust` its brightness in `values` (NAN where the image has none).
- */
+static int read_patches(struct work *w)
+{
+    struct block *b = &w->block;
+    if (!w->by_patch) {
+        return 0;
+    }
+    if (db_raster_read(&w->patches, b->y, b->rows, b->patches, b->valid) != 0) {
+        return -1;
+    }
+    for (size_t i = 0; i < (size_t)b->rows * (size_t)w->classes.grid.width; i++) {
+        const float n = b->valid[i] ? b->patches[i] : 0;
+        if (!(n >= 0 && n < PATCHES && n == floorf(n))) {
+            return hs_error(w->options->patches, "give the --out-mask of an import",
+                            "holds %g, and numbers of patches are whole, 0 to %d", (double)n,
+                            PATCHES - 1);
+        }
+        b->patches[i] = n;
+    }
+    return 0;
+}
+
+/* Classes of the block, and in `values` brightness or radar (NAN where there is none). */
 static int read_block(struct work *w)
 {
     struct block *b = &w->block;
@@ -191,10 +278,14 @@ static int read_block(struct work *w)
                              b->classes) != 0) {
         return -1;
     }
-    if (!w->adjusts) {
+    if (w->method == RADAR) {
+        return radar_image_rows(&w->radar, b->y, b->rows, b->values);
+    }
+    if (w->method == ASSIGN) {
         return 0;
     }
-    if (db_raster_read(&w->image, b->y, b->rows, b->pixels, b->valid) != 0) {
+    if (read_patches(w) != 0 ||
+        db_raster_read(&w->image, b->y, b->rows, b->pixels, b->valid) != 0) {
         return -1;
     }
     for (size_t i = 0; i < count; i++) {
@@ -213,22 +304,70 @@ static int measure_block(struct work *w)
     for (size_t i = 0; i < (size_t)b->rows * (size_t)w->classes.grid.width; i++) {
         if (b->classes[i] != DB_CLASS_NODATA && !isnan(b->values[i])) {
             db_brightness_add(&w->brightness, b->classes[i], (double)b->values[i]);
+            if (w->by_patch) {
+                db_brightness_add(&w->by_patch[(int)b->patches[i]], b->classes[i],
+                                  (double)b->values[i]);
+            }
         }
     }
     return 0;
 }
 
-static double value_of(const struct work *w, size_t i)
+/* The brightness of the pixel's own patch, or of all where there is too little of the class. */
+static double adjusted(struct work *w, size_t i)
 {
     const struct block *b = &w->block;
     const int c = b->classes[i];
-    if (!w->adjusts) {
+    const struct db_brightness *own = &w->brightness;
+    if (w->by_patch) {
+        const struct db_brightness *patch = &w->by_patch[(int)b->patches[i]];
+        const bool is_enough = b->patches[i] > 0 && patch->count[c] >= PATCH_PIXELS_MIN;
+        own = is_enough ? patch : own;
+        w->alone += !is_enough;
+    }
+    return db_reflect_adjust(&w->table.items[c], own, c, (double)b->values[i]);
+}
+
+static double class_mean(const struct work *w, int c)
+{
+    return w->brightness.sum[c] / w->brightness.count[c];
+}
+
+static double offset_of(const struct work *w, int c)
+{
+    const char *how = w->options->calibrate;
+    return strcmp(how, "none") == 0    ? 0
+           : strcmp(how, "scene") == 0 ? w->scene_offset_db
+                                       : w->table.items[c].gamma_db - class_mean(w, c);
+}
+
+/* One offset whose error over all pixels is least in square. */
+static void find_scene_offset(struct work *w)
+{
+    double sum = 0, count = 0;
+    for (int c = 0; c < w->table.count; c++) {
+        if (w->brightness.count[c] > 0 && w->table.items[c].kind != DB_KIND_WATER) {
+            sum += w->brightness.count[c] * (w->table.items[c].gamma_db - class_mean(w, c));
+            count += w->brightness.count[c];
+        }
+    }
+    w->scene_offset_db = count > 0 ? sum / count : 0;
+}
+
+static double value_of(struct work *w, size_t i)
+{
+    const struct block *b = &w->block;
+    const int c = b->classes[i];
+    const bool is_missing = w->method != ASSIGN && isnan(b->values[i]);
+    w->filled += is_missing;
+    if (w->method == ASSIGN || (w->method == RADAR && is_missing)) {
         return db_reflect_assign(&w->laws[c], (uint64_t)w->options->seed,
                                  w->places.row[i % (size_t)w->classes.grid.width]);
     }
-    return isnan(b->values[i])
-               ? w->table.items[c].gamma_db
-               : db_reflect_adjust(&w->table.items[c], &w->brightness, c, (double)b->values[i]);
+    if (is_missing || w->table.items[c].kind == DB_KIND_WATER) {
+        return w->table.items[c].gamma_db;
+    }
+    return w->method == RADAR ? (double)b->values[i] + offset_of(w, c) : adjusted(w, i);
 }
 
 static void count_value(struct outcome *o, int c, double value)
@@ -245,7 +384,7 @@ static int reflect_block(struct work *w)
     struct block *b = &w->block;
     const int width = w->classes.grid.width;
     for (size_t i = 0; i < (size_t)b->rows * (size_t)width; i++) {
-        if (!w->adjusts && i % (size_t)width == 0) {
+        if (w->method != ADJUST && i % (size_t)width == 0) {
             pixel_places_row(&w->places, b->y + (int)(i / (size_t)width));
         }
         if (b->classes[i] == DB_CLASS_NODATA) {
@@ -298,6 +437,44 @@ static void print_outcome(const struct work *w)
     }
 }
 
+static void print_radar(const struct work *w)
+{
+    printf("radar: %.2f of its pixels along a pixel of the class raster, mean power of %ld x %ld\n",
+           w->radar.pixels_per_cell, w->options->radar.multilook, w->options->radar.multilook);
+    for (int c = 0; c < w->table.count; c++) {
+        if (w->brightness.count[c] > 0) {
+            printf("%-16s %12.0f pixels of radar  mean %7.2f dB  offset %+.2f dB%s\n",
+                   w->table.items[c].name, w->brightness.count[c], class_mean(w, c),
+                   offset_of(w, c), w->table.items[c].kind == DB_KIND_WATER ? ", uniform" : "");
+        }
+    }
+    if (strcmp(w->options->calibrate, "none") != 0) {
+        printf("assumed: X band differs from this imagery by one number of dB in %s\n",
+               strcmp(w->options->calibrate, "class") == 0 ? "each class" : "all classes");
+    }
+    if (w->filled > 0) {
+        hs_warn(w->options->radar.path, NULL,
+                "%llu pixels have no radar data and are drawn from their class",
+                (unsigned long long)w->filled);
+    }
+}
+
+static void print_patches(const struct work *w)
+{
+    int count = 0;
+    for (int i = 1; i < PATCHES; i++) {
+        double pixels = 0;
+        for (int c = 0; c < w->table.count; c++) {
+            pixels += w->by_patch[i].count[c];
+        }
+        count += pixels > 0;
+    }
+    printf(
+        "patches: %d; %llu pixels have less than %d of their class in theirs and go by the whole "
+        "image\n",
+        count, (unsigned long long)w->alone, PATCH_PIXELS_MIN);
+}
+
 static int write_picture(const struct work *w)
 {
     const struct db_preview *p = &w->preview;
@@ -324,34 +501,84 @@ static int write_picture(const struct work *w)
 
 static int run(struct work *w)
 {
-    if (prepare(w) != 0 || (w->adjusts && for_all_blocks(w, "brightness", measure_block) != 0) ||
-        for_all_blocks(w, "reflect", reflect_block) != 0 || db_raster_commit(&w->out) != 0) {
+    if (prepare(w) != 0 ||
+        (w->method != ASSIGN && for_all_blocks(w, "brightness", measure_block) != 0)) {
+        db_raster_abort(&w->out);
+        return HS_EXIT_FAILED;
+    }
+    find_scene_offset(w);
+    if (for_all_blocks(w, "reflect", reflect_block) != 0 || db_raster_commit(&w->out) != 0) {
         db_raster_abort(&w->out);
         return HS_EXIT_FAILED;
     }
     print_outcome(w);
+    if (w->method == RADAR) {
+        print_radar(w);
+    }
+    if (w->by_patch) {
+        print_patches(w);
+    }
     return write_picture(w) != 0 ? HS_EXIT_FAILED : HS_EXIT_OK;
 }
 
-static bool has_sense(const struct options *o)
+static bool is_one_of(const char *word, const char *a, const char *b, const char *c)
 {
-    const bool adjusts = strcmp(o->method, "adjust") == 0;
-    if (!adjusts && strcmp(o->method, "assign") != 0) {
-        hs_error("--method", "see landmass-db reflect --help", "`%s` is neither assign nor adjust",
-                 o->method);
+    return strcmp(word, a) == 0 || strcmp(word, b) == 0 || strcmp(word, c) == 0;
+}
+
+static const char *fault_of(const struct options *o, enum method method, const char **option)
+{
+    *option = "--method adjust";
+    if (method == ADJUST && o->image.paths.count == 0) {
+        return "needs the image for its brightness: name it with --image";
+    }
+    *option = "--patches";
+    if (o->patches && method != ADJUST) {
+        return "is for --method adjust; the others do not look at the image";
+    }
+    *option = "--radar";
+    if ((method == RADAR) != (o->radar.path != NULL)) {
+        return "goes together with --method radar";
+    }
+    *option = "--radar-unit";
+    if (method == RADAR &&
+        (!o->radar.unit || !is_one_of(o->radar.unit, "db", "linear", "linear"))) {
+        return "must say whether the imagery holds db or linear power";
+    }
+    *option = "--multilook";
+    if (o->radar.multilook % 2 == 0) {
+        return "must be odd";
+    }
+    *option = "--calibrate";
+    return is_one_of(o->calibrate, "class", "scene", "none") ? NULL : "is class, scene or none";
+}
+
+/* Find the method, and whether the other options go with it. */
+static bool has_sense(struct work *w)
+{
+    const struct options *o = w->options;
+    const char *option;
+    while (w->method < METHODS && strcmp(o->method, methods[w->method]) != 0) {
+        w->method++;
+    }
+    if (w->method == METHODS) {
+        hs_error("--method", "see landmass-db reflect --help",
+                 "`%s` is neither assign nor adjust nor radar", o->method);
         return false;
     }
-    if (adjusts && o->image.paths.count == 0) {
-        hs_error("--method adjust", "name the image with --image",
-                 "needs the image for its brightness");
-        return false;
+    const char *fault = fault_of(o, w->method, &option);
+    if (fault) {
+        hs_error(option, "see landmass-db reflect --help", "%s", fault);
     }
-    return true;
+    return !fault;
 }
 
 int db_cmd_reflect(int argc, char **argv)
 {
-    struct options options = {.method = "assign", .seed = 1};
+    struct options options = {.method = "assign",
+                              .seed = 1,
+                              .calibrate = "class",
+                              .radar = {.band = 1, .multilook = 3, .incidence_deg = NAN}};
     int exit_code;
     struct work *w = calloc(1, sizeof *w);
     if (!w) {
@@ -360,11 +587,14 @@ int db_cmd_reflect(int argc, char **argv)
     }
     w->options = &options;
     if (read_options(&options, argc, argv, &exit_code)) {
-        w->adjusts = strcmp(options.method, "adjust") == 0;
-        exit_code = has_sense(&options) ? run(w) : HS_EXIT_USAGE;
+        exit_code = has_sense(w) ? run(w) : HS_EXIT_USAGE;
     }
     free(w->block.pixels);
     free(w->block.values);
+    free(w->block.patches);
+    free(w->by_patch);
+    radar_image_close(&w->radar);
+    db_raster_close(&w->patches);
     free(w->block.valid);
     free(w->block.class_valid);
     free(w->block.classes);
