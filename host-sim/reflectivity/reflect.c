@@ -36,8 +36,10 @@ static const double object_share = 0.57; /* of the variance that the cell's leav
 static const double cell_spread_db = 1, cell_share_max = 0.15;
 
 /* Spots of structures. UNSOURCED, after the same scene: share of the ground, and in spreads the
- * mean of their exponential distribution and its end. */
-static const double spot_share = 0.04, spot_mean_spreads = 1.6, spot_end_spreads = 5;
+ * mean of their exponential distribution and its end. Maps of shorter pixels than a house show it
+ * by itself. */
+static const double spot_share = 0.04, spot_mean_spreads = 2, spot_end_spreads = 6.25;
+static const double house_m = 8;
 
 /* Density of the unscaled texture at x dB, but for a factor. */
 static double density(const struct db_class *c, double x)
@@ -116,14 +118,11 @@ static double spot_db(const struct db_reflect_law *law, double u)
     return -law->spot_db * log(1 - u * end);
 }
 
-/* Structures alone have spots. What these add to the variance the rest must do without. */
+/* What spots add to the variance the rest must do without. */
 static void add_spots(struct db_reflect_law *law)
 {
     enum { PARTS = 4096 };
     const struct db_class *c = law->c;
-    if (c->kind != DB_KIND_STRUCTURE) {
-        return;
-    }
     law->spot_share = spot_share;
     law->spot_db = spot_mean_spreads * c->spread_db;
     double mean = 0, square = 0, power = 0;
@@ -159,7 +158,7 @@ static uint64_t seed_of_name(const char *name)
     return h;
 }
 
-void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
+void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, double pixel_m)
 {
     *law = (struct db_reflect_law){.c = c, .seed = seed_of_name(c->name), .mean_db = c->gamma_db};
     if (c->spread_db <= 0) {
@@ -171,7 +170,9 @@ void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c)
     law->weight[2] = sqrt(cell);
     fill_values(law, c->low_db, c->high_db);
     law->mean_db = 0;
-    add_spots(law);
+    if (c->kind == DB_KIND_STRUCTURE && pixel_m >= house_m) {
+        add_spots(law);
+    }
     double power = 0;
     for (int i = 0; i < DB_REFLECT_STEPS; i++) {
         const double share = below(rank_of_step(i + 1)) - below(rank_of_step(i));

@@ -378,11 +378,13 @@ def field_mean(scenes, real):
 
 @measure("3.3, 6.2, item 6", "town: share of its power in the brightest 1 % of its cells, 5 m / 10 m")
 def town_points(scenes, real):
-    """Of the structure cells of the built-in town. Real: structure pixels of Sentinel-1 near Orihuela. Yardstick: 30..50 %."""
+    """Of the structure cells of the built-in town, mean of nine looks that are all different modulo 90 degrees. Real:
+    structure pixels of Sentinel-1 near Orihuela. Yardstick: 30..50 %.
+    """
     ours = []
     for cell in (5, 10):
-        picture = scenes.patch("builtin", scenes.place("town"), cell)
-        ours.append(brightest_share(picture.power[picture.kind == STRUCTURE]))
+        pictures = (scenes.patch("builtin", scenes.place("town"), cell, look) for look in range(0, 360, 40))
+        ours.append(np.mean([brightest_share(p.power[p.kind == STRUCTURE]) for p in pictures]))
     null = brightest_share(white_grain())
     return Row("30..50 %", quoted_orihuela(scenes, real, lambda o: f"Sentinel-1 {100 * brightest_share(o.real_power['structure']):.0f} %",
                                            "Sentinel-1 38 %"),

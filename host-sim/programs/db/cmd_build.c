@@ -226,9 +226,6 @@ static int read_table(struct build_context *b, const struct settings *s)
     }
     fill_classes(&b->classes, &b->table);
     build_facing_classes(&b->facing, &b->classes, b->table.count);
-    for (int i = 0; i < b->table.count; i++) {
-        db_reflect_law_init(&b->laws[i], &b->table.items[i]);
-    }
     return make_rule(&b->rule, s, &b->table);
 }
 
@@ -366,6 +363,15 @@ static int read_codes(struct build_context *b, const struct settings *s)
     return resample_cover_set_codes(&b->cover, &b->codes);
 }
 
+/* Without a class raster there are no structures that could have spots. */
+static void set_laws(struct build_context *b)
+{
+    const double pixel_m = b->cover.pixel_latitude_bam * IMAGE_METRES_PER_BAM;
+    for (int i = 0; i < b->table.count; i++) {
+        db_reflect_law_init(&b->laws[i], &b->table.items[i], pixel_m);
+    }
+}
+
 static int open_inputs(struct build_context *b, const struct settings *s)
 {
     if (read_table(b, s) != 0 ||
@@ -381,6 +387,7 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {
         return -1;
     }
+    set_laws(b);
     const struct build_detail_settings detail = {b->plan.shift0, b->seed, &b->table, b->laws,
                                                  &b->facing};
     if (s->detail && build_detail_read(&b->detail, s->detail, &detail) != 0) {

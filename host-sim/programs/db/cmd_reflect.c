@@ -238,7 +238,7 @@ static int prepare(struct work *w)
         return -1;
     }
     for (int i = 0; i < w->table.count; i++) {
-        db_reflect_law_init(&w->laws[i], &w->table.items[i]);
+        db_reflect_law_init(&w->laws[i], &w->table.items[i], w->places.pixel_m);
         w->outcome.low[i] = INFINITY;
         w->outcome.high[i] = -INFINITY;
     }

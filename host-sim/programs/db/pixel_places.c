@@ -69,10 +69,12 @@ int pixel_places_open(struct pixel_places *p, const struct db_grid *grid, const 
     if (open_transform(p, name) != 0) {
         return -1;
     }
+    place_nodes(p, 1, grid->height / 2 + 1);
+    const struct reflect_place south = p->row[0];
+    place_nodes(p, 2, grid->height / 2);
+    p->pixel_m = distance(p->row[0], south);
     if (p->to_wgs84 && grid->width > 1) {
-        place_nodes(p, 2, grid->height / 2);
-        const double pixel_m = distance(p->row[0], p->row[1]);
-        p->apart = (int)fmin(fmax(500 / pixel_m, 1), APART_MAX);
+        p->apart = (int)fmin(fmax(500 / distance(p->row[0], p->row[1]), 1), APART_MAX);
     }
     return 0;
 }

@@ -11,6 +11,7 @@ struct pixel_places {
     const struct db_grid *grid;            /* borrowed */
     OGRCoordinateTransformationH to_wgs84; /* owned; NULL: the grid names no CRS */
     int apart;                             /* pixels between those that PROJ is asked for */
+    double pixel_m;                        /* from a row to the next, in the middle of the grid */
     double *x, *y;                         /* owned: of those */
     int *is_found;                         /* owned: of those */
     struct reflect_place *row;             /* owned: of the middles of a row's pixels */

@@ -33,9 +33,10 @@ enum { DB_REFLECT_STEPS = 1024 };
  * - tens of metres: smooth,
  * - cell: smooth over a few metres, 1 dB or less.
  *
- * Structures are a mixture: on 4 % of their ground lie bright spots, exponential in dB up to five
- * spreads above the rest, which they may lift above the limits. Mean and deviation in dB are those
- * of the table with them. */
+ * Structures of a map that shows no single buildings are a mixture: on 4 % of their ground lie
+ * bright spots, exponential in dB up to 6.25 spreads above the rest, which they may lift above the
+ * limits. Mean and deviation in dB are those of the table with them. Where the map shows buildings,
+ * the display unit makes fronts and edges of them, and spots would count these twice. */
 struct db_reflect_law {
     const struct db_class *c; /* borrowed */
     uint64_t seed;            /* of the class: hash of its name */
@@ -47,7 +48,8 @@ struct db_reflect_law {
 
 #define DB_REFLECT_RANK_MAX 4.5
 
-void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c);
+/* `pixel_m` is that of the class map, by which structures have spots (8 m or more) or not. */
+void db_reflect_law_init(struct db_reflect_law *law, const struct db_class *c, double pixel_m);
 
 /* The value at a place: the same for the same seed and place. */
 double db_reflect_assign(const struct db_reflect_law *law, uint64_t seed, struct reflect_place p);

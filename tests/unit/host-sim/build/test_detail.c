@@ -33,7 +33,7 @@ static int open_table(void **state)
         return -1;
     }
     for (int i = 0; i < table.count; i++) {
-        db_reflect_law_init(&laws[i], &table.items[i]);
+        db_reflect_law_init(&laws[i], &table.items[i], 10);
     }
     return 0;
 }
