@@ -27,6 +27,7 @@ $(call compile, tests/,    tests/,    $$(CFLAGS_host) -Itests/support $$(EXTRA_C
 
 $(O)/firmware/display/scan_conv.o: OPT_core += -fno-unroll-loops # the row of a line's wedge has a pixel or two
 $(O)/firmware/map/scan_line.o: OPT_core += -fno-unroll-loops # a run of cells in one tile has four or five groups
+$(O)/firmware/radar/detail_patch.o: OPT_core += -fno-unroll-loops -fno-tree-vectorize # a roof has four cells of a line
 
 $(O)/%.a:
 	@mkdir -p $(@D)

@@ -3,6 +3,7 @@
 #include "fx/mem.h"
 #include "fx/sat.h"
 #include "fx/trig.h"
+#include "lm/kernels_map.h"
 #include "lm/units.h"
 
 enum {
@@ -282,21 +283,29 @@ void lm_detail_patch_close(struct lm_detail_patch *p)
 
 /* Cells from the shape's middle, between which the line is within a half side of it. */
 struct interval {
-    int32_t from_q8, to_q8;
+    int64_t from_q8, to_q8;
 };
+
+static inline int64_t max_i64(int64_t a, int64_t b)
+{
+    return a > b ? a : b;
+}
+
+static inline int64_t min_i64(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
 
 /* Narrow an interval to |at + step d / 256| <= 1. False if nothing is left. Both coordinates are
  * below 2^26 where the line meets the shape's block: times 2^8 they need 64 bits. */
-static bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
+static inline bool narrow(struct interval *d, int32_t at_q16, int32_t step_q16)
 {
     if (step_q16 == 0) {
         return fx_abs_u32(at_q16) <= ONE_Q16;
     }
     const int32_t one_q16 = step_q16 > 0 ? ONE_Q16 : -ONE_Q16;
-    const int64_t from_q8 = ((int64_t)-one_q16 - at_q16) * 256 / step_q16;
-    const int64_t to_q8 = ((int64_t)one_q16 - at_q16) * 256 / step_q16;
-    d->from_q8 = (int32_t)fx_clamp_i64(from_q8, d->from_q8, INT32_MAX / 2);
-    d->to_q8 = (int32_t)fx_clamp_i64(to_q8, INT32_MIN / 2, d->to_q8);
+    d->from_q8 = max_i64(((int64_t)-one_q16 - at_q16) * 256 / step_q16, d->from_q8);
+    d->to_q8 = min_i64(((int64_t)one_q16 - at_q16) * 256 / step_q16, d->to_q8);
     return d->from_q8 <= d->to_q8;
 }
 
@@ -306,10 +315,18 @@ static void draw_roof(const struct lm_detail_shape *shape, int32_t first, int32_
                       int32_t v_q16, struct lm_scan_line *ground)
 {
     const uint32_t top = (uint32_t)shape->gamma_code << 8 | (uint32_t)shape->class_number << 4;
-    for (int32_t i = first; i < end; i++, v_q16 += shape->v_cell_q16) {
+    const uint32_t codes = shape->height_codes;
+    const int32_t elevation_m_q14 = shape->elevation_m_q14, v_cell_q16 = shape->v_cell_q16;
+    const bool is_flat = codes == ((codes << 4) | (codes & 15));
+    for (int32_t i = first; i < end; i++) {
+        ground->elevation_m_q14[i] = elevation_m_q14;
+    }
+    for (int32_t i = first; is_flat && i < end; i++) {
+        ground->cell[i] = top | (codes & 15);
+    }
+    for (int32_t i = first; !is_flat && i < end; i++, v_q16 += v_cell_q16) {
         const uint32_t eighth = fx_min_u32(fx_abs_u32(v_q16) >> 13, 7);
-        ground->cell[i] = top | (shape->height_codes >> (4 * eighth) & 15);
-        ground->elevation_m_q14[i] = shape->elevation_m_q14;
+        ground->cell[i] = top | (codes >> (4 * eighth) & 15);
     }
 }
 
@@ -331,13 +348,14 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     const int32_t off_q8 = (int32_t)(line * 256) - shape->line_q8;
     const int32_t u_q16 = (int32_t)((int64_t)shape->u_line_q16 * off_q8 >> 8);
     const int32_t v_q16 = (int32_t)((int64_t)shape->v_line_q16 * off_q8 >> 8);
-    struct interval d = {-shape->cell_q8, (int32_t)((cells - 1) * 256) - shape->cell_q8};
+    struct interval d = {-shape->cell_q8, (int64_t)((cells - 1) * 256) - shape->cell_q8};
     if (d.to_q8 < d.from_q8 || !narrow(&d, u_q16, shape->u_cell_q16) ||
         !narrow(&d, v_q16, shape->v_cell_q16)) {
         return 0;
     }
-    const int32_t first = (shape->cell_q8 + d.from_q8 + 255) >> 8;
-    const int32_t end = ((shape->cell_q8 + d.to_q8) >> 8) + 1;
+    /* Both are cells of the line, where the interval began. */
+    const int32_t first = (int32_t)((shape->cell_q8 + d.from_q8 + 255) >> 8);
+    const int32_t end = (int32_t)((shape->cell_q8 + d.to_q8) >> 8) + 1;
     const int32_t along_q8 = first * 256 - shape->cell_q8;
     if (shape->is_line) {
         draw_glint(shape, first, end, ground->cell);
@@ -348,11 +366,19 @@ static uint32_t draw_shape(const struct lm_detail_shape *shape, uint32_t line, u
     return end > first ? (uint32_t)(end - first) : 0;
 }
 
-/* Tile of the detail that holds cell k of a path, or NULL. Cells of one tile follow each other:
- * the tile found last is tried first. */
-static const struct lm_detail_tile *tile_at(const struct lm_detail_patch *p,
-                                            const struct lm_ground_path *path, uint32_t k,
-                                            const struct lm_detail_tile *last)
+/* Row and column of a tile. */
+struct tile_place {
+    uint32_t row, column;
+};
+
+static inline bool are_same(struct tile_place a, struct tile_place b)
+{
+    return a.row == b.row && a.column == b.column;
+}
+
+/* Tile that holds cell k of a path. */
+static inline struct tile_place tile_place(const struct lm_detail_patch *p,
+                                           const struct lm_ground_path *path, uint32_t k)
 {
     const uint64_t pairs = (uint64_t)k * (k - 1) / 2;
     const fx_bam_t latitude =
@@ -360,30 +386,62 @@ static const struct lm_detail_tile *tile_at(const struct lm_detail_patch *p,
     const fx_bam_t longitude =
         (fx_bam_t)((path->longitude + k * path->longitude_step + pairs * path->longitude_bend) >>
                    32);
-    const uint32_t row = (latitude + FX_BAM_90) >> p->side_log2;
-    const uint32_t column = longitude >> (p->side_log2 + lm_db_zone(latitude));
-    if (last && last->row == row && last->column == column) {
-        return last;
-    }
-    for (uint32_t i = 0; i < p->tile_count; i++) {
-        if (p->tile[i].row == row && p->tile[i].column == column) {
-            return &p->tile[i];
-        }
-    }
-    return NULL;
+    return (struct tile_place){(latitude + FX_BAM_90) >> p->side_log2,
+                               longitude >> (p->side_log2 + lm_db_zone(latitude))};
 }
 
-/* Replace the structures of the map by the ground under them, where the tile has detail. */
+/* Replace the structures among some cells of one tile by the ground under them, if the tile has
+ * detail. */
+static void uncover_tile(const struct lm_detail_patch *p, struct tile_place place, uint32_t *cell,
+                         uint32_t cells)
+{
+    for (uint32_t i = 0; i < p->tile_count; i++) {
+        if (p->tile[i].row == place.row && p->tile[i].column == place.column) {
+            lm_k_replace(p->structures, p->tile[i].under, cell, cells);
+            return;
+        }
+    }
+}
+
+/* First cell behind k that lies in another tile than k, up to `end`, which does. */
+static uint32_t end_of_tile(const struct lm_detail_patch *p, const struct lm_ground_path *path,
+                            uint32_t k, uint32_t end)
+{
+    const struct tile_place place = tile_place(p, path, k);
+    uint32_t inside = k;
+    while (end - inside > 1) {
+        const uint32_t middle = (inside + end) / 2;
+        if (are_same(tile_place(p, path, middle), place)) {
+            inside = middle;
+        } else {
+            end = middle;
+        }
+    }
+    return end;
+}
+
+enum { STRIDE = 64 };
+
+/* Replace the structures of the map by the ground under them, where the tile has detail. A line is
+ * all but straight, and a tile has no hollows: between two cells of a tile all are in it. */
 static void uncover(const struct lm_detail_patch *p, const struct lm_ground_path *path,
                     uint32_t *cell, uint32_t cells)
 {
-    const struct lm_detail_tile *tile = NULL;
-    for (uint32_t k = 0; k < cells; k++) {
-        if (p->structures >> (cell[k] >> 4 & 15) & 1) {
-            tile = tile_at(p, path, k, tile);
-            cell[k] = tile ? tile->under : cell[k];
+    struct tile_place place = tile_place(p, path, 0);
+    uint32_t first = 0;
+    for (uint32_t k = 0; k < cells;) {
+        const uint32_t next = fx_min_u32(k + STRIDE, cells);
+        const struct tile_place there = tile_place(p, path, next);
+        if (are_same(there, place)) {
+            k = next;
+            continue;
         }
+        k = end_of_tile(p, path, k, next);
+        uncover_tile(p, place, cell + first, k - first);
+        first = k;
+        place = tile_place(p, path, k);
     }
+    uncover_tile(p, place, cell + first, cells - first);
 }
 
 void lm_detail_patch_draw(const struct lm_detail_patch *p, uint32_t line,

@@ -321,6 +321,14 @@ static void run_tile_blend(const struct input *in, struct output *out, bool is_p
     out->room = out->end[0];
 }
 
+static void run_replace(const struct input *in, struct output *out, bool is_plain)
+{
+    copy_cells(out->line[0], in->cell);
+    TWIN(lm_k_replace)
+    ((uint32_t)in->number[0] & 0xFFFF, (uint32_t)in->number[1], out->line[0], in->cells);
+    out->room = in->cells;
+}
+
 static struct lm_k_tops tops_of(const struct input *in)
 {
     return (struct lm_k_tops){in->grid.first,         in->cells,
@@ -476,6 +484,7 @@ static void run_tone(const struct input *in, struct output *out, bool is_plain)
 static const struct kernel kernels[] = {
     {"lm_k_tile_read", draw_tiles, run_tile_read},
     {"lm_k_tile_blend", draw_blend, run_tile_blend},
+    {"lm_k_replace", draw_classes, run_replace},
     {"lm_k_light", draw_light, run_light},
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},

@@ -115,4 +115,8 @@ struct lm_k_blend {
 void lm_k_tile_blend(const struct lm_k_blend *map, const struct lm_tile_coords *places,
                      uint32_t first, uint32_t groups, uint32_t *cell, int32_t *elevation_m_q14);
 
+/* Replace the cells of the classes that are bits of `classes` by `by`. Writes no entry behind the
+ * last cell. Cost: 2 a cell. */
+void lm_k_replace(uint32_t classes, uint32_t by, uint32_t *cell, uint32_t cells);
+
 #endif
