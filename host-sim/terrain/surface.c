@@ -203,6 +203,9 @@ int terrain_open(struct terrain *t, const struct db_list *paths,
                  const struct terrain_options *options)
 {
     *t = (struct terrain){.options = *options};
+    if (paths->count == 0) {
+        return 0;
+    }
     struct source *sources = calloc((size_t)paths->count, sizeof *sources);
     int result = sources ? 0 : hs_error("terrain", NULL, "out of memory");
     for (int i = 0; result == 0 && i < paths->count; i++) {

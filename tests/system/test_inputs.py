@@ -508,6 +508,98 @@ def above_navd88():
     return land_like("navd88.tif", 0)
 
 
+# ---- No terrain, visual databases, radar imagery.
+
+FLAT = ["build", "--classes", "heaton6.classes", "--class-raster", "classes.tif", "--out", "flat.lmdb"]
+
+
+@row("no terrain", "build", "refused")
+def no_terrain():
+    return db(*FLAT)
+
+
+@row("no terrain, with `--flat`", "build", "done")
+def flat():
+    done = db(*FLAT, "--flat")
+    assert "no terrain: all ground lies at 0 m" in done.out
+    return done
+
+
+def model(name="roof.obj", text="v 0 0 3\nv 9 0 3\nv 9 9 3\nf 1 2 3\n"):
+    with open(name, "w") as file:
+        file.write(text)
+    return ["import", "--model", name, "--cell", "1", "--out-image", "roof.tif"]
+
+
+@row("a model that says neither unit nor axes (OBJ)", "import", "refused")
+def obj_alone():
+    return db(*model(), "--at", "45,7")
+
+
+@row("the same with `--unit m --up z`, no place", "import", "refused")
+def obj_nowhere():
+    return db(*model(), "--unit", "m", "--up", "z")
+
+
+@row("the same with a place", "import", "done")
+def obj_placed():
+    return db(*model(), "--unit", "m", "--up", "z", "--at", "45,7")
+
+
+@row("a model whose texture is missing", "import", "warned")
+def obj_bare():
+    with open("bare.mtl", "w") as file:
+        file.write("newmtl roof\nmap_Kd nowhere.png\n")
+    words = model("bare.obj", "mtllib bare.mtl\nv 0 0 3\nv 9 0 3\nv 9 9 3\nusemtl roof\nf 1 2 3\n")
+    return db(*words, "--unit", "m", "--up", "z", "--at", "45,7")
+
+
+@row("noise under the name of a model (.glb)", "import", "refused")
+def glb_noise():
+    return db(*model("noise.glb", "glTF no more"), "--at", "45,7")
+
+
+@row("OpenFlight that is none", "import", "refused")
+def flt_noise():
+    return db(*model("noise.flt", "no record"), "--at", "45,7")
+
+
+@row("a folder that is no CDB", "import", "refused")
+def no_cdb():
+    return db("import", "--cdb", ".", "--out-image", "cdb.tif")
+
+
+def radar(path, plane):
+    raster(path, [plane], nodata=-9999)
+    return REFLECT + ["--out", "radar-gamma.tif", "--method", "radar", "--radar", path]
+
+
+def radar_db():
+    return numpy.random.default_rng(3).normal(-12, 3, (SIDE, SIDE)).astype(numpy.float32)
+
+
+@row("radar imagery, its unit not said", "reflect", "refused")
+def radar_of_no_unit():
+    return db(*radar("radar.tif", radar_db()))
+
+
+@row("radar imagery in dB with `--radar-unit linear`", "reflect", "refused")
+def radar_not_linear():
+    return db(*radar("radar.tif", radar_db()), "--radar-unit", "linear")
+
+
+@row("radar imagery in linear power with `--radar-unit db`", "reflect", "refused")
+def radar_not_db():
+    return db(*radar("linear.tif", 10 ** (radar_db() / 10)), "--radar-unit", "db")
+
+
+@row("radar imagery with a hole", "reflect", "warned")
+def radar_hole():
+    plane = radar_db()
+    plane[:9, :] = -9999
+    return db(*radar("hole.tif", plane), "--radar-unit", "db")
+
+
 # ---- The table and the run.
 
 def says(run):

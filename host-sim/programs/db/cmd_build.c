@@ -26,7 +26,7 @@ struct settings {
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
-    bool voids_are_sea, may_cut_heights, ignores_names;
+    bool is_flat, voids_are_sea, may_cut_heights, ignores_names;
 };
 
 static const struct db_usage usage = {
@@ -58,7 +58,10 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         {"classes", DB_INPUT, &s->classes, 0, 0, "FILE", "class table (docs/classifier.md)", true},
         {"out", DB_OUTPUT, &s->out, 0, 0, "FILE.lmdb", "the image to write", true},
         {"terrain", DB_INPUTS, &s->terrain, 0, 0, "DEM", "elevation model; may be given again",
-         true},
+         false},
+        OPTION("flat", DB_FLAG, is_flat, 0, 0, NULL,
+               "instead of terrain: all ground of the class raster lies at --sea-level; the image "
+               "says so"),
         OPTION("terrain-unit", DB_TEXT, terrain_unit, 0, 0, "UNIT",
                "of all terrain: m, cm, ft (international), us-ft ...; left out: as the files say, "
                "or m"),
@@ -157,6 +160,12 @@ static int check_settings(struct settings *s)
         return usage_error(s->reflectivity ? "--reflectivity" : "--heights",
                            "needs --class-raster");
     }
+    if (s->is_flat && (s->terrain.count > 0 || !s->class_raster)) {
+        return usage_error("--flat", "needs --class-raster, and no --terrain");
+    }
+    if (!s->is_flat && s->terrain.count == 0) {
+        return usage_error("--terrain", "is missing; --flat puts all ground at sea level");
+    }
     if (s->map && !s->class_raster) {
         return usage_error("--map", "needs --class-raster");
     }
@@ -184,6 +193,10 @@ static int named_class(const struct db_class_table *table, const char *option, c
 static int make_rule(struct build_rule *rule, const struct settings *s,
                      const struct db_class_table *table)
 {
+    if (s->is_flat) { /* Nothing is classed from elevation. */
+        *rule = (struct build_rule){.steep = -1, .sea_level_m = s->sea_level_m};
+        return 0;
+    }
     *rule = (struct build_rule){
         .land = named_class(table, "--land-class", s->land_class),
         .water = named_class(table, "--water-class", s->water_class),
@@ -314,7 +327,7 @@ static int make_plan(struct build_context *b, const struct settings *s)
 
 static int check_overlap(const struct build_context *b, const struct settings *s)
 {
-    if (!b->cover.classes.dataset) {
+    if (!b->cover.classes.dataset || s->is_flat) {
         return 0;
     }
     for (int i = 0; i < b->terrain.layer_count; i++) {
@@ -464,6 +477,9 @@ static int write_inputs(FILE *out, const struct build_context *b, const struct s
         if (planes[i]->dataset) {
             result = build_manifest_dataset(out, roles[i], planes[i]->dataset);
         }
+    }
+    if (s->is_flat) {
+        fprintf(out, "terrain: none, all ground lies at %g m\n", s->sea_level_m);
     }
     for (int i = 0; i < b->terrain.layer_count; i++) {
         const struct terrain_mosaic *m = &b->terrain.layers[i].mosaic;
@@ -673,7 +689,11 @@ static void print_report(const struct build_context *b, const struct report *r, 
     char heights[160];
     print_levels(b, r);
     print_classes(b);
-    print_voids(&b->terrain);
+    if (b->terrain.layer_count > 0) {
+        print_voids(&b->terrain);
+    } else {
+        printf("no terrain: all ground lies at %g m\n", b->rule.sea_level_m);
+    }
     image_heights_text(b->classes.height_dm, heights, sizeof heights);
     printf("heights m%s; %" PRIu64 " samples cut to 1,000 m\n", heights, b->counts.heights_cut);
     printf("mean elevation of land %.1f m\n", r->mean_elevation_q6 / 64.0);

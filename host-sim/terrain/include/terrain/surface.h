@@ -34,9 +34,9 @@ struct terrain {
     uint64_t posts_beyond; /* posts asked for where no model reaches */
 };
 
-/* Open the models and fill their voids. `path.zip` is opened through /vsizip/. Returns 0, or -1
- * with the error reported and nothing to close. Prints what was found or assumed of their heights.
- * Reads every model once or twice. */
+/* Open the models and fill their voids. With no path at all everything lies at sea level.
+ * `path.zip` is opened through /vsizip/. Returns 0, or -1 with the error reported and nothing to
+ * close. Prints what was found or assumed of their heights. Reads every model once or twice. */
 int terrain_open(struct terrain *t, const struct db_list *paths,
                  const struct terrain_options *options);
 void terrain_close(struct terrain *t);

@@ -433,6 +433,38 @@ TEST(the_mean_elevation_is_that_of_the_land)
     image_close(&image);
 }
 
+TEST(without_terrain_all_ground_lies_at_sea_level_when_told_so)
+{
+    scene_classes();
+    write_cover(4326, (const double[6]){8.0, 0.0005, 0, 47.1, 0, -0.0005}, 100, 100);
+    assert_int_equal(scene_run("build --classes %s --class-raster %s --out %s",
+                               scene_path(SCENE_CLASSES), scene_path("classes.tif"),
+                               scene_path("flat.lmdb")),
+                     2);
+    assert_true(scene_log_holds("--flat puts all ground at sea level"));
+    assert_int_equal(
+        scene_run("build --classes %s --class-raster %s --flat --sea-level 12 --out %s",
+                  scene_path(SCENE_CLASSES), scene_path("classes.tif"), scene_path("flat.lmdb")),
+        0);
+    assert_true(scene_log_holds("no terrain: all ground lies at 12 m"));
+    struct image image;
+    open_sound_image(&image, "flat.lmdb");
+    assert_int_equal(image.header.mean_elevation_m_q6, 12 * 64);
+    int tiles = 0;
+    for (uint32_t i = 0; i < image.header.entry_count; i++) {
+        const struct lm_tile *t = image_entry_tile(&image, i);
+        for (int k = 0; t && k < LM_TILE_POSTS * LM_TILE_POSTS; k++) {
+            assert_true(post_m(t, k / LM_TILE_POSTS, k % LM_TILE_POSTS) == 12);
+        }
+        tiles += t != NULL;
+    }
+    assert_int_equal(tiles, image.header.record_count);
+    assert_int_not_equal(cell_at(&image, 0, 47.075, 8.025), IMAGE_CELL_NONE);
+    image_close(&image);
+    assert_int_equal(scene_run("inspect %s", scene_path("flat.lmdb")), 0);
+    assert_true(scene_log_holds("terrain: none, all ground lies at 12 m"));
+}
+
 /* Blocks of four pixels by four of one class, one pixel in each of another. */
 static double speckled_class(double x, double y)
 {
