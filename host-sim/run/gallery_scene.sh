@@ -1,7 +1,7 @@
 #!/bin/sh
 # One real scene, from its data to pictures of it.
 # Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|zion|guadeloupe|
-#        kansas|modes|island_modes|airfield
+#        kansas|monaco|baltimore|modes|island_modes|airfield
 # The tests of tests/system run the same scenes through the same script.
 set -eu
 bin=$1
@@ -231,6 +231,34 @@ kansas() {
     plain 5070 "-106095 1822605 -76095 1792605" 380
     cover Kansas "$data/cropland_kansas_cdl/2021_30m_cdls.tif" cdl.map "$out/terrain.tif"
     fly kansas --straight 39.17,-97.20,40,3000,200 --seconds 30
+}
+
+vectors() { # CELL FILE..., options: classes, heights and detail of OpenStreetMap
+    cell=$1 file=$2
+    shift 2
+    say "classes, heights and detail of $file"
+    "$bin"/landmass-db vectors --vectors "$file" --rules $tables/osm.rules --classes $tables/landcover.classes \
+        --cell "$cell" --out "$out/classes.tif" --heights "$out/heights.tif" --detail "$out/detail.txt" "$@"
+}
+
+monaco() {
+    need osm_monaco
+    need srtm_hgt/N43E007.hgt.zip
+    need nav_tracks/nice.csv.gz
+    vectors 2.4 "$data/osm_monaco/monaco.osm.pbf"
+    build Monaco --classes $tables/landcover.classes --class-raster "$out/classes.tif" --heights "$out/heights.tif" \
+        --detail "$out/detail.txt" --terrain "$data/srtm_hgt/N43E007.hgt.zip" --steep-class rock --steep-degrees 30 \
+        --geoid 49
+    fly monaco --start 9500 --seconds 345 --height-offset 49 "$data/nav_tracks/nice.csv.gz"
+}
+
+baltimore() {
+    need osm_baltimore
+    vectors 2.4 "$data/osm_baltimore/baltimore.osm.pbf"
+    plain 4326 "-76.70 39.35 -76.45 39.20" 5
+    build Baltimore --classes $tables/landcover.classes --class-raster "$out/classes.tif" --heights "$out/heights.tif" \
+        --detail "$out/detail.txt" --terrain "$out/terrain.tif"
+    fly baltimore --straight 39.15,-76.45,320,3000,200 --seconds 30
 }
 
 airfield() { # a field of our own, on level ground at 42 N 27 W, with what landmass-target bakes parked on it

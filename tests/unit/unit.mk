@@ -53,6 +53,7 @@ $(call unit_tests, host-sim/image,              image lib fixed firmware,       
 $(call unit_tests, host-sim/terrain,            terrain image lib fixed firmware,     db)
 $(call unit_tests, host-sim/reflectivity,       reflectivity gis lib,                 db)
 $(call unit_tests, host-sim/build,              build image lib fixed firmware,       db)
+$(call unit_tests, host-sim/vectors,            vectors gis lib fixed firmware,       db)
 $(call unit_tests, host-sim/tracer,             tracer lib fixed firmware,            target)
 $(call unit_tests, host-sim/netem,              netem tracer lib fixed firmware)
 $(call unit_tests, host-sim/nav,                nav lib fixed firmware drivers,       nav)

@@ -7,6 +7,7 @@ int db_cmd_import(int argc, char **argv);
 int db_cmd_train(int argc, char **argv);
 int db_cmd_segment(int argc, char **argv);
 int db_cmd_correct(int argc, char **argv);
+int db_cmd_vectors(int argc, char **argv);
 int db_cmd_reflect(int argc, char **argv);
 int db_cmd_build(int argc, char **argv);
 int db_cmd_convert(int argc, char **argv);

@@ -9,6 +9,8 @@ static const struct hs_command commands[] = {
     {"train", "learn the classes of an image from exemplar pixels", db_cmd_train},
     {"segment", "give each pixel of an image its class", db_cmd_segment},
     {"correct", "apply manual corrections to a class raster", db_cmd_correct},
+    {"vectors", "make classes, heights and detail of OpenStreetMap or other vectors",
+     db_cmd_vectors},
     {"reflect", "give each pixel its radar reflectivity", db_cmd_reflect},
     {"build", "make the database image from classes, reflectivity and terrain", db_cmd_build},
     {"inspect", "print what a database image holds", db_cmd_inspect},

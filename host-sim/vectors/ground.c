@@ -1,0 +1,128 @@
+#include "gis/gdal_start.h"
+#include "hs/error.h"
+#include "vectors/output.h"
+
+#include <cpl_conv.h>
+#include <gdalwarper.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NOT_COVERED = -1 };
+
+/* A raster of GDAL's over an array in memory. */
+static GDALDatasetH raster_over(const struct db_grid *g, int32_t *pixels)
+{
+    double transform[6];
+    char address[32] = "", option[64];
+    memcpy(transform, g->geotransform, sizeof transform);
+    CPLPrintPointer(address, pixels, sizeof address - 1);
+    snprintf(option, sizeof option, "DATAPOINTER=%s", address);
+    char *options[] = {option, NULL};
+    GDALDatasetH raster =
+        GDALCreate(GDALGetDriverByName("MEM"), "", g->width, g->height, 0, GDT_Int32, NULL);
+    if (raster && (GDALAddBand(raster, GDT_Int32, options) != CE_None ||
+                   GDALSetGeoTransform(raster, transform) != CE_None ||
+                   GDALSetSpatialRef(raster, g->crs) != CE_None)) {
+        GDALClose(raster);
+        raster = NULL;
+    }
+    return raster;
+}
+
+/* Length of a pixel, metres: the suggested warp of the raster to the plane tells. */
+static double pixel_m(GDALDatasetH ground, const struct db_grid *g)
+{
+    char *wkt = NULL;
+    double transform[6] = {0};
+    int width, height;
+    OSRExportToWkt(g->crs, &wkt);
+    void *way = GDALCreateGenImgProjTransformer(ground, NULL, NULL, wkt, FALSE, 0, 1);
+    if (way && GDALSuggestedWarpOutput(ground, GDALGenImgProjTransform, way, transform, &width,
+                                       &height) != CE_None) {
+        transform[1] = 0;
+    }
+    if (way) {
+        GDALDestroyGenImgProjTransformer(way);
+    }
+    CPLFree(wkt);
+    return transform[1];
+}
+
+static int warp(const struct vector_map *map, GDALDatasetH ground, const char *path,
+                int32_t *pixels)
+{
+    const double pixel = pixel_m(ground, &map->grid);
+    GDALDatasetH raster = pixel > 0 ? raster_over(&map->grid, pixels) : NULL;
+    const GDALResampleAlg way = pixel <= map->cell_m / 2 ? GRA_Mode : GRA_NearestNeighbour;
+    CPLErrorReset();
+    const bool is_warped = raster && GDALReprojectImage(ground, NULL, raster, NULL, way, 0, 0.1,
+                                                        NULL, NULL, NULL) == CE_None;
+    if (raster) {
+        GDALClose(raster);
+    }
+    return is_warped ? 0
+                     : hs_error(path, "check its coordinate reference system with gdalinfo",
+                                "cannot be brought to the area: %s", db_gdal_complaint());
+}
+
+static int take_pixels(struct vector_map *map, const int32_t *pixels, const char *path,
+                       const struct db_code_map *codes, const struct db_class_table *table)
+{
+    const size_t cells = (size_t)map->grid.width * (size_t)map->grid.height;
+    for (size_t i = 0; i < cells; i++) {
+        const int32_t v = pixels[i];
+        if (v == NOT_COVERED) {
+            continue;
+        }
+        const int class_index = codes ? db_code_map_class(codes, v)
+                                : v == DB_CLASS_NODATA || (v >= 0 && v < table->count) ? v
+                                                                                       : -1;
+        if (class_index < 0) {
+            return hs_error(path, "give a --map of its codes, or the class table it was made with",
+                            "holds class %d, but the table ends at %d", v, table->count - 1);
+        }
+        map->classes[i] = (uint8_t)class_index;
+    }
+    return 0;
+}
+
+static int fill(struct vector_map *map, GDALDatasetH ground, const char *path,
+                const struct db_code_map *codes, const struct db_class_table *table)
+{
+    const size_t cells = (size_t)map->grid.width * (size_t)map->grid.height;
+    if (GDALGetRasterCount(ground) != 1) {
+        return hs_error(path, "give one band", "holds %d bands instead of one",
+                        GDALGetRasterCount(ground));
+    }
+    if (codes && db_code_map_survey(codes, table, GDALGetRasterBand(ground, 1), path) != 0) {
+        return -1;
+    }
+    int32_t *pixels = malloc(cells * sizeof *pixels);
+    if (!pixels) {
+        return hs_error(path, "choose a smaller --area, or larger cells", "out of memory");
+    }
+    for (size_t i = 0; i < cells; i++) {
+        pixels[i] = NOT_COVERED;
+    }
+    int result = warp(map, ground, path, pixels);
+    if (result == 0) {
+        result = take_pixels(map, pixels, path, codes, table);
+    }
+    free(pixels);
+    return result;
+}
+
+int vector_ground(struct vector_map *map, const char *path, const struct db_code_map *codes,
+                  const struct db_class_table *table)
+{
+    CPLErrorReset();
+    GDALDatasetH ground = GDALOpen(path, GA_ReadOnly);
+    if (!ground) {
+        return hs_error(path, "check the name and that `gdalinfo` can read it",
+                        "cannot be opened as a class raster: %s", db_gdal_complaint());
+    }
+    const int result = fill(map, ground, path, codes, table);
+    GDALClose(ground);
+    return result;
+}
