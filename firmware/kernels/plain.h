@@ -21,6 +21,7 @@ extern __typeof__(lm_k_powers_of_levels) lm_k_powers_of_levels_c;
 extern __typeof__(lm_k_levels_add) lm_k_levels_add_c;
 extern __typeof__(lm_k_levels_mean) lm_k_levels_mean_c;
 extern __typeof__(lm_k_highest) lm_k_highest_c;
+extern __typeof__(lm_k_side_lobes) lm_k_side_lobes_c;
 extern __typeof__(lm_k_beam_sum) lm_k_beam_sum_c;
 extern __typeof__(lm_k_detect) lm_k_detect_c;
 extern __typeof__(lm_k_detect_in_rain) lm_k_detect_in_rain_c;

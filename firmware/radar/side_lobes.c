@@ -10,9 +10,11 @@
 #include "lm/level.h"
 #include "lm/units.h"
 
+_Static_assert((int)LM_K_LOBES == 2 * LM_RESPONSE_REACH, "the kernel adds all but the last");
+
 /* A point within a quarter of a cell of the middle has its first null before the second cell: the
  * cell beside its own is in the main lobe, whose power the cell's level holds already. */
-enum { BESIDE = LM_RESPONSE_REACH / 2, NEAREST = 2 };
+enum { BESIDE = LM_RESPONSE_REACH / 2, NEAREST = 2, NO_LOBE_DB_Q8 = INT16_MIN };
 
 /* Level of a point's response `cells` cells away from the cell that holds it, `off_cells_q8` from
  * its middle, over that in the cell itself: 20 log10(h(x) / h(off)). Amplitudes are below 2^15. */
@@ -34,7 +36,9 @@ void lm_side_lobes_clear(struct lm_side_lobes *s)
     int16_t *side = s->side_db_q8;
     for (int32_t k = 0; k < LM_SIDE_LOBES_OFFSETS; k++) {
         for (int32_t n = -LM_RESPONSE_REACH; n <= LM_RESPONSE_REACH; n++) {
-            *side++ = side_db_q8(n, 16 * (k - LM_SIDE_LOBES_OFFSETS / 2));
+            const bool has_lobe = fx_abs_u32(n) >= NEAREST;
+            *side++ = has_lobe ? side_db_q8(n, 16 * (k - LM_SIDE_LOBES_OFFSETS / 2))
+                               : (int16_t)NO_LOBE_DB_Q8;
         }
     }
 }
@@ -112,8 +116,10 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
     lm_k_highest(level_db_q8, highest_db_q8, cells);
-    for (uint32_t first = 0; first < cells; first += LM_K_HIGHEST_CELLS) {
-        if (highest_db_q8[first / LM_K_HIGHEST_CELLS] >= least) {
+    const uint32_t blocks = (cells + LM_K_HIGHEST_CELLS - 1) / LM_K_HIGHEST_CELLS;
+    for (uint32_t n = 0; n < blocks; n++) {
+        if (highest_db_q8[n] >= least) {
+            const uint32_t first = n * LM_K_HIGHEST_CELLS;
             const uint32_t end = fx_min_u32(first + LM_K_HIGHEST_CELLS, cells);
             least = search(s, (struct stretch){line, first, end, cells}, level_db_q8, least, seed);
         }
@@ -123,7 +129,7 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
 /* Add a side lobe, if it is not 25 dB below what is there. */
 static inline void add(int32_t *level_db_q8, int32_t side_lobe)
 {
-    if (side_lobe > *level_db_q8 - LM_DB_Q8(25)) {
+    if (side_lobe > *level_db_q8 - LM_K_LOBES_BELOW_DB_Q8) {
         *level_db_q8 = fx_db_q8_sum_vec(*level_db_q8, side_lobe);
     }
 }
@@ -134,12 +140,18 @@ static inline const int16_t *side_of(const struct lm_side_lobes *s, uint32_t off
     return s->side_db_q8 + offset * LM_SIDE_LOBES_CELLS + LM_RESPONSE_REACH;
 }
 
-/* Side lobes of a point in cells first..last of its own line. */
+/* Side lobes of a point in its own line. A kernel adds all but the last, where the line has all. */
 static inline void add_along(const struct lm_side_lobes *s, const struct lm_strong_cell *p,
-                             int32_t *level_db_q8, int32_t first, int32_t last)
+                             int32_t *level_db_q8, int32_t cells)
 {
     const int16_t *const side = side_of(s, p->beyond);
-    for (int32_t i = first; i <= last; i++) {
+    int32_t first = p->cell - LM_RESPONSE_REACH;
+    const int32_t last = fx_min_i32(p->cell + LM_RESPONSE_REACH, cells - 1);
+    if (first >= 0 && last == p->cell + LM_RESPONSE_REACH) {
+        lm_k_side_lobes(side - LM_RESPONSE_REACH, p->level_db_q8, level_db_q8 + first);
+        first = last;
+    }
+    for (int32_t i = fx_max_i32(first, 0); i <= last; i++) {
         add(&level_db_q8[i], p->level_db_q8 + side[i - p->cell]);
     }
 }
@@ -166,10 +178,7 @@ void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *le
         add_across(s, n, line, level_db_q8);
     }
     for (uint32_t k = 0; k < s->line[slot].count; k++) {
-        const struct lm_strong_cell *const p = &s->line[slot].strong[k];
-        add_along(s, p, level_db_q8, fx_max_i32(p->cell - LM_RESPONSE_REACH, 0), p->cell - NEAREST);
-        add_along(s, p, level_db_q8, p->cell + NEAREST,
-                  fx_min_i32(p->cell + LM_RESPONSE_REACH, (int32_t)cells - 1));
+        add_along(s, &s->line[slot].strong[k], level_db_q8, (int32_t)cells);
     }
     for (uint32_t n = line + NEAREST; n < end; n++) {
         add_across(s, n, line, level_db_q8);

@@ -438,6 +438,18 @@ static void run_highest(const struct input *in, struct output *out, bool is_plai
     out->room = out->end[0];
 }
 
+/* Side lobes of 0 to -64 dB, from a point near the levels' middle. */
+static void run_side_lobes(const struct input *in, struct output *out, bool is_plain)
+{
+    int16_t side_db_q8[LM_K_LOBES];
+    for (uint32_t k = 0; k < LM_K_LOBES; k++) {
+        side_db_q8[k] = (int16_t) - (in->other_db_q8[k] & 0x3FFF);
+        out->line[0][k] = (uint32_t)(in->level_db_q8[k] % (1 << 14));
+    }
+    TWIN(lm_k_side_lobes)(side_db_q8, in->number[1], signed_line(out->line[0]));
+    out->end[0] = out->room = LM_K_LOBES;
+}
+
 static void run_beam_sum(const struct input *in, struct output *out, bool is_plain)
 {
     const uint32_t *power_q24[LM_K_TAPS];
@@ -496,6 +508,7 @@ static const struct kernel kernels[] = {
     {"lm_k_levels_add", draw_levels, run_levels_add},
     {"lm_k_levels_mean", draw_levels, run_levels_mean},
     {"lm_k_highest", draw_levels, run_highest},
+    {"lm_k_side_lobes", draw_levels, run_side_lobes},
     {"lm_k_beam_sum", draw_powers, run_beam_sum},
     {"lm_k_detect", draw_powers, run_detect},
     {"lm_k_detect_in_rain", draw_powers, run_detect_in_rain},

@@ -57,3 +57,21 @@ void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t c
         highest_db_q8 += 2;
     }
 }
+
+void lm_k_side_lobes(const int16_t *side_db_q8, int32_t point_db_q8, int32_t *level_db_q8)
+{
+    const int32x4_t point = vdupq_n_s32(point_db_q8), below = vdupq_n_s32(LM_K_LOBES_BELOW_DB_Q8);
+    const int16x8_t side[2] = {vld1q_s16(side_db_q8), vld1q_s16(side_db_q8 + 8)};
+    const int32x4x4_t level = neon_load_16(level_db_q8);
+    const int32x4x4_t lobe = {
+        {vaddw_s16(point, vget_low_s16(side[0])), vaddw_high_s16(point, side[0]),
+         vaddw_s16(point, vget_low_s16(side[1])), vaddw_high_s16(point, side[1])}};
+    int32x4x4_t sum =
+        neon_db_q8_sum(vld1q_u8_x4(fx_table_db_sum_lines[0]), vld1q_u8_x4(fx_table_db_sum_lines[1]),
+                       vld1q_u8_x4(fx_table_db_sum_lines[2]), level, lobe);
+    for (size_t k = 0; k < 4; k++) {
+        const uint32x4_t counts = vcgtq_s32(lobe.val[k], vsubq_s32(level.val[k], below));
+        sum.val[k] = vbslq_s32(counts, sum.val[k], level.val[k]);
+    }
+    neon_store_8_and_8(level_db_q8, level_db_q8 + 8, sum);
+}

@@ -30,3 +30,13 @@ void lm_k_highest(const int32_t *level_db_q8, int32_t *restrict highest_db_q8, u
         highest_db_q8[n] = highest;
     }
 }
+
+void lm_k_side_lobes(const int16_t *restrict side_db_q8, int32_t point_db_q8,
+                     int32_t *restrict level_db_q8)
+{
+    for (uint32_t i = 0; i < LM_K_LOBES; i++) {
+        const int32_t lobe_db_q8 = point_db_q8 + side_db_q8[i], level = level_db_q8[i];
+        const int32_t sum_db_q8 = fx_db_q8_sum_vec(level, lobe_db_q8);
+        level_db_q8[i] = lobe_db_q8 > level - LM_K_LOBES_BELOW_DB_Q8 ? sum_db_q8 : level;
+    }
+}

@@ -34,6 +34,13 @@ enum { LM_K_HIGHEST_CELLS = 8 };
  * may be anything: it counts too. Cost: 1 a cell. */
 void lm_k_highest(const int32_t *level_db_q8, int32_t *highest_db_q8, uint32_t cells);
 
+enum { LM_K_LOBES = 16, LM_K_LOBES_BELOW_DB_Q8 = 25 * 256 };
+
+/* Add to LM_K_LOBES levels those of a point's side lobes, side_db_q8 over the point's own. What is
+ * LM_K_LOBES_BELOW_DB_Q8 below a level, or more, is not added. Levels within 2^30 of 0. Cost: 5 a
+ * cell. */
+void lm_k_side_lobes(const int16_t *side_db_q8, int32_t point_db_q8, int32_t *level_db_q8);
+
 enum { LM_K_TAPS = 8 };
 
 /* Weighted sum of LM_K_TAPS lines of powers, rounded down. The weights add up to 65536, so that the

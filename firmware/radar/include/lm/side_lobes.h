@@ -61,8 +61,8 @@ void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *l
                         uint32_t cells, int32_t least_db_q8, uint32_t seed);
 
 /* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
- * to LM_RESPONSE_REACH before and behind it. Cost: 22 instructions for each cell of a cross that
- * lies on the line: at most 28 along it and 28 across. */
+ * to LM_RESPONSE_REACH before and behind it. Cost: 23 instructions for each cell across, of which
+ * there are 28 at most, and 110 for the cells along of each strong one. */
 void lm_side_lobes_add(const struct lm_side_lobes *s, uint32_t line, int32_t *level_db_q8,
                        uint32_t cells);
 
