@@ -19,9 +19,14 @@ void lm_patch_floor_clear(struct lm_patch_floor *f)
 static uint32_t mean_of_line_q24(int32_t most_db_q8, uint32_t number, const int32_t *level_db_q8,
                                  uint32_t cells)
 {
-    uint32_t power[SAMPLES_MAX + LM_LANES], count = 0, sum_q24 = 0;
-    for (uint32_t i = number % LM_PATCH_FLOOR_STRIDE; i < cells; i += LM_PATCH_FLOOR_STRIDE) {
-        power[count++] = (uint32_t)fx_min_i32(level_db_q8[i] - most_db_q8, 0);
+    const uint32_t first = number % LM_PATCH_FLOOR_STRIDE;
+    const uint32_t count =
+        (fx_max_u32(cells, first) - first + LM_PATCH_FLOOR_STRIDE - 1) / LM_PATCH_FLOOR_STRIDE;
+    const int32_t *const sample_db_q8 = level_db_q8 + first;
+    uint32_t power[SAMPLES_MAX + LM_LANES], sum_q24 = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const int32_t db_q8 = sample_db_q8[i * LM_PATCH_FLOOR_STRIDE];
+        power[i] = (uint32_t)fx_min_i32(db_q8 - most_db_q8, 0);
     }
     lm_k_powers_of_levels(power, count);
     for (uint32_t i = 0; i < count; i++) {
