@@ -1,5 +1,7 @@
 #include "lm/grain.h"
 
+#include <stdbool.h>
+
 #include "fx/log.h"
 #include "fx/mem.h"
 #include "fx/sat.h"
@@ -9,6 +11,7 @@
 
 _Static_assert((int)LM_GRAIN_LINES == (int)LM_K_CURVE_LINES,
                "as many lines as the kernels look up");
+_Static_assert((int)LM_GRAIN_WAY == (int)LM_K_GRAIN_WAY, "as many weights");
 
 void lm_grain_curve_set(struct lm_grain_curve *curve, uint32_t looks_q8)
 {
@@ -64,24 +67,7 @@ void lm_grain_floor_run(const struct lm_grain_curve *curve, struct lm_grain_plac
     lm_k_grain_floor(&lines, grain_q5, floor_db_q8, level_db_q8, speckled_db_q8, cells);
 }
 
-/* Weights of two numbers between which a cell lies, in steps of LM_GRAIN_WAY. */
-struct way {
-    int32_t first_q7, second_q7;
-};
-
-static inline struct way way_of(uint32_t part_q16)
-{
-    const uint32_t way = part_q16 / (65536 / LM_GRAIN_WAY);
-    return (struct way){lm_grain_weight_q7[LM_GRAIN_WAY - way], lm_grain_weight_q7[way]};
-}
-
-static inline int8_t between(int8_t first, int8_t second, struct way way)
-{
-    const int32_t sum_q7 = first * way.first_q7 + second * way.second_q7 + 64;
-    return (int8_t)fx_clamp_i32(sum_q7 >> 7, INT8_MIN, INT8_MAX);
-}
-
-/* Numbers between two rows. */
+/* Numbers between two rows, in sixty-fourths of the way from the first. */
 static void mix_rows(const struct lm_grain_stretch *s, int8_t *grain_q5, uint32_t columns)
 {
     int8_t second_q5[LM_CELLS_ROOM];
@@ -90,36 +76,27 @@ static void mix_rows(const struct lm_grain_stretch *s, int8_t *grain_q5, uint32_
     lm_grain_row(place, grain_q5, columns);
     place.row++;
     lm_grain_row(place, second_q5, columns);
-    const struct way way = way_of((uint32_t)(s->row_q16 & 65535));
+    const uint32_t way = (uint32_t)(s->row_q16 & 65535) / (65536 / LM_GRAIN_WAY);
+    const int32_t first_q7 = lm_grain_weight_q7[LM_GRAIN_WAY - way];
+    const int32_t second_q7 = lm_grain_weight_q7[way];
     for (uint32_t i = 0; i < columns; i++) {
-        grain_q5[i] = between(grain_q5[i], second_q5[i], way);
-    }
-}
-
-/* Numbers of cells that are less than a column apart, from the last cell on: a cell needs columns
- * no further than itself and the next, and those before are still there. */
-static void stretch_row(uint32_t step_q16, int8_t *grain_q5, uint32_t cells)
-{
-    for (uint32_t i = cells; i-- > 0;) {
-        const uint64_t at_q16 = (uint64_t)i * step_q16;
-        const uint32_t column = (uint32_t)(at_q16 >> 16);
-        const struct way way = way_of((uint32_t)(at_q16 & 65535));
-        grain_q5[i] = between(grain_q5[column], grain_q5[column + 1], way);
+        grain_q5[i] = lm_k_grain_between(grain_q5[i], first_q7, second_q5[i], second_q7);
     }
 }
 
 void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_stretch *stretch,
                      uint32_t *power_q24, uint32_t cells)
 {
-    int8_t grain_q5[LM_CELLS_ROOM];
+    int8_t column_q5[LM_CELLS_ROOM + LM_K_GRAIN_BEHIND], grain_q5[LM_CELLS_ROOM];
     int32_t level_db_q8[LM_CELLS_ROOM];
     const struct lm_k_curve lines = kernel_curve(curve);
-    mix_rows(stretch, grain_q5, cells + 1);
-    if (stretch->step_q16 < 65536) {
-        stretch_row(stretch->step_q16, grain_q5, cells);
+    const bool is_stretched = stretch->step_q16 < 65536;
+    mix_rows(stretch, column_q5, cells + 1);
+    if (is_stretched) {
+        lm_k_grain_stretch(lm_grain_weight_q7, stretch->step_q16, column_q5, grain_q5, cells);
     }
     memset(level_db_q8, 0, sizeof level_db_q8);
-    lm_k_grain_add(&lines, grain_q5, level_db_q8, cells);
+    lm_k_grain_add(&lines, is_stretched ? grain_q5 : column_q5, level_db_q8, cells);
     memcpy(power_q24, level_db_q8, cells * sizeof *power_q24);
     lm_k_powers_of_levels(power_q24, cells);
 }

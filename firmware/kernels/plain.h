@@ -16,6 +16,7 @@ extern __typeof__(lm_k_class_gain) lm_k_class_gain_c;
 extern __typeof__(lm_k_water_gain) lm_k_water_gain_c;
 extern __typeof__(lm_k_grain_add) lm_k_grain_add_c;
 extern __typeof__(lm_k_grain_floor) lm_k_grain_floor_c;
+extern __typeof__(lm_k_grain_stretch) lm_k_grain_stretch_c;
 extern __typeof__(lm_k_gather) lm_k_gather_c;
 extern __typeof__(lm_k_powers_of_levels) lm_k_powers_of_levels_c;
 extern __typeof__(lm_k_levels_add) lm_k_levels_add_c;

@@ -403,6 +403,16 @@ static void run_grain_floor(const struct input *in, struct output *out, bool is_
     (&curve, in->grain_q5[0], in->number[0], in->level_db_q8, signed_line(out->line[0]), in->cells);
 }
 
+static void run_grain_stretch(const struct input *in, struct output *out, bool is_plain)
+{
+    const uint32_t step_q16 = (uint32_t)in->number[0] & 0xFFFF;
+    TWIN(lm_k_grain_stretch)
+    (lm_grain_weight_q7, step_q16, in->grain_q5[0], (int8_t *)out->line[0], in->cells);
+    /* Four cells an entry; those behind the last, of its group, mean nothing. */
+    out->end[0] = in->cells / 4;
+    out->room = (in->cells + 15) / 16 * 4;
+}
+
 static void run_gather(const struct input *in, struct output *out, bool is_plain)
 {
     TWIN(lm_k_gather)(in->level_db_q8, in->cell_of, signed_line(out->line[0]), in->cells);
@@ -503,6 +513,7 @@ static const struct kernel kernels[] = {
     {"lm_k_water_gain", draw_classes, run_water_gain},
     {"lm_k_grain_add", draw_speckle, run_grain_add},
     {"lm_k_grain_floor", draw_speckle, run_grain_floor},
+    {"lm_k_grain_stretch", draw_speckle, run_grain_stretch},
     {"lm_k_gather", draw_small_levels, run_gather},
     {"lm_k_powers_of_levels", draw_small_levels, run_powers_of_levels},
     {"lm_k_levels_add", draw_levels, run_levels_add},

@@ -94,8 +94,8 @@ struct lm_grain_stretch {
 };
 
 /* Power of the speckle of a line's cells, 1 in Q24, drawn between rows and columns of the field.
- * `cells` is at most LM_CELLS_MAX, and power_q24 has room for whole groups of 16. Cost: 16
- * instructions a cell, 35 where a cell is less than a column. */
+ * `cells` is at most LM_CELLS_MAX, and power_q24 has room for whole groups of 16. Cost: 8
+ * instructions a cell, 12 where a cell is less than a column. */
 void lm_grain_powers(const struct lm_grain_curve *curve, const struct lm_grain_stretch *stretch,
                      uint32_t *power_q24, uint32_t cells);
 

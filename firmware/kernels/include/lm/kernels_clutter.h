@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "fx/sat.h"
 #include "lm/lanes.h"
 
 /* Light and shadow. Equations: docs/EQUATIONS.md, "Illumination". */
@@ -116,6 +117,25 @@ void lm_k_grain_add(const struct lm_k_curve *curve, const int8_t *grain_q5, int3
  * it. Levels and floor within 2^30 of 0; the sum's worst error is 0.018 dB. Cost: 4 a cell. */
 void lm_k_grain_floor(const struct lm_k_curve *curve, const int8_t *grain_q5, int32_t floor_db_q8,
                       const int32_t *level_db_q8, int32_t *noisy_db_q8, uint32_t cells);
+
+enum { LM_K_GRAIN_WAY = 64, LM_K_GRAIN_BEHIND = 32 };
+
+/* A number between two of the field, by weights in 1/128 that add up to 255 at most: sums are below
+ * 2^15. */
+static inline int8_t lm_k_grain_between(int8_t first, int32_t first_q7, int8_t second,
+                                        int32_t second_q7)
+{
+    const int32_t number = (first * first_q7 + second * second_q7 + 64) >> 7;
+    return (int8_t)fx_clamp_i32(number, INT8_MIN, INT8_MAX);
+}
+
+/* Draw columns of the field wider than they are: cell i stands between the columns before and
+ * behind i step_q16 / 65536, w sixty-fourths of the way, and has them with weight_q7[64 - w] and
+ * weight_q7[w]. Steps are below 65536. `weight_q7` has LM_K_GRAIN_WAY + 1 entries, of which such
+ * two add up to 255 at most; `column_q5` one for each cell, and room for LM_K_GRAIN_BEHIND more.
+ * Cost: 4 a cell. */
+void lm_k_grain_stretch(const uint8_t *weight_q7, uint32_t step_q16, const int8_t *column_q5,
+                        int8_t *grain_q5, uint32_t cells);
 
 /* Noise: draws of random numbers in decibels, as lm/noise.h makes them. Draws come in
  * blocks of LM_LANES cells: those of block b are row_db_q8[entry[b]] and the LM_LANES - 1 behind
