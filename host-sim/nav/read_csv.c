@@ -15,47 +15,55 @@
 
 enum { COLUMNS_MAX = 64 };
 
+/* What a column of heights measures from; where a file has several, the highest counts. */
+enum surface { NO_SURFACE, BAROMETRIC, SEA_LEVEL, ELLIPSOID };
+
 struct column {
     const char *name;
     size_t offset; /* of the double in struct nav_fix; not used for the time */
     double scale;  /* to the unit of struct nav_fix; 0 marks the time */
-    bool is_barometric;
+    enum surface surface;
 };
 
-#define FIX(member) offsetof(struct nav_fix, member)
+#define FIX(member)        offsetof(struct nav_fix, member)
+#define HEIGHT(unit, from) FIX(height_m), unit, from
 
 /* Where two columns give the same value the one further left in the file counts. */
 static const struct column known[] = {
-    {"timestamp", 0, 0, false},
-    {"time", 0, 0, false},
-    {"datetime", 0, 0, false},
-    {"latitude", FIX(latitude_deg), 1, false},
-    {"lat", FIX(latitude_deg), 1, false},
-    {"longitude", FIX(longitude_deg), 1, false},
-    {"lon", FIX(longitude_deg), 1, false},
-    {"lng", FIX(longitude_deg), 1, false},
-    {"altitude", FIX(height_m), FOOT_M, true},
-    {"alt", FIX(height_m), FOOT_M, true},
-    {"geoaltitude", FIX(height_m), FOOT_M, false},
-    {"altitude_m", FIX(height_m), 1, false},
-    {"alt_m", FIX(height_m), 1, false},
-    {"height_m", FIX(height_m), 1, false},
-    {"groundspeed", FIX(speed_ms), KNOT_MS, false},
-    {"gs", FIX(speed_ms), KNOT_MS, false},
-    {"groundspeed_ms", FIX(speed_ms), 1, false},
-    {"speed_ms", FIX(speed_ms), 1, false},
-    {"track", FIX(track_deg), 1, false},
-    {"heading", FIX(heading_deg), 1, false},
-    {"roll", FIX(roll_deg), 1, false},
-    {"pitch", FIX(pitch_deg), 1, false},
-    {"vertical_rate", FIX(climb_ms), FOOT_M / 60, false},
-    {"vertical_rate_ms", FIX(climb_ms), 1, false},
+    {"timestamp", 0, 0, NO_SURFACE},
+    {"time", 0, 0, NO_SURFACE},
+    {"datetime", 0, 0, NO_SURFACE},
+    {"latitude", FIX(latitude_deg), 1, NO_SURFACE},
+    {"lat", FIX(latitude_deg), 1, NO_SURFACE},
+    {"longitude", FIX(longitude_deg), 1, NO_SURFACE},
+    {"lon", FIX(longitude_deg), 1, NO_SURFACE},
+    {"lng", FIX(longitude_deg), 1, NO_SURFACE},
+    {"altitude", HEIGHT(FOOT_M, BAROMETRIC)},
+    {"alt", HEIGHT(FOOT_M, BAROMETRIC)},
+    {"baro_altitude_m", HEIGHT(1, BAROMETRIC)},
+    {"altitude_m", HEIGHT(1, SEA_LEVEL)},
+    {"alt_m", HEIGHT(1, SEA_LEVEL)},
+    {"height_m", HEIGHT(1, SEA_LEVEL)},
+    {"geoaltitude", HEIGHT(FOOT_M, ELLIPSOID)},
+    {"ellipsoid_height_m", HEIGHT(1, ELLIPSOID)},
+    {"geoid_m", FIX(geoid_m), 1, NO_SURFACE},
+    {"groundspeed", FIX(speed_ms), KNOT_MS, NO_SURFACE},
+    {"gs", FIX(speed_ms), KNOT_MS, NO_SURFACE},
+    {"groundspeed_ms", FIX(speed_ms), 1, NO_SURFACE},
+    {"speed_ms", FIX(speed_ms), 1, NO_SURFACE},
+    {"track", FIX(track_deg), 1, NO_SURFACE},
+    {"heading", FIX(heading_deg), 1, NO_SURFACE},
+    {"roll", FIX(roll_deg), 1, NO_SURFACE},
+    {"pitch", FIX(pitch_deg), 1, NO_SURFACE},
+    {"vertical_rate", FIX(climb_ms), FOOT_M / 60, NO_SURFACE},
+    {"vertical_rate_ms", FIX(climb_ms), 1, NO_SURFACE},
 };
 
 struct csv {
     char separator;
     int count;
     const struct column *column[COLUMNS_MAX]; /* NULL for one that is passed over */
+    enum surface surface;                     /* of the column of heights */
 };
 
 static char *trim(char *text)
@@ -104,6 +112,16 @@ static bool has_value(const struct csv *c, size_t offset, bool is_time)
     return false;
 }
 
+/* Pass over the column of heights that was taken before a better one came. */
+static void drop_heights(struct csv *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        if (c->column[i] && c->column[i]->surface != NO_SURFACE) {
+            c->column[i] = NULL;
+        }
+    }
+}
+
 static int read_header(struct csv *c, char *line, struct nav_reading *r)
 {
     c->separator = strchr(line, ';') ? ';' : strchr(line, '\t') ? '\t' : ',';
@@ -116,16 +134,19 @@ static int read_header(struct csv *c, char *line, struct nav_reading *r)
                             "there are more than %d columns", COLUMNS_MAX);
         }
         const struct column *found = find_column(name);
-        if (found && has_value(c, found->offset, found->scale == 0)) {
+        if (found && found->surface > c->surface) {
+            drop_heights(c);
+            c->surface = found->surface;
+        } else if (found && has_value(c, found->offset, found->scale == 0)) {
             found = NULL;
         }
         c->column[c->count] = found;
-        r->is_barometric = r->is_barometric || (found && found->is_barometric);
     }
-    if (!has_value(c, 0, true) || !has_value(c, FIX(latitude_deg), false) ||
+    if ((!has_value(c, 0, true) && !r->is_route) || !has_value(c, FIX(latitude_deg), false) ||
         !has_value(c, FIX(longitude_deg), false)) {
         return hs_error(r->name, "name the columns in the first line (see landmass-nav --help)",
-                        "the header does not name a time, a latitude and a longitude");
+                        "the header does not name a time, a latitude and a longitude (a route, "
+                        "which --speed flies, needs no time)");
     }
     return 0;
 }
@@ -170,7 +191,11 @@ static int read_line(const struct csv *c, char *line, long number, struct nav_tr
         r->malformed++;
         return result;
     }
-    if (!has_time || isnan(fix.latitude_deg) || isnan(fix.longitude_deg)) {
+    fix.is_barometric = c->surface == BAROMETRIC;
+    if (c->surface == ELLIPSOID) {
+        fix.geoid_m = 0;
+    }
+    if ((!has_time && !r->is_route) || isnan(fix.latitude_deg) || isnan(fix.longitude_deg)) {
         r->missing++;
         return 0;
     }

@@ -1,5 +1,7 @@
 /* GPX 1.0 and 1.1: the points of tracks (trkpt), in the order of the file. Each segment begins a
- * leg, because GPX says that a track is broken there. */
+ * leg, because GPX says that a track is broken there. As a route: points of routes (rtept) or of
+ * tracks, whichever the file has first. Elevations are above mean sea level; geoidheight, that of
+ * the geoid above the ellipsoid. */
 #include "read_formats.h"
 
 #include "hs/error.h"
@@ -17,6 +19,7 @@ struct gpx {
     struct nav_track *track;
     struct nav_reading *reading;
     struct nav_fix fix;
+    const char *point; /* the element that is a point of this reading */
     bool is_in_point, has_time, begins_segment;
     const char *fault;       /* what is wrong with the point being read */
     char text[TEXT_MAX + 1]; /* of the innermost element */
@@ -55,6 +58,14 @@ static void begin_point(struct gpx *g, const char **attributes)
     }
 }
 
+static bool is_point(struct gpx *g, const char *name)
+{
+    if (!g->point && (strcmp(name, "trkpt") == 0 || strcmp(name, "rtept") == 0)) {
+        g->point = strcmp(name, "trkpt") == 0 ? "trkpt" : "rtept";
+    }
+    return g->point && strcmp(name, g->point) == 0;
+}
+
 static void XMLCALL begin_element(void *user, const char *name, const char **attributes)
 {
     struct gpx *g = user;
@@ -62,17 +73,18 @@ static void XMLCALL begin_element(void *user, const char *name, const char **att
     name = local_name(name);
     if (strcmp(name, "trkseg") == 0) {
         g->begins_segment = true;
-    } else if (strcmp(name, "trkpt") == 0) {
+    } else if (is_point(g, name)) {
         begin_point(g, attributes);
     }
 }
 
 static void end_value(struct gpx *g, const char *name)
 {
-    double *value = strcmp(name, "ele") == 0      ? &g->fix.height_m
-                    : strcmp(name, "speed") == 0  ? &g->fix.speed_ms
-                    : strcmp(name, "course") == 0 ? &g->fix.track_deg
-                                                  : NULL;
+    double *value = strcmp(name, "ele") == 0           ? &g->fix.height_m
+                    : strcmp(name, "geoidheight") == 0 ? &g->fix.geoid_m
+                    : strcmp(name, "speed") == 0       ? &g->fix.speed_ms
+                    : strcmp(name, "course") == 0      ? &g->fix.track_deg
+                                                       : NULL;
     if (strcmp(name, "time") == 0) {
         g->has_time = nav_parse_time(g->text, &g->fix.time_us);
         g->fault = g->has_time ? g->fault : "the time cannot be read";
@@ -87,8 +99,8 @@ static void end_point(struct gpx *g)
     const size_t before = g->track->count;
     int failed;
     g->is_in_point = false;
-    if (!g->fault && !g->has_time) {
-        g->fault = "the point has no time";
+    if (!g->fault && !g->has_time && !g->reading->is_route) {
+        g->fault = "the point has no time (--speed flies it as a route)";
     }
     if (g->fault) {
         failed = nav_bad_line(g->reading, (long)line, "%s", g->fault);
@@ -110,7 +122,7 @@ static void XMLCALL end_element(void *user, const char *name)
     struct gpx *g = user;
     name = local_name(name);
     g->text[g->text_length] = '\0';
-    if (strcmp(name, "trkpt") == 0) {
+    if (is_point(g, name)) {
         end_point(g);
     } else if (g->is_in_point) {
         end_value(g, name);
@@ -142,7 +154,10 @@ static void XMLCALL refuse_document_type(void *user, const char *name, const cha
 
 int nav_read_gpx(const char *text, size_t size, struct nav_track *t, struct nav_reading *r)
 {
-    struct gpx g = {.parser = XML_ParserCreate(NULL), .track = t, .reading = r};
+    struct gpx g = {.parser = XML_ParserCreate(NULL),
+                    .track = t,
+                    .reading = r,
+                    .point = r->is_route ? NULL : "trkpt"};
     if (!g.parser || size > INT_MAX) {
         XML_ParserFree(g.parser);
         return hs_error(r->name, "cut it into parts", "is too large");

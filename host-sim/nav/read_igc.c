@@ -6,6 +6,7 @@
 #include "nav/parse.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -72,7 +73,7 @@ static bool read_altitude(const char *text, double *metres)
 
 /* B HHMMSS DDMMmmmN DDDMMmmmE V PPPPP GGGGG; V is A for a fix with GNSS altitude, V for one
  * without. */
-static const char *read_fix(const char *line, struct nav_fix *fix, bool *is_barometric)
+static const char *read_fix(const char *line, struct nav_fix *fix)
 {
     if (strlen(line) < B_LENGTH) {
         return "the B record is too short";
@@ -87,8 +88,8 @@ static const char *read_fix(const char *line, struct nav_fix *fix, bool *is_baro
         !read_angle(line + 15, 3, "EW", &fix->longitude_deg)) {
         return "the position cannot be read";
     }
-    *is_barometric = line[24] != 'A';
-    if (!read_altitude(line + (*is_barometric ? 25 : 30), &fix->height_m)) {
+    fix->is_barometric = line[24] != 'A';
+    if (!read_altitude(line + (fix->is_barometric ? 25 : 30), &fix->height_m)) {
         return "the altitude cannot be read";
     }
     return NULL;
@@ -96,6 +97,7 @@ static const char *read_fix(const char *line, struct nav_fix *fix, bool *is_baro
 
 struct igc {
     bool has_date;
+    bool is_above_geoid; /* the record HFALG says that GNSS altitudes are above mean sea level */
     int64_t midnight_s;
     int64_t last_us; /* time of day of the fix before, 0 at first */
 };
@@ -106,16 +108,18 @@ static int read_line(struct igc *g, const char *line, long number, struct nav_tr
     if (strncasecmp(line, "HFDTE", 5) == 0 && !g->has_date) {
         g->has_date = read_date(line, &g->midnight_s);
     }
+    if (strncasecmp(line, "HFALG", 5) == 0) {
+        g->is_above_geoid = strstr(line, "GEO") != NULL;
+    }
     if (*line != 'B') {
         return 0;
     }
-    if (!g->has_date) {
+    if (!g->has_date && !r->is_route) {
         return hs_error(r->name, "put a line such as HFDTE130609 before the first B record",
                         "line %ld: there is a fix but no readable date", number);
     }
     struct nav_fix fix = nav_fix_blank();
-    bool is_barometric = false;
-    const char *fault = read_fix(line, &fix, &is_barometric);
+    const char *fault = read_fix(line, &fix);
     if (fault) {
         const int result = nav_bad_line(r, number, "%s", fault);
         r->malformed++;
@@ -127,7 +131,7 @@ static int read_line(struct igc *g, const char *line, long number, struct nav_tr
     }
     g->last_us = fix.time_us;
     fix.time_us += g->midnight_s * 1000000;
-    r->is_barometric = r->is_barometric || is_barometric;
+    fix.geoid_m = g->is_above_geoid || fix.is_barometric ? NAN : 0;
     return nav_accept(t, r, &fix, number);
 }
 

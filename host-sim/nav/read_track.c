@@ -57,6 +57,7 @@ int nav_read_text(char *text, size_t size, enum nav_format format, struct nav_tr
     if (failed) {
         return -1;
     }
+    r->heights_left_out = nav_track_settle_heights(t);
     const size_t good = t->count - before, bad = r->malformed + r->disordered;
     if (bad > NAV_WARNINGS_SHOWN) {
         hs_warn(r->name, NULL, "%zu more lines were left out", bad - NAV_WARNINGS_SHOWN);

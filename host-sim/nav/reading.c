@@ -60,12 +60,13 @@ int nav_accept(struct nav_track *t, struct nav_reading *r, const struct nav_fix 
         r->malformed++;
         return result;
     }
-    if (t->count > 0 && fix->time_us <= t->fix[t->count - 1].time_us) {
+    if (!r->is_route && t->count > 0 && fix->time_us <= t->fix[t->count - 1].time_us) {
         const int result = nav_bad_line(r, line, "its time is not after that of the fix before it");
         r->disordered++;
         return result;
     }
     struct nav_fix f = *fix;
     f.longitude_deg = nav_wrap_180(f.longitude_deg);
+    f.time_us = r->is_route ? 0 : f.time_us;
     return nav_track_add(t, &f);
 }

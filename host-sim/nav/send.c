@@ -13,7 +13,7 @@ enum {
     SLOT_US = 125     /* one frame at 1 Mbit/s */
 };
 
-enum item_kind { VALUE, LATITUDE, LONGITUDE, CLOCK, CALENDAR };
+enum item_kind { VALUE, HEIGHT, LATITUDE, LONGITUDE, CLOCK, CALENDAR };
 
 struct item {
     uint16_t id;
@@ -34,10 +34,12 @@ static const struct item schedule[] = {
     {CANAS_PITCH, NODE_AHRS, 1, VALUE, STATE(pitch_deg)},
     {CANAS_ROLL, NODE_AHRS, 1, VALUE, STATE(roll_deg)},
     {CANAS_ALTITUDE_RATE, NODE_GPS, 8, VALUE, STATE(climb_ms)},
+    {CANAS_BARO_ALTITUDE, NODE_GPS, 8, HEIGHT, STATE(height_m)},
     {CANAS_HEADING, NODE_AHRS, 1, VALUE, STATE(heading_deg)},
+    {CANAS_TRUE_ALTITUDE, NODE_GPS, 8, HEIGHT, STATE(height_m)},
     {CANAS_GPS_LATITUDE, NODE_GPS, 8, LATITUDE, STATE(latitude_deg)},
     {CANAS_GPS_LONGITUDE, NODE_GPS, 8, LONGITUDE, STATE(longitude_deg)},
-    {CANAS_GPS_HEIGHT, NODE_GPS, 8, VALUE, STATE(height_m)},
+    {CANAS_GPS_HEIGHT, NODE_GPS, 8, HEIGHT, STATE(height_m)},
     {CANAS_GPS_GROUND_SPEED, NODE_GPS, 8, VALUE, STATE(speed_ms)},
     {CANAS_GPS_TRUE_TRACK, NODE_GPS, 8, VALUE, STATE(track_deg)},
     {CANAS_EAST_VELOCITY, NODE_GPS, 8, VALUE, STATE(east_ms)},
@@ -99,6 +101,14 @@ static int put_time(struct sender *s, const struct item *item, int64_t time_us)
     return put(s, &f);
 }
 
+/* The identifier under which heights above a datum are sent. */
+static uint16_t height_item(enum nav_datum datum)
+{
+    return datum == NAV_DATUM_SEA_LEVEL    ? CANAS_TRUE_ALTITUDE
+           : datum == NAV_DATUM_BAROMETRIC ? CANAS_BARO_ALTITUDE
+                                           : CANAS_GPS_HEIGHT;
+}
+
 static int put_item(struct sender *s, const struct item *item, int64_t tick_us)
 {
     const double *value = (const double *)(const void *)((const char *)&s->state + item->offset);
@@ -112,11 +122,17 @@ static int put_item(struct sender *s, const struct item *item, int64_t tick_us)
     case CLOCK:
     case CALENDAR:
         return put_time(s, item, tick_us);
-    case VALUE:
+    case HEIGHT:
+        if (item->id != height_item(s->motion.track->datum)) {
+            return 0;
+        }
+        if (item->id != CANAS_GPS_HEIGHT) { /* that one belongs to the position before it */
+            nav_motion_position(&s->motion, s->slot_us, &s->state);
+        }
         break;
-    }
-    if (item->id != CANAS_GPS_HEIGHT) {
+    case VALUE:
         nav_motion_kinematics(&s->motion, s->slot_us, &s->state);
+        break;
     }
     const struct canas_frame f = canas_float(&s->codes, item->id, item->node, *value);
     return put(s, &f);

@@ -4,12 +4,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct nav_fix nav_fix_blank(void)
 {
     return (struct nav_fix){.latitude_deg = NAN,
                             .longitude_deg = NAN,
                             .height_m = NAN,
+                            .geoid_m = NAN,
                             .speed_ms = NAN,
                             .track_deg = NAN,
                             .climb_ms = NAN,
@@ -51,6 +53,66 @@ static double seconds_between(const struct nav_fix *a, const struct nav_fix *b)
     return (double)(b->time_us - a->time_us) * 1e-6;
 }
 
+size_t nav_track_settle_heights(struct nav_track *t)
+{
+    size_t barometric = 0, others = 0, with_geoid = 0, left_out = 0;
+    for (size_t i = 0; i < t->count; i++) {
+        const struct nav_fix *f = &t->fix[i];
+        const bool is_other = !isnan(f->height_m) && !f->is_barometric;
+        barometric += !isnan(f->height_m) && f->is_barometric;
+        others += is_other;
+        with_geoid += is_other && !isnan(f->geoid_m);
+    }
+    const bool has_geoid = others > 0 && with_geoid == others;
+    t->datum = others == 0 && barometric > 0 ? NAV_DATUM_BAROMETRIC
+               : has_geoid || others == 0    ? NAV_DATUM_ELLIPSOID
+                                             : NAV_DATUM_SEA_LEVEL;
+    for (size_t i = 0; i < t->count && t->datum != NAV_DATUM_BAROMETRIC; i++) {
+        struct nav_fix *f = &t->fix[i];
+        left_out += !isnan(f->height_m) && f->is_barometric;
+        f->height_m = f->is_barometric ? NAN : f->height_m + (has_geoid ? f->geoid_m : 0);
+    }
+    return left_out;
+}
+
+static bool is_same_place(const struct nav_fix *a, const struct nav_fix *b)
+{
+    return a->latitude_deg == b->latitude_deg && a->longitude_deg == b->longitude_deg;
+}
+
+static double speed_between(const struct geod_geodesic *earth, const struct nav_fix *a,
+                            const struct nav_fix *b)
+{
+    double distance_m;
+    geod_inverse(earth, a->latitude_deg, a->longitude_deg, b->latitude_deg, b->longitude_deg,
+                 &distance_m, NULL, NULL);
+    return distance_m / seconds_between(a, b);
+}
+
+size_t nav_track_drop_repeats(struct nav_track *t)
+{
+    const double moving_ms = 5;
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    size_t kept = 0, dropped = 0;
+    for (size_t i = 0, end; i < t->count; i = end) {
+        for (end = i + 1; end < t->count && is_same_place(&t->fix[i], &t->fix[end]) &&
+                          !t->fix[end].starts_leg;) {
+            end++;
+        }
+        const struct nav_fix *before = kept > 0 ? &t->fix[kept - 1] : NULL;
+        const bool is_stale = end > i + 1 && before && end < t->count &&
+                              speed_between(&earth, before, &t->fix[i]) > moving_ms &&
+                              speed_between(&earth, &t->fix[end - 1], &t->fix[end]) > moving_ms;
+        const size_t count = is_stale ? 1 : end - i;
+        memmove(&t->fix[kept], &t->fix[i], count * sizeof *t->fix);
+        kept += count;
+        dropped += end - i - count;
+    }
+    t->count = kept;
+    return dropped;
+}
+
 static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -88,7 +150,7 @@ static void mark_breaks(struct nav_track *t, const struct nav_limits *limits,
         b->is_jump = !b->starts_leg && distance_m > limits->max_speed_ms * dt;
         found->gaps += b->starts_leg;
         found->jumps += b->is_jump;
-        found->holds += a->latitude_deg == b->latitude_deg && a->longitude_deg == b->longitude_deg;
+        found->holds += is_same_place(a, b);
     }
     for (size_t i = 0; i < t->count; i++) {
         found->isolated += t->fix[i].starts_leg && (i + 1 == t->count || t->fix[i + 1].starts_leg);

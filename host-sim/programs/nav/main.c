@@ -1,6 +1,7 @@
 /* landmass-nav: a recorded or invented flight as traffic of the avionics bus. */
 #include "hs/atomic_file.h"
 #include "hs/error.h"
+#include "nav/route.h"
 #include "options.h"
 
 #include <errno.h>
@@ -8,25 +9,67 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int get_track(const struct command *c, struct nav_track *t, struct nav_reading *r)
+/* What a run finds out about its track. */
+struct findings {
+    struct nav_reading reading;
+    struct nav_findings track;
+    size_t repeats;
+};
+
+static int64_t begin_us(const struct command *c)
+{
+    const int64_t noon_us = INT64_C(946728000000000); /* 2000-01-01T12:00:00Z */
+    return c->has_begin ? c->begin_us : noon_us;
+}
+
+static void set_datum(const struct command *c, struct nav_track *t)
+{
+    t->datum = c->datum == NAV_DATUM_BY_RECORD ? t->datum : c->datum;
+}
+
+static int read_route(const struct command *c, struct nav_track *t, struct nav_reading *r)
+{
+    struct nav_track route = {0};
+    r->is_route = true;
+    int result = nav_read_track(c->track_path, c->format, &route, r);
+    if (result == 0) {
+        result = nav_fly_route(&route, c->speed_ms, begin_us(c), t);
+    }
+    nav_track_free(&route);
+    return result;
+}
+
+static int get_track(const struct command *c, struct nav_track *t, struct findings *f)
 {
     if (!c->has_circle && !c->has_straight) {
-        r->is_strict = c->is_strict;
-        return nav_read_track(c->track_path, c->format, t, r);
+        f->reading.is_strict = c->is_strict;
+        if (!isnan(c->speed_ms)) {
+            return read_route(c, t, &f->reading);
+        }
+        const int result = nav_read_track(c->track_path, c->format, t, &f->reading);
+        f->repeats = result == 0 && !c->keeps_repeats ? nav_track_drop_repeats(t) : 0;
+        return result;
     }
-    const int64_t noon_us = INT64_C(946728000000000); /* 2000-01-01T12:00:00Z */
-    const int64_t begin_us = c->has_begin ? c->begin_us : noon_us;
     const double seconds = c->start_s + (c->seconds > 0 ? c->seconds : 60);
-    return c->has_circle ? nav_make_circle(&c->circle, begin_us, seconds, t)
-                         : nav_make_straight(&c->straight, begin_us, seconds, t);
+    return c->has_circle ? nav_make_circle(&c->circle, begin_us(c), seconds, t)
+                         : nav_make_straight(&c->straight, begin_us(c), seconds, t);
+}
+
+/* Height of the pressure `qnh_hpa` in the standard atmosphere (ICAO Doc 7488, below 11 km): as much
+ * lies an altimeter set to 1013.25 hPa too low. */
+static double standard_height_m(double qnh_hpa)
+{
+    return 288.15 / 0.0065 * (1 - pow(qnh_hpa / 1013.25, 0.0065 * 287.05287 / 9.80665));
 }
 
 static void shift_track(const struct command *c, struct nav_track *t)
 {
     const int64_t shift_us = c->has_begin ? c->begin_us - t->fix[0].time_us : 0;
+    const bool is_corrected = t->datum == NAV_DATUM_BAROMETRIC && !isnan(c->qnh_hpa);
+    const double raise_m = is_corrected ? -standard_height_m(c->qnh_hpa) : 0;
     for (size_t i = 0; i < t->count; i++) {
         t->fix[i].time_us += shift_us;
-        t->fix[i].height_m += c->height_offset_m;
+        t->fix[i].height_m += c->height_offset_m + raise_m;
     }
 }
 
@@ -36,27 +79,42 @@ static void set_cut(struct command *c, const struct nav_track *t)
     c->send.until_us = c->seconds > 0 ? c->send.from_us + llround(c->seconds * 1e6) : INT64_MAX;
 }
 
-static void report(const struct command *c, const struct nav_track *t, const struct nav_reading *r,
-                   const struct nav_findings *found, const struct nav_sent *sent)
+static void report_heights(const struct command *c, const struct nav_track *t)
 {
+    if (!t->has_height) {
+        fputs("height: the track has none; 0 and the offset are sent\n", stderr);
+    } else if (t->datum == NAV_DATUM_BAROMETRIC && isnan(c->qnh_hpa)) {
+        fputs(
+            "height: barometric, sent as 320 for a pressure of 1013.25 hPa at sea level; --qnh "
+            "corrects it\n",
+            stderr);
+    } else if (t->datum == NAV_DATUM_BAROMETRIC) {
+        fprintf(stderr, "height: barometric, sent as 320, corrected for %g hPa\n", c->qnh_hpa);
+    } else {
+        fputs(t->datum == NAV_DATUM_SEA_LEVEL ? "height: above mean sea level, sent as 332\n"
+                                              : "height: above the ellipsoid, sent as 1038\n",
+              stderr);
+    }
+}
+
+static void report(const struct command *c, const struct nav_track *t, const struct findings *f,
+                   const struct nav_sent *sent)
+{
+    const struct nav_findings *found = &f->track;
     const double per_second = sent->active_s > 0 ? (double)sent->frames / sent->active_s : 0;
     fprintf(stderr, "track: %zu fixes over %.1f s, median interval %.3g s\n", t->count,
             found->span_s, found->median_interval_s);
-    fprintf(stderr, "left out: %zu malformed, %zu out of order, %zu without a position\n",
-            r->malformed, r->disordered, r->missing);
+    fprintf(stderr,
+            "left out: %zu malformed, %zu out of order, %zu without a position, %zu repeated in "
+            "motion, %zu barometric heights among others\n",
+            f->reading.malformed, f->reading.disordered, f->reading.missing, f->repeats,
+            f->reading.heights_left_out);
     fprintf(stderr,
             "kept as they are: %zu gaps (over %g s), %zu jumps (over %.0f m/s), %zu repeated "
             "positions, %zu fixes alone between gaps\n",
             found->gaps, found->max_gap_s, found->jumps, c->limits.max_speed_ms, found->holds,
             found->isolated);
-    if (!t->has_height) {
-        fputs("height: the track has none; 1038 carries the offset alone\n", stderr);
-    } else if (r->is_barometric) {
-        fputs(
-            "height: barometric altitude, sent as 1038 (GPS height) without correction but "
-            "--height-offset\n",
-            stderr);
-    }
+    report_heights(c, t);
     fprintf(stderr, "sent: %llu frames in %.1f s, %.0f frames/s, bus load %.1f %% at 1 Mbit/s\n",
             (unsigned long long)sent->frames, sent->active_s, per_second, per_second / 8000 * 100);
 }
@@ -85,20 +143,20 @@ static int write_log(const struct command *c, const struct nav_track *t, struct 
 
 static int run(struct command *c, struct nav_track *t)
 {
-    struct nav_reading reading = {0};
-    struct nav_findings found;
+    struct findings found = {0};
     struct nav_sent sent;
-    if (get_track(c, t, &reading) != 0) {
+    if (get_track(c, t, &found) != 0) {
         return -1;
     }
+    set_datum(c, t);
     shift_track(c, t);
-    nav_track_complete(t, &c->limits, &found);
+    nav_track_complete(t, &c->limits, &found.track);
     set_cut(c, t);
     if (write_log(c, t, &sent) != 0) {
         return -1;
     }
     if (!c->is_quiet) {
-        report(c, t, &reading, &found, &sent);
+        report(c, t, &found, &sent);
     }
     if (sent.frames == 0) {
         return hs_error(c->out_path ? c->out_path : "standard output",

@@ -107,16 +107,23 @@ static const struct db_usage usage = {
     "Between fixes the position follows the geodesic. What the track does not have is derived: "
     "bank from turn rate and speed, pitch from the angle of climb, heading = track."};
 
+static const char heights_help[] =
+    "GPX: above mean sea level; with a geoidheight in every point, above the ellipsoid. IGC: above "
+    "the ellipsoid, or above mean sea level where a record HFALG says GEO; barometric where no fix "
+    "has a GNSS altitude. CSV: the column says it. --circle and --straight: above the ellipsoid.\n";
+
 static const char columns_help[] =
     "They are named in the first line, in any order and case: timestamp or time (ISO 8601, or "
     "seconds, milliseconds or microseconds since 1970), latitude (lat), longitude (lon), altitude "
-    "(feet) or altitude_m, groundspeed (knots) or groundspeed_ms, track, heading, roll, pitch "
-    "(degrees), vertical_rate (feet a minute) or vertical_rate_ms. Others are passed over; an "
-    "empty field is a value not known.\n";
+    "(feet, barometric) or baro_altitude_m, altitude_m (mean sea level), geoaltitude (feet) or "
+    "ellipsoid_height_m, geoid_m (of the geoid above the ellipsoid), groundspeed (knots) or "
+    "groundspeed_ms, track, heading, roll, pitch (degrees), vertical_rate (feet a minute) or "
+    "vertical_rate_ms. Others are passed over; an empty field is a value not known.\n";
 
 /* What options give that is not a number or a name of its own in struct command. */
 struct raw {
     int format, position; /* -1: by name; enum nav_position */
+    int datum;            /* -1: by record */
     double clear_s;       /* NAN: never */
     double seconds, max_gap_s;
 };
@@ -134,6 +141,10 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
         {"strict", DB_FLAG, &c->is_strict, 0, 0, NULL,
          "stop at the first line that cannot be used; otherwise such lines are left out, counted "
          "and reported",
+         false},
+        {"speed", DB_REAL, &c->speed_ms, 1, 10000, "MS",
+         "fly the points of a route or a track at this speed, with banked turns; times in the file "
+         "are not used",
          false},
         {"circle", DB_TAKER, &circle, 0, 0, "LAT,LON,RADIUS_M,HEIGHT_M,SPEED_MS[,START_DEG]",
          "fly a banked circle round LAT,LON (degrees), clockwise, or to the left for a negative "
@@ -172,8 +183,14 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "take all of it away S seconds after the log's beginning; what is only not told any more "
          "is removed by the display after 10 s",
          false},
+        {"datum", DB_CHOICE, &raw->datum, 0, 0, "ellipsoid|msl|barometric",
+         "what heights are measured from, if the file says it wrong or not at all; they are sent "
+         "as 1038, 332 or 320. Left out: as below",
+         false},
+        {"qnh", DB_REAL, &c->qnh_hpa, 900, 1100, "HPA",
+         "correct barometric heights for this pressure at sea level; left out: 1013.25 hPa", false},
         {"height-offset", DB_REAL, &c->height_offset_m, -10000, 10000, "M",
-         "add M metres to every height, for example the height of the geoid", false},
+         "add M metres to every height", false},
         {"quiet", DB_FLAG, &c->is_quiet, 0, 0, NULL, "no summary on standard error", false},
         {"What counts as broken", DB_HEADING, NULL, 0, 0, NULL, "", false},
         {"max-gap", DB_REAL, &raw->max_gap_s, 0.001, 1e9, "S",
@@ -184,6 +201,11 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
          "a faster step between fixes is a jump and is sent as one: the position stays, then jumps "
          "when the next fix is due",
          false},
+        {"keep-repeats", DB_FLAG, &c->keeps_repeats, 0, 0, NULL,
+         "send fixes that repeat the position of the one before although the aircraft moves; "
+         "otherwise they are left out and counted",
+         false},
+        {"Heights", DB_HEADING, NULL, 0, 0, NULL, heights_help, false},
         {"Columns of a CSV", DB_HEADING, NULL, 0, 0, NULL, columns_help, false},
     };
     return db_options_read(&usage, options, sizeof options / sizeof options[0], argc, argv,
@@ -193,8 +215,10 @@ static bool read_table(struct command *c, struct raw *raw, int argc, char **argv
 bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
 {
     *c = (struct command){.limits = {.max_speed_ms = 800 * 1852.0 / 3600.0},
-                          .send = {.interface = "can0", .rate_scale = 1}};
-    struct raw raw = {-1, NAV_POSITION_DOUBLE, NAN, NAN, NAN};
+                          .send = {.interface = "can0", .rate_scale = 1},
+                          .speed_ms = NAN,
+                          .qnh_hpa = NAN};
+    struct raw raw = {-1, NAV_POSITION_DOUBLE, -1, NAN, NAN, NAN};
     if (!read_table(c, &raw, argc, argv, exit_code)) {
         return false;
     }
@@ -205,6 +229,7 @@ bool nav_options_read(struct command *c, int argc, char **argv, int *exit_code)
     }
     c->format =
         raw.format < 0 ? NAV_FORMAT_BY_NAME : (enum nav_format)(raw.format + NAV_FORMAT_CSV);
+    c->datum = raw.datum < 0 ? NAV_DATUM_BY_RECORD : (enum nav_datum)raw.datum;
     c->send.position = (enum nav_position)raw.position;
     c->send.weather.has_clear = !isnan(raw.clear_s);
     c->send.weather.clear_s = raw.clear_s;

@@ -17,6 +17,10 @@ struct command {
     struct nav_send_options send;
     double start_s, seconds; /* seconds: 0 when not given */
     double height_offset_m;
+    double speed_ms; /* fly the points as a route; NAN: as the record's times say */
+    double qnh_hpa;  /* NAN: not given */
+    enum nav_datum datum;
+    bool keeps_repeats;
     int64_t begin_us;
 };
 

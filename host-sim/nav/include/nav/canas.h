@@ -26,7 +26,9 @@ enum canas_id {
     CANAS_PITCH = 311,             /* deg, nose up positive */
     CANAS_ROLL = 312,              /* deg, right positive */
     CANAS_ALTITUDE_RATE = 314,     /* m/s, up positive */
+    CANAS_BARO_ALTITUDE = 320,     /* m, corrected */
     CANAS_HEADING = 321,           /* deg, -180..180 */
+    CANAS_TRUE_ALTITUDE = 332,     /* m above mean sea level */
     CANAS_GPS_LATITUDE = 1036,     /* deg, north positive */
     CANAS_GPS_LONGITUDE = 1037,    /* deg, east positive */
     CANAS_GPS_HEIGHT = 1038,       /* m above the ellipsoid */

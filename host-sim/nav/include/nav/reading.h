@@ -10,12 +10,14 @@ enum { NAV_WARNINGS_SHOWN = 5 };
 /* Result of a reading. A line that is malformed or not later than the one before is left out,
  * counted, and (the first NAV_WARNINGS_SHOWN) warned about with its line number. */
 struct nav_reading {
-    const char *name;   /* for messages; borrowed */
-    bool is_strict;     /* the first such line is an error instead */
-    size_t malformed;   /* lines that cannot be read as a fix */
-    size_t disordered;  /* fixes not later than the one before */
-    size_t missing;     /* lines that honestly say that there was no fix */
-    bool is_barometric; /* heights come from a barometric altitude */
+    const char *name;  /* for messages; borrowed */
+    bool is_strict;    /* the first such line is an error instead */
+    size_t malformed;  /* lines that cannot be read as a fix */
+    size_t disordered; /* fixes not later than the one before */
+    size_t missing;    /* lines that honestly say that there was no fix */
+    bool is_route;     /* read the points of a route or a track without their times: time_us is
+                          0, and nav_fly_route gives the flight */
+    size_t heights_left_out; /* barometric ones among others */
 };
 
 /* Warn about a line that cannot be used, in printf's manner; the caller counts it. Returns 0, or -1

@@ -11,19 +11,31 @@
 struct nav_fix {
     int64_t time_us; /* since 1970-01-01T00:00:00Z, leap seconds not counted */
     double latitude_deg, longitude_deg;
-    double height_m;  /* as the record has it: barometric for ADS-B, ellipsoidal for IGC */
-    double speed_ms;  /* over ground */
-    double track_deg; /* true */
-    double climb_ms;  /* up positive */
+    double height_m; /* above the track's datum, once nav_track_settle_heights is done */
+    double geoid_m;  /* what height_m is measured from lies so far above the WGS-84 ellipsoid: 0 for
+                        a height above the ellipsoid itself; NAN: the record does not say */
+    double speed_ms; /* over ground */
+    double track_deg;                        /* true */
+    double climb_ms;                         /* up positive */
     double heading_deg, pitch_deg, roll_deg; /* true heading; nose up, right wing down positive */
-    bool starts_leg; /* the record itself says that nothing is known before this fix */
-    bool is_jump;    /* set by nav_track_complete: got here too fast to have flown */
+    bool starts_leg;    /* the record itself says that nothing is known before this fix */
+    bool is_jump;       /* set by nav_track_complete: got here too fast to have flown */
+    bool is_barometric; /* height_m is a pressure altitude */
+};
+
+/* What heights are measured from. */
+enum nav_datum {
+    NAV_DATUM_ELLIPSOID,  /* of WGS-84: the bus's 1038 */
+    NAV_DATUM_SEA_LEVEL,  /* 332, true altitude */
+    NAV_DATUM_BAROMETRIC, /* 320, barometric altitude */
+    NAV_DATUM_BY_RECORD   /* what the record says; never of a settled track */
 };
 
 struct nav_track {
     struct nav_fix *fix; /* owned, in order of time, no two at the same time */
     size_t count, capacity;
     bool has_height; /* the record carries heights */
+    enum nav_datum datum;
 };
 
 /* An empty fix: every number NAN. */
@@ -32,6 +44,18 @@ struct nav_fix nav_fix_blank(void);
 /* Append a copy. Returns 0, or -1 when memory is short (reported). */
 int nav_track_add(struct nav_track *t, const struct nav_fix *fix);
 void nav_track_free(struct nav_track *t);
+
+/* Choose the one datum of the track, and bring every height to it:
+ * - the ellipsoid, where each height that is not barometric has its geoid_m, which is added;
+ * - else mean sea level;
+ * - barometric, where all heights are. Barometric ones among others become NAN.
+ * Returns how many heights were given up so. */
+size_t nav_track_settle_heights(struct nav_track *t);
+
+/* Leave out fixes that repeat the position of the one before although the aircraft moves: stale
+ * reports, behind which the next one jumps. It moves when it goes faster than 5 m/s to and from the
+ * repeated position. Returns how many were left out. */
+size_t nav_track_drop_repeats(struct nav_track *t);
 
 struct nav_limits {
     double

@@ -105,6 +105,25 @@ TEST(rates_are_those_of_the_specification)
     forget(&f);
 }
 
+TEST(heights_go_out_under_the_identifier_of_what_they_are_measured_from)
+{
+    static const uint32_t ids[] = {
+        [NAV_DATUM_ELLIPSOID] = 1038, [NAV_DATUM_SEA_LEVEL] = 332, [NAV_DATUM_BAROMETRIC] = 320};
+    for (int datum = NAV_DATUM_ELLIPSOID; datum <= NAV_DATUM_BAROMETRIC; datum++) {
+        struct flight f;
+        make_flight(&f);
+        f.track.datum = (enum nav_datum)datum;
+        struct nav_send_options cut = usual;
+        cut.from_us = INT64_C(1700000005000000);
+        cut.until_us = INT64_C(1700000006000000);
+        send_track(&f, &cut);
+        for (int i = 0; i < 3; i++) {
+            assert_int_equal(count_id(&f.log, ids[i]), i == datum ? 10 : 0);
+        }
+        forget(&f);
+    }
+}
+
 TEST(time_codes_and_intervals_run_without_a_break)
 {
     struct flight f;

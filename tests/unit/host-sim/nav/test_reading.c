@@ -68,7 +68,7 @@ TEST(csv_columns_come_in_any_order_case_and_unit)
     assert_near(r.track.fix[0].height_m, 1200, 0);
     assert_true(isnan(r.track.fix[1].height_m));
     assert_near(r.track.fix[1].speed_ms, 91, 0);
-    assert_false(r.reading.is_barometric);
+    assert_int_equal(r.track.datum, NAV_DATUM_SEA_LEVEL);
     nav_track_free(&r.track);
     r = read_csv(
         "timestamp,latitude,longitude,altitude,groundspeed,vertical_rate\n"
@@ -78,8 +78,32 @@ TEST(csv_columns_come_in_any_order_case_and_unit)
     assert_near(r.track.fix[0].height_m, 304.8, 1e-9);
     assert_near(r.track.fix[0].speed_ms, 51.4444444, 1e-6);
     assert_near(r.track.fix[0].climb_ms, 3.048, 1e-9);
-    assert_true(r.reading.is_barometric);
+    assert_int_equal(r.track.datum, NAV_DATUM_BAROMETRIC);
     nav_track_free(&r.track);
+}
+
+TEST(csv_heights_are_taken_from_the_best_column)
+{
+    static const struct {
+        const char *columns;
+        double height_m;
+        enum nav_datum datum;
+    } wanted[] = {{"altitude,geoaltitude", 609.6, NAV_DATUM_ELLIPSOID},
+                  {"ellipsoid_height_m,altitude", 1000, NAV_DATUM_ELLIPSOID},
+                  {"alt_m,altitude", 1000, NAV_DATUM_SEA_LEVEL},
+                  {"alt,altitude_m", 2000, NAV_DATUM_SEA_LEVEL},
+                  {"baro_altitude_m,track", 1000, NAV_DATUM_BAROMETRIC},
+                  {"altitude_m,geoid_m", 3000, NAV_DATUM_ELLIPSOID}};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        char text[200];
+        const char *second = strstr(wanted[i].columns, "track") ? "20" : "2000";
+        snprintf(text, sizeof text, "time,lat,lon,%s\n1,43,7,1000,%s\n", wanted[i].columns, second);
+        struct result r = read_csv(text);
+        assert_int_equal(r.track.count, 1);
+        assert_near(r.track.fix[0].height_m, wanted[i].height_m, 1e-9);
+        assert_int_equal(r.track.datum, wanted[i].datum);
+        nav_track_free(&r.track);
+    }
 }
 
 #define HEAD "time,lat,lon,altitude\n"
@@ -209,8 +233,78 @@ TEST(igc_records_are_read_as_the_specification_says)
     assert_near(f[0].longitude_deg, -(2 + 49.342 / 60), 1e-9);
     assert_near(f[0].height_m, 421, 0);
     assert_near(f[1].latitude_deg, -(51 + 7.126 / 60), 1e-9);
-    assert_near(f[1].height_m, 288, 0);
-    assert_true(r.reading.is_barometric);
+    assert_true(isnan(f[1].height_m)); /* barometric among others */
+    assert_int_equal(r.reading.heights_left_out, 1);
+    assert_int_equal(r.track.datum, NAV_DATUM_ELLIPSOID);
+    nav_track_free(&r.track);
+}
+
+TEST(igc_says_what_its_heights_are_measured_from)
+{
+    struct result r = read_as(NAV_FORMAT_IGC, false,
+                              "HFDTE150709\nHFALGALTGPS:GEO\n"
+                              "B1602405407121N00249342WA0028000421\n");
+    assert_int_equal(r.track.datum, NAV_DATUM_SEA_LEVEL);
+    nav_track_free(&r.track);
+    r = read_as(NAV_FORMAT_IGC, false, "HFDTE150709\nB1602405407121N00249342WV0028000000\n");
+    assert_int_equal(r.track.datum, NAV_DATUM_BAROMETRIC);
+    assert_near(r.track.fix[0].height_m, 280, 0);
+    nav_track_free(&r.track);
+}
+
+TEST(gpx_heights_are_above_the_ellipsoid_where_every_point_has_a_geoid)
+{
+#define POINT_WITH(time, more)                                                                     \
+    "<trkpt lat='43' lon='7'><ele>500</ele>" more "<time>2020-01-01T00:00:" time                   \
+    "Z</time></"                                                                                   \
+    "trkpt>"
+    struct result r =
+        read_as(NAV_FORMAT_GPX, false,
+                GPX("<trkseg>" POINT_WITH("00", "<geoidheight>47.5</geoidheight>")
+                        POINT_WITH("01", "<geoidheight>48</geoidheight>") "</trkseg>"));
+    assert_int_equal(r.track.datum, NAV_DATUM_ELLIPSOID);
+    assert_near(r.track.fix[0].height_m, 547.5, 0);
+    assert_near(r.track.fix[1].height_m, 548, 0);
+    nav_track_free(&r.track);
+    r = read_as(NAV_FORMAT_GPX, false,
+                GPX("<trkseg>" POINT_WITH("00", "<geoidheight>47.5</geoidheight>")
+                        POINT_WITH("01", "") "</trkseg>"));
+    assert_int_equal(r.track.datum, NAV_DATUM_SEA_LEVEL);
+    assert_near(r.track.fix[0].height_m, 500, 0);
+    nav_track_free(&r.track);
+}
+
+/* Points as a route, in the order of the file, whatever their times. */
+static struct result read_route(enum nav_format format, const char *text)
+{
+    struct result r = {.reading = {.name = "test", .is_route = true}};
+    char *copy = strdup(text);
+    const int saved = hush();
+    r.status = nav_read_text(copy, strlen(text), format, &r.track, &r.reading);
+    unhush(saved);
+    free(copy);
+    return r;
+}
+
+TEST(points_without_times_are_read_as_a_route)
+{
+    static const char rte[] =
+        "<gpx><wpt lat='1' lon='1'/><rte><rtept lat='46' lon='7'><ele>2000</ele></rtept>"
+        "<rtept lat='46.1' lon='7'/></rte><trk><trkseg><trkpt lat='3' "
+        "lon='3'/></trkseg></trk></gpx>";
+    struct result r = read_route(NAV_FORMAT_GPX, rte);
+    assert_int_equal(r.track.count, 2);
+    assert_near(r.track.fix[1].latitude_deg, 46.1, 0);
+    assert_int_equal(r.track.datum, NAV_DATUM_SEA_LEVEL);
+    nav_track_free(&r.track);
+    r = read_as(NAV_FORMAT_GPX, false, rte);
+    assert_int_equal(r.status, -1);
+    nav_track_free(&r.track);
+    r = read_route(NAV_FORMAT_CSV, "lat,lon\n46,7\n46.1,7\n46,7\n");
+    assert_int_equal(r.track.count, 3);
+    nav_track_free(&r.track);
+    r = read_csv("lat,lon\n46,7\n46.1,7\n");
+    assert_int_equal(r.status, -1);
     nav_track_free(&r.track);
 }
 

@@ -2,6 +2,7 @@
 #include "check.h"
 #include "nav/make_track.h"
 #include "nav/read_track.h"
+#include "nav/route.h"
 #include "nav/track.h"
 #include "support.h"
 #include "wgs84.h"
@@ -288,7 +289,7 @@ TEST(the_real_flights_blemishes_are_found)
     assert_int_equal(nav_read_track(path, NAV_FORMAT_BY_NAME, &t, &r), 0);
     assert_int_equal(t.count, 10367);
     assert_int_equal(r.malformed + r.disordered + r.missing, 0);
-    assert_true(r.is_barometric);
+    assert_int_equal(t.datum, NAV_DATUM_BAROMETRIC);
     nav_track_complete(&t, &(struct nav_limits){0, 800 * 1852.0 / 3600}, &found);
     assert_int_equal(found.holds, 620);
     assert_in_range(found.jumps, 150, 153);
@@ -296,5 +297,90 @@ TEST(the_real_flights_blemishes_are_found)
     assert_near(t.fix[0].height_m, 2950 * 0.3048, 1e-9);
     assert_near(t.fix[0].speed_ms, 155 * 1852.0 / 3600, 1e-9);
     assert_true(t.fix[0].roll_deg == 0.5);
+    /* Most jumps come behind a repeated report, and go with it. */
+    assert_int_equal(nav_track_drop_repeats(&t), 321);
+    nav_track_complete(&t, &(struct nav_limits){0, 800 * 1852.0 / 3600}, &found);
+    assert_in_range(found.jumps, 0, 20);
     nav_track_free(&t);
+}
+
+/* A fix each second, so many metres north of the one before. */
+static void add_steps(struct nav_track *t, const double *step_m, int count)
+{
+    double north_m = 0;
+    for (int i = 0; i < count; i++) {
+        struct nav_fix f = nav_fix_blank();
+        north_m += step_m[i];
+        f.time_us = (int64_t)i * 1000000;
+        f.latitude_deg = 46 + north_m / 111000;
+        f.longitude_deg = 7;
+        assert_int_equal(nav_track_add(t, &f), 0);
+    }
+}
+
+TEST(a_position_repeated_in_motion_is_left_out_and_one_of_a_standing_aircraft_is_not)
+{
+    static const double moving[] = {0, 100, 100, 0, 0, 300, 100};
+    static const double standing[] = {0, 1, 0, 0, 0, 1, 2};
+    struct nav_track t = {0};
+    add_steps(&t, moving, 7);
+    assert_int_equal(nav_track_drop_repeats(&t), 2);
+    assert_int_equal(t.count, 5);
+    assert_true(t.fix[2].time_us == 2000000 && t.fix[3].time_us == 5000000);
+    nav_track_free(&t);
+    add_steps(&t, standing, 7);
+    assert_int_equal(nav_track_drop_repeats(&t), 0);
+    assert_int_equal(t.count, 7);
+    nav_track_free(&t);
+}
+
+/* How near a flight comes to a place. */
+static double nearest_m(const struct nav_track *t, double latitude_deg, double longitude_deg)
+{
+    struct geod_geodesic earth;
+    geod_init(&earth, 6378137.0, 1 / 298.257223563);
+    double nearest = 1e9;
+    for (size_t i = 0; i < t->count; i++) {
+        double m;
+        geod_inverse(&earth, t->fix[i].latitude_deg, t->fix[i].longitude_deg, latitude_deg,
+                     longitude_deg, &m, NULL, NULL);
+        nearest = fmin(nearest, m);
+    }
+    return nearest;
+}
+
+TEST(a_route_is_flown_at_its_speed_with_banked_turns)
+{
+    static const double places[][3] = {{46, 7, 2000}, {46.2, 7, 2000}, {46.2, 7.3, 3000}};
+    struct nav_track route = {.datum = NAV_DATUM_SEA_LEVEL}, flight = {0};
+    for (int i = 0; i < 3; i++) {
+        struct nav_fix f = nav_fix_blank();
+        f.latitude_deg = places[i][0];
+        f.longitude_deg = places[i][1];
+        f.height_m = places[i][2];
+        assert_int_equal(nav_track_add(&route, &f), 0);
+    }
+    assert_int_equal(nav_fly_route(&route, 150, 5000000, &flight), 0);
+    assert_int_equal(flight.datum, NAV_DATUM_SEA_LEVEL);
+    /* 22,233 m and 23,163 m; the corner is cut by 2 r (1 - pi / 4) of r = v^2 / (g tan 25). */
+    const double radius_m = 150 * 150 / (9.80665 * tan(25 * 3.14159265358979 / 180));
+    assert_near((double)(flight.count - 1) * 150, 22233 + 23163 - 2 * radius_m * 0.2146, 250);
+    assert_near(nearest_m(&flight, 46.2, 7.3), 0, 151);
+    assert_near(nearest_m(&flight, 46.2, 7), radius_m * (1.41421356 - 1), 100);
+    struct nav_findings found;
+    nav_track_complete(&flight, &(struct nav_limits){0, 411}, &found);
+    double bank_deg = 0;
+    for (size_t i = 0; i < flight.count; i++) {
+        bank_deg = fmax(bank_deg, flight.fix[i].roll_deg);
+        assert_near(flight.fix[i].speed_ms, 150, 0.5);
+        assert_true(flight.fix[i].roll_deg > -3);
+    }
+    assert_near(bank_deg, 25, 1);
+    assert_near(flight.fix[flight.count - 1].height_m, 3000, 15);
+    assert_int_equal(found.jumps, 0);
+    nav_track_free(&flight);
+    route.count = 1;
+    assert_int_equal(nav_fly_route(&route, 150, 0, &flight), -1);
+    nav_track_free(&route);
+    nav_track_free(&flight);
 }
