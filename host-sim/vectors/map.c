@@ -444,7 +444,7 @@ static int burn_covers(struct vector_map *map)
     struct burning b = {.covers = malloc(n * sizeof(OGRGeometryH)),
                         .classes = malloc(n * sizeof(double)),
                         .heights = malloc(n * sizeof(double))};
-    struct vector_item **order = malloc(n * sizeof *order);
+    struct vector_item **order = malloc(n * sizeof(struct vector_item *));
     int result = 0;
     if (b.covers && b.classes && b.heights && order) {
         sort_covers(map, &b, order);
