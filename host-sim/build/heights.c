@@ -54,7 +54,7 @@ static int note_raster(struct build_heights *h, const struct resample_plane *pla
         }
         for (int x = 0; x < width; x++) {
             const bool is_value = !isnan(row[x]) && !(plane->has_nodata && row[x] == plane->nodata);
-            note(h->structures, is_value ? row[x] : 0);
+            note(h->structures, is_value ? row[x] * plane->scale + plane->offset : 0);
         }
     }
     free(row);

@@ -47,3 +47,14 @@ int hs_warn(const char *place, const char *remedy, const char *cause, ...)
     va_end(arguments);
     return 0;
 }
+
+int hs_doubt(bool is_trusted, const char *place, const char *remedy, const char *cause, ...)
+{
+    char whole[512];
+    snprintf(whole, sizeof whole, "%s, or say --trust-inputs if it is right", remedy);
+    va_list arguments;
+    va_start(arguments, cause);
+    report(place, is_trusted ? "warning: " : "", is_trusted ? NULL : whole, cause, arguments);
+    va_end(arguments);
+    return is_trusted ? 0 : -1;
+}

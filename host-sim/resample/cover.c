@@ -1,6 +1,8 @@
 #include "resample/cover.h"
 
 #include "gis/gdal_start.h"
+#include "gis/length_unit.h"
+#include "gis/plausible.h"
 #include "hs/error.h"
 
 #include <math.h>
@@ -50,13 +52,29 @@ static int check_grids(const struct resample_cover *c)
                     c->classes.path, a->width, a->height);
 }
 
+/* Unit, scale and offset of heights. */
+static int read_scale(struct resample_plane *p)
+{
+    double metres;
+    int given;
+    if (db_band_unit(p->band, p->path, "gdal_edit.py -units", &metres) != 0) {
+        return -1;
+    }
+    const double scale = GDALGetRasterScale(p->band, &given);
+    p->scale = metres * (given ? scale : 1);
+    const double offset = GDALGetRasterOffset(p->band, &given);
+    p->offset = metres * (given ? offset : 0);
+    return 0;
+}
+
 static int open_planes(struct resample_cover *c, const char *classes, const char *reflectivity,
                        const char *heights)
 {
     if (plane_open(&c->classes, classes, "a class raster") != 0 ||
         (reflectivity &&
          plane_open(&c->reflectivity, reflectivity, "a reflectivity raster") != 0) ||
-        (heights && plane_open(&c->heights, heights, "a height raster") != 0) ||
+        (heights && (plane_open(&c->heights, heights, "a height raster") != 0 ||
+                     read_scale(&c->heights) != 0)) ||
         (reflectivity && check_grids(c) != 0)) {
         return -1;
     }
@@ -81,6 +99,17 @@ int resample_cover_open(struct resample_cover *c, const struct db_class_table *t
         return -1;
     }
     return 0;
+}
+
+int resample_cover_judge(const struct resample_cover *c, bool is_trusted)
+{
+    const struct resample_plane *r = &c->reflectivity, *h = &c->heights;
+    if (r->dataset && db_plausible_reflectivity(r->band, r->path, is_trusted) != 0) {
+        return -1;
+    }
+    return h->dataset
+               ? db_plausible_heights(h->band, h->path, h->scale, c->classes.band, is_trusted)
+               : 0;
 }
 
 int resample_cover_set_codes(struct resample_cover *c, const struct db_code_map *codes)
@@ -234,7 +263,7 @@ static int take_heights(const struct resample_cover *c, const struct lookup *l, 
         size_t at;
         if (find(l, i, &at) && is_value(&c->heights, pixels[at])) {
             samples[i].has_height = true;
-            samples[i].height_m = pixels[at];
+            samples[i].height_m = (float)(pixels[at] * c->heights.scale + c->heights.offset);
         }
     }
     free(pixels);

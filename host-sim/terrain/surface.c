@@ -1,6 +1,7 @@
 #include "terrain/surface.h"
 
 #include "gis/gdal_start.h"
+#include "gis/plausible.h"
 #include "hs/error.h"
 
 #include <math.h>
@@ -72,7 +73,8 @@ static int open_source(struct source *s, const char *path, const struct terrain_
         return hs_error(path, "name one of its sub-datasets, as `gdalinfo` lists them",
                         "holds no band");
     }
-    if (read_units(m, options) != 0) {
+    if (read_units(m, options) != 0 ||
+        db_plausible_terrain(m->band, path, fabs(m->scale), options->are_trusted) != 0) {
         return -1;
     }
     m->width = GDALGetRasterXSize(m->dataset);
@@ -186,6 +188,83 @@ static int make_layers(struct terrain *t, struct source *sources, int count)
     return 0;
 }
 
+/* ---- overlaps ---- */
+
+enum { MEETINGS = 16 /* places along a side of an overlap */, MEETINGS_LEAST = 8 };
+
+/* Two models of one place differ by some metres, and in woods by the height of trees: UNSOURCED. */
+static const double apart_most_m = 25;
+
+static bool height_at(const struct source *s, double latitude_bam, double longitude_bam, double *m)
+{
+    const struct terrain_member *t = &s->member;
+    double x, y;
+    float value;
+    resample_to_pixels(&s->georef, 1, &latitude_bam, &longitude_bam, &x, &y);
+    if (!(x >= 0 && x < t->width && y >= 0 && y < t->height) ||
+        GDALRasterIO(t->band, GF_Read, (int)x, (int)y, 1, 1, &value, 1, 1, GDT_Float32, 0, 0) !=
+            CE_None ||
+        (t->has_nodata && value == (float)t->nodata)) {
+        return false;
+    }
+    *m = (double)value * t->scale + t->offset +
+         terrain_vertical_shift(&t->vertical, t->width, t->height, x, y);
+    return *m >= lowest_m && *m <= highest_m;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of a's heights above b's where both have one; NAN where they hardly meet. */
+static double apart(const struct source *a, const struct source *b, const struct image_area *on)
+{
+    double differences[MEETINGS * MEETINGS];
+    int count = 0;
+    for (int i = 0; i < MEETINGS * MEETINGS; i++) {
+        const double u = (i % MEETINGS + 0.5) / MEETINGS, v = (i / MEETINGS + 0.5) / MEETINGS;
+        const double latitude = (double)on->south + v * (double)(on->north - on->south);
+        const double longitude = (double)on->west + u * (double)on->width;
+        double p, q;
+        if (height_at(a, latitude, longitude, &p) && height_at(b, latitude, longitude, &q)) {
+            differences[count++] = p - q;
+        }
+    }
+    qsort(differences, (size_t)count, sizeof differences[0], by_size);
+    return count < MEETINGS_LEAST ? (double)NAN : differences[count / 2];
+}
+
+/* Each pair is looked at where the smaller of the two lies. */
+static int terrain_overlaps_judge(const struct source *sources, int count, bool are_trusted)
+{
+    struct image_area areas[DB_LIST_MAX];
+    for (int i = 0; i < count; i++) {
+        if (resample_area(&sources[i].georef, &areas[i]) != 0) {
+            areas[i] = (struct image_area){.width = 0};
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = i + 1; k < count; k++) {
+            if (areas[i].width == 0 || areas[k].width == 0 ||
+                !image_areas_meet(&areas[i], &areas[k])) {
+                continue;
+            }
+            const bool first = areas[i].north - areas[i].south < areas[k].north - areas[k].south;
+            const double m = apart(&sources[i], &sources[k], &areas[first ? i : k]);
+            if (fabs(m) > apart_most_m &&
+                hs_doubt(are_trusted, sources[k].member.path,
+                         "compare their units and datums (--terrain-unit, --terrain-datum)",
+                         "lies %.0f m %s %s where both have heights (median)", fabs(m),
+                         m > 0 ? "below" : "above", sources[i].member.path) != 0) {
+                return -1;
+            }
+        }
+    }
+    return 0;
+}
+
 /* Files that say the same as the one before are passed over. */
 static void say_heights(const struct source *sources, int count)
 {
@@ -213,6 +292,9 @@ int terrain_open(struct terrain *t, const struct db_list *paths,
     }
     if (result == 0) {
         say_heights(sources, paths->count);
+        result = terrain_overlaps_judge(sources, paths->count, options->are_trusted);
+    }
+    if (result == 0) {
         result = make_layers(t, sources, paths->count);
     }
     for (int i = 0; sources && i < paths->count; i++) {

@@ -34,3 +34,12 @@ int hs_warn(const char *place, const char *remedy, const char *cause, ...)
     va_end(arguments);
     return 0;
 }
+
+int hs_doubt(bool is_trusted, const char *place, const char *remedy, const char *cause, ...)
+{
+    va_list arguments;
+    va_start(arguments, cause);
+    format(place, remedy, cause, arguments);
+    va_end(arguments);
+    return is_trusted ? 0 : -1;
+}

@@ -600,11 +600,149 @@ def radar_hole():
     return db(*radar("hole.tif", plane), "--radar-unit", "db")
 
 
+# ---- Inputs that are something else.
+
+def trusted(words):
+    """The same command with --trust-inputs goes on with a warning, or fails for another reason than the doubt."""
+    done = db(*words, "--trust-inputs")
+    assert "trust-inputs" not in done.err and "warning: " in done.err, done.err
+    return done
+
+
+def doubted(name, make):
+    """A row for terrain that looks wrong, and that its user may mean all the same."""
+    @row(name, "build", "refused")
+    def is_doubted():
+        words = BUILD_TERRAIN + make()
+        trusted(words)
+        return db(*words)
+
+
+def terrain_of(path, plane, **more):
+    return ["--terrain", terrain(path, plane, **more)]
+
+
+def three_bands():
+    raster("rgb.tif", [numpy.full((120, 120), v, numpy.uint8) for v in (90, 100, 110)], gdal.GDT_Byte, at=DEM_AT, step=30.0)
+    return ["--terrain", "rgb.tif"]
+
+
+def class_terrain():
+    raster("class-terrain.tif", [numpy.full((120, 120), 2, numpy.uint8)], gdal.GDT_Byte, at=DEM_AT, step=30.0, names=CLASSES)
+    return ["--terrain", "class-terrain.tif"]
+
+
+def with_marks():
+    plane = slope()
+    plane[:40, :40] = -9999
+    return terrain_of("marks.tif", plane)
+
+
+doubted("picture (red, green, blue) as terrain", three_bands)
+doubted("class raster as terrain", class_terrain)
+doubted("terrain in centimetres without a word of it", lambda: terrain_of("centimetres.tif", slope() * 100))
+doubted("terrain with posts of -9999 and no nodata value", with_marks)
+doubted("terrains that overlap 40 m apart", lambda: terrain_of("low.tif", slope()) + terrain_of("high.tif", slope() + 70, at=(DEM_AT[0] + 900, DEM_AT[1])))
+doubted("terrains on other grids that overlap 40 m apart",
+        lambda: terrain_of("low.tif", slope()) + ["--terrain", gdal.Warp("warped.tif", gdal.Open(terrain("up.tif", slope() + 40)), dstSRS="EPSG:4326")
+                                                  .GetDescription()])
+doubted("feet beside metres, without a word of it", lambda: terrain_of("low.tif", slope()) + terrain_of("feet.tif", slope() / FEET))
+
+
+@row("one post of terrain for the whole class raster", "build", "refused")
+def one_post():
+    terrain("coarse.tif", numpy.full((3, 3), 100, numpy.float32), at=(WEST - 3000, NORTH + 3000), step=3000)
+    words = ["coarse.tif" if word == "dem.tif" else word for word in BUILD_AREA] + ["--out", "coarse.lmdb"]
+    assert trusted(words).code == 0
+    return db(*words)
+
+
+def build_with(option, path):
+    return BUILD_AREA + [option, path, "--out", "with.lmdb"]
+
+
+def wrong_raster(name, option, make, goes_on=True):
+    @row(name, "build", "refused")
+    def is_doubted():
+        words = build_with(option, make())
+        done = trusted(words)
+        assert not goes_on or done.code == 0, done.err
+        return db(*words)
+
+
+def plane_of(name, values, kind=gdal.GDT_Float32, **more):
+    return lambda: raster(name, [numpy.asarray(values, numpy.float32) if kind == gdal.GDT_Float32 else values], kind, **more)
+
+
+GAMMA = numpy.random.default_rng(3).normal(-15, 4, (SIDE, SIDE))
+wrong_raster("class raster as reflectivity", "--reflectivity", lambda: "classes.tif")
+wrong_raster("class raster without names as reflectivity", "--reflectivity", lambda: without_names())
+wrong_raster("linear power as reflectivity", "--reflectivity", plane_of("linear.tif", 10 ** (GAMMA / 10)))
+wrong_raster("reflectivity with an undeclared nodata value", "--reflectivity", plane_of("undeclared.tif", numpy.where(GAMMA > -10, -9999, GAMMA)))
+wrong_raster("elevations as reflectivity", "--reflectivity", plane_of("elevations.tif", slope(side=SIDE) + 0.25), goes_on=False)
+wrong_raster("class raster as heights", "--heights", lambda: "classes.tif")
+wrong_raster("class raster without names as heights", "--heights", lambda: without_names())
+wrong_raster("reflectivity as heights", "--heights", lambda: "gamma.tif")
+wrong_raster("elevations above the sea as heights", "--heights", plane_of("above-sea.tif", slope(side=SIDE)))
+
+
+@row("picture (red, green, blue) as class raster", "build", "refused")
+def picture_as_classes():
+    return db(*["image.tif" if word == "classes.tif" else word for word in BUILD_AREA], "--out", "picture.lmdb")
+
+
+@row("heights in feet by their band", "build", "done")
+def heights_in_feet():
+    towns = numpy.where(classes_plane() == 0, 3, classes_plane()).astype(numpy.uint8)
+    raster("towns.tif", [towns], gdal.GDT_Byte, nodata=255, names=CLASSES)
+    raster("feet-high.tif", [numpy.where(towns == 3, 20 / FEET, 0).astype(numpy.float32)], unit="ft")
+    done = db(*["towns.tif" if word == "classes.tif" else word for word in BUILD_AREA], "--heights", "feet-high.tif", "--out", "feet.lmdb")
+    assert re.search(r"heights m.* 20(\.0)?[ ;]", done.out), done.out
+    return done
+
+
+@row("heights in `smoots`", "build", "refused")
+def heights_in_smoots():
+    raster("smoots-high.tif", [numpy.zeros((SIDE, SIDE), numpy.float32)], unit="smoots")
+    return db(*build_with("--heights", "smoots-high.tif"))
+
+
+# ---- Training.
+
+@row("constant image", "train", "refused")
+def constant_image():
+    raster("constant.tif", [numpy.full((SIDE, SIDE), 90, numpy.uint8)] * 3, gdal.GDT_Byte)
+    return db(*["constant.tif" if word == "image.tif" else word for word in TRAIN], "--net", "constant.net")
+
+
+@row("misspelt label", "train", "refused")
+def misspelt_label():
+    exemplars("misspelt.geojson", ("soil", "vegetatoin", "water"))
+    return db(*["misspelt.geojson" if word == "fields.geojson" else word for word in TRAIN], "--net", "misspelt.net")
+
+
+@row("image of one band; classes without exemplars", "train", "warned")
+def one_band():
+    raster("band.tif", image_planes()[:1], gdal.GDT_Byte)
+    done = db(*["band.tif" if word == "image.tif" else word for word in TRAIN], "--net", "band.net")
+    assert done.code == 0, done.err
+    seen = db("segment", "--image", "band.tif", "--classes", "heaton6.classes", "--net", "band.net", "--out", "band-classes.tif")
+    right = (gdal.Open("band-classes.tif").ReadAsArray() == classes_plane()).mean()
+    assert seen.code == 0 and right > 0.9, right
+    return done
+
+
+@row("image brighter than what the network was trained on", "segment", "warned")
+def out_of_range():
+    raster("bright.tif", [plane + 400 for plane in image_planes()], gdal.GDT_Float32)
+    return db(*["bright.tif" if word == "image.tif" else word for word in SEGMENT], "--out", "bright-classes.tif")
+
+
 # ---- The table and the run.
 
 def says(run):
     """The first line that tells the reason, without the program's name."""
-    lines = [line for line in run.err.splitlines() if run.code or "warning: " in line]
+    lines = [line for line in run.err.splitlines() if ("warning: " in line) == (run.code == 0)]
     return re.sub(r"^landmass-\w+: ", "", lines[0]) if lines else ""
 
 

@@ -26,7 +26,7 @@ struct settings {
     uint32_t centre_bam[2]; /* latitude, longitude; when `centre` is given */
     const char *land_class, *water_class, *steep_class;
     double sea_level_m, steep_degrees, geoid_m;
-    bool is_flat, voids_are_sea, may_cut_heights, ignores_names;
+    bool is_flat, voids_are_sea, may_cut_heights, ignores_names, trusts_inputs;
 };
 
 static const struct db_usage usage = {
@@ -101,6 +101,8 @@ static bool read_settings(struct settings *s, int argc, char **argv, int *exit_c
         OPTION("centre", DB_TEXT, centre, 0, 0, "LAT,LON",
                "place worth looking at, degrees\nleft out: the middle of the class raster or the "
                "terrain"),
+        OPTION("trust-inputs", DB_FLAG, trusts_inputs, 0, 0, NULL,
+               "go on where an input looks like a mistake; the reasons are warnings then"),
         OPTION("title", DB_TEXT, title, 0, 0, "TEXT", "up to 32 bytes"),
         OPTION("land-class", DB_TEXT, land_class, 0, 0, "NAME",
                "class of ground above sea level outside the class raster (vegetation)"),
@@ -325,17 +327,32 @@ static int make_plan(struct build_context *b, const struct settings *s)
     return 0;
 }
 
+enum { POSTS_LEAST = 3 }; /* of terrain along the longer side of the class raster; UNSOURCED */
+
 static int check_overlap(const struct build_context *b, const struct settings *s)
 {
     if (!b->cover.classes.dataset || s->is_flat) {
         return 0;
     }
+    const struct terrain_layer *finest = NULL;
     for (int i = 0; i < b->terrain.layer_count; i++) {
-        if (image_areas_meet(&b->terrain.layers[i].area, &b->cover.area)) {
-            return 0;
+        const struct terrain_layer *layer = &b->terrain.layers[i];
+        if (image_areas_meet(&layer->area, &b->cover.area) &&
+            (!finest || layer->pixel_latitude_bam < finest->pixel_latitude_bam)) {
+            finest = layer;
         }
     }
     const struct image_area *a = &b->cover.area;
+    if (finest) {
+        const double posts = fmax((double)(a->north - a->south) / finest->pixel_latitude_bam,
+                                  (double)a->width / finest->pixel_longitude_bam);
+        return posts >= POSTS_LEAST
+                   ? 0
+                   : hs_doubt(s->trusts_inputs, finest->mosaic.members[0].path,
+                              "give a finer --terrain",
+                              "has %.1f posts along the whole of %s: the ground would be a plane",
+                              posts, s->class_raster);
+    }
     return hs_error(s->class_raster, "give a --terrain that covers this area",
                     "lies outside all terrain (it covers %.4f to %.4f north, %.4f to %.4f east)",
                     image_degrees(a->south), image_degrees(a->north),
@@ -390,11 +407,12 @@ static int open_inputs(struct build_context *b, const struct settings *s)
     if (read_table(b, s) != 0 ||
         resample_cover_open(&b->cover, &b->table, s->class_raster, s->reflectivity, s->heights) !=
             0 ||
-        read_codes(b, s) != 0 ||
+        resample_cover_judge(&b->cover, s->trusts_inputs) != 0 || read_codes(b, s) != 0 ||
         terrain_open(&b->terrain, &s->terrain,
                      &(struct terrain_options){s->sea_level_m,
                                                s->voids_are_sea,
-                                               {s->terrain_unit, s->terrain_datum}}) != 0) {
+                                               {s->terrain_unit, s->terrain_datum},
+                                               s->trusts_inputs}) != 0) {
         return -1;
     }
     if (check_overlap(b, s) != 0 || make_plan(b, s) != 0) {

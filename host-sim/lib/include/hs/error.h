@@ -2,6 +2,8 @@
 #ifndef HS_ERROR_H
 #define HS_ERROR_H
 
+#include <stdbool.h>
+
 /* Exit codes of all landmass programs. */
 enum hs_exit {
     HS_EXIT_OK = 0,
@@ -19,6 +21,13 @@ int hs_error(const char *place, const char *remedy, const char *cause, ...)
 /* The same line with "warning: " before the cause; returns 0. */
 int hs_warn(const char *place, const char *remedy, const char *cause, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* Something that looks like a mistake of the user's. `is_trusted`: he said --trust-inputs, so that
+ * it is a warning and 0 is returned. Otherwise it is an error, whose remedy names that option too;
+ * -1.
+ */
+int hs_doubt(bool is_trusted, const char *place, const char *remedy, const char *cause, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* Name the program in the messages, and guard its inputs from here on (hs/input_file.h); call once
  * at the start of main. Keeps the pointer. */

@@ -22,6 +22,7 @@ struct resample_plane {
     const char *path; /* borrowed */
     bool has_nodata;
     double nodata;
+    double scale, offset; /* metres of heights = value * scale + offset */
     struct resample_georef georef;
     struct resample_lattice lattice; /* once the cell is set */
 };
@@ -44,6 +45,10 @@ int resample_cover_open(struct resample_cover *c, const struct db_class_table *t
                         const char *classes, const char *reflectivity, const char *heights);
 /* Harmless on a zeroed struct. */
 void resample_cover_close(struct resample_cover *c);
+
+/* Judge whether reflectivity and heights are what they should be (gis/plausible.h). Returns 0, or
+ * -1 with a doubt or an error reported. */
+int resample_cover_judge(const struct resample_cover *c, bool is_trusted);
 
 /* From here on the class raster's pixels are codes of somebody's land cover. Prints which occur.
  * Returns 0, or -1 with the error reported (db_code_map_survey). */

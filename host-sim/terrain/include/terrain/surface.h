@@ -25,6 +25,7 @@ struct terrain_options {
     double sea_level_m;
     bool voids_are_sea; /* whatever their rim says */
     struct terrain_vertical_options vertical;
+    bool are_trusted; /* doubts are warnings (hs_doubt) */
 };
 
 struct terrain {
