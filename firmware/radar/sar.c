@@ -12,11 +12,7 @@
 _Static_assert((int)LM_SAR_GUARD == (int)LM_RADAR_PATCH_GUARD,
                "the table leaves room for the guard cells");
 
-enum {
-    SIDE_LOBE_DOWN_Q8 = LM_DB_Q8(35),
-    LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10),
-    DWELL_MOST_MS = (1 << 17) - 1
-};
+enum { LEFT_OUT_BELOW_FLOOR_Q8 = LM_DB_Q8(10), DWELL_MOST_MS = (1 << 17) - 1 };
 
 /* Component of the velocity across the line of sight, to the right. */
 static int32_t speed_across_mm_s(const struct lm_sar_flight *f)
@@ -536,8 +532,7 @@ static void sample_lines(struct lm_sar *s, struct lm_tile_cache *tiles, uint32_t
         /* A chip has the side lobes that were baked into it: on its lines none are found. */
         const bool has_chip = s->chips && s->target_patch.on_line[s->sampled] != 0;
         lm_side_lobes_find(&s->side_lobes, s->sampled, level_db_q8 + LM_SAR_GUARD,
-                           s->radar->sar.cells,
-                           has_chip ? INT32_MAX : s->shadow_db_q8 + SIDE_LOBE_DOWN_Q8,
+                           s->radar->sar.cells, has_chip ? LM_SIDE_LOBES_NONE : s->shadow_db_q8,
                            s->command.centre.longitude);
         lm_target_patch_mark_hidden(&s->target_patch, s->sampled, line->lit.horizon,
                                     s->grid.tangent_bits, s->grid.cells);
@@ -616,7 +611,7 @@ void lm_sar_restart(struct lm_sar *s)
 {
     s->line = s->sampled = s->summed = s->hidden_known = s->second_foreground = 0;
     s->has_target_patch = false;
-    lm_side_lobes_clear(&s->side_lobes);
+    lm_side_lobes_clear(&s->side_lobes, &s->radar->sar.side_lobes);
     lm_patch_floor_clear(&s->floor);
     lm_target_patch_clear(&s->target_patch);
 }

@@ -12,23 +12,49 @@
 
 _Static_assert((int)LM_K_LOBES == 2 * LM_RESPONSE_REACH, "the kernel adds all but the last");
 
-/* A point within a quarter of a cell of the middle has its first null before the second cell: the
- * cell beside its own is in the main lobe, whose power the cell's level holds already. */
-enum { BESIDE = LM_RESPONSE_REACH / 2, NEAREST = 2, NO_LOBE_DB_Q8 = INT16_MIN };
+/* The main lobe reaches to 1.66 cells: cells beside a point's own are in it, and so is a part of
+ * those behind them. Its power is in the cell's level already. */
+enum {
+    BESIDE = LM_RESPONSE_REACH / 2,
+    NEAREST = 2,
+    FIRST_NULL_CELLS_Q8 = 426,
+    NO_LOBE_DB_Q8 = INT16_MIN
+};
 
-/* Level of a point's response `cells` cells away from the cell that holds it, `off_cells_q8` from
- * its middle, over that in the cell itself: 20 log10(h(x) / h(off)). Amplitudes are below 2^15. */
-static int16_t side_db_q8(int32_t cells, int32_t off_cells_q8)
+/* Places lie evenly in the cell: odd sixteenths from its middle. */
+static int32_t off_cells_q8(int32_t place)
 {
-    const int32_t x_cells_q8 = lm_cells_q8_of_cells(cells) - off_cells_q8;
-    const int32_t most = lm_cells_q8_of_cells(LM_RESPONSE_REACH);
-    const uint32_t there = fx_abs_u32(lm_response(fx_clamp_i32(x_cells_q8, -most, most)));
-    const uint32_t here = fx_abs_u32(lm_response(off_cells_q8));
-    return (int16_t)(2 * (fx_db_q8(there) - fx_db_q8(here)));
+    return (2 * place - (LM_SIDE_LOBES_OFFSETS - 1)) * (256 / (2 * LM_SIDE_LOBES_OFFSETS));
 }
 
-void lm_side_lobes_clear(struct lm_side_lobes *s)
+/* Power of the response in a point's own cell, mean over its places, Q30. Amplitudes are below
+ * 2^15. */
+static uint32_t own_power_q30(void)
 {
+    uint32_t sum_q30 = 0;
+    for (int32_t k = 0; k < LM_SIDE_LOBES_OFFSETS; k++) {
+        const uint32_t here = fx_abs_u32(lm_response(off_cells_q8(k)));
+        sum_q30 += here * here / LM_SIDE_LOBES_OFFSETS;
+    }
+    return sum_q30;
+}
+
+/* Level of a point's response `cells` cells away from the cell that holds it, over that in the cell
+ * itself: 20 log10 h(x) - own_db_q8. */
+static int16_t side_db_q8(int32_t cells, int32_t place, int32_t own_db_q8)
+{
+    const int32_t x_cells_q8 = lm_cells_q8_of_cells(cells) - off_cells_q8(place);
+    const int32_t most = lm_cells_q8_of_cells(LM_RESPONSE_REACH);
+    const uint32_t there = fx_abs_u32(lm_response(fx_clamp_i32(x_cells_q8, -most, most)));
+    return (int16_t)(there != 0 && fx_abs_u32(x_cells_q8) >= FIRST_NULL_CELLS_Q8
+                         ? 2 * fx_db_q8(there) - own_db_q8
+                         : NO_LOBE_DB_Q8);
+}
+
+void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_config *config)
+{
+    const int32_t own_db_q8 = fx_db_q8(own_power_q30());
+    s->config = config;
     s->found = 0;
     for (uint32_t k = 0; k < LM_SIDE_LOBES_LINES; k++) {
         s->line[k].count = 0;
@@ -36,19 +62,18 @@ void lm_side_lobes_clear(struct lm_side_lobes *s)
     int16_t *side = s->side_db_q8;
     for (int32_t k = 0; k < LM_SIDE_LOBES_OFFSETS; k++) {
         for (int32_t n = -LM_RESPONSE_REACH; n <= LM_RESPONSE_REACH; n++) {
-            const bool has_lobe = fx_abs_u32(n) >= NEAREST;
-            *side++ = has_lobe ? side_db_q8(n, 16 * (k - LM_SIDE_LOBES_OFFSETS / 2))
-                               : (int16_t)NO_LOBE_DB_Q8;
+            *side++ = side_db_q8(n, k, own_db_q8);
         }
     }
 }
 
 /* True if the cell stands far above the ends of its surroundings, and is the highest of them. */
-static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_t cells)
+static inline bool stands_out(const int32_t *level_db_q8, uint32_t cell, uint32_t cells,
+                              int32_t above_db_q8)
 {
     const uint32_t first = cell > BESIDE ? cell - BESIDE : 0;
     const uint32_t last = fx_min_u32(cell + BESIDE, cells - 1);
-    const int32_t most_db_q8 = level_db_q8[cell] - LM_SIDE_LOBES_ABOVE_DB_Q8;
+    const int32_t most_db_q8 = level_db_q8[cell] - above_db_q8;
     if (level_db_q8[first] > most_db_q8 || level_db_q8[last] > most_db_q8) {
         return false;
     }
@@ -67,13 +92,13 @@ static __attribute__((noinline)) void insert(struct lm_side_lobes *s, uint32_t l
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES, draw = fx_hash3(line, cell, seed);
     struct lm_strong_cell *const strong = s->line[slot].strong;
-    uint32_t at = fx_min_u32(s->line[slot].count, LM_SIDE_LOBES_A_LINE - 1);
+    uint32_t at = fx_min_u32(s->line[slot].count, s->config->a_line - 1u);
     for (; at > 0 && strong[at - 1].level_db_q8 < level_db_q8; at--) {
         strong[at] = strong[at - 1];
     }
     strong[at] = (struct lm_strong_cell){(int32_t)cell, level_db_q8, draw % LM_SIDE_LOBES_OFFSETS,
                                          draw / LM_SIDE_LOBES_OFFSETS % LM_SIDE_LOBES_OFFSETS};
-    s->line[slot].count = fx_min_u32(s->line[slot].count + 1, LM_SIDE_LOBES_A_LINE);
+    s->line[slot].count = fx_min_u32(s->line[slot].count + 1, s->config->a_line);
 }
 
 /* Cells first..end - 1 of a line. */
@@ -85,8 +110,8 @@ struct stretch {
 static int32_t least_now(const struct lm_side_lobes *s, uint32_t line, int32_t least_db_q8)
 {
     const uint32_t slot = line % LM_SIDE_LOBES_LINES;
-    return s->line[slot].count == LM_SIDE_LOBES_A_LINE
-               ? s->line[slot].strong[LM_SIDE_LOBES_A_LINE - 1].level_db_q8 + 1
+    return s->line[slot].count == s->config->a_line
+               ? s->line[slot].strong[s->config->a_line - 1].level_db_q8 + 1
                : least_db_q8;
 }
 
@@ -99,7 +124,7 @@ static int32_t search(struct lm_side_lobes *s, struct stretch at, const int32_t 
     for (const int32_t *level = level_db_q8 + at.first; level != end; level++) {
         if (*level >= least) {
             const uint32_t cell = (uint32_t)(level - level_db_q8);
-            if (stands_out(level_db_q8, cell, at.cells)) {
+            if (stands_out(level_db_q8, cell, at.cells, s->config->above_db_q8)) {
                 insert(s, at.line, cell, *level, seed);
                 least = least_now(s, at.line, least_db_q8);
             }
@@ -109,10 +134,12 @@ static int32_t search(struct lm_side_lobes *s, struct stretch at, const int32_t 
 }
 
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
-                        uint32_t cells, int32_t least_db_q8, uint32_t seed)
+                        uint32_t cells, int32_t shadow_db_q8, uint32_t seed)
 {
     int32_t highest_db_q8[LM_CELLS_MAX / LM_K_HIGHEST_CELLS + 2];
-    int32_t least = least_db_q8;
+    int32_t least = s->config->a_line != 0 && shadow_db_q8 < LM_SIDE_LOBES_NONE
+                        ? shadow_db_q8 + s->config->over_shadow_db_q8
+                        : INT32_MAX;
     s->line[line % LM_SIDE_LOBES_LINES].count = 0;
     s->found = line + 1;
     lm_k_highest(level_db_q8, highest_db_q8, cells);

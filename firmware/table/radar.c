@@ -132,6 +132,11 @@ const struct lm_radar lm_radar_default = {
              * median of 196, set noise included (docs/EQUATIONS.md, "Floor"). */
             .ground_leak_db_q8 = LM_DB_Q8(-16),
             .ground_leak_most_db_q8 = LM_DB_Q8(-10),
+            /* UNSOURCED: cells whose highest side lobe, 35 dB down, shows in a shadow; that are
+             * points and no edges; and as many of a line as there is time for. */
+            .side_lobes = {.over_shadow_db_q8 = LM_DB_Q8(35),
+                           .above_db_q8 = LM_DB_Q8(28),
+                           .a_line = 2},
             .speckle = {.looks_log2 = 2},
             .tone = {LM_DB_Q8(-38), LM_DB_Q8(10), 384}},
     /* UNSOURCED, chosen by eye: a dihedral between wall and ground is some 6 dB above the wall

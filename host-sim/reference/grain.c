@@ -118,6 +118,7 @@ void ref_patch_echo(struct ref_bin *bins, size_t count, size_t guard,
     }
     const double left = ref_leak(leak, params, line, bins + guard, count - guard);
     const double floor = pow(10, params->noise_floor_db / 10) + left;
+    leak->shadow_db = 10 * log10(floor);
     for (size_t i = 0; i < count; i++) {
         bins[i].speckle_db = table_db[bins[i].grain + 128];
         bins[i].echo_db = 10 * log10(bins[i].ground + floor + bins[i].veil) + bins[i].speckle_db;

@@ -217,6 +217,52 @@ static void rain_on(const struct ref_picture *picture, const struct ref_sar *sar
     }
 }
 
+/* Add the side lobes of the shown cells, whose echoes are known. */
+static int add_side_lobes(const struct ref_picture *picture, const struct ref_sar *sar,
+                          const struct ref_params *params, const double *shadow_db)
+{
+    const size_t cells = sar->cell_count;
+    double *level_db = calloc(picture->line_count * cells, sizeof *level_db);
+    if (!level_db) {
+        return hs_error("picture", "ask for fewer lines or cells", "out of memory");
+    }
+    for (size_t i = 0; i < picture->line_count * cells; i++) {
+        level_db[i] = ref_picture_bin(picture, (unsigned)(i / cells), (int)(i % cells))->echo_db;
+    }
+    const int status = ref_side_lobes(&params->side_lobes, level_db, shadow_db, picture->line_count,
+                                      cells, sar->side_lobe_seed);
+    for (size_t i = 0; i < picture->line_count * cells; i++) {
+        ref_picture_bin(picture, (unsigned)(i / cells), (int)(i % cells))->echo_db = level_db[i];
+    }
+    free(level_db);
+    return status;
+}
+
+/* From the illuminated ground to the levels that are shown. */
+static int make_levels(const struct ref_picture *picture, const struct ref_sar *sar,
+                       const struct ref_params *params)
+{
+    const size_t count = REF_GUARD_CELLS + sar->cell_count;
+    struct ref_tables tables;
+    struct ref_leak leak = {0};
+    double *shadow_db = calloc(picture->line_count, sizeof *shadow_db);
+    if (!shadow_db) {
+        return hs_error("picture", "ask for fewer lines or cells", "out of memory");
+    }
+    ref_tables_set(&tables, params);
+    for (unsigned line = 0; line < picture->line_count; line++) {
+        struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
+        draw_patch_line(bins, sar, line);
+        ref_class_gain(bins, count, params, sar->azimuth_deg);
+        ref_sea(bins, count, &picture->view, params, sar->azimuth_deg);
+        ref_patch_echo(bins, count, REF_GUARD_CELLS, tables.grain_db, params, &leak, line);
+        shadow_db[line] = leak.shadow_db;
+    }
+    const int status = add_side_lobes(picture, sar, params, shadow_db);
+    free(shadow_db);
+    return status;
+}
+
 int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const struct ref_sar *sar,
                   const struct ref_params *params)
 {
@@ -231,22 +277,18 @@ int ref_sar_patch(struct ref_picture *picture, const struct ref_db *db, const st
     ref_db_elevation(db, picture->level, sar->centre, params->has_exact_weights,
                      &picture->view.reference_m);
     const struct ref_surface surface = ref_sar_surface(sar);
-    struct ref_tables tables;
-    struct ref_leak leak = {0};
-    ref_tables_set(&tables, params);
     for (unsigned line = 0; line < picture->line_count; line++) {
         picture->start_horizons[line] = ref_sar_horizon(db, sar, params, line);
         sar_line(picture, db, sar, params, &surface, line);
     }
     rain_on(picture, sar);
+    if (make_levels(picture, sar, params) != 0) {
+        ref_picture_free(picture);
+        return -1;
+    }
     for (unsigned line = 0; line < picture->line_count; line++) {
-        struct ref_bin *bins = ref_picture_bin(picture, line, -REF_GUARD_CELLS);
-        const size_t count = REF_GUARD_CELLS + sar->cell_count;
-        draw_patch_line(bins, sar, line);
-        ref_class_gain(bins, count, params, sar->azimuth_deg);
-        ref_sea(bins, count, &picture->view, params, sar->azimuth_deg);
-        ref_patch_echo(bins, count, REF_GUARD_CELLS, tables.grain_db, params, &leak, line);
-        ref_tone(bins, count, params);
+        ref_tone(ref_picture_bin(picture, line, -REF_GUARD_CELLS),
+                 REF_GUARD_CELLS + sar->cell_count, params);
     }
     return 0;
 }

@@ -23,7 +23,6 @@ import scenes
 # and one that does is to be taken off.
 OPEN = {
     "border_steps",
-    "point_side_lobes",
 }
 
 

@@ -32,6 +32,8 @@ static inline struct ref_params params_of(const struct lm_radar *radar, double n
         .noise_floor_db = noise_floor_db,
         .leak_db = decibels(radar->sar.ground_leak_db_q8),
         .leak_most_db = decibels(radar->sar.ground_leak_most_db_q8),
+        .side_lobes = {decibels(radar->sar.side_lobes.over_shadow_db_q8),
+                       decibels(radar->sar.side_lobes.above_db_q8), radar->sar.side_lobes.a_line},
         .looks = 1u << speckle->looks_log2,
         .black_db = decibels(tone->black_db_q8),
         .white_db = decibels(tone->white_db_q8),

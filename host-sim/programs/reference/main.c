@@ -1,6 +1,7 @@
 /* landmass-reference: the picture of the firmware, computed in double precision. */
 #include "dump.h"
 
+#include "hs/angle.h"
 #include "hs/error.h"
 #include "hs/menu.h"
 #include "hs/options.h"
@@ -120,6 +121,12 @@ static const struct number numbers[] = {
      0, NAN, false},
     {"leak-most", "dB that a cell counts for at most in that mean", AT(params.leak_most_db),
      FOR_SAR, -120, 60, NAN, false},
+    {"side-lobes", "cells of a line that have side lobes", AT(params.side_lobes.a_line), FOR_SAR, 0,
+     16, NAN, true},
+    {"over-shadow", "dB that such a cell stands over a shadow",
+     AT(params.side_lobes.over_shadow_db), FOR_SAR, 0, 100, NAN, false},
+    {"above", "dB that it stands over the cells four before and behind it",
+     AT(params.side_lobes.above_db), FOR_SAR, 0, 100, NAN, false},
     {"black", "dB shown black", AT(params.black_db), FOR_ALL, -120, 60, NAN, false},
     {"white", "dB shown white", AT(params.white_db), FOR_ALL, -120, 60, NAN, false},
     {"gamma", "exponent of the tone curve", AT(params.gamma_exponent), FOR_ALL, 0.1, 10, NAN,
@@ -268,6 +275,7 @@ static int render_sar(const struct request *request, const struct ref_db *db)
                           .cell_count = (unsigned)request->cells,
                           .grain_row = start.row,
                           .grain_column = start.column,
+                          .side_lobe_seed = hs_bam(place_of(request, db).longitude_deg),
                           .rain = {.wavelength_m = WAVELENGTH_M,
                                    .azimuth_beam_deg = AZIMUTH_BEAM_DEG,
                                    .elevation_beam_deg = ELEVATION_BEAM_DEG}};

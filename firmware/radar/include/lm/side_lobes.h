@@ -17,10 +17,11 @@
 
 #include <stdint.h>
 
+#include "lm/radar.h"
 #include "lm/response.h"
 
 enum {
-    LM_SIDE_LOBES_A_LINE = 2,  /* cells of a line that have side lobes, at most */
+    LM_SIDE_LOBES_A_LINE = LM_RADAR_SIDE_LOBES_MAX,
     LM_SIDE_LOBES_LINES = 32,  /* lines that are remembered */
     LM_SIDE_LOBES_OFFSETS = 8, /* places of a point in its cell, each way */
     LM_SIDE_LOBES_CELLS = 2 * LM_RESPONSE_REACH + 1
@@ -28,8 +29,8 @@ enum {
 
 _Static_assert(LM_SIDE_LOBES_LINES >= 3 * LM_RESPONSE_REACH, "those before and those ahead");
 
-/* Strong cell: its level with speckle, and where in the cell its point lies, 0..7: sixteenths from
- * 4/16 before the middle to 3/16 behind it. */
+/* Strong cell: its level with speckle, and where in the cell its point lies, 0..7: odd sixteenths,
+ * from 7/16 before the middle to 7/16 behind it. */
 struct lm_strong_cell {
     int32_t cell, level_db_q8;
     uint32_t right, beyond;
@@ -38,27 +39,30 @@ struct lm_strong_cell {
 /* Strong cells of the lines around the one that is drawn. The caller owns it; all fields are
  * read-only to others. */
 struct lm_side_lobes {
+    const struct lm_side_lobe_config *config; /* borrowed */
     struct {
         uint32_t count;
         struct lm_strong_cell strong[LM_SIDE_LOBES_A_LINE]; /* the strongest first */
     } line[LM_SIDE_LOBES_LINES];                            /* line n at n % LM_SIDE_LOBES_LINES */
     uint32_t found;                                         /* lines that were searched */
-    /* Response of a point over that in its own cell: for each place in the cell, by the cells from
-     * there, -LM_RESPONSE_REACH first. */
+    /* Side lobes of a point over its response in its own cell, mean over the places there: for each
+     * place, by the cells from its own, -LM_RESPONSE_REACH first. */
     int16_t side_db_q8[LM_SIDE_LOBES_OFFSETS * LM_SIDE_LOBES_CELLS];
 };
 
-/* Forget all lines. Cost: some 7,000 instructions. */
-void lm_side_lobes_clear(struct lm_side_lobes *s);
+/* Forget all lines. `config` is borrowed until the next call. Cost: some 7,000 instructions. */
+void lm_side_lobes_clear(struct lm_side_lobes *s, const struct lm_side_lobe_config *config);
+
+/* Shadow of a line on which none are to be found. */
+#define LM_SIDE_LOBES_NONE INT32_MAX
 
 /* Find the strong cells of line `line`, which is the one after the last. A cell is strong if its
- * level is at least `least_db_q8` and the largest within LM_RESPONSE_REACH / 2 cells along, and
- * stands LM_SIDE_LOBES_ABOVE_DB_Q8 over the cells at both ends of these. `seed` chooses where in
- * its cell a point lies. Cost: 2 instructions a cell, and 100 for each group of 8 that may hold one
- * of the strongest. */
-enum { LM_SIDE_LOBES_ABOVE_DB_Q8 = 28 * 256 };
+ * level is the largest within LM_RESPONSE_REACH / 2 cells along, and stands as high over a shadow,
+ * of `shadow_db_q8`, and over the cells at both ends of these as the table asks. `seed` chooses
+ * where in its cell a point lies. Cost: 2 instructions a cell, and 100 for each group of 8 that may
+ * hold one of the strongest. */
 void lm_side_lobes_find(struct lm_side_lobes *s, uint32_t line, const int32_t *level_db_q8,
-                        uint32_t cells, int32_t least_db_q8, uint32_t seed);
+                        uint32_t cells, int32_t shadow_db_q8, uint32_t seed);
 
 /* Add to the levels of line `line` the side lobes of its own strong cells and of those on lines up
  * to LM_RESPONSE_REACH before and behind it. Cost: 23 instructions for each cell across, of which

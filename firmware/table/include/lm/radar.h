@@ -44,6 +44,7 @@ enum {
     LM_RADAR_SHARPENING_MAX = 256,
     LM_RADAR_AZIMUTHS_LOG2_MAX = 3, /* eight in a sample */
     LM_LOOKS_LOG2_MAX = 4,          /* 16 looks */
+    LM_RADAR_SIDE_LOBES_MAX = 2,    /* cells of a line that have side lobes */
     LM_WAVELENGTH_MIN_UM = 1000,    /* 300 GHz */
     LM_WAVELENGTH_MAX_UM = 1000000
 };
@@ -60,6 +61,13 @@ struct lm_illumination_config {
     int16_t edge_trees_db_q8;     /* leading edge of trees, dB; 0..LM_EDGE_MAX_DB_Q8 */
     int16_t shore_db_q8;          /* far shore at the water, dB; 0..LM_EDGE_MAX_DB_Q8 */
     uint16_t shore_width_m;       /* of the shore's fall to nothing; 0..10,000 */
+};
+
+/* Which cells of a patch have side lobes (docs/EQUATIONS.md, "Side lobes of the ground"). */
+struct lm_side_lobe_config {
+    int16_t over_shadow_db_q8; /* such a cell stands so high above a shadow; 0..100 dB */
+    int16_t above_db_q8;       /* and above the cells four before and behind it; 0..100 dB */
+    uint8_t a_line;            /* of a line, the strongest; 0 (none) ..LM_RADAR_SIDE_LOBES_MAX */
 };
 
 /* How walls return by the angle at which they face the radar (docs/EQUATIONS.md, "Class gain"). */
@@ -180,6 +188,7 @@ struct lm_sar_table {
                                      * ground's mean in every cell; -100..0 dB */
     int16_t ground_leak_most_db_q8; /* a stronger cell counts as this one, because its side lobes
                                      * are drawn; dB of gamma, -60..20 dB */
+    struct lm_side_lobe_config side_lobes;
     struct lm_speckle_config speckle;
     struct lm_tone_config tone;
 };

@@ -66,10 +66,14 @@ struct ref_params {
     double shore_db, shore_width_m;          /* far shore */
     double noise_floor_db;
     double leak_db, leak_most_db; /* what the ground leaves in the dark of a patch */
-    unsigned looks;               /* 1..64 */
-    double black_db, white_db;    /* white_db > black_db */
-    double gamma_exponent;        /* > 0 */
-    double sea_db;                /* ref_sea_db of the state of the sea */
+    struct ref_side_lobes {
+        double over_shadow_db, above_db; /* how a strong cell stands out */
+        double a_line;                   /* as many, the strongest */
+    } side_lobes;
+    unsigned looks;            /* 1..64 */
+    double black_db, white_db; /* white_db > black_db */
+    double gamma_exponent;     /* > 0 */
+    double sea_db;             /* ref_sea_db of the state of the sea */
     struct ref_sea {
         double critical; /* critical grazing angle, radians; 0: none */
         bool has_wind;
@@ -244,7 +248,7 @@ double ref_grain_power(double looks, uint32_t start_row, uint32_t start_column, 
 
 /* The running mean of a patch's ground: zero before its first line. */
 struct ref_leak {
-    double mean;
+    double mean, shadow_db; /* of the line last taken: level of its shadows without rain */
     unsigned lines;
 };
 
@@ -553,6 +557,11 @@ double ref_taylor_amplitude(const struct ref_taylor *t, double x);
  * Both ways multiply. */
 double ref_point_response(double x);
 
+/* Add the side lobes of strong cells to a patch's levels, lines x cells, speckle included, whose
+ * shadows have those levels. 0, or -1 with the error reported. */
+int ref_side_lobes(const struct ref_side_lobes *law, double *level_db, const double *shadow_db,
+                   size_t lines, size_t cells, uint32_t seed);
+
 /* A point of a patch that moves: where it appears in the middle of the dwell, how far, in cells,
  * its displacement drifts across and it goes itself away from the radar until the dwell's end. */
 struct ref_mover {
@@ -590,6 +599,7 @@ struct ref_sar {
     double antenna_m, cell_m;
     unsigned cell_count;              /* along either side of the square */
     uint32_t grain_row, grain_column; /* of cell 0 of line 0 */
+    uint32_t side_lobe_seed;          /* the centre's longitude, BAM */
     struct ref_patch_rain rain;       /* distances, angles and slant are filled from these places */
     struct ref_place rain_centre[4];
 };
