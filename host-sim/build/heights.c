@@ -85,11 +85,11 @@ static void note_crests(struct build_heights *h, const struct relief *r)
 
 static void take_below(struct relief *r, struct relief *const below[4])
 {
+    const struct terrain_posts *posts[4];
     for (int i = 0; i < 4; i++) {
-        if (below[i]) {
-            build_take_posts(&r->posts, &below[i]->posts, i);
-        }
+        posts[i] = below[i] ? &below[i]->posts : NULL;
     }
+    build_take_posts(&r->posts, posts);
     image_posts_encode(r->posts.q6, &r->tile);
     image_ground_init(&r->ground, &r->tile);
     for (int i = 0; i < 4; i++) {

@@ -111,7 +111,8 @@ static void face(const struct build_context *b, const struct image_frame *f, uin
 }
 
 /* Cells of the finest level that the class raster gives. Returns how many samples it had, or -1. */
-static int cover_cells(struct build_context *b, const struct image_frame *f, uint16_t *cells)
+static int cover_cells(struct build_context *b, const struct image_frame *f,
+                       uint16_t cells[CELLS][CELLS])
 {
     const size_t side = (size_t)(CELLS * b->parts);
     struct resample_sample *samples = malloc(side * side * sizeof *samples);
@@ -127,8 +128,8 @@ static int cover_cells(struct build_context *b, const struct image_frame *f, uin
             fine[i] = encode_sample(b, &samples[i], f, (int)(i / side), (int)(i % side));
         }
         const struct image_reduction parted = {&b->classes, b->parts, CELLS, IMAGE_VOTE_COUNT};
-        image_reduce(&parted, fine, side, cells, CELLS);
-        face(b, f, cells);
+        image_reduce(&parted, fine, side, &cells[0][0], CELLS);
+        face(b, f, &cells[0][0]);
     }
     free(samples);
     free(fine);
@@ -185,7 +186,9 @@ static void count_cells(struct build_context *b, const struct image_frame *f,
     }
 }
 
-void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *below, int quarter)
+/* Take every second post of the tile below. */
+static void take_quarter(struct terrain_posts *posts, const struct terrain_posts *below,
+                         int quarter)
 {
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
     for (int r = 0; r <= HALF; r++) {
@@ -194,6 +197,18 @@ void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *b
             posts->has[row + r][column + c] = below->has[2 * r][2 * c];
         }
     }
+}
+
+void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *const below[4])
+{
+    const int32_t(*fine[4])[LM_TILE_POSTS] = {NULL, NULL, NULL, NULL};
+    for (int i = 0; i < 4; i++) {
+        if (below[i]) {
+            fine[i] = below[i]->q6;
+            take_quarter(posts, below[i], i);
+        }
+    }
+    image_posts_smooth(fine, posts->q6);
 }
 
 /* The share of structures in the tile below, for its quarter of this one. */
@@ -207,6 +222,18 @@ static void take_built(struct build_tile *t, const struct build_tile *child, int
              child->built[2 * r + 1][2 * c] + child->built[2 * r + 1][2 * c + 1]) /
             4;
     }
+}
+
+static void take_children(struct build_tile *t, struct build_tile *const children[4])
+{
+    const struct terrain_posts *below[4] = {NULL, NULL, NULL, NULL};
+    for (int i = 0; i < 4; i++) {
+        if (children[i]) {
+            below[i] = &children[i]->posts;
+            take_built(t, children[i], i);
+        }
+    }
+    build_take_posts(&t->posts, below);
 }
 
 /* The ground that stands for the structures of a tile where their detail is drawn: the cell that is
@@ -249,7 +276,7 @@ static int make_from_inputs(struct build_context *b, int level, const struct ima
                             bool has_child, struct build_tile *t)
 {
     const struct image_area area = image_frame_area(f);
-    const int found = level == 0 ? cover_cells(b, f, &t->ground.cells[0][0]) : 0;
+    const int found = level == 0 ? cover_cells(b, f, t->ground.cells) : 0;
     if (found < 0) {
         return -1;
     }
@@ -283,10 +310,20 @@ static void budget(struct build_context *b, int level, const struct image_frame 
                     cell_area_m2(f, CELLS / 2) / north_m);
 }
 
+/* What the inputs leave to the rule, and what is seen of the cells they gave. */
+static void finish_inputs(struct build_context *b, const struct image_frame *f,
+                          const bool is_below[4], struct build_tile *t)
+{
+    const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
+    fill_by_rule(b, f, t, is_below);
+    count_cells(b, f, t, is_below);
+    build_towns_mark(t->ground.cells, &b->classes, north_m, t->built);
+    build_canopy(b, f, &t->ground);
+}
+
 static int make_tile(struct build_context *b, int level, const struct image_frame *f,
                      struct build_tile *const children[4], struct build_tile *t)
 {
-    const double north_m = (double)f->latitude_step * IMAGE_METRES_PER_BAM;
     bool is_below[4];
     int below = 0;
     for (int i = 0; i < 4; i++) {
@@ -301,17 +338,9 @@ static int make_tile(struct build_context *b, int level, const struct image_fram
         return made;
     }
     if (made > 0) {
-        fill_by_rule(b, f, t, is_below);
-        count_cells(b, f, t, is_below);
-        build_towns_mark(t->ground.cells, &b->classes, north_m, t->built);
-        build_canopy(b, f, &t->ground);
+        finish_inputs(b, f, is_below, t);
     }
-    for (int i = 0; i < 4; i++) {
-        if (children[i]) {
-            build_take_posts(&t->posts, &children[i]->posts, i);
-            take_built(t, children[i], i);
-        }
-    }
+    take_children(t, children);
     identify(&t->record, level, f);
     if (level == 0 && build_detail_of_tile(&b->detail, f->row, f->column).units != 0) {
         t->record.under = ground_under(b, t);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 uint8_t image_gamma_code(double gamma_db)
@@ -179,6 +180,56 @@ void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], st
             const int32_t above = posts_q6[r][c] - tile->base_m_q6;
             tile->points[r + LM_TILE_BORDER][c + LM_TILE_BORDER].post =
                 (uint16_t)((above + (1 << shift) / 2) >> shift);
+        }
+    }
+}
+
+void image_posts_decode(const struct lm_tile *tile, int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS])
+{
+    for (int r = 0; r < LM_TILE_POSTS; r++) {
+        for (int c = 0; c < LM_TILE_POSTS; c++) {
+            posts_q6[r][c] = (int32_t)image_post_q6(tile, r, c);
+        }
+    }
+}
+
+/* The post at a row and column of the four tiles below, 0..128; NULL where none has it. Tiles that
+ * share an edge have the same posts there. */
+static const int32_t *post_below(const int32_t (*const below[4])[LM_TILE_POSTS], int row,
+                                 int column)
+{
+    for (int i = 0; i < 4; i++) {
+        const int r = row - i / 2 * LM_TILE_CELLS, c = column - i % 2 * LM_TILE_CELLS;
+        if (below[i] && r >= 0 && r <= LM_TILE_CELLS && c >= 0 && c <= LM_TILE_CELLS) {
+            return &below[i][r][c];
+        }
+    }
+    return NULL;
+}
+
+/* The mean of the nine posts around one, or `otherwise` if one is missing. */
+static int32_t mean_of_nine(const int32_t (*const below[4])[LM_TILE_POSTS], int row, int column,
+                            int32_t otherwise)
+{
+    int64_t sum = 8; /* half of the weights: rounds */
+    for (int i = -1; i <= 1; i++) {
+        for (int k = -1; k <= 1; k++) {
+            const int32_t *post = post_below(below, row + i, column + k);
+            if (!post) {
+                return otherwise;
+            }
+            sum += (int64_t)*post * (2 - abs(i)) * (2 - abs(k));
+        }
+    }
+    return (int32_t)(sum >> 4);
+}
+
+void image_posts_smooth(const int32_t (*const below[4])[LM_TILE_POSTS],
+                        int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS])
+{
+    for (int r = 1; r < LM_TILE_CELLS; r++) {
+        for (int c = 1; c < LM_TILE_CELLS; c++) {
+            posts_q6[r][c] = mean_of_nine(below, 2 * r, 2 * c, posts_q6[r][c]);
         }
     }
 }

@@ -6,45 +6,54 @@
 
 enum { CELLS = LM_TILE_CELLS, HALF = LM_TILE_CELLS / 2 };
 
-/* Terrain of a tile at `north` and `east` quarters of a cell from its own south-west post. */
-static double terrain_q6(const struct lm_tile *tile, int north, int east)
+/* Terrain of a tile at a place in one of its cells. Products of posts and places are exact. */
+static double terrain_q6(const struct lm_tile *tile, int row, int column, struct image_place place)
 {
-    const int r = north / 4, c = east / 4;
-    const double v = north % 4 / 4.0, u = east % 4 / 4.0;
-    const double south =
-        (double)image_post_q6(tile, r, c) * (1 - u) + (double)image_post_q6(tile, r, c + 1) * u;
-    const double beyond = (double)image_post_q6(tile, r + 1, c) * (1 - u) +
-                          (double)image_post_q6(tile, r + 1, c + 1) * u;
-    return south * (1 - v) + beyond * v;
+    const double v = place.north_q16 / 65536.0, u = place.east_q16 / 65536.0;
+    const double south = (double)image_post_q6(tile, row, column) * (1 - u) +
+                         (double)image_post_q6(tile, row, column + 1) * u;
+    const double north = (double)image_post_q6(tile, row + 1, column) * (1 - u) +
+                         (double)image_post_q6(tile, row + 1, column + 1) * u;
+    return south * (1 - v) + north * v;
 }
 
-static double middle_q6(const struct lm_tile *tile, int row, int column)
-{
-    return terrain_q6(tile, 4 * row + 2, 4 * column + 2);
-}
+static const struct image_place middle = {32768, 32768};
 
 void image_ground_init(struct image_ground *g, const struct lm_tile *tile)
 {
     for (int r = 0; r < CELLS; r++) {
         for (int c = 0; c < CELLS; c++) {
-            g->top_q6[r][c] = middle_q6(tile, r, c);
+            g->top[r][c] = (struct image_top){terrain_q6(tile, r, c, middle), middle};
         }
     }
 }
 
-/* What stands out of a cell: the highest of the four tops below, each above the terrain at its own
- * place. A plane has none, however steep. */
-static double crest_q6(const struct lm_tile *tile, const struct image_ground *below, int row,
-                       int column, int fine_row, int fine_column)
+/* How far a top stands out of the terrain at its own place. */
+static double excess_q6(const struct lm_tile *tile, int row, int column,
+                        const struct image_top *top)
 {
-    double crest = 0;
+    return top->q6 - terrain_q6(tile, row, column, top->place);
+}
+
+/* The top of a cell: of the four below, the one that stands out most. A cell out of which none
+ * stands has the terrain's own, in its middle. */
+static struct image_top highest(const struct lm_tile *tile, int row, int column,
+                                const struct image_ground *below, int fine_row, int fine_column)
+{
+    struct image_top best = {terrain_q6(tile, row, column, middle), middle};
+    double most_q6 = 0;
     for (int i = 0; i < 4; i++) {
         const int north = i / 2, east = i % 2;
-        crest =
-            fmax(crest, below->top_q6[fine_row + north][fine_column + east] -
-                            terrain_q6(tile, 4 * row + 1 + 2 * north, 4 * column + 1 + 2 * east));
+        struct image_top top = below->top[fine_row + north][fine_column + east];
+        top.place.north_q16 = (uint16_t)((top.place.north_q16 + 65536 * north) / 2);
+        top.place.east_q16 = (uint16_t)((top.place.east_q16 + 65536 * east) / 2);
+        const double out_q6 = excess_q6(tile, row, column, &top);
+        if (out_q6 > most_q6) {
+            most_q6 = out_q6;
+            best = top;
+        }
     }
-    return crest;
+    return best;
 }
 
 void image_ground_take(struct image_ground *g, const struct lm_tile *tile,
@@ -64,8 +73,7 @@ void image_ground_take_tops(struct image_ground *g, const struct lm_tile *tile,
     for (int r = 0; r < HALF; r++) {
         for (int c = 0; c < HALF; c++) {
             const int row = row0 + r, column = column0 + c;
-            g->top_q6[row][column] =
-                middle_q6(tile, row, column) + crest_q6(tile, below, row, column, 2 * r, 2 * c);
+            g->top[row][column] = highest(tile, row, column, below, 2 * r, 2 * c);
         }
     }
 }
@@ -73,7 +81,11 @@ void image_ground_take_tops(struct image_ground *g, const struct lm_tile *tile,
 double image_ground_crest_m(const struct image_ground *g, const struct lm_tile *tile, int row,
                             int column)
 {
-    return (g->top_q6[row][column] - middle_q6(tile, row, column)) / 64;
+    const struct image_top *top = &g->top[row][column];
+    const double out_q6 = fmax(excess_q6(tile, row, column, top), 0);
+    const double above_q6 =
+        terrain_q6(tile, row, column, top->place) - terrain_q6(tile, row, column, middle);
+    return (out_q6 + fmin(out_q6 / 2, fmax(above_q6, 0))) / 64;
 }
 
 void image_ground_encode(const struct image_ground *g, struct lm_tile *tile,

@@ -480,20 +480,46 @@ struct rung {
     const struct lm_tile *tile;
     uint32_t number; /* of its entry */
     struct image_ground ground;
+    int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS]; /* as they should be */
 };
 
-static bool posts_fit(const struct lm_tile *tile, const struct lm_tile *below, int quarter)
+/* Do the posts of a quarter fit those below it? */
+static bool posts_fit(const struct rung *made, const struct lm_tile *below, int quarter)
 {
     enum { HALF = LM_TILE_CELLS / 2 };
     const int row = quarter / 2 * HALF, column = quarter % 2 * HALF;
+    const int64_t step = coarser_step(made->tile, below);
     for (int r = 0; r <= HALF; r++) {
         for (int c = 0; c <= HALF; c++) {
-            if (!posts_agree(tile, row + r, column + c, below, 2 * r, 2 * c)) {
+            const int64_t difference = image_post_q6(made->tile, row + r, column + c) -
+                                       made->posts_q6[row + r][column + c];
+            if (difference < -step || difference > step) {
                 return false;
             }
         }
     }
     return true;
+}
+
+/* Posts of a tile made again from those below it: every second one, smoothed. */
+static void make_posts(struct rung *made, struct rung *const below[4])
+{
+    enum { HALF = LM_TILE_CELLS / 2 };
+    int32_t fine[4][LM_TILE_POSTS][LM_TILE_POSTS];
+    const int32_t(*posts[4])[LM_TILE_POSTS] = {NULL, NULL, NULL, NULL};
+    image_posts_decode(made->tile, made->posts_q6);
+    for (int i = 0; i < 4; i++) {
+        if (!below[i]) {
+            continue;
+        }
+        image_posts_decode(below[i]->tile, fine[i]);
+        posts[i] = (const int32_t(*)[LM_TILE_POSTS])fine[i];
+        for (int k = 0; k < (HALF + 1) * (HALF + 1); k++) {
+            const int r = k / (HALF + 1), c = k % (HALF + 1);
+            made->posts_q6[i / 2 * HALF + r][i % 2 * HALF + c] = fine[i][2 * r][2 * c];
+        }
+    }
+    image_posts_smooth(posts, made->posts_q6);
 }
 
 static bool cells_fit(const struct rung *made, const struct lm_tile *encoded, int quarter)
@@ -526,12 +552,13 @@ static int check_below(struct verify *v, struct rung *made, struct rung *const b
         }
     }
     image_ground_encode(&made->ground, encoded, classes->height_dm);
+    make_posts(made, below);
     for (int i = 0; i < 4; i++) {
         if (!below[i]) {
             continue;
         }
         v->counts->children++;
-        if (!posts_fit(made->tile, below[i]->tile, i) || !cells_fit(made, encoded, i)) {
+        if (!posts_fit(made, below[i]->tile, i) || !cells_fit(made, encoded, i)) {
             image_find(v->findings, image_record_offset(v->image, below[i]->number),
                        "tile of entry %" PRIu32 ": the tile above it does not hold its mean",
                        below[i]->number);

@@ -228,36 +228,61 @@ static void take_record(const struct old_tile *old, struct lm_tile *tile)
     }
 }
 
-/* Make the tile at a place and all below it. *out, which the caller frees, is its ground; NULL
- * without a tile. Returns 0, or -1 with the error reported. */
+/* A tile made, and what the one above it is made of. */
+struct made {
+    struct lm_tile tile;
+    struct image_ground ground;
+    int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS];
+};
+
+/* Make the tile at a place and all below it. *out, which the caller frees, is NULL without a tile.
+ * Returns 0, or -1 with the error reported. */
 static int make_tile(struct conversion *c, int level, uint32_t row, uint32_t column,
-                     struct image_ground **out);
+                     struct made **out);
+
+/* Posts and ground of a tile from those below it. Version 2 had every second post: only those that
+ * are smoothed are new. */
+static void take_below(const struct conversion *c, struct made *m, struct made *const below[4])
+{
+    const int32_t(*posts[4])[LM_TILE_POSTS] = {NULL, NULL, NULL, NULL};
+    for (int i = 0; i < 4; i++) {
+        posts[i] = below[i] ? (const int32_t(*)[LM_TILE_POSTS])below[i]->posts_q6 : NULL;
+    }
+    image_posts_smooth(posts, m->posts_q6);
+    image_posts_encode((const int32_t(*)[LM_TILE_POSTS])m->posts_q6, &m->tile);
+    image_ground_init(&m->ground, &m->tile);
+    for (int i = 0; i < 4; i++) {
+        if (below[i]) {
+            image_ground_take(&m->ground, &m->tile, &below[i]->ground, i, &c->classes);
+        }
+    }
+}
 
 static int make_from(struct conversion *c, uint32_t entry, const struct old_tile *old,
-                     struct lm_tile *tile, struct image_ground *ground)
+                     struct made *m)
 {
+    struct made *below[4] = {NULL, NULL, NULL, NULL};
     int result = 0;
-    take_record(old, tile);
-    image_cells_decode(tile, ground->cells);
-    image_ground_init(ground, tile);
+    take_record(old, &m->tile);
+    image_cells_decode(&m->tile, m->ground.cells);
+    image_posts_decode(&m->tile, m->posts_q6);
     for (int i = 0; i < 4 && old->lod > 0 && result == 0; i++) {
-        struct image_ground *below;
         result = make_tile(c, old->lod - 1, 2 * old->row + (uint32_t)(i / 2),
-                           2 * old->column + (uint32_t)(i % 2), &below);
-        if (below) {
-            image_ground_take(ground, tile, below, i, &c->classes);
-        }
-        free(below);
+                           2 * old->column + (uint32_t)(i % 2), &below[i]);
     }
-    if (result != 0) {
-        return -1;
+    if (result == 0) {
+        take_below(c, m, below);
+        image_ground_encode(&m->ground, &m->tile, c->classes.height_dm);
+        result = image_writer_tile(&c->writer, entry, &m->tile);
     }
-    image_ground_encode(ground, tile, c->classes.height_dm);
-    return image_writer_tile(&c->writer, entry, tile);
+    for (int i = 0; i < 4; i++) {
+        free(below[i]);
+    }
+    return result;
 }
 
 static int make_tile(struct conversion *c, int level, uint32_t row, uint32_t column,
-                     struct image_ground **out)
+                     struct made **out)
 {
     *out = NULL;
     const int64_t entry = lm_db_entry(&c->db, (uint8_t)level, row, column);
@@ -269,12 +294,9 @@ static int make_tile(struct conversion *c, int level, uint32_t row, uint32_t col
     if (!old) {
         return 0;
     }
-    struct lm_tile *tile = malloc(sizeof *tile);
     *out = malloc(sizeof **out);
-    const int result = tile && *out ? make_from(c, (uint32_t)entry, old, tile, *out)
-                                    : hs_error(c->name, NULL, "out of memory");
-    free(tile);
-    return result;
+    return *out ? make_from(c, (uint32_t)entry, old, *out)
+                : hs_error(c->name, NULL, "out of memory");
 }
 
 static int make_tiles(struct conversion *c)
@@ -284,7 +306,7 @@ static int make_tiles(struct conversion *c)
         const uint32_t mask = image_columns_round((uint8_t)(c->db.shift0 + b->lod), b->zone) - 1;
         const uint64_t tiles = b->lod + 1 == c->db.lod_count ? (uint64_t)b->rows * b->columns : 0;
         for (uint64_t k = 0; k < tiles; k++) {
-            struct image_ground *top;
+            struct made *top;
             const int result = make_tile(c, b->lod, b->row0 + (uint32_t)(k / b->columns),
                                          (b->column0 + (uint32_t)(k % b->columns)) & mask, &top);
             free(top);

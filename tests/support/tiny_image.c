@@ -23,11 +23,17 @@ enum {
 
 static const double semi_axis_m = 6378137.0, e2 = 0.00669437999014;
 
-/* What coarser levels are made of: cells with heights of structures alone, and tops of terrain in
- * metres. */
+/* The highest terrain of a cell and its place in the cell, 0..1 from the south-west corner. */
+struct top {
+    double m, north, east;
+};
+
+/* What coarser levels are made of: cells with heights of structures alone, tops, and the tile's own
+ * posts in metres. */
 struct ground {
     uint16_t cells[TILE][TILE];
-    double top_m[TILE][TILE];
+    struct top tops[TILE][TILE];
+    double posts_m[TILE + 1][TILE + 1];
 };
 
 struct builder {
@@ -347,25 +353,75 @@ static uint16_t make_cell(const struct builder *b, const struct lm_tile *tile, u
     return pack_cell(b->spec->cell(b->spec->ctx, &place));
 }
 
+/* The post at a row and column of a level, counted from the pole and Greenwich, from a tile that
+ * has it; NAN where none has. */
+static double find_post_m(const struct builder *b, uint8_t level, uint8_t zone, int64_t row,
+                          int64_t column)
+{
+    const int64_t around = INT64_C(1) << (32 - b->spec->shift0 - level - zone);
+    for (int i = 0; i < 4; i++) {
+        const int64_t south = row - i / 2, west = (column - i % 2 + around) % around;
+        const int64_t entry =
+            find_entry(b, level, (uint32_t)(south / TILE), (uint32_t)(west / TILE));
+        if (entry >= 0 && b->grounds[entry]) {
+            return b->grounds[entry]->posts_m[row - south / TILE * TILE][west % TILE + i % 2];
+        }
+    }
+    return (double)NAN;
+}
+
+/* FORMATS.md 1.6: the mean of the nine posts around one, weighted 1, 2, 1, to the nearest 1/64 m.
+ * NAN on edges of tiles, and where a post is missing. */
+static double smooth_post_m(const struct builder *b, uint8_t level, uint8_t zone, int64_t row,
+                            int64_t column)
+{
+    static const double weight[3] = {0.25, 0.5, 0.25};
+    double sum = 0;
+    if (level == 0 || row % TILE == 0 || column % TILE == 0) {
+        return (double)NAN;
+    }
+    for (int i = 0; i < 9; i++) {
+        sum +=
+            weight[i / 3] * weight[i % 3] *
+            find_post_m(b, (uint8_t)(level - 1), zone, 2 * row + i / 3 - 1, 2 * column + i % 3 - 1);
+    }
+    return floor(sum * 64 + 0.5) / 64;
+}
+
+/* A post of a tile, or of its border, which is the neighbour's: in another zone columns differ. */
+static double post_at_m(const struct builder *b, const struct lm_tile *tile, int64_t row,
+                        int64_t column)
+{
+    const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
+    const struct tiny_place place =
+        place_at(b, row * (INT64_C(1) << high), column * (INT64_C(1) << wide));
+    const uint8_t zone = row < 0                 ? tile->zone
+                         : (row + 1) % TILE == 0 ? zone_of_row((uint32_t)(row / TILE), high)
+                                                 : tile->zone;
+    const int64_t longitude = (int64_t)((uint64_t)column << wide & UINT32_MAX);
+    const double smooth_m = smooth_post_m(b, tile->lod, zone, row, longitude >> (high + zone));
+    const double m = b->spec->elevation_m ? b->spec->elevation_m(b->spec->ctx, &place) : 0;
+    return isnan(smooth_m) ? floor(m * 64 + 0.5) / 64 : smooth_m;
+}
+
 static void sample_posts(const struct builder *b, const struct lm_tile *tile,
                          double posts_m[LM_TILE_POINTS][LM_TILE_POINTS])
 {
-    const uint32_t high = b->spec->shift0 + tile->lod, wide = high + tile->zone;
-    for (uint32_t r = 0; r < LM_TILE_POINTS; r++) {
-        for (uint32_t c = 0; c < LM_TILE_POINTS; c++) {
-            const struct tiny_place place =
-                place_at(b, ((int64_t)tile->row * TILE + r - 1) * (1 << high),
-                         ((int64_t)tile->column * TILE + c - 1) * (1 << wide));
-            posts_m[r][c] = b->spec->elevation_m ? b->spec->elevation_m(b->spec->ctx, &place) : 0;
-        }
+    for (uint32_t i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
+        const uint32_t r = i / LM_TILE_POINTS, c = i % LM_TILE_POINTS;
+        posts_m[r][c] = post_at_m(b, tile, (int64_t)tile->row * TILE + r - 1,
+                                  (int64_t)tile->column * TILE + c - 1);
     }
 }
 
 /* The base is a whole number of post steps, so that posts shared by tiles of one step agree. */
-static int make_posts(struct builder *b, struct lm_tile *tile)
+static int make_posts(struct builder *b, struct lm_tile *tile, struct ground *g)
 {
     double posts_m[LM_TILE_POINTS][LM_TILE_POINTS];
     sample_posts(b, tile, posts_m);
+    for (uint32_t r = 0; r <= TILE; r++) {
+        memcpy(g->posts_m[r], &posts_m[1 + r][1], sizeof g->posts_m[r]);
+    }
     double low = posts_m[0][0], high = low;
     for (uint32_t i = 0; i < LM_TILE_POINTS * LM_TILE_POINTS; i++) {
         low = fmin(low, posts_m[i / LM_TILE_POINTS][i % LM_TILE_POINTS]);
@@ -414,15 +470,30 @@ static double terrain_m(struct lm_tile *tile, double y, double x)
     return (tile->base_m_q6 + code * (1 << tile->post_shift)) / 64;
 }
 
-/* FORMATS.md 1.6: how far the terrain of the level below stands out of a cell. */
-static double crest_m(struct lm_tile *tile, const struct ground *below, uint32_t r, uint32_t c)
+/* FORMATS.md 1.6: of the tops of the level below, the one that stands out of a cell most. */
+static struct top find_top(struct lm_tile *tile, const struct ground *below, uint32_t r, uint32_t c)
 {
-    double e[4]; /* south-west, south-east, north-west, north-east */
-    for (uint32_t i = 0; i < 4; i++) {
-        e[i] = below->top_m[2 * r % TILE + i / 2][2 * c % TILE + i % 2] -
-               terrain_m(tile, r + 0.25 + 0.5 * (i / 2), c + 0.25 + 0.5 * (i % 2));
+    struct top best = {terrain_m(tile, r + 0.5, c + 0.5), 0.5, 0.5};
+    double most_m = 0;
+    for (uint32_t i = 0; below && i < 4; i++) { /* south-west, south-east, north-west, north-east */
+        struct top top = below->tops[2 * r % TILE + i / 2][2 * c % TILE + i % 2];
+        top.north = (top.north + i / 2) / 2;
+        top.east = (top.east + i % 2) / 2;
+        const double out_m = top.m - terrain_m(tile, r + top.north, c + top.east);
+        if (out_m > most_m) {
+            most_m = out_m;
+            best = top;
+        }
     }
-    return fmax(fmax(fmax(e[0], e[1]), fmax(e[2], e[3])), 0);
+    return best;
+}
+
+/* How far the line of sight is to be lifted for a cell's top. */
+static double crest_m(struct lm_tile *tile, const struct top *top, uint32_t r, uint32_t c)
+{
+    const double z = terrain_m(tile, r + top->north, c + top->east);
+    const double out_m = fmax(top->m - z, 0);
+    return out_m + fmin(out_m / 2, fmax(z - terrain_m(tile, r + 0.5, c + 0.5), 0));
 }
 
 /* Cells of a tile that has its posts. */
@@ -431,9 +502,9 @@ static void make_cells(const struct builder *b, struct lm_tile *tile, struct gro
     for (uint32_t i = 0; i < TILE * TILE; i++) {
         const uint32_t r = i / TILE, c = i % TILE;
         const struct ground *below = ground_below(b, tile, r, c);
-        const double crest = below ? crest_m(tile, below, r, c) : 0;
         g->cells[r][c] = make_cell(b, tile, r, c);
-        g->top_m[r][c] = terrain_m(tile, r + 0.5, c + 0.5) + crest;
+        g->tops[r][c] = find_top(tile, below, r, c);
+        const double crest = crest_m(tile, &g->tops[r][c], r, c);
         struct tiny_cell cell = unpack_cell(g->cells[r][c]);
         const uint8_t crest_code = nearest_height_code(b->classes, 10 * crest);
         if (cell.class_index != LM_DB_CLASS_NONE && crest_code > cell.height_code) {
@@ -463,7 +534,7 @@ static int make_tile(struct builder *b, const struct lm_band *band, uint32_t r, 
     tile->column = column;
     struct ground *ground = calloc(1, sizeof *ground);
     b->grounds[band->entry0 + r * band->columns + c] = ground;
-    if (ground == NULL || make_posts(b, tile) != 0) {
+    if (ground == NULL || make_posts(b, tile, ground) != 0) {
         return -1;
     }
     make_cells(b, tile, ground);

@@ -60,9 +60,9 @@ struct build_tile {
     float built[LM_TILE_CELLS][LM_TILE_CELLS]; /* share that is built-up */
 };
 
-/* The posts that the tile below gives to its quarter (2 * north + east) of a tile: every second
- * one. */
-void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *below, int quarter);
+/* The posts that the tiles below, below[2 * north + east] or NULL, give to a tile: every second
+ * one, smoothed (image/codes.h). */
+void build_take_posts(struct terrain_posts *posts, const struct terrain_posts *const below[4]);
 
 /* Make tile (level, row, column); children[2 * north + east] are the tiles below it or NULL.
  * Returns 0 and *out, which the caller frees, or NULL there when the tile holds no data; -1 with

@@ -74,6 +74,15 @@ void image_cells_decode(const struct lm_tile *tile, uint16_t cells[LM_TILE_CELLS
  * Elevations must be within IMAGE_ELEVATION_LIMIT_Q6. */
 void image_posts_encode(const int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS], struct lm_tile *tile);
 
+/* The posts of a tile, metres x 64. */
+void image_posts_decode(const struct lm_tile *tile, int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS]);
+
+/* Smooth the posts of a tile from those of the tiles below it, below[2 * north + east] or NULL:
+ * each becomes the mean of the nine around it, weighted 1, 2, 1 both ways. Posts on the tile's own
+ * edges, which neighbours share, and posts of which not all nine are there stay as they are. */
+void image_posts_smooth(const int32_t (*const below[4])[LM_TILE_POSTS],
+                        int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS]);
+
 /* One cell of a tile. Row 0 and column 0 are its own southernmost and westernmost; -1 and 64 are
  * the border's. */
 static inline uint16_t image_tile_cell(const struct lm_tile *tile, int row, int column)

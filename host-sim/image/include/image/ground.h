@@ -15,15 +15,23 @@
 
 #include <stdint.h>
 
-struct image_ground {
-    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS]; /* height codes of structures */
-    /* Of the terrain in each cell, metres x 64: in the middle, plus what stands out of the cell.
-     * Whole numbers, quarters and their like: exact. */
-    double top_q6[LM_TILE_CELLS][LM_TILE_CELLS];
+/* Place in a cell, from its south-west corner, in 2^-16 of the cell. */
+struct image_place {
+    uint16_t north_q16, east_q16;
 };
 
-/* Tops of a tile's own terrain, in the middle of each cell, into g->top_q6. `tile` has its posts.
- */
+/* The highest terrain of a cell, metres x 64, and where in the cell it is. */
+struct image_top {
+    double q6; /* whole numbers, quarters and their like: exact */
+    struct image_place place;
+};
+
+struct image_ground {
+    uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS]; /* height codes of structures */
+    struct image_top top[LM_TILE_CELLS][LM_TILE_CELLS];
+};
+
+/* Tops of a tile's own terrain, in the middle of each cell. `tile` has its posts. */
 void image_ground_init(struct image_ground *g, const struct lm_tile *tile);
 
 /* Make a quarter (2 * north + east) from the tile below it: cells by image_reduce, tops from the

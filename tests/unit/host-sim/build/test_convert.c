@@ -60,10 +60,36 @@ static void old_cells(const struct image *image, const struct lm_tile *t,
     }
 }
 
-static void put_record(uint8_t *at, const struct image *image, const struct lm_tile *t)
+/* The posts of a tile as version 2 had them: every second one of the level below. */
+static void old_posts(const struct image *image, const struct lm_tile *t,
+                      int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS])
+{
+    enum { HALF = LM_TILE_CELLS / 2 };
+    image_posts_decode(t, posts_q6);
+    for (int i = 0; i < 4 && t->lod > 0; i++) {
+        const struct lm_tile *below =
+            image_find_tile(image, (uint8_t)(t->lod - 1), 2 * t->row + (uint32_t)(i / 2),
+                            2 * t->column + (uint32_t)(i % 2));
+        int32_t fine_q6[LM_TILE_POSTS][LM_TILE_POSTS];
+        if (!below) {
+            continue;
+        }
+        old_posts(image, below, fine_q6);
+        for (int k = 0; k < (HALF + 1) * (HALF + 1); k++) {
+            const int r = k / (HALF + 1), c = k % (HALF + 1);
+            posts_q6[i / 2 * HALF + r][i % 2 * HALF + c] = fine_q6[2 * r][2 * c];
+        }
+    }
+}
+
+static void put_record(uint8_t *at, const struct image *image, const struct lm_tile *now)
 {
     uint16_t cells[LM_TILE_CELLS][LM_TILE_CELLS];
-    old_cells(image, t, cells);
+    int32_t posts_q6[LM_TILE_POSTS][LM_TILE_POSTS];
+    struct lm_tile then = *now, *t = &then;
+    old_cells(image, now, cells);
+    old_posts(image, now, posts_q6);
+    image_posts_encode((const int32_t(*)[LM_TILE_POSTS])posts_q6, t);
     memcpy(at + 4, &t->lod, 17); /* lod to post_shift: as it is today */
     for (int r = 0; r < SIDE; r++) {
         for (int c = 0; c < SIDE; c++) {
