@@ -8,7 +8,7 @@ data=${LANDMASS_DATA:-../shared/data}
 out=build/gallery
 here=host-sim/run
 mkdir -p $out
-[ $# -gt 0 ] || set -- village reservoir campus island riviera zion guadeloupe kansas monaco baltimore modes island_modes airfield
+[ $# -gt 0 ] || set -- village reservoir campus island riviera zion guadeloupe kansas monaco baltimore san_diego modes island_modes airfield
 for scene in "$@"; do
     sh $here/gallery_scene.sh "$bin" "$data" $out/"$scene" "$scene"
 done

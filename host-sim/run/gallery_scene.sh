@@ -1,7 +1,7 @@
 #!/bin/sh
 # One real scene, from its data to pictures of it.
 # Usage: gallery_scene.sh BIN-DIR DATA-DIR OUT-DIR village|reservoir|campus|island|riviera|zion|guadeloupe|
-#        kansas|monaco|baltimore|modes|island_modes|airfield
+#        kansas|monaco|baltimore|san_diego|modes|island_modes|airfield
 # The tests of tests/system run the same scenes through the same script.
 set -eu
 bin=$1
@@ -130,6 +130,40 @@ island_modes() { # Hilo, and Mauna Kea behind it
     island_image
     modes_of "$out/scene.lmdb" 20 "19.73 -155.10" 5 "19.82 -155.47 30" "19.817 -155.45 2" \
         --straight 19.75,-154.9,250,3000,200
+}
+
+# A visual database in pieces, each a tree of its own: joined by links, then looked at from above. The ground is
+# classified at its imagery's 27 m, over a larger area; buildings stand in cells of 7 m.
+san_diego() {
+    need cdb_san_diego
+    classes=$tables/landcover.classes
+    area=32.65,-117.24,32.74,-117.10
+    rm -rf "$out/cdb"
+    mkdir -p "$out/cdb"
+    for part in ImageryMoreLODPositiveElevation GSModelsWithGTModelTexture GTModels; do
+        cp -rs -n "$(realpath "$data")/cdb_san_diego/$part/." "$out/cdb/"
+    done
+    say "look down on the tree: imagery for the classifier, then buildings, terrain and heights"
+    "$bin"/landmass-db import --cdb "$out/cdb" --area 32.60,-117.25,32.75,-117.05 --cell 28 \
+        --out-image "$out/ground.tif" --out-mask "$out/patches.tif"
+    "$bin"/landmass-db import --cdb "$out/cdb" --area $area --cell 7 --boxes --classes "$classes" \
+        --map $in/san_diego.map --out-image "$out/image.tif" --out-classes "$out/named.tif" \
+        --out-terrain "$out/terrain.tif" --out-heights "$out/heights.tif"
+    say "train, segment, correct the water where two pictures of it meet, lay the buildings over it"
+    "$bin"/landmass-db train --image "$out/ground.tif" --exemplars $in/san_diego.geojson --classes "$classes" \
+        --context 7 --net "$out/scene.net"
+    "$bin"/landmass-db segment --image "$out/ground.tif" --classes "$classes" --net "$out/scene.net" \
+        --out "$out/segmented.tif" --picture "$out/classes.png"
+    "$bin"/landmass-db correct --class-raster "$out/segmented.tif" --classes "$classes" \
+        --corrections $in/san_diego.water.geojson --out "$out/corrected.tif"
+    gdalbuildvrt -q -overwrite -te -117.24 32.65 -117.10 32.74 -resolution highest "$out/classes.vrt" \
+        "$out/corrected.tif" "$out/named.tif"
+    build "San Diego" --classes "$classes" --class-raster "$out/classes.vrt" --class-numbers \
+        --heights "$out/heights.tif" --terrain "$out/terrain.tif"
+    # Downtown, 8 km off and 45 degrees to the right: from the sea, and from the hills behind.
+    pass from-south-west 32.659,-117.2254,0,1500,200 "32.705 -117.165 8"
+    pass from-north-east 32.761,-117.1046,180,1500,200 "32.705 -117.165 8"
+    pass bridge 32.643,-117.2104,0,1500,200 "32.689 -117.155 4"
 }
 
 village() {

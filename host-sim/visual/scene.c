@@ -254,7 +254,7 @@ static void look_row(const struct look *top, const struct look *ground, struct v
     for (int x = 0; x < c->width; x++) {
         const size_t i = (size_t)y * (size_t)c->width + (size_t)x;
         const struct visual_facet *f = look_at(top, x + 0.5, y + 0.5, &hit, rgba);
-        if (!f) {
+        if (!f || between(f->z, &hit) <= (double)c->top[i]) {
             continue;
         }
         c->top[i] = (float)between(f->z, &hit);

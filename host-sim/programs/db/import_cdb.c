@@ -145,6 +145,9 @@ static int place_models(struct import *im, struct visual_cdb *cdb, const struct 
                                  .class_of = import_class_of,
                                  .class_context = im,
                                  .boxes = im->options->boxes};
+    for (size_t i = 0; i < (size_t)cells->width * (size_t)cells->height; i++) {
+        im->canvas.top[i] = 0; /* what a model has below the ground is not seen */
+    }
     if (visual_cdb_place_models(&m, cdb, &im->scene, &count) != 0 ||
         visual_scene_look(&im->scene, &im->canvas, im->is_ground, im->place) != 0) {
         return -1;
@@ -163,7 +166,7 @@ static int make_heights(struct import *im)
         return hs_error(im->place, "choose a larger --cell", "out of memory");
     }
     for (size_t i = 0; i < count; i++) {
-        im->heights[i] = isnan(c->top[i]) ? (float)IMPORT_NODATA_M : fmaxf(0, c->top[i]);
+        im->heights[i] = c->top[i] > 0 ? c->top[i] : (float)IMPORT_NODATA_M;
     }
     const struct db_grid *g = &im->terrain_grid;
     for (size_t i = 0; im->terrain && i < (size_t)g->width * (size_t)g->height; i++) {

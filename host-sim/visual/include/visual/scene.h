@@ -52,8 +52,8 @@ int visual_scene_place(struct visual_scene *s, const struct visual_model *m, uin
 
 /* Look down on the middles of all cells. The topmost surface gives colour, patch, class and `top`;
  * what is more than half transparent is looked through. `is_ground[class]` says which surfaces make
- * `ground`. Cells that nothing covers stay as they were. Draws a progress bar. Returns 0, or -1
- * with the error reported. */
+ * `ground`. Cells that nothing covers stay as they were, and so do those whose `top` is as high.
+ * Draws a progress bar. Returns 0, or -1 with the error reported. */
 int visual_scene_look(const struct visual_scene *s, struct visual_canvas *c,
                       const bool is_ground[256], const char *place);
 
