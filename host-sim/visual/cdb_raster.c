@@ -337,7 +337,7 @@ static float from_coarser(const struct posts *p, int64_t column, int64_t row)
 static int next_level(struct posts *p, const struct posts *before)
 {
     const struct cdb_grid *g = &p->grid;
-    p->z = malloc((size_t)g->width * (size_t)g->height * sizeof *p->z);
+    p->z = calloc((size_t)g->width * (size_t)g->height, sizeof *p->z);
     if (!p->z) {
         return hs_error("--cdb", "choose a smaller --area", "out of memory for its elevation");
     }
@@ -418,7 +418,7 @@ int visual_cdb_elevation(const struct visual_cdb *cdb, const struct cdb_tiles *t
 {
     struct posts last = {.z = NULL};
     const int result = make_levels(cdb, tiles, g->level, &last);
-    for (int y = 0; result == 0 && y < g->height; y++) {
+    for (int y = 0; result == 0 && last.z && y < g->height; y++) {
         for (int x = 0; x < g->width; x++) {
             posts[(size_t)y * (size_t)g->width + (size_t)x] =
                 post_at(&last, g->first[0] + x, g->first[1] + g->height - 1 - y);

@@ -199,8 +199,9 @@ static int read_openflight(struct visual_model *m, struct reader_job *job, const
     }
     if (result == 0) {
         snprintf(converted, sizeof converted, "%s/model.obj", folder);
-        job->path = converted;
-        result = read_with_assimp(m, job);
+        struct reader_job again = *job;
+        again.path = converted;
+        result = read_with_assimp(m, &again);
     }
     nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     return result;

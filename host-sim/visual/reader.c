@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static void set_limit(int resource, rlim_t most)
+static void set_limit(__rlimit_resource_t resource, rlim_t most)
 {
     const struct rlimit limit = {most, most};
     setrlimit(resource, &limit);

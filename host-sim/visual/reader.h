@@ -34,7 +34,7 @@ struct reader_job {
     enum visual_up up;
     int out_fd;
 };
-int reader_assimp(void *job);
+int reader_assimp(void *context);
 
 /* Convert an OpenFlight file into `folder`/model.obj with osgconv, run as a child. Counts textures
  * that it misses into m->lost_textures. Returns 0, or -1 with the error reported. */

@@ -259,7 +259,7 @@ static int read_patches(struct work *w)
     }
     for (size_t i = 0; i < (size_t)b->rows * (size_t)w->classes.grid.width; i++) {
         const float n = b->valid[i] ? b->patches[i] : 0;
-        if (!(n >= 0 && n < PATCHES && n == floorf(n))) {
+        if (!(n >= 0 && n < (float)PATCHES && n == floorf(n))) {
             return hs_error(w->options->patches, "give the --out-mask of an import",
                             "holds %g, and numbers of patches are whole, 0 to %d", (double)n,
                             PATCHES - 1);
@@ -321,7 +321,7 @@ static double adjusted(struct work *w, size_t i)
     const struct db_brightness *own = &w->brightness;
     if (w->by_patch) {
         const struct db_brightness *patch = &w->by_patch[(int)b->patches[i]];
-        const bool is_enough = b->patches[i] > 0 && patch->count[c] >= PATCH_PIXELS_MIN;
+        const bool is_enough = b->patches[i] > 0 && patch->count[c] >= (double)PATCH_PIXELS_MIN;
         own = is_enough ? patch : own;
         w->alone += !is_enough;
     }

@@ -175,7 +175,7 @@ static int check_raster(const struct db_raster *raster, const struct radar_optio
     if (!g->has_geotransform || !g->crs) {
         return hs_error(o->path, "add it with gdal_edit.py or gdalwarp", "has no georeferencing");
     }
-    return (double)g->width * g->height <= RADAR_PIXELS_MAX
+    return (int64_t)g->width * g->height <= RADAR_PIXELS_MAX
                ? 0
                : hs_error(o->path, "cut it to the class raster's area, as with gdalwarp -te",
                           "has more than %d million pixels", RADAR_PIXELS_MAX >> 20);
