@@ -211,6 +211,23 @@ static int read_next(struct drv_can_log *log)
     return ferror(log->lines) ? LM_ERR_IO : LM_OK;
 }
 
+int drv_can_log_skip(struct drv_can_log *log, uint64_t skip_us)
+{
+    while (skip_us > 0 && !log->is_over) {
+        const int status = read_next(log);
+        if (status != LM_OK) {
+            return status;
+        }
+        if (log->has_next && log->next.time_us >= skip_us) {
+            log->origin_us += skip_us;
+            log->next.time_us -= skip_us;
+            return LM_OK;
+        }
+        log->has_next = false;
+    }
+    return LM_OK;
+}
+
 static int receive(void *ctx, struct lm_can_frame *frame)
 {
     struct drv_can_log *log = ctx;

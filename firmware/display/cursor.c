@@ -17,6 +17,13 @@ void lm_cursor_stabilise(struct lm_cursor *c)
     c->is_snowplow = c->is_home = false;
 }
 
+void lm_cursor_put(struct lm_cursor *c, struct lm_position position)
+{
+    c->position = position;
+    c->is_placed = true;
+    lm_cursor_stabilise(c);
+}
+
 /* Part of a sector that a cursor may stand in, pixels * 256 from the apex. */
 struct part {
     int32_t aside_px_q8, low_px_q8, high_px_q8;

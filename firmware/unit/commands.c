@@ -81,11 +81,16 @@ void lm_apply_effects(struct lm_unit *u, uint32_t effects, uint64_t now_us)
     u->count.swaps += (effects & LM_EFFECT_SWAP) != 0;
 }
 
+static bool has_cursor(const struct lm_unit *u)
+{
+    return u->page.format != LM_FORMAT_BIT && u->page.format != LM_FORMAT_TEST;
+}
+
 /* Target management switch up: stabilise a snowplow cursor, otherwise start a patch at the
  * cursor. */
 static enum lm_refusal designate(struct lm_unit *u, uint64_t now_us)
 {
-    if (u->page.format == LM_FORMAT_BIT || u->page.format == LM_FORMAT_TEST) {
+    if (!has_cursor(u)) {
         return LM_REFUSED_PAGE;
     }
     if (u->cursor.is_snowplow) {
@@ -115,9 +120,26 @@ static enum lm_refusal apply_any(struct lm_unit *u, uint32_t effects, uint64_t n
     return refused_unless(effects != 0);
 }
 
+static bool is_on_earth(struct lm_position position)
+{
+    return fx_abs_u32((int32_t)position.latitude) <= FX_BAM_90;
+}
+
+static enum lm_refusal put_cursor(struct lm_unit *u, struct lm_position position)
+{
+    if (!is_on_earth(position)) {
+        return LM_REFUSED_VALUE;
+    }
+    if (!has_cursor(u)) {
+        return LM_REFUSED_PAGE;
+    }
+    lm_cursor_put(&u->cursor, position);
+    return LM_REFUSED_NOT;
+}
+
 static bool apply_steerpoint(struct lm_unit *u, const struct lm_control *control)
 {
-    if (fx_abs_u32((int32_t)control->steerpoint.position.latitude) > FX_BAM_90) {
+    if (!is_on_earth(control->steerpoint.position)) {
         return false;
     }
     u->steerpoint.is_commanded = control->steerpoint.is_set;
@@ -168,6 +190,8 @@ static enum lm_refusal apply_control(struct lm_unit *u, const struct lm_control 
                               LM_OK);
     case LM_CONTROL_STEERPOINT:
         return refused_unless(apply_steerpoint(u, control));
+    case LM_CONTROL_CURSOR:
+        return put_cursor(u, control->cursor);
     case LM_CONTROL_DROP:
         lm_apply_effects(u, LM_EFFECT_SECTOR, now_us);
         return LM_REFUSED_NOT;

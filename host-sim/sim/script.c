@@ -248,6 +248,12 @@ static bool parse_steer(char **words, int count, struct lm_control *c)
                       : count == 3 && strcmp(words[2], "off") == 0;
 }
 
+static bool parse_cursor(char **words, int count, struct lm_control *c)
+{
+    c->kind = LM_CONTROL_CURSOR;
+    return count == 4 && place(words + 2, &c->cursor);
+}
+
 /* Commands of one word. */
 static bool parse_plain(const char *word, struct lm_control *c)
 {
@@ -351,6 +357,9 @@ static bool parse_line(struct script *s, char **words, int count, struct line_ev
     }
     if (strcmp(words[1], "steer") == 0) {
         return parse_steer(words, count, &e->control);
+    }
+    if (strcmp(words[1], "cursor") == 0) {
+        return parse_cursor(words, count, &e->control);
     }
     if (strncmp(words[1], "sar", 3) == 0) {
         return parse_sar(words, count, &e->control);

@@ -185,6 +185,10 @@ static struct lm_control any_control(enum lm_control_kind kind, int32_t value)
     case LM_CONTROL_STEERPOINT:
         c.steerpoint.is_set = value & 1;
         break;
+    case LM_CONTROL_CURSOR:
+        c.cursor.latitude = (fx_bam_t)value;
+        c.cursor.longitude = (fx_bam_t)value << 3;
+        break;
     case LM_CONTROL_FREEZE:
         c.is_frozen = value & 1;
         break;

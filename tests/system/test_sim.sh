@@ -81,6 +81,15 @@ check 'and gives the same pictures, byte for byte' same_pictures first second
 check 'a flight with --seed 7 ends well' fly seeded --seed 7
 check 'and gives other speckle' test "$(cmp -s "$work/first/patch.png" "$work/seeded/patch.png" && echo same)" = ''
 check 'a flight with --every 10 ends well' fly tenth --every 10
+
+# A log that begins later: as if its first two seconds had not been recorded.
+awk -v skip=2 '{ t = substr($1, 2) + 0 } NR == 1 { t0 = t } t >= t0 + skip - 1e-7' "$log" >"$work/late.log"
+check 'a flight can begin within the log' exits 0 "$sim" --db "$db" --bus "$log" --start 2 --png "$work/later" --every 10 --size 400x384
+check 'and one from the rest of the log' exits 0 "$sim" --db "$db" --bus "$work/late.log" --png "$work/late" --every 10 --size 400x384
+check 'has the same pictures' same_pictures later late
+check 'behind the end of the log it cannot begin' exits 1 "$sim" --db "$db" --bus "$log" --start 5 --png "$work/later"
+check 'and that is said' said '--start: .*flight.log ends before 5 s'
+check '--start without a log makes no sense' exits 2 "$sim" --db "$db" --start 5 --seconds 1
 check 'and leaves a picture in ten frames' between 13 14 "$(pictures tenth)"
 check 'a flight with --every 0 ends well' fly none --every 0
 check 'and leaves only what the script asks for' test "$(ls "$work/none")" = patch.png

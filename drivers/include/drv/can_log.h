@@ -48,6 +48,11 @@ void drv_can_log_init(struct drv_can_log *log, FILE *lines, drv_can_log_report *
  * frame. */
 void drv_can_log_set_now(struct drv_can_log *log, uint64_t now_us);
 
+/* Leave out the frames of the first `skip_us` of the log; time 0 is then so long behind the first
+ * frame. Call it before receive. Returns LM_OK, or LM_ERR_IO when reading failed. The log is over
+ * if it ends before. */
+int drv_can_log_skip(struct drv_can_log *log, uint64_t skip_us);
+
 /* The log as the firmware's bus; `log` must outlive it. Time stamps never go back. receive returns
  * - 1: a frame;
  * - 0: the next frame is not due, or the log is over;

@@ -69,6 +69,11 @@ static int open_bus(struct sim *s)
         }
         drv_can_log_init(&s->log, s->log_file, report_malformed, s);
         s->can = drv_can_log_port(&s->log);
+        const uint64_t start_us = (uint64_t)llround(o->start_s * 1e6);
+        if (drv_can_log_skip(&s->log, start_us) != LM_OK || drv_can_log_is_over(&s->log)) {
+            return hs_error("--start", "begin earlier", "%s ends before %g s", o->bus_log,
+                            o->start_s);
+        }
     } else if (o->can_interface) {
         struct timespec now;
         clock_gettime(CLOCK_MONOTONIC, &now);

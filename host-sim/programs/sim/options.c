@@ -36,6 +36,7 @@ static const char script_help[] =
     "  SECONDS rocker gain|sym|brt|con +1|-1      one step\n"
     "  SECONDS knob X                             range knob, -1..1\n"
     "  SECONDS slew X Y FOR_S                     cursor to the right and up, -1..1\n"
+    "  SECONDS cursor LAT LON                     put the cursor at a place\n"
     "  SECONDS designate | drop                   target management switch up, down\n"
     "  SECONDS picture NAME                       write DIR/NAME.png then\n";
 
@@ -82,7 +83,7 @@ static const char *take_profile(void *context, const char *name)
 /* Numbers as the table of options keeps them. */
 struct raw {
     long node, every, seed;
-    double seconds;
+    double start, seconds;
 };
 
 static bool read_table(struct options *o, struct raw *raw, int argc, char **argv, int *exit_code)
@@ -116,6 +117,10 @@ static bool read_table(struct options *o, struct raw *raw, int argc, char **argv
          "whole: the whole sector fits the frame; heading: the heading above the picture; strobe: "
          "a faint line along the beam; borders: lines along the sector's edges",
          false},
+        {"start", DB_REAL, &raw->start, 0, 999999, "S",
+         "begin S seconds into the log of --bus; the script's and --seconds' times count from "
+         "there",
+         false},
         {"seconds", DB_REAL, &raw->seconds, 0.001, 999999, "S",
          "flight time to run; left out: to the end of the log", false},
         {"seed", DB_INTEGER, &raw->seed, 0, 0x7fffffff, "N",
@@ -133,6 +138,10 @@ static bool check(const struct options *o, int *exit_code)
 {
     if (o->bus_log && o->can_interface) {
         *exit_code = db_options_wrong(&usage, "--bus", "and --can exclude each other");
+        return false;
+    }
+    if (o->start_s > 0 && !o->bus_log) {
+        *exit_code = db_options_wrong(&usage, "--start", "needs the log of --bus");
         return false;
     }
     if (!o->has_window && !o->bus_log && o->seconds <= 0) {
@@ -153,6 +162,7 @@ bool options_read(struct options *o, int argc, char **argv, int *exit_code)
     o->node = (uint8_t)raw.node;
     o->every = (uint32_t)raw.every;
     o->seed = (uint32_t)raw.seed;
+    o->start_s = raw.start;
     o->seconds = isnan(raw.seconds) ? 0 : raw.seconds;
     return check(o, exit_code);
 }

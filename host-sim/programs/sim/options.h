@@ -10,6 +10,7 @@
 
 struct options {
     const char *database, *bus_log, *can_interface, *script, *png_folder;
+    double start_s; /* into the bus log */
     double seconds; /* 0: to the end of the bus log, or for ever */
     uint32_t every; /* of the pictures for --png; 0: only those the script asks for */
     uint32_t seed;  /* of the noise */

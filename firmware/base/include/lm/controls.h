@@ -48,6 +48,7 @@ enum lm_control_kind {
     LM_CONTROL_SAR,         /* sar: draw a patch */
     LM_CONTROL_ENVIRONMENT, /* environment: rain, jammers, sea state; replaces the one before */
     LM_CONTROL_STEERPOINT,  /* steerpoint: steer to a position, or to the bus's steerpoint again */
+    LM_CONTROL_CURSOR,      /* cursor: put the cursor at a place; ends snowplow */
     LM_CONTROL_RANGE,       /* range_nm: select a range scale */
     LM_CONTROL_AZIMUTH,     /* azimuth_index: select a width of the sector */
     LM_CONTROL_GAIN,        /* gain_db: set the gain */
@@ -80,9 +81,10 @@ struct lm_control {
             bool is_set; /* true: steer to `position`; false: to the steerpoint of the bus */
             struct lm_position position; /* latitude -90..90 degrees, also when is_set is false */
         } steerpoint;
-        int32_t range_nm;      /* a range scale of the table that mode and field of view have */
-        int32_t azimuth_index; /* 0..LM_AZIMUTHS - 1 */
-        int32_t gain_db;       /* added to the gain of the radar table: -30..30 */
+        struct lm_position cursor; /* latitude -90..90 degrees */
+        int32_t range_nm;          /* a range scale of the table that mode and field of view have */
+        int32_t azimuth_index;     /* 0..LM_AZIMUTHS - 1 */
+        int32_t gain_db;           /* added to the gain of the radar table: -30..30 */
         bool is_frozen;
         int32_t button; /* 1..LM_BUTTONS */
         int32_t knob;   /* -LM_FULL_DEFLECTION..LM_FULL_DEFLECTION */

@@ -54,6 +54,9 @@ void lm_cursor_zero(struct lm_cursor *c, const struct lm_cursor_scene *scene);
 /* Hold the cursor at its present place on the ground; ends snowplow. */
 void lm_cursor_stabilise(struct lm_cursor *c);
 
+/* Put the cursor at a place on the ground; ends snowplow. */
+void lm_cursor_put(struct lm_cursor *c, struct lm_position position);
+
 /* Move the cursor by its deflection, and in snowplow with the aircraft. Call in every step of the
  * unit; it acts every LM_CURSOR_STEP_US and returns true if it did. A longer gap counts as one
  * step.

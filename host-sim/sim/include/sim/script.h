@@ -17,6 +17,7 @@
  *   SECONDS rocker gain|sym|brt|con +1|-1     one step
  *   SECONDS knob X                            range knob, -1..1
  *   SECONDS slew X Y FOR_S                    cursor to the right and up, -1..1, then centred
+ *   SECONDS cursor LAT LON                    put the cursor at a place
  *   SECONDS designate                         target management switch up
  *   SECONDS drop                              target management switch down
  *   SECONDS picture NAME                      write NAME.png into the folder of --png

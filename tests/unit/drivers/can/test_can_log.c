@@ -186,6 +186,29 @@ TEST(a_frame_comes_when_its_time_has_come_and_not_before)
     fclose(file);
 }
 
+TEST(a_log_can_begin_later)
+{
+    FILE *file = file_of(
+        "(1700000000.500000) can0 001#\n"
+        "(1700000000.600000) can0 002#\n"
+        "(1700000000.700000) can0 003#\n");
+    struct drv_can_log log;
+    struct lm_can_frame frame;
+    drv_can_log_init(&log, file, NULL, NULL);
+    assert_int_equal(drv_can_log_skip(&log, 150000), LM_OK);
+    const struct lm_can port = drv_can_log_port(&log);
+    drv_can_log_set_now(&log, 49999);
+    assert_int_equal(port.receive(port.ctx, &frame), 0);
+    drv_can_log_set_now(&log, 50000);
+    assert_int_equal(port.receive(port.ctx, &frame), 1);
+    assert_true(frame.id == 3 && frame.time_us == 50000);
+    rewind(file);
+    drv_can_log_init(&log, file, NULL, NULL);
+    assert_int_equal(drv_can_log_skip(&log, 200001), LM_OK);
+    assert_true(drv_can_log_is_over(&log));
+    fclose(file);
+}
+
 TEST(time_stamps_never_go_back)
 {
     FILE *file = file_of(

@@ -32,6 +32,10 @@ static void set_numbers(struct lm_control *c, int32_t value, int32_t other)
         c->steerpoint.is_set = value & 1;
         c->steerpoint.position.latitude = (fx_bam_t)other;
         break;
+    case LM_CONTROL_CURSOR:
+        c->cursor.latitude = (fx_bam_t)value;
+        c->cursor.longitude = (fx_bam_t)other;
+        break;
     case LM_CONTROL_RANGE:
         c->range_nm = value > 0 && value < 10 ? 10 * value : value;
         break;
@@ -65,7 +69,7 @@ static struct lm_control any_control(struct hs_rng *rng, const struct lm_unit *u
     /* Mostly buttons; now and then everything else, kinds that do not exist included. */
     const bool is_button = hs_rng_below(rng, 8) != 0;
     struct lm_control c = {.kind = is_button ? LM_CONTROL_DOWN + hs_rng_below(rng, 2)
-                                             : hs_rng_below(rng, 14)};
+                                             : hs_rng_below(rng, 15)};
     set_numbers(&c, any_value(rng), any_value(rng));
     if (c.kind == LM_CONTROL_SLEW && hs_rng_below(rng, 2)) {
         c = lm_control_slew((int32_t)hs_rng_below(rng, 2001) - 1000,

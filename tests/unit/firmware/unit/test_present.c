@@ -108,6 +108,28 @@ TEST(a_commanded_steerpoint_goes_before_that_of_the_bus_until_it_is_dropped)
     free_rig(r);
 }
 
+TEST(the_cursor_can_be_put_at_a_place_and_is_designated_there)
+{
+    struct rig *r = fly_rig();
+    const struct lm_position place = {hs_bam(46.03), hs_bam(11.10)};
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = place});
+    run(r, 0.5);
+    assert_int_equal(r->unit.cursor.position.latitude, place.latitude);
+    assert_int_equal(r->unit.cursor.position.longitude, place.longitude);
+    assert_true(r->unit.cursor.is_placed && !r->unit.cursor.is_home);
+    const uint32_t refused = r->unit.count.commands_refused;
+    const struct lm_position beyond = {FX_BAM_90 + 1, 0};
+    command(r, (struct lm_control){.kind = LM_CONTROL_CURSOR, .cursor = beyond});
+    run(r, 0.1);
+    assert_int_equal(r->unit.count.commands_refused, refused + 1);
+    assert_int_equal(r->unit.cursor.position.latitude, place.latitude);
+    command(r, lm_control_designate());
+    run(r, 0.1);
+    assert_int_equal(r->unit.picture.sar.command.centre.latitude, place.latitude);
+    assert_int_equal(r->unit.picture.sar.command.centre.longitude, place.longitude);
+    free_rig(r);
+}
+
 /* A unit that stands still, steered to the place under a pixel. */
 static struct rig *steer_to_pixel(int32_t x, int32_t y)
 {

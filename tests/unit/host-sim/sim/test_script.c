@@ -218,6 +218,17 @@ TEST(a_steerpoint_is_a_place_or_off)
     script_free(&s);
 }
 
+TEST(the_cursor_is_put_at_a_place)
+{
+    struct script s;
+    assert_int_equal(read_text(&s, "1 cursor 45 -90.5\n"), 0);
+    const struct lm_control c = at(&s, 1);
+    assert_int_equal(c.kind, LM_CONTROL_CURSOR);
+    assert_int_equal(c.cursor.latitude, hs_bam(45));
+    assert_int_equal(c.cursor.longitude, hs_bam(-90.5));
+    script_free(&s);
+}
+
 TEST(rain_and_jammers_add_up_until_the_weather_is_fair)
 {
     struct script s;
@@ -328,6 +339,9 @@ TEST(commands_that_are_none_are_refused)
                                "0 jam -91 0 1\n",
                                "0 jam 0 0 1 1\n",
                                "0 jam 0 0 x\n",
+                               "0 cursor\n",
+                               "0 cursor 91 0\n",
+                               "0 cursor 45 9 1\n",
                                "0 steer\n",
                                "0 steer on\n",
                                "0 steer 91 0\n",
