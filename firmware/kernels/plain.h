@@ -14,6 +14,7 @@ extern __typeof__(lm_k_highest_tangent) lm_k_highest_tangent_c;
 extern __typeof__(lm_k_light) lm_k_light_c;
 extern __typeof__(lm_k_class_gain) lm_k_class_gain_c;
 extern __typeof__(lm_k_water_gain) lm_k_water_gain_c;
+extern __typeof__(lm_k_layover) lm_k_layover_c;
 extern __typeof__(lm_k_grain_add) lm_k_grain_add_c;
 extern __typeof__(lm_k_grain_floor) lm_k_grain_floor_c;
 extern __typeof__(lm_k_grain_stretch) lm_k_grain_stretch_c;

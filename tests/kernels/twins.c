@@ -389,6 +389,42 @@ static struct lm_k_curve curve_of(const struct input *in, uint32_t n)
     return (struct lm_k_curve){in->base_db_q8[n], in->rise_db_q8[n]};
 }
 
+/* Ground as it comes, as rough as it comes, and far from the reference; any heights of codes. */
+static void draw_layover(struct input *in)
+{
+    draw_ground(in, 128u << hs_rng_below(&in->rng, 10));
+    draw_line(in->level_db_q8, in, hs_rng_below(&in->rng, 2) ? 1 << 14 : 1 << 29);
+    for (uint32_t k = in->cells; k < ROOM; k++) {
+        in->level_db_q8[k] = LM_LEVEL_SHADOW;
+    }
+    for (uint32_t k = 0; k < LM_K_CODES; k++) {
+        in->gain_db_q8[k] = hs_rng_below(&in->rng, 3) ? (int32_t)(any_size(in) >> 17) : 0;
+    }
+    in->number[0] = within_size(in, 1 << 29);
+    in->number[1] = (int32_t)(any_size(in) >> (1 + hs_rng_below(&in->rng, 20)));
+}
+
+static void run_layover(const struct input *in, struct output *out, bool is_plain)
+{
+    int32_t laid_db_q8[LM_K_LAYOVER_ROOM];
+    uint8_t height_sixteenths[2][LM_K_CODES];
+    const struct lm_k_layover line = {.cell = in->ground.cell,
+                                      .elevation_m_q14 = in->ground.elevation_m_q14,
+                                      .level_db_q8 = in->level_db_q8,
+                                      .cells = in->cells,
+                                      .reference_m_q14 = in->number[0],
+                                      .sixteenths_q31 = in->number[1],
+                                      .height_sixteenths = height_sixteenths};
+    for (uint32_t k = 0; k < LM_K_CODES; k++) {
+        height_sixteenths[0][k] = (uint8_t)in->gain_db_q8[k];
+        height_sixteenths[1][k] = (uint8_t)(in->gain_db_q8[k] >> 8);
+    }
+    memset(laid_db_q8, UNTOUCHED & 0xff, sizeof laid_db_q8);
+    TWIN(lm_k_layover)(&line, laid_db_q8);
+    memcpy(out->line[0], laid_db_q8 + LM_K_LAYOVER_MARGIN, in->cells * sizeof *out->line[0]);
+    out->end[1] = 0;
+}
+
 static void run_grain_add(const struct input *in, struct output *out, bool is_plain)
 {
     const struct lm_k_curve curve = curve_of(in, 0);
@@ -511,6 +547,7 @@ static const struct kernel kernels[] = {
     {"lm_k_highest_tangent", draw_light, run_highest_tangent},
     {"lm_k_class_gain", draw_classes, run_class_gain},
     {"lm_k_water_gain", draw_classes, run_water_gain},
+    {"lm_k_layover", draw_layover, run_layover},
     {"lm_k_grain_add", draw_speckle, run_grain_add},
     {"lm_k_grain_floor", draw_speckle, run_grain_floor},
     {"lm_k_grain_stretch", draw_speckle, run_grain_stretch},

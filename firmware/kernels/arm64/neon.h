@@ -114,20 +114,25 @@ static inline uint16x8_t neon_db_sum_step(int32x4_t a0_q8, int32x4_t a1_q8, int3
     return vminq_u16(steps, vdupq_n_u16(511));
 }
 
-/* fx_db_q8_sum_vec of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
- * loop, whose stores would else have them loaded again each time. Steps' upper bits choose lines.
- */
-static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, uint8x16x4_t falls,
-                                         int32x4x4_t a_q8, int32x4x4_t b_q8)
+/* Where two times sixteen levels meet in the table: the line, and the place in it. */
+struct neon_db_sum {
+    uint8x16_t line, place;
+};
+
+static inline struct neon_db_sum neon_db_sum_of(int32x4x4_t a_q8, int32x4x4_t b_q8)
 {
     const uint16x8_t step[2] = {
         neon_db_sum_step(a_q8.val[0], a_q8.val[1], b_q8.val[0], b_q8.val[1]),
         neon_db_sum_step(a_q8.val[2], a_q8.val[3], b_q8.val[2], b_q8.val[3])};
-    const uint8x16_t line = vshrn_high_n_u16(vshrn_n_u16(step[0], 3), step[1], 3);
-    const uint8x16_t place =
-        vuzp1q_u8(vreinterpretq_u8_u16(step[0]), vreinterpretq_u8_u16(step[1]));
-    const uint8x16_t low = vqtbl4q_u8(lows, line), high = vqtbl4q_u8(highs, line);
-    const uint8x16_t fall = vqtbl4q_u8(falls, line);
+    return (struct neon_db_sum){
+        vshrn_high_n_u16(vshrn_n_u16(step[0], 3), step[1], 3),
+        vuzp1q_u8(vreinterpretq_u8_u16(step[0]), vreinterpretq_u8_u16(step[1]))};
+}
+
+/* The larger ones, and what the table says that they are raised by. */
+static inline int32x4x4_t neon_db_sum_raise(uint8x16_t low, uint8x16_t high, uint8x16_t fall,
+                                            uint8x16_t place, int32x4x4_t a_q8, int32x4x4_t b_q8)
+{
     const uint16x8_t more_q13[2] = {
         vmlsl_u8(vreinterpretq_u16_u8(vzip1q_u8(low, high)), vget_low_u8(fall), vget_low_u8(place)),
         vmlsl_high_u8(vreinterpretq_u16_u8(vzip2q_u8(low, high)), fall, place)};
@@ -140,6 +145,17 @@ static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, 
         sum.val[2 * n + 1] = vaddw_high_s16(most[1], more_q8);
     }
     return sum;
+}
+
+/* fx_db_q8_sum_vec of sixteen, by the rows of fx_table_db_sum_lines: to be loaded before a
+ * loop, whose stores would else have them loaded again each time. Steps' upper bits choose lines.
+ */
+static inline int32x4x4_t neon_db_q8_sum(uint8x16x4_t lows, uint8x16x4_t highs, uint8x16x4_t falls,
+                                         int32x4x4_t a_q8, int32x4x4_t b_q8)
+{
+    const struct neon_db_sum at = neon_db_sum_of(a_q8, b_q8);
+    return neon_db_sum_raise(vqtbl4q_u8(lows, at.line), vqtbl4q_u8(highs, at.line),
+                             vqtbl4q_u8(falls, at.line), at.place, a_q8, b_q8);
 }
 
 /* Eight numbers, and eight more. */
